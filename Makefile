@@ -1,0 +1,58 @@
+# Glisson's commands. `make` lists them; CONTRIBUTING.md says more.
+#   setup (packages) → configure and build (CMake preset) → run or test
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+BUILD := build/release
+ASAN := build/asan-ubsan
+CTEST := ctest --output-on-failure --no-tests=error -j $(JOBS)
+PROGRAM := $(BUILD)/bin/glisson
+OUT ?= out/reproduce
+
+.DEFAULT_GOAL := help
+.PHONY: help run test check setup format clean citations layout lint sanitizers
+.NOTPARALLEL:
+
+help:  ## this list
+	@echo "Glisson: soft tissue that is non-linear, viscoelastic and touched by instruments"
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
+
+setup:  ## install the packages that are missing (SECTION=run, test or check; all of them: check)
+	@scripts/setup.sh $(or $(SECTION),check)
+
+run:  ## build the program and reproduce the paper's figures into one report
+	@scripts/setup.sh run
+	@scripts/configure.sh release
+	@cmake --build $(BUILD) -j $(JOBS) --target glisson_program
+	$(PROGRAM) reproduce --out $(OUT)
+
+test:  ## build with tests and run them: engine, consumer package, report page
+	@scripts/setup.sh test
+	@scripts/configure.sh release tests
+	@cmake --build $(BUILD) -j $(JOBS)
+	@cd $(BUILD) && $(CTEST)
+
+check:  ## sanitizers, fuzz corpus, layout, lint, citations: all of them, even when one fails
+	@scripts/setup.sh check
+	@$(MAKE) --no-print-directory --keep-going citations layout lint sanitizers
+
+citations:
+	@scripts/check_citations
+
+layout:
+	@scripts/check_format.sh
+
+lint:
+	@scripts/configure.sh asan-ubsan tests
+	@scripts/lint.sh $(ASAN) $(JOBS)
+
+# Address and undefined behaviour, over every test but those of the page; the fuzz corpus is among them.
+sanitizers:
+	@scripts/configure.sh asan-ubsan tests
+	@cmake --build $(ASAN) -j $(JOBS)
+	@cd $(ASAN) && $(CTEST) -LE web
+
+format:  ## lay out the sources in place with clang-format
+	@scripts/setup.sh check
+	@scripts/check_format.sh --fix
+
+clean:  ## remove what was built and written
+	rm -rf build out web/node_modules web/dist

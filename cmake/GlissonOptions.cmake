@@ -1,0 +1,29 @@
+# Language level, warnings, sanitizers and the compiler cache, for every target of the project.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+find_program(GLISSON_CCACHE ccache)
+if(GLISSON_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${GLISSON_CCACHE}")
+endif()
+
+add_library(glisson_options INTERFACE)
+target_compile_features(glisson_options INTERFACE cxx_std_20)
+# No fused multiply-add behind our back: the same source gives the same bytes in every translation unit.
+target_compile_options(glisson_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off)
+# GCC 12 and 13 see overlaps in std::string that are not there (GCC bug 105651).
+target_compile_options(glisson_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+if(GLISSON_SANITIZE)
+  target_compile_options(glisson_options INTERFACE -fsanitize=${GLISSON_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(glisson_options INTERFACE -fsanitize=${GLISSON_SANITIZE})
+endif()
+
+# What io takes from VTK; the installed package asks for the same.
+set(GLISSON_VTK_COMPONENTS CommonCore CommonDataModel CommonExecutionModel IOCore IOXML IOXMLParser)
