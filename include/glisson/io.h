@@ -1,0 +1,56 @@
+// io.h — meshes in, meshes and frames out. Links VTK; the core library never does.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "glisson/mesh.h"
+
+namespace glisson {
+
+/// A file that cannot be used: what() holds file, line or element, the value, and what to do.
+class FileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct ImportedMesh {
+  TetMesh mesh;
+  MeshReport report;
+};
+
+/// Reads a tetrahedral mesh: .vtu, .vtk (legacy), .msh (Gmsh 2.2 and 4.1, ASCII and binary).
+/// Named groups of the file (Gmsh physical names; integer cell arrays such as "region") become regions
+/// and vertex sets: in VTK files the cell array "region", the point arrays "set:NAME" and the field arrays
+/// "region:NAME" that write_vtu writes. Cells that are not linear tetrahedra are skipped, counted and said
+/// in the report; inverted tets are turned and said. Degenerate or duplicate tets stay, and are said.
+/// @param scale  factor applied to all coordinates (0.001 for a file in millimetres), > 0
+/// @throws FileError where the file cannot be used as it is
+ImportedMesh read_mesh(const std::filesystem::path& file, double scale = 1.0);
+
+/// What `glisson info MESH` prints: counts, box, extent, volume, shape, pieces and warnings, one a line.
+/// @param name  the file, as the user wrote it
+/// @param mesh  if given, its regions and vertex sets are listed too
+std::string format_report(const std::string& name, const MeshReport& report, const TetMesh* mesh = nullptr);
+
+/// A field on the vertices or tets of a mesh, `components` numbers each (1 or 3).
+struct Field {
+  std::string name;  ///< with its unit, e.g. "displacement_m"
+  int components = 1;
+  std::vector<double> values;
+};
+
+/// Writes a .vtu (binary, appended) with the mesh's regions and vertex sets and the given fields.
+/// @param positions  current vertex positions [m], as many as mesh.vertices; empty: rest positions
+void write_vtu(const std::filesystem::path& file, const TetMesh& mesh, std::span<const Vec3d> positions = {},
+               std::span<const Field> vertex_fields = {}, std::span<const Field> tet_fields = {});
+
+/// Writes a .pvd collection of (time [s], file relative to the .pvd). Replaces the file atomically, so an
+/// interrupted run leaves a readable collection of the frames written so far.
+void write_pvd(const std::filesystem::path& file, std::span<const std::pair<double, std::filesystem::path>> frames);
+
+}  // namespace glisson

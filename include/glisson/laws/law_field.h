@@ -1,0 +1,23 @@
+// law_field.h — how a law describes its parameters to the scene reader and the documentation.
+#pragma once
+
+#include <limits>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace glisson {
+
+/// One parameter of law `Law`: its key in a scene, the member it sets, unit, allowed range and meaning.
+template <class Law>
+struct LawField {
+  std::string_view key;  ///< with its unit, e.g. "slope_Pa"
+  std::variant<double Law::*, std::vector<double> Law::*> member;
+  std::string_view unit;
+  double min = -std::numeric_limits<double>::infinity();  ///< inclusive
+  double max = std::numeric_limits<double>::infinity();   ///< inclusive
+  bool required = true;
+  std::string_view help;
+};
+
+}  // namespace glisson

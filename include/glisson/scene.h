@@ -1,0 +1,216 @@
+// scene.h — experiments as TOML files: read, checked against the schema, run.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "glisson/mesh.h"
+#include "glisson/motion.h"
+#include "glisson/simulation.h"
+#include "glisson/tissue.h"
+
+namespace glisson {
+
+/// A scene that cannot be used. what() has one line for each thing that is wrong, in the order of the file:
+/// `file:line:column: key: what is wrong, value, allowed range, way out`; for a value given to --set
+/// `file: --set KEY: …`.
+class SceneError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct MeshFile {
+  std::filesystem::path path;  ///< absolute, or relative to the current directory
+  double scale = 1.0;          ///< factor on coordinates
+};
+using MeshSource = std::variant<BoxOptions, CylinderOptions, MeshFile>;
+
+// `origin` in the structs below is where the scene says it, `file:line:column: key`, for messages that can only be
+// made once the mesh is known. It may be empty.
+
+/// Picks vertices by where they are at rest. Exactly one way per selection.
+struct Selection {
+  struct Box {
+    Vec3d min, max;
+  };  ///< inclusive [m]
+  struct Sphere {
+    Vec3d center;
+    double radius;
+  };  ///< inclusive [m]
+  struct Nearest {
+    Vec3d point;
+    int count = 1;
+  };  ///< the `count` nearest to a point [m], ≥ 1
+  struct Side {
+    int axis;
+    bool upper;
+    double depth;
+  };  ///< within `depth` [m] of the lowest/highest vertex along an axis
+  struct Ids {
+    std::vector<std::uint32_t> vertices;
+  };
+  std::variant<Box, Sphere, Nearest, Side, Ids> where;
+  bool surface_only = false;
+  std::string origin;
+};
+
+/// A region of tets by where their centroid lies at rest; overrides the mesh's own regions.
+struct RegionSpec {
+  std::string name;
+  std::variant<std::monostate, Selection::Box, Selection::Sphere>
+      where;  ///< monostate: the mesh's region of that name or number
+  Tissue tissue;
+  std::string origin;
+};
+
+struct FixedSpec {
+  std::string set;
+  Axes axes;
+  std::string origin;
+};
+struct LoadSpec {
+  std::string set;
+  Vec3d force;        ///< [N], spread over the set by equal parts
+  double ramp = 0.0;  ///< time over which it grows from 0, linearly [s], ≥ 0
+  std::string origin;
+};
+struct ToolSpec {
+  std::string name = "tool";
+  std::string set;
+  PressMotion motion;
+  bool sideways_free = false;  ///< only the component along the direction is driven (direction along an axis)
+  std::string origin;
+};
+
+struct OutputSpec {
+  double sample_rate = 500.0;  ///< [Hz], > 0
+  int frames = 60;             ///< frames of the whole run, 0 or more
+};
+
+/// One experiment, complete: what the variants of a scene are expanded to.
+struct Variant {
+  std::string name = "main";
+  std::string label;
+  MeshSource mesh;
+  std::map<std::string, Selection> sets;
+  Tissue tissue;
+  std::vector<RegionSpec> regions;
+  std::vector<FixedSpec> fixed;
+  std::vector<LoadSpec> loads;
+  std::vector<ToolSpec> tools;
+  SimulationOptions simulation;
+  OnInversion on_inversion = OnInversion::go_on;
+  std::optional<double> duration;          ///< [s]; none: until the last tool's motion has ended
+  std::optional<std::uint64_t> max_steps;  ///< stops after that many steps
+  OutputSpec output;
+  std::string scene_name = "scene";  ///< the scene's file, for messages
+};
+
+/// A column of forces.csv on an axis of a chart: display = value × scale.
+struct AxisSpec {
+  std::string column;
+  std::string label;  ///< with unit, e.g. "depth [mm]"
+  double scale = 1.0;
+};
+/// A chart of the report.
+struct ChartSpec {
+  std::string title;
+  AxisSpec x, y;
+  std::vector<std::string> variants;  ///< names; empty: all
+};
+
+struct Scene {
+  std::filesystem::path file;
+  std::string title, description;
+  std::vector<std::string> notes;  ///< what was chosen where the source is silent, and why
+  std::string source;              ///< the text of the file
+  std::vector<Variant> variants;   ///< one or more
+  std::vector<ChartSpec> charts;   ///< empty: the report's own choice
+};
+
+/// `key=value` as given to --set: dotted key, TOML value (a bare word is taken as a string).
+struct Override {
+  std::string key, value;
+};
+
+/// Reads a scene. @throws SceneError
+Scene load_scene(const std::filesystem::path& file, std::span<const Override> overrides = {});
+/// The same from text; `name` stands for the file in messages, relative mesh paths start at `base`.
+Scene parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& base,
+                  std::span<const Override> overrides = {});
+
+/// The reference of every key in Markdown: docs/scene.md is this text.
+std::string scene_reference_markdown();
+
+/// Reads a mesh file; the io library's read_mesh, handed in so that scenes do not link VTK.
+using MeshLoader = std::function<TetMesh(const MeshFile&)>;
+
+/// One line of forces.csv. Scalars of the tool are along its direction, positive when it presses.
+struct Sample {
+  double time = 0.0;                 ///< [s]
+  std::vector<double> depths;        ///< per tool [m]
+  std::vector<ForceParts> tools;     ///< per tool: what it exerts on the tissue
+  std::vector<ForceParts> supports;  ///< per fixed set: what it exerts on the tissue
+  Energies energies;
+};
+
+struct RunSummary {
+  std::size_t vertices = 0, tets = 0;
+  std::uint64_t steps = 0;
+  double time_s = 0.0, step_s = 0.0, stable_step_s = 0.0, wall_s = 0.0, ns_per_tet_step = 0.0, peak_force_N = 0.0;
+  Energies energies;
+  std::size_t inverted_tets_most = 0;  ///< the most tets inverted in one step
+  double first_inversion_s = -1.0;     ///< time of it; −1: none
+  std::uint64_t state_hash = 0;
+  enum class End { finished, interrupted, stopped_inverted, stopped_unstable, stopped_not_finite } end = End::finished;
+};
+
+/// Watches a run; called from the run's own thread, never on the hot path of a step.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  virtual void on_start(const Variant&, const Simulation&) {}
+  virtual void on_sample(const Sample&) {}
+  virtual void on_frame(const Simulation&) {}
+  virtual void on_progress(double /*fraction*/) {}  ///< about ten times a second
+  virtual void on_end(const RunSummary&) {}
+};
+
+/// Mesh, sets and regions of a variant, ready to simulate. @throws SceneError, and what `load` throws
+TetMesh build_mesh(const Variant& variant, const MeshLoader& load);
+
+/// Tissue of each region number that occurs in a mesh made by build_mesh.
+std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh);
+
+/// The body of a variant with its supports, loads and tools, at rest.
+struct BuiltVariant {
+  Simulation simulation;
+  std::vector<ConstraintId> supports;  ///< per variant.fixed
+  std::vector<ConstraintId> tools;     ///< per variant.tools
+};
+/// @throws SceneError where mesh, sets, tissues, step or constraints cannot be used
+BuiltVariant build_variant(const Variant& variant, const MeshLoader& load);
+
+/// Time at which a variant's run ends [s]; infinite where only max_steps ends it.
+double run_duration(const Variant& variant);
+
+/// Builds and runs a variant to its end, or until `stop` is set.
+///
+/// The last step is the one that ends nearest to run_duration(). A sample is taken from the step that starts nearest
+/// to each multiple of 1/sample_rate, and one more from the last step, so that the curve ends where the run does;
+/// its time, depth, forces and energies are all of the instant at which that step starts. Frames are evenly spaced,
+/// the first at rest, the last at the end.
+/// @throws SceneError before the first step; after it, only what the observer throws
+RunSummary run_variant(const Variant& variant, const MeshLoader& load, RunObserver& observer,
+                       const std::atomic<bool>& stop);
+
+}  // namespace glisson

@@ -1,0 +1,141 @@
+// simulation.h — a body in motion: what a program embeds.
+//
+//   TetMesh + tissues ──▶ Simulation ── fix / drive / load ──▶ step() … step()
+//                                                               └▶ displacement, forces, energies
+//
+// Motion is the paper's explicit scheme on lumped masses [Schwartz2002, eq. 3–4]. Setters and the
+// constructor throw std::invalid_argument with the name, the value and the allowed range; a step never
+// throws and says by its status how it went.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "glisson/math.h"
+#include "glisson/mesh.h"
+#include "glisson/precision.h"
+#include "glisson/tet_fields.h"
+#include "glisson/tissue.h"
+
+namespace glisson {
+
+/// What happens to a run that meets an inverted tetrahedron (J ≤ 0).
+enum class OnInversion { go_on, stop };
+
+struct SimulationOptions {
+  std::optional<double> step;  ///< h [s], > 0 and ≤ h*; none: chosen as 0.9 h* and kept below it as tissue stiffens
+  Precision precision = Precision::single_precision;
+  double damping_rate = 0.0;      ///< mass-proportional nodal damping γ_i/m_i [1/s], ≥ 0
+  double nodal_damping = 0.0;     ///< nodal damping γ_i equal at all vertices, added to it [kg/s], ≥ 0
+  Vec3d gravity{};                ///< [m/s²]
+  double gravity_ramp = 0.0;      ///< gravity grows linearly from 0 over this time [s], ≥ 0
+  bool enforce_stability = true;  ///< false: take any step, for studies of the instability itself
+};
+
+enum class StepStatus {
+  ok,
+  inverted,        ///< tets with J ≤ 0 in the state the step started from; the step was made
+  step_too_large,  ///< the tissue stiffened until the given h exceeds h*; the step was not made
+  not_finite       ///< the state holds a number that is not finite; the step was not made
+};
+
+struct StepResult {
+  StepStatus status = StepStatus::ok;
+  std::span<const std::uint32_t> inverted_tets;  ///< valid until the next step
+};
+
+/// Which components of a vertex a constraint holds.
+struct Axes {
+  bool x = true, y = true, z = true;
+};
+
+/// A force with its parts [N]: what a constraint (tool, support) exerts on the tissue at time t.
+///
+///   total = elastic + viscous + damping + inertial + gravity + load
+///
+/// `elastic` and `viscous` are what balances the tissue's own forces, `damping` overcomes γ v,
+/// `inertial` accelerates the driven masses, `gravity` and `load` balance weight and other loads.
+struct ForceParts {
+  Vec3d elastic, viscous, damping, inertial, gravity, load;
+  Vec3d total() const { return elastic + viscous + damping + inertial + gravity + load; }
+};
+
+/// Energies at the time the last step started from [J]. Exact identity of the scheme, up to rounding:
+///   kinetic + elastic + dissipated = initial + work_tools + work_loads.
+struct Energies {
+  double elastic = 0.0;     ///< − work of the elastic forces; for a linear tissue the stored energy
+  double kinetic = 0.0;     ///< ½ Σ m v(t−h/2)·v(t+h/2), the scheme's own kinetic energy
+  double dissipated = 0.0;  ///< by viscosity and nodal damping
+  double work_tools = 0.0;  ///< of driven vertices on the tissue
+  double work_loads = 0.0;  ///< of gravity and of loads
+  double initial = 0.0;     ///< kinetic and elastic energy of the state given by set_state
+  double imbalance() const { return kinetic + elastic + dissipated - initial - work_tools - work_loads; }
+};
+
+/// Displacement of a driven set at time t [m]; must be 0 at the time the set is driven from.
+using Motion = std::function<Vec3d(double time)>;
+
+/// Name of a constraint for reading its force.
+struct ConstraintId {
+  std::size_t index = 0;
+};
+
+/// A tensor-mass body with its supports, tools and loads, advanced step by step.
+class Simulation {
+ public:
+  /// @param mesh     valid (require_valid), rest positions [m]
+  /// @param tissues  tissue of each region number that occurs in the mesh, by region number
+  /// @throws std::invalid_argument for a bad mesh, tissue or option, or a step above h* (h* and the ways out are in the text)
+  Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const SimulationOptions& options = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  /// Holds vertices where they are. A component that is held already is an error.
+  ConstraintId fix(std::span<const std::uint32_t> vertices, Axes axes = {});
+  /// Moves vertices along a prescribed path, in the given components, from where they are when it takes hold.
+  /// @param from  time at which it takes hold [s]; until then the vertices are free and its force is 0
+  ConstraintId drive(std::span<const std::uint32_t> vertices, Motion motion, Axes axes = {}, double from = 0.0);
+  /// Adds a force, spread over the vertices by equal parts; `scale(t)` multiplies it (none: 1). [N]
+  void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale = {});
+
+  /// Advances by step_size(). The paper's eq. 4 in displacement–velocity form.
+  StepResult step();
+
+  double time() const;       ///< [s]
+  double step_size() const;  ///< h of the next step [s]
+  /// h* [s]: the largest step for which the scheme is stable, from a safe upper bound of the spectrum of the
+  /// free body at its present stiffness [Schwartz2002, eq. 4; docs/theory.md §4]
+  double stable_step() const;
+  std::uint64_t steps() const;
+
+  const TetMesh& mesh() const;
+  std::span<const double> masses() const;       ///< lumped, per vertex [kg]
+  std::span<const Vec3d> displacement() const;  ///< u(t), per vertex [m]
+  std::span<const Vec3d> velocity() const;      ///< v(t − h/2), per vertex [m/s]
+  std::vector<Vec3d> positions() const;         ///< rest + u, per vertex [m]
+  /// Sets the state, for studies that do not start from rest; energies count from here.
+  /// @param displacement  [m], @param velocity  v(t − h/2) [m/s], one per vertex; held vertices keep theirs at 0
+  void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity);
+
+  /// Force the constraint exerts on the tissue, at the time the last step started from.
+  ForceParts force(ConstraintId constraint) const;
+  Energies energies() const;
+
+  /// Shape, intensity and stress of every tet at the present state.
+  TetFields tet_fields() const;
+
+  /// 64-bit FNV-1a hash over the bytes of displacement and velocity: equal states, equal hash, run to run.
+  std::uint64_t state_hash() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace glisson
