@@ -1,0 +1,73 @@
+#include "mechanics/body.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+
+#include "tissue/viscosity.h"
+
+namespace glisson {
+namespace {
+
+std::array<Vec3d, 4> corners_of(const TetMesh& mesh, const Tet& t) {
+  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]], mesh.vertices[t[3]]};
+}
+
+const Tissue& tissue_of_region(const TetMesh& mesh, const std::map<int, Tissue>& tissues, int region) {
+  if (const auto it = tissues.find(region); it != tissues.end()) return it->second;
+  const auto name = mesh.region_names.find(region);
+  const std::string label = name == mesh.region_names.end() ? "" : " (\"" + name->second + "\")";
+  throw std::invalid_argument("region " + std::to_string(region) + label +
+                              " of the mesh has no tissue; give one for each region number that occurs");
+}
+
+/// Elements in order of region, in mesh order within a region.
+std::vector<std::uint32_t> elements_by_region(const TetMesh& mesh) {
+  std::vector<std::uint32_t> order(mesh.tets.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return mesh.region_of(a) < mesh.region_of(b); });
+  return order;
+}
+
+TissueBlock make_block(const Tissue& tissue, std::size_t begin) {
+  require_valid(tissue);
+  return {tissue, tissue.lame(), viscous_coefficients(tissue), begin, begin};
+}
+
+}  // namespace
+
+ElementRest element_rest(const std::array<Vec3d, 4>& x) {
+  const Vec3d a = x[1] - x[0], b = x[2] - x[0], c = x[3] - x[0];
+  const double six_volume = dot(a, cross(b, c));
+  const double scale = 1.0 / six_volume;
+  return {six_volume / 6.0, {cross(b, c) * scale, cross(c, a) * scale, cross(a, b) * scale}};
+}
+
+Body build_body(const TetMesh& mesh, const std::map<int, Tissue>& tissues) {
+  require_valid(mesh);
+  Body body;
+  body.vertex_count = mesh.vertices.size();
+  body.rest_positions = mesh.vertices;
+  body.masses.assign(body.vertex_count, 0.0);
+  body.mesh_tet = elements_by_region(mesh);
+  for (const std::uint32_t t : body.mesh_tet) {
+    const std::size_t e = body.elements.size();
+    const bool new_region = e == 0 || mesh.region_of(t) != mesh.region_of(body.mesh_tet[e - 1]);
+    if (new_region) body.blocks.push_back(make_block(tissue_of_region(mesh, tissues, mesh.region_of(t)), e));
+    body.elements.push_back(mesh.tets[t]);
+    body.rest.push_back(element_rest(corners_of(mesh, mesh.tets[t])));
+    body.blocks.back().end = e + 1;
+    const double quarter = 0.25 * body.blocks.back().tissue.density * body.rest.back().volume;
+    for (const std::uint32_t v : mesh.tets[t]) body.masses[v] += quarter;
+  }
+  return body;
+}
+
+Mat3d element_gradient(const Body& body, std::size_t e, std::span<const Vec3d> u) {
+  const Tet& t = body.elements[e];
+  return displacement_gradient(body.rest[e].s, {u[t[1]] - u[t[0]], u[t[2]] - u[t[0]], u[t[3]] - u[t[0]]});
+}
+
+}  // namespace glisson

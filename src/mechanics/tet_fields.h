@@ -1,0 +1,17 @@
+// tet_fields.h — what a tetrahedron looks like from outside: shape, intensity, stress, stored energy.
+#pragma once
+
+#include <span>
+
+#include "glisson/tet_fields.h"
+#include "mechanics/body.h"
+
+namespace glisson {
+
+/// Fields in the order of the mesh's tets, in double whatever the operator computes in.
+TetFields tet_fields(const Body& body, std::span<const Vec3d> u, std::span<const Vec3d> v);
+
+/// Σ V (½ λ tr(ε)² + μ ε:ε) with the moduli of the present shape [J]: the stored energy of a linear tissue.
+double secant_energy(const Body& body, std::span<const Vec3d> u);
+
+}  // namespace glisson
