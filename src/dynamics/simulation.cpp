@@ -1,0 +1,92 @@
+// simulation.cpp — the public face of a body in motion: checks what comes in, and hands on.
+#include "glisson/simulation.h"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "dynamics/explicit_scheme.h"
+#include "mechanics/tet_fields.h"
+
+namespace glisson {
+namespace {
+
+void require_options(const SimulationOptions& o) {
+  const auto check = [](bool ok, const char* name, double value, const char* range) {
+    if (ok) return;
+    std::ostringstream text;
+    text << "simulation: " << name << " = " << value << " is outside the allowed range, " << range;
+    throw std::invalid_argument(text.str());
+  };
+  const auto not_negative = [](double v) { return v >= 0.0 && std::isfinite(v); };
+  check(not_negative(o.damping_rate), "damping_rate [1/s]", o.damping_rate, ">= 0 and finite");
+  check(not_negative(o.nodal_damping), "nodal_damping [kg/s]", o.nodal_damping, ">= 0 and finite");
+  check(not_negative(o.gravity_ramp), "gravity_ramp [s]", o.gravity_ramp, ">= 0 and finite");
+  check(std::isfinite(norm(o.gravity)), "|gravity| [m/s^2]", norm(o.gravity), "finite");
+}
+
+}  // namespace
+
+struct Simulation::Impl {
+  TetMesh mesh;
+  ExplicitScheme scheme;
+};
+
+Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const SimulationOptions& options) {
+  require_options(options);
+  Body body = build_body(mesh, tissues);
+  impl_.reset(new Impl{std::move(mesh), {std::move(body), options}});
+}
+
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+ConstraintId Simulation::fix(std::span<const std::uint32_t> vertices, Axes axes) { return drive(vertices, {}, axes); }
+
+ConstraintId Simulation::drive(std::span<const std::uint32_t> vertices, Motion motion, Axes axes, double from) {
+  return impl_->scheme.add_constraint({{vertices.begin(), vertices.end()}, axes, std::move(motion), from});
+}
+
+void Simulation::add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale) {
+  impl_->scheme.loads().add(vertices, force, std::move(scale));
+}
+
+StepResult Simulation::step() { return impl_->scheme.step(); }
+
+double Simulation::time() const { return impl_->scheme.time(); }
+double Simulation::step_size() const { return impl_->scheme.control().step(); }
+double Simulation::stable_step() const { return impl_->scheme.control().stable_step(); }
+std::uint64_t Simulation::steps() const { return impl_->scheme.steps(); }
+const TetMesh& Simulation::mesh() const { return impl_->mesh; }
+std::span<const double> Simulation::masses() const { return impl_->scheme.body().masses; }
+std::span<const Vec3d> Simulation::displacement() const { return impl_->scheme.displacement(); }
+std::span<const Vec3d> Simulation::velocity() const { return impl_->scheme.velocity(); }
+
+std::vector<Vec3d> Simulation::positions() const {
+  std::vector<Vec3d> x = impl_->mesh.vertices;
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += displacement()[i];
+  return x;
+}
+
+void Simulation::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
+  impl_->scheme.set_state(displacement, velocity);
+}
+
+ForceParts Simulation::force(ConstraintId constraint) const { return impl_->scheme.force(constraint); }
+
+Energies Simulation::energies() const { return impl_->scheme.energies(); }
+
+TetFields Simulation::tet_fields() const {
+  return glisson::tet_fields(impl_->scheme.body(), displacement(), velocity());
+}
+
+std::uint64_t Simulation::state_hash() const {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const std::span<const Vec3d> field : {displacement(), velocity()}) {
+    for (const std::byte b : std::as_bytes(field)) hash = (hash ^ static_cast<std::uint64_t>(b)) * 1099511628211ULL;
+  }
+  return hash;
+}
+
+}  // namespace glisson
