@@ -1,0 +1,36 @@
+// raw_mesh.h — what a format's reader hands on, before the checks that are the same for every format.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "glisson/io.h"
+
+namespace glisson::detail {
+
+/// A mesh as the file gives it: tets possibly inverted, coordinates not yet scaled.
+struct RawMesh {
+  TetMesh mesh;
+  std::map<std::string, std::size_t> skipped;  ///< kind of cell → how many were left out
+  std::vector<std::string> notes;              ///< sentences for the report
+};
+
+/// @throws FileError "NAME: WHAT"
+[[noreturn]] void fail(const std::string& name, const std::string& what);
+
+/// Scales, checks, turns inverted tets and reports.
+/// @param name   the file as the user wrote it
+/// @param scale  > 0
+/// @throws FileError for coordinates that are not finite, vertex numbers out of range, no tetrahedra
+ImportedMesh finish_import(RawMesh raw, const std::string& name, double scale);
+
+/// The reader of each format, from the bytes of a file. @throws FileError
+RawMesh read_gmsh(std::string_view bytes, const std::string& name);
+RawMesh read_vtu(std::string_view bytes, const std::string& name);
+RawMesh read_legacy_vtk(std::string_view bytes, const std::string& name);
+
+/// Reads a mesh from memory as if it were the file `name`, whose ending tells the format. @throws as read_mesh
+ImportedMesh read_mesh_bytes(std::string_view bytes, const std::string& name, double scale = 1.0);
+
+}  // namespace glisson::detail

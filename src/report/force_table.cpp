@@ -1,0 +1,63 @@
+// force_table.cpp — see force_table.h.
+#include "report/force_table.h"
+
+#include <map>
+
+namespace glisson {
+namespace {
+
+const std::vector<std::string> kEnergyColumns{"energy_elastic_J", "energy_kinetic_J", "energy_dissipated_J",
+                                              "work_tools_J", "work_loads_J"};
+
+Vec3d unit(const Vec3d& direction) { return direction * (1.0 / norm(direction)); }
+
+/// A set held by two entries (x by one, z by the other) has two sets of columns: the second is named <set>_2.
+std::vector<std::string> support_columns(const Variant& variant) {
+  std::vector<std::string> columns;
+  std::map<std::string, int> seen;
+  for (const FixedSpec& fixed : variant.fixed) {
+    const int number = ++seen[fixed.set];
+    const std::string name = "support_" + fixed.set + (number > 1 ? "_" + std::to_string(number) : "");
+    for (const char* axis : {"_x_N", "_y_N", "_z_N"}) columns.push_back(name + axis);
+  }
+  return columns;
+}
+
+}  // namespace
+
+ForceTable::ForceTable(const Variant& variant) : columns_(tool_columns()) {
+  for (const ToolSpec& tool : variant.tools) directions_.push_back(unit(tool.motion.direction));
+  const std::vector<std::string> supports = support_columns(variant);
+  columns_.insert(columns_.end(), kEnergyColumns.begin(), kEnergyColumns.end());
+  columns_.insert(columns_.end(), supports.begin(), supports.end());
+}
+
+const std::vector<std::string>& ForceTable::tool_columns() {
+  static const std::vector<std::string> columns{"time_s",    "depth_m",    "force_x_N", "force_y_N",
+                                                "force_z_N", "force_N",    "elastic_N", "viscous_N",
+                                                "damping_N", "inertial_N", "gravity_N", "load_N"};
+  return columns;
+}
+
+std::vector<double> ForceTable::tool_row(const Sample& sample, std::size_t tool) const {
+  if (tool >= sample.tools.size()) return {sample.time, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+  const Vec3d d = directions_[tool];
+  const ForceParts& f = sample.tools[tool];
+  const Vec3d total = f.total();
+  return {sample.time,       sample.depths[tool], total.x,           total.y,
+          total.z,           dot(total, d),       dot(f.elastic, d), dot(f.viscous, d),
+          dot(f.damping, d), dot(f.inertial, d),  dot(f.gravity, d), dot(f.load, d)};
+}
+
+std::vector<double> ForceTable::row(const Sample& sample) const {
+  std::vector<double> row = tool_row(sample, 0);
+  const Energies& e = sample.energies;
+  row.insert(row.end(), {e.elastic, e.kinetic, e.dissipated, e.work_tools, e.work_loads});
+  for (const ForceParts& support : sample.supports) {
+    const Vec3d total = support.total();
+    row.insert(row.end(), {total.x, total.y, total.z});
+  }
+  return row;
+}
+
+}  // namespace glisson

@@ -1,0 +1,62 @@
+// output_folder.cpp — see output_folder.h.
+#include "report/output_folder.h"
+
+#include <regex>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "report/output_file.h"
+
+namespace glisson {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMark = ".glisson";
+constexpr const char* kMarkText = "Results of glisson. A new run into this folder replaces them.\n";
+
+/// Whether a run writes a file of that name.
+bool is_ours(const fs::path& file) {
+  static const std::regex name(
+      R"(\.glisson|report\.html|scene\.toml|summary\.json|forces(_.+)?\.csv|frames\.pvd|frame_\d+\.vtu|.+\.part)");
+  return std::regex_match(file.filename().string(), name);
+}
+
+[[noreturn]] void refuse(const fs::path& folder, const std::string& reason) {
+  throw std::invalid_argument(folder.string() + ": " + reason +
+                              "; choose another folder by --out DIR, or empty this one yourself");
+}
+
+/// Files and folders below `folder`, the deepest first. Links are not followed and are not ours.
+std::vector<fs::path> former_run(const fs::path& folder) {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    const bool ours =
+        !entry.is_symlink() && (entry.is_directory() || (entry.is_regular_file() && is_ours(entry.path())));
+    if (!ours)
+      refuse(folder, "holds " + entry.path().lexically_relative(folder).string() + ", which glisson did not write");
+    found.push_back(entry.path());
+  }
+  return {found.rbegin(), found.rend()};
+}
+
+}  // namespace
+
+void prepare_output_folder(const fs::path& folder) {
+  try {
+    if (fs::exists(folder) && !fs::is_directory(folder)) refuse(folder, "is a file, not a folder");
+    if (fs::exists(folder) && !fs::is_empty(folder)) {
+      if (!fs::exists(folder / kMark)) refuse(folder, "is not empty and holds no results of glisson");
+      for (const fs::path& file : former_run(folder)) fs::remove(file);
+    }
+  } catch (const fs::filesystem_error& error) {
+    throw OutputError(folder.string() + ": cannot be prepared: " + error.code().message() +
+                      "; choose another folder by --out DIR");
+  }
+  make_folder(folder);
+  write_whole(folder / kMark, kMarkText);
+}
+
+}  // namespace glisson

@@ -1,0 +1,81 @@
+// summary_json.cpp — see summary_json.h.
+#include "report/summary_json.h"
+
+#include <fmt/format.h>
+
+#include "report/version.h"
+
+namespace glisson {
+
+std::string_view end_text(RunSummary::End end) {
+  switch (end) {
+    case RunSummary::End::finished:
+      return "finished";
+    case RunSummary::End::interrupted:
+      return "interrupted";
+    case RunSummary::End::stopped_inverted:
+      return "stopped_inverted";
+    case RunSummary::End::stopped_unstable:
+      return "stopped_unstable";
+    case RunSummary::End::stopped_not_finite:
+      return "stopped_not_finite";
+  }
+  return "unknown";
+}
+
+std::string trouble_text(const RunSummary& s) {
+  switch (s.end) {
+    case RunSummary::End::stopped_inverted:
+      return fmt::format(
+          "stopped at {:.6g} s: {} tets are inverted (J <= 0); press less deep, refine the mesh under "
+          "the tool, or let it go on by on_inversion = \"go_on\"",
+          s.time_s, s.inverted_tets_most);
+    case RunSummary::End::stopped_unstable:
+      return fmt::format(
+          "stopped at {:.6g} s: the tissue stiffened until the given step of {:.6g} s exceeds the stable "
+          "one, {:.6g} s; give a smaller step or step = \"auto\"",
+          s.time_s, s.step_s, s.stable_step_s);
+    case RunSummary::End::stopped_not_finite:
+      return fmt::format(
+          "stopped at {:.6g} s: the state is no longer finite; look at the last frame, and press less "
+          "deep or soften the law",
+          s.time_s);
+    default:
+      return {};
+  }
+}
+
+nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant, const std::string& scene,
+                                    int threads) {
+  nlohmann::ordered_json json;
+  json["scene"] = scene;
+  json["variant"] = variant.name;
+  json["end"] = end_text(s.end);
+  json["vertices"] = s.vertices;
+  json["tets"] = s.tets;
+  json["steps"] = s.steps;
+  json["time_s"] = s.time_s;
+  json["step_s"] = s.step_s;
+  json["stable_step_s"] = s.stable_step_s;
+  json["wall_s"] = s.wall_s;
+  json["ns_per_tet_step"] = s.ns_per_tet_step;
+  json["peak_force_N"] = s.peak_force_N;
+  json["energy_elastic_J"] = s.energies.elastic;
+  json["energy_kinetic_J"] = s.energies.kinetic;
+  json["energy_dissipated_J"] = s.energies.dissipated;
+  json["work_tools_J"] = s.energies.work_tools;
+  json["work_loads_J"] = s.energies.work_loads;
+  json["energy_imbalance_J"] = s.energies.imbalance();
+  json["inverted_tets_most"] = s.inverted_tets_most;
+  if (s.inverted_tets_most > 0)
+    json["first_inversion_s"] = s.first_inversion_s;
+  else
+    json["first_inversion_s"] = nullptr;
+  json["precision"] = variant.simulation.precision == Precision::single_precision ? "single" : "double";
+  json["threads"] = threads;
+  json["state_hash"] = fmt::format("{:016x}", s.state_hash);
+  json["version"] = version();
+  return json;
+}
+
+}  // namespace glisson

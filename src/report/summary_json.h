@@ -1,0 +1,23 @@
+// summary_json.h — summary.json: a run in some twenty numbers.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "glisson/scene.h"
+
+namespace glisson {
+
+/// How a run ended, as summary.json and messages say it: finished, interrupted, stopped_inverted, …
+std::string_view end_text(RunSummary::End end);
+
+/// A sentence on an end that is the numbers' doing, with the way out; empty for finished and interrupted.
+std::string trouble_text(const RunSummary& summary);
+
+/// The object of summary.json, keys in the order they are written.
+/// @param scene  name of the scene; @param threads  variants at a time (results do not depend on it)
+nlohmann::ordered_json summary_json(const RunSummary& summary, const Variant& variant, const std::string& scene,
+                                    int threads);
+
+}  // namespace glisson

@@ -1,0 +1,122 @@
+// surface_recorder.cpp — see surface_recorder.h.
+#include "report/surface_recorder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "report/base64.h"
+
+namespace glisson {
+namespace {
+
+constexpr std::uint32_t kInside = std::numeric_limits<std::uint32_t>::max();
+constexpr double kBase64BytesPerVertex = 7.0 * 4.0 / 3.0;
+
+/// 2 where a tool drives the vertex, 1 where a support holds it, 0 where it is free; per mesh vertex.
+std::vector<std::uint8_t> constraint_marks(const Variant& variant, const TetMesh& mesh) {
+  std::vector<std::uint8_t> marks(mesh.vertices.size(), 0);
+  const auto mark = [&](const std::string& set, std::uint8_t value) {
+    const auto found = mesh.vertex_sets.find(set);
+    if (found == mesh.vertex_sets.end()) return;
+    for (const std::uint32_t v : found->second) marks[v] = value;
+  };
+  for (const FixedSpec& fixed : variant.fixed) mark(fixed.set, 1);
+  for (const ToolSpec& tool : variant.tools) mark(tool.set, 2);
+  return marks;
+}
+
+std::int16_t fraction16(double value, double scale) {
+  const double f = value / scale * 32767.0;
+  return std::isfinite(f) ? static_cast<std::int16_t>(std::lround(std::clamp(f, -32767.0, 32767.0))) : std::int16_t{0};
+}
+
+std::uint8_t fraction8(double value, double scale) {
+  const double f = value / scale * 255.0;
+  return std::isfinite(f) ? static_cast<std::uint8_t>(std::lround(std::clamp(f, 0.0, 255.0))) : std::uint8_t{255};
+}
+
+}  // namespace
+
+SurfaceRecorder::SurfaceRecorder(const Variant& variant, const Simulation& simulation, std::size_t max_bytes) {
+  const TetMesh& mesh = simulation.mesh();
+  std::vector<std::uint32_t> number(mesh.vertices.size(), kInside);
+  for (const Triangle& triangle : boundary_triangles(mesh)) {
+    for (const std::uint32_t v : triangle) {
+      if (number[v] == kInside) {
+        number[v] = static_cast<std::uint32_t>(vertices_.size());
+        vertices_.push_back(v);
+      }
+      triangles_.push_back(number[v]);
+    }
+  }
+  const std::vector<std::uint8_t> marks = constraint_marks(variant, mesh);
+  std::vector<float> rest;
+  std::vector<std::uint8_t> fixed;
+  for (const std::uint32_t v : vertices_) {
+    for (std::size_t i = 0; i < 3; ++i) rest.push_back(static_cast<float>(mesh.vertices[v][i]));
+    fixed.push_back(marks[v]);
+  }
+  head_ = {{"vertices", vertices_.size()},
+           {"triangles", base64_of(std::span<const std::uint32_t>(triangles_))},
+           {"rest", base64_of(std::span<const float>(rest))},
+           {"fixed", base64_of(std::span<const std::uint8_t>(fixed))}};
+  const double wanted = kBase64BytesPerVertex * static_cast<double>(vertices_.size()) * variant.output.frames;
+  stride_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(wanted / static_cast<double>(max_bytes))));
+}
+
+std::vector<double> SurfaceRecorder::surface_intensity(const Simulation& simulation, const TetFields& fields) const {
+  const TetMesh& mesh = simulation.mesh();
+  std::vector<double> sum(mesh.vertices.size(), 0.0), count(mesh.vertices.size(), 0.0);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    for (const std::uint32_t v : mesh.tets[t]) {
+      sum[v] += fields.s[t];
+      count[v] += 1.0;
+    }
+  }
+  std::vector<double> mean;
+  mean.reserve(vertices_.size());
+  for (const std::uint32_t v : vertices_) mean.push_back(sum[v] / count[v]);
+  return mean;
+}
+
+nlohmann::json SurfaceRecorder::frame(const Simulation& simulation, const TetFields& fields) {
+  const auto displacement = simulation.displacement();
+  const std::vector<double> intensity = surface_intensity(simulation, fields);
+  double reach = 0.0, strongest = 0.0;
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double u = std::abs(displacement[vertices_[i]][k]);
+      if (std::isfinite(u)) reach = std::max(reach, u);
+    }
+    if (std::isfinite(intensity[i])) strongest = std::max(strongest, intensity[i]);
+  }
+  intensity_max_ = std::max(intensity_max_, strongest);
+  std::vector<std::int16_t> moved;
+  std::vector<std::uint8_t> colour;
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) moved.push_back(fraction16(displacement[vertices_[i]][k], reach));
+    colour.push_back(strongest > 0.0 ? fraction8(intensity[i], strongest) : std::uint8_t{0});
+  }
+  return {{"time_s", simulation.time()},
+          {"displacement_scale_m", reach},
+          {"displacement", base64_of(std::span<const std::int16_t>(moved))},
+          {"intensity_max", strongest},
+          {"intensity", base64_of(std::span<const std::uint8_t>(colour))}};
+}
+
+void SurfaceRecorder::add(const Simulation& simulation, const TetFields& fields) {
+  last_ = frame(simulation, fields);
+  if (seen_++ % stride_ != 0) return;
+  frames_.push_back(std::move(*last_));
+  last_.reset();
+}
+
+nlohmann::json SurfaceRecorder::json() const {
+  nlohmann::json surface = head_;
+  surface["frames"] = frames_;
+  if (last_) surface["frames"].push_back(*last_);
+  return surface;
+}
+
+}  // namespace glisson

@@ -1,0 +1,44 @@
+// surface_recorder.h — the moving surface of a body, small enough to travel inside the report page.
+//
+// Only boundary vertices are kept, renumbered. A frame holds displacements as 16-bit fractions of the largest
+// one and intensities as 8-bit fractions of the largest one: 7 bytes a vertex, an error of 3e-5 of the largest
+// displacement, well below a pixel.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "glisson/scene.h"
+
+namespace glisson {
+
+/// Records frames of the surface as SurfaceData of web/src/report_data.ts.
+class SurfaceRecorder {
+ public:
+  /// @param max_bytes  what the frames may take in the page; beyond it every 2nd, 3rd, … frame is kept
+  SurfaceRecorder(const Variant& variant, const Simulation& simulation, std::size_t max_bytes);
+
+  /// Takes a frame. @param fields  of the same state
+  void add(const Simulation& simulation, const TetFields& fields);
+  /// Largest intensity s of the surface so far [-].
+  double intensity_max() const { return intensity_max_; }
+  /// The SurfaceData, the last frame always with it.
+  nlohmann::json json() const;
+
+ private:
+  nlohmann::json frame(const Simulation& simulation, const TetFields& fields);
+  std::vector<double> surface_intensity(const Simulation& simulation, const TetFields& fields) const;
+
+  std::vector<std::uint32_t> vertices_;   // mesh vertex of each surface vertex
+  std::vector<std::uint32_t> triangles_;  // in surface vertices
+  nlohmann::json head_;
+  nlohmann::json frames_ = nlohmann::json::array();
+  std::optional<nlohmann::json> last_;  // the newest frame, where the stride passed over it
+  std::size_t stride_ = 1, seen_ = 0;
+  double intensity_max_ = 0.0;
+};
+
+}  // namespace glisson

@@ -1,0 +1,141 @@
+// variant_recorder.cpp — see variant_recorder.h.
+#include "report/variant_recorder.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "report/law_data.h"
+#include "report/summary_json.h"
+
+namespace glisson {
+namespace {
+
+constexpr std::size_t kPageRows = 2000;  // of forces in the page; forces.csv has them all
+constexpr std::size_t kFirstRows = 100;  // of them kept one by one: the start is where overheads appear
+constexpr int kPageDigits = 7;
+
+template <class Values, class Text>
+std::string joined(const Values& values, Text text) {
+  std::string line;
+  for (const auto& value : values) {
+    if (!line.empty()) line += ',';
+    line += text(value);
+  }
+  return line;
+}
+
+std::string csv_head(const std::vector<std::string>& columns) {
+  return joined(columns, [](const std::string& name) { return name; });
+}
+
+/// A number of 7 digits: what a plot needs, at half the length.
+double short_number(double value) {
+  if (!std::isfinite(value)) return value;
+  std::array<char, 32> text;
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, kPageDigits).ptr;
+  double rounded = 0.0;
+  std::from_chars(text.data(), end, rounded);
+  return rounded;
+}
+
+/// Rows the page shows of `rows`: all of a short table, else the first hundred and then evenly spaced ones to the last.
+std::vector<std::size_t> page_rows(std::size_t rows) {
+  std::vector<std::size_t> kept;
+  const std::size_t first = std::min(rows, rows <= kPageRows ? rows : kFirstRows);
+  for (std::size_t i = 0; i < first; ++i) kept.push_back(i);
+  const std::size_t left = rows - first;
+  const std::size_t wanted = std::min(left, kPageRows - std::min(first, kPageRows));
+  for (std::size_t k = 1; k <= wanted; ++k) kept.push_back(first + left * k / wanted - 1);
+  return kept;
+}
+
+}  // namespace
+
+VariantRecorder::VariantRecorder(Variant variant, RecorderOptions options, std::atomic<bool>& stop)
+    : variant_(std::move(variant)), options_(std::move(options)), stop_(stop), table_(variant_),
+      data_(table_.columns().size()) {}
+
+void VariantRecorder::guarded(const std::function<void()>& write) {
+  if (!error_.empty()) return;
+  try {
+    write();
+  } catch (const OutputError& error) {
+    error_ = error.what();
+    stop_ = true;
+  }
+}
+
+void VariantRecorder::on_start(const Variant&, const Simulation& simulation) {
+  surface_ = std::make_unique<SurfaceRecorder>(variant_, simulation, options_.surface_bytes);
+  guarded([&] {
+    make_folder(options_.folder);
+    files_.emplace_back(options_.folder / "forces.csv");
+    files_.back().write(csv_head(table_.columns()));
+    for (std::size_t tool = 1; tool < table_.tools(); ++tool) {
+      files_.emplace_back(options_.folder / ("forces_" + variant_.tools[tool].name + ".csv"));
+      files_.back().write(csv_head(ForceTable::tool_columns()));
+    }
+    if (variant_.output.frames > 0) frames_ = std::make_unique<FrameSeries>(options_.folder);
+  });
+}
+
+void VariantRecorder::on_sample(const Sample& sample) {
+  const std::vector<double> row = table_.row(sample);
+  for (std::size_t i = 0; i < row.size(); ++i) data_[i].push_back(row[i]);
+  guarded([&] {
+    files_.front().write(joined(row, number_text));
+    for (std::size_t tool = 1; tool < table_.tools(); ++tool) {
+      files_[tool].write(joined(table_.tool_row(sample, tool), number_text));
+    }
+  });
+}
+
+void VariantRecorder::on_frame(const Simulation& simulation) {
+  const TetFields fields = simulation.tet_fields();
+  surface_->add(simulation, fields);
+  guarded([&] {
+    if (frames_) frames_->add(simulation, fields);
+  });
+}
+
+void VariantRecorder::on_end(const RunSummary& summary) {
+  summary_ = summary;
+  guarded([&] {
+    const auto json = summary_json(summary_, variant_, options_.scene, options_.threads);
+    write_whole(options_.folder / "summary.json", json.dump(2) + "\n");
+  });
+}
+
+const std::vector<double>& VariantRecorder::column(const std::string& name) const {
+  const auto& names = table_.columns();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw std::out_of_range("forces.csv has no column \"" + name + "\"");
+  return data_[static_cast<std::size_t>(found - names.begin())];
+}
+
+nlohmann::json VariantRecorder::forces_json() const {
+  const std::vector<std::size_t> rows = page_rows(data_.front().size());
+  nlohmann::json data = nlohmann::json::array();
+  for (const std::vector<double>& column : data_) {
+    std::vector<double> kept;
+    kept.reserve(rows.size());
+    for (const std::size_t row : rows) kept.push_back(short_number(column[row]));
+    data.push_back(std::move(kept));
+  }
+  return {{"columns", table_.columns()}, {"data", std::move(data)}};
+}
+
+nlohmann::json VariantRecorder::json(double law_reach) const {
+  return {{"name", variant_.name},
+          {"label", variant_.label.empty() ? variant_.name : variant_.label},
+          {"summary", summary_json(summary_, variant_, options_.scene, options_.threads)},
+          {"forces", forces_json()},
+          {"law", law_data(variant_, law_reach)},
+          {"surface", surface_ ? surface_->json() : nlohmann::json()}};
+}
+
+}  // namespace glisson

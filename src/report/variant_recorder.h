@@ -1,0 +1,74 @@
+// variant_recorder.h — writes down one variant as it runs, and keeps what the report page will show of it.
+//
+//   on_sample ─▶ forces.csv, forces_<tool>.csv          on_end ─▶ summary.json
+//   on_frame  ─▶ frames.pvd, frames/*.vtu, surface
+//
+// Everything on the disk is valid at any moment. A disk that refuses stops the run; the reason is kept in error().
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "glisson/scene.h"
+#include "report/force_table.h"
+#include "report/frame_series.h"
+#include "report/output_file.h"
+#include "report/surface_recorder.h"
+
+namespace glisson {
+
+struct RecorderOptions {
+  std::filesystem::path folder;            ///< of the variant; made at the start, replaced files are gone by then
+  std::string scene;                       ///< name of the scene, for the summary
+  int threads = 1;                         ///< for the summary
+  std::size_t surface_bytes = 25'000'000;  ///< what its surface may take in the page
+};
+
+class VariantRecorder : public RunObserver {
+ public:
+  /// @param stop  set when the disk refuses
+  VariantRecorder(Variant variant, RecorderOptions options, std::atomic<bool>& stop);
+
+  void on_start(const Variant& variant, const Simulation& simulation) override;
+  void on_sample(const Sample& sample) override;
+  void on_frame(const Simulation& simulation) override;
+  void on_end(const RunSummary& summary) override;
+
+  /// Whether the run got as far as its start: before that there is nothing to report.
+  bool started() const { return surface_ != nullptr; }
+  /// Why the disk refused; empty: it did not.
+  const std::string& error() const { return error_; }
+  const Variant& variant() const { return variant_; }
+  const std::string& scene() const { return options_.scene; }
+  const RunSummary& summary() const { return summary_; }
+  /// Columns of forces.csv and their values, column by column.
+  const std::vector<std::string>& columns() const { return table_.columns(); }
+  const std::vector<std::vector<double>>& data() const { return data_; }
+  /// One column of forces.csv by name. @throws std::out_of_range naming it
+  const std::vector<double>& column(const std::string& name) const;
+  double intensity_max() const { return surface_ ? surface_->intensity_max() : 0.0; }
+  /// VariantData of web/src/report_data.ts. @param law_reach  see law_data()
+  nlohmann::json json(double law_reach) const;
+
+ private:
+  void guarded(const std::function<void()>& write);
+  nlohmann::json forces_json() const;
+
+  Variant variant_;
+  RecorderOptions options_;
+  std::atomic<bool>& stop_;
+  ForceTable table_;
+  std::vector<LineFile> files_;  // forces.csv, then forces_<tool>.csv
+  std::unique_ptr<FrameSeries> frames_;
+  std::unique_ptr<SurfaceRecorder> surface_;
+  std::vector<std::vector<double>> data_;
+  RunSummary summary_;
+  std::string error_;
+};
+
+}  // namespace glisson

@@ -1,0 +1,22 @@
+// expand.h — from one scene to its complete experiments, still as trees.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "glisson/scene.h"
+#include "scene/document.h"
+#include "scene/problems.h"
+
+namespace glisson::scene {
+
+struct Expanded {
+  Node scene;                  ///< the keys a scene has once
+  Node base;                   ///< what all variants share; perhaps incomplete by itself
+  std::vector<Node> variants;  ///< base, then the variant, then --set; one or more
+};
+
+/// Lays variants and overrides over the scene. Regions inherit from [tissue] in the result.
+Expanded expand(const Node& root, std::span<const Override> overrides, Problems& problems);
+
+}  // namespace glisson::scene

@@ -1,0 +1,42 @@
+// reference.cpp — docs/scene.md, written from the schema.
+#include "glisson/scene.h"
+#include "scene/reference_sections.h"
+#include "scene/reference_text.h"
+#include "scene/sections.h"
+
+namespace glisson {
+namespace {
+
+using namespace scene;
+
+std::string selection_parts() {
+  std::string text;
+  for (const KeySpec& key : selection_section().keys) {
+    if (!key.section) continue;
+    text += "`" + key.name + "`: " + key.section->help + "\n\n" + key_table(*key.section) + word_list(*key.section);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string scene_reference_markdown() {
+  std::string text(kReferenceIntroduction);
+  text.append("## A complete example\n\n```toml\n").append(kReferenceExample).append("```\n\n## Sections\n\n");
+  text += "### The top of the scene\n\n" + scene_section().help + "\n\n" + key_table(scene_section());
+  text += section_text(mesh_section(), "`[mesh]`");
+  text += section_text(selection_section(), "`[sets.NAME]`") + selection_parts();
+  text += section_text(tissue_section(), "`[tissue]`");
+  text += section_text(law_section(), "`[tissue.law]`, `[tissue.lambda_law]`, `[tissue.mu_law]`");
+  text += section_text(region_section(), "`[[region]]`");
+  text += section_text(motion_section(), "`[motion]`");
+  text += section_text(fixed_section(), "`[[fixed]]`");
+  text += section_text(load_section(), "`[[load]]`");
+  text += section_text(tool_section(), "`[[tool]]`");
+  text += section_text(output_section(), "`[output]`");
+  text += section_text(chart_section(), "`[[chart]]`");
+  text += section_text(variant_section(), "`[[variant]]`");
+  return text.append(kReferenceVariants).append(kReferenceOverrides).append(kReferenceRun);
+}
+
+}  // namespace glisson

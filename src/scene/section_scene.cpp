@@ -1,0 +1,127 @@
+// section_scene.cpp — the top level: what a scene says once, and what each of its variants consists of.
+#include <algorithm>
+#include <cctype>
+
+#include "glisson/scene.h"
+#include "scene/section.h"
+#include "scene/sections.h"
+
+namespace glisson::scene {
+namespace {
+
+constexpr std::size_t kLongestName = 80;
+
+/// What makes a variant's name unfit for a folder; empty where it is fit.
+std::string unfit_as_folder(const std::string& name) {
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
+  };
+  if (name.empty()) return "is empty";
+  if (name.size() > kLongestName) return "is longer than " + std::to_string(kLongestName) + " characters";
+  if (!std::all_of(name.begin(), name.end(), plain) || name.front() == '.' || name.front() == '-') {
+    return "\"" + name + "\" cannot be a folder; use letters, digits, `_`, `-` and `.`, a letter or digit first";
+  }
+  return name == "report.html" ? "\"report.html\" is where the report goes; choose another" : "";
+}
+
+}  // namespace
+
+const SectionSpec& chart_section() {
+  static const SectionSpec section = [] {
+    Section<ChartSpec> s("chart",
+                         "A chart of the report. Without any, the report shows force against depth and against time.");
+    s.key("title", &ChartSpec::title, "heading").must();
+    s.key(
+         "x", [](ChartSpec & c) -> auto& { return c.x.column; },
+         "column of forces.csv along the x axis, e.g. `depth_m`")
+        .must();
+    s.key(
+         "y", [](ChartSpec & c) -> auto& { return c.y.column; },
+         "column of forces.csv along the y axis, e.g. `elastic_N`")
+        .must();
+    s.key(
+         "x_scale", [](ChartSpec & c) -> auto& { return c.x.scale; },
+         "factor on x for display; 1000 shows metres as millimetres")
+        .in("-");
+    s.key(
+         "y_scale", [](ChartSpec & c) -> auto& { return c.y.scale; }, "factor on y for display")
+        .in("-");
+    s.key(
+         "x_label", [](ChartSpec & c) -> auto& { return c.x.label; }, "label of the x axis, with unit")
+        .otherwise("the column");
+    s.key(
+         "y_label", [](ChartSpec & c) -> auto& { return c.y.label; }, "label of the y axis, with unit")
+        .otherwise("the column");
+    s.key("variants", &ChartSpec::variants, "names of the variants shown").otherwise("all");
+    s.finish([](ChartSpec& c, const Node&, const Place&) {
+      for (AxisSpec* axis : {&c.x, &c.y}) {
+        if (axis->label.empty()) axis->label = axis->column;
+      }
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& variant_section() {
+  static const SectionSpec section = [] {
+    Section<Variant> s("variant", "One experiment beside others in the same scene: its name, and whatever differs.");
+    s.key("name", &Variant::name, "name, unique, and fit for a folder: its results go to `OUT/NAME/`")
+        .otherwise("**required**");
+    s.key("label", &Variant::label, "text for legends").otherwise("the name");
+    s.table("mesh", mesh_section(), &Variant::mesh, "the body's mesh").must();
+    s.named_tables("sets", selection_section(), &Variant::sets, "vertex sets by place");
+    s.table("tissue", tissue_section(), &Variant::tissue, "what the body is made of");
+    s.tables("region", region_section(), &Variant::regions, "parts with a tissue of their own");
+    s.table(
+        "motion", motion_section(), [](Variant& v) -> Variant& { return v; }, "time, damping, gravity");
+    s.tables("fixed", fixed_section(), &Variant::fixed, "sets that are held");
+    s.tables("load", load_section(), &Variant::loads, "forces on sets");
+    s.tables("tool", tool_section(), &Variant::tools, "what presses");
+    s.table("output", output_section(), &Variant::output, "how much is kept");
+    for (const KeySpec& key : scene_section().keys) s.spec().other_words.push_back(key.name);
+    s.finish([](Variant& v, const Node& table, const Place& place) {
+      const Node* name = table.find("name");
+      const std::string unfit = unfit_as_folder(v.name);
+      if (name && !unfit.empty()) place.complain(*name, "name", unfit);
+      if (v.label.empty()) v.label = v.name;
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& scene_section() {
+  static const SectionSpec section = [] {
+    Section<Scene> s("", "What a scene says once, before any heading.");
+    s.key("title", &Scene::title, "heading of the report").otherwise("the file's name");
+    s.key("description", &Scene::description, "what the experiment is, in a few sentences");
+    s.key("notes", &Scene::notes, "choices made where the source of the experiment is silent, and why").otherwise("[]");
+    s.tables("chart", chart_section(), &Scene::charts, "charts of the report");
+    s.bare({.name = "variant",
+            .help = "experiments that differ in some keys",
+            .type = ValueType::table,
+            .shape = Shape::list});
+    return s.spec();
+  }();
+  return section;
+}
+
+std::string home_of_key(const std::string& key) {
+  for (const SectionSpec* section : {&tissue_section(), &motion_section(), &tool_section(), &output_section(),
+                                     &fixed_section(), &load_section(), &selection_section(), &chart_section()}) {
+    const bool list = section == &tool_section() || section == &fixed_section() || section == &load_section() ||
+                      section == &chart_section();
+    if (section->find(key)) return list ? "[[" + section->name + "]]" : "[" + section->name + "]";
+  }
+  for (const KindSpec& kind : mesh_section().kinds) {
+    if (kind.section.find(key)) return "[mesh] of kind \"" + kind.section.name + "\"";
+  }
+  for (const KindSpec& kind : law_section().kinds) {
+    if (kind.section.find(key)) return "[tissue.law] of kind \"" + kind.section.name + "\"";
+  }
+  if (scene_section().find(key)) return "the top of the scene";
+  return variant_section().find(key) ? "a section of its own" : "";
+}
+
+}  // namespace glisson::scene
