@@ -1,0 +1,156 @@
+// command_check.cpp — glisson check: what a scene means and what it would cost, from a tenth of a second of each variant.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "commands.h"
+#include "exit_code.h"
+#include "mesh_cache.h"
+#include "progress.h"
+#include "scene_options.h"
+
+namespace glisson::app {
+namespace {
+
+constexpr const char* kFooter =
+    "Reads the scene, builds every variant, steps it for a tenth of a second of your time and prints mesh, vertex\n"
+    "sets, tissue, stable step, and the steps and the time a run will take. Writes nothing. Exit status 2 if the\n"
+    "scene cannot be run.\n"
+    "\n"
+    "Examples:\n"
+    "  glisson check scenes/paper/figure3b.toml\n"
+    "  glisson check scenes/organs/liver.toml --mesh liver.vtu --set tissue.poisson_ratio=0.45";
+
+struct CheckOptions {
+  SceneOptions scene;
+  int threads = 1;
+};
+
+/// Stops a run at its first report of progress, and keeps what the run knew at its start.
+class Taste : public RunObserver {
+ public:
+  void on_start(const Variant&, const Simulation& simulation) override {
+    mesh = simulation.mesh();
+    step_s = simulation.step_size();
+    stable_step_s = simulation.stable_step();
+    for (const double m : simulation.masses()) mass_kg += m;
+  }
+  void on_progress(double) override { stop = true; }
+
+  std::atomic<bool> stop{false};
+  TetMesh mesh;
+  double step_s = 0.0, stable_step_s = 0.0, mass_kg = 0.0;
+};
+
+struct Cost {
+  double steps = 0.0, wall_s = 0.0;
+};
+
+std::string tissue_text(const Tissue& t) {
+  std::string law(law_name(t.law));
+  if (t.lambda_law || t.mu_law) {
+    law = fmt::format("λ {}, μ {}", t.lambda_law ? law_name(*t.lambda_law) : "constant",
+                      t.mu_law ? law_name(*t.mu_law) : "constant");
+  }
+  return fmt::format("E = {:.6g} Pa, ν = {:.4g}, ρ = {:.6g} kg/m³, η = {:.6g} Pa·s, law: {}", t.youngs_modulus,
+                     t.poisson_ratio, t.density, t.viscosity, law);
+}
+
+void print_mesh(const TetMesh& mesh, double mass_kg) {
+  const MeshReport report = inspect(mesh);
+  const Vec3d size = report.box_max - report.box_min;
+  fmt::print(
+      "  mesh     {} vertices, {} tets, {:.4g} × {:.4g} × {:.4g} mm, {:.4g} ml, {:.4g} g; shape {:.3f} worst, {:.3f} "
+      "median\n",
+      report.vertices, report.tets, 1e3 * size.x, 1e3 * size.y, 1e3 * size.z, 1e6 * report.volume, 1e3 * mass_kg,
+      report.worst_mean_ratio, report.median_mean_ratio);
+  for (const std::string& warning : report.warnings) fmt::print("           warning: {}\n", warning);
+}
+
+std::string set_text(const TetMesh& mesh, const std::string& set) {
+  const auto found = mesh.vertex_sets.find(set);
+  return fmt::format("\"{}\", {} vertices", set, found == mesh.vertex_sets.end() ? 0 : found->second.size());
+}
+
+std::string axes_text(const Axes& axes) {
+  return std::string(axes.x ? "x" : "") + (axes.y ? "y" : "") + (axes.z ? "z" : "");
+}
+
+void print_body(const Variant& v, const Taste& taste) {
+  print_mesh(taste.mesh, taste.mass_kg);
+  fmt::print("  tissue   {}\n", tissue_text(v.tissue));
+  for (const RegionSpec& region : v.regions)
+    fmt::print("  region   \"{}\": {}\n", region.name, tissue_text(region.tissue));
+  for (const FixedSpec& fixed : v.fixed) {
+    fmt::print("  fixed    {}, in {}\n", set_text(taste.mesh, fixed.set), axes_text(fixed.axes));
+  }
+  if (v.fixed.empty()) fmt::print("  fixed    nothing: the body is free to drift\n");
+  for (const LoadSpec& load : v.loads) {
+    fmt::print("  load     {}: ({:.4g}, {:.4g}, {:.4g}) N\n", set_text(taste.mesh, load.set), load.force.x,
+               load.force.y, load.force.z);
+  }
+  for (const ToolSpec& tool : v.tools) {
+    const PressMotion& m = tool.motion;
+    fmt::print("  tool     \"{}\" on {}: {:.4g} mm at {:.4g} mm/s, from {:.4g} s to {:.4g} s\n", tool.name,
+               set_text(taste.mesh, tool.set), 1e3 * m.depth, 1e3 * m.velocity, m.start, press_end(m));
+  }
+}
+
+Cost cost_of(const Variant& v, const Taste& taste, const RunSummary& summary) {
+  Cost cost;
+  cost.steps = std::ceil(run_duration(v) / taste.step_s);
+  if (v.max_steps) cost.steps = std::min(cost.steps, static_cast<double>(*v.max_steps));
+  cost.wall_s = cost.steps * summary.ns_per_tet_step * 1e-9 * static_cast<double>(summary.tets);
+  return cost;
+}
+
+bool stiffens(const Tissue& t) { return !std::holds_alternative<ConstantLaw>(t.law) || t.lambda_law || t.mu_law; }
+
+void print_time(const Variant& v, const Taste& taste, const Cost& cost, const RunSummary& summary) {
+  const bool automatic = !v.simulation.step;
+  fmt::print("  step     {:.4g} s{}, stable below {:.4g} s at rest\n", taste.step_s, automatic ? " (auto)" : " (given)",
+             taste.stable_step_s);
+  fmt::print("  run      {:.6g} s simulated, {:.0f} steps{}, about {} ({:.0f} ns per tet and step, {})\n",
+             std::min(run_duration(v), cost.steps * taste.step_s), cost.steps,
+             automatic && stiffens(v.tissue) ? " or more as the tissue stiffens" : "", duration_text(cost.wall_s),
+             summary.ns_per_tet_step,
+             v.simulation.precision == Precision::single_precision ? "single precision" : "double precision");
+}
+
+int check(const CheckOptions& options) {
+  const Scene scene = open_scene(options.scene);
+  MeshCache meshes(true);
+  fmt::print("{}: {}\n", scene.file.string(), scene.title);
+  double total = 0.0, longest = 0.0;
+  for (const Variant& variant : scene.variants) {
+    Taste taste;
+    const RunSummary summary = run_variant(variant, meshes.loader(), taste, taste.stop);
+    const Cost cost = cost_of(variant, taste, summary);
+    fmt::print("\n{}\n", variant.label == variant.name ? variant.name : variant.name + " — " + variant.label);
+    print_body(variant, taste);
+    print_time(variant, taste, cost, summary);
+    total += cost.wall_s;
+    longest = std::max(longest, cost.wall_s);
+  }
+  fmt::print("\n{} variant{}, about {} on {} thread{}. The scene can be run.\n", scene.variants.size(),
+             scene.variants.size() == 1 ? "" : "s", duration_text(std::max(longest, total / options.threads)),
+             options.threads, options.threads == 1 ? "" : "s");
+  return kDone;
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("check", "what a scene means and costs, without running it");
+  const auto options = std::make_shared<CheckOptions>();
+  add_scene_options(*command, options->scene);
+  add_threads_option(*command, options->threads);
+  command->footer(kFooter);
+  command->callback([options, &action] { action = [options] { return check(*options); }; });
+}
+
+}  // namespace glisson::app

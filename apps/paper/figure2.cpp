@@ -1,0 +1,150 @@
+// figure2.cpp — laws of stiffness in compression, [Schwartz2002, fig. 2].
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "paper/curve_fit.h"
+#include "paper/figures.h"
+
+namespace glisson::app {
+namespace {
+
+constexpr double kMilli = 1e-3;
+constexpr double kSlowStiffness = 51.19;  // [N/m] of this triangle and split, from two independent static solutions
+constexpr double kTransient_s = 0.1;      // of a start at full speed, in which the force grows fast without any law
+constexpr int kFitPoints = 61;
+
+/// One engine step of tissue 1: how the force grew and whether a tetrahedron crossed the threshold.
+struct Growth {
+  double time_s, increase_N;
+  bool crossed;
+};
+
+TetMesh no_file(const MeshFile& file) {
+  throw std::logic_error("a paper scene reads no file, got " + file.path.string());
+}
+
+/// Runs a variant step by step, so that the force and the state of the law are seen at the same instant.
+std::vector<Growth> growth_of(const Variant& variant) {
+  BuiltVariant built = build_variant(variant, no_file);
+  const double threshold = std::get<StepLaw>(variant.tissue.law).threshold;
+  const double end = run_duration(variant) - built.simulation.step_size();
+  std::vector<Growth> growth;
+  std::vector<bool> before;
+  double force_before = 0.0;
+  while (built.simulation.time() < end) {
+    std::vector<bool> above;
+    for (const double s : built.simulation.tet_fields().s) above.push_back(s >= threshold);
+    const double time = built.simulation.time();
+    built.simulation.step();
+    const double force = -built.simulation.force(built.tools.front()).elastic.z;
+    if (time > kTransient_s) growth.push_back({time, force - force_before, above != before});
+    before = std::move(above);
+    force_before = force;
+  }
+  return growth;
+}
+
+nlohmann::json staircase_check(const Variant& variant) {
+  const std::vector<Growth> growth = growth_of(variant);
+  std::vector<double> sizes;
+  for (const Growth& g : growth) sizes.push_back(std::abs(g.increase_N));
+  const double step = 3.0 * median(sizes);
+  int steps = 0, with_crossing = 0, calm = 0;
+  double largest_calm = 0.0;
+  for (const Growth& g : growth) {
+    const bool is_step = std::abs(g.increase_N) > step;
+    steps += is_step;
+    with_crossing += is_step && g.crossed;
+    calm += !g.crossed;
+    if (!g.crossed) largest_calm = std::max(largest_calm, std::abs(g.increase_N));
+  }
+  return check_json(
+      "The force of tissue 1 steps where tetrahedra cross the threshold, and nowhere else (damped variant, from 1 mm "
+      "on; "
+      "a force step is an increment between two time steps above three times the median one)",
+      fmt::format("{} of {} force steps above {:.1f} mN; the other {} time steps grow by {:.1f} mN at most",
+                  with_crossing, steps, step / kMilli, calm, largest_calm / kMilli),
+      "all of them [Schwartz2002, fig. 2]", steps > 0 && with_crossing == steps);
+}
+
+/// Keeps the last force and depth of a run.
+class LastSample : public RunObserver {
+ public:
+  void on_sample(const Sample& sample) override { last = sample; }
+  Sample last;
+};
+
+nlohmann::json slow_press_check(Variant variant) {
+  PressMotion& press = variant.tools.front().motion;
+  press.velocity = kMilli;
+  press.depth = kMilli;
+  press.hold = 1.0;
+  variant.duration.reset();
+  const std::atomic<bool> go_on{false};
+  LastSample end;
+  run_variant(variant, no_file, end, go_on);
+  const double stiffness = -end.last.tools.front().elastic.z / end.last.depths.front();
+  return check_json("The linear tissue, pressed by 1 mm at 1 mm/s and left to settle, has its static stiffness",
+                    fmt::format("{:.2f} N/m, {:+.2f} %", stiffness, 100.0 * (stiffness / kSlowStiffness - 1.0)),
+                    fmt::format("{} N/m within 0.5 %, from independent static solutions", kSlowStiffness),
+                    std::abs(stiffness / kSlowStiffness - 1.0) <= 0.005);
+}
+
+/// A fitted curve as a dashed line of a chart in mm and N.
+nlohmann::json fit_line(const PolynomialFit& fit, double depth_m, const std::string& label) {
+  std::vector<double> x, y;
+  for (int i = 0; i < kFitPoints; ++i) {
+    const double depth = depth_m * i / (kFitPoints - 1);
+    x.push_back(depth / kMilli);
+    y.push_back(fit(depth));
+  }
+  return {{"label", label}, {"x", x}, {"y", y}};
+}
+
+void add_tissue2(SceneExtras& extras, const VariantRecorder& run) {
+  const auto& depth = run.column("depth_m");
+  const auto& force = run.column("force_N");
+  const PolynomialFit line = fit_polynomial(depth, force, 1), quadratic = fit_polynomial(depth, force, 2);
+  extras.checks.push_back(check_json("The force of tissue 2 is close to a second-order curve in depth",
+                                     fmt::format("R² = {:.5f}", quadratic.r2), "R² ≥ 0.999 [Schwartz2002, fig. 2]",
+                                     quadratic.r2 >= 0.999));
+  extras.checks.push_back(check_json("… and a straight line does not describe it", fmt::format("R² = {:.4f}", line.r2),
+                                     "R² < 0.99", line.r2 < 0.99));
+  ChartSpec chart{.title = "Tissue 2: the force, a line and a second-order curve",
+                  .x = {.column = "depth_m", .label = "depth [mm]", .scale = 1000.0},
+                  .y = {.column = "force_N", .label = "force [N]", .scale = 1.0},
+                  .variants = {run.variant().name}};
+  nlohmann::json json = chart_json(chart);
+  json["fits"] = {fit_line(quadratic, depth.back(), fmt::format("second order, R² = {:.5f}", quadratic.r2)),
+                  fit_line(line, depth.back(), fmt::format("line, R² = {:.4f}", line.r2))};
+  extras.charts.push_back(std::move(json));
+}
+
+const Variant& variant_named(const Scene& scene, const std::string& name) {
+  return *std::find_if(scene.variants.begin(), scene.variants.end(), [&](const Variant& v) { return v.name == name; });
+}
+
+}  // namespace
+
+nlohmann::json check_json(const std::string& what, const std::string& measured, const std::string& expected,
+                          bool pass) {
+  return {{"what", what}, {"measured", measured}, {"expected", expected}, {"pass", pass}};
+}
+
+SceneExtras figure2_extras(const Scene& scene, const Finished& runs) {
+  SceneExtras extras;
+  if (const auto linear = runs.find("linear"); linear != runs.end()) {
+    const PolynomialFit line = fit_polynomial(linear->second->column("depth_m"), linear->second->column("force_N"), 1);
+    extras.checks.push_back(check_json("The linear tissue answers with a straight line",
+                                       fmt::format("R² = {:.5f}", line.r2), "R² ≥ 0.999", line.r2 >= 0.999));
+    extras.checks.push_back(slow_press_check(variant_named(scene, "linear")));
+  }
+  if (runs.contains("tissue1_damped")) extras.checks.push_back(staircase_check(variant_named(scene, "tissue1_damped")));
+  if (const auto tissue2 = runs.find("tissue2"); tissue2 != runs.end()) add_tissue2(extras, *tissue2->second);
+  return extras;
+}
+
+}  // namespace glisson::app

@@ -1,0 +1,77 @@
+// draw_lines.ts — strokes lines on a chart's canvas.
+//
+// uPlot's own series want one rising x for all; loading and unloading, and variants that end at different
+// depths, do not have one. So uPlot keeps axes, scales, zoom and cursor, and the lines are drawn here.
+import type { Extent, Line } from "./model.ts";
+
+export interface PlotBox {
+  left: number; // canvas pixels
+  top: number;
+  width: number;
+  height: number;
+}
+
+/** Points closer to the last drawn one than this, in canvas pixels along both axes, are not drawn. */
+const LEAST_STEP = 0.4;
+
+/** Strokes the line inside the box that shows `view`; `ratio` is canvas pixels per CSS pixel. */
+export function drawLine(
+  context: CanvasRenderingContext2D,
+  line: Line,
+  stroke: string,
+  view: Extent,
+  box: PlotBox,
+  ratio: number,
+): void {
+  context.save();
+  context.beginPath();
+  context.rect(box.left, box.top - ratio, box.width + ratio, box.height + 2 * ratio);
+  context.clip();
+  const fit = line.style.colour < 0 && line.style.dash.length > 0;
+  context.strokeStyle = stroke;
+  context.lineJoin = "round";
+  context.lineCap = line.style.dash.length > 0 ? "butt" : "round";
+  context.beginPath();
+  tracePath(context, line, view, box);
+  if (line.style.dash.length > 0 && !fit) strokeUnderlay(context, ratio);
+  context.setLineDash(line.style.dash.map((length) => length * ratio));
+  context.lineWidth = (fit ? 1.25 : 1.75) * ratio;
+  context.stroke();
+  context.restore();
+}
+
+/** A faint whole line under the dashes, or a line that jitters would fall apart between them. */
+function strokeUnderlay(context: CanvasRenderingContext2D, ratio: number): void {
+  context.globalAlpha = 0.45;
+  context.lineWidth = 0.9 * ratio;
+  context.stroke();
+  context.globalAlpha = 1;
+}
+
+function tracePath(context: CanvasRenderingContext2D, line: Line, view: Extent, box: PlotBox): void {
+  const perX = box.width / (view.xMax - view.xMin);
+  const perY = box.height / (view.yMax - view.yMin);
+  const count = Math.min(line.x.length, line.y.length);
+  let lastX = NaN;
+  let lastY = NaN;
+  for (let i = 0; i < count; i++) {
+    const px = box.left + (line.x[i]! - view.xMin) * perX;
+    const py = box.top + box.height - (line.y[i]! - view.yMin) * perY;
+    if (px !== px || py !== py) {
+      lastX = NaN;
+      continue;
+    }
+    if (lastX !== lastX) startPiece(context, line, i, px, py);
+    else if (i < count - 1 && Math.abs(px - lastX) < LEAST_STEP && Math.abs(py - lastY) < LEAST_STEP) continue;
+    else context.lineTo(px, py);
+    lastX = px;
+    lastY = py;
+  }
+}
+
+/** Starts a piece after a gap; a point with gaps on both sides becomes a small square, or it would not be seen. */
+function startPiece(context: CanvasRenderingContext2D, line: Line, i: number, px: number, py: number): void {
+  const next = i + 1 < line.x.length ? line.x[i + 1]! + line.y[i + 1]! : NaN;
+  if (next !== next) context.rect(px - 1, py - 1, 2, 2);
+  context.moveTo(px, py);
+}

@@ -1,0 +1,60 @@
+// legend.ts — the lines of a chart by name: a button each that shows or hides it, with its value at the cursor.
+import { onTheme, currentTheme } from "../page/theme.ts";
+import { h, svg } from "../page/dom.ts";
+import { strokeOf } from "./line_style.ts";
+import type { Line } from "./model.ts";
+
+/** Room for swatch and value beside a label, in letters. */
+const VALUE_LETTERS = 9;
+
+export class Legend {
+  readonly element: HTMLElement;
+  private readonly entries = new Map<string, { item: HTMLButtonElement; value: HTMLElement }>();
+
+  /** @param onToggle  gets the line and whether only it is wanted (Shift held) */
+  constructor(lines: readonly Line[], onToggle: (line: Line, only: boolean) => void) {
+    this.element = h("div", { class: "legend", role: "group", "aria-label": "Lines of this chart" });
+    const longest = Math.max(0, ...lines.map((line) => line.label.length));
+    this.element.style.setProperty("--legend-column", `${longest + VALUE_LETTERS}ch`);
+    for (const line of lines) this.element.append(this.entry(line, onToggle));
+    this.colour(lines);
+    onTheme(() => this.colour(lines));
+  }
+
+  private entry(line: Line, onToggle: (line: Line, only: boolean) => void): HTMLButtonElement {
+    const value = h("span", { class: "legend-value" });
+    const dashes = line.style.dash.join(" ");
+    const swatch = svg(
+      "svg",
+      { class: "swatch", width: 30, height: 8, viewBox: "0 0 30 8", "aria-hidden": "true" },
+      svg("line", { x1: 0, y1: 4, x2: 30, y2: 4, "stroke-width": 2.25, "stroke-dasharray": dashes || null }),
+    );
+    const title = "Show or hide this line; with Shift, show only this line";
+    const item = h(
+      "button",
+      { type: "button", class: "legend-item", "aria-pressed": "true", title },
+      swatch,
+      h("span", { class: "legend-label" }, line.label),
+      value,
+    );
+    item.addEventListener("click", (event) => onToggle(line, event.shiftKey));
+    this.entries.set(line.id, { item, value });
+    return item;
+  }
+
+  private colour(lines: readonly Line[]): void {
+    for (const line of lines) {
+      const stroke = strokeOf(line.style, currentTheme());
+      this.entries.get(line.id)?.item.querySelector("line")?.setAttribute("stroke", stroke);
+    }
+  }
+
+  setShown(id: string, shown: boolean): void {
+    this.entries.get(id)?.item.setAttribute("aria-pressed", String(shown));
+  }
+
+  /** Values at the cursor; empty texts where there is none. */
+  setValues(values: ReadonlyMap<string, string>): void {
+    for (const [id, entry] of this.entries) entry.value.textContent = values.get(id) ?? "";
+  }
+}

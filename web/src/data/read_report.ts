@@ -1,0 +1,168 @@
+// read_report.ts — the data of the page, read from its script element and made whole.
+//
+// Programs older or newer than the page, interrupted runs and NaN (written as null) must still give a page:
+// whatever is missing becomes empty here, so that no other file has to ask.
+import type {
+  ChartSpec,
+  CheckData,
+  Columns,
+  FrameData,
+  LawData,
+  ReportData,
+  SceneData,
+  SurfaceData,
+  TableData,
+  VariantData,
+} from "../report_data.ts";
+
+export type ReadResult = { ok: true; report: ReportData } | { ok: false; reason: string };
+
+type Raw = Record<string, unknown>;
+
+const isRecord = (value: unknown): value is Raw => typeof value === "object" && value !== null && !Array.isArray(value);
+const record = (value: unknown): Raw => (isRecord(value) ? value : {});
+const list = (value: unknown): unknown[] => (Array.isArray(value) ? value : []);
+const text = (value: unknown): string => (value === null || value === undefined ? "" : String(value));
+const finite = (value: unknown, otherwise: number): number =>
+  typeof value === "number" && Number.isFinite(value) ? value : otherwise;
+const numberOrNaN = (value: unknown): number => (typeof value === "number" ? value : NaN);
+
+/** Reads the report of a document. */
+export function readReport(document: Document): ReadResult {
+  const element = document.getElementById("glisson-data");
+  return parseReport(element?.textContent ?? "");
+}
+
+/** Reads the report from its JSON text. */
+export function parseReport(json: string): ReadResult {
+  let parsed: unknown;
+  try {
+    parsed = JSON.parse(json);
+  } catch {
+    return { ok: false, reason: "No data was put into this page. It is the empty template of the report." };
+  }
+  const raw = record(parsed);
+  if (raw["format"] !== 1) {
+    return { ok: false, reason: `The data has format ${text(raw["format"]) || "none"}; this page reads format 1.` };
+  }
+  return {
+    ok: true,
+    report: {
+      format: 1,
+      title: text(raw["title"]) || "Glisson report",
+      subtitle: text(raw["subtitle"]),
+      version: text(raw["version"]),
+      created: text(raw["created"]),
+      machine: text(raw["machine"]),
+      scenes: list(raw["scenes"]).map((scene, index) => readScene(record(scene), index)),
+    },
+  };
+}
+
+function readScene(raw: Raw, index: number): SceneData {
+  const name = text(raw["name"]) || `scene-${index + 1}`;
+  return {
+    name,
+    title: text(raw["title"]) || name,
+    description: text(raw["description"]),
+    notes: list(raw["notes"]).map(text),
+    source: text(raw["source"]),
+    variants: list(raw["variants"]).map((variant, at) => readVariant(record(variant), at)),
+    charts: list(raw["charts"]).map((chart) => readChart(record(chart))),
+    tables: list(raw["tables"]).map((table) => readTable(record(table))),
+    checks: list(raw["checks"]).map((check) => readCheck(record(check))),
+  };
+}
+
+function readVariant(raw: Raw, index: number): VariantData {
+  const name = text(raw["name"]) || `variant-${index + 1}`;
+  const summary: Record<string, number | string> = {};
+  for (const [key, value] of Object.entries(record(raw["summary"]))) {
+    summary[key] = typeof value === "number" ? value : value === null ? NaN : text(value);
+  }
+  return {
+    name,
+    label: text(raw["label"]) || name,
+    summary,
+    forces: readColumns(record(raw["forces"])),
+    law: isRecord(raw["law"]) ? readLaw(raw["law"]) : null,
+    surface: isRecord(raw["surface"]) ? readSurface(raw["surface"]) : null,
+  };
+}
+
+function readColumns(raw: Raw): Columns {
+  const data = list(raw["data"]).map((column) => list(column).map(numberOrNaN));
+  const columns = list(raw["columns"]).map(text).slice(0, data.length);
+  return { columns, data: data.slice(0, columns.length) };
+}
+
+function readLaw(raw: Raw): LawData | null {
+  const x = list(raw["x"]).map(numberOrNaN);
+  const curves = list(raw["curves"])
+    .map(record)
+    .map((curve) => ({ label: text(curve["label"]), y: list(curve["y"]).map(numberOrNaN) }))
+    .filter((curve) => curve.y.length > 0);
+  if (x.length === 0 || curves.length === 0) return null;
+  return { measure: text(raw["measure"]) || "measure [-]", x, curves };
+}
+
+function readSurface(raw: Raw): SurfaceData | null {
+  const vertices = finite(raw["vertices"], 0);
+  if (vertices <= 0 || !raw["triangles"] || !raw["rest"]) return null;
+  return {
+    vertices,
+    triangles: text(raw["triangles"]),
+    rest: text(raw["rest"]),
+    fixed: text(raw["fixed"]),
+    frames: list(raw["frames"]).map((frame) => readFrame(record(frame))),
+  };
+}
+
+function readFrame(raw: Raw): FrameData {
+  return {
+    time_s: finite(raw["time_s"], 0),
+    displacement_scale_m: finite(raw["displacement_scale_m"], 0),
+    displacement: text(raw["displacement"]),
+    intensity_max: finite(raw["intensity_max"], 0),
+    intensity: text(raw["intensity"]),
+  };
+}
+
+function readChart(raw: Raw): ChartSpec {
+  const axis = (value: unknown) => {
+    const axisRaw = record(value);
+    const column = text(axisRaw["column"]);
+    return { column, label: text(axisRaw["label"]) || column, scale: finite(axisRaw["scale"], 1) };
+  };
+  return {
+    title: text(raw["title"]),
+    x: axis(raw["x"]),
+    y: axis(raw["y"]),
+    variants: Array.isArray(raw["variants"]) ? raw["variants"].map(text) : null,
+    fits: list(raw["fits"])
+      .map(record)
+      .map((fit) => ({
+        label: text(fit["label"]),
+        x: list(fit["x"]).map(numberOrNaN),
+        y: list(fit["y"]).map(numberOrNaN),
+      })),
+  };
+}
+
+function readTable(raw: Raw): TableData {
+  return {
+    title: text(raw["title"]),
+    columns: list(raw["columns"]).map(text),
+    rows: list(raw["rows"]).map((row) => list(row).map((cell) => (typeof cell === "number" ? cell : text(cell)))),
+    note: text(raw["note"]),
+  };
+}
+
+function readCheck(raw: Raw): CheckData {
+  return {
+    what: text(raw["what"]),
+    measured: text(raw["measured"]),
+    expected: text(raw["expected"]),
+    pass: raw["pass"] === true,
+  };
+}

@@ -1,0 +1,48 @@
+// screenshot.ts — the 3D view as a picture that explains itself: mesh, colour scale, caption.
+import { formatTick } from "../format/number.ts";
+import { themeColour } from "../page/theme.ts";
+import { barTicks } from "./colour_bar.ts";
+import { colourOf } from "./colour_map.ts";
+
+const CAPTION_HEIGHT = 36; // CSS pixels
+
+/** Puts the view with its colour scale on one canvas, a caption below it. */
+export function composePicture(view: HTMLCanvasElement, range: number, caption: string): HTMLCanvasElement {
+  const canvas = document.createElement("canvas");
+  canvas.width = view.width;
+  const unit = view.width / Math.max(1, view.clientWidth); // canvas pixels per CSS pixel
+  canvas.height = view.height + CAPTION_HEIGHT * unit;
+  const context = canvas.getContext("2d");
+  if (!context) return view;
+  context.fillStyle = themeColour("--viewport");
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  context.drawImage(view, 0, 0);
+  context.fillStyle = themeColour("--ink");
+  context.font = `${13 * unit}px ${themeColour("--font")}`;
+  context.textBaseline = "middle";
+  context.fillText(caption, 14 * unit, canvas.height - (CAPTION_HEIGHT / 2) * unit);
+  drawBar(context, range, unit, canvas.width);
+  return canvas;
+}
+
+function drawBar(context: CanvasRenderingContext2D, range: number, unit: number, width: number): void {
+  const left = width - 62 * unit;
+  const top = 38 * unit;
+  const height = 150 * unit;
+  const strips = 100;
+  for (let i = 0; i < strips; i++) {
+    const [r, g, b] = colourOf(1 - i / (strips - 1));
+    context.fillStyle = `rgb(${r}, ${g}, ${b})`;
+    context.fillRect(left, top + (i * height) / strips, 12 * unit, height / strips + 1);
+  }
+  context.fillStyle = themeColour("--ink");
+  context.textBaseline = "middle";
+  const { values, increment } = barTicks(range);
+  for (const value of values) {
+    const y = top + height * (1 - (range > 0 ? value / range : 0));
+    context.fillText(formatTick(value, increment), left + 17 * unit, y);
+  }
+  context.textAlign = "right";
+  context.fillText("Intensity s [–]", width - 14 * unit, 20 * unit);
+  context.textAlign = "left";
+}

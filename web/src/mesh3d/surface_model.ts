@@ -1,0 +1,189 @@
+// surface_model.ts — the three.js objects of one surface: skin, edges, rest ghost, marked vertices.
+//
+//   positions (one buffer) ─┬─ skin: triangles, coloured by intensity through a 1D texture
+//                           ├─ edges
+//                           └─ held and driven vertices
+//   rest positions ─────────── ghost: faint skin and its creases
+import * as THREE from "three";
+import { colourTexels } from "./colour_map.ts";
+import { uniqueEdges } from "./edges.ts";
+import { markTexture } from "./mark_texture.ts";
+import type { Timeline } from "./timeline.ts";
+
+const TEXELS = 256;
+const CREASE_DEGREES = 28;
+/** Above this many edges the wireframe would be a solid tint. */
+const MANY_EDGES = 30_000;
+/** Marks are drawn this share of the mesh's size nearer, or the skin beside a vertex would cut its sign. */
+const MARK_LIFT = 0.03;
+const MANY_MARKS = 40;
+const MARK_PIXELS = { square: 9, disc: 12 };
+
+export interface ModelColours {
+  edge: string;
+  ghost: string;
+  held: string;
+  driven: string;
+}
+
+export class SurfaceModel {
+  readonly group = new THREE.Group();
+  readonly edgesByDefault: boolean;
+  readonly heldCount: number;
+  readonly drivenCount: number;
+  private readonly positions: THREE.BufferAttribute;
+  private readonly lookup: THREE.BufferAttribute; // texture coordinates: (intensity / range, ½)
+  private readonly intensity: Float32Array;
+  private readonly edgeMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.35 });
+  private readonly ghostLine = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.7, depthWrite: false });
+  private readonly ghostSkin = new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.08, depthWrite: false });
+  private readonly size: number; // diagonal of the rest shape [m]
+  private readonly held: THREE.Points;
+  private readonly driven: THREE.Points;
+  private readonly hiddenDriven: THREE.Points;
+  private readonly edges: THREE.LineSegments;
+  private readonly ghost = new THREE.Group();
+  private readonly disposables: { dispose(): void }[] = [];
+
+  constructor(readonly timeline: Timeline) {
+    this.size = new THREE.Box3().setFromArray(timeline.rest).getSize(new THREE.Vector3()).length();
+    this.positions = new THREE.BufferAttribute(timeline.rest.slice(0, 3 * timeline.vertices), 3);
+    this.positions.setUsage(THREE.DynamicDrawUsage);
+    this.lookup = new THREE.BufferAttribute(new Float32Array(2 * timeline.vertices).fill(0.5), 2);
+    this.intensity = new Float32Array(timeline.vertices);
+    const edgeIndex = uniqueEdges(timeline.triangles, timeline.vertices);
+    this.edgesByDefault = edgeIndex.length / 2 <= MANY_EDGES;
+    this.edges = new THREE.LineSegments(this.shared(edgeIndex), this.edgeMaterial);
+    this.held = this.points(1, "square");
+    this.driven = this.points(2, "disc");
+    this.hiddenDriven = this.seenThrough(this.driven);
+    this.heldCount = this.held.geometry.index?.count ?? 0;
+    this.drivenCount = this.driven.geometry.index?.count ?? 0;
+    this.buildGhost();
+    this.group.add(this.skin(), this.edges, this.held, this.hiddenDriven, this.driven, this.ghost);
+    this.group.traverse((object) => (object.frustumCulled = false));
+    this.disposables.push(this.edgeMaterial, this.ghostLine, this.ghostSkin);
+  }
+
+  private keep<T extends { dispose(): void }>(thing: T): T {
+    this.disposables.push(thing);
+    return thing;
+  }
+
+  /** Geometry on the common positions. */
+  private shared(index: Uint32Array): THREE.BufferGeometry {
+    const geometry = this.keep(new THREE.BufferGeometry());
+    geometry.setAttribute("position", this.positions);
+    geometry.setIndex(new THREE.BufferAttribute(index, 1));
+    return geometry;
+  }
+
+  private skin(): THREE.Mesh {
+    const texture = this.keep(new THREE.DataTexture(colourTexels(TEXELS), TEXELS, 1));
+    texture.colorSpace = THREE.SRGBColorSpace;
+    texture.minFilter = texture.magFilter = THREE.LinearFilter;
+    texture.needsUpdate = true;
+    const material = this.keep(
+      new THREE.MeshLambertMaterial({
+        map: texture,
+        flatShading: true,
+        side: THREE.DoubleSide,
+        polygonOffset: true,
+        polygonOffsetFactor: 1,
+        polygonOffsetUnits: 1,
+      }),
+    );
+    const geometry = this.shared(this.timeline.triangles);
+    geometry.setAttribute("uv", this.lookup);
+    return new THREE.Mesh(geometry, material);
+  }
+
+  private points(kind: number, shape: "square" | "disc"): THREE.Points {
+    const index: number[] = [];
+    this.timeline.fixed.forEach((value, vertex) => value === kind && index.push(vertex));
+    const map = this.keep(markTexture(shape));
+    const material = this.keep(
+      new THREE.PointsMaterial({
+        size: index.length > MANY_MARKS ? 7 : MARK_PIXELS[shape],
+        sizeAttenuation: false,
+        map,
+        transparent: true,
+        alphaTest: 0.3,
+      }),
+    );
+    material.onBeforeCompile = (shader) => bringForward(shader, MARK_LIFT * this.size);
+    return new THREE.Points(this.shared(Uint32Array.from(index)), material);
+  }
+
+  /** The driven vertices once more, faint and through the mesh: where the tool acts must not be lost in a dent. */
+  private seenThrough(points: THREE.Points): THREE.Points {
+    const material = this.keep((points.material as THREE.PointsMaterial).clone());
+    material.depthTest = false;
+    material.opacity = 0.4;
+    material.alphaTest = 0.1;
+    return new THREE.Points(points.geometry, material);
+  }
+
+  private buildGhost(): void {
+    const rest = this.keep(new THREE.BufferGeometry());
+    rest.setAttribute(
+      "position",
+      new THREE.BufferAttribute(this.timeline.rest.slice(0, 3 * this.timeline.vertices), 3),
+    );
+    rest.setIndex(new THREE.BufferAttribute(this.timeline.triangles, 1));
+    const creases = this.keep(new THREE.EdgesGeometry(rest, CREASE_DEGREES));
+    this.ghost.add(new THREE.Mesh(rest, this.ghostSkin), new THREE.LineSegments(creases, this.ghostLine));
+    this.ghost.visible = false;
+  }
+
+  /** Shape and colours at a time [s]; colours reach their end at `range`. */
+  update(time: number, exaggeration: number, range: number): void {
+    this.timeline.sample(time, exaggeration, this.positions.array as Float32Array, this.intensity);
+    const perUnit = range > 0 ? 1 / range : 0;
+    const inset = 0.5 / TEXELS;
+    for (let i = 0; i < this.intensity.length; i++) {
+      const t = Math.min(1, this.intensity[i]! * perUnit);
+      this.lookup.setX(i, inset + t * (1 - 2 * inset));
+    }
+    this.positions.needsUpdate = true;
+    this.lookup.needsUpdate = true;
+  }
+
+  show(parts: { edges: boolean; ghost: boolean; marks: boolean }): void {
+    this.edges.visible = parts.edges;
+    this.ghost.visible = parts.ghost;
+    this.held.visible = this.driven.visible = this.hiddenDriven.visible = parts.marks;
+  }
+
+  colour(colours: ModelColours): void {
+    this.edgeMaterial.color.set(colours.edge);
+    this.ghostLine.color.set(colours.ghost);
+    this.ghostSkin.color.set(colours.ghost);
+    (this.held.material as THREE.PointsMaterial).color.set(colours.held);
+    (this.driven.material as THREE.PointsMaterial).color.set(colours.driven);
+    (this.hiddenDriven.material as THREE.PointsMaterial).color.set(colours.driven);
+  }
+
+  /** All vertices at rest and in the last frame, displacement exaggerated: what a view should hold. */
+  extremes(exaggeration: number): Float32Array {
+    const points = new Float32Array(6 * this.timeline.vertices);
+    const half = points.subarray(0, 3 * this.timeline.vertices);
+    this.timeline.sample(this.timeline.end, exaggeration, half, new Float32Array(this.timeline.vertices));
+    points.set(this.timeline.rest.subarray(0, half.length), half.length);
+    return points;
+  }
+
+  dispose(): void {
+    for (const thing of this.disposables) thing.dispose();
+  }
+}
+
+/** Changes only the depth at which points are drawn, by `lift` towards the camera [m]. */
+function bringForward(shader: THREE.WebGLProgramParametersWithUniforms, lift: number): void {
+  shader.vertexShader = shader.vertexShader.replace(
+    "#include <project_vertex>",
+    `#include <project_vertex>
+    vec4 lifted = projectionMatrix * ( mvPosition + vec4( 0.0, 0.0, ${lift.toExponential(6)}, 0.0 ) );
+    gl_Position.z = lifted.z / lifted.w * gl_Position.w;`,
+  );
+}

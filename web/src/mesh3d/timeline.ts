@@ -1,0 +1,92 @@
+// timeline.ts — the recorded frames of a surface as one motion: shape and intensity at any time between them.
+import { decodeF32, decodeI16Scaled, decodeU32, decodeU8, decodeU8Scaled } from "../data/decode.ts";
+import type { SurfaceData } from "../report_data.ts";
+
+export interface Frame {
+  time: number; // [s]
+  displacement: Float32Array; // xyz per vertex [m]
+  intensity: Float32Array; // per vertex [-]
+}
+
+export class Timeline {
+  readonly vertices: number;
+  readonly triangles: Uint32Array;
+  readonly rest: Float32Array;
+  readonly fixed: Uint8Array;
+  readonly frames: readonly Frame[];
+  readonly recorded: boolean; // false: no frames, rest shape only
+  readonly intensityMax: number;
+
+  /** Decodes a surface; lists that are too short for its vertices are filled with zeros. */
+  constructor(surface: SurfaceData) {
+    this.rest = decodeF32(surface.rest);
+    this.vertices = Math.min(surface.vertices, Math.floor(this.rest.length / 3));
+    this.triangles = wholeTriangles(decodeU32(surface.triangles), this.vertices);
+    this.fixed = fit(decodeU8(surface.fixed), new Uint8Array(this.vertices));
+    const frames = surface.frames.map((frame) => ({
+      time: frame.time_s,
+      displacement: fit(decodeI16Scaled(frame.displacement, frame.displacement_scale_m), this.zeros(3)),
+      intensity: fit(decodeU8Scaled(frame.intensity, frame.intensity_max), this.zeros(1)),
+    }));
+    this.recorded = frames.length > 0;
+    this.frames = this.recorded ? frames : [{ time: 0, displacement: this.zeros(3), intensity: this.zeros(1) }];
+    this.intensityMax = Math.max(0, ...surface.frames.map((frame) => frame.intensity_max));
+  }
+
+  private zeros(components: number): Float32Array {
+    return new Float32Array(components * this.vertices);
+  }
+
+  get start(): number {
+    return this.frames[0]!.time;
+  }
+
+  get end(): number {
+    return this.frames[this.frames.length - 1]!.time;
+  }
+
+  /** Neighbouring frames of a time and the share of the later one. */
+  at(time: number): { before: Frame; after: Frame; share: number } {
+    const frames = this.frames;
+    let index = frames.findIndex((frame) => frame.time > time);
+    if (index < 0) index = frames.length - 1;
+    const after = frames[index]!;
+    const before = frames[Math.max(0, index - 1)]!;
+    const span = after.time - before.time;
+    const share = span > 0 ? Math.min(1, Math.max(0, (time - before.time) / span)) : 1;
+    return { before, after, share };
+  }
+
+  /** Writes positions (rest + exaggeration × displacement) and intensities at a time. */
+  sample(time: number, exaggeration: number, positions: Float32Array, intensity: Float32Array): void {
+    const { before, after, share } = this.at(time);
+    for (let i = 0; i < positions.length; i++) {
+      const u = before.displacement[i]! * (1 - share) + after.displacement[i]! * share;
+      positions[i] = this.rest[i]! + exaggeration * u;
+    }
+    for (let i = 0; i < intensity.length; i++) {
+      intensity[i] = before.intensity[i]! * (1 - share) + after.intensity[i]! * share;
+    }
+  }
+
+  /** Largest intensity shown at a time. */
+  intensityAt(time: number): number {
+    const { before, after, share } = this.at(time);
+    const largest = (values: Float32Array) => values.reduce((most, value) => Math.max(most, value), 0);
+    return largest(before.intensity) * (1 - share) + largest(after.intensity) * share;
+  }
+}
+
+function wholeTriangles(indices: Uint32Array, vertices: number): Uint32Array {
+  const kept: number[] = [];
+  for (let i = 0; i + 2 < indices.length; i += 3) {
+    const corners = [indices[i]!, indices[i + 1]!, indices[i + 2]!];
+    if (corners.every((corner) => corner < vertices)) kept.push(...corners);
+  }
+  return Uint32Array.from(kept);
+}
+
+function fit<T extends Float32Array | Uint8Array>(values: T, room: T): T {
+  room.set(values.subarray(0, room.length));
+  return room;
+}

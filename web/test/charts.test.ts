@@ -1,0 +1,154 @@
+// Charts choose their lines and ranges, and the cursor its point, as a reader expects.
+import { describe, expect, it } from "vitest";
+import { energyChart, partsChart } from "../src/charts/column_charts.ts";
+import { lawCharts } from "../src/charts/law_charts.ts";
+import { lineStyle } from "../src/charts/line_style.ts";
+import { type Line, extentOf } from "../src/charts/model.ts";
+import { isRising, nearestInX, nearestOnScreen } from "../src/charts/nearest.ts";
+import { SceneState } from "../src/charts/scene_state.ts";
+import { variantCharts } from "../src/charts/variant_charts.ts";
+import type { ChartSpec, SceneData, VariantData } from "../src/report_data.ts";
+
+const line = (x: number[], y: number[]): Line => ({
+  id: "a",
+  variant: null,
+  label: "a",
+  style: lineStyle(0),
+  x: Float64Array.from(x),
+  y: Float64Array.from(y),
+  times: null,
+});
+
+const variant = (name: string, y = [3600, 3600]): VariantData => ({
+  name,
+  label: name,
+  summary: {},
+  surface: null,
+  law: { measure: "intensity s [-]", x: [0, 1], curves: [{ label: "E", y }] },
+  forces: {
+    columns: ["time_s", "depth_m", "force_N", "elastic_N", "viscous_N", "energy_elastic_J"],
+    data: [
+      [0, 1],
+      [0, 0.01],
+      [0, 0.005],
+      [0, 0.005],
+      [0, 0],
+      [0, 2e-5],
+    ],
+  },
+});
+
+const scene = (variants: VariantData[], charts: ChartSpec[] = []): SceneData => ({
+  name: "s",
+  title: "s",
+  description: "",
+  notes: [],
+  source: "",
+  tables: [],
+  checks: [],
+  variants,
+  charts,
+});
+
+describe("default charts", () => {
+  it("show force on depth and on time in prefixed units", () => {
+    const models = variantCharts(scene([variant("a"), variant("b")]));
+    expect(models.map((model) => [model.xLabel, model.yLabel])).toEqual([
+      ["Depth [mm]", "Force [mN]"],
+      ["Time [s]", "Force [mN]"],
+    ]);
+    expect([...models[0]!.lines[0]!.x]).toEqual([0, 10]);
+    expect(models[0]!.lines.map((one) => one.style.dash)).not.toEqual([[], []]);
+  });
+
+  it("are those of the scene where it names some, with fits as they are", () => {
+    const spec: ChartSpec = {
+      title: "t",
+      x: { column: "depth_m", label: "d [mm]", scale: 1000 },
+      y: { column: "force_N", label: "F [N]", scale: 1 },
+      variants: ["b"],
+      fits: [{ label: "fit", x: [0, 10], y: [0, 1] }],
+    };
+    const [model] = variantCharts(scene([variant("a"), variant("b")], [spec]));
+    expect(model!.lines.map((one) => [one.label, one.variant])).toEqual([
+      ["b", "b"],
+      ["fit", null],
+    ]);
+    expect([...model!.lines[1]!.y]).toEqual([0, 1]);
+  });
+
+  it("leave out parts that are zero throughout, and say so", () => {
+    const model = partsChart(variant("a"));
+    expect(model!.lines.map((one) => one.label)).toEqual(["total", "elastic"]);
+    expect(model!.note).toBe("Zero throughout: viscous.");
+    expect(energyChart(variant("a"))!.yLabel).toBe("Energy [µJ]");
+  });
+
+  it("show laws only where one is not constant, the constant ones with it", () => {
+    expect(lawCharts([variant("a"), variant("b")])).toEqual([]);
+    const [model] = lawCharts([variant("a"), variant("b", [3600, 7200])]);
+    expect(model).toMatchObject({ xLabel: "Intensity s [–]", yLabel: "Modulus E [kPa]" });
+    expect(model!.lines.map((one) => one.label)).toEqual(["a", "b"]);
+    const [merged] = lawCharts([variant("a"), variant("b", [3600, 7200]), variant("c", [3600, 7200])]);
+    expect(merged!.lines.map((one) => one.label)).toEqual(["a", "b / c"]);
+  });
+
+  it("are none for a variant without forces", () => {
+    const empty = { ...variant("a"), forces: { columns: [], data: [] } };
+    expect(variantCharts(scene([empty]))).toEqual([]);
+    expect([partsChart(empty), energyChart(empty)]).toEqual([null, null]);
+  });
+});
+
+describe("ranges", () => {
+  it("hold all points and start at zero where zero is near", () => {
+    expect(extentOf([line([0, 10], [0.2, 1])])).toMatchObject({ xMin: 0, xMax: 10, yMin: 0 });
+    const far = extentOf([line([5, 6], [100, 101])]);
+    expect(far.yMin).toBeGreaterThan(99);
+    expect(far.xMin).toBe(5);
+    expect(extentOf([line([0, 9.97], [0, 1])]).xMax).toBe(10);
+    expect(extentOf([line([0, 9.3], [0, 1])]).xMax).toBe(9.5);
+    expect(extentOf([line([0, 1.1], [0, 1])]).xMax).toBe(1.1);
+  });
+
+  it("ignore gaps and cope with nothing and with one value", () => {
+    expect(extentOf([line([0, 1], [NaN, 2])]).yMax).toBeGreaterThan(2);
+    expect(extentOf([])).toMatchObject({ xMin: 0, xMax: 1 });
+    const flat = extentOf([line([0, 1], [3, 3])]);
+    expect(flat.yMin).toBeLessThan(3);
+    expect(flat.yMax).toBeGreaterThan(3);
+    expect(extentOf([line([0, 1], [0, 0])]).yMax).toBeGreaterThan(0);
+  });
+});
+
+describe("cursor", () => {
+  it("finds the nearest x of a rising line, nothing beyond its ends", () => {
+    const x = Float64Array.from([0, 1, 2, 4]);
+    expect(nearestInX(x, 2.9, 0.5)).toBe(-1);
+    expect(nearestInX(x, 2.9, 2)).toBe(2);
+    expect(nearestInX(x, 3.1, 2)).toBe(3);
+    expect(nearestInX(x, 9, 1)).toBe(-1);
+    expect(nearestInX(new Float64Array(0), 0, 1)).toBe(-1);
+  });
+
+  it("tells loading from unloading by the height of the pointer", () => {
+    const x = Float64Array.from([0, 1, 2, 1, 0]);
+    const y = Float64Array.from([0, 10, 20, 4, 0]);
+    expect(isRising(x)).toBe(false);
+    expect(nearestOnScreen(x, y, 1, 9, 100, 10)).toBe(1);
+    expect(nearestOnScreen(x, y, 1, 5, 100, 10)).toBe(3);
+  });
+});
+
+describe("scene state", () => {
+  it("hides, shows, and shows alone; alone once more shows all", () => {
+    const state = new SceneState(["a", "b", "c"]);
+    const hidden = () => ["a", "b", "c"].filter((name) => state.isHidden(name));
+    state.toggle("a", false);
+    expect(hidden()).toEqual(["a"]);
+    state.toggle("b", true);
+    expect(hidden()).toEqual(["a", "c"]);
+    state.toggle("b", true);
+    expect(hidden()).toEqual([]);
+  });
+});
