@@ -1,0 +1,111 @@
+// The options of `glisson run` and `glisson check`: what they change and what they must not change.
+#include "app/program.h"
+
+namespace glisson::test {
+namespace {
+
+using Options = ProgramTest;
+
+std::string two_variants() {
+  return small_scene(R"([[variant]]
+name = "soft"
+[[variant]]
+name = "firm"
+tissue.youngs_modulus_Pa = 7200
+[[variant]]
+name = "stiffening"
+tissue.law = { kind = "linear", slope_Pa = 9000 }
+)");
+}
+
+// Results do not depend on how many variants run at a time: equal state hashes and equal bytes of forces.csv.
+TEST_F(Options, ThreadsDoNotChangeResults) {
+  const std::string scene = write("s.toml", two_variants());
+  ASSERT_EQ(run({"run", scene, "--out", "one", "--quiet", "--threads", "1"}).exit_code, 0);
+  ASSERT_EQ(run({"run", scene, "--out", "three", "--quiet", "--threads", "3"}).exit_code, 0);
+  for (const std::string variant : {"soft", "firm", "stiffening"}) {
+    const nlohmann::json one = read_json(folder_ / "one" / variant / "summary.json");
+    const nlohmann::json three = read_json(folder_ / "three" / variant / "summary.json");
+    EXPECT_EQ(one["state_hash"], three["state_hash"]) << variant;
+    EXPECT_EQ(read_text(folder_ / "one" / variant / "forces.csv"),
+              read_text(folder_ / "three" / variant / "forces.csv"));
+  }
+}
+
+// --set changes a value for all variants, and the report's copy of the scene says so.
+TEST_F(Options, SetChangesTheScene) {
+  const std::string scene = write("s.toml", small_scene());
+  ASSERT_EQ(run({"run", scene, "--out", "a", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(run({"run", scene, "--out", "b", "--quiet", "--set", "tissue.youngs_modulus_Pa=7200"}).exit_code, 0);
+  const double soft = read_csv(folder_ / "a/main/forces.csv")["elastic_N"].back();
+  const double firm = read_csv(folder_ / "b/main/forces.csv")["elastic_N"].back();
+  EXPECT_NEAR(firm / soft, 2.0, 0.1) << "twice the modulus, pressed slowly against its wave speed";
+  EXPECT_EQ(read_text(folder_ / "b/scene.toml").find("# run with --set 'tissue.youngs_modulus_Pa=7200'"), 0u);
+}
+
+// --variant runs only those named; a name that is not there is an error that lists the names.
+TEST_F(Options, VariantChooses) {
+  const std::string scene = write("s.toml", two_variants());
+  ASSERT_EQ(run({"run", scene, "--out", "o", "--quiet", "--variant", "firm"}).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "o/firm/forces.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "o/soft"));
+  const Outcome wrong = run({"run", scene, "--variant", "hard"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.err.find("it has soft, firm, stiffening"), std::string::npos) << wrong.err;
+}
+
+// In a pipe, progress is plain lines at 10 % steps for each variant; --quiet leaves only the report's path.
+TEST_F(Options, ProgressInAPipeIsPlainLines) {
+  const std::string scene =
+      write("s.toml", small_scene("[[variant]]\nname = \"slow\"\ntissue.viscosity_Pa_s = 20000\n"));
+  const Outcome outcome = run({"run", scene, "--out", "o"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.find('\r'), std::string::npos) << "no bar in a pipe";
+  EXPECT_NE(outcome.out.find("slow: started\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(" %, "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("slow: finished after"), std::string::npos) << outcome.out;
+  const Outcome quiet = run({"run", scene, "--out", "o", "--quiet"});
+  EXPECT_EQ(quiet.out, "o/report.html\n");
+  EXPECT_EQ(quiet.err, "");
+}
+
+// --mesh replaces the scene's mesh and says what was replaced; a set that the new mesh does not have is an error.
+TEST_F(Options, MeshReplacesTheScenesMesh) {
+  const std::string scene = write("s.toml", small_scene());
+  ASSERT_EQ(run({"run", scene, "--out", "first", "--quiet"}).exit_code, 0);
+  const std::string frame = (folder_ / "first/main/frames/frame_0000.vtu").string();
+  const Outcome outcome = run({"run", scene, "--out", "o", "--mesh", frame});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("The mesh is " + frame + " (--mesh) in place of a box."), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(read_json(folder_ / "o/main/summary.json")["tets"], 48);
+
+  const Outcome missing = run({"run", scene, "--out", "p", "--mesh", frame, "--set", "fixed.0.set=floor"});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_NE(missing.err.find("floor"), std::string::npos) << missing.err;
+}
+
+// check tells mesh, sets, stable step, steps and time without writing anything.
+TEST_F(Options, CheckTellsWhatARunWouldBe) {
+  const Outcome outcome = run({"check", write("s.toml", small_scene())});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* part : {"27 vertices, 48 tets", "E = 3600 Pa", "\"z_min\", 9 vertices", "\"tool\" on \"z_max\"",
+                           "stable below", " steps", "about ", "The scene can be run."}) {
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part << " in:\n" << outcome.out;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+// The number of steps that check foretells for a linear tissue is the number that run makes, give or take one.
+TEST_F(Options, CheckForetellsTheSteps) {
+  const std::string scene = write("s.toml", small_scene());
+  const std::string text = run({"check", scene}).out;
+  const std::size_t at = text.find("s simulated, ");
+  ASSERT_NE(at, std::string::npos) << text;
+  const double foretold = std::stod(text.substr(at + 13));
+  ASSERT_EQ(run({"run", scene, "--out", "o", "--quiet"}).exit_code, 0);
+  EXPECT_NEAR(foretold, read_json(folder_ / "o/main/summary.json")["steps"].get<double>(), 1.0);
+}
+
+}  // namespace
+}  // namespace glisson::test

@@ -1,0 +1,65 @@
+// program.h — runs the real glisson program from a test and keeps what it said and wrote.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/types.h>
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace glisson::test {
+
+/// What a run of the program left behind.
+struct Outcome {
+  int exit_code = -1;  ///< 128 + signal where a signal ended it
+  std::string out, err;
+};
+
+/// A program that has been started; its output goes to files.
+class Started {
+ public:
+  /// @param file_bytes  the largest file it may write; 0: no limit
+  Started(const std::vector<std::string>& arguments, const std::filesystem::path& folder, unsigned file_bytes = 0);
+  void signal(int number) const;
+  std::string output_so_far() const;
+  /// Waits for its end, five minutes at most.
+  Outcome wait();
+
+ private:
+  pid_t child_;
+  std::filesystem::path out_, err_;
+};
+
+/// A fresh folder for one test, removed after it.
+class ProgramTest : public ::testing::Test {
+ protected:
+  void SetUp() override;
+  void TearDown() override;
+
+  /// Runs the program in the test's folder.
+  Outcome run(const std::vector<std::string>& arguments) { return Started(arguments, folder_).wait(); }
+  Started start(const std::vector<std::string>& arguments) { return {arguments, folder_}; }
+  /// Writes a file into the folder and returns its path.
+  std::string write(const std::string& name, const std::string& text) const;
+  std::filesystem::path folder_;
+};
+
+std::string read_text(const std::filesystem::path& file);
+nlohmann::json read_json(const std::filesystem::path& file);
+
+/// A csv file: its columns by name; fails the test where a line has another number of values than the head.
+std::map<std::string, std::vector<double>> read_csv(const std::filesystem::path& file);
+
+/// The data inside a report.html.
+nlohmann::json report_data(const std::filesystem::path& file);
+
+/// The text of a scene on a small box (2 × 2 × 2 cubes) pressed on its top, elastic, 0.05 s; `more` is appended.
+std::string small_scene(const std::string& more = "");
+
+/// A scene that would run for minutes: what an interruption needs.
+std::string long_scene();
+
+}  // namespace glisson::test

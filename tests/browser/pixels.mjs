@@ -1,0 +1,46 @@
+// pixels.mjs — what a picture of an element shows: colours counted in the page itself, from a real screenshot.
+
+/** Share of pixels that differ from the commonest colour, number of distinct colours, and a hash, of an element. */
+export async function pixelsOf(page, locator) {
+  const shot = await locator.screenshot({ animations: "disabled" });
+  return page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const picture = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    const canvas = new OffscreenCanvas(picture.width, picture.height);
+    const context = canvas.getContext("2d");
+    context.drawImage(picture, 0, 0);
+    const data = new Uint32Array(context.getImageData(0, 0, picture.width, picture.height).data.buffer);
+    const counts = new Map();
+    let hash = 2166136261;
+    for (const value of data) {
+      counts.set(value, (counts.get(value) ?? 0) + 1);
+      hash = Math.imul(hash ^ value, 16777619);
+    }
+    const commonest = Math.max(...counts.values());
+    return { colours: counts.size, drawn: 1 - commonest / data.length, hash };
+  }, shot.toString("base64"));
+}
+
+/** Coloured (not grey) pixels of a chart's own canvas by "r,g,b", and a hash of all of it; nothing over it counts. */
+export function canvasOf(canvas) {
+  return canvas.evaluate((element) => {
+    const copy = new OffscreenCanvas(element.width, element.height);
+    const context = copy.getContext("2d", { willReadFrequently: true });
+    context.drawImage(element, 0, 0);
+    const data = context.getImageData(0, 0, copy.width, copy.height).data;
+    const colours = {};
+    let hash = 2166136261;
+    for (let i = 0; i < data.length; i += 4) {
+      const [r, g, b, a] = [data[i], data[i + 1], data[i + 2], data[i + 3]];
+      hash = Math.imul(hash ^ ((r << 24) | (g << 16) | (b << 8) | a), 16777619);
+      if (a < 250 || Math.max(r, g, b) - Math.min(r, g, b) < 60) continue;
+      const key = `${r},${g},${b}`;
+      colours[key] = (colours[key] ?? 0) + 1;
+    }
+    return { colours, hash };
+  });
+}
+
+export async function lineColours(canvas) {
+  return (await canvasOf(canvas)).colours;
+}

@@ -1,0 +1,13 @@
+// The README's ten lines: a box of tissue, held below, pressed from above.
+#include "glisson/motion.h"
+
+#include <cstdio>
+
+int main() {
+  const glisson::TetMesh box = glisson::box_mesh({});
+  glisson::Simulation simulation(box, {{0, glisson::Tissue{}}}, {.damping_rate = 50.0});
+  simulation.fix(box.vertex_sets.at("z_min"));
+  const auto tool = simulation.drive(box.vertex_sets.at("z_max"), glisson::press({.velocity = 0.01, .depth = 0.005}));
+  while (simulation.time() < 1.0) simulation.step();
+  std::printf("%.4f N\n", -simulation.force(tool).total().z);
+}

@@ -1,0 +1,55 @@
+# Installs the built tree into an empty prefix, then configures, builds and runs the consumer against it.
+#   cmake -DBUILD=… -DCONSUMER=… -DWORK=… -DCOMPONENTS=scene,io -DCXX=… -DBUILD_TYPE=… -P run.cmake
+# Proves that what is installed is enough: headers, libraries, package config, and that the core brings no VTK.
+foreach(name BUILD CONSUMER WORK CXX BUILD_TYPE)
+  if(NOT DEFINED ${name})
+    message(FATAL_ERROR "run.cmake: -D${name}=… is missing")
+  endif()
+endforeach()
+
+function(run_step what)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "${what} failed (${result}): ${command}\n${output}")
+  endif()
+  set(step_output "${output}" PARENT_SCOPE)
+endfunction()
+
+# consumer(name components...) builds and runs the consumer with those components.
+function(consumer name)
+  list(JOIN ARGN "," wanted)
+  set(options "-DWANTED=${wanted}" -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=${BUILD_TYPE})
+  run_step("configure ${name}" ${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/${name} -G Ninja ${options})
+  run_step("build ${name}" ${CMAKE_COMMAND} --build ${WORK}/${name})
+  foreach(component IN LISTS ARGN)
+    run_step("run consumer_${component}" ${CMAKE_COMMAND} -E chdir ${WORK}/${name} ./consumer_${component})
+  endforeach()
+  run_step("run consumer" ${CMAKE_COMMAND} -E chdir ${WORK}/${name} ./consumer)
+  # Between free sides, E A d/L = 0.360 N, and fully confined sides, 0.771 N.
+  if(NOT step_output MATCHES "^(0\\.[0-9]+) N" OR CMAKE_MATCH_1 LESS 0.36 OR CMAKE_MATCH_1 GREATER 0.771)
+    message(FATAL_ERROR "${name}: the pressed box gave '${step_output}', expected 0.360 N to 0.771 N")
+  endif()
+  message(STATUS "${name}: ${step_output}")
+endfunction()
+
+# The README shows this program; what it shows is what is built here.
+file(READ ${CONSUMER}/main.cpp program)
+string(REGEX REPLACE "^//[^\n]*\n" "" program "${program}")
+file(READ ${CONSUMER}/../../README.md readme)
+string(FIND "${readme}" "${program}" place)
+if(place EQUAL -1)
+  message(FATAL_ERROR "README.md does not show tests/consumer/main.cpp (from its second line on) as it is: copy it there")
+endif()
+
+file(REMOVE_RECURSE ${WORK})
+run_step("install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+consumer(core_only)
+file(STRINGS ${WORK}/core_only/CMakeCache.txt vtk REGEX "^VTK_DIR")
+if(vtk)
+  message(FATAL_ERROR "a consumer of the core alone was made to look for VTK: ${vtk}")
+endif()
+if(COMPONENTS)
+  string(REPLACE "," ";" COMPONENTS "${COMPONENTS}")
+  consumer(all_components ${COMPONENTS})
+endif()

@@ -1,0 +1,76 @@
+// The same run gives the same bytes: again, beside others on other threads, and in pieces.
+#include <gtest/gtest.h>
+
+#include <thread>
+#include <vector>
+
+#include "glisson/motion.h"
+#include "support/bodies.h"
+
+namespace glisson {
+namespace {
+
+/// A viscous, stiffening tissue of two regions under a press, gravity and damping.
+Simulation busy_body(Precision precision) {
+  TetMesh mesh = test::paper_mesh();
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) mesh.regions.push_back(t % 5 == 0 ? 1 : 0);
+  Tissue soft, hard;
+  soft.viscosity = 2.0;
+  soft.law = LinearLaw{20000.0};
+  hard.youngs_modulus = 20000.0;
+  hard.law = ExponentialLaw{.amplitude = 500.0, .rate = 6.0};
+  SimulationOptions options;
+  options.precision = precision;
+  options.gravity = {0.0, 0.0, -9.81};
+  options.damping_rate = 5.0;
+  Simulation simulation(mesh, {{0, soft}, {1, hard}}, options);
+  simulation.fix(mesh.vertex_sets.at("z_min"));
+  simulation.drive(test::paper_triangle(), press({.velocity = 0.05, .depth = 0.01, .hold = 1.0}));
+  return simulation;
+}
+
+std::uint64_t hash_after(int steps, Precision precision) {
+  Simulation simulation = busy_body(precision);
+  for (int i = 0; i < steps; ++i) simulation.step();
+  return simulation.state_hash();
+}
+
+class SameBytes : public testing::TestWithParam<Precision> {};
+
+// Run to run, in one process.
+TEST_P(SameBytes, RunToRun) { EXPECT_EQ(hash_after(500, GetParam()), hash_after(500, GetParam())); }
+
+// On 2, 4 and 8 threads that each run their own body side by side.
+TEST_P(SameBytes, BesideOtherThreads) {
+  const std::uint64_t alone = hash_after(300, GetParam());
+  for (const std::size_t threads : {2U, 4U, 8U}) {
+    std::vector<std::uint64_t> hashes(threads);
+    {
+      std::vector<std::jthread> workers;
+      for (std::uint64_t& hash : hashes) workers.emplace_back([&hash] { hash = hash_after(300, GetParam()); });
+    }
+    for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, alone) << threads << " threads";
+  }
+}
+
+// Reading forces, energies and fields between steps changes nothing.
+TEST_P(SameBytes, WatchedOrNot) {
+  Simulation watched = busy_body(GetParam());
+  for (int i = 0; i < 300; ++i) {
+    watched.step();
+    watched.tet_fields();
+    watched.positions();
+    watched.force({1});
+    watched.energies();
+  }
+  EXPECT_EQ(watched.state_hash(), hash_after(300, GetParam()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Precisions, SameBytes,
+                         testing::Values(Precision::single_precision, Precision::double_precision),
+                         [](const testing::TestParamInfo<Precision>& p) {
+                           return std::string(p.param == Precision::single_precision ? "single" : "double");
+                         });
+
+}  // namespace
+}  // namespace glisson

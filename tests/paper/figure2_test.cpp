@@ -1,0 +1,122 @@
+// Figure 2 of the paper: the law of a tetrahedron shows in the force of a whole body.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "mechanics/reference.h"
+#include "support/bodies.h"
+#include "support/scene_runs.h"
+
+namespace glisson {
+namespace {
+
+/// Coefficient of determination of a least-squares polynomial of the given degree.
+double r_squared(const std::vector<double>& x, const std::vector<double>& y, int degree) {
+  Eigen::MatrixXd A(static_cast<Eigen::Index>(x.size()), degree + 1);
+  Eigen::VectorXd b(A.rows());
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    for (int k = 0; k <= degree; ++k) A(i, k) = std::pow(x[static_cast<std::size_t>(i)] * 1000.0, k);
+    b[i] = y[static_cast<std::size_t>(i)];
+  }
+  const Eigen::VectorXd residual = A * A.colPivHouseholderQr().solve(b).eval() - b;
+  return 1.0 - residual.squaredNorm() / (b.array() - b.mean()).square().sum();
+}
+
+const Variant& variant(const Scene& scene, const std::string& name) {
+  return *std::find_if(scene.variants.begin(), scene.variants.end(), [&](const Variant& v) { return v.name == name; });
+}
+
+// Tissue 2: a modulus that grows with s gives a force of second order, where a straight line does not do.
+// The linear tissue, as a control, is a straight line.
+TEST(Figure2, Tissue2IsOfSecondOrder) {
+  const Scene scene = test::shipped_scene("paper/figure2.toml");
+  const test::RunRecord tissue2 = test::run_recorded(variant(scene, "tissue2"));
+  const double quadratic = r_squared(tissue2.depth, tissue2.force, 2),
+               line = r_squared(tissue2.depth, tissue2.force, 1);
+  EXPECT_GE(quadratic, 0.999) << "R² of a quadratic";
+  EXPECT_LT(line, 0.99) << "R² of a line";
+  const test::RunRecord linear = test::run_recorded(variant(scene, "linear"));
+  EXPECT_GE(r_squared(linear.depth, linear.force, 1), 0.999) << "R² of a line, linear tissue";
+  EXPECT_GT(tissue2.force.back(), 1.5 * linear.force.back());
+}
+
+// All of figure 2 runs at physical mass, without inverted tetrahedra, and its energies balance.
+TEST(Figure2, RunsAsShipped) {
+  for (const auto& [name, run] : test::run_all(test::shipped_scene("paper/figure2.toml"))) {
+    EXPECT_EQ(run.summary.end, RunSummary::End::finished) << name;
+    EXPECT_EQ(run.summary.tets, 768U);
+    EXPECT_EQ(run.summary.inverted_tets_most, 0U) << name;
+    const Energies& e = run.summary.energies;
+    EXPECT_LE(std::abs(e.imbalance()), 1e-9 * e.work_tools) << name;
+  }
+}
+
+/// Tissue 1 stepped by hand: at each step the tool's elastic force, and the force of the same displacements with
+/// the moduli of the step before.
+struct Staircase {
+  std::vector<double> force, with_old_moduli;
+  std::vector<int> crossed;  ///< tets whose side of the threshold changed in the step
+};
+
+Staircase climb(Variant v) {
+  v.simulation.precision = Precision::double_precision;
+  BuiltVariant built = build_variant(v, {});
+  Simulation& simulation = built.simulation;
+  const ConstraintId tool = built.tools.front();
+  const TetMesh& mesh = simulation.mesh();
+
+  const StepLaw law = std::get<StepLaw>(v.tissue.law);
+  Tissue soft = v.tissue, stiff = v.tissue;
+  soft.law = stiff.law = ConstantLaw{};
+  stiff.youngs_modulus = law.above;
+  TetMesh sides = mesh;  // region 1: above the threshold, one step ago
+  sides.regions.assign(mesh.tets.size(), 0);
+
+  Staircase stairs;
+  while (simulation.time() < press_end(v.tools[0].motion)) {
+    const std::vector<Vec3d> u(simulation.displacement().begin(), simulation.displacement().end());
+    const std::vector<double> s = simulation.tet_fields().s;
+    simulation.step();
+    const auto old = reference::mesh_forces(sides, {{0, soft}, {1, stiff}}, u, u);
+    double with_old = 0.0;
+    for (const std::uint32_t i : mesh.vertex_sets.at(v.tools[0].set)) with_old += old.elastic[i].z;
+    int crossed = 0;
+    for (std::size_t t = 0; t < s.size(); ++t) {
+      const int side = s[t] >= law.threshold ? 1 : 0;
+      crossed += side != sides.regions[t];
+      sides.regions[t] = side;
+    }
+    stairs.force.push_back(-simulation.force(tool).elastic.z);
+    stairs.with_old_moduli.push_back(with_old);
+    stairs.crossed.push_back(crossed);
+  }
+  return stairs;
+}
+
+// Tissue 1: the force grows by steps, and every step is made by tetrahedra that cross the threshold just then:
+// with the moduli of the moment before the force would have gone on smoothly. Shown under the damping of the
+// paper's time step; with less of it tets fall back across the threshold and the steps ring.
+TEST(Figure2, StepsOfTissue1AreTetsCrossingTheThreshold) {
+  const Scene scene = test::shipped_scene("paper/figure2.toml");
+  const Staircase stairs = climb(variant(scene, "tissue1_damped"));
+  // between steps the force grows by 0.010 N at most in one time step, once the motion has started
+  const double large = 0.025;
+  int steps = 0;
+  for (std::size_t i = 2; i < stairs.force.size(); ++i) {
+    const double jump = stairs.force[i] - stairs.force[i - 1];
+    const double without_crossing = stairs.with_old_moduli[i] - stairs.force[i - 1];
+    if (stairs.crossed[i] == 0) {
+      EXPECT_NEAR(stairs.force[i], stairs.with_old_moduli[i], 1e-12) << "no tet crossed, the moduli are the old ones";
+    }
+    if (std::abs(jump) < large) continue;
+    ++steps;
+    EXPECT_GT(stairs.crossed[i], 0) << "a step of " << jump << " N without a tet crossing, time step " << i;
+    EXPECT_LT(std::abs(without_crossing), 0.5 * std::abs(jump)) << "time step " << i;
+  }
+  EXPECT_GE(steps, 5) << "steps of more than " << large << " N";
+}
+
+}  // namespace
+}  // namespace glisson

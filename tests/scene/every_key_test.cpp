@@ -1,0 +1,294 @@
+// every_key_test.cpp — each key of the schema reaches the struct it is documented to fill.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <set>
+
+#include "scene/scene_text.h"
+#include "scene/sections.h"
+
+namespace glisson {
+namespace {
+
+using test::parse;
+using ::testing::ElementsAre;
+
+const std::string kEveryKey = R"(title = "All keys"
+description = "A scene with every key away from its default."
+notes = ["one", "two"]
+
+[mesh]
+kind = "box"
+cells = [3, 4, 5]
+size_m = [0.03, 0.04, 0.05]
+origin_m = [1, 2.5, -3]
+split = "alternating"
+
+[sets.boxed]
+box_m = { min = [0, 0, 0], max = [1, 2, 3] }
+surface_only = true
+[sets.ball]
+sphere_m = { center = [1, 2, 3], radius = 0.5 }
+[sets.near]
+nearest_m = { point = [4, 5, 6], count = 7 }
+[sets.end]
+side = { axis = "y", end = "upper", depth_m = 0.125 }
+[sets.listed]
+vertices = [3, 1, 2]
+
+[tissue]
+name = "liver"
+youngs_modulus_Pa = 5000
+poisson_ratio = 0.45
+density_kg_m3 = 1060
+viscosity_Pa_s = 12.5
+viscous_tensor = "deviatoric"
+measure = "one_minus_q"
+law = { kind = "step", threshold = 0.25, above_Pa = 9000, width = 0.0625 }
+
+[[region]]
+name = "stone"
+box_m = { min = [0, 0, 0], max = [1, 1, 1] }
+tissue = { lambda_Pa = 6000, mu_Pa = 2000, lambda_law = { kind = "linear", slope_Pa = 10 }, mu_law = { kind = "linear", slope_Pa = 20 } }
+[[region]]
+name = "core"
+sphere_m = { center = [0, 0, 1], radius = 2 }
+
+[motion]
+integrator = "explicit"
+step_s = 1e-4
+precision = "double"
+damping_rate_per_s = 3
+nodal_damping_kg_per_s = 0.002
+gravity_m_s2 = [0, 0, -9.81]
+gravity_ramp_s = 0.5
+on_inversion = "stop"
+duration_s = 2.5
+max_steps = 1000
+
+[[fixed]]
+set = "z_min"
+axes = "xz"
+
+[[load]]
+set = "x_max"
+force_N = [1, 2, 3]
+ramp_s = 0.75
+
+[[tool]]
+name = "punch"
+set = "near"
+direction = [0, -2, 0]
+velocity_mm_s = 2.5
+depth_mm = 4
+start_s = 0.1
+ramp_s = 0.2
+hold_s = 0.3
+returns = true
+sideways = "free"
+
+[output]
+sample_rate_hz = 250
+frames = 7
+
+[[chart]]
+title = "Force"
+x = "depth_m"
+y = "force_N"
+x_scale = 1000
+y_scale = 2
+x_label = "depth [mm]"
+y_label = "force [N]"
+variants = ["only"]
+
+[[variant]]
+name = "only"
+label = "the only one"
+)";
+
+void expect_equal(const Vec3d& a, const Vec3d& b) { EXPECT_EQ(a, b) << a.x << " " << a.y << " " << a.z; }
+
+// What a scene says once is kept as written.
+TEST(EveryKey, OfTheSceneIsRead) {
+  const Scene scene = parse(kEveryKey);
+  EXPECT_EQ(scene.title, "All keys");
+  EXPECT_EQ(scene.description, "A scene with every key away from its default.");
+  EXPECT_THAT(scene.notes, ElementsAre("one", "two"));
+  EXPECT_EQ(scene.source, kEveryKey);
+  EXPECT_EQ(scene.file, "s.toml");
+  ASSERT_EQ(scene.charts.size(), 1u);
+  EXPECT_EQ(scene.charts[0].title, "Force");
+  EXPECT_EQ(scene.charts[0].x.column, "depth_m");
+  EXPECT_EQ(scene.charts[0].x.scale, 1000.0);
+  EXPECT_EQ(scene.charts[0].x.label, "depth [mm]");
+  EXPECT_EQ(scene.charts[0].y.column, "force_N");
+  EXPECT_EQ(scene.charts[0].y.scale, 2.0);
+  EXPECT_EQ(scene.charts[0].y.label, "force [N]");
+  EXPECT_THAT(scene.charts[0].variants, ElementsAre("only"));
+  ASSERT_EQ(scene.variants.size(), 1u);
+  EXPECT_EQ(scene.variants[0].name, "only");
+  EXPECT_EQ(scene.variants[0].label, "the only one");
+  EXPECT_EQ(scene.variants[0].scene_name, "s.toml");
+}
+
+// The box is the one described, and every way of picking vertices keeps its numbers.
+TEST(EveryKey, OfMeshAndSetsIsRead) {
+  const Variant v = parse(kEveryKey).variants[0];
+  const auto& box = std::get<BoxOptions>(v.mesh);
+  EXPECT_THAT(box.cells, ElementsAre(3, 4, 5));
+  expect_equal(box.size, {0.03, 0.04, 0.05});
+  expect_equal(box.origin, {1, 2.5, -3});
+  EXPECT_EQ(box.split, BoxSplit::alternating);
+  ASSERT_EQ(v.sets.size(), 5u);
+  const auto& boxed = std::get<Selection::Box>(v.sets.at("boxed").where);
+  expect_equal(boxed.min, {0, 0, 0});
+  expect_equal(boxed.max, {1, 2, 3});
+  EXPECT_TRUE(v.sets.at("boxed").surface_only);
+  const auto& ball = std::get<Selection::Sphere>(v.sets.at("ball").where);
+  expect_equal(ball.center, {1, 2, 3});
+  EXPECT_EQ(ball.radius, 0.5);
+  EXPECT_FALSE(v.sets.at("ball").surface_only);
+  const auto& near = std::get<Selection::Nearest>(v.sets.at("near").where);
+  expect_equal(near.point, {4, 5, 6});
+  EXPECT_EQ(near.count, 7);
+  const auto& end = std::get<Selection::Side>(v.sets.at("end").where);
+  EXPECT_EQ(end.axis, 1);
+  EXPECT_TRUE(end.upper);
+  EXPECT_EQ(end.depth, 0.125);
+  EXPECT_THAT(std::get<Selection::Ids>(v.sets.at("listed").where).vertices, ElementsAre(3, 1, 2));
+}
+
+// A tissue keeps its moduli, density, viscosity, measure and law.
+TEST(EveryKey, OfTissueIsRead) {
+  const Tissue t = parse(kEveryKey).variants[0].tissue;
+  EXPECT_EQ(t.name, "liver");
+  EXPECT_EQ(t.youngs_modulus, 5000.0);
+  EXPECT_EQ(t.poisson_ratio, 0.45);
+  EXPECT_EQ(t.density, 1060.0);
+  EXPECT_EQ(t.viscosity, 12.5);
+  EXPECT_EQ(t.viscous_tensor, ViscousTensor::deviatoric);
+  EXPECT_EQ(t.measure, DeformationMeasure::one_minus_q);
+  EXPECT_EQ(std::get<StepLaw>(t.law), (StepLaw{0.25, 9000, 0.0625}));
+  EXPECT_FALSE(t.lambda_law || t.mu_law);
+}
+
+// A region has the body's tissue but for the keys it gives; λ and μ of a region take the place of the body's E and ν.
+TEST(EveryKey, OfRegionsIsReadAndTheRestInherited) {
+  const Variant v = parse(kEveryKey).variants[0];
+  ASSERT_EQ(v.regions.size(), 2u);
+  const RegionSpec& stone = v.regions[0];
+  EXPECT_EQ(stone.name, "stone");
+  EXPECT_EQ(stone.tissue.name, "stone");
+  expect_equal(std::get<Selection::Box>(stone.where).max, {1, 1, 1});
+  EXPECT_NEAR(stone.tissue.lame().lambda, 6000.0, 1e-9);
+  EXPECT_NEAR(stone.tissue.lame().mu, 2000.0, 1e-9);
+  EXPECT_EQ(stone.tissue.density, 1060.0);
+  EXPECT_TRUE(std::holds_alternative<ConstantLaw>(stone.tissue.law)) << "lambda_law and mu_law replace the body's law";
+  EXPECT_EQ(std::get<LinearLaw>(stone.tissue.lambda_law.value()).slope, 10.0);
+  EXPECT_EQ(std::get<LinearLaw>(stone.tissue.mu_law.value()).slope, 20.0);
+  const RegionSpec& core = v.regions[1];
+  EXPECT_EQ(std::get<Selection::Sphere>(core.where).radius, 2.0);
+  EXPECT_EQ(core.tissue.youngs_modulus, 5000.0);
+  EXPECT_EQ(law_name(core.tissue.law), "step");
+}
+
+// Time, supports, loads, tools and output keep their numbers, in SI.
+TEST(EveryKey, OfMotionToolsAndOutputIsRead) {
+  const Variant v = parse(kEveryKey).variants[0];
+  EXPECT_EQ(v.simulation.step, 1e-4);
+  EXPECT_EQ(v.simulation.precision, Precision::double_precision);
+  EXPECT_EQ(v.simulation.damping_rate, 3.0);
+  EXPECT_EQ(v.simulation.nodal_damping, 0.002);
+  expect_equal(v.simulation.gravity, {0, 0, -9.81});
+  EXPECT_EQ(v.simulation.gravity_ramp, 0.5);
+  EXPECT_TRUE(v.simulation.enforce_stability) << "no scene may exceed the stable step";
+  EXPECT_EQ(v.on_inversion, OnInversion::stop);
+  EXPECT_EQ(v.duration, 2.5);
+  EXPECT_EQ(v.max_steps, 1000u);
+  ASSERT_EQ(v.fixed.size(), 1u);
+  EXPECT_EQ(v.fixed[0].set, "z_min");
+  EXPECT_TRUE(v.fixed[0].axes.x && !v.fixed[0].axes.y && v.fixed[0].axes.z);
+  ASSERT_EQ(v.loads.size(), 1u);
+  EXPECT_EQ(v.loads[0].set, "x_max");
+  expect_equal(v.loads[0].force, {1, 2, 3});
+  EXPECT_EQ(v.loads[0].ramp, 0.75);
+  ASSERT_EQ(v.tools.size(), 1u);
+  const ToolSpec& tool = v.tools[0];
+  EXPECT_EQ(tool.name, "punch");
+  EXPECT_EQ(tool.set, "near");
+  expect_equal(tool.motion.direction, {0, -2, 0});
+  EXPECT_EQ(tool.motion.velocity, 0.0025);
+  EXPECT_EQ(tool.motion.depth, 0.004);
+  EXPECT_EQ(tool.motion.start, 0.1);
+  EXPECT_EQ(tool.motion.ramp, 0.2);
+  EXPECT_EQ(tool.motion.hold, 0.3);
+  EXPECT_TRUE(tool.motion.returns);
+  EXPECT_TRUE(tool.sideways_free);
+  EXPECT_EQ(v.output.sample_rate, 250.0);
+  EXPECT_EQ(v.output.frames, 7);
+}
+
+// The two other kinds of mesh keep their numbers; a file is looked for beside the scene.
+TEST(EveryKey, OfCylinderAndFileIsRead) {
+  const std::string rest = "\n[motion]\nduration_s = 1\n";
+  const Scene cylinder = parse(
+      "[mesh]\nkind = \"cylinder\"\nradius_m = 0.1\nheight_m = 0.2\nradial_cells = 3\naxial_cells = 4\n"
+      "grading = 5\n" +
+      rest);
+  const auto& c = std::get<CylinderOptions>(cylinder.variants[0].mesh);
+  EXPECT_EQ(c.radius, 0.1);
+  EXPECT_EQ(c.height, 0.2);
+  EXPECT_EQ(c.radial_cells, 3);
+  EXPECT_EQ(c.axial_cells, 4);
+  EXPECT_EQ(c.grading, 5.0);
+  const Scene file = parse("[mesh]\nkind = \"file\"\npath = \"organs/liver.vtu\"\nscale = 0.001\n" + rest);
+  const auto& f = std::get<MeshFile>(file.variants[0].mesh);
+  EXPECT_EQ(f.path, "/scenes/organs/liver.vtu");
+  EXPECT_EQ(f.scale, 0.001);
+  const Scene absolute = parse("[mesh]\nkind = \"file\"\npath = \"/data/liver.vtu\"\n" + rest);
+  EXPECT_EQ(std::get<MeshFile>(absolute.variants[0].mesh).path, "/data/liver.vtu");
+}
+
+/// Every key of a section and of the sections in it.
+void collect(const scene::SectionSpec& section, std::set<std::string>& keys) {
+  for (const scene::KeySpec& key : section.keys) {
+    keys.insert(key.name);
+    if (key.section) collect(*key.section, keys);
+  }
+}
+
+// The scene above is what it says: no key of the schema is missing from it (laws and other meshes have their own tests).
+TEST(EveryKey, IsInTheSceneOfThisTest) {
+  std::set<std::string> keys;
+  collect(scene::scene_section(), keys);
+  collect(scene::variant_section(), keys);
+  EXPECT_GT(keys.size(), 60u);
+  for (const std::string& key : keys) EXPECT_NE(kEveryKey.find(key), std::string::npos) << key;
+}
+
+// Keys that are not given have the defaults of the structs, which are the documented ones.
+TEST(Defaults, AreThoseOfTheStructs) {
+  const Variant v = parse(test::kSmallScene).variants.at(0);
+  const Variant initial;
+  EXPECT_EQ(v.name, "main");
+  EXPECT_EQ(v.label, "main");
+  EXPECT_EQ(v.tissue.youngs_modulus, initial.tissue.youngs_modulus);
+  EXPECT_EQ(v.tissue.poisson_ratio, initial.tissue.poisson_ratio);
+  EXPECT_EQ(v.tissue.density, initial.tissue.density);
+  EXPECT_EQ(v.tissue.viscosity, 0.0);
+  EXPECT_TRUE(std::holds_alternative<ConstantLaw>(v.tissue.law));
+  EXPECT_FALSE(v.simulation.step) << "auto";
+  EXPECT_EQ(v.simulation.precision, Precision::single_precision);
+  EXPECT_EQ(v.on_inversion, OnInversion::go_on);
+  EXPECT_FALSE(v.duration || v.max_steps);
+  EXPECT_EQ(v.output.sample_rate, 500.0);
+  EXPECT_EQ(v.output.frames, 60);
+  EXPECT_EQ(v.tools.at(0).motion.velocity, 0.01);
+  EXPECT_FALSE(v.tools[0].sideways_free);
+  EXPECT_EQ(parse(test::kSmallScene).title, "s") << "the file's name";
+  EXPECT_FALSE(parse(test::kSmallScene + "[motion]\nstep_s = \"auto\"\n").variants[0].simulation.step);
+}
+
+}  // namespace
+}  // namespace glisson

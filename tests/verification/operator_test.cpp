@@ -1,0 +1,184 @@
+// The production operator equals the paper's tensors, and obeys the laws any internal force obeys.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "mechanics/force_operator.h"
+#include "mechanics/reference.h"
+#include "mechanics/tet_fields.h"
+#include "support/bodies.h"
+#include "support/random.h"
+#include "tissue/shape_measure.h"
+
+namespace glisson {
+namespace {
+
+using test::integer;
+using test::number;
+
+StiffnessLaw random_law(double base) {
+  switch (integer(0, 6)) {
+    case 0:
+      return ConstantLaw{};
+    case 1:
+      return StepLaw{.threshold = number(0.01, 0.2), .above = base * number(0.5, 3.0), .width = number(0.01, 0.1)};
+    case 2:
+      return LinearLaw{base * number(-2.0, 10.0)};
+    case 3:
+      return PolynomialLaw{{base * number(-1.0, 4.0), base * number(0.0, 20.0)}};
+    case 4:
+      return ExponentialLaw{base * number(0.1, 1.0), number(1.0, 12.0)};
+    default:
+      return TableLaw{{0.0, 0.05, 0.3, 1.0}, {base, base * number(1.0, 2.0), base * number(2.0, 4.0), base * 5.0}};
+  }
+}
+
+Tissue random_tissue() {
+  Tissue tissue;
+  tissue.youngs_modulus = number(500.0, 50000.0);
+  tissue.poisson_ratio = number(-0.3, 0.49);
+  tissue.viscosity = number(0.0, 2000.0);
+  tissue.viscous_tensor = static_cast<ViscousTensor>(integer(0, 3));
+  tissue.measure = static_cast<DeformationMeasure>(integer(0, 3));
+  if (integer(0, 4) == 0) {
+    tissue.lambda_law = random_law(std::abs(tissue.lame().lambda));
+    tissue.mu_law = random_law(tissue.lame().mu);
+  } else {
+    tissue.law = random_law(tissue.youngs_modulus);
+  }
+  return tissue;
+}
+
+/// A random mesh of two tissues in a random state of up to 20 % strain.
+struct Sample {
+  std::mt19937 random;
+  TetMesh mesh;
+  std::map<int, Tissue> tissues;
+  std::vector<Vec3d> u, v;
+
+  Sample() : random(static_cast<unsigned>(integer(1, 1000000))) {
+    const double cell = number(0.001, 0.05);
+    mesh = test::jittered_box({integer(1, 4), integer(1, 4), integer(1, 4)}, cell, 0.2, random);
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) mesh.regions.push_back(static_cast<int>(random() % 2));
+    tissues = {{0, random_tissue()}, {1, random_tissue()}};
+    u = test::random_field(mesh.vertices.size(), number(0.001, 0.1) * cell, random);
+    v = test::random_field(mesh.vertices.size(), 0.01, random);
+  }
+};
+
+struct Forces {
+  std::vector<Vec3d> elastic, viscous;
+  ElementWatch watch;
+};
+
+Forces evaluate(const Sample& s, Precision precision) {
+  const Body body = build_body(s.mesh, s.tissues);
+  Forces f{std::vector<Vec3d>(s.u.size()), std::vector<Vec3d>(s.u.size()), {}};
+  make_element_operator(body, precision)->evaluate(s.u, s.v, f.elastic, f.viscous, f.watch);
+  return f;
+}
+
+// Double precision: the deformation-gradient form is the tensor form of eq. 6 and 7 to rounding.
+RC_GTEST_PROP(ElementOperator, EqualsTensorsInDouble, ()) {
+  const Sample s;
+  const Forces fast = evaluate(s, Precision::double_precision);
+  const reference::MeshForces slow = reference::mesh_forces(s.mesh, s.tissues, s.u, s.v);
+  // the tolerance: some tens of roundings per element, and the measure's own in the law's argument
+  RC_ASSERT(test::relative_difference(fast.elastic, slow.elastic) <= 1e-12);
+  RC_ASSERT(test::relative_difference(fast.viscous, slow.viscous) <= 1e-12);
+}
+
+// Float: within 1e-5 of the tensors, displacement differences being formed in double.
+RC_GTEST_PROP(ElementOperator, EqualsTensorsInFloat, ()) {
+  const Sample s;
+  const Forces fast = evaluate(s, Precision::single_precision);
+  const reference::MeshForces slow = reference::mesh_forces(s.mesh, s.tissues, s.u, s.v);
+  RC_ASSERT(test::relative_difference(fast.elastic, slow.elastic) <= 1e-5);
+  RC_ASSERT(test::relative_difference(fast.viscous, slow.viscous) <= 1e-5);
+}
+
+// The assembled vertex and edge tensors of eq. 2 give the force of eq. 1 for a linear tissue.
+RC_GTEST_PROP(ElementOperator, EqualsEdgeTensors, ()) {
+  Sample s;
+  for (auto& [region, tissue] : s.tissues) tissue.law = ConstantLaw{}, tissue.lambda_law.reset(), tissue.mu_law.reset();
+  const std::vector<Vec3d> edges = reference::edge_forces(reference::assemble_edges(s.mesh, s.tissues), s.u);
+  RC_ASSERT(test::relative_difference(evaluate(s, Precision::double_precision).elastic, edges) <= 1e-12);
+}
+
+// Newton's third law: internal forces sum to zero, elastic and viscous apart.
+RC_GTEST_PROP(ElementOperator, ForcesSumToZero, ()) {
+  const Sample s;
+  const Forces f = evaluate(s, Precision::double_precision);
+  for (const auto* field : {&f.elastic, &f.viscous}) {
+    Vec3d sum{};
+    double size = 0.0;
+    for (const Vec3d& force : *field) sum += force, size += norm(force);
+    RC_ASSERT(norm(sum) <= 1e-13 * size);
+  }
+}
+
+// A common translation and a common velocity change nothing.
+RC_GTEST_PROP(ElementOperator, IsTranslationInvariant, ()) {
+  Sample s;
+  const Forces before = evaluate(s, Precision::single_precision);
+  for (Vec3d& u : s.u) u += Vec3d{0.5, -0.25, 1.0};
+  for (Vec3d& v : s.v) v += Vec3d{-2.0, 1.0, 0.5};
+  const Forces after = evaluate(s, Precision::single_precision);
+  // differences of displacements keep 1e-16 of the translation, which is 1e-12 of the strain at worst
+  RC_ASSERT(test::relative_difference(after.elastic, before.elastic) <= 1e-6);
+  RC_ASSERT(test::relative_difference(after.viscous, before.viscous) <= 1e-6);
+}
+
+// Patch test: an affine displacement leaves no force on inner vertices, and the energy is V (½ λ tr² + μ ε:ε).
+RC_GTEST_PROP(ElementOperator, PassesThePatchTest, ()) {
+  std::mt19937 random(static_cast<unsigned>(integer(1, 1000000)));
+  const TetMesh mesh = test::jittered_box({3, 3, 3}, 0.01, 0.2, random);
+  Tissue tissue = random_tissue();
+  tissue.measure = DeformationMeasure::intensity;  // the raw measure differs from tet to tet
+  Mat3d H;
+  for (auto& row : H.m) {
+    for (double& h : row) h = number(-0.1, 0.1);
+  }
+  std::vector<Vec3d> u;
+  for (const Vec3d& x : mesh.vertices) u.push_back(H * x);
+
+  const Body body = build_body(mesh, {{0, tissue}});
+  std::vector<Vec3d> elastic(u.size()), viscous(u.size());
+  ElementWatch watch;
+  make_element_operator(body, Precision::double_precision)->evaluate(u, u, elastic, viscous, watch);
+  double inner = 0.0, outer = 0.0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const Vec3d& x = mesh.vertices[i];
+    const bool inside = std::min({x.x, x.y, x.z}) > 1e-9 && std::max({x.x, x.y, x.z}) < 0.03 - 1e-9;
+    (inside ? inner : outer) = std::max(inside ? inner : outer, norm(elastic[i]) + norm(viscous[i]));
+  }
+  RC_ASSERT(inner <= 1e-11 * outer);
+
+  const LameParameters lame = lame_at(tissue, intensity_of(one_minus_q(H)));
+  const double t = trace(H);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) squares += 0.25 * (H(i, j) + H(j, i)) * (H(i, j) + H(j, i));
+  }
+  const double expected = volume(mesh) * (0.5 * lame.lambda * t * t + lame.mu * squares);
+  RC_ASSERT(std::abs(secant_energy(body, u) - expected) <= 1e-11 * std::abs(expected));
+}
+
+// The small-strain tensors mistake a rotation θ for the strain cos θ − 1: known, and no smaller than that.
+TEST(ElementOperator, RotationGivesTheKnownSpuriousStress) {
+  const TetMesh mesh = box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}});
+  const Tissue tissue;
+  Simulation simulation(mesh, {{0, tissue}}, test::in_double());
+  const double angle = 0.3, c = std::cos(angle), s = std::sin(angle);
+  std::vector<Vec3d> u;
+  for (const Vec3d& x : mesh.vertices) u.push_back({c * x.x - s * x.y - x.x, s * x.x + c * x.y - x.y, 0.0});
+  simulation.set_state(u, std::vector<Vec3d>(u.size()));
+  const auto fields = simulation.tet_fields();
+  const LameParameters lame = tissue.lame();
+  const double expected = 2.0 * (lame.lambda + lame.mu) * (c - 1.0);
+  EXPECT_NEAR(fields.stress[0], expected, 1e-9 * std::abs(expected)) << "sigma_xx [Pa]";
+  EXPECT_NEAR(fields.stress[2], 2.0 * lame.lambda * (c - 1.0), 1e-9 * std::abs(expected)) << "sigma_zz [Pa]";
+  EXPECT_LE(fields.s[0], 1e-7) << "the measure itself does not see the rotation";
+}
+
+}  // namespace
+}  // namespace glisson
