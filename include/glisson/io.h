@@ -1,4 +1,5 @@
 // io.h — meshes in, meshes and frames out. Links VTK; the core library never does.
+// The functions may be called in several threads at once, each for a file of its own.
 #pragma once
 
 #include <filesystem>

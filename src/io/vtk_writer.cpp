@@ -15,6 +15,7 @@
 #include "io/raw_mesh.h"
 #include "io/vtk_log.h"
 #include "io/vtk_names.h"
+#include "io/vtk_start.h"
 #include "mesh/require_valid.h"
 
 namespace glisson {
@@ -127,6 +128,7 @@ void write(vtkUnstructuredGrid& grid, const std::filesystem::path& file) {
 void write_vtu(const std::filesystem::path& file, const TetMesh& mesh, std::span<const Vec3d> positions,
                std::span<const Field> vertex_fields, std::span<const Field> tet_fields) {
   check(mesh, positions, vertex_fields, tet_fields);
+  detail::start_vtk();
   vtkNew<vtkUnstructuredGrid> grid;
   set_points(positions.empty() ? std::span<const Vec3d>(mesh.vertices) : positions, *grid);
   set_tets(mesh, *grid);

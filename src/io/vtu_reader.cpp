@@ -10,6 +10,7 @@
 
 #include "io/vtk_grid.h"
 #include "io/vtk_log.h"
+#include "io/vtk_start.h"
 #include "io/vtu_array.h"
 
 namespace glisson::detail {
@@ -154,6 +155,7 @@ RawMesh parse_and_read(std::string_view bytes, const std::string& name) {
 }  // namespace
 
 RawMesh read_vtu(std::string_view bytes, const std::string& name) {
+  start_vtk();
   try {
     return parse_and_read(bytes, name);
   } catch (const std::bad_alloc&) {
