@@ -10,10 +10,10 @@ using Commands = ProgramTest;
 TEST_F(Commands, HelpHasExamples) {
   for (const std::string command : {"run", "check", "info", "reproduce", "schema", "laws"}) {
     const Outcome outcome = run({command, "--help"});
-    EXPECT_EQ(outcome.exit_code, 0) << command;
+    EXPECT_THAT(outcome, Exits(0)) << command;
     EXPECT_NE(outcome.out.find("Examples:\n  glisson " + command), std::string::npos) << outcome.out;
   }
-  EXPECT_EQ(run({"--help"}).exit_code, 0);
+  EXPECT_THAT(run({"--help"}), Exits(0));
   EXPECT_EQ(run({"--version"}).out.find("glisson "), 0u);
 }
 
@@ -31,10 +31,10 @@ TEST_F(Commands, SchemaAndLawsDescribeScenes) {
 
 // info prints the same figures as text and as JSON; --scale acts on them.
 TEST_F(Commands, InfoDescribesAMesh) {
-  ASSERT_EQ(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"}).exit_code, 0);
+  ASSERT_THAT(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"}), Exits(0));
   const std::string frame = (folder_ / "o/main/frames/frame_0000.vtu").string();
   const Outcome text = run({"info", frame});
-  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_THAT(text, Exits(0));
   EXPECT_NE(text.out.find("27"), std::string::npos) << text.out;
   const nlohmann::json json = nlohmann::json::parse(run({"info", frame, "--json"}).out);
   EXPECT_EQ(json["vertices"], 27);
@@ -49,7 +49,7 @@ TEST_F(Commands, InfoDescribesAMesh) {
 // 0.1 s of motion; figure 2 and the checks are the same as in the whole.
 TEST_F(Commands, ReproducePassesItsChecks) {
   const Outcome outcome = run({"reproduce", "--quick", "--out", "o"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  ASSERT_THAT(outcome, Exits(0));
   const nlohmann::json report = report_data(folder_ / "o/report.html");
   ASSERT_EQ(report["scenes"].size(), 4u);
   int checks = 0;
@@ -64,7 +64,7 @@ TEST_F(Commands, ReproducePassesItsChecks) {
   EXPECT_NE(outcome.out.find("The report: "), std::string::npos);
   EXPECT_NE(outcome.out.find("What to try next:"), std::string::npos);
   // the first of these commands works as printed
-  EXPECT_EQ(run({"check", "o/figure2/scene.toml", "--set", "tissue.poisson_ratio=0.45"}).exit_code, 0);
+  EXPECT_THAT(run({"check", "o/figure2/scene.toml", "--set", "tissue.poisson_ratio=0.45"}), Exits(0));
 }
 
 }  // namespace

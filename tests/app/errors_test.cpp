@@ -46,7 +46,7 @@ TEST_F(Errors, AreToldWithPlaceAndWayOut) {
     const Outcome outcome = run(mistake.arguments);
     std::string command;
     for (const std::string& argument : mistake.arguments) command += " " + argument;
-    EXPECT_EQ(outcome.exit_code, 2) << command << "\n" << outcome.err;
+    EXPECT_THAT(outcome, Exits(2)) << command;
     for (const std::string& part : mistake.said) {
       EXPECT_NE(outcome.err.find(part), std::string::npos) << command << ": expected " << part << " in:\n"
                                                            << outcome.err;
@@ -59,7 +59,7 @@ TEST_F(Errors, AreToldWithPlaceAndWayOut) {
 TEST_F(Errors, AreFoundBeforeAnythingRuns) {
   const std::string scene =
       write("s.toml", small_scene("[[variant]]\nname = \"a\"\n[[variant]]\nname = \"b\"\nmotion.step_s = 0.1\n"));
-  EXPECT_EQ(run({"run", scene, "--out", "o"}).exit_code, 2);
+  EXPECT_THAT(run({"run", scene, "--out", "o"}), Exits(2));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "o"));
 }
 
@@ -69,19 +69,19 @@ TEST_F(Errors, ForeignFilesAreNeverTouched) {
   std::filesystem::create_directory(folder_ / "mine");
   write("mine/thesis.txt", "years of work");
   const Outcome foreign = run({"run", scene, "--out", "mine"});
-  EXPECT_EQ(foreign.exit_code, 2);
+  EXPECT_THAT(foreign, Exits(2));
   EXPECT_NE(foreign.err.find("holds no results of glisson"), std::string::npos) << foreign.err;
 
-  ASSERT_EQ(run({"run", scene, "--out", "o", "--quiet"}).exit_code, 0);
+  ASSERT_THAT(run({"run", scene, "--out", "o", "--quiet"}), Exits(0));
   write("o/main/notes.txt", "seen at 3 mm");
   const Outcome mixed = run({"run", scene, "--out", "o"});
-  EXPECT_EQ(mixed.exit_code, 2);
+  EXPECT_THAT(mixed, Exits(2));
   EXPECT_NE(mixed.err.find("main/notes.txt"), std::string::npos) << mixed.err;
   EXPECT_EQ(read_text(folder_ / "o/main/notes.txt"), "seen at 3 mm");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "o/main/forces.csv")) << "the former run is whole";
 
   std::filesystem::remove(folder_ / "o/main/notes.txt");
-  EXPECT_EQ(run({"run", scene, "--out", "o", "--quiet", "--set", "output.frames=1"}).exit_code, 0);
+  EXPECT_THAT(run({"run", scene, "--out", "o", "--quiet", "--set", "output.frames=1"}), Exits(0));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "o/main/frames/frame_0001.vtu")) << "of the former run";
 }
 
@@ -89,7 +89,7 @@ TEST_F(Errors, ForeignFilesAreNeverTouched) {
 TEST_F(Errors, UnwritableFolderIsTold) {
   const std::string scene = write("s.toml", small_scene());
   const Outcome blocked = run({"run", scene, "--out", scene + "/inside"});
-  EXPECT_EQ(blocked.exit_code, 1);
+  EXPECT_THAT(blocked, Exits(1));
   EXPECT_NE(blocked.err.find("s.toml/inside"), std::string::npos) << blocked.err;
   EXPECT_NE(blocked.err.find("--out DIR"), std::string::npos) << blocked.err;
 }
@@ -99,7 +99,7 @@ TEST_F(Errors, UnwritableFolderIsTold) {
 TEST_F(Errors, RefusedWriteIsTold) {
   const std::string scene = write("s.toml", small_scene("[[variant]]\nname = \"a\"\noutput.frames = 0\n"));
   const Outcome outcome = Started({"run", scene, "--out", "o"}, folder_, 4000).wait();
-  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+  EXPECT_THAT(outcome, Exits(1));
   EXPECT_NE(outcome.err.find("o/a/forces.csv: cannot be written: File too large"), std::string::npos) << outcome.err;
   const std::string csv = read_text(folder_ / "o/a/forces.csv");
   EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 5);
@@ -114,7 +114,7 @@ tool.0.depth_mm = 40
 tool.0.velocity_mm_s = 200
 )"));
   const Outcome outcome = run({"run", scene, "--out", "o"});
-  EXPECT_EQ(outcome.exit_code, 3) << outcome.out;
+  EXPECT_THAT(outcome, Exits(3));
   EXPECT_NE(outcome.err.find("inverted"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("press less deep"), std::string::npos) << outcome.err;
   const nlohmann::json summary = read_json(folder_ / "o/deep/summary.json");

@@ -30,7 +30,7 @@ TEST_P(Interrupt, KeepsWhatIsWritten) {
   const auto begin = std::chrono::steady_clock::now();
   const Outcome outcome = program.wait();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
+  EXPECT_THAT(outcome, Exits(130));
   EXPECT_LT(seconds, 20.0) << "until the end";
 
   auto f = read_csv(folder_ / "o/thick/forces.csv");

@@ -21,8 +21,8 @@ tissue.law = { kind = "linear", slope_Pa = 9000 }
 // Results do not depend on how many variants run at a time: equal state hashes and equal bytes of forces.csv.
 TEST_F(Options, ThreadsDoNotChangeResults) {
   const std::string scene = write("s.toml", two_variants());
-  ASSERT_EQ(run({"run", scene, "--out", "one", "--quiet", "--threads", "1"}).exit_code, 0);
-  ASSERT_EQ(run({"run", scene, "--out", "three", "--quiet", "--threads", "3"}).exit_code, 0);
+  ASSERT_THAT(run({"run", scene, "--out", "one", "--quiet", "--threads", "1"}), Exits(0));
+  ASSERT_THAT(run({"run", scene, "--out", "three", "--quiet", "--threads", "3"}), Exits(0));
   for (const std::string variant : {"soft", "firm", "stiffening"}) {
     const nlohmann::json one = read_json(folder_ / "one" / variant / "summary.json");
     const nlohmann::json three = read_json(folder_ / "three" / variant / "summary.json");
@@ -35,8 +35,8 @@ TEST_F(Options, ThreadsDoNotChangeResults) {
 // --set changes a value for all variants, and the report's copy of the scene says so.
 TEST_F(Options, SetChangesTheScene) {
   const std::string scene = write("s.toml", small_scene());
-  ASSERT_EQ(run({"run", scene, "--out", "a", "--quiet"}).exit_code, 0);
-  ASSERT_EQ(run({"run", scene, "--out", "b", "--quiet", "--set", "tissue.youngs_modulus_Pa=7200"}).exit_code, 0);
+  ASSERT_THAT(run({"run", scene, "--out", "a", "--quiet"}), Exits(0));
+  ASSERT_THAT(run({"run", scene, "--out", "b", "--quiet", "--set", "tissue.youngs_modulus_Pa=7200"}), Exits(0));
   const double soft = read_csv(folder_ / "a/main/forces.csv")["elastic_N"].back();
   const double firm = read_csv(folder_ / "b/main/forces.csv")["elastic_N"].back();
   EXPECT_NEAR(firm / soft, 2.0, 0.1) << "twice the modulus, pressed slowly against its wave speed";
@@ -46,11 +46,11 @@ TEST_F(Options, SetChangesTheScene) {
 // --variant runs only those named; a name that is not there is an error that lists the names.
 TEST_F(Options, VariantChooses) {
   const std::string scene = write("s.toml", two_variants());
-  ASSERT_EQ(run({"run", scene, "--out", "o", "--quiet", "--variant", "firm"}).exit_code, 0);
+  ASSERT_THAT(run({"run", scene, "--out", "o", "--quiet", "--variant", "firm"}), Exits(0));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "o/firm/forces.csv"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "o/soft"));
   const Outcome wrong = run({"run", scene, "--variant", "hard"});
-  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong, Exits(2));
   EXPECT_NE(wrong.err.find("it has soft, firm, stiffening"), std::string::npos) << wrong.err;
 }
 
@@ -59,7 +59,7 @@ TEST_F(Options, ProgressInAPipeIsPlainLines) {
   const std::string scene =
       write("s.toml", small_scene("[[variant]]\nname = \"slow\"\ntissue.viscosity_Pa_s = 20000\n"));
   const Outcome outcome = run({"run", scene, "--out", "o"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(outcome, Exits(0));
   EXPECT_EQ(outcome.out.find('\r'), std::string::npos) << "no bar in a pipe";
   EXPECT_NE(outcome.out.find("slow: started\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find(" %, "), std::string::npos) << outcome.out;
@@ -72,23 +72,23 @@ TEST_F(Options, ProgressInAPipeIsPlainLines) {
 // --mesh replaces the scene's mesh and says what was replaced; a set that the new mesh does not have is an error.
 TEST_F(Options, MeshReplacesTheScenesMesh) {
   const std::string scene = write("s.toml", small_scene());
-  ASSERT_EQ(run({"run", scene, "--out", "first", "--quiet"}).exit_code, 0);
+  ASSERT_THAT(run({"run", scene, "--out", "first", "--quiet"}), Exits(0));
   const std::string frame = (folder_ / "first/main/frames/frame_0000.vtu").string();
   const Outcome outcome = run({"run", scene, "--out", "o", "--mesh", frame});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(outcome, Exits(0));
   EXPECT_NE(outcome.out.find("The mesh is " + frame + " (--mesh) in place of a box."), std::string::npos)
       << outcome.out;
   EXPECT_EQ(read_json(folder_ / "o/main/summary.json")["tets"], 48);
 
   const Outcome missing = run({"run", scene, "--out", "p", "--mesh", frame, "--set", "fixed.0.set=floor"});
-  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_THAT(missing, Exits(2));
   EXPECT_NE(missing.err.find("floor"), std::string::npos) << missing.err;
 }
 
 // check tells mesh, sets, stable step, steps and time without writing anything.
 TEST_F(Options, CheckTellsWhatARunWouldBe) {
   const Outcome outcome = run({"check", write("s.toml", small_scene())});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(outcome, Exits(0));
   for (const char* part : {"27 vertices, 48 tets", "E = 3600 Pa", "\"z_min\", 9 vertices", "\"tool\" on \"z_max\"",
                            "stable below", " steps", "about ", "The scene can be run."}) {
     EXPECT_NE(outcome.out.find(part), std::string::npos) << part << " in:\n" << outcome.out;
@@ -103,7 +103,7 @@ TEST_F(Options, CheckForetellsTheSteps) {
   const std::size_t at = text.find("s simulated, ");
   ASSERT_NE(at, std::string::npos) << text;
   const double foretold = std::stod(text.substr(at + 13));
-  ASSERT_EQ(run({"run", scene, "--out", "o", "--quiet"}).exit_code, 0);
+  ASSERT_THAT(run({"run", scene, "--out", "o", "--quiet"}), Exits(0));
   EXPECT_NEAR(foretold, read_json(folder_ / "o/main/summary.json")["steps"].get<double>(), 1.0);
 }
 

@@ -9,7 +9,7 @@ using Outputs = ProgramTest;
 // forces.csv has the documented columns in the documented order, and supports after them.
 TEST_F(Outputs, ForcesHaveTheDocumentedColumns) {
   const Outcome outcome = run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(outcome, Exits(0));
   const std::string text = read_text(folder_ / "o/main/forces.csv");
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "time_s,depth_m,force_x_N,force_y_N,force_z_N,force_N,elastic_N,viscous_N,damping_N,inertial_N,gravity_N,"
@@ -20,7 +20,7 @@ TEST_F(Outputs, ForcesHaveTheDocumentedColumns) {
 // Pressing down costs a positive force, which is the sum of its parts and the reverse of the vector's z component;
 // written numbers are exact, so these hold to rounding.
 TEST_F(Outputs, ForceIsTheSumOfItsPartsAndPositiveWhenPressing) {
-  ASSERT_EQ(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"}).exit_code, 0);
+  ASSERT_THAT(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"}), Exits(0));
   auto f = read_csv(folder_ / "o/main/forces.csv");
   ASSERT_GE(f["force_N"].size(), 20u) << "50 ms at 500 Hz";
   for (std::size_t i = 0; i < f["force_N"].size(); ++i) {
@@ -35,7 +35,7 @@ TEST_F(Outputs, ForceIsTheSumOfItsPartsAndPositiveWhenPressing) {
 
 // summary.json has every documented key, and agrees with forces.csv.
 TEST_F(Outputs, SummaryHasTheDocumentedKeys) {
-  ASSERT_EQ(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"}).exit_code, 0);
+  ASSERT_THAT(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"}), Exits(0));
   const nlohmann::json summary = read_json(folder_ / "o/main/summary.json");
   for (const char* key : {"vertices",
                           "tets",
@@ -76,7 +76,7 @@ TEST_F(Outputs, SummaryHasTheDocumentedKeys) {
 
 // Every frame that frames.pvd names is there, as many as the scene asks for.
 TEST_F(Outputs, FramesAreThereAsTheCollectionSays) {
-  ASSERT_EQ(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"}).exit_code, 0);
+  ASSERT_THAT(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"}), Exits(0));
   const std::string pvd = read_text(folder_ / "o/main/frames.pvd");
   for (const char* frame : {"frames/frame_0000.vtu", "frames/frame_0001.vtu", "frames/frame_0002.vtu"}) {
     EXPECT_NE(pvd.find(frame), std::string::npos) << frame;
@@ -93,7 +93,7 @@ TEST_F(Outputs, FramesAreThereAsTheCollectionSays) {
 TEST_F(Outputs, ReportHoldsTheRun) {
   const std::string scene = "description = \"</script><b>not a tag</b>\"\n" + small_scene();
   const Outcome outcome = run({"run", write("s.toml", scene), "--out", "o"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(outcome, Exits(0));
   const nlohmann::json report = report_data(folder_ / "o/report.html");
   EXPECT_EQ(report["format"], 1);
   const nlohmann::json& s = report["scenes"][0];
@@ -122,7 +122,7 @@ depth_mm = 1
 vertices = [9]
 )"));
   const Outcome outcome = run({"run", scene, "--out", "o", "--quiet"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(outcome, Exits(0));
   const auto side = read_csv(folder_ / "o/main/forces_side.csv");
   EXPECT_EQ(side.size(), 12u);
   EXPECT_GT(side.at("force_N").back(), 0.0);

@@ -1,12 +1,14 @@
 // program.h — runs the real glisson program from a test and keeps what it said and wrote.
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/types.h>
 
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,16 @@ struct Outcome {
   int exit_code = -1;  ///< 128 + signal where a signal ended it
   std::string out, err;
 };
+
+/// What a failed test says of a run: all that the program said, which nobody can ask again of a rare failure.
+inline void PrintTo(const Outcome& outcome, std::ostream* stream) {
+  *stream << "exit code " << outcome.exit_code << "\nstdout:\n" << outcome.out << "\nstderr:\n" << outcome.err;
+}
+
+/// The run ended with this exit code.
+MATCHER_P(Exits, code, (negation ? "any exit code but " : "exit code ") + std::to_string(code)) {
+  return arg.exit_code == code;
+}
 
 /// A program that has been started; its output goes to files.
 class Started {
