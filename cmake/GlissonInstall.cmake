@@ -3,7 +3,7 @@
 #   bin/glisson   include/glisson/   lib/libglisson*.a   share/glisson/scenes/
 #   lib/cmake/Glisson/: GlissonConfig, GlissonConfigVersion, one Glisson<component>Targets a component
 #
-# The core asks its user for nothing; the components `scene` and `io` look for toml++ and VTK.
+# The core looks for Highway; the components `scene` and `io` look for toml++ and VTK.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(glisson_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/Glisson")
