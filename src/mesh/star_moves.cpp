@@ -53,6 +53,11 @@ class StarMover {
     }
   }
 
+  /// A part that has most of the tets at a vertex keeps them: moving them away hardly ever gains.
+  bool is_minority(std::size_t v, std::uint32_t part) {
+    return 2 * tets_of(part, v) <= static_cast<std::int64_t>(stars_.bucket(v).size());
+  }
+
   /// The tets of `from` at v, and how many of them are at each of their vertices.
   void collect_star(std::size_t v, std::uint32_t from) {
     star_.clear();
@@ -72,7 +77,7 @@ class StarMover {
     }
   }
 
-  std::int64_t tets_of(std::uint32_t part, std::uint32_t vertex) {
+  std::int64_t tets_of(std::uint32_t part, std::size_t vertex) {
     const auto star = stars_.bucket(vertex);
     return std::count_if(star.begin(), star.end(), [&](std::uint32_t t) { return part_[t] == part; });
   }
@@ -88,6 +93,7 @@ class StarMover {
   }
 
   bool try_move(std::size_t v, std::uint32_t from) {
+    if (!is_minority(v, from)) return false;
     collect_star(v, from);
     if (star_.empty() || size_[from] < least_ + star_.size()) return false;
     Gain best;  // a move must beat none

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <random>
 
+#include "mesh/star_moves.h"
 #include "support/random.h"
 
 namespace glisson::detail {
@@ -49,6 +50,17 @@ double copies_per_vertex(const TetMesh& mesh, const TetPartition& partition) {
   return static_cast<double>(copies) / static_cast<double>(last_part.size() - static_cast<std::size_t>(unused));
 }
 
+TetPartition partition_of(const Numbers& part, std::uint32_t parts) {
+  TetPartition partition{{}, {0}};
+  for (std::uint32_t p = 0; p < parts; ++p) {
+    for (std::uint32_t t = 0; t < part.size(); ++t) {
+      if (part[t] == p) partition.tets.push_back(t);
+    }
+    partition.begin.push_back(partition.tets.size());
+  }
+  return partition;
+}
+
 // Whatever tets are chosen, in whatever order, each of them is in exactly one part, and the parts are of one size.
 RC_GTEST_PROP(Partition, HoldsEveryChosenTetOnceInPartsOfOneSize, ()) {
   const TetMesh mesh = cube(test::integer(1, 7));
@@ -87,6 +99,25 @@ TEST(Partition, HoldsFewVerticesTwice) {
     const TetMesh mesh = cube(25, kind);
     EXPECT_LT(copies_per_vertex(mesh, split(mesh, all_of(mesh), 1024)), 1.52);
     EXPECT_LT(copies_per_vertex(mesh, split(mesh, all_of(mesh), 2048)), 1.38);
+  }
+}
+
+// Star moves only ever save copies, however wild the parts they start from, and leave sizes within their bounds.
+RC_GTEST_PROP(StarMoves, NeverAddCopies, ()) {
+  const TetMesh mesh = cube(test::integer(2, 6));
+  const auto parts = static_cast<std::uint32_t>(test::integer(2, 6));
+  std::vector<std::uint32_t> part(mesh.tets.size());
+  for (std::uint32_t t = 0; t < part.size(); ++t) part[t] = t % parts;
+  std::shuffle(part.begin(), part.end(), std::mt19937(static_cast<unsigned>(test::integer(0, 1000))));
+  const double before = copies_per_vertex(mesh, partition_of(part, parts));
+  move_stars(mesh.tets, mesh.vertices.size(), parts, 0.1, part);
+
+  const TetPartition after = partition_of(part, parts);
+  RC_ASSERT(copies_per_vertex(mesh, after) < before);
+  const double mean = static_cast<double>(part.size()) / parts;
+  for (std::size_t p = 0; p < parts; ++p) {
+    RC_ASSERT(static_cast<double>(after.part(p).size()) >= std::floor(0.9 * mean));
+    RC_ASSERT(static_cast<double>(after.part(p).size()) <= 1.1 * mean + 1.0);
   }
 }
 
