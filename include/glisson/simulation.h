@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "glisson/math.h"
@@ -35,6 +36,20 @@ struct SimulationOptions {
   Vec3d gravity{};                ///< [m/s²]
   double gravity_ramp = 0.0;      ///< gravity grows linearly from 0 over this time [s], ≥ 0
   bool enforce_stability = true;  ///< false: take any step, for studies of the instability itself
+  /// Threads for the element forces, 0 … 1024; 0: as many as pay for the size of the body. The result is the same
+  /// bytes on any number. In double precision always one.
+  int threads = 0;
+  /// Whether energies() is kept. It costs a tenth to a third of a step; forces of constraints are there either way.
+  bool track_energies = true;
+};
+
+/// How a simulation is evaluated: for reports and benchmarks.
+struct EngineInfo {
+  std::string instruction_set;  ///< of the element kernels
+  int threads = 1;
+  std::size_t submeshes = 0;
+  double flops_per_tet = 0.0;  ///< useful floating-point operations a tet and step, padding not counted; 0: not counted
+  double bytes_per_tet = 0.0;  ///< rest data and state a tet that a step goes through [B]; 0: not counted
 };
 
 enum class StepStatus {
@@ -125,7 +140,9 @@ class Simulation {
 
   /// Force the constraint exerts on the tissue, at the time the last step started from.
   ForceParts force(ConstraintId constraint) const;
+  /// All zero unless SimulationOptions::track_energies.
   Energies energies() const;
+  const EngineInfo& engine_info() const;
 
   /// Shape, intensity and stress of every tet at the present state.
   TetFields tet_fields() const;

@@ -8,14 +8,10 @@
 // linear tissue the elastic work equals the change of ½ uᵀK u to rounding.
 #pragma once
 
+#include "engine/moving_body.h"
 #include "glisson/simulation.h"
 
 namespace glisson {
-
-/// Power-like sums over vertices of one kick, for one velocity [W].
-struct KickPower {
-  double elastic = 0.0, viscous = 0.0, damping = 0.0, tools = 0.0, loads = 0.0;
-};
 
 class EnergyLedger {
  public:

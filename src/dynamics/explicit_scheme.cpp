@@ -1,10 +1,11 @@
 #include "dynamics/explicit_scheme.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "dynamics/flush_denormals.h"
+#include "dynamics/make_body.h"
 #include "mechanics/tet_fields.h"
 
 namespace glisson {
@@ -16,22 +17,64 @@ std::vector<double> nodal_damping(const Body& body, const SimulationOptions& o) 
   return gamma;
 }
 
+void add(KickPower& sum, const KickPower& p) {
+  sum.elastic += p.elastic, sum.viscous += p.viscous, sum.damping += p.damping;
+  sum.tools += p.tools, sum.loads += p.loads;
+}
+
 }  // namespace
 
 ExplicitScheme::ExplicitScheme(Body body, const SimulationOptions& options)
-    : options_(options), body_(std::move(body)), tissue_(make_element_operator(body_, options.precision)),
-      gamma_(nodal_damping(body_, options)), constraints_(body_.vertex_count), loads_(body_.vertex_count) {
-  for (auto* field : {&u_, &v_, &v_before_, &elastic_, &viscous_}) field->assign(body_.vertex_count, Vec3d{});
-  load_ = loads_.at(0.0);
-  tissue_->evaluate(u_, v_, elastic_, viscous_, watch_);
-  control_ = std::make_unique<StepControl>(body_, gamma_, options.step, options.enforce_stability, watch_.stiffening);
+    : options_(options), body_(std::move(body)), gamma_(nodal_damping(body_, options)),
+      moving_(make_moving_body(body_, gamma_, options, info_)), constraints_(body_.vertex_count),
+      loads_(body_.vertex_count), stiffening_(moving_->advance(0.0, {}, false).stiffening),
+      control_(std::make_unique<StepControl>(body_, gamma_, options.step, options.enforce_stability, stiffening_)) {}
+
+const ExplicitScheme::StateCopy& ExplicitScheme::read_state() const {
+  if (!copy_.current) {
+    copy_.displacement.resize(body_.vertex_count);
+    copy_.velocity.resize(body_.vertex_count);
+    moving_->read_state(copy_.displacement, copy_.velocity);
+    copy_.current = true;
+  }
+  return copy_;
 }
 
 ConstraintId ExplicitScheme::add_constraint(Constraint constraint) {
   const ConstraintId id = constraints_.add(std::move(constraint));
   base_.emplace_back();
+  watch(constraints_.at(id).vertices);
   if (constraints_.at(id).from <= time_) rebase(id.index);
   return id;
+}
+
+void ExplicitScheme::add_load(std::span<const std::uint32_t> vertices, Vec3d force,
+                              std::function<double(double)> scale) {
+  loads_.add(vertices, force, std::move(scale));
+  watch(vertices);
+}
+
+void ExplicitScheme::watch(std::span<const std::uint32_t> vertices) {
+  std::vector<Vec3d> before(body_.vertex_count);
+  for (std::size_t k = 0; k < velocity_before_.size(); ++k) before[moving_->watched()[k].vertex] = velocity_before_[k];
+  moving_->watch(vertices);
+  const std::span<const WatchedVertex> watched = moving_->watched();
+  velocity_before_.resize(watched.size());
+  for (std::size_t k = 0; k < watched.size(); ++k) velocity_before_[k] = before[watched[k].vertex];
+  load_.resize(watched.size());
+  find_places();
+}
+
+void ExplicitScheme::find_places() {
+  const std::span<const WatchedVertex> watched = moving_->watched();
+  places_.assign(constraints_.all().size(), {});
+  for (std::size_t c = 0; c < places_.size(); ++c) {
+    for (const std::uint32_t v : constraints_.all()[c].vertices) {
+      const auto at = std::lower_bound(watched.begin(), watched.end(), v,
+                                       [](const WatchedVertex& w, std::uint32_t vertex) { return w.vertex < vertex; });
+      places_[c].push_back(static_cast<std::uint32_t>(at - watched.begin()));
+    }
+  }
 }
 
 /// Lets those constraints take hold whose time has come by the middle of the step.
@@ -46,125 +89,135 @@ void ExplicitScheme::rebase(std::size_t constraint) {
   const Constraint& c = constraints_.all()[constraint];
   const Vec3d moved = c.motion ? c.motion(time_) : Vec3d{};
   base_[constraint].clear();
-  for (const std::uint32_t i : c.vertices) base_[constraint].push_back(u_[i] - moved);
+  for (const std::uint32_t p : places_[constraint]) {
+    base_[constraint].push_back(moving_->watched()[p].displacement - moved);
+  }
 }
 
 void ExplicitScheme::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
-  if (displacement.size() != u_.size() || velocity.size() != v_.size()) {
+  if (displacement.size() != body_.vertex_count || velocity.size() != body_.vertex_count) {
     throw std::invalid_argument("set_state: " + std::to_string(displacement.size()) + " displacements and " +
                                 std::to_string(velocity.size()) + " velocities given, the mesh has " +
-                                std::to_string(u_.size()) + " vertices");
+                                std::to_string(body_.vertex_count) + " vertices");
   }
-  u_.assign(displacement.begin(), displacement.end());
-  v_.assign(velocity.begin(), velocity.end());
+  moving_->set_state(displacement, velocity);
+  stiffening_ = moving_->advance(0.0, {}, false).stiffening;
+  copy_.current = false;
   for (std::size_t c = 0; c < base_.size(); ++c) {
     if (holds(c)) rebase(c);
   }
+  if (!options_.track_energies) return;
   double kinetic = 0.0;
-  for (std::size_t i = 0; i < v_.size(); ++i) kinetic += 0.5 * body_.masses[i] * dot(v_[i], v_[i]);
-  ledger_.reset(kinetic, secant_energy(body_, u_));
+  for (std::size_t i = 0; i < velocity.size(); ++i) kinetic += 0.5 * body_.masses[i] * dot(velocity[i], velocity[i]);
+  ledger_.reset(kinetic, secant_energy(body_, displacement));
 }
 
 Vec3d ExplicitScheme::gravity_at(double time) const {
   return options_.gravity * (time < options_.gravity_ramp ? time / options_.gravity_ramp : 1.0);
 }
 
-/// v₊ of every vertex as if it were free; massless vertices (in no tet) stay.
-void ExplicitScheme::kick(double h) {
-  for (std::size_t i = 0; i < v_.size(); ++i) {
-    const double m = body_.masses[i];
-    const Vec3d force = elastic_[i] + viscous_[i] + gravity_ * m + load_[i];
-    v_[i] = m > 0.0 ? (v_before_[i] * m + force * h) * (1.0 / (m + gamma_[i] * h)) : Vec3d{};
+/// v₊ of the watched vertices as if they were free; massless ones (in no tet) stay.
+void ExplicitScheme::kick_watched(double h) {
+  const std::span<WatchedVertex> watched = moving_->watched();
+  const std::span<const Vec3d> loads = loads_.at(time_);
+  for (std::size_t k = 0; k < watched.size(); ++k) {
+    WatchedVertex& w = watched[k];
+    const double m = body_.masses[w.vertex];
+    load_[k] = loads[w.vertex];
+    velocity_before_[k] = w.velocity;
+    const Vec3d force = w.elastic + w.viscous + gravity_ * m + load_[k];
+    w.velocity = m > 0.0 ? (w.velocity * m + force * h) * (1.0 / (m + gamma_[w.vertex] * h)) : Vec3d{};
   }
 }
 
 /// Replaces v₊ of held and driven components by what their motion asks for.
 void ExplicitScheme::impose_motions(double h) {
+  const std::span<WatchedVertex> watched = moving_->watched();
   for (std::size_t c = 0; c < constraints_.all().size(); ++c) {
     if (!holds(c)) continue;
     const Constraint& constraint = constraints_.all()[c];
     const Vec3d target = constraint.motion ? constraint.motion(time_ + h) : Vec3d{};
-    for (std::size_t k = 0; k < constraint.vertices.size(); ++k) {
-      const std::size_t i = constraint.vertices[k];
-      const Vec3d wanted = constraint.motion ? (base_[c][k] + target - u_[i]) * (1.0 / h) : Vec3d{};
+    for (std::size_t k = 0; k < places_[c].size(); ++k) {
+      WatchedVertex& w = watched[places_[c][k]];
+      const Vec3d wanted = constraint.motion ? (base_[c][k] + target - w.displacement) * (1.0 / h) : Vec3d{};
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (has_axis(constraint.axes, axis)) v_[i][axis] = wanted[axis];
+        if (has_axis(constraint.axes, axis)) w.velocity[axis] = wanted[axis];
       }
     }
   }
 }
 
 /// What holds or drives a vertex, in the components it holds, at the last kick.
-ForceParts ExplicitScheme::vertex_force(std::size_t i, const Axes& axes) const {
-  const double m = body_.masses[i];
-  const Vec3d inertial = kick_step_ > 0.0 ? (v_[i] - v_before_[i]) * (m / kick_step_) : Vec3d{};
-  return {masked(-elastic_[i], axes), masked(-viscous_[i], axes),  masked(v_[i] * gamma_[i], axes),
-          masked(inertial, axes),     masked(gravity_ * -m, axes), masked(-load_[i], axes)};
+ForceParts ExplicitScheme::watched_force(std::size_t place, const Axes& axes) const {
+  const WatchedVertex& w = moving_->watched()[place];
+  const double m = body_.masses[w.vertex];
+  const Vec3d inertial = kick_step_ > 0.0 ? (w.velocity - velocity_before_[place]) * (m / kick_step_) : Vec3d{};
+  return {masked(-w.elastic, axes), masked(-w.viscous, axes),    masked(w.velocity * gamma_[w.vertex], axes),
+          masked(inertial, axes),   masked(gravity_ * -m, axes), masked(-load_[place], axes)};
 }
 
-KickPower ExplicitScheme::power(std::span<const Vec3d> velocity) const {
-  KickPower p;
-  for (std::size_t i = 0; i < velocity.size(); ++i) {
-    p.elastic += dot(elastic_[i], velocity[i]);
-    p.viscous += dot(viscous_[i], velocity[i]);
-    p.damping -= gamma_[i] * dot(v_[i], velocity[i]);
-    p.loads += dot(gravity_ * body_.masses[i] + load_[i], velocity[i]);
+/// Work of the forces on the watched vertices, that of the constraints included.
+KickWork ExplicitScheme::watched_work() const {
+  const std::span<const WatchedVertex> watched = moving_->watched();
+  KickWork work;
+  for (std::size_t k = 0; k < watched.size(); ++k) {
+    const WatchedVertex& w = watched[k];
+    const double m = body_.masses[w.vertex];
+    const auto power = [&](const Vec3d& v) {
+      return KickPower{.elastic = dot(w.elastic, v),
+                       .viscous = dot(w.viscous, v),
+                       .damping = -gamma_[w.vertex] * dot(w.velocity, v),
+                       .loads = dot(gravity_ * m + load_[k], v)};
+    };
+    add(work.before, power(velocity_before_[k]));
+    add(work.after, power(w.velocity));
+    work.kinetic += 0.5 * m * dot(velocity_before_[k], w.velocity);
   }
-  return p;
-}
-
-void ExplicitScheme::add_tool_power(KickPower& before, KickPower& after) const {
-  for (std::size_t index = 0; index < base_.size(); ++index) {
-    if (!holds(index)) continue;
-    const Constraint& c = constraints_.all()[index];
-    for (const std::uint32_t i : c.vertices) {
-      const Vec3d f = vertex_force(i, c.axes).total();
-      before.tools += dot(f, v_before_[i]);
-      after.tools += dot(f, v_[i]);
+  for (std::size_t c = 0; c < places_.size(); ++c) {
+    if (!holds(c)) continue;
+    for (const std::uint32_t place : places_[c]) {
+      const Vec3d f = watched_force(place, constraints_.all()[c].axes).total();
+      work.before.tools += dot(f, velocity_before_[place]);
+      work.after.tools += dot(f, watched[place].velocity);
     }
   }
+  return work;
 }
 
-/// ½ Σ m v₋·v₊ [J].
-double ExplicitScheme::kinetic() const {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < v_.size(); ++i) sum += body_.masses[i] * dot(v_before_[i], v_[i]);
-  return 0.5 * sum;
+void ExplicitScheme::book(double h, const KickWork& free) {
+  KickWork work = watched_work();
+  add(work.before, free.before);
+  add(work.after, free.after);
+  ledger_.book(h, work.before, work.after, work.kinetic + free.kinetic);
 }
 
 StepResult ExplicitScheme::step() {
-  const FlushDenormals flush;
-  tissue_->evaluate(u_, v_, elastic_, viscous_, watch_);
-  if (!control_->accept(watch_.stiffening)) return {StepStatus::step_too_large, watch_.inverted};
-
-  const double h = kick_step_ = control_->step();
+  if (!control_->accept(stiffening_)) return {StepStatus::step_too_large, {}};
+  const double h = control_->step();
   gravity_ = gravity_at(time_);
-  load_ = loads_.at(time_);
   take_hold(h);
-  std::swap(v_, v_before_);
-  kick(h);
-  impose_motions(h);
+  const Advance& seen = moving_->advance(h, gravity_, options_.track_energies);
+  stiffening_ = seen.stiffening;
+  copy_.current = false;
+  if (!seen.finite) return {StepStatus::not_finite, seen.inverted};
 
-  KickPower before = power(v_before_), after = power(v_);
-  add_tool_power(before, after);
-  const double kinetic_now = kinetic();
-  if (!std::isfinite(kinetic_now + after.elastic + after.viscous)) {
-    std::swap(v_, v_before_);
-    return {StepStatus::not_finite, watch_.inverted};
-  }
-  ledger_.book(h, before, after, kinetic_now);
-  for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += v_[i] * h;
+  kick_step_ = h;
+  kick_watched(h);
+  impose_motions(h);
+  if (options_.track_energies) book(h, seen.work);
+  for (WatchedVertex& w : moving_->watched()) w.displacement += w.velocity * h;
+  moving_->place_watched();
   time_ += h;
   ++steps_;
-  return {watch_.inverted.empty() ? StepStatus::ok : StepStatus::inverted, watch_.inverted};
+  return {seen.inverted.empty() ? StepStatus::ok : StepStatus::inverted, seen.inverted};
 }
 
 ForceParts ExplicitScheme::force(ConstraintId constraint) const {
   const Constraint& c = constraints_.at(constraint);
   ForceParts sum;
   if (!holds(constraint.index)) return sum;
-  for (const std::uint32_t i : c.vertices) {
-    const ForceParts f = vertex_force(i, c.axes);
+  for (const std::uint32_t place : places_[constraint.index]) {
+    const ForceParts f = watched_force(place, c.axes);
     sum.elastic += f.elastic, sum.viscous += f.viscous, sum.damping += f.damping;
     sum.inertial += f.inertial, sum.gravity += f.gravity, sum.load += f.load;
   }

@@ -6,7 +6,8 @@
 //   v₊ = (m v₋ + h F) / (m + γ h),   u(t+h) = u(t) + h v₊.
 // The viscous force is taken at v₋: it lags by half a step, which the stable step accounts for.
 //
-//   evaluate forces at u, v₋ ─▶ keep h below h* ─▶ kick v₋ → v₊ ─▶ impose motions ─▶ book work ─▶ drift u
+//   h below h* of the stiffness last seen ─▶ the body advances its free vertices ─▶ here the watched ones:
+//   kick v₋ → v₊ ─▶ impose motions ─▶ book work ─▶ drift u
 #pragma once
 
 #include <memory>
@@ -17,8 +18,8 @@
 #include "dynamics/energy_ledger.h"
 #include "dynamics/loads.h"
 #include "dynamics/step_control.h"
+#include "engine/moving_body.h"
 #include "glisson/simulation.h"
-#include "mechanics/force_operator.h"
 
 namespace glisson {
 
@@ -30,52 +31,62 @@ class ExplicitScheme {
   ExplicitScheme& operator=(const ExplicitScheme&) = delete;
 
   ConstraintId add_constraint(Constraint constraint);
-  Loads& loads() { return loads_; }
+  void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale);
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity);
 
   StepResult step();
 
   const Body& body() const { return body_; }
   const StepControl& control() const { return *control_; }
+  const EngineInfo& info() const { return info_; }
   double time() const { return time_; }
   std::uint64_t steps() const { return steps_; }
-  std::span<const Vec3d> displacement() const { return u_; }
-  std::span<const Vec3d> velocity() const { return v_; }
+  std::span<const Vec3d> displacement() const { return read_state().displacement; }
+  std::span<const Vec3d> velocity() const { return read_state().velocity; }
   const Energies& energies() const { return ledger_.now(); }
   /// What the constraint exerted on the tissue at the last kick.
   ForceParts force(ConstraintId constraint) const;
 
  private:
+  /// The state in the mesh's order, copied from the body when someone asks.
+  struct StateCopy {
+    std::vector<Vec3d> displacement, velocity;
+    bool current = false;
+  };
+
+  const StateCopy& read_state() const;
   Vec3d gravity_at(double time) const;
-  void kick(double h);
+  void watch(std::span<const std::uint32_t> vertices);
+  void find_places();
+  void kick_watched(double h);
   void impose_motions(double h);
-  ForceParts vertex_force(std::size_t vertex, const Axes& axes) const;
-  KickPower power(std::span<const Vec3d> velocity) const;
-  void add_tool_power(KickPower& before, KickPower& after) const;
-  double kinetic() const;
+  ForceParts watched_force(std::size_t place, const Axes& axes) const;
+  KickWork watched_work() const;
+  void book(double h, const KickWork& free);
   void take_hold(double h);
   bool holds(std::size_t constraint) const { return !base_[constraint].empty(); }
   void rebase(std::size_t constraint);
 
   SimulationOptions options_;
   Body body_;
-  std::unique_ptr<ForceOperator> tissue_;
   std::vector<double> gamma_;  ///< nodal damping [kg/s]
+  EngineInfo info_;            // before moving_, which fills it
+  std::unique_ptr<MovingBody> moving_;
   Constraints constraints_;
   std::vector<std::vector<Vec3d>> base_;  ///< per constraint: displacement its motion counts from [m]; empty: not yet
   Loads loads_;
+  std::vector<double> stiffening_;  ///< per tissue block, at the last evaluation
   std::unique_ptr<StepControl> control_;
 
   double time_ = 0.0;
   std::uint64_t steps_ = 0;
-  std::vector<Vec3d> u_, v_, v_before_;  ///< v₊ and v₋ of the last step
+  mutable StateCopy copy_;
 
   // at the last kick
   double kick_step_ = 0.0;
-  std::vector<Vec3d> elastic_, viscous_;
-  std::span<const Vec3d> load_;
+  std::vector<std::vector<std::uint32_t>> places_;  ///< per constraint: where its vertices are among those watched
+  std::vector<Vec3d> velocity_before_, load_;       ///< per watched vertex
   Vec3d gravity_{};
-  ElementWatch watch_;
   EnergyLedger ledger_;
 };
 

@@ -11,6 +11,8 @@
 namespace glisson {
 namespace {
 
+constexpr int kMostThreads = 1024;
+
 void require_options(const SimulationOptions& o) {
   const auto check = [](bool ok, const char* name, double value, const char* range) {
     if (ok) return;
@@ -22,6 +24,7 @@ void require_options(const SimulationOptions& o) {
   check(not_negative(o.damping_rate), "damping_rate [1/s]", o.damping_rate, ">= 0 and finite");
   check(not_negative(o.nodal_damping), "nodal_damping [kg/s]", o.nodal_damping, ">= 0 and finite");
   check(not_negative(o.gravity_ramp), "gravity_ramp [s]", o.gravity_ramp, ">= 0 and finite");
+  check(o.threads >= 0 && o.threads <= kMostThreads, "threads", o.threads, "0 (automatic) to 1024");
   check(std::isfinite(norm(o.gravity)), "|gravity| [m/s^2]", norm(o.gravity), "finite");
 }
 
@@ -49,7 +52,7 @@ ConstraintId Simulation::drive(std::span<const std::uint32_t> vertices, Motion m
 }
 
 void Simulation::add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale) {
-  impl_->scheme.loads().add(vertices, force, std::move(scale));
+  impl_->scheme.add_load(vertices, force, std::move(scale));
 }
 
 StepResult Simulation::step() { return impl_->scheme.step(); }
@@ -74,6 +77,8 @@ void Simulation::set_state(std::span<const Vec3d> displacement, std::span<const 
 }
 
 ForceParts Simulation::force(ConstraintId constraint) const { return impl_->scheme.force(constraint); }
+
+const EngineInfo& Simulation::engine_info() const { return impl_->scheme.info(); }
 
 Energies Simulation::energies() const { return impl_->scheme.energies(); }
 

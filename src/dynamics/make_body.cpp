@@ -1,0 +1,25 @@
+#include "dynamics/make_body.h"
+
+#include "engine/element_body.h"
+#include "engine/flops.h"
+#include "engine/submesh_body.h"
+
+namespace glisson {
+
+std::unique_ptr<MovingBody> make_moving_body(const Body& body, std::span<const double> nodal_damping,
+                                             const SimulationOptions& options, EngineInfo& info) {
+  if (options.precision == Precision::double_precision) {
+    info = {.instruction_set = "double, element by element", .threads = 1};
+    return std::make_unique<engine::ElementBody>(body, nodal_damping, options.precision);
+  }
+  auto moving =
+      std::make_unique<engine::SubmeshBody>(body, nodal_damping, engine::SubmeshOptions{.threads = options.threads});
+  info = {.instruction_set = moving->kernels().instruction_set,
+          .threads = moving->threads(),
+          .submeshes = moving->submeshes().parts.size(),
+          .flops_per_tet = engine::flops_per_tet(body, moving->submeshes()),
+          .bytes_per_tet = engine::bytes_per_tet(moving->submeshes(), body.elements.size())};
+  return moving;
+}
+
+}  // namespace glisson

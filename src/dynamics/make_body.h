@@ -1,0 +1,19 @@
+// make_body.h — which way of moving a body the options ask for.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "engine/moving_body.h"
+#include "glisson/simulation.h"
+#include "mechanics/body.h"
+
+namespace glisson {
+
+/// @param body  must outlive the result
+/// @param nodal_damping  γ_i per vertex [kg/s]
+/// @param info  filled with what was chosen
+std::unique_ptr<MovingBody> make_moving_body(const Body& body, std::span<const double> nodal_damping,
+                                             const SimulationOptions& options, EngineInfo& info);
+
+}  // namespace glisson

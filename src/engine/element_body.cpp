@@ -1,0 +1,77 @@
+#include "engine/element_body.h"
+
+#include <cmath>
+
+#include "mechanics/flush_denormals.h"
+
+namespace glisson::engine {
+
+ElementBody::ElementBody(const Body& body, std::span<const double> nodal_damping, Precision precision)
+    : body_(body), tissue_(make_element_operator(body, precision)),
+      damping_(nodal_damping.begin(), nodal_damping.end()), is_watched_(body.vertex_count, 0) {
+  for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->assign(body.vertex_count, Vec3d{});
+}
+
+void ElementBody::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
+  u_.assign(displacement.begin(), displacement.end());
+  v_.assign(velocity.begin(), velocity.end());
+  for (WatchedVertex& w : watched_) w.displacement = u_[w.vertex], w.velocity = v_[w.vertex];
+}
+
+void ElementBody::read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const {
+  std::copy(u_.begin(), u_.end(), displacement.begin());
+  std::copy(v_.begin(), v_.end(), velocity.begin());
+}
+
+void ElementBody::watch(std::span<const std::uint32_t> vertices) {
+  for (const std::uint32_t v : vertices) is_watched_[v] = 1;
+  std::vector<WatchedVertex> now;
+  std::size_t known = 0;
+  for (std::uint32_t v = 0; v < is_watched_.size(); ++v) {
+    if (is_watched_[v] == 0) continue;
+    const bool was = known < watched_.size() && watched_[known].vertex == v;
+    now.push_back(was ? watched_[known++] : WatchedVertex{v, elastic_[v], viscous_[v], u_[v], v_[v]});
+  }
+  watched_ = std::move(now);
+}
+
+void ElementBody::place_watched() {
+  for (const WatchedVertex& w : watched_) u_[w.vertex] = w.displacement, v_[w.vertex] = w.velocity;
+}
+
+void ElementBody::book(std::size_t i, const Vec3d& before, const Vec3d& weight) {
+  KickWork& work = advance_.work;
+  const Vec3d drag = v_[i] * -damping_[i];
+  work.before.elastic += dot(elastic_[i], before), work.after.elastic += dot(elastic_[i], v_[i]);
+  work.before.viscous += dot(viscous_[i], before), work.after.viscous += dot(viscous_[i], v_[i]);
+  work.before.damping += dot(drag, before), work.after.damping += dot(drag, v_[i]);
+  work.before.loads += dot(weight, before), work.after.loads += dot(weight, v_[i]);
+  work.kinetic += 0.5 * body_.masses[i] * dot(before, v_[i]);
+}
+
+const Advance& ElementBody::advance(double h, const Vec3d& gravity, bool accounted) {
+  const FlushDenormals flush;
+  tissue_->evaluate(u_, v_, elastic_, viscous_, watch_);
+  advance_.stiffening = watch_.stiffening;
+  advance_.inverted = watch_.inverted;
+  advance_.work = {};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < u_.size(); ++i) sum += norm(elastic_[i]) + norm(viscous_[i]);
+  advance_.finite = std::isfinite(sum);
+  for (WatchedVertex& w : watched_) {
+    w = {w.vertex, elastic_[w.vertex], viscous_[w.vertex], u_[w.vertex], v_[w.vertex]};
+  }
+  if (!advance_.finite || h == 0.0) return advance_;
+  for (std::size_t i = 0; i < u_.size(); ++i) {
+    if (is_watched_[i] != 0) continue;
+    const double m = body_.masses[i];
+    const Vec3d before = v_[i], weight = gravity * m;
+    const Vec3d force = elastic_[i] + viscous_[i] + weight;
+    v_[i] = m > 0.0 ? (before * m + force * h) * (1.0 / (m + damping_[i] * h)) : Vec3d{};
+    if (accounted) book(i, before, weight);
+    u_[i] += v_[i] * h;
+  }
+  return advance_;
+}
+
+}  // namespace glisson::engine

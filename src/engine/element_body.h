@@ -1,0 +1,39 @@
+// element_body.h — a body that moves in double precision, element by element: the scene option, and a check.
+//
+// No submeshes, lanes or threads: the loop of mechanics/force_operator.h on arrays in the mesh's order.
+#pragma once
+
+#include <memory>
+
+#include "engine/moving_body.h"
+#include "mechanics/force_operator.h"
+
+namespace glisson::engine {
+
+class ElementBody final : public MovingBody {
+ public:
+  /// @param body  must outlive this
+  /// @param nodal_damping  γ_i per vertex [kg/s]
+  ElementBody(const Body& body, std::span<const double> nodal_damping, Precision precision);
+
+  void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
+  void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const override;
+  void watch(std::span<const std::uint32_t> vertices) override;
+  std::span<WatchedVertex> watched() override { return watched_; }
+  void place_watched() override;
+  const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;
+
+ private:
+  void book(std::size_t vertex, const Vec3d& before, const Vec3d& weight);
+
+  const Body& body_;
+  std::unique_ptr<ForceOperator> tissue_;
+  std::vector<double> damping_;
+  std::vector<Vec3d> u_, v_, elastic_, viscous_;
+  std::vector<char> is_watched_;
+  std::vector<WatchedVertex> watched_;
+  ElementWatch watch_;
+  Advance advance_;
+};
+
+}  // namespace glisson::engine

@@ -1,0 +1,23 @@
+// flops.h — the useful floating-point operations of a step, counted, not estimated.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "engine/submesh.h"
+
+namespace glisson::engine {
+
+/// Operations of the element's parts, from running its arithmetic on counted numbers.
+struct ElementFlops {
+  std::size_t gradient = 0, stress = 0, force = 0;
+  std::array<std::size_t, 3> measure{};  ///< by DeformationMeasure, for volume changes below 30 %
+};
+/// In kernels.cpp, beside the arithmetic.
+ElementFlops count_element_flops();
+
+/// Per tet and step: elements or edges as each submesh has them, and its share of the vertices. Lanes that are
+/// padding, w components, moving data and bookkeeping of the stable step are not counted.
+double flops_per_tet(const Body& body, const Submeshes& submeshes);
+
+}  // namespace glisson::engine

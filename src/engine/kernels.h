@@ -1,0 +1,134 @@
+// kernels.h — the stages a submesh goes through, as functions of the instruction set chosen at run time.
+//
+//   narrow ──▶ [ gather ──▶ measure ──▶ law ──▶ push ] a block of batches at a time ──▶ integrate
+//
+// Splitting the element into stages lets the processor overlap many short dependency chains: one long loop
+// body took 5.6 ns a tet where the stages take 2.6 (docs/engine.md). It also keeps laws, measures and
+// viscosity apart: each is one small function, chosen when the body is built.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/layout.h"
+#include "glisson/tissue.h"
+
+namespace glisson::engine {
+
+/// Values of a block of batches between the stages, vectors of L lanes: item i = 2 batch + (0: A, 1: B).
+struct Block {
+  alignas(64) float gradient[kBlockTets * 9];  ///< H, [item][9][lane]
+  alignas(64) float viscous[kBlockTets * 6];   ///< σ_v, [item][6][lane]
+  alignas(64) float x[kBlockTets];             ///< measure, [item][lane]
+  alignas(64) float y[kBlockTets];             ///< see element_math-inl.h, Measured
+  alignas(64) float value[2][kBlockTets];      ///< modulus of the law on E, or of those on λ and μ
+  alignas(64) float slope[2][kBlockTets];      ///< its derivative by x
+};
+
+/// Moduli of a submesh's tissue, as the lanes need them.
+struct LaneTissue {
+  float lambda = 0, mu = 0;                  ///< what a law's value is multiplied by: [Pa], or 1 for laws on λ and μ
+  float viscous_lambda = 0, viscous_mu = 0;  ///< [Pa·s]
+  float bulk_over_two_mu = 0;                ///< at rest [-]
+  float rest_mu = 0;                         ///< μ at rest [Pa]
+};
+
+/// Where the batches of a submesh are and where their forces go.
+struct Elements {
+  const float* states = nullptr;         ///< float records, kStateFloats a local vertex
+  const std::uint16_t* index = nullptr;  ///< [batch][5][lane]
+  const float* rest = nullptr;           ///< [batch][20][lane]
+  float* elastic = nullptr;              ///< force records; with `viscous` null they take the whole force
+  float* viscous = nullptr;
+  LaneTissue tissue;
+  std::size_t mu_law = 0;  ///< which of the block's two laws scales μ: 0 for a law on E
+};
+
+/// A law's parameters in float. A law on E is taken relative to E at rest (base 1), one on λ or μ is in Pa.
+struct LaneLaw {
+  std::size_t kind = 0;        ///< index in StiffnessLaw
+  float base = 1.0F;           ///< modulus at rest
+  std::vector<float> numbers;  ///< law_stages-inl.h says which
+};
+LaneLaw lane_law(const StiffnessLaw& law, double base, double unit);
+
+/// What the laws of a submesh have come to: stiffness + √slope_squared bounds tangent over rest stiffness.
+struct StiffnessSeen {
+  float stiffness = 0, slope_squared = 0;
+};
+
+/// One law on an array: value[i] = M(x[i]) and slope[i] = M'(x[i]).
+using LawStage = void (*)(const LaneLaw&, const float* x, std::size_t n, float* value, float* slope);
+
+/// Energies per unit time of a range of vertices at a kick [W], and ½ Σ m v₋·v₊ [J].
+struct VertexWork {
+  double elastic_before = 0, elastic_after = 0, viscous_before = 0, viscous_after = 0;
+  double damping_before = 0, damping_after = 0, loads_before = 0, loads_after = 0, kinetic = 0;
+};
+
+struct Kick {
+  double step = 0;                  ///< h [s]
+  std::array<double, 4> gravity{};  ///< [m/s²], w = 0
+};
+
+/// A linear tissue's submesh by edges.
+struct Edges {
+  const float* states = nullptr;
+  const std::uint16_t* index = nullptr;  ///< [batch][2][lane]
+  const float* tensor = nullptr;         ///< [batch][9][lane]
+  std::size_t batches = 0;
+  float* elastic = nullptr;
+  float* viscous = nullptr;
+  LaneTissue tissue;
+};
+
+/// The functions of one instruction set.
+struct Kernels {
+  const char* instruction_set = "";
+  std::size_t lanes = 1;
+
+  /// Float records of `n` vertices from consecutive state records, relative to the record `origin`.
+  void (*narrow)(const double* state, const double* origin, std::size_t n, float* out) = nullptr;
+  /// The same from the state records numbered by `which`.
+  void (*narrow_chosen)(const double* state, const std::uint32_t* which, const double* origin, std::size_t n,
+                        float* out) = nullptr;
+
+  /// Batches [begin, begin + n): gradients, and viscous stress where `with_viscosity`.
+  void (*gather_elastic)(const Elements&, std::size_t begin, std::size_t n, Block&) = nullptr;
+  void (*gather_viscous)(const Elements&, std::size_t begin, std::size_t n, Block&) = nullptr;
+  /// x and y of a block. @return whether a tet has J ≤ 0
+  using Measure = bool (*)(const Elements&, std::size_t begin, std::size_t n, Block&);
+  std::array<Measure, 3> measure{};                               ///< by DeformationMeasure
+  std::array<LawStage, std::variant_size_v<StiffnessLaw>> law{};  ///< by index in StiffnessLaw
+  /// Largest value and largest slope² y of a block: of a law on E, and of laws on λ and μ.
+  void (*watch_young)(const Block&, const LaneTissue&, std::size_t n, StiffnessSeen&) = nullptr;
+  void (*watch_lame)(const Block&, const LaneTissue&, std::size_t n, StiffnessSeen&) = nullptr;
+  /// Stress and forces of a block, added to the force records.
+  void (*push_elastic)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;
+  void (*push_merged)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;
+  void (*push_split)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;
+
+  /// Forces of a linear submesh. @return the largest squared displacement difference of an edge [m²]
+  float (*edges_elastic)(const Edges&) = nullptr;
+  float (*edges_merged)(const Edges&) = nullptr;
+  float (*edges_split)(const Edges&) = nullptr;
+
+  /// a += b, `n` floats, a multiple of 16.
+  void (*add)(float* a, const float* b, std::size_t n) = nullptr;
+  /// Whether all of `n` floats are finite; n is a multiple of 16.
+  bool (*all_finite)(const float* values, std::size_t n) = nullptr;
+  /// Kick and drift of `n` vertices: v₊ = v₋ + c f − d v₋ + h (1 − d) g, u₊ = u + h v₊  [Schwartz2002, eq. 4].
+  void (*integrate)(double* state, const float* force, std::size_t n, const Kick&) = nullptr;
+  /// The same with elastic and viscous forces apart; the work is added to `work`.
+  void (*integrate_accounted)(double* state, const float* elastic, const float* viscous, std::size_t n, const Kick&,
+                              VertexWork& work) = nullptr;
+};
+
+/// The kernels of the best instruction set of this processor.
+const Kernels& best_kernels();
+/// All that this processor can run, the best first: for tests of their equivalence.
+std::vector<const Kernels*> all_kernels();
+
+}  // namespace glisson::engine

@@ -1,0 +1,64 @@
+// moving_body.h — the seam between motion and tissue: a body that holds its state and advances it by a step.
+//
+//   advance(h):  forces at u, v₋ ─▶ v₊ = (m v₋ + h F)/(m + γh) ─▶ u + h v₊        [Schwartz2002, eq. 4]
+//
+// All vertices move as if they were free. Those that something else moves too (supports, tools, loads) are
+// *watched*: the body leaves them where they are and hands out their forces; whoever drives them decides
+// their motion and places them. So the many vertices stay inside, in whatever layout and precision is fast,
+// and the few that others care for are told in double.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "glisson/math.h"
+
+namespace glisson {
+
+/// A vertex that the body does not move by itself.
+struct WatchedVertex {
+  std::uint32_t vertex = 0;
+  Vec3d elastic, viscous;  ///< forces of the tissue at the last advance [N]
+  Vec3d displacement;      ///< [m]
+  Vec3d velocity;          ///< [m/s]
+};
+
+/// Energies per unit time at a kick, with v₋ (before) and v₊ (after) [W]; kinetic is ½ Σ m v₋·v₊ [J].
+struct KickPower {
+  double elastic = 0.0, viscous = 0.0, damping = 0.0, tools = 0.0, loads = 0.0;
+};
+struct KickWork {
+  KickPower before, after;
+  double kinetic = 0.0;
+};
+
+/// What an advance was like.
+struct Advance {
+  bool finite = true;                   ///< false: a force was not finite; its vertices were not moved
+  std::vector<double> stiffening;       ///< per tissue block: bound of tangent over rest stiffness [-]
+  std::vector<std::uint32_t> inverted;  ///< tets of the mesh with J ≤ 0, ascending
+  KickWork work;                        ///< of the vertices that are not watched; only where accounted
+};
+
+class MovingBody {
+ public:
+  virtual ~MovingBody() = default;
+
+  virtual void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) = 0;
+  virtual void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const = 0;
+
+  /// Adds vertices to those watched; one that is watched already stays so.
+  virtual void watch(std::span<const std::uint32_t> vertices) = 0;
+  /// In ascending order of vertex.
+  virtual std::span<WatchedVertex> watched() = 0;
+  /// Takes displacement and velocity of every watched vertex over from watched().
+  virtual void place_watched() = 0;
+
+  /// One step of h [s] under `gravity` [m/s²]; h = 0 evaluates the forces and moves nothing.
+  /// @param accounted  whether to fill `work`
+  /// The result is valid until the next call.
+  virtual const Advance& advance(double h, const Vec3d& gravity, bool accounted) = 0;
+};
+
+}  // namespace glisson

@@ -1,0 +1,94 @@
+// submesh.h — a body cut into submeshes: what layout.h draws, as data.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <new>
+#include <span>
+#include <vector>
+
+#include "engine/layout.h"
+#include "mechanics/body.h"
+
+namespace glisson::engine {
+
+/// Memory for vectors of lanes: whole cache lines.
+template <class T>
+struct CacheLines {
+  using value_type = T;
+  static constexpr std::align_val_t kAlignment{64};
+  CacheLines() = default;
+  template <class U>
+  explicit CacheLines(const CacheLines<U>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kAlignment)); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, kAlignment); }
+  bool operator==(const CacheLines&) const = default;
+};
+template <class T>
+using LaneVector = std::vector<T, CacheLines<T>>;
+
+inline constexpr std::uint32_t kNoElement = std::numeric_limits<std::uint32_t>::max();
+
+/// Pairs of tets in batches.
+struct PairBatches {
+  std::size_t count = 0;               ///< batches
+  LaneVector<std::uint16_t> index;     ///< [batch][5][lane], times kIndexScale
+  LaneVector<float> rest;              ///< [batch][2 tets][10][lane]: three shape gradients [1/m], −V [m³]
+  std::vector<std::uint32_t> element;  ///< [batch][2 tets][lane]: element of the body, kNoElement where none is
+};
+
+/// Edges of a linear tissue in batches (edge_stages-inl.h).
+struct EdgeBatches {
+  std::size_t count = 0;
+  LaneVector<std::uint16_t> index;  ///< [batch][2][lane], times kIndexScale
+  LaneVector<float> tensor;         ///< [batch][9][lane]
+};
+
+struct Submesh {
+  std::size_t block = 0;                ///< tissue block of the body
+  std::size_t first_interior = 0;       ///< its first record of the state
+  std::size_t interior_count = 0;       ///< local vertices 0 … interior_count − 1
+  std::vector<std::uint32_t> shared;    ///< records of the other local vertices
+  std::size_t first_slot = 0;           ///< where its copies of them put their forces
+  std::vector<std::uint32_t> elements;  ///< elements of the body
+  PairBatches pairs;                    ///< empty for a linear tissue
+  EdgeBatches edges;                    ///< for a linear tissue
+  float gradient_reach = 0.0F;  ///< largest Σ |s_a| of a tet [1/m]: |H| is at most this times the longest |δu|
+
+  std::size_t local_vertices() const { return interior_count + shared.size(); }
+};
+
+/// Interface vertices and the slots in which submeshes leave their forces on them.
+struct Interface {
+  std::size_t first_record = 0;           ///< state records from here to the end are interface vertices
+  std::vector<std::uint32_t> slot_begin;  ///< per interface vertex, one more than those
+  std::vector<std::uint32_t> slots;       ///< ascending: in order of submesh
+  std::size_t slot_count = 0;
+
+  std::size_t size() const { return slot_begin.size() - 1; }
+};
+
+struct Submeshes {
+  std::vector<Submesh> parts;
+  Interface interface;
+  std::vector<std::uint32_t> record_of_vertex;  ///< state record of each vertex of the mesh
+};
+
+/// Tets a submesh aims at.
+inline constexpr std::size_t kSubmeshTets = 1536;
+
+/// @param lanes  of the kernels that will run on it
+Submeshes build_submeshes(const Body& body, std::size_t lanes, std::size_t target_tets = kSubmeshTets);
+
+/// Lays the elements of one submesh out anew; its interior range and its elements are given.
+void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, Submesh& part, std::size_t lanes);
+/// Gives the submeshes their slots and the interface vertices the lists of them.
+void connect(Submeshes& submeshes);
+
+/// Bytes that a step reads or writes of a body's submeshes and state, over its tets.
+double bytes_per_tet(const Submeshes& submeshes, std::size_t tets);
+
+/// Whether the tissue is linear, so that its submeshes hold edges.
+bool is_linear(const TissueBlock& block);
+
+}  // namespace glisson::engine

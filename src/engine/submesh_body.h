@@ -1,0 +1,113 @@
+// submesh_body.h — a body that moves by submeshes: in lanes, on threads, with the same bytes on any number.
+//
+//   advance      ┌─ task per submesh ────────────────────────────────┐   ┌─ task per run of interface ─┐
+//                │ narrow → [gather measure law push]… → integrate   │ ∥ │ sum slots in order          │
+//                │ forces on interface vertices → own slots          │   │ → integrate                 │
+//                └───────────────────────────────────────────────────┘   └─────────────────────────────┘
+//
+// A task reads the state and writes what no other task of its phase touches: its interior records, its slots,
+// its own findings. Which thread runs it, and when, cannot be seen in the result.
+#pragma once
+
+#include <memory>
+
+#include "engine/kernels.h"
+#include "engine/moving_body.h"
+#include "engine/submesh.h"
+#include "engine/task_pool.h"
+
+namespace glisson::engine {
+
+struct SubmeshOptions {
+  int threads = 0;                   ///< 0: as many as pay for this size of body
+  const Kernels* kernels = nullptr;  ///< none: those of the best instruction set
+  std::size_t submesh_tets = kSubmeshTets;
+};
+
+class SubmeshBody final : public MovingBody {
+ public:
+  /// @param body  must outlive this
+  /// @param nodal_damping  γ_i per vertex [kg/s]
+  SubmeshBody(const Body& body, std::span<const double> nodal_damping, const SubmeshOptions& options = {});
+  ~SubmeshBody() override;
+
+  void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
+  void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const override;
+  void watch(std::span<const std::uint32_t> vertices) override;
+  std::span<WatchedVertex> watched() override { return watched_; }
+  void place_watched() override;
+  const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;
+
+  const Submeshes& submeshes() const { return submeshes_; }
+  const Kernels& kernels() const { return kernels_; }
+  int threads() const { return pool_.threads(); }
+
+ private:
+  /// How a tissue block is evaluated.
+  struct Plan {
+    LaneTissue tissue;
+    std::array<LaneLaw, 2> law;
+    std::size_t laws = 1;  ///< 2: apart on λ and μ
+    std::size_t measure = 0;
+    bool linear = false, viscous = false;
+  };
+  /// A watched vertex as its submesh or the interface sees it: position in their range, place in watched_.
+  struct Watch {
+    std::uint32_t local, place;
+  };
+  /// What a task found.
+  struct Findings {
+    bool finite = true, inverted = false;
+    StiffnessSeen stiffness;
+    float longest_edge_squared = 0.0F;
+    std::vector<std::uint32_t> tets;
+    VertexWork work;
+  };
+  /// What the last look at a linear submesh for inverted tets told: gradients below 1, above, or J ≤ 0.
+  enum class Looked : char { small, large, inverted };
+  struct Scratch;
+  struct Step {
+    Kick kick;
+    bool accounted;
+  };
+
+  static Plan plan_of(const TissueBlock& block);
+  void set_step(double h);
+  void run_submesh(std::size_t s, const Step& step, Scratch& scratch);
+  void narrow(const Submesh& part, Scratch& scratch) const;
+  void push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;
+  void push_edges(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;
+  bool must_look(std::size_t s, float longest_edge_squared, bool moves);
+  void list_inverted(const Submesh& part, Findings& found) const;
+  void fill_slots(const Submesh& part, bool split, const Scratch& scratch);
+  void take_watched(std::span<const Watch> watches, std::size_t first_record, const float* elastic,
+                    const float* viscous);
+  void integrate(std::size_t first_record, std::size_t n, std::span<const Watch> watches, float* elastic,
+                 float* viscous, const Step& step, VertexWork& work);
+  void run_interface(std::size_t chunk, const Step& step, Scratch& scratch);
+  void gather_findings(bool accounted);
+  bool splits(std::size_t s, bool accounted) const;
+
+  const Body& body_;
+  const Kernels& kernels_;
+  Submeshes submeshes_;
+  std::vector<Plan> plans_;
+  TaskPool pool_;
+  std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
+
+  LaneVector<double> state_;
+  std::vector<double> masses_, damping_;  ///< per record [kg], [kg/s]
+  double step_ = -1.0;                    ///< for which the records' coefficients hold
+  std::uint64_t steps_ = 0;
+
+  LaneVector<float> slots_elastic_, slots_viscous_;  ///< force records
+  std::vector<WatchedVertex> watched_;
+  std::vector<std::vector<Watch>> watches_;            ///< per submesh, of its interior
+  std::vector<std::vector<Watch>> interface_watches_;  ///< per chunk of the interface
+  std::vector<char> holds_watched_;                    ///< per submesh: one of its vertices is watched
+  std::vector<Looked> looked_;                         ///< per submesh
+  std::vector<Findings> found_, interface_found_;
+  Advance advance_;
+};
+
+}  // namespace glisson::engine
