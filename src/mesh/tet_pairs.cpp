@@ -9,7 +9,7 @@
 namespace glisson::detail {
 namespace {
 
-constexpr std::size_t kSearched = 1024;  // tets a search for an alternating path may see before it gives up
+constexpr std::size_t kSearched = 1 << 14;  // tets a search may see: all of a submesh, and longer lists stay cheap
 
 using Neighbours = std::array<std::uint32_t, 4>;  // across the face opposite each corner, or kNoTet
 

@@ -96,11 +96,12 @@ TEST(TetPairs, LeaveNoneOfABoxSingle) {
   }
 }
 
-// Submeshes have jagged borders, where some tet may have no partner: at most 1 in 100 of boxes and cylinders.
+// Submeshes have jagged borders, where some tet may have no partner: at most 5 in 1000 of boxes and cylinders
+// (0.4 to 2 measured; a submesh of an odd number of tets must leave one).
 TEST(TetPairs, LeaveFewOfASubmeshSingle) {
-  EXPECT_LT(single_share(box_mesh({.cells = {16, 16, 16}}), 1024), 0.01);
-  EXPECT_LT(single_share(box_mesh({.cells = {16, 16, 16}, .split = BoxSplit::alternating}), 1024), 0.01);
-  EXPECT_LT(single_share(cylinder_mesh({.radial_cells = 10, .axial_cells = 10, .grading = 3.0}), 1024), 0.01);
+  EXPECT_LT(single_share(box_mesh({.cells = {16, 16, 16}}), 1024), 0.005);
+  EXPECT_LT(single_share(box_mesh({.cells = {16, 16, 16}, .split = BoxSplit::alternating}), 1024), 0.005);
+  EXPECT_LT(single_share(cylinder_mesh({.radial_cells = 10, .axial_cells = 10, .grading = 3.0}), 1024), 0.005);
 }
 
 // A face of three tets is no mesh, and still nothing is lost: two of them are a pair.
