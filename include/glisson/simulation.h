@@ -41,6 +41,8 @@ struct SimulationOptions {
   int threads = 0;
   /// Whether energies() is kept. It costs a tenth to a third of a step; forces of constraints are there either way.
   bool track_energies = true;
+  /// Makes ready for remove_tets and split_faces at once, instead of at the first of them (O(tets), 18 bytes a tet).
+  bool mesh_changes = false;
 };
 
 /// How a simulation is evaluated: for reports and benchmarks.
@@ -81,7 +83,7 @@ struct ForceParts {
 };
 
 /// Energies at the time the last step started from [J]. Exact identity of the scheme, up to rounding:
-///   kinetic + elastic + dissipated = initial + work_tools + work_loads.
+///   kinetic + elastic + dissipated + removed = initial + work_tools + work_loads.
 struct Energies {
   double elastic = 0.0;     ///< − work of the elastic forces; for a linear tissue the stored energy
   double kinetic = 0.0;     ///< ½ Σ m v(t−h/2)·v(t+h/2), the scheme's own kinetic energy
@@ -89,7 +91,24 @@ struct Energies {
   double work_tools = 0.0;  ///< of driven vertices on the tissue
   double work_loads = 0.0;  ///< of gravity and of loads
   double initial = 0.0;     ///< kinetic and elastic energy of the state given by set_state
-  double imbalance() const { return kinetic + elastic + dissipated - initial - work_tools - work_loads; }
+  double removed = 0.0;     ///< kinetic and elastic energy that tets took with them when they were removed
+  double imbalance() const { return kinetic + elastic + dissipated + removed - initial - work_tools - work_loads; }
+};
+
+/// What left the body with removed tets.
+struct RemovalReport {
+  std::size_t tets = 0;                       ///< removed by this call; those that were gone already not counted
+  double mass = 0.0;                          ///< [kg]
+  Vec3d momentum{};                           ///< [kg m/s]
+  double energy = 0.0;                        ///< kinetic and elastic, as in Energies::removed [J]
+  std::vector<std::uint32_t> loose_vertices;  ///< touched vertices that are in no tet any more: they do not move
+};
+
+/// What a split has opened.
+struct SplitReport {
+  std::uint32_t first_new = 0;         ///< number of the first new vertex
+  std::vector<std::uint32_t> origins;  ///< vertex first_new + i is a copy of origins[i]
+  std::size_t closed_faces = 0;        ///< faces split so far that are closed still: all their vertices are at the rim
 };
 
 /// Displacement of a driven set at time t [m]; must be 0 at the time the set is driven from.
@@ -119,6 +138,22 @@ class Simulation {
   /// Adds a force, spread over the vertices by equal parts; `scale(t)` multiplies it (none: 1). [N]
   void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale = {});
 
+  /// Takes tets out at once: their stiffness, viscosity and mass are gone, nothing else changes. Numbers of tets and
+  /// vertices stay. An automatic step falls to a bound that holds whatever is removed; a given step is checked anew.
+  /// @param tets  numbers of the mesh; those that are gone already are passed over
+  /// @throws std::invalid_argument for a number that is no tet's; nothing is changed then
+  /// Cost: about 1 µs a tet, after the first call or with SimulationOptions::mesh_changes.
+  RemovalReport remove_tets(std::span<const std::uint32_t> tets);
+  /// Opens the body along inner faces: vertices that the faces part get copies, numbered on from the last one, with
+  /// the state of their origin. Copies belong to the sets, supports and tools of their origin, and share its loads.
+  /// @param faces  three vertices each, in present numbers; repeated ones are ignored
+  /// @throws std::invalid_argument naming a face that no tet has, that is at the boundary or has more than two tets
+  /// Cost: the submeshes at the faces are laid out anew, some 0.3 ms each.
+  SplitReport split_faces(std::span<const Triangle> faces);
+  bool is_removed(std::uint32_t tet) const;
+  /// The rest mesh as it is now, without the removed tets (numbers of tets are new, those of vertices the same).
+  TetMesh present_mesh() const;
+
   /// Advances by step_size(). The paper's eq. 4 in displacement–velocity form.
   StepResult step();
 
@@ -129,6 +164,7 @@ class Simulation {
   double stable_step() const;
   std::uint64_t steps() const;
 
+  /// At rest, with all tets there ever were; those split have their present vertices.
   const TetMesh& mesh() const;
   std::span<const double> masses() const;       ///< lumped, per vertex [kg]
   std::span<const Vec3d> displacement() const;  ///< u(t), per vertex [m]

@@ -1,5 +1,6 @@
 #include "dynamics/constraints.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace glisson {
@@ -30,6 +31,26 @@ ConstraintId Constraints::add(Constraint constraint) {
   held_ = std::move(held);
   all_.push_back(std::move(constraint));
   return {all_.size() - 1};
+}
+
+std::vector<std::vector<std::size_t>> Constraints::add_copies(std::span<const std::uint32_t> origins) {
+  const auto first = static_cast<std::uint32_t>(held_.size() / 3);
+  for (const std::uint32_t origin : origins) {
+    for (std::size_t axis = 0; axis < 3; ++axis) held_.push_back(char(held_[3 * origin + axis]));
+  }
+  std::vector<std::vector<std::size_t>> copied(all_.size());
+  for (std::size_t c = 0; c < all_.size(); ++c) {
+    std::vector<std::uint32_t>& vertices = all_[c].vertices;
+    const std::size_t before = vertices.size();
+    for (std::uint32_t i = 0; i < origins.size(); ++i) {
+      const auto end = vertices.begin() + static_cast<std::ptrdiff_t>(before);
+      const auto found = std::find(vertices.begin(), end, origins[i]);
+      if (found == end) continue;
+      copied[c].push_back(static_cast<std::size_t>(found - vertices.begin()));
+      vertices.push_back(first + i);
+    }
+  }
+  return copied;
 }
 
 const Constraint& Constraints::at(ConstraintId id) const {

@@ -26,6 +26,10 @@ class Constraints {
   /// @throws std::invalid_argument for an empty set, a vertex out of range or a component held already
   ConstraintId add(Constraint constraint);
 
+  /// Lets new vertices, numbered on from the last, follow what holds the vertices they are copies of.
+  /// @return per constraint: which of its vertices have copies, as positions in its list; the copies come last in it
+  std::vector<std::vector<std::size_t>> add_copies(std::span<const std::uint32_t> origins);
+
   std::span<const Constraint> all() const { return all_; }
   const Constraint& at(ConstraintId id) const;
   bool holds(std::size_t vertex, std::size_t axis) const { return held_[3 * vertex + axis] != 0; }

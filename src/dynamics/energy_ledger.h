@@ -32,6 +32,13 @@ class EnergyLedger {
     now_.kinetic = kinetic;
   }
 
+  /// Books energy that left with part of the body [J]. The kinetic part shows in the next kick by itself: between
+  /// two kicks it is ½ m v², v being the velocity that both know.
+  void take_out(double kinetic, double elastic) {
+    now_.removed += kinetic + elastic;
+    now_.elastic -= elastic;
+  }
+
   const Energies& now() const { return now_; }
 
  private:

@@ -28,7 +28,14 @@ ExplicitScheme::ExplicitScheme(Body body, const SimulationOptions& options)
     : options_(options), body_(std::move(body)), gamma_(nodal_damping(body_, options)),
       moving_(make_moving_body(body_, gamma_, options, info_)), constraints_(body_.vertex_count),
       loads_(body_.vertex_count), stiffening_(moving_->advance(0.0, {}, false).stiffening),
-      control_(std::make_unique<StepControl>(body_, gamma_, options.step, options.enforce_stability, stiffening_)) {}
+      control_(std::make_unique<StepControl>(body_, gamma_, options.step, options.enforce_stability, stiffening_)) {
+  if (options.mesh_changes) changer();
+}
+
+BodyChanger& ExplicitScheme::changer() {
+  if (changer_ == nullptr) changer_ = std::make_unique<BodyChanger>(body_);
+  return *changer_;
+}
 
 const ExplicitScheme::StateCopy& ExplicitScheme::read_state() const {
   if (!copy_.current) {
@@ -222,6 +229,75 @@ ForceParts ExplicitScheme::force(ConstraintId constraint) const {
     sum.inertial += f.inertial, sum.gravity += f.gravity, sum.load += f.load;
   }
   return sum;
+}
+
+/// Mass, momentum and energy of elements that are about to go.
+void ExplicitScheme::weigh_energy(std::span<const std::uint32_t> elements, RemovalReport& report) {
+  double kinetic = 0.0, elastic = 0.0;
+  for (const std::uint32_t e : elements) {
+    const TissueBlock& block = body_.block_of(e);
+    const double quarter = 0.25 * block.tissue.density * body_.rest[e].volume;
+    std::array<Vec3d, 4> u;
+    for (std::size_t a = 0; a < 4; ++a) {
+      const std::uint32_t vertex = body_.elements[e][a];
+      const Vec3d v = moving_->velocity_of(vertex);
+      u[a] = moving_->displacement_of(vertex);
+      report.mass += quarter;
+      report.momentum += v * quarter;
+      kinetic += 0.5 * quarter * dot(v, v);
+    }
+    elastic += element_energy(body_, block, e, u);
+  }
+  report.tets += elements.size();
+  report.energy = kinetic + elastic;
+  if (options_.track_energies) ledger_.take_out(kinetic, elastic);
+}
+
+void ExplicitScheme::take_over(const BodyChange& change) {
+  gamma_.resize(body_.vertex_count);
+  for (const std::uint32_t v : change.touched) {
+    gamma_[v] = options_.damping_rate * body_.masses[v] + options_.nodal_damping;
+  }
+  moving_->apply(change, changer_->stars(), gamma_);
+  control_->mesh_changed(gamma_);
+  copy_.current = false;
+}
+
+RemovalReport ExplicitScheme::remove(std::span<const std::uint32_t> tets) {
+  RemovalReport report;
+  const std::vector<std::uint32_t> elements = changer().living_elements(tets);
+  weigh_energy(elements, report);
+  const BodyChange change = changer_->remove(elements);
+  take_over(change);
+  for (const std::uint32_t v : change.touched) {
+    if (changer_->stars().tets_at(v).empty()) report.loose_vertices.push_back(v);
+  }
+  return report;
+}
+
+SplitReport ExplicitScheme::split(std::span<const Triangle> faces) {
+  SplitReport report{.first_new = static_cast<std::uint32_t>(body_.vertex_count), .origins = {}, .closed_faces = 0};
+  BodyChange change = changer().split(faces);
+  take_over(change);
+  const std::vector<std::vector<std::size_t>> copied = constraints_.add_copies(change.origins);
+  loads_.add_copies(change.origins);
+  for (std::size_t c = 0; c < copied.size(); ++c) {
+    for (const std::size_t k : copied[c]) {
+      if (holds(c)) base_[c].push_back(Vec3d(base_[c][k]));
+    }
+  }
+  std::vector<std::uint32_t> followers;
+  for (std::uint32_t i = 0; i < change.origins.size(); ++i) {
+    const auto is_origin = [&](const WatchedVertex& w) { return w.vertex == change.origins[i]; };
+    const std::span<const WatchedVertex> watched = moving_->watched();
+    if (std::any_of(watched.begin(), watched.end(), is_origin)) followers.push_back(report.first_new + i);
+  }
+  if (!followers.empty()) watch(followers);
+  last_changed_.clear();
+  for (const detail::CornerChange& c : change.corners) last_changed_.push_back(c.tet);
+  report.closed_faces = changer_->closed_faces();
+  report.origins = std::move(change.origins);
+  return report;
 }
 
 }  // namespace glisson

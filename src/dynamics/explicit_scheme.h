@@ -34,6 +34,12 @@ class ExplicitScheme {
   void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale);
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity);
 
+  RemovalReport remove(std::span<const std::uint32_t> tets);
+  SplitReport split(std::span<const Triangle> faces);
+  /// Elements that got other vertices by the last split.
+  std::span<const std::uint32_t> last_changed() const { return last_changed_; }
+  bool is_removed(std::uint32_t tet) const { return changer_ != nullptr && changer_->is_removed(tet); }
+
   StepResult step();
 
   const Body& body() const { return body_; }
@@ -54,6 +60,9 @@ class ExplicitScheme {
     bool current = false;
   };
 
+  BodyChanger& changer();
+  void weigh_energy(std::span<const std::uint32_t> elements, RemovalReport& report);
+  void take_over(const BodyChange& change);
   const StateCopy& read_state() const;
   Vec3d gravity_at(double time) const;
   void watch(std::span<const std::uint32_t> vertices);
@@ -69,8 +78,10 @@ class ExplicitScheme {
 
   SimulationOptions options_;
   Body body_;
-  std::vector<double> gamma_;  ///< nodal damping [kg/s]
-  EngineInfo info_;            // before moving_, which fills it
+  std::vector<double> gamma_;                ///< nodal damping [kg/s]
+  std::unique_ptr<BodyChanger> changer_;     ///< none until something changes
+  std::vector<std::uint32_t> last_changed_;  ///< elements
+  EngineInfo info_;                          // before moving_, which fills it
   std::unique_ptr<MovingBody> moving_;
   Constraints constraints_;
   std::vector<std::vector<Vec3d>> base_;  ///< per constraint: displacement its motion counts from [m]; empty: not yet

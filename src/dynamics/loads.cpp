@@ -14,16 +14,34 @@ void Loads::add(std::span<const std::uint32_t> vertices, Vec3d force, std::funct
                                 std::to_string(force_.size() - 1));
   }
   if (!std::isfinite(norm(force))) throw std::invalid_argument("load: the force [N] must be finite");
-  loads_.push_back(
-      {{vertices.begin(), vertices.end()}, force * (1.0 / static_cast<double>(vertices.size())), std::move(scale)});
+  const std::vector<double> shares(vertices.size(), 1.0 / static_cast<double>(vertices.size()));
+  loads_.push_back({{vertices.begin(), vertices.end()}, shares, force, std::move(scale)});
+}
+
+void Loads::add_copies(std::span<const std::uint32_t> origins) {
+  const auto first = static_cast<std::uint32_t>(force_.size());
+  force_.resize(force_.size() + origins.size());
+  for (Load& load : loads_) {
+    const std::size_t before = load.vertices.size();
+    for (std::size_t k = 0; k < before; ++k) {
+      const auto copies = std::count(origins.begin(), origins.end(), load.vertices[k]);
+      if (copies == 0) continue;
+      load.share[k] /= static_cast<double>(copies + 1);
+      for (std::uint32_t i = 0; i < origins.size(); ++i) {
+        if (origins[i] != load.vertices[k]) continue;
+        load.vertices.push_back(first + i);
+        load.share.push_back(double(load.share[k]));
+      }
+    }
+  }
 }
 
 std::span<const Vec3d> Loads::at(double time) {
   if (loads_.empty()) return force_;
   std::fill(force_.begin(), force_.end(), Vec3d{});
   for (const Load& load : loads_) {
-    const Vec3d f = load.force_per_vertex * (load.scale ? load.scale(time) : 1.0);
-    for (const std::uint32_t v : load.vertices) force_[v] += f;
+    const Vec3d f = load.force * (load.scale ? load.scale(time) : 1.0);
+    for (std::size_t k = 0; k < load.vertices.size(); ++k) force_[load.vertices[k]] += f * load.share[k];
   }
   return force_;
 }

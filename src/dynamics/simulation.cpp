@@ -1,6 +1,7 @@
 // simulation.cpp — the public face of a body in motion: checks what comes in, and hands on.
 #include "glisson/simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -53,6 +54,36 @@ ConstraintId Simulation::drive(std::span<const std::uint32_t> vertices, Motion m
 
 void Simulation::add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale) {
   impl_->scheme.add_load(vertices, force, std::move(scale));
+}
+
+RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) { return impl_->scheme.remove(tets); }
+
+SplitReport Simulation::split_faces(std::span<const Triangle> faces) {
+  SplitReport report = impl_->scheme.split(faces);
+  TetMesh& mesh = impl_->mesh;
+  const Body& body = impl_->scheme.body();
+  for (std::uint32_t i = 0; i < report.origins.size(); ++i) {
+    mesh.vertices.push_back(Vec3d(mesh.vertices[report.origins[i]]));
+    for (auto& [name, set] : mesh.vertex_sets) {
+      if (std::binary_search(set.begin(), set.end(), report.origins[i])) set.push_back(report.first_new + i);
+    }
+  }
+  for (const std::uint32_t e : impl_->scheme.last_changed()) mesh.tets[body.mesh_tet[e]] = body.elements[e];
+  return report;
+}
+
+bool Simulation::is_removed(std::uint32_t tet) const { return impl_->scheme.is_removed(tet); }
+
+TetMesh Simulation::present_mesh() const {
+  TetMesh present = impl_->mesh;
+  present.tets.clear();
+  present.regions.clear();
+  for (std::uint32_t t = 0; t < impl_->mesh.tets.size(); ++t) {
+    if (is_removed(t)) continue;
+    present.tets.push_back(impl_->mesh.tets[t]);
+    if (!impl_->mesh.regions.empty()) present.regions.push_back(impl_->mesh.regions[t]);
+  }
+  return present;
 }
 
 StepResult Simulation::step() { return impl_->scheme.step(); }

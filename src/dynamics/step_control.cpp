@@ -41,6 +41,7 @@ StepControl::StepControl(const Body& body, std::vector<double> nodal_damping, st
                                 " s is outside the allowed range, > 0 and finite, or \"auto\"");
   }
   validated_ = at_least_one(stiffening);
+  any_part_ = element_bound_step(body, std::vector<double>(body.blocks.size(), 1.0));
   stable_ = stable_at(validated_);
   if (given && enforce && *given > stable_) refuse(*given, stable_);
   step_ = given.value_or(kSafety * stable_);
@@ -50,7 +51,22 @@ double StepControl::stable_at(std::span<const double> stiffening) {
   return glisson::stable_step(body_, stiffening, nodal_damping_, {}, &guess_).step;
 }
 
+void StepControl::mesh_changed(std::span<const double> nodal_damping) {
+  nodal_damping_.assign(nodal_damping.begin(), nodal_damping.end());
+  guess_ = {};
+  // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C
+  const double bound = any_part_ / std::sqrt(*std::max_element(validated_.begin(), validated_.end()));
+  stable_ = std::min(stable_, bound);
+  if (automatic_) {
+    step_ = std::min(step_, kSafety * stable_);
+  } else if (enforce_ && step_ > stable_) {
+    stable_ = stable_at(validated_);
+    too_large_ = step_ > stable_;
+  }
+}
+
 bool StepControl::accept(std::span<const double> stiffening) {
+  if (too_large_) return false;
   bool within = true;
   for (std::size_t b = 0; b < validated_.size(); ++b) within = within && stiffening[b] <= validated_[b];
   if (within || !enforce_) return true;

@@ -77,4 +77,61 @@ EdgeBatches make_edge_batches(const Body& body, const TissueBlock& block, std::s
   return out;
 }
 
+namespace {
+
+using LocalEdge = std::pair<std::uint32_t, std::uint32_t>;
+
+LocalEdge edge_at(const EdgeBatches& edges, std::size_t k, std::size_t lanes) {
+  const std::uint16_t* index = edges.index.data() + k % edges.count * 2 * lanes + k / edges.count;
+  return {index[0] / kIndexScale, index[lanes] / kIndexScale};
+}
+
+/// Number of an edge that is there: they are sorted, and the lanes after the last are (0, 0).
+std::size_t find_edge(const EdgeBatches& edges, LocalEdge edge, std::size_t lanes) {
+  std::size_t low = 0, high = edges.count * lanes;
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    const LocalEdge at = edge_at(edges, middle, lanes);
+    const bool padding = at.first == at.second;
+    if (!padding && at < edge) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+Vec3d shape_gradient(const ElementRest& rest, const Tet& tet, std::uint32_t vertex) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (tet[a + 1] == vertex) return rest.s[a];
+  }
+  return -(rest.s[0] + rest.s[1] + rest.s[2]);
+}
+
+}  // namespace
+
+void reassemble_edges(const Body& body, const TissueBlock& block, std::uint32_t element,
+                      const detail::VertexStars& stars, const std::function<bool(std::uint32_t)>& in_submesh,
+                      const std::function<std::uint32_t(std::uint32_t)>& local, EdgeBatches& edges, std::size_t lanes) {
+  const Tet& corners = body.elements[element];
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = a + 1; b < 4; ++b) {
+      const bool ordered = local(corners[a]) < local(corners[b]);
+      const std::uint32_t i = corners[ordered ? a : b], j = corners[ordered ? b : a];
+      Mat3d sum;
+      for (const std::uint32_t e : stars.tets_at(i)) {
+        const Tet& t = body.elements[e];
+        if (std::find(t.begin(), t.end(), j) == t.end() || !in_submesh(e)) continue;
+        const ElementRest& rest = body.rest[e];
+        const Mat3d share = edge_tensor(block, rest.volume, shape_gradient(rest, t, i), shape_gradient(rest, t, j));
+        for (std::size_t k = 0; k < 9; ++k) sum(k / 3, k % 3) += share(k / 3, k % 3);
+      }
+      const std::size_t at = find_edge(edges, {local(i), local(j)}, lanes);
+      float* tensor = edges.tensor.data() + at % edges.count * 9 * lanes + at / edges.count;
+      for (std::size_t k = 0; k < 9; ++k) tensor[k * lanes] = static_cast<float>(sum(k / 3, k % 3));
+    }
+  }
+}
+
 }  // namespace glisson::engine

@@ -61,7 +61,7 @@ inline float edges_elastic(const Edges& e) {
     const std::uint16_t* index = e.index + b * 2 * kLanes;
     F T[9];
     load_tensor(e.tensor + b * 9 * kLanes, T);
-    const Xyz u = difference_u(e.states, index + kLanes, index);
+    const Xyz u = Origin<false>(e.states, index).difference(index + kLanes).u;
     longest = hn::Max(longest, squared(u));
     add_forces(e.elastic, index, product(T, u));
     add_forces(e.elastic, index + kLanes, minus(transposed_product(T, u)));
@@ -79,7 +79,7 @@ inline float edges_viscous(const Edges& e) {
     const std::uint16_t* index = e.index + k * 2 * kLanes;
     F T[9];
     load_tensor(e.tensor + k * 9 * kLanes, T);
-    const UV difference = difference_uv(e.states, index + kLanes, index);
+    const UV difference = Origin<true>(e.states, index).difference(index + kLanes);
     longest = hn::Max(longest, squared(difference.u));
     if constexpr (kSplit) {
       push_edge(e.elastic, index, T, scaled(lambda, difference.u), scaled(mu, difference.u));

@@ -7,7 +7,7 @@
 namespace glisson::engine {
 
 ElementBody::ElementBody(const Body& body, std::span<const double> nodal_damping, Precision precision)
-    : body_(body), tissue_(make_element_operator(body, precision)),
+    : body_(body), precision_(precision), tissue_(make_element_operator(body, precision)),
       damping_(nodal_damping.begin(), nodal_damping.end()), is_watched_(body.vertex_count, 0) {
   for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->assign(body.vertex_count, Vec3d{});
 }
@@ -21,6 +21,18 @@ void ElementBody::set_state(std::span<const Vec3d> displacement, std::span<const
 void ElementBody::read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const {
   std::copy(u_.begin(), u_.end(), displacement.begin());
   std::copy(v_.begin(), v_.end(), velocity.begin());
+}
+
+void ElementBody::apply(const BodyChange& change, const detail::VertexStars&, std::span<const double> nodal_damping) {
+  for (const std::uint32_t origin : change.origins) {
+    u_.push_back(Vec3d(u_[origin]));
+    v_.push_back(Vec3d(v_[origin]));
+  }
+  elastic_.resize(u_.size());
+  viscous_.resize(u_.size());
+  is_watched_.resize(u_.size(), 0);
+  damping_.assign(nodal_damping.begin(), nodal_damping.end());
+  tissue_ = make_element_operator(body_, precision_);
 }
 
 void ElementBody::watch(std::span<const std::uint32_t> vertices) {

@@ -18,6 +18,11 @@ class ElementBody final : public MovingBody {
 
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
   void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const override;
+  Vec3d displacement_of(std::uint32_t vertex) const override { return u_[vertex]; }
+  Vec3d velocity_of(std::uint32_t vertex) const override { return v_[vertex]; }
+  /// Cost: one pass over the elements.
+  void apply(const BodyChange& change, const detail::VertexStars& stars,
+             std::span<const double> nodal_damping) override;
   void watch(std::span<const std::uint32_t> vertices) override;
   std::span<WatchedVertex> watched() override { return watched_; }
   void place_watched() override;
@@ -27,6 +32,7 @@ class ElementBody final : public MovingBody {
   void book(std::size_t vertex, const Vec3d& before, const Vec3d& weight);
 
   const Body& body_;
+  Precision precision_;
   std::unique_ptr<ForceOperator> tissue_;
   std::vector<double> damping_;
   std::vector<Vec3d> u_, v_, elastic_, viscous_;

@@ -78,6 +78,14 @@ HWY_INLINE Point force(const Stress<V>& t, const V (&s)[3]) {
           MulAdd(t.zz, s[2], MulAdd(t.yz, s[1], t.zx * s[0]))};
 }
 
+/// The same, added to what another tet exerts on the vertex.
+template <class V, class Point>
+HWY_INLINE Point force_beside(const Stress<V>& t, const V (&s)[3], const Point& f) {
+  return {MulAdd(t.zx, s[2], MulAdd(t.xy, s[1], MulAdd(t.xx, s[0], f.x))),
+          MulAdd(t.yz, s[2], MulAdd(t.yy, s[1], MulAdd(t.xy, s[0], f.y))),
+          MulAdd(t.zz, s[2], MulAdd(t.yz, s[1], MulAdd(t.zx, s[0], f.z)))};
+}
+
 /// What the measure and the stable step need of H.
 template <class V>
 struct Invariants {

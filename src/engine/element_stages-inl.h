@@ -44,34 +44,23 @@ HWY_INLINE Stress<F> sum(const Stress<F>& a, const Stress<F>& b) {
   return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.yz + b.yz, a.zx + b.zx};
 }
 
-inline void gather_elastic(const Elements& e, std::size_t begin, std::size_t n, Block& block) {
-  for (std::size_t b = 0; b < n; ++b) {
-    const std::uint16_t* index = e.index + (begin + b) * kPairVertices * kLanes;
-    const float* rest = e.rest + (begin + b) * 2 * kTetRest * kLanes;
-    const auto difference = [&](std::size_t a) { return difference_u(e.states, index + a * kLanes, index); };
-    const Xyz u2 = difference(2), u3 = difference(3);
-    for (std::size_t tet = 0; tet < 2; ++tet) {
-      F s[3][3];
-      load_gradients(rest + tet * kTetRest * kLanes, s);
-      store_gradient(gradient(difference(tet == 0 ? 1 : 4), u2, u3, s), block.gradient + (2 * b + tet) * 9 * kLanes);
-    }
-  }
-}
-
-inline void gather_viscous(const Elements& e, std::size_t begin, std::size_t n, Block& block) {
+template <bool kViscous>
+inline void gather(const Elements& e, std::size_t begin, std::size_t n, Block& block) {
   const F lambda = hn::Set(Lanes(), e.tissue.viscous_lambda), mu = hn::Set(Lanes(), e.tissue.viscous_mu);
   for (std::size_t b = 0; b < n; ++b) {
     const std::uint16_t* index = e.index + (begin + b) * kPairVertices * kLanes;
     const float* rest = e.rest + (begin + b) * 2 * kTetRest * kLanes;
-    const auto difference = [&](std::size_t a) { return difference_uv(e.states, index + a * kLanes, index); };
-    const UV d2 = difference(2), d3 = difference(3);
+    const Origin<kViscous> origin(e.states, index);
+    const UV d2 = origin.difference(index + 2 * kLanes), d3 = origin.difference(index + 3 * kLanes);
     for (std::size_t tet = 0; tet < 2; ++tet) {
-      const UV d1 = difference(tet == 0 ? 1 : 4);
+      const UV d1 = origin.difference(index + (tet == 0 ? 1 : 4) * kLanes);
       const std::size_t item = 2 * b + tet;
       F s[3][3];
       load_gradients(rest + tet * kTetRest * kLanes, s);
       store_gradient(gradient(d1.u, d2.u, d3.u, s), block.gradient + item * 9 * kLanes);
-      store_stress(stress(gradient(d1.v, d2.v, d3.v, s), lambda, mu), block.viscous + item * 6 * kLanes);
+      if constexpr (kViscous) {
+        store_stress(stress(gradient(d1.v, d2.v, d3.v, s), lambda, mu), block.viscous + item * 6 * kLanes);
+      }
     }
   }
 }
@@ -105,12 +94,14 @@ HWY_INLINE void push_pair(float* forces, const std::uint16_t* index, const float
                           const Stress<F>& B) {
   F s[3][3];
   load_gradients(rest, s);
-  const Xyz f1 = force<F, Xyz>(A, s[0]), a2 = force<F, Xyz>(A, s[1]), a3 = force<F, Xyz>(A, s[2]);
-  load_gradients(rest + kTetRest * kLanes, s);
-  const Xyz f4 = force<F, Xyz>(B, s[0]), b2 = force<F, Xyz>(B, s[1]), b3 = force<F, Xyz>(B, s[2]);
-  const Xyz f2{a2.x + b2.x, a2.y + b2.y, a2.z + b2.z}, f3{a3.x + b3.x, a3.y + b3.y, a3.z + b3.z};
+  const Xyz f1 = force<F, Xyz>(A, s[0]);
   add_forces(forces, index + kLanes, f1);
+  Xyz f2 = force<F, Xyz>(A, s[1]), f3 = force<F, Xyz>(A, s[2]);
+  load_gradients(rest + kTetRest * kLanes, s);
+  const Xyz f4 = force<F, Xyz>(B, s[0]);
   add_forces(forces, index + 4 * kLanes, f4);
+  f2 = force_beside(B, s[1], f2);
+  f3 = force_beside(B, s[2], f3);
   add_forces(forces, index + 2 * kLanes, f2);
   add_forces(forces, index + 3 * kLanes, f3);
   const auto minus = [](F a, F b, F c, F e) { return hn::Neg((a + b) + (c + e)); };
@@ -118,29 +109,30 @@ HWY_INLINE void push_pair(float* forces, const std::uint16_t* index, const float
              {minus(f1.x, f4.x, f2.x, f3.x), minus(f1.y, f4.y, f2.y, f3.y), minus(f1.z, f4.z, f2.z, f3.z)});
 }
 
-enum class Push { elastic, merged, split };
+/// Whose stress a push carries.
+enum class Push { elastic, viscous, merged };
+
+/// −V σ of one tet of a batch.
+template <Push P>
+HWY_INLINE Stress<F> weighted_stress(const Elements& e, const Block& block, std::size_t item, F minus_volume) {
+  const Lanes d;
+  if constexpr (P == Push::viscous) return scaled(load_stress(block.viscous + item * 6 * kLanes), minus_volume);
+  const F lambda = hn::Set(d, e.tissue.lambda) * hn::Load(d, block.value[0] + item * kLanes);
+  const F mu = hn::Set(d, e.tissue.mu) * hn::Load(d, block.value[e.mu_law] + item * kLanes);
+  const Stress<F> elastic = stress(load_gradient(block.gradient + item * 9 * kLanes), lambda, mu);
+  if constexpr (P == Push::elastic) return scaled(elastic, minus_volume);
+  return scaled(sum(elastic, load_stress(block.viscous + item * 6 * kLanes)), minus_volume);
+}
 
 template <Push P>
 inline void push(const Elements& e, std::size_t begin, std::size_t n, const Block& block) {
-  const Lanes d;
-  const F lambda = hn::Set(d, e.tissue.lambda), mu = hn::Set(d, e.tissue.mu);
+  float* forces = P == Push::viscous ? e.viscous : e.elastic;
   for (std::size_t b = 0; b < n; ++b) {
     const std::uint16_t* index = e.index + (begin + b) * kPairVertices * kLanes;
     const float* rest = e.rest + (begin + b) * 2 * kTetRest * kLanes;
-    Stress<F> total[2], viscous[2];
-    for (std::size_t tet = 0; tet < 2; ++tet) {
-      const std::size_t item = 2 * b + tet;
-      const F volume = hn::Load(d, rest + (tet * kTetRest + 9) * kLanes);
-      const F l = lambda * hn::Load(d, block.value[0] + item * kLanes);
-      const F m = mu * hn::Load(d, block.value[e.mu_law] + item * kLanes);
-      total[tet] = stress(load_gradient(block.gradient + item * 9 * kLanes), l, m);
-      if constexpr (P != Push::elastic) viscous[tet] = load_stress(block.viscous + item * 6 * kLanes);
-      if constexpr (P == Push::merged) total[tet] = sum(total[tet], viscous[tet]);
-      total[tet] = scaled(total[tet], volume);
-      if constexpr (P == Push::split) viscous[tet] = scaled(viscous[tet], volume);
-    }
-    push_pair(e.elastic, index, rest, total[0], total[1]);
-    if constexpr (P == Push::split) push_pair(e.viscous, index, rest, viscous[0], viscous[1]);
+    const auto minus_volume = [&](std::size_t tet) { return hn::Load(Lanes(), rest + (tet * kTetRest + 9) * kLanes); };
+    push_pair(forces, index, rest, weighted_stress<P>(e, block, 2 * b, minus_volume(0)),
+              weighted_stress<P>(e, block, 2 * b + 1, minus_volume(1)));
   }
 }
 

@@ -30,7 +30,7 @@ double pair_flops_per_tet(const ElementFlops& f, const Tissue& tissue) {
   const double fields = tissue.viscosity > 0.0 ? 2.0 : 1.0;
   const double differences = 2.0 * kDifference * fields;
   const double stresses = static_cast<double>(f.gradient + f.stress) * fields + 6.0 * (fields - 1.0) + 6.0 + 2.0;
-  const double forces = 3.0 * static_cast<double>(f.force) + 3.0 + 4.5;
+  const double forces = 3.0 * static_cast<double>(f.force) + 3.0 + 4.5;  // joined on two vertices, summed on one
   return differences + stresses + static_cast<double>(f.measure[static_cast<std::size_t>(tissue.measure)]) +
          laws_flops(tissue) + forces;
 }

@@ -40,7 +40,7 @@ struct Elements {
   const float* states = nullptr;         ///< float records, kStateFloats a local vertex
   const std::uint16_t* index = nullptr;  ///< [batch][5][lane]
   const float* rest = nullptr;           ///< [batch][20][lane]
-  float* elastic = nullptr;              ///< force records; with `viscous` null they take the whole force
+  float* elastic = nullptr;              ///< force records, of the whole force where that is pushed as one
   float* viscous = nullptr;
   LaneTissue tissue;
   std::size_t mu_law = 0;  ///< which of the block's two laws scales μ: 0 for a law on E
@@ -69,8 +69,8 @@ struct VertexWork {
 };
 
 struct Kick {
-  double step = 0;                  ///< h [s]
-  std::array<double, 4> gravity{};  ///< [m/s²], w = 0
+  double step = 0;                              ///< h [s]
+  alignas(32) std::array<double, 4> gravity{};  ///< [m/s²], w = 0
 };
 
 /// A linear tissue's submesh by edges.
@@ -105,10 +105,11 @@ struct Kernels {
   /// Largest value and largest slope² y of a block: of a law on E, and of laws on λ and μ.
   void (*watch_young)(const Block&, const LaneTissue&, std::size_t n, StiffnessSeen&) = nullptr;
   void (*watch_lame)(const Block&, const LaneTissue&, std::size_t n, StiffnessSeen&) = nullptr;
-  /// Stress and forces of a block, added to the force records.
+  /// Stress and forces of a block, added to the force records: the elastic ones, the viscous ones (to theirs), or
+  /// both as one.
   void (*push_elastic)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;
+  void (*push_viscous)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;
   void (*push_merged)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;
-  void (*push_split)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;
 
   /// Forces of a linear submesh. @return the largest squared displacement difference of an edge [m²]
   float (*edges_elastic)(const Edges&) = nullptr;

@@ -52,6 +52,9 @@ struct Xyz {
 /// Displacement and velocity of a vertex relative to another.
 struct UV {
   Xyz u, v;
+  UV() = default;
+  HWY_INLINE explicit UV(const Xyz& displacement) : u(displacement) {}
+  HWY_INLINE UV(const Xyz& displacement, const Xyz& velocity) : u(displacement), v(velocity) {}
 };
 
 /// Local vertex indices are stored times kIndexScale, so that one scaled address reaches a 16- or 32-byte record.
@@ -102,16 +105,25 @@ HWY_INLINE void add_block(float* force, hn::Vec<hn::Full128<float>> f) {
 
 #endif
 
+// For each vector size: Origin, the records that differences are taken against, loaded once for all of them;
+// of displacements only where kWithVelocity is false; and add_forces.
 #if HWY_TARGET == HWY_SCALAR
 
-HWY_INLINE UV difference_uv(const float* records, const std::uint16_t* index, const std::uint16_t* origin) {
-  const float *a = state_record(records, *index), *o = state_record(records, *origin);
-  const auto d = [&](std::size_t k) { return hn::Set(Floats(), a[k] - o[k]); };
-  return {{d(0), d(1), d(2)}, {d(4), d(5), d(6)}};
-}
-HWY_INLINE Xyz difference_u(const float* records, const std::uint16_t* index, const std::uint16_t* origin) {
-  return difference_uv(records, index, origin).u;
-}
+template <bool kWithVelocity>
+class Origin {
+ public:
+  HWY_INLINE Origin(const float* records, const std::uint16_t* index)
+      : records_(records), origin_(state_record(records, *index)) {}
+  HWY_INLINE UV difference(const std::uint16_t* index) const {
+    const float* a = state_record(records_, *index);
+    const auto d = [&](std::size_t k) { return hn::Set(Floats(), a[k] - origin_[k]); };
+    return {{d(0), d(1), d(2)}, {d(4), d(5), d(6)}};
+  }
+
+ private:
+  const float *records_, *origin_;
+};
+
 HWY_INLINE void add_forces(float* forces, const std::uint16_t* index, const Xyz& f) {
   float* record = force_record(forces, *index);
   record[0] += hn::GetLane(f.x), record[1] += hn::GetLane(f.y), record[2] += hn::GetLane(f.z);
@@ -119,21 +131,32 @@ HWY_INLINE void add_forces(float* forces, const std::uint16_t* index, const Xyz&
 
 #elif HWY_MAX_BYTES == 16
 
-HWY_INLINE Xyz difference_half(const float* records, const std::uint16_t* index, const std::uint16_t* origin,
-                               std::size_t half) {
-  const Floats d;
-  const auto r = [&](std::size_t lane) {
-    return hn::Sub(hn::Load(d, state_record(records, index[lane]) + half),
-                   hn::Load(d, state_record(records, origin[lane]) + half));
-  };
-  return transpose(r(0), r(1), r(2), r(3));
-}
-HWY_INLINE UV difference_uv(const float* records, const std::uint16_t* index, const std::uint16_t* origin) {
-  return {difference_half(records, index, origin, 0), difference_half(records, index, origin, 4)};
-}
-HWY_INLINE Xyz difference_u(const float* records, const std::uint16_t* index, const std::uint16_t* origin) {
-  return difference_half(records, index, origin, 0);
-}
+template <bool kWithVelocity>
+class Origin {
+ public:
+  HWY_INLINE Origin(const float* records, const std::uint16_t* index) : records_(records) {
+    for (std::size_t l = 0; l < 4; ++l) {
+      u_[l] = half(index, l, 0);
+      if constexpr (kWithVelocity) v_[l] = half(index, l, 4);
+    }
+  }
+  HWY_INLINE UV difference(const std::uint16_t* index) const {
+    const auto of = [&](const F* origin, std::size_t from) {
+      const auto r = [&](std::size_t l) { return hn::Sub(half(index, l, from), origin[l]); };
+      return transpose(r(0), r(1), r(2), r(3));
+    };
+    if constexpr (kWithVelocity) return {of(u_, 0), of(v_, 4)};
+    return UV{of(u_, 0)};
+  }
+
+ private:
+  HWY_INLINE F half(const std::uint16_t* index, std::size_t lane, std::size_t from) const {
+    return hn::Load(Floats(), state_record(records_, index[lane]) + from);
+  }
+  const float* records_;
+  F u_[4], v_[4];
+};
+
 HWY_INLINE void add_forces(float* forces, const std::uint16_t* index, const Xyz& f) {
   const Records r = transpose_back(f);
   add_block(force_record(forces, index[0]), r.r0);
@@ -144,25 +167,35 @@ HWY_INLINE void add_forces(float* forces, const std::uint16_t* index, const Xyz&
 
 #elif HWY_MAX_BYTES == 32
 
-HWY_INLINE UV difference_uv(const float* records, const std::uint16_t* index, const std::uint16_t* origin) {
-  const Floats d;
-  const auto r = [&](std::size_t lane) {
-    return hn::Sub(hn::Load(d, state_record(records, index[lane])), hn::Load(d, state_record(records, origin[lane])));
-  };
-  const Xyz a = transpose(r(0), r(1), r(2), r(3)), b = transpose(r(4), r(5), r(6), r(7));  // blocks: u, v
-  return {{hn::ConcatLowerLower(d, b.x, a.x), hn::ConcatLowerLower(d, b.y, a.y), hn::ConcatLowerLower(d, b.z, a.z)},
-          {hn::ConcatUpperUpper(d, b.x, a.x), hn::ConcatUpperUpper(d, b.y, a.y), hn::ConcatUpperUpper(d, b.z, a.z)}};
-}
-HWY_INLINE Xyz difference_u(const float* records, const std::uint16_t* index, const std::uint16_t* origin) {
-  const Floats d;
-  const hn::Full128<float> block;
-  const auto two = [&](const std::uint16_t* i, std::size_t lane) {
-    return hn::Combine(d, hn::Load(block, state_record(records, i[lane + 4])),
-                       hn::Load(block, state_record(records, i[lane])));
-  };
-  const auto r = [&](std::size_t lane) { return hn::Sub(two(index, lane), two(origin, lane)); };
-  return transpose(r(0), r(1), r(2), r(3));
-}
+template <bool kWithVelocity>
+class Origin {
+ public:
+  HWY_INLINE Origin(const float* records, const std::uint16_t* index) : records_(records) {
+    for (std::size_t k = 0; k < kCount; ++k) r_[k] = load(index, k);
+  }
+  HWY_INLINE UV difference(const std::uint16_t* index) const {
+    const Floats d;
+    const auto r = [&](std::size_t k) { return hn::Sub(load(index, k), r_[k]); };
+    const Xyz a = transpose(r(0), r(1), r(2), r(3));
+    if constexpr (!kWithVelocity) return UV{a};
+    const Xyz b = transpose(r(4), r(5), r(6), r(7));  // blocks: u, v
+    return {{hn::ConcatLowerLower(d, b.x, a.x), hn::ConcatLowerLower(d, b.y, a.y), hn::ConcatLowerLower(d, b.z, a.z)},
+            {hn::ConcatUpperUpper(d, b.x, a.x), hn::ConcatUpperUpper(d, b.y, a.y), hn::ConcatUpperUpper(d, b.z, a.z)}};
+  }
+
+ private:
+  static constexpr std::size_t kCount = kWithVelocity ? 8 : 4;
+  /// u and v of lane k, or u of lanes k and k + 4.
+  HWY_INLINE F load(const std::uint16_t* index, std::size_t k) const {
+    if constexpr (kWithVelocity) return hn::Load(Floats(), state_record(records_, index[k]));
+    const hn::Full128<float> block;
+    return hn::Combine(Floats(), hn::Load(block, state_record(records_, index[k + 4])),
+                       hn::Load(block, state_record(records_, index[k])));
+  }
+  const float* records_;
+  F r_[kCount];
+};
+
 HWY_INLINE void add_forces(float* forces, const std::uint16_t* index, const Xyz& f) {
   const Records r = transpose_back(f);
   const auto add = [&](std::size_t lane, F records) {
@@ -180,30 +213,38 @@ using Half = hn::Half<Floats>;
 HWY_INLINE F even_blocks(F a, F b) { return F{_mm512_shuffle_f32x4(a.raw, b.raw, 0x88)}; }
 HWY_INLINE F odd_blocks(F a, F b) { return F{_mm512_shuffle_f32x4(a.raw, b.raw, 0xDD)}; }
 
-HWY_INLINE F two_states(const float* records, const std::uint16_t* i, std::size_t lane) {
-  return hn::Combine(Floats(), hn::Load(Half(), state_record(records, i[lane + 4])),
-                     hn::Load(Half(), state_record(records, i[lane])));
-}
-HWY_INLINE UV difference_uv(const float* records, const std::uint16_t* index, const std::uint16_t* origin) {
-  const auto r = [&](std::size_t lane) {
-    return hn::Sub(two_states(records, index, lane), two_states(records, origin, lane));
-  };
-  const Xyz a = transpose(r(0), r(1), r(2), r(3)), b = transpose(r(8), r(9), r(10), r(11));  // blocks: u, v, u, v
-  return {{even_blocks(a.x, b.x), even_blocks(a.y, b.y), even_blocks(a.z, b.z)},
-          {odd_blocks(a.x, b.x), odd_blocks(a.y, b.y), odd_blocks(a.z, b.z)}};
-}
-HWY_INLINE F four_displacements(const float* records, const std::uint16_t* i, std::size_t lane) {
-  const hn::Full128<float> block;
-  const auto load = [&](std::size_t l) { return hn::Load(block, state_record(records, i[l])); };
-  return hn::Combine(Floats(), hn::Combine(Half(), load(lane + 12), load(lane + 8)),
-                     hn::Combine(Half(), load(lane + 4), load(lane)));
-}
-HWY_INLINE Xyz difference_u(const float* records, const std::uint16_t* index, const std::uint16_t* origin) {
-  const auto r = [&](std::size_t lane) {
-    return hn::Sub(four_displacements(records, index, lane), four_displacements(records, origin, lane));
-  };
-  return transpose(r(0), r(1), r(2), r(3));
-}
+template <bool kWithVelocity>
+class Origin {
+ public:
+  HWY_INLINE Origin(const float* records, const std::uint16_t* index) : records_(records) {
+    for (std::size_t k = 0; k < kCount; ++k) r_[k] = load(index, k);
+  }
+  HWY_INLINE UV difference(const std::uint16_t* index) const {
+    const auto r = [&](std::size_t k) { return hn::Sub(load(index, k), r_[k]); };
+    const Xyz a = transpose(r(0), r(1), r(2), r(3));
+    if constexpr (!kWithVelocity) return UV{a};
+    const Xyz b = transpose(r(4), r(5), r(6), r(7));  // blocks: u, v, u, v
+    return {{even_blocks(a.x, b.x), even_blocks(a.y, b.y), even_blocks(a.z, b.z)},
+            {odd_blocks(a.x, b.x), odd_blocks(a.y, b.y), odd_blocks(a.z, b.z)}};
+  }
+
+ private:
+  static constexpr std::size_t kCount = kWithVelocity ? 8 : 4;
+  /// u and v of two lanes, four apart: k and k + 4 for k below 4, else k + 4 and k + 8; or u of four lanes.
+  HWY_INLINE F load(const std::uint16_t* index, std::size_t k) const {
+    if constexpr (kWithVelocity) {
+      const std::size_t lane = k < 4 ? k : k + 4;
+      const auto state = [&](std::size_t l) { return hn::Load(Half(), state_record(records_, index[l])); };
+      return hn::Combine(Floats(), state(lane + 4), state(lane));
+    } else {
+      const auto u = [&](std::size_t l) { return hn::Load(hn::Full128<float>(), state_record(records_, index[l])); };
+      return hn::Combine(Floats(), hn::Combine(Half(), u(k + 12), u(k + 8)), hn::Combine(Half(), u(k + 4), u(k)));
+    }
+  }
+  const float* records_;
+  F r_[kCount];
+};
+
 HWY_INLINE void add_forces(float* forces, const std::uint16_t* index, const Xyz& f) {
   const Records r = transpose_back(f);
   const hn::Full128<float> block;
@@ -218,7 +259,7 @@ HWY_INLINE void add_forces(float* forces, const std::uint16_t* index, const Xyz&
 }
 
 #else
-#error "lanes-inl.h: no transpose for this vector size yet; see difference_uv"
+#error "lanes-inl.h: no transpose for this vector size yet; see Origin"
 #endif
 
 }  // namespace glisson::engine::HWY_NAMESPACE

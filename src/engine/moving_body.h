@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "glisson/math.h"
+#include "mechanics/body_change.h"
 
 namespace glisson {
 
@@ -47,6 +48,15 @@ class MovingBody {
 
   virtual void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) = 0;
   virtual void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const = 0;
+
+  virtual Vec3d displacement_of(std::uint32_t vertex) const = 0;
+  virtual Vec3d velocity_of(std::uint32_t vertex) const = 0;
+
+  /// Takes over what has changed in the body (BodyChanger has changed it already). New vertices begin in the
+  /// state of those they are copies of, and are not watched.
+  /// @param nodal_damping  γ_i of every vertex, new ones included [kg/s]
+  virtual void apply(const BodyChange& change, const detail::VertexStars& stars,
+                     std::span<const double> nodal_damping) = 0;
 
   /// Adds vertices to those watched; one that is watched already stays so.
   virtual void watch(std::span<const std::uint32_t> vertices) = 0;

@@ -68,29 +68,25 @@ void number_records(const Body& body, const std::vector<std::uint32_t>& owner, S
   }
 }
 
+bool in_interior(const Submesh& part, std::uint32_t record) {
+  return record >= part.first_interior && record < part.first_interior + part.interior_count;
+}
+
 /// Local vertices of a submesh's elements; its list of shared records is made on the way.
 std::vector<Tet> number_locally(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, Submesh& part) {
-  const auto in_interior = [&](std::uint32_t r) {
-    return r >= part.first_interior && r < part.first_interior + part.interior_count;
-  };
   part.shared.clear();
   for (const std::uint32_t e : part.elements) {
     for (const std::uint32_t v : body.elements[e]) {
-      if (!in_interior(record_of_vertex[v])) part.shared.push_back(record_of_vertex[v]);
+      if (!in_interior(part, record_of_vertex[v])) part.shared.push_back(record_of_vertex[v]);
     }
   }
   std::sort(part.shared.begin(), part.shared.end());
   part.shared.erase(std::unique(part.shared.begin(), part.shared.end()), part.shared.end());
   std::vector<Tet> local;
   for (const std::uint32_t e : part.elements) {
-    Tet t{};
-    for (std::size_t a = 0; a < 4; ++a) {
-      const std::uint32_t r = record_of_vertex[body.elements[e][a]];
-      const auto at = std::lower_bound(part.shared.begin(), part.shared.end(), r) - part.shared.begin();
-      t[a] = static_cast<std::uint32_t>(in_interior(r) ? r - part.first_interior
-                                                       : part.interior_count + static_cast<std::size_t>(at));
-    }
-    local.push_back(t);
+    const Tet& t = body.elements[e];
+    local.push_back({part.local_of_record(record_of_vertex[t[0]]), part.local_of_record(record_of_vertex[t[1]]),
+                     part.local_of_record(record_of_vertex[t[2]]), part.local_of_record(record_of_vertex[t[3]])});
   }
   return local;
 }
@@ -99,6 +95,12 @@ std::vector<Tet> number_locally(const Body& body, const std::vector<std::uint32_
 
 bool is_linear(const TissueBlock& block) {
   return std::holds_alternative<ConstantLaw>(block.tissue.law) && !block.tissue.lambda_law && !block.tissue.mu_law;
+}
+
+std::uint32_t Submesh::local_of_record(std::uint32_t record) const {
+  if (in_interior(*this, record)) return record - static_cast<std::uint32_t>(first_interior);
+  const auto at = std::lower_bound(shared.begin(), shared.end(), record) - shared.begin();
+  return static_cast<std::uint32_t>(interior_count) + static_cast<std::uint32_t>(at);
 }
 
 void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, Submesh& part, std::size_t lanes) {

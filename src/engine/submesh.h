@@ -56,6 +56,8 @@ struct Submesh {
   float gradient_reach = 0.0F;  ///< largest Σ |s_a| of a tet [1/m]: |H| is at most this times the longest |δu|
 
   std::size_t local_vertices() const { return interior_count + shared.size(); }
+  /// Local vertex of a state record that is one of its own.
+  std::uint32_t local_of_record(std::uint32_t record) const;
 };
 
 /// Interface vertices and the slots in which submeshes leave their forces on them.

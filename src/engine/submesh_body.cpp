@@ -30,8 +30,7 @@ struct SubmeshBody::Scratch {
   LaneVector<float> states, elastic, viscous;
   Block block;
 
-  void make_room(std::size_t vertices, std::size_t threads_share) {
-    const std::size_t n = std::max(vertices, threads_share);
+  void make_room(std::size_t n) {
     states.resize(std::max(states.size(), n * kStateFloats));
     elastic.resize(std::max(elastic.size(), force_floats(n)));
     viscous.resize(elastic.size());
@@ -67,7 +66,6 @@ SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping
       submeshes_(build_submeshes(body, kernels_.lanes, options.submesh_tets)),
       pool_(options.threads > 0 ? options.threads : threads_for(body.elements.size())),
       state_(body.vertex_count * kStateDoubles, 0.0), masses_(body.vertex_count), damping_(body.vertex_count),
-      slots_elastic_(submeshes_.interface.slot_count * kForceFloats, 0.0F), slots_viscous_(slots_elastic_),
       watches_(submeshes_.parts.size()), holds_watched_(submeshes_.parts.size(), 0),
       looked_(submeshes_.parts.size(), Looked::small), found_(submeshes_.parts.size()) {
   for (const TissueBlock& block : body.blocks) plans_.push_back(plan_of(block));
@@ -75,18 +73,26 @@ SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping
     masses_[submeshes_.record_of_vertex[v]] = body.masses[v];
     damping_[submeshes_.record_of_vertex[v]] = nodal_damping[v];
   }
-  const std::size_t chunks = (submeshes_.interface.size() + kInterfaceChunk - 1) / kInterfaceChunk;
-  interface_watches_.resize(chunks);
-  interface_found_.resize(chunks);
-  std::size_t largest = 0;
-  for (const Submesh& part : submeshes_.parts) largest = std::max(largest, part.local_vertices());
-  for (int t = 0; t < pool_.threads(); ++t) {
-    scratch_.push_back(std::make_unique<Scratch>());
-    scratch_.back()->make_room(largest, kInterfaceChunk);
-  }
+  make_room();
 }
 
 SubmeshBody::~SubmeshBody() = default;
+
+/// Memory for what depends on the sizes of submeshes and interface.
+void SubmeshBody::make_room() {
+  slots_elastic_.resize(submeshes_.interface.slot_count * kForceFloats);
+  slots_viscous_.resize(slots_elastic_.size());
+  const std::size_t chunks = (submeshes_.interface.size() + kInterfaceChunk - 1) / kInterfaceChunk;
+  interface_watches_.resize(chunks);
+  interface_found_.resize(chunks);
+  std::size_t largest = kInterfaceChunk;
+  for (const Submesh& part : submeshes_.parts) largest = std::max(largest, part.local_vertices());
+  scratch_.resize(static_cast<std::size_t>(pool_.threads()));
+  for (auto& scratch : scratch_) {
+    if (scratch == nullptr) scratch = std::make_unique<Scratch>();
+    scratch->make_room(largest);
+  }
+}
 
 void SubmeshBody::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
   for (std::size_t v = 0; v < displacement.size(); ++v) {
@@ -105,31 +111,42 @@ void SubmeshBody::read_state(std::span<Vec3d> displacement, std::span<Vec3d> vel
   }
 }
 
+Vec3d SubmeshBody::displacement_of(std::uint32_t vertex) const {
+  return vector_of(state_.data() + submeshes_.record_of_vertex[vertex] * kStateDoubles);
+}
+Vec3d SubmeshBody::velocity_of(std::uint32_t vertex) const {
+  return vector_of(state_.data() + submeshes_.record_of_vertex[vertex] * kStateDoubles + 4);
+}
+
 void SubmeshBody::watch(std::span<const std::uint32_t> vertices) {
   std::vector<std::uint32_t> all(vertices.begin(), vertices.end());
   for (const WatchedVertex& w : watched_) all.push_back(w.vertex);
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
-
   std::vector<WatchedVertex> now;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> records;  // record, place
   for (const std::uint32_t v : all) {
-    const double* record = state_.data() + submeshes_.record_of_vertex[v] * kStateDoubles;
     const auto known = std::lower_bound(watched_.begin(), watched_.end(), v,
                                         [](const WatchedVertex& w, std::uint32_t vertex) { return w.vertex < vertex; });
     const bool was = known != watched_.end() && known->vertex == v;
-    now.push_back(was ? *known : WatchedVertex{v, {}, {}, vector_of(record), vector_of(record + 4)});
-    records.emplace_back(submeshes_.record_of_vertex[v], static_cast<std::uint32_t>(now.size() - 1));
+    now.push_back(was ? *known : WatchedVertex{v, {}, {}, displacement_of(v), velocity_of(v)});
   }
   watched_ = std::move(now);
+  find_watches();
+}
 
+/// Sorts the watched vertices to the submesh or the run of the interface that has them.
+void SubmeshBody::find_watches() {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> records;  // record, place
+  std::vector<char> is_watched(masses_.size(), 0);
+  for (std::uint32_t place = 0; place < watched_.size(); ++place) {
+    records.emplace_back(submeshes_.record_of_vertex[watched_[place].vertex], place);
+    is_watched[records.back().first] = 1;
+  }
   std::sort(records.begin(), records.end());
   for (auto& list : watches_) list.clear();
   for (auto& list : interface_watches_) list.clear();
-  std::vector<char> is_watched(state_.size() / kStateDoubles, 0);
   std::size_t s = 0;
   for (const auto& [record, place] : records) {
-    is_watched[record] = 1;
     if (record >= submeshes_.interface.first_record) {
       const std::size_t k = record - submeshes_.interface.first_record;
       interface_watches_[k / kInterfaceChunk].push_back({static_cast<std::uint32_t>(k % kInterfaceChunk), place});
@@ -153,16 +170,18 @@ void SubmeshBody::place_watched() {
   }
 }
 
-/// c = h/(m + γh) and d = γh/(m + γh) of every record; a vertex without mass does not move.
+/// c = h/(m + γh) and d = γh/(m + γh) of a record; a vertex without mass does not move.
+void SubmeshBody::set_coefficients(std::size_t record) {
+  const double denominator = masses_[record] + damping_[record] * step_;
+  const bool moves = masses_[record] > 0.0;
+  state_[record * kStateDoubles + 3] = moves ? step_ / denominator : 0.0;
+  state_[record * kStateDoubles + 7] = moves ? damping_[record] * step_ / denominator : 1.0;
+}
+
 void SubmeshBody::set_step(double h) {
   if (h == step_) return;
   step_ = h;
-  for (std::size_t r = 0; r < masses_.size(); ++r) {
-    const double denominator = masses_[r] + damping_[r] * h;
-    const bool moves = masses_[r] > 0.0;
-    state_[r * kStateDoubles + 3] = moves ? h / denominator : 0.0;
-    state_[r * kStateDoubles + 7] = moves ? damping_[r] * h / denominator : 1.0;
-  }
+  for (std::size_t record = 0; record < masses_.size(); ++record) set_coefficients(record);
 }
 
 /// Whether elastic and viscous forces of a submesh are kept apart.
@@ -171,6 +190,7 @@ bool SubmeshBody::splits(std::size_t s, bool accounted) const {
 }
 
 void SubmeshBody::narrow(const Submesh& part, Scratch& scratch) const {
+  if (part.local_vertices() == 0) return;
   const double* own = state_.data() + part.first_interior * kStateDoubles;
   const double* origin = part.interior_count > 0 ? own : state_.data() + part.shared[0] * kStateDoubles;
   kernels_.narrow(own, origin, part.interior_count, scratch.states.data());
@@ -188,7 +208,7 @@ void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratc
                           .tissue = plan.tissue,
                           .mu_law = plan.laws - 1};
   const auto gather = plan.viscous ? kernels_.gather_viscous : kernels_.gather_elastic;
-  const auto push = split ? kernels_.push_split : (plan.viscous ? kernels_.push_merged : kernels_.push_elastic);
+  const auto push = plan.viscous && !split ? kernels_.push_merged : kernels_.push_elastic;
   const auto look = plan.laws == 2 ? kernels_.watch_lame : kernels_.watch_young;
   Block& block = scratch.block;
   for (std::size_t b = 0; b < part.pairs.count; b += kBlockBatches) {
@@ -200,6 +220,7 @@ void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratc
     }
     look(block, plan.tissue, values, found.stiffness);
     push(elements, b, n, block);
+    if (split) kernels_.push_viscous(elements, b, n, block);
   }
 }
 

@@ -33,6 +33,10 @@ class SubmeshBody final : public MovingBody {
 
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
   void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const override;
+  Vec3d displacement_of(std::uint32_t vertex) const override;
+  Vec3d velocity_of(std::uint32_t vertex) const override;
+  void apply(const BodyChange& change, const detail::VertexStars& stars,
+             std::span<const double> nodal_damping) override;
   void watch(std::span<const std::uint32_t> vertices) override;
   std::span<WatchedVertex> watched() override { return watched_; }
   void place_watched() override;
@@ -73,6 +77,13 @@ class SubmeshBody final : public MovingBody {
 
   static Plan plan_of(const TissueBlock& block);
   void set_step(double h);
+  void set_coefficients(std::size_t record);
+  void make_room();
+  void find_watches();
+  void find_parts();
+  void add_records(std::span<const std::uint32_t> origins);
+  void take_out(std::uint32_t element, const detail::VertexStars& stars);
+  void lay_out_touched(std::span<const detail::CornerChange> corners);
   void run_submesh(std::size_t s, const Step& step, Scratch& scratch);
   void narrow(const Submesh& part, Scratch& scratch) const;
   void push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;
@@ -108,6 +119,7 @@ class SubmeshBody final : public MovingBody {
   std::vector<Looked> looked_;                         ///< per submesh
   std::vector<Findings> found_, interface_found_;
   Advance advance_;
+  std::vector<std::uint32_t> part_of_element_;  ///< submesh of each element; empty until something changes
 };
 
 }  // namespace glisson::engine

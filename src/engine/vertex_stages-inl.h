@@ -20,11 +20,16 @@ using D4 = hn::Vec<Doubles>;
 using Narrow = hn::Rebind<float, Doubles>;
 inline constexpr std::size_t kDoubles = HWY_TARGET == HWY_SCALAR ? 1 : (HWY_MAX_BYTES >= 32 ? 4 : 2);
 
+/// A whole state record, or as much of it as a vector holds.
+using Record = hn::CappedTag<double, kStateDoubles>;
+using NarrowRecord = hn::Rebind<float, Record>;
+inline constexpr std::size_t kRecordLanes = HWY_TARGET == HWY_SCALAR ? 1 : HWY_MAX_BYTES / sizeof(double);
+
 /// Only differences against `origin` reach float, so that a body far from rest loses no digits.
 HWY_INLINE void narrow_one(const double* state, const double* origin, float* out) {
-  for (std::size_t k = 0; k < kStateDoubles; k += kDoubles) {
-    const D4 difference = hn::Sub(hn::Load(Doubles(), state + k), hn::Load(Doubles(), origin + k));
-    hn::Store(hn::DemoteTo(Narrow(), difference), Narrow(), out + k);
+  for (std::size_t k = 0; k < kStateDoubles; k += kRecordLanes) {
+    const auto difference = hn::Sub(hn::Load(Record(), state + k), hn::Load(Record(), origin + k));
+    hn::Store(hn::DemoteTo(NarrowRecord(), difference), NarrowRecord(), out + k);
   }
 }
 
@@ -49,52 +54,80 @@ inline bool all_finite(const float* values, std::size_t n) {
   return hn::AllTrue(d, hn::Eq(sum, sum));
 }
 
-/// The first three of every four doubles from position k.
-HWY_INLINE hn::Mask<Doubles> is_xyz(std::size_t k) { return hn::FirstN(Doubles(), k < 3 ? 3 - k : 0); }
+/// All bits in x, y, z and none in w, for the part from position k. The w of a record are its coefficients: a
+/// change that is masked and a drift by h where this is set leave them as they are.
+HWY_INLINE D4 xyz_bits(std::size_t k) {
+  const Doubles d;
+  return hn::VecFromMask(d, hn::FirstN(d, k < 3 ? 3 - k : 0));
+}
 
-HWY_INLINE void accumulate(double& sum, D4 value) { sum += hn::GetLane(hn::SumOfLanes(Doubles(), value)); }
+/// Sums of VertexWork, a component each.
+struct WorkLanes {
+  D4 elastic_before, elastic_after, viscous_before, viscous_after;
+  D4 damping_before, damping_after, loads_before, loads_after, kinetic;
+
+  HWY_INLINE WorkLanes() {
+    const D4 zero = hn::Zero(Doubles());
+    elastic_before = elastic_after = viscous_before = viscous_after = zero;
+    damping_before = damping_after = loads_before = loads_after = kinetic = zero;
+  }
+  HWY_INLINE void book(D4 elastic, D4 viscous, D4 drag, D4 weight, double half_mass, D4 before, D4 after) {
+    elastic_before = hn::MulAdd(elastic, before, elastic_before),
+    elastic_after = hn::MulAdd(elastic, after, elastic_after);
+    viscous_before = hn::MulAdd(viscous, before, viscous_before),
+    viscous_after = hn::MulAdd(viscous, after, viscous_after);
+    damping_before = hn::MulAdd(drag, before, damping_before), damping_after = hn::MulAdd(drag, after, damping_after);
+    loads_before = hn::MulAdd(weight, before, loads_before), loads_after = hn::MulAdd(weight, after, loads_after);
+    kinetic = hn::MulAdd(hn::Mul(hn::Set(Doubles(), half_mass), before), after, kinetic);
+  }
+  HWY_INLINE void add_to(VertexWork& work) const {
+    const auto sum = [](D4 v) { return hn::GetLane(hn::SumOfLanes(Doubles(), v)); };
+    work.elastic_before += sum(elastic_before), work.elastic_after += sum(elastic_after);
+    work.viscous_before += sum(viscous_before), work.viscous_after += sum(viscous_after);
+    work.damping_before += sum(damping_before), work.damping_after += sum(damping_after);
+    work.loads_before += sum(loads_before), work.loads_after += sum(loads_after);
+    work.kinetic += sum(kinetic);
+  }
+};
 
 template <bool kAccounted>
-HWY_INLINE void advance(double* state, const float* elastic, const float* viscous, const Kick& kick, VertexWork* work) {
+HWY_INLINE void advance(double* state, const float* elastic, const float* viscous, const Kick& kick, WorkLanes& work) {
   const Doubles d;
   const double c = state[3], damping = state[7];
-  const D4 h = hn::Set(d, kick.step), zero = hn::Zero(d);
+  const D4 pull = hn::Set(d, kick.step * (1.0 - damping));
   for (std::size_t k = 0; k < 4; k += kDoubles) {
-    const auto xyz = is_xyz(k);
-    const D4 before = hn::Load(d, state + 4 + k), u = hn::Load(d, state + k);
+    const D4 xyz = xyz_bits(k), h = hn::And(xyz, hn::Set(d, kick.step));
+    const D4 before = hn::Load(d, state + 4 + k), u = hn::Load(d, state + k), g = hn::Load(d, kick.gravity.data() + k);
     const D4 fe = hn::PromoteTo(d, hn::Load(Narrow(), elastic + k));
-    const D4 fv = kAccounted ? hn::PromoteTo(d, hn::Load(Narrow(), viscous + k)) : zero;
-    const D4 pull = hn::Mul(hn::Set(d, kick.step * (1.0 - damping)), hn::Load(d, kick.gravity.data() + k));
-    const D4 change = hn::MulAdd(hn::Set(d, c), hn::Add(fe, fv), hn::NegMulAdd(hn::Set(d, damping), before, pull));
-    const D4 after = hn::Add(before, change);
-    hn::Store(hn::IfThenElse(xyz, after, before), d, state + 4 + k);
-    hn::Store(hn::IfThenElse(xyz, hn::MulAdd(h, after, u), u), d, state + k);
+    D4 force = fe;
+    if constexpr (kAccounted) force = hn::Add(fe, hn::PromoteTo(d, hn::Load(Narrow(), viscous + k)));
+    const D4 change = hn::MulAdd(hn::Set(d, c), force, hn::NegMulAdd(hn::Set(d, damping), before, hn::Mul(pull, g)));
+    const D4 after = hn::Add(before, hn::And(xyz, change));
+    hn::Store(after, d, state + 4 + k);
+    hn::Store(hn::MulAdd(h, after, u), d, state + k);
     if constexpr (kAccounted) {
-      const D4 v0 = hn::IfThenElseZero(xyz, before), v1 = hn::IfThenElseZero(xyz, after);
-      const double mass = c > 0.0 ? kick.step * (1.0 - damping) / c : 0.0;
-      const double gamma = c > 0.0 ? damping / c : 0.0;
-      const D4 weight = hn::Mul(hn::Set(d, mass), hn::Load(d, kick.gravity.data() + k));
-      const D4 drag = hn::Mul(hn::Set(d, -gamma), v1);
-      accumulate(work->elastic_before, hn::Mul(fe, v0)), accumulate(work->elastic_after, hn::Mul(fe, v1));
-      accumulate(work->viscous_before, hn::Mul(fv, v0)), accumulate(work->viscous_after, hn::Mul(fv, v1));
-      accumulate(work->damping_before, hn::Mul(drag, v0)), accumulate(work->damping_after, hn::Mul(drag, v1));
-      accumulate(work->loads_before, hn::Mul(weight, v0)), accumulate(work->loads_after, hn::Mul(weight, v1));
-      accumulate(work->kinetic, hn::Mul(hn::Set(d, 0.5 * mass), hn::Mul(v0, v1)));
+      const D4 v0 = hn::And(xyz, before), v1 = hn::And(xyz, after);
+      const double inverse = c > 0.0 ? 1.0 / c : 0.0, mass = kick.step * (1.0 - damping) * inverse;
+      const D4 drag = hn::Mul(hn::Set(d, -damping * inverse), v1);
+      work.book(fe, hn::Sub(force, fe), drag, hn::Mul(hn::Set(d, mass), g), 0.5 * mass, v0, v1);
     }
   }
 }
 
 inline void integrate(double* state, const float* force, std::size_t n, const Kick& kick) {
+  WorkLanes none;
   for (std::size_t i = 0; i < n; ++i) {
-    advance<false>(state + i * kStateDoubles, force + i * kForceFloats, nullptr, kick, nullptr);
+    advance<false>(state + i * kStateDoubles, force + i * kForceFloats, nullptr, kick, none);
   }
 }
 
 inline void integrate_accounted(double* state, const float* elastic, const float* viscous, std::size_t n,
                                 const Kick& kick, VertexWork& work) {
+  WorkLanes sums;
   for (std::size_t i = 0; i < n; ++i) {
-    advance<true>(state + i * kStateDoubles, elastic + i * kForceFloats, viscous + i * kForceFloats, kick, &work);
+    advance<true>(state + i * kStateDoubles, elastic + i * kForceFloats, viscous + i * kForceFloats, kick, sums);
   }
+  sums.add_to(work);
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

@@ -38,6 +38,10 @@ TissueBlock make_block(const Tissue& tissue, std::size_t begin) {
 
 }  // namespace
 
+const TissueBlock& Body::block_of(std::size_t element) const {
+  return *std::find_if(blocks.begin(), blocks.end(), [&](const TissueBlock& b) { return element < b.end; });
+}
+
 ElementRest element_rest(const std::array<Vec3d, 4>& x) {
   const Vec3d a = x[1] - x[0], b = x[2] - x[0], c = x[3] - x[0];
   const double six_volume = dot(a, cross(b, c));

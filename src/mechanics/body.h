@@ -41,6 +41,8 @@ struct Body {
   std::vector<TissueBlock> blocks;
   std::vector<double> masses;         ///< lumped: a quarter of ρV to each vertex [kg]
   std::vector<Vec3d> rest_positions;  ///< [m]
+
+  const TissueBlock& block_of(std::size_t element) const;
 };
 
 /// @param tissues  by region number; every region of the mesh needs one

@@ -56,14 +56,19 @@ TetFields tet_fields(const Body& body, std::span<const Vec3d> u, std::span<const
   return f;
 }
 
+double element_energy(const Body& body, const TissueBlock& block, std::size_t e, const std::array<Vec3d, 4>& u) {
+  const Mat3d H = displacement_gradient<double>(body.rest[e].s, {u[1] - u[0], u[2] - u[0], u[3] - u[0]});
+  const LameParameters lame = moduli(body, block.tissue, e, H);
+  const double t = trace(H), squares = deviator_squared(H) + t * t / 3.0;
+  return body.rest[e].volume * (0.5 * lame.lambda * t * t + lame.mu * squares);
+}
+
 double secant_energy(const Body& body, std::span<const Vec3d> u) {
   double sum = 0.0;
   for (const TissueBlock& block : body.blocks) {
     for (std::size_t e = block.begin; e < block.end; ++e) {
-      const Mat3d H = element_gradient(body, e, u);
-      const LameParameters lame = moduli(body, block.tissue, e, H);
-      const double t = trace(H), squares = deviator_squared(H) + t * t / 3.0;
-      sum += body.rest[e].volume * (0.5 * lame.lambda * t * t + lame.mu * squares);
+      const Tet& t = body.elements[e];
+      sum += element_energy(body, block, e, {u[t[0]], u[t[1]], u[t[2]], u[t[3]]});
     }
   }
   return sum;

@@ -14,4 +14,7 @@ TetFields tet_fields(const Body& body, std::span<const Vec3d> u, std::span<const
 /// Σ V (½ λ tr(ε)² + μ ε:ε) with the moduli of the present shape [J]: the stored energy of a linear tissue.
 double secant_energy(const Body& body, std::span<const Vec3d> u);
 
+/// The same for one element with the displacements of its four vertices [m].
+double element_energy(const Body& body, const TissueBlock& block, std::size_t e, const std::array<Vec3d, 4>& u);
+
 }  // namespace glisson

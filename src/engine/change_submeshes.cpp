@@ -1,0 +1,75 @@
+// change_submeshes.cpp — a body's change carried into its submeshes; only those it touches are laid out anew.
+//
+//   removed element   pairs: its lane is emptied where it lies         edges: its six are assembled anew
+//   split vertex      the submeshes of the corners that changed are laid out anew; the copies come last among
+//                     the state records, as interface vertices, so that no other record moves
+#include <algorithm>
+
+#include "engine/edge_batches.h"
+#include "engine/pair_batches.h"
+#include "engine/submesh_body.h"
+
+namespace glisson::engine {
+
+void SubmeshBody::find_parts() {
+  part_of_element_.assign(body_.elements.size(), 0);
+  for (std::uint32_t p = 0; p < submeshes_.parts.size(); ++p) {
+    for (const std::uint32_t e : submeshes_.parts[p].elements) part_of_element_[e] = p;
+  }
+}
+
+/// Appends the records of new vertices, with the state of those they are copies of.
+void SubmeshBody::add_records(std::span<const std::uint32_t> origins) {
+  for (const std::uint32_t origin : origins) {
+    const auto record = static_cast<std::uint32_t>(masses_.size());
+    state_.resize(state_.size() + kStateDoubles);
+    std::copy_n(state_.data() + submeshes_.record_of_vertex[origin] * kStateDoubles, kStateDoubles,
+                state_.data() + record * kStateDoubles);
+    submeshes_.record_of_vertex.push_back(record);
+    masses_.push_back(0.0);
+    damping_.push_back(0.0);
+  }
+}
+
+void SubmeshBody::take_out(std::uint32_t element, const detail::VertexStars& stars) {
+  const std::uint32_t p = part_of_element_[element];
+  Submesh& part = submeshes_.parts[p];
+  if (part.edges.count == 0) {
+    clear_element(part.pairs, element, kernels_.lanes);
+    return;
+  }
+  const auto in_part = [&](std::uint32_t e) { return part_of_element_[e] == p; };
+  const auto local = [&](std::uint32_t vertex) { return part.local_of_record(submeshes_.record_of_vertex[vertex]); };
+  reassemble_edges(body_, body_.blocks[part.block], element, stars, in_part, local, part.edges, kernels_.lanes);
+}
+
+void SubmeshBody::lay_out_touched(std::span<const detail::CornerChange> corners) {
+  std::vector<std::uint32_t> touched;
+  for (const detail::CornerChange& c : corners) touched.push_back(part_of_element_[c.tet]);
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  for (const std::uint32_t p : touched) {
+    Submesh& part = submeshes_.parts[p];
+    std::erase_if(part.elements, [&](std::uint32_t e) { return body_.rest[e].volume == 0.0; });
+    lay_out(body_, submeshes_.record_of_vertex, part, kernels_.lanes);
+  }
+  connect(submeshes_);
+  make_room();
+  find_watches();
+}
+
+void SubmeshBody::apply(const BodyChange& change, const detail::VertexStars& stars,
+                        std::span<const double> nodal_damping) {
+  if (part_of_element_.empty()) find_parts();
+  add_records(change.origins);
+  for (const std::uint32_t v : change.touched) {
+    const std::uint32_t record = submeshes_.record_of_vertex[v];
+    masses_[record] = body_.masses[v];
+    damping_[record] = nodal_damping[v];
+    set_coefficients(record);
+  }
+  for (const std::uint32_t e : change.removed) take_out(e, stars);
+  if (!change.corners.empty()) lay_out_touched(change.corners);
+}
+
+}  // namespace glisson::engine
