@@ -1,0 +1,87 @@
+// However the tets fill pairs, batches, blocks and submeshes, the forces are the same.
+#include <gtest/gtest.h>
+
+#include "engine/engine_run.h"
+#include "mechanics/reference.h"
+
+namespace glisson {
+namespace {
+
+/// A body of the first `tets` tets of a jittered box, in a random state.
+struct Patch {
+  TetMesh mesh;
+  std::map<int, Tissue> tissues;
+  std::vector<Vec3d> u, v;
+
+  Patch(std::size_t tets, const Tissue& tissue) : tissues{{0, tissue}} {
+    std::mt19937 random(static_cast<unsigned>(tets));
+    const TetMesh box = test::jittered_box({3, 3, 3}, 0.01, 0.2, random);
+    constexpr std::uint32_t kUnused = 0xffffffff;
+    std::vector<std::uint32_t> number(box.vertices.size(), kUnused);
+    for (std::size_t t = 0; t < tets; ++t) {
+      mesh.tets.push_back(box.tets[t]);
+      for (std::uint32_t& vertex : mesh.tets.back()) {
+        std::uint32_t& n = number[vertex];
+        if (n == kUnused)
+          n = static_cast<std::uint32_t>(mesh.vertices.size()), mesh.vertices.push_back(box.vertices[vertex]);
+        vertex = n;
+      }
+    }
+    u = test::random_field(mesh.vertices.size(), 0.001, random);
+    v = test::random_field(mesh.vertices.size(), 0.01, random);
+  }
+};
+
+Tissue stiffening() {
+  Tissue tissue;
+  tissue.viscosity = 5.0;
+  tissue.law = LinearLaw{20000.0};
+  return tissue;
+}
+Tissue linear(double viscosity) {
+  Tissue tissue;
+  tissue.viscosity = viscosity;
+  return tissue;
+}
+
+class Remainders : public testing::TestWithParam<const engine::Kernels*> {};
+
+// Every number of tets from one to two full blocks of two batches, and three more: alone and paired, in batches
+// and blocks that are partly filled. By elements, and by edges with and without viscosity.
+TEST_P(Remainders, EveryNumberOfTets) {
+  for (const Tissue& tissue : {stiffening(), linear(0.0), linear(5.0)}) {
+    for (std::size_t tets = 1; tets <= 2 * 2 * engine::kMaxLanes + 3; ++tets) {
+      const Patch p(tets, tissue);
+      const Body body = build_body(p.mesh, p.tissues);
+      const test::EngineForces f = test::engine_forces(body, p.u, p.v, {.threads = 1, .kernels = GetParam()});
+      const reference::MeshForces exact = reference::mesh_forces(p.mesh, p.tissues, p.u, p.v);
+      // float, as in forces_test.cpp
+      EXPECT_LE(test::relative_difference(f.elastic, exact.elastic), 1e-5) << tets << " tets";
+      EXPECT_LE(test::relative_difference(f.viscous, exact.viscous), 1e-5) << tets << " tets";
+    }
+  }
+}
+
+// Cut into submeshes of a tet, a few or many, the body has the forces of one submesh, to the rounding of its sums.
+TEST_P(Remainders, EveryCut) {
+  std::mt19937 random(7);
+  TetMesh mesh = test::jittered_box({6, 6, 6}, 0.01, 0.2, random);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) mesh.regions.push_back(mesh.vertices[mesh.tets[t][0]].z < 0.03);
+  const Body body = build_body(mesh, {{0, stiffening()}, {1, linear(5.0)}});
+  const std::vector<Vec3d> u = test::random_field(mesh.vertices.size(), 0.001, random);
+  const std::vector<Vec3d> v = test::random_field(mesh.vertices.size(), 0.01, random);
+  const auto forces = [&](std::size_t tets) {
+    return test::engine_forces(body, u, v, {.threads = 1, .kernels = GetParam(), .submesh_tets = tets});
+  };
+  const test::EngineForces whole = forces(mesh.tets.size());
+  for (const std::size_t tets : {1U, 7U, 64U, 1000U}) {
+    const test::EngineForces cut = forces(tets);
+    EXPECT_LE(test::relative_difference(cut.elastic, whole.elastic), 5e-6) << tets << " tets a submesh";
+    EXPECT_LE(test::relative_difference(cut.viscous, whole.viscous), 5e-6) << tets << " tets a submesh";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(InstructionSets, Remainders, testing::ValuesIn(test::every_kernels()), test::name_of);
+
+}  // namespace
+}  // namespace glisson
