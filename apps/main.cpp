@@ -28,6 +28,7 @@ constexpr const char* kFooter =
     "  glisson run scenes/paper/figure2.toml    one scene, all its variants\n"
     "  glisson check my_scene.toml              what a scene means and costs, without running it\n"
     "  glisson info organ.vtu                   what a mesh file holds and what is wrong with it\n"
+    "  glisson bench --quick                    what a step costs on this machine\n"
     "\n"
     "`glisson COMMAND --help` tells more. Exit status: 0 done, 1 failed, 2 a scene, mesh or option that cannot be\n"
     "used, 3 a run ended by its numbers, 130 interrupted.";
@@ -77,6 +78,7 @@ int main(int argc, char** argv) {
   add_reproduce(program, action);
   add_schema(program, action);
   add_laws(program, action);
+  add_bench(program, action);
   if (names_unknown_command(program, argc, argv)) return kUserError;
   try {
     program.parse(argc, argv);

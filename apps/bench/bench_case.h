@@ -1,0 +1,44 @@
+// bench_case.h — what the benchmark measures: a body, a model, a number of threads.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "glisson/mesh.h"
+#include "glisson/tissue.h"
+
+namespace glisson::app {
+
+/// The paper's three steps of complexity: constant stiffness, stiffness that follows the shape, and viscosity on top.
+enum class Model { linear, law, full };
+
+std::string_view model_name(Model model);
+/// @throws std::invalid_argument for a name that is none of linear, law, full
+Model model_named(std::string_view name);
+
+/// E = 3.6 kPa, ν = 0.4; `law`: E doubles at s = 0.5; `full`: and η = 10 Pa·s, shear tensor.
+Tissue model_tissue(Model model);
+
+/// A mesh and the smooth state every repetition starts from.
+struct BenchBody {
+  std::string name;
+  TetMesh mesh;
+  std::vector<Vec3d> displacement, velocity;  ///< [m], [m/s]
+};
+
+/// The sizes `--sizes` knows: about that many tets, a box of cubes each.
+std::vector<std::size_t> known_sizes();
+/// @throws std::invalid_argument for a size that is not known
+BenchBody box_body(std::size_t size);
+BenchBody file_body(std::string name, TetMesh mesh);
+
+/// One measurement. `accounting`: energies are kept, which the rows of the table do without.
+struct BenchCase {
+  Model model = Model::full;
+  int threads = 1;
+  bool accounting = false;
+};
+
+}  // namespace glisson::app

@@ -1,0 +1,55 @@
+// bench_row.h — a measurement, and the run it belongs to.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backend/cpu/machine_peak.h"
+#include "bench/bench_case.h"
+#include "glisson/simulation.h"
+
+namespace glisson::app {
+
+struct BenchRow {
+  std::string mesh;
+  BenchCase what;
+  std::size_t tets = 0;
+  EngineInfo engine;
+  double ns_per_tet_step = 0.0;        ///< median of the repetitions
+  double spread = 0.0;                 ///< (p90 − p10) / median of them
+  double step_s = 0.0;                 ///< h [s]
+  std::uint64_t steps = 0;             ///< timed, of all repetitions
+  std::uint64_t state_hash = 0;        ///< after kHashSteps steps from the initial state
+  std::optional<double> peak_rss_mib;  ///< of the process while the body's rows were measured
+};
+
+/// Steps from the initial state after which the state is hashed.
+constexpr int kHashSteps = 20;
+
+struct BenchResult {
+  std::vector<cpu::MachinePeak> peaks;  ///< per number of threads
+  std::vector<BenchRow> rows;           ///< without accounting, by body, model, threads
+  std::vector<BenchRow> accounting;     ///< the same measured with energies kept: none or one
+
+  /// The roofs of a number of threads. @throws std::out_of_range where it was not measured
+  const cpu::MachinePeak& peak(int threads) const;
+};
+
+/// Flops and bytes of a row over the roofs of as many threads; 0 where they are not counted.
+double fraction_of_fma_peak(const BenchRow& row, const cpu::MachinePeak& peak);
+double fraction_of_bandwidth(const BenchRow& row, const cpu::MachinePeak& peak);
+
+/// What is wrong with the rows: bodies that end in other states on other numbers of threads. Empty: nothing.
+std::string hash_mismatch(const std::vector<BenchRow>& rows);
+
+/// A comparison that people ask for, e.g. {"full / linear, 768 tets, 1 thread", 2.1}.
+struct BenchRatio {
+  std::string name;
+  double value = 0.0;
+};
+std::vector<BenchRatio> ratios(const BenchResult& result);
+
+}  // namespace glisson::app

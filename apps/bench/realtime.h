@@ -1,0 +1,37 @@
+// realtime.h — a body stepped at the pace of a clock, as a program with a haptic device would.
+//
+//   frame ──┬─ due ────────────────┬─ due ────────────────┬─
+//           │ steps, force │ wait  │ steps, force │ wait  │   one frame of simulated time in each
+//
+// A frame that is ready late lets the next one start at once, so a short delay is made up; whole frames that are over
+// before their turn are dropped, and the simulated time falls behind the clock by as much: trying to catch up would
+// only make the next frame later still.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "glisson/scene.h"
+
+namespace glisson::app {
+
+struct RealtimeOptions {
+  double seconds = 10.0;   ///< wall time [s], > 0
+  double frame_s = 0.001;  ///< [s], > 0
+};
+
+struct RealtimeResult {
+  std::vector<double> compute_s;  ///< steps and force of each frame that was computed [s]
+  std::uint64_t dropped = 0;      ///< frames that were over before their turn
+  std::uint64_t steps = 0;
+  double wall_s = 0.0, simulated_s = 0.0;
+  double peak_force_N = 0.0;  ///< of the first tool, of those read once a frame
+  RunSummary::End end = RunSummary::End::finished;
+};
+
+/// @param body  moves from its present time on
+RealtimeResult run_realtime(BuiltVariant& body, OnInversion on_inversion, const RealtimeOptions& options,
+                            const std::atomic<bool>& stop);
+
+}  // namespace glisson::app

@@ -1,0 +1,164 @@
+// realtime_command.cpp — glisson bench realtime: whether a scene keeps pace with a clock, and by how much.
+#include "bench/realtime_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "bench/bench_text.h"
+#include "bench/json_option.h"
+#include "bench/percentile.h"
+#include "bench/realtime.h"
+#include "exit_code.h"
+#include "interrupt.h"
+#include "mesh_cache.h"
+#include "report/summary_json.h"
+#include "scene_options.h"
+
+namespace glisson::app {
+namespace {
+
+constexpr const char* kFooter =
+    "Steps the scene at wall-clock pace: one frame of simulated time per frame of the clock, then the tool's force.\n"
+    "A frame whose computing takes longer than a frame is missed; frames that are over before their turn are dropped,\n"
+    "and the simulated time falls behind by them. Writes nothing but FILE; energies are not kept.\n"
+    "\n"
+    "Examples:\n"
+    "  glisson bench realtime scenes/paper/figure3b.toml --variant eta_0\n"
+    "  glisson bench realtime scenes/organs/liver.toml --mesh liver.vtu --seconds 30 --json realtime.json";
+
+struct Options {
+  SceneOptions scene;
+  double seconds = 10.0, frame_ms = 1.0;
+  int threads = 0;
+  std::string json;
+};
+
+/// The one variant that is run.
+Variant choose_variant(const Options& options) {
+  const Scene scene = open_scene(options.scene);
+  if (options.scene.variants.size() > 1) throw std::invalid_argument("--variant: bench realtime runs one variant");
+  Variant variant = scene.variants.front();
+  variant.simulation.threads = options.threads;
+  variant.simulation.track_energies = false;
+  if (scene.variants.size() > 1) {
+    fmt::print("variant {}, the first of {}; --variant NAME takes another\n", variant.name, scene.variants.size());
+  }
+  return variant;
+}
+
+struct Figures {
+  double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
+  std::size_t frames = 0, missed = 0;
+  double steps_per_frame = 0.0, realtime_factor = 0.0;
+};
+
+Figures figures_of(const RealtimeResult& result, double frame_s) {
+  Figures f{.frames = result.compute_s.size()};
+  if (f.frames == 0) return f;
+  f.p50_us = 1e6 * percentile(result.compute_s, 50.0);
+  f.p99_us = 1e6 * percentile(result.compute_s, 99.0);
+  f.p999_us = 1e6 * percentile(result.compute_s, 99.9);
+  f.max_us = 1e6 * percentile(result.compute_s, 100.0);
+  f.missed = static_cast<std::size_t>(
+      std::count_if(result.compute_s.begin(), result.compute_s.end(), [&](double s) { return s > frame_s; }));
+  f.steps_per_frame = static_cast<double>(result.steps) / static_cast<double>(f.frames);
+  f.realtime_factor = result.simulated_s / result.wall_s;
+  return f;
+}
+
+void print_figures(const Variant& variant, const BuiltVariant& body, const RealtimeResult& r, const Figures& f,
+                   double frame_s) {
+  const EngineInfo& engine = body.simulation.engine_info();
+  fmt::print("{}, {}: {} tets, h = {:.4g} s, {:.1f} steps a frame of {:g} ms, threads {}\n", variant.scene_name,
+             variant.name, body.simulation.mesh().tets.size(), body.simulation.step_size(), f.steps_per_frame,
+             1e3 * frame_s, engine.threads);
+  fmt::print("  frames   {} computed in {:.3f} s, {} missed ({:.2f} %), {} dropped\n", f.frames, r.wall_s, f.missed,
+             f.frames > 0 ? 100.0 * static_cast<double>(f.missed) / static_cast<double>(f.frames) : 0.0, r.dropped);
+  fmt::print("  compute  p50 {:.1f} µs, p99 {:.1f} µs, p99.9 {:.1f} µs, max {:.1f} µs\n", f.p50_us, f.p99_us, f.p999_us,
+             f.max_us);
+  fmt::print("  force    {:.4g} N at most on the tool\n", r.peak_force_N);
+  fmt::print("  pace     {}: {:.3f} s simulated in {:.3f} s, real-time factor {:.3f}\n",
+             r.dropped == 0 ? "kept" : "not kept", r.simulated_s, r.wall_s, f.realtime_factor);
+}
+
+nlohmann::ordered_json realtime_json(const Variant& variant, const BuiltVariant& body, const RealtimeResult& r,
+                                     const Figures& f, double frame_s) {
+  const EngineInfo& engine = body.simulation.engine_info();
+  nlohmann::ordered_json json = machine_json();
+  json["scene"] = variant.scene_name;
+  json["variant"] = variant.name;
+  json["end"] = end_text(r.end);
+  json["tets"] = body.simulation.mesh().tets.size();
+  json["threads"] = engine.threads;
+  json["h_s"] = body.simulation.step_size();
+  json["frame_s"] = frame_s;
+  json["frames"] = f.frames;
+  json["missed"] = f.missed;
+  json["missed_share"] = f.frames > 0 ? static_cast<double>(f.missed) / static_cast<double>(f.frames) : 0.0;
+  json["dropped"] = r.dropped;
+  json["steps"] = r.steps;
+  json["steps_per_frame"] = f.steps_per_frame;
+  json["compute_us"] = {{"p50", f.p50_us}, {"p99", f.p99_us}, {"p99_9", f.p999_us}, {"max", f.max_us}};
+  json["wall_s"] = r.wall_s;
+  json["simulated_s"] = r.simulated_s;
+  json["realtime_factor"] = f.realtime_factor;
+  json["peak_force_N"] = r.peak_force_N;
+  return json;
+}
+
+int exit_code_of(const RealtimeResult& result, const BuiltVariant& body) {
+  if (result.end == RunSummary::End::finished) return kDone;
+  if (result.end == RunSummary::End::interrupted) return kInterrupted;
+  RunSummary summary;
+  summary.end = result.end;
+  summary.step_s = body.simulation.step_size();
+  summary.time_s = body.simulation.time();
+  summary.stable_step_s = body.simulation.stable_step();
+  fmt::print(stderr, "glisson: {}\n", trouble_text(summary));
+  return kNumericalEnd;
+}
+
+int realtime(const Options& options) {
+  const Variant variant = choose_variant(options);
+  MeshCache meshes(false);
+  BuiltVariant body = build_variant(variant, meshes.loader());
+  const RealtimeOptions pace{.seconds = std::min(options.seconds, run_duration(variant)),
+                             .frame_s = 1e-3 * options.frame_ms};
+  catch_interrupts();
+  const RealtimeResult result = run_realtime(body, variant.on_inversion, pace, stop_flag());
+  const Figures figures = figures_of(result, pace.frame_s);
+  print_figures(variant, body, result, figures, pace.frame_s);
+  write_json(options.json, realtime_json(variant, body, result, figures, pace.frame_s));
+  return exit_code_of(result, body);
+}
+
+}  // namespace
+
+CLI::App* add_realtime(CLI::App& bench, Action& action) {
+  CLI::App* command = bench.add_subcommand("realtime", "run a scene at wall-clock pace and time its frames");
+  const auto options = std::make_shared<Options>();
+  add_scene_options(*command, options->scene);
+  command->add_option("--seconds", options->seconds, "wall time, or until the scene's motion ends if that is sooner")
+      ->type_name("S")
+      ->check(CLI::Range(0.01, 86400.0))
+      ->capture_default_str();
+  command->add_option("--frame-ms", options->frame_ms, "length of a frame")
+      ->type_name("MS")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->capture_default_str();
+  command
+      ->add_option("--threads", options->threads, "threads of the engine; 0: as many as pay for the size of the body")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  add_json_option(*command, options->json);
+  command->footer(kFooter);
+  command->callback([options, &action] { action = [options] { return realtime(*options); }; });
+  return command;
+}
+
+}  // namespace glisson::app

@@ -1,0 +1,136 @@
+// `glisson bench`: its result file is complete and sane, its states do not depend on threads, its mistakes are told.
+#include "app/program.h"
+
+namespace glisson::test {
+namespace {
+
+using Bench = ProgramTest;
+
+constexpr std::initializer_list<const char*> kHead{"cpu",  "instruction_set", "compiler",      "flags", "commit",
+                                                   "date", "fma_peak_gflops", "bandwidth_GBps"};
+constexpr std::initializer_list<const char*> kRow{"model",
+                                                  "tets",
+                                                  "threads",
+                                                  "spread",
+                                                  "flops_per_tet",
+                                                  "ns_per_tet_step",
+                                                  "bytes_per_tet",
+                                                  "state_hash",
+                                                  "fraction_of_fma_peak",
+                                                  "mesh",
+                                                  "fraction_of_bandwidth",
+                                                  "h_s",
+                                                  "steps",
+                                                  "peak_rss_MiB"};
+
+// A quick run on figure 1's mesh: all keys, fractions that a machine can reach, one state on any number of threads.
+// A step uses every unit of the processor at best as well as a loop that does nothing else, so the fraction is below 1.
+TEST_F(Bench, QuickRunWritesACompleteResult) {
+  const Outcome outcome = run({"bench", "--quick", "--sizes", "768", "--threads", "1,2", "--json", "b.json"});
+  ASSERT_THAT(outcome, Exits(0));
+  const nlohmann::json json = read_json(folder_ / "b.json");
+  for (const char* key : kHead) EXPECT_TRUE(json.contains(key)) << key;
+  EXPECT_GT(json["fma_peak_gflops"].get<double>(), 0.1);
+  EXPECT_GT(json["bandwidth_GBps"].get<double>(), 0.1);
+  ASSERT_EQ(json["rows"].size(), 6u) << "three models on one and on two threads";
+  std::map<std::string, std::string> hashes;
+  for (const nlohmann::json& row : json["rows"]) {
+    for (const char* key : kRow) EXPECT_TRUE(row.contains(key)) << key;
+    EXPECT_EQ(row["tets"], 768);
+    EXPECT_GT(row["ns_per_tet_step"].get<double>(), 0.0);
+    EXPECT_GT(row["fraction_of_fma_peak"].get<double>(), 0.0);
+    EXPECT_LE(row["fraction_of_fma_peak"].get<double>(), 1.0);
+    EXPECT_GT(row["fraction_of_bandwidth"].get<double>(), 0.0);
+    EXPECT_GE(row["steps"], 10);
+    const std::string hash = row["state_hash"];
+    EXPECT_EQ(hashes.try_emplace(row["model"], hash).first->second, hash);
+  }
+  EXPECT_EQ(hashes.size(), 3u);
+  EXPECT_NE(hashes["linear"], hashes["law"]) << "the law must act on the initial state";
+  EXPECT_NE(hashes["law"], hashes["full"]);
+  EXPECT_NE(outcome.out.find("full / linear, 768 tets"), std::string::npos) << outcome.out;
+}
+
+// The same program from the same state: a second run ends in the same state.
+TEST_F(Bench, StateIsTheSameFromRunToRun) {
+  for (const std::string file : {"a.json", "b.json"}) {
+    const std::vector<std::string> arguments{"bench", "--quick",   "--sizes", "768",    "--models",
+                                             "full",  "--threads", "1",       "--json", file};
+    ASSERT_THAT(run(arguments), Exits(0));
+  }
+  EXPECT_EQ(read_json(folder_ / "a.json")["rows"][0]["state_hash"],
+            read_json(folder_ / "b.json")["rows"][0]["state_hash"]);
+}
+
+// A mesh from a file is measured as one tissue, whatever regions it has.
+TEST_F(Bench, TakesAMeshFile) {
+  ASSERT_THAT(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"}), Exits(0));
+  const std::string mesh = (folder_ / "o/main/frames/frame_0000.vtu").string();
+  ASSERT_THAT(run({"bench", "--quick", "--sizes", "768", "--models", "linear", "--threads", "1", "--mesh", mesh,
+                   "--json", "b.json"}),
+              Exits(0));
+  const nlohmann::json rows = read_json(folder_ / "b.json")["rows"];
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[1]["mesh"], "frame_0000");
+  EXPECT_EQ(rows[1]["tets"], 48);
+}
+
+// A wrong option is told before anything is measured, with the option, the value and what is allowed.
+TEST_F(Bench, WrongOptionsAreErrors) {
+  const auto expect_error = [&](const std::vector<std::string>& arguments, const std::string& part) {
+    const Outcome outcome = run(arguments);
+    EXPECT_THAT(outcome, Exits(2));
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  };
+  expect_error({"bench", "--sizes", "500"}, "--sizes: 500 not in {768,96000,1000000}");
+  expect_error({"bench", "--models", "quadratic"}, "--models: quadratic not in {linear,law,full}");
+  expect_error({"bench", "--threads", "0"}, "--threads: Value 0 not in range");
+  expect_error({"bench", "--mesh", "none.vtu"}, "none.vtu: there is no such mesh");
+  expect_error({"bench", "--json", "no/such/folder.json"}, "the folder no/such does not exist");
+  expect_error({"bench", "realtime"}, "scene is required");
+  expect_error({"bench", "--quick", "realtime", "s.toml"}, "give the options of realtime after it");
+  const std::string scene = write("s.toml", small_scene());
+  expect_error({"bench", "realtime", scene, "--frame-ms", "0"}, "--frame-ms: Value 0 not in range");
+  expect_error({"bench", "realtime", scene, "--variant", "hard"}, "--variant hard");
+}
+
+// 0.3 s in frames of 1 ms: each is computed or dropped, and what is simulated is what was computed. That a loaded
+// machine keeps the pace is not promised here.
+TEST_F(Bench, RealtimeAccountsForEveryFrame) {
+  const std::string scene = write("s.toml", small_scene());
+  ASSERT_THAT(run({"bench", "realtime", scene, "--set", "motion.duration_s=1", "--seconds", "0.3", "--json", "r.json"}),
+              Exits(0));
+  const nlohmann::json json = read_json(folder_ / "r.json");
+  const double frames = json["frames"], dropped = json["dropped"];
+  EXPECT_EQ(frames + dropped, 300.0);
+  EXPECT_GT(frames, 0.0);
+  EXPECT_LE(json["missed"], json["frames"]);
+  EXPECT_NEAR(json["simulated_s"].get<double>(), 1e-3 * frames, json["h_s"].get<double>());
+  EXPECT_GE(json["wall_s"].get<double>(), 0.3);
+  const nlohmann::json& us = json["compute_us"];
+  EXPECT_LE(us["p50"], us["p99"]);
+  EXPECT_LE(us["p99"], us["p99_9"]);
+  EXPECT_LE(us["p99_9"], us["max"]);
+  EXPECT_GT(json["peak_force_N"].get<double>(), 0.0) << "the tool presses";
+}
+
+// A scene too heavy for the pace falls behind and ends in time; it does not pile up work.
+TEST_F(Bench, RealtimeFallsBehindWithoutPilingUp) {
+  const std::string scene =
+      write("s.toml", small_scene("[[variant]]\nname = \"thick\"\ntissue.viscosity_Pa_s = 4e5\n"));
+  const Outcome outcome = run({"bench", "realtime", scene, "--set", "motion.duration_s=1", "--seconds", "0.3",
+                               "--frame-ms", "1", "--json", "r.json"});
+  ASSERT_THAT(outcome, Exits(0));
+  const nlohmann::json json = read_json(folder_ / "r.json");
+  EXPECT_GT(json["dropped"], 0);
+  EXPECT_LT(json["realtime_factor"].get<double>(), 1.0);
+  EXPECT_NE(outcome.out.find("not kept"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Bench, HelpHasExamples) {
+  EXPECT_NE(run({"bench", "--help"}).out.find("Examples:\n  glisson bench"), std::string::npos);
+  EXPECT_NE(run({"bench", "realtime", "--help"}).out.find("Examples:\n  glisson bench realtime"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace glisson::test
