@@ -150,6 +150,7 @@ class Simulation {
   /// @throws std::invalid_argument naming a face that no tet has, that is at the boundary or has more than two tets
   /// Cost: the submeshes at the faces are laid out anew, some 0.3 ms each.
   SplitReport split_faces(std::span<const Triangle> faces);
+  /// @throws std::invalid_argument for a number that is no tet's
   bool is_removed(std::uint32_t tet) const;
   /// The rest mesh as it is now, without the removed tets (numbers of tets are new, those of vertices the same).
   TetMesh present_mesh() const;

@@ -32,10 +32,11 @@ class EnergyLedger {
     now_.kinetic = kinetic;
   }
 
-  /// Books energy that left with part of the body [J]. The kinetic part shows in the next kick by itself: between
-  /// two kicks it is ½ m v², v being the velocity that both know.
+  /// Books energy that left with part of the body [J]. Between two kicks the kinetic part is ½ m v² with the velocity
+  /// that both know, so the next kick finds the kinetic energy of what stayed.
   void take_out(double kinetic, double elastic) {
     now_.removed += kinetic + elastic;
+    now_.kinetic -= kinetic;
     now_.elastic -= elastic;
   }
 

@@ -62,13 +62,11 @@ void ExplicitScheme::add_load(std::span<const std::uint32_t> vertices, Vec3d for
 }
 
 void ExplicitScheme::watch(std::span<const std::uint32_t> vertices) {
-  std::vector<Vec3d> before(body_.vertex_count);
-  for (std::size_t k = 0; k < velocity_before_.size(); ++k) before[moving_->watched()[k].vertex] = velocity_before_[k];
+  std::vector<Kicked> of_vertex(body_.vertex_count);
+  for (std::size_t k = 0; k < kicked_.size(); ++k) of_vertex[moving_->watched()[k].vertex] = kicked_[k];
   moving_->watch(vertices);
-  const std::span<const WatchedVertex> watched = moving_->watched();
-  velocity_before_.resize(watched.size());
-  for (std::size_t k = 0; k < watched.size(); ++k) velocity_before_[k] = before[watched[k].vertex];
-  load_.resize(watched.size());
+  kicked_.clear();
+  for (const WatchedVertex& w : moving_->watched()) kicked_.push_back(of_vertex[w.vertex]);
   find_places();
 }
 
@@ -129,11 +127,11 @@ void ExplicitScheme::kick_watched(double h) {
   const std::span<const Vec3d> loads = loads_.at(time_);
   for (std::size_t k = 0; k < watched.size(); ++k) {
     WatchedVertex& w = watched[k];
-    const double m = body_.masses[w.vertex];
-    load_[k] = loads[w.vertex];
-    velocity_before_[k] = w.velocity;
-    const Vec3d force = w.elastic + w.viscous + gravity_ * m + load_[k];
-    w.velocity = m > 0.0 ? (w.velocity * m + force * h) * (1.0 / (m + gamma_[w.vertex] * h)) : Vec3d{};
+    const double m = body_.masses[w.vertex], gamma = gamma_[w.vertex];
+    const Vec3d load = m > 0.0 ? loads[w.vertex] : Vec3d{};
+    kicked_[k] = {m, gamma, w.velocity, load};
+    const Vec3d force = w.elastic + w.viscous + gravity_ * m + load;
+    w.velocity = m > 0.0 ? (w.velocity * m + force * h) * (1.0 / (m + gamma * h)) : Vec3d{};
   }
 }
 
@@ -157,10 +155,10 @@ void ExplicitScheme::impose_motions(double h) {
 /// What holds or drives a vertex, in the components it holds, at the last kick.
 ForceParts ExplicitScheme::watched_force(std::size_t place, const Axes& axes) const {
   const WatchedVertex& w = moving_->watched()[place];
-  const double m = body_.masses[w.vertex];
-  const Vec3d inertial = kick_step_ > 0.0 ? (w.velocity - velocity_before_[place]) * (m / kick_step_) : Vec3d{};
-  return {masked(-w.elastic, axes), masked(-w.viscous, axes),    masked(w.velocity * gamma_[w.vertex], axes),
-          masked(inertial, axes),   masked(gravity_ * -m, axes), masked(-load_[place], axes)};
+  const Kicked& k = kicked_[place];
+  const Vec3d inertial = kick_step_ > 0.0 ? (w.velocity - k.velocity_before) * (k.mass / kick_step_) : Vec3d{};
+  return {masked(-w.elastic, axes), masked(-w.viscous, axes),         masked(w.velocity * k.damping, axes),
+          masked(inertial, axes),   masked(gravity_ * -k.mass, axes), masked(-k.load, axes)};
 }
 
 /// Work of the forces on the watched vertices, that of the constraints included.
@@ -169,22 +167,22 @@ KickWork ExplicitScheme::watched_work() const {
   KickWork work;
   for (std::size_t k = 0; k < watched.size(); ++k) {
     const WatchedVertex& w = watched[k];
-    const double m = body_.masses[w.vertex];
+    const Kicked& at = kicked_[k];
     const auto power = [&](const Vec3d& v) {
       return KickPower{.elastic = dot(w.elastic, v),
                        .viscous = dot(w.viscous, v),
-                       .damping = -gamma_[w.vertex] * dot(w.velocity, v),
-                       .loads = dot(gravity_ * m + load_[k], v)};
+                       .damping = -at.damping * dot(w.velocity, v),
+                       .loads = dot(gravity_ * at.mass + at.load, v)};
     };
-    add(work.before, power(velocity_before_[k]));
+    add(work.before, power(at.velocity_before));
     add(work.after, power(w.velocity));
-    work.kinetic += 0.5 * m * dot(velocity_before_[k], w.velocity);
+    work.kinetic += 0.5 * at.mass * dot(at.velocity_before, w.velocity);
   }
   for (std::size_t c = 0; c < places_.size(); ++c) {
     if (!holds(c)) continue;
     for (const std::uint32_t place : places_[c]) {
       const Vec3d f = watched_force(place, constraints_.all()[c].axes).total();
-      work.before.tools += dot(f, velocity_before_[place]);
+      work.before.tools += dot(f, kicked_[place].velocity_before);
       work.after.tools += dot(f, watched[place].velocity);
     }
   }
@@ -254,6 +252,7 @@ void ExplicitScheme::weigh_energy(std::span<const std::uint32_t> elements, Remov
 }
 
 void ExplicitScheme::take_over(const BodyChange& change) {
+  if (change.touched.empty()) return;
   gamma_.resize(body_.vertex_count);
   for (const std::uint32_t v : change.touched) {
     gamma_[v] = options_.damping_rate * body_.masses[v] + options_.nodal_damping;

@@ -60,6 +60,12 @@ class ExplicitScheme {
     bool current = false;
   };
 
+  /// What a watched vertex had at the last kick; all 0 for one that was not watched then.
+  struct Kicked {
+    double mass = 0.0, damping = 0.0;
+    Vec3d velocity_before, load;
+  };
+
   BodyChanger& changer();
   void weigh_energy(std::span<const std::uint32_t> elements, RemovalReport& report);
   void take_over(const BodyChange& change);
@@ -95,8 +101,8 @@ class ExplicitScheme {
 
   // at the last kick
   double kick_step_ = 0.0;
+  std::vector<Kicked> kicked_;                      ///< per watched vertex
   std::vector<std::vector<std::uint32_t>> places_;  ///< per constraint: where its vertices are among those watched
-  std::vector<Vec3d> velocity_before_, load_;       ///< per watched vertex
   Vec3d gravity_{};
   EnergyLedger ledger_;
 };

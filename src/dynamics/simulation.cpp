@@ -72,7 +72,12 @@ SplitReport Simulation::split_faces(std::span<const Triangle> faces) {
   return report;
 }
 
-bool Simulation::is_removed(std::uint32_t tet) const { return impl_->scheme.is_removed(tet); }
+bool Simulation::is_removed(std::uint32_t tet) const {
+  const std::size_t tets = impl_->mesh.tets.size();
+  if (tet < tets) return impl_->scheme.is_removed(tet);
+  throw std::invalid_argument("is_removed: tet " + std::to_string(tet) + " is outside the mesh, 0 to " +
+                              std::to_string(tets - 1));
+}
 
 TetMesh Simulation::present_mesh() const {
   TetMesh present = impl_->mesh;
