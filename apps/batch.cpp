@@ -1,14 +1,13 @@
 // batch.cpp — see batch.h.
 #include "batch.h"
 
-#include <oneapi/tbb/task_arena.h>
-#include <oneapi/tbb/task_group.h>
-
 #include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
 #include <numeric>
+#include <thread>
+#include <vector>
 
 #include "interrupt.h"
 #include "progress.h"
@@ -83,12 +82,11 @@ void run_side_by_side(const std::vector<std::size_t>& order, int threads, Work w
       }
     }
   };
-  oneapi::tbb::task_arena arena(threads);
-  arena.execute([&] {
-    oneapi::tbb::task_group workers;
-    for (int i = 1; i < threads; ++i) workers.run(worker);
-    workers.run_and_wait(worker);
-  });
+  {
+    std::vector<std::jthread> others;
+    for (int i = 1; i < threads; ++i) others.emplace_back(worker);
+    worker();
+  }
   if (failure) std::rethrow_exception(failure);
 }
 

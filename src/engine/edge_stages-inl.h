@@ -19,6 +19,8 @@
 #define GLISSON_EDGE_STAGES_INL_H_
 #endif
 
+#include <hwy/cache_control.h>
+
 #include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 
@@ -42,7 +44,10 @@ HWY_INLINE Xyz combined(F a, const Xyz& u, F b, const Xyz& v) {
 HWY_INLINE Xyz scaled(F a, const Xyz& u) { return {a * u.x, a * u.y, a * u.z}; }
 HWY_INLINE F squared(const Xyz& v) { return hn::MulAdd(v.z, v.z, hn::MulAdd(v.y, v.y, v.x * v.x)); }
 
+/// Loads a batch's tensor and asks for that of a few batches on.
 HWY_INLINE void load_tensor(const float* in, F (&T)[9]) {
+  constexpr std::size_t kAhead = 8;
+  for (std::size_t k = 0; k < 9 * kLanes; k += 16) hwy::Prefetch(in + kAhead * 9 * kLanes + k);
   for (std::size_t k = 0; k < 9; ++k) T[k] = hn::Load(Lanes(), in + k * kLanes);
 }
 

@@ -1,17 +1,26 @@
 #include "engine/task_pool.h"
 
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
+
 namespace glisson::engine {
 
+/// oneTBB has a worker fewer than the machine has cores unless it is told otherwise.
 struct TaskPool::Arena {
+  explicit Arena(int threads)
+      : workers(oneapi::tbb::global_control::max_allowed_parallelism,
+                static_cast<std::size_t>(std::max(threads, oneapi::tbb::info::default_concurrency()))),
+        arena(threads) {}
+  oneapi::tbb::global_control workers;
   oneapi::tbb::task_arena arena;
 };
 
 TaskPool::TaskPool(int threads) : threads_(threads) {
-  if (threads > 1) arena_ = std::make_unique<Arena>(Arena{oneapi::tbb::task_arena(threads)});
+  if (threads > 1) arena_ = std::make_unique<Arena>(threads);
 }
 TaskPool::~TaskPool() = default;
 

@@ -8,6 +8,10 @@
 #define GLISSON_VERTEX_STAGES_INL_H_
 #endif
 
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+
 #include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 
@@ -39,7 +43,11 @@ inline void narrow(const double* state, const double* origin, std::size_t n, flo
 
 inline void narrow_chosen(const double* state, const std::uint32_t* which, const double* origin, std::size_t n,
                           float* out) {
-  for (std::size_t i = 0; i < n; ++i) narrow_one(state + which[i] * kStateDoubles, origin, out + i * kStateFloats);
+  constexpr std::size_t kAhead = 8;
+  for (std::size_t i = 0; i < n; ++i) {
+    hwy::Prefetch(state + which[std::min(i + kAhead, n - 1)] * kStateDoubles);
+    narrow_one(state + which[i] * kStateDoubles, origin, out + i * kStateFloats);
+  }
 }
 
 inline void add(float* a, const float* b, std::size_t n) {

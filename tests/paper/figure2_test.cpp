@@ -113,7 +113,8 @@ TEST(Figure2, StepsOfTissue1AreTetsCrossingTheThreshold) {
     if (std::abs(jump) < large) continue;
     ++steps;
     EXPECT_GT(stairs.crossed[i], 0) << "a step of " << jump << " N without a tet crossing, time step " << i;
-    EXPECT_LT(std::abs(without_crossing), 0.5 * std::abs(jump)) << "time step " << i;
+    // in the direction of the step; after one the tissue around gives way a little, against it
+    EXPECT_LT(std::copysign(1.0, jump) * without_crossing, 0.5 * std::abs(jump)) << "time step " << i;
   }
   EXPECT_GE(steps, 5) << "steps of more than " << large << " N";
 }
