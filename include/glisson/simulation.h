@@ -41,6 +41,10 @@ struct SimulationOptions {
   int threads = 0;
   /// Whether energies() is kept. It costs a tenth to a third of a step; forces of constraints are there either way.
   bool track_energies = true;
+  /// What an automatic step does when tissue stiffens beyond what h* was found for: search for h* anew, which takes
+  /// some ms for a thousand tets and is exact, or take a bound from the last h* at once, at most √r smaller where
+  /// the tissue has become r times stiffer (r with nodal damping). For real time: false.
+  bool exact_steps = true;
   /// Makes ready for remove_tets and split_faces at once, instead of at the first of them (O(tets), 18 bytes a tet).
   bool mesh_changes = false;
 };

@@ -28,7 +28,8 @@ ExplicitScheme::ExplicitScheme(Body body, const SimulationOptions& options)
     : options_(options), body_(std::move(body)), gamma_(nodal_damping(body_, options)),
       moving_(make_moving_body(body_, gamma_, options, info_)), constraints_(body_.vertex_count),
       loads_(body_.vertex_count), stiffening_(moving_->advance(0.0, {}, false).stiffening),
-      control_(std::make_unique<StepControl>(body_, gamma_, options.step, options.enforce_stability, stiffening_)) {
+      control_(std::make_unique<StepControl>(body_, gamma_, options.step, options.enforce_stability,
+                                             options.exact_steps, stiffening_)) {
   if (options.mesh_changes) changer();
 }
 

@@ -34,8 +34,8 @@ std::vector<double> at_least_one(std::span<const double> stiffening) {
 }  // namespace
 
 StepControl::StepControl(const Body& body, std::vector<double> nodal_damping, std::optional<double> given, bool enforce,
-                         std::span<const double> stiffening)
-    : body_(body), nodal_damping_(std::move(nodal_damping)), automatic_(!given), enforce_(enforce) {
+                         bool exact, std::span<const double> stiffening)
+    : body_(body), nodal_damping_(std::move(nodal_damping)), automatic_(!given), enforce_(enforce), exact_(exact) {
   if (given && !(*given > 0.0 && std::isfinite(*given))) {
     throw std::invalid_argument("step = " + std::to_string(*given) +
                                 " s is outside the allowed range, > 0 and finite, or \"auto\"");
@@ -49,6 +49,14 @@ StepControl::StepControl(const Body& body, std::vector<double> nodal_damping, st
 
 double StepControl::stable_at(std::span<const double> stiffening) {
   return glisson::stable_step(body_, stiffening, nodal_damping_, {}, &guess_).step;
+}
+
+/// h* at this level from that at the validated one, from below.
+double StepControl::bound_at(std::span<const double> stiffening) const {
+  double r = 1.0;
+  for (std::size_t b = 0; b < validated_.size(); ++b) r = std::max(r, stiffening[b] / validated_[b]);
+  const bool damped = std::any_of(nodal_damping_.begin(), nodal_damping_.end(), [](double g) { return g > 0.0; });
+  return stable_ / (damped ? r : std::sqrt(r));
 }
 
 void StepControl::mesh_changed(std::span<const double> nodal_damping) {
@@ -77,7 +85,7 @@ bool StepControl::accept(std::span<const double> stiffening) {
     if (!finite) return true;  // the state is beyond repair; the step reports that it is not finite
     level[b] = is_linear(body_.blocks[b]) ? level[b] : std::max(validated_[b], kRoom * level[b]);
   }
-  stable_ = stable_at(level);
+  stable_ = automatic_ && !exact_ ? bound_at(level) : stable_at(level);
   if (automatic_) {
     step_ = std::min(step_, kSafety * stable_);
   } else if (step_ > stable_) {

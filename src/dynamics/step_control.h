@@ -2,7 +2,9 @@
 //
 // h* is computed for a level of stiffness per tissue block. While every element stays below that level the
 // step is known to be stable and nothing is computed; when one rises above it, h* is computed anew with
-// room to grow, so that the spectrum is visited a few times in a run, not each step.
+// room to grow, so that the spectrum is visited a few times in a run, not each step. Where that takes too long
+// (real time), the last h* gives a bound: for stiffness up to r times as large,
+//   φ(h/r) of r K  =  (1/r) φ(h) of K  ≤ 4,   and without nodal damping φ(h/√r) of r K ≤ φ(h) of K ≤ 4.
 #pragma once
 
 #include <optional>
@@ -18,8 +20,9 @@ class StepControl {
  public:
   /// @param given  the user's step [s], none: auto
   /// @throws std::invalid_argument where `given` is not positive or above h*, unless `enforce` is false
+  /// @param exact   whether an automatic step is searched for anew as tissue stiffens, or bounded from the last one
   StepControl(const Body& body, std::vector<double> nodal_damping, std::optional<double> given, bool enforce,
-              std::span<const double> stiffening);
+              bool exact, std::span<const double> stiffening);
 
   /// Takes in the present stiffness; lowers an automatic step where needed.
   /// @return false where a given step is above h* by now
@@ -35,10 +38,11 @@ class StepControl {
 
  private:
   double stable_at(std::span<const double> stiffening);
+  double bound_at(std::span<const double> stiffening) const;
 
   const Body& body_;
   std::vector<double> nodal_damping_;
-  bool automatic_, enforce_;
+  bool automatic_, enforce_, exact_;
   StabilityGuess guess_;
   double step_ = 0.0, stable_ = 0.0;
   double any_part_;                ///< element_bound_step at rest: holds for any part of the body [s]
