@@ -60,22 +60,17 @@ double StepControl::bound_at(std::span<const double> stiffening) const {
 }
 
 void StepControl::mesh_changed(std::span<const double> nodal_damping) {
+  if (nodal_damping.size() != nodal_damping_.size()) guess_ = {};
   nodal_damping_.assign(nodal_damping.begin(), nodal_damping.end());
-  guess_ = {};
   // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C
   const double bound = any_part_ / std::sqrt(*std::max_element(validated_.begin(), validated_.end()));
   stable_ = std::min(stable_, bound);
-  if (automatic_) {
-    step_ = std::min(step_, kSafety * stable_);
-  } else if (enforce_ && step_ > stable_) {
-    stable_ = stable_at(validated_);
-    too_large_ = step_ > stable_;
-  }
+  if (automatic_) step_ = std::min(step_, kSafety * stable_);
+  unchecked_ = enforce_ && step_ > stable_;
 }
 
 bool StepControl::accept(std::span<const double> stiffening) {
-  if (too_large_) return false;
-  bool within = true;
+  bool within = !unchecked_;
   for (std::size_t b = 0; b < validated_.size(); ++b) within = within && stiffening[b] <= validated_[b];
   if (within || !enforce_) return true;
 
@@ -94,6 +89,7 @@ bool StepControl::accept(std::span<const double> stiffening) {
     if (step_ > stable_) return false;
   }
   validated_ = std::move(level);
+  unchecked_ = false;
   return true;
 }
 

@@ -29,8 +29,8 @@ class StepControl {
   bool accept(std::span<const double> stiffening);
 
   /// After elements were removed or split from each other: h* falls to the bound that holds for any part of the body,
-  /// each element with its own share of mass. A given step above that is checked against h* itself, which is slow;
-  /// if it does not hold, accept() says so from then on.
+  /// each element with its own share of mass. A given step above that is checked against h* itself by the next
+  /// accept(), which is slow.
   void mesh_changed(std::span<const double> nodal_damping);
 
   double step() const { return step_; }
@@ -46,7 +46,7 @@ class StepControl {
   StabilityGuess guess_;
   double step_ = 0.0, stable_ = 0.0;
   double any_part_;                ///< element_bound_step at rest: holds for any part of the body [s]
-  bool too_large_ = false;         ///< a given step does not hold since the mesh changed
+  bool unchecked_ = false;         ///< a given step is above the bound of a mesh that has changed
   std::vector<double> validated_;  ///< stiffening per block up to which step_ is known to be stable
 };
 
