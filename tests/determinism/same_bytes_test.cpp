@@ -11,16 +11,13 @@ namespace glisson {
 namespace {
 
 /// A viscous, stiffening tissue of two regions under a press, gravity and damping.
-Simulation busy_body(Precision precision) {
-  TetMesh mesh = test::paper_mesh();
+Simulation busy_body(SimulationOptions options, TetMesh mesh = test::paper_mesh()) {
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) mesh.regions.push_back(t % 5 == 0 ? 1 : 0);
   Tissue soft, hard;
   soft.viscosity = 2.0;
   soft.law = LinearLaw{20000.0};
   hard.youngs_modulus = 20000.0;
   hard.law = ExponentialLaw{.amplitude = 500.0, .rate = 6.0};
-  SimulationOptions options;
-  options.precision = precision;
   options.gravity = {0.0, 0.0, -9.81};
   options.damping_rate = 5.0;
   Simulation simulation(mesh, {{0, soft}, {1, hard}}, options);
@@ -29,11 +26,16 @@ Simulation busy_body(Precision precision) {
   return simulation;
 }
 
-std::uint64_t hash_after(int steps, Precision precision) {
-  Simulation simulation = busy_body(precision);
+std::uint64_t hash_after(int steps, Simulation simulation) {
   for (int i = 0; i < steps; ++i) simulation.step();
   return simulation.state_hash();
 }
+SimulationOptions in(Precision precision) {
+  SimulationOptions options;
+  options.precision = precision;
+  return options;
+}
+std::uint64_t hash_after(int steps, Precision precision) { return hash_after(steps, busy_body(in(precision))); }
 
 class SameBytes : public testing::TestWithParam<Precision> {};
 
@@ -55,7 +57,7 @@ TEST_P(SameBytes, BesideOtherThreads) {
 
 // Reading forces, energies and fields between steps changes nothing.
 TEST_P(SameBytes, WatchedOrNot) {
-  Simulation watched = busy_body(GetParam());
+  Simulation watched = busy_body(in(GetParam()));
   for (int i = 0; i < 300; ++i) {
     watched.step();
     watched.tet_fields();
@@ -71,6 +73,24 @@ INSTANTIATE_TEST_SUITE_P(Precisions, SameBytes,
                          [](const testing::TestParamInfo<Precision>& p) {
                            return std::string(p.param == Precision::single_precision ? "single" : "double");
                          });
+
+// On one to eight threads of its own, whether energies are kept or not; the body has several submeshes.
+TEST(SameBytesOnThreads, OneToEight) {
+  const TetMesh mesh = box_mesh({.cells = {9, 9, 18}, .size = {0.04, 0.04, 0.08}});
+  SimulationOptions options;
+  for (const bool track_energies : {false, true}) {
+    options.track_energies = track_energies;
+    const auto hash = [&](int threads) {
+      options.threads = threads;
+      Simulation simulation = busy_body(options, mesh);
+      EXPECT_EQ(simulation.engine_info().threads, threads);
+      EXPECT_GT(simulation.engine_info().submeshes, 4U);
+      return hash_after(50, std::move(simulation));
+    };
+    const std::uint64_t one = hash(1);
+    for (int threads = 2; threads <= 8; ++threads) EXPECT_EQ(hash(threads), one) << threads << " threads";
+  }
+}
 
 }  // namespace
 }  // namespace glisson
