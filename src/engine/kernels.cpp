@@ -20,8 +20,7 @@ HWY_BEFORE_NAMESPACE();
 namespace glisson::engine::HWY_NAMESPACE {
 
 /// The order of StiffnessLaw's alternatives.
-constexpr std::array<LawStage, std::variant_size_v<StiffnessLaw>> kLaws{constant_law,   step_law,        linear_law,
-                                                                        polynomial_law, exponential_law, table_law};
+constexpr LawStage kLaws[]{constant_law, step_law, linear_law, polynomial_law, exponential_law, table_law};
 
 const Kernels* kernels() {
   static const Kernels table{
@@ -33,7 +32,7 @@ const Kernels* kernels() {
       .gather_viscous = gather<true>,
       .measure = {measure<DeformationMeasure::intensity>, measure<DeformationMeasure::one_minus_q>,
                   measure<DeformationMeasure::regular_mean_ratio>},
-      .law = kLaws,
+      .law = std::to_array(kLaws),
       .watch_young = watch_young,
       .watch_lame = watch_lame,
       .push_elastic = push<Push::elastic>,

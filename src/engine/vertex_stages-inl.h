@@ -102,14 +102,14 @@ template <bool kAccounted>
 HWY_INLINE void advance(double* state, const float* elastic, const float* viscous, const Kick& kick, WorkLanes& work) {
   const Doubles d;
   const double c = state[3], damping = state[7];
-  const D4 pull = hn::Set(d, kick.step * (1.0 - damping));
   for (std::size_t k = 0; k < 4; k += kDoubles) {
     const D4 xyz = xyz_bits(k), h = hn::And(xyz, hn::Set(d, kick.step));
     const D4 before = hn::Load(d, state + 4 + k), u = hn::Load(d, state + k), g = hn::Load(d, kick.gravity.data() + k);
+    const D4 fall = hn::Mul(hn::Set(d, kick.step), g);
     const D4 fe = hn::PromoteTo(d, hn::Load(Narrow(), elastic + k));
     D4 force = fe;
     if constexpr (kAccounted) force = hn::Add(fe, hn::PromoteTo(d, hn::Load(Narrow(), viscous + k)));
-    const D4 change = hn::MulAdd(hn::Set(d, c), force, hn::NegMulAdd(hn::Set(d, damping), before, hn::Mul(pull, g)));
+    const D4 change = hn::MulAdd(hn::Set(d, c), force, hn::NegMulAdd(hn::Set(d, damping), hn::Add(before, fall), fall));
     const D4 after = hn::Add(before, hn::And(xyz, change));
     hn::Store(after, d, state + 4 + k);
     hn::Store(hn::MulAdd(h, after, u), d, state + k);

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "glisson/motion.h"
 #include "glisson/simulation.h"
 #include "mechanics/reference.h"
 #include "support/bodies.h"
@@ -216,6 +217,33 @@ TEST(StableStep, RisingModulusIsSafe) {
   EXPECT_LT(h, at_rest / std::sqrt(5.0)) << "f + f' s = 5.2 at s = 0.07";
   EXPECT_LT(body.growth(tissue, h), 30.0) << "h* = " << h;
   EXPECT_GT(body.growth(tissue, 2.0 * h), 1e6) << "the bound is not tighter than a factor of two";
+}
+
+// Without a search a stiffening tissue's step is bounded from the last h*: not above the searched one by more than
+// the room that a search leaves, not below it by more than the bound's √r (r with nodal damping), and never unstable.
+TEST(StableStep, BoundedStepIsSafe) {
+  for (const double damping_rate : {0.0, 500.0}) {
+    Tissue tissue;
+    tissue.law = LinearLaw{10.0 * tissue.youngs_modulus};
+    std::vector<double> steps;
+    for (const bool exact : {true, false}) {
+      SimulationOptions options = test::in_double();
+      options.exact_steps = exact;
+      options.damping_rate = damping_rate;
+      const TetMesh mesh = test::paper_mesh();
+      Simulation simulation(mesh, {{0, tissue}}, options);
+      simulation.fix(mesh.vertex_sets.at("z_min"));
+      simulation.drive(test::paper_triangle(), press({.velocity = 0.05, .depth = 0.01, .hold = 1.0}));
+      const double at_rest = simulation.step_size();
+      while (simulation.time() < 0.6) ASSERT_EQ(simulation.step().status, StepStatus::ok);
+      EXPECT_LT(simulation.step_size(), at_rest);
+      const Energies e = simulation.energies();
+      EXPECT_LT(e.kinetic, 0.05 * e.work_tools) << "no oscillation has grown";
+      steps.push_back(simulation.step_size());
+    }
+    EXPECT_LE(steps[1], 1.01 * steps[0]) << "damping " << damping_rate;
+    EXPECT_GE(steps[1], 0.25 * steps[0]) << "the stiffest tets are about four times as stiff as at rest";
+  }
 }
 
 // A step that was stable at rest is refused, not taken, once the tissue has stiffened beyond it.
