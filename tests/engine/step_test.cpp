@@ -85,6 +85,26 @@ TEST_P(Step, OfNoLengthMovesNothing) {
   EXPECT_EQ(state(moving_), before);
 }
 
+// A vertex in no tet has no mass and no force: it stays, under gravity and damping, and costs the others nothing.
+TEST_P(Step, LeavesAVertexInNoTetWhereItIs) {
+  Body body = busy_.body;
+  std::vector<double> damping = busy_.damping;
+  for (const double gamma : {0.0, 1e-3}) {
+    ++body.vertex_count, body.masses.push_back(0.0), body.rest_positions.push_back({1.0, 1.0, 1.0});
+    damping.push_back(gamma);
+  }
+  engine::SubmeshBody moving(body, damping, options_);
+  std::vector<Vec3d> u = busy_.u, v = busy_.v;
+  u.resize(body.vertex_count, {0.1, 0.2, 0.3}), v.resize(body.vertex_count);
+  moving.set_state(u, v);
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(moving.advance(busy_.h, {0.0, 0.0, -9.81}, i % 2 == 0).finite);
+  const test::EngineState end = test::state_of(moving, body.vertex_count);
+  for (std::size_t i = busy_.body.vertex_count; i < body.vertex_count; ++i) {
+    EXPECT_EQ(end.u[i], u[i]);
+    EXPECT_EQ(end.v[i], Vec3d{});
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(InstructionSets, Step, testing::ValuesIn(test::every_kernels()), test::name_of);
 
 // Two hundred steps on one instruction set end where they do on any other: their forces differ by the order of a
