@@ -30,7 +30,7 @@ ExplicitScheme::ExplicitScheme(Body body, const SimulationOptions& options)
       loads_(body_.vertex_count), stiffening_(moving_->advance(0.0, {}, false).stiffening),
       control_(std::make_unique<StepControl>(body_, gamma_, options.step, options.enforce_stability,
                                              options.exact_steps, stiffening_)) {
-  if (options.mesh_changes) changer();
+  if (options.mesh_changes) moving_->apply({}, changer().stars(), gamma_);
 }
 
 BodyChanger& ExplicitScheme::changer() {

@@ -33,9 +33,9 @@ std::vector<double> at_least_one(std::span<const double> stiffening) {
 
 }  // namespace
 
-StepControl::StepControl(const Body& body, std::vector<double> nodal_damping, std::optional<double> given, bool enforce,
-                         bool exact, std::span<const double> stiffening)
-    : body_(body), nodal_damping_(std::move(nodal_damping)), automatic_(!given), enforce_(enforce), exact_(exact) {
+StepControl::StepControl(const Body& body, std::span<const double> nodal_damping, std::optional<double> given,
+                         bool enforce, bool exact, std::span<const double> stiffening)
+    : body_(body), nodal_damping_(nodal_damping), automatic_(!given), enforce_(enforce), exact_(exact) {
   if (given && !(*given > 0.0 && std::isfinite(*given))) {
     throw std::invalid_argument("step = " + std::to_string(*given) +
                                 " s is outside the allowed range, > 0 and finite, or \"auto\"");
@@ -61,7 +61,7 @@ double StepControl::bound_at(std::span<const double> stiffening) const {
 
 void StepControl::mesh_changed(std::span<const double> nodal_damping) {
   if (nodal_damping.size() != nodal_damping_.size()) guess_ = {};
-  nodal_damping_.assign(nodal_damping.begin(), nodal_damping.end());
+  nodal_damping_ = nodal_damping;
   // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C
   const double bound = any_part_ / std::sqrt(*std::max_element(validated_.begin(), validated_.end()));
   stable_ = std::min(stable_, bound);

@@ -18,10 +18,11 @@ namespace glisson {
 
 class StepControl {
  public:
+  /// @param nodal_damping  γ_i per vertex [kg/s]; not copied: must last until mesh_changed names another
   /// @param given  the user's step [s], none: auto
   /// @throws std::invalid_argument where `given` is not positive or above h*, unless `enforce` is false
   /// @param exact   whether an automatic step is searched for anew as tissue stiffens, or bounded from the last one
-  StepControl(const Body& body, std::vector<double> nodal_damping, std::optional<double> given, bool enforce,
+  StepControl(const Body& body, std::span<const double> nodal_damping, std::optional<double> given, bool enforce,
               bool exact, std::span<const double> stiffening);
 
   /// Takes in the present stiffness; lowers an automatic step where needed.
@@ -41,7 +42,7 @@ class StepControl {
   double bound_at(std::span<const double> stiffening) const;
 
   const Body& body_;
-  std::vector<double> nodal_damping_;
+  std::span<const double> nodal_damping_;
   bool automatic_, enforce_, exact_;
   StabilityGuess guess_;
   double step_ = 0.0, stable_ = 0.0;

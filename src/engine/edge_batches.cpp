@@ -1,5 +1,7 @@
 #include "engine/edge_batches.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 
 namespace glisson::engine {
@@ -102,11 +104,48 @@ std::size_t find_edge(const EdgeBatches& edges, LocalEdge edge, std::size_t lane
   return low;
 }
 
-Vec3d shape_gradient(const ElementRest& rest, const Tet& tet, std::uint32_t vertex) {
+/// Shape gradients of the four corners.
+std::array<Vec3d, 4> shape_gradients(const ElementRest& rest) {
+  return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
+}
+
+void add(Mat3d& sum, const Mat3d& share) {
+  for (std::size_t k = 0; k < 9; ++k) sum(k / 3, k % 3) += share(k / 3, k % 3);
+}
+
+/// The part of an element in one of the six edges that are assembled anew.
+struct EdgePart {
+  std::uint32_t element;
+  std::uint8_t edge, from, to;  ///< edge: 0 … 5; from, to: corners of the element
+};
+
+std::uint8_t corner_of(const Tet& tet, std::uint32_t vertex) {
+  return static_cast<std::uint8_t>(std::find(tet.begin(), tet.end(), vertex) - tet.begin());
+}
+
+/// Finds the elements around the edges between four vertices, by edge, ascending. What is read lies far apart, so
+/// that most of the time goes by waiting for memory: all of it is asked for ahead.
+std::vector<EdgePart> parts_of_edges(const Body& body, const detail::VertexStars& stars, const Tet& vertices,
+                                     const std::function<bool(std::uint32_t)>& in_submesh) {
   for (std::size_t a = 0; a < 3; ++a) {
-    if (tet[a + 1] == vertex) return rest.s[a];
+    for (const std::uint32_t e : stars.tets_at(vertices[a])) hwy::Prefetch(&body.elements[e]);
   }
-  return -(rest.s[0] + rest.s[1] + rest.s[2]);
+  std::vector<EdgePart> parts;
+  std::uint8_t first_edge = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (const std::uint32_t e : stars.tets_at(vertices[a])) {
+      const Tet& tet = body.elements[e];
+      for (std::size_t b = a + 1; b < 4; ++b) {
+        const std::uint8_t to = corner_of(tet, vertices[b]);
+        if (to == 4 || !in_submesh(e)) continue;
+        hwy::Prefetch(&body.rest[e].volume);
+        hwy::Prefetch(&body.rest[e].s[2]);
+        parts.push_back({e, static_cast<std::uint8_t>(first_edge + b - a - 1), corner_of(tet, vertices[a]), to});
+      }
+    }
+    first_edge = static_cast<std::uint8_t>(first_edge + 3 - a);
+  }
+  return parts;
 }
 
 }  // namespace
@@ -114,22 +153,23 @@ Vec3d shape_gradient(const ElementRest& rest, const Tet& tet, std::uint32_t vert
 void reassemble_edges(const Body& body, const TissueBlock& block, std::uint32_t element,
                       const detail::VertexStars& stars, const std::function<bool(std::uint32_t)>& in_submesh,
                       const std::function<std::uint32_t(std::uint32_t)>& local, EdgeBatches& edges, std::size_t lanes) {
-  const Tet& corners = body.elements[element];
+  std::array<LocalEdge, 4> corners;  // local vertex, vertex of the mesh
+  for (std::size_t a = 0; a < 4; ++a) corners[a] = {local(body.elements[element][a]), body.elements[element][a]};
+  std::sort(corners.begin(), corners.end());
+  const Tet vertices{corners[0].second, corners[1].second, corners[2].second, corners[3].second};
+
+  std::array<Mat3d, 6> tensors{};
+  for (const EdgePart& part : parts_of_edges(body, stars, vertices, in_submesh)) {
+    const ElementRest& rest = body.rest[part.element];
+    const std::array<Vec3d, 4> s = shape_gradients(rest);
+    add(tensors[part.edge], edge_tensor(block, rest.volume, s[part.from], s[part.to]));
+  }
+  const Mat3d* sum = tensors.data();
   for (std::size_t a = 0; a < 4; ++a) {
-    for (std::size_t b = a + 1; b < 4; ++b) {
-      const bool ordered = local(corners[a]) < local(corners[b]);
-      const std::uint32_t i = corners[ordered ? a : b], j = corners[ordered ? b : a];
-      Mat3d sum;
-      for (const std::uint32_t e : stars.tets_at(i)) {
-        const Tet& t = body.elements[e];
-        if (std::find(t.begin(), t.end(), j) == t.end() || !in_submesh(e)) continue;
-        const ElementRest& rest = body.rest[e];
-        const Mat3d share = edge_tensor(block, rest.volume, shape_gradient(rest, t, i), shape_gradient(rest, t, j));
-        for (std::size_t k = 0; k < 9; ++k) sum(k / 3, k % 3) += share(k / 3, k % 3);
-      }
-      const std::size_t at = find_edge(edges, {local(i), local(j)}, lanes);
+    for (std::size_t b = a + 1; b < 4; ++b, ++sum) {
+      const std::size_t at = find_edge(edges, {corners[a].first, corners[b].first}, lanes);
       float* tensor = edges.tensor.data() + at % edges.count * 9 * lanes + at / edges.count;
-      for (std::size_t k = 0; k < 9; ++k) tensor[k * lanes] = static_cast<float>(sum(k / 3, k % 3));
+      for (std::size_t k = 0; k < 9; ++k) tensor[k * lanes] = static_cast<float>((*sum)(k / 3, k % 3));
     }
   }
 }

@@ -84,13 +84,29 @@ PairBatches make_pair_batches(const Body& body, std::span<const std::uint32_t> e
   return out;
 }
 
+namespace {
+
+/// Position of a number that is there once at most, the size where it is not. Whole runs are compared in lanes.
+std::size_t find_number(std::span<const std::uint32_t> numbers, std::uint32_t wanted) {
+  constexpr std::size_t kRun = 64;
+  for (std::size_t begin = 0; begin < numbers.size(); begin += kRun) {
+    const std::size_t end = std::min(begin + kRun, numbers.size());
+    std::uint32_t found = 0;
+    for (std::size_t k = begin; k < end; ++k) found |= static_cast<std::uint32_t>(numbers[k] == wanted);
+    if (found == 0) continue;
+    return static_cast<std::size_t>(std::find(&numbers[begin], &numbers[end - 1], wanted) - numbers.data());
+  }
+  return numbers.size();
+}
+
+}  // namespace
+
 bool clear_element(PairBatches& pairs, std::uint32_t element, std::size_t lanes) {
-  const auto found = std::find(pairs.element.begin(), pairs.element.end(), element);
-  if (found == pairs.element.end()) return false;
-  const auto place = static_cast<std::size_t>(found - pairs.element.begin());
+  const std::size_t place = find_number(pairs.element, element);
+  if (place == pairs.element.size()) return false;
   float* rest = pairs.rest.data() + place / lanes * kTetRest * lanes + place % lanes;
   for (std::size_t k = 0; k < kTetRest; ++k) rest[k * lanes] = 0.0F;
-  *found = kNoElement;
+  pairs.element[place] = kNoElement;
   return true;
 }
 

@@ -7,9 +7,14 @@
 namespace glisson {
 
 BodyChanger::BodyChanger(Body& body)
-    : body_(body), stars_(body.elements, body.vertex_count), element_of_(body.elements.size()),
-      removed_(body.elements.size(), 0) {
+    : body_(body), stars_(body.elements, body.vertex_count), element_of_(body.elements.size()) {
   for (std::uint32_t e = 0; e < element_of_.size(); ++e) element_of_[body.mesh_tet[e]] = e;
+  quarter_masses_.reserve(body.elements.size());
+  for (const TissueBlock& block : body.blocks) {
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      quarter_masses_.push_back(0.25 * block.tissue.density * body.rest[e].volume);
+    }
+  }
 }
 
 /// Sums the masses of these vertices anew, in the order of build_body, and sorts them.
@@ -18,8 +23,7 @@ void BodyChanger::weigh(std::vector<std::uint32_t>& vertices) {
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   for (const std::uint32_t v : vertices) {
     double mass = 0.0;
-    for (const std::uint32_t e : stars_.tets_at(v))
-      mass += 0.25 * body_.block_of(e).tissue.density * body_.rest[e].volume;
+    for (const std::uint32_t e : stars_.tets_at(v)) mass += quarter_masses_[e];
     body_.masses[v] = mass;
   }
 }
@@ -42,7 +46,7 @@ BodyChange BodyChanger::remove(std::span<const std::uint32_t> elements) {
   BodyChange change;
   change.removed.assign(elements.begin(), elements.end());
   for (const std::uint32_t e : change.removed) {
-    removed_[e] = 1;
+    quarter_masses_[e] = 0.0;
     body_.rest[e] = {};
     stars_.remove(e, body_.elements[e]);
     change.touched.insert(change.touched.end(), body_.elements[e].begin(), body_.elements[e].end());
