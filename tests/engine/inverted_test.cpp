@@ -31,11 +31,11 @@ class Inverted : public testing::TestWithParam<Kind> {
   engine::SubmeshBody moving_{body_, undamped_, {.threads = 1, .submesh_tets = 60}};
 
   Body make_body() {
-    Tissue law;
-    law.law = LinearLaw{20000.0};
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) mesh_.regions.push_back(static_cast<int>(t % 2));
-    return build_body(
-        mesh_, {{0, GetParam() == Kind::linear ? Tissue{} : law}, {1, GetParam() == Kind::law ? law : Tissue{}}});
+    std::map<int, Tissue> tissues{{0, Tissue{}}, {1, Tissue{}}};
+    if (GetParam() != Kind::linear) tissues.at(0).law = LinearLaw{20000.0};
+    if (GetParam() == Kind::law) tissues.at(1).law = LinearLaw{20000.0};
+    return build_body(mesh_, tissues);
   }
   std::vector<Vec3d> affine(double x, double y, double z) const {
     std::vector<Vec3d> u;

@@ -29,9 +29,9 @@ class LayoutInvariants : public testing::TestWithParam<Layout> {
     std::mt19937 random(13);
     TetMesh mesh = test::jittered_box({7, 6, 5}, 0.01, 0.2, random);
     for (const Tet& t : mesh.tets) mesh.regions.push_back(mesh.vertices[t[0]].x + 0.3 * mesh.vertices[t[1]].y < 0.04);
-    Tissue law;
-    law.law = LinearLaw{20000.0};
-    return build_body(mesh, {{0, law}, {1, Tissue{}}});
+    std::map<int, Tissue> tissues{{0, Tissue{}}, {1, Tissue{}}};
+    tissues.at(0).law = LinearLaw{20000.0};
+    return build_body(mesh, tissues);
   }
   std::vector<std::uint32_t> inverse() const {
     std::vector<std::uint32_t> vertex(body_.vertex_count, engine::kNoElement);
@@ -179,10 +179,10 @@ INSTANTIATE_TEST_SUITE_P(Layouts, LayoutInvariants,
 // A step of a large body with a law reads and writes at most 72 bytes a tet: 40 of gradients and volume, 5 of
 // indices, 11 of state and 12 of interfaces, and a little for lanes without a tet.
 TEST(LayoutSize, IsAtMost72BytesATet) {
-  Tissue law;
-  law.viscosity = 2.0;
-  law.law = LinearLaw{20000.0};
-  const Body body = build_body(box_mesh({.cells = {32, 32, 33}, .size = {0.32, 0.32, 0.33}}), {{0, law}});
+  std::map<int, Tissue> tissues{{0, Tissue{}}};
+  tissues.at(0).viscosity = 2.0;
+  tissues.at(0).law = LinearLaw{20000.0};
+  const Body body = build_body(box_mesh({.cells = {32, 32, 33}, .size = {0.32, 0.32, 0.33}}), tissues);
   const engine::Kernels& kernels = engine::best_kernels();
   EXPECT_LE(engine::bytes_per_tet(engine::build_submeshes(body, kernels.lanes), body.elements.size()), 72.0);
 }
