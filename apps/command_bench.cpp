@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -118,6 +119,7 @@ int bench(const BenchOptions& given) {
   const std::vector<BenchCase> cases = cases_of(options);
   const std::vector<BenchBody> bodies = bodies_of(options);
   BenchResult result;
+  getloadavg(&result.load_average, 1);
   for (const BenchBody& body : bodies) {
     measure_peaks(options, result.peaks);  // several times in a run: the best is nearest to what the machine can do
     measure_body(body, cases, how, result);

@@ -30,6 +30,7 @@ struct BenchRow {
 constexpr int kHashSteps = 20;
 
 struct BenchResult {
+  double load_average = 0.0;            ///< programs that were running in the minute before
   std::vector<cpu::MachinePeak> peaks;  ///< per number of threads
   std::vector<BenchRow> rows;           ///< without accounting, by body, model, threads
   std::vector<BenchRow> accounting;     ///< the same measured with energies kept: none or one

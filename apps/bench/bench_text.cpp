@@ -14,6 +14,8 @@
 namespace glisson::app {
 namespace {
 
+constexpr double kBusy = 0.5;  // load average from which figures are not to be trusted
+
 constexpr const char* kLegend =
     "ns        median wall time per tet and step of {} repetitions of about {:g} s; spread is (p90 - p10) / median\n"
     "flops     useful additions, multiplications, divisions and roots per tet and step, a fused one counted as two;\n"
@@ -85,6 +87,10 @@ std::string bench_table(const BenchResult& result, const MeasureOptions& options
   std::string text = fmt::format("{}, {}; {}, {}; commit {}\n", machine_text(), cpu::instruction_set(),
                                  GLISSON_BUILD_COMPILER, GLISSON_BUILD_FLAGS, GLISSON_BUILD_COMMIT);
   for (const cpu::MachinePeak& peak : result.peaks) text += roof_text(peak);
+  if (result.load_average > kBusy) {
+    text += fmt::format("Other programs were running (load average {:.1f}): rows on several threads suffer most.\n",
+                        result.load_average);
+  }
   std::size_t width = 4;
   for (const BenchRow& row : result.rows) width = std::max(width, characters(row.mesh));
   text += fmt::format("\n{:<{}}  {:<6} {:>8} {:>7} {:>8} {:>8} {:>7} {:>7} {:>8} {:>9}  {}\n", "body", width, "model",
@@ -114,6 +120,7 @@ nlohmann::ordered_json bench_json(const BenchResult& result, const MeasureOption
   nlohmann::ordered_json json = machine_json();
   json["fma_peak_gflops"] = 1e-9 * result.peaks.front().multiply_add_flops;
   json["bandwidth_GBps"] = 1e-9 * result.peaks.front().memory_bytes();
+  json["load_average"] = result.load_average;
   json["repetitions"] = options.repetitions;
   json["repetition_s"] = options.repetition_s;
   json["hash_steps"] = kHashSteps;

@@ -6,8 +6,8 @@ namespace {
 
 using Bench = ProgramTest;
 
-constexpr std::initializer_list<const char*> kHead{"cpu",  "instruction_set", "compiler",      "flags", "commit",
-                                                   "date", "fma_peak_gflops", "bandwidth_GBps"};
+constexpr std::initializer_list<const char*> kHead{"cpu",  "instruction_set", "compiler",       "flags",       "commit",
+                                                   "date", "fma_peak_gflops", "bandwidth_GBps", "load_average"};
 constexpr std::initializer_list<const char*> kRow{"model",
                                                   "tets",
                                                   "threads",
