@@ -20,7 +20,7 @@ struct Trace {
 
 Trace run(const Kind& kind, int threads) {
   std::mt19937 random(17);
-  const TetMesh mesh = jittered_box({10, 10, 14}, kCell, 0.0, random);  // 8400 tets: six submeshes
+  const TetMesh mesh = jittered_box({9, 9, 12}, kCell, 0.0, random);  // 5832 tets: several submeshes
   SimulationOptions options = kind.options(std::nullopt);
   options.threads = threads;
   options.gravity = {0.0, 0.0, -9.81};
@@ -39,12 +39,13 @@ Trace run(const Kind& kind, int threads) {
   return trace;
 }
 
-TEST_P(SameBytes, OnAnyNumberOfThreads) {
+// On any number of threads (in double precision there is always one), and again on the same.
+TEST_P(SameBytes, OnAnyNumberOfThreadsAndAgain) {
   const Trace one = run(GetParam(), 1);
+  EXPECT_EQ(run(GetParam(), 1), one);
+  if (GetParam().precision == Precision::double_precision) return;
   for (const int threads : {2, 4, 8}) EXPECT_EQ(run(GetParam(), threads), one) << threads << " threads";
 }
-
-TEST_P(SameBytes, RunToRun) { EXPECT_EQ(run(GetParam(), 2), run(GetParam(), 2)); }
 
 }  // namespace
 }  // namespace glisson::test

@@ -76,7 +76,7 @@ TEST_P(Split, WhileItMoves) {
   s.fix(body.mesh.vertex_sets.at("z_min"));
   const ConstraintId tool =
       s.drive(body.mesh.vertex_sets.at("z_max"), press({.velocity = 0.05, .depth = 0.01, .hold = 1}));
-  for (int i = 0; i < 200; ++i) ASSERT_EQ(s.step().status, StepStatus::ok);
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(s.step().status, StepStatus::ok);
   const Vec3d p = momentum(s), f = s.force(tool).total();
   const Energies e = s.energies();
   const double scale = e.kinetic + e.elastic + e.dissipated;

@@ -104,8 +104,8 @@ bool takes(const TetMesh& mesh, const Tissues& tissues, const SimulationOptions&
 TEST_P(Step, GivenIsHeldAgainstTheStableStepOfWhatIsLeft) {
   std::size_t went_on = 0, told = 0;
   const double stable = Noisy(GetParam()).simulation.stable_step();
-  for (unsigned seed = 1; seed <= 40; ++seed) {
-    Noisy body(GetParam(), stable * (0.75 + 0.006 * seed));
+  for (unsigned seed = 1; seed <= 24; ++seed) {
+    Noisy body(GetParam(), stable * (0.75 + 0.01 * seed));
     body.random.seed(seed);
     State state = random_state(body.mesh, 0.4 * kCell, body.random);
     body.simulation.set_state(state.u, state.v);
@@ -121,7 +121,7 @@ TEST_P(Step, GivenIsHeldAgainstTheStableStepOfWhatIsLeft) {
     EXPECT_EQ(body.simulation.step().status, StepStatus::step_too_large);
   }
   EXPECT_GT(went_on, 5U);
-  EXPECT_GT(told, 5U);
+  EXPECT_GT(told, 2U);
 }
 
 }  // namespace
