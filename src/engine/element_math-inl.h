@@ -144,7 +144,8 @@ template <class D, class V>
 HWY_INLINE V one_minus_q(D d, const Invariants<V>& e) {
   const V j = e.volume_change, md = e.minors + e.determinant;
   V psi = psi_of_small(d, j);
-  if (!AllTrue(d, Lt(Abs(j), Set(d, kSmallVolumeChange)))) psi = psi_of_cube_root(d, j);
+  const auto small = Lt(Abs(j), Set(d, kSmallVolumeChange));
+  if (!AllTrue(d, small)) psi = IfThenElse(small, psi, psi_of_cube_root(d, j));
   const V N =
       MulAdd(md * Set(d, 1.0F / 3.0F), j + e.trace, MulAdd(e.determinant, Set(d, -2.0F), e.twice_deviator)) + psi;
   const V squares = MulAdd(e.minors, Set(d, 2.0F), MulAdd(e.trace * e.trace, Set(d, -1.0F / 3.0F), e.twice_deviator));
@@ -179,7 +180,8 @@ HWY_INLINE Measured<V> measure_one_minus_q(D d, const Invariants<V>& e, float bu
 
 /// The paper's raw mean ratio 12 (3V)^⅔ / Σ l², from the deformed edges: with e_a = d_a + u_a the three edges
 /// from the origin, Σ l² over six edges is 4 Σ |e_a|² − |Σ e_a|². Rest edges d_a follow from the gradients:
-/// d₁ = (s₂ × s₃) / (s₁ · s₂ × s₃). Tets that are not there (all gradients 0) give 0.
+/// d₁ = (s₂ × s₃) / (s₁ · s₂ × s₃). Tets that are not there (all gradients 0) give x = 0, and y = −1: x = 0
+/// would be the largest deformation of all.
 template <class D, class V>
 HWY_INLINE Measured<V> measure_regular_mean_ratio(D d, const Gradient<V>& g, const Invariants<V>& e, const V (&s)[3][3],
                                                   float bulk_over_two_mu) {
@@ -211,7 +213,7 @@ HWY_INLINE Measured<V> measure_regular_mean_ratio(D d, const Gradient<V>& g, con
   const V ratio = Set(d, 12.0F) * root / Max(total, Set(d, 1e-30F));
   const V x = IfThenElse(Gt(J, Set(d, 0.0F)), Min(ratio, Set(d, 1.0F)), Set(d, 0.0F));
   const V y = x * x * Set(d, 1.64F * 1.64F) * strain_bound_squared(d, e, bulk_over_two_mu);
-  return {IfThenElse(present, x, Set(d, 0.0F)), IfThenElse(present, y, Set(d, 0.0F))};
+  return {IfThenElse(present, x, Set(d, 0.0F)), IfThenElse(present, y, Set(d, -1.0F))};
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

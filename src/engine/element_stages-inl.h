@@ -62,11 +62,12 @@ inline void gather(const Elements& e, std::size_t begin, std::size_t n, Block& b
   for (std::size_t b = 0; b < n; ++b) {
     const std::uint16_t* index = e.index + (begin + b) * kPairVertices * kLanes;
     const float* rest = e.rest + (begin + b) * 2 * kTetRest * kLanes;
-    prefetch_batch(e, begin + b + kBlockBatches);
-    const Origin<kViscous> origin(e.states, index);
-    const UV d2 = origin.difference(index + 2 * kLanes), d3 = origin.difference(index + 3 * kLanes);
+    if (e.prefetch) prefetch_batch(e, begin + b + kBlockBatches);
+    const auto vertex = [&](std::size_t a) { return Indices(index + a * kLanes); };
+    const Origin<kViscous> origin(e.states, vertex(0));
+    const UV d2 = origin.difference(vertex(2)), d3 = origin.difference(vertex(3));
     for (std::size_t tet = 0; tet < 2; ++tet) {
-      const UV d1 = origin.difference(index + (tet == 0 ? 1 : 4) * kLanes);
+      const UV d1 = origin.difference(vertex(tet == 0 ? 1 : 4));
       const std::size_t item = 2 * b + tet;
       F s[3][3];
       load_gradients(rest + tet * kTetRest * kLanes, s);
@@ -105,21 +106,22 @@ inline bool measure(const Elements& e, std::size_t begin, std::size_t n, Block& 
 /// Forces of a batch from the two stresses (−V included): both tets add to the two vertices they share.
 HWY_INLINE void push_pair(float* forces, const std::uint16_t* index, const float* rest, const Stress<F>& A,
                           const Stress<F>& B) {
+  const auto vertex = [&](std::size_t a) { return Indices(index + a * kLanes); };
   F s[3][3];
   load_gradients(rest, s);
   const Xyz f1 = force<F, Xyz>(A, s[0]);
-  add_forces(forces, index + kLanes, f1);
+  add_forces(forces, vertex(1), f1);
   Xyz f2 = force<F, Xyz>(A, s[1]), f3 = force<F, Xyz>(A, s[2]);
   load_gradients(rest + kTetRest * kLanes, s);
   const Xyz f4 = force<F, Xyz>(B, s[0]);
-  add_forces(forces, index + 4 * kLanes, f4);
+  add_forces(forces, vertex(4), f4);
   f2 = force_beside(B, s[1], f2);
   f3 = force_beside(B, s[2], f3);
-  add_forces(forces, index + 2 * kLanes, f2);
-  add_forces(forces, index + 3 * kLanes, f3);
+  add_forces(forces, vertex(2), f2);
+  add_forces(forces, vertex(3), f3);
   const auto minus = [](F a, F b, F c, F e) { return hn::Neg((a + b) + (c + e)); };
-  add_forces(forces, index,
-             {minus(f1.x, f4.x, f2.x, f3.x), minus(f1.y, f4.y, f2.y, f3.y), minus(f1.z, f4.z, f2.z, f3.z)});
+  add_forces(forces, vertex(0),
+             Xyz{minus(f1.x, f4.x, f2.x, f3.x), minus(f1.y, f4.y, f2.y, f3.y), minus(f1.z, f4.z, f2.z, f3.z)});
 }
 
 /// Whose stress a push carries.

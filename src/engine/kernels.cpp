@@ -43,6 +43,7 @@ const Kernels* kernels() {
       .edges_split = edges_viscous<true>,
       .add = add,
       .all_finite = all_finite,
+      .sum_slots = sum_slots,
       .integrate = integrate,
       .integrate_accounted = integrate_accounted};
   return &table;

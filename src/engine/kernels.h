@@ -43,6 +43,7 @@ struct Elements {
   float* elastic = nullptr;              ///< force records, of the whole force where that is pushed as one
   float* viscous = nullptr;
   LaneTissue tissue;
+  bool prefetch = false;   ///< whether rest data come from beyond the second-level cache
   std::size_t mu_law = 0;  ///< which of the block's two laws scales μ: 0 for a law on E
 };
 
@@ -120,6 +121,9 @@ struct Kernels {
   void (*add)(float* a, const float* b, std::size_t n) = nullptr;
   /// Whether all of `n` floats are finite; n is a multiple of 16.
   bool (*all_finite)(const float* values, std::size_t n) = nullptr;
+  /// Forces on `n` interface vertices: out[v] = Σ slots[which[i]], i from begin[v] to begin[v + 1], in this order.
+  void (*sum_slots)(const float* slots, const std::uint32_t* begin, const std::uint32_t* which, std::size_t n,
+                    float* out) = nullptr;
   /// Kick and drift of `n` vertices: v₊ = v₋ + c f − d v₋ + h (1 − d) g, u₊ = u + h v₊  [Schwartz2002, eq. 4].
   void (*integrate)(double* state, const float* force, std::size_t n, const Kick&) = nullptr;
   /// The same with elastic and viscous forces apart; the work is added to `work`.

@@ -119,13 +119,16 @@ HWY_INLINE void take_largest(F stiffness, F slope_squared, StiffnessSeen& seen) 
   seen.slope_squared = std::max(seen.slope_squared, hn::GetLane(hn::MaxOfLanes(Lanes(), slope_squared)));
 }
 
+/// A value of tets that are there; lanes without one have y < 0 where they could be mistaken for some.
+HWY_INLINE F of_present(F y, F value) { return hn::IfThenZeroElse(hn::Lt(y, hn::Zero(Lanes())), value); }
+
 inline void watch_young(const Block& block, const LaneTissue&, std::size_t n, StiffnessSeen& seen) {
   const Lanes d;
   F most = hn::Zero(d), steepest = hn::Zero(d);
   for (std::size_t i = 0; i < n; i += kLanes) {
-    const F k = hn::Load(d, block.slope[0] + i);
-    most = hn::Max(most, hn::Load(d, block.value[0] + i));
-    steepest = hn::Max(steepest, k * k * hn::Load(d, block.y + i));
+    const F k = hn::Load(d, block.slope[0] + i), y = hn::Load(d, block.y + i);
+    most = hn::Max(most, of_present(y, hn::Load(d, block.value[0] + i)));
+    steepest = hn::Max(steepest, k * k * y);
   }
   take_largest(most, steepest, seen);
 }
@@ -141,8 +144,9 @@ inline void watch_lame(const Block& block, const LaneTissue& tissue, std::size_t
     const F lambda = hn::Load(d, block.value[0] + i), mu = hn::Load(d, block.value[1] + i);
     const F dl = hn::Abs(hn::Load(d, block.slope[0] + i)), dm = hn::Abs(hn::Load(d, block.slope[1] + i));
     const F k = hn::Max(dm * per_mu, hn::MulAdd(part, dm, dl) * per_bulk);
-    most = hn::Max(most, hn::Max(mu * per_mu, hn::MulAdd(part, mu, lambda) * per_bulk));
-    steepest = hn::Max(steepest, k * k * hn::Load(d, block.y + i));
+    const F y = hn::Load(d, block.y + i);
+    most = hn::Max(most, of_present(y, hn::Max(mu * per_mu, hn::MulAdd(part, mu, lambda) * per_bulk)));
+    steepest = hn::Max(steepest, k * k * y);
   }
   take_largest(most, steepest, seen);
 }

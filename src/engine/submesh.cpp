@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 
 #include "engine/edge_batches.h"
 #include "engine/pair_batches.h"
@@ -105,6 +107,10 @@ std::uint32_t Submesh::local_of_record(std::uint32_t record) const {
 
 void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, Submesh& part, std::size_t lanes) {
   const std::vector<Tet> local = number_locally(body, record_of_vertex, part);
+  if (part.local_vertices() > kMaxLocalVertices) {
+    throw std::invalid_argument("submesh: " + std::to_string(part.local_vertices()) + " vertices do not fit 14-bit " +
+                                "numbers, at most " + std::to_string(kMaxLocalVertices) + "; aim at fewer tets");
+  }
   const TissueBlock& block = body.blocks[part.block];
   part.gradient_reach = gradient_reach(body, part.elements);
   if (is_linear(block)) {

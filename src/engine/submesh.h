@@ -77,8 +77,9 @@ struct Submeshes {
 };
 
 /// Tets a submesh aims at.
-inline constexpr std::size_t kSubmeshTets = 1536;
+inline constexpr std::size_t kSubmeshTets = 2048;
 
+/// @throws std::invalid_argument if a submesh has more vertices than kMaxLocalVertices
 /// @param lanes  of the kernels that will run on it
 Submeshes build_submeshes(const Body& body, std::size_t lanes, std::size_t target_tets = kSubmeshTets);
 

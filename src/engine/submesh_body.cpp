@@ -10,6 +10,7 @@
 namespace glisson::engine {
 namespace {
 
+constexpr std::size_t kPrefetchTets = 16384;  ///< rest data of more do not fit a second-level cache of 1 MiB
 constexpr std::size_t kInterfaceChunk = 512;  ///< interface vertices a task
 /// A linear submesh with large gradients is looked over for inverted tets once in so many steps.
 constexpr std::uint64_t kInversionPeriod = 16;
@@ -101,6 +102,7 @@ void SubmeshBody::set_state(std::span<const Vec3d> displacement, std::span<const
     put(velocity[v], record + 4);
   }
   for (WatchedVertex& w : watched_) w.displacement = displacement[w.vertex], w.velocity = velocity[w.vertex];
+  std::fill(looked_.begin(), looked_.end(), Looked::small);
 }
 
 void SubmeshBody::read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const {
@@ -206,6 +208,7 @@ void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratc
                           .elastic = scratch.elastic.data(),
                           .viscous = scratch.viscous.data(),
                           .tissue = plan.tissue,
+                          .prefetch = body_.elements.size() > kPrefetchTets,
                           .mu_law = plan.laws - 1};
   const auto gather = plan.viscous ? kernels_.gather_viscous : kernels_.gather_elastic;
   const auto push = plan.viscous && !split ? kernels_.push_merged : kernels_.push_elastic;
@@ -263,6 +266,7 @@ void SubmeshBody::list_inverted(const Submesh& part, Findings& found) const {
 void SubmeshBody::fill_slots(const Submesh& part, bool split, const Scratch& scratch) {
   const std::size_t from = part.interior_count * kForceFloats, n = part.shared.size() * kForceFloats;
   std::copy_n(scratch.elastic.data() + from, n, slots_elastic_.data() + part.first_slot * kForceFloats);
+  if (!any_split_) return;
   float* viscous = slots_viscous_.data() + part.first_slot * kForceFloats;
   if (split) {
     std::copy_n(scratch.viscous.data() + from, n, viscous);
@@ -338,21 +342,17 @@ void SubmeshBody::run_interface(std::size_t chunk, const Step& step, Scratch& sc
   const Interface& shared = submeshes_.interface;
   const std::size_t begin = chunk * kInterfaceChunk, n = std::min(kInterfaceChunk, shared.size() - begin);
   float *elastic = scratch.elastic.data(), *viscous = scratch.viscous.data();
-  std::fill_n(elastic, force_floats(n), 0.0F);
-  std::fill_n(viscous, force_floats(n), 0.0F);
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::uint32_t i = shared.slot_begin[begin + k]; i < shared.slot_begin[begin + k + 1]; ++i) {
-      const std::size_t slot = shared.slots[i] * kForceFloats;
-      for (std::size_t axis = 0; axis < kForceFloats; ++axis) {
-        elastic[k * kForceFloats + axis] += slots_elastic_[slot + axis];
-        viscous[k * kForceFloats + axis] += slots_viscous_[slot + axis];
-      }
-    }
+  const std::uint32_t* slot_begin = shared.slot_begin.data() + begin;
+  kernels_.sum_slots(slots_elastic_.data(), slot_begin, shared.slots.data(), n, elastic);
+  if (any_split_) {
+    kernels_.sum_slots(slots_viscous_.data(), slot_begin, shared.slots.data(), n, viscous);
+  } else {
+    std::fill_n(viscous, n * kForceFloats, 0.0F);
   }
   interface_found_[chunk] = {};
   const std::size_t first = shared.first_record + begin;
   take_watched(interface_watches_[chunk], first, elastic, viscous);
-  if (!step.accounted) kernels_.add(elastic, viscous, force_floats(n));
+  if (!step.accounted && any_split_) kernels_.add(elastic, viscous, force_floats(n));
   integrate(first, n, interface_watches_[chunk], elastic, viscous, step, interface_found_[chunk].work);
 }
 
@@ -386,6 +386,8 @@ void SubmeshBody::gather_findings(bool accounted) {
 
 const Advance& SubmeshBody::advance(double h, const Vec3d& gravity, bool accounted) {
   set_step(h);
+  any_split_ = false;
+  for (std::size_t s = 0; s < submeshes_.parts.size(); ++s) any_split_ = any_split_ || splits(s, accounted);
   const Step step{{h, {gravity.x, gravity.y, gravity.z, 0.0}}, accounted};
   pool_.run(submeshes_.parts.size(),
             [&](std::size_t s, std::size_t thread) { run_submesh(s, step, *scratch_[thread]); });

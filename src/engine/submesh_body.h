@@ -108,6 +108,7 @@ class SubmeshBody final : public MovingBody {
 
   LaneVector<double> state_;
   std::vector<double> masses_, damping_;  ///< per record [kg], [kg/s]
+  bool any_split_ = false;                ///< whether some submesh keeps viscous forces apart in this step
   double step_ = -1.0;                    ///< for which the records' coefficients hold
   std::uint64_t steps_ = 0;
 

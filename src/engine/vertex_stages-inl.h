@@ -55,11 +55,36 @@ inline void add(float* a, const float* b, std::size_t n) {
   for (std::size_t i = 0; i < n; i += kLanes) hn::Store(hn::Load(d, a + i) + hn::Load(d, b + i), d, a + i);
 }
 
+/// 0 · value is NaN for those that are not finite. Four sums, so that none waits for the other.
 inline bool all_finite(const float* values, std::size_t n) {
   const Lanes d;
-  F sum = hn::Zero(d);
-  for (std::size_t i = 0; i < n; i += kLanes) sum = hn::MulAdd(hn::Load(d, values + i), hn::Zero(d), sum);
-  return hn::AllTrue(d, hn::Eq(sum, sum));
+  const F zero = hn::Zero(d);
+  F sum[4] = {zero, zero, zero, zero};
+  for (std::size_t i = 0; i < n; i += 4 * kLanes) {
+    for (std::size_t k = 0; k < 4 && i + k * kLanes < n; ++k) {
+      sum[k] = hn::MulAdd(hn::Load(d, values + i + k * kLanes), zero, sum[k]);
+    }
+  }
+  const F all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  return hn::AllTrue(d, hn::Eq(all, all));
+}
+
+/// One force record, or as much of it as a vector holds.
+using ForceLanes = hn::CappedTag<float, kForceFloats>;
+inline constexpr std::size_t kForceLanes = HWY_TARGET == HWY_SCALAR ? 1 : kForceFloats;
+
+inline void sum_slots(const float* slots, const std::uint32_t* begin, const std::uint32_t* which, std::size_t n,
+                      float* out) {
+  const ForceLanes d;
+  for (std::size_t v = 0; v < n; ++v) {
+    for (std::size_t k = 0; k < kForceFloats; k += kForceLanes) {
+      auto sum = hn::Zero(d);
+      for (std::uint32_t i = begin[v]; i < begin[v + 1]; ++i) {
+        sum = hn::Add(sum, hn::Load(d, slots + which[i] * kForceFloats + k));
+      }
+      hn::Store(sum, d, out + v * kForceFloats + k);
+    }
+  }
 }
 
 /// All bits in x, y, z and none in w, for the part from position k. The w of a record are its coefficients: a
