@@ -29,6 +29,6 @@ class TaskPool {
 /// Threads that pay for a body of so many tets on this machine: one below kThreadingTets.
 int threads_for(std::size_t tets);
 /// Below this a second thread gains nothing (docs/engine.md, measured).
-inline constexpr std::size_t kThreadingTets = 8000;
+inline constexpr std::size_t kThreadingTets = 4096;
 
 }  // namespace glisson::engine
