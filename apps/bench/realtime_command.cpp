@@ -44,6 +44,7 @@ Variant choose_variant(const Options& options) {
   Variant variant = scene.variants.front();
   variant.simulation.threads = options.threads;
   variant.simulation.track_energies = false;
+  variant.simulation.exact_steps = false;  // a search for h* takes more than a frame
   if (scene.variants.size() > 1) {
     fmt::print("variant {}, the first of {}; --variant NAME takes another\n", variant.name, scene.variants.size());
   }
