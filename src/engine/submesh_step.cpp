@@ -1,0 +1,233 @@
+// submesh_step.cpp — one step of a body of submeshes: the tasks drawn in submesh_body.h.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/submesh_scratch.h"
+#include "mechanics/flush_denormals.h"
+#include "tissue/shape_measure.h"
+
+namespace glisson::engine {
+namespace {
+
+constexpr std::size_t kPrefetchTets = 16384;  ///< rest data of more do not fit a second-level cache of 1 MiB
+/// A linear submesh with large gradients is looked over for inverted tets once in so many steps.
+constexpr std::uint64_t kInversionPeriod = 16;
+
+}  // namespace
+
+/// Whether elastic and viscous forces of a submesh are kept apart.
+bool SubmeshBody::splits(std::size_t s, bool accounted) const {
+  return plans_[submeshes_.parts[s].block].viscous && (accounted || holds_watched_[s] != 0);
+}
+
+void SubmeshBody::narrow(const Submesh& part, Scratch& scratch) const {
+  if (part.local_vertices() == 0) return;
+  const double* own = state_.data() + part.first_interior * kStateDoubles;
+  const double* origin = part.interior_count > 0 ? own : state_.data() + part.shared[0] * kStateDoubles;
+  kernels_.narrow(own, origin, part.interior_count, scratch.states.data());
+  kernels_.narrow_chosen(state_.data(), part.shared.data(), origin, part.shared.size(),
+                         scratch.states.data() + part.interior_count * kStateFloats);
+}
+
+void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const {
+  const Plan& plan = plans_[part.block];
+  const Elements elements{.states = scratch.states.data(),
+                          .index = part.pairs.index.data(),
+                          .rest = part.pairs.rest.data(),
+                          .elastic = scratch.elastic.data(),
+                          .viscous = scratch.viscous.data(),
+                          .tissue = plan.tissue,
+                          .prefetch = body_.elements.size() > kPrefetchTets,
+                          .mu_law = plan.laws - 1};
+  const auto gather = plan.viscous ? kernels_.gather_viscous : kernels_.gather_elastic;
+  const auto push = plan.viscous && !split ? kernels_.push_merged : kernels_.push_elastic;
+  const auto look = plan.laws == 2 ? kernels_.watch_lame : kernels_.watch_young;
+  Block& block = scratch.block;
+  for (std::size_t b = 0; b < part.pairs.count; b += kBlockBatches) {
+    const std::size_t n = std::min(kBlockBatches, part.pairs.count - b), values = 2 * n * kernels_.lanes;
+    gather(elements, b, n, block);
+    if (kernels_.measure[plan.measure](elements, b, n, block)) found.inverted = true;
+    for (std::size_t l = 0; l < plan.laws; ++l) {
+      kernels_.law[plan.law[l].kind](plan.law[l], block.x, values, block.value[l], block.slope[l]);
+    }
+    look(block, plan.tissue, values, found.stiffness);
+    push(elements, b, n, block);
+    if (split) kernels_.push_viscous(elements, b, n, block);
+  }
+}
+
+void SubmeshBody::push_edges(const Submesh& part, bool split, Scratch& scratch, Findings& found) const {
+  const Plan& plan = plans_[part.block];
+  const Edges edges{.states = scratch.states.data(),
+                    .index = part.edges.index.data(),
+                    .tensor = part.edges.tensor.data(),
+                    .batches = part.edges.count,
+                    .elastic = scratch.elastic.data(),
+                    .viscous = scratch.viscous.data(),
+                    .tissue = plan.tissue};
+  const auto push = split ? kernels_.edges_split : (plan.viscous ? kernels_.edges_merged : kernels_.edges_elastic);
+  found.longest_edge_squared = push(edges);
+  found.stiffness.stiffness = 1.0F;
+}
+
+/// Whether a linear submesh is to be looked over for inverted tets. |H| < 1 leaves no room for J ≤ 0; beyond
+/// that it is looked over at once, then every kInversionPeriod steps, and at each step while it has some.
+bool SubmeshBody::must_look(std::size_t s, float longest_edge_squared, bool moves) {
+  const float reach = submeshes_.parts[s].gradient_reach;
+  const bool large = !(longest_edge_squared * reach * reach < 1.0F);
+  const bool look = large && (looked_[s] != Looked::large || (steps_ + s) % kInversionPeriod == 0);
+  if (moves) looked_[s] = large ? Looked::large : Looked::small;
+  return look;
+}
+
+void SubmeshBody::list_inverted(const Submesh& part, Findings& found) const {
+  for (const std::uint32_t e : part.elements) {
+    const Tet& t = body_.elements[e];
+    std::array<Vec3d, 4> u;
+    for (std::size_t a = 0; a < 4; ++a) {
+      u[a] = vector_of(state_.data() + submeshes_.record_of_vertex[t[a]] * kStateDoubles);
+    }
+    const Mat3d H = displacement_gradient<double>(body_.rest[e].s, {u[1] - u[0], u[2] - u[0], u[3] - u[0]});
+    if (!(jacobian(H) > 0.0)) found.tets.push_back(body_.mesh_tet[e]);
+  }
+}
+
+void SubmeshBody::fill_slots(const Submesh& part, bool split, const Scratch& scratch) {
+  const std::size_t from = part.interior_count * kForceFloats, n = part.shared.size() * kForceFloats;
+  std::copy_n(scratch.elastic.data() + from, n, slots_elastic_.data() + part.first_slot * kForceFloats);
+  if (!any_split_) return;
+  float* viscous = slots_viscous_.data() + part.first_slot * kForceFloats;
+  if (split) {
+    std::copy_n(scratch.viscous.data() + from, n, viscous);
+  } else {
+    std::fill_n(viscous, n, 0.0F);
+  }
+}
+
+void SubmeshBody::take_watched(std::span<const Watch> watches, std::size_t first_record, const float* elastic,
+                               const float* viscous) {
+  for (const Watch& watch : watches) {
+    WatchedVertex& w = watched_[watch.place];
+    const double* record = state_.data() + (first_record + watch.local) * kStateDoubles;
+    w.elastic = vector_of(elastic + watch.local * kForceFloats);
+    w.viscous = viscous != nullptr ? vector_of(viscous + watch.local * kForceFloats) : Vec3d{};
+    w.displacement = vector_of(record);
+    w.velocity = vector_of(record + 4);
+  }
+}
+
+/// Kick and drift of the vertices between those watched. Without `viscous`, `elastic` is the whole force.
+void SubmeshBody::integrate(std::size_t first_record, std::size_t n, std::span<const Watch> watches, float* elastic,
+                            float* viscous, const Step& step, VertexWork& work) {
+  std::size_t from = 0;
+  const auto run_to = [&](std::size_t end) {
+    double* state = state_.data() + (first_record + from) * kStateDoubles;
+    const float* f = elastic + from * kForceFloats;
+    if (step.accounted) {
+      kernels_.integrate_accounted(state, f, viscous + from * kForceFloats, end - from, step.kick, work);
+    } else {
+      kernels_.integrate(state, f, end - from, step.kick);
+    }
+  };
+  for (const Watch& watch : watches) {
+    run_to(watch.local);
+    from = watch.local + 1;
+  }
+  run_to(n);
+}
+
+void SubmeshBody::run_submesh(std::size_t s, const Step& step, Scratch& scratch) {
+  const FlushDenormals flush;
+  const Submesh& part = submeshes_.parts[s];
+  Findings& found = found_[s];
+  found = {};
+  const bool split = splits(s, step.accounted);
+  const std::size_t floats = force_floats(part.local_vertices());
+  std::fill_n(scratch.elastic.data(), floats, 0.0F);
+  if (split || step.accounted) std::fill_n(scratch.viscous.data(), floats, 0.0F);
+
+  narrow(part, scratch);
+  if (part.edges.count > 0) {
+    push_edges(part, split, scratch, found);
+    found.inverted = must_look(s, found.longest_edge_squared, step.kick.step > 0.0);
+  } else {
+    push_elements(part, split, scratch, found);
+  }
+  if (found.inverted) list_inverted(part, found);
+  if (!found.tets.empty()) looked_[s] = Looked::inverted;
+
+  found.finite = kernels_.all_finite(scratch.elastic.data(), floats) &&
+                 (!split || kernels_.all_finite(scratch.viscous.data(), floats));
+  if (!found.finite) return;
+  fill_slots(part, split, scratch);
+  take_watched(watches_[s], part.first_interior, scratch.elastic.data(), split ? scratch.viscous.data() : nullptr);
+  if (split && !step.accounted) kernels_.add(scratch.elastic.data(), scratch.viscous.data(), floats);
+  integrate(part.first_interior, part.interior_count, watches_[s], scratch.elastic.data(), scratch.viscous.data(), step,
+            found.work);
+}
+
+void SubmeshBody::run_interface(std::size_t chunk, const Step& step, Scratch& scratch) {
+  const FlushDenormals flush;
+  const Interface& shared = submeshes_.interface;
+  const std::size_t begin = chunk * kInterfaceChunk, n = std::min(kInterfaceChunk, shared.size() - begin);
+  float *elastic = scratch.elastic.data(), *viscous = scratch.viscous.data();
+  const std::uint32_t* slot_begin = shared.slot_begin.data() + begin;
+  kernels_.sum_slots(slots_elastic_.data(), slot_begin, shared.slots.data(), n, elastic);
+  if (any_split_) {
+    kernels_.sum_slots(slots_viscous_.data(), slot_begin, shared.slots.data(), n, viscous);
+  } else {
+    std::fill_n(viscous, n * kForceFloats, 0.0F);
+  }
+  interface_found_[chunk] = {};
+  const std::size_t first = shared.first_record + begin;
+  take_watched(interface_watches_[chunk], first, elastic, viscous);
+  if (!step.accounted && any_split_) kernels_.add(elastic, viscous, force_floats(n));
+  integrate(first, n, interface_watches_[chunk], elastic, viscous, step, interface_found_[chunk].work);
+}
+
+/// Adds up what the tasks found, in their order.
+void SubmeshBody::gather_findings(bool accounted) {
+  advance_.finite = true;
+  advance_.inverted.clear();
+  advance_.stiffening.assign(body_.blocks.size(), 0.0);
+  advance_.work = {};
+  const auto book = [&](const VertexWork& w) {
+    KickWork& sum = advance_.work;
+    sum.before.elastic += w.elastic_before, sum.after.elastic += w.elastic_after;
+    sum.before.viscous += w.viscous_before, sum.after.viscous += w.viscous_after;
+    sum.before.damping += w.damping_before, sum.after.damping += w.damping_after;
+    sum.before.loads += w.loads_before, sum.after.loads += w.loads_after;
+    sum.kinetic += w.kinetic;
+  };
+  for (std::size_t s = 0; s < found_.size(); ++s) {
+    const Findings& found = found_[s];
+    advance_.finite = advance_.finite && found.finite;
+    advance_.inverted.insert(advance_.inverted.end(), found.tets.begin(), found.tets.end());
+    double& r = advance_.stiffening[submeshes_.parts[s].block];
+    r = std::max(r, double(found.stiffness.stiffness) + std::sqrt(double(found.stiffness.slope_squared)));
+    if (accounted) book(found.work);
+  }
+  if (accounted) {
+    for (const Findings& found : interface_found_) book(found.work);
+  }
+  std::sort(advance_.inverted.begin(), advance_.inverted.end());
+}
+
+const Advance& SubmeshBody::advance(double h, const Vec3d& gravity, bool accounted) {
+  set_step(h);
+  any_split_ = false;
+  for (std::size_t s = 0; s < submeshes_.parts.size(); ++s) any_split_ = any_split_ || splits(s, accounted);
+  const Step step{{h, {gravity.x, gravity.y, gravity.z, 0.0}}, accounted};
+  pool_.run(submeshes_.parts.size(),
+            [&](std::size_t s, std::size_t thread) { run_submesh(s, step, *scratch_[thread]); });
+  const bool finite = std::all_of(found_.begin(), found_.end(), [](const Findings& f) { return f.finite; });
+  if (finite) {
+    pool_.run(interface_found_.size(),
+              [&](std::size_t c, std::size_t thread) { run_interface(c, step, *scratch_[thread]); });
+  }
+  ++steps_;
+  gather_findings(accounted);
+  return advance_;
+}
+
+}  // namespace glisson::engine
