@@ -39,7 +39,7 @@ struct SimulationOptions {
   /// Threads for the element forces, 0 … 1024; 0: as many as pay for the size of the body. The result is the same
   /// bytes on any number. In double precision always one.
   int threads = 0;
-  /// Whether energies() is kept. It costs a tenth to a third of a step; forces of constraints are there either way.
+  /// Whether energies() is kept. It makes a step up to half as long again; forces of constraints are there either way.
   bool track_energies = true;
   /// What an automatic step does when tissue stiffens beyond what h* was found for: search for h* anew, which takes
   /// some ms for a thousand tets and is exact, or take a bound from the last h* at once, at most √r smaller where
