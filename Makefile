@@ -42,6 +42,7 @@ layout:
 
 lint:
 	@scripts/configure.sh asan-ubsan tests
+	@cmake --build $(ASAN) --target glisson_build_info
 	@scripts/lint.sh $(ASAN) $(JOBS)
 
 # Address and undefined behaviour, over every test but those of the page; the fuzz corpus is among them.
