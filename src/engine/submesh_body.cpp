@@ -18,7 +18,6 @@ SubmeshBody::Plan SubmeshBody::plan_of(const TissueBlock& block) {
                  .bulk_over_two_mu = float((lambda + 2.0 / 3.0 * mu) / (2.0 * mu)),
                  .rest_mu = float(mu)};
   plan.measure = static_cast<std::size_t>(tissue.measure);
-  plan.linear = is_linear(block);
   plan.viscous = tissue.viscosity > 0.0;
   if (tissue.lambda_law || tissue.mu_law) {
     plan.laws = 2;

@@ -53,7 +53,7 @@ class SubmeshBody final : public MovingBody {
     std::array<LaneLaw, 2> law;
     std::size_t laws = 1;  ///< 2: apart on λ and μ
     std::size_t measure = 0;
-    bool linear = false, viscous = false;
+    bool viscous = false;
   };
   /// A watched vertex as its submesh or the interface sees it: position in their range, place in watched_.
   struct Watch {

@@ -1,7 +1,7 @@
 // force_operator.h — the seam between motion and elements: displacements and velocities in, forces out.
 //
-// One implementation for each way to evaluate the tissue; a submesh engine takes the place of the element
-// loop here without the integrators noticing.
+// One element at a time: what runs in double precision, and what the submesh engine (src/engine), which has its
+// own way in float, is compared with.
 #pragma once
 
 #include <cstdint>
