@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "glisson/hyperelastic_law.h"
+#include "glisson/math.h"
 #include "glisson/stiffness_law.h"
 
 namespace glisson {
@@ -23,6 +25,46 @@ enum class ViscousTensor {
   proportional  ///< (η/E) × the elastic tensor at rest
 };
 
+/// How a tensor-mass tissue measures strain ε from H = F − I; the stress is λ tr(ε) I + 2 μ ε in all three.
+enum class Kinematics {
+  small,         ///< ε = sym H, the paper's: a rotation by θ is taken for the strain cos θ − 1
+  corotational,  ///< ε = U − I of the polar decomposition F = R U, P = R σ; for large rotations, safe when inverted
+  green          ///< E = ½ (FᵀF − I), P = F S: St Venant–Kirchhoff                       [Picinbono2003]
+};
+
+/// What force a law of stiffness gives.
+enum class LawForm {
+  secant,  ///< σ = λ(x) tr(ε) I + 2 μ(x) ε, the paper's: not the gradient of an energy
+  energy   ///< P = ∂W/∂F, W = ½ λ(x) tr(ε)² + μ(x) ε:ε
+};
+
+/// Fibres that stiffen the tissue along one direction a: W_f = ½ c (a·E a)², E = ½ (FᵀF − I) (of kinematics small: sym H).
+/// With moduli λ_L, μ_L along and λ_T, μ_T across the fibres, c = λ_L − λ_T + 2 (μ_L − μ_T) [Picinbono2003].
+struct Fibres {
+  Vec3d direction{0.0, 0.0, 1.0};  ///< a at rest, any length but 0; a mesh's own directions win (TetMesh::fibres)
+  double stiffness = 0.0;          ///< c [Pa], ≥ 0
+  bool operator==(const Fibres&) const = default;
+};
+
+/// One branch of a generalised Maxwell body: μ(t) = μ₀ (1 − Σ g (1 − e^(−t/τ))).
+struct MaxwellBranch {
+  double share = 0.0;  ///< g, part of the instantaneous modulus that relaxes [-], > 0; all together < 1
+  double time = 1.0;   ///< τ [s], > 0
+  bool operator==(const MaxwellBranch&) const = default;
+};
+
+/// Which stress the Maxwell branches relax.
+enum class MaxwellPart {
+  deviator,  ///< its deviator: bulk stays elastic
+  all
+};
+
+/// Cure of volumetric locking, which makes linear tets too stiff from ν = 0.45 on.
+enum class VolumeChange {
+  own,   ///< each tet its own, as the paper
+  nodal  ///< mean of its vertices' mean over their tets, weighted by volume [BonetBurton1998]
+};
+
 /// λ and μ of linear elasticity [Pa].
 struct LameParameters {
   double lambda = 0.0, mu = 0.0;
@@ -31,10 +73,12 @@ struct LameParameters {
 /// λ = E ν / ((1 + ν)(1 − 2ν)), μ = E / (2 (1 + ν)).
 LameParameters lame_from_young(double youngs_modulus, double poisson_ratio);
 
-/// A tissue: isotropic elasticity whose moduli may follow the local deformation, Kelvin–Voigt viscosity.
+/// A tissue: isotropic elasticity whose moduli may follow the local deformation, or a hyperelastic law; fibres;
+/// Kelvin–Voigt viscosity and Maxwell branches.
 ///
 /// Either `law` acts on E with ν constant (so λ and μ scale alike), or `lambda_law` and `mu_law` act on
-/// λ and μ apart. Each maps the base modulus and the measure to a modulus in Pa.
+/// λ and μ apart. Each maps the base modulus and the measure to a modulus in Pa. With `hyperelastic` the stress is
+/// ∂W/∂F of that law instead; E, ν, kinematics and the laws of stiffness are not used then.
 struct Tissue {
   std::string name = "tissue";
   double youngs_modulus = 3600.0;  ///< E at rest [Pa], > 0
@@ -47,7 +91,18 @@ struct Tissue {
   std::optional<StiffnessLaw> lambda_law;  ///< λ(x); with it or mu_law set, `law` must be constant
   std::optional<StiffnessLaw> mu_law;      ///< μ(x)
 
-  LameParameters lame() const { return lame_from_young(youngs_modulus, poisson_ratio); }
+  Kinematics kinematics = Kinematics::small;
+  LawForm law_form = LawForm::secant;
+  std::optional<HyperelasticLaw> hyperelastic;
+  std::optional<Fibres> fibres;
+  std::vector<MaxwellBranch> maxwell;  ///< the moduli given are those of an instant; at most 8 branches
+  MaxwellPart maxwell_part = MaxwellPart::deviator;
+  VolumeChange volume_change = VolumeChange::own;
+
+  /// λ and μ at rest, in an instant; of the hyperelastic law where there is one.
+  LameParameters lame() const;
+  /// Whether the force is that of the paper's element: small strain, secant law, no fibres, no branches.
+  bool is_tensor_mass() const;
 };
 
 /// @throws std::invalid_argument naming the field, its value and the allowed range

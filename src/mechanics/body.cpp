@@ -54,6 +54,7 @@ Body build_body(const TetMesh& mesh, const std::map<int, Tissue>& tissues) {
   Body body;
   body.vertex_count = mesh.vertices.size();
   body.rest_positions = mesh.vertices;
+  body.fibres = mesh.fibres;
   body.masses.assign(body.vertex_count, 0.0);
   body.mesh_tet = elements_by_region(mesh);
   for (const std::uint32_t t : body.mesh_tet) {

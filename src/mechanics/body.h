@@ -12,6 +12,7 @@
 #include "glisson/math.h"
 #include "glisson/mesh.h"
 #include "glisson/tissue.h"
+#include "tissue/strain.h"
 
 namespace glisson {
 
@@ -41,6 +42,7 @@ struct Body {
   std::vector<TissueBlock> blocks;
   std::vector<double> masses;         ///< lumped: a quarter of ρV to each vertex [kg]
   std::vector<Vec3d> rest_positions;  ///< [m]
+  std::vector<Vec3d> fibres;          ///< of each tet of the mesh, any length; empty: those of the tissues
 
   const TissueBlock& block_of(std::size_t element) const;
 };
@@ -63,25 +65,5 @@ Mat3<T> displacement_gradient(const std::array<Vec3<T>, 3>& s, const std::array<
 
 /// H of element e for vertex values u (displacement: [-]; velocity: [1/s]).
 Mat3d element_gradient(const Body& body, std::size_t e, std::span<const Vec3d> u);
-
-/// A symmetric tensor.
-template <class T>
-struct Sym3 {
-  T xx{}, yy{}, zz{}, xy{}, yz{}, zx{};
-
-  friend Vec3<T> operator*(const Sym3& a, const Vec3<T>& v) {
-    return {a.xx * v.x + a.xy * v.y + a.zx * v.z, a.xy * v.x + a.yy * v.y + a.yz * v.z,
-            a.zx * v.x + a.yz * v.y + a.zz * v.z};
-  }
-};
-
-/// σ = λ tr(ε) I + 2 μ ε with ε = sym H: Hooke's law of the small-strain tensor, [Schwartz2002, eq. 1]
-/// without tensors. With (a, b) for (λ, μ) and a velocity gradient for H it is the viscous stress.
-template <class T>
-Sym3<T> isotropic_stress(const Mat3<T>& H, T lambda, T mu) {
-  const T p = lambda * trace(H), two_mu = mu + mu;
-  return {p + two_mu * H(0, 0),     p + two_mu * H(1, 1),     p + two_mu * H(2, 2),
-          mu * (H(0, 1) + H(1, 0)), mu * (H(1, 2) + H(2, 1)), mu * (H(2, 0) + H(0, 2))};
-}
 
 }  // namespace glisson

@@ -52,7 +52,8 @@ T one_minus_q(const Mat3<T>& H) {
   const T t = trace(H), m2 = second_invariant(H), det = determinant(H);
   const T J = T(1) + (t + m2 + det);
   if (!(J > T(0))) return T(1);
-  const T c = std::cbrt(J);
+  using std::cbrt;
+  const T c = cbrt(J);
   const T sum = c * c + c + T(1);
   const T delta = (t + m2 + det) / sum;
   const T difference = (T(3) * (m2 + det) - t * delta * (c + T(2))) / sum;  // 3δ − t
@@ -75,7 +76,8 @@ T mean_ratio(const Mat3<T>& H) {
 /// Strain-like intensity s = √(3 (1 − q) / 2) [-]; equals ‖dev ε‖ to first order, at most √1.5.
 template <class T>
 T intensity_of(T one_minus_q_value) {
-  return std::sqrt(T(1.5) * one_minus_q_value);
+  using std::sqrt;
+  return sqrt(T(1.5) * one_minus_q_value);
 }
 
 /// The six numbers that the raw mean ratio needs of a rest tetrahedron: Σ l lᵀ over its edges [m²].
@@ -93,10 +95,11 @@ T regular_mean_ratio(const Mat3<T>& H, T rest_volume, const EdgeMetric<T>& G) {
   if (!(J > T(0))) return T(0);
   T sum = T(0);
   for (std::size_t i = 0; i < 3; ++i) {
-    const T x = H(i, 0) + T(i == 0), y = H(i, 1) + T(i == 1), z = H(i, 2) + T(i == 2);
+    const T x = H(i, 0) + T(i == 0 ? 1 : 0), y = H(i, 1) + T(i == 1 ? 1 : 0), z = H(i, 2) + T(i == 2 ? 1 : 0);
     sum += x * x * G.xx + y * y * G.yy + z * z * G.zz + T(2) * (x * y * G.xy + y * z * G.yz + z * x * G.zx);
   }
-  const T c = std::cbrt(T(3) * rest_volume * J);
+  using std::cbrt;
+  const T c = cbrt(T(3) * rest_volume * J);
   return T(12) * c * c / sum;
 }
 

@@ -31,13 +31,15 @@ struct ExponentialLaw {
 
   template <class T>
   T value(T base, T x) const {
-    const T m = base + T(amplitude) * std::expm1(exponent(x));
+    using std::expm1;
+    const T m = base + T(amplitude) * expm1(exponent(x));
     return m > T(0) ? m : T(0);
   }
   template <class T>
   T derivative(T base, T x) const {
     if (T(rate) * x > T(kLargestExponent) || !(value(base, x) > T(0))) return T(0);
-    return T(amplitude) * T(rate) * std::exp(exponent(x));
+    using std::exp;
+    return T(amplitude) * T(rate) * exp(exponent(x));
   }
   std::string check() const { return {}; }
 

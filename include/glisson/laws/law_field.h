@@ -20,4 +20,17 @@ struct LawField {
   std::string_view help;
 };
 
+/// The smallest modulus that a law takes where it must be above 0 [Pa].
+inline constexpr double kSmallestModulus = 1e-6;
+
+/// κ of the hyperelastic laws, which all share κ/2 (J − 1)².
+template <class Law>
+constexpr LawField<Law> bulk_modulus_field() {
+  return {.key = "bulk_modulus_Pa",
+          .member = &Law::bulk_modulus,
+          .unit = "Pa",
+          .min = kSmallestModulus,
+          .help = "κ; ν = (3κ − 2μ)/(6κ + 2μ), with κ = 50 μ nearly incompressible"};
+}
+
 }  // namespace glisson

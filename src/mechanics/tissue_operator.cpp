@@ -1,0 +1,300 @@
+#include "mechanics/tissue_operator.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "mechanics/local_stiffness.h"
+
+namespace glisson {
+namespace {
+
+EdgeMetric<double> edge_metric(const Body& body, std::size_t e) {
+  EdgeMetric<double> G;
+  const Tet& t = body.elements[e];
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = a + 1; b < 4; ++b) {
+      const Vec3d l = body.rest_positions[t[a]] - body.rest_positions[t[b]];
+      G.xx += l.x * l.x, G.yy += l.y * l.y, G.zz += l.z * l.z;
+      G.xy += l.x * l.y, G.yz += l.y * l.z, G.zx += l.z * l.x;
+    }
+  }
+  return G;
+}
+
+Vec3d fibre_of(const Body& body, const Tissue& tissue, std::size_t e) {
+  if (!tissue.fibres) return {};
+  const Vec3d a = body.fibres.empty() ? tissue.fibres->direction : body.fibres[body.mesh_tet[e]];
+  return a * (1.0 / norm(a));
+}
+
+/// Adds f_a = −V P s_a to the four vertices.
+void scatter(const Body& body, std::size_t e, const Mat3d& P, std::span<Vec3d> force) {
+  const Tet& t = body.elements[e];
+  const ElementRest& rest = body.rest[e];
+  Vec3d sum{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Vec3d f = (P * rest.s[a]) * -rest.volume;
+    force[t[a + 1]] += f;
+    sum += f;
+  }
+  force[t[0]] -= sum;
+}
+
+template <class T>
+Mat3<T> as(const Mat3d& a) {
+  Mat3<T> r;
+  for (std::size_t i = 0; i < 9; ++i) r(i / 3, i % 3) = T(a(i / 3, i % 3));
+  return r;
+}
+template <class T>
+Sym3<T> as(const Sym3<double>& a) {
+  return {T(a.xx), T(a.yy), T(a.zz), T(a.xy), T(a.yz), T(a.zx)};
+}
+
+/// Weights of a branch over a time h: q(t + h) = decay q + from S(t) + to S(t + h), exact for S linear in time.
+struct BranchWeights {
+  double decay, from, to;
+};
+BranchWeights branch_weights(double h, double time) {
+  const double x = h / time;
+  if (!(x > 0.0)) return {1.0, 0.0, 0.0};
+  const double rise = -std::expm1(-x), mean = rise / x;  // 1 − e⁻ˣ and its mean
+  // small x: to = x/2 − x²/6, from = x/2 − x²/3, without cancellation
+  const double to = x < 1e-3 ? x * (0.5 - x / 6.0) : 1.0 - mean;
+  return {1.0 - rise, rise - to, to};
+}
+
+/// The nearest matrix whose symmetric part has no negative eigenvalue.
+void make_semidefinite(ElementTangent& C) {
+  const ElementTangent even = 0.5 * (C + C.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver{Eigen::Matrix<double, 9, 9>(even)};
+  if (solver.eigenvalues().minCoeff() >= 0.0) return;
+  const auto& V = solver.eigenvectors();
+  C = V * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
+}
+
+}  // namespace
+
+TissueOperator::TissueOperator(const Body& body) : body_(body) { body_changed(); }
+
+void TissueOperator::body_changed() {
+  responses_.clear();
+  shapes_.assign(body_.elements.size(), {});
+  first_branch_.clear(), first_stress_.clear();
+  std::size_t branches = 0, stresses = 0;
+  shares_volume_ = false;
+  for (const TissueBlock& block : body_.blocks) {
+    responses_.emplace_back(block.tissue);
+    first_branch_.push_back(branches), first_stress_.push_back(stresses);
+    const std::size_t n = block.end - block.begin, k = block.tissue.maxwell.size();
+    branches += n * k, stresses += k > 0 ? n : 0;
+    shares_volume_ = shares_volume_ || block.tissue.volume_change == VolumeChange::nodal;
+    const bool raw = block.tissue.measure == DeformationMeasure::regular_mean_ratio;
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      shapes_[e] = {body_.rest[e].volume, raw ? edge_metric(body_, e) : EdgeMetric<double>{},
+                    fibre_of(body_, block.tissue, e)};
+    }
+  }
+  memory_.relaxed.resize(branches);
+  memory_.stress.resize(stresses);
+  has_memory_ = branches > 0;
+}
+
+/// Mean of the elements around each vertex, of one block, weighted by volume.
+std::vector<double> TissueOperator::vertex_means(std::size_t b, const std::vector<double>& per_element) const {
+  const TissueBlock& block = body_.blocks[b];
+  std::vector<double> sum(body_.vertex_count, 0.0), volume(body_.vertex_count, 0.0);
+  for (std::size_t e = block.begin; e < block.end; ++e) {
+    for (const std::uint32_t v : body_.elements[e]) {
+      sum[v] += body_.rest[e].volume * per_element[e];
+      volume[v] += body_.rest[e].volume;
+    }
+  }
+  for (std::size_t v = 0; v < sum.size(); ++v) sum[v] = volume[v] > 0.0 ? sum[v] / volume[v] : 0.0;
+  return sum;
+}
+
+/// Replaces each element's value by the mean of those of its vertices.
+void TissueOperator::average(std::size_t b, std::vector<double>& per_element) const {
+  const std::vector<double> at = vertex_means(b, per_element);
+  for (std::size_t e = body_.blocks[b].begin; e < body_.blocks[b].end; ++e) {
+    const Tet& t = body_.elements[e];
+    per_element[e] = 0.25 * (at[t[0]] + at[t[1]] + at[t[2]] + at[t[3]]);
+  }
+}
+
+/// ϑ̄ of every element of a block that shares it; empty where none does.
+std::vector<double> TissueOperator::mean_volume_change(std::span<const Vec3d> u) const {
+  std::vector<double> mean;
+  if (!shares_volume_) return mean;
+  mean.assign(body_.elements.size(), 0.0);
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    if (block.tissue.volume_change != VolumeChange::nodal) continue;
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      mean[e] = responses_[b].volume_change(element_gradient(body_, e, u));
+    }
+    average(b, mean);
+  }
+  return mean;
+}
+
+/// Σ g (S − q): what the branches have not relaxed yet.
+template <class T>
+Sym3<T> TissueOperator::overstress(std::size_t b, std::size_t e, double since, const Sym3<T>& S) const {
+  const TissueBlock& block = body_.blocks[b];
+  const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
+  const std::size_t at = e - block.begin;
+  const Sym3<T> before = as<T>(memory_.stress[first_stress_[b] + at]);
+  Sym3<T> sum{};
+  for (std::size_t k = 0; k < branches.size(); ++k) {
+    const BranchWeights w = branch_weights(since, branches[k].time);
+    const Sym3<T> q = as<T>(memory_.relaxed[first_branch_[b] + at * branches.size() + k]) * T(w.decay) +
+                      before * T(w.from) + S * T(w.to);
+    sum += (S - q) * T(branches[k].share);
+  }
+  return sum;
+}
+
+void TissueOperator::forces(const TissueState& state, std::span<Vec3d> elastic, std::span<Vec3d> viscous,
+                            ElementWatch& watch) const {
+  std::fill(elastic.begin(), elastic.end(), Vec3d{});
+  std::fill(viscous.begin(), viscous.end(), Vec3d{});
+  watch.inverted.clear();
+  watch.stiffening.assign(body_.blocks.size(), 0.0);
+  const std::vector<double> mean = mean_volume_change(state.u);
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    const Response& response = responses_[b];
+    const bool dashpot = block.tissue.viscosity > 0.0, branches = !block.tissue.maxwell.empty();
+    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      const Mat3d H = element_gradient(body_, e, state.u);
+      if (!(jacobian(H) > 0.0)) watch.inverted.push_back(body_.mesh_tet[e]);
+      Mat3d P = response.elastic(H, shapes_[e], shared ? &mean[e] : nullptr);
+      if (dashpot) scatter(body_, e, response.viscous(H, element_gradient(body_, e, state.v)), viscous);
+      if (branches) {
+        const Sym3<double> S = response.relaxing(H, P);
+        scatter(body_, e, response.carry(H, overstress(b, e, state.since, S)), viscous);
+        P = sum(P, response.carry(H, S * -response.relaxing_share()));
+      }
+      scatter(body_, e, P, elastic);
+      watch.stiffening[b] = std::max(watch.stiffening[b], response.stiffening(H, shapes_[e]));
+    }
+  }
+}
+
+/// Shared volume changes store Σ_a V_a ½ κ ϑ_a² over the vertices: ½ κ of each element's mean square.
+double TissueOperator::energy(std::span<const Vec3d> u) const {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    std::vector<double> square;
+    if (shared) {
+      square.assign(body_.elements.size(), 0.0);
+      for (std::size_t e = block.begin; e < block.end; ++e) {
+        square[e] = responses_[b].volume_change(element_gradient(body_, e, u));
+      }
+      const std::vector<double> at = vertex_means(b, square);
+      for (std::size_t e = block.begin; e < block.end; ++e) {
+        square[e] = 0.0;
+        for (const std::uint32_t v : body_.elements[e]) square[e] += 0.25 * at[v] * at[v];
+      }
+    }
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      const double root = shared ? std::sqrt(square[e]) : 0.0;
+      const double W =
+          responses_[b].relaxed_energy(element_gradient(body_, e, u), shapes_[e], shared ? &root : nullptr);
+      sum += body_.rest[e].volume * W;
+    }
+  }
+  return sum;
+}
+
+void TissueOperator::linearise(const TissueState& state, double rate, bool semidefinite, TissueTangent& out) const {
+  const std::vector<double> mean = mean_volume_change(state.u);
+  out.local.resize(body_.elements.size());
+  out.volume.assign(shares_volume_ ? body_.elements.size() : 0, Mat3d{});
+  out.modulus.assign(out.volume.size(), 0.0);
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    const Response& response = responses_[b];
+    const bool dashpot = block.tissue.viscosity > 0.0, branches = !block.tissue.maxwell.empty();
+    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      const Mat3d H0 = element_gradient(body_, e, state.u), R0 = element_gradient(body_, e, state.v);
+      Mat3<Dual> H = as<Dual>(H0), R = as<Dual>(R0);
+      const Dual fixed = shared ? Dual(mean[e]) : Dual(0.0);
+      for (std::size_t c = 0; c < 9; ++c) {
+        H(c / 3, c % 3).d = 1.0, R(c / 3, c % 3).d = rate;
+        Mat3<Dual> P = response.elastic(H, shapes_[e], shared ? &fixed : nullptr);
+        if (branches) {
+          const Sym3<Dual> S = response.relaxing(H, P);
+          P = sum(P, response.carry(H, overstress(b, e, state.since, S) - S * Dual(response.relaxing_share())));
+        }
+        if (dashpot) P = sum(P, response.viscous(H, R));
+        for (std::size_t r = 0; r < 9; ++r) {
+          out.local[e](static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = P(r / 3, r % 3).d;
+        }
+        H(c / 3, c % 3).d = 0.0, R(c / 3, c % 3).d = 0.0;
+      }
+      if (semidefinite) make_semidefinite(out.local[e]);
+      if (shared) {
+        out.volume[e] = response.volume_direction(H0);
+        out.modulus[e] = response.volume_modulus(H0, shapes_[e]);
+      }
+    }
+  }
+}
+
+void TissueOperator::apply(const TissueTangent& tangent, std::span<const Vec3d> x, std::span<Vec3d> y) const {
+  using Nine = Eigen::Matrix<double, 9, 1>;
+  std::fill(y.begin(), y.end(), Vec3d{});
+  std::vector<double> mean(shares_volume_ ? body_.elements.size() : 0, 0.0);
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    const auto gradient = [&](std::size_t e) { return element_gradient(body_, e, x); };
+    const auto inner = [](const Mat3d& a, const Mat3d& c) { return trace(transposed_product(a, c)); };
+    if (shared) {
+      for (std::size_t e = block.begin; e < block.end; ++e) mean[e] = inner(tangent.volume[e], gradient(e));
+      average(b, mean);
+    }
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      const Mat3d H = gradient(e);
+      Mat3d P;
+      Eigen::Map<Nine>(P.m[0].data()) = tangent.local[e] * Eigen::Map<const Nine>(H.m[0].data());
+      if (shared) P = sum(P, scaled(tangent.volume[e], tangent.modulus[e] * mean[e]));
+      scatter(body_, e, scaled(P, -1.0), y);
+    }
+  }
+}
+
+void TissueOperator::advance_memory(const TissueState& state) {
+  if (!has_memory_) return;
+  const std::vector<double> mean = mean_volume_change(state.u);
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
+    if (branches.empty()) continue;
+    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    std::vector<BranchWeights> weights;
+    for (const MaxwellBranch& m : branches) weights.push_back(branch_weights(state.since, m.time));
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      const std::size_t at = e - block.begin;
+      const Mat3d H = element_gradient(body_, e, state.u);
+      const Sym3<double> S =
+          responses_[b].relaxing(H, responses_[b].elastic(H, shapes_[e], shared ? &mean[e] : nullptr));
+      Sym3<double>& before = memory_.stress[first_stress_[b] + at];
+      for (std::size_t k = 0; k < branches.size(); ++k) {
+        Sym3<double>& q = memory_.relaxed[first_branch_[b] + at * branches.size() + k];
+        q = q * weights[k].decay + before * weights[k].from + S * weights[k].to;
+      }
+      before = S;
+    }
+  }
+}
+
+}  // namespace glisson
