@@ -10,7 +10,9 @@ struct TetFields {
   std::vector<double> q;         ///< mean ratio against the rest shape, in [0, 1] [-]
   std::vector<double> s;         ///< strain-like intensity √(3 (1 − q) / 2) [-]
   std::vector<double> jacobian;  ///< J, ≤ 0 where inverted [-]
-  std::vector<double> stress;    ///< small-strain stress with its viscous part: xx, yy, zz, xy, yz, zx of each tet [Pa]
+  /// Stress with Kelvin–Voigt's part, Maxwell branches not relaxed: xx, yy, zz, xy, yz, zx of each tet [Pa]. Of the small
+  /// strain where that is the kinematics, else Cauchy's.
+  std::vector<double> stress;
 };
 
 }  // namespace glisson

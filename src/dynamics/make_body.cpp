@@ -1,5 +1,7 @@
 #include "dynamics/make_body.h"
 
+#include <algorithm>
+
 #include "engine/element_body.h"
 #include "engine/flops.h"
 #include "engine/submesh_body.h"
@@ -8,7 +10,9 @@ namespace glisson {
 
 std::unique_ptr<MovingBody> make_moving_body(const Body& body, std::span<const double> nodal_damping,
                                              const SimulationOptions& options, EngineInfo& info) {
-  if (options.precision == Precision::double_precision) {
+  const bool in_lanes = std::all_of(body.blocks.begin(), body.blocks.end(),
+                                    [](const TissueBlock& block) { return block.tissue.is_tensor_mass(); });
+  if (options.precision == Precision::double_precision || !in_lanes) {
     info = {.instruction_set = "double, element by element", .threads = 1};
     return std::make_unique<engine::ElementBody>(body, nodal_damping, options.precision);
   }

@@ -1,21 +1,45 @@
 #include "engine/element_body.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mechanics/flush_denormals.h"
 
 namespace glisson::engine {
 
 ElementBody::ElementBody(const Body& body, std::span<const double> nodal_damping, Precision precision)
-    : body_(body), precision_(precision), tissue_(make_element_operator(body, precision)),
-      damping_(nodal_damping.begin(), nodal_damping.end()), is_watched_(body.vertex_count, 0) {
+    : body_(body), precision_(precision), damping_(nodal_damping.begin(), nodal_damping.end()),
+      is_watched_(body.vertex_count, 0) {
   for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->assign(body.vertex_count, Vec3d{});
+  const auto paper = [](const TissueBlock& block) { return block.tissue.is_tensor_mass(); };
+  if (std::all_of(body.blocks.begin(), body.blocks.end(), paper)) {
+    tissue_ = make_element_operator(body, precision);
+  } else {
+    any_ = std::make_unique<TissueOperator>(body);
+  }
+}
+
+/// Forces of the present state; a step that moves leaves this state behind as the tissue's past.
+void ElementBody::evaluate(bool moves) {
+  if (tissue_ != nullptr) {
+    tissue_->evaluate(u_, v_, elastic_, viscous_, watch_);
+    return;
+  }
+  const TissueState state{u_, v_, since_memory_};
+  any_->forces(state, elastic_, viscous_, watch_);
+  if (!moves) return;
+  any_->advance_memory(state);
+  since_memory_ = 0.0;
 }
 
 void ElementBody::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
   u_.assign(displacement.begin(), displacement.end());
   v_.assign(velocity.begin(), velocity.end());
   for (WatchedVertex& w : watched_) w.displacement = u_[w.vertex], w.velocity = v_[w.vertex];
+  if (any_ == nullptr) return;
+  any_->advance_memory({u_, v_, std::numeric_limits<double>::infinity()});  // a state that is set has relaxed
+  since_memory_ = 0.0;
 }
 
 void ElementBody::read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const {
@@ -32,7 +56,8 @@ void ElementBody::apply(const BodyChange& change, const detail::VertexStars&, st
   viscous_.resize(u_.size());
   is_watched_.resize(u_.size(), 0);
   damping_.assign(nodal_damping.begin(), nodal_damping.end());
-  tissue_ = make_element_operator(body_, precision_);
+  if (tissue_ != nullptr) tissue_ = make_element_operator(body_, precision_);
+  if (any_ != nullptr) any_->body_changed();
 }
 
 void ElementBody::watch(std::span<const std::uint32_t> vertices) {
@@ -63,7 +88,7 @@ void ElementBody::book(std::size_t i, const Vec3d& before, const Vec3d& weight) 
 
 const Advance& ElementBody::advance(double h, const Vec3d& gravity, bool accounted) {
   const FlushDenormals flush;
-  tissue_->evaluate(u_, v_, elastic_, viscous_, watch_);
+  evaluate(h > 0.0);
   advance_.stiffening = watch_.stiffening;
   advance_.inverted = watch_.inverted;
   advance_.work = {};
@@ -83,6 +108,7 @@ const Advance& ElementBody::advance(double h, const Vec3d& gravity, bool account
     if (accounted) book(i, before, weight);
     u_[i] += v_[i] * h;
   }
+  since_memory_ += h;
   return advance_;
 }
 

@@ -1,12 +1,14 @@
 // element_body.h — a body that moves in double precision, element by element: the scene option, and a check.
 //
-// No submeshes, lanes or threads: the loop of mechanics/force_operator.h on arrays in the mesh's order.
+// No submeshes, lanes or threads: on arrays in the mesh's order the loop of mechanics/force_operator.h, or where a tissue
+// is more than the paper's that of mechanics/tissue_operator.h.
 #pragma once
 
 #include <memory>
 
 #include "engine/moving_body.h"
 #include "mechanics/force_operator.h"
+#include "mechanics/tissue_operator.h"
 
 namespace glisson::engine {
 
@@ -29,11 +31,14 @@ class ElementBody final : public MovingBody {
   const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;
 
  private:
+  void evaluate(bool moves);
   void book(std::size_t vertex, const Vec3d& before, const Vec3d& weight);
 
   const Body& body_;
   Precision precision_;
-  std::unique_ptr<ForceOperator> tissue_;
+  std::unique_ptr<ForceOperator> tissue_;  ///< where all tissues are tensor masses
+  std::unique_ptr<TissueOperator> any_;    ///< else
+  double since_memory_ = 0.0;              ///< time since the tissue's memory was brought up to date [s]
   std::vector<double> damping_;
   std::vector<Vec3d> u_, v_, elastic_, viscous_;
   std::vector<char> is_watched_;

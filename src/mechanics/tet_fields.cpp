@@ -1,22 +1,9 @@
 #include "mechanics/tet_fields.h"
 
-#include "tissue/shape_measure.h"
+#include "mechanics/element_shape.h"
 
 namespace glisson {
 namespace {
-
-EdgeMetric<double> edge_metric(const Body& body, std::size_t e) {
-  EdgeMetric<double> G;
-  const Tet& t = body.elements[e];
-  for (std::size_t a = 0; a < 4; ++a) {
-    for (std::size_t b = a + 1; b < 4; ++b) {
-      const Vec3d l = body.rest_positions[t[a]] - body.rest_positions[t[b]];
-      G.xx += l.x * l.x, G.yy += l.y * l.y, G.zz += l.z * l.z;
-      G.xy += l.x * l.y, G.yz += l.y * l.z, G.zx += l.z * l.x;
-    }
-  }
-  return G;
-}
 
 LameParameters moduli(const Body& body, const Tissue& tissue, std::size_t e, const Mat3d& H) {
   double x = 0.0;
@@ -34,22 +21,42 @@ LameParameters moduli(const Body& body, const Tissue& tissue, std::size_t e, con
   return lame_at(tissue, x);
 }
 
+/// σ = λ tr(ε) I + 2 μ ε and the viscous stress of a tensor mass.
+Sym3<double> small_stress(const Body& body, const TissueBlock& block, std::size_t e, const Mat3d& H,
+                          const Mat3d& rate) {
+  const LameParameters lame = moduli(body, block.tissue, e, H);
+  return isotropic_stress(H, lame.lambda, lame.mu) + isotropic_stress(rate, block.viscous.lambda, block.viscous.mu);
+}
+
+/// σ = P Fᵀ/J of any other; P itself for small strain.
+Sym3<double> cauchy_stress(const Response& response, const ElementShape& shape, const Mat3d& H, const Mat3d& rate) {
+  const Mat3d P = sum(response.elastic(H, shape), response.viscous(H, rate));
+  if (response.small()) return symmetric(P);
+  const Mat3d F = deformation_gradient(H);
+  Mat3d PFt;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) PFt(i, j) = P(i, 0) * F(j, 0) + P(i, 1) * F(j, 1) + P(i, 2) * F(j, 2);
+  }
+  return symmetric(PFt) * (1.0 / std::max(jacobian(H), kSmallestVolume));
+}
+
 }  // namespace
 
 TetFields tet_fields(const Body& body, std::span<const Vec3d> u, std::span<const Vec3d> v) {
   const std::size_t n = body.elements.size();
   TetFields f{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), std::vector<double>(6 * n)};
   for (const TissueBlock& block : body.blocks) {
+    const bool paper = block.tissue.is_tensor_mass();
+    const Response response(block.tissue);
     for (std::size_t e = block.begin; e < block.end; ++e) {
-      const Mat3d H = element_gradient(body, e, u);
-      const LameParameters lame = moduli(body, block.tissue, e, H);
-      const Sym3<double> a = isotropic_stress(H, lame.lambda, lame.mu);
-      const Sym3<double> b = isotropic_stress(element_gradient(body, e, v), block.viscous.lambda, block.viscous.mu);
+      const Mat3d H = element_gradient(body, e, u), rate = element_gradient(body, e, v);
+      const Sym3<double> a = paper ? small_stress(body, block, e, H, rate)
+                                   : cauchy_stress(response, element_shape(body, block.tissue, e), H, rate);
       const std::size_t t = body.mesh_tet[e];
       f.q[t] = mean_ratio(H);
       f.s[t] = intensity_of(one_minus_q(H));
       f.jacobian[t] = jacobian(H);
-      const std::array<double, 6> stress{a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.yz + b.yz, a.zx + b.zx};
+      const std::array<double, 6> stress{a.xx, a.yy, a.zz, a.xy, a.yz, a.zx};
       std::copy(stress.begin(), stress.end(), f.stress.begin() + static_cast<std::ptrdiff_t>(6 * t));
     }
   }
@@ -58,6 +65,10 @@ TetFields tet_fields(const Body& body, std::span<const Vec3d> u, std::span<const
 
 double element_energy(const Body& body, const TissueBlock& block, std::size_t e, const std::array<Vec3d, 4>& u) {
   const Mat3d H = displacement_gradient<double>(body.rest[e].s, {u[1] - u[0], u[2] - u[0], u[3] - u[0]});
+  if (!block.tissue.is_tensor_mass()) {
+    const Response response(block.tissue);
+    return body.rest[e].volume * response.relaxed_energy(H, element_shape(body, block.tissue, e));
+  }
   const LameParameters lame = moduli(body, block.tissue, e, H);
   const double t = trace(H), squares = deviator_squared(H) + t * t / 3.0;
   return body.rest[e].volume * (0.5 * lame.lambda * t * t + lame.mu * squares);

@@ -4,29 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mechanics/local_stiffness.h"
+#include "mechanics/element_shape.h"
 
 namespace glisson {
 namespace {
-
-EdgeMetric<double> edge_metric(const Body& body, std::size_t e) {
-  EdgeMetric<double> G;
-  const Tet& t = body.elements[e];
-  for (std::size_t a = 0; a < 4; ++a) {
-    for (std::size_t b = a + 1; b < 4; ++b) {
-      const Vec3d l = body.rest_positions[t[a]] - body.rest_positions[t[b]];
-      G.xx += l.x * l.x, G.yy += l.y * l.y, G.zz += l.z * l.z;
-      G.xy += l.x * l.y, G.yz += l.y * l.z, G.zx += l.z * l.x;
-    }
-  }
-  return G;
-}
-
-Vec3d fibre_of(const Body& body, const Tissue& tissue, std::size_t e) {
-  if (!tissue.fibres) return {};
-  const Vec3d a = body.fibres.empty() ? tissue.fibres->direction : body.fibres[body.mesh_tet[e]];
-  return a * (1.0 / norm(a));
-}
 
 /// Adds f_a = −V P s_a to the four vertices.
 void scatter(const Body& body, std::size_t e, const Mat3d& P, std::span<Vec3d> force) {
@@ -90,11 +71,7 @@ void TissueOperator::body_changed() {
     const std::size_t n = block.end - block.begin, k = block.tissue.maxwell.size();
     branches += n * k, stresses += k > 0 ? n : 0;
     shares_volume_ = shares_volume_ || block.tissue.volume_change == VolumeChange::nodal;
-    const bool raw = block.tissue.measure == DeformationMeasure::regular_mean_ratio;
-    for (std::size_t e = block.begin; e < block.end; ++e) {
-      shapes_[e] = {body_.rest[e].volume, raw ? edge_metric(body_, e) : EdgeMetric<double>{},
-                    fibre_of(body_, block.tissue, e)};
-    }
+    for (std::size_t e = block.begin; e < block.end; ++e) shapes_[e] = element_shape(body_, block.tissue, e);
   }
   memory_.relaxed.resize(branches);
   memory_.stress.resize(stresses);

@@ -51,6 +51,21 @@ void require_sets(const TetMesh& mesh) {
   }
 }
 
+void require_fibres(const TetMesh& mesh) {
+  if (mesh.fibres.empty()) return;
+  if (mesh.fibres.size() != mesh.tets.size()) {
+    refuse("fibres has " + detail::count_text(mesh.fibres.size(), "entry", "entries") + " for " +
+           detail::count_text(mesh.tets.size(), "tet", "tets") + "; give one direction per tet, or none");
+  }
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const double length = norm(mesh.fibres[t]);
+    if (!(length > 0.0 && std::isfinite(length))) {
+      refuse("the fibre direction of " + tet_text(mesh, t) + " has the length " + std::to_string(length) +
+             "; allowed: > 0 and finite");
+    }
+  }
+}
+
 }  // namespace
 
 namespace detail {
@@ -81,6 +96,7 @@ void require_valid(const TetMesh& mesh) {
   require_positions(mesh);
   require_orientation(mesh);
   require_sets(mesh);
+  require_fibres(mesh);
 }
 
 }  // namespace glisson

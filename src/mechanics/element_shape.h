@@ -1,0 +1,15 @@
+// element_shape.h — what a tet of a body adds to its tissue: volume, edges, fibre direction.
+#pragma once
+
+#include "mechanics/body.h"
+#include "tissue/response.h"
+
+namespace glisson {
+
+/// Σ l lᵀ over the six rest edges [m²].
+EdgeMetric<double> edge_metric(const Body& body, std::size_t element);
+
+/// @param tissue  of the element
+ElementShape element_shape(const Body& body, const Tissue& tissue, std::size_t element);
+
+}  // namespace glisson
