@@ -1,12 +1,14 @@
-// command_laws.cpp — glisson laws: how a modulus can follow deformation, from the laws' own descriptions.
+// command_laws.cpp — glisson laws: laws of stiffness and hyperelastic laws, from their own descriptions.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <string>
-#include <utility>
+#include <type_traits>
+#include <variant>
 
 #include "commands.h"
 #include "exit_code.h"
+#include "glisson/hyperelastic_law.h"
 #include "glisson/stiffness_law.h"
 
 namespace glisson::app {
@@ -27,19 +29,22 @@ void print_law() {
   }
 }
 
-template <std::size_t... I>
-void print_laws(std::index_sequence<I...>) {
-  (print_law<std::variant_alternative_t<I, StiffnessLaw>>(), ...);
+template <class... Laws>
+void print_laws(std::type_identity<std::variant<Laws...>>) {
+  (print_law<Laws>(), ...);
 }
 
 }  // namespace
 
 void add_laws(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("laws", "print the laws a modulus can follow, with their parameters");
+  CLI::App* command = program.add_subcommand("laws", "print the laws of tissues, with their parameters");
   command->footer("Examples:\n  glisson laws");
   command->callback([&action] {
     action = [] {
-      print_laws(std::make_index_sequence<std::variant_size_v<StiffnessLaw>>{});
+      fmt::print("Laws of stiffness: a modulus M follows the deformation x of its tet (tissue.law)\n\n");
+      print_laws(std::type_identity<StiffnessLaw>{});
+      fmt::print("\nHyperelastic laws: the stress is ∂W/∂F (tissue.hyperelastic)\n\n");
+      print_laws(std::type_identity<HyperelasticLaw>{});
       return static_cast<int>(kDone);
     };
   });

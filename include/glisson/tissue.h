@@ -20,9 +20,10 @@ enum class DeformationMeasure {
 
 /// Which constant tensor carries the viscosity η, [Schwartz2002, eq. 7] (the paper leaves it open).
 enum class ViscousTensor {
-  shear,        ///< σ_v = 2 η ε̇
-  deviatoric,   ///< σ_v = 2 η dev ε̇
-  proportional  ///< (η/E) × the elastic tensor at rest
+  shear,         ///< σ_v = 2 η ε̇
+  deviatoric,    ///< σ_v = 2 η dev ε̇
+  proportional,  ///< (η/E) × the elastic tensor at rest
+  pioletti       ///< S_v = 2 η (I₁ − 3) Ė: none at rest, more the more it is stretched         [Pioletti1998]
 };
 
 /// How a tensor-mass tissue measures strain ε from H = F − I; the stress is λ tr(ε) I + 2 μ ε in all three.

@@ -27,6 +27,9 @@ std::string scene_reference_markdown() {
   text += section_text(mesh_section(), "`[mesh]`");
   text += section_text(selection_section(), "`[sets.NAME]`") + selection_parts();
   text += section_text(tissue_section(), "`[tissue]`");
+  text += section_text(hyperelastic_section(), "`[tissue.hyperelastic]`");
+  text += section_text(fibres_section(), "`[tissue.fibres]`");
+  text += section_text(maxwell_section(), "`[[tissue.maxwell]]`");
   text += section_text(law_section(), "`[tissue.law]`, `[tissue.lambda_law]`, `[tissue.mu_law]`");
   text += section_text(region_section(), "`[[region]]`");
   text += section_text(motion_section(), "`[motion]`");

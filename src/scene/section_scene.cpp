@@ -120,6 +120,11 @@ std::string home_of_key(const std::string& key) {
   for (const KindSpec& kind : law_section().kinds) {
     if (kind.section.find(key)) return "[tissue.law] of kind \"" + kind.section.name + "\"";
   }
+  for (const KindSpec& kind : hyperelastic_section().kinds) {
+    if (kind.section.find(key)) return "[tissue.hyperelastic] of kind \"" + kind.section.name + "\"";
+  }
+  if (fibres_section().find(key)) return "[tissue.fibres]";
+  if (maxwell_section().find(key)) return "[[tissue.maxwell]]";
   if (scene_section().find(key)) return "the top of the scene";
   return variant_section().find(key) ? "a section of its own" : "";
 }

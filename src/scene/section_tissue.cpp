@@ -10,7 +10,7 @@ namespace glisson::scene {
 namespace {
 
 /// The keys of a law, from the law's own description.
-template <class Law>
+template <class Law, class Laws>
 KindSpec law_kind() {
   Section<Law> s{std::string(Law::kName), std::string(Law::kHelp) + "."};
   for (const LawField<Law>& field : Law::kFields) {
@@ -25,18 +25,56 @@ KindSpec law_kind() {
   s.finish([](Law& law, const Node&, const Place& place) {
     if (const std::string wrong = law.check(); !wrong.empty()) place.complain(wrong);
   });
-  return {s.spec(), [](void* law) -> void* { return &static_cast<StiffnessLaw*>(law)->emplace<Law>(); }};
+  return {s.spec(), [](void* law) -> void* { return &static_cast<Laws*>(law)->template emplace<Law>(); }};
 }
 
 template <class... Laws>
 std::vector<KindSpec> law_kinds(std::type_identity<std::variant<Laws...>>) {
-  return {law_kind<Laws>()...};
+  return {law_kind<Laws, std::variant<Laws...>>()...};
 }
 
 std::vector<Choice<ViscousTensor>> viscous_tensors() {
   return {{"shear", ViscousTensor::shear, "σ_v = 2 η ε̇"},
           {"deviatoric", ViscousTensor::deviatoric, "σ_v = 2 η dev ε̇"},
-          {"proportional", ViscousTensor::proportional, "(η/E) × the elastic tensor at rest"}};
+          {"proportional", ViscousTensor::proportional, "(η/E) × the elastic tensor at rest"},
+          {"pioletti", ViscousTensor::pioletti, "S_v = 2 η (I₁ − 3) Ė, for large strain"}};
+}
+
+std::vector<Choice<Kinematics>> kinematics() {
+  return {{"small", Kinematics::small, "ε = sym H, the paper's; takes a rotation by θ for the strain cos θ − 1"},
+          {"corotational", Kinematics::corotational, "ε = U − I of F = R U, for large rotations"},
+          {"green", Kinematics::green, "E = ½ (FᵀF − I), St Venant–Kirchhoff"}};
+}
+
+std::vector<Choice<LawForm>> law_forms() {
+  return {{"secant", LawForm::secant, "σ = λ(x) tr(ε) I + 2 μ(x) ε, the paper's; stores no energy"},
+          {"energy", LawForm::energy, "∂W/∂F of W = ½ λ(x) tr(ε)² + μ(x) ε:ε"}};
+}
+
+std::vector<Choice<MaxwellPart>> maxwell_parts() {
+  return {{"deviator", MaxwellPart::deviator, "the deviator of the stress relaxes, bulk stays elastic"},
+          {"all", MaxwellPart::all, "all of it"}};
+}
+
+std::vector<Choice<VolumeChange>> volume_changes() {
+  return {
+      {"own", VolumeChange::own, "each tet resists its own, the paper's; locks from ν = 0.45 on"},
+      {"nodal", VolumeChange::nodal, "mean of the vertices' means over their tets; for nearly incompressible tissue"}};
+}
+
+/// What require_valid would refuse, said at the key that is wrong.
+void check_together(const Tissue& t, const Node& table, const Place& place) {
+  double sum = 0.0;
+  for (const MaxwellBranch& b : t.maxwell) sum += b.share;
+  if (!(sum < 1.0)) {
+    place.complain(
+        *table.find("maxwell"), "maxwell",
+        "the shares sum up to " + show(sum) + "; allowed: below 1, the rest is the modulus after long times");
+  }
+  if (t.hyperelastic || t.kinematics != Kinematics::small || t.viscous_tensor != ViscousTensor::pioletti) return;
+  place.complain(*table.find("viscous_tensor"), "viscous_tensor",
+                 "\"pioletti\" is a law of large strain; set `kinematics` to \"green\" or \"corotational\" or give a "
+                 "`hyperelastic` law");
 }
 
 std::vector<Choice<DeformationMeasure>> measures() {
@@ -87,6 +125,49 @@ const SectionSpec& law_section() {
   return section;
 }
 
+const SectionSpec& fibres_section() {
+  static const SectionSpec section = [] {
+    Section<Fibres> s("tissue.fibres", "Fibres along one direction a: W = ½ c (a·E a)².");
+    s.key("direction", &Fibres::direction, "a at rest, any length; a mesh with directions of its own wins");
+    s.key("stiffness_Pa", &Fibres::stiffness, "c = λ_L − λ_T + 2 (μ_L − μ_T), along L and across T the fibres")
+        .in("Pa")
+        .within(at_least(0))
+        .must();
+    s.finish([](Fibres& f, const Node& table, const Place& place) {
+      if (!(norm(f.direction) > 0.0)) place.complain(*table.find("direction"), "direction", "has no length");
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& maxwell_section() {
+  static const SectionSpec section = [] {
+    Section<MaxwellBranch> s("tissue.maxwell",
+                             "A branch of a generalised Maxwell body: μ(t) = μ₀ (1 − Σ g (1 − exp(−t/τ))).");
+    s.key("share", &MaxwellBranch::share, "g, part of the modulus of an instant that relaxes; all together below 1")
+        .in("-")
+        .within(strictly_between(0.0, 1.0))
+        .must();
+    s.key("time_s", &MaxwellBranch::time, "τ, time constant").in("s").within(above(0)).must();
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& hyperelastic_section() {
+  static const SectionSpec section = [] {
+    SectionSpec s;
+    s.name = "tissue.hyperelastic";
+    s.help =
+        "A law of large deformation, chosen by `kind`: the stress is ∂W/∂F. λ̄ = J^(−⅓) λ are the isochoric principal "
+        "stretches, Ī₁ and Ī₂ their invariants.";
+    s.kinds = law_kinds(std::type_identity<HyperelasticLaw>{});
+    return s;
+  }();
+  return section;
+}
+
 const SectionSpec& tissue_section() {
   static const SectionSpec section = [] {
     Section<Tissue> s("tissue",
@@ -116,9 +197,28 @@ const SectionSpec& tissue_section() {
          "mu_law", law_section(), [](Tissue& t) -> StiffnessLaw& { return t.mu_law.emplace(); },
          "law of μ, in place of a law of E")
         .otherwise("μ constant");
-    s.spec().exclusions = {{{{"youngs_modulus_Pa", "poisson_ratio"}, {"lambda_Pa", "mu_Pa"}}, false},
-                           {{{"law"}, {"lambda_law", "mu_law"}}, false}};
-    s.finish(convert_lame);
+    s.choice<Kinematics>("kinematics", &Tissue::kinematics, kinematics(), "strain that E and ν act on");
+    s.choice<LawForm>("law_form", &Tissue::law_form, law_forms(), "force that a law of stiffness gives");
+    s.table(
+         "hyperelastic", hyperelastic_section(), [](Tissue& t) -> HyperelasticLaw& { return t.hyperelastic.emplace(); },
+         "law of large deformation, in place of E, ν and laws of them")
+        .otherwise("none");
+    s.table(
+         "fibres", fibres_section(), [](Tissue& t) -> Fibres& { return t.fibres.emplace(); },
+         "fibres that stiffen the tissue along one direction")
+        .otherwise("none");
+    s.tables("maxwell", maxwell_section(), &Tissue::maxwell,
+             "branches that relax, of time constants of their own; the moduli given are then those of an instant");
+    s.choice<MaxwellPart>("maxwell_part", &Tissue::maxwell_part, maxwell_parts(), "stress that the branches relax");
+    s.choice<VolumeChange>("volume_change", &Tissue::volume_change, volume_changes(),
+                           "volume change that the bulk resists");
+    s.spec().exclusions = {{{{"youngs_modulus_Pa", "poisson_ratio"}, {"lambda_Pa", "mu_Pa"}, {"hyperelastic"}}, false},
+                           {{{"law"}, {"lambda_law", "mu_law"}, {"hyperelastic"}}, false},
+                           {{{"kinematics", "law_form", "measure"}, {"hyperelastic"}}, false}};
+    s.finish([](Tissue& tissue, const Node& table, const Place& place) {
+      convert_lame(tissue, table, place);
+      check_together(tissue, table, place);
+    });
     return s.spec();
   }();
   return section;

@@ -7,21 +7,24 @@
 
 namespace glisson::scene {
 
-const SectionSpec& mesh_section();       ///< fills MeshSource
-const SectionSpec& box_section();        ///< fills Selection::Box
-const SectionSpec& sphere_section();     ///< fills Selection::Sphere
-const SectionSpec& selection_section();  ///< fills Selection
-const SectionSpec& law_section();        ///< fills StiffnessLaw
-const SectionSpec& tissue_section();     ///< fills Tissue
-const SectionSpec& region_section();     ///< fills RegionSpec
-const SectionSpec& motion_section();     ///< fills Variant
-const SectionSpec& fixed_section();      ///< fills FixedSpec
-const SectionSpec& load_section();       ///< fills LoadSpec
-const SectionSpec& tool_section();       ///< fills ToolSpec
-const SectionSpec& output_section();     ///< fills OutputSpec
-const SectionSpec& chart_section();      ///< fills ChartSpec
-const SectionSpec& variant_section();    ///< one experiment, complete; fills Variant
-const SectionSpec& scene_section();      ///< what a scene says once; fills Scene
+const SectionSpec& mesh_section();          ///< fills MeshSource
+const SectionSpec& box_section();           ///< fills Selection::Box
+const SectionSpec& sphere_section();        ///< fills Selection::Sphere
+const SectionSpec& selection_section();     ///< fills Selection
+const SectionSpec& law_section();           ///< fills StiffnessLaw
+const SectionSpec& hyperelastic_section();  ///< fills HyperelasticLaw
+const SectionSpec& fibres_section();        ///< fills Fibres
+const SectionSpec& maxwell_section();       ///< fills MaxwellBranch
+const SectionSpec& tissue_section();        ///< fills Tissue
+const SectionSpec& region_section();        ///< fills RegionSpec
+const SectionSpec& motion_section();        ///< fills Variant
+const SectionSpec& fixed_section();         ///< fills FixedSpec
+const SectionSpec& load_section();          ///< fills LoadSpec
+const SectionSpec& tool_section();          ///< fills ToolSpec
+const SectionSpec& output_section();        ///< fills OutputSpec
+const SectionSpec& chart_section();         ///< fills ChartSpec
+const SectionSpec& variant_section();       ///< one experiment, complete; fills Variant
+const SectionSpec& scene_section();         ///< what a scene says once; fills Scene
 
 /// The heading under which a key exists, e.g. "[motion]"; empty where no section has it.
 std::string home_of_key(const std::string& key);

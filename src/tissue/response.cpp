@@ -179,7 +179,10 @@ double Response::relaxed_energy(const Mat3d& H, const ElementShape& shape, const
 template <class T>
 Mat3<T> Response::viscous(const Mat3<T>& H, const Mat3<T>& rate) const {
   const Sym3<T> e = small() ? symmetric(rate) : green_rate(H, rate);
-  return carry(H, isotropic_stress(e, T(viscosity_.lambda), T(viscosity_.mu)));
+  const Mat3<T> P = carry(H, isotropic_stress(e, T(viscosity_.lambda), T(viscosity_.mu)));
+  if (tissue_.viscous_tensor != ViscousTensor::pioletti) return P;
+  const T excess = T(2.0) * trace(green_strain(H));  // I₁ − 3, below 0 where more is lost in volume than sheared
+  return scaled(P, excess > T(0.0) ? excess : T(0.0));
 }
 
 template <class T>
@@ -256,6 +259,9 @@ double Response::stiffening(const Mat3d& H, const ElementShape& shape) const {
     } else if (tissue_.kinematics == Kinematics::corotational && viscosity_.mu > 0.0) {
       r = std::max(r, stretch);
     }
+  }
+  if (tissue_.viscous_tensor == ViscousTensor::pioletti && viscosity_.mu > 0.0) {
+    r = std::max(r, stretch * (1.0 + 2.0 * trace(E)));
   }
   if (tissue_.fibres) {
     const double along = std::abs(dot(shape.fibre, E * shape.fibre));

@@ -44,6 +44,14 @@ void require_hyperelastic(const Tissue& t) {
     throw std::invalid_argument(where + "a law of stiffness beside it has no meaning; give one or the other");
 }
 
+void require_kinematics(const Tissue& t) {
+  if (t.viscous_tensor == ViscousTensor::pioletti && !t.hyperelastic && t.kinematics == Kinematics::small) {
+    throw std::invalid_argument(
+        "tissue \"" + t.name + "\": viscous_tensor pioletti is a law of large strain and has no " +
+        "meaning with kinematics small; take kinematics green or corotational, or a hyperelastic law");
+  }
+}
+
 void require_fibres(const Tissue& t) {
   if (!t.fibres) return;
   const double c = t.fibres->stiffness, length = norm(t.fibres->direction);
@@ -81,13 +89,15 @@ LameParameters Tissue::lame() const {
 }
 
 bool Tissue::is_tensor_mass() const {
-  const bool paper = kinematics == Kinematics::small && law_form == LawForm::secant && !hyperelastic;
+  const bool paper = kinematics == Kinematics::small && law_form == LawForm::secant && !hyperelastic &&
+                     viscous_tensor != ViscousTensor::pioletti;
   return paper && !fibres && maxwell.empty() && volume_change == VolumeChange::own;
 }
 
 void require_valid(const Tissue& t) {
   const auto positive = [](double v) { return v > 0.0 && std::isfinite(v); };
   require_hyperelastic(t);
+  require_kinematics(t);
   require_fibres(t);
   require_maxwell(t);
   if (!positive(t.youngs_modulus)) refuse(t, "youngs_modulus [Pa]", t.youngs_modulus, "> 0 and finite");

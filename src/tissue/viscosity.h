@@ -4,6 +4,7 @@
 //   shear          a = 0             b = η
 //   deviatoric     a = −⅔ η          b = η
 //   proportional   a = (η/E) λ       b = (η/E) μ
+//   pioletti       a = 0             b = η, both times I₁ − 3 of the present shape
 #pragma once
 
 #include "glisson/tissue.h"
@@ -16,6 +17,7 @@ inline LameParameters viscous_coefficients(const Tissue& tissue) {
   const LameParameters lame = tissue.lame();
   switch (tissue.viscous_tensor) {
     case ViscousTensor::shear:
+    case ViscousTensor::pioletti:
       return {0.0, eta};
     case ViscousTensor::deviatoric:
       return {-2.0 / 3.0 * eta, eta};
