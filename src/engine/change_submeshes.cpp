@@ -1,12 +1,12 @@
 // change_submeshes.cpp — a body's change carried into its submeshes; only those it touches are laid out anew.
 //
-//   removed element   pairs: its lane is emptied where it lies         edges: its six are assembled anew
+//   removed element   chains: its lane is emptied where it lies        edges: its six are assembled anew
 //   split vertex      the submeshes of the corners that changed are laid out anew; the copies come last among
 //                     the state records, as interface vertices, so that no other record moves
 #include <algorithm>
 
+#include "engine/chain_batches.h"
 #include "engine/edge_batches.h"
-#include "engine/pair_batches.h"
 #include "engine/submesh_body.h"
 
 namespace glisson::engine {
@@ -35,7 +35,7 @@ void SubmeshBody::take_out(std::uint32_t element, const detail::VertexStars& sta
   const std::uint32_t p = part_of_element_[element];
   Submesh& part = submeshes_.parts[p];
   if (part.edges.count == 0) {
-    clear_element(part.pairs, element, kernels_.lanes);
+    clear_element(part.chains, element, kernels_.lanes);
     return;
   }
   const auto in_part = [&](std::uint32_t e) { return part_of_element_[e] == p; };

@@ -66,6 +66,12 @@ HWY_INLINE Stress<V> stress(const Gradient<V>& g, V lambda, V mu) {
           mu * (h[0][1] + h[1][0]),   mu * (h[1][2] + h[2][1]),   mu * (h[2][0] + h[0][2])};
 }
 
+/// P, not symmetric: p[i][j].
+template <class V>
+struct Piola {
+  V p[3][3];
+};
+
 template <class V>
 HWY_INLINE Stress<V> scaled(const Stress<V>& s, V f) {
   return {s.xx * f, s.yy * f, s.zz * f, s.xy * f, s.yz * f, s.zx * f};
@@ -84,6 +90,20 @@ HWY_INLINE Point force_beside(const Stress<V>& t, const V (&s)[3], const Point& 
   return {MulAdd(t.zx, s[2], MulAdd(t.xy, s[1], MulAdd(t.xx, s[0], f.x))),
           MulAdd(t.yz, s[2], MulAdd(t.yy, s[1], MulAdd(t.xy, s[0], f.y))),
           MulAdd(t.zz, s[2], MulAdd(t.yz, s[1], MulAdd(t.zx, s[0], f.z)))};
+}
+
+/// f = P s, for a stress that carries −V already.
+template <class V, class Point>
+HWY_INLINE Point force(const Piola<V>& t, const V (&s)[3]) {
+  const auto row = [&](const V(&p)[3]) { return MulAdd(p[2], s[2], MulAdd(p[1], s[1], p[0] * s[0])); };
+  return {row(t.p[0]), row(t.p[1]), row(t.p[2])};
+}
+template <class V, class Point>
+HWY_INLINE Point force_beside(const Piola<V>& t, const V (&s)[3], const Point& f) {
+  const auto row = [&](const V(&p)[3], V beside) {
+    return MulAdd(p[2], s[2], MulAdd(p[1], s[1], MulAdd(p[0], s[0], beside)));
+  };
+  return {row(t.p[0], f.x), row(t.p[1], f.y), row(t.p[2], f.z)};
 }
 
 /// What the measure and the stable step need of H.

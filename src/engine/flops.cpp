@@ -25,12 +25,13 @@ double laws_flops(const Tissue& tissue) {
   return law_flops(tissue.lambda_law.value_or(ConstantLaw{})) + law_flops(tissue.mu_law.value_or(ConstantLaw{}));
 }
 
-/// Both tets of a pair, divided by two: four differences and five forces between them.
-double pair_flops_per_tet(const ElementFlops& f, const Tissue& tissue) {
+/// The three tets of a chain, divided by three: five differences and six forces between them.
+double chain_flops_per_tet(const ElementFlops& f, const Tissue& tissue) {
   const double fields = tissue.viscosity > 0.0 ? 2.0 : 1.0;
-  const double differences = 2.0 * kDifference * fields;
+  const double differences = 5.0 / 3.0 * kDifference * fields;
   const double stresses = static_cast<double>(f.gradient + f.stress) * fields + 6.0 * (fields - 1.0) + 6.0 + 2.0;
-  const double forces = 3.0 * static_cast<double>(f.force) + 3.0 + 4.5;  // joined on two vertices, summed on one
+  // joined on three vertices (two tets more on one, one more on two), summed on one
+  const double forces = 3.0 * static_cast<double>(f.force) + 4.0 + 4.0;
   return differences + stresses + static_cast<double>(f.measure[static_cast<std::size_t>(tissue.measure)]) +
          laws_flops(tissue) + forces;
 }
@@ -61,7 +62,7 @@ double flops_per_tet(const Body& body, const Submeshes& submeshes) {
     const Tissue& tissue = body.blocks[part.block].tissue;
     sum += kNarrow * static_cast<double>(part.local_vertices());
     sum += part.edges.count > 0 ? edge_flops(tissue) * static_cast<double>(edge_count(part))
-                                : pair_flops_per_tet(element, tissue) * static_cast<double>(part.elements.size());
+                                : chain_flops_per_tet(element, tissue) * static_cast<double>(part.elements.size());
   }
   return sum / static_cast<double>(body.elements.size());
 }

@@ -38,6 +38,7 @@ const Kernels* kernels() {
       .push_elastic = push<Push::elastic>,
       .push_viscous = push<Push::viscous>,
       .push_merged = push<Push::merged>,
+      .push_piola = push_piola,
       .edges_elastic = edges_elastic,
       .edges_merged = edges_viscous<false>,
       .edges_split = edges_viscous<true>,

@@ -17,7 +17,7 @@
 
 namespace glisson::engine {
 
-/// Values of a block of batches between the stages, vectors of L lanes: item i = 2 batch + (0: A, 1: B).
+/// Values of a block of batches between the stages, vectors of L lanes: item i = 3 batch + (0: A, 1: B, 2: C).
 struct Block {
   alignas(64) float gradient[kBlockTets * 9];  ///< H, [item][9][lane]
   alignas(64) float viscous[kBlockTets * 6];   ///< σ_v, [item][6][lane]
@@ -38,8 +38,8 @@ struct LaneTissue {
 /// Where the batches of a submesh are and where their forces go.
 struct Elements {
   const float* states = nullptr;         ///< float records, kStateFloats a local vertex
-  const std::uint16_t* index = nullptr;  ///< [batch][5][lane]
-  const float* rest = nullptr;           ///< [batch][20][lane]
+  const std::uint16_t* index = nullptr;  ///< [batch][6][lane]
+  const float* rest = nullptr;           ///< [batch][30][lane]
   float* elastic = nullptr;              ///< force records, of the whole force where that is pushed as one
   float* viscous = nullptr;
   LaneTissue tissue;
@@ -111,6 +111,9 @@ struct Kernels {
   void (*push_elastic)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;
   void (*push_viscous)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;
   void (*push_merged)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;
+  /// Forces f_a = −V P s_a of a first Piola–Kirchhoff stress P [Pa], [item][9][lane], row by row: P_ij at 3 i + j.
+  /// Added to the force records `forces`: the elastic or the viscous ones.
+  void (*push_piola)(const Elements&, std::size_t begin, std::size_t n, const float* piola, float* forces) = nullptr;
 
   /// Forces of a linear submesh. @return the largest squared displacement difference of an edge [m²]
   float (*edges_elastic)(const Edges&) = nullptr;

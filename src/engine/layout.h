@@ -15,25 +15,27 @@
 // Each step a task takes one submesh through its own scratch memory, small enough for the first-level cache:
 //
 //   state ──▶ float records [u.xyz · | v.xyz ·], 32 bytes a local vertex
-//                │ pairs, a batch of L lanes at a time                     (L = 16, 8, 4 or 1 by instruction set)
+//                │ chains, a batch of L lanes at a time                     (L = 16, 8, 4 or 1 by instruction set)
 //                ▼
 //             forces [f.xyz 0], 16 bytes a local vertex ──▶ interior: integrated at once, still in cache
 //                                                      └──▶ shared: put into the copy's own slot
 //   when all tasks are done: each interface vertex adds up its slots in order of submesh, and is integrated.
 //
-// The element is a *pair* of tets with a common face: five vertices fetched and five forces stored for two
-// tets, instead of eight. Vertex 0 is on the common face and the origin of the differences:
+// The element is a *chain* of three tets, each with a face in common with the next: six vertices fetched and six
+// forces stored for three tets, instead of twelve. The two faces have an edge in common, 0–1; vertex 0 is the origin
+// of the differences of all three:
 //
-//            1               tet A = 1, 2, 3 and 0
-//          ╱ │ ╲             tet B = 4, 2, 3 and 0
-//         0──┼──2            Both need the differences of 2 and 3; A has that of 1, B that of 4.
-//          ╲ 3 ╱
-//            4
+//          2───────0───────5       tet A = 1, 2, 4 and 0
+//         ╱ ╲     ╱│╲     ╱        tet B = 1, 2, 3 and 0      (seen along the edge 0–1; 1 is below 0)
+//        ╱   ╲   ╱ │ ╲   ╱         tet C = 1, 3, 5 and 0
+//       4─────(0 1)───3            the difference of 1 serves three tets, those of 2 and 3 two each
 //
-//   batch of L pairs: index   5 × L × 16 bit, vertex-major          = 10 bytes a pair
-//                     rest   20 × L floats: s₁ s₂ s₃ −V of A, s₄ s₂ s₃ −V of B = 80 bytes a pair
+//   batch of L chains: index   6 × L × 16 bit, vertex-major                          = 12 bytes a chain
+//                      rest   30 × L floats: s₁ s₂ s₄ −V of A, s₁ s₂ s₃ −V of B, s₁ s₃ s₅ −V of C = 120
 //
-// Lane l of a batch takes pairs far from those of the other lanes (of P pairs in B batches, batch b takes b,
+// A chain of fewer tets has zeros for those that are missing (the middle one is always there).
+//
+// Lane l of a batch takes chains far from those of the other lanes (of C chains in B batches, batch b takes b,
 // b + B, b + 2B, …), so that lanes seldom add to the same force record in one go.
 // Submeshes of a linear tissue hold edges instead (edges-inl.h).
 #pragma once
@@ -49,11 +51,12 @@ inline constexpr std::size_t kStateDoubles = 8;  ///< state record of a vertex: 
 inline constexpr std::size_t kIndexScale = 4;    ///< factor in stored local indices
 inline constexpr std::size_t kMaxLocalVertices = 65536 / kIndexScale;
 
-inline constexpr std::size_t kPairVertices = 5;
+inline constexpr std::size_t kChainVertices = 6;
+inline constexpr std::size_t kChainTets = 3;
 inline constexpr std::size_t kTetRest = 10;      ///< three shape gradients and −V
 inline constexpr std::size_t kBlockBatches = 4;  ///< batches that go through a stage together
 inline constexpr std::size_t kMaxLanes = 16;
 /// Tets of a block: the values a law sees at once.
-inline constexpr std::size_t kBlockTets = 2 * kBlockBatches * kMaxLanes;
+inline constexpr std::size_t kBlockTets = kChainTets * kBlockBatches * kMaxLanes;
 
 }  // namespace glisson::engine

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/chain_batches.h"
 #include "engine/edge_batches.h"
-#include "engine/pair_batches.h"
 #include "mesh/partition.h"
 
 namespace glisson::engine {
@@ -116,7 +116,7 @@ void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_verte
   if (is_linear(block)) {
     part.edges = make_edge_batches(body, block, part.elements, local, lanes);
   } else {
-    part.pairs = make_pair_batches(body, part.elements, local, lanes);
+    part.chains = make_chain_batches(body, part.elements, local, lanes);
   }
 }
 
@@ -152,7 +152,7 @@ Submeshes build_submeshes(const Body& body, std::size_t lanes, std::size_t targe
 double bytes_per_tet(const Submeshes& submeshes, std::size_t tets) {
   std::size_t bytes = submeshes.record_of_vertex.size() * kStateDoubles * sizeof(double);
   for (const Submesh& part : submeshes.parts) {
-    bytes += part.pairs.index.size() * sizeof(std::uint16_t) + part.pairs.rest.size() * sizeof(float);
+    bytes += part.chains.index.size() * sizeof(std::uint16_t) + part.chains.rest.size() * sizeof(float);
     bytes += part.edges.index.size() * sizeof(std::uint16_t) + part.edges.tensor.size() * sizeof(float);
     bytes += part.shared.size() * (sizeof(std::uint32_t) + kForceFloats * sizeof(float));  // record, slot
   }

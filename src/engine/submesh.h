@@ -29,12 +29,12 @@ using LaneVector = std::vector<T, CacheLines<T>>;
 
 inline constexpr std::uint32_t kNoElement = std::numeric_limits<std::uint32_t>::max();
 
-/// Pairs of tets in batches.
-struct PairBatches {
+/// Chains of tets in batches.
+struct ChainBatches {
   std::size_t count = 0;               ///< batches
-  LaneVector<std::uint16_t> index;     ///< [batch][5][lane], times kIndexScale
-  LaneVector<float> rest;              ///< [batch][2 tets][10][lane]: three shape gradients [1/m], −V [m³]
-  std::vector<std::uint32_t> element;  ///< [batch][2 tets][lane]: element of the body, kNoElement where none is
+  LaneVector<std::uint16_t> index;     ///< [batch][6][lane], times kIndexScale
+  LaneVector<float> rest;              ///< [batch][3 tets][10][lane]: three shape gradients [1/m], −V [m³]
+  std::vector<std::uint32_t> element;  ///< [batch][3 tets][lane]: element of the body, kNoElement where none is
 };
 
 /// Edges of a linear tissue in batches (edge_stages-inl.h).
@@ -51,7 +51,7 @@ struct Submesh {
   std::vector<std::uint32_t> shared;    ///< records of the other local vertices
   std::size_t first_slot = 0;           ///< where its copies of them put their forces
   std::vector<std::uint32_t> elements;  ///< elements of the body
-  PairBatches pairs;                    ///< empty for a linear tissue
+  ChainBatches chains;                  ///< empty for a linear tissue
   EdgeBatches edges;                    ///< for a linear tissue
   float gradient_reach = 0.0F;  ///< largest Σ |s_a| of a tet [1/m]: |H| is at most this times the longest |δu|
 

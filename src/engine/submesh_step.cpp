@@ -32,8 +32,8 @@ void SubmeshBody::narrow(const Submesh& part, Scratch& scratch) const {
 void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const {
   const Plan& plan = plans_[part.block];
   const Elements elements{.states = scratch.states.data(),
-                          .index = part.pairs.index.data(),
-                          .rest = part.pairs.rest.data(),
+                          .index = part.chains.index.data(),
+                          .rest = part.chains.rest.data(),
                           .elastic = scratch.elastic.data(),
                           .viscous = scratch.viscous.data(),
                           .tissue = plan.tissue,
@@ -43,8 +43,8 @@ void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratc
   const auto push = plan.viscous && !split ? kernels_.push_merged : kernels_.push_elastic;
   const auto look = plan.laws == 2 ? kernels_.watch_lame : kernels_.watch_young;
   Block& block = scratch.block;
-  for (std::size_t b = 0; b < part.pairs.count; b += kBlockBatches) {
-    const std::size_t n = std::min(kBlockBatches, part.pairs.count - b), values = 2 * n * kernels_.lanes;
+  for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
+    const std::size_t n = std::min(kBlockBatches, part.chains.count - b), values = kChainTets * n * kernels_.lanes;
     gather(elements, b, n, block);
     if (kernels_.measure[plan.measure](elements, b, n, block)) found.inverted = true;
     for (std::size_t l = 0; l < plan.laws; ++l) {

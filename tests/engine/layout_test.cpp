@@ -48,6 +48,13 @@ class LayoutInvariants : public testing::TestWithParam<Layout> {
     EXPECT_LT(local, part.local_vertices());
     return local < part.local_vertices() ? vertex_of_record_[record_of(part, local)] : engine::kNoElement;
   }
+  /// Of a vertex in an element that has it.
+  Vec3d shape_gradient(std::uint32_t element, std::uint32_t vertex) const {
+    const auto& s = body_.rest[element].s;
+    const Tet& t = body_.elements[element];
+    const auto a = static_cast<std::size_t>(std::find(t.begin(), t.end(), vertex) - t.begin());
+    return a == 0 ? -(s[0] + s[1] + s[2]) : s.at(a - 1);
+  }
   std::vector<std::set<std::size_t>> parts_of_vertices() const {
     std::vector<std::set<std::size_t>> parts(body_.vertex_count);
     for (std::size_t p = 0; p < submeshes_.parts.size(); ++p) {
@@ -96,28 +103,31 @@ TEST_P(LayoutInvariants, InteriorsAreOfOneSubmesh) {
   }
 }
 
-// Each element of a law is in one lane of the batches; the local vertices there are its own, the lane's gradients
-// too, and lanes without one carry no volume.
-TEST_P(LayoutInvariants, PairsHoldEveryElement) {
+// Each element of a law is in one lane of the batches; the local vertices there are its own, with the gradients of
+// each in the order of the layout, and lanes without one carry no volume.
+TEST_P(LayoutInvariants, ChainsHoldEveryElement) {
+  constexpr std::array<std::array<std::size_t, 3>, engine::kChainTets> kVertices{{{1, 2, 4}, {1, 2, 3}, {1, 3, 5}}};
   const std::size_t L = GetParam().lanes;
   for (const Submesh& part : submeshes_.parts) {
     if (engine::is_linear(body_.blocks[part.block])) continue;
     std::multiset<std::uint32_t> held;
-    for (std::size_t k = 0; k < part.pairs.element.size(); ++k) {
-      const std::size_t batch = k / (2 * L), which = k / L % 2, lane = k % L;
-      const std::uint32_t e = part.pairs.element[k];
-      const float* rest = part.pairs.rest.data() + (batch * 2 + which) * engine::kTetRest * L + lane;
-      const std::uint16_t* index = part.pairs.index.data() + batch * engine::kPairVertices * L + lane;
+    for (std::size_t k = 0; k < part.chains.element.size(); ++k) {
+      const std::size_t batch = k / (engine::kChainTets * L), which = k / L % engine::kChainTets, lane = k % L;
+      const std::uint32_t e = part.chains.element[k];
+      const float* rest = part.chains.rest.data() + (batch * engine::kChainTets + which) * engine::kTetRest * L + lane;
+      const std::uint16_t* index = part.chains.index.data() + batch * engine::kChainVertices * L + lane;
       if (e == engine::kNoElement) {
         EXPECT_EQ(rest[9 * L], 0.0F);
         continue;
       }
       held.insert(e);
       EXPECT_EQ(rest[9 * L], -float(body_.rest[e].volume));
-      std::array<std::uint32_t, 4> vertices{};
-      for (std::size_t a = 0; a < 4; ++a) {
-        const std::size_t place = a == 1 && which == 1 ? 4 : a;
-        vertices[a] = vertex_of(part, index[place * L]);
+      std::vector<std::uint32_t> vertices{vertex_of(part, index[0])};
+      for (std::size_t a = 0; a < 3; ++a) {
+        vertices.push_back(vertex_of(part, index[kVertices[which][a] * L]));
+        for (std::size_t i = 0; i < 3; ++i) {
+          EXPECT_EQ(rest[(3 * a + i) * L], float(shape_gradient(e, vertices.back())[i]));
+        }
       }
       EXPECT_THAT(vertices, testing::UnorderedElementsAreArray(body_.elements[e]));
     }
@@ -126,7 +136,7 @@ TEST_P(LayoutInvariants, PairsHoldEveryElement) {
   }
 }
 
-// A linear submesh has each of its edges in one lane, and no pairs.
+// A linear submesh has each of its edges in one lane, and no chains.
 TEST_P(LayoutInvariants, EdgesHoldEveryEdge) {
   using Edge = std::pair<std::uint32_t, std::uint32_t>;
   for (const Submesh& part : submeshes_.parts) {
@@ -147,7 +157,7 @@ TEST_P(LayoutInvariants, EdgesHoldEveryEdge) {
       if (i != j) held.insert({std::min(i, j), std::max(i, j)});
     }
     EXPECT_THAT(held, testing::ElementsAreArray(expected));
-    EXPECT_EQ(part.pairs.count, 0U);
+    EXPECT_EQ(part.chains.count, 0U);
   }
 }
 
@@ -176,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(Layouts, LayoutInvariants,
                                          Layout{"scalar", 1, 1}, Layout{"whole", 16, 100000}),
                          [](const testing::TestParamInfo<Layout>& p) { return std::string(p.param.name); });
 
-// A step of a large body with a law reads and writes at most 72 bytes a tet: 40 of gradients and volume, 5 of
+// A step of a large body with a law reads and writes at most 72 bytes a tet: 40 of gradients and volume, 4 of
 // indices, 11 of state and 12 of interfaces, and a little for lanes without a tet.
 TEST(LayoutSize, IsAtMost72BytesATet) {
   std::map<int, Tissue> tissues{{0, Tissue{}}};

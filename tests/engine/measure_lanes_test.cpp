@@ -27,7 +27,7 @@ Mat3d in_double(const Mat3<float>& H) {
 /// Runs the stage over the tets, a block at a time, as a submesh does. @return x of each; `inverted` is any J ≤ 0
 std::vector<double> measured(const Kernels& kernels, DeformationMeasure measure, const Tets& tets,
                              bool* inverted = nullptr) {
-  const std::size_t L = kernels.lanes, block_tets = 2 * engine::kBlockBatches * L;
+  const std::size_t L = kernels.lanes, block_tets = engine::kChainTets * engine::kBlockBatches * L;
   const auto block = std::make_unique<Block>();
   std::vector<double> x;
   bool any = false;

@@ -1,4 +1,4 @@
-// However the tets fill pairs, batches, blocks and submeshes, the forces are the same.
+// However the tets fill chains, batches, blocks and submeshes, the forces are the same.
 #include <gtest/gtest.h>
 
 #include "engine/engine_run.h"
@@ -46,11 +46,11 @@ Tissue linear(double viscosity) {
 
 class Remainders : public testing::TestWithParam<const engine::Kernels*> {};
 
-// Every number of tets from one to two full blocks of two batches, and three more: alone and paired, in batches
+// Every number of tets from one to two full batches of the widest lanes, and three more: alone and in chains, in batches
 // and blocks that are partly filled. By elements, and by edges with and without viscosity.
 TEST_P(Remainders, EveryNumberOfTets) {
   for (const Tissue& tissue : {stiffening(), linear(0.0), linear(5.0)}) {
-    for (std::size_t tets = 1; tets <= 2 * 2 * engine::kMaxLanes + 3; ++tets) {
+    for (std::size_t tets = 1; tets <= 2 * engine::kChainTets * engine::kMaxLanes + 3; ++tets) {
       const Patch p(tets, tissue);
       const Body body = build_body(p.mesh, p.tissues);
       const test::EngineForces f = test::engine_forces(body, p.u, p.v, {.threads = 1, .kernels = GetParam()});

@@ -1,4 +1,4 @@
-// pair_batches.h — lays the tets of a submesh out in batches of pairs.
+// chain_batches.h — lays the tets of a submesh out in batches of chains.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@ namespace glisson::engine {
 
 /// @param elements  of the body
 /// @param local     local vertices of each of these elements, in its corner order
-PairBatches make_pair_batches(const Body& body, std::span<const std::uint32_t> elements, std::span<const Tet> local,
-                              std::size_t lanes);
+ChainBatches make_chain_batches(const Body& body, std::span<const std::uint32_t> elements, std::span<const Tet> local,
+                                std::size_t lanes);
 
 /// Takes an element out: its gradients and volume become 0, so that it carries no force ever after.
 /// @return whether it was there
-bool clear_element(PairBatches& pairs, std::uint32_t element, std::size_t lanes);
+bool clear_element(ChainBatches& chains, std::uint32_t element, std::size_t lanes);
 
 /// Largest Σ |s_a| over three edges of an element [1/m].
 float gradient_reach(const Body& body, std::span<const std::uint32_t> elements);
