@@ -194,6 +194,7 @@ void TissueOperator::linearise(const TissueState& state, double rate, bool semid
   const std::vector<double> mean = mean_volume_change(state.u);
   out.local.resize(body_.elements.size());
   out.volume.assign(shares_volume_ ? body_.elements.size() : 0, Mat3d{});
+  out.pressure.assign(out.volume.size(), Mat3d{});
   out.modulus.assign(out.volume.size(), 0.0);
   for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
     const TissueBlock& block = body_.blocks[b];
@@ -203,14 +204,16 @@ void TissueOperator::linearise(const TissueState& state, double rate, bool semid
     for (std::size_t e = block.begin; e < block.end; ++e) {
       const Mat3d H0 = element_gradient(body_, e, state.u), R0 = element_gradient(body_, e, state.v);
       Mat3<Dual> H = as<Dual>(H0), R = as<Dual>(R0);
-      const Dual fixed = shared ? Dual(mean[e]) : Dual(0.0);
+      const auto stress = [&](Dual theta) {
+        Mat3<Dual> P = response.elastic(H, shapes_[e], shared ? &theta : nullptr);
+        if (!branches) return P;
+        const Sym3<Dual> S = response.relaxing(H, P);
+        return sum(P, response.carry(H, overstress(b, e, state.since, S) - S * Dual(response.relaxing_share())));
+      };
+      const double fixed = shared ? mean[e] : 0.0;
       for (std::size_t c = 0; c < 9; ++c) {
         H(c / 3, c % 3).d = 1.0, R(c / 3, c % 3).d = rate;
-        Mat3<Dual> P = response.elastic(H, shapes_[e], shared ? &fixed : nullptr);
-        if (branches) {
-          const Sym3<Dual> S = response.relaxing(H, P);
-          P = sum(P, response.carry(H, overstress(b, e, state.since, S) - S * Dual(response.relaxing_share())));
-        }
+        Mat3<Dual> P = stress(fixed);
         if (dashpot) P = sum(P, response.viscous(H, R));
         for (std::size_t r = 0; r < 9; ++r) {
           out.local[e](static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = P(r / 3, r % 3).d;
@@ -220,6 +223,7 @@ void TissueOperator::linearise(const TissueState& state, double rate, bool semid
       if (semidefinite) make_semidefinite(out.local[e]);
       if (shared) {
         out.volume[e] = response.volume_direction(H0);
+        out.pressure[e] = detail::derivatives_of(stress({fixed, 1.0}));
         out.modulus[e] = response.volume_modulus(H0, shapes_[e]);
       }
     }
@@ -243,7 +247,7 @@ void TissueOperator::apply(const TissueTangent& tangent, std::span<const Vec3d> 
       const Mat3d H = gradient(e);
       Mat3d P;
       Eigen::Map<Nine>(P.m[0].data()) = tangent.local[e] * Eigen::Map<const Nine>(H.m[0].data());
-      if (shared) P = sum(P, scaled(tangent.volume[e], tangent.modulus[e] * mean[e]));
+      if (shared) P = sum(P, scaled(tangent.pressure[e], mean[e]));
       scatter(body_, e, scaled(P, -1.0), y);
     }
   }

@@ -39,7 +39,8 @@ using ElementTangent = Eigen::Matrix<double, 9, 9, Eigen::RowMajor>;
 struct TissueTangent {
   std::vector<ElementTangent> local;  ///< of each element; with shared volume change, at constant mean
   std::vector<Mat3d> volume;          ///< ∂ϑ/∂F of each element with shared volume change, else empty
-  std::vector<double> modulus;        ///< ∂²W/∂ϑ² of those [Pa]
+  std::vector<Mat3d> pressure;        ///< ∂P/∂ϑ̄ of those by the shared mean, Maxwell branches included [Pa]
+  std::vector<double> modulus;        ///< ∂²W/∂ϑ² of those without branches [Pa]
 };
 
 class TissueOperator {
