@@ -78,6 +78,8 @@ ElementTensors viscous_tensors(const Gradients& g, const Tissue& tissue) {
       return stiffness_tensors(g, {0.0, eta});
     case ViscousTensor::deviatoric:
       return stiffness_tensors(g, {-2.0 * eta / 3.0, eta});
+    case ViscousTensor::pioletti:
+      return stiffness_tensors(g, {0.0, 0.0});  // none at rest; of large strain, mechanics/reference_stress.h
     case ViscousTensor::proportional:
       break;
   }

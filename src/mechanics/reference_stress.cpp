@@ -232,6 +232,7 @@ RealTensor viscous_piola(const MaterialPoint& point, const RealTensor& F, const 
     const LameParameters lame = t.lame();
     S = eta / Real(t.youngs_modulus) * (lame.lambda * e.trace() * RealTensor::Identity() + 2 * lame.mu * e);
   }
+  if (t.viscous_tensor == ViscousTensor::pioletti) S *= std::max(Real(0), F.squaredNorm() - 3);  // I₁ − 3
   return is_small(t) ? S : RealTensor(F * S);
 }
 

@@ -47,6 +47,20 @@ inline std::string name_of(DeformationMeasure m) {
   return {};
 }
 
+inline std::string name_of(ViscousTensor v) {
+  switch (v) {
+    case ViscousTensor::shear:
+      return "shear";
+    case ViscousTensor::deviatoric:
+      return "deviatoric";
+    case ViscousTensor::proportional:
+      return "proportional";
+    case ViscousTensor::pioletti:
+      return "pioletti";
+  }
+  return {};
+}
+
 /// Every enumerator that has a name.
 template <class Enum>
 std::vector<Enum> all_of() {
@@ -54,6 +68,8 @@ std::vector<Enum> all_of() {
   for (int i = 0; !name_of(static_cast<Enum>(i)).empty(); ++i) all.push_back(static_cast<Enum>(i));
   return all;
 }
+
+inline bool is_small(const Tissue& t) { return !t.hyperelastic && t.kinematics == Kinematics::small; }
 
 /// A law of each kind, for a modulus of some kPa.
 inline std::vector<StiffnessLaw> every_stiffness_law() {
@@ -78,6 +94,12 @@ inline std::vector<HyperelasticLaw> every_hyperelastic_law() {
           Ogden{{700.0, 500.0, 100.0}, {1.3, 5.0, -2.0}, kBulk}};
 }
 
+/// A law that stiffens as the tetrahedron deforms; the raw mean ratio falls then.
+inline StiffnessLaw stiffening_law(DeformationMeasure m) {
+  if (m == DeformationMeasure::regular_mean_ratio) return LinearLaw{-2500.0};
+  return ExponentialLaw{.amplitude = 800.0, .rate = 3.0};
+}
+
 inline std::vector<Tissue> tensor_mass_tissues() {
   std::vector<Tissue> all;
   const auto add = [&](Kinematics k, LawForm f, DeformationMeasure m, const StiffnessLaw& law) {
@@ -89,7 +111,7 @@ inline std::vector<Tissue> tensor_mass_tissues() {
   };
   for (const Kinematics k : all_of<Kinematics>()) {
     for (const LawForm f : all_of<LawForm>()) {
-      for (const DeformationMeasure m : all_of<DeformationMeasure>()) add(k, f, m, ExponentialLaw{800.0, 3.0});
+      for (const DeformationMeasure m : all_of<DeformationMeasure>()) add(k, f, m, stiffening_law(m));
       for (const StiffnessLaw& law : every_stiffness_law()) add(k, f, DeformationMeasure::intensity, law);
       add(k, f, DeformationMeasure::intensity, ConstantLaw{});
       all.back().mu_law = LinearLaw{2500.0};
@@ -134,10 +156,11 @@ inline std::vector<Tissue> fibre_tissues() {
 
 inline std::vector<Tissue> viscous_tissues() {
   std::vector<Tissue> all;
-  for (const ViscousTensor v : {ViscousTensor::shear, ViscousTensor::deviatoric, ViscousTensor::proportional}) {
+  for (const ViscousTensor v : all_of<ViscousTensor>()) {
     for (Tissue t : carriers()) {
+      if (v == ViscousTensor::pioletti && is_small(t)) continue;  // refused
       t.viscosity = 700.0, t.viscous_tensor = v;
-      t.name += " viscous " + std::to_string(static_cast<int>(v));
+      t.name += " viscous " + name_of(v);
       all.push_back(t);
     }
   }
@@ -165,7 +188,6 @@ inline std::vector<Tissue> every_tissue() {
   return all;
 }
 
-inline bool is_small(const Tissue& t) { return !t.hyperelastic && t.kinematics == Kinematics::small; }
 /// Whether P is the gradient of Response::energy.
 inline bool is_conservative(const Tissue& t) {
   const bool constant = std::holds_alternative<ConstantLaw>(t.law) && !t.lambda_law && !t.mu_law;
@@ -218,8 +240,11 @@ inline Mat3d to_double(const reference::RealTensor& a) {
 }
 inline Mat3d difference(const Mat3d& a, const Mat3d& b) { return sum(a, scaled(b, -1.0)); }
 inline double size_of(const Mat3d& a) { return std::sqrt(squared_norm(a)); }
-/// ‖a − b‖ / ‖b‖.
-inline double apart(const Mat3d& a, const Mat3d& b) { return size_of(difference(a, b)) / size_of(b); }
+/// ‖a − b‖ / ‖b‖; ‖a‖ where b is 0.
+inline double apart(const Mat3d& a, const Mat3d& b) {
+  const double size = size_of(b);
+  return size_of(difference(a, b)) / (size > 0.0 ? size : 1.0);
+}
 inline double inner(const Mat3d& a, const Mat3d& b) { return trace(transposed_product(a, b)); }
 inline Mat3d transposed(const Mat3d& a) { return transposed_product(a, identity<double>()); }
 

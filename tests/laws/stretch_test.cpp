@@ -1,0 +1,199 @@
+// Bars, sheets and squashed tetrahedra: stresses known in closed form, and what must hold where no form is known.
+//
+// Nearly incompressible is κ = 10⁷ μ here: stresses differ from those of the incompressible law by some μ/κ, times
+// some hundreds where the law is steep: 1e-4 of themselves.
+#include <gtest/gtest.h>
+
+#include "laws/every_tissue.h"
+
+namespace glisson {
+namespace {
+
+using test::Specimen;
+
+/// ∂W/∂Ī₁ and ∂W/∂Ī₂ as their authors write them.
+struct Slopes {
+  double first, second;
+};
+Slopes slopes(const NeoHookean& l, double, double) { return {0.5 * l.mu, 0.0}; }
+Slopes slopes(const MooneyRivlin& l, double, double) { return {l.c10, l.c01}; }
+Slopes slopes(const Yeoh& l, double I1, double) {
+  return {l.c1 + 2.0 * l.c2 * (I1 - 3.0) + 3.0 * l.c3 * (I1 - 3.0) * (I1 - 3.0), 0.0};
+}
+Slopes slopes(const Fung& l, double I1, double) { return {0.5 * l.mu * std::exp(l.b * (I1 - 3.0)), 0.0}; }
+Slopes slopes(const VerondaWestmann& l, double I1, double) {
+  return {l.c * l.b * std::exp(l.b * (I1 - 3.0)), -0.5 * l.c * l.b};
+}
+
+/// Engineering stress of an incompressible bar stretched by l: 2 (l − l⁻²) (W₁ + W₂/l).
+template <class Law>
+double bar(const Law& law, double l) {
+  const Slopes w = slopes(law, l * l + 2.0 / l, 2.0 * l + 1.0 / (l * l));
+  return 2.0 * (l - 1.0 / (l * l)) * (w.first + w.second / l);
+}
+double bar(const Ogden& law, double l) {
+  double P = 0.0;
+  for (std::size_t k = 0; k < law.mu.size(); ++k) {
+    P += 2.0 * law.mu[k] / law.alpha[k] * (std::pow(l, law.alpha[k] - 1.0) - std::pow(l, -0.5 * law.alpha[k] - 1.0));
+  }
+  return P;
+}
+/// Engineering stress of an incompressible sheet stretched by l both ways: 2 (l − l⁻⁵) (W₁ + l² W₂).
+template <class Law>
+double sheet(const Law& law, double l) {
+  const Slopes w = slopes(law, 2.0 * l * l + std::pow(l, -4.0), std::pow(l, 4.0) + 2.0 / (l * l));
+  return 2.0 * (l - std::pow(l, -5.0)) * (w.first + l * l * w.second);
+}
+double sheet(const Ogden& law, double l) {
+  double P = 0.0;
+  for (std::size_t k = 0; k < law.mu.size(); ++k) {
+    P += 2.0 * law.mu[k] / law.alpha[k] * (std::pow(l, law.alpha[k] - 1.0) - std::pow(l, -2.0 * law.alpha[k] - 1.0));
+  }
+  return P;
+}
+
+HyperelasticLaw nearly_incompressible(HyperelasticLaw law) {
+  std::visit([](auto& l) { l.bulk_modulus = 1e7 * l.shear_modulus(); }, law);
+  return law;
+}
+
+/// The free stretch l₃ (and l₂, where `l2` is null) at which the stress across vanishes, by Newton's method.
+/// @return  P₁₁
+double stress_with_free_sides(const Specimen& s, double l1, const double* l2) {
+  double l3 = l2 != nullptr ? 1.0 / (l1 * *l2) : 1.0 / std::sqrt(l1);
+  const auto P = [&](Dual free) {
+    Mat3<Dual> H;
+    H(0, 0) = l1 - 1.0, H(1, 1) = l2 != nullptr ? Dual(*l2 - 1.0) : free - 1.0, H(2, 2) = free - 1.0;
+    return s.response.elastic(H, s.shape);
+  };
+  for (int n = 0; n < 30; ++n) {
+    const Dual across = P({l3, 1.0})(2, 2);
+    l3 -= across.v / across.d;
+  }
+  return P(l3)(0, 0).v;
+}
+
+TEST(UniformStretch, IncompressibleBar) {
+  for (const HyperelasticLaw& base : test::every_hyperelastic_law()) {
+    Tissue t;
+    t.hyperelastic = nearly_incompressible(base);
+    const Specimen s(t);
+    for (const double l : {0.5, 0.8, 0.95, 1.05, 1.3, 2.0}) {
+      const double exact = std::visit([&](const auto& law) { return bar(law, l); }, *t.hyperelastic);
+      EXPECT_NEAR(stress_with_free_sides(s, l, nullptr), exact, 1e-4 * std::abs(exact)) << law_name(base) << " " << l;
+    }
+  }
+}
+
+TEST(UniformStretch, IncompressibleSheet) {
+  for (const HyperelasticLaw& base : test::every_hyperelastic_law()) {
+    Tissue t;
+    t.hyperelastic = nearly_incompressible(base);
+    const Specimen s(t);
+    for (const double l : {0.7, 0.9, 1.1, 1.4}) {
+      const double exact = std::visit([&](const auto& law) { return sheet(law, l); }, *t.hyperelastic);
+      EXPECT_NEAR(stress_with_free_sides(s, l, &l), exact, 1e-4 * std::abs(exact)) << law_name(base) << " " << l;
+    }
+  }
+}
+
+// Pure dilation by l leaves κ (l³ − 1) l² on each side, whatever the law: the rest sees no change of volume.
+TEST(UniformStretch, Dilation) {
+  for (const Tissue& t : test::hyperelastic_tissues()) {
+    SCOPED_TRACE(t.name);
+    const Specimen s(t);
+    for (const double l : {0.7, 0.99, 1.01, 1.4}) {
+      const double p = bulk_modulus(*t.hyperelastic) * (l * l * l - 1.0) * l * l;
+      EXPECT_LT(test::apart(s.P(detail::diagonal(l - 1.0, l - 1.0, l - 1.0)), detail::diagonal(p, p, p)), 1e-12);
+    }
+  }
+}
+
+// Simple shear γ needs P₁₂ = 2 (W₁ + W₂) γ: the volume is kept, and the shear stress of an isotropic law is just this.
+TEST(UniformStretch, SimpleShear) {
+  for (const Tissue& t : test::hyperelastic_tissues()) {
+    if (std::holds_alternative<Ogden>(*t.hyperelastic)) continue;  // no law of the invariants
+    SCOPED_TRACE(t.name);
+    const Specimen s(t);
+    for (const double gamma : {1e-3, 0.2, 0.8}) {
+      Mat3d H;
+      H(0, 1) = gamma;
+      const double stress = std::visit(
+          [&]<class Law>(const Law& law) {
+            if constexpr (std::is_same_v<Law, Ogden>) {
+              return 0.0;
+            } else {
+              const Slopes w = slopes(law, 3.0 + gamma * gamma, 3.0 + gamma * gamma);
+              return 2.0 * (w.first + w.second) * gamma;
+            }
+          },
+          *t.hyperelastic);
+      EXPECT_NEAR(s.P(H)(0, 1), stress, 1e-10 * t.lame().mu * gamma);
+    }
+  }
+}
+
+// St Venant–Kirchhoff along one axis, sides held: P = M l (l² − 1)/2. Corotational: M (l − 1). M = λ + 2 μ.
+TEST(UniformStretch, ConfinedTensorMass) {
+  for (const double l : {0.3, 0.8, 1.2, 2.0}) {
+    Tissue t;
+    const double M = t.lame().lambda + 2.0 * t.lame().mu;
+    t.kinematics = Kinematics::green;
+    EXPECT_NEAR(Specimen(t).P(detail::diagonal(0.0, 0.0, l - 1.0))(2, 2), 0.5 * M * l * (l * l - 1.0), 1e-11 * M);
+    t.kinematics = Kinematics::corotational;
+    EXPECT_NEAR(Specimen(t).P(detail::diagonal(0.0, 0.0, l - 1.0))(2, 2), M * (l - 1.0), 1e-11 * M);
+  }
+}
+
+/// Squashed along z to the stretch l, then turned over.
+Mat3d squashed(double l) { return detail::diagonal(0.0, 0.0, l - 1.0); }
+
+// From no squash through flat to turned over, the stress is finite.
+TEST(Squashed, StressIsFinite) {
+  for (const Tissue& t : test::every_tissue()) {
+    SCOPED_TRACE(t.name);
+    const Specimen s(t);
+    for (const double l : {0.5, 0.2, 0.1, 1e-3, 1e-9, 1e-15, 0.0, -1e-15, -1e-3, -0.3, -1.0, -3.0}) {
+      EXPECT_TRUE(std::isfinite(test::size_of(s.P(squashed(l))))) << l;
+      EXPECT_TRUE(std::isfinite(s.response.energy(squashed(l), s.shape))) << l;
+      EXPECT_TRUE(std::isfinite(s.response.stiffening(squashed(l), s.shape))) << l;
+    }
+    EXPECT_TRUE(std::isfinite(test::size_of(s.P(detail::diagonal(-1.0, -1.0, -1.0)))));  // a point
+    EXPECT_TRUE(std::isfinite(test::size_of(s.P(detail::diagonal(-2.0, -2.0, -2.0)))));  // inside out
+  }
+}
+
+// And it pushes back, P₃₃ < 0, all the way to where turning over another axis is shorter. St Venant–Kirchhoff does not: its force ends at a stretch of 1/√3 and is 0
+// when flat [Picinbono2003 keeps it for small strain and large rotation].
+TEST(Squashed, StressRestores) {
+  for (const Tissue& t : test::every_tissue()) {
+    if (!t.hyperelastic && t.kinematics == Kinematics::green) continue;
+    SCOPED_TRACE(t.name);
+    const Specimen s(t);
+    for (double l = 0.95; l > -0.97; l -= 0.05) EXPECT_LT(s.P(squashed(l))(2, 2), 0.0) << l;
+  }
+  Tissue green;
+  green.kinematics = Kinematics::green;
+  const Specimen s(green);
+  EXPECT_LT(s.P(squashed(0.58))(2, 2), s.P(squashed(0.3))(2, 2));
+  EXPECT_EQ(s.P(squashed(0.0))(2, 2), 0.0);
+  EXPECT_GT(s.P(squashed(-0.5))(2, 2), 0.0);
+}
+
+// Nothing jumps where the laws leave their formula (J and stretches of 0.2) or where J changes sign.
+TEST(Squashed, HyperelasticStressIsContinuous) {
+  for (const Tissue& t : test::hyperelastic_tissues()) {
+    SCOPED_TRACE(t.name);
+    const Specimen s(t);
+    const double nearly = 1e-9;
+    for (const double l : {0.2, 0.0}) {
+      const Mat3d above = s.P(squashed(l + nearly)), below = s.P(squashed(l - nearly));
+      EXPECT_LT(test::size_of(test::difference(above, below)), 1e-6 * test::size_of(above)) << l;
+      const double W = s.response.energy(squashed(l + nearly), s.shape);
+      EXPECT_NEAR(s.response.energy(squashed(l - nearly), s.shape), W, 1e-6 * W) << l;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace glisson
