@@ -4,6 +4,7 @@
 
 #include "engine/element_body.h"
 #include "engine/flops.h"
+#include "engine/response_kernels.h"
 #include "engine/submesh_body.h"
 
 namespace glisson {
@@ -11,7 +12,7 @@ namespace glisson {
 std::unique_ptr<MovingBody> make_moving_body(const Body& body, std::span<const double> nodal_damping,
                                              const SimulationOptions& options, EngineInfo& info) {
   const bool in_lanes = std::all_of(body.blocks.begin(), body.blocks.end(),
-                                    [](const TissueBlock& block) { return block.tissue.is_tensor_mass(); });
+                                    [](const TissueBlock& block) { return engine::has_lanes(block.tissue); });
   if (options.precision == Precision::double_precision || !in_lanes) {
     info = {.instruction_set = "double, element by element", .threads = 1};
     return std::make_unique<engine::ElementBody>(body, nodal_damping, options.precision);

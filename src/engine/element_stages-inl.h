@@ -94,6 +94,30 @@ inline void gather(const Elements& e, std::size_t begin, std::size_t n, Block& b
   }
 }
 
+/// Displacement and velocity gradients of one tet.
+HWY_INLINE void gather_tet_rates(const UV& d1, const UV& d2, const UV& d3, const float* rest, std::size_t item,
+                                 Block& block, float* rate) {
+  F s[3][3];
+  load_gradients(rest, s);
+  store_gradient(gradient(d1.u, d2.u, d3.u, s), block.gradient + item * 9 * kLanes);
+  store_gradient(gradient(d1.v, d2.v, d3.v, s), rate + item * 9 * kLanes);
+}
+
+inline void gather_rates(const Elements& e, std::size_t begin, std::size_t n, Block& block, float* rate) {
+  for (std::size_t b = 0; b < n; ++b) {
+    if (e.prefetch) prefetch_batch(e, begin + b + kBlockBatches);
+    const std::uint16_t* index = index_of(e, begin + b);
+    const float* rest = rest_of(e, begin + b);
+    const std::size_t item = kChainTets * b;
+    const auto vertex = [&](std::size_t a) { return Indices(index + a * kLanes); };
+    const Origin<true> origin(e.states, vertex(0));
+    const UV d1 = origin.difference(vertex(1)), d2 = origin.difference(vertex(2)), d3 = origin.difference(vertex(3));
+    gather_tet_rates(d1, d2, origin.difference(vertex(4)), rest, item, block, rate);
+    gather_tet_rates(d1, d2, d3, rest + kTetRest * kLanes, item + 1, block, rate);
+    gather_tet_rates(d1, d3, origin.difference(vertex(5)), rest + 2 * kTetRest * kLanes, item + 2, block, rate);
+  }
+}
+
 template <DeformationMeasure M>
 inline bool measure(const Elements& e, std::size_t begin, std::size_t n, Block& block) {
   const Lanes d;

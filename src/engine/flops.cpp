@@ -1,5 +1,7 @@
 #include "engine/flops.h"
 
+#include <algorithm>
+
 namespace glisson::engine {
 namespace {
 
@@ -56,6 +58,8 @@ std::size_t edge_count(const Submesh& part) {
 }  // namespace
 
 double flops_per_tet(const Body& body, const Submeshes& submeshes) {
+  const auto counted = [](const TissueBlock& block) { return block.tissue.is_tensor_mass(); };
+  if (!std::all_of(body.blocks.begin(), body.blocks.end(), counted)) return 0.0;
   const ElementFlops element = count_element_flops();
   double sum = kIntegrate * static_cast<double>(body.vertex_count);
   for (const Submesh& part : submeshes.parts) {

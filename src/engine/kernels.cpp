@@ -22,14 +22,19 @@ namespace glisson::engine::HWY_NAMESPACE {
 /// The order of StiffnessLaw's alternatives.
 constexpr LawStage kLaws[]{constant_law, step_law, linear_law, polynomial_law, exponential_law, table_law};
 
+/// The stages of large deformation (response_kernels.cpp).
+const ResponseKernels* response_table();
+
 const Kernels* kernels() {
   static const Kernels table{
       .instruction_set = hwy::TargetName(HWY_TARGET),
       .lanes = kLanes,
+      .response = response_table(),
       .narrow = narrow,
       .narrow_chosen = narrow_chosen,
       .gather_elastic = gather<false>,
       .gather_viscous = gather<true>,
+      .gather_rates = gather_rates,
       .measure = {measure<DeformationMeasure::intensity>, measure<DeformationMeasure::one_minus_q>,
                   measure<DeformationMeasure::regular_mean_ratio>},
       .law = std::to_array(kLaws),

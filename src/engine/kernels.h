@@ -85,10 +85,13 @@ struct Edges {
   LaneTissue tissue;
 };
 
+struct ResponseKernels;
+
 /// The functions of one instruction set.
 struct Kernels {
   const char* instruction_set = "";
   std::size_t lanes = 1;
+  const ResponseKernels* response = nullptr;  ///< for tissues beyond the paper's (response_kernels.h)
 
   /// Float records of `n` vertices from consecutive state records, relative to the record `origin`.
   void (*narrow)(const double* state, const double* origin, std::size_t n, float* out) = nullptr;
@@ -99,6 +102,8 @@ struct Kernels {
   /// Batches [begin, begin + n): gradients, and viscous stress where `with_viscosity`.
   void (*gather_elastic)(const Elements&, std::size_t begin, std::size_t n, Block&) = nullptr;
   void (*gather_viscous)(const Elements&, std::size_t begin, std::size_t n, Block&) = nullptr;
+  /// Gradients of displacement, and of velocity into `rate`, [item][9][lane].
+  void (*gather_rates)(const Elements&, std::size_t begin, std::size_t n, Block&, float* rate) = nullptr;
   /// x and y of a block. @return whether a tet has J ≤ 0
   using Measure = bool (*)(const Elements&, std::size_t begin, std::size_t n, Block&);
   std::array<Measure, 3> measure{};                               ///< by DeformationMeasure

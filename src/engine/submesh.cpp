@@ -7,6 +7,7 @@
 
 #include "engine/chain_batches.h"
 #include "engine/edge_batches.h"
+#include "engine/response_batches.h"
 #include "mesh/partition.h"
 
 namespace glisson::engine {
@@ -96,7 +97,8 @@ std::vector<Tet> number_locally(const Body& body, const std::vector<std::uint32_
 }  // namespace
 
 bool is_linear(const TissueBlock& block) {
-  return std::holds_alternative<ConstantLaw>(block.tissue.law) && !block.tissue.lambda_law && !block.tissue.mu_law;
+  return block.tissue.is_tensor_mass() && std::holds_alternative<ConstantLaw>(block.tissue.law) &&
+         !block.tissue.lambda_law && !block.tissue.mu_law;
 }
 
 std::uint32_t Submesh::local_of_record(std::uint32_t record) const {
@@ -116,7 +118,9 @@ void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_verte
   if (is_linear(block)) {
     part.edges = make_edge_batches(body, block, part.elements, local, lanes);
   } else {
+    const ChainBatches before = std::move(part.chains);
     part.chains = make_chain_batches(body, part.elements, local, lanes);
+    lay_out_response(body, block.tissue, before, part, lanes);
   }
 }
 
@@ -154,6 +158,7 @@ double bytes_per_tet(const Submeshes& submeshes, std::size_t tets) {
   for (const Submesh& part : submeshes.parts) {
     bytes += part.chains.index.size() * sizeof(std::uint16_t) + part.chains.rest.size() * sizeof(float);
     bytes += part.edges.index.size() * sizeof(std::uint16_t) + part.edges.tensor.size() * sizeof(float);
+    bytes += (part.fibre.size() + part.memory.size()) * sizeof(float);
     bytes += part.shared.size() * (sizeof(std::uint32_t) + kForceFloats * sizeof(float));  // record, slot
   }
   bytes += submeshes.interface.slots.size() * sizeof(std::uint32_t);

@@ -53,6 +53,8 @@ struct Submesh {
   std::vector<std::uint32_t> elements;  ///< elements of the body
   ChainBatches chains;                  ///< empty for a linear tissue
   EdgeBatches edges;                    ///< for a linear tissue
+  LaneVector<float> fibre;              ///< unit directions, [batch][3 tets][3][lane]; of a tissue with fibres
+  LaneVector<float> memory;             ///< of Maxwell branches, [batch][3 tets][branch][6][lane] [Pa]
   float gradient_reach = 0.0F;  ///< largest Σ |s_a| of a tet [1/m]: |H| is at most this times the longest |δu|
 
   std::size_t local_vertices() const { return interior_count + shared.size(); }

@@ -2,6 +2,7 @@
 #include "engine/submesh_body.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "engine/submesh_scratch.h"
 
@@ -18,7 +19,7 @@ SubmeshBody::Plan SubmeshBody::plan_of(const TissueBlock& block) {
                  .bulk_over_two_mu = float((lambda + 2.0 / 3.0 * mu) / (2.0 * mu)),
                  .rest_mu = float(mu)};
   plan.measure = static_cast<std::size_t>(tissue.measure);
-  plan.viscous = tissue.viscosity > 0.0;
+  plan.viscous = tissue.viscosity > 0.0 || !tissue.maxwell.empty();
   if (tissue.lambda_law || tissue.mu_law) {
     plan.laws = 2;
     plan.law = {lane_law(tissue.lambda_law.value_or(ConstantLaw{}), lambda, 1.0),
@@ -37,7 +38,10 @@ SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping
       state_(body.vertex_count * kStateDoubles, 0.0), masses_(body.vertex_count), damping_(body.vertex_count),
       watches_(submeshes_.parts.size()), holds_watched_(submeshes_.parts.size(), 0),
       looked_(submeshes_.parts.size(), Looked::small), found_(submeshes_.parts.size()) {
-  for (const TissueBlock& block : body.blocks) plans_.push_back(plan_of(block));
+  for (const TissueBlock& block : body.blocks) {
+    plans_.push_back(plan_of(block));
+    large_plans_.push_back(large_plan_of(block, plans_.back()));
+  }
   for (std::size_t v = 0; v < body.vertex_count; ++v) {
     masses_[submeshes_.record_of_vertex[v]] = body.masses[v];
     damping_[submeshes_.record_of_vertex[v]] = nodal_damping[v];
@@ -71,6 +75,7 @@ void SubmeshBody::set_state(std::span<const Vec3d> displacement, std::span<const
   }
   for (WatchedVertex& w : watched_) w.displacement = displacement[w.vertex], w.velocity = velocity[w.vertex];
   std::fill(looked_.begin(), looked_.end(), Looked::small);
+  since_memory_ = std::numeric_limits<double>::infinity();  // a state that is set has relaxed
 }
 
 void SubmeshBody::read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const {

@@ -13,6 +13,7 @@
 
 #include "engine/kernels.h"
 #include "engine/moving_body.h"
+#include "engine/response_kernels.h"
 #include "engine/submesh.h"
 #include "engine/task_pool.h"
 
@@ -69,6 +70,13 @@ class SubmeshBody final : public MovingBody {
   };
   /// What the last look at a linear submesh for inverted tets told: gradients below 1, above, or J ≤ 0.
   enum class Looked : char { small, large, inverted };
+  /// A tissue beyond the paper's.
+  struct LargePlan {
+    Response response;
+    LaneResponse lanes;
+    ResponseKernels::Respond respond;
+    MaxwellStep maxwell;
+  };
   struct Scratch;
   struct Step {
     Kick kick;
@@ -76,6 +84,8 @@ class SubmeshBody final : public MovingBody {
   };
 
   static Plan plan_of(const TissueBlock& block);
+  std::unique_ptr<LargePlan> large_plan_of(const TissueBlock& block, const Plan& plan) const;
+  void set_maxwell_step(double h);
   void set_step(double h);
   void set_coefficients(std::size_t record);
   void make_room();
@@ -87,6 +97,10 @@ class SubmeshBody final : public MovingBody {
   void run_submesh(std::size_t s, const Step& step, Scratch& scratch);
   void narrow(const Submesh& part, Scratch& scratch) const;
   void push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;
+  void push_response(std::size_t s, bool split, Scratch& scratch, Findings& found);
+  Elements elements_of(const Submesh& part, Scratch& scratch) const;
+  void measure_block(const Elements& elements, const Plan& plan, std::size_t begin, std::size_t n, Block& block,
+                     Findings& found) const;
   void push_edges(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;
   bool must_look(std::size_t s, float longest_edge_squared, bool moves);
   void list_inverted(const Submesh& part, Findings& found) const;
@@ -103,6 +117,8 @@ class SubmeshBody final : public MovingBody {
   const Kernels& kernels_;
   Submeshes submeshes_;
   std::vector<Plan> plans_;
+  std::vector<std::unique_ptr<LargePlan>> large_plans_;  ///< per tissue block; none where it is the paper's
+  double since_memory_ = 0.0;                            ///< time since the branches' memory was kept [s]
   TaskPool pool_;
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "engine/response_kernels.h"
 #include "engine/submesh_body.h"
 
 namespace glisson::engine {
@@ -22,6 +23,8 @@ inline void put(const Vec3d& v, double* out) { out[0] = v.x, out[1] = v.y, out[2
 struct SubmeshBody::Scratch {
   LaneVector<float> states, elastic, viscous;
   Block block;
+  ResponseBlock response;
+  alignas(64) float rate[kBlockTets * 9];
 
   void make_room(std::size_t n) {
     states.resize(std::max(states.size(), n * kStateFloats));

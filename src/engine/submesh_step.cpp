@@ -29,16 +29,30 @@ void SubmeshBody::narrow(const Submesh& part, Scratch& scratch) const {
                          scratch.states.data() + part.interior_count * kStateFloats);
 }
 
+Elements SubmeshBody::elements_of(const Submesh& part, Scratch& scratch) const {
+  return {.states = scratch.states.data(),
+          .index = part.chains.index.data(),
+          .rest = part.chains.rest.data(),
+          .elastic = scratch.elastic.data(),
+          .viscous = scratch.viscous.data(),
+          .tissue = plans_[part.block].tissue,
+          .prefetch = body_.elements.size() > kPrefetchTets,
+          .mu_law = plans_[part.block].laws - 1};
+}
+
+/// The measure of each tet of a block and what the laws make of it.
+void SubmeshBody::measure_block(const Elements& elements, const Plan& plan, std::size_t begin, std::size_t n,
+                                Block& block, Findings& found) const {
+  if (kernels_.measure[plan.measure](elements, begin, n, block)) found.inverted = true;
+  const std::size_t values = kChainTets * n * kernels_.lanes;
+  for (std::size_t l = 0; l < plan.laws; ++l) {
+    kernels_.law[plan.law[l].kind](plan.law[l], block.x, values, block.value[l], block.slope[l]);
+  }
+}
+
 void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const {
   const Plan& plan = plans_[part.block];
-  const Elements elements{.states = scratch.states.data(),
-                          .index = part.chains.index.data(),
-                          .rest = part.chains.rest.data(),
-                          .elastic = scratch.elastic.data(),
-                          .viscous = scratch.viscous.data(),
-                          .tissue = plan.tissue,
-                          .prefetch = body_.elements.size() > kPrefetchTets,
-                          .mu_law = plan.laws - 1};
+  const Elements elements = elements_of(part, scratch);
   const auto gather = plan.viscous ? kernels_.gather_viscous : kernels_.gather_elastic;
   const auto push = plan.viscous && !split ? kernels_.push_merged : kernels_.push_elastic;
   const auto look = plan.laws == 2 ? kernels_.watch_lame : kernels_.watch_young;
@@ -46,10 +60,7 @@ void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratc
   for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
     const std::size_t n = std::min(kBlockBatches, part.chains.count - b), values = kChainTets * n * kernels_.lanes;
     gather(elements, b, n, block);
-    if (kernels_.measure[plan.measure](elements, b, n, block)) found.inverted = true;
-    for (std::size_t l = 0; l < plan.laws; ++l) {
-      kernels_.law[plan.law[l].kind](plan.law[l], block.x, values, block.value[l], block.slope[l]);
-    }
+    measure_block(elements, plan, b, n, block, found);
     look(block, plan.tissue, values, found.stiffness);
     push(elements, b, n, block);
     if (split) kernels_.push_viscous(elements, b, n, block);
@@ -150,6 +161,8 @@ void SubmeshBody::run_submesh(std::size_t s, const Step& step, Scratch& scratch)
   if (part.edges.count > 0) {
     push_edges(part, split, scratch, found);
     found.inverted = must_look(s, found.longest_edge_squared, step.kick.step > 0.0);
+  } else if (large_plans_[part.block] != nullptr) {
+    push_response(s, split, scratch, found);
   } else {
     push_elements(part, split, scratch, found);
   }
@@ -215,6 +228,7 @@ void SubmeshBody::gather_findings(bool accounted) {
 
 const Advance& SubmeshBody::advance(double h, const Vec3d& gravity, bool accounted) {
   set_step(h);
+  set_maxwell_step(h);
   any_split_ = false;
   for (std::size_t s = 0; s < submeshes_.parts.size(); ++s) any_split_ = any_split_ || splits(s, accounted);
   const Step step{{h, {gravity.x, gravity.y, gravity.z, 0.0}}, accounted};
@@ -226,6 +240,7 @@ const Advance& SubmeshBody::advance(double h, const Vec3d& gravity, bool account
               [&](std::size_t c, std::size_t thread) { run_interface(c, step, *scratch_[thread]); });
   }
   ++steps_;
+  if (h > 0.0) since_memory_ = h;
   gather_findings(accounted);
   return advance_;
 }

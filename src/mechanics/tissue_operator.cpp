@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mechanics/branch_weights.h"
 #include "mechanics/element_shape.h"
 
 namespace glisson {
@@ -31,19 +32,6 @@ Mat3<T> as(const Mat3d& a) {
 template <class T>
 Sym3<T> as(const Sym3<double>& a) {
   return {T(a.xx), T(a.yy), T(a.zz), T(a.xy), T(a.yz), T(a.zx)};
-}
-
-/// Weights of a branch over a time h: q(t + h) = decay q + from S(t) + to S(t + h), exact for S linear in time.
-struct BranchWeights {
-  double decay, from, to;
-};
-BranchWeights branch_weights(double h, double time) {
-  const double x = h / time;
-  if (!(x > 0.0)) return {1.0, 0.0, 0.0};
-  const double rise = -std::expm1(-x), mean = rise / x;  // 1 − e⁻ˣ and its mean
-  // small x: to = x/2 − x²/6, from = x/2 − x²/3, without cancellation
-  const double to = x < 1e-3 ? x * (0.5 - x / 6.0) : 1.0 - mean;
-  return {1.0 - rise, rise - to, to};
 }
 
 /// The nearest matrix whose symmetric part has no negative eigenvalue.

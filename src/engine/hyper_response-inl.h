@@ -1,0 +1,240 @@
+// hyper_response-inl.h — hyperelastic laws in lanes: src/tissue/hyperelastic_response.h, and the bounds of
+// src/tissue/stiffness_bound.h.
+//
+// Ogden's powers need principal stretches and directions: Jacobi rotations of the Green strain, a fixed number of sweeps.
+//
+// Included once per instruction set, never from outside response_kernels.cpp.
+#if defined(GLISSON_HYPER_RESPONSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef GLISSON_HYPER_RESPONSE_INL_H_
+#undef GLISSON_HYPER_RESPONSE_INL_H_
+#else
+#define GLISSON_HYPER_RESPONSE_INL_H_
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+
+#include "engine/elastic_response-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace glisson::engine::HWY_NAMESPACE {
+
+/// ∂W/∂Ī₁, ∂W/∂Ī₂ and ∂²W/∂Ī₁².
+struct InvariantSlopes {
+  F first, second, bend;
+};
+
+HWY_INLINE F exponential(F e) { return hn::Exp(Lanes(), hn::Min(e, number(60.0F))); }
+
+/// law: μ/2
+struct NeoHookeanLanes {
+  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F) {
+    return {number(r.law[0]), hn::Zero(Lanes()), hn::Zero(Lanes())};
+  }
+  static constexpr bool kSecond = false;
+};
+/// law: c₁₀, c₀₁
+struct MooneyRivlinLanes {
+  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F) {
+    return {number(r.law[0]), number(r.law[1]), hn::Zero(Lanes())};
+  }
+  static constexpr bool kSecond = true;
+};
+/// law: c₁, c₂, c₃
+struct YeohLanes {
+  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F i1) {
+    const F c2 = number(2.0F * r.law[1]), c3 = number(3.0F * r.law[2]);
+    return {hn::MulAdd(i1, hn::MulAdd(i1, c3, c2), number(r.law[0])), hn::Zero(Lanes()), hn::MulAdd(i1, c3 + c3, c2)};
+  }
+  static constexpr bool kSecond = false;
+};
+/// law: μ/2, b
+struct FungLanes {
+  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F i1) {
+    const F w = number(r.law[0]) * exponential(number(r.law[1]) * i1);
+    return {w, hn::Zero(Lanes()), w * number(r.law[1])};
+  }
+  static constexpr bool kSecond = false;
+};
+/// law: c b, b
+struct VerondaWestmannLanes {
+  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F i1) {
+    const F w = number(r.law[0]) * exponential(number(r.law[1]) * i1);
+    return {w, number(-0.5F * r.law[0]), w * number(r.law[1])};
+  }
+  static constexpr bool kSecond = true;
+};
+
+/// I₁, I₂ and J for the bounds, and λ_max² of them.
+struct LaneInvariants {
+  F I1, I2, J;
+  HWY_INLINE F stretch_squared() const { return hn::NegMulAdd(number(2.0F) * J, number(1.0F) / hn::Sqrt(I1), I1); }
+};
+HWY_INLINE F volume_bound(const LaneInvariants& i, F bulk) {
+  return bulk * hn::MulAdd(hn::Abs(i.J - number(1.0F)), hn::Sqrt(i.stretch_squared()), i.I2);
+}
+/// Of F, with J^(−⅔); of cof F too.
+HWY_INLINE F first_invariant_bend(const LaneInvariants& i, F power) {
+  const F per_J = number(1.0F) / i.J, product = i.I1 * i.I2 * per_J * per_J;
+  const F inner = hn::MulAdd(number(10.0F / 9.0F), product, number(2.0F)) +
+                  hn::MulAdd(number(2.0F / 3.0F) * i.I1 * per_J, hn::Sqrt(i.stretch_squared()),
+                             number(4.0F / 3.0F) * (hn::Sqrt(product) - number(3.0F)));
+  return inner * power;
+}
+HWY_INLINE F first_invariant_slope_squared(const LaneInvariants& i, F power) {
+  const F inner = hn::MulSub(i.I1 * i.I1, i.I2 / (number(9.0F) * i.J * i.J), i.I1);
+  return number(4.0F) * power * power * hn::Max(inner, hn::Zero(Lanes()));
+}
+
+/// κ (J − 1) cof F, and what all laws share.
+struct HyperState {
+  Tensor H, K;
+  Invariants<F> inv;
+  F J, I1, I2, power;  ///< J^(−⅔)
+};
+HWY_INLINE HyperState hyper_state(const float* gradient) {
+  const Lanes d;
+  HyperState s;
+  s.H = load_tensor(gradient);
+  s.K = cofactor_change(s.H);
+  s.inv = invariants(d, s.H);
+  s.J = hn::Max(s.inv.volume_change + number(1.0F), number(float(kSmallestVolume)));
+  s.I1 = hn::MulAdd(number(2.0F), s.inv.trace, squares_of(s.H)) + number(3.0F);
+  s.I2 = hn::MulAdd(number(2.0F), trace(s.K), squares_of(s.K)) + number(3.0F);
+  const F root = inverse_cube_root(d, s.J);
+  s.power = root * root;
+  return s;
+}
+/// Ī₁ − 3 from 1 − q.
+HWY_INLINE F excess(const Invariants<F>& inv) {
+  const F p = one_minus_q(Lanes(), inv);
+  return number(3.0F) * p / (number(1.0F) - hn::Min(p, number(0.999F)));
+}
+
+template <class Law>
+void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&, ResponseBlock& out,
+                   StiffnessSeen& seen) {
+  const Lanes d;
+  F most = hn::Zero(d);
+  for (std::size_t item = 0; item < in.items; ++item) {
+    const HyperState s = hyper_state(in.gradient + item * 9 * kLanes);
+    const InvariantSlopes w = Law::slopes(r, excess(s.inv));
+    const F j = s.inv.volume_change, one = number(1.0F), pressure = number(r.bulk) * j;
+    Tensor P = times(number(2.0F) * w.first * s.power, deviatoric_direction(s.H, s.K, j, squares_of(s.H)));
+    P = plus(plus_identity(P, pressure), pressure, s.K);
+    const LaneInvariants i{s.I1, s.I2, s.J};
+    F bound = hn::MulAdd(hn::Abs(w.first), first_invariant_bend(i, s.power),
+                         hn::Abs(w.bend) * first_invariant_slope_squared(i, s.power));
+    if constexpr (Law::kSecond) {
+      const Symmetric E = green_strain(s.H);
+      const Tensor F1 = plus_identity(s.H, one);
+      const F three_J = number(3.0F) * s.J, t = trace_of(E);
+      const F left = hn::NegMulAdd(number(2.0F), trace(s.K), hn::MulSub(number(3.0F), j, squares_of(s.K))) / three_J;
+      Tensor D = plus_identity(plus(s.H, left - one, s.K), left);
+      D = plus(plus(D, t, F1), number(-1.0F), tensor_product(F1, E));
+      P = plus(P, number(4.0F) * w.second * s.power * s.power, D);
+      const LaneInvariants c{s.I2, s.I1 * s.J * s.J, s.J * s.J};
+      const F power = s.power * s.power;
+      const F second = hn::MulAdd(first_invariant_bend(c, power), i.stretch_squared(),
+                                  number(2.0F) * hn::Sqrt(first_invariant_slope_squared(c, power)));
+      bound = hn::MulAdd(hn::Abs(w.second), second, bound);
+    }
+    most = hn::Max(most, bound + volume_bound(i, number(r.bulk)));
+    store_tensor(P, out.piola + item * 9 * kLanes);
+    rescue_if_small(in, to, item, j + one, out);
+  }
+  see_stiffness(most * number(r.rest_bound), seen);
+}
+
+/// Rotates rows and columns p, q of a symmetric tensor so that a_pq vanishes; `n` takes the columns along.
+HWY_INLINE void jacobi_rotation(F& app, F& aqq, F& apq, F& arp, F& arq, Tensor& n, std::size_t p, std::size_t q) {
+  const Lanes d;
+  const F one = number(1.0F), zero = hn::Zero(d);
+  const auto there = hn::Gt(hn::Abs(apq), number(1e-30F));
+  const F theta = (aqq - app) * number(0.5F) / hn::IfThenElse(there, apq, one);
+  const F size = hn::Min(hn::Abs(theta), number(1e15F));
+  F t = one / (size + hn::Sqrt(hn::MulAdd(size, size, one)));
+  t = hn::IfThenElse(hn::Lt(theta, zero), hn::Neg(t), t);
+  t = hn::IfThenElse(there, t, zero);
+  const F c = one / hn::Sqrt(hn::MulAdd(t, t, one)), s = t * c;
+  app = hn::NegMulAdd(t, apq, app), aqq = hn::MulAdd(t, apq, aqq), apq = zero;
+  const F rp = hn::NegMulAdd(s, arq, c * arp);
+  arq = hn::MulAdd(s, arp, c * arq), arp = rp;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const F np = n.h[i][p], nq = n.h[i][q];
+    n.h[i][p] = hn::NegMulAdd(s, nq, c * np), n.h[i][q] = hn::MulAdd(s, np, c * nq);
+  }
+}
+
+/// Eigenvalues and vectors (columns of n).
+struct Spectrum {
+  F e[3];
+  Tensor n;
+};
+HWY_INLINE Spectrum spectrum(const Symmetric& E) {
+  constexpr int kSweeps = 4;
+  const F one = number(1.0F), zero = hn::Zero(Lanes());
+  Spectrum s{{E.xx, E.yy, E.zz}, {{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}}};
+  F xy = E.xy, yz = E.yz, zx = E.zx;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    jacobi_rotation(s.e[0], s.e[1], xy, zx, yz, s.n, 0, 1);
+    jacobi_rotation(s.e[0], s.e[2], zx, xy, yz, s.n, 0, 2);
+    jacobi_rotation(s.e[1], s.e[2], yz, xy, zx, s.n, 1, 2);
+  }
+  return s;
+}
+
+/// law: α₁, 2μ₁/α₁, α₂, …
+inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&,
+                      ResponseBlock& out, StiffnessSeen& seen) {
+  const Lanes d;
+  const F one = number(1.0F), third = number(1.0F / 3.0F), most_exponent = number(60.0F);
+  F most = hn::Zero(d);
+  for (std::size_t item = 0; item < in.items; ++item) {
+    const HyperState state = hyper_state(in.gradient + item * 9 * kLanes);
+    const F j = state.inv.volume_change;
+    const Spectrum s = spectrum(green_strain(state.H));
+    F l[3], c[3], t[3], bend = hn::Zero(d);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const F twice = hn::Max(s.e[i] + s.e[i], number(-0.999F));
+      c[i] = twice + one;
+      l[i] = number(0.5F) * hn::Log1p(d, twice);
+      t[i] = hn::Zero(d);
+    }
+    const F mean = (l[0] + l[1] + l[2]) * third;
+    for (std::size_t k = 0; k < r.terms; ++k) {
+      const F alpha = number(r.law[2 * k]), factor = number(r.law[2 * k + 1]);
+      F g[3], top = number(-1.0F);
+      for (std::size_t i = 0; i < 3; ++i) {
+        g[i] = hn::Expm1(d, hn::Min(alpha * (l[i] - mean), most_exponent));
+        top = hn::Max(top, g[i]);
+      }
+      const F average = (g[0] + g[1] + g[2]) * third;
+      for (std::size_t i = 0; i < 3; ++i) t[i] = hn::MulAdd(factor, g[i] - average, t[i]);
+      bend = hn::MulAdd(hn::Abs(factor * alpha) * number(4.0F / 3.0F), top + one, bend);  // 8/3 μ = 4/3 (2μ/α) α
+    }
+    // S = Σ τ_i/λ_i² n_i ⊗ n_i
+    Symmetric S{hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    F tension = hn::Zero(d), smallest = c[0];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const F x = s.n.h[0][i], y = s.n.h[1][i], z = s.n.h[2][i], w = t[i] / c[i];
+      S = plus(S, w, Symmetric{x * x, y * y, z * z, x * y, y * z, z * x});
+      tension = hn::Max(tension, hn::Abs(t[i]));
+      smallest = hn::Min(smallest, c[i]);
+    }
+    const F pressure = number(r.bulk) * j;
+    const Tensor volumetric = plus_identity(times(pressure, state.K), pressure);
+    store_tensor(plus(volumetric, one, tensor_product(plus_identity(state.H, one), S)), out.piola + item * 9 * kLanes);
+    const F least = hn::Max(smallest, number(float(kSmallestStretch * kSmallestStretch)));
+    const LaneInvariants i{state.I1, state.I2, state.J};
+    most = hn::Max(most, hn::MulAdd(number(2.0F), tension, bend) / least + volume_bound(i, number(r.bulk)));
+    // a stretch below the limit where ln λ goes on otherwise counts as a lost volume
+    const auto thin = hn::Lt(smallest, number(float(kSmallestStretch * kSmallestStretch)));
+    rescue_if_small(in, to, item, hn::IfThenElse(thin, hn::Zero(d), j + one), out);
+  }
+  see_stiffness(most * number(r.rest_bound), seen);
+}
+
+}  // namespace glisson::engine::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // GLISSON_HYPER_RESPONSE_INL_H_

@@ -1,0 +1,32 @@
+// response_kernels.cpp — the stages of response_kernels.h compiled once for each instruction set. kernels.cpp, which is
+// compiled for the same ones, hands them out.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/response_kernels.cpp"
+#include <hwy/foreach_target.h>
+
+#include "engine/hyper_response-inl.h"
+#include "engine/response_kernels.h"
+#include "engine/viscous_response-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace glisson::engine::HWY_NAMESPACE {
+
+const ResponseKernels* response_table();
+const ResponseKernels* response_table() {
+  static const ResponseKernels table{
+      .small = tensor_mass<Kinematics::small>,
+      .corotational = tensor_mass<Kinematics::corotational>,
+      .green = tensor_mass<Kinematics::green>,
+      // in the order of HyperelasticLaw
+      .hyperelastic = {invariant_law<NeoHookeanLanes>, invariant_law<MooneyRivlinLanes>, invariant_law<YeohLanes>,
+                       invariant_law<FungLanes>, invariant_law<VerondaWestmannLanes>, ogden_law},
+      .fibres = fibres,
+      .maxwell = maxwell,
+      .viscous = viscous,
+      .merge = merge};
+  return &table;
+}
+
+}  // namespace glisson::engine::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();

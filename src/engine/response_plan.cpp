@@ -1,0 +1,80 @@
+// response_plan.cpp — what the stages of large deformation need of a tissue, worked out once.
+#include <cmath>
+
+#include "engine/response_kernels.h"
+#include "mechanics/element_shape.h"
+#include "tissue/stiffness_bound.h"
+
+namespace glisson::engine {
+namespace {
+
+using Numbers = std::array<float, 7>;
+
+Numbers numbers(const NeoHookean& l) { return {float(0.5 * l.mu)}; }
+Numbers numbers(const MooneyRivlin& l) { return {float(l.c10), float(l.c01)}; }
+Numbers numbers(const Yeoh& l) { return {float(l.c1), float(l.c2), float(l.c3)}; }
+Numbers numbers(const Fung& l) { return {float(0.5 * l.mu), float(l.b)}; }
+Numbers numbers(const VerondaWestmann& l) { return {float(l.c * l.b), float(l.b)}; }
+Numbers numbers(const Ogden& l) {
+  Numbers n{};
+  for (std::size_t k = 0; k < l.mu.size(); ++k) {
+    n[2 * k] = float(l.alpha[k]);
+    n[2 * k + 1] = float(2.0 * l.mu[k] / l.alpha[k]);
+  }
+  return n;
+}
+
+}  // namespace
+
+bool has_lanes(const Tissue& t) {
+  if (t.is_tensor_mass()) return true;
+  const bool known_measure =
+      static_cast<std::size_t>(t.measure) <= static_cast<std::size_t>(DeformationMeasure::regular_mean_ratio);
+  const bool raw_energy = t.law_form == LawForm::energy && t.measure == DeformationMeasure::regular_mean_ratio;
+  return t.volume_change == VolumeChange::own && known_measure && !raw_energy;
+}
+
+LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::size_t mu_law) {
+  LaneResponse r;
+  r.moduli = moduli;
+  r.mu_law = mu_law;
+  r.small = !tissue.hyperelastic && tissue.kinematics == Kinematics::small;
+  r.energy = !tissue.hyperelastic && tissue.law_form == LawForm::energy;
+  r.measure = tissue.measure;
+  r.viscous = tissue.viscosity > 0.0;
+  r.pioletti = tissue.viscous_tensor == ViscousTensor::pioletti;
+  r.deviator = tissue.maxwell_part == MaxwellPart::deviator;
+  r.branches = tissue.maxwell.size();
+  for (std::size_t k = 0; k < r.branches; ++k) r.share[k] = float(tissue.maxwell[k].share), r.relaxing += r.share[k];
+  if (tissue.fibres) r.fibre = float(tissue.fibres->stiffness);
+  const LameParameters lame = tissue.lame();
+  r.rest_bound = float(1.0 / std::max(3.0 * lame.lambda + 2.0 * lame.mu, 2.0 * lame.mu));
+  if (!tissue.hyperelastic) return r;
+  r.bulk = float(bulk_modulus(*tissue.hyperelastic));
+  r.rest_bound = float(1.0 / hyperelastic_bound(*tissue.hyperelastic, Mat3d{}));
+  r.law = std::visit([](const auto& l) { return numbers(l); }, *tissue.hyperelastic);
+  if (const auto* ogden = std::get_if<Ogden>(&*tissue.hyperelastic)) r.terms = ogden->mu.size();
+  return r;
+}
+
+ResponseKernels::Respond respond_stage(const ResponseKernels& kernels, const Tissue& tissue) {
+  if (tissue.hyperelastic) return kernels.hyperelastic[tissue.hyperelastic->index()];
+  if (tissue.kinematics == Kinematics::corotational) return kernels.corotational;
+  return tissue.kinematics == Kinematics::green ? kernels.green : kernels.small;
+}
+
+LaneWeights lane_weights(double step, double time) {
+  const BranchWeights w = branch_weights(step, time);
+  return {float(w.decay), float(w.from), float(w.to)};
+}
+
+void rescue(const Rescue& to, std::uint32_t element, const float* H, float* P, std::size_t stride) {
+  Mat3d gradient;
+  for (std::size_t k = 0; k < 9; ++k) gradient(k / 3, k % 3) = static_cast<double>(H[k * stride]);
+  ElementShape shape = element_shape(*to.body, to.response->tissue(), element);
+  shape.fibre = {};  // the fibres' own stage adds them
+  const Mat3d answer = to.response->elastic(gradient, shape);
+  for (std::size_t k = 0; k < 9; ++k) P[k * stride] = static_cast<float>(answer(k / 3, k % 3));
+}
+
+}  // namespace glisson::engine

@@ -1,0 +1,67 @@
+// submesh_response.cpp — the elements of a submesh whose tissue is more than the paper's: H → P → forces.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/response_batches.h"
+#include "engine/submesh_scratch.h"
+
+namespace glisson::engine {
+
+std::unique_ptr<SubmeshBody::LargePlan> SubmeshBody::large_plan_of(const TissueBlock& block, const Plan& plan) const {
+  if (block.tissue.is_tensor_mass()) return nullptr;
+  const LaneResponse lanes = lane_response(block.tissue, plan.tissue, plan.laws - 1);
+  return std::make_unique<LargePlan>(
+      LargePlan{Response(block.tissue), lanes, respond_stage(*kernels_.response, block.tissue), {}});
+}
+
+/// Weights of all branches for a step of h from the state that is asked for.
+void SubmeshBody::set_maxwell_step(double h) {
+  for (const auto& plan : large_plans_) {
+    if (plan == nullptr) continue;
+    const std::vector<MaxwellBranch>& branches = plan->response.tissue().maxwell;
+    for (std::size_t k = 0; k < branches.size(); ++k) {
+      plan->maxwell.previous[k] = lane_weights(since_memory_, branches[k].time);
+      plan->maxwell.next[k] = lane_weights(h, branches[k].time);
+    }
+    plan->maxwell.relaxed = std::isinf(since_memory_);
+    plan->maxwell.moves = h > 0.0;
+  }
+}
+
+void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Findings& found) {
+  Submesh& part = submeshes_.parts[s];
+  const Plan& plan = plans_[part.block];
+  const LargePlan& large = *large_plans_[part.block];
+  const LaneResponse& lanes = large.lanes;
+  const ResponseKernels& stages = *kernels_.response;
+  const Elements elements = elements_of(part, scratch);
+  const Rescue to{&body_, &large.response};
+  const std::size_t tets = kernels_.lanes * kChainTets, numbers = memory_numbers(large.response.tissue());
+  ResponseBlock& out = scratch.response;
+  for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
+    const std::size_t n = std::min(kBlockBatches, part.chains.count - b);
+    const ResponseItems items{.gradient = scratch.block.gradient,
+                              .rate = scratch.rate,
+                              .fibre = part.fibre.data() + (part.fibre.empty() ? 0 : b * tets * 3),
+                              .memory = part.memory.data() + b * tets * numbers,
+                              .element = part.chains.element.data() + b * tets,
+                              .items = n * kChainTets};
+    if (lanes.viscous) {
+      kernels_.gather_rates(elements, b, n, scratch.block, scratch.rate);
+    } else {
+      kernels_.gather_elastic(elements, b, n, scratch.block);
+    }
+    measure_block(elements, plan, b, n, scratch.block, found);
+    StiffnessSeen seen;
+    large.respond(items, lanes, to, scratch.block, out, seen);
+    if (lanes.fibre > 0.0F) stages.fibres(items, lanes, out, seen);
+    if (lanes.branches > 0) stages.maxwell(items, lanes, large.maxwell, out);
+    if (lanes.viscous) stages.viscous(items, lanes, lanes.branches > 0, out, seen);
+    found.stiffness.stiffness = std::max(found.stiffness.stiffness, seen.stiffness);
+    if (plan.viscous && !split) stages.merge(items.items, out);
+    kernels_.push_piola(elements, b, n, out.piola, scratch.elastic.data());
+    if (split) kernels_.push_piola(elements, b, n, out.viscous, scratch.viscous.data());
+  }
+}
+
+}  // namespace glisson::engine
