@@ -70,6 +70,7 @@ void SubmeshBody::apply(const BodyChange& change, const detail::VertexStars& sta
   }
   for (const std::uint32_t e : change.removed) take_out(e, stars);
   if (!change.corners.empty()) lay_out_touched(change.corners);
+  if (any_shared_) weigh_vertices();
 }
 
 }  // namespace glisson::engine

@@ -93,7 +93,8 @@ HWY_NOINLINE void rescue_lanes(const ResponseItems& in, const Rescue& to, std::s
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::uint32_t element = in.element[item * kLanes + lane];
     if (J[lane] > float(kSmallestVolume) || element == 0xFFFFFFFFU) continue;
-    rescue(to, element, H + lane, P + lane, kLanes);
+    const float* mean = in.mean != nullptr ? in.mean + item * kLanes + lane : nullptr;
+    rescue(to, element, H + lane, P + lane, kLanes, mean);
   }
 }
 HWY_INLINE void rescue_if_small(const ResponseItems& in, const Rescue& to, std::size_t item, F J, ResponseBlock& out) {
@@ -115,12 +116,15 @@ void tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& t
     const Invariants<F> inv = invariants(d, H);
     const F J = inv.volume_change + one;
     const LaneModuli k = moduli_of(r, block, item);
+    const auto volume_change = [&](const Symmetric& e) {
+      return in.mean != nullptr ? hn::Load(d, in.mean + item * kLanes) : trace_of(e);
+    };
     Symmetric strain, S;
     Tensor P;
     F stretch = one;
     if constexpr (K == Kinematics::small) {
       strain = symmetric_part(H);
-      S = plus_identity(times(two * k.mu, strain), k.lambda * trace_of(strain));
+      S = plus_identity(times(two * k.mu, strain), k.lambda * volume_change(strain));
       P = full_tensor(S);
     } else {
       const Symmetric E = green_strain(H);
@@ -128,13 +132,13 @@ void tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& t
       stretch = hn::MulAdd(two, hn::Sqrt(contraction(E, E)), one);
       if constexpr (K == Kinematics::green) {
         strain = E;
-        S = plus_identity(times(two * k.mu, strain), k.lambda * trace_of(strain));
+        S = plus_identity(times(two * k.mu, strain), k.lambda * volume_change(strain));
       } else {
         const F safe = hn::Max(J, number(float(kSmallestVolume)));
         const Tensor cof = plus_identity(cofactor_change(H), one);
         const Stretch u = stretch_of(E, safe, squares_of(cof));
         strain = u.strain;
-        S = commuting_product(u.inverse, plus_identity(times(two * k.mu, strain), k.lambda * trace_of(strain)));
+        S = commuting_product(u.inverse, plus_identity(times(two * k.mu, strain), k.lambda * volume_change(strain)));
       }
       P = tensor_product(F1, S);
     }

@@ -104,6 +104,10 @@ HWY_INLINE HyperState hyper_state(const float* gradient) {
   s.power = root * root;
   return s;
 }
+/// κ times the volume change, of its own or shared.
+HWY_INLINE F pressure_of(const ResponseItems& in, const LaneResponse& r, std::size_t item, F own) {
+  return number(r.bulk) * (in.mean != nullptr ? hn::Load(Lanes(), in.mean + item * kLanes) : own);
+}
 /// Ī₁ − 3 from 1 − q.
 HWY_INLINE F excess(const Invariants<F>& inv) {
   const F p = one_minus_q(Lanes(), inv);
@@ -118,7 +122,7 @@ void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue&
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState s = hyper_state(in.gradient + item * 9 * kLanes);
     const InvariantSlopes w = Law::slopes(r, excess(s.inv));
-    const F j = s.inv.volume_change, one = number(1.0F), pressure = number(r.bulk) * j;
+    const F j = s.inv.volume_change, one = number(1.0F), pressure = pressure_of(in, r, item, j);
     Tensor P = times(number(2.0F) * w.first * s.power, deviatoric_direction(s.H, s.K, j, squares_of(s.H)));
     P = plus(plus_identity(P, pressure), pressure, s.K);
     const LaneInvariants i{s.I1, s.I2, s.J};
@@ -221,7 +225,7 @@ inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Resc
       tension = hn::Max(tension, hn::Abs(t[i]));
       smallest = hn::Min(smallest, c[i]);
     }
-    const F pressure = number(r.bulk) * j;
+    const F pressure = pressure_of(in, r, item, j);
     const Tensor volumetric = plus_identity(times(pressure, state.K), pressure);
     store_tensor(plus(volumetric, one, tensor_product(plus_identity(state.H, one), S)), out.piola + item * 9 * kLanes);
     const F least = hn::Max(smallest, number(float(kSmallestStretch * kSmallestStretch)));

@@ -7,6 +7,7 @@
 
 #include "engine/hyper_response-inl.h"
 #include "engine/response_kernels.h"
+#include "engine/shared_volume-inl.h"
 #include "engine/viscous_response-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -24,6 +25,9 @@ const ResponseKernels* response_table() {
       .fibres = fibres,
       .maxwell = maxwell,
       .viscous = viscous,
+      .volume_changes = volume_changes,
+      .spread_to_vertices = spread_to_vertices,
+      .mean_of_vertices = mean_of_vertices,
       .merge = merge};
   return &table;
 }

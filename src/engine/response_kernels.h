@@ -23,6 +23,9 @@ struct ResponseBlock {
   alignas(64) float viscous[kBlockTets * 9];  ///< P, viscous, and what the branches have not relaxed yet
 };
 
+/// Which volume change tets share: that of the kinematics, or J − 1.
+enum class VolumeKind { small, corotational, green, hyperelastic };
+
 /// What the lanes need to know of a tissue.
 struct LaneResponse {
   LaneTissue moduli;
@@ -37,6 +40,7 @@ struct LaneResponse {
   std::array<float, 8> share{};
   bool small = false, deviator = true, viscous = false, pioletti = false, energy = false;
   DeformationMeasure measure{};
+  VolumeKind volume = VolumeKind::small;
 };
 
 /// A branch's weights over one step: q goes on from its past by them (mechanics/tissue_operator.cpp).
@@ -49,6 +53,7 @@ struct LaneWeights {
 struct ResponseItems {
   const float* gradient = nullptr;         ///< H, [item][9][lane]
   const float* rate = nullptr;             ///< Ḣ, the same
+  const float* mean = nullptr;             ///< volume change of all that share it, [item][lane]; null: its own
   const float* fibre = nullptr;            ///< unit directions, [item][3][lane]
   float* memory = nullptr;                 ///< [item][branch][6][lane] [Pa]
   const std::uint32_t* element = nullptr;  ///< of the body, [item][lane]; kNoElement where none is
@@ -62,7 +67,11 @@ struct Rescue {
 };
 
 /// @param H  of one lane, `stride` floats apart; P likewise
-void rescue(const Rescue&, std::uint32_t element, const float* H, float* P, std::size_t stride);
+/// @param mean  volume change in the place of its own; null: its own
+void rescue(const Rescue&, std::uint32_t element, const float* H, float* P, std::size_t stride, const float* mean);
+
+/// tr(U − I) of a tet that lanes do not answer.
+float rescue_stretch_sum(const float* H, std::size_t stride);
 
 /// A step of the branches: with `previous` to the state that is asked for, with `next` on from it.
 struct MaxwellStep {
@@ -83,6 +92,13 @@ struct ResponseKernels {
   void (*maxwell)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, ResponseBlock& out) = nullptr;
   void (*viscous)(const ResponseItems&, const LaneResponse&, bool add, ResponseBlock& out,
                   StiffnessSeen& seen) = nullptr;
+  /// For volume changes that are shared (shared_volume-inl.h).
+  void (*volume_changes)(const float* gradient, const float* rest, std::size_t items, VolumeKind kind,
+                         float* out) = nullptr;
+  void (*spread_to_vertices)(const std::uint16_t* index, std::size_t batches, const float* values,
+                             float* vertices) = nullptr;
+  void (*mean_of_vertices)(const std::uint16_t* index, std::size_t batches, const float* vertices,
+                           float* values) = nullptr;
   /// out.piola += out.viscous
   void (*merge)(std::size_t items, ResponseBlock& out) = nullptr;
 };

@@ -31,7 +31,7 @@ bool has_lanes(const Tissue& t) {
   const bool known_measure =
       static_cast<std::size_t>(t.measure) <= static_cast<std::size_t>(DeformationMeasure::regular_mean_ratio);
   const bool raw_energy = t.law_form == LawForm::energy && t.measure == DeformationMeasure::regular_mean_ratio;
-  return t.volume_change == VolumeChange::own && known_measure && !raw_energy;
+  return known_measure && !raw_energy;
 }
 
 LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::size_t mu_law) {
@@ -41,6 +41,10 @@ LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::
   r.small = !tissue.hyperelastic && tissue.kinematics == Kinematics::small;
   r.energy = !tissue.hyperelastic && tissue.law_form == LawForm::energy;
   r.measure = tissue.measure;
+  r.volume = tissue.hyperelastic ? VolumeKind::hyperelastic
+                                 : (tissue.kinematics == Kinematics::corotational ? VolumeKind::corotational
+                                    : tissue.kinematics == Kinematics::green      ? VolumeKind::green
+                                                                                  : VolumeKind::small);
   r.viscous = tissue.viscosity > 0.0;
   r.pioletti = tissue.viscous_tensor == ViscousTensor::pioletti;
   r.deviator = tissue.maxwell_part == MaxwellPart::deviator;
@@ -68,13 +72,21 @@ LaneWeights lane_weights(double step, double time) {
   return {float(w.decay), float(w.from), float(w.to)};
 }
 
-void rescue(const Rescue& to, std::uint32_t element, const float* H, float* P, std::size_t stride) {
+void rescue(const Rescue& to, std::uint32_t element, const float* H, float* P, std::size_t stride, const float* mean) {
   Mat3d gradient;
   for (std::size_t k = 0; k < 9; ++k) gradient(k / 3, k % 3) = static_cast<double>(H[k * stride]);
   ElementShape shape = element_shape(*to.body, to.response->tissue(), element);
   shape.fibre = {};  // the fibres' own stage adds them
-  const Mat3d answer = to.response->elastic(gradient, shape);
+  const double shared = mean != nullptr ? static_cast<double>(*mean) : 0.0;
+  const Mat3d answer = to.response->elastic(gradient, shape, mean != nullptr ? &shared : nullptr);
   for (std::size_t k = 0; k < 9; ++k) P[k * stride] = static_cast<float>(answer(k / 3, k % 3));
+}
+
+float rescue_stretch_sum(const float* H, std::size_t stride) {
+  Mat3d gradient;
+  for (std::size_t k = 0; k < 9; ++k) gradient(k / 3, k % 3) = static_cast<double>(H[k * stride]);
+  const std::array<double, 3> b = principal_frame(gradient).b;
+  return static_cast<float>(b[0] + b[1] + b[2]);
 }
 
 }  // namespace glisson::engine

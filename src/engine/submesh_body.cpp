@@ -47,6 +47,9 @@ SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping
     damping_[submeshes_.record_of_vertex[v]] = nodal_damping[v];
   }
   make_room();
+  any_shared_ = std::any_of(submeshes_.parts.begin(), submeshes_.parts.end(),
+                            [&](const Submesh& part) { return shares_volume(part); });
+  if (any_shared_) weigh_vertices();
 }
 
 SubmeshBody::~SubmeshBody() = default;

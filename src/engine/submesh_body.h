@@ -77,6 +77,10 @@ class SubmeshBody final : public MovingBody {
     ResponseKernels::Respond respond;
     MaxwellStep maxwell;
   };
+  /// Of a submesh whose tets share their volume change: one over the volume around each local vertex, and ϑ_a.
+  struct SharedVolume {
+    std::vector<float> per_volume, theta;
+  };
   struct Scratch;
   struct Step {
     Kick kick;
@@ -98,6 +102,10 @@ class SubmeshBody final : public MovingBody {
   void narrow(const Submesh& part, Scratch& scratch) const;
   void push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;
   void push_response(std::size_t s, bool split, Scratch& scratch, Findings& found);
+  bool shares_volume(const Submesh& part) const;
+  void weigh_vertices();
+  void spread_volume(std::size_t s, Scratch& scratch);
+  void join_volume(std::size_t s);
   Elements elements_of(const Submesh& part, Scratch& scratch) const;
   void measure_block(const Elements& elements, const Plan& plan, std::size_t begin, std::size_t n, Block& block,
                      Findings& found) const;
@@ -118,7 +126,11 @@ class SubmeshBody final : public MovingBody {
   Submeshes submeshes_;
   std::vector<Plan> plans_;
   std::vector<std::unique_ptr<LargePlan>> large_plans_;  ///< per tissue block; none where it is the paper's
-  double since_memory_ = 0.0;                            ///< time since the branches' memory was kept [s]
+  bool any_shared_ = false;                              ///< whether some tissue's tets share their volume change
+  std::vector<SharedVolume> shared_volumes_;             ///< per submesh
+  std::vector<float> slots_volume_;                      ///< per slot
+  std::vector<std::uint32_t> part_of_slot_;
+  double since_memory_ = 0.0;  ///< time since the branches' memory was kept [s]
   TaskPool pool_;
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
 

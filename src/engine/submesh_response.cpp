@@ -37,11 +37,14 @@ void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Fin
   const Elements elements = elements_of(part, scratch);
   const Rescue to{&body_, &large.response};
   const std::size_t tets = kernels_.lanes * kChainTets, numbers = memory_numbers(large.response.tissue());
+  const bool shared = shares_volume(part);
+  if (shared) join_volume(s);
   ResponseBlock& out = scratch.response;
   for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
     const std::size_t n = std::min(kBlockBatches, part.chains.count - b);
     const ResponseItems items{.gradient = scratch.block.gradient,
                               .rate = scratch.rate,
+                              .mean = shared ? scratch.mean : nullptr,
                               .fibre = part.fibre.data() + (part.fibre.empty() ? 0 : b * tets * 3),
                               .memory = part.memory.data() + b * tets * numbers,
                               .element = part.chains.element.data() + b * tets,
@@ -50,6 +53,10 @@ void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Fin
       kernels_.gather_rates(elements, b, n, scratch.block, scratch.rate);
     } else {
       kernels_.gather_elastic(elements, b, n, scratch.block);
+    }
+    if (shared) {
+      const std::uint16_t* index = part.chains.index.data() + b * kChainVertices * kernels_.lanes;
+      stages.mean_of_vertices(index, n, shared_volumes_[s].theta.data(), scratch.mean);
     }
     measure_block(elements, plan, b, n, scratch.block, found);
     StiffnessSeen seen;

@@ -25,6 +25,7 @@ struct SubmeshBody::Scratch {
   Block block;
   ResponseBlock response;
   alignas(64) float rate[kBlockTets * 9];
+  alignas(64) float mean[kBlockTets];
 
   void make_room(std::size_t n) {
     states.resize(std::max(states.size(), n * kStateFloats));

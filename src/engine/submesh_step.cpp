@@ -231,6 +231,9 @@ const Advance& SubmeshBody::advance(double h, const Vec3d& gravity, bool account
   set_maxwell_step(h);
   any_split_ = false;
   for (std::size_t s = 0; s < submeshes_.parts.size(); ++s) any_split_ = any_split_ || splits(s, accounted);
+  if (any_shared_) {
+    pool_.run(submeshes_.parts.size(), [&](std::size_t s, std::size_t thread) { spread_volume(s, *scratch_[thread]); });
+  }
   const Step step{{h, {gravity.x, gravity.y, gravity.z, 0.0}}, accounted};
   pool_.run(submeshes_.parts.size(),
             [&](std::size_t s, std::size_t thread) { run_submesh(s, step, *scratch_[thread]); });

@@ -10,9 +10,15 @@
 namespace glisson {
 namespace {
 
-/// Every tissue that lanes evaluate and that is more than the paper's.
+/// Every tissue that lanes evaluate and that is more than the paper's; each with volume changes of its own and shared.
 std::vector<Tissue> large_tissues() {
   std::vector<Tissue> all = test::every_tissue();
+  for (std::size_t i = 0, n = all.size(); i < n; ++i) {
+    if (all[i].law_form == LawForm::energy && !all[i].hyperelastic) continue;
+    all.push_back(all[i]);
+    all.back().volume_change = VolumeChange::nodal;
+    all.back().name += " nodal";
+  }
   std::erase_if(all, [](const Tissue& t) { return t.is_tensor_mass() || !engine::has_lanes(t); });
   return all;
 }
@@ -22,11 +28,14 @@ struct Case {
   Body body;
   std::vector<Vec3d> u, v;
 
+  /// Two regions of the same tissue, several submeshes each.
   /// @param strain  size of the displacements over that of a cell
   Case(const Tissue& tissue, double strain) {
     std::mt19937 random(7);
     mesh = test::jittered_box({3, 3, 3}, 0.01, 0.15, random);
-    body = build_body(mesh, {{0, tissue}});
+    mesh.regions.resize(mesh.tets.size());
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) mesh.regions[t] = t < mesh.tets.size() / 2 ? 0 : 1;
+    body = build_body(mesh, {{0, tissue}, {1, tissue}});
     u = test::random_field(mesh.vertices.size(), strain * 0.01, random);
     v = test::random_field(mesh.vertices.size(), 0.02, random);
   }
@@ -56,7 +65,8 @@ TEST_P(ResponseLanes, ForcesAreThoseOfTheResponse) {
     for (const double strain : {1e-4, 0.02, 0.1}) {
       const Case c(tissue, strain);
       const Case::Forces exact = c.exact();
-      const test::EngineForces f = test::engine_forces(c.body, c.u, c.v, {.threads = 1, .kernels = GetParam()});
+      const test::EngineForces f =
+          test::engine_forces(c.body, c.u, c.v, {.threads = 1, .kernels = GetParam(), .submesh_tets = 48});
       EXPECT_LE(test::relative_difference(f.elastic, exact.elastic), 2e-5) << tissue.name << ", strain " << strain;
       EXPECT_LE(test::relative_difference(f.viscous, exact.viscous), 2e-5) << tissue.name << ", strain " << strain;
     }
@@ -75,7 +85,8 @@ TEST_P(ResponseLanes, ForcesTurnWithTheBody) {
       const Vec3d X = c.mesh.vertices[i];
       c.u[i] = turned(X + c.u[i]) - X;
     }
-    const test::EngineForces f = test::engine_forces(c.body, c.u, c.v, {.threads = 1, .kernels = GetParam()});
+    const test::EngineForces f =
+        test::engine_forces(c.body, c.u, c.v, {.threads = 1, .kernels = GetParam(), .submesh_tets = 48});
     EXPECT_LE(test::relative_difference(f.elastic, c.exact().elastic), 2e-4) << tissue.name;
   }
 }
@@ -87,7 +98,8 @@ TEST_P(ResponseLanes, FlatAndInvertedTetsAreAnsweredToo) {
     const Case c(tissue, 0.8);
     const Case::Forces exact = c.exact();
     ASSERT_FALSE(exact.watch.inverted.empty());
-    const test::EngineForces f = test::engine_forces(c.body, c.u, c.v, {.threads = 1, .kernels = GetParam()});
+    const test::EngineForces f =
+        test::engine_forces(c.body, c.u, c.v, {.threads = 1, .kernels = GetParam(), .submesh_tets = 48});
     EXPECT_TRUE(f.advance.finite) << tissue.name;
     EXPECT_EQ(f.advance.inverted.size(), exact.watch.inverted.size()) << tissue.name;
     EXPECT_LE(test::relative_difference(f.elastic, exact.elastic), 1e-4) << tissue.name;
@@ -95,16 +107,17 @@ TEST_P(ResponseLanes, FlatAndInvertedTetsAreAnsweredToo) {
   }
 }
 
-// What lanes tell of the tangent is 1 at rest, and close to what the response tells: lanes leave halves of sums out.
+// What lanes tell of the tangent is 1 at rest, and close to what the response tells: lanes leave halves of sums out, and
+// where volume changes are shared they take the stress that acts, the response that of the tet alone.
 TEST_P(ResponseLanes, StiffnessIsWatched) {
   for (const Tissue& tissue : large_tissues()) {
     const Case rest(tissue, 0.0), c(tissue, 0.1);
     const double expected = rest.exact().watch.stiffening[0];
-    const engine::SubmeshOptions options{.threads = 1, .kernels = GetParam()};
+    const engine::SubmeshOptions options{.threads = 1, .kernels = GetParam(), .submesh_tets = 48};
     const double at_rest = test::engine_forces(rest.body, rest.u, rest.v, options).advance.stiffening[0];
     EXPECT_NEAR(at_rest, expected, 2e-3 * expected) << tissue.name;
     const double r = test::engine_forces(c.body, c.u, c.v, options).advance.stiffening[0];
-    EXPECT_GE(r, 0.999 * c.exact().watch.stiffening[0]) << tissue.name;
+    EXPECT_GE(r, 0.95 * c.exact().watch.stiffening[0]) << tissue.name;
     EXPECT_LE(r, 2.5 * c.exact().watch.stiffening[0]) << tissue.name;
   }
 }
@@ -117,7 +130,7 @@ TEST_P(ResponseLanes, BranchesRememberAlike) {
     for (MaxwellBranch& b : tissue.maxwell) b.time = std::min(b.time, 0.01) + 0.005 * b.share;
     Case c(tissue, 0.02);
     const std::vector<double> damping(c.body.vertex_count, 0.0);
-    engine::SubmeshBody lanes(c.body, damping, {.threads = 1, .kernels = GetParam()});
+    engine::SubmeshBody lanes(c.body, damping, {.threads = 1, .kernels = GetParam(), .submesh_tets = 48});
     engine::ElementBody exact(c.body, damping, Precision::double_precision);
     const std::vector<Vec3d> still(c.u.size());
     for (MovingBody* b : std::initializer_list<MovingBody*>{&lanes, &exact}) b->set_state(c.u, still);
