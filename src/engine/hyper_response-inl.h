@@ -1,7 +1,8 @@
 // hyper_response-inl.h — hyperelastic laws in lanes: src/tissue/hyperelastic_response.h, and the bounds of
 // src/tissue/stiffness_bound.h.
 //
-// Ogden's powers need principal stretches and directions: Jacobi rotations of the Green strain, a fixed number of sweeps.
+// Ogden's powers need principal stretches, but not their directions: S is the polynomial in E that takes the right values
+// at its eigenvalues.
 //
 // Included once per instruction set, never from outside response_kernels.cpp.
 #if defined(GLISSON_HYPER_RESPONSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -149,91 +150,102 @@ void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue&
   see_stiffness(most * number(r.rest_bound), seen);
 }
 
-/// Rotates rows and columns p, q of a symmetric tensor so that a_pq vanishes; `n` takes the columns along.
-HWY_INLINE void jacobi_rotation(F& app, F& aqq, F& apq, F& arp, F& arq, Tensor& n, std::size_t p, std::size_t q) {
+/// The three eigenvalues of a symmetric tensor, e₁ ≥ e₂ ≥ e₃, by the angle of its invariants. Two that are equal come out
+/// up to 3e-4 of the third's distance apart, which an interpolation between them does not notice.
+struct Eigenvalues {
+  F e[3];
+};
+HWY_INLINE Eigenvalues eigenvalues(const Symmetric& E) {
   const Lanes d;
-  const F one = number(1.0F), zero = hn::Zero(d);
-  const auto there = hn::Gt(hn::Abs(apq), number(1e-30F));
-  const F theta = (aqq - app) * number(0.5F) / hn::IfThenElse(there, apq, one);
-  const F size = hn::Min(hn::Abs(theta), number(1e15F));
-  F t = one / (size + hn::Sqrt(hn::MulAdd(size, size, one)));
-  t = hn::IfThenElse(hn::Lt(theta, zero), hn::Neg(t), t);
-  t = hn::IfThenElse(there, t, zero);
-  const F c = one / hn::Sqrt(hn::MulAdd(t, t, one)), s = t * c;
-  app = hn::NegMulAdd(t, apq, app), aqq = hn::MulAdd(t, apq, aqq), apq = zero;
-  const F rp = hn::NegMulAdd(s, arq, c * arp);
-  arq = hn::MulAdd(s, arp, c * arq), arp = rp;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const F np = n.h[i][p], nq = n.h[i][q];
-    n.h[i][p] = hn::NegMulAdd(s, nq, c * np), n.h[i][q] = hn::MulAdd(s, np, c * nq);
-  }
+  const F mean = trace_of(E) * number(1.0F / 3.0F), one = number(1.0F);
+  const Symmetric D = plus_identity(E, hn::Neg(mean));
+  const F p = hn::Sqrt(contraction(D, D) * number(1.0F / 6.0F));
+  const F cube = hn::Max(p * p * p, number(1e-36F));
+  const F r = hn::Min(hn::Max(cofactors_of(D).determinant * number(0.5F) / cube, hn::Neg(one)), one);
+  const F c = hn::Cos(d, hn::Acos(d, r) * number(1.0F / 3.0F));
+  const F s = hn::Sqrt(hn::Max(hn::NegMulAdd(c, c, one), hn::Zero(d)));
+  const F first = hn::MulAdd(p + p, c, mean);
+  const F third = hn::NegMulAdd(p, hn::MulAdd(number(1.7320508F), s, c), mean);
+  return {{first, number(3.0F) * mean - first - third, third}};
 }
 
-/// Eigenvalues and vectors (columns of n).
-struct Spectrum {
-  F e[3];
-  Tensor n;
+/// g of a principal direction, S = Σ g_i n_i ⊗ n_i, with its first two derivatives by the eigenvalue e of E.
+struct PrincipalStress {
+  F g, first, second;
 };
-HWY_INLINE Spectrum spectrum(const Symmetric& E) {
-  constexpr int kSweeps = 4;
-  const F one = number(1.0F), zero = hn::Zero(Lanes());
-  Spectrum s{{E.xx, E.yy, E.zz}, {{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}}};
-  F xy = E.xy, yz = E.yz, zx = E.zx;
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    jacobi_rotation(s.e[0], s.e[1], xy, zx, yz, s.n, 0, 1);
-    jacobi_rotation(s.e[0], s.e[2], zx, xy, yz, s.n, 0, 2);
-    jacobi_rotation(s.e[1], s.e[2], yz, xy, zx, s.n, 1, 2);
-  }
-  return s;
+
+/// The divided difference g[e_a, e_b] over d = e_a − e_b ≥ 0; where they are close by the derivatives at both ends,
+/// ½ (g_a' + g_b') − d/12 (g_a'' − g_b''), which is off by d⁴/720 of the fifth derivative.
+HWY_INLINE F divided_difference(const PrincipalStress& a, const PrincipalStress& b, F d) {
+  const F limit = number(0.03F);
+  const F near = hn::MulAdd(number(-1.0F / 12.0F) * d, a.second - b.second, number(0.5F) * (a.first + b.first));
+  return hn::IfThenElse(hn::Lt(d, limit), near, (a.g - b.g) / hn::Max(d, limit));
+}
+
+/// S = g₁ I + g[e₁,e₂] (E − e₁ I) + g[e₁,e₂,e₃] (E − e₁ I)(E − e₂ I): no eigenvectors.
+HWY_INLINE Symmetric isotropic_function(const Symmetric& E, const Eigenvalues& at, const PrincipalStress (&s)[3]) {
+  const F upper = divided_difference(s[0], s[1], at.e[0] - at.e[1]);
+  const F lower = divided_difference(s[1], s[2], at.e[1] - at.e[2]);
+  const F bend = (upper - lower) / hn::Max(at.e[0] - at.e[2], number(1e-20F));
+  const Symmetric first = plus_identity(E, hn::Neg(at.e[0])), second = plus_identity(E, hn::Neg(at.e[1]));
+  return plus_identity(plus(times(upper, first), bend, commuting_product(first, second)), s[0].g);
 }
 
 /// law: α₁, 2μ₁/α₁, α₂, …
 inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&,
                       ResponseBlock& out, StiffnessSeen& seen) {
   const Lanes d;
-  const F one = number(1.0F), third = number(1.0F / 3.0F), most_exponent = number(60.0F);
-  F most = hn::Zero(d);
+  const F one = number(1.0F), two = number(2.0F), third = number(1.0F / 3.0F), zero = hn::Zero(d);
+  F most = zero;
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState state = hyper_state(in.gradient + item * 9 * kLanes);
     const F j = state.inv.volume_change;
-    const Spectrum s = spectrum(green_strain(state.H));
-    F l[3], c[3], t[3], bend = hn::Zero(d);
+    const Symmetric E = green_strain(state.H);
+    const Eigenvalues at = eigenvalues(E);
+    F l[3], c[3], t[3] = {zero, zero, zero}, slope[3] = {zero, zero, zero}, bend[3] = {zero, zero, zero};
     for (std::size_t i = 0; i < 3; ++i) {
-      const F twice = hn::Max(s.e[i] + s.e[i], number(-0.999F));
+      const F twice = hn::Max(at.e[i] + at.e[i], number(-0.999F));
       c[i] = twice + one;
       l[i] = number(0.5F) * hn::Log1p(d, twice);
-      t[i] = hn::Zero(d);
     }
     const F mean = (l[0] + l[1] + l[2]) * third;
+    F stiffest = zero;
     for (std::size_t k = 0; k < r.terms; ++k) {
       const F alpha = number(r.law[2 * k]), factor = number(r.law[2 * k + 1]);
-      F g[3], top = number(-1.0F);
+      F g[3], top = hn::Neg(one);
       for (std::size_t i = 0; i < 3; ++i) {
-        g[i] = hn::Expm1(d, hn::Min(alpha * (l[i] - mean), most_exponent));
+        g[i] = hn::Expm1(d, hn::Min(alpha * (l[i] - mean), number(60.0F)));
         top = hn::Max(top, g[i]);
       }
       const F average = (g[0] + g[1] + g[2]) * third;
-      for (std::size_t i = 0; i < 3; ++i) t[i] = hn::MulAdd(factor, g[i] - average, t[i]);
-      bend = hn::MulAdd(hn::Abs(factor * alpha) * number(4.0F / 3.0F), top + one, bend);  // 8/3 μ = 4/3 (2μ/α) α
+      for (std::size_t i = 0; i < 3; ++i) {
+        const F rise = factor * alpha * (g[i] + one);
+        t[i] = hn::MulAdd(factor, g[i] - average, t[i]);
+        slope[i] = slope[i] + rise;
+        bend[i] = hn::MulAdd(alpha, rise, bend[i]);
+      }
+      stiffest =
+          hn::MulAdd(hn::Abs(factor * alpha) * number(4.0F / 3.0F), top + one, stiffest);  // 8/3 μ = 4/3 (2μ/α) α
     }
-    // S = Σ τ_i/λ_i² n_i ⊗ n_i
-    Symmetric S{hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    F tension = hn::Zero(d), smallest = c[0];
+    // g = τ/λ² and its derivatives by e, with dτ/d ln λ = slope, d²τ/d(ln λ)² = bend
+    PrincipalStress s[3];
+    F tension = zero;
     for (std::size_t i = 0; i < 3; ++i) {
-      const F x = s.n.h[0][i], y = s.n.h[1][i], z = s.n.h[2][i], w = t[i] / c[i];
-      S = plus(S, w, Symmetric{x * x, y * y, z * z, x * y, y * z, z * x});
+      const F inverse = one / c[i], square = inverse * inverse;
+      s[i].g = t[i] * inverse;
+      s[i].first = hn::NegMulAdd(two, t[i], slope[i]) * square;
+      s[i].second = hn::MulAdd(number(8.0F), t[i], hn::NegMulAdd(number(6.0F), slope[i], bend[i])) * square * inverse;
       tension = hn::Max(tension, hn::Abs(t[i]));
-      smallest = hn::Min(smallest, c[i]);
     }
+    const Symmetric S = isotropic_function(E, at, s);
     const F pressure = pressure_of(in, r, item, j);
     const Tensor volumetric = plus_identity(times(pressure, state.K), pressure);
     store_tensor(plus(volumetric, one, tensor_product(plus_identity(state.H, one), S)), out.piola + item * 9 * kLanes);
-    const F least = hn::Max(smallest, number(float(kSmallestStretch * kSmallestStretch)));
+    const F thinnest = number(float(kSmallestStretch * kSmallestStretch)), least = hn::Max(c[2], thinnest);
     const LaneInvariants i{state.I1, state.I2, state.J};
-    most = hn::Max(most, hn::MulAdd(number(2.0F), tension, bend) / least + volume_bound(i, number(r.bulk)));
+    most = hn::Max(most, hn::MulAdd(two, tension, stiffest) / least + volume_bound(i, number(r.bulk)));
     // a stretch below the limit where ln λ goes on otherwise counts as a lost volume
-    const auto thin = hn::Lt(smallest, number(float(kSmallestStretch * kSmallestStretch)));
-    rescue_if_small(in, to, item, hn::IfThenElse(thin, hn::Zero(d), j + one), out);
+    rescue_if_small(in, to, item, hn::IfThenElse(hn::Lt(c[2], thinnest), zero, j + one), out);
   }
   see_stiffness(most * number(r.rest_bound), seen);
 }
