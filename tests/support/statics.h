@@ -1,0 +1,185 @@
+// statics.h — equilibrium of a body of tissue, for tests that know the answer in closed form.
+//
+// Newton's method on TissueOperator's exact tangent; each step by conjugate gradients with the 3 × 3 blocks of the
+// diagonal as preconditioner. Slow and plain, and independent of the integrators.
+#pragma once
+
+#include <Eigen/Dense>
+#include <functional>
+
+#include "mechanics/tissue_operator.h"
+
+namespace glisson::test {
+
+using Field = std::vector<Vec3d>;
+
+/// Which components of each vertex are given, and by what.
+struct Supports {
+  explicit Supports(std::size_t n) : held(n, {false, false, false}), value(n) {}
+  void hold(std::uint32_t vertex, std::size_t axis, double displacement = 0.0) {
+    held[vertex][axis] = true;
+    value[vertex][axis] = displacement;
+  }
+  void hold_all(std::uint32_t vertex, const Vec3d& displacement = {}) {
+    for (std::size_t axis = 0; axis < 3; ++axis) hold(vertex, axis, displacement[axis]);
+  }
+  /// Sets what is held to 0.
+  void clear(Field& field) const {
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (held[i][a]) field[i][a] = 0.0;
+      }
+    }
+  }
+  /// Sets what is held to its value.
+  void apply(Field& u) const {
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (held[i][a]) u[i][a] = value[i][a];
+      }
+    }
+  }
+
+  std::vector<std::array<bool, 3>> held;
+  Field value;  ///< [m]
+};
+
+inline double inner(const Field& a, const Field& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
+  return sum;
+}
+inline void add(Field& a, const Field& b, double scale) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i] * scale;
+}
+
+/// Inverse 3 × 3 blocks on the diagonal of the tangent, free components only.
+class BlockPreconditioner {
+ public:
+  BlockPreconditioner(const Body& body, const TissueTangent& tangent, const Supports& supports)
+      : inverse_(body.vertex_count, Eigen::Matrix3d::Zero()) {
+    for (std::size_t e = 0; e < body.elements.size(); ++e) {
+      const ElementRest& rest = body.rest[e];
+      const Vec3d s0 = -(rest.s[0] + rest.s[1] + rest.s[2]);
+      for (std::size_t a = 0; a < 4; ++a) {
+        const Vec3d s = a == 0 ? s0 : rest.s[a - 1];
+        inverse_[body.elements[e][a]] += rest.volume * block(tangent, e, Eigen::Vector3d(s.x, s.y, s.z));
+      }
+    }
+    for (std::size_t i = 0; i < inverse_.size(); ++i) {
+      Eigen::Matrix3d& D = inverse_[i];
+      D += 1e-12 * (D.trace() + 1e-300) * Eigen::Matrix3d::Identity();
+      for (int a = 0; a < 3; ++a) {
+        if (!supports.held[i][static_cast<std::size_t>(a)]) continue;
+        D.row(a).setZero(), D.col(a).setZero();
+        D(a, a) = 1.0;
+      }
+      D = D.inverse().eval();
+    }
+  }
+  void apply(const Field& r, Field& z) const {
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      const Eigen::Vector3d x = inverse_[i] * Eigen::Vector3d(r[i].x, r[i].y, r[i].z);
+      z[i] = {x.x(), x.y(), x.z()};
+    }
+  }
+
+ private:
+  static Eigen::Matrix3d block(const TissueTangent& tangent, std::size_t e, const Eigen::Vector3d& s) {
+    Eigen::Matrix3d K;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) K(i, k) = s.dot(tangent.local[e].block<3, 3>(3 * i, 3 * k) * s);
+    }
+    if (tangent.volume.empty()) return K;
+    // the mean of four vertices' means: about a quarter of what the element alone would have
+    const auto as_eigen = [](const Mat3d& m) {
+      return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.m[0].data());
+    };
+    return K + 0.25 * (as_eigen(tangent.pressure[e]) * s) * (as_eigen(tangent.volume[e]) * s).transpose();
+  }
+
+  std::vector<Eigen::Matrix3d> inverse_;
+};
+
+/// Solves K x = b on the free components. @return  iterations; −1 where K is not positive
+inline int solve_linear(const TissueOperator& op, const TissueTangent& K, const Supports& supports, const Field& b,
+                        double tolerance, Field& x) {
+  const BlockPreconditioner precondition(op.body(), K, supports);
+  Field r = b, z(b.size()), p, Kp(b.size());
+  supports.clear(r);
+  x.assign(b.size(), {});
+  precondition.apply(r, z);
+  p = z;
+  double rz = inner(r, z);
+  const double target = tolerance * tolerance * inner(r, r);
+  const int most = 20 * static_cast<int>(b.size()) + 100;
+  for (int n = 0; n < most; ++n) {
+    if (inner(r, r) <= target) return n;
+    op.apply(K, p, Kp);
+    supports.clear(Kp);
+    const double curvature = inner(p, Kp);
+    if (!(curvature > 0.0)) return -1;
+    const double alpha = rz / curvature;
+    add(x, p, alpha), add(r, Kp, -alpha);
+    precondition.apply(r, z);
+    const double next = inner(r, z);
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] = z[i] + p[i] * (next / rz);
+    rz = next;
+  }
+  return most;
+}
+
+/// Elastic and viscous forces together [N].
+inline Field forces(const TissueOperator& op, const TissueState& state) {
+  Field f(state.u.size()), viscous(state.u.size());
+  ElementWatch watch;
+  op.forces(state, f, viscous, watch);
+  add(f, viscous, 1.0);
+  return f;
+}
+
+/// Equilibrium under supports and dead loads, from u on. Maxwell branches relax for `since`.
+/// @param load  [N] per vertex; empty: none
+/// @return  whether the residual fell below `tolerance` of the reactions
+inline bool equilibrate(const TissueOperator& op, const Supports& supports, const Field& load, Field& u,
+                        double since = 0.0, double tolerance = 1e-9) {
+  const Field still(u.size());
+  TissueTangent K;
+  Field start = u, step;
+  supports.apply(start);
+  for (int n = 0; n < 40; ++n) {
+    op.linearise({u, still, since}, 0.0, false, K);
+    Field r = forces(op, {u, still, since});
+    if (!load.empty()) add(r, load, 1.0);
+    Field jump(u.size());
+    bool jumps = false;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (supports.held[i][a]) jump[i][a] = supports.value[i][a] - u[i][a], jumps = jumps || jump[i][a] != 0.0;
+      }
+    }
+    if (jumps) {  // the first step carries the supports to where they belong
+      Field pulled(u.size());
+      op.apply(K, jump, pulled);
+      add(r, pulled, -1.0), add(u, jump, 1.0);
+    }
+    double reactions = inner(r, r);
+    supports.clear(r);
+    const double residual = inner(r, r);
+    if (!jumps && (residual <= tolerance * tolerance * reactions)) return true;
+    if (solve_linear(op, K, supports, r, 1e-3 * tolerance, step) < 0) return false;
+    add(u, step, 1.0);
+  }
+  return false;
+}
+
+/// Sum of what supports exert on a set of vertices, in equilibrium [N].
+inline Vec3d reaction(const TissueOperator& op, const Field& u, std::span<const std::uint32_t> vertices,
+                      double since = 0.0) {
+  const Field still(u.size()), f = forces(op, {u, still, since});
+  Vec3d sum;
+  for (const std::uint32_t v : vertices) sum -= f[v];
+  return sum;
+}
+
+}  // namespace glisson::test
