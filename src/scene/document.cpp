@@ -91,6 +91,8 @@ void require_harmless(std::string_view text, const std::string& name) {
   }
 }
 
+}  // namespace
+
 void set_origin(Node& node, const Origin& where) {
   node.where = where;
   if (Array* elements = node.array()) {
@@ -103,8 +105,6 @@ void set_origin(Node& node, const Origin& where) {
     }
   }
 }
-
-}  // namespace
 
 const Node* Node::find(std::string_view key) const {
   const Table* members = table();

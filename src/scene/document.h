@@ -48,6 +48,8 @@ struct Member {
   Node value;
 };
 
+/// Says of a whole tree that it was written at one place.
+void set_origin(Node& node, const Origin& where);
 /// A whole or broken number as double; the node must hold one.
 double number_of(const Node& node);
 /// What a node holds, for messages: `text "abc"`, `5`, `a list of 3`.

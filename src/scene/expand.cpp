@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "scene/nearest.h"
+#include "scene/presets.h"
 #include "scene/sections.h"
 
 namespace glisson::scene {
@@ -80,7 +81,26 @@ void require_known(const Overlay& overlay, const Array& variants, Problems& prob
                    (meant.empty() ? "the scene has: " + listed(names) : "did you mean \"" + meant + "\"?"));
 }
 
-/// Gives each region the keys of [tissue] that it does not set itself.
+/// Puts in what the presets of the body and its regions stand for. Twice is as once.
+void put_presets(Node& experiment, Problems& problems) {
+  if (Node* tissue = experiment.find("tissue"))
+    *tissue = with_preset(*tissue, true, {problems, "tissue", tissue->where});
+  Node* regions = experiment.find("region");
+  if (!regions || !regions->array()) return;
+  for (std::size_t i = 0; i < regions->array()->size(); ++i) {
+    Node* own = (*regions->array())[i].find("tissue");
+    if (own) *own = with_preset(*own, false, {problems, "region." + std::to_string(i) + ".tissue", own->where});
+  }
+}
+
+/// `overlay` over `base`, presets put in: what is laid over it next may change single keys of theirs.
+Node laid(const Node& base, const Node& overlay, Problems& problems) {
+  Node experiment = merged(variant_section(), base, overlay, {problems, "", overlay.where});
+  put_presets(experiment, problems);
+  return experiment;
+}
+
+/// Gives each region the keys of [tissue] that it does not set itself; none where it has a preset of its own.
 void inherit_tissue(Node& experiment, Problems& problems) {
   const Node* tissue = experiment.find("tissue");
   Node* regions = experiment.find("region");
@@ -112,11 +132,13 @@ Expanded expand(const Node& root, std::span<const Override> overrides, Problems&
     require_known(o, variants, problems);
     if (o.scene_key) result.scene = merged(scene_section(), result.scene, o.tree, {problems, "", o.tree.where});
   }
+  Node base = result.base;
+  put_presets(base, problems);
   for (const Node& variant : variants) {
-    Node experiment = merged(variant_section(), result.base, variant, {problems, "", variant.where});
+    Node experiment = laid(base, variant, problems);
     for (const Overlay& o : overlays) {
       const bool meant = !o.scene_key && (o.variant.empty() || o.variant == name_of(variant));
-      if (meant) experiment = merged(variant_section(), experiment, o.tree, {problems, "", o.tree.where});
+      if (meant) experiment = laid(experiment, o.tree, problems);
     }
     experiment.where = variant.where;
     inherit_tissue(experiment, problems);

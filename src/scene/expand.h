@@ -16,7 +16,8 @@ struct Expanded {
   std::vector<Node> variants;  ///< base, then the variant, then --set; one or more
 };
 
-/// Lays variants and overrides over the scene. Regions inherit from [tissue] in the result.
+/// Lays variants and overrides over the scene. In the result presets are what they stand for, and regions inherit
+/// from [tissue].
 Expanded expand(const Node& root, std::span<const Override> overrides, Problems& problems);
 
 }  // namespace glisson::scene

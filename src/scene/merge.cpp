@@ -87,7 +87,7 @@ Node merged(const SectionSpec& section, const Node& base, const Node& overlay, c
   const Node* other_kind = overlay.find("kind");
   const bool replaced = !section.kinds.empty() && other_kind && kind && kind->text() && other_kind->text() &&
                         *kind->text() != *other_kind->text();
-  if (replaced) return overlay;
+  if (replaced || (!section.start.empty() && overlay.find(section.start))) return overlay;
   Node result = base;
   result.where = overlay.where;
   for (const Member& m : *overlay.table()) drop_excluded(section, *result.table(), m.key);

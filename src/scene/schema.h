@@ -113,6 +113,7 @@ struct SectionSpec {
   std::vector<KeySpec> keys{};
   std::vector<KindSpec> kinds;  ///< not empty: the key `kind` chooses one, whose keys are allowed too
   std::vector<Exclusion> exclusions{};
+  std::string start{};  ///< a table that gives this key takes nothing over from the one it is laid on
   std::vector<std::string> other_words{};  ///< further keys to suggest for a misspelt one
   std::function<void(void* target, const Node& table, const Place&)> finish{};  ///< what must hold between keys
 
@@ -133,8 +134,8 @@ void read_section(const SectionSpec& section, const Node& node, void* target, co
 std::string expected(const KeySpec& key);
 
 /// `overlay` over `base`: tables are joined key by key, everything else is replaced. A table of another `kind`
-/// replaces the whole table, a key removes those it excludes, and a list of tables is
-/// replaced by a list or changed in its elements by a table of names or indices.
+/// replaces the whole table, as does one with the section's `start` key; a key removes those it excludes, and a list of
+/// tables is replaced by a list or changed in its elements by a table of names or indices.
 Node merged(const SectionSpec& section, const Node& base, const Node& overlay, const Place& place);
 
 }  // namespace glisson::scene

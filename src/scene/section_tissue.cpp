@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "glisson/scene.h"
+#include "scene/presets.h"
 #include "scene/section.h"
 #include "scene/sections.h"
 
@@ -173,7 +174,13 @@ const SectionSpec& tissue_section() {
     Section<Tissue> s("tissue",
                       "What the body is made of: isotropic elasticity whose moduli may follow the local "
                       "deformation, and Kelvin–Voigt viscosity.");
-    s.key("name", &Tissue::name, "name, for the report");
+    s.bare({.name = "preset",
+            .help = "a tissue with a source (docs/tissues.md) to start from; the keys beside it win",
+            .type = ValueType::text,
+            .words = preset_words(),
+            .default_text = "none"});
+    s.spec().start = "preset";
+    s.key("name", &Tissue::name, "name, for the report; of a preset, its own");
     s.key("youngs_modulus_Pa", &Tissue::youngs_modulus, "Young's modulus E at rest").in("Pa").within(above(0));
     s.key("poisson_ratio", &Tissue::poisson_ratio, "Poisson's ratio ν")
         .in("-")
@@ -240,7 +247,8 @@ const SectionSpec& region_section() {
         "sphere_m", sphere_section(),
         [](RegionSpec& r) -> Selection::Sphere& { return r.where.emplace<Selection::Sphere>(); }, "tets in a ball");
     s.table("tissue", tissue_section(), &RegionSpec::tissue,
-            "keys as in `[tissue]`; those not given are the body's, except `name`, which is the region's");
+            "keys as in `[tissue]`; those not given are the body's, or those of its own `preset`, except `name`, which "
+            "is the region's");
     s.spec().exclusions = {{{{"box_m"}, {"sphere_m"}}, false}};
     s.finish([](RegionSpec& r, const Node& table, const Place& place) {
       r.origin = place.text();

@@ -38,6 +38,7 @@ side = { axis = "y", end = "upper", depth_m = 0.125 }
 vertices = [3, 1, 2]
 
 [tissue]
+preset = "paper_liver"
 name = "liver"
 youngs_modulus_Pa = 5000
 poisson_ratio = 0.45
@@ -54,6 +55,17 @@ tissue = { lambda_Pa = 6000, mu_Pa = 2000, lambda_law = { kind = "linear", slope
 [[region]]
 name = "core"
 sphere_m = { center = [0, 0, 1], radius = 2 }
+[[region]]
+name = "band"
+box_m = { min = [0, 0, 0], max = [1, 1, 1] }
+tissue = { kinematics = "green", law_form = "energy", fibres = { direction = [0, 3, 0], stiffness_Pa = 700 } }
+[[region]]
+name = "brain"
+box_m = { min = [0, 0, 0], max = [1, 1, 1] }
+tissue.hyperelastic = { kind = "neo_hookean", mu_Pa = 800, bulk_modulus_Pa = 9000 }
+tissue.maxwell = [{ share = 0.5, time_s = 2 }, { share = 0.25, time_s = 30 }]
+tissue.maxwell_part = "all"
+tissue.volume_change = "nodal"
 
 [motion]
 integrator = "explicit"
@@ -176,7 +188,7 @@ TEST(EveryKey, OfTissueIsRead) {
 // A region has the body's tissue but for the keys it gives; λ and μ of a region take the place of the body's E and ν.
 TEST(EveryKey, OfRegionsIsReadAndTheRestInherited) {
   const Variant v = parse(kEveryKey).variants[0];
-  ASSERT_EQ(v.regions.size(), 2u);
+  ASSERT_EQ(v.regions.size(), 4u);
   const RegionSpec& stone = v.regions[0];
   EXPECT_EQ(stone.name, "stone");
   EXPECT_EQ(stone.tissue.name, "stone");
@@ -191,6 +203,23 @@ TEST(EveryKey, OfRegionsIsReadAndTheRestInherited) {
   EXPECT_EQ(std::get<Selection::Sphere>(core.where).radius, 2.0);
   EXPECT_EQ(core.tissue.youngs_modulus, 5000.0);
   EXPECT_EQ(law_name(core.tissue.law), "step");
+}
+
+// What large deformation needs is kept: kinematics, the law's form, fibres, a hyperelastic law, relaxation, the cure of
+// locking.
+TEST(EveryKey, OfLargeDeformationIsRead) {
+  const Variant v = parse(kEveryKey).variants[0];
+  const Tissue& band = v.regions.at(2).tissue;
+  EXPECT_EQ(band.kinematics, Kinematics::green);
+  EXPECT_EQ(band.law_form, LawForm::energy);
+  ASSERT_TRUE(band.fibres);
+  expect_equal(band.fibres->direction, {0, 3, 0});
+  EXPECT_EQ(band.fibres->stiffness, 700.0);
+  const Tissue& brain = v.regions.at(3).tissue;
+  EXPECT_EQ(std::get<NeoHookean>(brain.hyperelastic.value()), (NeoHookean{800, 9000}));
+  EXPECT_EQ(brain.maxwell, (std::vector<MaxwellBranch>{{0.5, 2.0}, {0.25, 30.0}}));
+  EXPECT_EQ(brain.maxwell_part, MaxwellPart::all);
+  EXPECT_EQ(brain.volume_change, VolumeChange::nodal);
 }
 
 // Time, supports, loads, tools and output keep their numbers, in SI.
