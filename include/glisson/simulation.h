@@ -3,9 +3,9 @@
 //   TetMesh + tissues ──▶ Simulation ── fix / drive / load ──▶ step() … step()
 //                                                               └▶ displacement, forces, energies
 //
-// Motion is the paper's explicit scheme on lumped masses [Schwartz2002, eq. 3–4]. Setters and the
-// constructor throw std::invalid_argument with the name, the value and the allowed range; a step never
-// throws and says by its status how it went.
+// Motion is the paper's explicit scheme on lumped masses [Schwartz2002, eq. 3–4], or one of the other integrators
+// (docs/integrators.md). Setters and the constructor throw std::invalid_argument with the name, the value and the allowed
+// range; a step never throws and says by its status how it went.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "glisson/math.h"
@@ -28,8 +29,47 @@ namespace glisson {
 /// What happens to a run that meets an inverted tetrahedron (J ≤ 0).
 enum class OnInversion { go_on, stop };
 
+/// How a body is advanced in time: M a + γ v + f(u, v) = external (docs/integrators.md says when to take which).
+enum class Integrator {
+  explicit_,      ///< the paper's scheme; h* is set by stiffness and viscosity
+  semi_implicit,  ///< the same with viscosity taken at the end of the step: h* as if there were none, or more
+  implicit,       ///< Newton's method each step, stable at any step; in double
+  static_  ///< equilibrium under loads and motions, without inertia and viscosity; time is a parameter; in double
+};
+
+/// How `implicit` goes from t to t + h.
+enum class TimeScheme {
+  backward_euler,    ///< first order; damps what it cannot resolve
+  newmark,           ///< second order, β = ¼, γ = ½ (mean acceleration): keeps the energy of a linear body
+  generalised_alpha  ///< second order, damps what it cannot resolve by ρ∞ [ChungHulbert1993]
+};
+
+/// What speeds up the linear solves of `implicit` and `static_`.
+enum class Preconditioner {
+  automatic,      ///< factorised up to some 20 000 tets, block_diagonal above
+  factorised,     ///< sparse Cholesky of the tangent, kept as long as it serves
+  block_diagonal  ///< 3 × 3 a vertex
+};
+
+/// Of the integrators `implicit` and `static_`.
+struct ImplicitOptions {
+  TimeScheme scheme = TimeScheme::backward_euler;  ///< of `implicit`
+  double spectral_radius = 0.8;                    ///< ρ∞ of generalised_alpha [-], 0 … 1
+  /// Where an automatic step begins, and above which it never grows [s], > 0; none: 10 ms, `static_` 50 ms.
+  std::optional<double> largest_step;
+  double tolerance = 1e-8;   ///< of Newton's method: forces out of balance over the largest forces [-], 1e-13 … 1e-2
+  int most_iterations = 25;  ///< of Newton's method, before a step is cut in two, 1 … 1000
+  int most_cuts = 20;        ///< how often a step is cut in two before it is given up, 0 … 40
+  Preconditioner preconditioner = Preconditioner::automatic;
+};
+
 struct SimulationOptions {
-  std::optional<double> step;  ///< h [s], > 0 and ≤ h*; none: chosen as 0.9 h* and kept below it as tissue stiffens
+  Integrator integrator = Integrator::explicit_;
+  /// h [s], > 0. Explicit and semi-implicit: ≤ h*; none: chosen as 0.9 h*, kept below it as tissue stiffens, and grown
+  /// again when it softens; semi-implicit 0.9 h* of the elastic body. Implicit and static: none: as long as converges,
+  /// up to ImplicitOptions::largest_step; a given one is cut inside where it does not converge.
+  std::optional<double> step;
+  ImplicitOptions implicit;
   Precision precision = Precision::single_precision;
   double damping_rate = 0.0;      ///< mass-proportional nodal damping γ_i/m_i [1/s], ≥ 0
   double nodal_damping = 0.0;     ///< nodal damping γ_i equal at all vertices, added to it [kg/s], ≥ 0
@@ -64,12 +104,15 @@ enum class StepStatus {
   step_too_large,  ///< the tissue stiffened until the given h exceeds h*; the step was not made
   /// a force is not finite and the run cannot go on. Nothing was moved by such a force: the state is finite
   /// wherever it was, but parts of the body may be one step further than others
-  not_finite
+  not_finite,
+  not_converged,  ///< implicit, static: no equilibrium was found, however small the step; the step was not made
+  not_held        ///< static: supports and tools leave a rigid motion free; the step was not made
 };
 
 struct StepResult {
   StepStatus status = StepStatus::ok;
   std::span<const std::uint32_t> inverted_tets;  ///< valid until the next step
+  std::string_view message;                      ///< why a step was not made and what to do; valid until the next step
 };
 
 /// Which components of a vertex a constraint holds.
@@ -88,17 +131,22 @@ struct ForceParts {
   Vec3d total() const { return elastic + viscous + damping + inertial + gravity + load; }
 };
 
-/// Energies at the time the last step started from [J]. Exact identity of the scheme, up to rounding:
-///   kinetic + elastic + dissipated + removed = initial + work_tools + work_loads.
+/// Energies at force_time() [J]. Exact identity of the schemes, up to rounding and the tolerance of Newton's method:
+///   kinetic + elastic + dissipated + numerical + removed = initial + work_tools + work_loads.
 struct Energies {
-  double elastic = 0.0;     ///< − work of the elastic forces; for a linear tissue the stored energy
-  double kinetic = 0.0;     ///< ½ Σ m v(t−h/2)·v(t+h/2), the scheme's own kinetic energy
+  double elastic = 0.0;  ///< − work of the elastic forces; for a linear tissue the stored energy
+  double kinetic = 0.0;  ///< explicit, semi-implicit: ½ Σ m v(t−h/2)·v(t+h/2), the scheme's own; implicit: ½ Σ m v²
   double dissipated = 0.0;  ///< by viscosity and nodal damping
+  /// By the time scheme of `implicit` itself. Backward Euler: ½ Σ m |Δv|² − ½ ΔF·Δu a step, F the elastic forces.
+  /// Newmark: 0. Static: ½ of what was out of balance at the start, along Δu. Generalised-α: what is missing in the balance, which then says nothing.
+  double numerical = 0.0;
   double work_tools = 0.0;  ///< of driven vertices on the tissue
   double work_loads = 0.0;  ///< of gravity and of loads
   double initial = 0.0;     ///< kinetic and elastic energy of the state given by set_state
   double removed = 0.0;     ///< kinetic and elastic energy that tets took with them when they were removed
-  double imbalance() const { return kinetic + elastic + dissipated + removed - initial - work_tools - work_loads; }
+  double imbalance() const {
+    return kinetic + elastic + dissipated + numerical + removed - initial - work_tools - work_loads;
+  }
 };
 
 /// What left the body with removed tets.
@@ -162,13 +210,13 @@ class Simulation {
   /// The rest mesh as it is now, without the removed tets (numbers of tets are new, those of vertices the same).
   TetMesh present_mesh() const;
 
-  /// Advances by step_size(). The paper's eq. 4 in displacement–velocity form.
+  /// Advances by step_size().
   StepResult step();
 
   double time() const;       ///< [s]
   double step_size() const;  ///< h of the next step [s]
   /// h* [s]: the largest step for which the scheme is stable, from a safe upper bound of the spectrum of the
-  /// free body at its present stiffness [Schwartz2002, eq. 4; docs/theory.md §4]
+  /// free body at its present stiffness [Schwartz2002, eq. 4; docs/theory.md §4]; infinite for implicit and static
   double stable_step() const;
   std::uint64_t steps() const;
 
@@ -176,14 +224,18 @@ class Simulation {
   const TetMesh& mesh() const;
   std::span<const double> masses() const;       ///< lumped, per vertex [kg]
   std::span<const Vec3d> displacement() const;  ///< u(t), per vertex [m]
-  std::span<const Vec3d> velocity() const;      ///< v(t − h/2), per vertex [m/s]
-  std::vector<Vec3d> positions() const;         ///< rest + u, per vertex [m]
+  /// Per vertex [m/s]: v(t − h/2), implicit: v(t), static: 0.
+  std::span<const Vec3d> velocity() const;
+  std::vector<Vec3d> positions() const;  ///< rest + u, per vertex [m]
   /// Sets the state, for studies that do not start from rest; energies count from here.
-  /// @param displacement  [m], @param velocity  v(t − h/2) [m/s], one per vertex; held vertices keep theirs at 0
+  /// @param displacement  [m], @param velocity  as velocity() [m/s], one per vertex; held vertices keep theirs at 0
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity);
 
-  /// Force the constraint exerts on the tissue, at the time the last step started from.
+  /// Force the constraint exerts on the tissue, at force_time().
   ForceParts force(ConstraintId constraint) const;
+  /// Time that force() and energies() are of [s]: explicit, semi-implicit: that the last step started from; implicit,
+  /// static: that it ended at.
+  double force_time() const;
   /// All zero unless SimulationOptions::track_energies.
   Energies energies() const;
   const EngineInfo& engine_info() const;

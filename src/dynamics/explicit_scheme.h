@@ -14,44 +14,55 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/constraints.h"
 #include "dynamics/energy_ledger.h"
-#include "dynamics/loads.h"
+#include "dynamics/scheme.h"
 #include "dynamics/step_control.h"
 #include "engine/moving_body.h"
-#include "glisson/simulation.h"
 
 namespace glisson {
 
-class ExplicitScheme {
+class ExplicitScheme : public Scheme {
  public:
   /// @throws std::invalid_argument as Simulation's constructor
-  ExplicitScheme(Body body, const SimulationOptions& options);
-  ExplicitScheme(const ExplicitScheme&) = delete;
-  ExplicitScheme& operator=(const ExplicitScheme&) = delete;
+  ExplicitScheme(Body body, const SimulationOptions& options) : ExplicitScheme(std::move(body), options, Drag::lags) {}
 
-  ConstraintId add_constraint(Constraint constraint);
-  void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale);
-  void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity);
-
-  RemovalReport remove(std::span<const std::uint32_t> tets);
-  SplitReport split(std::span<const Triangle> faces);
-  /// Elements that got other vertices by the last split.
-  std::span<const std::uint32_t> last_changed() const { return last_changed_; }
-  bool is_removed(std::uint32_t tet) const { return changer_ != nullptr && changer_->is_removed(tet); }
-
-  StepResult step();
-
-  const Body& body() const { return body_; }
-  const StepControl& control() const { return *control_; }
-  const EngineInfo& info() const { return info_; }
-  double time() const { return time_; }
-  std::uint64_t steps() const { return steps_; }
-  std::span<const Vec3d> displacement() const { return read_state().displacement; }
-  std::span<const Vec3d> velocity() const { return read_state().velocity; }
-  const Energies& energies() const { return ledger_.now(); }
+  StepResult step() override;
+  double step_size() const override { return control_->step(); }
+  double stable_step() const override { return control_->stable_step(); }
+  double force_time() const override { return kick_time_; }
+  std::span<const Vec3d> displacement() const override { return read_state().displacement; }
+  std::span<const Vec3d> velocity() const override { return read_state().velocity; }
+  const Energies& energies() const override { return ledger_.now(); }
   /// What the constraint exerted on the tissue at the last kick.
-  ForceParts force(ConstraintId constraint) const;
+  ForceParts force(ConstraintId constraint) const override;
+
+ protected:
+  ExplicitScheme(Body body, const SimulationOptions& options, Drag drag);
+
+  /// What a watched vertex had at the last kick; all 0 for one that was not watched then.
+  struct Kicked {
+    double mass = 0.0, damping = 0.0;
+    Vec3d velocity_before, load;
+  };
+
+  /// v₊ of the watched vertices: as if they were free, then what motions ask for.
+  virtual void kick(double h);
+  void kick_watched(double h);
+  void impose_motions(double h);
+
+  Vec3d displacement_of(std::uint32_t vertex) const override { return moving_->displacement_of(vertex); }
+  Vec3d velocity_of(std::uint32_t vertex) const override { return moving_->velocity_of(vertex); }
+  void acts_on(std::span<const std::uint32_t> vertices) override { watch(vertices); }
+  void take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
+  void take_over(const BodyChange& change) override;
+  void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) override;
+  void take_out(double kinetic, double elastic) override { ledger_.take_out(kinetic, elastic); }
+  void watch(std::span<const std::uint32_t> vertices);
+
+  std::unique_ptr<MovingBody> moving_;
+  std::vector<Kicked> kicked_;                      ///< per watched vertex
+  std::vector<std::vector<std::uint32_t>> places_;  ///< per constraint: where its vertices are among those watched
+  Vec3d gravity_{};                                 ///< at the last kick
 
  private:
   /// The state in the mesh's order, copied from the body when someone asks.
@@ -60,50 +71,16 @@ class ExplicitScheme {
     bool current = false;
   };
 
-  /// What a watched vertex had at the last kick; all 0 for one that was not watched then.
-  struct Kicked {
-    double mass = 0.0, damping = 0.0;
-    Vec3d velocity_before, load;
-  };
-
-  BodyChanger& changer();
-  void weigh_energy(std::span<const std::uint32_t> elements, RemovalReport& report);
-  void take_over(const BodyChange& change);
   const StateCopy& read_state() const;
-  Vec3d gravity_at(double time) const;
-  void watch(std::span<const std::uint32_t> vertices);
   void find_places();
-  void kick_watched(double h);
-  void impose_motions(double h);
   ForceParts watched_force(std::size_t place, const Axes& axes) const;
   KickWork watched_work() const;
   void book(double h, const KickWork& free);
-  void take_hold(double h);
-  bool holds(std::size_t constraint) const { return !base_[constraint].empty(); }
-  void rebase(std::size_t constraint);
 
-  SimulationOptions options_;
-  Body body_;
-  std::vector<double> gamma_;                ///< nodal damping [kg/s]
-  std::unique_ptr<BodyChanger> changer_;     ///< none until something changes
-  std::vector<std::uint32_t> last_changed_;  ///< elements
-  EngineInfo info_;                          // before moving_, which fills it
-  std::unique_ptr<MovingBody> moving_;
-  Constraints constraints_;
-  std::vector<std::vector<Vec3d>> base_;  ///< per constraint: displacement its motion counts from [m]; empty: not yet
-  Loads loads_;
   std::vector<double> stiffening_;  ///< per tissue block, at the last evaluation
   std::unique_ptr<StepControl> control_;
-
-  double time_ = 0.0;
-  std::uint64_t steps_ = 0;
   mutable StateCopy copy_;
-
-  // at the last kick
-  double kick_step_ = 0.0;
-  std::vector<Kicked> kicked_;                      ///< per watched vertex
-  std::vector<std::vector<std::uint32_t>> places_;  ///< per constraint: where its vertices are among those watched
-  Vec3d gravity_{};
+  double kick_step_ = 0.0, kick_time_ = 0.0;  ///< of the last kick
   EnergyLedger ledger_;
 };
 

@@ -6,13 +6,22 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "dynamics/explicit_scheme.h"
+#include "dynamics/make_scheme.h"
 #include "mechanics/tet_fields.h"
 
 namespace glisson {
 namespace {
 
 constexpr int kMostThreads = 1024;
+
+void require_implicit(const ImplicitOptions& o, const auto& check) {
+  const double longest = o.largest_step.value_or(1.0);
+  check(o.spectral_radius >= 0.0 && o.spectral_radius <= 1.0, "spectral_radius", o.spectral_radius, "0 to 1");
+  check(longest > 0.0 && std::isfinite(longest), "largest_step [s]", longest, "> 0 and finite");
+  check(o.tolerance >= 1e-13 && o.tolerance <= 1e-2, "tolerance", o.tolerance, "1e-13 to 1e-2");
+  check(o.most_iterations >= 1 && o.most_iterations <= 1000, "most_iterations", o.most_iterations, "1 to 1000");
+  check(o.most_cuts >= 0 && o.most_cuts <= 40, "most_cuts", o.most_cuts, "0 to 40");
+}
 
 void require_options(const SimulationOptions& o) {
   const auto check = [](bool ok, const char* name, double value, const char* range) {
@@ -26,6 +35,7 @@ void require_options(const SimulationOptions& o) {
   check(not_negative(o.nodal_damping), "nodal_damping [kg/s]", o.nodal_damping, ">= 0 and finite");
   check(not_negative(o.gravity_ramp), "gravity_ramp [s]", o.gravity_ramp, ">= 0 and finite");
   check(o.threads >= 0 && o.threads <= kMostThreads, "threads", o.threads, "0 (automatic) to 1024");
+  require_implicit(o.implicit, check);
   check(std::isfinite(norm(o.gravity)), "|gravity| [m/s^2]", norm(o.gravity), "finite");
 }
 
@@ -33,13 +43,13 @@ void require_options(const SimulationOptions& o) {
 
 struct Simulation::Impl {
   TetMesh mesh;
-  ExplicitScheme scheme;
+  std::unique_ptr<Scheme> scheme;
 };
 
 Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const SimulationOptions& options) {
   require_options(options);
   Body body = build_body(mesh, tissues);
-  impl_.reset(new Impl{std::move(mesh), {std::move(body), options}});
+  impl_.reset(new Impl{std::move(mesh), make_scheme(std::move(body), options)});
 }
 
 Simulation::~Simulation() = default;
@@ -49,32 +59,32 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 ConstraintId Simulation::fix(std::span<const std::uint32_t> vertices, Axes axes) { return drive(vertices, {}, axes); }
 
 ConstraintId Simulation::drive(std::span<const std::uint32_t> vertices, Motion motion, Axes axes, double from) {
-  return impl_->scheme.add_constraint({{vertices.begin(), vertices.end()}, axes, std::move(motion), from});
+  return impl_->scheme->add_constraint({{vertices.begin(), vertices.end()}, axes, std::move(motion), from});
 }
 
 void Simulation::add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale) {
-  impl_->scheme.add_load(vertices, force, std::move(scale));
+  impl_->scheme->add_load(vertices, force, std::move(scale));
 }
 
-RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) { return impl_->scheme.remove(tets); }
+RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) { return impl_->scheme->remove(tets); }
 
 SplitReport Simulation::split_faces(std::span<const Triangle> faces) {
-  SplitReport report = impl_->scheme.split(faces);
+  SplitReport report = impl_->scheme->split(faces);
   TetMesh& mesh = impl_->mesh;
-  const Body& body = impl_->scheme.body();
+  const Body& body = impl_->scheme->body();
   for (std::uint32_t i = 0; i < report.origins.size(); ++i) {
     mesh.vertices.push_back(Vec3d(mesh.vertices[report.origins[i]]));
     for (auto& [name, set] : mesh.vertex_sets) {
       if (std::binary_search(set.begin(), set.end(), report.origins[i])) set.push_back(report.first_new + i);
     }
   }
-  for (const std::uint32_t e : impl_->scheme.last_changed()) mesh.tets[body.mesh_tet[e]] = body.elements[e];
+  for (const std::uint32_t e : impl_->scheme->last_changed()) mesh.tets[body.mesh_tet[e]] = body.elements[e];
   return report;
 }
 
 bool Simulation::is_removed(std::uint32_t tet) const {
   const std::size_t tets = impl_->mesh.tets.size();
-  if (tet < tets) return impl_->scheme.is_removed(tet);
+  if (tet < tets) return impl_->scheme->is_removed(tet);
   throw std::invalid_argument("is_removed: tet " + std::to_string(tet) + " is outside the mesh, 0 to " +
                               std::to_string(tets - 1));
 }
@@ -91,16 +101,16 @@ TetMesh Simulation::present_mesh() const {
   return present;
 }
 
-StepResult Simulation::step() { return impl_->scheme.step(); }
+StepResult Simulation::step() { return impl_->scheme->step(); }
 
-double Simulation::time() const { return impl_->scheme.time(); }
-double Simulation::step_size() const { return impl_->scheme.control().step(); }
-double Simulation::stable_step() const { return impl_->scheme.control().stable_step(); }
-std::uint64_t Simulation::steps() const { return impl_->scheme.steps(); }
+double Simulation::time() const { return impl_->scheme->time(); }
+double Simulation::step_size() const { return impl_->scheme->step_size(); }
+double Simulation::stable_step() const { return impl_->scheme->stable_step(); }
+std::uint64_t Simulation::steps() const { return impl_->scheme->steps(); }
 const TetMesh& Simulation::mesh() const { return impl_->mesh; }
-std::span<const double> Simulation::masses() const { return impl_->scheme.body().masses; }
-std::span<const Vec3d> Simulation::displacement() const { return impl_->scheme.displacement(); }
-std::span<const Vec3d> Simulation::velocity() const { return impl_->scheme.velocity(); }
+std::span<const double> Simulation::masses() const { return impl_->scheme->body().masses; }
+std::span<const Vec3d> Simulation::displacement() const { return impl_->scheme->displacement(); }
+std::span<const Vec3d> Simulation::velocity() const { return impl_->scheme->velocity(); }
 
 std::vector<Vec3d> Simulation::positions() const {
   std::vector<Vec3d> x = impl_->mesh.vertices;
@@ -109,17 +119,19 @@ std::vector<Vec3d> Simulation::positions() const {
 }
 
 void Simulation::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
-  impl_->scheme.set_state(displacement, velocity);
+  impl_->scheme->set_state(displacement, velocity);
 }
 
-ForceParts Simulation::force(ConstraintId constraint) const { return impl_->scheme.force(constraint); }
+ForceParts Simulation::force(ConstraintId constraint) const { return impl_->scheme->force(constraint); }
 
-const EngineInfo& Simulation::engine_info() const { return impl_->scheme.info(); }
+double Simulation::force_time() const { return impl_->scheme->force_time(); }
 
-Energies Simulation::energies() const { return impl_->scheme.energies(); }
+const EngineInfo& Simulation::engine_info() const { return impl_->scheme->info(); }
+
+Energies Simulation::energies() const { return impl_->scheme->energies(); }
 
 TetFields Simulation::tet_fields() const {
-  return glisson::tet_fields(impl_->scheme.body(), displacement(), velocity());
+  return glisson::tet_fields(impl_->scheme->body(), displacement(), velocity());
 }
 
 std::uint64_t Simulation::state_hash() const {

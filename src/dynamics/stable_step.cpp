@@ -111,6 +111,9 @@ TopPair top_pair(const ScaledOperator& op, const std::vector<double>& mode) {
   return top;
 }
 
+constexpr int kMostSearches = 40;
+constexpr double kLargestLeap = 8.0;  ///< of h in the Newton search
+
 /// xᵀAx for the quadratic forms of stiffness, viscosity and nodal damping at the vector of a top pair.
 struct RayleighQuotients {
   double k, c, g;
@@ -119,13 +122,14 @@ struct RayleighQuotients {
 /// Holds the three matrices of the scheme and evaluates φ(h).
 class SchemeSpectrum {
  public:
-  SchemeSpectrum(const Body& body, std::span<const double> stiffening, std::span<const double> nodal_damping,
-                 std::span<const char> held)
+  SchemeSpectrum(const Body& body, std::span<const double> stiffening, std::span<const double> viscosity,
+                 std::span<const double> nodal_damping, std::span<const char> held)
       : body_(body), damping_(nodal_damping), held_(held) {
     for (std::size_t b = 0; b < body.blocks.size(); ++b) {
       const TissueBlock& block = body.blocks[b];
       elastic_.push_back({stiffening[b] * block.elastic.lambda, stiffening[b] * block.elastic.mu});
-      viscous_.push_back(block.viscous);
+      const double w = viscosity.empty() ? 1.0 : viscosity[b];
+      viscous_.push_back({w * block.viscous.lambda, w * block.viscous.mu});
     }
   }
 
@@ -158,8 +162,9 @@ class SchemeSpectrum {
   std::vector<LameParameters> elastic_, viscous_;
 };
 
-/// Root of k h² + 2 (c − g) h = 4, the formula of one mode with unit mass.
+/// Root of k h² + 2 (c − g) h = 4, the formula of one mode with unit mass; infinite where there is none.
 double mode_step(const RayleighQuotients& q) {
+  if (!(q.k > 0.0)) return std::numeric_limits<double>::infinity();
   const double d = q.g - q.c;
   const double root = std::sqrt(d * d + 4.0 * q.k);
   // (d + root) / k without cancellation where viscosity dominates (d < 0)
@@ -189,31 +194,37 @@ double modulus_bound(LameParameters lame) { return std::max(3.0 * lame.lambda + 
 
 }  // namespace
 
-double element_bound_step(const Body& body, std::span<const double> stiffening) {
+double element_step(const Body& body, const TissueBlock& block, std::size_t e, double stiffening, double viscosity) {
+  const double per_mass = 4.0 * gradient_spread(body.rest[e]) / block.tissue.density;
+  const double viscous = std::max(0.0, viscosity) * modulus_bound(block.viscous);
+  return mode_step({stiffening * modulus_bound(block.elastic) * per_mass, viscous * per_mass, 0.0});
+}
+
+double element_bound_step(const Body& body, std::span<const double> stiffening, std::span<const double> viscosity) {
   double step = std::numeric_limits<double>::infinity();
   for (std::size_t b = 0; b < body.blocks.size(); ++b) {
     const TissueBlock& block = body.blocks[b];
-    const double elastic = stiffening[b] * modulus_bound(block.elastic), viscous = modulus_bound(block.viscous);
+    const double w = viscosity.empty() ? 1.0 : viscosity[b];
     for (std::size_t e = block.begin; e < block.end; ++e) {
-      const double per_mass = 4.0 * gradient_spread(body.rest[e]) / block.tissue.density;
-      step = std::min(step, mode_step({elastic * per_mass, viscous * per_mass, 0.0}));
+      step = std::min(step, element_step(body, block, e, stiffening[b], w));
     }
   }
   return step;
 }
 
 StableStep stable_step(const Body& body, std::span<const double> stiffening, std::span<const double> nodal_damping,
-                       std::span<const char> held, StabilityGuess* guess) {
-  const double safe = element_bound_step(body, stiffening);
-  const SchemeSpectrum spectrum(body, stiffening, nodal_damping, held);
+                       std::span<const char> held, StabilityGuess* guess, std::span<const double> viscosity) {
+  const double safe = element_bound_step(body, stiffening, viscosity);
+  const SchemeSpectrum spectrum(body, stiffening, viscosity, nodal_damping, held);
   std::vector<double> mode = guess != nullptr ? guess->mode : std::vector<double>{};
   double h = guess != nullptr && guess->step > safe ? guess->step : safe;
-  // Newton: the mode that is worst at h gives the next h, never below h*.
-  for (int i = 0; i < 20; ++i) {
+  // Newton: the mode that is worst at h gives the next h, never below h*. Where the damped modes are all negative at h
+  // the worst one is nearly rigid and tells nothing: h grows until a stiff one shows.
+  for (int i = 0; i < kMostSearches; ++i) {
     const TopPair top = spectrum.top_at(h, mode);
     if (!top.converged) break;
     mode.assign(top.vector.data(), top.vector.data() + top.vector.size());
-    const double next = mode_step(spectrum.quotients(top.vector));
+    const double next = std::min(mode_step(spectrum.quotients(top.vector)), kLargestLeap * h);
     if (std::abs(next - h) < kStepTolerance * next) {
       if (guess != nullptr) *guess = {next, mode};
       // φ is convex and 0 at 0, so shrinking h by a fraction shrinks φ by at least that fraction.

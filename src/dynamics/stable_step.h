@@ -10,6 +10,9 @@
 //   h* = [ (g − c) + √((g − c)² + 4 k m) ] / k.
 // No simultaneous diagonalisation is assumed: K, C and G may differ in shape.
 //
+// The semi-implicit scheme takes the viscous force of a matrix C₀ at v⁺ and what C differs from it at v⁻: M + hC₀ takes the
+// place of M. With C ≤ w C₀ that is C replaced by (w − 2) C₀ above, −C₀ for the tissue's own matrix (w = 1).
+//
 // λ_max comes from Lanczos with its residual norm added, which bounds it from above unless the random start
 // is orthogonal to the answer [ZhouLi2011]; where Lanczos does not converge, from the rigorous element bound. Small
 // bodies have their whole matrix decomposed.
@@ -35,18 +38,24 @@ struct StabilityGuess {
 };
 
 /// @param stiffening  per tissue block: bound of tangent over rest stiffness [-], ≥ 0
+/// @param viscosity  per tissue block: factor on C, 1 for the explicit scheme [-]; empty: 1 for all
 /// @param nodal_damping  γ_i per vertex [kg/s]
 /// @param held  per vertex component (3 i + axis): 1 where a constraint holds it; empty: free body, which is
 ///              safe for any constraints
 /// @param guess  may be null; speeds up a search after a small change of stiffness
 /// Cost: some hundred passes over the elements, some tens from a good guess.
 StableStep stable_step(const Body& body, std::span<const double> stiffening, std::span<const double> nodal_damping,
-                       std::span<const char> held = {}, StabilityGuess* guess = nullptr);
+                       std::span<const char> held = {}, StabilityGuess* guess = nullptr,
+                       std::span<const double> viscosity = {});
 
 /// λ_max(M⁻¹K) of the free body at rest [1/s²], from above.
 double largest_squared_frequency(const Body& body);
 
-/// Rigorous lower bound of h* from the single elements, damping left out [s].
-double element_bound_step(const Body& body, std::span<const double> stiffening);
+/// Rigorous lower bound of h* from the single elements, damping left out, and negative factors of viscosity [s].
+double element_bound_step(const Body& body, std::span<const double> stiffening, std::span<const double> viscosity = {});
+
+/// The same for one element.
+double element_step(const Body& body, const TissueBlock& block, std::size_t element, double stiffening,
+                    double viscosity);
 
 }  // namespace glisson

@@ -10,9 +10,15 @@ namespace {
 
 constexpr double kSafety = 0.9;  ///< automatic step over h*
 constexpr double kRoom = 1.2;    ///< stiffening that a new h* allows for beyond the present one
+constexpr std::uint64_t kLongestWindow = 64000;
+
+bool is_small(const TissueBlock& block) {
+  return !block.tissue.hyperelastic && block.tissue.kinematics == Kinematics::small;
+}
 
 bool is_linear(const TissueBlock& block) {
-  return std::holds_alternative<ConstantLaw>(block.tissue.law) && !block.tissue.lambda_law && !block.tissue.mu_law;
+  const Tissue& t = block.tissue;
+  return is_small(block) && std::holds_alternative<ConstantLaw>(t.law) && !t.lambda_law && !t.mu_law;
 }
 
 /// Softened tissue keeps the h* of its rest stiffness.
@@ -22,74 +28,128 @@ std::vector<double> at_least_one(std::span<const double> stiffening) {
   return level;
 }
 
-[[noreturn]] void refuse(double given, double stable) {
+}  // namespace
+
+StepControl::StepControl(const Body& body, std::span<const double> nodal_damping, Drag drag,
+                         const SimulationOptions& options, std::span<const double> stiffening)
+    : body_(body), nodal_damping_(nodal_damping), drag_(drag), automatic_(!options.step),
+      enforce_(options.enforce_stability), exact_(options.exact_steps) {
+  if (!automatic_ && !(*options.step > 0.0 && std::isfinite(*options.step))) {
+    throw std::invalid_argument("step = " + std::to_string(*options.step) +
+                                " s is outside the allowed range, > 0 and finite, or \"auto\"");
+  }
+  // the bound from an earlier h* holds only where C stays what it is
+  exact_ = exact_ || (drag == Drag::at_once && !std::all_of(body.blocks.begin(), body.blocks.end(), is_small));
+  seen_.assign(body.blocks.size(), 0.0);
+  validated_ = rest_level_ = at_least_one(stiffening);
+  const std::vector<double> one(body.blocks.size(), 1.0);
+  any_part_ = element_bound_step(body, one, viscosity_at(one));
+  limits_ = rest_limits_ = limits_at(validated_);
+  step_ = options.step.value_or(kSafety * limits_.pace);
+  if (enforce_ && step_ > limits_.stable) refuse_above();
+}
+
+void StepControl::refuse_above() const {
   std::ostringstream text;
-  text << "step = " << given << " s is above the stable step h* = " << stable
+  text << "step = " << step_ << " s is above the stable step h* = " << limits_.stable
        << " s of this mesh and tissue, and the run would blow up. Ways out: a smaller step, or \"auto\", which takes "
-       << kSafety << " h*; less viscosity or more nodal damping, which raise h*; a larger density (mass scaling) "
-       << "where the inertia of the tissue does not matter, h* growing with its square root";
+       << kSafety << " h*; the integrator ";
+  if (drag_ == Drag::lags) text << "\"semi_implicit\" where viscosity is what limits h*, or ";
+  text << "\"implicit\", which is stable at any step; less viscosity or more nodal damping, which raise h*; a larger "
+       << "density, or mass scaling of the smallest tets, where the inertia of the tissue does not matter, h* growing "
+       << "with its square root";
   throw std::invalid_argument(text.str());
 }
 
-}  // namespace
-
-StepControl::StepControl(const Body& body, std::span<const double> nodal_damping, std::optional<double> given,
-                         bool enforce, bool exact, std::span<const double> stiffening)
-    : body_(body), nodal_damping_(nodal_damping), automatic_(!given), enforce_(enforce), exact_(exact) {
-  if (given && !(*given > 0.0 && std::isfinite(*given))) {
-    throw std::invalid_argument("step = " + std::to_string(*given) +
-                                " s is outside the allowed range, > 0 and finite, or \"auto\"");
+/// Factors of C in φ (stable_step.h). A tissue of small strain keeps its viscous matrix; any other may have one up to
+/// its stiffening times as large.
+std::vector<double> StepControl::viscosity_at(std::span<const double> stiffening) const {
+  std::vector<double> factor(body_.blocks.size(), 1.0);
+  for (std::size_t b = 0; drag_ == Drag::at_once && b < factor.size(); ++b) {
+    factor[b] = is_small(body_.blocks[b]) ? -1.0 : stiffening[b] - 2.0;
   }
-  validated_ = at_least_one(stiffening);
-  any_part_ = element_bound_step(body, std::vector<double>(body.blocks.size(), 1.0));
-  stable_ = stable_at(validated_);
-  if (given && enforce && *given > stable_) refuse(*given, stable_);
-  step_ = given.value_or(kSafety * stable_);
+  return factor;
 }
 
-double StepControl::stable_at(std::span<const double> stiffening) {
-  return glisson::stable_step(body_, stiffening, nodal_damping_, {}, &guess_).step;
+StepControl::Limits StepControl::limits_at(std::span<const double> stiffening) {
+  const double h = glisson::stable_step(body_, stiffening, nodal_damping_, {}, &guess_, viscosity_at(stiffening)).step;
+  if (drag_ == Drag::lags) return {h, h};
+  const std::vector<double> none(body_.blocks.size(), 0.0);
+  return {h, std::min(h, glisson::stable_step(body_, stiffening, nodal_damping_, {}, &pace_guess_, none).step)};
 }
 
-/// h* at this level from that at the validated one, from below.
-double StepControl::bound_at(std::span<const double> stiffening) const {
-  double r = 1.0;
-  for (std::size_t b = 0; b < validated_.size(); ++b) r = std::max(r, stiffening[b] / validated_[b]);
+/// h* at this level from that at the validated one or at rest, whichever gives more; from below.
+StepControl::Limits StepControl::bound_at(std::span<const double> stiffening) const {
   const bool damped = std::any_of(nodal_damping_.begin(), nodal_damping_.end(), [](double g) { return g > 0.0; });
-  return stable_ / (damped ? r : std::sqrt(r));
+  const auto from = [&](const Limits& limits, const std::vector<double>& level) {
+    double r = 1.0;
+    for (std::size_t b = 0; b < level.size(); ++b) r = std::max(r, stiffening[b] / level[b]);
+    return limits.pace / (damped ? r : std::sqrt(r));
+  };
+  const double h = std::max(from(limits_, validated_), from(rest_limits_, rest_level_));
+  return {h, h};
 }
 
 void StepControl::mesh_changed(std::span<const double> nodal_damping) {
-  if (nodal_damping.size() != nodal_damping_.size()) guess_ = {};
+  if (nodal_damping.size() != nodal_damping_.size()) guess_ = pace_guess_ = {};
   nodal_damping_ = nodal_damping;
   // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C
-  const double bound = any_part_ / std::sqrt(*std::max_element(validated_.begin(), validated_.end()));
-  stable_ = std::min(stable_, bound);
-  if (automatic_) step_ = std::min(step_, kSafety * stable_);
-  unchecked_ = enforce_ && step_ > stable_;
+  const auto bound = [&](Limits& limits, const std::vector<double>& level) {
+    const double h = any_part_ / std::sqrt(*std::max_element(level.begin(), level.end()));
+    limits = {std::min(limits.stable, h), std::min(limits.pace, h)};
+  };
+  bound(limits_, validated_);
+  bound(rest_limits_, rest_level_);
+  if (automatic_) step_ = std::min(step_, kSafety * limits_.pace);
+  unchecked_ = enforce_ && step_ > limits_.stable;
 }
 
-bool StepControl::accept(std::span<const double> stiffening) {
-  bool within = !unchecked_;
-  for (std::size_t b = 0; b < validated_.size(); ++b) within = within && stiffening[b] <= validated_[b];
-  if (within || !enforce_) return true;
-
+/// Takes in a level above the validated one; false where a given step does not bear it.
+bool StepControl::rises(std::span<const double> stiffening) {
   std::vector<double> level = at_least_one(stiffening);
   for (std::size_t b = 0; b < level.size(); ++b) {
-    const bool finite = std::isfinite(level[b]);
-    if (!finite) return true;  // the state is beyond repair; the step reports that it is not finite
+    if (!std::isfinite(level[b])) return true;  // the state is beyond repair; the step reports that it is not finite
     level[b] = is_linear(body_.blocks[b]) ? level[b] : std::max(validated_[b], kRoom * level[b]);
   }
-  stable_ = automatic_ && !exact_ ? bound_at(level) : stable_at(level);
+  limits_ = automatic_ && !exact_ ? bound_at(level) : limits_at(level);
   if (automatic_) {
-    step_ = std::min(step_, kSafety * stable_);
-  } else if (step_ > stable_) {
+    step_ = std::min(step_, kSafety * limits_.pace);
+  } else if (step_ > limits_.stable) {
     level = at_least_one(stiffening);
-    stable_ = stable_at(level);
-    if (step_ > stable_) return false;
+    limits_ = limits_at(level);
+    if (step_ > limits_.stable) return false;
   }
   validated_ = std::move(level);
   unchecked_ = false;
+  return true;
+}
+
+/// Lets an automatic step grow at the end of a window in which the tissue was well softer than the validated level.
+void StepControl::relax(std::span<const double> stiffening) {
+  for (std::size_t b = 0; b < seen_.size(); ++b) seen_[b] = std::max(seen_[b], stiffening[b]);
+  if (++in_window_ < window_) return;
+  std::vector<double> level = at_least_one(seen_);
+  bool softer = false;
+  for (std::size_t b = 0; b < level.size(); ++b) {
+    level[b] =
+        is_linear(body_.blocks[b]) ? level[b] : std::min(validated_[b], std::max(rest_level_[b], kRoom * level[b]));
+    softer = softer || level[b] * kRoom < validated_[b];
+  }
+  in_window_ = 0;
+  std::fill(seen_.begin(), seen_.end(), 0.0);
+  if (!softer) return;
+  limits_ = exact_ ? limits_at(level) : bound_at(level);
+  step_ = std::max(step_, kSafety * limits_.pace);
+  validated_ = std::move(level);
+  window_ = std::min<std::uint64_t>(2 * window_, kLongestWindow);
+}
+
+bool StepControl::accept(std::span<const double> stiffening) {
+  if (!enforce_) return true;
+  bool within = !unchecked_;
+  for (std::size_t b = 0; b < validated_.size(); ++b) within = within && stiffening[b] <= validated_[b];
+  if (!within) return rises(stiffening);
+  if (automatic_) relax(stiffening);
   return true;
 }
 

@@ -5,25 +5,33 @@
 // room to grow, so that the spectrum is visited a few times in a run, not each step. Where that takes too long
 // (real time), the last h* gives a bound: for stiffness up to r times as large,
 //   φ(h/r) of r K  =  (1/r) φ(h) of K  ≤ 4,   and without nodal damping φ(h/√r) of r K ≤ φ(h) of K ≤ 4.
+// Once in a window of steps an automatic step may grow again: where the window's stiffest moment stayed well below the
+// level, h* is computed for that. Each time the window doubles, so that tissue that swings costs no search a swing.
 #pragma once
 
-#include <optional>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "dynamics/stable_step.h"
+#include "glisson/simulation.h"
 #include "mechanics/body.h"
 
 namespace glisson {
 
+/// When a scheme takes the viscous force.
+enum class Drag {
+  lags,     ///< at v₋: the explicit scheme
+  at_once,  ///< at v₊: the semi-implicit one
+};
+
 class StepControl {
  public:
   /// @param nodal_damping  γ_i per vertex [kg/s]; not copied: must last until mesh_changed names another
-  /// @param given  the user's step [s], none: auto
-  /// @throws std::invalid_argument where `given` is not positive or above h*, unless `enforce` is false
-  /// @param exact   whether an automatic step is searched for anew as tissue stiffens, or bounded from the last one
-  StepControl(const Body& body, std::span<const double> nodal_damping, std::optional<double> given, bool enforce,
-              bool exact, std::span<const double> stiffening);
+  /// @param options  step, enforce_stability and exact_steps of them
+  /// @throws std::invalid_argument where the step given is not positive or above h*, unless stability is not enforced
+  StepControl(const Body& body, std::span<const double> nodal_damping, Drag drag, const SimulationOptions& options,
+              std::span<const double> stiffening);
 
   /// Takes in the present stiffness; lowers an automatic step where needed.
   /// @return false where a given step is above h* by now
@@ -35,20 +43,35 @@ class StepControl {
   void mesh_changed(std::span<const double> nodal_damping);
 
   double step() const { return step_; }
-  double stable_step() const { return stable_; }
+  double stable_step() const { return limits_.stable; }
 
  private:
-  double stable_at(std::span<const double> stiffening);
-  double bound_at(std::span<const double> stiffening) const;
+  /// h* of the scheme, and what an automatic step keeps below: at Drag::at_once also h* without viscosity, since
+  /// viscosity hides what a longer step gets wrong.
+  struct Limits {
+    double stable = 0.0, pace = 0.0;  ///< [s]
+  };
+  std::vector<double> viscosity_at(std::span<const double> stiffening) const;
+  Limits limits_at(std::span<const double> stiffening);
+  Limits bound_at(std::span<const double> stiffening) const;
+  void refuse_above() const;
+  bool rises(std::span<const double> stiffening);
+  void relax(std::span<const double> stiffening);
 
   const Body& body_;
   std::span<const double> nodal_damping_;
+  Drag drag_;
   bool automatic_, enforce_, exact_;
-  StabilityGuess guess_;
-  double step_ = 0.0, stable_ = 0.0;
+  StabilityGuess guess_, pace_guess_;
+  double step_ = 0.0;
+  Limits limits_;
   double any_part_;                ///< element_bound_step at rest: holds for any part of the body [s]
   bool unchecked_ = false;         ///< a given step is above the bound of a mesh that has changed
   std::vector<double> validated_;  ///< stiffening per block up to which step_ is known to be stable
+  std::vector<double> rest_level_;
+  Limits rest_limits_;        ///< for rest_level_, the stiffness at the start
+  std::vector<double> seen_;  ///< largest stiffening per block in this window
+  std::uint64_t window_ = 1000, in_window_ = 0;
 };
 
 }  // namespace glisson

@@ -1,0 +1,137 @@
+#include "dynamics/scheme.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "mechanics/tet_fields.h"
+
+namespace glisson {
+namespace {
+
+std::vector<double> nodal_damping(const Body& body, const SimulationOptions& o) {
+  std::vector<double> gamma;
+  for (const double m : body.masses) gamma.push_back(o.damping_rate * m + o.nodal_damping);
+  return gamma;
+}
+
+}  // namespace
+
+Scheme::Scheme(Body body, const SimulationOptions& options)
+    : options_(options), body_(std::move(body)), gamma_(nodal_damping(body_, options)),
+      constraints_(body_.vertex_count), loads_(body_.vertex_count) {}
+
+BodyChanger& Scheme::changer() {
+  if (changer_ == nullptr) changer_ = std::make_unique<BodyChanger>(body_);
+  return *changer_;
+}
+
+ConstraintId Scheme::add_constraint(Constraint constraint) {
+  const ConstraintId id = constraints_.add(std::move(constraint));
+  base_.emplace_back();
+  acts_on(constraints_.at(id).vertices);
+  if (constraints_.at(id).from <= time_) rebase(id.index);
+  return id;
+}
+
+void Scheme::add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale) {
+  loads_.add(vertices, force, std::move(scale));
+  acts_on(vertices);
+}
+
+bool Scheme::take_hold(double h) {
+  bool any = false;
+  for (std::size_t c = 0; c < base_.size(); ++c) {
+    if (holds(c) || constraints_.all()[c].from > time_ + 0.5 * h) continue;
+    rebase(c);
+    any = true;
+  }
+  return any;
+}
+
+/// Lets a constraint's motion count from where its vertices are now.
+void Scheme::rebase(std::size_t constraint) {
+  const Constraint& c = constraints_.all()[constraint];
+  const Vec3d moved = c.motion ? c.motion(time_) : Vec3d{};
+  base_[constraint].clear();
+  for (const std::uint32_t v : c.vertices) base_[constraint].push_back(displacement_of(v) - moved);
+}
+
+void Scheme::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
+  if (displacement.size() != body_.vertex_count || velocity.size() != body_.vertex_count) {
+    throw std::invalid_argument("set_state: " + std::to_string(displacement.size()) + " displacements and " +
+                                std::to_string(velocity.size()) + " velocities given, the mesh has " +
+                                std::to_string(body_.vertex_count) + " vertices");
+  }
+  take_state(displacement, velocity);
+  for (std::size_t c = 0; c < base_.size(); ++c) {
+    if (holds(c)) rebase(c);
+  }
+}
+
+Vec3d Scheme::gravity_at(double time) const {
+  return options_.gravity * (time < options_.gravity_ramp ? time / options_.gravity_ramp : 1.0);
+}
+
+/// Mass, momentum and energy of elements that are about to go.
+void Scheme::weigh_energy(std::span<const std::uint32_t> elements, RemovalReport& report) {
+  double kinetic = 0.0, elastic = 0.0;
+  for (const std::uint32_t e : elements) {
+    const TissueBlock& block = body_.block_of(e);
+    const double quarter = 0.25 * block.tissue.density * body_.rest[e].volume;
+    std::array<Vec3d, 4> u;
+    for (std::size_t a = 0; a < 4; ++a) {
+      const std::uint32_t vertex = body_.elements[e][a];
+      const Vec3d v = velocity_of(vertex);
+      u[a] = displacement_of(vertex);
+      report.mass += quarter;
+      report.momentum += v * quarter;
+      kinetic += 0.5 * quarter * dot(v, v);
+    }
+    elastic += element_energy(body_, block, e, u);
+  }
+  report.tets += elements.size();
+  report.energy = kinetic + elastic;
+  if (options_.track_energies) take_out(kinetic, elastic);
+}
+
+void Scheme::change(const BodyChange& change) {
+  if (change.touched.empty()) return;
+  gamma_.resize(body_.vertex_count);
+  for (const std::uint32_t v : change.touched) {
+    gamma_[v] = options_.damping_rate * body_.masses[v] + options_.nodal_damping;
+  }
+  take_over(change);
+}
+
+RemovalReport Scheme::remove(std::span<const std::uint32_t> tets) {
+  RemovalReport report;
+  const std::vector<std::uint32_t> elements = changer().living_elements(tets);
+  weigh_energy(elements, report);
+  const BodyChange removal = changer_->remove(elements);
+  change(removal);
+  for (const std::uint32_t v : removal.touched) {
+    if (changer_->stars().tets_at(v).empty()) report.loose_vertices.push_back(v);
+  }
+  return report;
+}
+
+SplitReport Scheme::split(std::span<const Triangle> faces) {
+  SplitReport report{.first_new = static_cast<std::uint32_t>(body_.vertex_count), .origins = {}, .closed_faces = 0};
+  BodyChange opening = changer().split(faces);
+  change(opening);
+  const std::vector<std::vector<std::size_t>> copied = constraints_.add_copies(opening.origins);
+  loads_.add_copies(opening.origins);
+  for (std::size_t c = 0; c < copied.size(); ++c) {
+    for (const std::size_t k : copied[c]) {
+      if (holds(c)) base_[c].push_back(Vec3d(base_[c][k]));
+    }
+  }
+  if (!opening.origins.empty()) follow(opening.origins, report.first_new);
+  last_changed_.clear();
+  for (const detail::CornerChange& c : opening.corners) last_changed_.push_back(c.tet);
+  report.closed_faces = changer_->closed_faces();
+  report.origins = std::move(opening.origins);
+  return report;
+}
+
+}  // namespace glisson

@@ -1,0 +1,89 @@
+// scheme.h — what every way of advancing a body in time has: the body, what acts on it, and how it changes.
+//
+//   Simulation ─▶ Scheme ─┬─ ExplicitScheme ── SemiImplicitScheme     the state lies in an engine/moving_body.h
+//                         └─ ImplicitScheme                           the state lies here, in double
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dynamics/constraints.h"
+#include "dynamics/loads.h"
+#include "glisson/simulation.h"
+#include "mechanics/body_change.h"
+
+namespace glisson {
+
+class Scheme {
+ public:
+  Scheme(Body body, const SimulationOptions& options);
+  virtual ~Scheme() = default;
+  Scheme(const Scheme&) = delete;
+  Scheme& operator=(const Scheme&) = delete;
+
+  ConstraintId add_constraint(Constraint constraint);
+  void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale);
+  void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity);
+
+  RemovalReport remove(std::span<const std::uint32_t> tets);
+  SplitReport split(std::span<const Triangle> faces);
+  /// Elements that got other vertices by the last split.
+  std::span<const std::uint32_t> last_changed() const { return last_changed_; }
+  bool is_removed(std::uint32_t tet) const { return changer_ != nullptr && changer_->is_removed(tet); }
+
+  /// As Simulation::step.
+  virtual StepResult step() = 0;
+  virtual double step_size() const = 0;
+  virtual double stable_step() const = 0;
+  virtual double force_time() const = 0;
+  virtual std::span<const Vec3d> displacement() const = 0;
+  virtual std::span<const Vec3d> velocity() const = 0;
+  virtual ForceParts force(ConstraintId constraint) const = 0;
+  virtual const Energies& energies() const = 0;
+
+  const Body& body() const { return body_; }
+  const EngineInfo& info() const { return info_; }
+  double time() const { return time_; }
+  std::uint64_t steps() const { return steps_; }
+
+ protected:
+  virtual Vec3d displacement_of(std::uint32_t vertex) const = 0;
+  virtual Vec3d velocity_of(std::uint32_t vertex) const = 0;
+  /// Vertices that a constraint or load acts on from now on; the constraint is known already.
+  virtual void acts_on(std::span<const std::uint32_t> vertices) = 0;
+  /// Takes a state as the present one; bases follow after it.
+  virtual void take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) = 0;
+  /// Follows a change of the body; masses and damping are those after it.
+  virtual void take_over(const BodyChange& change) = 0;
+  /// The last vertices, numbered from `first_new`, act and are acted on as those they are copies of.
+  virtual void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) = 0;
+  /// Energy that leaves with removed tets [J].
+  virtual void take_out(double kinetic, double elastic) = 0;
+
+  BodyChanger& changer();
+  Vec3d gravity_at(double time) const;
+  /// Lets those constraints take hold whose time has come by the middle of a step of h.
+  /// @return whether one did
+  bool take_hold(double h);
+  bool holds(std::size_t constraint) const { return !base_[constraint].empty(); }
+  void rebase(std::size_t constraint);
+
+  SimulationOptions options_;
+  Body body_;
+  std::vector<double> gamma_;  ///< nodal damping [kg/s]
+  EngineInfo info_;
+  Constraints constraints_;
+  std::vector<std::vector<Vec3d>> base_;  ///< per constraint: displacement its motion counts from [m]; empty: not yet
+  Loads loads_;
+  std::unique_ptr<BodyChanger> changer_;     ///< none until something changes
+  std::vector<std::uint32_t> last_changed_;  ///< elements
+  double time_ = 0.0;
+  std::uint64_t steps_ = 0;
+
+ private:
+  void weigh_energy(std::span<const std::uint32_t> elements, RemovalReport& report);
+  void change(const BodyChange& change);
+};
+
+}  // namespace glisson
