@@ -137,7 +137,9 @@ TEST(TissueBody, ForcesAndMomentsSumToZero) {
     }
     EXPECT_LT(norm(force), 1e-13 * size_of(f));
     const bool leans = test::is_small(t) && t.law_form == LawForm::energy && test::is_conservative(t);
-    if (!leans) EXPECT_LT(norm(moment), 1e-12 * kEdge * size_of(f));
+    if (!leans) {
+      EXPECT_LT(norm(moment), 1e-12 * kEdge * size_of(f));
+    }
   }
 }
 
