@@ -12,6 +12,7 @@
 #include "mesh_cache.h"
 #include "progress.h"
 #include "scene_options.h"
+#include "tissue_text.h"
 
 namespace glisson::app {
 namespace {
@@ -50,15 +51,7 @@ struct Cost {
   double steps = 0.0, wall_s = 0.0;
 };
 
-std::string tissue_text(const Tissue& t) {
-  std::string law(law_name(t.law));
-  if (t.lambda_law || t.mu_law) {
-    law = fmt::format("λ {}, μ {}", t.lambda_law ? law_name(*t.lambda_law) : "constant",
-                      t.mu_law ? law_name(*t.mu_law) : "constant");
-  }
-  return fmt::format("E = {:.6g} Pa, ν = {:.4g}, ρ = {:.6g} kg/m³, η = {:.6g} Pa·s, law: {}", t.youngs_modulus,
-                     t.poisson_ratio, t.density, t.viscosity, law);
-}
+std::string tissue_text(const Tissue& t) { return fmt::format("{}, ρ = {:.6g} kg/m³", law_text(t), t.density); }
 
 void print_mesh(const TetMesh& mesh, double mass_kg) {
   const MeshReport report = inspect(mesh);
@@ -82,7 +75,7 @@ std::string axes_text(const Axes& axes) {
 
 void print_body(const Variant& v, const Taste& taste) {
   print_mesh(taste.mesh, taste.mass_kg);
-  fmt::print("  tissue   {}\n", tissue_text(v.tissue));
+  fmt::print("  tissue   \"{}\": {}\n", v.tissue.name, tissue_text(v.tissue));
   for (const RegionSpec& region : v.regions)
     fmt::print("  region   \"{}\": {}\n", region.name, tissue_text(region.tissue));
   for (const FixedSpec& fixed : v.fixed) {

@@ -16,6 +16,7 @@ void add_info(CLI::App& program, Action& action);
 void add_reproduce(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);
 void add_laws(CLI::App& program, Action& action);
+void add_tissues(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
 
 }  // namespace glisson::app

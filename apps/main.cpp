@@ -78,6 +78,7 @@ int main(int argc, char** argv) {
   add_reproduce(program, action);
   add_schema(program, action);
   add_laws(program, action);
+  add_tissues(program, action);
   add_bench(program, action);
   if (names_unknown_command(program, argc, argv)) return kUserError;
   try {

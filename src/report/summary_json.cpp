@@ -50,6 +50,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
   nlohmann::ordered_json json;
   json["scene"] = scene;
   json["variant"] = variant.name;
+  json["tissue"] = variant.tissue.name;
   json["end"] = end_text(s.end);
   json["vertices"] = s.vertices;
   json["tets"] = s.tets;

@@ -56,6 +56,7 @@ TEST_F(Outputs, SummaryHasTheDocumentedKeys) {
                           "time_s",
                           "variant",
                           "scene",
+                          "tissue",
                           "inverted_tets_most",
                           "first_inversion_s",
                           "precision",

@@ -53,6 +53,7 @@ const GROUPS: readonly [string, readonly [string, string, string][]][] = [
     [
       ["scene", "Scene", ""],
       ["variant", "Variant", ""],
+      ["tissue", "Tissue", ""],
       ["state_hash", "State hash", ""],
       ["version", "Version", ""],
     ],

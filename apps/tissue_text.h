@@ -1,0 +1,13 @@
+// tissue_text.h — a tissue's law in one line, for `glisson tissues` and `glisson check`.
+#pragma once
+
+#include <string>
+
+#include "glisson/tissue.h"
+
+namespace glisson::app {
+
+/// `E = 3600 Pa, ν = 0.4, η = 1000 Pa·s, law: step`, or `ogden: mu_Pa = [842], …` with its relaxation.
+std::string law_text(const Tissue& tissue);
+
+}  // namespace glisson::app
