@@ -38,6 +38,24 @@ inline Tissue law_tissue() {
   return tissue;
 }
 
+/// Relaxing, in volumes of its own: what a body built anew has forgotten is the same here, since states that are set
+/// have relaxed.
+inline Tissue hyperelastic_tissue() {
+  Tissue tissue;
+  tissue.hyperelastic = MooneyRivlin{.c10 = 400.0, .c01 = 150.0, .bulk_modulus = 6000.0};
+  tissue.maxwell = {{.share = 0.4, .time = 0.1}};
+  return tissue;
+}
+
+/// Fibres, shared volumes, viscosity.
+inline Tissue fibrous_tissue() {
+  Tissue tissue = viscous_tissue();
+  tissue.kinematics = Kinematics::corotational;
+  tissue.fibres = Fibres{.direction = {1.0, 0.5, -0.2}, .stiffness = 2000.0};
+  tissue.volume_change = VolumeChange::nodal;
+  return tissue;
+}
+
 /// A tissue and a precision: what the tests of this folder are repeated for.
 struct Kind {
   std::string name;
@@ -60,6 +78,10 @@ inline std::vector<Kind> every_kind() {
   return {{"linear", linear_tissue(), one},
           {"viscous", viscous_tissue(), one},
           {"law", law_tissue(), one},
+          {"hyperelastic", hyperelastic_tissue(), one},
+          {"fibrous", fibrous_tissue(), one},
+          {"hyperelastic_in_double", hyperelastic_tissue(), two},
+          {"fibrous_in_double", fibrous_tissue(), two},
           {"linear_in_double", linear_tissue(), two},
           {"viscous_in_double", viscous_tissue(), two},
           {"law_in_double", law_tissue(), two}};

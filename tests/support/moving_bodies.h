@@ -11,8 +11,8 @@
 
 namespace glisson::test {
 
-/// A jittered cube of a stiffening and a linear tissue, both viscous, from a random state: held at the bottom, its
-/// top pushed down at 0.1 m/s, under gravity and damping.
+/// A jittered cube of a stiffening, a linear, a relaxing hyperelastic and a fibrous corotational tissue, from a random
+/// state: held at the bottom, its top pushed down at 0.1 m/s, under gravity and damping.
 struct BusyBody {
   std::mt19937 random{17};
   TetMesh mesh;
@@ -26,11 +26,19 @@ struct BusyBody {
   /// @param cells  cubes along each edge: 6 cells³ tets
   explicit BusyBody(int cells) {
     mesh = jittered_box({cells, cells, cells}, 0.06 / cells, 0.2, random);
-    for (const Tet& t : mesh.tets) mesh.regions.push_back(mesh.vertices[t[0]].x + 0.4 * mesh.vertices[t[1]].y < 0.04);
-    Tissue law, linear;
+    for (const Tet& t : mesh.tets) {
+      const Vec3d x = mesh.vertices[t[0]], y = mesh.vertices[t[1]];
+      mesh.regions.push_back((x.x + 0.4 * y.y < 0.04 ? 1 : 0) + (x.z + 0.3 * y.x < 0.035 ? 2 : 0));
+    }
+    Tissue law, linear, relaxing, fibrous;
+    relaxing.hyperelastic = NeoHookean{.mu = 900.0, .bulk_modulus = 6000.0};
+    relaxing.maxwell = {{.share = 0.3, .time = 0.02}, {.share = 0.2, .time = 0.5}};
+    relaxing.volume_change = VolumeChange::nodal;
+    fibrous.kinematics = Kinematics::corotational, fibrous.viscosity = 0.5;
+    fibrous.fibres = Fibres{.direction = {1.0, 2.0, 0.5}, .stiffness = 2000.0};
     law.viscosity = 1.0, law.law = ExponentialLaw{.amplitude = 1000.0, .rate = 5.0};
     linear.youngs_modulus = 2000.0, linear.viscosity = 0.5;
-    tissues = {{0, law}, {1, linear}};
+    tissues = {{0, law}, {1, linear}, {2, relaxing}, {3, fibrous}};
     body = build_body(mesh, tissues);
     u = random_field(mesh.vertices.size(), 0.03 * 0.06 / cells, random);
     v = random_field(mesh.vertices.size(), 0.05, random);
