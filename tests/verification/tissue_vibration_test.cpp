@@ -17,7 +17,9 @@ namespace {
 
 std::vector<Tissue> conservative_tissues() {
   std::vector<Tissue> all = test::hyperelastic_tissues();
-  for (const Tissue& t : test::carriers()) all.push_back(t);
+  for (const Tissue& t : test::carriers()) {
+    if (!t.hyperelastic) all.push_back(t);
+  }
   for (const Tissue& t : test::fibre_tissues()) all.push_back(t);
   for (Tissue t : test::carriers()) {
     t.volume_change = VolumeChange::nodal, t.law = ConstantLaw{}, t.law_form = LawForm::secant;
@@ -58,7 +60,7 @@ Drift drift_of(const Tissue& tissue, int steps) {
 class FreeVibration : public testing::TestWithParam<Tissue> {};
 
 // Means over the first and the last tenth of 60,000 steps, some 480 periods of the shortest waves, differ by less than
-// 1e-4. 6e-5 was measured at most, and sixteen times as much at four times the step: it is the scheme's, not the law's.
+// 1e-4. 6e-5 was measured at most, and some ten times as much at four times the step: it is the scheme's, not the law's.
 TEST_P(FreeVibration, KeepsItsEnergy) {
   const Drift d = drift_of(GetParam(), 60000);
   RecordProperty("drift", std::to_string(1e6 * d.drift) + "e-6, swing " + std::to_string(1e6 * d.swing) + "e-6");
