@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tissue/uniaxial.h"
+
 namespace glisson {
 namespace {
 
@@ -53,6 +55,21 @@ void add_curves(nlohmann::json& curves, const Tissue& tissue, const std::string&
   curves.push_back(curve(prefix + "μ", x, [&](double value) { return lame_at(tissue, value).mu; }));
 }
 
+/// Nominal stress of a tensile and compression test with free sides.
+nlohmann::json stretch_data(const Tissue& tissue) {
+  constexpr double kFrom = 0.5, kTo = 1.5;
+  const Response response(tissue);
+  std::vector<double> x, y;
+  for (int i = 0; i < kPoints; ++i) {
+    x.push_back(kFrom + (kTo - kFrom) * i / (kPoints - 1));
+    y.push_back(uniaxial_state(response, x.back()).stress);
+  }
+  return {{"measure", "stretch, sides free [-]"},
+          {"quantity", "nominal stress"},
+          {"x", x},
+          {"curves", {{{"label", std::string(law_name(*tissue.hyperelastic))}, {"y", y}}}}};
+}
+
 }  // namespace
 
 double law_reach(const Variant& variant) {
@@ -62,6 +79,7 @@ double law_reach(const Variant& variant) {
 }
 
 nlohmann::json law_data(const Variant& variant, double reach) {
+  if (variant.tissue.hyperelastic) return stretch_data(variant.tissue);
   const DeformationMeasure measure = variant.tissue.measure;
   const double end = measure == DeformationMeasure::regular_mean_ratio ? 1.0 : reach;
   std::vector<double> x;

@@ -45,8 +45,9 @@ export interface Columns {
 
 export interface LawData {
   measure: string; // e.g. "intensity s [-]"
+  quantity: "modulus" | "nominal stress"; // of the curves
   x: number[];
-  curves: { label: string; y: number[] }[]; // moduli [Pa]
+  curves: { label: string; y: number[] }[]; // [Pa]
 }
 
 export interface SurfaceData {

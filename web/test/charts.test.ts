@@ -24,7 +24,7 @@ const variant = (name: string, y = [3600, 3600]): VariantData => ({
   label: name,
   summary: {},
   surface: null,
-  law: { measure: "intensity s [-]", x: [0, 1], curves: [{ label: "E", y }] },
+  law: { measure: "intensity s [-]", quantity: "modulus", x: [0, 1], curves: [{ label: "E", y }] },
   forces: {
     columns: ["time_s", "depth_m", "force_N", "elastic_N", "viscous_N", "energy_elastic_J"],
     data: [
@@ -82,6 +82,20 @@ describe("default charts", () => {
     expect(model!.lines.map((one) => one.label)).toEqual(["total", "elastic"]);
     expect(model!.note).toBe("Zero throughout: viscous.");
     expect(energyChart(variant("a"))!.yLabel).toBe("Energy [µJ]");
+  });
+
+  it("show stress against stretch of hyperelastic tissues in a chart of their own", () => {
+    const law = {
+      measure: "stretch, sides free [-]",
+      quantity: "nominal stress" as const,
+      x: [0.5, 1.5],
+      curves: [{ label: "ogden", y: [-9000, 2000] }],
+    };
+    const models = lawCharts([variant("a"), { ...variant("b"), law }]);
+    expect(models.map((model) => [model.title, model.yLabel])).toEqual([
+      ["Law of stiffness", "Modulus E [kPa]"],
+      ["Stress against stretch", "Nominal stress [kPa]"],
+    ]);
   });
 
   it("show laws only where one is not constant, the constant ones with it", () => {

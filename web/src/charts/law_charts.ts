@@ -1,4 +1,4 @@
-// law_charts.ts — the tissue's law: modulus against the measure of deformation, all variants in one chart.
+// law_charts.ts — the tissue's law: modulus against the measure of deformation, or stress against stretch.
 import { axisLabel, displayUnit, largestMagnitude } from "../format/units.ts";
 import type { LawData, VariantData } from "../report_data.ts";
 import { lineStyle } from "./line_style.ts";
@@ -40,10 +40,11 @@ function chartOf(measure: string, lawful: readonly Lawful[], all: readonly Varia
       times: null,
     })),
   );
+  const stress = lawful[0]!.law.quantity === "nominal stress";
   return {
-    title: "Law of stiffness",
+    title: stress ? "Stress against stretch" : "Law of stiffness",
     xLabel: axisLabel(measure),
-    yLabel: `${only ? `Modulus ${only}` : "Modulus"} [${unit.unit}]`,
+    yLabel: stress ? `Nominal stress [${unit.unit}]` : `${only ? `Modulus ${only}` : "Modulus"} [${unit.unit}]`,
     lines,
     note: "",
   };

@@ -103,7 +103,8 @@ function readLaw(raw: Raw): LawData | null {
     .map((curve) => ({ label: text(curve["label"]), y: list(curve["y"]).map(numberOrNaN) }))
     .filter((curve) => curve.y.length > 0);
   if (x.length === 0 || curves.length === 0) return null;
-  return { measure: text(raw["measure"]) || "measure [-]", x, curves };
+  const quantity = raw["quantity"] === "nominal stress" ? "nominal stress" : "modulus";
+  return { measure: text(raw["measure"]) || "measure [-]", quantity, x, curves };
 }
 
 function readSurface(raw: Raw): SurfaceData | null {
