@@ -101,7 +101,10 @@ Cost cost_of(const Variant& v, const Taste& taste, const RunSummary& summary) {
   return cost;
 }
 
-bool stiffens(const Tissue& t) { return !std::holds_alternative<ConstantLaw>(t.law) || t.lambda_law || t.mu_law; }
+bool stiffens(const Tissue& t) {
+  const bool law = !std::holds_alternative<ConstantLaw>(t.law) || t.lambda_law || t.mu_law;
+  return law || t.hyperelastic || t.kinematics == Kinematics::green;
+}
 
 void print_time(const Variant& v, const Taste& taste, const Cost& cost, const RunSummary& summary) {
   const bool automatic = !v.simulation.step;
