@@ -27,7 +27,8 @@ struct ImportedMesh {
 /// Reads a tetrahedral mesh: .vtu, .vtk (legacy), .msh (Gmsh 2.2 and 4.1, ASCII and binary).
 /// Named groups of the file (Gmsh physical names; integer cell arrays such as "region") become regions
 /// and vertex sets: in VTK files the cell array "region", the point arrays "set:NAME" and the field arrays
-/// "region:NAME" that write_vtu writes. Cells that are not linear tetrahedra are skipped, counted and said
+/// "region:NAME" that write_vtu writes. A cell array "fibre" (also "fibres", "fiber", "fibers", "fibre_direction") of three
+/// components gives TetMesh::fibres. Cells that are not linear tetrahedra are skipped, counted and said
 /// in the report; inverted tets are turned and said. Degenerate or duplicate tets stay, and are said.
 /// @param scale  factor applied to all coordinates (0.001 for a file in millimetres), > 0
 /// @throws FileError where the file cannot be used as it is

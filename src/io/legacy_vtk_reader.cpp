@@ -153,12 +153,14 @@ void LegacyVtkReader::begin_data(Owner owner, std::uint64_t expected) {
 
 void LegacyVtkReader::read_array(const std::string& array, std::uint64_t components, std::uint64_t tuples,
                                  const std::string& type) {
-  const bool wanted = components == 1 && ((owner_ == Owner::cells && VtkGrid::is_region_array(array)) ||
-                                          (owner_ == Owner::vertices && VtkGrid::is_set_array(array)) ||
-                                          (owner_ == Owner::file && VtkGrid::is_region_name_array(array)));
+  const bool fibres = components == 3 && owner_ == Owner::cells && VtkGrid::is_fibre_array(array);
+  const bool plain = components == 1 && ((owner_ == Owner::cells && VtkGrid::is_region_array(array)) ||
+                                         (owner_ == Owner::vertices && VtkGrid::is_set_array(array)) ||
+                                         (owner_ == Owner::file && VtkGrid::is_region_name_array(array)));
   std::vector<double> values;
-  source_.values(components * tuples, type, wanted ? &values : nullptr);
-  if (!wanted) return;
+  source_.values(components * tuples, type, plain || fibres ? &values : nullptr);
+  if (fibres) grid_.add_fibre_array(array, values);
+  if (!plain) return;
   if (owner_ == Owner::cells) {
     grid_.add_region_array(array, std::move(values));
   } else if (owner_ == Owner::vertices) {

@@ -101,6 +101,22 @@ void VtkGrid::add_region_name_array(std::string_view array, std::span<const doub
   }
 }
 
+bool VtkGrid::is_fibre_array(std::string_view array) {
+  return std::find(std::begin(kFibreArrays), std::end(kFibreArrays), array) != std::end(kFibreArrays);
+}
+
+void VtkGrid::add_fibre_array(std::string_view array, std::span<const double> values) {
+  if (values.size() != 3 * cells_ || !raw_.mesh.fibres.empty()) return;
+  if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) {
+    raw_.notes.push_back("Cell array \"" + std::string(array) +
+                         "\" holds numbers that are not finite: it is not taken as the direction of fibres.");
+    return;
+  }
+  for (const std::size_t c : cell_of_tet_) {
+    raw_.mesh.fibres.push_back({values[3 * c], values[3 * c + 1], values[3 * c + 2]});
+  }
+}
+
 void VtkGrid::take_regions(const std::string& array, std::span<const double> values) {
   std::vector<int> regions;
   regions.reserve(cell_of_tet_.size());

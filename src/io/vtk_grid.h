@@ -21,11 +21,14 @@ class VtkGrid {
   static bool is_region_array(std::string_view array);
   static bool is_set_array(std::string_view array);
   static bool is_region_name_array(std::string_view array);
+  static bool is_fibre_array(std::string_view array);
 
   /// Arrays of one component, after the last cell; another number of values than cells or vertices is passed over.
   void add_region_array(std::string_view array, std::vector<double> values);
   void add_set_array(std::string_view array, std::span<const double> values);
   void add_region_name_array(std::string_view array, std::span<const double> values);
+  /// Of three components a cell.
+  void add_fibre_array(std::string_view array, std::span<const double> values);
 
   RawMesh finish();
 

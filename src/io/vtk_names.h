@@ -12,6 +12,10 @@ inline constexpr const char* kRegionArrays[] = {"region",       "Region",   "reg
                                                 "MaterialIds",  "material", "Material",  "material_id",   "MaterialID",
                                                 "ElementBlock", "part_id",  "cell_tags", "subdomain"};
 
+/// Cell arrays of three components taken as directions of fibres, ours first.
+inline constexpr const char* kFibreArrays[] = {"fibre",  "fibres",          "fiber",
+                                               "fibers", "fibre_direction", "fiber_direction"};
+
 /// Point arrays "set:NAME" hold 1 for the vertices in the set and 0 for the others.
 inline constexpr std::string_view kSetPrefix = "set:";
 

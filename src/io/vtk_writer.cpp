@@ -85,6 +85,18 @@ void add_regions(const TetMesh& mesh, vtkUnstructuredGrid& grid) {
   }
 }
 
+void add_fibres(const TetMesh& mesh, vtkUnstructuredGrid& grid) {
+  if (mesh.fibres.empty()) return;
+  vtkNew<vtkDoubleArray> fibres;
+  fibres->SetName(detail::kFibreArrays[0]);
+  fibres->SetNumberOfComponents(3);
+  fibres->SetNumberOfTuples(id(mesh.fibres.size()));
+  for (std::size_t t = 0; t < mesh.fibres.size(); ++t) {
+    fibres->SetTuple3(id(t), mesh.fibres[t].x, mesh.fibres[t].y, mesh.fibres[t].z);
+  }
+  grid.GetCellData()->AddArray(fibres);
+}
+
 void add_sets(const TetMesh& mesh, vtkUnstructuredGrid& grid) {
   for (const auto& [name, vertices] : mesh.vertex_sets) {
     vtkNew<vtkUnsignedCharArray> members;
@@ -133,6 +145,7 @@ void write_vtu(const std::filesystem::path& file, const TetMesh& mesh, std::span
   set_points(positions.empty() ? std::span<const Vec3d>(mesh.vertices) : positions, *grid);
   set_tets(mesh, *grid);
   add_regions(mesh, *grid);
+  add_fibres(mesh, *grid);
   add_sets(mesh, *grid);
   add_fields(vertex_fields, *grid->GetPointData());
   add_fields(tet_fields, *grid->GetCellData());

@@ -46,6 +46,7 @@ class VtuReader {
                [&](vtkXMLDataElement& array) { add_field(array); });
     for (auto& [array, values] : regions_) grid_.add_region_array(array, std::move(values));
     for (const auto& [array, values] : sets_) grid_.add_set_array(array, values);
+    for (const auto& [array, values] : fibres_) grid_.add_fibre_array(array, values);
     return grid_.finish();
   }
 
@@ -61,7 +62,7 @@ class VtuReader {
   std::string name_;
   VtkGrid grid_;
   std::int64_t first_vertex_ = 0;  ///< of the piece
-  std::map<std::string, std::vector<double>> regions_, sets_;
+  std::map<std::string, std::vector<double>> regions_, sets_, fibres_;
 };
 
 void VtuReader::add_vertices(vtkXMLDataElement& piece) {
@@ -108,16 +109,18 @@ void VtuReader::add_piece(vtkXMLDataElement& piece) {
   const std::uint64_t cells = arrays_.count(piece, "NumberOfCells", 0);
   if (cells > 0) add_cells(piece, cells);
   first_vertex_ += static_cast<std::int64_t>(points);
-  const auto collect = [&](auto wanted, std::uint64_t count, auto& arrays) {
-    return [this, wanted, count, &arrays](vtkXMLDataElement& array) {
+  const auto collect = [&](auto wanted, std::uint64_t count, auto& arrays, std::uint64_t components = 1) {
+    return [this, wanted, count, components, &arrays](vtkXMLDataElement& array) {
       const std::string name = attribute(array, "Name");
-      if (!wanted(name) || arrays_.count(array, "NumberOfComponents", 1) != 1) return;
-      const std::vector<double> values = arrays_.read(array, count);
+      if (!wanted(name) || arrays_.count(array, "NumberOfComponents", 1) != components) return;
+      const std::vector<double> values = arrays_.read(array, components * count);
       arrays[name].insert(arrays[name].end(), values.begin(), values.end());
     };
   };
   for_nested(piece.FindNestedElementWithName("CellData"), kDataArray,
              collect(VtkGrid::is_region_array, cells, regions_));
+  for_nested(piece.FindNestedElementWithName("CellData"), kDataArray,
+             collect(VtkGrid::is_fibre_array, cells, fibres_, 3));
   for_nested(piece.FindNestedElementWithName("PointData"), kDataArray, collect(VtkGrid::is_set_array, points, sets_));
 }
 

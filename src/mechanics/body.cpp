@@ -31,6 +31,14 @@ std::vector<std::uint32_t> elements_by_region(const TetMesh& mesh) {
   return order;
 }
 
+/// Tets of a tissue with fibres need a direction, where the mesh has directions at all.
+void require_fibre(const TetMesh& mesh, std::uint32_t tet, const Tissue& tissue) {
+  if (!tissue.fibres || mesh.fibres.empty() || norm(mesh.fibres[tet]) > 0.0) return;
+  throw std::invalid_argument("tet " + std::to_string(tet) + " of tissue \"" + tissue.name +
+                              "\" has fibres, but the mesh gives it a direction without length; give it one, or " +
+                              "another tissue, or leave the directions out of the mesh");
+}
+
 TissueBlock make_block(const Tissue& tissue, std::size_t begin) {
   require_valid(tissue);
   return {tissue, tissue.lame(), viscous_coefficients(tissue), begin, begin};
@@ -61,6 +69,7 @@ Body build_body(const TetMesh& mesh, const std::map<int, Tissue>& tissues) {
     const std::size_t e = body.elements.size();
     const bool new_region = e == 0 || mesh.region_of(t) != mesh.region_of(body.mesh_tet[e - 1]);
     if (new_region) body.blocks.push_back(make_block(tissue_of_region(mesh, tissues, mesh.region_of(t)), e));
+    require_fibre(mesh, t, body.blocks.back().tissue);
     body.elements.push_back(mesh.tets[t]);
     body.rest.push_back(element_rest(corners_of(mesh, mesh.tets[t])));
     body.blocks.back().end = e + 1;

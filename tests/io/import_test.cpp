@@ -87,6 +87,20 @@ TEST(Import, ReadsLegacyVtkWithMetadata) {
   EXPECT_EQ(read_mesh_bytes(text, "a.vtk").mesh, expected);
 }
 
+// A cell array of three components called after fibres gives each tet its direction, past cells that are no tets; one
+// that is not finite is left out and said.
+TEST(Import, ReadsDirectionsOfFibres) {
+  using testing::with;
+  std::string text = with(testing::vtk_text(), "CELLS 2 10\n", "CELLS 3 14\n3 0 1 2\n");
+  text = with(text, "CELL_TYPES 2\n10 10\nCELL_DATA 2", "CELL_TYPES 3\n5 10 10\nCELL_DATA 3");
+  text = with(text, "default\n7 9", "default\n1 7 9\nVECTORS fibres double\n9 9 9 0 0.5 1 0 0 0");
+  const std::vector<Vec3d> expected{{0.0, 0.5, 1.0}, {}};
+  EXPECT_EQ(read_mesh_bytes(text, "a.vtk").mesh.fibres, expected);
+  const ImportedMesh bad = read_mesh_bytes(with(text, "9 9 9 0", "9 9 9 nan"), "a.vtk");
+  EXPECT_TRUE(bad.mesh.fibres.empty());
+  EXPECT_THAT(bad.report.warnings, ::testing::Contains(::testing::HasSubstr("direction of fibres")));
+}
+
 // Triangles among the cells are skipped, counted and said, and the regions stay with their tets.
 TEST(Import, SkipsCellsThatAreNotTets) {
   using testing::with;

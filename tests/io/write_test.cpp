@@ -73,6 +73,7 @@ TEST_F(Write, VtuRoundTripIsExact) {
   odd.vertex_sets = {{"", {0}}, {"empty", {}}, {"naïve <set>", {1, 4}}};
   TetMesh zero = testing::two_tets();
   zero.regions = {0, 0};
+  zero.fibres = {{1.0 / 3.0, 0.0, -2.0}, {}};
   BoxOptions many;  // more than one compressed block of 32 KiB an array
   many.cells = {12, 12, 12};
   for (const TetMesh& mesh : {box, box_mesh(many), cylinder_mesh({}), testing::two_tets(), odd, zero}) {
