@@ -1,16 +1,15 @@
 #include "dynamics/make_scheme.h"
 
-#include <stdexcept>
-
 #include "dynamics/explicit_scheme.h"
 #include "dynamics/implicit_scheme.h"
+#include "dynamics/semi_implicit_scheme.h"
 
 namespace glisson {
 
 std::unique_ptr<Scheme> make_scheme(Body body, const SimulationOptions& options) {
   switch (options.integrator) {
     case Integrator::semi_implicit:
-      throw std::invalid_argument("the integrator semi_implicit is not there yet");
+      return std::make_unique<SemiImplicitScheme>(std::move(body), options);
     case Integrator::explicit_:
       return std::make_unique<ExplicitScheme>(std::move(body), options);
     case Integrator::implicit:
