@@ -163,8 +163,9 @@ TEST(Squashed, StressIsFinite) {
   }
 }
 
-// And it pushes back, P₃₃ < 0, all the way to where turning over another axis is shorter. St Venant–Kirchhoff does not: its force ends at a stretch of 1/√3 and is 0
-// when flat [Picinbono2003 keeps it for small strain and large rotation].
+// And it pushes back, P₃₃ < 0, all the way to where turning over another axis is shorter. St Venant–Kirchhoff does
+// not: its force ends at a stretch of 1/√3 and is 0 when flat, a law of large rotation and small strain
+// [Picinbono2003].
 TEST(Squashed, StressRestores) {
   for (const Tissue& t : test::every_tissue()) {
     if (!t.hyperelastic && t.kinematics == Kinematics::green) continue;
