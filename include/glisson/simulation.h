@@ -101,7 +101,7 @@ struct EngineInfo {
 enum class StepStatus {
   ok,
   inverted,        ///< tets with J ≤ 0 in the state the step started from; the step was made
-  step_too_large,  ///< the tissue stiffened until the given h exceeds h*; the step was not made
+  step_too_large,  ///< the tissue stiffened until the given h exceeds h*, or h* is lost in t + h; the step was not made
   /// a force is not finite and the run cannot go on. Nothing was moved by such a force: the state is finite
   /// wherever it was, but parts of the body may be one step further than others
   not_finite,

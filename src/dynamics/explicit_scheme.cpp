@@ -147,6 +147,12 @@ void ExplicitScheme::kick(double h) {
 StepResult ExplicitScheme::step() {
   if (!control_->accept(stiffening_)) return {StepStatus::step_too_large, {}, {}};
   const double h = control_->step();
+  if (!(time_ + h > time_)) {
+    return {StepStatus::step_too_large,
+            {},
+            "the tissue has become so stiff that a stable step does not advance time; press "
+            "less deep, soften the law, or take the implicit integrator"};
+  }
   gravity_ = gravity_at(time_);
   take_hold(h);
   const Advance& seen = moving_->advance(h, gravity_, options_.track_energies);
