@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <iosfwd>
 #include <map>
 #include <memory>
 #include <optional>
@@ -239,6 +240,15 @@ class Simulation {
   /// All zero unless SimulationOptions::track_energies.
   Energies energies() const;
   const EngineInfo& engine_info() const;
+
+  /// Writes everything that a continued run needs beside mesh, tissues, options, constraints and loads.
+  /// @throws std::runtime_error where it cannot be written
+  void save(std::ostream& out) const;
+  /// Goes on from where another simulation was saved; this one was made in the same way (mesh, tissues, options,
+  /// constraints, loads, in their order). Tets removed and faces split since then are so here, too; where constraints or
+  /// loads were added after a split, the same split comes before them here. The run has the bytes of the one saved.
+  /// @throws std::runtime_error for a file that is cut, changed, of another version, mesh or set-up
+  void load(std::istream& in);
 
   /// Shape, intensity and stress of every tet at the present state.
   TetFields tet_fields() const;

@@ -183,6 +183,31 @@ ForceParts ExplicitScheme::force(ConstraintId constraint) const {
   return sum;
 }
 
+void ExplicitScheme::save(CheckpointWriter& out) const {
+  Scheme::save(out);
+  out.put(read_state().displacement), out.put(read_state().velocity), out.put(moving_->past());
+  for (const WatchedVertex& w : moving_->watched()) out.put(w.elastic), out.put(w.viscous);
+  for (const Kicked& k : kicked_) out.put_doubles(k);
+  out.put(kick_step_), out.put(kick_time_), out.put(gravity_), out.put(stiffening_);
+  out.put_doubles(ledger_);
+  control_->save(out);
+}
+
+void ExplicitScheme::load(CheckpointReader& in) {
+  Scheme::load(in);
+  std::vector<Vec3d> u(body_.vertex_count), v(body_.vertex_count);
+  std::vector<double> past;
+  in.get_same_size(u), in.get_same_size(v), in.get(past);
+  moving_->set_state(u, v);
+  if (!moving_->set_past(past)) CheckpointReader::fail();
+  for (WatchedVertex& w : moving_->watched()) in.get(w.elastic), in.get(w.viscous);
+  for (Kicked& k : kicked_) in.get_doubles(k);
+  in.get(kick_step_), in.get(kick_time_), in.get(gravity_), in.get_same_size(stiffening_);
+  in.get_doubles(ledger_);
+  control_->load(in);
+  copy_.current = false;
+}
+
 void ExplicitScheme::take_over(const BodyChange& change) {
   moving_->apply(change, changer_->stars(), gamma_);
   control_->mesh_changed(gamma_);

@@ -33,6 +33,8 @@ class ExplicitScheme : public Scheme {
   std::span<const Vec3d> displacement() const override { return read_state().displacement; }
   std::span<const Vec3d> velocity() const override { return read_state().velocity; }
   const Energies& energies() const override { return ledger_.now(); }
+  void save(CheckpointWriter& out) const override;
+  void load(CheckpointReader& in) override;
   /// What the constraint exerted on the tissue at the last kick.
   ForceParts force(ConstraintId constraint) const override;
 

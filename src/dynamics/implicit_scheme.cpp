@@ -106,14 +106,19 @@ void ImplicitScheme::find_free() {
   system_.set_free(std::move(free));
 }
 
+/// Memory for as many vertices as there are now.
+void ImplicitScheme::make_room() {
+  for (auto* field : {&now_.elastic, &now_.viscous, &change_, &held_velocity_, &at_u_, &at_v_, &out_of_balance_}) {
+    field->resize(body_.vertex_count);
+  }
+  diagonal_.assign(body_.vertex_count, 0.0);
+  next_ = now_;
+}
+
 /// Forces and accelerations of a state that this scheme did not make itself.
 void ImplicitScheme::start_fresh() {
-  for (auto* field : {&now_.elastic, &now_.viscous, &change_, &held_velocity_, &at_u_, &at_v_, &out_of_balance_}) {
-    field->assign(body_.vertex_count, Vec3d{});
-  }
+  make_room();
   if (last_h_ == 0.0) last_change_.assign(body_.vertex_count, Vec3d{});
-  next_ = now_;
-  diagonal_.assign(body_.vertex_count, 0.0);
   find_free();
   tissue_.forces({now_.u, now_.v, is_static() ? std::numeric_limits<double>::infinity() : 0.0}, now_.elastic,
                  now_.viscous, watch_);
@@ -425,6 +430,41 @@ StepResult ImplicitScheme::step() {
   adapt(h, std::ldexp(h, -most));
   ++steps_;
   return {watch_.inverted.empty() ? StepStatus::ok : StepStatus::inverted, watch_.inverted, {}};
+}
+
+void ImplicitScheme::save(CheckpointWriter& out) const {
+  Scheme::save(out);
+  for (const auto* f : {&now_.u, &now_.v, &now_.a, &now_.elastic, &now_.viscous, &now_.external}) out.put(*f);
+  out.put(now_.gravity);
+  std::vector<double> memory;
+  append_memory(tissue_.memory(), memory);
+  out.put(memory), out.put(watch_.inverted);
+  out.put(last_change_), out.put(last_h_), out.put(step_), out.put(fresh_);
+  out.put_doubles(energies_);
+  if (!fresh_) system_.save(out);
+}
+
+void ImplicitScheme::load(CheckpointReader& in) {
+  Scheme::load(in);
+  std::vector<double> numbers;
+  Moment now = now_;
+  for (auto* f : {&now.u, &now.v, &now.a, &now.elastic, &now.viscous, &now.external}) {
+    in.get(*f);
+    if (f->size() != body_.vertex_count) CheckpointReader::fail();
+  }
+  in.get(now.gravity), in.get(numbers), in.get(watch_.inverted);
+  TissueMemory memory = tissue_.memory();
+  if (!take_memory(numbers, memory)) CheckpointReader::fail();
+  tissue_.set_memory(std::move(memory));
+  std::vector<Vec3d> last_change;
+  in.get(last_change), in.get(last_h_), in.get(step_), in.get(fresh_);
+  in.get_doubles(energies_);
+  now_ = now;
+  last_change_ = last_change;
+  if (fresh_) return;
+  make_room();
+  find_free();
+  system_.load(in);
 }
 
 /// What holds or drives a vertex, in the components it holds.

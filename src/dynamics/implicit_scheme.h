@@ -31,6 +31,8 @@ class ImplicitScheme final : public Scheme {
   std::span<const Vec3d> velocity() const override { return now_.v; }
   ForceParts force(ConstraintId constraint) const override;
   const Energies& energies() const override { return energies_; }
+  void save(CheckpointWriter& out) const override;
+  void load(CheckpointReader& in) override;
 
  protected:
   Vec3d displacement_of(std::uint32_t vertex) const override { return now_.u[vertex]; }
@@ -67,6 +69,7 @@ class ImplicitScheme final : public Scheme {
 
   bool is_static() const { return options_.integrator == Integrator::static_; }
   void find_free();
+  void make_room();
   void start_fresh();
   bool part(double h);
   void prescribe(const TimeStep& s);

@@ -94,6 +94,32 @@ void Scheme::weigh_energy(std::span<const std::uint32_t> elements, RemovalReport
   if (options_.track_energies) take_out(kinetic, elastic);
 }
 
+/// Of what is held and of the body as it is now.
+std::uint64_t Scheme::fingerprint() const {
+  std::uint64_t hash = hash_numbers(std::span<const double>(body_.masses));
+  for (const Tet& t : body_.elements) hash = hash_numbers(std::span<const std::uint32_t>(t), hash);
+  for (const Constraint& c : constraints_.all()) {
+    hash = hash_numbers(std::span<const std::uint32_t>(c.vertices), hash);
+    const std::array<double, 4> how{c.axes.x ? 1.0 : 0.0, c.axes.y ? 1.0 : 0.0, c.axes.z ? 1.0 : 0.0, c.from};
+    hash = hash_numbers(std::span<const double>(how), hash);
+  }
+  return hash;
+}
+
+void Scheme::save(CheckpointWriter& out) const {
+  out.put(fingerprint());
+  out.put(time_);
+  out.put(steps_);
+  for (const std::vector<Vec3d>& base : base_) out.put(base);
+}
+
+void Scheme::load(CheckpointReader& in) {
+  if (in.get<std::uint64_t>() != fingerprint()) CheckpointReader::fail();
+  in.get(time_);
+  in.get(steps_);
+  for (std::vector<Vec3d>& base : base_) in.get(base);
+}
+
 void Scheme::change(const BodyChange& change) {
   if (change.touched.empty()) return;
   gamma_.resize(body_.vertex_count);

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "dynamics/checkpoint.h"
 #include "dynamics/constraints.h"
 #include "dynamics/loads.h"
 #include "glisson/simulation.h"
@@ -41,6 +42,11 @@ class Scheme {
   virtual std::span<const Vec3d> velocity() const = 0;
   virtual ForceParts force(ConstraintId constraint) const = 0;
   virtual const Energies& energies() const = 0;
+
+  /// Everything that a continued run needs beside what it is made of.
+  virtual void save(CheckpointWriter& out) const;
+  /// @throws std::runtime_error where it does not fit
+  virtual void load(CheckpointReader& in);
 
   const Body& body() const { return body_; }
   const EngineInfo& info() const { return info_; }
@@ -82,6 +88,7 @@ class Scheme {
   std::uint64_t steps_ = 0;
 
  private:
+  std::uint64_t fingerprint() const;
   void weigh_energy(std::span<const std::uint32_t> elements, RemovalReport& report);
   void change(const BodyChange& change);
 };

@@ -37,6 +37,23 @@ void SemiImplicitScheme::build(double h) {
   built_for_ = h;
 }
 
+void SemiImplicitScheme::save(CheckpointWriter& out) const {
+  ExplicitScheme::save(out);
+  out.put(built_for_);
+  out.put(system_.last());
+}
+
+void SemiImplicitScheme::load(CheckpointReader& in) {
+  ExplicitScheme::load(in);
+  const auto h = in.get<double>();
+  std::vector<double> last;
+  in.get(last);
+  built_for_ = 0.0;
+  if (!(h > 0.0)) return;
+  build(h);
+  if (!system_.set_last(last)) CheckpointReader::fail();
+}
+
 void SemiImplicitScheme::kick(double h) {
   if (!viscous_) {
     ExplicitScheme::kick(h);

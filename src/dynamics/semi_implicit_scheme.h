@@ -19,6 +19,9 @@ class SemiImplicitScheme final : public ExplicitScheme {
   /// @throws std::invalid_argument as Simulation's constructor
   SemiImplicitScheme(Body body, const SimulationOptions& options);
 
+  void save(CheckpointWriter& out) const override;
+  void load(CheckpointReader& in) override;
+
  private:
   void kick(double h) override;
   void take_over(const BodyChange& change) override;

@@ -2,6 +2,7 @@
 #include "glisson/simulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -39,17 +40,43 @@ void require_options(const SimulationOptions& o) {
   check(std::isfinite(norm(o.gravity)), "|gravity| [m/s^2]", norm(o.gravity), "finite");
 }
 
+/// Tets that were removed, or faces that were split, by one call.
+struct MeshChange {
+  std::vector<std::uint32_t> removed, corners;
+  bool operator==(const MeshChange&) const = default;
+};
+
+std::uint64_t fingerprint_of(const TetMesh& mesh, const Body& body) {
+  std::uint64_t hash = hash_numbers(std::span<const Vec3d>(mesh.vertices));
+  hash = hash_numbers(std::span<const Tet>(mesh.tets), hash);
+  for (const TissueBlock& block : body.blocks) {
+    const std::array<double, 6> moduli{block.elastic.lambda, block.elastic.mu,     block.viscous.lambda,
+                                       block.viscous.mu,     block.tissue.density, static_cast<double>(block.end)};
+    hash = hash_numbers(std::span<const double>(moduli), hash);
+  }
+  return hash;
+}
+
+std::uint32_t kind_of(const SimulationOptions& o) {
+  return static_cast<std::uint32_t>(o.integrator) + 16U * static_cast<std::uint32_t>(o.implicit.scheme) +
+         256U * static_cast<std::uint32_t>(o.precision);
+}
+
 }  // namespace
 
 struct Simulation::Impl {
   TetMesh mesh;
   std::unique_ptr<Scheme> scheme;
+  std::uint32_t kind;         ///< integrator, time scheme and precision
+  std::uint64_t fingerprint;  ///< of mesh and tissues at the start
+  std::vector<MeshChange> changes;
 };
 
 Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const SimulationOptions& options) {
   require_options(options);
   Body body = build_body(mesh, tissues);
-  impl_.reset(new Impl{std::move(mesh), make_scheme(std::move(body), options)});
+  const std::uint64_t fingerprint = fingerprint_of(mesh, body);
+  impl_.reset(new Impl{std::move(mesh), make_scheme(std::move(body), options), kind_of(options), fingerprint, {}});
 }
 
 Simulation::~Simulation() = default;
@@ -66,10 +93,18 @@ void Simulation::add_load(std::span<const std::uint32_t> vertices, Vec3d force, 
   impl_->scheme->add_load(vertices, force, std::move(scale));
 }
 
-RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) { return impl_->scheme->remove(tets); }
+RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) {
+  RemovalReport report = impl_->scheme->remove(tets);
+  impl_->changes.push_back({{tets.begin(), tets.end()}, {}});
+  return report;
+}
 
 SplitReport Simulation::split_faces(std::span<const Triangle> faces) {
   SplitReport report = impl_->scheme->split(faces);
+  impl_->changes.emplace_back();
+  for (const Triangle& face : faces) {
+    impl_->changes.back().corners.insert(impl_->changes.back().corners.end(), face.begin(), face.end());
+  }
   TetMesh& mesh = impl_->mesh;
   const Body& body = impl_->scheme->body();
   for (std::uint32_t i = 0; i < report.origins.size(); ++i) {
@@ -134,12 +169,46 @@ TetFields Simulation::tet_fields() const {
   return glisson::tet_fields(impl_->scheme->body(), displacement(), velocity());
 }
 
-std::uint64_t Simulation::state_hash() const {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const std::span<const Vec3d> field : {displacement(), velocity()}) {
-    for (const std::byte b : std::as_bytes(field)) hash = (hash ^ static_cast<std::uint64_t>(b)) * 1099511628211ULL;
-  }
-  return hash;
+void Simulation::save(std::ostream& out) const {
+  CheckpointWriter file;
+  file.put(impl_->kind);
+  file.put(impl_->fingerprint);
+  file.put(static_cast<std::uint64_t>(impl_->changes.size()));
+  for (const MeshChange& change : impl_->changes) file.put(change.removed), file.put(change.corners);
+  impl_->scheme->save(file);
+  file.write(out);
 }
+
+void Simulation::load(std::istream& in) {
+  CheckpointReader file(in);
+  if (file.get<std::uint32_t>() != impl_->kind) {
+    throw std::runtime_error("checkpoint: it was written with another integrator, time scheme or precision");
+  }
+  if (file.get<std::uint64_t>() != impl_->fingerprint) {
+    throw std::runtime_error("checkpoint: it was written with another mesh or other tissues");
+  }
+  const auto count = file.get<std::uint64_t>();
+  for (std::uint64_t k = 0; k < count; ++k) {
+    MeshChange change;
+    file.get(change.removed), file.get(change.corners);
+    if (k < impl_->changes.size()) {
+      if (!(change == impl_->changes[k])) CheckpointReader::fail();
+      continue;
+    }
+    std::vector<Triangle> faces;
+    for (std::size_t c = 0; c + 2 < change.corners.size(); c += 3) {
+      faces.push_back({change.corners[c], change.corners[c + 1], change.corners[c + 2]});
+    }
+    if (faces.empty()) {
+      remove_tets(change.removed);
+    } else {
+      split_faces(faces);
+    }
+  }
+  if (count < impl_->changes.size()) CheckpointReader::fail();
+  impl_->scheme->load(file);
+}
+
+std::uint64_t Simulation::state_hash() const { return hash_numbers(velocity(), hash_numbers(displacement())); }
 
 }  // namespace glisson

@@ -144,6 +144,21 @@ void StepControl::relax(std::span<const double> stiffening) {
   window_ = std::min<std::uint64_t>(2 * window_, kLongestWindow);
 }
 
+void StepControl::save(CheckpointWriter& out) const {
+  out.put(step_), out.put(any_part_), out.put(window_), out.put(in_window_), out.put(unchecked_);
+  out.put_doubles(limits_), out.put_doubles(rest_limits_);
+  for (const auto* list : {&validated_, &rest_level_, &seen_, &guess_.mode, &pace_guess_.mode}) out.put(*list);
+  out.put(guess_.step), out.put(pace_guess_.step);
+}
+
+void StepControl::load(CheckpointReader& in) {
+  in.get(step_), in.get(any_part_), in.get(window_), in.get(in_window_), in.get(unchecked_);
+  in.get_doubles(limits_), in.get_doubles(rest_limits_);
+  for (auto* list : {&validated_, &rest_level_, &seen_}) in.get_same_size(*list);
+  in.get(guess_.mode), in.get(pace_guess_.mode);
+  in.get(guess_.step), in.get(pace_guess_.step);
+}
+
 bool StepControl::accept(std::span<const double> stiffening) {
   if (!enforce_) return true;
   bool within = !unchecked_;

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "dynamics/checkpoint.h"
 #include "dynamics/stable_step.h"
 #include "glisson/simulation.h"
 #include "mechanics/body.h"
@@ -41,6 +42,9 @@ class StepControl {
   /// each element with its own share of mass. A given step above that is checked against h* itself by the next
   /// accept(), which is slow.
   void mesh_changed(std::span<const double> nodal_damping);
+
+  void save(CheckpointWriter& out) const;
+  void load(CheckpointReader& in);
 
   double step() const { return step_; }
   double stable_step() const { return limits_.stable; }

@@ -80,14 +80,14 @@ void TangentSystem::set_free(std::vector<char> free) {
 }
 
 void TangentSystem::linearise(const TissueState& state, const Terms& terms, bool semidefinite) {
-  const bool same = linear_ && known_ && terms.rate == terms_.rate && state.since == state_.since;
+  const bool same = linear_ && terms.rate == terms_.rate && state.since == state_.since;
   current_ = current_ && same && terms.weight == terms_.weight &&
              std::equal(diagonal_.begin(), diagonal_.end(), terms.diagonal.begin(), terms.diagonal.end());
   diagonal_.assign(terms.diagonal.begin(), terms.diagonal.end());
   terms_ = terms;
   terms_.diagonal = diagonal_;
   state_ = state;
-  if (same) return;
+  if (same && known_) return;
   tissue_.linearise(state, terms.rate, semidefinite, tangent_);
   symmetric_ = is_symmetric(tangent_);
   known_ = true;
@@ -228,6 +228,25 @@ void TangentSystem::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) c
       if (free_[3 * i + static_cast<std::size_t>(a)] == 0) z[at + a] = 0.0;
     }
   }
+}
+
+/// The matrix that was factorised, and for which terms: iterations go on with it to the last bit.
+void TangentSystem::save(CheckpointWriter& out) const {
+  out.put(has_factor_), out.put(current_), out.put(terms_.rate), out.put(terms_.weight), out.put(state_.since);
+  out.put(diagonal_);
+  if (has_factor_) out.put(std::vector<double>(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros()));
+}
+
+void TangentSystem::load(CheckpointReader& in) {
+  in.get(has_factor_), in.get(current_), in.get(terms_.rate), in.get(terms_.weight), in.get(state_.since);
+  in.get(diagonal_);
+  if (!has_factor_) return;
+  find_pattern();
+  std::vector<double> values(static_cast<std::size_t>(matrix_.nonZeros()));
+  in.get_same_size(values);
+  std::copy(values.begin(), values.end(), matrix_.valuePtr());
+  factor_.factorize(matrix_);
+  has_factor_ = factor_.info() == Eigen::Success;
 }
 
 KrylovResult TangentSystem::solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& x) {

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "dynamics/checkpoint.h"
 #include "dynamics/krylov.h"
 #include "glisson/simulation.h"
 #include "mechanics/tissue_operator.h"
@@ -45,6 +46,9 @@ class TangentSystem {
   /// Takes A at a state.
   /// @param semidefinite  as TissueOperator::linearise
   void linearise(const TissueState& state, const Terms& terms, bool semidefinite);
+  void save(CheckpointWriter& out) const;
+  /// After set_free, with the same components as when it was saved.
+  void load(CheckpointReader& in);
   /// Whether A may be kept while its terms do not change: every tissue is linear.
   bool is_linear() const { return linear_; }
 

@@ -123,6 +123,12 @@ void ViscousSystem::solve(std::span<const Vec3d> b, std::span<Vec3d> x) {
   last_ = packed_;
 }
 
+bool ViscousSystem::set_last(std::span<const double> last) {
+  if (static_cast<Eigen::Index>(last.size()) != last_.size()) return false;
+  std::copy(last.begin(), last.end(), last_.begin());
+  return true;
+}
+
 void ViscousSystem::held_drag(std::span<const Vec3d> x, std::span<Vec3d> drag) const {
   Eigen::VectorXd given(static_cast<Eigen::Index>(held_of_row_.size()));
   for (std::size_t r = 0; r < held_of_row_.size(); ++r) {

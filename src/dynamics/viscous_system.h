@@ -35,6 +35,10 @@ class ViscousSystem {
   /// C x of the held components [N]; 0 for the others.
   void held_drag(std::span<const Vec3d> x, std::span<Vec3d> drag) const;
 
+  /// The last answer, which the next one starts from.
+  std::vector<double> last() const { return {last_.begin(), last_.end()}; }
+  /// @return false where it has another size
+  bool set_last(std::span<const double> last);
   bool is_free(std::size_t component) const { return held_[component] == 0; }
   bool is_factorised() const { return factorised_; }
 

@@ -47,6 +47,22 @@ void ElementBody::read_state(std::span<Vec3d> displacement, std::span<Vec3d> vel
   std::copy(v_.begin(), v_.end(), velocity.begin());
 }
 
+std::vector<double> ElementBody::past() const {
+  if (any_ == nullptr) return {};
+  std::vector<double> past{since_memory_};
+  append_memory(any_->memory(), past);
+  return past;
+}
+
+bool ElementBody::set_past(std::span<const double> past) {
+  if (any_ == nullptr) return past.empty();
+  TissueMemory memory = any_->memory();
+  if (past.empty() || !take_memory(past.subspan(1), memory)) return false;
+  since_memory_ = past[0];
+  any_->set_memory(std::move(memory));
+  return true;
+}
+
 void ElementBody::apply(const BodyChange& change, const detail::VertexStars&, std::span<const double> nodal_damping) {
   for (const std::uint32_t origin : change.origins) {
     u_.push_back(Vec3d(u_[origin]));

@@ -20,6 +20,8 @@ class ElementBody final : public MovingBody {
 
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
   void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const override;
+  std::vector<double> past() const override;
+  bool set_past(std::span<const double> past) override;
   Vec3d displacement_of(std::uint32_t vertex) const override { return u_[vertex]; }
   Vec3d velocity_of(std::uint32_t vertex) const override { return v_[vertex]; }
   /// Cost: one pass over the elements.

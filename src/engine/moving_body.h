@@ -52,6 +52,11 @@ class MovingBody {
   virtual Vec3d displacement_of(std::uint32_t vertex) const = 0;
   virtual Vec3d velocity_of(std::uint32_t vertex) const = 0;
 
+  /// What the body knows of its past beside the state, as numbers that set_past takes back to the last bit.
+  virtual std::vector<double> past() const = 0;
+  /// After set_state. @return false where `past` is not that of such a body; nothing is changed then
+  virtual bool set_past(std::span<const double> past) = 0;
+
   /// Takes over what has changed in the body (BodyChanger has changed it already). New vertices begin in the
   /// state of those they are copies of, and are not watched.
   /// @param nodal_damping  γ_i of every vertex, new ones included [kg/s]

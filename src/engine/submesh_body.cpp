@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/response_batches.h"
 #include "engine/submesh_scratch.h"
 
 namespace glisson::engine {
@@ -94,6 +95,51 @@ Vec3d SubmeshBody::displacement_of(std::uint32_t vertex) const {
 }
 Vec3d SubmeshBody::velocity_of(std::uint32_t vertex) const {
   return vector_of(state_.data() + submeshes_.record_of_vertex[vertex] * kStateDoubles + 4);
+}
+
+/// Per tissue block, where the numbers of its first element's memory begin; one more than blocks.
+std::vector<std::size_t> SubmeshBody::first_memory_numbers() const {
+  std::vector<std::size_t> first{0};
+  for (const TissueBlock& block : body_.blocks) {
+    first.push_back(first.back() + (block.end - block.begin) * memory_numbers(block.tissue));
+  }
+  return first;
+}
+
+/// Steps made, when the branches were kept last, where to look for inverted tets, and the branches in element order.
+std::vector<double> SubmeshBody::past() const {
+  const std::vector<std::size_t> first = first_memory_numbers();
+  std::vector<double> past{static_cast<double>(steps_), since_memory_};
+  for (const Looked looked : looked_) past.push_back(static_cast<double>(looked));
+  const std::size_t begin = past.size();
+  past.resize(begin + first.back(), 0.0);
+  for (const Submesh& part : submeshes_.parts) {
+    const TissueBlock& block = body_.blocks[part.block];
+    const std::size_t n = memory_numbers(block.tissue);
+    for_memory(part, block.tissue, kernels_.lanes, [&](std::uint32_t e, const auto& number) {
+      for (std::size_t i = 0; i < n; ++i) past[begin + first[part.block] + (e - block.begin) * n + i] = *number(i);
+    });
+  }
+  return past;
+}
+
+bool SubmeshBody::set_past(std::span<const double> past) {
+  const std::vector<std::size_t> first = first_memory_numbers();
+  const std::size_t begin = 2 + looked_.size();
+  if (past.size() != begin + first.back()) return false;
+  steps_ = static_cast<std::uint64_t>(past[0]);
+  since_memory_ = past[1];
+  for (std::size_t p = 0; p < looked_.size(); ++p) looked_[p] = static_cast<Looked>(static_cast<int>(past[2 + p]));
+  for (Submesh& part : submeshes_.parts) {
+    const TissueBlock& block = body_.blocks[part.block];
+    const std::size_t n = memory_numbers(block.tissue);
+    for_memory(part, block.tissue, kernels_.lanes, [&](std::uint32_t e, const auto& number) {
+      for (std::size_t i = 0; i < n; ++i) {
+        *number(i) = static_cast<float>(past[begin + first[part.block] + (e - block.begin) * n + i]);
+      }
+    });
+  }
+  return true;
 }
 
 void SubmeshBody::watch(std::span<const std::uint32_t> vertices) {

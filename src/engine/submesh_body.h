@@ -34,6 +34,8 @@ class SubmeshBody final : public MovingBody {
 
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
   void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const override;
+  std::vector<double> past() const override;
+  bool set_past(std::span<const double> past) override;
   Vec3d displacement_of(std::uint32_t vertex) const override;
   Vec3d velocity_of(std::uint32_t vertex) const override;
   void apply(const BodyChange& change, const detail::VertexStars& stars,
@@ -87,6 +89,7 @@ class SubmeshBody final : public MovingBody {
     bool accounted;
   };
 
+  std::vector<std::size_t> first_memory_numbers() const;
   static Plan plan_of(const TissueBlock& block);
   std::unique_ptr<LargePlan> large_plan_of(const TissueBlock& block, const Plan& plan) const;
   void set_maxwell_step(double h);

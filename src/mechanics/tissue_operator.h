@@ -25,6 +25,13 @@ struct TissueMemory {
   bool operator==(const TissueMemory&) const = default;
 };
 
+/// Appends the numbers of a memory.
+void append_memory(const TissueMemory& memory, std::vector<double>& numbers);
+/// Takes them back, all that are there.
+/// @param memory  of the same size
+/// @return false, with the memory as it was, where there are more or fewer
+bool take_memory(std::span<const double> numbers, TissueMemory& memory);
+
 /// The state a body is asked about.
 struct TissueState {
   std::span<const Vec3d> u;  ///< displacement [m]
