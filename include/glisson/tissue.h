@@ -13,9 +13,11 @@ namespace glisson {
 
 /// The number of a tetrahedron that a stiffness law takes as its argument.
 enum class DeformationMeasure {
-  intensity,          ///< s = √(3 (1 − q) / 2), 0 at rest, ≈ ‖dev ε‖
-  one_minus_q,        ///< 1 − q(F), 0 at rest, ≈ ⅔ ‖dev ε‖²
-  regular_mean_ratio  ///< 12 (3V)^⅔ / Σ l² of the deformed tet; the paper's raw measure, mesh-dependent at rest
+  intensity,           ///< s = √(3 (1 − q) / 2), 0 at rest, ≈ ‖dev ε‖
+  one_minus_q,         ///< 1 − q(F), 0 at rest, ≈ ⅔ ‖dev ε‖²
+  regular_mean_ratio,  ///< 12 (3V)^⅔ / Σ l² of the deformed tet; the paper's raw measure, mesh-dependent at rest
+  radius_ratio,  ///< √(5 (1 − ρ) / 4), ρ three times in- over circumradius against the rest tet   [LiuJoe1994]
+  solid_angle    ///< 0.831 (1 − σ), σ the smallest solid angle's sine of half against the rest tet [LiuJoe1994]
 };
 
 /// Which constant tensor carries the viscosity η, [Schwartz2002, eq. 7] (the paper leaves it open).

@@ -93,6 +93,8 @@ T run_with_law(const BlockContext<T>& c, const TissueBlock& block, const Moduli&
     case DeformationMeasure::one_minus_q:
       return run_with_measure<DeformationMeasure::one_minus_q, kViscous>(c, block, moduli);
     case DeformationMeasure::regular_mean_ratio:
+    case DeformationMeasure::radius_ratio:  // never a tensor mass
+    case DeformationMeasure::solid_angle:
       break;
   }
   return run_with_measure<DeformationMeasure::regular_mean_ratio, kViscous>(c, block, moduli);

@@ -41,8 +41,80 @@ RealTensor strain(const Tissue& t, const RealTensor& F) {
 
 Real mean_ratio(const RealTensor& F) { return 3 * std::pow(F.determinant(), Real(2) / 3) / F.squaredNorm(); }
 
+using RealCorners = std::array<RealVector, 4>;
+
+RealCorners regular_corners() {
+  return {RealVector(1, 1, 1), RealVector(-1, 1, -1), RealVector(1, -1, -1), RealVector(-1, -1, 1)};
+}
+RealTensor edges_from_first(const RealCorners& x) {
+  RealTensor D;
+  D << x[1] - x[0], x[2] - x[0], x[3] - x[0];
+  return D;
+}
+Real area(const RealVector& a, const RealVector& b, const RealVector& c) { return (b - a).cross(c - a).norm() / 2; }
+
+/// Three times the radius of the sphere inside over that of the sphere around.
+Real radius_ratio(const RealCorners& x) {
+  const Real volume = edges_from_first(x).determinant() / 6;
+  const Real surface =
+      area(x[1], x[2], x[3]) + area(x[0], x[2], x[3]) + area(x[0], x[1], x[3]) + area(x[0], x[1], x[2]);
+  const RealTensor D = edges_from_first(x).transpose();
+  const RealVector middle = D.inverse() * (D.rowwise().squaredNorm() / 2);  // from x₀, as far from all corners
+  return 3 * (3 * volume / surface) / middle.norm();
+}
+/// 9/√6 sin(θ/2) of the solid angle θ at corner i, θ by the triple product of its unit edges.
+Real solid_angle(const RealCorners& x, std::size_t i) {
+  std::array<RealVector, 3> e;
+  for (std::size_t k = 0; k < 3; ++k) e[k] = (x[(i + k + 1) % 4] - x[i]).normalized();
+  const Real tangent = std::abs(e[0].dot(e[1].cross(e[2]))) / (1 + e[0].dot(e[1]) + e[1].dot(e[2]) + e[2].dot(e[0]));
+  return 9 / std::sqrt(Real(6)) * std::sin(std::atan(tangent));
+}
+RealCorners carried(const MaterialPoint& point, const RealTensor& F) {
+  RealCorners x = regular_corners();
+  for (RealVector& corner : x) corner = F * regular_turn(point) * corner;
+  return x;
+}
+std::size_t sharpest_corner(const RealCorners& x) {
+  std::size_t least = 0;
+  for (std::size_t i = 1; i < 4; ++i) {
+    if (solid_angle(x, i) < solid_angle(x, least)) least = i;
+  }
+  return least;
+}
+bool is_of_edges(DeformationMeasure m) {
+  return m == DeformationMeasure::radius_ratio || m == DeformationMeasure::solid_angle;
+}
+/// √(5/4 (1 − ρ)), 0.831 (1 − σ).
+Real edge_strain(const MaterialPoint& point, const RealTensor& F) {
+  const bool radius = point.tissue.measure == DeformationMeasure::radius_ratio;
+  const Real scale = Real(0.831);
+  if (F.determinant() <= 0) return radius ? std::sqrt(Real(5) / 4) : scale;
+  const RealCorners x = carried(point, F);
+  if (radius) return std::sqrt(Real(5) / 4 * std::max(Real(0), 1 - radius_ratio(x)));
+  return scale * std::max(Real(0), 1 - solid_angle(x, sharpest_corner(x)));
+}
+/// Its slope by differences of ρ or of the smallest corner's σ, which are smooth.
+RealTensor edge_strain_slope(const MaterialPoint& point, const RealTensor& F) {
+  const bool radius = point.tissue.measure == DeformationMeasure::radius_ratio;
+  const Real s = edge_strain(point, F), h = Real(1e-4L);
+  if (s == 0) return RealTensor::Zero();
+  const std::size_t corner = sharpest_corner(carried(point, F));
+  RealTensor slope;
+  for (int k = 0; k < 9; ++k) {
+    const auto at = [&](Real d) {
+      RealTensor G = F;
+      G(k / 3, k % 3) += d;
+      const RealCorners x = carried(point, G);
+      return radius ? radius_ratio(x) : solid_angle(x, corner);
+    };
+    slope(k / 3, k % 3) = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+  }
+  return (radius ? -Real(5) / (8 * s) : -Real(0.831)) * slope;
+}
+
 /// ∂x/∂F.
 RealTensor measure_slope(const MaterialPoint& point, const RealTensor& F) {
+  if (is_of_edges(point.tissue.measure)) return edge_strain_slope(point, F);
   const RealTensor inverse_transposed = F.inverse().transpose();
   if (point.tissue.measure == DeformationMeasure::regular_mean_ratio) {
     RealTensor G = RealTensor::Zero();
@@ -174,7 +246,12 @@ Real along_fibre(const MaterialPoint& point, const RealTensor& F) {
 
 }  // namespace
 
+RealTensor regular_turn(const MaterialPoint& point) {
+  return rebuilt(singular(edges_from_first(point.rest) * edges_from_first(regular_corners()).inverse()), {1, 1, 1});
+}
+
 Real shape_measure(const MaterialPoint& point, const RealTensor& F) {
+  if (is_of_edges(point.tissue.measure)) return edge_strain(point, F);
   const Real J = F.determinant();
   if (point.tissue.measure == DeformationMeasure::regular_mean_ratio) {
     std::array<RealVector, 4> x;

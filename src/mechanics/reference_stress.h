@@ -34,6 +34,9 @@ RealTensor viscous_piola(const MaterialPoint& point, const RealTensor& F, const 
 /// The second Piola–Kirchhoff stress of which Maxwell branches relax their shares [Pa]: S = F⁻¹P, or its part without
 /// pressure, S − ⅓ (S:C) C⁻¹. Of small strain σ and its deviator.
 RealTensor relaxing_stress(const MaterialPoint& point, const RealTensor& F);
+/// The rotation that brings a regular tetrahedron, corners (1,1,1), (−1,1,−1), (1,−1,−1), (−1,−1,1), closest to the rest
+/// one: U Vᵀ of the map between them.
+RealTensor regular_turn(const MaterialPoint& point);
 /// Value of the tissue's measure, from the tetrahedron's corners.
 Real shape_measure(const MaterialPoint& point, const RealTensor& F);
 

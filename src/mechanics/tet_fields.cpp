@@ -17,6 +17,9 @@ LameParameters moduli(const Body& body, const Tissue& tissue, std::size_t e, con
     case DeformationMeasure::regular_mean_ratio:
       x = regular_mean_ratio(H, body.rest[e].volume, edge_metric(body, e));
       break;
+    case DeformationMeasure::radius_ratio:
+    case DeformationMeasure::solid_angle:
+      break;  // never a tensor mass: goes by cauchy_stress
   }
   return lame_at(tissue, x);
 }

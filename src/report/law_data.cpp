@@ -20,6 +20,10 @@ const char* measure_label(DeformationMeasure measure) {
       return "1 − q [-]";
     case DeformationMeasure::regular_mean_ratio:
       return "Liu–Joe mean ratio [-]";
+    case DeformationMeasure::radius_ratio:
+      return "radius ratio's strain [-]";
+    case DeformationMeasure::solid_angle:
+      return "solid angle's strain [-]";
   }
   return "measure [-]";
 }

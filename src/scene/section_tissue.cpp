@@ -82,7 +82,11 @@ std::vector<Choice<DeformationMeasure>> measures() {
   return {{"intensity", DeformationMeasure::intensity, "s = √(3 (1 − q) / 2), 0 at rest, ≈ ‖dev ε‖"},
           {"one_minus_q", DeformationMeasure::one_minus_q, "1 − q, 0 at rest, ≈ ⅔ ‖dev ε‖²"},
           {"regular_mean_ratio", DeformationMeasure::regular_mean_ratio,
-           "mean ratio of the deformed tetrahedron against a regular one, the paper's raw measure"}};
+           "mean ratio of the deformed tetrahedron against a regular one, the paper's raw measure"},
+          {"radius_ratio", DeformationMeasure::radius_ratio,
+           "√(5 (1 − ρ) / 4), 0 at rest, ρ three times in- over circumradius"},
+          {"solid_angle", DeformationMeasure::solid_angle,
+           "0.831 (1 − σ), 0 at rest, σ the smallest solid angle's sine of half, 1 at rest"}};
 }
 
 /// E and ν from `lambda_Pa` and `mu_Pa`, where those are given.

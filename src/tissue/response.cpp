@@ -1,5 +1,6 @@
 #include "tissue/response.h"
 
+#include "tissue/edge_measure.h"
 #include "tissue/stiffness_bound.h"
 
 namespace glisson {
@@ -50,6 +51,10 @@ T Response::measure(const Mat3<T>& H, const ElementShape& shape) const {
       return intensity_of(one_minus_q(H));
     case DeformationMeasure::one_minus_q:
       return one_minus_q(H);
+    case DeformationMeasure::radius_ratio:
+      return edge_strain(true, edge_measure(true, H, shape.turn).value);
+    case DeformationMeasure::solid_angle:
+      return edge_strain(false, edge_measure(false, H, shape.turn).value);
     case DeformationMeasure::regular_mean_ratio:
       break;
   }
@@ -104,6 +109,8 @@ template <class T>
 Mat3<T> Response::measure_gradient(const Mat3<T>& H, T x, const ElementShape& shape) const {
   const T J = jacobian(H);
   if (!(J > T(0.0))) return {};
+  const bool radius = tissue_.measure == DeformationMeasure::radius_ratio;
+  if (radius || tissue_.measure == DeformationMeasure::solid_angle) return edge_strain_gradient(radius, H, shape.turn);
   const Mat3<T> F = deformation_gradient(H), cof = deformation_gradient(cofactor_change(H));
   if (tissue_.measure == DeformationMeasure::regular_mean_ratio) {
     const EdgeMetric<double>& g = shape.metric;
@@ -279,6 +286,11 @@ double Response::tensor_mass_stiffening(const Mat3d& H, const ElementShape& shap
   double g = 1.0;
   if (tissue_.measure == DeformationMeasure::one_minus_q) g = 4.0 / 3.0 * intensity_of(x);
   if (tissue_.measure == DeformationMeasure::regular_mean_ratio) g = 1.64 * x;
+  const bool radius = tissue_.measure == DeformationMeasure::radius_ratio;
+  if (radius || tissue_.measure == DeformationMeasure::solid_angle) {
+    // no bound that holds for all shapes: the slope itself, and at least the steepest near rest
+    g = std::max(radius ? 1.06 : 1.70, std::sqrt(squared_norm(measure_gradient(H, x, shape))));
+  }
   const StrainNumbers<double> e = strain_numbers(tissue_.kinematics, H);
   const double e2 = std::max(0.0, e.squares - e.trace * e.trace / 3.0);
   const double reach = 0.5 * (std::sqrt(e2) + std::sqrt(e2 + bulk / (2.0 * lame_.mu) * e.trace * e.trace));

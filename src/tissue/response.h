@@ -16,6 +16,7 @@ struct ElementShape {
   double volume = 0.0;        ///< V at rest [m³]
   EdgeMetric<double> metric;  ///< for the raw mean ratio
   Vec3d fibre;                ///< unit vector a at rest; not used without fibres
+  Mat3d turn;                 ///< rotation of the regular tet to this one, for radius_ratio and solid_angle
 };
 
 class Response {

@@ -89,6 +89,7 @@ LameParameters Tissue::lame() const {
 }
 
 bool Tissue::is_tensor_mass() const {
+  if (measure == DeformationMeasure::radius_ratio || measure == DeformationMeasure::solid_angle) return false;
   const bool paper = kinematics == Kinematics::small && law_form == LawForm::secant && !hyperelastic &&
                      viscous_tensor != ViscousTensor::pioletti;
   return paper && !fibres && maxwell.empty() && volume_change == VolumeChange::own;

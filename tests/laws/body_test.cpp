@@ -73,8 +73,8 @@ std::vector<Tissue> all_tissues() {
   for (const Tissue& t : nodal_tissues()) all.push_back(t);
   return all;
 }
-/// A raw measure differs from tet to tet, and with it the modulus: no state but rest is uniform.
-bool is_uniform(const Tissue& t) { return t.hyperelastic || t.measure != DeformationMeasure::regular_mean_ratio; }
+/// A measure of a tetrahedron's own directions differs from tet to tet, and with it the modulus: no state but rest is uniform.
+bool is_uniform(const Tissue& t) { return !test::has_directions(t); }
 
 Field affine(const TetMesh& mesh, const Mat3d& H) {
   Field u;

@@ -26,11 +26,13 @@ Mat3d slope(const std::function<Mat3d(double)>& f) {
   return scaled(test::difference(scaled(near, 8.0), far), 1.0 / (12.0 * kStep));
 }
 
-std::vector<Mat3d> states() {
+/// @param smooth  whether the measure is; the smallest solid angle has edges between its corners, which differences
+///                must not cross: near rest they are near everywhere
+std::vector<Mat3d> states(bool smooth) {
   Draw draw(11);
   std::vector<Mat3d> all{Mat3d{}};
   for (int n = 0; n < 6; ++n) all.push_back(draw.stretched(0.7, 1.5));
-  for (int n = 0; n < 3; ++n) all.push_back(draw.tensor(0.01));
+  for (int n = 0; smooth && n < 3; ++n) all.push_back(draw.tensor(0.01));
   for (const double squashed : {-0.2, -0.5, -0.7}) {  // inverted, away from λ₂ = −λ₃ where there is no derivative
     const Mat3d F = product(draw.rotation(), product(detail::diagonal(1.4, 1.0, squashed), draw.rotation()));
     all.push_back(test::difference(F, identity<double>()));
@@ -65,7 +67,7 @@ TEST(Energy, StressIsItsGradient) {
     SCOPED_TRACE(t.name);
     const Specimen s(t);
     Draw draw(12);
-    for (const Mat3d& H : states()) {
+    for (const Mat3d& H : states(t.measure != DeformationMeasure::solid_angle)) {
       const Mat3d dH = draw.tensor(1.0), P = s.P(H);
       EXPECT_NEAR(energy_by_differences(s, H, dH), inner(P, dH),
                   kTolerance * (test::size_of(P) + stiffness_scale(s) * kStep) * test::size_of(dH))
@@ -97,7 +99,7 @@ TEST(Tangent, EqualsDifferences) {
     SCOPED_TRACE(t.name);
     const Specimen s(t);
     Draw draw(14);
-    for (const Mat3d& H : states()) {
+    for (const Mat3d& H : states(t.measure != DeformationMeasure::solid_angle)) {
       const Mat3d dH = draw.tensor(1.0), K = tangent(s, H, dH), D = tangent_by_differences(s, H, dH);
       const bool at_rest = test::size_of(H) == 0.0;  // s is not smooth there; its own share vanishes with the strain
       const double scale = test::size_of(K) + stiffness_scale(s) * test::size_of(dH);
@@ -113,7 +115,7 @@ TEST(Tangent, IsSymmetricWhereThereIsAnEnergy) {
     const Specimen s(t);
     Draw draw(15);
     double worst = 0.0;
-    for (const Mat3d& H : states()) {
+    for (const Mat3d& H : states(t.measure != DeformationMeasure::solid_angle)) {
       const Mat3d A = draw.tensor(1.0), B = draw.tensor(1.0);
       const Mat3d KA = tangent(s, H, A), KB = tangent(s, H, B);
       const double size = test::size_of(KA) * test::size_of(B) + stiffness_scale(s);
@@ -135,7 +137,7 @@ TEST(Tangent, ClosedFormOfSmallAndGreen) {
     const Specimen s(t);
     const auto [lambda, mu] = t.lame();
     Draw draw(16);
-    for (const Mat3d& H : states()) {
+    for (const Mat3d& H : states(t.measure != DeformationMeasure::solid_angle)) {
       const Mat3d dH = draw.tensor(1.0), F = deformation_gradient(H);
       Mat3d K = full(isotropic_stress(dH, lambda, mu));
       if (k == Kinematics::green) {

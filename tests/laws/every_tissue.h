@@ -43,6 +43,10 @@ inline std::string name_of(DeformationMeasure m) {
       return "one_minus_q";
     case DeformationMeasure::regular_mean_ratio:
       return "regular_mean_ratio";
+    case DeformationMeasure::radius_ratio:
+      return "radius_ratio";
+    case DeformationMeasure::solid_angle:
+      return "solid_angle";
   }
   return {};
 }
@@ -188,10 +192,22 @@ inline std::vector<Tissue> every_tissue() {
   return all;
 }
 
+/// Whether the measure tells directions of the tetrahedron apart.
+inline bool has_directions(const Tissue& t) {
+  return !t.hyperelastic && t.measure != DeformationMeasure::intensity && t.measure != DeformationMeasure::one_minus_q;
+}
 /// Whether P is the gradient of Response::energy.
 inline bool is_conservative(const Tissue& t) {
   const bool constant = std::holds_alternative<ConstantLaw>(t.law) && !t.lambda_law && !t.mu_law;
   return t.hyperelastic || t.law_form == LawForm::energy || constant;
+}
+
+inline Mat3d to_double(const reference::RealTensor& a) {
+  Mat3d r;
+  for (std::size_t i = 0; i < 9; ++i) {
+    r(i / 3, i % 3) = static_cast<double>(a(static_cast<int>(i / 3), static_cast<int>(i % 3)));
+  }
+  return r;
 }
 
 /// A tetrahedron of a tissue, for the response and for the oracle.
@@ -212,6 +228,7 @@ struct Specimen {
       }
     }
     shape.volume = dot(corners[1] - corners[0], cross(corners[2] - corners[0], corners[3] - corners[0])) / 6.0;
+    shape.turn = to_double(reference::regular_turn(point));
     if (!tissue.fibres) return;
     shape.fibre = tissue.fibres->direction * (1.0 / norm(tissue.fibres->direction));
     point.fibre = reference::RealVector(shape.fibre.x, shape.fibre.y, shape.fibre.z).normalized();
@@ -231,13 +248,6 @@ inline reference::RealTensor to_real(const Mat3d& a) {
   return r;
 }
 inline reference::RealTensor real_gradient(const Mat3d& H) { return to_real(H) + reference::RealTensor::Identity(); }
-inline Mat3d to_double(const reference::RealTensor& a) {
-  Mat3d r;
-  for (std::size_t i = 0; i < 9; ++i) {
-    r(i / 3, i % 3) = static_cast<double>(a(static_cast<int>(i / 3), static_cast<int>(i % 3)));
-  }
-  return r;
-}
 inline Mat3d difference(const Mat3d& a, const Mat3d& b) { return sum(a, scaled(b, -1.0)); }
 inline double size_of(const Mat3d& a) { return std::sqrt(squared_norm(a)); }
 /// ‖a − b‖ / ‖b‖; ‖a‖ where b is 0.
