@@ -171,7 +171,16 @@ struct RunSummary {
   std::size_t inverted_tets_most = 0;  ///< the most tets inverted in one step
   double first_inversion_s = -1.0;     ///< time of it; −1: none
   std::uint64_t state_hash = 0;
-  enum class End { finished, interrupted, stopped_inverted, stopped_unstable, stopped_not_finite } end = End::finished;
+  enum class End {
+    finished,
+    interrupted,
+    stopped_inverted,
+    stopped_unstable,
+    stopped_not_finite,
+    stopped_not_converged,
+    stopped_not_held
+  } end = End::finished;
+  std::string trouble;  ///< what the integrator says of a step that was not made; may be empty
 };
 
 /// Watches a run; called from the run's own thread, never on the hot path of a step.

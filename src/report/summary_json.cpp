@@ -7,6 +7,24 @@
 
 namespace glisson {
 
+namespace {
+
+std::string_view integrator_word(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::explicit_:
+      return "explicit";
+    case Integrator::semi_implicit:
+      return "semi_implicit";
+    case Integrator::implicit:
+      return "implicit";
+    case Integrator::static_:
+      return "static";
+  }
+  return "unknown";
+}
+
+}  // namespace
+
 std::string_view end_text(RunSummary::End end) {
   switch (end) {
     case RunSummary::End::finished:
@@ -19,11 +37,16 @@ std::string_view end_text(RunSummary::End end) {
       return "stopped_unstable";
     case RunSummary::End::stopped_not_finite:
       return "stopped_not_finite";
+    case RunSummary::End::stopped_not_converged:
+      return "stopped_not_converged";
+    case RunSummary::End::stopped_not_held:
+      return "stopped_not_held";
   }
   return "unknown";
 }
 
 std::string trouble_text(const RunSummary& s) {
+  if (!s.trouble.empty()) return fmt::format("stopped at {:.6g} s: {}", s.time_s, s.trouble);
   switch (s.end) {
     case RunSummary::End::stopped_inverted:
       return fmt::format(
@@ -38,8 +61,12 @@ std::string trouble_text(const RunSummary& s) {
     case RunSummary::End::stopped_not_finite:
       return fmt::format(
           "stopped at {:.6g} s: the state is no longer finite; look at the last frame, and press less "
-          "deep or soften the law",
+          "deep, soften the law, or take integrator = \"implicit\"",
           s.time_s);
+    case RunSummary::End::stopped_not_converged:
+      return fmt::format("stopped at {:.6g} s: no equilibrium was found, however small the step", s.time_s);
+    case RunSummary::End::stopped_not_held:
+      return fmt::format("stopped at {:.6g} s: supports and tools leave a rigid motion free", s.time_s);
     default:
       return {};
   }
@@ -72,6 +99,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
     json["first_inversion_s"] = s.first_inversion_s;
   else
     json["first_inversion_s"] = nullptr;
+  json["integrator"] = integrator_word(variant.simulation.integrator);
   json["precision"] = variant.simulation.precision == Precision::single_precision ? "single" : "double";
   json["threads"] = threads;
   json["state_hash"] = fmt::format("{:016x}", s.state_hash);

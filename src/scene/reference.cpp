@@ -33,6 +33,7 @@ std::string scene_reference_markdown() {
   text += section_text(law_section(), "`[tissue.law]`, `[tissue.lambda_law]`, `[tissue.mu_law]`");
   text += section_text(region_section(), "`[[region]]`");
   text += section_text(motion_section(), "`[motion]`");
+  text += section_text(implicit_section(), "`[motion.implicit]`");
   text += section_text(fixed_section(), "`[[fixed]]`");
   text += section_text(load_section(), "`[[load]]`");
   text += section_text(tool_section(), "`[[tool]]`");

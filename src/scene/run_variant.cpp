@@ -25,7 +25,9 @@ class Run {
  private:
   bool finished() const;
   double fraction(double time, std::uint64_t steps) const;
-  bool sample_due() const { return next_sample_ < simulation_.time() + 0.5 * simulation_.step_size(); }
+  bool sample_due() const { return next_sample_ < next_force_time() + 0.5 * simulation_.step_size(); }
+  /// Time that the forces after the next step are of: its start, or its end for the schemes that solve for it.
+  double next_force_time() const { return simulation_.time() + (forces_at_end_ ? simulation_.step_size() : 0.0); }
   bool frame_due() const;
   void stretch();
   bool step();
@@ -41,10 +43,11 @@ class Run {
   const std::atomic<bool>& stop_;
   double duration_;
   std::uint64_t most_steps_;
+  bool forces_at_end_;
 
   Sample sample_;
   RunSummary summary_;
-  double start_of_step_ = 0.0;  ///< time at which the last step made started [s]
+  double force_time_ = 0.0;  ///< that the forces of the last step made are of [s]
   std::uint64_t samples_due_ = 0;
   double next_sample_ = 0.0;  ///< [s]
   int frames_taken_ = 0;
@@ -56,7 +59,9 @@ class Run {
 
 Run::Run(const Variant& variant, BuiltVariant& built, RunObserver& observer, const std::atomic<bool>& stop)
     : variant_(variant), simulation_(built.simulation), built_(built), observer_(observer), stop_(stop),
-      duration_(run_duration(variant)), most_steps_(variant.max_steps.value_or(std::uint64_t(-1))) {
+      duration_(run_duration(variant)), most_steps_(variant.max_steps.value_or(std::uint64_t(-1))),
+      forces_at_end_(variant.simulation.integrator == Integrator::implicit ||
+                     variant.simulation.integrator == Integrator::static_) {
   sample_.depths.resize(built.tools.size());
   sample_.tools.resize(built.tools.size());
   sample_.supports.resize(built.supports.size());
@@ -92,12 +97,15 @@ bool Run::step() {
   const bool made = result.status == StepStatus::ok || result.status == StepStatus::inverted;
   if (result.status == StepStatus::step_too_large) summary_.end = End::stopped_unstable;
   if (result.status == StepStatus::not_finite) summary_.end = End::stopped_not_finite;
+  if (result.status == StepStatus::not_converged) summary_.end = End::stopped_not_converged;
+  if (result.status == StepStatus::not_held) summary_.end = End::stopped_not_held;
+  if (!made) summary_.trouble = result.message;
   const bool stops = result.status == StepStatus::inverted && variant_.on_inversion == OnInversion::stop;
   if (stops) summary_.end = End::stopped_inverted;
   ended_ = !made || stops;
   forces_current_ = made;
   if (!made) return false;
-  start_of_step_ = start;
+  force_time_ = simulation_.force_time();
   summary_.step_s = simulation_.step_size();  // of this step: it may have become smaller within it
   sampled_ = framed_ = false;
   return true;
@@ -124,12 +132,12 @@ void Run::stretch() {
     stretch_steps_ = static_cast<std::uint64_t>(std::clamp(0.02 * steps / std::max(stepping_s_, 1e-9), 1.0, 4096.0));
 }
 
-/// Forces, depths and energies of the instant at which the last step started.
+/// Forces, depths and energies of the instant that the forces are of.
 void Run::take_sample() {
-  sample_.time = start_of_step_;
+  sample_.time = force_time_;
   for (std::size_t i = 0; i < built_.tools.size(); ++i) {
     const PressMotion& motion = variant_.tools[i].motion;
-    sample_.depths[i] = press_depth(motion, start_of_step_);
+    sample_.depths[i] = press_depth(motion, force_time_);
     sample_.tools[i] = simulation_.force(built_.tools[i]);
     const double along = std::abs(dot(sample_.tools[i].total(), motion.direction)) / norm(motion.direction);
     summary_.peak_force_N = std::max(summary_.peak_force_N, along);
@@ -138,7 +146,7 @@ void Run::take_sample() {
   sample_.energies = simulation_.energies();
   observer_.on_sample(sample_);
   sampled_ = true;
-  const double passed = (start_of_step_ + 0.5 * summary_.step_s) * variant_.output.sample_rate;
+  const double passed = (force_time_ + 0.5 * summary_.step_s) * variant_.output.sample_rate;
   samples_due_ = std::max(samples_due_ + 1, static_cast<std::uint64_t>(std::min(std::ceil(passed), 9e15)));
   next_sample_ = static_cast<double>(samples_due_) / variant_.output.sample_rate;
 }
@@ -178,7 +186,7 @@ RunSummary Run::to_end() {
     const std::uint64_t before = simulation_.steps();
     stretch();
     const bool stepped = simulation_.steps() > before && forces_current_;
-    if (stepped && (next_sample_ < start_of_step_ + 0.5 * summary_.step_s)) take_sample();
+    if (stepped && (next_sample_ < force_time_ + 0.5 * summary_.step_s)) take_sample();
     if (stepped && frame_due()) take_frame();
     show_progress();
   }

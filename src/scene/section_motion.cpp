@@ -32,22 +32,61 @@ void check_tool(ToolSpec& tool, const Node& table, const Place& place) {
 
 }  // namespace
 
+const SectionSpec& implicit_section() {
+  static const SectionSpec section = [] {
+    using Options = ImplicitOptions;
+    Section<Options> s("motion.implicit", "What the integrators implicit and static do.");
+    s.choice<TimeScheme>("scheme", &Options::scheme,
+                         {{"backward_euler", TimeScheme::backward_euler, "first order; damps what it cannot resolve"},
+                          {"newmark", TimeScheme::newmark, "second order, keeps the energy of a linear body"},
+                          {"generalised_alpha", TimeScheme::generalised_alpha,
+                           "second order, damps what it cannot resolve by `spectral_radius`"}},
+                         "scheme in time, of integrator implicit");
+    s.key("spectral_radius", &Options::spectral_radius, "ρ∞ of generalised_alpha").in("-").within(between(0, 1));
+    s.key("largest_step_s", &Options::largest_step, "where an automatic step begins, and above which it never grows")
+        .in("s")
+        .within(above(0))
+        .otherwise("0.01, static 0.05");
+    s.key("tolerance", &Options::tolerance, "forces out of balance over the largest forces")
+        .in("-")
+        .within(between(1e-13, 1e-2));
+    s.key("most_iterations", &Options::most_iterations, "of Newton's method, before a step is cut in two")
+        .within(between(1, 1000));
+    s.key("most_cuts", &Options::most_cuts, "how often a step is cut in two before the run stops")
+        .within(between(0, 40));
+    s.choice<Preconditioner>("preconditioner", &Options::preconditioner,
+                             {{"auto", Preconditioner::automatic, "by the size of the body"},
+                              {"factorised", Preconditioner::factorised, "sparse Cholesky, kept as long as it serves"},
+                              {"block_diagonal", Preconditioner::block_diagonal, "3 × 3 a vertex"}},
+                             "what speeds up the linear solves");
+    return s.spec();
+  }();
+  return section;
+}
+
 const SectionSpec& motion_section() {
   static const SectionSpec section = [] {
     Section<Variant> s("motion", "How time runs: the integrator, its step, damping, gravity, and when the run ends.");
-    s.bare({.name = "integrator",
-            .help = "the scheme of motion",
-            .type = ValueType::text,
-            .words = {{"explicit", "the paper's equation 4: displacements from forces at the start of the step"}},
-            .default_text = "\"explicit\""});
+    s.choice<Integrator>(
+        "integrator", [](Variant & v) -> auto& { return v.simulation.integrator; },
+        {{"explicit", Integrator::explicit_,
+          "the paper's equation 4: displacements from forces at the start of the step"},
+         {"semi_implicit", Integrator::semi_implicit, "the same, viscosity taken at the end of the step"},
+         {"implicit", Integrator::implicit, "Newton's method each step, stable at any step"},
+         {"static", Integrator::static_, "equilibrium without inertia and viscosity; time orders motions and loads"}},
+        "how the body is advanced in time");
     s.key(
          "step_s", [](Variant & v) -> auto& { return v.simulation.step; },
-         "time step h; \"auto\" takes 0.9 of the stable step and follows it as the tissue stiffens")
+         "time step h; \"auto\" takes 0.9 of the stable step and follows the tissue, implicit and static as much as "
+         "converges")
         .in("s")
         .within(above(0))
         .otherwise("\"auto\"")
         .advise("\"auto\" chooses the largest safe step")
         .accepts_auto = true;
+    s.table(
+        "implicit", implicit_section(), [](Variant & v) -> auto& { return v.simulation.implicit; },
+        "what the integrators implicit and static do");
     s.choice<Precision>(
         "precision", [](Variant & v) -> auto& { return v.simulation.precision; },
         {{"single", Precision::single_precision, "elements in float, state in double"},

@@ -123,6 +123,7 @@ std::string home_of_key(const std::string& key) {
   for (const KindSpec& kind : hyperelastic_section().kinds) {
     if (kind.section.find(key)) return "[tissue.hyperelastic] of kind \"" + kind.section.name + "\"";
   }
+  if (implicit_section().find(key)) return "[motion.implicit]";
   if (fibres_section().find(key)) return "[tissue.fibres]";
   if (maxwell_section().find(key)) return "[[tissue.maxwell]]";
   if (scene_section().find(key)) return "the top of the scene";

@@ -17,6 +17,7 @@ const SectionSpec& fibres_section();        ///< fills Fibres
 const SectionSpec& maxwell_section();       ///< fills MaxwellBranch
 const SectionSpec& tissue_section();        ///< fills Tissue
 const SectionSpec& region_section();        ///< fills RegionSpec
+const SectionSpec& implicit_section();      ///< fills ImplicitOptions
 const SectionSpec& motion_section();        ///< fills Variant
 const SectionSpec& fixed_section();         ///< fills FixedSpec
 const SectionSpec& load_section();          ///< fills LoadSpec

@@ -68,7 +68,8 @@ tissue.maxwell_part = "all"
 tissue.volume_change = "nodal"
 
 [motion]
-integrator = "explicit"
+integrator = "implicit"
+implicit = { scheme = "generalised_alpha", spectral_radius = 0.5, largest_step_s = 0.02, tolerance = 1e-6, most_iterations = 12, most_cuts = 5, preconditioner = "block_diagonal" }
 step_s = 1e-4
 precision = "double"
 damping_rate_per_s = 3
@@ -226,6 +227,15 @@ TEST(EveryKey, OfLargeDeformationIsRead) {
 TEST(EveryKey, OfMotionToolsAndOutputIsRead) {
   const Variant v = parse(kEveryKey).variants[0];
   EXPECT_EQ(v.simulation.step, 1e-4);
+  EXPECT_EQ(v.simulation.integrator, Integrator::implicit);
+  const ImplicitOptions& implicit = v.simulation.implicit;
+  EXPECT_EQ(implicit.scheme, TimeScheme::generalised_alpha);
+  EXPECT_EQ(implicit.spectral_radius, 0.5);
+  EXPECT_EQ(implicit.largest_step, 0.02);
+  EXPECT_EQ(implicit.tolerance, 1e-6);
+  EXPECT_EQ(implicit.most_iterations, 12);
+  EXPECT_EQ(implicit.most_cuts, 5);
+  EXPECT_EQ(implicit.preconditioner, Preconditioner::block_diagonal);
   EXPECT_EQ(v.simulation.precision, Precision::double_precision);
   EXPECT_EQ(v.simulation.damping_rate, 3.0);
   EXPECT_EQ(v.simulation.nodal_damping, 0.002);
