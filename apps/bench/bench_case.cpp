@@ -6,15 +6,34 @@
 #include <array>
 #include <map>
 #include <stdexcept>
-#include <utility>
 
 #include "bench/smooth_state.h"
 
 namespace glisson::app {
 namespace {
 
-constexpr std::array<std::pair<Model, std::string_view>, 3> kModels{
-    {{Model::linear, "linear"}, {Model::law, "law"}, {Model::full, "full"}}};
+constexpr std::array<std::string_view, 15> kModels{
+    "linear", "law",     "full",          "corotational", "green", "green_energy",     "fibres", "neo_hookean",
+    "nodal",  "maxwell", "mooney_rivlin", "yeoh",         "fung",  "veronda_westmann", "ogden"};
+
+constexpr double kShear = 3600.0 / 2.8, kBulk = 6000.0;  ///< of E = 3.6 kPa and ν = 0.4 [Pa]
+
+HyperelasticLaw hyperelastic(Model model) {
+  switch (model) {
+    case Model::mooney_rivlin:
+      return MooneyRivlin{.c10 = 0.35 * kShear, .c01 = 0.15 * kShear, .bulk_modulus = kBulk};
+    case Model::yeoh:
+      return Yeoh{.c1 = 0.5 * kShear, .c2 = 0.1 * kShear, .c3 = 0.1 * kShear, .bulk_modulus = kBulk};
+    case Model::fung:
+      return Fung{.mu = kShear, .b = 2.0, .bulk_modulus = kBulk};
+    case Model::veronda_westmann:
+      return VerondaWestmann{.c = 0.5 * kShear, .b = 2.0, .bulk_modulus = kBulk};
+    case Model::ogden:
+      return Ogden{.mu = {0.8 * kShear, 0.2 * kShear}, .alpha = {-4.7, 3.0}, .bulk_modulus = kBulk};
+    default:
+      return NeoHookean{.mu = kShear, .bulk_modulus = kBulk};
+  }
+}
 
 /// Figure 1's box, the same with cubes of 2 mm, and a cube with 55 a side, 998 250 tets.
 const std::map<std::size_t, BoxOptions>& boxes() {
@@ -25,25 +44,30 @@ const std::map<std::size_t, BoxOptions>& boxes() {
 
 }  // namespace
 
-std::string_view model_name(Model model) {
-  for (const auto& [known, name] : kModels) {
-    if (known == model) return name;
-  }
-  throw std::logic_error("a model without a name");
+std::vector<Model> every_model() {
+  std::vector<Model> all;
+  for (std::size_t i = 0; i < kModels.size(); ++i) all.push_back(static_cast<Model>(i));
+  return all;
 }
 
-Model model_named(std::string_view name) {
-  for (const auto& [model, known] : kModels) {
-    if (known == name) return model;
-  }
-  throw std::invalid_argument(fmt::format("there is no model \"{}\"; the models are linear, law, full", name));
-}
+std::string_view model_name(Model model) { return kModels[static_cast<std::size_t>(model)]; }
+
+std::vector<std::string> model_names() { return {kModels.begin(), kModels.end()}; }
 
 Tissue model_tissue(Model model) {
   Tissue tissue;
   tissue.name = model_name(model);
-  if (model != Model::linear) tissue.law = LinearLaw{.slope = tissue.youngs_modulus / 0.5};
+  const LinearLaw doubling{.slope = tissue.youngs_modulus / 0.5};
+  if (model == Model::law || model == Model::full || model == Model::green_energy) tissue.law = doubling;
   if (model == Model::full) tissue.viscosity = 10.0;
+  if (model == Model::corotational) tissue.kinematics = Kinematics::corotational;
+  const bool green = model == Model::green || model == Model::green_energy || model == Model::fibres;
+  if (green) tissue.kinematics = Kinematics::green;
+  if (model == Model::green_energy) tissue.law_form = LawForm::energy;
+  if (model == Model::fibres) tissue.fibres = Fibres{.direction = {1.0, 1.0, 0.0}, .stiffness = 3600.0};
+  if (model >= Model::neo_hookean) tissue.hyperelastic = hyperelastic(model);
+  if (model == Model::nodal) tissue.volume_change = VolumeChange::nodal;
+  if (model == Model::maxwell) tissue.maxwell = {{.share = 0.4, .time = 0.5}, {.share = 0.3, .time = 50.0}};
   return tissue;
 }
 

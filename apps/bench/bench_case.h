@@ -11,14 +11,32 @@
 
 namespace glisson::app {
 
-/// The paper's three steps of complexity: constant stiffness, stiffness that follows the shape, and viscosity on top.
-enum class Model { linear, law, full };
+/// The paper's three steps of complexity: constant stiffness, stiffness that follows the shape, and viscosity on top; then
+/// the tissues of large deformation, elastic unless said.
+enum class Model {
+  linear,
+  law,
+  full,
+  corotational,
+  green,
+  green_energy,  ///< Green strain, E doubles at s = 0.5, as an energy
+  fibres,        ///< Green strain and fibres
+  neo_hookean,
+  nodal,    ///< neo-Hookean, volume changes shared over vertices
+  maxwell,  ///< neo-Hookean, two branches
+  mooney_rivlin,
+  yeoh,
+  fung,
+  veronda_westmann,
+  ogden  ///< of two terms
+};
 
+/// All of them, in the order of Model.
+std::vector<Model> every_model();
 std::string_view model_name(Model model);
-/// @throws std::invalid_argument for a name that is none of linear, law, full
-Model model_named(std::string_view name);
+std::vector<std::string> model_names();
 
-/// E = 3.6 kPa, ν = 0.4; `law`: E doubles at s = 0.5; `full`: and η = 10 Pa·s, shear tensor.
+/// E = 3.6 kPa, ν = 0.4, or the same μ and κ; `law`: E doubles at s = 0.5; `full`: and η = 10 Pa·s, shear tensor.
 Tissue model_tissue(Model model);
 
 /// A mesh and the smooth state every repetition starts from.

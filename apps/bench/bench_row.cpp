@@ -59,6 +59,9 @@ std::vector<BenchRatio> ratios(const BenchResult& result) {
     return find_row(result.rows, row.tets, model, threads);
   };
   for (const BenchRow& row : result.rows) {
+    if (row.what.model > Model::full && row.what.threads == 1) {
+      add(fmt::format("{} / linear, {} tets", model_name(row.what.model), row.tets), &row, like(row, Model::linear, 1));
+    }
     if (row.what.model != Model::full) continue;
     const int threads = row.what.threads;
     const std::string which = fmt::format("{} tets", row.tets);

@@ -42,7 +42,7 @@ std::string roof_text(const cpu::MachinePeak& p) {
 }
 
 std::string row_text(const BenchRow& row, const cpu::MachinePeak& peak, std::size_t width) {
-  return fmt::format("{:<{}}  {:<6} {:>8} {:>7} {:>8.2f} {:>8} {:>7} {:>7} {:>8} {:>9}  {:016x}\n", row.mesh, width,
+  return fmt::format("{:<{}}  {:<16} {:>8} {:>7} {:>8.2f} {:>8} {:>7} {:>7} {:>8} {:>9}  {:016x}\n", row.mesh, width,
                      model_name(row.what.model), row.tets, row.what.threads, row.ns_per_tet_step, percent(row.spread),
                      count(row.engine.flops_per_tet), count(row.engine.bytes_per_tet),
                      percent(fraction_of_fma_peak(row, peak)), percent(fraction_of_bandwidth(row, peak)),
@@ -93,7 +93,7 @@ std::string bench_table(const BenchResult& result, const MeasureOptions& options
   }
   std::size_t width = 4;
   for (const BenchRow& row : result.rows) width = std::max(width, characters(row.mesh));
-  text += fmt::format("\n{:<{}}  {:<6} {:>8} {:>7} {:>8} {:>8} {:>7} {:>7} {:>8} {:>9}  {}\n", "body", width, "model",
+  text += fmt::format("\n{:<{}}  {:<16} {:>8} {:>7} {:>8} {:>8} {:>7} {:>7} {:>8} {:>9}  {}\n", "body", width, "model",
                       "tets", "threads", "ns", "spread", "flops", "bytes", "of FMA", "of memory", "state");
   for (const BenchRow& row : result.rows) text += row_text(row, result.peak(row.what.threads), width);
   text += "\n" + fmt::format(kLegend, options.repetitions, options.repetition_s, kHashSteps) + "\n";

@@ -1,6 +1,8 @@
 // `glisson bench`: its result file is complete and sane, its states do not depend on threads, its mistakes are told.
 #include "app/program.h"
 
+#include <set>
+
 namespace glisson::test {
 namespace {
 
@@ -49,6 +51,19 @@ TEST_F(Bench, QuickRunWritesACompleteResult) {
   EXPECT_NE(hashes["linear"], hashes["law"]) << "the law must act on the initial state";
   EXPECT_NE(hashes["law"], hashes["full"]);
   EXPECT_NE(outcome.out.find("full / linear, 768 tets"), std::string::npos) << outcome.out;
+}
+
+// Every tissue of large deformation by one word, each with its ratio to the linear one.
+TEST_F(Bench, EveryModelIsMeasured) {
+  const Outcome outcome =
+      run({"bench", "--quick", "--sizes", "768", "--threads", "1", "--models", "all", "--json", "b.json"});
+  ASSERT_THAT(outcome, Exits(0));
+  const nlohmann::json json = read_json(folder_ / "b.json");
+  ASSERT_EQ(json["rows"].size(), 15u);
+  std::set<std::string> hashes;
+  for (const nlohmann::json& row : json["rows"]) hashes.insert(row["state_hash"].get<std::string>());
+  EXPECT_EQ(hashes.size(), 15u) << "each tissue moves in its own way";
+  EXPECT_GT(json["ratios"]["ogden / linear, 768 tets"].get<double>(), 1.0);
 }
 
 // The same program from the same state: a second run ends in the same state.
