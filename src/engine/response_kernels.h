@@ -3,7 +3,7 @@
 //   gather H, Ḣ ──▶ [measure, law] ──▶ respond: P ──▶ fibres ──▶ Maxwell ──▶ viscous ──▶ push
 //
 // A tet whose J has fallen below kSmallestVolume is answered by tissue/response.h instead, in double, one at a time: lanes
-// hold the formulas for tissue, that one those for tets that are flat or inverted. So are lanes without a tet never asked.
+// hold the formulas for tissue, that one those for tets that are flat or inverted.
 #pragma once
 
 #include <array>
