@@ -72,8 +72,11 @@ struct SimulationOptions {
   std::optional<double> step;
   ImplicitOptions implicit;
   Precision precision = Precision::single_precision;
-  double damping_rate = 0.0;      ///< mass-proportional nodal damping γ_i/m_i [1/s], ≥ 0
-  double nodal_damping = 0.0;     ///< nodal damping γ_i equal at all vertices, added to it [kg/s], ≥ 0
+  double damping_rate = 0.0;   ///< mass-proportional nodal damping γ_i/m_i [1/s], ≥ 0
+  double nodal_damping = 0.0;  ///< nodal damping γ_i equal at all vertices, added to it [kg/s], ≥ 0
+  /// Explicit and semi-implicit: adds mass to just those tets whose own bound is below this step, until it is that [s], > 0;
+  /// for meshes with a few tiny tets. The mass has inertia and weight; mass_scaling() reports it. None: no mass is added.
+  std::optional<double> mass_scaling_step;
   Vec3d gravity{};                ///< [m/s²]
   double gravity_ramp = 0.0;      ///< gravity grows linearly from 0 over this time [s], ≥ 0
   bool enforce_stability = true;  ///< false: take any step, for studies of the instability itself
@@ -166,6 +169,20 @@ struct SplitReport {
   std::size_t closed_faces = 0;        ///< faces split so far that are closed still: all their vertices are at the rim
 };
 
+/// What mass scaling has added.
+struct MassScaling {
+  double added = 0.0;               ///< [kg]
+  double share = 0.0;               ///< of the body's own mass [-]
+  std::vector<std::uint32_t> tets;  ///< that got some, ascending
+};
+
+/// A tet that may keep the step short.
+struct LimitingTet {
+  std::uint32_t tet = 0;
+  double altitude = 0.0;  ///< smallest distance of a vertex from the opposite face, at rest [m]
+  double step = 0.0;      ///< its own bound at rest stiffness [s]: h* is not below the smallest of all tets
+};
+
 /// Displacement of a driven set at time t [m]; must be 0 at the time the set is driven from.
 using Motion = std::function<Vec3d(double time)>;
 
@@ -220,6 +237,11 @@ class Simulation {
   /// free body at its present stiffness [Schwartz2002, eq. 4; docs/theory.md §4]; infinite for implicit and static
   double stable_step() const;
   std::uint64_t steps() const;
+
+  const MassScaling& mass_scaling() const;
+  /// The tets with the smallest bounds of a step, smallest first: without the first k of them, or with more mass for them,
+  /// the bound of h* is that of the next. What viscosity takes off it is counted for the explicit integrator.
+  std::vector<LimitingTet> limiting_tets(std::size_t most = 10) const;
 
   /// At rest, with all tets there ever were; those split have their present vertices.
   const TetMesh& mesh() const;

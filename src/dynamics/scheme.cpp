@@ -3,10 +3,17 @@
 #include <stdexcept>
 #include <string>
 
+#include "dynamics/mass_scaling.h"
 #include "mechanics/tet_fields.h"
 
 namespace glisson {
 namespace {
+
+/// Before anything else asks for masses.
+MassScaling scaled(Body& body, const SimulationOptions& o) {
+  if (!o.mass_scaling_step) return {};
+  return scale_masses(body, *o.mass_scaling_step, o.integrator == Integrator::explicit_ ? 1.0 : 0.0);
+}
 
 std::vector<double> nodal_damping(const Body& body, const SimulationOptions& o) {
   std::vector<double> gamma;
@@ -17,8 +24,8 @@ std::vector<double> nodal_damping(const Body& body, const SimulationOptions& o) 
 }  // namespace
 
 Scheme::Scheme(Body body, const SimulationOptions& options)
-    : options_(options), body_(std::move(body)), gamma_(nodal_damping(body_, options)),
-      constraints_(body_.vertex_count), loads_(body_.vertex_count) {}
+    : options_(options), body_(std::move(body)), mass_scaling_(scaled(body_, options)),
+      gamma_(nodal_damping(body_, options)), constraints_(body_.vertex_count), loads_(body_.vertex_count) {}
 
 BodyChanger& Scheme::changer() {
   if (changer_ == nullptr) changer_ = std::make_unique<BodyChanger>(body_);
@@ -77,7 +84,7 @@ void Scheme::weigh_energy(std::span<const std::uint32_t> elements, RemovalReport
   double kinetic = 0.0, elastic = 0.0;
   for (const std::uint32_t e : elements) {
     const TissueBlock& block = body_.block_of(e);
-    const double quarter = 0.25 * block.tissue.density * body_.rest[e].volume;
+    const double quarter = body_.quarter_mass(block, e);
     std::array<Vec3d, 4> u;
     for (std::size_t a = 0; a < 4; ++a) {
       const std::uint32_t vertex = body_.elements[e][a];

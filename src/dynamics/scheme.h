@@ -49,6 +49,7 @@ class Scheme {
   virtual void load(CheckpointReader& in);
 
   const Body& body() const { return body_; }
+  const MassScaling& mass_scaling() const { return mass_scaling_; }
   const EngineInfo& info() const { return info_; }
   double time() const { return time_; }
   std::uint64_t steps() const { return steps_; }
@@ -77,6 +78,7 @@ class Scheme {
 
   SimulationOptions options_;
   Body body_;
+  MassScaling mass_scaling_;
   std::vector<double> gamma_;  ///< nodal damping [kg/s]
   EngineInfo info_;
   Constraints constraints_;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "dynamics/make_scheme.h"
+#include "dynamics/mass_scaling.h"
 #include "mechanics/tet_fields.h"
 
 namespace glisson {
@@ -37,6 +38,11 @@ void require_options(const SimulationOptions& o) {
   check(not_negative(o.gravity_ramp), "gravity_ramp [s]", o.gravity_ramp, ">= 0 and finite");
   check(o.threads >= 0 && o.threads <= kMostThreads, "threads", o.threads, "0 (automatic) to 1024");
   require_implicit(o.implicit, check);
+  const double reached = o.mass_scaling_step.value_or(1.0);
+  check(reached > 0.0 && std::isfinite(reached), "mass_scaling_step [s]", reached, "> 0 and finite");
+  const bool steps_freely = o.integrator == Integrator::implicit || o.integrator == Integrator::static_;
+  check(!(o.mass_scaling_step && steps_freely), "mass_scaling_step [s]", reached,
+        "none with the integrators implicit and static, which need no mass for their step");
   check(std::isfinite(norm(o.gravity)), "|gravity| [m/s^2]", norm(o.gravity), "finite");
 }
 
@@ -158,6 +164,13 @@ void Simulation::set_state(std::span<const Vec3d> displacement, std::span<const 
 }
 
 ForceParts Simulation::force(ConstraintId constraint) const { return impl_->scheme->force(constraint); }
+
+const MassScaling& Simulation::mass_scaling() const { return impl_->scheme->mass_scaling(); }
+
+std::vector<LimitingTet> Simulation::limiting_tets(std::size_t most) const {
+  const bool lags = impl_->kind % 16 == static_cast<std::uint32_t>(Integrator::explicit_);
+  return glisson::limiting_tets(impl_->scheme->body(), most, lags ? 1.0 : 0.0);
+}
 
 double Simulation::force_time() const { return impl_->scheme->force_time(); }
 

@@ -194,10 +194,26 @@ double modulus_bound(LameParameters lame) { return std::max(3.0 * lame.lambda + 
 
 }  // namespace
 
-double element_step(const Body& body, const TissueBlock& block, std::size_t e, double stiffening, double viscosity) {
-  const double per_mass = 4.0 * gradient_spread(body.rest[e]) / block.tissue.density;
+namespace {
+
+/// Bounds of an element's k and c over its mass.
+RayleighQuotients element_quotients(const Body& body, const TissueBlock& block, std::size_t e, double stiffening,
+                                    double viscosity) {
+  const double factor = body.mass_factor.empty() ? 1.0 : body.mass_factor[e];
+  const double per_mass = 4.0 * gradient_spread(body.rest[e]) / (block.tissue.density * factor);
   const double viscous = std::max(0.0, viscosity) * modulus_bound(block.viscous);
-  return mode_step({stiffening * modulus_bound(block.elastic) * per_mass, viscous * per_mass, 0.0});
+  return {stiffening * modulus_bound(block.elastic) * per_mass, viscous * per_mass, 0.0};
+}
+
+}  // namespace
+
+double element_step(const Body& body, const TissueBlock& block, std::size_t e, double stiffening, double viscosity) {
+  return mode_step(element_quotients(body, block, e, stiffening, viscosity));
+}
+
+double mass_factor_for(const Body& body, const TissueBlock& block, std::size_t e, double step, double viscosity) {
+  const RayleighQuotients q = element_quotients(body, block, e, 1.0, viscosity);
+  return 0.25 * step * (q.k * step + 2.0 * q.c);
 }
 
 double element_bound_step(const Body& body, std::span<const double> stiffening, std::span<const double> viscosity) {

@@ -54,6 +54,9 @@ double largest_squared_frequency(const Body& body);
 /// Rigorous lower bound of h* from the single elements, damping left out, and negative factors of viscosity [s].
 double element_bound_step(const Body& body, std::span<const double> stiffening, std::span<const double> viscosity = {});
 
+/// What an element's mass is to be multiplied with to have the bound `step` at rest stiffness; below 1 where it has more.
+double mass_factor_for(const Body& body, const TissueBlock& block, std::size_t element, double step, double viscosity);
+
 /// The same for one element.
 double element_step(const Body& body, const TissueBlock& block, std::size_t element, double stiffening,
                     double viscosity);

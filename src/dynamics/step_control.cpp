@@ -10,7 +10,10 @@ namespace {
 
 constexpr double kSafety = 0.9;  ///< automatic step over h*
 constexpr double kRoom = 1.2;    ///< stiffening that a new h* allows for beyond the present one
-constexpr std::uint64_t kLongestWindow = 64000;
+constexpr std::uint64_t kLongestWindow = 64000, kShortWindow = 16;  ///< [steps]
+constexpr double kLeastCaution = 1e-3;                              ///< least factor on a step while stiffness rises
+constexpr double kRecovery = 1.05;                                  ///< of that factor, a step
+constexpr double kMostAhead = 4.0;                                  ///< how far a level runs ahead of a rise
 
 bool is_small(const TissueBlock& block) {
   return !block.tissue.hyperelastic && block.tissue.kinematics == Kinematics::small;
@@ -41,6 +44,8 @@ StepControl::StepControl(const Body& body, std::span<const double> nodal_damping
   // the bound from an earlier h* holds only where C stays what it is
   exact_ = exact_ || (drag == Drag::at_once && !std::all_of(body.blocks.begin(), body.blocks.end(), is_small));
   seen_.assign(body.blocks.size(), 0.0);
+  lately_ = seen_;
+  last_.assign(stiffening.begin(), stiffening.end());
   validated_ = rest_level_ = at_least_one(stiffening);
   const std::vector<double> one(body.blocks.size(), 1.0);
   any_part_ = element_bound_step(body, one, viscosity_at(one));
@@ -104,12 +109,35 @@ void StepControl::mesh_changed(std::span<const double> nodal_damping) {
   unchecked_ = enforce_ && step_ > limits_.stable;
 }
 
+/// How many times as stiff the tissue has become within the last step; holds an automatic step back while that is more
+/// than the room.
+double StepControl::watch_rise(std::span<const double> stiffening) {
+  double rise = 1.0;
+  for (std::size_t b = 0; b < last_.size(); ++b) {
+    rise = std::max(rise, std::max(1.0, stiffening[b]) / std::max(1.0, last_[b]));
+    last_[b] = stiffening[b];
+  }
+  if (!automatic_ || !std::isfinite(rise)) return 1.0;
+  caution_ = rise > kRoom ? std::max(kLeastCaution, caution_ * std::log(kRoom) / std::log(rise))
+                          : std::min(1.0, kRecovery * caution_);
+  return std::min(rise, kMostAhead);
+}
+
+/// What a step is to be found for: the seen stiffness with room, not below that at rest.
+std::vector<double> StepControl::level_of(std::span<const double> seen, double ahead) const {
+  std::vector<double> level = at_least_one(seen);
+  for (std::size_t b = 0; b < level.size(); ++b) {
+    if (!is_linear(body_.blocks[b])) level[b] = std::max(rest_level_[b], kRoom * ahead * level[b]);
+  }
+  return level;
+}
+
 /// Takes in a level above the validated one; false where a given step does not bear it.
-bool StepControl::rises(std::span<const double> stiffening) {
-  std::vector<double> level = at_least_one(stiffening);
+bool StepControl::rises(std::span<const double> stiffening, double rise) {
+  std::vector<double> level = level_of(stiffening, rise);
   for (std::size_t b = 0; b < level.size(); ++b) {
     if (!std::isfinite(level[b])) return true;  // the state is beyond repair; the step reports that it is not finite
-    level[b] = is_linear(body_.blocks[b]) ? level[b] : std::max(validated_[b], kRoom * level[b]);
+    if (!is_linear(body_.blocks[b])) level[b] = std::max(validated_[b], level[b]);
   }
   limits_ = automatic_ && !exact_ ? bound_at(level) : limits_at(level);
   if (automatic_) {
@@ -124,15 +152,31 @@ bool StepControl::rises(std::span<const double> stiffening) {
   return true;
 }
 
+/// After a short peak: where the bound alone allows twice the step, it is taken, without a search.
+void StepControl::come_back() {
+  const bool bounded = drag_ == Drag::lags || std::all_of(body_.blocks.begin(), body_.blocks.end(), is_small);
+  std::vector<double> level = level_of(lately_, 1.0);
+  std::fill(lately_.begin(), lately_.end(), 0.0);
+  const Limits bound = bound_at(level);
+  if (!bounded || kSafety * bound.pace < 2.0 * step_) return;
+  limits_ = bound;
+  step_ = kSafety * bound.pace;
+  validated_ = std::move(level);
+}
+
 /// Lets an automatic step grow at the end of a window in which the tissue was well softer than the validated level.
 void StepControl::relax(std::span<const double> stiffening) {
-  for (std::size_t b = 0; b < seen_.size(); ++b) seen_[b] = std::max(seen_[b], stiffening[b]);
-  if (++in_window_ < window_) return;
-  std::vector<double> level = at_least_one(seen_);
+  for (std::size_t b = 0; b < seen_.size(); ++b) {
+    seen_[b] = std::max(seen_[b], stiffening[b]);
+    lately_[b] = std::max(lately_[b], stiffening[b]);
+  }
+  ++in_window_;
+  if (in_window_ % kShortWindow == 0) come_back();
+  if (in_window_ < window_) return;
+  std::vector<double> level = level_of(seen_, 1.0);
   bool softer = false;
   for (std::size_t b = 0; b < level.size(); ++b) {
-    level[b] =
-        is_linear(body_.blocks[b]) ? level[b] : std::min(validated_[b], std::max(rest_level_[b], kRoom * level[b]));
+    level[b] = std::min(validated_[b], level[b]);
     softer = softer || level[b] * kRoom < validated_[b];
   }
   in_window_ = 0;
@@ -145,25 +189,27 @@ void StepControl::relax(std::span<const double> stiffening) {
 }
 
 void StepControl::save(CheckpointWriter& out) const {
-  out.put(step_), out.put(any_part_), out.put(window_), out.put(in_window_), out.put(unchecked_);
+  out.put(step_), out.put(any_part_), out.put(window_), out.put(in_window_), out.put(unchecked_), out.put(caution_);
   out.put_doubles(limits_), out.put_doubles(rest_limits_);
-  for (const auto* list : {&validated_, &rest_level_, &seen_, &guess_.mode, &pace_guess_.mode}) out.put(*list);
+  for (const auto* list : {&validated_, &rest_level_, &seen_, &lately_, &last_}) out.put(*list);
+  out.put(guess_.mode), out.put(pace_guess_.mode);
   out.put(guess_.step), out.put(pace_guess_.step);
 }
 
 void StepControl::load(CheckpointReader& in) {
-  in.get(step_), in.get(any_part_), in.get(window_), in.get(in_window_), in.get(unchecked_);
+  in.get(step_), in.get(any_part_), in.get(window_), in.get(in_window_), in.get(unchecked_), in.get(caution_);
   in.get_doubles(limits_), in.get_doubles(rest_limits_);
-  for (auto* list : {&validated_, &rest_level_, &seen_}) in.get_same_size(*list);
+  for (auto* list : {&validated_, &rest_level_, &seen_, &lately_, &last_}) in.get_same_size(*list);
   in.get(guess_.mode), in.get(pace_guess_.mode);
   in.get(guess_.step), in.get(pace_guess_.step);
 }
 
 bool StepControl::accept(std::span<const double> stiffening) {
   if (!enforce_) return true;
+  const double rise = watch_rise(stiffening);
   bool within = !unchecked_;
   for (std::size_t b = 0; b < validated_.size(); ++b) within = within && stiffening[b] <= validated_[b];
-  if (!within) return rises(stiffening);
+  if (!within) return rises(stiffening, rise);
   if (automatic_) relax(stiffening);
   return true;
 }

@@ -6,7 +6,10 @@
 // (real time), the last h* gives a bound: for stiffness up to r times as large,
 //   φ(h/r) of r K  =  (1/r) φ(h) of K  ≤ 4,   and without nodal damping φ(h/√r) of r K ≤ φ(h) of K ≤ 4.
 // Once in a window of steps an automatic step may grow again: where the window's stiffest moment stayed well below the
-// level, h* is computed for that. Each time the window doubles, so that tissue that swings costs no search a swing.
+// level, h* is computed for that. Each time the window doubles, so that tissue that swings costs no search a swing. After a
+// short peak the bound brings it back within a few steps.
+// A step is taken with the stiffness of the one before: where that rises by more than the room within a step, steps are
+// shortened until it does not, and the level runs ahead of it. Exponential laws under impact need this.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +49,7 @@ class StepControl {
   void save(CheckpointWriter& out) const;
   void load(CheckpointReader& in);
 
-  double step() const { return step_; }
+  double step() const { return step_ * caution_; }
   double stable_step() const { return limits_.stable; }
 
  private:
@@ -59,8 +62,11 @@ class StepControl {
   Limits limits_at(std::span<const double> stiffening);
   Limits bound_at(std::span<const double> stiffening) const;
   void refuse_above() const;
-  bool rises(std::span<const double> stiffening);
+  bool rises(std::span<const double> stiffening, double rise);
+  double watch_rise(std::span<const double> stiffening);
+  std::vector<double> level_of(std::span<const double> seen, double ahead) const;
   void relax(std::span<const double> stiffening);
+  void come_back();
 
   const Body& body_;
   std::span<const double> nodal_damping_;
@@ -76,6 +82,9 @@ class StepControl {
   Limits rest_limits_;        ///< for rest_level_, the stiffness at the start
   std::vector<double> seen_;  ///< largest stiffening per block in this window
   std::uint64_t window_ = 1000, in_window_ = 0;
+  std::vector<double> lately_;  ///< the same of the last few steps
+  std::vector<double> last_;    ///< of the last step
+  double caution_ = 1.0;        ///< factor on an automatic step while stiffness rises fast
 };
 
 }  // namespace glisson

@@ -50,6 +50,10 @@ const TissueBlock& Body::block_of(std::size_t element) const {
   return *std::find_if(blocks.begin(), blocks.end(), [&](const TissueBlock& b) { return element < b.end; });
 }
 
+double Body::quarter_mass(const TissueBlock& block, std::size_t e) const {
+  return 0.25 * block.tissue.density * rest[e].volume * (mass_factor.empty() ? 1.0 : mass_factor[e]);
+}
+
 ElementRest element_rest(const std::array<Vec3d, 4>& x) {
   const Vec3d a = x[1] - x[0], b = x[2] - x[0], c = x[3] - x[0];
   const double six_volume = dot(a, cross(b, c));

@@ -42,9 +42,12 @@ struct Body {
   std::vector<TissueBlock> blocks;
   std::vector<double> masses;         ///< lumped: a quarter of ρV to each vertex [kg]
   std::vector<Vec3d> rest_positions;  ///< [m]
+  std::vector<double> mass_factor;    ///< of each element, ≥ 1: mass that was added; empty: none
   std::vector<Vec3d> fibres;          ///< of each tet of the mesh, any length; empty: those of the tissues
 
   const TissueBlock& block_of(std::size_t element) const;
+  /// What an element gives each of its vertices [kg].
+  double quarter_mass(const TissueBlock& block, std::size_t element) const;
 };
 
 /// @param tissues  by region number; every region of the mesh needs one

@@ -12,7 +12,7 @@ BodyChanger::BodyChanger(Body& body)
   quarter_masses_.reserve(body.elements.size());
   for (const TissueBlock& block : body.blocks) {
     for (std::size_t e = block.begin; e < block.end; ++e) {
-      quarter_masses_.push_back(0.25 * block.tissue.density * body.rest[e].volume);
+      quarter_masses_.push_back(body.quarter_mass(block, e));
     }
   }
 }

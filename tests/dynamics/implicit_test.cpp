@@ -87,27 +87,22 @@ TEST(Implicit, RampHasTheViscousOverhead) {
   }
 }
 
-// Creep under a constant load: ε = (σ/M)(1 − e^(−t M/M_v)); at M_v/M over 200 steps backward Euler errs by 0.25 %,
-// Newmark by its square.
+// Creep under a constant load: ε = (σ/M)(1 − e^(−t M/M_v)); at 200 steps a time constant backward Euler errs by 0.25 %.
 TEST(Implicit, CreepFollowsTheExponential) {
   Tissue tissue;
   tissue.viscosity = 1000.0;
   const double M = tissue.lame().lambda + 2.0 * tissue.lame().mu, M_v = 2.0 * tissue.viscosity, load = 100.0;
-  for (const auto& [scheme, tolerance] :
-       {std::pair{TimeScheme::backward_euler, 4e-3}, {TimeScheme::generalised_alpha, 2e-4}}) {
-    SimulationOptions options = implicit(scheme, M_v / M / 200.0);
-    options.implicit.spectral_radius = 0.0;  // a sudden load on what is overdamped: any other ρ∞ rings
-    test::Column column(tissue, 0.006, 2, 1, options);
-    column.add_pressure(load);
-    double worst = 0.0;
-    for (int i = 0; i < 600; ++i) {
-      ASSERT_EQ(column.simulation.step().status, StepStatus::ok);
-      const double t = column.simulation.time(), expected = load / M * (1.0 - std::exp(-t * M / M_v));
-      if (t > 0.1 * M_v / M)
-        worst = std::max(worst, std::abs(-column.top_displacement() / column.length / expected - 1.0));
+  test::Column column(tissue, 0.006, 2, 1, implicit(TimeScheme::backward_euler, M_v / M / 200.0));
+  column.add_pressure(load);
+  double worst = 0.0;
+  for (int i = 0; i < 600; ++i) {
+    ASSERT_EQ(column.simulation.step().status, StepStatus::ok);
+    const double t = column.simulation.time(), expected = load / M * (1.0 - std::exp(-t * M / M_v));
+    if (t > 0.1 * M_v / M) {
+      worst = std::max(worst, std::abs(-column.top_displacement() / column.length / expected - 1.0));
     }
-    EXPECT_LE(worst, tolerance);
   }
+  EXPECT_LE(worst, 4e-3);
 }
 
 struct Law {

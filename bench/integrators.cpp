@@ -1,0 +1,136 @@
+// integrators.cpp — what a simulated second costs with each integrator, at equal error: the table of docs/integrators.md.
+//
+//   integrators [cells across …]        4 9 16 by default: 768, 8748 and 49152 tets
+//
+// The paper's block is pressed from above at 10 mm/s for 0.1 s, its start rounded over 20 ms. The reference is the explicit scheme
+// (of the elastic block at a quarter of its step). Each integrator takes the longest step of a list with which the plate's
+// force stays within 1 % of the reference's largest; time is that of one thread's processor.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "glisson/motion.h"
+#include "glisson/simulation.h"
+
+namespace {
+
+using namespace glisson;
+
+constexpr double kEnd = 0.1, kLargestError = 0.01;
+
+/// Force of the plate against time.
+struct Curve {
+  std::vector<double> time{0.0}, force{0.0};
+  double step = 0.0, cost = 0.0;  ///< [s], processor seconds a simulated second
+  bool made = true;
+
+  double at(double t) const {
+    std::size_t i = 1;
+    while (i + 1 < time.size() && time[i] < t) ++i;
+    return force[i - 1] + (force[i] - force[i - 1]) * (t - time[i - 1]) / (time[i] - time[i - 1]);
+  }
+};
+
+struct Body {
+  TetMesh mesh;
+  Tissue tissue;
+};
+
+Curve run(const Body& body, Integrator integrator, TimeScheme scheme, std::optional<double> step) {
+  SimulationOptions o;
+  o.integrator = integrator;
+  o.implicit.scheme = scheme;
+  o.implicit.tolerance = 1e-5;
+  o.step = step;
+  o.damping_rate = 20.0;
+  o.threads = 1;
+  o.track_energies = false;
+  Simulation s(body.mesh, {{0, body.tissue}}, o);
+  s.fix(body.mesh.vertex_sets.at("z_min"));
+  const ConstraintId plate =
+      s.drive(body.mesh.vertex_sets.at("z_max"), press({.velocity = 0.01, .depth = 1.0, .ramp = 0.02}));
+  Curve curve;
+  curve.step = s.step_size();
+  s.step();  // what is built at the first step is not counted
+  const std::clock_t begin = std::clock();
+  const double from = s.time();
+  while (s.time() < kEnd - 1e-9 && curve.made) {
+    curve.made = s.step().status <= StepStatus::inverted;
+    curve.time.push_back(s.force_time());
+    curve.force.push_back(-s.force(plate).total().z);
+  }
+  curve.cost = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / (s.time() - from);
+  return curve;
+}
+
+/// Largest difference from the reference after the start, over its largest force.
+double error(const Curve& curve, const Curve& reference) {
+  double worst = 0.0, size = 0.0;
+  for (int k = 1; k <= 40; ++k) {
+    const double t = 0.02 + (0.095 - 0.02) * k / 40.0;
+    worst = std::max(worst, std::abs(curve.at(t) - reference.at(t)));
+    size = std::max(size, std::abs(reference.at(t)));
+  }
+  return worst / size;
+}
+
+void show(const char* name, const Curve& curve, double difference) {
+  std::printf("| %-26s | %8.3g | %7.3f | %9.3g |\n", name, 1e3 * curve.step, 100.0 * difference, curve.cost);
+  std::fflush(stdout);
+}
+
+void compare(int cells, double viscosity) {
+  Body body{box_mesh({.cells = {cells, cells, 2 * cells}, .size = {0.04, 0.04, 0.08}}), {}};
+  body.tissue.viscosity = viscosity;
+  std::printf(
+      "\n%zu tets, eta = %g Pa s\n\n| integrator | step [ms] | error [%%] | s a simulated second "
+      "|\n|---|---|---|---|\n",
+      body.mesh.tets.size(), viscosity);
+  const auto scheme = TimeScheme::backward_euler;
+  const Curve automatic = run(body, Integrator::explicit_, scheme, {});
+  const Curve reference = viscosity > 0.0 ? automatic : run(body, Integrator::explicit_, scheme, 0.25 * automatic.step);
+  show("explicit", automatic, error(automatic, reference));
+  struct Way {
+    const char* name;
+    Integrator integrator;
+    TimeScheme scheme;
+  };
+  for (const Way& way : {Way{"semi_implicit", Integrator::semi_implicit, scheme},
+                         Way{"implicit, backward_euler", Integrator::implicit, scheme},
+                         Way{"implicit, newmark", Integrator::implicit, TimeScheme::newmark}}) {
+    const bool bounded = way.integrator == Integrator::semi_implicit;
+    if (bounded && viscosity == 0.0) continue;
+    const Curve longest = bounded ? run(body, way.integrator, way.scheme, {}) : Curve{};
+    bool found = bounded && error(longest, reference) <= kLargestError;
+    if (found) show(way.name, longest, error(longest, reference));
+    const double shortest = cells > 10 ? 0.002 : 0.0002;  // shorter ones of a large body would take minutes
+    for (const double step : {0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0002}) {
+      if (found || step < shortest || (bounded && step > longest.step)) continue;
+      const Curve curve = run(body, way.integrator, way.scheme, step);
+      if (!curve.made || error(curve, reference) > kLargestError) continue;
+      show(way.name, curve, error(curve, reference));
+      found = true;
+    }
+    if (!found) std::printf("| %-26s | none of the list | | |\n", way.name);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<int> cells{4, 9, 16};
+  if (argc > 1) cells.clear();
+  for (int i = 1; i < argc; ++i) cells.push_back(std::atoi(argv[i]));
+  for (const int n : cells) {
+    if (n < 1 || n > 100) {
+      std::fprintf(stderr, "integrators: cells across = %d is outside the allowed range, 1 to 100\n", n);
+      return 1;
+    }
+    for (const double viscosity : {0.0, 1000.0}) compare(n, viscosity);
+  }
+  return 0;
+}

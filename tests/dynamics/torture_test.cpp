@@ -1,0 +1,147 @@
+// Bodies in states that no press makes: all vertices at random places, tets flat or inside out. They come back under the
+// implicit integrator, or end in an equilibrium that is said to be one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/bodies.h"
+
+namespace glisson {
+namespace {
+
+struct Law {
+  const char* name;
+  Tissue tissue;
+};
+
+Tissue hyperelastic(const HyperelasticLaw& law) {
+  Tissue t;
+  t.hyperelastic = law;
+  return t;
+}
+
+double kappa() { return Tissue{}.lame().lambda + 2.0 / 3.0 * Tissue{}.lame().mu; }
+double mu() { return Tissue{}.lame().mu; }
+
+Tissue with(Kinematics kinematics) {
+  Tissue t;
+  t.kinematics = kinematics;
+  return t;
+}
+
+/// What became of a body after up to 200 steps of up to 0.2 s.
+struct Outcome {
+  double largest = 0.0;  ///< displacement left [m]
+  std::size_t inverted_at_start = 0, inverted = 0;
+  StepStatus status = StepStatus::ok;
+};
+
+/// Lets the paper's block go, held at its base, from displacements chosen by `place`.
+template <class Place>
+Outcome let_go(const Tissue& tissue, unsigned seed, const Place& place) {
+  const TetMesh mesh = test::paper_mesh();
+  SimulationOptions o;
+  o.integrator = Integrator::implicit;
+  o.implicit.largest_step = 0.2;
+  Simulation s(mesh, {{0, tissue}}, o);
+  s.fix(mesh.vertex_sets.at("z_min"));
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<Vec3d> u(mesh.vertices.size());
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const Vec3d r{unit(random), unit(random), unit(random)};
+    if (mesh.vertices[i].z > 1e-9) u[i] = place(r, mesh.vertices[i]);
+  }
+  s.set_state(u, std::vector<Vec3d>(u.size()));
+  Outcome end;
+  for (const double J : s.tet_fields().jacobian) end.inverted_at_start += J <= 0.0 ? 1 : 0;
+  for (int i = 0; i < 200; ++i) {
+    const StepResult r = s.step();
+    end.status = r.status;
+    end.inverted = r.inverted_tets.size();
+    end.largest = 0.0;
+    for (const Vec3d& x : s.displacement()) end.largest = std::max(end.largest, norm(x));
+    if (r.status > StepStatus::inverted || end.largest < 1e-8) break;
+  }
+  return end;
+}
+
+Vec3d anywhere(const Vec3d& r, const Vec3d& rest) { return Vec3d{0.04 * r.x, 0.04 * r.y, 0.08 * r.z} - rest; }
+/// Up to a cell away along each axis.
+Vec3d nearby(const Vec3d& r, const Vec3d&) { return (r * 2.0 - Vec3d{1.0, 1.0, 1.0}) * 0.01; }
+
+class Scrambled : public testing::TestWithParam<Law> {};
+
+// Every vertex anywhere in the block: half of the tets are inside out. Back at rest to 1e-6 of its size.
+TEST_P(Scrambled, RecoversFromAnywhere) {
+  const Outcome end = let_go(GetParam().tissue, 7, anywhere);
+  EXPECT_GT(end.inverted_at_start, 250U);
+  EXPECT_EQ(end.status, StepStatus::ok);
+  EXPECT_LE(end.largest, 1e-6 * 0.08);
+}
+
+class Jumbled : public testing::TestWithParam<Law> {};
+
+// Every vertex up to a cell away from where it belongs: the same for the laws of large strain.
+TEST_P(Jumbled, RecoversFromACellAway) {
+  const Outcome end = let_go(GetParam().tissue, 1, nearby);
+  EXPECT_GT(end.inverted_at_start, 150U);
+  EXPECT_EQ(end.status, StepStatus::ok);
+  EXPECT_LE(end.largest, 1e-6 * 0.08);
+}
+
+// From anywhere a hyperelastic body may come to rest folded, a few tets or none inside out, and St Venant-Kirchhoff with
+// most of them: those are equilibria of their energies. Steps are made, nothing flies off, and inverted tets are reported.
+TEST(Folded, HyperelasticAndGreenBodiesEndInAnEquilibrium) {
+  for (const Tissue& tissue :
+       {hyperelastic(NeoHookean{.mu = mu(), .bulk_modulus = kappa()}),
+        hyperelastic(Ogden{.mu = {mu()}, .alpha = {-4.7}, .bulk_modulus = kappa()}), with(Kinematics::green)}) {
+    const Outcome end = let_go(tissue, 7, anywhere);
+    EXPECT_LE(end.status, StepStatus::inverted);
+    EXPECT_EQ(end.status == StepStatus::inverted, end.inverted > 0);
+    EXPECT_LT(end.largest, 0.2);
+  }
+}
+
+std::string law_name_of(const testing::TestParamInfo<Law>& law) { return law.param.name; }
+INSTANTIATE_TEST_SUITE_P(Laws, Scrambled,
+                         testing::Values(Law{"small", Tissue{}}, Law{"corotational", with(Kinematics::corotational)}),
+                         law_name_of);
+INSTANTIATE_TEST_SUITE_P(
+    Laws, Jumbled,
+    testing::Values(Law{"corotational", with(Kinematics::corotational)},
+                    Law{"neo_hookean", hyperelastic(NeoHookean{.mu = mu(), .bulk_modulus = kappa()})},
+                    Law{"ogden", hyperelastic(Ogden{.mu = {mu()}, .alpha = {-4.7}, .bulk_modulus = kappa()})}),
+    law_name_of);
+
+// One tet with its top vertex pushed into the plane of the others, or through it, and let go: it stands up again, under every
+// integrator that moves.
+TEST(Tet, RecoversFromFlatAndInsideOut) {
+  TetMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0.002, 0.003, 0.01}};
+  mesh.tets = {{0, 1, 2, 3}};
+  const test::VertexSet base{0, 1, 2};
+  for (const Integrator integrator : {Integrator::explicit_, Integrator::semi_implicit, Integrator::implicit}) {
+    for (Tissue tissue :
+         {Tissue{}, with(Kinematics::corotational), hyperelastic(NeoHookean{.mu = mu(), .bulk_modulus = kappa()}),
+          hyperelastic(Ogden{.mu = {mu()}, .alpha = {-4.7}, .bulk_modulus = kappa()})}) {
+      tissue.viscosity = 5.0;
+      for (const double height : {0.0, -0.003}) {
+        SimulationOptions o;
+        o.integrator = integrator;
+        o.damping_rate = 100.0;
+        Simulation s(mesh, {{0, tissue}}, o);
+        s.fix(base);
+        std::vector<Vec3d> u(4);
+        u[3].z = height - 0.01;
+        s.set_state(u, std::vector<Vec3d>(4));
+        EXPECT_EQ(s.tet_fields().jacobian[0] <= 0.0, true);
+        while (s.time() < 2.0) ASSERT_LE(s.step().status, StepStatus::inverted);
+        EXPECT_LT(norm(s.displacement()[3]), 1e-7) << "from " << height << " m, integrator " << int(integrator);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace glisson
