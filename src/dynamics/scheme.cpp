@@ -124,7 +124,10 @@ void Scheme::load(CheckpointReader& in) {
   if (in.get<std::uint64_t>() != fingerprint()) CheckpointReader::fail();
   in.get(time_);
   in.get(steps_);
-  for (std::vector<Vec3d>& base : base_) in.get(base);
+  for (std::size_t c = 0; c < base_.size(); ++c) {
+    in.get(base_[c]);
+    if (!base_[c].empty() && base_[c].size() != constraints_.all()[c].vertices.size()) CheckpointReader::fail();
+  }
 }
 
 void Scheme::change(const BodyChange& change) {

@@ -10,6 +10,26 @@
 namespace glisson {
 namespace {
 
+// A step above h* is refused with the ways out: the integrators that bear it, a smaller step, mass.
+TEST(GivenStep, RefusalNamesTheWaysOut) {
+  Tissue viscous;
+  viscous.viscosity = 1000.0;
+  for (const auto& [integrator, ways] :
+       {std::pair<Integrator, std::vector<const char*>>{
+            Integrator::explicit_, {"\"semi_implicit\"", "\"implicit\"", "a smaller step", "mass scaling"}},
+        {Integrator::semi_implicit, {"\"implicit\"", "a smaller step", "mass scaling"}}}) {
+    SimulationOptions o;
+    o.integrator = integrator;
+    o.step = 1.0;
+    try {
+      Simulation(test::paper_mesh(), {{0, viscous}}, o);
+      ADD_FAILURE() << "accepted";
+    } catch (const std::invalid_argument& error) {
+      for (const char* way : ways) EXPECT_NE(std::string(error.what()).find(way), std::string::npos) << error.what();
+    }
+  }
+}
+
 /// The paper's mesh with one inner vertex moved close to a face of its tets: slivers of a twentieth of the height.
 TetMesh with_slivers() {
   TetMesh mesh = test::paper_mesh();
