@@ -150,7 +150,7 @@ void tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& t
                     : (r.measure == DeformationMeasure::one_minus_q ? number(4.0F / 3.0F) * hn::Sqrt(x * number(1.5F))
                                                                     : x * number(1.64F));
     const F reach = hn::Sqrt(hn::MulAdd(t * t, number(r.moduli.bulk_over_two_mu), deviator));
-    F bound = hn::MulAdd(k.slope * g * number(r.energy ? 3.0F : 1.0F), reach, k.ratio);
+    F bound = hn::MulAdd(k.slope * g * number(r.energy ? 6.0F : 1.0F), reach, k.ratio);
     if constexpr (K == Kinematics::green) {
       bound = hn::MulAdd(bound, stretch, hn::Sqrt(contraction(S, S)) * number(r.rest_bound));
     } else if constexpr (K == Kinematics::corotational) {

@@ -73,6 +73,10 @@ struct LaneInvariants {
 HWY_INLINE F volume_bound(const LaneInvariants& i, F bulk) {
   return bulk * hn::MulAdd(hn::Abs(i.J - number(1.0F)), hn::Sqrt(i.stretch_squared()), i.I2);
 }
+/// The larger of the two parts' growth since rest.
+HWY_INLINE F larger_growth(const LaneResponse& r, F isochoric, F volume) {
+  return hn::Max(isochoric * number(r.rest_isochoric), volume * number(r.rest_volume));
+}
 /// Of F, with J^(−⅔); of cof F too.
 HWY_INLINE F first_invariant_bend(const LaneInvariants& i, F power) {
   const F per_J = number(1.0F) / i.J, product = i.I1 * i.I2 * per_J * per_J;
@@ -143,11 +147,11 @@ void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue&
                                   number(2.0F) * hn::Sqrt(first_invariant_slope_squared(c, power)));
       bound = hn::MulAdd(hn::Abs(w.second), second, bound);
     }
-    most = hn::Max(most, bound + volume_bound(i, number(r.bulk)));
+    most = hn::Max(most, larger_growth(r, bound, volume_bound(i, number(r.bulk))));
     store_tensor(P, out.piola + item * 9 * kLanes);
     rescue_if_small(in, to, item, j + one, out);
   }
-  see_stiffness(most * number(r.rest_bound), seen);
+  see_stiffness(most, seen);
 }
 
 /// The three eigenvalues of a symmetric tensor, e₁ ≥ e₂ ≥ e₃, by the angle of its invariants. Two that are equal come out
@@ -243,11 +247,12 @@ inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Resc
     store_tensor(plus(volumetric, one, tensor_product(plus_identity(state.H, one), S)), out.piola + item * 9 * kLanes);
     const F thinnest = number(float(kSmallestStretch * kSmallestStretch)), least = hn::Max(c[2], thinnest);
     const LaneInvariants i{state.I1, state.I2, state.J};
-    most = hn::Max(most, hn::MulAdd(two, tension, stiffest) / least + volume_bound(i, number(r.bulk)));
+    const F bound = hn::MulAdd(two, tension, stiffest) / least;
+    most = hn::Max(most, larger_growth(r, bound, volume_bound(i, number(r.bulk))));
     // a stretch below the limit where ln λ goes on otherwise counts as a lost volume
     rescue_if_small(in, to, item, hn::IfThenElse(hn::Lt(c[2], thinnest), zero, j + one), out);
   }
-  see_stiffness(most * number(r.rest_bound), seen);
+  see_stiffness(most, seen);
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

@@ -29,10 +29,11 @@ enum class VolumeKind { small, corotational, green, hyperelastic };
 /// What the lanes need to know of a tissue.
 struct LaneResponse {
   LaneTissue moduli;
-  float rest_bound = 1.0F;     ///< 1 over the bound of the tangent at rest [1/Pa]
-  float bulk = 0.0F;           ///< κ of a hyperelastic law [Pa]
-  float fibre = 0.0F;          ///< c [Pa]
-  float relaxing = 0.0F;       ///< Σ g
+  float rest_bound = 1.0F;                          ///< 1 over the bound of the tangent at rest [1/Pa]
+  float rest_isochoric = 1.0F, rest_volume = 1.0F;  ///< 1 over those of a hyperelastic law's two parts [1/Pa]
+  float bulk = 0.0F;                                ///< κ of a hyperelastic law [Pa]
+  float fibre = 0.0F;                               ///< c [Pa]
+  float relaxing = 0.0F;                            ///< Σ g
   std::array<float, 7> law{};  ///< numbers of the hyperelastic law: response_kernels.cpp says which
   std::size_t terms = 0;       ///< of an Ogden law
   std::size_t mu_law = 0;      ///< which of the block's two laws scales μ
