@@ -74,6 +74,7 @@ class ExplicitScheme : public Scheme {
   };
 
   const StateCopy& read_state() const;
+  double shape_rate() const;
   void find_places();
   ForceParts watched_force(std::size_t place, const Axes& axes) const;
   KickWork watched_work() const;

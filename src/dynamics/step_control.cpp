@@ -13,7 +13,9 @@ constexpr double kRoom = 1.2;    ///< stiffening that a new h* allows for beyond
 constexpr std::uint64_t kLongestWindow = 64000, kShortWindow = 16;  ///< [steps]
 constexpr double kLeastCaution = 1e-3;                              ///< least factor on a step while stiffness rises
 constexpr double kRecovery = 1.05;                                  ///< of that factor, a step
-constexpr double kMostAhead = 4.0;                                  ///< how far a level runs ahead of a rise
+constexpr double kViolent = 3.0;       ///< stiffening of large strain from which shape changes limit the step
+constexpr double kShapeChange = 0.01;  ///< of a tet within such a step [-]
+constexpr double kMostAhead = 4.0;     ///< how far a level runs ahead of a rise
 
 bool is_small(const TissueBlock& block) {
   return !block.tissue.hyperelastic && block.tissue.kinematics == Kinematics::small;
@@ -123,6 +125,18 @@ double StepControl::watch_rise(std::span<const double> stiffening) {
   return std::min(rise, kMostAhead);
 }
 
+bool StepControl::is_violent(std::span<const double> stiffening) const {
+  if (!automatic_ || !enforce_) return false;
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    if (!is_small(body_.blocks[b]) && stiffening[b] > kViolent) return true;
+  }
+  return false;
+}
+
+void StepControl::limit_shape_change(double rate) {
+  shape_step_ = rate > 0.0 ? kShapeChange / rate : std::numeric_limits<double>::infinity();
+}
+
 /// What a step is to be found for: the seen stiffness with room, not below that at rest.
 std::vector<double> StepControl::level_of(std::span<const double> seen, double ahead) const {
   std::vector<double> level = at_least_one(seen);
@@ -190,6 +204,7 @@ void StepControl::relax(std::span<const double> stiffening) {
 
 void StepControl::save(CheckpointWriter& out) const {
   out.put(step_), out.put(any_part_), out.put(window_), out.put(in_window_), out.put(unchecked_), out.put(caution_);
+  out.put(shape_step_);
   out.put_doubles(limits_), out.put_doubles(rest_limits_);
   for (const auto* list : {&validated_, &rest_level_, &seen_, &lately_, &last_}) out.put(*list);
   out.put(guess_.mode), out.put(pace_guess_.mode);
@@ -198,6 +213,7 @@ void StepControl::save(CheckpointWriter& out) const {
 
 void StepControl::load(CheckpointReader& in) {
   in.get(step_), in.get(any_part_), in.get(window_), in.get(in_window_), in.get(unchecked_), in.get(caution_);
+  in.get(shape_step_);
   in.get_doubles(limits_), in.get_doubles(rest_limits_);
   for (auto* list : {&validated_, &rest_level_, &seen_, &lately_, &last_}) in.get_same_size(*list);
   in.get(guess_.mode), in.get(pace_guess_.mode);

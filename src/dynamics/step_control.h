@@ -12,7 +12,9 @@
 // shortened until it does not, and the level runs ahead of it. Exponential laws under impact need this.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -49,7 +51,13 @@ class StepControl {
   void save(CheckpointWriter& out) const;
   void load(CheckpointReader& in);
 
-  double step() const { return step_ * caution_; }
+  /// Whether the next automatic step depends on how fast tets change shape: tissue of large strain that has stiffened.
+  bool is_violent(std::span<const double> stiffening) const;
+  /// Keeps an automatic step so short that no tet is strained by more than a hundredth in it.
+  /// @param rate  largest norm of a tet's velocity gradient [1/s]; 0: no limit
+  void limit_shape_change(double rate);
+
+  double step() const { return std::min(step_ * caution_, shape_step_); }
   double stable_step() const { return limits_.stable; }
 
  private:
@@ -82,9 +90,10 @@ class StepControl {
   Limits rest_limits_;        ///< for rest_level_, the stiffness at the start
   std::vector<double> seen_;  ///< largest stiffening per block in this window
   std::uint64_t window_ = 1000, in_window_ = 0;
-  std::vector<double> lately_;  ///< the same of the last few steps
-  std::vector<double> last_;    ///< of the last step
-  double caution_ = 1.0;        ///< factor on an automatic step while stiffness rises fast
+  std::vector<double> lately_;                                   ///< the same of the last few steps
+  std::vector<double> last_;                                     ///< of the last step
+  double shape_step_ = std::numeric_limits<double>::infinity();  ///< [s]
+  double caution_ = 1.0;  ///< factor on an automatic step while stiffness rises fast
 };
 
 }  // namespace glisson

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 #include <sstream>
 
 #include "glisson/motion.h"
@@ -18,6 +19,7 @@ struct Case {
   bool large = false;  ///< corotational with Maxwell branches, else the paper's tissue with a law
   Preconditioner preconditioner = Preconditioner::automatic;
 };
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 class Checkpoint : public testing::TestWithParam<Case> {
  protected:

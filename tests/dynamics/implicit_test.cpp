@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <ostream>
 
 #include "dynamics/columns.h"
 #include "glisson/motion.h"
@@ -45,6 +46,7 @@ struct Order {
   TimeScheme scheme;
   double least, most;
 };
+void PrintTo(const Order& c, std::ostream* out) { *out << c.name; }
 
 class TimeSchemes : public testing::TestWithParam<Order> {};
 
@@ -109,6 +111,7 @@ struct Law {
   const char* name;
   Tissue tissue;
 };
+void PrintTo(const Law& c, std::ostream* out) { *out << c.name; }
 
 Tissue viscous(double eta) {
   Tissue t;

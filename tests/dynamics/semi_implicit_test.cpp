@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <ostream>
 
 #include "dynamics/columns.h"
 #include "dynamics/viscous_system.h"
@@ -55,6 +56,7 @@ struct Case {
   ViscousTensor tensor;
   double damping_rate;
 };
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 class Limit : public testing::TestWithParam<Case> {};
 
 // h* is where the largest eigenvalue of the step leaves the unit circle: not before (rigid motions are double ones at 1,
@@ -132,6 +134,7 @@ struct Law {
   const char* name;
   Tissue tissue;
 };
+void PrintTo(const Law& c, std::ostream* out) { *out << c.name; }
 std::vector<Law> laws() {
   std::vector<Law> all{{"linear", viscous(1000.0)},
                        {"secant", viscous(300.0)},

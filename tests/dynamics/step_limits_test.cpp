@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <ostream>
 
 #include "glisson/motion.h"
 #include "support/bodies.h"
@@ -132,6 +133,7 @@ struct Law {
   const char* name;
   Tissue tissue;
 };
+void PrintTo(const Law& c, std::ostream* out) { *out << c.name; }
 std::vector<Law> laws() {
   std::vector<Law> all;
   const double mu = Tissue{}.lame().mu, kappa = Tissue{}.lame().lambda + 2.0 / 3.0 * mu;

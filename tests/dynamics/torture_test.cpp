@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 
 #include "support/bodies.h"
 
@@ -13,6 +14,7 @@ struct Law {
   const char* name;
   Tissue tissue;
 };
+void PrintTo(const Law& c, std::ostream* out) { *out << c.name; }
 
 Tissue hyperelastic(const HyperelasticLaw& law) {
   Tissue t;
