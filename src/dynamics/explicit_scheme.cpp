@@ -57,6 +57,7 @@ void ExplicitScheme::find_places() {
 void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
   moving_->set_state(displacement, velocity);
   stiffening_ = moving_->advance(0.0, {}, false).stiffening;
+  control_->state_set(stiffening_);
   copy_.current = false;
   if (!options_.track_energies) return;
   double kinetic = 0.0;

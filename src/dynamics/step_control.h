@@ -51,6 +51,8 @@ class StepControl {
   void save(CheckpointWriter& out) const;
   void load(CheckpointReader& in);
 
+  /// A state was set from outside: what its stiffness differs from that before is no rise within a step.
+  void state_set(std::span<const double> stiffening) { last_.assign(stiffening.begin(), stiffening.end()); }
   /// Whether the next automatic step depends on how fast tets change shape: tissue of large strain that has stiffened.
   bool is_violent(std::span<const double> stiffening) const;
   /// Keeps an automatic step so short that no tet is strained by more than a hundredth in it.
