@@ -73,7 +73,8 @@ class Cover {
     }
   }
 
-  /// Joins what is left over: chains of one or two tets grow at the expense of others until there are fewer.
+  /// Joins what is left over: chains of one or two tets grow at the expense of others until there are fewer. Pairs that
+  /// were parted leave single tets behind ones that had nowhere to go: those are asked again while that helps.
   void join_leftovers() {
     for (std::uint32_t c = 0; c < chains_.size(); ++c) {
       if (chains_[c].size() == 1) {
@@ -81,6 +82,10 @@ class Cover {
       } else if (chains_[c].size() == 2) {
         dissolve_pair(c);
       }
+    }
+    for (bool fewer = true; fewer;) {
+      fewer = false;
+      for (const TetChain& c : chains_) fewer = (c.size() == 1 && hand_on(c.middle, 1, kNoTet)) || fewer;
     }
   }
 
