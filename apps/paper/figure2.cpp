@@ -16,6 +16,8 @@ constexpr double kSlowStiffness = 51.19;  // [N/m] of this triangle and split, f
 constexpr double kTransient_s = 0.1;      // of a start at full speed, in which the force grows fast without any law
 constexpr int kFitPoints = 61;
 
+constexpr double kEvenStep_s = 0.002;  // steps of one length, so that what each adds to the force can be compared
+
 /// One engine step of tissue 1: how the force grew and whether a tetrahedron crossed the threshold.
 struct Growth {
   double time_s, increase_N;
@@ -27,7 +29,8 @@ TetMesh no_file(const MeshFile& file) {
 }
 
 /// Runs a variant step by step, so that the force and the state of the law are seen at the same instant.
-std::vector<Growth> growth_of(const Variant& variant) {
+std::vector<Growth> growth_of(Variant variant) {
+  variant.simulation.step = kEvenStep_s;
   BuiltVariant built = build_variant(variant, no_file);
   const double threshold = std::get<StepLaw>(variant.tissue.law).threshold;
   const double end = run_duration(variant) - built.simulation.step_size();

@@ -98,7 +98,7 @@ TEST_F(Bench, WrongOptionsAreErrors) {
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
   };
   expect_error({"bench", "--sizes", "500"}, "--sizes: 500 not in {768,96000,1000000}");
-  expect_error({"bench", "--models", "quadratic"}, "--models: quadratic not in {linear,law,full}");
+  expect_error({"bench", "--models", "quadratic"}, "--models: quadratic not in {linear,law,full,corotational,");
   expect_error({"bench", "--threads", "0"}, "--threads: Value 0 not in range");
   expect_error({"bench", "--mesh", "none.vtu"}, "none.vtu: there is no such mesh");
   expect_error({"bench", "--json", "no/such/folder.json"}, "the folder no/such does not exist");
