@@ -20,12 +20,12 @@ using Triangle = std::array<std::uint32_t, 3>;
 ///
 /// Tetrahedra are positively oriented: (x1−x0)·((x2−x0)×(x3−x0)) > 0.
 struct TetMesh {
-  std::vector<Vec3d> vertices;              ///< rest positions [m]
-  std::vector<Tet> tets;                    ///< four vertex indices each
-  std::vector<int> regions;                 ///< region number of each tet; empty: all in region 0
-  std::vector<Vec3d> fibres;                ///< of each tet, any length, 0 for none; empty: the tissue's
-  std::map<int, std::string> region_names;  ///< names of regions, where the file gives them
+  std::vector<Vec3d> vertices;                                    ///< rest positions [m]
+  std::vector<Tet> tets;                                          ///< four vertex indices each
+  std::vector<int> regions;                                       ///< region number of each tet; empty: all in region 0
+  std::map<int, std::string> region_names;                        ///< names of regions, where the file gives them
   std::map<std::string, std::vector<std::uint32_t>> vertex_sets;  ///< sorted vertex indices
+  std::vector<Vec3d> fibres{};  ///< direction of each tet's fibres, any length, 0 for none; empty: the tissue's
 
   int region_of(std::size_t tet) const { return regions.empty() ? 0 : regions[tet]; }
   bool operator==(const TetMesh&) const = default;

@@ -70,13 +70,13 @@ struct SimulationOptions {
   /// again when it softens; semi-implicit 0.9 h* of the elastic body. Implicit and static: none: as long as converges,
   /// up to ImplicitOptions::largest_step; a given one is cut inside where it does not converge.
   std::optional<double> step;
-  ImplicitOptions implicit;
+  ImplicitOptions implicit{};
   Precision precision = Precision::single_precision;
   double damping_rate = 0.0;   ///< mass-proportional nodal damping γ_i/m_i [1/s], ≥ 0
   double nodal_damping = 0.0;  ///< nodal damping γ_i equal at all vertices, added to it [kg/s], ≥ 0
   /// Explicit and semi-implicit: adds mass to just those tets whose own bound is below this step, until it is that [s], > 0;
   /// for meshes with a few tiny tets. The mass has inertia and weight; mass_scaling() reports it. None: no mass is added.
-  std::optional<double> mass_scaling_step;
+  std::optional<double> mass_scaling_step{};
   Vec3d gravity{};                ///< [m/s²]
   double gravity_ramp = 0.0;      ///< gravity grows linearly from 0 over this time [s], ≥ 0
   bool enforce_stability = true;  ///< false: take any step, for studies of the instability itself

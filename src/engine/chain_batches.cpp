@@ -35,16 +35,16 @@ std::array<std::size_t, 2> opposite_corners(std::span<const Tet> local, const de
 
 Chain placed(std::span<const Tet> local, const detail::TetChain& chain) {
   const Tet& B = local[chain.middle];
-  const auto [opposite_A, opposite_C] = opposite_corners(local, chain);
+  const std::array<std::size_t, 2> opposite = opposite_corners(local, chain);
   Chain placed{{}, {chain.ends[0], chain.middle, chain.ends[1]}};
   std::size_t on_edge = 0;
   for (std::size_t a = 0; a < 4; ++a) {
-    if (a != opposite_A && a != opposite_C) placed.vertex[on_edge++] = B[a];
+    if (a != opposite[0] && a != opposite[1]) placed.vertex[on_edge++] = B[a];
   }
-  placed.vertex[2] = B[opposite_C];
-  placed.vertex[3] = B[opposite_A];
+  placed.vertex[2] = B[opposite[1]];
+  placed.vertex[3] = B[opposite[0]];
   const auto beyond = [&](std::uint32_t end) {
-    return end == detail::kNoTet ? B[opposite_A] : local[end][corner_beyond(local[end], B)];
+    return end == detail::kNoTet ? B[opposite[0]] : local[end][corner_beyond(local[end], B)];
   };
   placed.vertex[4] = beyond(chain.ends[0]);
   placed.vertex[5] = beyond(chain.ends[1]);

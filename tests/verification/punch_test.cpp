@@ -82,9 +82,9 @@ INSTANTIATE_TEST_SUITE_P(Kappa, FlatPunch,
                          testing::Values(Punch{0.30, 0.2, 1.2066}, Punch{0.45, 0.2, 1.2523}, Punch{0.49, 0.2, 1.2741},
                                          Punch{0.30, 0.6, 1.7848}, Punch{0.45, 0.6, 2.0328}, Punch{0.49, 0.6, 2.1694},
                                          Punch{0.30, 1.0, 2.4835}, Punch{0.45, 1.0, 3.0914}, Punch{0.49, 1.0, 3.4840}),
-                         [](const auto& info) {
-                           return "nu" + std::to_string(std::lround(100.0 * info.param.nu)) + "_a" +
-                                  std::to_string(std::lround(10.0 * info.param.a_over_h));
+                         [](const auto& p) {
+                           return "nu" + std::to_string(std::lround(100.0 * p.param.nu)) + "_a" +
+                                  std::to_string(std::lround(10.0 * p.param.a_over_h));
                          });
 
 // Without sharing its volume change a tetrahedron is too stiff: from above, and further off than with it.

@@ -190,7 +190,7 @@ TEST_P(LargeDeflection, FollowsTheElastica) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinematics, LargeDeflection, testing::Values(Kinematics::corotational, Kinematics::green),
-                         [](const auto& info) { return info.param == Kinematics::green ? "green" : "corotational"; });
+                         [](const auto& p) { return p.param == Kinematics::green ? "green" : "corotational"; });
 
 // Small strain does not turn with the bar: it deflects in proportion and its end never comes nearer.
 TEST(LargeDeflectionOfSmallStrain, KnowsNoRotation) {

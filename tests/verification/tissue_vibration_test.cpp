@@ -68,8 +68,8 @@ TEST_P(FreeVibration, KeepsItsEnergy) {
   EXPECT_LT(d.swing, 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Conservative, FreeVibration, testing::ValuesIn(conservative_tissues()), [](const auto& info) {
-  std::string name = info.param.name;
+INSTANTIATE_TEST_SUITE_P(Conservative, FreeVibration, testing::ValuesIn(conservative_tissues()), [](const auto& p) {
+  std::string name = p.param.name;
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
 });
