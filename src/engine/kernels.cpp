@@ -1,8 +1,6 @@
 // kernels.cpp — the kernels compiled once for each instruction set, and the choice among them at run time.
+#include "engine/targets.h"
 
-// 128-bit kernels need SSE4 or NEON, and vectors of a size known to the compiler: processors that have neither
-// take the scalar ones.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/kernels.cpp"
 #include <hwy/foreach_target.h>

@@ -1,6 +1,7 @@
 // response_kernels.cpp — the stages of response_kernels.h compiled once for each instruction set. kernels.cpp, which is
 // compiled for the same ones, hands them out.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "engine/targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/response_kernels.cpp"
 #include <hwy/foreach_target.h>
