@@ -5,6 +5,7 @@
 // viscosity are compile-time constants of the loop.
 #include <algorithm>
 
+#include "mechanics/element_shape.h"
 #include "mechanics/force_operator.h"
 #include "mechanics/local_stiffness.h"
 
@@ -150,16 +151,9 @@ class ElementOperator final : public ForceOperator {
   }
 
   void build_metric() {
-    for (const Tet& t : body_.elements) {
-      Vec3d diagonal{}, off{};
-      for (std::size_t a = 0; a < 4; ++a) {
-        for (std::size_t b = a + 1; b < 4; ++b) {
-          const Vec3d l = body_.rest_positions[t[a]] - body_.rest_positions[t[b]];
-          diagonal += {l.x * l.x, l.y * l.y, l.z * l.z};
-          off += {l.x * l.y, l.y * l.z, l.z * l.x};
-        }
-      }
-      metric_.push_back({T(diagonal.x), T(diagonal.y), T(diagonal.z), T(off.x), T(off.y), T(off.z)});
+    for (std::size_t e = 0; e < body_.elements.size(); ++e) {
+      const EdgeMetric<double> g = edge_metric(body_, e);
+      metric_.push_back({T(g.xx), T(g.yy), T(g.zz), T(g.xy), T(g.yz), T(g.zx)});
     }
   }
 

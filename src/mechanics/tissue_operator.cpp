@@ -23,17 +23,6 @@ void scatter(const Body& body, std::size_t e, const Mat3d& P, std::span<Vec3d> f
   force[t[0]] -= sum;
 }
 
-template <class T>
-Mat3<T> as(const Mat3d& a) {
-  Mat3<T> r;
-  for (std::size_t i = 0; i < 9; ++i) r(i / 3, i % 3) = T(a(i / 3, i % 3));
-  return r;
-}
-template <class T>
-Sym3<T> as(const Sym3<double>& a) {
-  return {T(a.xx), T(a.yy), T(a.zz), T(a.xy), T(a.yz), T(a.zx)};
-}
-
 /// The nearest matrix whose symmetric part has no negative eigenvalue.
 void make_semidefinite(ElementTangent& C) {
   const ElementTangent even = 0.5 * (C + C.transpose());
@@ -126,11 +115,11 @@ Sym3<T> TissueOperator::overstress(std::size_t b, std::size_t e, double since, c
   const TissueBlock& block = body_.blocks[b];
   const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
   const std::size_t at = e - block.begin;
-  const Sym3<T> before = as<T>(memory_.stress[first_stress_[b] + at]);
+  const Sym3<T> before = with_scalar<T>(memory_.stress[first_stress_[b] + at]);
   Sym3<T> sum{};
   for (std::size_t k = 0; k < branches.size(); ++k) {
     const BranchWeights w = branch_weights(since, branches[k].time);
-    const Sym3<T> q = as<T>(memory_.relaxed[first_branch_[b] + at * branches.size() + k]) * T(w.decay) +
+    const Sym3<T> q = with_scalar<T>(memory_.relaxed[first_branch_[b] + at * branches.size() + k]) * T(w.decay) +
                       before * T(w.from) + S * T(w.to);
     sum += (S - q) * T(branches[k].share);
   }
@@ -206,7 +195,7 @@ void TissueOperator::linearise(const TissueState& state, double rate, bool semid
     const bool shared = block.tissue.volume_change == VolumeChange::nodal;
     for (std::size_t e = block.begin; e < block.end; ++e) {
       const Mat3d H0 = element_gradient(body_, e, state.u), R0 = element_gradient(body_, e, state.v);
-      Mat3<Dual> H = as<Dual>(H0), R = as<Dual>(R0);
+      Mat3<Dual> H = with_scalar<Dual>(H0), R = with_scalar<Dual>(R0);
       const auto stress = [&](Dual theta) {
         Mat3<Dual> P = response.elastic(H, shapes_[e], shared ? &theta : nullptr);
         if (!branches) return P;

@@ -6,13 +6,6 @@
 namespace glisson {
 namespace {
 
-template <class T>
-Mat3<T> promoted(const Mat3d& a) {
-  Mat3<T> r;
-  for (std::size_t i = 0; i < 9; ++i) r(i / 3, i % 3) = T(a(i / 3, i % 3));
-  return r;
-}
-
 /// tr ε and ε:ε.
 template <class T>
 struct StrainNumbers {
@@ -114,7 +107,8 @@ Mat3<T> Response::measure_gradient(const Mat3<T>& H, T x, const ElementShape& sh
   const Mat3<T> F = deformation_gradient(H), cof = deformation_gradient(cofactor_change(H));
   if (tissue_.measure == DeformationMeasure::regular_mean_ratio) {
     const EdgeMetric<double>& g = shape.metric;
-    const Mat3<T> FG = product(F, promoted<T>({{{{g.xx, g.xy, g.zx}, {g.xy, g.yy, g.yz}, {g.zx, g.yz, g.zz}}}}));
+    const Mat3<T> FG =
+        product(F, with_scalar<T>(Mat3d{{{{g.xx, g.xy, g.zx}, {g.xy, g.yy, g.yz}, {g.zx, g.yz, g.zz}}}}));
     const T total = trace(transposed_product(FG, F));
     return sum(scaled(cof, x * T(2.0 / 3.0) / J), scaled(FG, T(-2.0) * x / total));
   }

@@ -131,6 +131,17 @@ Mat3<T> cofactor_change(const Mat3<T>& H) {
   }
   return K;
 }
+/// The same numbers in another scalar.
+template <class T>
+Mat3<T> with_scalar(const Mat3d& a) {
+  Mat3<T> r;
+  for (std::size_t i = 0; i < 9; ++i) r(i / 3, i % 3) = T(a(i / 3, i % 3));
+  return r;
+}
+template <class T>
+Sym3<T> with_scalar(const Sym3<double>& a) {
+  return {T(a.xx), T(a.yy), T(a.zz), T(a.xy), T(a.yz), T(a.zx)};
+}
 /// Σ a_ij²
 template <class T>
 T squared_norm(const Mat3<T>& a) {
