@@ -137,6 +137,13 @@ std::vector<Law> laws() {
   return all;
 }
 
+/// Those without the viscosity that asks the explicit scheme for steps of 10 µs.
+std::vector<Law> mild_laws() {
+  std::vector<Law> mild = laws();
+  std::erase_if(mild, [](const Law& law) { return law.tissue.viscosity > 100.0; });
+  return mild;
+}
+
 class PaperPress : public testing::TestWithParam<Law> {
  protected:
   TetMesh mesh = test::paper_mesh();
@@ -175,9 +182,10 @@ TEST_P(PaperPress, IsStableAndBalancedAtTenMilliseconds) {
   }
 }
 
+using MildPaperPress = PaperPress;
+
 // Small steps of the implicit schemes end where the explicit scheme does: the same equations, two ways.
-TEST_P(PaperPress, FollowsTheExplicitScheme) {
-  if (GetParam().tissue.viscosity > 100.0) GTEST_SKIP() << "an explicit step of 10 us takes too long here";
+TEST_P(MildPaperPress, FollowsTheExplicitScheme) {
   SimulationOptions o = options(TimeScheme::newmark, 2.5e-4);
   Simulation implicit_run(mesh, {{0, GetParam().tissue}}, o);
   busy(implicit_run);
@@ -196,6 +204,7 @@ TEST_P(PaperPress, FollowsTheExplicitScheme) {
 
 std::string law_name_of(const testing::TestParamInfo<Law>& law) { return law.param.name; }
 INSTANTIATE_TEST_SUITE_P(Laws, PaperPress, testing::ValuesIn(laws()), law_name_of);
+INSTANTIATE_TEST_SUITE_P(Laws, MildPaperPress, testing::ValuesIn(mild_laws()), law_name_of);
 
 // A body without supports falls as a whole: u = ½ g t² of Newmark, exactly, and no force inside.
 TEST(Implicit, FreeFallIsExact) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/bodies.h"
+#include "support/column.h"
 
 namespace glisson {
 namespace {
@@ -26,34 +26,7 @@ double confined_viscosity(const Tissue& t) {
   return t.viscosity * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
 }
 
-/// A column of square section, free to move along z only, held at z = 0.
-struct Column {
-  double length, width;
-  TetMesh mesh;
-  Simulation simulation;
-  test::VertexSet top, side;
-
-  Column(const Tissue& tissue, double L, int cells, int cells_across, const SimulationOptions& options)
-      : length(L), width(L / cells * cells_across),
-        mesh(box_mesh({.cells = {cells_across, cells_across, cells}, .size = {width, width, L}})),
-        simulation(mesh, {{0, tissue}}, options), top(mesh.vertex_sets.at("z_max")) {
-    simulation.fix(test::all_vertices(mesh), {true, true, false});
-    simulation.fix(mesh.vertex_sets.at("z_min"), {false, false, true});
-  }
-
-  double area() const { return width * width; }
-
-  /// A uniform pressure on the top, by each triangle's third to its vertices [Pa].
-  void add_pressure(double pressure) {
-    for (const Triangle& t : boundary_triangles(mesh)) {
-      const Vec3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-      if (std::min({a.z, b.z, c.z}) < length - 1e-9) continue;
-      simulation.add_load(t, {0.0, 0.0, -pressure * 0.5 * norm(cross(b - a, c - a))});
-    }
-  }
-
-  double top_displacement() const { return simulation.displacement()[top.front()].z; }
-};
+using test::Column;
 
 class ConfinedColumn : public testing::TestWithParam<ViscousTensor> {
  protected:
