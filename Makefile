@@ -45,8 +45,8 @@ lint:
 	@cmake --build $(ASAN) --target glisson_build_info
 	@scripts/lint.sh $(ASAN) $(JOBS)
 
-# Address and undefined behaviour, over every test but those of the page; the fuzz corpus is among them. Long runs of code
-# that shorter tests run too are left out: half the time, no line less.
+# Address and undefined behaviour, over every test but those of the page; the fuzz corpus is among them. Long physical runs
+# are left out, which were half of the time: their laws, schemes and solvers are in shorter tests too.
 LONG_RUNS := FlatPunch|FreeVibration|DeepPress|PaperPress|Scrambled|Figure2/Measure|RandomScenes.*/[4-7]
 sanitizers:
 	@scripts/configure.sh asan-ubsan tests

@@ -1,7 +1,7 @@
 // every_tissue.h — one tissue for each law, kinematics, form, measure, viscosity and branch there is.
 //
-// every_tissue_test.cpp fails where an alternative of a variant is missing here; the switches below do not compile
-// where an enumerator is.
+// every_tissue_test.cpp fails where an alternative of a variant is missing here; where an enumerator is, the compiler warns
+// of the switches below.
 #pragma once
 
 #include <Eigen/Dense>
