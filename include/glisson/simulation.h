@@ -19,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "glisson/interaction.h"
 #include "glisson/math.h"
 #include "glisson/mesh.h"
 #include "glisson/precision.h"
@@ -129,7 +130,8 @@ struct Axes {
 ///   total = elastic + viscous + damping + inertial + gravity + load
 ///
 /// `elastic` and `viscous` are what balances the tissue's own forces, `damping` overcomes γ v,
-/// `inertial` accelerates the driven masses, `gravity` and `load` balance weight and other loads.
+/// `inertial` accelerates the driven masses, `gravity` and `load` balance weight and other loads, those of
+/// interactions among them.
 struct ForceParts {
   Vec3d elastic, viscous, damping, inertial, gravity, load;
   Vec3d total() const { return elastic + viscous + damping + inertial + gravity + load; }
@@ -209,6 +211,12 @@ class Simulation {
   ConstraintId drive(std::span<const std::uint32_t> vertices, Motion motion, Axes axes = {}, double from = 0.0);
   /// Adds a force, spread over the vertices by equal parts; `scale(t)` multiplies it (none: 1). [N]
   void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale = {});
+
+  /// Lets an instrument, needle, membrane or other interaction act on the body from now on, after those attached before.
+  /// It may be shared, to be read and steered between steps; it acts on one simulation only.
+  /// @throws std::invalid_argument for the integrators implicit and static, and semi_implicit with viscous tissue; or what
+  ///         the interaction does not bear
+  void attach(std::shared_ptr<Interaction> interaction);
 
   /// Takes tets out at once: their stiffness, viscosity and mass are gone, nothing else changes. Numbers of tets and
   /// vertices stay. An automatic step falls to a bound that holds whatever is removed; a given step above that bound is

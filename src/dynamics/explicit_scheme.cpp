@@ -40,6 +40,7 @@ void ExplicitScheme::watch(std::span<const std::uint32_t> vertices) {
   kicked_.clear();
   for (const WatchedVertex& w : moving_->watched()) kicked_.push_back(of_vertex[w.vertex]);
   find_places();
+  interactions_.find_places(moving_->watched(), body_.vertex_count);
 }
 
 void ExplicitScheme::find_places() {
@@ -73,7 +74,7 @@ void ExplicitScheme::kick_watched(double h) {
     WatchedVertex& w = watched[k];
     const double m = body_.masses[w.vertex], gamma = gamma_[w.vertex];
     const Vec3d load = m > 0.0 ? loads[w.vertex] : Vec3d{};
-    kicked_[k] = {m, gamma, w.velocity, load};
+    kicked_[k] = {m, gamma, w.velocity, load, {}};
     const Vec3d force = w.elastic + w.viscous + gravity_ * m + load;
     w.velocity = m > 0.0 ? (w.velocity * m + force * h) * (1.0 / (m + gamma * h)) : Vec3d{};
   }
@@ -96,13 +97,54 @@ void ExplicitScheme::impose_motions(double h) {
   }
 }
 
+/// Brings the vertices that interactions may act on in this step to hand, before the body moves the others.
+void ExplicitScheme::begin_interactions(double h) {
+  if (interactions_.empty()) return;
+  const std::span<const std::uint32_t> newcomers = interactions_.newcomers(time_, h, body_.vertex_count);
+  if (!newcomers.empty()) watch(newcomers);
+}
+
+/// Lets interactions correct v₊, and keeps what they exerted.
+void ExplicitScheme::constrain_interactions(double h) {
+  if (interactions_.empty()) return;
+  mobility_.clear();
+  for (const Kicked& k : kicked_) {
+    const double a = k.mass > 0.0 ? 1.0 / (k.mass + k.damping * h) : 0.0;
+    mobility_.push_back({a, a, a});
+  }
+  for (std::size_t c = 0; c < places_.size(); ++c) {
+    if (!holds(c)) continue;
+    for (const std::uint32_t place : places_[c]) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (has_axis(constraints_.all()[c].axes, axis)) mobility_[place][axis] = 0.0;
+      }
+    }
+  }
+  interactions_.constrain(mobility_);
+  for (std::size_t k = 0; k < kicked_.size(); ++k) kicked_[k].contact = interactions_.impulses()[k] * (1.0 / h);
+}
+
+void ExplicitScheme::attach(std::shared_ptr<Interaction> interaction, const BodyView& body) {
+  interaction->attached(body, time_);
+  interactions_.add(std::move(interaction));
+  interactions_.find_places(moving_->watched(), body_.vertex_count);
+  control_->set_beside(interactions_.squared_frequency());
+}
+
+void ExplicitScheme::tell_change(const BodyView& body, std::span<const std::uint32_t> origins) {
+  if (interactions_.empty()) return;
+  interactions_.find_places(moving_->watched(), body_.vertex_count);
+  interactions_.body_changed(body, origins);
+  control_->set_beside(interactions_.squared_frequency());
+}
+
 /// What holds or drives a vertex, in the components it holds, at the last kick.
 ForceParts ExplicitScheme::watched_force(std::size_t place, const Axes& axes) const {
   const WatchedVertex& w = moving_->watched()[place];
   const Kicked& k = kicked_[place];
   const Vec3d inertial = kick_step_ > 0.0 ? (w.velocity - k.velocity_before) * (k.mass / kick_step_) : Vec3d{};
   return {masked(-w.elastic, axes), masked(-w.viscous, axes),         masked(w.velocity * k.damping, axes),
-          masked(inertial, axes),   masked(gravity_ * -k.mass, axes), masked(-k.load, axes)};
+          masked(inertial, axes),   masked(gravity_ * -k.mass, axes), masked(-k.load - k.contact, axes)};
 }
 
 /// Work of the forces on the watched vertices, that of the constraints included.
@@ -116,6 +158,7 @@ KickWork ExplicitScheme::watched_work() const {
       return KickPower{.elastic = dot(w.elastic, v),
                        .viscous = dot(w.viscous, v),
                        .damping = -at.damping * dot(w.velocity, v),
+                       .tools = dot(at.contact, v),
                        .loads = dot(gravity_ * at.mass + at.load, v)};
     };
     add(work.before, power(at.velocity_before));
@@ -167,6 +210,7 @@ StepResult ExplicitScheme::step() {
   }
   gravity_ = gravity_at(time_);
   take_hold(h);
+  begin_interactions(h);
   const Advance& seen = moving_->advance(h, gravity_, options_.track_energies);
   stiffening_ = seen.stiffening;
   copy_.current = false;
@@ -174,12 +218,16 @@ StepResult ExplicitScheme::step() {
 
   kick_step_ = h;
   kick_time_ = time_;
+  interactions_.begin(time_, h, moving_->watched(), body_.rest_positions);
+  interactions_.add_forces();
   kick(h);
+  constrain_interactions(h);
   if (options_.track_energies) book(h, seen.work);
   for (WatchedVertex& w : moving_->watched()) w.displacement += w.velocity * h;
   moving_->place_watched();
   time_ += h;
   ++steps_;
+  interactions_.moved();
   return {seen.inverted.empty() ? StepStatus::ok : StepStatus::inverted, seen.inverted, {}};
 }
 
@@ -197,16 +245,27 @@ ForceParts ExplicitScheme::force(ConstraintId constraint) const {
 
 void ExplicitScheme::save(CheckpointWriter& out) const {
   Scheme::save(out);
+  std::vector<std::uint32_t> watched;
+  for (const WatchedVertex& w : moving_->watched()) watched.push_back(w.vertex);
+  out.put(watched);
   out.put(read_state().displacement), out.put(read_state().velocity), out.put(moving_->past());
   for (const WatchedVertex& w : moving_->watched()) out.put(w.elastic), out.put(w.viscous);
   for (const Kicked& k : kicked_) out.put_doubles(k);
   out.put(kick_step_), out.put(kick_time_), out.put(gravity_), out.put(stiffening_);
   out.put_doubles(ledger_);
   control_->save(out);
+  interactions_.save(out);
 }
 
 void ExplicitScheme::load(CheckpointReader& in) {
   Scheme::load(in);
+  std::vector<std::uint32_t> watched;
+  in.get(watched);
+  for (const std::uint32_t w : watched) {
+    if (w >= body_.vertex_count) CheckpointReader::fail();
+  }
+  watch(watched);
+  if (moving_->watched().size() != watched.size()) CheckpointReader::fail();
   std::vector<Vec3d> u(body_.vertex_count), v(body_.vertex_count);
   std::vector<double> past;
   in.get_same_size(u), in.get_same_size(v), in.get(past);
@@ -217,6 +276,7 @@ void ExplicitScheme::load(CheckpointReader& in) {
   in.get(kick_step_), in.get(kick_time_), in.get(gravity_), in.get_same_size(stiffening_);
   in.get_doubles(ledger_);
   control_->load(in);
+  interactions_.load(in);
   copy_.current = false;
 }
 

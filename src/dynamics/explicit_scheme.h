@@ -7,7 +7,7 @@
 // The viscous force is taken at v₋: it lags by half a step, which the stable step accounts for.
 //
 //   h below h* of the stiffness last seen ─▶ the body advances its free vertices ─▶ here the watched ones:
-//   kick v₋ → v₊ ─▶ impose motions ─▶ book work ─▶ drift u
+//   add forces ─▶ kick v₋ → v₊ ─▶ impose motions ─▶ interactions constrain v₊ ─▶ book work ─▶ drift u
 #pragma once
 
 #include <memory>
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "dynamics/energy_ledger.h"
+#include "dynamics/interactions.h"
 #include "dynamics/scheme.h"
 #include "dynamics/step_control.h"
 #include "engine/moving_body.h"
@@ -37,6 +38,9 @@ class ExplicitScheme : public Scheme {
   void load(CheckpointReader& in) override;
   /// What the constraint exerted on the tissue at the last kick.
   ForceParts force(ConstraintId constraint) const override;
+  void attach(std::shared_ptr<Interaction> interaction, const BodyView& body) override;
+  bool has_interactions() const override { return !interactions_.empty(); }
+  void tell_change(const BodyView& body, std::span<const std::uint32_t> origins) override;
 
  protected:
   ExplicitScheme(Body body, const SimulationOptions& options, Drag drag);
@@ -44,7 +48,7 @@ class ExplicitScheme : public Scheme {
   /// What a watched vertex had at the last kick; all 0 for one that was not watched then.
   struct Kicked {
     double mass = 0.0, damping = 0.0;
-    Vec3d velocity_before, load;
+    Vec3d velocity_before, load, contact;  ///< contact: force of the interactions
   };
 
   /// v₊ of the watched vertices: as if they were free, then what motions ask for.
@@ -60,11 +64,14 @@ class ExplicitScheme : public Scheme {
   void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) override;
   void take_out(double kinetic, double elastic) override { ledger_.take_out(kinetic, elastic); }
   void watch(std::span<const std::uint32_t> vertices);
+  void begin_interactions(double h);
+  void constrain_interactions(double h);
 
   std::unique_ptr<MovingBody> moving_;
   std::vector<Kicked> kicked_;                      ///< per watched vertex
   std::vector<std::vector<std::uint32_t>> places_;  ///< per constraint: where its vertices are among those watched
   Vec3d gravity_{};                                 ///< at the last kick
+  Interactions interactions_;
 
  private:
   /// The state in the mesh's order, copied from the body when someone asks.
@@ -82,6 +89,7 @@ class ExplicitScheme : public Scheme {
 
   std::vector<double> stiffening_;  ///< per tissue block, at the last evaluation
   std::unique_ptr<StepControl> control_;
+  std::vector<Vec3d> mobility_;  ///< per watched vertex [1/kg]
   mutable StateCopy copy_;
   double kick_step_ = 0.0, kick_time_ = 0.0;  ///< of the last kick
   EnergyLedger ledger_;

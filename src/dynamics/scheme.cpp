@@ -45,6 +45,13 @@ void Scheme::add_load(std::span<const std::uint32_t> vertices, Vec3d force, std:
   acts_on(vertices);
 }
 
+void Scheme::attach(std::shared_ptr<Interaction>, const BodyView&) {
+  throw std::invalid_argument(
+      "attach: instruments, needles and membranes need integrator = explicit, or semi_implicit for tissue without "
+      "viscosity; this simulation has another. Relaxation can be modelled by maxwell branches, which explicit steps "
+      "bear");
+}
+
 bool Scheme::take_hold(double h) {
   bool any = false;
   for (std::size_t c = 0; c < base_.size(); ++c) {

@@ -11,6 +11,7 @@
 #include "dynamics/checkpoint.h"
 #include "dynamics/constraints.h"
 #include "dynamics/loads.h"
+#include "glisson/interaction.h"
 #include "glisson/simulation.h"
 #include "mechanics/body_change.h"
 
@@ -41,6 +42,11 @@ class Scheme {
   virtual std::span<const Vec3d> displacement() const = 0;
   virtual std::span<const Vec3d> velocity() const = 0;
   virtual ForceParts force(ConstraintId constraint) const = 0;
+  /// As Simulation::attach. @throws std::invalid_argument, here for every scheme that cannot
+  virtual void attach(std::shared_ptr<Interaction> interaction, const BodyView& body);
+  virtual bool has_interactions() const { return false; }
+  /// Hands a change of the mesh on to the interactions, after everything else has followed it.
+  virtual void tell_change(const BodyView&, std::span<const std::uint32_t> /*origins*/) {}
   virtual const Energies& energies() const = 0;
 
   /// Everything that a continued run needs beside what it is made of.

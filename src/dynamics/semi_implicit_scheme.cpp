@@ -12,6 +12,14 @@ SemiImplicitScheme::SemiImplicitScheme(Body body, const SimulationOptions& optio
   if (viscous_) watch(all);
 }
 
+void SemiImplicitScheme::attach(std::shared_ptr<Interaction> interaction, const BodyView& body) {
+  if (viscous_) {
+    Scheme::attach(std::move(interaction), body);
+  } else {
+    ExplicitScheme::attach(std::move(interaction), body);
+  }
+}
+
 void SemiImplicitScheme::take_over(const BodyChange& change) {
   ExplicitScheme::take_over(change);
   built_for_ = 0.0;
@@ -68,7 +76,7 @@ void SemiImplicitScheme::kick(double h) {
     WatchedVertex& w = watched[i];
     const double m = body_.masses[i], gamma = gamma_[i];
     const Vec3d load = m > 0.0 ? loads[i] : Vec3d{};
-    kicked_[i] = {m, gamma, w.velocity, load};
+    kicked_[i] = {m, gamma, w.velocity, load, {}};
     impulse_[i] = (w.elastic + w.viscous + gravity_ * m + load + w.velocity * -gamma) * h;
   }
   impose_motions(h);

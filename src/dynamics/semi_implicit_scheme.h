@@ -21,6 +21,7 @@ class SemiImplicitScheme final : public ExplicitScheme {
 
   void save(CheckpointWriter& out) const override;
   void load(CheckpointReader& in) override;
+  void attach(std::shared_ptr<Interaction> interaction, const BodyView& body) override;
 
  private:
   void kick(double h) override;

@@ -76,6 +76,12 @@ struct Simulation::Impl {
   std::uint32_t kind;         ///< integrator, time scheme and precision
   std::uint64_t fingerprint;  ///< of mesh and tissues at the start
   std::vector<MeshChange> changes;
+  std::vector<char> removed{};  ///< per tet; empty: none
+
+  BodyView view() const { return {mesh, removed, scheme->body().masses, scheme->displacement()}; }
+  void tell_change(std::span<const std::uint32_t> origins) {
+    if (scheme->has_interactions()) scheme->tell_change(view(), origins);
+  }
 };
 
 Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const SimulationOptions& options) {
@@ -99,9 +105,17 @@ void Simulation::add_load(std::span<const std::uint32_t> vertices, Vec3d force, 
   impl_->scheme->add_load(vertices, force, std::move(scale));
 }
 
+void Simulation::attach(std::shared_ptr<Interaction> interaction) {
+  if (interaction == nullptr) throw std::invalid_argument("attach: no interaction was given");
+  impl_->scheme->attach(std::move(interaction), impl_->view());
+}
+
 RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) {
   RemovalReport report = impl_->scheme->remove(tets);
   impl_->changes.push_back({{tets.begin(), tets.end()}, {}});
+  impl_->removed.resize(impl_->mesh.tets.size(), 0);
+  for (const std::uint32_t t : tets) impl_->removed[t] = 1;
+  impl_->tell_change({});
   return report;
 }
 
@@ -120,6 +134,7 @@ SplitReport Simulation::split_faces(std::span<const Triangle> faces) {
     }
   }
   for (const std::uint32_t e : impl_->scheme->last_changed()) mesh.tets[body.mesh_tet[e]] = body.elements[e];
+  impl_->tell_change(report.origins);
   return report;
 }
 

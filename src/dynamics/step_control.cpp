@@ -8,8 +8,7 @@
 namespace glisson {
 namespace {
 
-constexpr double kSafety = 0.9;  ///< automatic step over h*
-constexpr double kRoom = 1.2;    ///< stiffening that a new h* allows for beyond the present one
+constexpr double kRoom = 1.2;  ///< stiffening that a new h* allows for beyond the present one
 constexpr std::uint64_t kLongestWindow = 64000, kShortWindow = 16;  ///< [steps]
 constexpr double kLeastCaution = 1e-3;                              ///< least factor on a step while stiffness rises
 constexpr double kRecovery = 1.05;                                  ///< of that factor, a step
@@ -54,6 +53,17 @@ StepControl::StepControl(const Body& body, std::span<const double> nodal_damping
   limits_ = rest_limits_ = limits_at(validated_);
   step_ = options.step.value_or(kSafety * limits_.pace);
   if (enforce_ && step_ > limits_.stable) refuse_above();
+}
+
+/// What is left of a step h of the tissue alone when stiffness of frequency ω acts beside it. φ(h) of the tissue is at most
+/// 4 h/h₁ below a step h₁ it bears, (h/h₁)² where nothing drags, and φ(h) + ω² h² ≤ 4 must hold.
+double StepControl::with_beside(double step, double squared_frequency) const {
+  if (!(squared_frequency > 0.0)) return step;
+  const bool drags = std::any_of(body_.blocks.begin(), body_.blocks.end(), [](const TissueBlock& b) {
+    return b.viscous.mu != 0.0 || b.viscous.lambda != 0.0 || !b.tissue.maxwell.empty();
+  });
+  if (!drags) return 1.0 / std::sqrt(1.0 / (step * step) + 0.25 * squared_frequency);
+  return 2.0 * (std::sqrt(1.0 / (step * step) + squared_frequency) - 1.0 / step) / squared_frequency;
 }
 
 void StepControl::refuse_above() const {
@@ -225,9 +235,9 @@ bool StepControl::accept(std::span<const double> stiffening) {
   const double rise = watch_rise(stiffening);
   bool within = !unchecked_;
   for (std::size_t b = 0; b < validated_.size(); ++b) within = within && stiffening[b] <= validated_[b];
-  if (!within) return rises(stiffening, rise);
-  if (automatic_) relax(stiffening);
-  return true;
+  if (!within && !rises(stiffening, rise)) return false;
+  if (within && automatic_) relax(stiffening);
+  return automatic_ || step_ <= stable_step();
 }
 
 }  // namespace glisson

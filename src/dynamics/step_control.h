@@ -59,15 +59,24 @@ class StepControl {
   /// @param rate  largest norm of a tet's velocity gradient [1/s]; 0: no limit
   void limit_shape_change(double rate);
 
-  double step() const { return std::min(step_ * caution_, shape_step_); }
-  double stable_step() const { return limits_.stable; }
+  /// Stiffness that acts beside the tissue. @param squared_frequency  ω² on the body's masses, from above [1/s²]
+  void set_beside(double squared_frequency) { beside_ = squared_frequency; }
+
+  double step() const {
+    const double h = std::min(step_ * caution_, shape_step_);
+    return automatic_ ? with_beside(h, beside_ / (kSafety * kSafety)) : h;
+  }
+  double stable_step() const { return with_beside(limits_.stable, beside_); }
 
  private:
+  static constexpr double kSafety = 0.9;  ///< automatic step over h*
+
   /// h* of the scheme, and what an automatic step keeps below: at Drag::at_once also h* without viscosity, since
   /// viscosity hides what a longer step gets wrong.
   struct Limits {
     double stable = 0.0, pace = 0.0;  ///< [s]
   };
+  double with_beside(double step, double squared_frequency) const;
   std::vector<double> viscosity_at(std::span<const double> stiffening) const;
   Limits limits_at(std::span<const double> stiffening);
   Limits bound_at(std::span<const double> stiffening) const;
@@ -95,6 +104,7 @@ class StepControl {
   std::vector<double> lately_;                                   ///< the same of the last few steps
   std::vector<double> last_;                                     ///< of the last step
   double shape_step_ = std::numeric_limits<double>::infinity();  ///< [s]
+  double beside_ = 0.0;                                          ///< ω² of what acts beside the tissue [1/s²]
   double caution_ = 1.0;  ///< factor on an automatic step while stiffness rises fast
 };
 

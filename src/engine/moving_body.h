@@ -12,18 +12,11 @@
 #include <span>
 #include <vector>
 
+#include "glisson/interaction.h"
 #include "glisson/math.h"
 #include "mechanics/body_change.h"
 
 namespace glisson {
-
-/// A vertex that the body does not move by itself.
-struct WatchedVertex {
-  std::uint32_t vertex = 0;
-  Vec3d elastic, viscous;  ///< forces of the tissue at the last advance [N]
-  Vec3d displacement;      ///< [m]
-  Vec3d velocity;          ///< [m/s]
-};
 
 /// Energies per unit time at a kick, with v₋ (before) and v₊ (after) [W]; kinetic is ½ Σ m v₋·v₊ [J].
 struct KickPower {

@@ -1,0 +1,98 @@
+// interaction.h — what acts on a body beside supports, prescribed motions and loads: instruments in contact, needles,
+// membranes. Programs may bring their own.
+//
+//   a step from t to t + h, with v₋ and v₊ the velocities before and after t:
+//     reach ─▶ tissue forces at u(t) ─▶ add_forces ─▶ v₊ as if free, then as motions ask ─▶ constrain ─▶ u(t+h) ─▶ moved
+//
+// An interaction names the vertices it may act on; these are kept at hand in double. Forces that follow from the state
+// alone (membranes, springs) are added to the tissue's own; what must hold at the end of the step (no penetration,
+// friction, a path through the tissue) is solved for on velocities, by impulses. Interactions act one after the other, in
+// the order in which they were attached.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "glisson/math.h"
+#include "glisson/mesh.h"
+
+namespace glisson {
+
+/// A vertex at hand: one that something beside the tissue acts on.
+struct WatchedVertex {
+  std::uint32_t vertex = 0;
+  Vec3d elastic, viscous;  ///< forces of the tissue at time t [N]
+  Vec3d displacement;      ///< [m]
+  Vec3d velocity;          ///< [m/s]
+};
+
+/// The body as it is now, for interactions.
+struct BodyView {
+  const TetMesh& mesh;                  ///< at rest, with all tets there ever were, in present numbers
+  std::span<const char> removed;        ///< per tet: 1 where it is gone; empty: none is
+  std::span<const double> masses;       ///< lumped, per vertex [kg]
+  std::span<const Vec3d> displacement;  ///< per vertex [m]
+  bool is_removed(std::size_t tet) const { return !removed.empty() && removed[tet] != 0; }
+};
+
+/// The vertices at hand in a step.
+class InteractionStep {
+ public:
+  static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
+
+  double time = 0.0;                  ///< t: the step goes from t to t + h [s]
+  double h = 0.0;                     ///< [s]
+  std::span<WatchedVertex> vertices;  ///< ascending by vertex; `velocity` is v₋ in add_forces, v₊ in constrain
+  std::span<const std::uint32_t> place_of;  ///< per vertex of the mesh: its place in `vertices`, or kNowhere
+  std::span<const Vec3d> rest;              ///< per vertex of the mesh: rest position [m]
+  /// Per place: velocity per impulse, 1/(m + γh), in each component; 0 where a support or motion holds it [1/kg].
+  std::span<const Vec3d> mobility;
+  std::span<Vec3d> impulses;  ///< per place: sum of what interactions gave it in this step [N s]
+
+  /// Where the vertex at a place is at time t, or at t + h after moved() [m].
+  Vec3d position(std::size_t place) const { return rest[vertices[place].vertex] + vertices[place].displacement; }
+
+  /// Gives the vertex at a place an impulse [N s]; held components do not move.
+  void push(std::size_t place, const Vec3d& impulse) const {
+    const Vec3d& a = mobility[place];
+    vertices[place].velocity += Vec3d{a.x * impulse.x, a.y * impulse.y, a.z * impulse.z};
+    impulses[place] += impulse;
+  }
+};
+
+/// Something that acts on a body. Members are called by the Simulation it is attached to, in the order drawn above.
+/// None may throw after `attached`.
+class Interaction {
+ public:
+  virtual ~Interaction() = default;
+
+  /// The body it acts on from now on. @throws std::invalid_argument where it does not fit
+  virtual void attached(const BodyView& body, double time) = 0;
+  /// Tets were removed, faces split or vertices moved. Vertices and tets keep their numbers; new vertices come last.
+  /// @param origins  the last vertices are copies of these
+  virtual void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) = 0;
+
+  /// Vertices it may act on in the step from `time` to `time` + h, beside those it named before, which stay at hand.
+  /// Valid until the next call. Cost: naming none is free; naming some takes a pass over the vertices of the body.
+  virtual std::span<const std::uint32_t> reach(double time, double h) = 0;
+
+  /// Adds forces that follow from the present state to `elastic` or `viscous` of vertices.
+  virtual void add_forces(const InteractionStep&) {}
+  /// Corrects v₊ by impulses.
+  virtual void constrain(const InteractionStep&) {}
+  /// The step has been made: displacements are those at t + h.
+  virtual void moved(const InteractionStep&) {}
+
+  /// Square of a frequency that add_forces' stiffness has on the masses of the body, from above [1/s²]; it is kept out of
+  /// the stable step. Constraints have none.
+  virtual double squared_frequency() const { return 0.0; }
+
+  /// What it knows of its past, for a checkpoint. restore() takes such numbers back to the last bit.
+  virtual std::vector<double> past() const { return {}; }
+  /// @return false where the numbers are not those of such an interaction
+  virtual bool restore(std::span<const double> past) { return past.empty(); }
+};
+
+}  // namespace glisson

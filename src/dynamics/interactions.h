@@ -1,0 +1,46 @@
+// interactions.h — the interactions of a body under the explicit scheme, and the vertices they have at hand.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dynamics/checkpoint.h"
+#include "dynamics/constraints.h"
+#include "glisson/interaction.h"
+
+namespace glisson {
+
+class Interactions {
+ public:
+  void add(std::shared_ptr<Interaction> interaction) { all_.push_back(std::move(interaction)); }
+  bool empty() const { return all_.empty(); }
+
+  /// Vertices that some interaction wants at hand in the coming step and that are not yet; ascending.
+  std::span<const std::uint32_t> newcomers(double time, double h, std::size_t vertex_count);
+  /// The vertices at hand have become others.
+  void find_places(std::span<const WatchedVertex> watched, std::size_t vertex_count);
+
+  /// Begins a step. @param mobility  of each watched vertex as if nothing held it, 1/(m + γh) [1/kg]
+  void begin(double time, double h, std::span<WatchedVertex> watched, std::span<const Vec3d> rest);
+  void add_forces();
+  /// @param held  per place and component: whether a support or motion holds it
+  void constrain(std::span<const Vec3d> mobility);
+  void moved();
+  void body_changed(const BodyView& body, std::span<const std::uint32_t> origins);
+
+  /// Per place, of the last step [N s].
+  std::span<const Vec3d> impulses() const { return impulses_; }
+  double squared_frequency() const;
+
+  void save(CheckpointWriter& out) const;
+  void load(CheckpointReader& in);
+
+ private:
+  std::vector<std::shared_ptr<Interaction>> all_;
+  std::vector<std::uint32_t> place_of_, newcomers_;
+  std::vector<Vec3d> impulses_;
+  InteractionStep step_;
+};
+
+}  // namespace glisson

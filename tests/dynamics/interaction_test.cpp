@@ -1,0 +1,187 @@
+// What a program attaches to a body acts as a load or a support of the same meaning would, and the books stay exact.
+#include "glisson/interaction.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <stdexcept>
+
+#include "glisson/simulation.h"
+
+namespace glisson {
+namespace {
+
+/// A force on a vertex, a spring to where it rests, or a hold; what it gave in the last step is kept.
+struct Probe final : Interaction {
+  std::uint32_t vertex = 0;
+  Vec3d force{};
+  double spring = 0.0;  // [N/m]
+  bool holds = false;
+  double lightest = 1.0;  // [kg]
+  int changes = 0;
+  Vec3d given{};
+
+  void attached(const BodyView& body, double) override { lightest = body.masses[vertex]; }
+  void body_changed(const BodyView&, std::span<const std::uint32_t>) override { ++changes; }
+  std::span<const std::uint32_t> reach(double, double) override { return {&vertex, 1}; }
+  void add_forces(const InteractionStep& step) override {
+    WatchedVertex& w = step.vertices[step.place_of[vertex]];
+    w.elastic += force - w.displacement * spring;
+  }
+  void constrain(const InteractionStep& step) override {
+    if (!holds) return;
+    const std::size_t k = step.place_of[vertex];
+    const Vec3d v = step.vertices[k].velocity, a = step.mobility[k];
+    step.push(k, {-v.x / a.x, -v.y / a.y, -v.z / a.z});
+    given = step.impulses[k] * (1.0 / step.h);
+  }
+  double squared_frequency() const override { return spring / lightest; }
+};
+
+TetMesh block() { return box_mesh({.cells = {4, 2, 2}, .size = {0.04, 0.02, 0.02}}); }
+std::uint32_t middle(const TetMesh& mesh) {
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (norm(mesh.vertices[v] - Vec3d{0.02, 0.01, 0.02}) < 1e-9) return v;
+  }
+  throw std::logic_error("the block has no vertex there");
+}
+
+Simulation body(const SimulationOptions& options = {}) {
+  TetMesh mesh = block();
+  Tissue tissue;
+  tissue.youngs_modulus = 3600;
+  tissue.poisson_ratio = 0.4;
+  Simulation s(mesh, {{0, tissue}}, options);
+  s.fix(mesh.vertex_sets.at("z_min"));
+  return s;
+}
+
+std::shared_ptr<Probe> probe() {
+  auto p = std::make_shared<Probe>();
+  p->vertex = middle(block());
+  return p;
+}
+
+void advance(Simulation& s, int steps) {
+  for (int i = 0; i < steps; ++i) ASSERT_EQ(s.step().status, StepStatus::ok);
+}
+
+// A force that an interaction adds moves the body as a load of the same size; it is booked as elastic, so that the
+// balance of energies is exact: rounding of some 400 sums.
+TEST(Interaction, ForceActsAsALoad) {
+  Simulation a = body(), b = body();
+  auto p = probe();
+  p->force = {0.001, 0.0, -0.002};
+  a.attach(p);
+  b.add_load(std::vector{p->vertex}, p->force);
+  advance(a, 400), advance(b, 400);
+  EXPECT_NEAR(norm(a.displacement()[p->vertex] - b.displacement()[p->vertex]), 0.0, 1e-15);
+  EXPECT_GT(norm(a.displacement()[p->vertex]), 1e-5);
+  EXPECT_NEAR(a.energies().imbalance(), 0.0, 1e-12 * a.energies().kinetic + 1e-18);
+}
+
+// An impulse that stops a vertex is the force a support would need, and does no work.
+TEST(Interaction, HoldingIsASupport) {
+  SimulationOptions options;
+  options.gravity = {0, 0, -9.81};
+  Simulation a = body(options), b = body(options);
+  auto p = probe();
+  p->holds = true;
+  a.attach(p);
+  const ConstraintId support = b.fix(std::vector{p->vertex});
+  advance(a, 300), advance(b, 300);
+  EXPECT_EQ(a.state_hash(), b.state_hash());
+  EXPECT_NEAR(norm(p->given - b.force(support).total()), 0.0, 1e-12 * norm(p->given));
+  EXPECT_GT(norm(p->given), 1e-5);
+  EXPECT_NEAR(a.energies().work_tools, 0.0, 1e-18);
+}
+
+// A support feels what an interaction pushes it with, in `load`.
+TEST(Interaction, SupportsBearIt) {
+  Simulation s = body();
+  auto p = std::make_shared<Probe>();
+  p->vertex = 0;  // held
+  p->holds = true;
+  struct Push final : Interaction {
+    void attached(const BodyView&, double) override {}
+    void body_changed(const BodyView&, std::span<const std::uint32_t>) override {}
+    std::uint32_t vertex = 0;
+    std::span<const std::uint32_t> reach(double, double) override { return {&vertex, 1}; }
+    void constrain(const InteractionStep& step) override { step.push(step.place_of[0], Vec3d{0, 0, -0.5} * step.h); }
+  };
+  s.attach(std::make_shared<Push>());
+  const TetMesh mesh = block();
+  advance(s, 3);
+  EXPECT_NEAR(s.force({0}).load.z, 0.5, 1e-12);
+  EXPECT_EQ(norm(s.displacement()[0]), 0.0);
+}
+
+// A spring a thousand times stiffer than the tissue shortens the step to what it bears: 2/ω of the spring on its vertex, and
+// the body stays where it is instead of blowing up.
+TEST(Interaction, StiffSpringShortensTheStep) {
+  Simulation s = body();
+  const double before = s.stable_step();
+  auto p = probe();
+  p->spring = 1e5;
+  p->force = {0, 0, -0.01};
+  s.attach(p);
+  const double spring_alone = 2.0 / std::sqrt(p->squared_frequency());
+  EXPECT_LT(s.stable_step(), std::min(before, spring_alone));
+  EXPECT_GT(s.stable_step(), 0.9 * spring_alone);
+  EXPECT_LE(s.step_size(), s.stable_step());
+  advance(s, 5000);
+  // the spring swings by its static stretch, seen larger by 1/√(1 − (ωh/2)²) = 2.3 at 0.9 of the stable step
+  EXPECT_LT(norm(s.displacement()[p->vertex]), 4 * 0.01 / p->spring);
+}
+
+// A given step that such a spring does not bear is not made, with a status.
+TEST(Interaction, GivenStepAboveIsRefused) {
+  SimulationOptions options;
+  options.step = 1e-3;
+  Simulation s = body(options);
+  auto p = probe();
+  p->spring = 1e5;
+  s.attach(p);
+  EXPECT_EQ(s.step().status, StepStatus::step_too_large);
+}
+
+TEST(Interaction, HearsOfChanges) {
+  Simulation s = body();
+  auto p = probe();
+  s.attach(p);
+  s.remove_tets(std::vector<std::uint32_t>{0});
+  EXPECT_EQ(p->changes, 1);
+  advance(s, 1);
+}
+
+// A run goes on from a checkpoint with the same bytes though its vertices at hand came by and by.
+TEST(Interaction, CheckpointKeepsTheVerticesAtHand) {
+  const auto made = [](std::shared_ptr<Probe> p) {
+    Simulation s = body();
+    p->force = {0.001, 0.0, -0.002};
+    s.attach(std::move(p));
+    return s;
+  };
+  Simulation a = made(probe());
+  advance(a, 50);
+  std::stringstream file;
+  a.save(file);
+  advance(a, 50);
+  Simulation b = made(probe());
+  b.load(file);
+  advance(b, 50);
+  EXPECT_EQ(a.state_hash(), b.state_hash());
+}
+
+TEST(Interaction, ImplicitIntegratorsRefuse) {
+  for (const Integrator i : {Integrator::implicit, Integrator::static_}) {
+    SimulationOptions options;
+    options.integrator = i;
+    Simulation s = body(options);
+    EXPECT_THROW(s.attach(probe()), std::invalid_argument);
+  }
+  EXPECT_THROW(body().attach(nullptr), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace glisson
