@@ -31,6 +31,12 @@ struct TetMesh {
   bool operator==(const TetMesh&) const = default;
 };
 
+/// A vertex and where it is to be at rest.
+struct VertexMove {
+  std::uint32_t vertex = 0;
+  Vec3d rest{};  ///< [m]
+};
+
 /// Six times the signed rest volume of a tetrahedron [m³].
 double six_rest_volume(const TetMesh& mesh, std::size_t tet);
 

@@ -149,7 +149,8 @@ struct Energies {
   double work_tools = 0.0;  ///< of driven vertices on the tissue
   double work_loads = 0.0;  ///< of gravity and of loads
   double initial = 0.0;     ///< kinetic and elastic energy of the state given by set_state
-  double removed = 0.0;     ///< kinetic and elastic energy that tets took with them when they were removed
+  /// Kinetic and elastic energy that tets took with them when they were removed, or that a move of vertices at rest took.
+  double removed = 0.0;
   double imbalance() const {
     return kinetic + elastic + dissipated + numerical + removed - initial - work_tools - work_loads;
   }
@@ -228,9 +229,13 @@ class Simulation {
   /// Opens the body along inner faces: vertices that the faces part get copies, numbered on from the last one, with
   /// the state of their origin. Copies belong to the sets, supports and tools of their origin, and share its loads.
   /// @param faces  three vertices each, in present numbers; repeated ones are ignored
-  /// @throws std::invalid_argument naming a face that no tet has, that is at the boundary or has more than two tets
-  /// Cost: the submeshes at the faces are laid out anew, some 0.3 ms each.
-  SplitReport split_faces(std::span<const Triangle> faces);
+  /// @param moves  made before the body is opened, one after the other: the vertex is another point of the material from
+  ///               then on and takes the displacement and velocity of that point; the material stays where it is. Masses
+  ///               follow, and what the energies of the tets around it differ by is booked as `removed`
+  /// @throws std::invalid_argument naming a face that no tet has, that is at the boundary or has more than two tets, or a
+  ///         vertex that is none or would turn a tet over; nothing is changed then
+  /// Cost: the submeshes at the faces and moved vertices are laid out anew, some 0.3 ms each.
+  SplitReport split_faces(std::span<const Triangle> faces, std::span<const VertexMove> moves = {});
   /// @throws std::invalid_argument for a number that is no tet's
   bool is_removed(std::uint32_t tet) const;
   /// The rest mesh as it is now, without the removed tets (numbers of tets are new, those of vertices the same).
@@ -287,6 +292,7 @@ class Simulation {
   std::uint64_t state_hash() const;
 
  private:
+  friend struct SimulationParts;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -282,7 +282,7 @@ void ExplicitScheme::load(CheckpointReader& in) {
 
 void ExplicitScheme::take_over(const BodyChange& change) {
   moving_->apply(change, changer_->stars(), gamma_);
-  control_->mesh_changed(gamma_);
+  control_->mesh_changed(gamma_, change.reshaped);
   copy_.current = false;
 }
 

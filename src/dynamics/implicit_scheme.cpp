@@ -72,6 +72,7 @@ void ImplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
 }
 
 void ImplicitScheme::take_over(const BodyChange& change) {
+  for (const MovedVertex& m : change.moved) now_.u[m.vertex] = m.displacement, now_.v[m.vertex] = m.velocity;
   for (auto* field : {&now_.u, &now_.v, &now_.a}) {
     for (const std::uint32_t origin : change.origins) field->push_back(Vec3d((*field)[origin]));
   }

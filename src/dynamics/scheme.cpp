@@ -86,9 +86,9 @@ Vec3d Scheme::gravity_at(double time) const {
   return options_.gravity * (time < options_.gravity_ramp ? time / options_.gravity_ramp : 1.0);
 }
 
-/// Mass, momentum and energy of elements that are about to go.
-void Scheme::weigh_energy(std::span<const std::uint32_t> elements, RemovalReport& report) {
-  double kinetic = 0.0, elastic = 0.0;
+/// Kinetic and elastic energy of elements with their shares of mass [J].
+std::array<double, 2> Scheme::energy_of(std::span<const std::uint32_t> elements) const {
+  std::array<double, 2> sum{};
   for (const std::uint32_t e : elements) {
     const TissueBlock& block = body_.block_of(e);
     const double quarter = body_.quarter_mass(block, e);
@@ -97,12 +97,23 @@ void Scheme::weigh_energy(std::span<const std::uint32_t> elements, RemovalReport
       const std::uint32_t vertex = body_.elements[e][a];
       const Vec3d v = velocity_of(vertex);
       u[a] = displacement_of(vertex);
-      report.mass += quarter;
-      report.momentum += v * quarter;
-      kinetic += 0.5 * quarter * dot(v, v);
+      sum[0] += 0.5 * quarter * dot(v, v);
     }
-    elastic += element_energy(body_, block, e, u);
+    sum[1] += element_energy(body_, block, e, u);
   }
+  return sum;
+}
+
+/// Mass, momentum and energy of elements that are about to go.
+void Scheme::weigh_energy(std::span<const std::uint32_t> elements, RemovalReport& report) {
+  for (const std::uint32_t e : elements) {
+    const double quarter = body_.quarter_mass(body_.block_of(e), e);
+    for (const std::uint32_t vertex : body_.elements[e]) {
+      report.mass += quarter;
+      report.momentum += velocity_of(vertex) * quarter;
+    }
+  }
+  const auto [kinetic, elastic] = energy_of(elements);
   report.tets += elements.size();
   report.energy = kinetic + elastic;
   if (options_.track_energies) take_out(kinetic, elastic);
@@ -158,10 +169,30 @@ RemovalReport Scheme::remove(std::span<const std::uint32_t> tets) {
   return report;
 }
 
-SplitReport Scheme::split(std::span<const Triangle> faces) {
+/// Lets motions that hold moved vertices count from where these are now.
+void Scheme::move_bases(std::span<const MovedVertex> moved) {
+  for (const MovedVertex& m : moved) {
+    for (std::size_t c = 0; c < base_.size(); ++c) {
+      if (!holds(c)) continue;
+      const std::vector<std::uint32_t>& held = constraints_.all()[c].vertices;
+      const auto at = std::find(held.begin(), held.end(), m.vertex) - held.begin();
+      if (at < std::ssize(held)) base_[c][static_cast<std::size_t>(at)] += m.displacement - displacement_of(m.vertex);
+    }
+  }
+}
+
+SplitReport Scheme::split(std::span<const Triangle> faces, std::span<const VertexMove> moves) {
   SplitReport report{.first_new = static_cast<std::uint32_t>(body_.vertex_count), .origins = {}, .closed_faces = 0};
-  BodyChange opening = changer().split(faces);
+  const StateOf state = [this](std::uint32_t v) { return std::pair{displacement_of(v), velocity_of(v)}; };
+  const bool booked = options_.track_energies && !moves.empty();
+  const std::vector<std::uint32_t> around = booked ? changer().elements_around(moves) : std::vector<std::uint32_t>{};
+  const std::array<double, 2> before = energy_of(around);
+  BodyChange opening = changer().cut(faces, moves, state);
+  move_bases(opening.moved);
   change(opening);
+  const std::array<double, 2> after = energy_of(around);
+  if (booked) take_out(before[0] - after[0], before[1] - after[1]);
+  copies_.insert(copies_.end(), opening.origins.begin(), opening.origins.end());
   const std::vector<std::vector<std::size_t>> copied = constraints_.add_copies(opening.origins);
   loads_.add_copies(opening.origins);
   for (std::size_t c = 0; c < copied.size(); ++c) {

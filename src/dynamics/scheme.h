@@ -4,6 +4,7 @@
 //                         └─ ImplicitScheme                           the state lies here, in double
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -29,9 +30,13 @@ class Scheme {
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity);
 
   RemovalReport remove(std::span<const std::uint32_t> tets);
-  SplitReport split(std::span<const Triangle> faces);
+  SplitReport split(std::span<const Triangle> faces, std::span<const VertexMove> moves = {});
   /// Elements that got other vertices by the last split.
   std::span<const std::uint32_t> last_changed() const { return last_changed_; }
+  /// Vertices that came last are copies of these; of all splits so far.
+  std::span<const std::uint32_t> copies() const { return copies_; }
+  const detail::VertexStars& stars() { return changer().stars(); }
+  const Constraints& constraints() const { return constraints_; }
   bool is_removed(std::uint32_t tet) const { return changer_ != nullptr && changer_->is_removed(tet); }
 
   /// As Simulation::step.
@@ -92,6 +97,7 @@ class Scheme {
   Loads loads_;
   std::unique_ptr<BodyChanger> changer_;     ///< none until something changes
   std::vector<std::uint32_t> last_changed_;  ///< elements
+  std::vector<std::uint32_t> copies_;
   double time_ = 0.0;
   std::uint64_t steps_ = 0;
 
@@ -99,6 +105,8 @@ class Scheme {
   std::uint64_t fingerprint() const;
   void weigh_energy(std::span<const std::uint32_t> elements, RemovalReport& report);
   void change(const BodyChange& change);
+  std::array<double, 2> energy_of(std::span<const std::uint32_t> elements) const;
+  void move_bases(std::span<const MovedVertex> moved);
 };
 
 }  // namespace glisson

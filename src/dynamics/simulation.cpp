@@ -9,6 +9,7 @@
 
 #include "dynamics/make_scheme.h"
 #include "dynamics/mass_scaling.h"
+#include "dynamics/simulation_parts.h"
 #include "mechanics/tet_fields.h"
 
 namespace glisson {
@@ -46,9 +47,10 @@ void require_options(const SimulationOptions& o) {
   check(std::isfinite(norm(o.gravity)), "|gravity| [m/s^2]", norm(o.gravity), "finite");
 }
 
-/// Tets that were removed, or faces that were split, by one call.
+/// Tets that were removed, or faces that were split and vertices moved, by one call.
 struct MeshChange {
-  std::vector<std::uint32_t> removed, corners;
+  std::vector<std::uint32_t> removed, corners, moved{};
+  std::vector<Vec3d> places{};
   bool operator==(const MeshChange&) const = default;
 };
 
@@ -91,6 +93,8 @@ Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const Simula
   impl_.reset(new Impl{std::move(mesh), make_scheme(std::move(body), options), kind_of(options), fingerprint, {}});
 }
 
+Scheme& SimulationParts::scheme(Simulation& simulation) { return *simulation.impl_->scheme; }
+
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
@@ -119,13 +123,18 @@ RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) {
   return report;
 }
 
-SplitReport Simulation::split_faces(std::span<const Triangle> faces) {
-  SplitReport report = impl_->scheme->split(faces);
+SplitReport Simulation::split_faces(std::span<const Triangle> faces, std::span<const VertexMove> moves) {
+  SplitReport report = impl_->scheme->split(faces, moves);
   impl_->changes.emplace_back();
   for (const Triangle& face : faces) {
     impl_->changes.back().corners.insert(impl_->changes.back().corners.end(), face.begin(), face.end());
   }
   TetMesh& mesh = impl_->mesh;
+  for (const VertexMove& m : moves) {
+    impl_->changes.back().moved.push_back(m.vertex);
+    impl_->changes.back().places.push_back(m.rest);
+    mesh.vertices[m.vertex] = m.rest;
+  }
   const Body& body = impl_->scheme->body();
   for (std::uint32_t i = 0; i < report.origins.size(); ++i) {
     mesh.vertices.push_back(Vec3d(mesh.vertices[report.origins[i]]));
@@ -202,7 +211,9 @@ void Simulation::save(std::ostream& out) const {
   file.put(impl_->kind);
   file.put(impl_->fingerprint);
   file.put(static_cast<std::uint64_t>(impl_->changes.size()));
-  for (const MeshChange& change : impl_->changes) file.put(change.removed), file.put(change.corners);
+  for (const MeshChange& change : impl_->changes) {
+    file.put(change.removed), file.put(change.corners), file.put(change.moved), file.put(change.places);
+  }
   impl_->scheme->save(file);
   file.write(out);
 }
@@ -218,7 +229,8 @@ void Simulation::load(std::istream& in) {
   const auto count = file.get<std::uint64_t>();
   for (std::uint64_t k = 0; k < count; ++k) {
     MeshChange change;
-    file.get(change.removed), file.get(change.corners);
+    file.get(change.removed), file.get(change.corners), file.get(change.moved), file.get(change.places);
+    if (change.moved.size() != change.places.size()) CheckpointReader::fail();
     if (k < impl_->changes.size()) {
       if (!(change == impl_->changes[k])) CheckpointReader::fail();
       continue;
@@ -227,10 +239,12 @@ void Simulation::load(std::istream& in) {
     for (std::size_t c = 0; c + 2 < change.corners.size(); c += 3) {
       faces.push_back({change.corners[c], change.corners[c + 1], change.corners[c + 2]});
     }
-    if (faces.empty()) {
+    std::vector<VertexMove> moves;
+    for (std::size_t m = 0; m < change.moved.size(); ++m) moves.push_back({change.moved[m], change.places[m]});
+    if (faces.empty() && moves.empty()) {
       remove_tets(change.removed);
     } else {
-      split_faces(faces);
+      split_faces(faces, moves);
     }
   }
   if (count < impl_->changes.size()) CheckpointReader::fail();

@@ -107,9 +107,15 @@ StepControl::Limits StepControl::bound_at(std::span<const double> stiffening) co
   return {h, h};
 }
 
-void StepControl::mesh_changed(std::span<const double> nodal_damping) {
+void StepControl::mesh_changed(std::span<const double> nodal_damping, std::span<const std::uint32_t> reshaped) {
   if (nodal_damping.size() != nodal_damping_.size()) guess_ = pace_guess_ = {};
   nodal_damping_ = nodal_damping;
+  const std::vector<double> viscosity = viscosity_at(std::vector<double>(body_.blocks.size(), 1.0));
+  for (const std::uint32_t e : reshaped) {
+    const TissueBlock& block = body_.block_of(e);
+    const auto b = static_cast<std::size_t>(&block - body_.blocks.data());
+    any_part_ = std::min(any_part_, element_step(body_, block, e, 1.0, viscosity[b]));
+  }
   // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C
   const auto bound = [&](Limits& limits, const std::vector<double>& level) {
     const double h = any_part_ / std::sqrt(*std::max_element(level.begin(), level.end()));

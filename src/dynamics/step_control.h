@@ -46,7 +46,8 @@ class StepControl {
   /// After elements were removed or split from each other: h* falls to the bound that holds for any part of the body,
   /// each element with its own share of mass. A given step above that is checked against h* itself by the next
   /// accept(), which is slow.
-  void mesh_changed(std::span<const double> nodal_damping);
+  /// @param reshaped  elements that have another shape at rest
+  void mesh_changed(std::span<const double> nodal_damping, std::span<const std::uint32_t> reshaped = {});
 
   void save(CheckpointWriter& out) const;
   void load(CheckpointReader& in);

@@ -3,11 +3,13 @@
 //   removed element   chains: its lane is emptied where it lies        edges: its six are assembled anew
 //   split vertex      the submeshes of the corners that changed are laid out anew; the copies come last among
 //                     the state records, as interface vertices, so that no other record moves
+//   moved vertex      the submeshes of the elements around it are laid out anew
 #include <algorithm>
 
 #include "engine/chain_batches.h"
 #include "engine/edge_batches.h"
 #include "engine/submesh_body.h"
+#include "engine/submesh_scratch.h"
 
 namespace glisson::engine {
 
@@ -43,9 +45,22 @@ void SubmeshBody::take_out(std::uint32_t element, const detail::VertexStars& sta
   reassemble_edges(body_, body_.blocks[part.block], element, stars, in_part, local, part.edges, kernels_.lanes);
 }
 
-void SubmeshBody::lay_out_touched(std::span<const detail::CornerChange> corners) {
+/// Takes over the state of vertices that are other points of the material now.
+void SubmeshBody::take_states(std::span<const MovedVertex> moved) {
+  for (const MovedVertex& m : moved) {
+    double* record = state_.data() + submeshes_.record_of_vertex[m.vertex] * kStateDoubles;
+    put(m.displacement, record);
+    put(m.velocity, record + 4);
+    const auto w = std::lower_bound(watched_.begin(), watched_.end(), m.vertex,
+                                    [](const WatchedVertex& a, std::uint32_t vertex) { return a.vertex < vertex; });
+    if (w != watched_.end() && w->vertex == m.vertex) w->displacement = m.displacement, w->velocity = m.velocity;
+  }
+}
+
+void SubmeshBody::lay_out_touched(const BodyChange& change) {
   std::vector<std::uint32_t> touched;
-  for (const detail::CornerChange& c : corners) touched.push_back(part_of_element_[c.tet]);
+  for (const detail::CornerChange& c : change.corners) touched.push_back(part_of_element_[c.tet]);
+  for (const std::uint32_t e : change.reshaped) touched.push_back(part_of_element_[e]);
   std::sort(touched.begin(), touched.end());
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   for (const std::uint32_t p : touched) {
@@ -61,6 +76,7 @@ void SubmeshBody::lay_out_touched(std::span<const detail::CornerChange> corners)
 void SubmeshBody::apply(const BodyChange& change, const detail::VertexStars& stars,
                         std::span<const double> nodal_damping) {
   if (part_of_element_.empty()) find_parts();
+  take_states(change.moved);
   add_records(change.origins);
   for (const std::uint32_t v : change.touched) {
     const std::uint32_t record = submeshes_.record_of_vertex[v];
@@ -69,7 +85,7 @@ void SubmeshBody::apply(const BodyChange& change, const detail::VertexStars& sta
     set_coefficients(record);
   }
   for (const std::uint32_t e : change.removed) take_out(e, stars);
-  if (!change.corners.empty()) lay_out_touched(change.corners);
+  if (!change.corners.empty() || !change.reshaped.empty()) lay_out_touched(change);
   if (any_shared_) weigh_vertices();
 }
 

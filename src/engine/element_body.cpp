@@ -64,6 +64,13 @@ bool ElementBody::set_past(std::span<const double> past) {
 }
 
 void ElementBody::apply(const BodyChange& change, const detail::VertexStars&, std::span<const double> nodal_damping) {
+  for (const MovedVertex& m : change.moved) {
+    u_[m.vertex] = m.displacement;
+    v_[m.vertex] = m.velocity;
+    for (WatchedVertex& w : watched_) {
+      if (w.vertex == m.vertex) w.displacement = m.displacement, w.velocity = m.velocity;
+    }
+  }
   for (const std::uint32_t origin : change.origins) {
     u_.push_back(Vec3d(u_[origin]));
     v_.push_back(Vec3d(v_[origin]));

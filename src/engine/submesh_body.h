@@ -100,7 +100,8 @@ class SubmeshBody final : public MovingBody {
   void find_parts();
   void add_records(std::span<const std::uint32_t> origins);
   void take_out(std::uint32_t element, const detail::VertexStars& stars);
-  void lay_out_touched(std::span<const detail::CornerChange> corners);
+  void take_states(std::span<const MovedVertex> moved);
+  void lay_out_touched(const BodyChange& change);
   void run_submesh(std::size_t s, const Step& step, Scratch& scratch);
   void narrow(const Submesh& part, Scratch& scratch) const;
   void push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;

@@ -1,0 +1,13 @@
+// simulation_parts.h — the inside of a simulation, for what the library itself builds upon it.
+#pragma once
+
+#include "dynamics/scheme.h"
+#include "glisson/simulation.h"
+
+namespace glisson {
+
+struct SimulationParts {
+  static Scheme& scheme(Simulation& simulation);
+};
+
+}  // namespace glisson
