@@ -1,17 +1,18 @@
 // needle.h — a needle that presses, pierces, cuts its way, rubs along its shaft, rests and comes back.
 //
-//        hand ──────────────┬ base                     material points of the path, one every `spacing`:
-//                           │                            across the shaft they follow it (both ways),
-//     surface ══════╤═══════╪═══════╤══ P₀             along it they stick until friction yields
-//                   │       │       │
-//        tissue     ·       ·  P₁   ·                  tip: held back by the tissue until the force reaches what is
-//                   ·       ·  P₂   ·                  needed to pierce or to cut; then the path grows
-//                           ▼ tip
+//            hand ┬                 material points of the path, one every `spacing`:
+//                 │                   across the shaft they stay on it, and bend it,
+//     surface ════╪════  P₀           along it they stick until friction yields
+//                 │
+//      tissue     ·      P₁           the tip is held back until its force reaches what is needed to pierce or
+//                 ·      P₂           to cut; then the path grows by where it goes
+//                 ▼ tip
 //
 // The tissue is not remeshed: the path is embedded. A point of it stands for the tissue within `zone` of it, so that forces
 // do not depend on the mesh as long as that resolves the zone (docs/needles.md).
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -49,7 +50,7 @@ struct NeedleOptions {
   double length = 0.1;        ///< from the hand to the tip [m], > 0
   Vec3d direction{0, 0, -1};  ///< of the needle at the start, from the hand to the tip; any length
   double zone = 3e-3;         ///< radius of the tissue around a point that takes its force [m], > 0
-  double spacing = 1e-3;      ///< of path points [m], > 0
+  double spacing = 2e-3;      ///< of path points [m], > 0; less than a third of the zone only costs time
   Rupture rupture{};          ///< neither given: the surface is pierced at the cutting force of what is below
   TipResistance tip{};        ///< of regions that `regions` does not name; its puncture is not used
   std::map<int, TipResistance> regions{};  ///< by region number
@@ -57,7 +58,8 @@ struct NeedleOptions {
   /// Young's modulus [Pa], > 0: the needle bends as a cantilever from the hand; none: it is rigid.
   std::optional<double> youngs_modulus{};
   double inner_diameter = 0.0;  ///< of a tube, for its bending [m], 0 … diameter
-  /// Sideways force of a bevelled tip while it cuts, over the cutting force [-], and where it points to.
+  /// Sideways force on a bevelled tip while it cuts, over the cutting force [-], ≥ 0, and where it points to. It steers
+  /// needles that bend.
   double bevel_share = 0.0;
   Vec3d bevel_side{1, 0, 0};  ///< across the direction; any length
 };
@@ -73,6 +75,7 @@ class Needle final : public Instrument {
  public:
   /// @param driver  moves the tip of the needle as if nothing bent it; its axes are not used: the needle keeps its direction
   /// @throws std::invalid_argument naming the option, its value and the allowed range
+  /// Depth and events count along the needle from where its tip starts.
   Needle(const NeedleOptions& options, std::shared_ptr<ToolDriver> driver);
   ~Needle() override;
 
@@ -82,6 +85,8 @@ class Needle final : public Instrument {
   std::vector<Vec3d> path() const;         ///< material points from the surface to the deepest, where they are now [m]
   std::vector<Vec3d> centre_line() const;  ///< of the needle from the hand to the tip, as bent [m]
   const NeedleOptions& options() const;
+  /// Is told of the hole when the surface gives way: its rest position [m] and radius [m]. For a capsule that tears.
+  void on_puncture(std::function<void(const Vec3d& rest, double radius)> told);
 
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
@@ -93,6 +98,12 @@ class Needle final : public Instrument {
 
  private:
   struct State;
+  struct Solver;
+  void look_for_contact(const InteractionStep& step);
+  void press_on(const InteractionStep& step);
+  void pierce(const InteractionStep& step);
+  void go_on(const InteractionStep& step);
+  void watch_drop(double time, double h);
   std::unique_ptr<State> state_;
 };
 

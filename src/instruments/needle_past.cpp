@@ -1,0 +1,113 @@
+// needle_past.cpp — a needle's checkpoint.
+#include "instruments/needle_state.h"
+
+namespace glisson {
+namespace {
+
+class Writer {
+ public:
+  explicit Writer(std::vector<double>& out) : out_(out) {}
+  void operator()(double a) { out_.push_back(a); }
+  void operator()(const Vec3d& a) { out_.insert(out_.end(), {a.x, a.y, a.z}); }
+
+ private:
+  std::vector<double>& out_;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::span<const double> in) : in_(in) {}
+  double number() {
+    ok_ = ok_ && at_ < in_.size();
+    return ok_ ? in_[at_++] : 0.0;
+  }
+  Vec3d vector() {
+    const double x = number(), y = number(), z = number();
+    return {x, y, z};
+  }
+  std::size_t count() {
+    const double n = number();
+    ok_ = ok_ && n >= 0.0 && n <= static_cast<double>(in_.size());
+    return ok_ ? static_cast<std::size_t>(n) : 0;
+  }
+  bool done() const { return ok_ && at_ == in_.size(); }
+  bool ok() const { return ok_; }
+
+ private:
+  std::span<const double> in_;
+  std::size_t at_ = 0;
+  bool ok_ = true;
+};
+
+}  // namespace
+
+std::vector<double> Needle::past() const {
+  const State& s = *state_;
+  std::vector<double> past;
+  save_motion(past);
+  Writer put(past);
+  put(static_cast<double>(s.stage));
+  put(s.named_around);
+  put(s.look ? 1.0 : 0.0);
+  put(s.tip.rest), put(s.tip_along), put(s.bend_tip);
+  for (const bool flag : {s.tip_cuts, s.tip_out, s.withdraws, s.next_region.has_value()}) put(flag ? 1.0 : 0.0);
+  put(s.region), put(s.next_region.value_or(0)), put(s.offset), put(s.step_h);
+  for (const double a :
+       {s.pressing.work, s.pressing.depth, s.pressing.force, s.pressing.work_at_cutting, s.pressing.depth_at_cutting}) {
+    put(a);
+  }
+  put(s.drop.armed ? 1.0 : 0.0);
+  for (const double a : {s.drop.puncture_force, s.drop.force, s.drop.least, s.drop.time, s.drop.depth}) put(a);
+  put(static_cast<double>(s.nodes.size()));
+  for (std::size_t j = 0; j < s.nodes.size(); ++j) {
+    put(s.nodes[j].rest), put(s.slips[j] != 0 ? 1.0 : 0.0), put(s.along[j]);
+    put(j < s.bend.size() ? s.bend[j] : Vec3d{});
+  }
+  put(static_cast<double>(s.entry_triangles.size()));
+  for (const std::size_t t : s.entry_triangles) put(static_cast<double>(t));
+  return past;
+}
+
+bool Needle::restore(std::span<const double> past) {
+  State& s = *state_;
+  if (!restore_motion(past)) return false;
+  Reader get(past);
+  const double stage = get.number();
+  if (!(stage == 0.0 || stage == 1.0 || stage == 2.0)) return false;
+  s.stage = static_cast<NeedleStage>(static_cast<int>(stage));
+  s.named_around = get.vector();
+  s.look = get.number() != 0.0;
+  const Vec3d tip = get.vector();
+  s.tip_along = get.number(), s.bend_tip = get.vector();
+  s.tip_cuts = get.number() != 0.0, s.tip_out = get.number() != 0.0, s.withdraws = get.number() != 0.0;
+  const bool has_next = get.number() != 0.0;
+  s.region = static_cast<int>(get.number());
+  const int next = static_cast<int>(get.number());
+  s.next_region = has_next ? std::optional<int>(next) : std::nullopt;
+  s.offset = get.number(), s.step_h = get.number();
+  for (double* a : {&s.pressing.work, &s.pressing.depth, &s.pressing.force, &s.pressing.work_at_cutting,
+                    &s.pressing.depth_at_cutting}) {
+    *a = get.number();
+  }
+  s.drop.armed = get.number() != 0.0;
+  for (double* a : {&s.drop.puncture_force, &s.drop.force, &s.drop.least, &s.drop.time, &s.drop.depth})
+    *a = get.number();
+  const std::size_t nodes = get.count();
+  s.nodes.assign(nodes, {});
+  s.slips.assign(nodes, 0), s.along.assign(nodes, 0.0), s.bend.assign(nodes, Vec3d{});
+  for (std::size_t j = 0; j < nodes && get.ok(); ++j) {
+    const Vec3d rest = get.vector();
+    if (!s.place(s.nodes[j], rest)) s.nodes[j].rest = rest;
+    s.slips[j] = get.number() != 0.0 ? 1 : 0, s.along[j] = get.number();
+    s.bend[j] = get.vector();
+  }
+  s.entry_triangles.assign(get.count(), 0);
+  for (std::size_t& t : s.entry_triangles) {
+    t = static_cast<std::size_t>(get.number());
+    if (t >= s.surface.size()) return false;
+  }
+  if (s.stage != NeedleStage::outside && !s.place(s.tip, tip)) s.tip.rest = tip;
+  return get.done();
+}
+
+}  // namespace glisson
