@@ -86,7 +86,8 @@ class Interaction {
   virtual void moved(const InteractionStep&) {}
 
   /// Square of a frequency that add_forces' stiffness has on the masses of the body, from above [1/s²]; it is kept out of
-  /// the stable step. Constraints have none.
+  /// the stable step. Asked for after every step: where it follows the state it has to see one step ahead. Constraints
+  /// have none.
   virtual double squared_frequency() const { return 0.0; }
 
   /// What it knows of its past, for a checkpoint. restore() takes such numbers back to the last bit.

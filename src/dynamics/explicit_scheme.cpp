@@ -227,7 +227,10 @@ StepResult ExplicitScheme::step() {
   moving_->place_watched();
   time_ += h;
   ++steps_;
-  interactions_.moved();
+  if (!interactions_.empty()) {
+    interactions_.moved();
+    control_->set_beside(interactions_.squared_frequency());
+  }
   return {seen.inverted.empty() ? StepStatus::ok : StepStatus::inverted, seen.inverted, {}};
 }
 
@@ -277,6 +280,7 @@ void ExplicitScheme::load(CheckpointReader& in) {
   in.get_doubles(ledger_);
   control_->load(in);
   interactions_.load(in);
+  control_->set_beside(interactions_.squared_frequency());
   copy_.current = false;
 }
 
