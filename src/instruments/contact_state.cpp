@@ -1,0 +1,138 @@
+// contact_state.cpp — the rows of a step: vertices that meet the tool, triangles that it meets between their corners.
+#include "instruments/contact_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace glisson {
+namespace {
+
+constexpr double kFacetDepth = 1e-6;  // of the thickness: a triangle is held out where it is deeper inside
+constexpr double kStride = 0.25;      // of the thickness: a fast triangle is looked at so often on its way
+constexpr int kMostStrides = 200;
+
+Vec3d divided(const Vec3d& a, const Vec3d& b) {
+  return {b.x > 0.0 ? a.x / b.x : 0.0, b.y > 0.0 ? a.y / b.y : 0.0, b.z > 0.0 ? a.z / b.z : 0.0};
+}
+
+}  // namespace
+
+/// Where the vertices are at the end, in the frame of the tool.
+void ContactTool::State::measure(const InteractionStep& step) {
+  const std::span<const std::uint32_t> mine = reach.vertices();
+  starts.resize(mine.size()), ends.resize(mine.size()), at_ends.resize(mine.size());
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    const std::uint32_t place = step.place_of[mine[i]];
+    const Vec3d x = step.position(place);
+    starts[i] = to_frame(solid.before, x);
+    ends[i] = to_frame(solid.after, x + step.vertices[place].velocity * step.h);
+    at_ends[i] = distance_to(options.shape, ends[i]).distance;
+  }
+}
+
+void ContactTool::State::add_vertices(const InteractionStep& step) {
+  measure(step);
+  const std::span<const std::uint32_t> mine = reach.vertices();
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    if (at_ends[i] > norm(ends[i] - starts[i]) + solid.tolerance()) continue;  // nowhere on its way inside
+    if (bonds.count(mine[i]) != 0) continue;
+    ContactRow row;
+    row.places[0] = step.place_of[mine[i]];
+    row.solid = &solid;
+    if (prepare(row, step)) rows.push_back(row);
+  }
+}
+
+void ContactTool::State::add_triangles(const InteractionStep& step) {
+  if (!rows.empty()) measure(step);
+  for (const Triangle& t : reach.triangles()) {
+    double longest = 0.0, farthest = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3d edge = ends[t[(i + 1) % 3]] - ends[t[i]], way = ends[t[i]] - starts[t[i]];
+      longest = std::max(longest, dot(edge, edge)), farthest = std::max(farthest, dot(way, way));
+    }
+    const double apart = std::max({at_ends[t[0]], at_ends[t[1]], at_ends[t[2]]});
+    // no point of it is farther from a corner than the longest edge; (a + b)² ≤ 2 a² + 2 b²
+    if (apart > 0.0 && apart * apart > 2.0 * (longest + farthest)) continue;
+    const double strides = std::ceil(std::sqrt(farthest) / (kStride * solid.traits.thickness));
+    add_triangle(static_cast<std::uint32_t>(std::clamp(strides, 1.0, double(kMostStrides))), t, step);
+  }
+}
+
+/// Holds the deepest point of a triangle out, where that is none of its corners. A fast one is held where it first enters.
+void ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, const InteractionStep& step) {
+  for (std::uint32_t k = 1; k <= strides; ++k) {
+    const double share = static_cast<double>(k) / strides;
+    std::array<Vec3d, 3> at{};
+    std::array<double, 3> d{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      at[i] = k == strides ? ends[t[i]] : starts[t[i]] + (ends[t[i]] - starts[t[i]]) * share;
+      d[i] = k == strides ? at_ends[t[i]] : distance_to(options.shape, at[i]).distance;
+    }
+    double depth = 0.0;
+    const std::array<double, 3> weights = deepest(options.shape, at, d, depth);
+    const double inside = kFacetDepth * solid.traits.thickness;
+    if (depth > -inside || depth > std::min({d[0], d[1], d[2]}) - inside) continue;
+    ContactRow row;
+    for (std::size_t i = 0; i < 3; ++i) row.places[i] = step.place_of[reach.vertices()[t[i]]];
+    row.weights = weights, row.count = 3, row.solid = &solid;
+    if (prepare(row, step)) rows.push_back(row);
+    return;
+  }
+}
+
+/// Keeps vertices that have touched where they touched, and takes in those that touch now.
+void ContactTool::State::bond(const InteractionStep& step, ToolForces& forces) {
+  for (const auto& [vertex, anchor] : bonds) {
+    const std::uint32_t place = step.place_of[vertex];
+    if (place == InteractionStep::kNowhere) continue;
+    const Vec3d x = step.position(place), v = step.vertices[place].velocity;
+    const Vec3d wanted = (to_space(solid.after, anchor) - x) * (1.0 / step.h);
+    const Vec3d impulse = divided(wanted - v, step.mobility[place]);
+    step.push(place, impulse);
+    const Vec3d n = solid.after.axes * distance_to(options.shape, anchor).normal;
+    const Vec3d across = n * dot(impulse, n);
+    forces.normal += across * (1.0 / step.h), forces.friction += (impulse - across) * (1.0 / step.h);
+    forces.torque += cross(x - solid.before.position, impulse) * (1.0 / step.h);
+    bearing[vertex] = dot(impulse, n);
+  }
+  for (const ContactRow& row : rows) {
+    if (row.count == 1 && row.pressing > 0.0) bonds[step.vertices[row.places[0]].vertex] = end_of(row, step);
+  }
+}
+
+void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces) {
+  const double rate = 1.0 / step.h;
+  for (const ContactRow& row : rows) {
+    if (row.pressing == 0.0) continue;
+    forces.normal += row.normal * (row.pressing * rate);
+    forces.friction += row.rubbing * rate;
+    forces.torque += cross(row.origin - solid.before.position, row.impulse()) * rate;
+    for (std::uint32_t i = 0; i < row.count; ++i) {
+      if (row.weights[i] > 0.0) bearing[step.vertices[row.places[i]].vertex] += row.pressing * row.weights[i];
+    }
+  }
+}
+
+/// Pressures over the present area of the vertices that bear.
+void ContactTool::State::weigh(const InteractionStep& step) {
+  bearing_vertices.clear(), pressures.clear();
+  area = 0.0;
+  const auto position = [&](std::uint32_t v) {
+    const std::uint32_t place = step.place_of[v];
+    return place == InteractionStep::kNowhere ? step.rest[v] : step.position(place);
+  };
+  for (const auto& [vertex, impulse] : bearing) {
+    double share = 0.0;
+    for (const std::uint32_t k : reach.surface().triangles_at(vertex)) {
+      const Triangle& t = reach.surface().triangles()[k];
+      const Vec3d a = position(t[0]);
+      share += norm(cross(position(t[1]) - a, position(t[2]) - a)) / 6.0;
+    }
+    bearing_vertices.push_back(vertex);
+    pressures.push_back(share > 0.0 ? impulse / (step.h * share) : 0.0);
+    area += share;
+  }
+}
+
+}  // namespace glisson

@@ -1,0 +1,58 @@
+// contact_scenes.h — tools on given paths, and bodies for them, that the tests of contact share.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+
+#include "glisson/contact.h"
+#include "glisson/simulation.h"
+#include "support/bodies.h"
+
+namespace glisson::test {
+
+/// A tool whose pose is a function of time.
+struct GivenPath final : ToolDriver {
+  std::function<Pose(double)> pose;
+  std::vector<Wrench> felt{};
+  explicit GivenPath(std::function<Pose(double)> p) : pose(std::move(p)) {}
+  Pose start() const override { return pose(0.0); }
+  Pose advance(double time, double h, const Wrench& on_tool) override {
+    felt.push_back(on_tool);
+    return pose(time + h);
+  }
+};
+
+inline std::shared_ptr<GivenPath> standing(const Pose& pose) {
+  return std::make_shared<GivenPath>([pose](double) { return pose; });
+}
+
+/// Rotation by an angle about a unit vector.
+inline Mat3d rotation(const Vec3d& k, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle), d = 1.0 - c;
+  return {{{{c + d * k.x * k.x, d * k.x * k.y - s * k.z, d * k.x * k.z + s * k.y},
+            {d * k.y * k.x + s * k.z, c + d * k.y * k.y, d * k.y * k.z - s * k.x},
+            {d * k.z * k.x - s * k.y, d * k.z * k.y + s * k.x, c + d * k.z * k.z}}}};
+}
+
+/// Turned over: what is drawn above the tissue lies below it.
+inline Mat3d upside_down() { return rotation({1.0, 0.0, 0.0}, std::acos(-1.0)); }
+
+inline void advance_to(Simulation& s, double time) {
+  while (s.time() < time) ASSERT_EQ(s.step().status, StepStatus::ok);
+}
+
+inline Vec3d momentum(const Simulation& s) {
+  Vec3d p;
+  for (std::size_t i = 0; i < s.masses().size(); ++i) p += s.velocity()[i] * s.masses()[i];
+  return p;
+}
+
+inline double mass(const Simulation& s) {
+  double m = 0.0;
+  for (const double mi : s.masses()) m += mi;
+  return m;
+}
+
+}  // namespace glisson::test
