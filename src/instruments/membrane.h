@@ -1,0 +1,98 @@
+// membrane.h — a thin sheet of triangles that bears tension and folds away under compression.
+//
+// With the deformation gradient F of a triangle from its natural shape, E = ½ (FᵀF − 1) and its principal values
+// e₁ ≥ e₂, the sheet stores per natural area
+//
+//   W = E_Y t · (e^{αQ} − 1) / (2α),   α = 0: ½ E_Y t Q,
+//        ⎧ (e₁² + e₂² + 2ν e₁ e₂) / (1 − ν²)   taut:      e₂ + ν e₁ > 0
+//   Q =  ⎨ e₁²                                 wrinkled:  e₁ > 0 and not taut
+//        ⎩ 0                                   slack:     e₁ ≤ 0
+//
+// Q is the least of the taut form over all E + S with S ≥ 0: fine folds take S up [LeDretRaoult1995]; [Pipkin1986]. So S = ∂W/∂E has no
+// compression, W rises with E, and it is convex in F: the tangent is never negative, folded or not (docs/capsule.md).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "glisson/math.h"
+#include "glisson/mesh.h"
+
+namespace glisson {
+
+struct MembraneLaw {
+  double stiffness = 0.0;      ///< Young's modulus times thickness, E_Y t [N/m]
+  double poisson_ratio = 0.0;  ///< ν [-], 0 … 0.5
+  double stiffening = 0.0;     ///< α [-], ≥ 0
+  double prestretch = 1.0;     ///< λ₀ of the rest shape from the natural one, both ways [-]
+};
+
+enum class MembraneState { taut, wrinkled, slack };
+
+/// Answer of the sheet to a strain, in the axes of that strain.
+struct MembraneResponse {
+  double s11 = 0.0, s12 = 0.0, s22 = 0.0;  ///< second Piola–Kirchhoff tension S [N/m]
+  double energy = 0.0;                     ///< W [J/m²]
+  double squared_tension = 0.0;            ///< of the largest principal value of |F S|, per natural width [N²/m²]
+  double modulus = 0.0;                    ///< |∂²W/∂F²| from above, at this state and those next to it [N/m]
+  MembraneState state = MembraneState::slack;
+};
+
+/// Response to the Green strain E from the natural shape.
+MembraneResponse membrane_response(const MembraneLaw& law, double e11, double e12, double e22);
+
+/// Triangles over vertices, numbered among themselves.
+class Membrane {
+ public:
+  Membrane() = default;
+  /// @param triangles  over `rest` @param rest  [m]; triangles without area bear nothing
+  Membrane(std::span<const Triangle> triangles, std::span<const Vec3d> rest, const MembraneLaw& law);
+
+  std::size_t size() const { return elements_.size(); }
+  const MembraneLaw& law() const { return law_; }
+  double rest_area(std::size_t triangle) const { return elements_[triangle].area; }
+  /// Share of its stiffness that a triangle still has [-], 0 … 1.
+  double kept(std::size_t triangle) const { return elements_[triangle].kept; }
+  void keep(std::size_t triangle, double share) { elements_[triangle].kept = share; }
+
+  /// Adds −∂(Σ W)/∂x to forces; takes the present tensions and the frequency bound.
+  /// @param positions, forces  per vertex [m], [N]
+  void add_forces(std::span<const Vec3d> positions, std::span<Vec3d> forces);
+  double energy(std::span<const Vec3d> positions) const;                        ///< [J]
+  double energy(std::span<const Vec3d> positions, std::size_t triangle) const;  ///< as if whole: kept = 1 [J]
+  MembraneState state(std::span<const Vec3d> positions, std::size_t triangle) const;
+
+  /// Of the last add_forces: force across a line per length of it at rest, in the direction where it is largest [N/m].
+  double tension(std::size_t triangle) const;
+  double largest_tension() const;
+
+  /// Sets the masses that squared_frequency is about. @param masses  per vertex [kg]
+  void set_masses(std::span<const double> masses);
+  /// ω² of the last add_forces on the masses, from above: max over triangles of k R with the modulus k and
+  ///   R = max over corners i of (1/mᵢ) Σ over triangles Σⱼ |A ∇Nᵢ·∇Nⱼ|   (Gershgorin) [1/s²].
+  double squared_frequency() const { return squared_frequency_; }
+
+ private:
+  /// A triangle's rest data; natural edges in its plane are ((1/g00, −g01/(g00 g11)), (0, 1/g11)) by columns.
+  struct Element {
+    Triangle corner{};
+    double g00 = 0.0, g01 = 0.0, g11 = 0.0;  ///< [1/m]
+    double natural_area = 0.0, area = 0.0;   ///< [m²]
+    double kept = 1.0;
+    double rate = 0.0;  ///< R [1/kg]
+  };
+  struct Strain {
+    double e11, e12, e22;
+  };
+  static Strain strain(const Element& e, const Vec3d& d1, const Vec3d& d2);
+  template <bool kStiffens>
+  void add_forces_of(std::span<const Vec3d> positions, std::span<Vec3d> forces);
+
+  MembraneLaw law_;
+  std::vector<Element> elements_;
+  std::vector<double> squared_tension_;  ///< per natural width [N²/m²]
+  double squared_frequency_ = 0.0, largest_ = 0.0;
+};
+
+}  // namespace glisson
