@@ -85,8 +85,8 @@ class Needle final : public Instrument {
   std::vector<Vec3d> path() const;         ///< material points from the surface to the deepest, where they are now [m]
   std::vector<Vec3d> centre_line() const;  ///< of the needle from the hand to the tip, as bent [m]
   const NeedleOptions& options() const;
-  /// Is told of the hole when the surface gives way: its rest position [m] and radius [m]. For a capsule that tears.
-  void on_puncture(std::function<void(const Vec3d& rest, double radius)> told);
+  /// Is told of the hole when the surface gives way: its place in space [m] and radius [m]. For a capsule that tears.
+  void on_puncture(std::function<void(const Vec3d& place, double radius)> told);
 
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;

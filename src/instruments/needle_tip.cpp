@@ -69,7 +69,8 @@ void Needle::look_for_contact(const InteractionStep& step) {
     const auto hit = known ? meet(from, direction(), present, rest) : std::nullopt;
     if (hit && hit->way >= 0.0 && (!first || hit->way < first->way)) first = hit;
   }
-  if (!first || first->way > s.options.length || !s.place(s.tip, first->rest)) return;
+  shaft::Row met;
+  if (!first || first->way > s.options.length || !s.place(met, first->rest)) return;
   s.look = true;
   s.offset = 0.0;
   const bool hole = !s.nodes.empty() && norm(s.nodes.front().rest - first->rest) < s.options.diameter;
@@ -79,6 +80,7 @@ void Needle::look_for_contact(const InteractionStep& step) {
     s.withdraws = false;
     return;
   }
+  s.tip = std::move(met);
   s.nodes.clear();
   s.slips.clear();
   s.along.clear();
@@ -123,14 +125,15 @@ void Needle::pierce(const InteractionStep& step) {
   const double force = tip_force();
   s.drop = {true, force, force, force, step.time, depth()};
   add_event(step.time + step.h, depth(), "puncture");
-  if (s.told) s.told(s.tip.rest, 0.5 * s.options.diameter);
+  if (s.told) s.told(pose_.position, 0.5 * s.options.diameter);
 }
 
 /// The tip in the tissue: where it cut, the path ends where it is now.
 void Needle::go_on(const InteractionStep& step) {
   State& s = *state_;
   const Vec3d at = pose_.position + s.bend_tip;
-  if (shaft::read(step, s.nodes.front()) && dot(s.nodes.front().position - pose_.position, direction()) > 0.0) {
+  if (shaft::read(step, s.nodes.front()) &&
+      dot(s.nodes.front().position - pose_.position, direction()) > kLetGo * s.options.zone) {
     s.stage = NeedleStage::outside;
     s.look = true;
     add_event(step.time + step.h, depth(), "release");
