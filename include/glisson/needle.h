@@ -23,7 +23,7 @@
 namespace glisson {
 
 /// Stick–slip along the inserted shaft, per metre, for a needle that goes in or comes out
-/// (modified Karnopp) [Okamura2004, eq. 6].
+/// (modified Karnopp) [Okamura2004].
 struct ShaftFriction {
   double static_in = 0.0, static_out = 0.0;    ///< most it holds while it sticks, D [N/m], ≥ 0
   double dynamic_in = 0.0, dynamic_out = 0.0;  ///< while it slips, C [N/m], 0 … D

@@ -59,7 +59,7 @@ TEST(TissueZone, HalfOutsideStillSumsToOne) {
   EXPECT_TRUE(zone_weights(locator, fine(), {0.012, 0.012, 0.03}, 3e-3).empty());
 }
 
-// Deflections of a clamped beam under loads at two points: P a²(3b − a)/6EI, [Timoshenko1955, §22].
+// Deflections of a clamped beam under loads at two points: P a²(3b − a)/6EI.
 TEST(Shaft, CantileverBends) {
   const std::vector<double> from_hand{0.04, 0.1};
   const double bending = 0.0255, load = 0.2;
