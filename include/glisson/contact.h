@@ -105,6 +105,7 @@ class ContactTool final : public Instrument {
   struct Effort {
     std::size_t vertices = 0, triangles = 0;
     int sweeps = 0;
+    bool corrected = false;  ///< solved twice, so as to create no energy
   };
   Effort effort() const;
   const ContactOptions& options() const;
@@ -112,6 +113,7 @@ class ContactTool final : public Instrument {
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;
+  void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;
   std::vector<double> past() const override;

@@ -7,20 +7,48 @@ namespace glisson {
 namespace {
 
 constexpr int kMostSweeps = 40;
+constexpr double kEnough = 100.0;  // tolerances: rows that move by less have been solved
+constexpr int kMostCorrections = 8;
+constexpr int kMostProbes = 40;     // of a triangle
 constexpr double kSettling = 5e-3;  // tissue found inside a tool leaves by its depth over this time [s]
 constexpr double kFast = 0.25;      // of the thickness
 constexpr double kNear = 0.1;       // of its way: a point that ends so near takes part
 
+using Corners = std::array<Vec3d, 3>;
+
 double phi(const ContactRow& row, const Vec3d& y) { return distance_to(*row.solid->shape, y).distance; }
 
-/// First place on the way from a to b that is not outside. @return share of the way; above 1: none
+Corners between(const Corners& a, const Corners& b, double share) {
+  return {a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share, a[2] + (b[2] - a[2]) * share};
+}
+
+/// Where the vertices of a row are in the frame of the solid.
+Corners at_start(const ContactRow& row) {
+  const Pose& p = row.solid->before;
+  return {to_frame(p, row.origins[0]), to_frame(p, row.origins[1]), to_frame(p, row.origins[2])};
+}
+Corners at_end(const ContactRow& row, const InteractionStep& step) {
+  Corners c{};
+  for (std::uint32_t i = 0; i < row.count; ++i) {
+    c[i] = to_frame(row.solid->after, row.origins[i] + step.vertices[row.places[i]].velocity * step.h);
+  }
+  return c;
+}
+
+Vec3d mean(const ContactRow& row, const Corners& c) {
+  if (row.count == 1) return c[0];
+  return c[0] * row.weights[0] + c[1] * row.weights[1] + c[2] * row.weights[2];
+}
+
+/// Share of the way at which a point is not outside any more; above 1: never. φ is never more than the distance, so that
+/// nothing is passed over.
 double first_touch(const ContactRow& row, const Vec3d& a, const Vec3d& b) {
-  const double length = norm(b - a), close = row.solid->tolerance();
+  const double close = row.solid->tolerance(), length = norm(b - a);
   double way = 0.0;
   for (int k = 0; k < 64 && way <= length; ++k) {
     const double d = phi(row, a + (b - a) * (way / length));
     if (d <= close) return way / length;
-    way += d;  // φ is never more than the distance: nothing is passed over
+    way += d;
   }
   return way <= length ? way / length : 2.0;
 }
@@ -40,44 +68,43 @@ void push(ContactRow& row, const InteractionStep& step, const Vec3d& impulse) {
   for (std::uint32_t i = 0; i < row.count; ++i) step.push(row.places[i], impulse * row.weights[i]);
 }
 
-bool meets(ContactRow& row, const Vec3d& end, const ShapeDistance& at_start) {
-  const double close = row.solid->tolerance(), way = norm(end - row.start);
+/// Where the point of a row is held: where it starts, if it touches there, or where it enters.
+bool meets(ContactRow& row, const Vec3d& end) {
+  const double way = norm(end - row.start), close = row.solid->tolerance(), reach = kNear * way + close;
+  const ShapeDistance before = distance_to(*row.solid->shape, row.start);
   row.fast = way > kFast * row.solid->traits.thickness;
-  const ShapeDistance at_end = distance_to(*row.solid->shape, end);
-  const bool touches = at_start.distance <= close;
-  if (at_end.distance > kNear * way + close && !row.fast && !(touches && row.solid->holds)) return false;
-  if (touches) {
-    row.n = at_start.normal;
-    row.face = row.start - row.n * at_start.distance;
-    return true;
+  row.inside = std::max(0.0, -before.distance - close);
+  if (before.distance <= close) {
+    row.n = before.normal, row.face = row.start - row.n * before.distance;
+    return row.fast || row.solid->holds || phi(row, end) <= reach;
   }
-  const double share = first_touch(row, row.start, end);
-  if (share <= 1.0) {
-    row.face = row.start + (end - row.start) * share;
-    row.n = distance_to(*row.solid->shape, row.face).normal;
-    return true;
-  }
-  row.n = at_end.normal;
-  row.face = end - row.n * at_end.distance;
-  return at_end.distance <= kNear * way + close;
+  const double share = std::min(1.0, first_touch(row, row.start, end));
+  const Vec3d y = row.start + (end - row.start) * share;
+  const ShapeDistance d = distance_to(*row.solid->shape, y);
+  row.n = d.normal, row.face = y - row.n * d.distance;
+  return d.distance <= reach;
+}
+
+/// The weights of the point of a triangle that is to be held: its deepest at the end, or where a fast one first enters.
+void choose_point(ContactRow& row, const Corners& start, const Corners& end, double share) {
+  double depth = 0.0;
+  row.weights = deepest(*row.solid->shape, share < 1.0 ? between(start, end, share) : end, depth);
 }
 
 /// Impulse along the normal that the point needs if it is to end at `level`, and no less than none.
-/// @param base  where it ends without that impulse @param way  by how much a unit impulse moves that
+/// @param base  where it ends without that impulse @param way  by how much a unit impulse moves it
 double needed(const ContactRow& row, const Vec3d& base, const Vec3d& way, double per_impulse) {
   const double close = row.solid->tolerance();
   const double flat = (dot(row.n, row.face - base) + row.level) / per_impulse;
   if (row.solid->holds) return flat;
-  double s = std::max(0.0, flat);
-  double d = phi(row, base + way * s) - row.level;
-  for (int k = 0; k < 12 && d < -close; ++k) {  // hollow: the wall rises beyond the tangent plane
-    const double slope = dot(distance_to(*row.solid->shape, base + way * s).normal, way);
-    if (!(slope > 0.1 * per_impulse)) return s;
-    s -= d / slope;
-    d = phi(row, base + way * s) - row.level;
+  double s = std::max(0.0, flat), d = phi(row, base + way * s) - row.level;
+  for (int k = 0; k < kMostCorrections && d < -close; ++k) {  // hollow: the wall rises beyond its tangent plane
+    const double next = s - d / per_impulse, further = phi(row, base + way * next) - row.level;
+    if (!(further > d)) return s;
+    s = next, d = further;
   }
   const double speed = norm(way);
-  for (int k = 0; k < 24 && s > 0.0 && d > close; ++k) {  // down from the tangent plane to the solid
+  for (int k = 0; k < kMostCorrections && s > 0.0 && d > close; ++k) {  // down from the tangent plane to the solid
     s -= d / speed;
     if (s <= 0.0) return row.fast ? std::max(0.0, flat) : 0.0;
     d = phi(row, base + way * s) - row.level;
@@ -103,6 +130,13 @@ Vec3d sticking(const ContactRow& row, const Vec3d& slip) {
   return r;
 }
 
+/// Speed of the point along the normal against the solid [m/s]; the solid's is that of its own point where the row's starts.
+double speed_off(const ContactRow& row, const InteractionStep& step) {
+  Vec3d v;
+  for (std::uint32_t i = 0; i < row.count; ++i) v += step.vertices[row.places[i]].velocity * row.weights[i];
+  return dot(row.normal, v - row.carried);
+}
+
 /// @return by how much the point was moved [m]
 double rub(ContactRow& row, const InteractionStep& step) {
   const double limit = row.pressing > 0.0 ? row.solid->friction * row.pressing : 0.0;
@@ -121,40 +155,75 @@ double rub(ContactRow& row, const InteractionStep& step) {
 double press(ContactRow& row, const InteractionStep& step) {
   const Vec3d way = direction_to_frame(row.solid->after, scaled(row.response, row.normal)) * step.h;
   const double per_impulse = row.along * step.h;
-  const double wanted = needed(row, end_of(row, step) - way * row.pressing, way, per_impulse);
+  double wanted = needed(row, end_of(row, step) - way * row.pressing, way, per_impulse);
+  if (row.most) wanted = std::min(wanted, std::max(0.0, row.pressing + (*row.most - speed_off(row, step)) / row.along));
   const double change = wanted - row.pressing;
   row.pressing = wanted;
   if (change != 0.0) push(row, step, row.normal * change);
   return std::abs(change) * per_impulse;
 }
 
+/// The point of a triangle nearest to the centre of a ball: by the regions of corners, edges and face.
+std::array<double, 3> nearest_to(const Ball& ball, const Corners& c, double& depth) {
+  const Vec3d p{0.0, 0.0, ball.radius}, ab = c[1] - c[0], ac = c[2] - c[0], ap = p - c[0], bp = p - c[1], cp = p - c[2];
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+               d6 = dot(ac, cp);
+  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  std::array<double, 3> w{};
+  if (d1 <= 0.0 && d2 <= 0.0) {
+    w = {1.0, 0.0, 0.0};
+  } else if (d3 >= 0.0 && d4 <= d3) {
+    w = {0.0, 1.0, 0.0};
+  } else if (d6 >= 0.0 && d5 <= d6) {
+    w = {0.0, 0.0, 1.0};
+  } else if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+    const double t = d1 / (d1 - d3);
+    w = {1.0 - t, t, 0.0};
+  } else if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+    const double t = d2 / (d2 - d6);
+    w = {1.0 - t, 0.0, t};
+  } else if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
+    const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    w = {0.0, 1.0 - t, t};
+  } else {
+    const double sum = va + vb + vc;
+    w = {va / sum, vb / sum, vc / sum};
+  }
+  depth = norm(c[0] * w[0] + c[1] * w[1] + c[2] * w[2] - p) - ball.radius;
+  return w;
+}
+
 }  // namespace
 
 double ContactSolid::tolerance() const { return std::isfinite(traits.thickness) ? 1e-9 * traits.thickness : 1e-12; }
 
-Vec3d end_of(const ContactRow& row, const InteractionStep& step) {
-  Vec3d v;
-  for (std::uint32_t i = 0; i < row.count; ++i) v += step.vertices[row.places[i]].velocity * row.weights[i];
-  return to_frame(row.solid->after, row.origin + v * step.h);
-}
+Vec3d end_of(const ContactRow& row, const InteractionStep& step) { return mean(row, at_end(row, step)); }
 
-bool prepare(ContactRow& row, const InteractionStep& step) {
-  row.origin = {};
-  for (std::uint32_t i = 0; i < row.count; ++i) row.origin += step.position(row.places[i]) * row.weights[i];
-  row.start = to_frame(row.solid->before, row.origin);
-  const ShapeDistance at_start = distance_to(*row.solid->shape, row.start);
-  if (!meets(row, end_of(row, step), at_start)) return false;
+bool prepare(ContactRow& row, const InteractionStep& step, double share) {
+  for (std::uint32_t i = 0; i < row.count; ++i) row.origins[i] = step.position(row.places[i]);
+  const Corners start = at_start(row), end = at_end(row, step);
+  if (row.count == 3) choose_point(row, start, end, share);
+  row.start = mean(row, start);
+  row.origin = mean(row, row.origins);
+  if (!meets(row, mean(row, end))) return false;
   row.normal = row.solid->after.axes * row.n;
   row.response = response_of(row, step);
   row.along = dot(row.normal, scaled(row.response, row.normal));
-  const double inside = std::max(0.0, -at_start.distance - row.solid->tolerance());
-  row.level = -std::max(0.0, inside - step.h * std::min(row.solid->push_out_speed, inside / kSettling));
+  row.level = -std::max(0.0, row.inside - step.h * std::min(row.solid->push_out_speed, row.inside / kSettling));
+  const ContactSolid& solid = *row.solid;
+  row.carried = (to_space(solid.after, row.start) - row.origin) * (1.0 / step.h);
+  row.carried_before = row.carried;
+  if (solid.last_h > 0.0) row.carried_before = (row.origin - to_space(solid.earlier, row.start)) * (1.0 / solid.last_h);
+  if (row.comes_out) {
+    const Vec3d growth = row.normal * ((row.inside + row.level) / step.h);
+    row.carried += growth, row.carried_before += growth;
+  }
   return row.along > 1e-9 * std::max({row.response.x, row.response.y, row.response.z});
 }
 
 int solve(std::span<ContactRow> rows, const InteractionStep& step) {
   double enough = 0.0;
-  for (const ContactRow& row : rows) enough = std::max(enough, row.solid->tolerance());
+  for (const ContactRow& row : rows) enough = std::max(enough, kEnough * row.solid->tolerance());
   for (int sweep = 1; sweep <= kMostSweeps; ++sweep) {
     double change = 0.0;
     for (ContactRow& row : rows) {
@@ -166,27 +235,72 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step) {
   return kMostSweeps;
 }
 
-std::array<double, 3> deepest(const Shape& shape, const std::array<Vec3d, 3>& corners,
-                              const std::array<double, 3>& at_corners, double& depth) {
-  const auto first =
-      static_cast<std::size_t>(std::min_element(at_corners.begin(), at_corners.end()) - at_corners.begin());
+ContactWork work_of(std::span<const ContactRow> rows, const InteractionStep& step, std::span<const Vec3d> before) {
+  ContactWork work;
+  for (const ContactRow& row : rows) {
+    if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
+    Vec3d v;
+    for (std::uint32_t i = 0; i < row.count; ++i) {
+      v += (before[row.places[i]] + step.vertices[row.places[i]].velocity) * row.weights[i];
+    }
+    const Vec3d carried = row.carried + row.carried_before;
+    work.relative += 0.5 * dot(row.impulse(), v - carried);
+    work.tool += 0.5 * std::abs(dot(row.impulse(), carried));
+  }
+  return work;
+}
+
+int solve_without_work(std::span<ContactRow> rows, const InteractionStep& step, std::span<const Vec3d> before) {
+  for (ContactRow& row : rows) {
+    push(row, step, -row.impulse());
+    row.pressing = 0.0, row.rubbing = {};
+    Vec3d v;
+    for (std::uint32_t i = 0; i < row.count; ++i) v += before[row.places[i]] * row.weights[i];
+    row.most = std::max(0.0, -dot(row.normal, v - row.carried_before));
+  }
+  return solve(rows, step);
+}
+
+void limit_work(std::span<ContactRow> rows, const InteractionStep& step, std::span<const Vec3d> before, double most) {
+  const double whole = work_of(rows, step, before).relative;
+  if (whole <= most) return;
+  double own = 0.0;  // of the impulses on what they change: it grows with the square of the factor
+  std::vector<Vec3d> sums(step.vertices.size());
+  for (const ContactRow& row : rows) {
+    for (std::uint32_t i = 0; i < row.count; ++i) sums[row.places[i]] += row.impulse() * row.weights[i];
+  }
+  for (std::size_t k = 0; k < sums.size(); ++k) own += 0.5 * dot(sums[k], scaled(step.mobility[k], sums[k]));
+  const double factor = own > 0.0 ? std::clamp((own - whole) / own, 0.0, 1.0) : 0.0;
+  for (ContactRow& row : rows) {
+    const Vec3d taken = row.impulse() * (factor - 1.0);
+    push(row, step, taken);
+    row.pressing *= factor, row.rubbing *= factor;
+  }
+}
+
+std::array<double, 3> deepest(const Shape& shape, const std::array<Vec3d, 3>& corners, double& depth) {
+  if (const Ball* ball = std::get_if<Ball>(&shape)) return nearest_to(*ball, corners, depth);
+  std::array<ShapeDistance, 3> at_corners;
+  for (std::size_t i = 0; i < 3; ++i) at_corners[i] = distance_to(shape, corners[i]);
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < 3; ++i) first = at_corners[i].distance < at_corners[first].distance ? i : first;
   std::array<double, 3> best{};
   best[first] = 1.0;
-  depth = at_corners[first];
-  const std::array<double, 3> third{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
+  depth = at_corners[first].distance;
   const auto at = [&](const std::array<double, 3>& w) {
     return corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2];
   };
-  ShapeDistance d = distance_to(shape, at(third));
-  if (d.distance < depth) best = third, depth = d.distance;
-  d = distance_to(shape, at(best));
-  double step = 0.5;  // of the way that the slope asks for along the edges
-  for (int k = 0; k < 14; ++k) {
+  ShapeDistance d = at_corners[first];
+  const std::array<double, 3> third{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
+  const ShapeDistance middle = distance_to(shape, at(third));
+  if (middle.distance < depth) best = third, depth = middle.distance, d = middle;
+  double step = 0.5;
+  for (int k = 0; k < kMostProbes && step > 1e-6; ++k) {
     // slopes of φ along the weights, the mean taken off so that they add up to none
     std::array<double, 3> slope{dot(d.normal, corners[0]), dot(d.normal, corners[1]), dot(d.normal, corners[2])};
-    const double mean = (slope[0] + slope[1] + slope[2]) / 3.0;
+    const double middle_slope = (slope[0] + slope[1] + slope[2]) / 3.0;
     double largest = 0.0;
-    for (double& s : slope) s -= mean, largest = std::max(largest, std::abs(s));
+    for (double& s : slope) s -= middle_slope, largest = std::max(largest, std::abs(s));
     if (!(largest > 0.0)) break;
     std::array<double, 3> w = best;
     double sum = 0.0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace glisson {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 constexpr double kFacetDepth = 1e-6;  // of the thickness: a triangle is held out where it is deeper inside
 constexpr double kStride = 0.25;      // of the thickness: a fast triangle is looked at so often on its way
 constexpr int kMostStrides = 200;
+constexpr double kToolShare = 0.01;  // of the tool's work: errors of a moving contact may add so much energy
 
 Vec3d divided(const Vec3d& a, const Vec3d& b) {
   return {b.x > 0.0 ? a.x / b.x : 0.0, b.y > 0.0 ? a.y / b.y : 0.0, b.z > 0.0 ? a.z / b.z : 0.0};
@@ -39,8 +41,12 @@ void ContactTool::State::add_vertices(const InteractionStep& step) {
     ContactRow row;
     row.places[0] = step.place_of[mine[i]];
     row.solid = &solid;
+    if (!begun && distance_to(options.shape, starts[i]).distance < -solid.tolerance()) found_inside.insert(mine[i]);
+    row.comes_out = found_inside.count(mine[i]) != 0;
     if (prepare(row, step)) rows.push_back(row);
+    if (row.comes_out && row.inside == 0.0) found_inside.erase(mine[i]);
   }
+  begun = true;
 }
 
 void ContactTool::State::add_triangles(const InteractionStep& step) {
@@ -59,26 +65,44 @@ void ContactTool::State::add_triangles(const InteractionStep& step) {
   }
 }
 
-/// Holds the deepest point of a triangle out, where that is none of its corners. A fast one is held where it first enters.
+/// Holds a triangle out that comes to be inside between its corners; a fast one is held where it first enters.
 void ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, const InteractionStep& step) {
+  const double inside = kFacetDepth * solid.traits.thickness;
   for (std::uint32_t k = 1; k <= strides; ++k) {
     const double share = static_cast<double>(k) / strides;
     std::array<Vec3d, 3> at{};
-    std::array<double, 3> d{};
+    double corner = std::numeric_limits<double>::infinity(), depth = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
-      at[i] = k == strides ? ends[t[i]] : starts[t[i]] + (ends[t[i]] - starts[t[i]]) * share;
-      d[i] = k == strides ? at_ends[t[i]] : distance_to(options.shape, at[i]).distance;
+      at[i] = starts[t[i]] + (ends[t[i]] - starts[t[i]]) * share;
+      corner = std::min(corner, k == strides ? at_ends[t[i]] : distance_to(options.shape, at[i]).distance);
     }
-    double depth = 0.0;
-    const std::array<double, 3> weights = deepest(options.shape, at, d, depth);
-    const double inside = kFacetDepth * solid.traits.thickness;
-    if (depth > -inside || depth > std::min({d[0], d[1], d[2]}) - inside) continue;
+    deepest(options.shape, at, depth);
+    if (depth > -inside || depth > corner - inside) continue;
     ContactRow row;
     for (std::size_t i = 0; i < 3; ++i) row.places[i] = step.place_of[reach.vertices()[t[i]]];
-    row.weights = weights, row.count = 3, row.solid = &solid;
-    if (prepare(row, step)) rows.push_back(row);
+    row.count = 3, row.solid = &solid;
+    if (prepare(row, step, share)) rows.push_back(row);
     return;
   }
+}
+
+/// Solves; where that would do work on the body beyond what contact has taken from it so far, no impulse may do any.
+void ContactTool::State::solve_rows(const InteractionStep& step) {
+  for (ContactRow& row : rows) row.most.reset();
+  effort.sweeps += solve(rows, step);
+  const auto creates = [&] {
+    const ContactWork work = work_of(rows, step, speeds);
+    return work.relative > taken + kToolShare * work.tool;
+  };
+  if (!creates()) return;
+  effort.corrected = true;
+  effort.sweeps += solve_without_work(rows, step, speeds);
+  if (creates()) limit_work(rows, step, speeds, taken);
+}
+
+void ContactTool::State::keep_account(const InteractionStep& step) {
+  const ContactWork work = work_of(rows, step, speeds);
+  taken += kToolShare * work.tool - work.relative;
 }
 
 /// Keeps vertices that have touched where they touched, and takes in those that touch now.
@@ -104,7 +128,7 @@ void ContactTool::State::bond(const InteractionStep& step, ToolForces& forces) {
 void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces) {
   const double rate = 1.0 / step.h;
   for (const ContactRow& row : rows) {
-    if (row.pressing == 0.0) continue;
+    if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
     forces.normal += row.normal * (row.pressing * rate);
     forces.friction += row.rubbing * rate;
     forces.torque += cross(row.origin - solid.before.position, row.impulse()) * rate;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <vector>
 
 #include "instruments/contact_rows.h"
@@ -47,6 +48,7 @@ struct ContactTool::State {
   ContactOptions options;
   ContactSolid solid;
   ContactReach reach;
+  double last_h = 0.0;
   bool lost = false;  ///< its pose made no sense: it has left
 
   std::vector<ContactRow> rows;
@@ -59,6 +61,10 @@ struct ContactTool::State {
   double area = 0.0;
   Effort effort{};
 
+  std::vector<Vec3d> speeds;  ///< v₋ per place
+  double taken = 0.0;         ///< energy that contact has taken from the body so far, the tool's own motion apart [J]
+  bool begun = false;         ///< a step has been made since the tool was attached
+  std::set<std::uint32_t> found_inside;  ///< vertices that were inside then, and have not come out yet
   bool in_contact = false;
   double last_touch = 0.0, last_depth = 0.0;
 
@@ -66,6 +72,8 @@ struct ContactTool::State {
   void measure(const InteractionStep& step);
   void add_triangles(const InteractionStep& step);
   void add_triangle(std::uint32_t triangle, const Triangle& corners, const InteractionStep& step);
+  void solve_rows(const InteractionStep& step);
+  void keep_account(const InteractionStep& step);
   void bond(const InteractionStep& step, ToolForces& forces);
   void collect(const InteractionStep& step, ToolForces& forces);
   void weigh(const InteractionStep& step);
