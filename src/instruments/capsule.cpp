@@ -122,7 +122,7 @@ void Capsule::attached(const BodyView& body, double time) {
   fresh.is_gone.assign(fresh.faces.size(), 0);
   fresh.open.assign(fresh.faces.size(), 0.0);
   fresh.time = time;
-  fresh.lay_out(body);
+  fresh.lay_out(body, true);
   *state_ = std::move(fresh);
 }
 
@@ -137,7 +137,7 @@ void Capsule::body_changed(const BodyView& body, std::span<const std::uint32_t>)
       s.triangles[t] = corners_of(body.mesh, s.faces[t]);
     }
   }
-  s.lay_out(body);
+  s.lay_out(body, false);
 }
 
 std::span<const std::uint32_t> Capsule::reach(double, double) {

@@ -35,7 +35,7 @@ void require_options(const CapsuleOptions& o) {
 }
 
 /// Numbers the vertices, makes the sheet anew over them and looks at the present state.
-void Capsule::State::lay_out(const BodyView& body) {
+void Capsule::State::lay_out(const BodyView& body, bool sharply) {
   vertices.clear();
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (is_gone[t] == 0) vertices.insert(vertices.end(), triangles[t].begin(), triangles[t].end());
@@ -59,6 +59,7 @@ void Capsule::State::lay_out(const BodyView& body) {
   const CapsuleOptions& o = options;
   membrane = Membrane(local, rest, {o.youngs_modulus * o.thickness, o.poisson_ratio, o.stiffening, o.prestretch});
   membrane.set_masses(masses);
+  if (sharply) membrane.sharpen(rest);
   counts.assign(triangles.size(), 0);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     membrane.keep(t, kept_share(open[t]));

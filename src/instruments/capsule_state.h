@@ -37,7 +37,8 @@ struct Capsule::State {
   double time = 0.0;                               ///< of the last forces [s]
   std::vector<CapsuleEvent> events;
 
-  void lay_out(const BodyView& body);
+  /// @param sharply  finds the frequency of the sheet at rest, which takes some ms; else a bound from single triangles
+  void lay_out(const BodyView& body, bool sharply);
   void evaluate();
   void open_to(std::size_t triangle, double share);
   void tear_where_due();

@@ -50,14 +50,21 @@ double energy_of(const MembraneLaw& law, double q) {
   return law.stiffness * std::expm1(std::min(law.stiffening * q, kMostExponent)) / (2.0 * law.stiffening);
 }
 
-/// Rows of the matrix |A ∇Nᵢ·∇Nⱼ| summed; A ∇Nᵢ·∇Nⱼ = eᵢ·eⱼ / (4A) with the edges opposite the corners.
-std::array<double, 3> row_sums(const std::array<Vec3d, 3>& x, double area) {
-  const std::array<Vec3d, 3> edge{x[2] - x[1], x[0] - x[2], x[1] - x[0]};
-  std::array<double, 3> sums{};
+/// Diagonal D with the matrix Lᵢⱼ = A ∇Nᵢ·∇Nⱼ ≤ D: that of L times the largest eigenvalue of L over it. L has a
+/// constant field for free, so the other two are the roots of μ² − 3 μ + Σ (1 − Lᵢⱼ²/(Lᵢᵢ Lⱼⱼ)) over the pairs.
+std::array<double, 3> diagonal_above(double a, double b, double c) {
+  // edges (a, 0) and (b, c) of the triangle; A ∇Nᵢ·∇Nⱼ = eᵢ·eⱼ / (4A) with the edges opposite the corners
+  const std::array<std::array<double, 2>, 3> edge{{{b - a, c}, {-b, -c}, {a, 0.0}}};
+  const auto l = [&](std::size_t i, std::size_t j) {
+    return (edge[i][0] * edge[j][0] + edge[i][1] * edge[j][1]) / (2.0 * a * c);
+  };
+  double pairs = 3.0;
   for (std::size_t i = 0; i < 3; ++i) {
-    for (const Vec3d& other : edge) sums[i] += std::abs(dot(edge[i], other)) / (4.0 * area);
+    const std::size_t j = (i + 1) % 3;
+    pairs -= l(i, j) * l(i, j) / (l(i, i) * l(j, j));
   }
-  return sums;
+  const double most = 1.5 + std::sqrt(std::max(0.0, 2.25 - pairs));
+  return {most * l(0, 0), most * l(1, 1), most * l(2, 2)};
 }
 
 }  // namespace
@@ -88,16 +95,14 @@ Membrane::Membrane(std::span<const Triangle> triangles, std::span<const Vec3d> r
 }
 
 void Membrane::set_masses(std::span<const double> masses) {
+  masses_.assign(masses.begin(), masses.end());
+  sharp_rate_ = kNone;
   std::vector<double> of_vertex(masses.size(), 0.0);
-  const auto edges_of = [](const Element& e) {
-    // natural edges from G⁻¹; the form does not depend on their scale
-    const double a = 1.0 / e.g00, c = 1.0 / e.g11, b = -e.g01 * a * c;
-    return std::array<Vec3d, 3>{Vec3d{}, Vec3d{a, 0, 0}, Vec3d{b, c, 0}};
-  };
   for (const Element& e : elements_) {
     if (!(e.area > 0.0)) continue;
-    const std::array<double, 3> sums = row_sums(edges_of(e), e.natural_area);
-    for (std::size_t i = 0; i < 3; ++i) of_vertex[e.corner[i]] += sums[i];
+    const double a = 1.0 / e.g00, c = 1.0 / e.g11, b = -e.g01 * a * c;  // natural edges; their scale does not matter
+    const std::array<double, 3> above = diagonal_above(a, b, c);
+    for (std::size_t i = 0; i < 3; ++i) of_vertex[e.corner[i]] += above[i];
   }
   for (std::size_t v = 0; v < masses.size(); ++v) of_vertex[v] = masses[v] > 0.0 ? of_vertex[v] / masses[v] : 0.0;
   for (Element& e : elements_) {
@@ -114,7 +119,7 @@ Membrane::Strain Membrane::strain(const Element& e, const Vec3d& d1, const Vec3d
 template <bool kStiffens>
 void Membrane::add_forces_of(std::span<const Vec3d> positions, std::span<Vec3d> forces) {
   const Factors factors(law_);
-  double frequency = 0.0, largest = 0.0;
+  double frequency = 0.0, largest = 0.0, modulus = 0.0;
   for (std::size_t t = 0; t < elements_.size(); ++t) {
     const Element& e = elements_[t];
     const Vec3d &x0 = positions[e.corner[0]], d1 = positions[e.corner[1]] - x0, d2 = positions[e.corner[2]] - x0;
@@ -132,9 +137,11 @@ void Membrane::add_forces_of(std::span<const Vec3d> positions, std::span<Vec3d> 
     forces[e.corner[2]] -= f2;
     squared_tension_[t] = area > 0.0 ? r.squared_tension : 0.0;
     frequency = std::max(frequency, area > 0.0 ? r.modulus * e.rate : 0.0);
+    modulus = std::max(modulus, r.modulus);
     largest = std::max(largest, squared_tension_[t]);
   }
-  squared_frequency_ = frequency;
+  squared_frequency_ = std::min(frequency, sharp_rate_ * modulus);
+  largest_modulus_ = modulus;
   largest_ = largest;
 }
 

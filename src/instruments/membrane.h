@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -69,8 +70,12 @@ class Membrane {
 
   /// Sets the masses that squared_frequency is about. @param masses  per vertex [kg]
   void set_masses(std::span<const double> masses);
-  /// ω² of the last add_forces on the masses, from above: max over triangles of k R with the modulus k and
-  ///   R = max over corners i of (1/mᵢ) Σ over triangles Σⱼ |A ∇Nᵢ·∇Nⱼ|   (Gershgorin) [1/s²].
+  /// Finds ω² over the modulus for the taut sheet at rest, by Lanczos with its residual added; holds until set_masses.
+  /// Cost: some 80 add_forces.
+  void sharpen(std::span<const Vec3d> rest);
+  /// ω² of the last add_forces on the masses, from above [1/s²]: the smaller of
+  ///   max over triangles k R,  R = max over corners i of (1/mᵢ) Σ over triangles Dᵢ, D diagonal and ≥ A ∇Nᵢ·∇Nⱼ, and
+  ///   max over triangles k times what sharpen() has found.
   double squared_frequency() const { return squared_frequency_; }
 
  private:
@@ -89,10 +94,14 @@ class Membrane {
   template <bool kStiffens>
   void add_forces_of(std::span<const Vec3d> positions, std::span<Vec3d> forces);
 
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
   MembraneLaw law_;
   std::vector<Element> elements_;
   std::vector<double> squared_tension_;  ///< per natural width [N²/m²]
-  double squared_frequency_ = 0.0, largest_ = 0.0;
+  std::vector<double> masses_;
+  double sharp_rate_ = kNone;  ///< ω² over the largest modulus [1/kg]
+  double squared_frequency_ = 0.0, largest_ = 0.0, largest_modulus_ = 0.0;
 };
 
 }  // namespace glisson
