@@ -12,6 +12,7 @@
 // compression, W rises with E, and it is convex in F: the tangent is never negative, folded or not (docs/capsule.md).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -19,6 +20,7 @@
 
 #include "glisson/math.h"
 #include "glisson/mesh.h"
+#include "instruments/membrane_lanes.h"
 
 namespace glisson {
 
@@ -31,16 +33,11 @@ struct MembraneLaw {
 
 enum class MembraneState { taut, wrinkled, slack };
 
-/// Answer of the sheet to a strain, in the axes of that strain.
+/// What the sheet stores under the Green strain E from the natural shape.
 struct MembraneResponse {
-  double s11 = 0.0, s12 = 0.0, s22 = 0.0;  ///< second Piola–Kirchhoff tension S [N/m]
-  double energy = 0.0;                     ///< W [J/m²]
-  double squared_tension = 0.0;            ///< of the largest principal value of |F S|, per natural width [N²/m²]
-  double modulus = 0.0;                    ///< |∂²W/∂F²| from above, at this state and those next to it [N/m]
+  double energy = 0.0;  ///< W [J/m²]
   MembraneState state = MembraneState::slack;
 };
-
-/// Response to the Green strain E from the natural shape.
 MembraneResponse membrane_response(const MembraneLaw& law, double e11, double e12, double e22);
 
 /// Triangles over vertices, numbered among themselves.
@@ -50,12 +47,12 @@ class Membrane {
   /// @param triangles  over `rest` @param rest  [m]; triangles without area bear nothing
   Membrane(std::span<const Triangle> triangles, std::span<const Vec3d> rest, const MembraneLaw& law);
 
-  std::size_t size() const { return elements_.size(); }
+  std::size_t size() const { return kept_.size(); }
   const MembraneLaw& law() const { return law_; }
-  double rest_area(std::size_t triangle) const { return elements_[triangle].area; }
+  double rest_area(std::size_t triangle) const { return area_[triangle]; }
   /// Share of its stiffness that a triangle still has [-], 0 … 1.
-  double kept(std::size_t triangle) const { return elements_[triangle].kept; }
-  void keep(std::size_t triangle, double share) { elements_[triangle].kept = share; }
+  double kept(std::size_t triangle) const { return kept_[triangle]; }
+  void keep(std::size_t triangle, double share);
 
   /// Adds −∂(Σ W)/∂x to forces; takes the present tensions and the frequency bound.
   /// @param positions, forces  per vertex [m], [N]
@@ -76,32 +73,25 @@ class Membrane {
   /// ω² of the last add_forces on the masses, from above [1/s²]: the smaller of
   ///   max over triangles k R,  R = max over corners i of (1/mᵢ) Σ over triangles Dᵢ, D diagonal and ≥ A ∇Nᵢ·∇Nⱼ, and
   ///   max over triangles k times what sharpen() has found.
-  double squared_frequency() const { return squared_frequency_; }
+  double squared_frequency() const { return std::min(seen_.frequency, sharp_rate_ * seen_.modulus); }
 
  private:
-  /// A triangle's rest data; natural edges in its plane are ((1/g00, −g01/(g00 g11)), (0, 1/g11)) by columns.
-  struct Element {
-    Triangle corner{};
-    double g00 = 0.0, g01 = 0.0, g11 = 0.0;  ///< [1/m]
-    double natural_area = 0.0, area = 0.0;   ///< [m²]
-    double kept = 1.0;
-    double rate = 0.0;  ///< R [1/kg]
-  };
+  static constexpr std::size_t kSize = MembraneBlock::kSize;
   struct Strain {
     double e11, e12, e22;
   };
-  static Strain strain(const Element& e, const Vec3d& d1, const Vec3d& d2);
-  template <bool kStiffens>
-  void add_forces_of(std::span<const Vec3d> positions, std::span<Vec3d> forces);
+  Strain strain(std::span<const Vec3d> positions, std::size_t triangle) const;
+  double natural_area(std::size_t triangle) const { return area_[triangle] / (law_.prestretch * law_.prestretch); }
 
   static constexpr double kNone = std::numeric_limits<double>::infinity();
 
   MembraneLaw law_;
-  std::vector<Element> elements_;
-  std::vector<double> squared_tension_;  ///< per natural width [N²/m²]
+  std::vector<double> area_, kept_;  ///< per triangle
+  std::vector<MembraneBlock> blocks_;
+  MembraneForces forces_ = nullptr;
   std::vector<double> masses_;
   double sharp_rate_ = kNone;  ///< ω² over the largest modulus [1/kg]
-  double squared_frequency_ = 0.0, largest_ = 0.0, largest_modulus_ = 0.0;
+  MembraneSums seen_;          ///< by the last add_forces
 };
 
 }  // namespace glisson

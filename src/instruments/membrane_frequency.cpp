@@ -66,7 +66,7 @@ double largest_eigenvalue(Operator apply, std::size_t n) {
 void Membrane::sharpen(std::span<const Vec3d> rest) {
   const std::size_t n = rest.size();
   double edge = 0.0;
-  for (const Element& e : elements_) edge = std::max(edge, e.g00 > 0.0 ? law_.prestretch / e.g00 : 0.0);
+  for (const double area : area_) edge = std::max(edge, std::sqrt(area));
   std::vector<Vec3d> middle(rest.begin(), rest.end());
   for (Vec3d& x : middle) x = x * kBlownUp;
   std::vector<Vec3d> at(n), up(n), down(n);
@@ -91,7 +91,7 @@ void Membrane::sharpen(std::span<const Vec3d> rest) {
   };
   if (n == 0) return;
   const double above = kMargin * largest_eigenvalue(apply, 3 * n);
-  sharp_rate_ = largest_modulus_ > 0.0 ? above / largest_modulus_ : kNone;
+  sharp_rate_ = seen_.modulus > 0.0 ? above / seen_.modulus : kNone;
 }
 
 }  // namespace glisson

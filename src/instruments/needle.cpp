@@ -198,7 +198,7 @@ void Needle::constrain(const InteractionStep& step) {
     s.forget_forces(step.h);
     return;
   }
-  const Eigen::MatrixXd W = shaft::mobility_matrix(step, solver.all);
+  const Eigen::MatrixXd W = s.mobility.of(step, s.nodes, solver.node, solver.has_tip ? &s.tip : nullptr);
   const std::vector<Vec3d> sideways = solver.across_it(W);
   const std::vector<double> along = solver.along_it(W);
   s.step_h = step.h;

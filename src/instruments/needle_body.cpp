@@ -65,6 +65,7 @@ void Needle::body_changed(const BodyView& body, std::span<const std::uint32_t>) 
   s.locator = std::make_unique<detail::TetLocator>(body.mesh, body.removed);
   s.surface = body.removed.empty() ? boundary_triangles(body.mesh) : boundary_triangles(living(body));
   s.look = true;
+  s.mobility.forget();
   for (shaft::Row& node : s.nodes) {
     if (!s.place(node, Vec3d(node.rest))) node.weights.clear();  // the tissue there is gone: the node no longer acts
   }

@@ -94,6 +94,7 @@ bool Needle::restore(std::span<const double> past) {
     *a = get.number();
   const std::size_t nodes = get.count();
   s.nodes.assign(nodes, {});
+  s.mobility.forget();
   s.slips.assign(nodes, 0), s.along.assign(nodes, 0.0), s.bend.assign(nodes, Vec3d{});
   for (std::size_t j = 0; j < nodes && get.ok(); ++j) {
     const Vec3d rest = get.vector();

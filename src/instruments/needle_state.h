@@ -47,10 +47,11 @@ struct Needle::State {
   std::vector<std::size_t> entry_triangles;  ///< of the surface, that the needle may meet first
 
   // the path
-  std::vector<shaft::Row> nodes;   ///< from the surface on
-  shaft::Row tip;                  ///< where the path ends
-  std::vector<char> slips;         ///< per node
-  std::vector<double> along;       ///< per node: impulse along the needle in the last step [N s]
+  std::vector<shaft::Row> nodes;  ///< from the surface on
+  shaft::Row tip;                 ///< where the path ends
+  std::vector<char> slips;        ///< per node
+  std::vector<double> along;      ///< per node: impulse along the needle in the last step [N s]
+  shaft::MobilityMatrix mobility;
   double tip_along = 0.0;          ///< the same of the tip
   bool tip_cuts = false;           ///< in the last step
   bool tip_out = false;            ///< on the far side of the body

@@ -82,6 +82,7 @@ void Needle::look_for_contact(const InteractionStep& step) {
   }
   s.tip = std::move(met);
   s.nodes.clear();
+  s.mobility.forget();
   s.slips.clear();
   s.along.clear();
   s.stage = NeedleStage::pressing;

@@ -11,6 +11,35 @@ constexpr double kEnough = 1e-6;  ///< change of an impulse over the largest at 
 
 double largest(const Vec3d& a) { return std::max({a.x, a.y, a.z}); }
 
+std::uint32_t place_of(const InteractionStep& step, const VertexWeight& w) {
+  return w.vertex < step.place_of.size() ? step.place_of[w.vertex] : InteractionStep::kNowhere;
+}
+
+/// Mobility times weight of a row's vertices, at their places.
+std::span<const double> spread(const InteractionStep& step, const Row& row, std::vector<double>& reached) {
+  for (const VertexWeight& w : row.weights) {
+    const std::uint32_t place = place_of(step, w);
+    if (place != InteractionStep::kNowhere) reached[place] = w.weight * largest(step.mobility[place]);
+  }
+  return reached;
+}
+
+void clear(const InteractionStep& step, const Row& row, std::vector<double>& reached) {
+  for (const VertexWeight& w : row.weights) {
+    const std::uint32_t place = place_of(step, w);
+    if (place != InteractionStep::kNowhere) reached[place] = 0.0;
+  }
+}
+
+double dot_weights(const InteractionStep& step, const Row& row, std::span<const double> reached) {
+  double sum = 0.0;
+  for (const VertexWeight& w : row.weights) {
+    const std::uint32_t place = place_of(step, w);
+    if (place != InteractionStep::kNowhere) sum += w.weight * reached[place];
+  }
+  return sum;
+}
+
 /// The impulse of a row that would stop its slip is `stop`; `free` is the speed it would have without its own.
 double shaft_impulse(double stop, double free, double mobility, const AxialLimit& limit, const ShaftFriction& f,
                      double h) {
@@ -30,7 +59,7 @@ bool read(const InteractionStep& step, Row& row) {
   row.position = row.rest;
   row.velocity = {};
   for (const VertexWeight& w : row.weights) {
-    const std::uint32_t place = w.vertex < step.place_of.size() ? step.place_of[w.vertex] : InteractionStep::kNowhere;
+    const std::uint32_t place = place_of(step, w);
     if (place == InteractionStep::kNowhere) return false;
     row.position += step.vertices[place].displacement * w.weight;
     row.velocity += step.vertices[place].velocity * w.weight;
@@ -42,25 +71,42 @@ void push(const InteractionStep& step, const Row& row, const Vec3d& impulse) {
   for (const VertexWeight& w : row.weights) step.push(step.place_of[w.vertex], impulse * w.weight);
 }
 
-Eigen::MatrixXd mobility_matrix(const InteractionStep& step, std::span<const Row* const> rows) {
-  const auto n = static_cast<Eigen::Index>(rows.size());
-  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n, n);
-  std::vector<double> reached(step.vertices.size(), 0.0);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const Row& row = *rows[static_cast<std::size_t>(j)];
-    for (const VertexWeight& w : row.weights) {
-      const std::uint32_t place = step.place_of[w.vertex];
-      reached[place] = w.weight * largest(step.mobility[place]);
-    }
-    for (Eigen::Index k = 0; k <= j; ++k) {
-      double sum = 0.0;
-      for (const VertexWeight& w : rows[static_cast<std::size_t>(k)]->weights) {
-        sum += w.weight * reached[step.place_of[w.vertex]];
-      }
-      W(j, k) = W(k, j) = sum;
-    }
-    for (const VertexWeight& w : row.weights) reached[step.place_of[w.vertex]] = 0.0;
+/// Rows of nodes that are new, or all where a mobility has changed.
+void MobilityMatrix::extend(const InteractionStep& step, std::span<const Row> nodes) {
+  const auto n = static_cast<Eigen::Index>(nodes.size());
+  Eigen::Index known = std::min(nodes_.rows(), n);
+  for (Eigen::Index j = 0; j < known; ++j) {
+    const Row& row = nodes[static_cast<std::size_t>(j)];
+    if (nodes_(j, j) != dot_weights(step, row, spread(step, row, reached_))) known = 0;
+    clear(step, row, reached_);
   }
+  nodes_.conservativeResize(n, n);
+  for (Eigen::Index j = known; j < n; ++j) {
+    const Row& row = nodes[static_cast<std::size_t>(j)];
+    spread(step, row, reached_);
+    for (Eigen::Index k = 0; k <= j; ++k) {
+      nodes_(j, k) = nodes_(k, j) = dot_weights(step, nodes[static_cast<std::size_t>(k)], reached_);
+    }
+    clear(step, row, reached_);
+  }
+}
+
+Eigen::MatrixXd MobilityMatrix::of(const InteractionStep& step, std::span<const Row> nodes,
+                                   std::span<const std::size_t> acting, const Row* tip) {
+  reached_.assign(step.vertices.size(), 0.0);
+  extend(step, nodes);
+  const auto n = static_cast<Eigen::Index>(acting.size()), size = n + (tip != nullptr ? 1 : 0);
+  Eigen::MatrixXd W(size, size);
+  const auto node = [&](Eigen::Index k) { return static_cast<Eigen::Index>(acting[static_cast<std::size_t>(k)]); };
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index k = 0; k < n; ++k) W(j, k) = nodes_(node(j), node(k));
+  }
+  if (tip == nullptr) return W;
+  spread(step, *tip, reached_);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    W(n, k) = W(k, n) = dot_weights(step, nodes[static_cast<std::size_t>(node(k))], reached_);
+  }
+  W(n, n) = dot_weights(step, *tip, reached_);
   return W;
 }
 

@@ -32,8 +32,24 @@ bool read(const InteractionStep& step, Row& row);
 /// Spreads an impulse [N s] over the vertices of a row.
 void push(const InteractionStep& step, const Row& row, const Vec3d& impulse);
 
-/// W of a set of rows [1/kg]; of the mobilities' components the largest counts, so that impulses never overshoot.
-Eigen::MatrixXd mobility_matrix(const InteractionStep& step, std::span<const Row* const> rows);
+/// W of nodes and a tip [1/kg], kept from step to step: a path changes at its end only, and mobilities hardly ever.
+/// Of the mobilities' components the largest counts, so that impulses never overshoot.
+class MobilityMatrix {
+ public:
+  /// @param nodes  of the path, from the surface on; those that were there in the last call are the same
+  /// @param acting  numbers of those that act, ascending
+  /// @param tip    none: does not act
+  /// @return rows of the acting nodes, then that of the tip
+  Eigen::MatrixXd of(const InteractionStep& step, std::span<const Row> nodes, std::span<const std::size_t> acting,
+                     const Row* tip);
+  /// Rows have become others.
+  void forget() { nodes_.resize(0, 0); }
+
+ private:
+  void extend(const InteractionStep& step, std::span<const Row> nodes);
+  Eigen::MatrixXd nodes_;
+  std::vector<double> reached_;  ///< per vertex at hand: mobility times weight of one row
+};
 
 /// C of points at these distances from the hand [m/N]. @param bending_stiffness  E I [N m²]; 0: rigid
 Eigen::MatrixXd cantilever(std::span<const double> distances, double bending_stiffness);

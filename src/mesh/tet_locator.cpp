@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kOutside = -1e-9;  ///< barycentric coordinates down to this count as inside
 constexpr int kMostCells = 256;     ///< along an axis
+/// Edge of a cell over that of a cube of six tets: some 20 tets reach into a cell, and a tet into some 27 cells.
+constexpr double kCell = 0.5;
 
 Vec3d lower(const Vec3d& a, const Vec3d& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 Vec3d upper(const Vec3d& a, const Vec3d& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
@@ -37,7 +39,7 @@ TetLocator::TetLocator(const TetMesh& mesh, std::span<const char> removed) : mes
     begin_.assign(2, 0);
     return;
   }
-  cell_ = 1.5 * std::cbrt(6.0 * volume / static_cast<double>(living));  // edge of a cube of six tets, and half again
+  cell_ = kCell * std::cbrt(6.0 * volume / static_cast<double>(living));
   for (std::size_t a = 0; a < 3; ++a) {
     cell_ = std::max(cell_, (high_[a] - low_[a]) / kMostCells);
   }
@@ -82,9 +84,12 @@ std::optional<LocatedPoint> TetLocator::locate(const Vec3d& x) const {
     const Vec3d &a = mesh_->vertices[t[0]], &b = mesh_->vertices[t[1]], &c = mesh_->vertices[t[2]],
                 &d = mesh_->vertices[t[3]];
     const double whole = 1.0 / six_volume(a, b, c, d);
-    const std::array<double, 4> w{six_volume(x, b, c, d) * whole, six_volume(a, x, c, d) * whole,
-                                  six_volume(a, b, x, d) * whole, six_volume(a, b, c, x) * whole};
-    if (w[0] >= kOutside && w[1] >= kOutside && w[2] >= kOutside && w[3] >= kOutside) return LocatedPoint{tets_[k], w};
+    std::array<double, 4> w;
+    if ((w[0] = six_volume(x, b, c, d) * whole) < kOutside || (w[1] = six_volume(a, x, c, d) * whole) < kOutside ||
+        (w[2] = six_volume(a, b, x, d) * whole) < kOutside || (w[3] = six_volume(a, b, c, x) * whole) < kOutside) {
+      continue;
+    }
+    return LocatedPoint{tets_[k], w};
   }
   return {};
 }

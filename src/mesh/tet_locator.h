@@ -22,7 +22,7 @@ class TetLocator {
  public:
   /// @param mesh     must outlive this, unchanged
   /// @param removed  per tet: 1 where it is gone; empty: none is; copied into the grid
-  /// Cost: O(tets); some 100 bytes a tet.
+  /// Cost: O(tets); some 120 bytes a tet.
   TetLocator(const TetMesh& mesh, std::span<const char> removed);
 
   /// The tet that holds a rest position; of several the one of lowest number.
