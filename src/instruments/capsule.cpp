@@ -51,14 +51,14 @@ Capsule::~Capsule() = default;
 
 const CapsuleOptions& Capsule::options() const { return state_->options; }
 std::span<const Triangle> Capsule::triangles() const { return state_->triangles; }
-std::span<const double> Capsule::tension() const { return state_->tension; }
+std::span<const double> Capsule::tension() const { return state_->tensions(); }
 std::span<const double> Capsule::open_share() const { return state_->open; }
 double Capsule::released_energy() const { return state_->released; }
 const std::vector<CapsuleEvent>& Capsule::events() const { return state_->events; }
 double Capsule::energy() const { return state_->membrane.energy(state_->now); }
 
 double Capsule::largest_tension() const {
-  const std::vector<double>& t = state_->tension;
+  const std::vector<double>& t = state_->tensions();
   return t.empty() ? 0.0 : *std::max_element(t.begin(), t.end());
 }
 

@@ -71,14 +71,23 @@ void Capsule::State::lay_out(const BodyView& body, bool sharply) {
   frequency_before = frequency;
 }
 
-/// Forces, tensions and the frequency at the present positions.
+/// Forces and the frequency at the present positions.
 void Capsule::State::evaluate() {
   forces.assign(vertices.size(), Vec3d{});
   membrane.add_forces(now, forces);
-  tension.resize(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) tension[t] = membrane.tension(t);
+  tension_is_current = false;
   frequency_before = frequency;
   frequency = membrane.squared_frequency();
+}
+
+const std::vector<double>& Capsule::State::tensions() {
+  if (tension_is_current) return tension;
+  tension.assign(triangles.size(), 0.0);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (counts[t] != 0) tension[t] = membrane.tension(t);
+  }
+  tension_is_current = true;
+  return tension;
 }
 
 Vec3d Capsule::State::centre(std::size_t triangle) const {
@@ -94,18 +103,19 @@ void Capsule::State::open_to(std::size_t triangle, double share) {
   released += (membrane.kept(triangle) - kept) * membrane.energy(now, triangle);
   membrane.keep(triangle, kept);
   open[triangle] = share;
-  if (share == 1.0) counts[triangle] = 0, tension[triangle] = 0.0;
+  if (share == 1.0) counts[triangle] = 0, tension_is_current = false;
 }
 
 /// Tension over the disc about a triangle, of what is whole [N/m].
 double Capsule::State::mean_tension(std::size_t triangle) {
   if (near.first.empty()) near = find_neighbours(local, rest, 0.5 * options.averaging_length);
+  const std::vector<double>& of = tensions();
   double sum = 0.0, area = 0.0;
   for (std::uint32_t k = near.first[triangle]; k < near.first[triangle + 1]; ++k) {
     const std::uint32_t t = near.list[k];
     if (counts[t] == 0) continue;
     const double share = membrane.kept(t) * membrane.rest_area(t);
-    sum += share * tension[t];
+    sum += share * of[t];
     area += share;
   }
   return area > 0.0 ? sum / area : 0.0;
@@ -117,8 +127,9 @@ void Capsule::State::tear_where_due() {
   if (!options.strength || membrane.largest_tension() < *options.strength) return;
   std::size_t worst = triangles.size();
   double most = *options.strength;
+  const std::vector<double>& of = tensions();
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    if (counts[t] == 0 || tension[t] < *options.strength) continue;
+    if (counts[t] == 0 || of[t] < *options.strength) continue;
     const double mean = mean_tension(t);
     if (mean >= most && (mean > most || worst == triangles.size())) most = mean, worst = t;
   }

@@ -29,7 +29,8 @@ struct Capsule::State {
   std::vector<Triangle> local;           ///< per triangle, in places of `vertices`
   std::vector<Vec3d> rest, now, forces;  ///< per place [m], [m], [N]
   Membrane membrane;
-  std::vector<double> tension;                     ///< per triangle [N/m]
+  std::vector<double> tension;  ///< per triangle [N/m]; read through tensions()
+  bool tension_is_current = false;
   Neighbours near;                                 ///< within half the averaging length; made when first needed
   bool is_named = false;                           ///< whether reach() has named the vertices
   double frequency = 0.0, frequency_before = 0.0;  ///< squared, of the last two steps [1/s²]
@@ -40,6 +41,7 @@ struct Capsule::State {
   /// @param sharply  finds the frequency of the sheet at rest, which takes some ms; else a bound from single triangles
   void lay_out(const BodyView& body, bool sharply);
   void evaluate();
+  const std::vector<double>& tensions();
   void open_to(std::size_t triangle, double share);
   void tear_where_due();
   double mean_tension(std::size_t triangle);
