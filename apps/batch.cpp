@@ -27,6 +27,14 @@ class Fan : public RunObserver {
     recorder_.on_start(variant, simulation);
     if (also_ != nullptr) also_->on_start(variant, simulation);
   }
+  void on_built(const BuiltVariant& built) override {
+    recorder_.on_built(built);
+    if (also_ != nullptr) also_->on_built(built);
+  }
+  void on_event(const RunEvent& event) override {
+    recorder_.on_event(event);
+    if (also_ != nullptr) also_->on_event(event);
+  }
   void on_sample(const Sample& sample) override {
     recorder_.on_sample(sample);
     if (also_ != nullptr) also_->on_sample(sample);

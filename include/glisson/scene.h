@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -13,10 +14,14 @@
 #include <variant>
 #include <vector>
 
+#include "glisson/capsule.h"
+#include "glisson/contact.h"
 #include "glisson/mesh.h"
 #include "glisson/motion.h"
+#include "glisson/needle.h"
 #include "glisson/simulation.h"
 #include "glisson/tissue.h"
+#include "glisson/tool_motion.h"
 
 namespace glisson {
 
@@ -91,6 +96,73 @@ struct ToolSpec {
   std::string origin;
 };
 
+/// Strokes along the instrument's direction and across it; one that has no speed of its own takes the common one.
+struct StrokesSpec {
+  struct One {
+    double depth = 0.0;  ///< where it ends, along the direction from the start [m]
+    Vec3d aside{};       ///< and beside it [m]
+    std::optional<double> velocity;
+    double ramp = 0.0, rest = 0.0;
+  };
+  double velocity = 0.01, start = 0.0;
+  std::vector<One> strokes;
+};
+/// A push that rises over `ramp` and may swing:  F = w(t/ramp) (force + swing sin 2π f t).
+struct PushSpec {
+  double force = 1.0, swing = 0.0, frequency = 1.0, start = 0.0, ramp = 0.0;
+  std::optional<double> duration, stop;
+  double mass = 0.05, damping = 5.0;
+  bool guided = true;
+};
+/// A recorded way from a file (load_record).
+struct RecordSpec {
+  std::filesystem::path path;  ///< absolute, or relative to the current directory
+  double start = 0.0;
+  RecordedMotion motion;  ///< what the file holds
+};
+struct InstrumentMotion {
+  std::variant<PressMotion, StrokesSpec, SineMotion, PushSpec, RecordSpec> how;
+  std::optional<Vec3d> direction;  ///< of any length; none: the instrument's
+};
+
+/// A rigid tool of some shape that presses on the surface.
+template <class Form>
+struct ContactSpec {
+  Form form;
+  double friction = 0.0;
+  bool bonded = false;
+  double push_out_speed = ContactOptions{}.push_out_speed;
+};
+/// Something that presses, pierces or cuts, and how it moves.
+struct InstrumentSpec {
+  std::string name = "instrument";
+  Vec3d tip{};                      ///< where its tip starts [m]
+  Vec3d direction{0.0, 0.0, -1.0};  ///< in which it points, of any length
+  Vec3d side{1.0, 0.0, 0.0};        ///< where its own x axis points, as far as that is across the direction
+  InstrumentMotion motion;
+  std::variant<NeedleOptions, ContactSpec<FlatPunch>, ContactSpec<Ball>, ContactSpec<NeedleShape>, ContactSpec<Plate>,
+               ContactSpec<Block>>
+      what;
+  std::map<std::string, TipResistance> regions;  ///< of a needle, by region name
+  std::string origin;
+};
+/// Where an instrument starts and how it is turned: its own z axis points back along its direction.
+Pose start_pose(const InstrumentSpec& instrument);
+/// Its driver. @throws std::invalid_argument
+std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& instrument);
+
+/// A file of numbers separated by commas: a line of names, `time_s` and `depth_m`, or `time_s`, `x_m`, `y_m` and `z_m`
+/// (or _mm), then a line for each time. @param direction  of depths, a unit vector
+/// @throws std::runtime_error `file:line: what is wrong`
+RecordedMotion load_record(const std::filesystem::path& file, const Vec3d& direction);
+
+/// A membrane on a part of the surface.
+struct CapsuleSpec {
+  CapsuleOptions options;
+  std::string set;  ///< vertex set; empty: all of the surface
+  std::string origin;
+};
+
 struct OutputSpec {
   double sample_rate = 500.0;  ///< [Hz], > 0
   int frames = 60;             ///< frames of the whole run, 0 or more
@@ -107,9 +179,11 @@ struct Variant {
   std::vector<FixedSpec> fixed;
   std::vector<LoadSpec> loads;
   std::vector<ToolSpec> tools;
+  std::vector<InstrumentSpec> instruments;
+  std::vector<CapsuleSpec> capsules;
   SimulationOptions simulation;
   OnInversion on_inversion = OnInversion::go_on;
-  std::optional<double> duration;          ///< [s]; none: until the last tool's motion has ended
+  std::optional<double> duration;          ///< [s]; none: until the last motion has ended
   std::optional<std::uint64_t> max_steps;  ///< stops after that many steps
   OutputSpec output;
   std::string scene_name = "scene";  ///< the scene's file, for messages
@@ -154,14 +228,29 @@ std::string scene_reference_markdown();
 /// Reads a mesh file; the io library's read_mesh, handed in so that scenes do not link VTK.
 using MeshLoader = std::function<TetMesh(const MeshFile&)>;
 
+/// What an instrument does at the time of a sample.
+struct InstrumentSample {
+  double depth = 0.0;  ///< along its direction, from where it started [m]
+  ToolForces forces;   ///< on the tissue
+};
+
 /// One line of forces.csv. Scalars of the tool are along its direction, positive when it presses.
 struct Sample {
-  double time = 0.0;                 ///< [s]
-  std::vector<double> depths;        ///< per tool [m]
-  std::vector<ForceParts> tools;     ///< per tool: what it exerts on the tissue
-  std::vector<ForceParts> supports;  ///< per fixed set: what it exerts on the tissue
+  double time = 0.0;                          ///< [s]
+  std::vector<double> depths;                 ///< per tool [m]
+  std::vector<ForceParts> tools;              ///< per tool: what it exerts on the tissue
+  std::vector<ForceParts> supports;           ///< per fixed set: what it exerts on the tissue
+  std::vector<InstrumentSample> instruments;  ///< per instrument
   Energies energies;
 };
+
+/// One line of events.csv.
+struct RunEvent {
+  std::size_t instrument = 0;  ///< of the variant
+  InstrumentEvent what;
+};
+
+struct BuiltVariant;
 
 struct RunSummary {
   std::size_t vertices = 0, tets = 0;
@@ -188,7 +277,11 @@ class RunObserver {
  public:
   virtual ~RunObserver() = default;
   virtual void on_start(const Variant&, const Simulation&) {}
+  /// Right after on_start; what it names lives until on_end has returned.
+  virtual void on_built(const BuiltVariant&) {}
   virtual void on_sample(const Sample&) {}
+  /// Before the first sample that is not earlier.
+  virtual void on_event(const RunEvent&) {}
   virtual void on_frame(const Simulation&) {}
   virtual void on_progress(double /*fraction*/) {}  ///< about ten times a second
   virtual void on_end(const RunSummary&) {}
@@ -203,8 +296,10 @@ std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh
 /// The body of a variant with its supports, loads and tools, at rest.
 struct BuiltVariant {
   Simulation simulation;
-  std::vector<ConstraintId> supports;  ///< per variant.fixed
-  std::vector<ConstraintId> tools;     ///< per variant.tools
+  std::vector<ConstraintId> supports;                    ///< per variant.fixed
+  std::vector<ConstraintId> tools;                       ///< per variant.tools
+  std::vector<std::shared_ptr<Instrument>> instruments;  ///< per variant.instruments
+  std::vector<std::shared_ptr<Capsule>> capsules;        ///< per variant.capsules
 };
 /// @throws SceneError where mesh, sets, tissues, step or constraints cannot be used
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load);

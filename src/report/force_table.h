@@ -1,7 +1,8 @@
 // force_table.h — the columns of forces.csv and how a sample fills them.
 //
-//   forces.csv         time, depth and forces of the first tool · energies · what each support carries
-//   forces_<tool>.csv  time, depth and forces of every further tool
+//   forces.csv         time, depth and forces of the first tool, or of the first instrument where there is no tool ·
+//                      container · energies · what each support carries
+//   forces_<name>.csv  time, depth and forces of every further tool and instrument
 //
 // Vectors are in the scene's axes. Scalars are along the tool's direction, positive when it presses.
 #pragma once
@@ -21,17 +22,27 @@ class ForceTable {
 
   /// Columns of forces.csv, each with its unit.
   const std::vector<std::string>& columns() const { return columns_; }
-  /// A row of forces.csv. A scene without a tool has 0 in the tool's columns.
+  /// A row of forces.csv. A scene without tool and instrument has 0 in the tool's columns.
   std::vector<double> row(const Sample& sample) const;
 
-  std::size_t tools() const { return directions_.size(); }
-  /// Columns of forces_<tool>.csv: the first twelve of forces.csv.
-  static const std::vector<std::string>& tool_columns();
-  std::vector<double> tool_row(const Sample& sample, std::size_t tool) const;
+  /// A file beside forces.csv.
+  struct Further {
+    std::string name;  ///< of the tool or instrument
+    bool instrument = false;
+    std::size_t index = 0;  ///< among the tools or instruments of the variant
+  };
+  const std::vector<Further>& further() const { return further_; }
+  static const std::vector<std::string>& columns_of(const Further& file);
+  std::vector<double> row_of(const Further& file, const Sample& sample) const;
 
  private:
-  std::vector<Vec3d> directions_;  // unit vectors, one per tool
+  std::vector<double> tool_row(const Sample& sample, std::size_t tool) const;
+  std::vector<double> instrument_row(const Sample& sample, std::size_t instrument) const;
+
+  std::vector<Vec3d> tools_, instruments_;  // directions, unit vectors
+  std::vector<Further> further_;
   std::vector<std::string> columns_;
+  bool contained_ = false;
 };
 
 }  // namespace glisson

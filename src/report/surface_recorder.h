@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
@@ -21,6 +22,8 @@ class SurfaceRecorder {
   /// @param max_bytes  what the frames may take in the page; beyond it every 2nd, 3rd, … frame is kept
   SurfaceRecorder(const Variant& variant, const Simulation& simulation, std::size_t max_bytes);
 
+  /// Instruments that frames show, too.
+  void set_instruments(std::vector<std::shared_ptr<Instrument>> instruments);
   /// Takes a frame. @param fields  of the same state
   void add(const Simulation& simulation, const TetFields& fields);
   /// Largest intensity s of the surface so far [-].
@@ -34,6 +37,7 @@ class SurfaceRecorder {
 
   std::vector<std::uint32_t> vertices_;   // mesh vertex of each surface vertex
   std::vector<std::uint32_t> triangles_;  // in surface vertices
+  std::vector<std::shared_ptr<Instrument>> instruments_;
   nlohmann::json head_;
   nlohmann::json frames_ = nlohmann::json::array();
   std::optional<nlohmann::json> last_;  // the newest frame, where the stride passed over it

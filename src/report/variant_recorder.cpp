@@ -75,11 +75,26 @@ void VariantRecorder::on_start(const Variant&, const Simulation& simulation) {
     make_folder(options_.folder);
     files_.emplace_back(options_.folder / "forces.csv");
     files_.back().write(csv_head(table_.columns()));
-    for (std::size_t tool = 1; tool < table_.tools(); ++tool) {
-      files_.emplace_back(options_.folder / ("forces_" + variant_.tools[tool].name + ".csv"));
-      files_.back().write(csv_head(ForceTable::tool_columns()));
+    for (const ForceTable::Further& file : table_.further()) {
+      files_.emplace_back(options_.folder / ("forces_" + file.name + ".csv"));
+      files_.back().write(csv_head(ForceTable::columns_of(file)));
+    }
+    if (!variant_.instruments.empty()) {
+      event_file_ = std::make_unique<LineFile>(options_.folder / "events.csv");
+      event_file_->write("time_s,depth_m,event,instrument");
     }
     if (variant_.output.frames > 0) frames_ = std::make_unique<FrameSeries>(options_.folder);
+  });
+}
+
+void VariantRecorder::on_built(const BuiltVariant& built) { surface_->set_instruments(built.instruments); }
+
+void VariantRecorder::on_event(const RunEvent& event) {
+  events_.push_back(event);
+  guarded([&] {
+    const auto& [time, depth, what] = event.what;
+    event_file_->write(number_text(time) + "," + number_text(depth) + "," + what + "," +
+                       variant_.instruments[event.instrument].name);
   });
 }
 
@@ -88,8 +103,8 @@ void VariantRecorder::on_sample(const Sample& sample) {
   for (std::size_t i = 0; i < row.size(); ++i) data_[i].push_back(row[i]);
   guarded([&] {
     files_.front().write(joined(row, number_text));
-    for (std::size_t tool = 1; tool < table_.tools(); ++tool) {
-      files_[tool].write(joined(table_.tool_row(sample, tool), number_text));
+    for (std::size_t i = 0; i < table_.further().size(); ++i) {
+      files_[i + 1].write(joined(table_.row_of(table_.further()[i], sample), number_text));
     }
   });
 }
@@ -129,11 +144,23 @@ nlohmann::json VariantRecorder::forces_json() const {
   return {{"columns", table_.columns()}, {"data", std::move(data)}};
 }
 
+nlohmann::json VariantRecorder::events_json() const {
+  nlohmann::json list = nlohmann::json::array();
+  for (const RunEvent& e : events_) {
+    list.push_back({{"time_s", e.what.time},
+                    {"depth_m", e.what.depth},
+                    {"event", e.what.event},
+                    {"instrument", variant_.instruments[e.instrument].name}});
+  }
+  return list;
+}
+
 nlohmann::json VariantRecorder::json(double law_reach) const {
   return {{"name", variant_.name},
           {"label", variant_.label.empty() ? variant_.name : variant_.label},
           {"summary", summary_json(summary_, variant_, options_.scene, options_.threads)},
           {"forces", forces_json()},
+          {"events", events_json()},
           {"law", law_data(variant_, law_reach)},
           {"surface", surface_ ? surface_->json() : nlohmann::json()}};
 }

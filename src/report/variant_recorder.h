@@ -1,7 +1,8 @@
 // variant_recorder.h — writes down one variant as it runs, and keeps what the report page will show of it.
 //
-//   on_sample ─▶ forces.csv, forces_<tool>.csv          on_end ─▶ summary.json
-//   on_frame  ─▶ frames.pvd, frames/*.vtu, surface
+//   on_sample ─▶ forces.csv, forces_<name>.csv          on_end ─▶ summary.json
+//   on_event  ─▶ events.csv, where there are instruments
+//   on_frame  ─▶ frames.pvd, frames/*.vtu, surface with instruments
 //
 // Everything on the disk is valid at any moment. A disk that refuses stops the run; the reason is kept in error().
 #pragma once
@@ -35,7 +36,9 @@ class VariantRecorder : public RunObserver {
   VariantRecorder(Variant variant, RecorderOptions options, std::atomic<bool>& stop);
 
   void on_start(const Variant& variant, const Simulation& simulation) override;
+  void on_built(const BuiltVariant& built) override;
   void on_sample(const Sample& sample) override;
+  void on_event(const RunEvent& event) override;
   void on_frame(const Simulation& simulation) override;
   void on_end(const RunSummary& summary) override;
 
@@ -58,12 +61,15 @@ class VariantRecorder : public RunObserver {
  private:
   void guarded(const std::function<void()>& write);
   nlohmann::json forces_json() const;
+  nlohmann::json events_json() const;
 
   Variant variant_;
   RecorderOptions options_;
   std::atomic<bool>& stop_;
   ForceTable table_;
-  std::vector<LineFile> files_;  // forces.csv, then forces_<tool>.csv
+  std::vector<LineFile> files_;  // forces.csv, then forces_<name>.csv
+  std::unique_ptr<LineFile> event_file_;
+  std::vector<RunEvent> events_;
   std::unique_ptr<FrameSeries> frames_;
   std::unique_ptr<SurfaceRecorder> surface_;
   std::vector<std::vector<double>> data_;

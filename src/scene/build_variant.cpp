@@ -4,6 +4,7 @@
 #include <set>
 
 #include "glisson/scene.h"
+#include "scene/build_instruments.h"
 #include "scene/nearest.h"
 #include "scene/select.h"
 
@@ -121,6 +122,28 @@ auto located(const Variant& variant, const std::string& origin, Make make) {
   }
 }
 
+/// Capsules first: what they pull is known when instruments solve for what holds at the end of the step.
+void attach_interactions(const Variant& variant, BuiltVariant& built) {
+  Simulation& simulation = built.simulation;
+  for (const CapsuleSpec& x : variant.capsules) {
+    std::span<const std::uint32_t> set;
+    if (!x.set.empty()) set = set_called(variant, simulation.mesh(), x.set, x.origin);
+    built.capsules.push_back(located(variant, x.origin, [&] {
+      auto capsule = scene::make_capsule(x, set);
+      simulation.attach(capsule);
+      return capsule;
+    }));
+  }
+  for (const InstrumentSpec& x : variant.instruments) {
+    built.instruments.push_back(located(variant, x.origin, [&] {
+      auto instrument = scene::make_instrument(x, simulation.mesh());
+      simulation.attach(instrument);
+      return instrument;
+    }));
+  }
+  scene::join(built.instruments, built.capsules);
+}
+
 }  // namespace
 
 TetMesh build_mesh(const Variant& variant, const MeshLoader& load) {
@@ -132,6 +155,9 @@ TetMesh build_mesh(const Variant& variant, const MeshLoader& load) {
   for (const FixedSpec& x : variant.fixed) set_called(variant, mesh, x.set, x.origin);
   for (const LoadSpec& x : variant.loads) set_called(variant, mesh, x.set, x.origin);
   for (const ToolSpec& x : variant.tools) set_called(variant, mesh, x.set, x.origin);
+  for (const CapsuleSpec& x : variant.capsules) {
+    if (!x.set.empty()) set_called(variant, mesh, x.set, x.origin);
+  }
   return mesh;
 }
 
@@ -146,7 +172,7 @@ std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh
 }
 
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load) {
-  BuiltVariant built{simulation_of(variant, build_mesh(variant, load)), {}, {}};
+  BuiltVariant built{simulation_of(variant, build_mesh(variant, load)), {}, {}, {}, {}};
   Simulation& simulation = built.simulation;
   const TetMesh& mesh = simulation.mesh();
   for (const FixedSpec& x : variant.fixed) {
@@ -162,14 +188,21 @@ BuiltVariant build_variant(const Variant& variant, const MeshLoader& load) {
     const auto& set = set_called(variant, mesh, x.set, x.origin);
     located(variant, x.origin, [&] { return simulation.add_load(set, x.force, ramp_over(x.ramp)); });
   }
+  attach_interactions(variant, built);
   return built;
 }
 
 double run_duration(const Variant& variant) {
   if (variant.duration) return *variant.duration;
   double end = 0.0;
-  for (const ToolSpec& tool : variant.tools) end = std::max(end, press_end(tool.motion));
-  return variant.tools.empty() ? std::numeric_limits<double>::infinity() : end;
+  bool ends = false;
+  const auto until = [&](std::optional<double> time) {
+    if (time) end = std::max(end, *time);
+    ends = ends || time;
+  };
+  for (const ToolSpec& tool : variant.tools) until(press_end(tool.motion));
+  for (const InstrumentSpec& x : variant.instruments) until(make_driver(x)->end());
+  return ends ? end : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace glisson

@@ -184,7 +184,7 @@ void read_section(const SectionSpec& section, const Node& node, void* target, co
     const KeySpec* own = section.find(member.key);
     const KeySpec* key = own || !kind ? own : kind->section.find(member.key);
     if (key) {
-      read_member(*key, member, filled, place);
+      read_member(*key, member, own ? target : filled, place);
     } else {
       place.problems.add(member.where, join_path(place.path, member.key), unknown_key(section, kind, member.key));
     }

@@ -37,6 +37,13 @@ std::string scene_reference_markdown() {
   text += section_text(fixed_section(), "`[[fixed]]`");
   text += section_text(load_section(), "`[[load]]`");
   text += section_text(tool_section(), "`[[tool]]`");
+  text += section_text(instrument_section(), "`[[instrument]]`");
+  text += section_text(instrument_motion_section(), "`[instrument.motion]`");
+  text += section_text(stroke_section(), "`[[instrument.motion.strokes]]`");
+  text += section_text(rupture_section(), "`[instrument.rupture]`");
+  text += section_text(tip_section(), "`[instrument.tip]`, `[instrument.regions.NAME]`");
+  text += section_text(shaft_friction_section(), "`[instrument.friction]`");
+  text += section_text(capsule_section(), "`[[capsule]]`");
   text += section_text(output_section(), "`[output]`");
   text += section_text(chart_section(), "`[[chart]]`");
   text += section_text(variant_section(), "`[[variant]]`");

@@ -32,6 +32,7 @@ class Run {
   void stretch();
   bool step();
   void take_sample();
+  void tell_events();
   void take_frame();
   void show_progress();
   void summarise();
@@ -51,6 +52,7 @@ class Run {
   std::uint64_t samples_due_ = 0;
   double next_sample_ = 0.0;  ///< [s]
   int frames_taken_ = 0;
+  std::vector<std::size_t> events_told_;  ///< per instrument
   bool ended_ = false, sampled_ = true, framed_ = false, forces_current_ = false;
   double stepping_s_ = 0.0;
   std::uint64_t stretch_steps_ = 1;
@@ -65,6 +67,8 @@ Run::Run(const Variant& variant, BuiltVariant& built, RunObserver& observer, con
   sample_.depths.resize(built.tools.size());
   sample_.tools.resize(built.tools.size());
   sample_.supports.resize(built.supports.size());
+  sample_.instruments.resize(built.instruments.size());
+  events_told_.resize(built.instruments.size(), 0);
 }
 
 /// The last step is the one that ends nearest to the duration.
@@ -143,12 +147,25 @@ void Run::take_sample() {
     summary_.peak_force_N = std::max(summary_.peak_force_N, along);
   }
   for (std::size_t i = 0; i < built_.supports.size(); ++i) sample_.supports[i] = simulation_.force(built_.supports[i]);
+  for (std::size_t i = 0; i < built_.instruments.size(); ++i) {
+    const Instrument& x = *built_.instruments[i];
+    sample_.instruments[i] = {x.force_depth(), x.forces()};
+    summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(x.forces().total(), x.direction())));
+  }
   sample_.energies = simulation_.energies();
+  tell_events();
   observer_.on_sample(sample_);
   sampled_ = true;
   const double passed = (force_time_ + 0.5 * summary_.step_s) * variant_.output.sample_rate;
   samples_due_ = std::max(samples_due_ + 1, static_cast<std::uint64_t>(std::min(std::ceil(passed), 9e15)));
   next_sample_ = static_cast<double>(samples_due_) / variant_.output.sample_rate;
+}
+
+void Run::tell_events() {
+  for (std::size_t i = 0; i < built_.instruments.size(); ++i) {
+    const std::vector<InstrumentEvent>& events = built_.instruments[i]->events();
+    for (std::size_t& told = events_told_[i]; told < events.size(); ++told) observer_.on_event({i, events[told]});
+  }
 }
 
 void Run::take_frame() {
@@ -180,6 +197,7 @@ void Run::summarise() {
 
 RunSummary Run::to_end() {
   observer_.on_start(variant_, simulation_);
+  observer_.on_built(built_);
   begin_ = last_progress_ = Clock::now();
   if (variant_.output.frames > 1) take_frame();
   while (!finished()) {
@@ -192,6 +210,7 @@ RunSummary Run::to_end() {
   }
   if (!sampled_ && forces_current_) take_sample();
   if (!framed_ && simulation_.steps() > 0 && variant_.output.frames > 0) take_frame();
+  tell_events();
   summarise();
   observer_.on_end(summary_);
   return summary_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -29,9 +30,10 @@ void check_sets(const Variant& variant, const Node& experiment, Problems& proble
   if (std::holds_alternative<MeshFile>(variant.mesh)) return;
   std::vector<std::string> known = generated_sets(variant.mesh);
   for (const auto& [name, selection] : variant.sets) known.push_back(name);
-  for (const char* user : {"fixed", "load", "tool"}) {
+  for (const char* user : {"fixed", "load", "tool", "capsule"}) {
     const Node* list = experiment.find(user);
     for (std::size_t i = 0; list && i < list->array()->size(); ++i) {
+      if (!(*list->array())[i].find("set")) continue;
       const Node& set = *(*list->array())[i].find("set");
       if (std::find(known.begin(), known.end(), *set.text()) != known.end()) continue;
       problems.add(set.where, std::string(user) + "." + std::to_string(i) + ".set", no_such_set(*set.text(), known));
@@ -53,11 +55,62 @@ void check_names(const Array& list, const std::string& path, Problems& problems)
   }
 }
 
+/// A tool and an instrument of one name would share a file.
+void check_shared_names(const Variant& variant, const Node& experiment, Problems& problems) {
+  for (std::size_t i = 0; i < variant.instruments.size(); ++i) {
+    for (const ToolSpec& tool : variant.tools) {
+      if (tool.name != variant.instruments[i].name) continue;
+      problems.add((*experiment.find("instrument")->array())[i].where, "instrument." + std::to_string(i) + ".name",
+                   "\"" + tool.name + "\" is taken by a tool; names must differ");
+    }
+  }
+}
+
 void check_end(const Variant& variant, const Node& experiment, Problems& problems) {
-  if (!variant.tools.empty() || variant.duration || variant.max_steps) return;
+  if (variant.max_steps || std::isfinite(run_duration(variant))) return;
   const Node* motion = experiment.find("motion");
-  problems.add(motion ? motion->where : experiment.where, "motion",
-               "nothing says when the run ends: give `duration_s` or `max_steps`, or a [[tool]] whose motion ends it");
+  problems.add(
+      motion ? motion->where : experiment.where, "motion",
+      "nothing says when the run ends: give `duration_s` or `max_steps`, or a [[tool]] or [[instrument]] whose "
+      "motion ends it");
+}
+
+bool is_viscous(const Variant& variant) {
+  const auto viscous = [](const RegionSpec& region) { return region.tissue.viscosity > 0.0; };
+  return variant.tissue.viscosity > 0.0 || std::any_of(variant.regions.begin(), variant.regions.end(), viscous);
+}
+
+/// Complains where what acts on the body beside supports and tools meets an integrator that does not bear it.
+void check_integrator(const Variant& variant, const Node& experiment, Problems& problems) {
+  const Integrator integrator = variant.simulation.integrator;
+  const bool borne =
+      integrator == Integrator::explicit_ || (integrator == Integrator::semi_implicit && !is_viscous(variant));
+  if (borne || (variant.instruments.empty() && variant.capsules.empty())) return;
+  const Node& key = *experiment.find("motion")->find("integrator");
+  problems.add(key.where, "motion.integrator",
+               "\"" + *key.text() + "\"" + (integrator == Integrator::semi_implicit ? " with viscous tissue" : "") +
+                   " bears no [[" + (variant.instruments.empty() ? "capsule" : "instrument") +
+                   "]]; take \"explicit\", or \"semi_implicit\" with tissue that has no `viscosity_Pa_s` (Maxwell "
+                   "branches may stay)");
+}
+
+/// Reads the files of recorded motions, and tries the motions of all instruments.
+void complete_motions(Variant& variant, const Node& experiment, const std::filesystem::path& base, Problems& problems) {
+  for (std::size_t i = 0; i < variant.instruments.size(); ++i) {
+    InstrumentSpec& x = variant.instruments[i];
+    const Node& motion = *(*experiment.find("instrument")->array())[i].find("motion");
+    const std::string path = "instrument." + std::to_string(i) + ".motion";
+    try {
+      if (auto* record = std::get_if<RecordSpec>(&x.motion.how)) {
+        if (record->path.is_relative()) record->path = base / record->path;
+        const Vec3d along = x.motion.direction.value_or(x.direction);
+        record->motion = load_record(record->path, along * (1.0 / norm(along)));
+      }
+      make_driver(x);
+    } catch (const std::exception& error) {
+      problems.add(motion.where, path, error.what());
+    }
+  }
 }
 
 Variant read_variant(const Node& experiment, const std::filesystem::path& base, Problems& problems) {
@@ -68,9 +121,14 @@ Variant read_variant(const Node& experiment, const std::filesystem::path& base, 
   if (problems.count() > before) return variant;
   auto* file = std::get_if<MeshFile>(&variant.mesh);
   if (file && file->path.is_relative()) file->path = base / file->path;
+  complete_motions(variant, experiment, base, problems);
+  if (problems.count() > before) return variant;
   if (const Node* tools = experiment.find("tool")) check_names(*tools->array(), "tool", problems);
+  if (const Node* list = experiment.find("instrument")) check_names(*list->array(), "instrument", problems);
+  check_shared_names(variant, experiment, problems);
   if (const Node* regions = experiment.find("region")) check_names(*regions->array(), "region", problems);
   check_sets(variant, experiment, problems);
+  check_integrator(variant, experiment, problems);
   check_end(variant, experiment, problems);
   return variant;
 }

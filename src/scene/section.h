@@ -52,6 +52,13 @@ struct Milli {
   static std::string show(double x) { return scene::show(x * 1000.0); }
 };
 
+struct OptionalMilli {
+  static constexpr ValueType kType = ValueType::number;
+  static constexpr Shape kShape = Shape::one;
+  static std::optional<double> read(const Node& n) { return Milli::read(n); }
+  static std::string show(const std::optional<double>& x) { return x ? Milli::show(*x) : ""; }
+};
+
 template <class T>
 requires(std::is_integral_v<T> && !std::is_same_v<T, bool>) struct Codec<T> {
   static constexpr ValueType kType = ValueType::integer;
@@ -114,6 +121,14 @@ template <>
 struct Codec<Vec3d> : ListCodec<Vec3d, double> {
   static constexpr Shape kShape = Shape::three;
   static std::string show(const Vec3d& v) { return show_all(std::array{v.x, v.y, v.z}); }
+};
+
+/// Three of them.
+struct MilliVector {
+  static constexpr ValueType kType = ValueType::number;
+  static constexpr Shape kShape = Shape::three;
+  static Vec3d read(const Node& n) { return Codec<Vec3d>::read(n) * 1e-3; }
+  static std::string show(const Vec3d& v) { return Codec<Vec3d>::show(v * 1e3); }
 };
 
 template <class T>

@@ -77,7 +77,9 @@ const SectionSpec& variant_section() {
         "motion", motion_section(), [](Variant& v) -> Variant& { return v; }, "time, damping, gravity");
     s.tables("fixed", fixed_section(), &Variant::fixed, "sets that are held");
     s.tables("load", load_section(), &Variant::loads, "forces on sets");
-    s.tables("tool", tool_section(), &Variant::tools, "what presses");
+    s.tables("tool", tool_section(), &Variant::tools, "what presses by moving vertices");
+    s.tables("instrument", instrument_section(), &Variant::instruments, "what presses in contact, and pierces");
+    s.tables("capsule", capsule_section(), &Variant::capsules, "membranes on the surface");
     s.table("output", output_section(), &Variant::output, "how much is kept");
     for (const KeySpec& key : scene_section().keys) s.spec().other_words.push_back(key.name);
     s.finish([](Variant& v, const Node& table, const Place& place) {
@@ -108,10 +110,11 @@ const SectionSpec& scene_section() {
 }
 
 std::string home_of_key(const std::string& key) {
-  for (const SectionSpec* section : {&tissue_section(), &motion_section(), &tool_section(), &output_section(),
-                                     &fixed_section(), &load_section(), &selection_section(), &chart_section()}) {
-    const bool list = section == &tool_section() || section == &fixed_section() || section == &load_section() ||
-                      section == &chart_section();
+  for (const SectionSpec* section :
+       {&tissue_section(), &motion_section(), &tool_section(), &output_section(), &fixed_section(), &load_section(),
+        &selection_section(), &chart_section(), &instrument_section(), &capsule_section()}) {
+    const bool list = section != &tissue_section() && section != &motion_section() && section != &output_section() &&
+                      section != &selection_section();
     if (section->find(key)) return list ? "[[" + section->name + "]]" : "[" + section->name + "]";
   }
   for (const KindSpec& kind : mesh_section().kinds) {
@@ -122,6 +125,17 @@ std::string home_of_key(const std::string& key) {
   }
   for (const KindSpec& kind : hyperelastic_section().kinds) {
     if (kind.section.find(key)) return "[tissue.hyperelastic] of kind \"" + kind.section.name + "\"";
+  }
+  for (const SectionSpec* section : {&instrument_section(), &instrument_motion_section()}) {
+    for (const KindSpec& kind : section->kinds) {
+      const bool list = section == &instrument_section();
+      if (!kind.section.find(key)) continue;
+      return (list ? "[[instrument]]" : "[instrument.motion]") + std::string(" of kind \"") + kind.section.name + "\"";
+    }
+  }
+  for (const SectionSpec* section :
+       {&rupture_section(), &tip_section(), &shaft_friction_section(), &stroke_section()}) {
+    if (section->find(key)) return "[" + section->name + "]";
   }
   if (implicit_section().find(key)) return "[motion.implicit]";
   if (fibres_section().find(key)) return "[tissue.fibres]";
