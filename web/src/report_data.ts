@@ -33,8 +33,17 @@ export interface VariantData {
   label: string; // for the legend
   summary: Record<string, number | string>; // summary.json
   forces: Columns; // columns of forces.csv
+  events: EventData[]; // events.csv; empty where there is no instrument
   law: LawData | null;
   surface: SurfaceData | null;
+}
+
+/** Something an instrument met: contact, puncture, drop, … */
+export interface EventData {
+  time_s: number;
+  depth_m: number;
+  event: string;
+  instrument: string;
 }
 
 /** Column-major table: data[i] belongs to columns[i]; all columns equally long. */
@@ -55,7 +64,24 @@ export interface SurfaceData {
   triangles: Base64; // u32, three per triangle, outward
   rest: Base64; // f32, xyz per vertex [m]
   fixed: Base64; // u8 per vertex: 1 held, 2 driven by a tool, 0 free
+  instruments: InstrumentForm[];
   frames: FrameData[]; // in time order, may be empty
+}
+
+/** What an instrument looks like; lengths along its own z axis, from its tip up. */
+export interface InstrumentForm {
+  name: string;
+  kind: "needle" | "punch" | "ball" | "probe" | "plate" | "wall" | "block" | "blade" | "point";
+  radius_m: number; // 0 where the kind has none
+  length_m: number;
+  tip_m: number; // of a probe: length of its tip
+  size_m: number[]; // of a block: along its own x, y, z
+}
+
+/** Where an instrument is in a frame. */
+export interface InstrumentPlace {
+  points: number[]; // xyz each [m]: the centre line of a needle from the hand to the tip; else its tip
+  axes: number[]; // rows of its rotation, nine
 }
 
 export interface FrameData {
@@ -64,6 +90,9 @@ export interface FrameData {
   displacement: Base64; // i16, xyz per vertex
   intensity_max: number; // intensity s = u8 / 255 × this
   intensity: Base64; // u8 per vertex (mean of the adjacent tets)
+  instruments: InstrumentPlace[]; // one for each of the surface's
+  triangles?: Base64; // where the surface has become another, from this frame on; vertices that come later are not in
+  // earlier frames
 }
 
 export interface ChartSpec {

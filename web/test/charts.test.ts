@@ -23,6 +23,7 @@ const variant = (name: string, y = [3600, 3600]): VariantData => ({
   name,
   label: name,
   summary: {},
+  events: [],
   surface: null,
   law: { measure: "intensity s [-]", quantity: "modulus", x: [0, 1], curves: [{ label: "E", y }] },
   forces: {

@@ -10,6 +10,7 @@ const base64 = (bytes: ArrayBufferView) =>
 
 const frame = (time: number, uz: number) => ({
   time_s: time,
+  instruments: [],
   displacement_scale_m: 0.01,
   intensity_max: 0.5,
   displacement: base64(Int16Array.from([0, 0, Math.round((uz / 0.01) * 32767), 0, 0, 0, 0, 0, 0])),
@@ -21,6 +22,7 @@ const surface = {
   triangles: base64(Uint32Array.from([0, 1, 2, 0, 1, 9])),
   rest: base64(Float32Array.from([0, 0, 1, 1, 0, 0, 0, 1, 0])),
   fixed: base64(Uint8Array.from([2, 1, 1])),
+  instruments: [],
   frames: [frame(0, 0), frame(1, -0.004), frame(2, -0.008)],
 };
 

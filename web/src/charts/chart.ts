@@ -7,8 +7,9 @@ import { currentTheme, isPrinting, onTheme } from "../page/theme.ts";
 import { whenVisible } from "../page/visibility.ts";
 import { xAxis, yAxis } from "./axes.ts";
 import { drawLine } from "./draw_lines.ts";
+import { drawEvents } from "./event_marks.ts";
 import { Legend } from "./legend.ts";
-import { strokeOf } from "./line_style.ts";
+import { TOTAL_STYLE, strokeOf } from "./line_style.ts";
 import { type ChartModel, type Extent, type Line, extentOf } from "./model.ts";
 import { isRising, nearestInX, nearestOnScreen } from "./nearest.ts";
 import { Marks } from "./marks.ts";
@@ -25,6 +26,7 @@ export class Chart {
   private readonly rising: ReadonlyMap<string, boolean>;
   private readonly hidden = new Set<string>();
   private readonly stops: (() => void)[] = [];
+  private marked: string | null = null; // variant whose events are drawn
   private plot: uPlot | null = null;
   private marks: Marks | null = null;
   private home: Extent;
@@ -166,6 +168,18 @@ export class Chart {
     for (const line of this.shownLines()) {
       drawLine(plot.ctx, line, strokeOf(line.style, theme), this.view, plot.bbox, uPlot.pxRatio);
     }
+    const variant = (this.marked = this.markedVariant());
+    const marks = this.model.events.filter((event) => event.variant === variant);
+    drawEvents(plot.ctx, marks, strokeOf(TOTAL_STYLE, theme), this.view, plot.bbox, uPlot.pxRatio);
+  }
+
+  /** Events are marked of one variant: the owner of the chart, that of the 3D view, or the last one shown. */
+  private markedVariant(): string | null {
+    if (this.owner !== null) return this.owner;
+    const shown = this.shownLines().map((line) => line.variant);
+    const playing = this.state.playhead?.variant;
+    if (playing !== undefined && shown.includes(playing)) return playing;
+    return shown.filter((name) => this.model.events.some((event) => event.variant === name)).pop() ?? null;
   }
 
   private readView(): void {
@@ -261,6 +275,7 @@ export class Chart {
   private showPlayhead(): void {
     if (!this.plot || !this.marks) return;
     const playhead = this.state.playhead;
+    if (this.markedVariant() !== this.marked) this.plot.redraw(false, false);
     for (const line of this.model.lines) {
       const shown = playhead && line.times && (line.variant ?? this.owner) === playhead.variant && !this.isHidden(line);
       const index = shown && line.times ? nearestInX(line.times, playhead.time, Infinity) : -1;

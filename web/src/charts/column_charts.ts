@@ -1,8 +1,17 @@
 // column_charts.ts — charts of one variant over time: the parts of its force, and its energies.
-import { column, columnLabel, energyColumns, forceColumn, isZero, partColumns } from "../data/columns.ts";
+import {
+  column,
+  columnLabel,
+  containerColumns,
+  energyColumns,
+  forceColumn,
+  isZero,
+  partColumns,
+} from "../data/columns.ts";
 import { displayUnit, largestMagnitude } from "../format/units.ts";
 import type { VariantData } from "../report_data.ts";
 import { type LineStyle, TOTAL_STYLE, lineStyle } from "./line_style.ts";
+import { eventMarks } from "./event_marks.ts";
 import { type ChartModel, type Line, scaled } from "./model.ts";
 
 /** Elastic, viscous, … parts of the tool's force against time, or null where the table holds none. */
@@ -13,6 +22,16 @@ export function partsChart(variant: VariantData): ChartModel | null {
   const styles = new Map(parts.map((name, index) => [name, lineStyle(index)]));
   if (total) styles.set(total, TOTAL_STYLE);
   return columnChart(variant, "Parts of the force", "Force", "N", total ? [total, ...parts] : parts, styles);
+}
+
+/** What bottom and side of a container carry against time, beside the tool's force; null where there is no container. */
+export function containerChart(variant: VariantData): ChartModel | null {
+  const loads = containerColumns(variant.forces);
+  const total = forceColumn(variant.forces);
+  if (loads.length === 0) return null;
+  const styles = new Map(loads.map((name, index) => [name, lineStyle(index)]));
+  if (total) styles.set(total, TOTAL_STYLE);
+  return columnChart(variant, "Loads on the container", "Load", "N", total ? [total, ...loads] : loads, styles);
 }
 
 /** All energies of a variant against time, or null where the table holds none. */
@@ -50,5 +69,12 @@ function columnChart(
     times,
   }));
   const note = shown.length > 0 && zero.length > 0 ? `Zero throughout: ${zero.map(columnLabel).join(", ")}.` : "";
-  return { title, xLabel: `Time [${x.unit}]`, yLabel: `${what} [${y.unit}]`, lines, note };
+  return {
+    title,
+    xLabel: `Time [${x.unit}]`,
+    yLabel: `${what} [${y.unit}]`,
+    lines,
+    events: eventMarks(variant, "time_s", x.factor),
+    note,
+  };
 }

@@ -46,6 +46,7 @@ function chartOf(measure: string, lawful: readonly Lawful[], all: readonly Varia
     xLabel: axisLabel(measure),
     yLabel: stress ? `Nominal stress [${unit.unit}]` : `${only ? `Modulus ${only}` : "Modulus"} [${unit.unit}]`,
     lines,
+    events: [],
     note: "",
   };
 }

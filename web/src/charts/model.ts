@@ -16,7 +16,15 @@ export interface ChartModel {
   xLabel: string; // with unit
   yLabel: string;
   lines: Line[];
+  events: EventMark[];
   note: string;
+}
+
+/** A moment of a variant that is worth a mark: where on the x axis, and what it was. */
+export interface EventMark {
+  variant: string;
+  x: number; // display units
+  label: string;
 }
 
 export interface Extent {

@@ -3,6 +3,7 @@ import { column, depthColumn, forceColumn } from "../data/columns.ts";
 import { axisLabel, displayUnit, largestMagnitude } from "../format/units.ts";
 import type { ChartSpec, SceneData, VariantData } from "../report_data.ts";
 import { FIT_STYLE, lineStyle } from "./line_style.ts";
+import { eventMarks } from "./event_marks.ts";
 import { type ChartModel, type Line, scaled } from "./model.ts";
 
 /** The charts of a scene that compare its variants; empty where no variant has forces. */
@@ -45,6 +46,7 @@ function chartOf(spec: ChartSpec, scene: SceneData): ChartModel {
     xLabel: axisLabel(spec.x.label),
     yLabel: axisLabel(spec.y.label),
     lines,
+    events: scene.variants.flatMap((variant) => eventMarks(variant, spec.x.column, spec.x.scale)),
     note: "",
   };
 }

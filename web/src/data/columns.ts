@@ -29,10 +29,18 @@ function firstColumn(table: Columns, exact: string, pattern: RegExp): string | n
 }
 
 const PART_NAMES = ["elastic_N", "viscous_N", "damping_N", "inertial_N", "gravity_N", "load_N"];
+const INSTRUMENT_PART_NAMES = ["normal_N", "friction_N", "cutting_N"];
+const CONTAINER_NAMES = ["bottom_z_N", "side_z_N", "side_radial_N"];
 
 /** Columns whose sum is the tool's force. */
 export function partColumns(table: Columns): string[] {
-  return PART_NAMES.filter((name) => column(table, name) !== null);
+  const names = column(table, "elastic_N") ? PART_NAMES : INSTRUMENT_PART_NAMES;
+  return names.filter((name) => column(table, name) !== null);
+}
+
+/** Columns of what a container carries. */
+export function containerColumns(table: Columns): string[] {
+  return CONTAINER_NAMES.filter((name) => column(table, name) !== null);
 }
 
 /** Columns in joules, in the order of the table. */
@@ -53,6 +61,12 @@ const COLUMN_LABELS: Record<string, string> = {
   inertial_N: "inertial",
   gravity_N: "gravity",
   load_N: "other loads",
+  normal_N: "pressing",
+  friction_N: "friction",
+  cutting_N: "cutting",
+  bottom_z_N: "bottom, along z",
+  side_z_N: "side, along z",
+  side_radial_N: "side, outwards",
   energy_elastic_J: "elastic energy",
   energy_kinetic_J: "kinetic energy",
   energy_dissipated_J: "dissipated",

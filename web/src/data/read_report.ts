@@ -6,7 +6,10 @@ import type {
   ChartSpec,
   CheckData,
   Columns,
+  EventData,
   FrameData,
+  InstrumentForm,
+  InstrumentPlace,
   LawData,
   ReportData,
   SceneData,
@@ -85,8 +88,18 @@ function readVariant(raw: Raw, index: number): VariantData {
     label: text(raw["label"]) || name,
     summary,
     forces: readColumns(record(raw["forces"])),
+    events: list(raw["events"]).map((event) => readEvent(record(event))),
     law: isRecord(raw["law"]) ? readLaw(raw["law"]) : null,
     surface: isRecord(raw["surface"]) ? readSurface(raw["surface"]) : null,
+  };
+}
+
+function readEvent(raw: Raw): EventData {
+  return {
+    time_s: numberOrNaN(raw["time_s"]),
+    depth_m: numberOrNaN(raw["depth_m"]),
+    event: text(raw["event"]) || "event",
+    instrument: text(raw["instrument"]),
   };
 }
 
@@ -115,7 +128,28 @@ function readSurface(raw: Raw): SurfaceData | null {
     triangles: text(raw["triangles"]),
     rest: text(raw["rest"]),
     fixed: text(raw["fixed"]),
+    instruments: list(raw["instruments"]).map((form) => readForm(record(form))),
     frames: list(raw["frames"]).map((frame) => readFrame(record(frame))),
+  };
+}
+
+const KINDS = ["needle", "punch", "ball", "probe", "plate", "wall", "block", "blade"] as const;
+
+function readForm(raw: Raw): InstrumentForm {
+  return {
+    name: text(raw["name"]),
+    kind: KINDS.find((kind) => kind === raw["kind"]) ?? "point",
+    radius_m: finite(raw["radius_m"], 0),
+    length_m: finite(raw["length_m"], 0),
+    tip_m: finite(raw["tip_m"], 0),
+    size_m: list(raw["size_m"]).map((value) => finite(value, 0)),
+  };
+}
+
+function readPlace(raw: Raw): InstrumentPlace {
+  return {
+    points: list(raw["points"]).map((value) => finite(value, 0)),
+    axes: list(raw["axes"]).map((value) => finite(value, 0)),
   };
 }
 
@@ -126,6 +160,8 @@ function readFrame(raw: Raw): FrameData {
     displacement: text(raw["displacement"]),
     intensity_max: finite(raw["intensity_max"], 0),
     intensity: text(raw["intensity"]),
+    instruments: list(raw["instruments"]).map((place) => readPlace(record(place))),
+    ...(raw["triangles"] ? { triangles: text(raw["triangles"]) } : {}),
   };
 }
 

@@ -36,6 +36,7 @@ export class MeshPanel {
     "aria-label": "Time",
   });
   private readonly playButton: HTMLButtonElement;
+  private readonly cut = this.cutSlider();
   private readonly settings: ViewSettings;
   private readonly player: Player;
   private view: MeshView | null = null;
@@ -48,7 +49,17 @@ export class MeshPanel {
     first: string,
   ) {
     const shown = variants.find((variant) => variant.name === first) ?? variants[variants.length - 1]!;
-    this.settings = { variant: shown.name, exaggeration: 1, range: "all", edges: true, ghost: false, marks: true };
+    this.settings = {
+      variant: shown.name,
+      exaggeration: 1,
+      range: "all",
+      edges: true,
+      ghost: false,
+      marks: true,
+      open: shown.surface.instruments.length > 0,
+      openAt: 0,
+    };
+    this.cut.hidden = !this.settings.open;
     const [start, end] = spanOf(shown);
     this.player = new Player(
       start,
@@ -225,14 +236,34 @@ export class MeshPanel {
         this.check("Edges", "edges"),
         this.check("Rest shape", "ghost"),
         this.check("Marks", "marks"),
+        this.check("Cut open", "open"),
       ),
+      this.cut,
     );
   }
 
-  private check(label: string, setting: "edges" | "ghost" | "marks"): HTMLElement {
+  /** Slider for where the body is cut open. */
+  private cutSlider(): HTMLElement {
+    const slider = h("input", {
+      type: "range",
+      min: -1,
+      max: 1,
+      step: 0.01,
+      value: 0,
+      "aria-label": "Place of the cut",
+    });
+    slider.addEventListener("input", () => {
+      this.settings.openAt = Number(slider.value);
+      this.refresh();
+    });
+    return h("label", { class: "select cut-place" }, h("span", {}, "Place of the cut"), slider);
+  }
+
+  private check(label: string, setting: "edges" | "ghost" | "marks" | "open"): HTMLElement {
     const input = h("input", { type: "checkbox", name: setting, checked: this.settings[setting] });
     input.addEventListener("change", () => {
       this.settings[setting] = input.checked;
+      this.cut.hidden = !this.settings.open;
       this.refresh();
       this.describeMarks();
     });

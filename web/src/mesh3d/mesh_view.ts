@@ -2,6 +2,7 @@
 import type { SurfaceData, VariantData } from "../report_data.ts";
 import { currentTheme, onTheme, themeColour } from "../page/theme.ts";
 import { strokeOf } from "../charts/line_style.ts";
+import * as THREE from "three";
 import { Stage } from "./stage.ts";
 import { SurfaceModel } from "./surface_model.ts";
 import { Timeline } from "./timeline.ts";
@@ -16,7 +17,12 @@ export interface ViewSettings {
   edges: boolean;
   ghost: boolean;
   marks: boolean;
+  open: boolean; // cut open by an upright plane
+  openAt: number; // where that stands: −1 nearest, 0 through the instrument's tip or the middle, 1 farthest
 }
+
+/** Towards the viewer at home, level: what lies on that side of the plane is taken away. */
+const TOWARDS_VIEWER = new THREE.Vector3(0.66, -1, 0).normalize();
 
 export class MeshView {
   readonly stage: Stage;
@@ -83,6 +89,7 @@ export class MeshView {
       edge: themeColour("--mesh-edge"),
       ghost: themeColour("--mesh-ghost"),
       held: themeColour("--mesh-held"),
+      instrument: themeColour("--mesh-instrument"),
       driven: strokeOf({ colour: 1, dash: [] }, currentTheme()),
     });
     this.stage.invalidate();
@@ -99,8 +106,20 @@ export class MeshView {
           ? this.timeline.intensityMax
           : this.timeline.intensityAt(time);
     this.model?.show({ edges, ghost, marks });
+    this.model?.cutOpen(this.plane());
     this.model?.update(time, exaggeration, this.range);
     this.stage.invalidate();
+  }
+
+  get hasInstruments(): boolean {
+    return this.model?.hasInstruments ?? false;
+  }
+
+  private plane(): THREE.Plane | null {
+    if (!this.settings.open || !this.model) return null;
+    const away = TOWARDS_VIEWER.clone().negate();
+    const through = this.model.heart.addScaledVector(away, 0.5 * this.settings.openAt * this.model.diagonal);
+    return new THREE.Plane().setFromNormalAndCoplanarPoint(away, through);
   }
 
   /** Brings all of the mesh into view. */

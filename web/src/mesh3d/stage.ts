@@ -30,6 +30,7 @@ export class Stage {
       preserveDrawingBuffer: true,
     });
     this.renderer.setClearAlpha(0);
+    this.renderer.localClippingEnabled = true;
     this.camera.up.set(0, 0, 1);
     this.light();
     this.controls = new OrbitControls(this.camera, canvas);

@@ -7,6 +7,7 @@
 import * as THREE from "three";
 import { colourTexels } from "./colour_map.ts";
 import { uniqueEdges } from "./edges.ts";
+import { InstrumentModel } from "./instrument_model.ts";
 import { markTexture } from "./mark_texture.ts";
 import type { Timeline } from "./timeline.ts";
 
@@ -24,6 +25,7 @@ export interface ModelColours {
   ghost: string;
   held: string;
   driven: string;
+  instrument: string;
 }
 
 export class SurfaceModel {
@@ -44,8 +46,12 @@ export class SurfaceModel {
   private readonly edges: THREE.LineSegments;
   private readonly ghost = new THREE.Group();
   private readonly disposables: { dispose(): void }[] = [];
+  private readonly skinGeometry: THREE.BufferGeometry;
+  private readonly instruments: InstrumentModel;
+  private shown: Uint32Array; // triangles of the skin now
 
   constructor(readonly timeline: Timeline) {
+    this.shown = timeline.triangles;
     this.size = new THREE.Box3().setFromArray(timeline.rest).getSize(new THREE.Vector3()).length();
     this.positions = new THREE.BufferAttribute(timeline.rest.slice(0, 3 * timeline.vertices), 3);
     this.positions.setUsage(THREE.DynamicDrawUsage);
@@ -60,9 +66,12 @@ export class SurfaceModel {
     this.heldCount = this.held.geometry.index?.count ?? 0;
     this.drivenCount = this.driven.geometry.index?.count ?? 0;
     this.buildGhost();
-    this.group.add(this.skin(), this.edges, this.held, this.hiddenDriven, this.driven, this.ghost);
+    const skin = this.skin();
+    this.skinGeometry = skin.geometry;
+    this.instruments = new InstrumentModel(timeline, this.size);
+    this.group.add(skin, this.edges, this.held, this.hiddenDriven, this.driven, this.ghost, this.instruments.group);
     this.group.traverse((object) => (object.frustumCulled = false));
-    this.disposables.push(this.edgeMaterial, this.ghostLine, this.ghostSkin);
+    this.disposables.push(this.instruments, this.edgeMaterial, this.ghostLine, this.ghostSkin);
   }
 
   private keep<T extends { dispose(): void }>(thing: T): T {
@@ -147,6 +156,42 @@ export class SurfaceModel {
     }
     this.positions.needsUpdate = true;
     this.lookup.needsUpdate = true;
+    this.showTriangles(this.timeline.trianglesAt(time));
+    this.instruments.update(time);
+  }
+
+  get hasInstruments(): boolean {
+    return this.instruments.count > 0;
+  }
+
+  /** A surface that was cut is another one from then on. */
+  private showTriangles(triangles: Uint32Array): void {
+    if (triangles === this.shown) return;
+    this.shown = triangles;
+    this.skinGeometry.setIndex(new THREE.BufferAttribute(triangles, 1));
+    const edges = uniqueEdges(triangles, this.timeline.vertices);
+    this.edges.geometry.setIndex(new THREE.BufferAttribute(edges, 1));
+  }
+
+  /** Cuts the body open: what is on the far side of the plane is shown; null: all of it. Instruments stay whole. */
+  cutOpen(plane: THREE.Plane | null): void {
+    const planes = plane ? [plane] : null;
+    this.group.traverse((object) => {
+      if (this.instruments.group.children.includes(object)) return;
+      const material = (object as Partial<THREE.Mesh>).material;
+      if (material && !Array.isArray(material)) material.clippingPlanes = planes;
+    });
+  }
+
+  /** Middle of the body, or the tip of the first instrument at the end: a plane through it shows its way. */
+  get heart(): THREE.Vector3 {
+    const tip = this.timeline.frames[this.timeline.frames.length - 1]!.instruments[0]?.points.slice(-3);
+    if (tip && tip.length === 3) return new THREE.Vector3(...(tip as [number, number, number]));
+    return new THREE.Box3().setFromArray(this.timeline.rest).getCenter(new THREE.Vector3());
+  }
+
+  get diagonal(): number {
+    return this.size;
   }
 
   show(parts: { edges: boolean; ghost: boolean; marks: boolean }): void {
@@ -162,6 +207,7 @@ export class SurfaceModel {
     (this.held.material as THREE.PointsMaterial).color.set(colours.held);
     (this.driven.material as THREE.PointsMaterial).color.set(colours.driven);
     (this.hiddenDriven.material as THREE.PointsMaterial).color.set(colours.driven);
+    this.instruments.colour(colours.instrument);
   }
 
   /** All vertices at rest and in the last frame, displacement exaggerated: what a view should hold. */

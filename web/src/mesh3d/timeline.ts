@@ -1,11 +1,13 @@
 // timeline.ts — the recorded frames of a surface as one motion: shape and intensity at any time between them.
 import { decodeF32, decodeI16Scaled, decodeU32, decodeU8, decodeU8Scaled } from "../data/decode.ts";
-import type { SurfaceData } from "../report_data.ts";
+import type { InstrumentForm, InstrumentPlace, SurfaceData } from "../report_data.ts";
 
 export interface Frame {
   time: number; // [s]
   displacement: Float32Array; // xyz per vertex [m]
   intensity: Float32Array; // per vertex [-]
+  triangles: Uint32Array; // of the surface from here on
+  instruments: readonly InstrumentPlace[];
 }
 
 export class Timeline {
@@ -14,6 +16,7 @@ export class Timeline {
   readonly rest: Float32Array;
   readonly fixed: Uint8Array;
   readonly frames: readonly Frame[];
+  readonly instruments: readonly InstrumentForm[];
   readonly recorded: boolean; // false: no frames, rest shape only
   readonly intensityMax: number;
 
@@ -23,13 +26,24 @@ export class Timeline {
     this.vertices = Math.min(surface.vertices, Math.floor(this.rest.length / 3));
     this.triangles = wholeTriangles(decodeU32(surface.triangles), this.vertices);
     this.fixed = fit(decodeU8(surface.fixed), new Uint8Array(this.vertices));
+    this.instruments = surface.instruments;
+    let triangles = this.triangles;
     const frames = surface.frames.map((frame) => ({
       time: frame.time_s,
+      triangles: (triangles = frame.triangles ? wholeTriangles(decodeU32(frame.triangles), this.vertices) : triangles),
+      instruments: frame.instruments,
       displacement: fit(decodeI16Scaled(frame.displacement, frame.displacement_scale_m), this.zeros(3)),
       intensity: fit(decodeU8Scaled(frame.intensity, frame.intensity_max), this.zeros(1)),
     }));
     this.recorded = frames.length > 0;
-    this.frames = this.recorded ? frames : [{ time: 0, displacement: this.zeros(3), intensity: this.zeros(1) }];
+    const still = {
+      time: 0,
+      displacement: this.zeros(3),
+      intensity: this.zeros(1),
+      triangles: this.triangles,
+      instruments: [],
+    };
+    this.frames = this.recorded ? frames : [still];
     this.intensityMax = Math.max(0, ...surface.frames.map((frame) => frame.intensity_max));
   }
 
@@ -45,7 +59,7 @@ export class Timeline {
     return this.frames[this.frames.length - 1]!.time;
   }
 
-  /** Neighbouring frames of a time and the share of the later one. */
+  /** Neighbouring frames of a time and the share of the later one; a frame that brings another surface counts from its time. */
   at(time: number): { before: Frame; after: Frame; share: number } {
     const frames = this.frames;
     let index = frames.findIndex((frame) => frame.time > time);
@@ -53,7 +67,8 @@ export class Timeline {
     const after = frames[index]!;
     const before = frames[Math.max(0, index - 1)]!;
     const span = after.time - before.time;
-    const share = span > 0 ? Math.min(1, Math.max(0, (time - before.time) / span)) : 1;
+    let share = span > 0 ? Math.min(1, Math.max(0, (time - before.time) / span)) : 1;
+    if (before.triangles !== after.triangles && share < 1) share = 0;
     return { before, after, share };
   }
 
@@ -67,6 +82,12 @@ export class Timeline {
     for (let i = 0; i < intensity.length; i++) {
       intensity[i] = before.intensity[i]! * (1 - share) + after.intensity[i]! * share;
     }
+  }
+
+  /** The surface at a time. */
+  trianglesAt(time: number): Uint32Array {
+    const { before, after, share } = this.at(time);
+    return share < 1 ? before.triangles : after.triangles;
   }
 
   /** Largest intensity shown at a time. */

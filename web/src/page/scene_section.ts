@@ -1,6 +1,6 @@
 // scene_section.ts — one scene: what it is, how it did, its figures, its numbers.
 import { Chart } from "../charts/chart.ts";
-import { energyChart, partsChart } from "../charts/column_charts.ts";
+import { containerChart, energyChart, partsChart } from "../charts/column_charts.ts";
 import { lawCharts } from "../charts/law_charts.ts";
 import type { ChartModel } from "../charts/model.ts";
 import { SceneState } from "../charts/scene_state.ts";
@@ -105,6 +105,7 @@ function sceneFigures(scene: SceneData): HTMLElement[] {
   const mesh = panel ? [figure("Deformed mesh", panel.element, panel.variantSelect(), "figure-mesh")] : [];
   const perVariant = [
     variantFigure("Parts of the force", scene.variants, state, first, partsChart),
+    variantFigure("Loads on the container", scene.variants, state, first, containerChart),
     variantFigure("Energies", scene.variants, state, first, energyChart),
   ].filter((made): made is HTMLElement => made !== null);
   return [...curves.slice(0, 1), ...mesh, ...laws, ...curves.slice(1), ...perVariant];

@@ -1,0 +1,181 @@
+// Instruments are drawn where they were, events stand where they happened, and a surface that is cut becomes another one.
+import { describe, expect, it } from "vitest";
+import { eventMarks, placeLabels } from "../src/charts/event_marks.ts";
+import { containerChart, partsChart } from "../src/charts/column_charts.ts";
+import { variantCharts } from "../src/charts/variant_charts.ts";
+import { parseReport } from "../src/data/read_report.ts";
+import { placeBetween, tubePositions, tubeTriangles } from "../src/mesh3d/instrument_shape.ts";
+import { Timeline } from "../src/mesh3d/timeline.ts";
+import type { SurfaceData, VariantData } from "../src/report_data.ts";
+
+const base64 = (bytes: ArrayBufferView) =>
+  btoa(String.fromCharCode(...new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength)));
+
+describe("tube of a needle", () => {
+  const line = [0, 0, 0.1, 0, 0, 0.05, 0, 0, 0];
+  const sides = 12;
+  const positions = tubePositions(line, 0.001, sides);
+  const rings = positions.length / 3 / sides;
+
+  it("keeps its radius along the shaft and ends in the tip", () => {
+    expect(rings).toBe(4); // two of the shaft, one where the tip begins, the tip
+    for (let i = 0; i < (rings - 1) * sides; i++) {
+      expect(Math.hypot(positions[3 * i]!, positions[3 * i + 1]!)).toBeCloseTo(0.001, 8);
+    }
+    expect(positions[3 * 2 * sides + 2]).toBeCloseTo(0.003, 8); // three radii above the tip
+    expect([...positions.slice(-3)]).toEqual([0, 0, 0].map((x) => expect.closeTo(x, 9)));
+  });
+
+  it("is closed around and points outwards", () => {
+    const triangles = tubeTriangles(rings, sides);
+    expect(triangles.length).toBe(3 * 2 * sides * (rings - 1));
+    let volume = 0; // of the open tube about the axis: its ends lie on planes through which no flux of x and y goes
+    for (let t = 0; t < triangles.length; t += 3) {
+      const [a, b, c] = [0, 1, 2].map((k) => [...positions.slice(3 * triangles[t + k]!, 3 * triangles[t + k]! + 3)]);
+      const u = b!.map((x, n) => x - a![n]!);
+      const v = c!.map((x, n) => x - a![n]!);
+      const normal = [u[1]! * v[2]! - u[2]! * v[1]!, u[2]! * v[0]! - u[0]! * v[2]!];
+      const middle = [0, 1].map((n) => (a![n]! + b![n]! + c![n]!) / 3);
+      volume += (middle[0]! * normal[0]! + middle[1]! * normal[1]!) / 4;
+    }
+    // ∮ (x, y, 0)·n dA / 2 = volume: a twelve-sided prism of 97 mm and a pyramid of 3 mm
+    const area = (sides / 2) * 1e-6 * Math.sin((2 * Math.PI) / sides);
+    expect(volume).toBeCloseTo(area * (0.097 + 0.001), 11);
+  });
+
+  it("survives a line of one point, or none, or two in one place", () => {
+    expect(tubePositions([1, 2, 3], 0.1, 4).length).toBe(12);
+    expect(tubePositions([], 0.1, 4).length).toBe(0);
+    expect([...tubePositions([1, 2, 3, 1, 2, 3], 0.1, 4)].every(Number.isFinite)).toBe(true);
+  });
+});
+
+describe("place of an instrument", () => {
+  it("is on the straight line between two frames", () => {
+    const place = placeBetween({ points: [0, 0, 1], axes: [1] }, { points: [0, 2, 3], axes: [2] }, 0.25);
+    expect(place).toEqual({ points: [0, 0.5, 1.5], axes: [1] });
+  });
+
+  it("is that of the nearer frame where the needle has got another number of points", () => {
+    const before = { points: [0, 0, 1], axes: [] };
+    const after = { points: [0, 0, 1, 0, 0, 0], axes: [] };
+    expect(placeBetween(before, after, 0.4)).toBe(before);
+    expect(placeBetween(before, after, 0.6)).toBe(after);
+  });
+});
+
+const variant = (events: [number, number, string][], more: Record<string, number[]> = {}): VariantData => {
+  const columns = { time_s: [0, 1, 2], depth_m: [0, 0.01, 0.02], force_N: [0, 1, 0.5], ...more };
+  return {
+    name: "fast",
+    label: "fast",
+    summary: {},
+    forces: { columns: Object.keys(columns), data: Object.values(columns) },
+    events: events.map(([time_s, depth_m, event]) => ({ time_s, depth_m, event, instrument: "needle" })),
+    law: null,
+    surface: null,
+  };
+};
+
+describe("events", () => {
+  it("stand at their time, or where a column was then", () => {
+    const made = variant([[0.5, 0.005, "contact"]], { work_J: [0, 4, 6] });
+    expect(eventMarks(made, "time_s", 1)).toEqual([{ variant: "fast", x: 0.5, label: "contact" }]);
+    expect(eventMarks(made, "depth_m", 1000)[0]!.x).toBeCloseTo(5, 12);
+    expect(eventMarks(made, "work_J", 1)[0]!.x).toBeCloseTo(2, 12);
+    expect(eventMarks(made, "nowhere", 1)).toEqual([]);
+  });
+
+  it("are in every chart of the scene", () => {
+    const scene = { ...parsed({}), variants: [variant([[0.5, 0.005, "contact"]])] };
+    expect(variantCharts(scene).map((chart) => chart.events[0]!.x)).toEqual([5, 0.5].map((x) => expect.closeTo(x, 9)));
+  });
+
+  it("have labels that do not cover each other and stay inside", () => {
+    const marks = [10, 12, 14, 16, 18, 195].map((x, i) => ({ variant: "v", x, label: `event ${i}` }));
+    const placed = placeLabels(
+      marks,
+      (x) => x,
+      () => 40,
+      200,
+      4,
+    );
+    expect(placed.map((label) => label.row)).toEqual([0, 1, 2, 3, -1, 0]);
+    expect(placed[5]!.left).toBe(195 - 4 - 40);
+    expect(
+      placeLabels(
+        marks,
+        (x) => x - 100,
+        () => 40,
+        200,
+        4,
+      ).length,
+    ).toBe(1);
+  });
+});
+
+describe("charts of one variant", () => {
+  it("show the parts of an instrument's force", () => {
+    const made = partsChart(variant([], { normal_N: [0, 1, 0], friction_N: [0, 0, 0.3], cutting_N: [0, 0, 0.2] }))!;
+    expect(made.lines.map((line) => line.label)).toEqual(["total", "pressing", "friction", "cutting"]);
+  });
+
+  it("show what the container carries, and nothing where there is none", () => {
+    const loads = { bottom_z_N: [0, -1, -0.3], side_z_N: [0, -0.1, 0], side_radial_N: [0, 2, 1] };
+    const made = containerChart(variant([[1, 0.01, "puncture"]], loads))!;
+    expect(made.lines.map((line) => line.label)).toEqual([
+      "total",
+      "bottom, along z",
+      "side, along z",
+      "side, outwards",
+    ]);
+    expect(made.events[0]!.x).toBe(1);
+    expect(containerChart(variant([]))).toBeNull();
+  });
+});
+
+function parsed(surface: unknown) {
+  const read = parseReport(JSON.stringify({ format: 1, scenes: [{ variants: [{ surface }] }] }));
+  if (!read.ok) throw new Error(read.reason);
+  return read.report.scenes[0]!;
+}
+
+describe("a surface that is cut", () => {
+  const surface = {
+    vertices: 4,
+    triangles: base64(Uint32Array.from([0, 1, 2])),
+    rest: base64(Float32Array.from([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0])),
+    fixed: base64(new Uint8Array(4)),
+    instruments: [{ kind: "needle", name: "n", radius_m: 0.001 }],
+    frames: [0, 1, 2].map((time) => ({
+      time_s: time,
+      displacement_scale_m: 1,
+      displacement: base64(new Int16Array(time === 2 ? 12 : 9).fill(3276 * time)),
+      intensity_max: 1,
+      intensity: base64(new Uint8Array(time === 2 ? 4 : 3)),
+      instruments: [{ points: [0, 0, time], axes: [] }],
+      ...(time === 2 ? { triangles: base64(Uint32Array.from([3, 1, 2])) } : {}),
+    })),
+  };
+  const read = parsed(surface).variants[0]!.surface as SurfaceData;
+  const timeline = new Timeline(read);
+
+  it("is the old one until the frame of the cut, and waits there as it was", () => {
+    expect([...timeline.trianglesAt(1.5)]).toEqual([0, 1, 2]);
+    expect([...timeline.trianglesAt(2)]).toEqual([3, 1, 2]);
+    expect(timeline.at(1.9).share).toBe(0);
+    expect(timeline.at(0.5).share).toBe(0.5);
+  });
+
+  it("comes with its instruments", () => {
+    expect(timeline.instruments[0]!.kind).toBe("needle");
+    expect(timeline.at(1).after.instruments[0]!.points[2]).toBe(2);
+  });
+
+  it("reads what older programs wrote: neither instruments nor events", () => {
+    const { instruments: _, ...old } = surface;
+    const variant = parsed({ ...old, frames: [] }).variants[0]!;
+    expect(variant.surface!.instruments).toEqual([]);
+    expect(variant.events).toEqual([]);
+  });
+});
