@@ -89,7 +89,8 @@ HWY_INLINE void pull(const MembraneFactors& c, MembraneBlock& b, std::size_t i, 
   const V stretch = add(one, mul(two, hn::Max(e1, zero))), tension = mul(factor, s1);
   const auto bears = hn::Gt(area, zero);
   const V squared = hn::IfThenElseZero(bears, mul(stretch, mul(tension, tension)));
-  modulus = hn::IfThenElseZero(bears, mul(factor, add(mul(modulus, stretch), s1)));
+  // |F D Fᵀ| + 2 |S|: across the sheet S acts alone, on modes that are up to 1 + ν times as fast for their modulus
+  modulus = hn::IfThenElseZero(bears, mul(factor, add(mul(modulus, stretch), mul(two, s1))));
   hn::Store(squared, d, &b.squared_tension[i]);
   largest.squared_tension = hn::Max(largest.squared_tension, squared);
   largest.modulus = hn::Max(largest.modulus, modulus);

@@ -213,9 +213,10 @@ TEST(CapsuleLaw, FrequencyIsBoundedAndTangentConvex) {
       forces_of(m, at);
       return m.squared_frequency();
     };
-    for (const Case& c : kCases) {
+    for (const auto& [x, y] : std::initializer_list<std::array<double, 2>>{
+             {1.05, 1.05}, {1.3, 1.2}, {1.6, 1.6}, {2.5, 2.5}, {1.3, 0.6}, {0.7, 0.6}}) {
       for (unsigned seed = 0; seed < 12; ++seed) {
-        const std::vector<Vec3d> at = shaken(s, c.x, c.y, seed < 6 ? 0.1 : 0.25, seed);
+        const std::vector<Vec3d> at = shaken(s, x, y, seed < 2 ? 0.0 : (seed < 6 ? 0.1 : 0.25), seed);
         const auto [most, least] = spectrum(single, at, masses);
         EXPECT_LE(most, bound_of(sharp, at));
         EXPECT_LE(bound_of(sharp, at), bound_of(single, at));
@@ -224,7 +225,7 @@ TEST(CapsuleLaw, FrequencyIsBoundedAndTangentConvex) {
     }
     const std::vector<Vec3d> hardly = stretched(s, 1.001, 1.001);
     const double exact = spectrum(single, hardly, masses)[0];
-    EXPECT_LT(bound_of(sharp, hardly), 1.08 * exact);
+    EXPECT_LT(bound_of(sharp, hardly), 1.09 * exact);
     EXPECT_LT(bound_of(single, hardly), 3.0 * exact);
   }
 }
