@@ -57,16 +57,27 @@ void time_body(int cells) {
     s.fix(mesh.vertex_sets.at("z_min"));
     std::size_t triangles = 0;
     const double bare = s.step_size();
+    std::shared_ptr<Capsule> capsule;
     if (covered) {
       CapsuleOptions o;
       o.youngs_modulus = 1e6;
       o.vertices = mesh.vertex_sets.at("z_max");
-      const auto capsule = std::make_shared<Capsule>(o);
+      capsule = std::make_shared<Capsule>(o);
       s.attach(capsule);
       triangles = capsule->triangles().size();
     }
     s.step();
     const double took = least_time(200, 20, [&] { s.step(); });
+    if (capsule != nullptr) {
+      volatile double sum = 0.0;
+      double at = 0.0;
+      const double asked = least_time(50, 20, [&] {
+        sum = sum + capsule->tension_at({0.03 + (at += 1e-6), 0.03, 0.02});
+      });
+      std::printf("tension_at: %.1f us\n", 1e6 * asked);
+      const double opened = least_time(10, 5, [&] { capsule->open_at({0.03, 0.03, 0.02}, 6e-4); });
+      std::printf("open_at: %.1f us\n", 1e6 * opened);
+    }
     std::printf("%zu tets, %zu triangles: %.1f us a step, h %.1f us (bare %.1f us)\n", mesh.tets.size(), triangles,
                 1e6 * took, 1e6 * s.step_size(), 1e6 * bare);
     return took;

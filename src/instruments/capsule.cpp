@@ -15,6 +15,7 @@ constexpr double kMostRise = 2.0;  ///< how much faster than in the last step it
 struct Hole {
   Vec3d middle, x, y, normal;
   double radius;
+  static constexpr double kReach = 2.0;  ///< how far off its plane a triangle may be, in radii
 
   Hole(const std::array<Vec3d, 3>& corner, const std::array<double, 3>& weights, double r)
       : middle(corner[0] * weights[0] + corner[1] * weights[1] + corner[2] * weights[2]), radius(r) {
@@ -26,6 +27,7 @@ struct Hole {
 
   /// Share of a triangle it takes, seen along its own normal [-].
   double share_of(const std::array<Vec3d, 3>& corner) const {
+    if (squared_distance_of_box(corner, middle) > (1.0 + kReach * kReach) * radius * radius) return 0.0;
     std::array<std::array<double, 2>, 3> flat{};
     double height = 1e300;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -35,7 +37,7 @@ struct Hole {
     }
     const double twice =
         (flat[1][0] - flat[0][0]) * (flat[2][1] - flat[0][1]) - (flat[1][1] - flat[0][1]) * (flat[2][0] - flat[0][0]);
-    if (!(twice > 0.0) || height > 2.0 * radius) return 0.0;  // another side of the body
+    if (!(twice > 0.0) || height > kReach * radius) return 0.0;  // another side of the body
     return std::min(1.0, overlap_with_disc(flat, radius) / (0.5 * twice));
   }
 };
@@ -73,7 +75,7 @@ double Capsule::open_area() const {
 }
 
 double Capsule::tension_at(const Vec3d& place) const {
-  const PointOnTriangle at = nearest_point(state_->local, state_->now, state_->counts, place);
+  const PointOnTriangle at = state_->nearest_to(place);
   return std::isfinite(at.distance) ? state_->mean_tension(at.triangle) : 0.0;
 }
 
@@ -96,7 +98,7 @@ double Capsule::open_at(const Vec3d& place, double radius) {
     throw std::invalid_argument(s.options.name + ": open_at with the radius " + std::to_string(radius) +
                                 " m, which has to be > 0 and finite; a needle's is half its diameter");
   }
-  const PointOnTriangle at = nearest_point(s.local, s.now, s.counts, place);
+  const PointOnTriangle at = s.nearest_to(place);
   if (!std::isfinite(at.distance)) return 0.0;
   const auto corners = [&](std::size_t t) {
     return std::array<Vec3d, 3>{s.rest[s.local[t][0]], s.rest[s.local[t][1]], s.rest[s.local[t][2]]};

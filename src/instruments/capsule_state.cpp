@@ -90,6 +90,12 @@ const std::vector<double>& Capsule::State::tensions() {
   return tension;
 }
 
+PointOnTriangle Capsule::State::nearest_to(const Vec3d& place) {
+  const PointOnTriangle point = nearest_point(local, now, counts, place, nearest);
+  nearest = point.triangle;
+  return point;
+}
+
 Vec3d Capsule::State::centre(std::size_t triangle) const {
   const Triangle& t = local[triangle];
   return (now[t[0]] + now[t[1]] + now[t[2]]) * (1.0 / 3.0);
@@ -109,13 +115,12 @@ void Capsule::State::open_to(std::size_t triangle, double share) {
 /// Tension over the disc about a triangle, of what is whole [N/m].
 double Capsule::State::mean_tension(std::size_t triangle) {
   if (near.first.empty()) near = find_neighbours(local, rest, 0.5 * options.averaging_length);
-  const std::vector<double>& of = tensions();
   double sum = 0.0, area = 0.0;
   for (std::uint32_t k = near.first[triangle]; k < near.first[triangle + 1]; ++k) {
     const std::uint32_t t = near.list[k];
     if (counts[t] == 0) continue;
     const double share = membrane.kept(t) * membrane.rest_area(t);
-    sum += share * of[t];
+    sum += share * membrane.tension(t);
     area += share;
   }
   return area > 0.0 ? sum / area : 0.0;

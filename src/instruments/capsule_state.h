@@ -32,6 +32,7 @@ struct Capsule::State {
   std::vector<double> tension;  ///< per triangle [N/m]; read through tensions()
   bool tension_is_current = false;
   Neighbours near;                                 ///< within half the averaging length; made when first needed
+  std::size_t nearest = 0;                         ///< triangle that was nearest to the last place someone asked about
   bool is_named = false;                           ///< whether reach() has named the vertices
   double frequency = 0.0, frequency_before = 0.0;  ///< squared, of the last two steps [1/s²]
   double released = 0.0;                           ///< [J]
@@ -42,6 +43,7 @@ struct Capsule::State {
   void lay_out(const BodyView& body, bool sharply);
   void evaluate();
   const std::vector<double>& tensions();
+  PointOnTriangle nearest_to(const Vec3d& place);
   void open_to(std::size_t triangle, double share);
   void tear_where_due();
   double mean_tension(std::size_t triangle);

@@ -127,16 +127,29 @@ std::vector<TetFace> capsule_faces(const CapsuleOptions& options, const BodyView
   return faces;
 }
 
+double squared_distance_of_box(const std::array<Vec3d, 3>& x, const Vec3d& p) {
+  const auto off = [](double a, double b, double c, double at) {
+    return std::max({std::min({a, b, c}) - at, at - std::max({a, b, c}), 0.0});
+  };
+  const Vec3d d{off(x[0].x, x[1].x, x[2].x, p.x), off(x[0].y, x[1].y, x[2].y, p.y), off(x[0].z, x[1].z, x[2].z, p.z)};
+  return dot(d, d);
+}
+
 PointOnTriangle nearest_point(std::span<const Triangle> triangles, std::span<const Vec3d> positions,
-                              std::span<const char> counts, const Vec3d& place) {
+                              std::span<const char> counts, const Vec3d& place, std::size_t first) {
   PointOnTriangle best;
   best.distance = std::numeric_limits<double>::infinity();
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    if (counts[t] == 0) continue;
+  const auto look_at = [&](std::size_t t) {
     const std::array<Vec3d, 3> x{positions[triangles[t][0]], positions[triangles[t][1]], positions[triangles[t][2]]};
+    if (squared_distance_of_box(x, place) > best.distance * best.distance * (1.0 + 1e-12)) return;
     const std::array<double, 3> w = nearest_weights(x, place);
     const double distance = norm(x[0] * w[0] + x[1] * w[1] + x[2] * w[2] - place);
-    if (distance < best.distance) best = {t, w, distance};
+    const bool is_first = distance == best.distance && t < best.triangle;  // of equals, whatever was looked at first
+    if (distance < best.distance || is_first) best = {t, w, distance};
+  };
+  if (first < triangles.size() && counts[first] != 0) look_at(first);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (counts[t] != 0) look_at(t);
   }
   return best;
 }

@@ -31,9 +31,12 @@ struct PointOnTriangle {
 };
 
 /// The point nearest to a place, of those triangles that `counts` says 1 for.
-/// @param triangles  over `positions` [m]
+/// @param triangles  over `positions` [m] @param first  one that is looked at first: the nearer it is, the quicker
 PointOnTriangle nearest_point(std::span<const Triangle> triangles, std::span<const Vec3d> positions,
-                              std::span<const char> counts, const Vec3d& place);
+                              std::span<const char> counts, const Vec3d& place, std::size_t first = 0);
+
+/// Squared distance of a place from the box about a triangle: not above that from the triangle [m²].
+double squared_distance_of_box(const std::array<Vec3d, 3>& corners, const Vec3d& place);
 
 /// Area that a disc about the origin shares with a triangle in its plane [m²].
 double overlap_with_disc(const std::array<std::array<double, 2>, 3>& triangle, double radius);

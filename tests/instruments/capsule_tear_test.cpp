@@ -35,6 +35,23 @@ TEST(CapsuleTear, DiscIsSharedOutExactly) {
   EXPECT_NEAR(overlap_with_disc({{{0.1, 0.0}, {0.0, 0.2}, {-0.1, -0.1}}}, 3.0), 0.025, 1e-15);
 }
 
+// The nearest triangle does not depend on where the search begins, also where several are as near: checkpoints do not keep it.
+TEST(CapsuleTear, NearestIsTheSameFromAnywhere) {
+  const Sheet s = patch(5, 5, 1.0, 1.0, 0.0);
+  const std::vector<char> counts(s.triangles.size(), 1);
+  std::mt19937 random(2);
+  std::uniform_int_distribution<int> grid(-2, 22);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d place{grid(random) * 0.05, grid(random) * 0.05, grid(random) * 0.02};
+    const PointOnTriangle from_start = nearest_point(s.triangles, s.vertices, counts, place);
+    for (std::size_t first = 1; first < s.triangles.size(); ++first) {
+      const PointOnTriangle other = nearest_point(s.triangles, s.vertices, counts, place, first);
+      ASSERT_EQ(other.triangle, from_start.triangle);
+      ASSERT_EQ(other.weights, from_start.weights);
+    }
+  }
+}
+
 /// Loss of stiffness by a hole of 3 mm radius in an evenly stretched sheet over that in an endless one of the same share.
 double loss_by_hole(int n) {
   const double radius = 3e-3, area = std::numbers::pi * radius * radius;
