@@ -83,13 +83,10 @@ std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
   s.solid.earlier = s.solid.before, s.solid.last_h = s.last_h;
   s.solid.before = before_, s.solid.after = pose_;
   s.last_h = h;
-  return s.reach.ask(s.solid, h);
+  return s.reach.ask({&s.solid, 1}, h);
 }
 
-void ContactTool::add_forces(const InteractionStep& step) {
-  state_->speeds.clear();
-  for (const WatchedVertex& w : step.vertices) state_->speeds.push_back(w.velocity);
-}
+void ContactTool::add_forces(const InteractionStep& step) { state_->books.begin(step); }
 
 void ContactTool::constrain(const InteractionStep& step) {
   State& s = *state_;
@@ -98,11 +95,12 @@ void ContactTool::constrain(const InteractionStep& step) {
   if (s.lost) return;
   s.add_vertices(step);
   s.effort.vertices = s.rows.size();
-  if (!s.rows.empty()) s.solve_rows(step);
+  if (!s.rows.empty()) s.effort.sweeps = s.books.solve(s.rows, step);
   if (s.solid.traits.presses_between) s.add_triangles(step);
   s.effort.triangles = s.rows.size() - s.effort.vertices;
-  if (s.effort.triangles > 0) s.solve_rows(step);
-  s.keep_account(step);
+  if (s.effort.triangles > 0) s.effort.sweeps += s.books.solve(s.rows, step);
+  s.effort.corrected = s.books.corrected();
+  s.books.close(s.rows, step);
   if (s.options.bonded) s.bond(step, forces_);
   s.collect(step, forces_);
 
@@ -125,36 +123,34 @@ std::vector<double> ContactTool::past() const {
   std::vector<double> past;
   save_motion(past);
   past.insert(past.end(), {s.lost ? 1.0 : 0.0, s.in_contact ? 1.0 : 0.0, s.begun ? 1.0 : 0.0, s.last_touch,
-                           s.last_depth, s.taken, s.last_h});
+                           s.last_depth, s.books.taken(), s.last_h});
   const Pose& p = s.solid.before;
   past.insert(past.end(), {p.position.x, p.position.y, p.position.z});
   for (const auto& row : p.axes.m) past.insert(past.end(), row.begin(), row.end());
-  past.insert(past.end(), {static_cast<double>(s.found_inside.size()), static_cast<double>(s.bonds.size())});
-  for (const std::uint32_t v : s.found_inside) past.push_back(v);
+  s.found_inside.save(past);
+  past.push_back(static_cast<double>(s.bonds.size()));
   for (const auto& [vertex, y] : s.bonds) past.insert(past.end(), {static_cast<double>(vertex), y.x, y.y, y.z});
   s.reach.save(past);
   return past;
 }
 
 bool ContactTool::restore(std::span<const double> past) {
-  constexpr std::size_t kOwn = 7 + 12 + 2;
+  constexpr std::size_t kOwn = 7 + 12;
   State& s = *state_;
   if (!restore_motion(past) || past.size() < kOwn) return false;
   s.lost = past[0] != 0.0, s.in_contact = past[1] != 0.0, s.begun = past[2] != 0.0;
-  s.last_touch = past[3], s.last_depth = past[4], s.taken = past[5], s.last_h = past[6];
+  s.last_touch = past[3], s.last_depth = past[4], s.books.set_taken(past[5]), s.last_h = past[6];
   for (std::size_t i = 0; i < 3; ++i) s.solid.before.position[i] = past[7 + i];
   for (std::size_t i = 0; i < 9; ++i) s.solid.before.axes(i / 3, i % 3) = past[10 + i];
-  const double inside = past[19], bonds = past[20];
   past = past.subspan(kOwn);
-  if (!(inside >= 0.0 && bonds >= 0.0 && inside + 4.0 * bonds <= static_cast<double>(past.size()))) return false;
+  if (!s.found_inside.restore(past) || past.empty()) return false;
+  const double bonds = past[0];
+  past = past.subspan(1);
+  if (!(bonds >= 0.0 && 4.0 * bonds <= static_cast<double>(past.size()))) return false;
   const auto is_vertex = [&](double v) {
     return v >= 0.0 && v < static_cast<double>(s.reach.surface().body_vertices());
   };
-  s.found_inside.clear(), s.bonds.clear();
-  for (double i = 0.0; i < inside; ++i, past = past.subspan(1)) {
-    if (!is_vertex(past[0])) return false;
-    s.found_inside.insert(static_cast<std::uint32_t>(past[0]));
-  }
+  s.bonds.clear();
   for (double i = 0.0; i < bonds; ++i, past = past.subspan(4)) {
     if (!is_vertex(past[0])) return false;
     s.bonds[static_cast<std::uint32_t>(past[0])] = {past[1], past[2], past[3]};

@@ -1,9 +1,8 @@
-// contact_reach.cpp — which part of the surface a tool has at hand.
+#include "instruments/contact_reach.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "instruments/contact_state.h"
 
 namespace glisson {
 namespace {
@@ -32,12 +31,13 @@ bool ContactReach::may_reach(const ContactSolid& solid, const SurfacePatch& patc
   return !(apart > kStretch * patch.radius + kHurry * h * norm(s.velocity));
 }
 
-std::span<const std::uint32_t> ContactReach::ask(const ContactSolid& solid, double h) {
+std::span<const std::uint32_t> ContactReach::ask(std::span<const ContactSolid> solids, double h) {
   asking_.clear();
   for (std::size_t k = 0; k < sentinels_.size(); ++k) {
     const SurfacePatch& patch = surface_.patches()[k];
     if (!sentinels_asked_) asking_.push_back(patch.sentinel);
-    if (sentinels_[k].asked || !may_reach(solid, patch, sentinels_[k], h)) continue;
+    const auto near = [&](const ContactSolid& s) { return may_reach(s, patch, sentinels_[k], h); };
+    if (sentinels_[k].asked || std::none_of(solids.begin(), solids.end(), near)) continue;
     sentinels_[k].asked = true;
     asking_.insert(asking_.end(), patch.vertices.begin(), patch.vertices.end());
   }

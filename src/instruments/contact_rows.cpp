@@ -6,9 +6,12 @@
 namespace glisson {
 namespace {
 
-constexpr int kMostSweeps = 40;
+constexpr int kMostSweeps = 16;
 constexpr double kEnough = 100.0;  // tolerances: rows that move by less have been solved
 constexpr int kMostCorrections = 8;
+constexpr double kAtEdge = 1e-3;  // a weight below it: the point is on an edge of its triangle
+constexpr double kAlike = 0.8;  // cosine between normals of solid and triangle that are one but for the triangle's size
+constexpr double kAway = -0.2;  // … below which they do not face each other
 constexpr int kMostProbes = 40;     // of a triangle
 constexpr double kSettling = 5e-3;  // tissue found inside a tool leaves by its depth over this time [s]
 constexpr double kFast = 0.25;      // of the thickness
@@ -64,17 +67,13 @@ Vec3d response_of(const ContactRow& row, const InteractionStep& step) {
 
 Vec3d scaled(const Vec3d& a, const Vec3d& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
-void push(ContactRow& row, const InteractionStep& step, const Vec3d& impulse) {
-  for (std::uint32_t i = 0; i < row.count; ++i) step.push(row.places[i], impulse * row.weights[i]);
-}
-
 /// Where the point of a row is held: where it starts, if it touches there, or where it enters.
 bool meets(ContactRow& row, const Vec3d& end) {
   const double way = norm(end - row.start), close = row.solid->tolerance(), reach = kNear * way + close;
   const ShapeDistance before = distance_to(*row.solid->shape, row.start);
   row.fast = way > kFast * row.solid->traits.thickness;
   row.inside = std::max(0.0, -before.distance - close);
-  if (before.distance <= close) {
+  if (before.distance <= close + (row.solid->holds ? row.solid->grip : 0.0)) {
     row.n = before.normal, row.face = row.start - row.n * before.distance;
     return row.fast || row.solid->holds || phi(row, end) <= reach;
   }
@@ -193,7 +192,27 @@ std::array<double, 3> nearest_to(const Ball& ball, const Corners& c, double& dep
   return w;
 }
 
+/// Inside a triangle, and at a sharp rim of the solid, contact is normal to the triangle.
+void turn_to_triangle(ContactRow& row, const Corners& at) {
+  const Vec3d outward = cross(at[1] - at[0], at[2] - at[0]);
+  const double area = norm(outward);
+  if (!(area > 0.0)) return;
+  const Vec3d inward = outward * (-1.0 / area);
+  const double cosine = dot(row.n, inward);
+  const bool inside = std::min({row.weights[0], row.weights[1], row.weights[2]}) > kAtEdge;
+  if (cosine > kAway && (inside || cosine < kAlike)) row.n = inward;
+}
+
 }  // namespace
+
+void push(const ContactRow& row, const InteractionStep& step, const Vec3d& impulse) {
+  for (std::uint32_t i = 0; i < row.count; ++i) step.push(row.places[i], impulse * row.weights[i]);
+}
+
+Vec3d stopping(const InteractionStep& step, std::size_t place, const Vec3d& wanted) {
+  const Vec3d change = wanted - step.vertices[place].velocity, &a = step.mobility[place];
+  return {a.x > 0.0 ? change.x / a.x : 0.0, a.y > 0.0 ? change.y / a.y : 0.0, a.z > 0.0 ? change.z / a.z : 0.0};
+}
 
 double ContactSolid::tolerance() const { return std::isfinite(traits.thickness) ? 1e-9 * traits.thickness : 1e-12; }
 
@@ -206,6 +225,7 @@ bool prepare(ContactRow& row, const InteractionStep& step, double share) {
   row.start = mean(row, start);
   row.origin = mean(row, row.origins);
   if (!meets(row, mean(row, end))) return false;
+  if (row.count == 3) turn_to_triangle(row, start);
   row.normal = row.solid->after.axes * row.n;
   row.response = response_of(row, step);
   row.along = dot(row.normal, scaled(row.response, row.normal));
@@ -233,49 +253,6 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step) {
     if (change <= enough) return sweep;
   }
   return kMostSweeps;
-}
-
-ContactWork work_of(std::span<const ContactRow> rows, const InteractionStep& step, std::span<const Vec3d> before) {
-  ContactWork work;
-  for (const ContactRow& row : rows) {
-    if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
-    Vec3d v;
-    for (std::uint32_t i = 0; i < row.count; ++i) {
-      v += (before[row.places[i]] + step.vertices[row.places[i]].velocity) * row.weights[i];
-    }
-    const Vec3d carried = row.carried + row.carried_before;
-    work.relative += 0.5 * dot(row.impulse(), v - carried);
-    work.tool += 0.5 * std::abs(dot(row.impulse(), carried));
-  }
-  return work;
-}
-
-int solve_without_work(std::span<ContactRow> rows, const InteractionStep& step, std::span<const Vec3d> before) {
-  for (ContactRow& row : rows) {
-    push(row, step, -row.impulse());
-    row.pressing = 0.0, row.rubbing = {};
-    Vec3d v;
-    for (std::uint32_t i = 0; i < row.count; ++i) v += before[row.places[i]] * row.weights[i];
-    row.most = std::max(0.0, -dot(row.normal, v - row.carried_before));
-  }
-  return solve(rows, step);
-}
-
-void limit_work(std::span<ContactRow> rows, const InteractionStep& step, std::span<const Vec3d> before, double most) {
-  const double whole = work_of(rows, step, before).relative;
-  if (whole <= most) return;
-  double own = 0.0;  // of the impulses on what they change: it grows with the square of the factor
-  std::vector<Vec3d> sums(step.vertices.size());
-  for (const ContactRow& row : rows) {
-    for (std::uint32_t i = 0; i < row.count; ++i) sums[row.places[i]] += row.impulse() * row.weights[i];
-  }
-  for (std::size_t k = 0; k < sums.size(); ++k) own += 0.5 * dot(sums[k], scaled(step.mobility[k], sums[k]));
-  const double factor = own > 0.0 ? std::clamp((own - whole) / own, 0.0, 1.0) : 0.0;
-  for (ContactRow& row : rows) {
-    const Vec3d taken = row.impulse() * (factor - 1.0);
-    push(row, step, taken);
-    row.pressing *= factor, row.rubbing *= factor;
-  }
 }
 
 std::array<double, 3> deepest(const Shape& shape, const std::array<Vec3d, 3>& corners, double& depth) {

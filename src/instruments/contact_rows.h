@@ -31,7 +31,8 @@ struct ContactSolid {
   double last_h = 0.0;           ///< length of that step [s]; 0: there was none
   double friction = 0.0;         ///< μ [-], may be infinite
   double push_out_speed = 0.05;  ///< [m/s]
-  bool holds = false;            ///< what touches does not lift off
+  bool holds = false;            ///< what touches does not lift off …
+  double grip = 0.0;             ///< … and touches where it is no farther than this [m]
   /// Distance that counts as none [m].
   double tolerance() const;
 };
@@ -73,18 +74,11 @@ bool prepare(ContactRow& row, const InteractionStep& step, double share = 1.0);
 /// Solves for all impulses and pushes. @return sweeps
 int solve(std::span<ContactRow> rows, const InteractionStep& step);
 
-/// Work of the impulses of a step, as the energies of the explicit scheme count it: J·(v₋ + v₊)/2.
-struct ContactWork {
-  double relative = 0.0;  ///< with velocities against the solid: what contact itself adds to the body [J]
-  double tool = 0.0;      ///< by the motion of the solid, each row's in size [J]
-};
-/// @param before  v₋ per place
-ContactWork work_of(std::span<const ContactRow> rows, const InteractionStep& step, std::span<const Vec3d> before);
-/// Takes all impulses back and solves again so that no point leaves faster than it came, or comes out where it was inside.
-/// @return sweeps
-int solve_without_work(std::span<ContactRow> rows, const InteractionStep& step, std::span<const Vec3d> before);
-/// Makes all impulses smaller by one factor, so that the relative work is `most` at most, ≥ 0 [J].
-void limit_work(std::span<ContactRow> rows, const InteractionStep& step, std::span<const Vec3d> before, double most);
+/// Gives the point an impulse [N s].
+void push(const ContactRow& row, const InteractionStep& step, const Vec3d& impulse);
+
+/// The impulse that gives the vertex at a place the velocity wanted, in components that may move [N s].
+Vec3d stopping(const InteractionStep& step, std::size_t place, const Vec3d& wanted);
 
 /// Barycentric weights of the deepest point of a triangle in a convex solid. @param corners  in the frame of the solid
 /// @param depth  its φ, on return. Cost: 20 ns for a ball, 0.5 µs for others

@@ -11,11 +11,6 @@ namespace {
 constexpr double kFacetDepth = 1e-6;  // of the thickness: a triangle is held out where it is deeper inside
 constexpr double kStride = 0.25;      // of the thickness: a fast triangle is looked at so often on its way
 constexpr int kMostStrides = 200;
-constexpr double kToolShare = 0.01;  // of the tool's work: errors of a moving contact may add so much energy
-
-Vec3d divided(const Vec3d& a, const Vec3d& b) {
-  return {b.x > 0.0 ? a.x / b.x : 0.0, b.y > 0.0 ? a.y / b.y : 0.0, b.z > 0.0 ? a.z / b.z : 0.0};
-}
 
 }  // namespace
 
@@ -41,10 +36,9 @@ void ContactTool::State::add_vertices(const InteractionStep& step) {
     ContactRow row;
     row.places[0] = step.place_of[mine[i]];
     row.solid = &solid;
-    if (!begun && distance_to(options.shape, starts[i]).distance < -solid.tolerance()) found_inside.insert(mine[i]);
-    row.comes_out = found_inside.count(mine[i]) != 0;
+    found_inside.mark(row, mine[i], 0, starts[i], begun);
     if (prepare(row, step)) rows.push_back(row);
-    if (row.comes_out && row.inside == 0.0) found_inside.erase(mine[i]);
+    found_inside.settle(row, mine[i], 0);
   }
   begun = true;
 }
@@ -86,33 +80,14 @@ void ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, 
   }
 }
 
-/// Solves; where that would do work on the body beyond what contact has taken from it so far, no impulse may do any.
-void ContactTool::State::solve_rows(const InteractionStep& step) {
-  for (ContactRow& row : rows) row.most.reset();
-  effort.sweeps += solve(rows, step);
-  const auto creates = [&] {
-    const ContactWork work = work_of(rows, step, speeds);
-    return work.relative > taken + kToolShare * work.tool;
-  };
-  if (!creates()) return;
-  effort.corrected = true;
-  effort.sweeps += solve_without_work(rows, step, speeds);
-  if (creates()) limit_work(rows, step, speeds, taken);
-}
-
-void ContactTool::State::keep_account(const InteractionStep& step) {
-  const ContactWork work = work_of(rows, step, speeds);
-  taken += kToolShare * work.tool - work.relative;
-}
-
 /// Keeps vertices that have touched where they touched, and takes in those that touch now.
 void ContactTool::State::bond(const InteractionStep& step, ToolForces& forces) {
   for (const auto& [vertex, anchor] : bonds) {
     const std::uint32_t place = step.place_of[vertex];
     if (place == InteractionStep::kNowhere) continue;
-    const Vec3d x = step.position(place), v = step.vertices[place].velocity;
+    const Vec3d x = step.position(place);
     const Vec3d wanted = (to_space(solid.after, anchor) - x) * (1.0 / step.h);
-    const Vec3d impulse = divided(wanted - v, step.mobility[place]);
+    const Vec3d impulse = stopping(step, place, wanted);
     step.push(place, impulse);
     const Vec3d n = solid.after.axes * distance_to(options.shape, anchor).normal;
     const Vec3d across = n * dot(impulse, n);

@@ -18,6 +18,7 @@ namespace glisson {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kRim = 1e-10;  // of the length: so near to a rim, either side of it is meant
 
 struct Point {
   double rho, z;
@@ -30,15 +31,16 @@ struct FlatDistance {
   Point normal{0.0, -1.0};
 };
 
-/// Of the line that is nearest from inside, or most exceeded from outside.
+/// Of the line that is nearest from inside, or most exceeded from outside; at a rim, of the one nearer to the tip.
 FlatDistance to_lines(const Profile& p, const Point& x) {
   FlatDistance best;
+  const double even = kRim * p[2].z;
   for (std::size_t i = 0; i + 1 < p.size(); ++i) {
     const double er = p[i + 1].rho - p[i].rho, ez = p[i + 1].z - p[i].z, length = std::hypot(er, ez);
     if (!(length > 0.0)) continue;
     const Point n{ez / length, -er / length};
     const double d = n.rho * (x.rho - p[i].rho) + n.z * (x.z - p[i].z);
-    if (d > best.distance) best = {d, n};
+    if (d > best.distance + even) best = {d, n};
   }
   return best;
 }
@@ -55,7 +57,7 @@ FlatDistance to_nearest(const Profile& p, const Point& x, const Point& line_norm
     if (s < squared) squared = s, way = w;
   }
   const double d = std::sqrt(squared);
-  if (!(d > 1e-300)) return {0.0, line_normal};
+  if (!(d > kRim * p[2].z)) return {d, line_normal};
   return {d, {way.rho / d, way.z / d}};
 }
 

@@ -1,0 +1,244 @@
+// container.cpp — the floor and the wall as solids that stand still, and what presses on each.
+#include "glisson/container.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+#include "instruments/contact_books.h"
+#include "instruments/contact_reach.h"
+
+namespace glisson {
+namespace {
+
+constexpr double kTouch = 1e-6;  // of the vessel's size: tissue so near to a wall that holds it touches
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+void refuse(const ContainerOptions& o, const char* what, double value, const char* range) {
+  std::ostringstream text;
+  text << "container " << o.name << ": " << what << " = " << value << " is outside the allowed range, " << range;
+  throw std::invalid_argument(text.str());
+}
+
+void require(const ContainerOptions& o) {
+  const auto size = [&](const char* what, double v) {
+    if (!(v > 0.0 && std::isfinite(v))) refuse(o, what, v, "> 0 and finite");
+  };
+  const auto height = [&](double v) {
+    if (!(v > 0.0)) refuse(o, "height [m]", v, "> 0; infinite: the wall has no end");
+  };
+  if (const auto* c = std::get_if<CylinderVessel>(&o.vessel)) size("radius [m]", c->radius), height(c->height);
+  if (const auto* b = std::get_if<BoxVessel>(&o.vessel)) {
+    size("width [m]", b->width), size("length [m]", b->length), height(b->height);
+  }
+  if (!(o.friction >= 0.0)) refuse(o, "friction [-]", o.friction, ">= 0; infinite: it never slips");
+  size("push_out_speed [m/s]", o.push_out_speed);
+  if (!is_sound(o.pose)) {
+    throw std::invalid_argument("container " + o.name + ": its pose is not finite, or its axes are no rotation");
+  }
+}
+
+/// A plate whose outward normal is n, through a point; all in the frame of the vessel.
+Pose plate(const Pose& vessel, const Vec3d& point, const Vec3d& n) {
+  const Vec3d z = -n, x = std::abs(n.z) > 0.5 ? Vec3d{1.0, 0.0, 0.0} : Vec3d{0.0, 0.0, 1.0}, y = cross(z, x);
+  const Vec3d columns[] = {vessel.axes * x, vessel.axes * y, vessel.axes * z};
+  Pose pose{to_space(vessel, point), {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) pose.axes(i, j) = columns[j][i];
+  }
+  return pose;
+}
+
+}  // namespace
+
+struct Container::State {
+  /// A vertex that is bonded, by which part of the vessel, and where in its frame.
+  struct Bond {
+    std::uint32_t solid = 0;
+    Vec3d place;
+  };
+
+  ContainerOptions options;
+  std::vector<Shape> shapes;
+  std::vector<ContactSolid> solids;  ///< the floor first
+  double height = kInfinite, size = 0.0;
+  ContactReach reach;
+  ContactBooks books;
+  FoundInside found_inside;
+  bool begun = false;
+  std::vector<ContactRow> rows;
+  std::map<std::uint32_t, Bond> bonds;
+  ContainerLoads loads;
+
+  void build();
+  void add_solid(const Shape& shape, const Pose& pose);
+  bool holds_at(const Vec3d& x) const { return to_frame(options.pose, x).z <= height; }
+  void bond_first(const BodyView& body);
+  void add_rows(const InteractionStep& step);
+  void hold_bonds(const InteractionStep& step);
+  void bear(const ContactSolid& solid, const Vec3d& normal, const Vec3d& force);
+};
+
+void Container::State::add_solid(const Shape& shape, const Pose& pose) {
+  shapes.push_back(shape);
+  ContactSolid s;
+  s.traits = traits_of(shape);
+  s.before = s.after = s.earlier = pose;
+  s.friction = options.bonded ? kInfinite : options.friction;
+  s.push_out_speed = options.push_out_speed;
+  s.holds = solids.empty() ? options.holds_floor : options.holds_wall;
+  s.grip = kTouch * size;
+  solids.push_back(s);
+}
+
+void Container::State::build() {
+  const Pose& at = options.pose;
+  if (const auto* c = std::get_if<CylinderVessel>(&options.vessel)) {
+    size = c->radius, height = c->height;
+    add_solid(Plate{}, plate(at, {}, {0.0, 0.0, 1.0}));
+    add_solid(CylinderWall{c->radius}, at);
+  } else {
+    const BoxVessel& b = std::get<BoxVessel>(options.vessel);
+    size = std::min(b.width, b.length), height = b.height;
+    add_solid(Plate{}, plate(at, {}, {0.0, 0.0, 1.0}));
+    for (const double side : {-1.0, 1.0}) {
+      add_solid(Plate{}, plate(at, {0.5 * side * b.width, 0.0, 0.0}, {-side, 0.0, 0.0}));
+      add_solid(Plate{}, plate(at, {0.0, 0.5 * side * b.length, 0.0}, {0.0, -side, 0.0}));
+    }
+  }
+  for (std::size_t i = 0; i < solids.size(); ++i) solids[i].shape = &shapes[i];
+}
+
+/// Bonds what touches at the start; where floor and wall meet, to the floor.
+void Container::State::bond_first(const BodyView& body) {
+  for (const std::uint32_t v : reach.surface().vertices()) {
+    const Vec3d x = body.mesh.vertices[v] + body.displacement[v];
+    if (!holds_at(x)) continue;
+    for (std::uint32_t k = 0; k < solids.size() && bonds.count(v) == 0; ++k) {
+      const Vec3d y = to_frame(solids[k].after, x);
+      if (distance_to(shapes[k], y).distance <= solids[k].grip) bonds[v] = {k, y};
+    }
+  }
+}
+
+void Container::State::add_rows(const InteractionStep& step) {
+  for (const std::uint32_t v : reach.vertices()) {
+    if (bonds.count(v) != 0) continue;
+    const std::uint32_t place = step.place_of[v];
+    const Vec3d x = step.position(place), way = step.vertices[place].velocity * step.h;
+    if (!holds_at(x)) continue;
+    for (std::uint32_t k = 0; k < solids.size(); ++k) {
+      const Vec3d start = to_frame(solids[k].before, x);
+      if (distance_to(shapes[k], start).distance > norm(way) + solids[k].grip) continue;
+      ContactRow row;
+      row.places[0] = place, row.solid = &solids[k];
+      found_inside.mark(row, v, k, start, begun);
+      if (prepare(row, step)) rows.push_back(row);
+      found_inside.settle(row, v, k);
+    }
+  }
+  begun = true;
+}
+
+void Container::State::bear(const ContactSolid& solid, const Vec3d& normal, const Vec3d& force) {
+  if (&solid == solids.data()) {
+    loads.bottom -= force;
+  } else {
+    loads.side -= force;
+    loads.side_radial += dot(force, normal);
+  }
+}
+
+void Container::State::hold_bonds(const InteractionStep& step) {
+  for (const auto& [v, bond] : bonds) {
+    const std::uint32_t place = step.place_of[v];
+    if (place == InteractionStep::kNowhere) continue;
+    const ContactSolid& solid = solids[bond.solid];
+    const Vec3d wanted = (to_space(solid.after, bond.place) - step.position(place)) * (1.0 / step.h);
+    const Vec3d impulse = stopping(step, place, wanted);
+    step.push(place, impulse);
+    bear(solid, solid.after.axes * distance_to(*solid.shape, bond.place).normal, impulse * (1.0 / step.h));
+  }
+}
+
+Container::Container(const ContainerOptions& options) : state_(std::make_unique<State>()) {
+  require(options);
+  state_->options = options;
+  state_->build();
+}
+
+Container::~Container() = default;
+
+const ContainerLoads& Container::loads() const { return state_->loads; }
+const ContainerOptions& Container::options() const { return state_->options; }
+Vec3d Container::up() const { return state_->options.pose.axes * Vec3d{0.0, 0.0, 1.0}; }
+
+void Container::attached(const BodyView& body, double) {
+  state_->reach.attach(body);
+  if (state_->options.bonded) state_->bond_first(body);
+}
+
+void Container::body_changed(const BodyView& body, std::span<const std::uint32_t> origins) {
+  const auto first = body.mesh.vertices.size() - origins.size();
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    const auto bond = state_->bonds.find(origins[i]);
+    if (bond != state_->bonds.end()) state_->bonds[static_cast<std::uint32_t>(first + i)] = bond->second;
+  }
+  state_->reach.attach(body);
+}
+
+std::span<const std::uint32_t> Container::reach(double, double h) { return state_->reach.ask(state_->solids, h); }
+
+void Container::add_forces(const InteractionStep& step) { state_->books.begin(step); }
+
+void Container::constrain(const InteractionStep& step) {
+  State& s = *state_;
+  s.loads = {};
+  s.rows.clear();
+  s.add_rows(step);
+  if (!s.rows.empty()) s.books.solve(s.rows, step);
+  s.books.close(s.rows, step);
+  for (const ContactRow& row : s.rows) {
+    if (row.impulse() == Vec3d{}) continue;
+    s.bear(*row.solid, row.normal, row.impulse() * (1.0 / step.h));
+    const auto solid = static_cast<std::uint32_t>(row.solid - s.solids.data());
+    if (s.options.bonded) s.bonds[step.vertices[row.places[0]].vertex] = {solid, end_of(row, step)};
+  }
+  s.hold_bonds(step);
+}
+
+void Container::moved(const InteractionStep& step) { state_->reach.look(step); }
+
+std::vector<double> Container::past() const {
+  const State& s = *state_;
+  std::vector<double> past{s.begun ? 1.0 : 0.0, s.books.taken(), static_cast<double>(s.bonds.size())};
+  for (const auto& [v, b] : s.bonds) {
+    past.insert(past.end(), {static_cast<double>(v), static_cast<double>(b.solid), b.place.x, b.place.y, b.place.z});
+  }
+  s.found_inside.save(past);
+  s.reach.save(past);
+  return past;
+}
+
+bool Container::restore(std::span<const double> past) {
+  State& s = *state_;
+  if (past.size() < 3) return false;
+  s.begun = past[0] != 0.0;
+  s.books.set_taken(past[1]);
+  const double bonds = past[2];
+  past = past.subspan(3);
+  if (!(bonds >= 0.0 && 5.0 * bonds <= static_cast<double>(past.size()))) return false;
+  s.bonds.clear();
+  for (double i = 0.0; i < bonds; ++i, past = past.subspan(5)) {
+    const bool known = past[0] >= 0.0 && past[0] < static_cast<double>(s.reach.surface().body_vertices()) &&
+                       past[1] >= 0.0 && past[1] < static_cast<double>(s.solids.size());
+    if (!known) return false;
+    s.bonds[static_cast<std::uint32_t>(past[0])] = {static_cast<std::uint32_t>(past[1]), {past[2], past[3], past[4]}};
+  }
+  return s.found_inside.restore(past) && s.reach.restore(past) && past.empty();
+}
+
+}  // namespace glisson
