@@ -29,7 +29,8 @@ struct CutOptions {
   /// Least mean ratio of a tet that a move may leave behind (regular_mean_ratio; 1 is best), 0.01 … 0.5.
   double least_quality = 0.15;
   /// Least bound of the stable step that a moved vertex may leave to a tet, over the least of all tets when the Cutter is
-  /// made, 0.05 … 1.
+  /// made, 0.05 … 1. Where tissue is very viscous, the explicit scheme's bound goes with the square of a tet's size, and the
+  /// same number lets vertices go less far.
   double least_step = 0.4;
 };
 

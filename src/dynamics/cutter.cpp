@@ -8,6 +8,7 @@
 
 #include "dynamics/blade_view.h"
 #include "dynamics/simulation_parts.h"
+#include "dynamics/stable_step.h"
 #include "glisson/cutting.h"
 #include "mesh/cut_snap.h"
 
@@ -53,19 +54,15 @@ struct Cutter::Impl {
   CutOptions options;
   BladeView view;
   detail::CutSheet sheet;
-  std::vector<char> doubled;  ///< per vertex: split by this cut already, so that it stays where it is
-  double least_breadth = 0.0;
+  std::vector<char> doubled;   ///< per vertex: split by this cut already, so that it stays where it is
+  std::vector<double> spread;  ///< largest of a tet, by tissue [1/m²]
   BladeEdge edge{};
   bool placed = false;
 
   Impl(Simulation& s, const CutOptions& o)
       : scheme(SimulationParts::scheme(s)), simulation(s), options(o), view(scheme),
         sheet(scheme.body().elements.size(), scheme.body().vertex_count), doubled(scheme.body().vertex_count, 0) {
-    const Body& body = scheme.body();
-    least_breadth = std::numeric_limits<double>::infinity();
-    for (std::size_t e = 0; e < body.elements.size(); ++e) {
-      if (body.rest[e].volume > 0.0) least_breadth = std::min(least_breadth, detail::breadth_of(corners_at_rest(e)));
-    }
+    limit_spread(SimulationParts::viscosity_counts(s) ? 1.0 : 0.0);
   }
 
   std::array<Vec3d, 4> corners_at_rest(std::size_t e) const {
@@ -75,12 +72,33 @@ struct Cutter::Impl {
     return x;
   }
 
+  void limit_spread(double viscosity);
   void follow();
   PathPiece piece_in(std::uint32_t tet) const;
   bool may_become(std::uint32_t vertex, const Tet& tet, const std::array<double, 4>& weights) const;
   std::vector<VertexMove> snap(const std::vector<std::uint32_t>& vertices, CutReport& report) const;
   void open(const detail::CutFaces& cut, CutReport& report);
 };
+
+/// Finds how spread the gradients of a tet of each tissue may be, so that its bound of the step is least_step times the
+/// least of all.
+void Cutter::Impl::limit_spread(double viscosity) {
+  const Body& body = scheme.body();
+  double least = std::numeric_limits<double>::infinity();
+  for (const TissueBlock& block : body.blocks) {
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      if (body.rest[e].volume > 0.0) least = std::min(least, element_step(body, block, e, 1.0, viscosity));
+    }
+  }
+  for (const TissueBlock& block : body.blocks) {
+    std::size_t e = block.begin;
+    while (e + 1 < block.end && !(body.rest[e].volume > 0.0)) ++e;
+    spread.push_back(body.rest[e].volume > 0.0
+                         ? detail::spread_of(corners_at_rest(e)) /
+                               mass_factor_for(body, block, e, options.least_step * least, viscosity)
+                         : 0.0);
+  }
+}
 
 /// Takes in copies that have come.
 void Cutter::Impl::follow() {
@@ -152,8 +170,7 @@ std::vector<VertexMove> Cutter::Impl::snap(const std::vector<std::uint32_t>& ver
       .root = view.root(),
       .tissue = [&](std::uint32_t e) { return static_cast<std::size_t>(&body.block_of(e) - body.blocks.data()); },
       .may_become = [this](std::uint32_t v, const Tet& tet, const auto& w) { return may_become(v, tet, w); }};
-  detail::CutSnap snap(mesh,
-                       {options.least_quality, options.least_step * least_breadth, kNearest * view.typical_edge()});
+  detail::CutSnap snap(mesh, {options.least_quality, spread, kNearest * view.typical_edge()});
   std::vector<double> left(vertices.size(), 0.0);
   for (int pass = 0; pass < kPasses; ++pass) {
     for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -281,7 +298,7 @@ void Cutter::save(std::ostream& out) const {
   CheckpointWriter file;
   file.put_doubles(me.edge);
   file.put(me.placed);
-  file.put(me.least_breadth);
+  file.put(me.spread);
   file.put(me.doubled);
   file.put(me.sheet.past());
   me.view.save(file);
@@ -294,7 +311,7 @@ void Cutter::load(std::istream& in) {
   me.follow();
   file.get_doubles(me.edge);
   file.get(me.placed);
-  file.get(me.least_breadth);
+  file.get_same_size(me.spread);
   file.get_same_size(me.doubled);
   std::vector<double> past;
   file.get(past);

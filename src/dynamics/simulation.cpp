@@ -95,6 +95,10 @@ Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const Simula
 
 Scheme& SimulationParts::scheme(Simulation& simulation) { return *simulation.impl_->scheme; }
 
+bool SimulationParts::viscosity_counts(const Simulation& simulation) {
+  return simulation.impl_->kind % 16 == static_cast<std::uint32_t>(Integrator::explicit_);
+}
+
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;

@@ -8,6 +8,8 @@ namespace glisson {
 
 struct SimulationParts {
   static Scheme& scheme(Simulation& simulation);
+  /// Whether the integrator's stable step falls with viscosity.
+  static bool viscosity_counts(const Simulation& simulation);
 };
 
 }  // namespace glisson

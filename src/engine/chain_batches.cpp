@@ -70,33 +70,64 @@ void write_tet(ChainBatches& out, std::size_t batch, std::size_t which, std::siz
   to[9 * lanes] = -static_cast<float>(rest.volume);
 }
 
+/// The elements that chains are made of.
+struct Listed {
+  const Body& body;
+  std::span<const std::uint32_t> elements;
+  std::span<const Tet> local;
+};
+
+void resize(ChainBatches& out, std::size_t count, std::size_t lanes) {
+  out.count = count;
+  out.index.resize(count * kChainVertices * lanes, 0);
+  out.rest.resize(count * kChainTets * kTetRest * lanes, 0.0F);
+  out.element.resize(count * kChainTets * lanes, kNoElement);
+}
+
+void write_chain(ChainBatches& out, std::size_t batch, std::size_t lane, std::size_t lanes, const Listed& list,
+                 const detail::TetChain& tets) {
+  const Chain chain = placed(list.local, tets);
+  for (std::size_t a = 0; a < kChainVertices; ++a) {
+    out.index[(batch * kChainVertices + a) * lanes + lane] = static_cast<std::uint16_t>(kIndexScale * chain.vertex[a]);
+  }
+  for (std::size_t which = 0; which < kChainTets; ++which) {
+    const std::uint32_t t = chain.tet[which];
+    if (t == detail::kNoTet) continue;
+    out.element[(batch * kChainTets + which) * lanes + lane] = list.elements[t];
+    const auto& [a, b, c] = kGradientVertices[which];
+    write_tet(out, batch, which, lane, lanes, list.body.rest[list.elements[t]], list.local[t],
+              {chain.vertex[a], chain.vertex[b], chain.vertex[c]});
+  }
+}
+
+bool is_free(const ChainBatches& chains, std::size_t batch, std::size_t lane, std::size_t lanes) {
+  for (std::size_t which = 0; which < kChainTets; ++which) {
+    if (chains.element[(batch * kChainTets + which) * lanes + lane] != kNoElement) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 ChainBatches make_chain_batches(const Body& body, std::span<const std::uint32_t> elements, std::span<const Tet> local,
                                 std::size_t lanes) {
   const std::vector<detail::TetChain> chains = detail::chain_tets(local);
   ChainBatches out;
-  out.count = (chains.size() + lanes - 1) / lanes;
-  out.index.assign(out.count * kChainVertices * lanes, 0);
-  out.rest.assign(out.count * kChainTets * kTetRest * lanes, 0.0F);
-  out.element.assign(out.count * kChainTets * lanes, kNoElement);
-  for (std::size_t k = 0; k < chains.size(); ++k) {
-    const std::size_t batch = k % out.count, lane = k / out.count;  // lanes of a batch are far apart
-    const Chain chain = placed(local, chains[k]);
-    for (std::size_t a = 0; a < kChainVertices; ++a) {
-      out.index[(batch * kChainVertices + a) * lanes + lane] =
-          static_cast<std::uint16_t>(kIndexScale * chain.vertex[a]);
-    }
-    for (std::size_t which = 0; which < kChainTets; ++which) {
-      const std::uint32_t t = chain.tet[which];
-      if (t == detail::kNoTet) continue;
-      out.element[(batch * kChainTets + which) * lanes + lane] = elements[t];
-      const auto& [a, b, c] = kGradientVertices[which];
-      write_tet(out, batch, which, lane, lanes, body.rest[elements[t]], local[t],
-                {chain.vertex[a], chain.vertex[b], chain.vertex[c]});
-    }
+  resize(out, (chains.size() + lanes - 1) / lanes, lanes);
+  for (std::size_t k = 0; k < chains.size(); ++k) {  // lanes of a batch are far apart
+    write_chain(out, k % out.count, k / out.count, lanes, {body, elements, local}, chains[k]);
   }
   return out;
+}
+
+void add_chains(const Body& body, ChainBatches& out, std::span<const std::uint32_t> elements,
+                std::span<const Tet> local, std::size_t lanes, std::size_t first_batch) {
+  std::size_t at = first_batch * lanes;  // batch × lanes + lane
+  for (const detail::TetChain& chain : detail::chain_tets(local)) {
+    while (at < out.count * lanes && !is_free(out, at / lanes, at % lanes, lanes)) ++at;
+    if (at == out.count * lanes) resize(out, out.count + 1, lanes);
+    write_chain(out, at / lanes, at % lanes, lanes, {body, elements, local}, chain);
+  }
 }
 
 namespace {
@@ -116,8 +147,32 @@ std::size_t find_number(std::span<const std::uint32_t> numbers, std::uint32_t wa
 
 }  // namespace
 
+std::size_t place_of_element(const ChainBatches& chains, std::uint32_t element) {
+  return find_number(chains.element, element);
+}
+
+std::vector<std::uint32_t> elements_of_chain(const ChainBatches& chains, std::size_t place, std::size_t lanes) {
+  std::vector<std::uint32_t> elements;
+  const std::size_t first = place / (kChainTets * lanes) * kChainTets * lanes + place % lanes;
+  for (std::size_t which = 0; which < kChainTets; ++which) {
+    const std::uint32_t e = chains.element[first + which * lanes];
+    if (e != kNoElement) elements.push_back(e);
+  }
+  return elements;
+}
+
+void rewrite_element(const Body& body, ChainBatches& chains, std::size_t place, const Tet& local, std::size_t lanes) {
+  const std::size_t batch = place / (kChainTets * lanes), which = place / lanes % kChainTets, lane = place % lanes;
+  std::array<std::uint32_t, 3> vertices;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t vertex = kGradientVertices[which][a];
+    vertices[a] = chains.index[(batch * kChainVertices + vertex) * lanes + lane] / kIndexScale;
+  }
+  write_tet(chains, batch, which, lane, lanes, body.rest[chains.element[place]], local, vertices);
+}
+
 bool clear_element(ChainBatches& chains, std::uint32_t element, std::size_t lanes) {
-  const std::size_t place = find_number(chains.element, element);
+  const std::size_t place = place_of_element(chains, element);
   if (place == chains.element.size()) return false;
   float* rest = chains.rest.data() + place / lanes * kTetRest * lanes + place % lanes;
   for (std::size_t k = 0; k < kTetRest; ++k) rest[k * lanes] = 0.0F;

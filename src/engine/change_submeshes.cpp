@@ -1,13 +1,16 @@
 // change_submeshes.cpp — a body's change carried into its submeshes; only those it touches are laid out anew.
 //
 //   removed element   chains: its lane is emptied where it lies        edges: its six are assembled anew
-//   split vertex      the submeshes of the corners that changed are laid out anew; the copies come last among
-//                     the state records, as interface vertices, so that no other record moves
-//   moved vertex      the submeshes of the elements around it are laid out anew
+//   split vertex      chains: those with corners that changed are made anew, the others stay (patch_chains.h)
+//                     edges: the submesh is laid out anew
+//                     the copies come last among the state records, as interface vertices: no other record moves
+//   moved vertex      chains: the rest data around it are written anew       edges: the submesh is laid out anew
 #include <algorithm>
+#include <map>
 
 #include "engine/chain_batches.h"
 #include "engine/edge_batches.h"
+#include "engine/patch_chains.h"
 #include "engine/submesh_body.h"
 #include "engine/submesh_scratch.h"
 
@@ -58,13 +61,14 @@ void SubmeshBody::take_states(std::span<const MovedVertex> moved) {
 }
 
 void SubmeshBody::lay_out_touched(const BodyChange& change) {
-  std::vector<std::uint32_t> touched;
-  for (const detail::CornerChange& c : change.corners) touched.push_back(part_of_element_[c.tet]);
-  for (const std::uint32_t e : change.reshaped) touched.push_back(part_of_element_[e]);
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  for (const std::uint32_t p : touched) {
+  std::map<std::uint32_t, ChangedElements> touched;
+  for (const detail::CornerChange& c : change.corners) touched[part_of_element_[c.tet]].turned.push_back(c.tet);
+  for (const std::uint32_t e : change.reshaped) touched[part_of_element_[e]].reshaped.push_back(e);
+  for (auto& [p, changed] : touched) {
     Submesh& part = submeshes_.parts[p];
+    std::sort(changed.turned.begin(), changed.turned.end());
+    changed.turned.erase(std::unique(changed.turned.begin(), changed.turned.end()), changed.turned.end());
+    if (patch_chains(body_, submeshes_.record_of_vertex, changed, part, kernels_.lanes)) continue;
     std::erase_if(part.elements, [&](std::uint32_t e) { return body_.rest[e].volume == 0.0; });
     lay_out(body_, submeshes_.record_of_vertex, part, kernels_.lanes);
   }

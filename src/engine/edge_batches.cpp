@@ -7,8 +7,8 @@
 namespace glisson::engine {
 namespace {
 
-/// One element's share in an edge.
-struct Share {
+/// An edge of the submesh.
+struct Edge {
   std::uint32_t i, j;  ///< local vertices, i < j
   Mat3d tensor;
 };
@@ -27,29 +27,44 @@ Mat3d edge_tensor(const TissueBlock& block, double volume, const Vec3d& si, cons
   return T;
 }
 
-void add_shares(const Body& body, const TissueBlock& block, std::uint32_t element, const Tet& local,
-                std::vector<Share>& shares) {
-  const ElementRest& rest = body.rest[element];
-  const std::array<Vec3d, 4> s{-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
-  for (std::size_t a = 0; a < 4; ++a) {
-    for (std::size_t b = a + 1; b < 4; ++b) {
-      const bool ordered = local[a] < local[b];
-      const std::size_t i = ordered ? a : b, j = ordered ? b : a;
-      shares.push_back({local[i], local[j], edge_tensor(block, rest.volume, s[i], s[j])});
+/// One element's share in an edge: local vertices, element and its two corners in one number, in the order in which shares
+/// are added up. 14 + 14 bits, 28 for the place of the element, 2 + 2.
+using Share = std::uint64_t;
+constexpr unsigned kCornerBits = 2, kPlaceBits = 28, kLocalBits = 14;
+
+std::vector<Share> sorted_shares(std::span<const Tet> local) {
+  std::vector<Share> shares;
+  shares.reserve(6 * local.size());
+  for (std::size_t k = 0; k < local.size(); ++k) {
+    for (std::uint64_t a = 0; a < 4; ++a) {
+      for (std::uint64_t b = a + 1; b < 4; ++b) {
+        const bool ordered = local[k][a] < local[k][b];
+        const std::uint64_t from = ordered ? a : b, to = ordered ? b : a;
+        const std::uint64_t edge = std::uint64_t{local[k][from]} << kLocalBits | local[k][to];
+        shares.push_back((edge << kPlaceBits | k) << 2 * kCornerBits | from << kCornerBits | to);
+      }
     }
   }
+  std::sort(shares.begin(), shares.end());
+  return shares;
 }
 
 /// Adds up the shares of each edge, in order of element.
-std::vector<Share> assembled(std::vector<Share> shares) {
-  std::stable_sort(shares.begin(), shares.end(),
-                   [](const Share& a, const Share& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
-  std::vector<Share> edges;
-  for (const Share& s : shares) {
-    if (edges.empty() || edges.back().i != s.i || edges.back().j != s.j) {
-      edges.push_back(s);
+std::vector<Edge> assembled(const Body& body, const TissueBlock& block, std::span<const std::uint32_t> elements,
+                            std::span<const Tet> local) {
+  std::vector<Edge> edges;
+  edges.reserve(2 * local.size());
+  for (const Share share : sorted_shares(local)) {
+    const std::size_t place = share >> 2 * kCornerBits & ((1U << kPlaceBits) - 1U);
+    const std::size_t from = share >> kCornerBits & 3U, to = share & 3U;
+    const std::uint32_t i = local[place][from], j = local[place][to];
+    const ElementRest& rest = body.rest[elements[place]];
+    const std::array<Vec3d, 4> s{-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
+    const Mat3d tensor = edge_tensor(block, rest.volume, s[from], s[to]);
+    if (edges.empty() || edges.back().i != i || edges.back().j != j) {
+      edges.push_back({i, j, tensor});
     } else {
-      for (std::size_t k = 0; k < 9; ++k) edges.back().tensor(k / 3, k % 3) += s.tensor(k / 3, k % 3);
+      for (std::size_t k = 0; k < 9; ++k) edges.back().tensor(k / 3, k % 3) += tensor(k / 3, k % 3);
     }
   }
   return edges;
@@ -59,10 +74,7 @@ std::vector<Share> assembled(std::vector<Share> shares) {
 
 EdgeBatches make_edge_batches(const Body& body, const TissueBlock& block, std::span<const std::uint32_t> elements,
                               std::span<const Tet> local, std::size_t lanes) {
-  std::vector<Share> shares;
-  shares.reserve(6 * elements.size());
-  for (std::size_t k = 0; k < elements.size(); ++k) add_shares(body, block, elements[k], local[k], shares);
-  const std::vector<Share> edges = assembled(std::move(shares));
+  const std::vector<Edge> edges = assembled(body, block, elements, local);
 
   EdgeBatches out;
   out.count = (edges.size() + lanes - 1) / lanes;

@@ -120,6 +120,7 @@ void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_verte
   } else {
     const ChainBatches before = std::move(part.chains);
     part.chains = make_chain_batches(body, part.elements, local, lanes);
+    part.laid_out = part.chains.count;
     lay_out_response(body, block.tissue, before, part, lanes);
   }
 }

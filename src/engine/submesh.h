@@ -55,6 +55,7 @@ struct Submesh {
   EdgeBatches edges;                    ///< for a linear tissue
   LaneVector<float> fibre;              ///< unit directions, [batch][3 tets][3][lane]; of a tissue with fibres
   LaneVector<float> memory;             ///< of Maxwell branches, [batch][3 tets][branch][6][lane] [Pa]
+  std::size_t laid_out = 0;     ///< batches of chains when it was laid out; those after hold what has changed since
   float gradient_reach = 0.0F;  ///< largest Σ |s_a| of a tet [1/m]: |H| is at most this times the longest |δu|
 
   std::size_t local_vertices() const { return interior_count + shared.size(); }

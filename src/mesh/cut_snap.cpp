@@ -58,15 +58,24 @@ double mean_ratio_of(const std::array<Vec3d, 4>& x) {
   return 12.0 * root * root / squares;
 }
 
-double breadth_of(const std::array<Vec3d, 4>& x) {
+double spread_of(const std::array<Vec3d, 4>& x) {
   const double volume = six_volume(x);
-  if (!(volume > 0.0)) return 0.0;
-  double squares = 0.0;
+  if (!(volume > 0.0)) return std::numeric_limits<double>::infinity();
+  Mat3d m;  // of the faces' area vectors, −3 V s
   for (const auto& f : kFaceCorners) {
-    const Vec3d area = area_vector(x[f[0]], x[f[1]], x[f[2]]);
-    squares += dot(area, area);
+    const Vec3d a = area_vector(x[f[0]], x[f[1]], x[f[2]]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) m(i, j) += a[i] * a[j];
+    }
   }
-  return 0.5 * volume / std::sqrt(squares);
+  // m = q I + p B with tr B = 0: the largest eigenvalue is q + 2 p cos(⅓ arccos(½ det B))
+  const double q = trace(m) / 3.0;
+  for (std::size_t i = 0; i < 3; ++i) m(i, i) -= q;
+  double squares = 0.0;
+  for (const auto& row : m.m) squares += row[0] * row[0] + row[1] * row[1] + row[2] * row[2];
+  const double p = std::sqrt(squares / 6.0);
+  const double half = p > 0.0 ? std::clamp(0.5 * determinant(m) / (p * p * p), -1.0, 1.0) : 0.0;
+  return 4.0 * (q + 2.0 * p * std::cos(std::acos(half) / 3.0)) / (volume * volume);
 }
 
 CutSnap::State CutSnap::state(std::uint32_t vertex) const {
@@ -156,7 +165,7 @@ bool CutSnap::try_at(std::uint32_t vertex, const Vec3d& to) {
       after[c] = n.rest, after_now[c] = n.rest + n.displacement;
     }
     if (mean_ratio_of(after) < std::min(limits_.quality, mean_ratio_of(before))) return false;
-    if (breadth_of(after) < std::min(limits_.breadth, breadth_of(before))) return false;
+    if (spread_of(after) > std::max(limits_.spread[mesh_.tissue(t)], spread_of(before))) return false;
     least_ratio = std::min(least_ratio, six_volume(before_now) / six_volume(before));
     next_ratio = std::min(next_ratio, six_volume(after_now) / six_volume(after));
   }

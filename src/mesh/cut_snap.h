@@ -30,17 +30,18 @@ struct SnapMesh {
   std::function<bool(std::uint32_t vertex, const Tet& tet, const std::array<double, 4>& weights)> may_become;
 };
 
-/// What no tet may fall below that is above it; one that is below it already may not fall further.
+/// What a tet must be after a move; one that is worse already may not become worse still.
 struct SnapLimits {
-  double quality = 0.0;  ///< mean ratio at rest [-]
-  double breadth = 0.0;  ///< breadth_of at rest [m]
-  double nearest = 0.0;  ///< ways shorter than that are not gone [m]
+  double quality = 0.0;        ///< least mean ratio at rest [-]
+  std::vector<double> spread;  ///< largest spread_of at rest, by tissue [1/m²]
+  double nearest = 0.0;        ///< ways shorter than that are not gone [m]
 };
 
 /// Mean ratio of four corners as of regular_mean_ratio, 0 where they are turned over.
 double mean_ratio_of(const std::array<Vec3d, 4>& corners);
-/// (Σ 1/a²)^(−½) over the four altitudes a of a tet [m]: what its bound of the stable step goes with; 0 where turned over.
-double breadth_of(const std::array<Vec3d, 4>& corners);
+/// Largest eigenvalue of Σ s sᵀ over the gradients s of the four shape functions [1/m²]: what a tet's bound of the stable
+/// step goes with; infinite where it is turned over.
+double spread_of(const std::array<Vec3d, 4>& corners);
 
 class CutSnap {
  public:
