@@ -31,6 +31,7 @@ class Pace {
 
   /// One frame of simulated time and the tool's force; false where the run has ended.
   bool frame(RealtimeResult& result);
+  std::string news();
 
  private:
   bool step(RealtimeResult& result);
@@ -39,7 +40,8 @@ class Pace {
   OnInversion on_inversion_;
   double frame_s_;
   const std::atomic<bool>& stop_;
-  double due_s_;  ///< simulated time that the last frame was to reach [s]
+  std::vector<std::size_t> seen_;  ///< events told, per instrument
+  double due_s_;                   ///< simulated time that the last frame was to reach [s]
 };
 
 bool Pace::step(RealtimeResult& result) {
@@ -59,8 +61,21 @@ bool Pace::frame(RealtimeResult& result) {
   }
   if (!body_.tools.empty() && body_.simulation.steps() > 0) {
     result.peak_force_N = std::max(result.peak_force_N, norm(body_.simulation.force(body_.tools.front()).total()));
+  } else if (!body_.instruments.empty()) {
+    result.peak_force_N = std::max(result.peak_force_N, norm(body_.instruments.front()->forces().total()));
   }
   return true;
+}
+
+/// What instruments have met since the last call, separated by commas.
+std::string Pace::news() {
+  std::string text;
+  seen_.resize(body_.instruments.size(), 0);
+  for (std::size_t i = 0; i < body_.instruments.size(); ++i) {
+    const std::vector<InstrumentEvent>& events = body_.instruments[i]->events();
+    for (; seen_[i] < events.size(); ++seen_[i]) text += (text.empty() ? "" : ", ") + events[seen_[i]].event;
+  }
+  return text;
 }
 
 }  // namespace
@@ -83,7 +98,9 @@ RealtimeResult run_realtime(BuiltVariant& body, OnInversion on_inversion, const 
     wait_until(start + static_cast<std::int64_t>(k) * frame);
     const Clock::time_point begin = Clock::now();
     const bool whole = pace.frame(result);
-    if (whole) result.compute_s.push_back(seconds_between(begin, Clock::now()));
+    const double spent = seconds_between(begin, Clock::now());
+    if (whole) result.compute_s.push_back(spent);
+    if (std::string news = pace.news(); !news.empty()) result.eventful.push_back({std::move(news), spent});
   }
   if (result.end == RunSummary::End::finished) wait_until(start + static_cast<std::int64_t>(frames) * frame);
   result.wall_s = seconds_between(start, Clock::now());

@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "glisson/scene.h"
@@ -26,7 +27,13 @@ struct RealtimeResult {
   std::uint64_t dropped = 0;      ///< frames that were over before their turn
   std::uint64_t steps = 0;
   double wall_s = 0.0, simulated_s = 0.0;
-  double peak_force_N = 0.0;  ///< of the first tool, of those read once a frame
+  double peak_force_N = 0.0;  ///< of the first tool or instrument, of those read once a frame
+  /// Frames in which an instrument met something: a puncture is the dearest moment of a run.
+  struct Eventful {
+    std::string events;  ///< separated by commas
+    double compute_s = 0.0;
+  };
+  std::vector<Eventful> eventful;
   RunSummary::End end = RunSummary::End::finished;
 };
 

@@ -30,6 +30,8 @@ constexpr const char* kFooter =
     "  glisson bench realtime scenes/paper/figure3b.toml --variant eta_0\n"
     "  glisson bench realtime scenes/organs/liver.toml --mesh liver.vtu --seconds 30 --json realtime.json";
 
+constexpr std::size_t kMostEventful = 20;  // lines of events
+
 struct Options {
   SceneOptions scene;
   double seconds = 10.0, frame_ms = 1.0;
@@ -81,6 +83,9 @@ void print_figures(const Variant& variant, const BuiltVariant& body, const Realt
              f.frames > 0 ? 100.0 * static_cast<double>(f.missed) / static_cast<double>(f.frames) : 0.0, r.dropped);
   fmt::print("  compute  p50 {:.1f} µs, p99 {:.1f} µs, p99.9 {:.1f} µs, max {:.1f} µs\n", f.p50_us, f.p99_us, f.p999_us,
              f.max_us);
+  for (std::size_t i = 0; i < std::min(r.eventful.size(), kMostEventful); ++i) {
+    fmt::print("  event    {}: {:.1f} µs in that frame\n", r.eventful[i].events, 1e6 * r.eventful[i].compute_s);
+  }
   fmt::print("  force    {:.4g} N at most on the tool\n", r.peak_force_N);
   fmt::print("  pace     {}: {:.3f} s simulated in {:.3f} s, real-time factor {:.3f}\n",
              r.dropped == 0 ? "kept" : "not kept", r.simulated_s, r.wall_s, f.realtime_factor);
@@ -108,6 +113,10 @@ nlohmann::ordered_json realtime_json(const Variant& variant, const BuiltVariant&
   json["simulated_s"] = r.simulated_s;
   json["realtime_factor"] = f.realtime_factor;
   json["peak_force_N"] = r.peak_force_N;
+  json["events"] = nlohmann::ordered_json::array();
+  for (const RealtimeResult::Eventful& e : r.eventful) {
+    json["events"].push_back({{"events", e.events}, {"compute_us", 1e6 * e.compute_s}});
+  }
   return json;
 }
 

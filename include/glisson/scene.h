@@ -16,6 +16,7 @@
 
 #include "glisson/capsule.h"
 #include "glisson/contact.h"
+#include "glisson/container.h"
 #include "glisson/mesh.h"
 #include "glisson/motion.h"
 #include "glisson/needle.h"
@@ -156,6 +157,14 @@ std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& instrument);
 /// @throws std::runtime_error `file:line: what is wrong`
 RecordedMotion load_record(const std::filesystem::path& file, const Vec3d& direction);
 
+/// A rigid vessel around the body, upright.
+struct ContainerSpec {
+  enum class Hold { free, wet, bonded };
+  Hold hold = Hold::free;  ///< what `options` says of it in three switches
+  ContainerOptions options;
+  std::string origin;
+};
+
 /// A membrane on a part of the surface.
 struct CapsuleSpec {
   CapsuleOptions options;
@@ -181,6 +190,7 @@ struct Variant {
   std::vector<ToolSpec> tools;
   std::vector<InstrumentSpec> instruments;
   std::vector<CapsuleSpec> capsules;
+  std::optional<ContainerSpec> container;
   SimulationOptions simulation;
   OnInversion on_inversion = OnInversion::go_on;
   std::optional<double> duration;          ///< [s]; none: until the last motion has ended
@@ -241,6 +251,7 @@ struct Sample {
   std::vector<ForceParts> tools;              ///< per tool: what it exerts on the tissue
   std::vector<ForceParts> supports;           ///< per fixed set: what it exerts on the tissue
   std::vector<InstrumentSample> instruments;  ///< per instrument
+  std::optional<ContainerLoads> container;    ///< what the tissue exerts on it
   Energies energies;
 };
 
@@ -300,6 +311,7 @@ struct BuiltVariant {
   std::vector<ConstraintId> tools;                       ///< per variant.tools
   std::vector<std::shared_ptr<Instrument>> instruments;  ///< per variant.instruments
   std::vector<std::shared_ptr<Capsule>> capsules;        ///< per variant.capsules
+  std::shared_ptr<Container> container;                  ///< null: there is none
 };
 /// @throws SceneError where mesh, sets, tissues, step or constraints cannot be used
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load);

@@ -29,7 +29,7 @@ std::vector<std::string> support_columns(const Variant& variant) {
 
 }  // namespace
 
-ForceTable::ForceTable(const Variant& variant) {
+ForceTable::ForceTable(const Variant& variant) : contained_(variant.container.has_value()) {
   for (const ToolSpec& tool : variant.tools) tools_.push_back(unit(tool.motion.direction));
   for (const InstrumentSpec& x : variant.instruments) instruments_.push_back(unit(x.direction));
   const bool led_by_instrument = tools_.empty() && !instruments_.empty();
@@ -38,6 +38,8 @@ ForceTable::ForceTable(const Variant& variant) {
     further_.push_back({variant.instruments[i].name, true, i});
   }
   columns_ = led_by_instrument ? kInstrumentColumns : kToolColumns;
+  if (contained_ && !led_by_instrument) columns_.insert(columns_.end(), {"friction_N", "cutting_N"});
+  if (contained_) columns_.insert(columns_.end(), {"bottom_z_N", "side_z_N", "side_radial_N"});
   const std::vector<std::string> supports = support_columns(variant);
   columns_.insert(columns_.end(), kEnergyColumns.begin(), kEnergyColumns.end());
   columns_.insert(columns_.end(), supports.begin(), supports.end());
@@ -72,6 +74,11 @@ std::vector<double> ForceTable::instrument_row(const Sample& sample, std::size_t
 std::vector<double> ForceTable::row(const Sample& sample) const {
   const bool led_by_instrument = tools_.empty() && !instruments_.empty();
   std::vector<double> row = led_by_instrument ? instrument_row(sample, 0) : tool_row(sample, 0);
+  if (contained_ && !led_by_instrument) row.insert(row.end(), {0.0, 0.0});
+  if (contained_) {
+    const ContainerLoads loads = sample.container.value_or(ContainerLoads{});
+    row.insert(row.end(), {loads.bottom.z, loads.side.z, loads.side_radial});
+  }
   const Energies& e = sample.energies;
   row.insert(row.end(), {e.elastic, e.kinetic, e.dissipated, e.work_tools, e.work_loads});
   for (const ForceParts& support : sample.supports) {

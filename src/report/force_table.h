@@ -42,7 +42,7 @@ class ForceTable {
   std::vector<Vec3d> tools_, instruments_;  // directions, unit vectors
   std::vector<Further> further_;
   std::vector<std::string> columns_;
-  bool contained_ = false;
+  bool contained_;
 };
 
 }  // namespace glisson

@@ -39,37 +39,50 @@ std::uint8_t fraction8(double value, double scale) {
 
 }  // namespace
 
-SurfaceRecorder::SurfaceRecorder(const Variant& variant, const Simulation& simulation, std::size_t max_bytes) {
-  const TetMesh& mesh = simulation.mesh();
-  std::vector<std::uint32_t> number(mesh.vertices.size(), kInside);
-  for (const Triangle& triangle : boundary_triangles(mesh)) {
-    for (const std::uint32_t v : triangle) {
-      if (number[v] == kInside) {
-        number[v] = static_cast<std::uint32_t>(vertices_.size());
-        vertices_.push_back(v);
-      }
-      triangles_.push_back(number[v]);
-    }
-  }
-  const std::vector<std::uint8_t> marks = constraint_marks(variant, mesh);
-  std::vector<float> rest;
-  std::vector<std::uint8_t> fixed;
-  for (const std::uint32_t v : vertices_) {
-    for (std::size_t i = 0; i < 3; ++i) rest.push_back(static_cast<float>(mesh.vertices[v][i]));
-    fixed.push_back(marks[v]);
-  }
-  head_ = {{"vertices", vertices_.size()},
-           {"triangles", base64_of(std::span<const std::uint32_t>(triangles_))},
-           {"rest", base64_of(std::span<const float>(rest))},
-           {"fixed", base64_of(std::span<const std::uint8_t>(fixed))}};
+SurfaceRecorder::SurfaceRecorder(const Variant& variant, const Simulation& simulation, std::size_t max_bytes)
+    : variant_(variant) {
+  find_surface(simulation);
+  head_ = {{"triangles", base64_of(std::span<const std::uint32_t>(triangles_))},
+           {"instruments", nlohmann::json::array()}};
   const double wanted = kBase64BytesPerVertex * static_cast<double>(vertices_.size()) * variant.output.frames;
   stride_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(wanted / static_cast<double>(max_bytes))));
+}
+
+/// The boundary as it is now. Vertices that were at it before keep their number.
+void SurfaceRecorder::find_surface(const Simulation& simulation) {
+  const TetMesh& mesh = simulation.mesh();
+  const std::vector<std::uint8_t> marks = constraint_marks(variant_, mesh);
+  number_.resize(mesh.vertices.size(), kInside);
+  mesh_vertices_ = mesh.vertices.size();
+  triangles_.clear();
+  for (const Triangle& triangle : boundary_triangles(removed_ > 0 ? simulation.present_mesh() : mesh)) {
+    for (const std::uint32_t v : triangle) {
+      if (number_[v] == kInside) {
+        number_[v] = static_cast<std::uint32_t>(vertices_.size());
+        vertices_.push_back(v);
+        rest_.push_back(mesh.vertices[v]);
+        fixed_.push_back(marks[v]);
+      }
+      triangles_.push_back(number_[v]);
+    }
+  }
+}
+
+void SurfaceRecorder::find_new_surface(const Simulation& simulation) {
+  std::size_t removed = 0;
+  const auto tets = static_cast<std::uint32_t>(simulation.mesh().tets.size());
+  for (std::uint32_t t = 0; t < tets; ++t) removed += simulation.is_removed(t) ? 1 : 0;
+  if (removed == removed_ && simulation.mesh().vertices.size() == mesh_vertices_) return;
+  removed_ = removed;
+  changed_ = true;
+  find_surface(simulation);
 }
 
 std::vector<double> SurfaceRecorder::surface_intensity(const Simulation& simulation, const TetFields& fields) const {
   const TetMesh& mesh = simulation.mesh();
   std::vector<double> sum(mesh.vertices.size(), 0.0), count(mesh.vertices.size(), 0.0);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (simulation.is_removed(static_cast<std::uint32_t>(t))) continue;
     for (const std::uint32_t v : mesh.tets[t]) {
       sum[v] += fields.s[t];
       count[v] += 1.0;
@@ -77,17 +90,22 @@ std::vector<double> SurfaceRecorder::surface_intensity(const Simulation& simulat
   }
   std::vector<double> mean;
   mean.reserve(vertices_.size());
-  for (const std::uint32_t v : vertices_) mean.push_back(sum[v] / count[v]);
+  for (const std::uint32_t v : vertices_) mean.push_back(sum[v] / std::max(1.0, count[v]));
   return mean;
 }
 
 nlohmann::json SurfaceRecorder::frame(const Simulation& simulation, const TetFields& fields) {
-  const auto displacement = simulation.displacement();
+  const TetMesh& mesh = simulation.mesh();
+  std::vector<Vec3d> displacement;  // from where the vertex was first: a cut moves vertices at rest
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const std::uint32_t v = vertices_[i];
+    displacement.push_back(mesh.vertices[v] + simulation.displacement()[v] - rest_[i]);
+  }
   const std::vector<double> intensity = surface_intensity(simulation, fields);
   double reach = 0.0, strongest = 0.0;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const double u = std::abs(displacement[vertices_[i]][k]);
+      const double u = std::abs(displacement[i][k]);
       if (std::isfinite(u)) reach = std::max(reach, u);
     }
     if (std::isfinite(intensity[i])) strongest = std::max(strongest, intensity[i]);
@@ -96,17 +114,19 @@ nlohmann::json SurfaceRecorder::frame(const Simulation& simulation, const TetFie
   std::vector<std::int16_t> moved;
   std::vector<std::uint8_t> colour;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) moved.push_back(fraction16(displacement[vertices_[i]][k], reach));
+    for (std::size_t k = 0; k < 3; ++k) moved.push_back(fraction16(displacement[i][k], reach));
     colour.push_back(strongest > 0.0 ? fraction8(intensity[i], strongest) : std::uint8_t{0});
   }
   nlohmann::json places = nlohmann::json::array();
   for (const auto& instrument : instruments_) places.push_back(instrument_place_json(*instrument));
-  return {{"time_s", simulation.time()},
-          {"displacement_scale_m", reach},
-          {"displacement", base64_of(std::span<const std::int16_t>(moved))},
-          {"intensity_max", strongest},
-          {"intensity", base64_of(std::span<const std::uint8_t>(colour))},
-          {"instruments", std::move(places)}};
+  nlohmann::json json{{"time_s", simulation.time()},
+                      {"displacement_scale_m", reach},
+                      {"displacement", base64_of(std::span<const std::int16_t>(moved))},
+                      {"intensity_max", strongest},
+                      {"intensity", base64_of(std::span<const std::uint8_t>(colour))},
+                      {"instruments", std::move(places)}};
+  if (changed_) json["triangles"] = base64_of(std::span<const std::uint32_t>(triangles_));
+  return json;
 }
 
 void SurfaceRecorder::set_instruments(std::vector<std::shared_ptr<Instrument>> instruments) {
@@ -116,14 +136,23 @@ void SurfaceRecorder::set_instruments(std::vector<std::shared_ptr<Instrument>> i
 }
 
 void SurfaceRecorder::add(const Simulation& simulation, const TetFields& fields) {
+  find_new_surface(simulation);
   last_ = frame(simulation, fields);
   if (seen_++ % stride_ != 0) return;
   frames_.push_back(std::move(*last_));
   last_.reset();
+  changed_ = false;
 }
 
 nlohmann::json SurfaceRecorder::json() const {
+  std::vector<float> rest;
+  for (const Vec3d& x : rest_) {
+    for (std::size_t k = 0; k < 3; ++k) rest.push_back(static_cast<float>(x[k]));
+  }
   nlohmann::json surface = head_;
+  surface["vertices"] = vertices_.size();
+  surface["rest"] = base64_of(std::span<const float>(rest));
+  surface["fixed"] = base64_of(std::span<const std::uint8_t>(fixed_));
   surface["frames"] = frames_;
   if (last_) surface["frames"].push_back(*last_);
   return surface;

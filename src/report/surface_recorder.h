@@ -1,6 +1,6 @@
 // surface_recorder.h — the moving surface of a body, small enough to travel inside the report page.
 //
-// Only boundary vertices are kept, renumbered. A frame holds displacements as 16-bit fractions of the largest
+// Only boundary vertices are kept, renumbered; a body that is cut, or loses tets, gets a new surface with its next frame. A frame holds displacements as 16-bit fractions of the largest
 // one and intensities as 8-bit fractions of the largest one: 7 bytes a vertex, an error of 3e-5 of the largest
 // displacement, well below a pixel.
 #pragma once
@@ -32,11 +32,19 @@ class SurfaceRecorder {
   nlohmann::json json() const;
 
  private:
+  void find_surface(const Simulation& simulation);
+  void find_new_surface(const Simulation& simulation);
   nlohmann::json frame(const Simulation& simulation, const TetFields& fields);
   std::vector<double> surface_intensity(const Simulation& simulation, const TetFields& fields) const;
 
+  Variant variant_;
   std::vector<std::uint32_t> vertices_;   // mesh vertex of each surface vertex
+  std::vector<std::uint32_t> number_;     // surface vertex of each mesh vertex, or kInside
   std::vector<std::uint32_t> triangles_;  // in surface vertices
+  std::vector<Vec3d> rest_;               // of each surface vertex, when it was first at the surface [m]
+  std::vector<std::uint8_t> fixed_;       // constraint mark of each surface vertex
+  std::size_t mesh_vertices_ = 0, removed_ = 0;
+  bool changed_ = false;  // the surface, since the last frame that was kept
   std::vector<std::shared_ptr<Instrument>> instruments_;
   nlohmann::json head_;
   nlohmann::json frames_ = nlohmann::json::array();

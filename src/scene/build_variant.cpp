@@ -134,6 +134,13 @@ void attach_interactions(const Variant& variant, BuiltVariant& built) {
       return capsule;
     }));
   }
+  if (variant.container) {
+    built.container = located(variant, variant.container->origin, [&] {
+      auto container = std::make_shared<Container>(variant.container->options);
+      simulation.attach(container);
+      return container;
+    });
+  }
   for (const InstrumentSpec& x : variant.instruments) {
     built.instruments.push_back(located(variant, x.origin, [&] {
       auto instrument = scene::make_instrument(x, simulation.mesh());
@@ -172,7 +179,7 @@ std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh
 }
 
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load) {
-  BuiltVariant built{simulation_of(variant, build_mesh(variant, load)), {}, {}, {}, {}};
+  BuiltVariant built{simulation_of(variant, build_mesh(variant, load)), {}, {}, {}, {}, {}};
   Simulation& simulation = built.simulation;
   const TetMesh& mesh = simulation.mesh();
   for (const FixedSpec& x : variant.fixed) {

@@ -43,6 +43,7 @@ std::string scene_reference_markdown() {
   text += section_text(rupture_section(), "`[instrument.rupture]`");
   text += section_text(tip_section(), "`[instrument.tip]`, `[instrument.regions.NAME]`");
   text += section_text(shaft_friction_section(), "`[instrument.friction]`");
+  text += section_text(container_section(), "`[container]`");
   text += section_text(capsule_section(), "`[[capsule]]`");
   text += section_text(output_section(), "`[output]`");
   text += section_text(chart_section(), "`[[chart]]`");

@@ -30,9 +30,10 @@ and any section above, laid over that of the scene:
 - A key removes the keys it excludes: a variant's `mu_law` takes the place of the scene's `law`, its `sphere_m` that of
   `box_m`.
 - Lists of numbers are replaced.
-- Lists of tables (`tool`, `fixed`, `load`, `region`) are replaced by a list, `[[variant.tool]]`. To change some keys
-  of one element, write a table with its name or number instead: `tool.press.velocity_mm_s = 2`, or
-  `fixed.0.axes = "z"`. Tools and regions go by their `name`, loads and fixed sets by their `set`; numbers count from 0.
+- Lists of tables (`tool`, `instrument`, `fixed`, `load`, `region`, `capsule`) are replaced by a list,
+  `[[variant.tool]]`. To change some keys of one element, write a table with its name or number instead:
+  `tool.press.velocity_mm_s = 2`, `instrument.needle.motion.velocity_mm_s = 2`, or `fixed.0.axes = "z"`. Tools,
+  instruments and regions go by their `name`, loads and fixed sets by their `set`; numbers count from 0.
 
 Without any `[[variant]]` the scene is one experiment called `main`. Regions inherit from the `[tissue]` of their
 variant.
@@ -72,11 +73,16 @@ const std::string_view kReferenceRun = R"(## What a run does
 
 1. The mesh is made or read, vertex sets are picked at rest, and regions are marked by the centroids of their tets.
 2. Fixed sets are held, tools are attached, loads are added. A component of a vertex can be held by one of them only.
-3. Time runs to `duration_s`, or to the end of the last tool's motion; `max_steps` ends it earlier. The last step is the
+   Capsules, the container and instruments act on the body in this order.
+3. Time runs to `duration_s`, or to the end of the last motion of a tool or instrument; `max_steps` ends it earlier. The last step is the
    one that ends nearest to that time.
 4. Each line of forces.csv is of the instant at which a step starts, the one nearest to each multiple of
    1/`sample_rate_hz`; the last line is of the last step. Depth, forces and energies on a line are of the same instant.
-5. Frames are evenly spaced, the first at rest and the last at the end.
+   Without a [[tool]] its first columns are of the first instrument: pressing (`normal_N`), `friction_N` and `cutting_N`
+   add up to `force_N`. Every further tool and instrument has a forces_NAME.csv.
+5. events.csv has a line for what instruments meet: contact, puncture, drop (the end of the sudden fall of the force),
+   inner puncture, withdrawal, release. Both files are whole up to the last sample, however a run ends.
+6. Frames are evenly spaced, the first at rest and the last at the end.
 
 )";
 

@@ -152,6 +152,7 @@ void Run::take_sample() {
     sample_.instruments[i] = {x.force_depth(), x.forces()};
     summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(x.forces().total(), x.direction())));
   }
+  if (built_.container) sample_.container = built_.container->loads();
   sample_.energies = simulation_.energies();
   tell_events();
   observer_.on_sample(sample_);

@@ -85,12 +85,16 @@ void check_integrator(const Variant& variant, const Node& experiment, Problems& 
   const Integrator integrator = variant.simulation.integrator;
   const bool borne =
       integrator == Integrator::explicit_ || (integrator == Integrator::semi_implicit && !is_viscous(variant));
-  if (borne || (variant.instruments.empty() && variant.capsules.empty())) return;
+  const bool acts = !variant.instruments.empty() || !variant.capsules.empty() || variant.container;
+  if (borne || !acts) return;
+  const std::string what = !variant.instruments.empty() ? "[[instrument]]"
+                           : variant.container          ? "[container]"
+                                                        : "[[capsule]]";
   const Node& key = *experiment.find("motion")->find("integrator");
   problems.add(key.where, "motion.integrator",
                "\"" + *key.text() + "\"" + (integrator == Integrator::semi_implicit ? " with viscous tissue" : "") +
-                   " bears no [[" + (variant.instruments.empty() ? "capsule" : "instrument") +
-                   "]]; take \"explicit\", or \"semi_implicit\" with tissue that has no `viscosity_Pa_s` (Maxwell "
+                   " bears no " + what +
+                   "; take \"explicit\", or \"semi_implicit\" with tissue that has no `viscosity_Pa_s` (Maxwell "
                    "branches may stay)");
 }
 

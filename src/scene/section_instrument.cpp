@@ -1,4 +1,4 @@
-// section_instrument.cpp — [[instrument]]: needles that pierce and shapes that press; [[capsule]].
+// section_instrument.cpp — [[instrument]]: needles that pierce and shapes that press.
 #include <cmath>
 
 #include "glisson/scene.h"
@@ -234,44 +234,6 @@ const SectionSpec& instrument_section() {
         instrument_kind<Contact<Ball>>(ball_kind()),   instrument_kind<Contact<NeedleShape>>(probe_kind()),
         instrument_kind<Contact<Plate>>(plate_kind()), instrument_kind<Contact<Block>>(block_kind())};
     s.finish(check_instrument);
-    return s.spec();
-  }();
-  return section;
-}
-
-const SectionSpec& capsule_section() {
-  static const SectionSpec section = [] {
-    const auto option = [](auto member) {
-      return [member](CapsuleSpec & x) -> auto& { return x.options.*member; };
-    };
-    using O = CapsuleOptions;
-    Section<CapsuleSpec> s(
-        "capsule",
-        "The skin of an organ: a membrane on the surface that bears tension and tears (docs/capsule.md). "
-        "A needle that pierces the surface tears it there.");
-    s.key("name", option(&O::name), "name");
-    s.key("set", &CapsuleSpec::set, "vertex set; it covers the triangles of the surface with all vertices in it")
-        .otherwise("all of the surface");
-    s.key<Milli>("thickness_mm", option(&O::thickness), "thickness").in("mm").within(above(0));
-    s.key("youngs_modulus_Pa", option(&O::youngs_modulus), "Young's modulus E at small strain")
-        .in("Pa")
-        .within(above(0));
-    s.key("poisson_ratio", option(&O::poisson_ratio), "Poisson's ratio ν").in("-").within(between(0, 0.5));
-    s.key("prestretch", option(&O::prestretch), "of the surface at rest from where it bears nothing")
-        .in("-")
-        .within(between(1, 2));
-    s.key("stiffening", option(&O::stiffening), "α: stress rises by exp(α Q), Q the square of strain")
-        .in("-")
-        .within(between(0, 1000));
-    s.key("strength_N_m", option(&O::strength),
-          "force across a line, for each length of it, at which it tears by itself")
-        .in("N/m")
-        .within(above(0))
-        .otherwise("it does not");
-    s.key<Milli>("averaging_length_mm", option(&O::averaging_length), "over which tension is averaged for that")
-        .in("mm")
-        .within(above(0));
-    s.finish([](CapsuleSpec& x, const Node&, const Place& place) { x.origin = place.text(); });
     return s.spec();
   }();
   return section;

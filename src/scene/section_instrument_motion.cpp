@@ -86,7 +86,7 @@ const SectionSpec& stroke_section() {
     s.key<OptionalMilli>("velocity_mm_s", &Stroke::velocity, "speed")
         .in("mm/s")
         .within(above(0))
-        .otherwise("that of all strokes");
+        .otherwise("the common one");
     s.key("ramp_s", &Stroke::ramp, "time over which the speed rises, and falls").in("s").within(at_least(0));
     s.key("rest_s", &Stroke::rest, "rest at its end").in("s").within(at_least(0));
     return s.spec();
@@ -99,7 +99,7 @@ const SectionSpec& instrument_motion_section() {
     Section<InstrumentMotion> s("instrument.motion", "How an instrument moves, chosen by `kind`.");
     s.key("direction", &InstrumentMotion::direction, "in which it moves, of any length")
         .in("-")
-        .otherwise("that of the instrument");
+        .otherwise("the instrument's");
     s.spec().kinds = {motion_kind<PressMotion>(press_kind()), motion_kind<StrokesSpec>(strokes_kind()),
                       motion_kind<SineMotion>(sine_kind()), motion_kind<PushSpec>(push_kind()),
                       motion_kind<RecordSpec>(record_kind())};

@@ -79,6 +79,9 @@ const SectionSpec& variant_section() {
     s.tables("load", load_section(), &Variant::loads, "forces on sets");
     s.tables("tool", tool_section(), &Variant::tools, "what presses by moving vertices");
     s.tables("instrument", instrument_section(), &Variant::instruments, "what presses in contact, and pierces");
+    s.table(
+        "container", container_section(), [](Variant & v) -> auto& { return v.container.emplace(); },
+        "a rigid vessel around the body");
     s.tables("capsule", capsule_section(), &Variant::capsules, "membranes on the surface");
     s.table("output", output_section(), &Variant::output, "how much is kept");
     for (const KeySpec& key : scene_section().keys) s.spec().other_words.push_back(key.name);
@@ -112,9 +115,9 @@ const SectionSpec& scene_section() {
 std::string home_of_key(const std::string& key) {
   for (const SectionSpec* section :
        {&tissue_section(), &motion_section(), &tool_section(), &output_section(), &fixed_section(), &load_section(),
-        &selection_section(), &chart_section(), &instrument_section(), &capsule_section()}) {
+        &selection_section(), &chart_section(), &instrument_section(), &capsule_section(), &container_section()}) {
     const bool list = section != &tissue_section() && section != &motion_section() && section != &output_section() &&
-                      section != &selection_section();
+                      section != &selection_section() && section != &container_section();
     if (section->find(key)) return list ? "[[" + section->name + "]]" : "[" + section->name + "]";
   }
   for (const KindSpec& kind : mesh_section().kinds) {
@@ -132,6 +135,9 @@ std::string home_of_key(const std::string& key) {
       if (!kind.section.find(key)) continue;
       return (list ? "[[instrument]]" : "[instrument.motion]") + std::string(" of kind \"") + kind.section.name + "\"";
     }
+  }
+  for (const KindSpec& kind : container_section().kinds) {
+    if (kind.section.find(key)) return "[container] of kind \"" + kind.section.name + "\"";
   }
   for (const SectionSpec* section :
        {&rupture_section(), &tip_section(), &shaft_friction_section(), &stroke_section()}) {

@@ -29,6 +29,7 @@ const SectionSpec& shaft_friction_section();     ///< fills ShaftFriction
 const SectionSpec& stroke_section();             ///< fills StrokesSpec::One
 const SectionSpec& instrument_motion_section();  ///< fills InstrumentMotion
 const SectionSpec& instrument_section();         ///< fills InstrumentSpec
+const SectionSpec& container_section();          ///< fills ContainerSpec
 const SectionSpec& capsule_section();            ///< fills CapsuleSpec
 const SectionSpec& output_section();             ///< fills OutputSpec
 const SectionSpec& chart_section();              ///< fills ChartSpec

@@ -136,7 +136,7 @@ describe("reader's actions", () => {
   test("rings in the charts stand where the playback stands", async () => {
     const mesh = page.locator("#figure2 .mesh");
     await page.locator("#figure2 .figure-mesh .figure-head select").selectOption("linear");
-    const slider = mesh.locator("input[type=range]");
+    const slider = mesh.locator("input[aria-label=Time]");
     await slider.focus();
     await slider.press("Home");
     const ring = () =>

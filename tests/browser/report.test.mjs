@@ -57,7 +57,7 @@ describe("a report on a laptop", () => {
     await inView(mesh.locator("canvas"));
     const end = await pixelsOf(page, mesh.locator("canvas"));
     assert.ok(end.colours > 200 && end.drawn > 0.04, `mesh at the end: ${JSON.stringify(end)}`);
-    const slider = mesh.locator("input[type=range]");
+    const slider = mesh.locator("input[aria-label=Time]");
     await slider.focus();
     await slider.press("Home");
     await settle(page);

@@ -1,4 +1,4 @@
-// every_instrument.h — a scene with every key of instruments and capsules away from its default.
+// every_instrument.h — a scene with every key of instruments, containers and capsules away from its default.
 #pragma once
 
 #include <string>
@@ -86,6 +86,16 @@ tip_m = [0, 0, 0.05]
 size_mm = [4, 5, 6]
 edge_radius_mm = 1
 motion = { kind = "press" }
+
+[container]
+kind = "box"
+width_mm = 40
+length_mm = 41
+height_mm = 42
+floor_m = [0.02, 0.02, 0]
+hold = "wet"
+friction = 0.2
+push_out_speed_mm_s = 8
 
 [[capsule]]
 name = "skin"

@@ -296,7 +296,7 @@ void collect(const scene::SectionSpec& section, std::set<std::string>& keys) {
     keys.insert(key.name);
     if (key.section) collect(*key.section, keys);
   }
-  const bool of_instruments = section.name.rfind("instrument", 0) == 0;
+  const bool of_instruments = section.name.rfind("instrument", 0) == 0 || section.name == "container";
   for (const scene::KindSpec& kind : section.kinds) {
     if (of_instruments) collect(kind.section, keys);
   }

@@ -124,7 +124,8 @@ const std::vector<Mistake> kMistakes{
     {"TwoToolsOfOneName", "", "[[tool]]\nname = \"Press\"\nset = \"x_max\"\n",
      "s.toml:17:8: tool.1.name: \"Press\" is taken (upper and lower case count as the same); names must differ"},
     {"NoEnd", "[[tool]]\nname = \"press\"\nset = \"top\"\ndepth_mm = 1\n", "",
-     "s.toml:1:1: motion: nothing says when the run ends: give `duration_s` or `max_steps`, or a [[tool]] whose motion "
+     "s.toml:1:1: motion: nothing says when the run ends: give `duration_s` or `max_steps`, or a [[tool]] or "
+     "[[instrument]] whose motion "
      "ends it"},
     {"TwoVariantsOfOneName", "", "[[variant]]\nname = \"a\"\n[[variant]]\nname = \"A\"\n",
      "s.toml:19:8: variant.1.name: \"A\" is taken (upper and lower case count as the same); names must differ"},

@@ -100,7 +100,7 @@ export interface ChartSpec {
   x: AxisSpec;
   y: AxisSpec;
   variants: string[] | null; // names; null: all
-  fits?: { label: string; x: number[]; y: number[]; }[]; // extra lines, in the axes' display units, drawn dashed
+  fits?: { label: string; x: number[]; y: number[] }[]; // extra lines, in the axes' display units, drawn dashed
 }
 
 export interface AxisSpec {

@@ -69,7 +69,7 @@ export class Chart {
     this.stops.push(whenVisible(this.canvasHost, () => this.create()));
     this.stops.push(
       state.onChange(() => this.refreshShown()),
-      state.onPlayhead(() => this.showPlayhead()),
+      state.onPlayhead(() => this.followPlayhead()),
     );
     this.stops.push(onTheme(() => this.onLook()));
   }
@@ -271,11 +271,16 @@ export class Chart {
     return inside ? [plot.valToPos(x, "x"), plot.valToPos(y, "y")] : [null, null];
   }
 
+  /** The 3D view shows another moment, or another variant, whose events are marked then. */
+  private followPlayhead(): void {
+    if (this.model.events.length > 0 && this.markedVariant() !== this.marked) this.plot?.redraw(false, false);
+    this.showPlayhead();
+  }
+
   /** Marks the point of the mesh shown in the 3D view on the line of its variant. */
   private showPlayhead(): void {
     if (!this.plot || !this.marks) return;
     const playhead = this.state.playhead;
-    if (this.markedVariant() !== this.marked) this.plot.redraw(false, false);
     for (const line of this.model.lines) {
       const shown = playhead && line.times && (line.variant ?? this.owner) === playhead.variant && !this.isHidden(line);
       const index = shown && line.times ? nearestInX(line.times, playhead.time, Infinity) : -1;

@@ -71,6 +71,7 @@ export function drawEvents(
   context.save();
   context.font = `${FONT_SIZE * ratio}px "Source Sans 3 Variable", system-ui, sans-serif`;
   context.textBaseline = "top";
+  context.textAlign = "left";
   context.strokeStyle = context.fillStyle = ink;
   const placed = placeLabels(
     marks,
