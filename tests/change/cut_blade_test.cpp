@@ -58,8 +58,8 @@ TEST(BladeForce, IsToughnessTimesWidth) {
     const double toughness = 2.0;
     Downstroke cut(toughness, 0.05, kind);
     const Vec3d force = cut.mean_force(0.010, 0.025);
-    // the pieces of the edge lie in tets not gone through yet, which miss or repeat up to an element in 3 at the front
-    EXPECT_NEAR(force.z, -toughness * kWidth, 0.1 * toughness * kWidth) << kind.name;
+    // 0.5 % here; the edge's length in tissue that is not cut goes up and down by some tets on its way
+    EXPECT_NEAR(force.z, -toughness * kWidth, 0.03 * toughness * kWidth) << kind.name;
     EXPECT_NEAR(norm(force), -force.z, 0.05 * -force.z) << kind.name;
     EXPECT_GT(cut.blade->area(), kWidth * 0.015) << kind.name;
     EXPECT_LT(cut.blade->area(), kWidth * 0.026) << kind.name;
