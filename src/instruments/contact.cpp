@@ -5,6 +5,7 @@
 // The driver is asked in reach(), before the step, so that the way the tool will go is known when vertices are named.
 #include "glisson/contact.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -53,7 +54,10 @@ ContactTool::ContactTool(const ContactOptions& options, std::shared_ptr<ToolDriv
 ContactTool::~ContactTool() = default;
 
 const ContactOptions& ContactTool::options() const { return state_->options; }
-bool ContactTool::touches() const { return !state_->bearing.empty(); }
+bool ContactTool::touches() const {
+  const auto bears = [](double impulse) { return impulse != 0.0; };
+  return std::any_of(state_->pressed.begin(), state_->pressed.end(), bears);
+}
 double ContactTool::contact_area() const { return state_->area; }
 ContactTool::Effort ContactTool::effort() const { return state_->effort; }
 ContactPressure ContactTool::contact_pressure() const { return {state_->bearing_vertices, state_->pressures}; }
@@ -91,7 +95,7 @@ void ContactTool::add_forces(const InteractionStep& step) { state_->books.begin(
 void ContactTool::constrain(const InteractionStep& step) {
   State& s = *state_;
   forces_ = {};
-  s.rows.clear(), s.bearing.clear(), s.effort = {};
+  s.rows.clear(), s.pressed.clear(), s.effort = {};
   if (s.lost) return;
   s.add_vertices(step);
   s.effort.vertices = s.rows.size();

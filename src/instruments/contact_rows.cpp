@@ -2,24 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace glisson {
 namespace {
 
 constexpr int kMostSweeps = 16;
-constexpr double kEnough = 100.0;  // tolerances: rows that move by less have been solved
+constexpr double kEnough = 1000.0;  // tolerances: rows that move by less have been solved
 constexpr int kMostCorrections = 8;
 constexpr double kAtEdge = 1e-3;  // a weight below it: the point is on an edge of its triangle
 constexpr double kAlike = 0.8;  // cosine between normals of solid and triangle that are one but for the triangle's size
 constexpr double kAway = -0.2;  // … below which they do not face each other
-constexpr int kMostProbes = 40;     // of a triangle
+constexpr int kMostProbes = 24;     // of a triangle
 constexpr double kSettling = 5e-3;  // tissue found inside a tool leaves by its depth over this time [s]
 constexpr double kFast = 0.25;      // of the thickness
 constexpr double kNear = 0.1;       // of its way: a point that ends so near takes part
 
 using Corners = std::array<Vec3d, 3>;
 
-double phi(const ContactRow& row, const Vec3d& y) { return distance_to(*row.solid->shape, y).distance; }
+/// φ with the allowance of the row taken off.
+ShapeDistance distance_of(const ContactRow& row, const Vec3d& y) {
+  ShapeDistance d = distance_to(*row.solid->shape, y);
+  d.distance += row.allowance;
+  return d;
+}
+
+double phi(const ContactRow& row, const Vec3d& y) { return distance_of(row, y).distance; }
 
 Corners between(const Corners& a, const Corners& b, double share) {
   return {a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share, a[2] + (b[2] - a[2]) * share};
@@ -70,7 +78,7 @@ Vec3d scaled(const Vec3d& a, const Vec3d& b) { return {a.x * b.x, a.y * b.y, a.z
 /// Where the point of a row is held: where it starts, if it touches there, or where it enters.
 bool meets(ContactRow& row, const Vec3d& end) {
   const double way = norm(end - row.start), close = row.solid->tolerance(), reach = kNear * way + close;
-  const ShapeDistance before = distance_to(*row.solid->shape, row.start);
+  const ShapeDistance before = distance_of(row, row.start);
   row.fast = way > kFast * row.solid->traits.thickness;
   row.inside = std::max(0.0, -before.distance - close);
   if (before.distance <= close + (row.solid->holds ? row.solid->grip : 0.0)) {
@@ -79,7 +87,7 @@ bool meets(ContactRow& row, const Vec3d& end) {
   }
   const double share = std::min(1.0, first_touch(row, row.start, end));
   const Vec3d y = row.start + (end - row.start) * share;
-  const ShapeDistance d = distance_to(*row.solid->shape, y);
+  const ShapeDistance d = distance_of(row, y);
   row.n = d.normal, row.face = y - row.n * d.distance;
   return d.distance <= reach;
 }
@@ -96,6 +104,7 @@ double needed(const ContactRow& row, const Vec3d& base, const Vec3d& way, double
   const double close = row.solid->tolerance();
   const double flat = (dot(row.n, row.face - base) + row.level) / per_impulse;
   if (row.solid->holds) return flat;
+  if (flat <= 0.0 && !row.solid->traits.hollow) return 0.0;
   double s = std::max(0.0, flat), d = phi(row, base + way * s) - row.level;
   for (int k = 0; k < kMostCorrections && d < -close; ++k) {  // hollow: the wall rises beyond its tangent plane
     const double next = s - d / per_impulse, further = phi(row, base + way * next) - row.level;
@@ -244,11 +253,25 @@ bool prepare(ContactRow& row, const InteractionStep& step, double share) {
 int solve(std::span<ContactRow> rows, const InteractionStep& step) {
   double enough = 0.0;
   for (const ContactRow& row : rows) enough = std::max(enough, kEnough * row.solid->tolerance());
+  // a row whose vertices no other row has pushed since it was solved is solved still
+  std::uint32_t clock = 1;
+  std::vector<std::uint32_t> pushed(step.vertices.size(), clock), seen(rows.size(), 0);
   for (int sweep = 1; sweep <= kMostSweeps; ++sweep) {
     double change = 0.0;
-    for (ContactRow& row : rows) {
-      change = std::max(change, press(row, step));
-      change = std::max(change, rub(row, step));
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      ContactRow& row = rows[k];
+      std::uint32_t latest = 0;
+      for (std::uint32_t i = 0; i < row.count; ++i) latest = std::max(latest, pushed[row.places[i]]);
+      if (latest <= seen[k]) continue;
+      const bool alone = row.response.x == row.response.y && row.response.y == row.response.z;
+      const double pressed = press(row, step), rubbed = rub(row, step);
+      change = std::max({change, pressed, rubbed});
+      if (pressed > 0.0 || rubbed > 0.0) {
+        ++clock;
+        for (std::uint32_t i = 0; i < row.count; ++i) pushed[row.places[i]] = clock;
+      }
+      // rubbing moves a point along a curved solid, and off it where supports hold some of its ways: once more then
+      if (rubbed <= enough || (alone && row.solid->traits.flat)) seen[k] = clock;
     }
     if (change <= enough) return sweep;
   }
@@ -272,7 +295,7 @@ std::array<double, 3> deepest(const Shape& shape, const std::array<Vec3d, 3>& co
   const ShapeDistance middle = distance_to(shape, at(third));
   if (middle.distance < depth) best = third, depth = middle.distance, d = middle;
   double step = 0.5;
-  for (int k = 0; k < kMostProbes && step > 1e-6; ++k) {
+  for (int k = 0; k < kMostProbes && step > 1e-4; ++k) {
     // slopes of φ along the weights, the mean taken off so that they add up to none
     std::array<double, 3> slope{dot(d.normal, corners[0]), dot(d.normal, corners[1]), dot(d.normal, corners[2])};
     const double middle_slope = (slope[0] + slope[1] + slope[2]) / 3.0;

@@ -48,6 +48,7 @@ struct ContactRow {
   Vec3d origin{};                  ///< of the point
   Vec3d start, face, n;            ///< in the frame of the solid [m], [m], [-]
   Vec3d normal;                    ///< n in space, at t + h
+  double allowance = 0.0;          ///< so deep it may be in the solid [m]
   bool comes_out = false;  ///< it was inside when the tool was attached: the solid is taken to grow to its size there
   double inside = 0.0;     ///< how deep it was in the solid at the start [m]
   double level = 0.0;      ///< φ asked for at the end [m], ≤ 0: less than 0 where the point was inside already

@@ -8,43 +8,42 @@
 namespace glisson {
 namespace {
 
-constexpr double kFacetDepth = 1e-6;  // of the thickness: a triangle is held out where it is deeper inside
+constexpr double kAllowance = 0.01;   // of its longest edge: a triangle may be so deep inside between its corners …
+constexpr double kMostAllowed = 0.1;  // … and so much of the thickness
 constexpr double kStride = 0.25;      // of the thickness: a fast triangle is looked at so often on its way
 constexpr int kMostStrides = 200;
 
 }  // namespace
 
-/// Where the vertices are at the end, in the frame of the tool.
-void ContactTool::State::measure(const InteractionStep& step) {
-  const std::span<const std::uint32_t> mine = reach.vertices();
-  starts.resize(mine.size()), ends.resize(mine.size()), at_ends.resize(mine.size());
-  for (std::size_t i = 0; i < mine.size(); ++i) {
-    const std::uint32_t place = step.place_of[mine[i]];
-    const Vec3d x = step.position(place);
-    starts[i] = to_frame(solid.before, x);
-    ends[i] = to_frame(solid.after, x + step.vertices[place].velocity * step.h);
-    at_ends[i] = distance_to(options.shape, ends[i]).distance;
-  }
+void ContactTool::State::measure(std::size_t i, const InteractionStep& step) {
+  const std::uint32_t place = step.place_of[reach.vertices()[i]];
+  const Vec3d x = step.position(place);
+  starts[i] = to_frame(solid.before, x);
+  ends[i] = to_frame(solid.after, x + step.vertices[place].velocity * step.h);
+  at_ends[i] = distance_to(options.shape, ends[i]).distance;
 }
 
 void ContactTool::State::add_vertices(const InteractionStep& step) {
-  measure(step);
   const std::span<const std::uint32_t> mine = reach.vertices();
-  for (std::size_t i = 0; i < mine.size(); ++i) {
+  starts.resize(mine.size()), ends.resize(mine.size()), at_ends.resize(mine.size());
+  pressed.assign(mine.size(), 0.0);
+  touched.clear();
+  for (std::uint32_t i = 0; i < mine.size(); ++i) {
+    measure(i, step);
     if (at_ends[i] > norm(ends[i] - starts[i]) + solid.tolerance()) continue;  // nowhere on its way inside
     if (bonds.count(mine[i]) != 0) continue;
     ContactRow row;
     row.places[0] = step.place_of[mine[i]];
     row.solid = &solid;
     found_inside.mark(row, mine[i], 0, starts[i], begun);
-    if (prepare(row, step)) rows.push_back(row);
+    if (prepare(row, step)) rows.push_back(row), touched.push_back(i);
     found_inside.settle(row, mine[i], 0);
   }
   begun = true;
 }
 
 void ContactTool::State::add_triangles(const InteractionStep& step) {
-  if (!rows.empty()) measure(step);
+  for (const std::uint32_t i : touched) measure(i, step);
   for (const Triangle& t : reach.triangles()) {
     double longest = 0.0, farthest = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -54,14 +53,24 @@ void ContactTool::State::add_triangles(const InteractionStep& step) {
     const double apart = std::max({at_ends[t[0]], at_ends[t[1]], at_ends[t[2]]});
     // no point of it is farther from a corner than the longest edge; (a + b)² ≤ 2 a² + 2 b²
     if (apart > 0.0 && apart * apart > 2.0 * (longest + farthest)) continue;
+    const double allowance = std::min(kAllowance * std::sqrt(longest), kMostAllowed * solid.traits.thickness);
     const double strides = std::ceil(std::sqrt(farthest) / (kStride * solid.traits.thickness));
-    add_triangle(static_cast<std::uint32_t>(std::clamp(strides, 1.0, double(kMostStrides))), t, step);
+    if (strides <= 1.0 && least_of({ends[t[0]], ends[t[1]], ends[t[2]]}) > -allowance) continue;
+    add_triangle(static_cast<std::uint32_t>(std::clamp(strides, 1.0, double(kMostStrides))), t, allowance, step);
   }
 }
 
+/// A bound of φ over a triangle from below: φ is convex, so that it is nowhere below its tangent at the middle.
+double ContactTool::State::least_of(const std::array<Vec3d, 3>& x) const {
+  const Vec3d middle = (x[0] + x[1] + x[2]) * (1.0 / 3.0);
+  const ShapeDistance d = distance_to(options.shape, middle);
+  return d.distance +
+         std::min({dot(d.normal, x[0] - middle), dot(d.normal, x[1] - middle), dot(d.normal, x[2] - middle)});
+}
+
 /// Holds a triangle out that comes to be inside between its corners; a fast one is held where it first enters.
-void ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, const InteractionStep& step) {
-  const double inside = kFacetDepth * solid.traits.thickness;
+void ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, double allowance,
+                                      const InteractionStep& step) {
   for (std::uint32_t k = 1; k <= strides; ++k) {
     const double share = static_cast<double>(k) / strides;
     std::array<Vec3d, 3> at{};
@@ -71,10 +80,10 @@ void ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, 
       corner = std::min(corner, k == strides ? at_ends[t[i]] : distance_to(options.shape, at[i]).distance);
     }
     deepest(options.shape, at, depth);
-    if (depth > -inside || depth > corner - inside) continue;
+    if (depth > -allowance || depth > corner - solid.tolerance()) continue;
     ContactRow row;
     for (std::size_t i = 0; i < 3; ++i) row.places[i] = step.place_of[reach.vertices()[t[i]]];
-    row.count = 3, row.solid = &solid;
+    row.count = 3, row.solid = &solid, row.allowance = allowance;
     if (prepare(row, step, share)) rows.push_back(row);
     return;
   }
@@ -93,11 +102,17 @@ void ContactTool::State::bond(const InteractionStep& step, ToolForces& forces) {
     const Vec3d across = n * dot(impulse, n);
     forces.normal += across * (1.0 / step.h), forces.friction += (impulse - across) * (1.0 / step.h);
     forces.torque += cross(x - solid.before.position, impulse) * (1.0 / step.h);
-    bearing[vertex] = dot(impulse, n);
+    bear(vertex, dot(impulse, n));
   }
   for (const ContactRow& row : rows) {
     if (row.count == 1 && row.pressing > 0.0) bonds[step.vertices[row.places[0]].vertex] = end_of(row, step);
   }
+}
+
+void ContactTool::State::bear(std::uint32_t vertex, double impulse) {
+  const std::span<const std::uint32_t> mine = reach.vertices();
+  const auto at = std::lower_bound(mine.begin(), mine.end(), vertex);
+  if (at != mine.end() && *at == vertex) pressed[static_cast<std::size_t>(at - mine.begin())] += impulse;
 }
 
 void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces) {
@@ -108,7 +123,7 @@ void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces
     forces.friction += row.rubbing * rate;
     forces.torque += cross(row.origin - solid.before.position, row.impulse()) * rate;
     for (std::uint32_t i = 0; i < row.count; ++i) {
-      if (row.weights[i] > 0.0) bearing[step.vertices[row.places[i]].vertex] += row.pressing * row.weights[i];
+      bear(step.vertices[row.places[i]].vertex, row.pressing * row.weights[i]);
     }
   }
 }
@@ -121,7 +136,9 @@ void ContactTool::State::weigh(const InteractionStep& step) {
     const std::uint32_t place = step.place_of[v];
     return place == InteractionStep::kNowhere ? step.rest[v] : step.position(place);
   };
-  for (const auto& [vertex, impulse] : bearing) {
+  for (std::size_t i = 0; i < pressed.size(); ++i) {
+    if (pressed[i] == 0.0) continue;
+    const std::uint32_t vertex = reach.vertices()[i];
     double share = 0.0;
     for (const std::uint32_t k : reach.surface().triangles_at(vertex)) {
       const Triangle& t = reach.surface().triangles()[k];
@@ -129,7 +146,7 @@ void ContactTool::State::weigh(const InteractionStep& step) {
       share += norm(cross(position(t[1]) - a, position(t[2]) - a)) / 6.0;
     }
     bearing_vertices.push_back(vertex);
-    pressures.push_back(share > 0.0 ? impulse / (step.h * share) : 0.0);
+    pressures.push_back(share > 0.0 ? pressed[i] / (step.h * share) : 0.0);
     area += share;
   }
 }

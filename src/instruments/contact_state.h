@@ -18,10 +18,11 @@ struct ContactTool::State {
   bool lost = false;  ///< its pose made no sense: it has left
 
   std::vector<ContactRow> rows;
-  std::vector<Vec3d> starts, ends;          ///< per vertex of the reach, in the frame of the tool
-  std::vector<double> at_ends;              ///< φ there
-  std::map<std::uint32_t, Vec3d> bonds;     ///< vertex → place in the frame of the tool
-  std::map<std::uint32_t, double> bearing;  ///< vertex → impulse along its normal in this step [N s]
+  std::vector<Vec3d> starts, ends;       ///< per vertex of the reach, in the frame of the tool
+  std::vector<double> at_ends;           ///< φ there
+  std::map<std::uint32_t, Vec3d> bonds;  ///< vertex → place in the frame of the tool
+  std::vector<double> pressed;           ///< per vertex of the reach: impulse along its normal in this step [N s]
+  std::vector<std::uint32_t> touched;    ///< vertices of the reach that have rows, as places there
   std::vector<std::uint32_t> bearing_vertices;
   std::vector<double> pressures;
   double area = 0.0;
@@ -34,9 +35,11 @@ struct ContactTool::State {
   double last_touch = 0.0, last_depth = 0.0;
 
   void add_vertices(const InteractionStep& step);
-  void measure(const InteractionStep& step);
+  void measure(std::size_t i, const InteractionStep& step);
+  double least_of(const std::array<Vec3d, 3>& corners) const;
+  void bear(std::uint32_t vertex, double impulse);
   void add_triangles(const InteractionStep& step);
-  void add_triangle(std::uint32_t triangle, const Triangle& corners, const InteractionStep& step);
+  void add_triangle(std::uint32_t strides, const Triangle& corners, double allowance, const InteractionStep& step);
   void bond(const InteractionStep& step, ToolForces& forces);
   void collect(const InteractionStep& step, ToolForces& forces);
   void weigh(const InteractionStep& step);

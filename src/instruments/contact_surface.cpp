@@ -6,7 +6,7 @@
 namespace glisson {
 namespace {
 
-constexpr std::size_t kPatchVertices = 24;
+constexpr std::size_t kPatchVertices = 12;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace

@@ -36,7 +36,7 @@ FlatDistance to_lines(const Profile& p, const Point& x) {
   FlatDistance best;
   const double even = kRim * p[2].z;
   for (std::size_t i = 0; i + 1 < p.size(); ++i) {
-    const double er = p[i + 1].rho - p[i].rho, ez = p[i + 1].z - p[i].z, length = std::hypot(er, ez);
+    const double er = p[i + 1].rho - p[i].rho, ez = p[i + 1].z - p[i].z, length = std::sqrt(er * er + ez * ez);
     if (!(length > 0.0)) continue;
     const Point n{ez / length, -er / length};
     const double d = n.rho * (x.rho - p[i].rho) + n.z * (x.z - p[i].z);
@@ -62,9 +62,9 @@ FlatDistance to_nearest(const Profile& p, const Point& x, const Point& line_norm
 }
 
 ShapeDistance revolved(const Profile& p, double rounding, const Vec3d& x) {
-  const double rho = std::hypot(x.x, x.y);
+  const double rho = std::sqrt(x.x * x.x + x.y * x.y);
   FlatDistance f = to_lines(p, {rho, x.z});
-  if (f.distance > 0.0) f = to_nearest(p, {rho, x.z}, f.normal);
+  if (f.distance >= 0.0) f = to_nearest(p, {rho, x.z}, f.normal);
   ShapeDistance d{f.distance - rounding, {0.0, 0.0, f.normal.z}};
   if (rho > 0.0) {
     d.normal.x = f.normal.rho * x.x / rho, d.normal.y = f.normal.rho * x.y / rho;
@@ -107,7 +107,7 @@ ShapeDistance distance(const NeedleShape& s, const Vec3d& x) {
 ShapeDistance distance(const Plate&, const Vec3d& x) { return {-x.z, {0.0, 0.0, -1.0}}; }
 
 ShapeDistance distance(const CylinderWall& s, const Vec3d& x) {
-  const double rho = std::hypot(x.x, x.y);
+  const double rho = std::sqrt(x.x * x.x + x.y * x.y);
   return {s.radius - rho, rho > 0.0 ? Vec3d{-x.x / rho, -x.y / rho, 0.0} : Vec3d{-1.0, 0.0, 0.0}};
 }
 
@@ -175,12 +175,12 @@ void check(const Block& s) {
           upto("0", most) + " (half its smallest size)");
 }
 
-ShapeTraits traits(const FlatPunch& s) { return {std::min(2.0 * s.radius, s.length), true}; }
-ShapeTraits traits(const Ball& s) { return {2.0 * s.radius, true}; }
-ShapeTraits traits(const NeedleShape& s) { return {s.diameter, true}; }
-ShapeTraits traits(const Plate&) { return {kInfinite, false}; }
-ShapeTraits traits(const CylinderWall&) { return {kInfinite, false}; }
-ShapeTraits traits(const Block& s) { return {std::min({s.size.x, s.size.y, s.size.z}), true}; }
+ShapeTraits traits(const FlatPunch& s) { return {.thickness = std::min(2.0 * s.radius, s.length)}; }
+ShapeTraits traits(const Ball& s) { return {.thickness = 2.0 * s.radius}; }
+ShapeTraits traits(const NeedleShape& s) { return {.thickness = s.diameter}; }
+ShapeTraits traits(const Plate&) { return {.thickness = kInfinite, .presses_between = false, .flat = true}; }
+ShapeTraits traits(const CylinderWall&) { return {.thickness = kInfinite, .presses_between = false, .hollow = true}; }
+ShapeTraits traits(const Block& s) { return {.thickness = std::min({s.size.x, s.size.y, s.size.z})}; }
 
 }  // namespace
 

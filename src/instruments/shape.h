@@ -10,6 +10,8 @@ struct ShapeTraits {
   double thickness = 0.0;  ///< the least way through it [m]; infinite for a half space
   /// Whether it can press on a triangle and on none of its corners: shapes that are neither flat nor hollow.
   bool presses_between = true;
+  bool flat = false;    ///< φ is linear
+  bool hollow = false;  ///< φ is not convex
 };
 
 ShapeTraits traits_of(const Shape& shape);
