@@ -119,6 +119,19 @@ HWY_INLINE F excess(const Invariants<F>& inv) {
   return number(3.0F) * p / (number(1.0F) - hn::Min(p, number(0.999F)));
 }
 
+/// Ī₁ − 3 of tets below the smallest volume, whose stress comes from elsewhere but whose stiffness is seen here: with the
+/// power as volume_powers.h has it go on. J^(−⅔) itself would be an exponential law's end.
+HWY_INLINE F excess_beyond(const HyperState& s, bool shared) {
+  const ValueSlopeOf<double> at = volume_power<2>(kSmallestVolume, Beyond::rise);
+  const F one = number(1.0F), y = (s.inv.volume_change + one) * number(float(1.0 / kSmallestVolume));
+  const float value = float(at.value), slope = float(at.slope * kSmallestVolume), linger = float(kLinger);
+  const F early = hn::Max(hn::MulSub(number(2.0F), y, one), hn::Zero(Lanes())), late = hn::Max(y, hn::Zero(Lanes()));
+  const F faded = number(value) - number(slope * 0.25F * (1.0F - linger)) * hn::NegMulAdd(early, early, one) -
+                  number(slope * 0.5F * linger) * hn::NegMulAdd(late, late, one);
+  const F x = y - one, risen = hn::MulAdd(x, hn::MulAdd(number(slope * -5.0F / 6.0F), x, number(slope)), number(value));
+  return hn::MulSub(shared ? risen : faded, s.I1, number(3.0F));
+}
+
 template <class Law>
 void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&, ResponseBlock& out,
                    StiffnessSeen& seen) {
@@ -126,8 +139,11 @@ void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue&
   F most = hn::Zero(d);
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState s = hyper_state(in.gradient + item * 9 * kLanes);
-    const InvariantSlopes w = Law::slopes(r, excess(s.inv));
     const F j = s.inv.volume_change, one = number(1.0F), pressure = pressure_of(in, r, item, j);
+    const auto whole = hn::Gt(j + one, number(float(kSmallestVolume)));
+    F i1 = excess(s.inv);
+    if (!hn::AllTrue(d, whole)) i1 = hn::IfThenElse(whole, i1, excess_beyond(s, in.mean != nullptr));
+    const InvariantSlopes w = Law::slopes(r, i1);
     Tensor P = times(number(2.0F) * w.first * s.power, deviatoric_direction(s.H, s.K, j, squares_of(s.H)));
     P = plus(plus_identity(P, pressure), pressure, s.K);
     const LaneInvariants i{s.I1, s.I2, s.J};

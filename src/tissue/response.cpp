@@ -30,6 +30,11 @@ StrainNumbers<T> strain_numbers(Kinematics kinematics, const Mat3<T>& H) {
   return {trace(e), contract(e, e)};
 }
 
+/// What isochoric stress does in tets that are nearly lost: a volume change of its own leads a tet back, a shared one does not.
+Beyond beyond(const Tissue& tissue) {
+  return tissue.volume_change == VolumeChange::nodal ? Beyond::rise : Beyond::fade;
+}
+
 }  // namespace
 
 Response::Response(const Tissue& tissue)
@@ -140,7 +145,8 @@ Mat3<T> Response::elastic(const Mat3<T>& H, const ElementShape& shape, const T* 
   if (tissue_.hyperelastic) {
     const T theta = mean != nullptr ? *mean : volume_change(H);
     const Mat3<T> cof = deformation_gradient(cofactor_change(H));
-    P = sum(isochoric_piola(*tissue_.hyperelastic, H), scaled(cof, T(bulk_modulus(*tissue_.hyperelastic)) * theta));
+    P = sum(isochoric_piola(*tissue_.hyperelastic, H, beyond(tissue_)),
+            scaled(cof, T(bulk_modulus(*tissue_.hyperelastic)) * theta));
   } else {
     const T x = measure(H, shape);
     const Moduli<T> m = moduli(x);
@@ -156,7 +162,8 @@ double Response::energy(const Mat3d& H, const ElementShape& shape, const double*
   double W = 0.0;
   if (tissue_.hyperelastic) {
     const double theta = mean != nullptr ? *mean : volume_change(H);
-    W = isochoric_energy(*tissue_.hyperelastic, H) + 0.5 * bulk_modulus(*tissue_.hyperelastic) * theta * theta;
+    W = isochoric_energy(*tissue_.hyperelastic, H, beyond(tissue_)) +
+        0.5 * bulk_modulus(*tissue_.hyperelastic) * theta * theta;
   } else {
     const Moduli<double> m = moduli(measure(H, shape));
     const StrainNumbers<double> e = strain_numbers(tissue_.kinematics, H);
@@ -172,7 +179,7 @@ double Response::energy(const Mat3d& H, const ElementShape& shape, const double*
 double Response::relaxed_energy(const Mat3d& H, const ElementShape& shape, const double* mean) const {
   const double W = energy(H, shape, mean);
   if (relaxing_share_ == 0.0 || tissue_.maxwell_part == MaxwellPart::all) return (1.0 - relaxing_share_) * W;
-  if (tissue_.hyperelastic) return W - relaxing_share_ * isochoric_energy(*tissue_.hyperelastic, H);
+  if (tissue_.hyperelastic) return W - relaxing_share_ * isochoric_energy(*tissue_.hyperelastic, H, beyond(tissue_));
   const StrainNumbers<double> e = strain_numbers(tissue_.kinematics, H);
   return W - relaxing_share_ * moduli(measure(H, shape)).mu * (e.squares - e.trace * e.trace / 3.0);
 }
@@ -247,8 +254,8 @@ double Response::stiffening(const Mat3d& H, const ElementShape& shape) const {
   const double stretch = 1.0 + 2.0 * std::sqrt(contract(E, E));  // ≥ ‖F‖²
   double r = 0.0, rest = 0.0;
   if (tissue_.hyperelastic) {
-    const HyperelasticBound now = hyperelastic_bound(*tissue_.hyperelastic, H),
-                            at_rest = hyperelastic_bound(*tissue_.hyperelastic, Mat3d{});
+    const HyperelasticBound now = hyperelastic_bound(*tissue_.hyperelastic, H, beyond(tissue_)),
+                            at_rest = hyperelastic_bound(*tissue_.hyperelastic, Mat3d{}, beyond(tissue_));
     rest = std::max(3.0 * lame_.lambda + 2.0 * lame_.mu, 2.0 * lame_.mu);
     r = std::max(now.isochoric / at_rest.isochoric, now.volume / at_rest.volume);
     if (viscosity_.mu > 0.0) r = std::max(r, stretch);

@@ -49,11 +49,11 @@ inline double first_invariant_slope_squared(const BoundInvariants& i) {
   return 4.0 / (J23 * J23) * std::max(0.0, i.I1 * i.I1 * i.I2 / (9.0 * i.J * i.J) - i.I1);
 }
 
+/// @param power  of J, J^(−⅔) or what it goes on as: an exponential of Ī₁ forgives no error in it
 template <class Law>
-double invariant_bound(const Law& law, const BoundInvariants& i) {
+double invariant_bound(const Law& law, const BoundInvariants& i, double power) {
   const BoundInvariants c{i.I2, i.I1 * i.J * i.J, i.J * i.J};  // those of cof F
-  const double i1 = std::max(0.0, i.I1 / std::cbrt(i.J * i.J) - 3.0),
-               i2 = std::max(0.0, c.I1 / std::cbrt(c.J * c.J) - 3.0);
+  const double i1 = std::max(0.0, power * i.I1 - 3.0), i2 = std::max(0.0, c.I1 / std::cbrt(c.J * c.J) - 3.0);
   const auto slopes = law.slopes(Dual{i1, 1.0}, Dual{i2});
   const double A = largest_stretch_squared(i);
   const double first =
@@ -64,7 +64,7 @@ double invariant_bound(const Law& law, const BoundInvariants& i) {
 }
 
 inline double ogden_bound(const Ogden& law, const std::array<double, 3>& b) {
-  const std::array<double, 3> l = isochoric_logarithms(b).l, t = law.slopes(l);
+  const std::array<double, 3> l = isochoric_logarithms(b, Beyond::rise).l, t = law.slopes(l);
   double bend = 0.0;
   for (std::size_t k = 0; k < law.mu.size(); ++k) {
     const double e = std::max({law.alpha[k] * l[0], law.alpha[k] * l[1], law.alpha[k] * l[2]});
@@ -79,14 +79,14 @@ inline double ogden_bound(const Ogden& law, const std::array<double, 3>& b) {
 struct HyperelasticBound {
   double isochoric, volume;
 };
-inline HyperelasticBound hyperelastic_bound(const HyperelasticLaw& law, const Mat3d& H) {
+inline HyperelasticBound hyperelastic_bound(const HyperelasticLaw& law, const Mat3d& H, Beyond beyond) {
   const BoundInvariants i = bound_invariants(H);
   const double isochoric = std::visit(
       [&]<class Law>(const Law& l) {
         if constexpr (std::is_same_v<Law, Ogden>) {
           return ogden_bound(l, principal_frame(H).b);
         } else {
-          return invariant_bound(l, i);
+          return invariant_bound(l, i, volume_power<2>(jacobian(H), beyond).value);
         }
       },
       law);
