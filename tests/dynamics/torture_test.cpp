@@ -1,10 +1,11 @@
-// Bodies in states that no press makes: all vertices at random places, tets flat or inside out. They come back under the
-// implicit integrator, or end in an equilibrium that is said to be one.
+// Bodies in states that no press makes: all vertices at random places, tets flat or inside out; and a press by 60 %. They
+// come back under the implicit integrator, or end in an equilibrium that is said to be one.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <ostream>
 
+#include "glisson/motion.h"
 #include "support/bodies.h"
 
 namespace glisson {
@@ -92,12 +93,27 @@ TEST_P(Jumbled, RecoversFromACellAway) {
   EXPECT_LE(end.largest, 1e-6 * 0.08);
 }
 
-// From anywhere a hyperelastic body may come to rest folded, a few tets or none inside out, and St Venant-Kirchhoff with
-// most of them: those are equilibria of their energies. Steps are made, nothing flies off, and inverted tets are reported.
-TEST(Folded, HyperelasticAndGreenBodiesEndInAnEquilibrium) {
-  for (const Tissue& tissue :
-       {hyperelastic(NeoHookean{.mu = mu(), .bulk_modulus = kappa()}),
-        hyperelastic(Ogden{.mu = {mu()}, .alpha = {-4.7}, .bulk_modulus = kappa()}), with(Kinematics::green)}) {
+// A hyperelastic body comes back from anywhere as a rule, and not always: a fold of tets that all have J > 0 can be an
+// equilibrium of the true energy. Of 20 seeds 19 or 20 come back (docs/integrators.md); of these three, two at least.
+TEST(Hyperelastic, RecoversFromAnywhereAsARule) {
+  for (const Law& law : {Law{"neo_hookean", hyperelastic(NeoHookean{.mu = mu(), .bulk_modulus = kappa()})},
+                         Law{"ogden", hyperelastic(Ogden{.mu = {mu()}, .alpha = {-4.7}, .bulk_modulus = kappa()})}}) {
+    int back = 0;
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      const Outcome end = let_go(law.tissue, seed, anywhere);
+      EXPECT_GT(end.inverted_at_start, 250U);
+      back += end.largest <= 1e-6 * 0.08 ? 1 : 0;
+    }
+    EXPECT_GE(back, 2) << law.name;
+  }
+}
+
+// St Venant-Kirchhoff comes to rest with most tets inside out, and a body whose volume changes are shared may stay folded:
+// equilibria of their energies. Steps are made, nothing flies off, and inverted tets are reported.
+TEST(Folded, GreenAndSharedVolumesEndInAnEquilibrium) {
+  Tissue shared = hyperelastic(NeoHookean{.mu = mu(), .bulk_modulus = 50.0 * mu()});
+  shared.volume_change = VolumeChange::nodal;
+  for (const Tissue& tissue : {shared, with(Kinematics::green)}) {
     const Outcome end = let_go(tissue, 7, anywhere);
     EXPECT_LE(end.status, StepStatus::inverted);
     EXPECT_EQ(end.status == StepStatus::inverted, end.inverted > 0);
@@ -144,6 +160,63 @@ TEST(Tet, RecoversFromFlatAndInsideOut) {
     }
   }
 }
+
+class Barrel : public testing::TestWithParam<Law> {};
+
+/// How the press of a barrel that lies on its side, as a liver does, has ended.
+struct Press {
+  StepStatus status = StepStatus::ok;
+  double end = 0.0, force = 0.0, imbalance = 0.0;  ///< [s], [N], share of the tool's work
+};
+Press press_barrel(const Tissue& tissue, Integrator integrator) {
+  const TetMesh mesh = cylinder_mesh({.radius = 0.05, .height = 0.08, .radial_cells = 4, .axial_cells = 5});
+  SimulationOptions o;
+  o.integrator = integrator;
+  o.damping_rate = 20.0;
+  Simulation s(mesh, {{0, tissue}}, o);
+  const auto beyond = [&](double x, double side) {
+    test::VertexSet set;
+    for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+      if (side * mesh.vertices[i].x > x) set.push_back(i);
+    }
+    return set;
+  };
+  s.fix(beyond(0.038, -1.0));
+  const ConstraintId plate =
+      s.drive(beyond(0.038, 1.0), press({.direction = {-1.0, 0.0, 0.0}, .velocity = 0.06, .depth = 0.06, .hold = 0.1}));
+  Press out;
+  while (s.time() < 1.05 && out.status <= StepStatus::inverted) {
+    const StepResult r = s.step();
+    out.status = r.status;
+    out.force = std::max(out.force, std::abs(s.force(plate).total().x));
+    if (r.status > StepStatus::inverted) EXPECT_FALSE(r.message.empty());
+  }
+  out.end = s.time();
+  out.imbalance = std::abs(s.energies().imbalance()) / s.energies().work_tools;
+  return out;
+}
+
+// A round body pressed to 40 % of its height between two narrow plates ends the press under every law, explicit in
+// single precision and implicit, and the energy balance holds: to rounding, and to Newton's tolerance.
+TEST_P(Barrel, IsPressedBySixtyPercent) {
+  for (const Integrator integrator : {Integrator::explicit_, Integrator::implicit}) {
+    SCOPED_TRACE(integrator == Integrator::explicit_ ? "explicit" : "implicit");
+    const Press end = press_barrel(GetParam().tissue, integrator);
+    EXPECT_LE(end.status, StepStatus::inverted);
+    EXPECT_GE(end.end, 1.05);
+    EXPECT_GT(end.force, 1.0);
+    EXPECT_LE(end.imbalance, 1e-6);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(
+    Laws, Barrel,
+    testing::Values(Law{"corotational", with(Kinematics::corotational)}, Law{"green", with(Kinematics::green)},
+                    Law{"neo_hookean", hyperelastic(NeoHookean{.mu = mu(), .bulk_modulus = kappa()})},
+                    Law{"ogden", hyperelastic(Ogden{.mu = {mu()}, .alpha = {-4.7}, .bulk_modulus = kappa()})},
+                    Law{"veronda_westmann",
+                        hyperelastic(VerondaWestmann{.c = 0.5 * mu(), .b = 2.0, .bulk_modulus = kappa()})},
+                    Law{"fung", hyperelastic(Fung{.mu = mu(), .b = 3.0, .bulk_modulus = kappa()})}),
+    law_name_of);
 
 }  // namespace
 }  // namespace glisson
