@@ -46,7 +46,7 @@ class Pace {
 
 bool Pace::step(RealtimeResult& result) {
   using End = RunSummary::End;
-  const StepStatus status = body_.simulation.step().status;
+  const StepStatus status = body_.step().status;
   if (status == StepStatus::step_too_large) result.end = End::stopped_unstable;
   if (status == StepStatus::not_finite) result.end = End::stopped_not_finite;
   if (status == StepStatus::inverted && on_inversion_ == OnInversion::stop) result.end = End::stopped_inverted;

@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "glisson/blade.h"
 #include "glisson/capsule.h"
 #include "glisson/contact.h"
 #include "glisson/container.h"
@@ -134,6 +135,11 @@ struct ContactSpec {
   bool bonded = false;
   double push_out_speed = ContactOptions{}.push_out_speed;
 };
+/// A blade, and how often it parts what its edge has passed.
+struct BladeSpec {
+  BladeOptions options;
+  double cut_every = 1e-3;  ///< [s], > 0
+};
 /// Something that presses, pierces or cuts, and how it moves.
 struct InstrumentSpec {
   std::string name = "instrument";
@@ -142,7 +148,7 @@ struct InstrumentSpec {
   Vec3d side{1.0, 0.0, 0.0};        ///< where its own x axis points, as far as that is across the direction
   InstrumentMotion motion;
   std::variant<NeedleOptions, ContactSpec<FlatPunch>, ContactSpec<Ball>, ContactSpec<NeedleShape>, ContactSpec<Plate>,
-               ContactSpec<Block>>
+               ContactSpec<Block>, BladeSpec>
       what;
   std::map<std::string, TipResistance> regions;  ///< of a needle, by region name
   std::string origin;
@@ -304,16 +310,31 @@ TetMesh build_mesh(const Variant& variant, const MeshLoader& load);
 /// Tissue of each region number that occurs in a mesh made by build_mesh.
 std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh);
 
-/// The body of a variant with its supports, loads and tools, at rest.
+/// The body of a variant with its supports, loads and tools, at rest. It stays where it is: blades know their body.
 struct BuiltVariant {
+  /// @throws SceneError where mesh, sets, tissues, step or constraints cannot be used
+  BuiltVariant(const Variant& variant, const MeshLoader& load);
+  BuiltVariant(const BuiltVariant&) = delete;
+  BuiltVariant& operator=(const BuiltVariant&) = delete;
+
   Simulation simulation;
   std::vector<ConstraintId> supports;                    ///< per variant.fixed
   std::vector<ConstraintId> tools;                       ///< per variant.tools
   std::vector<std::shared_ptr<Instrument>> instruments;  ///< per variant.instruments
   std::vector<std::shared_ptr<Capsule>> capsules;        ///< per variant.capsules
   std::shared_ptr<Container> container;                  ///< null: there is none
+
+  /// A step of the body; after it, blades cut where it is time to.
+  StepResult step();
+
+ private:
+  struct Cutting {
+    std::shared_ptr<Blade> blade;
+    double every = 0.0, next = 0.0;  ///< [s]
+  };
+  std::vector<Cutting> blades_;
 };
-/// @throws SceneError where mesh, sets, tissues, step or constraints cannot be used
+/// @throws SceneError, as BuiltVariant
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load);
 
 /// Time at which a variant's run ends [s]; infinite where only max_steps ends it.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "glisson/blade.h"
 #include "glisson/contact.h"
 #include "glisson/needle.h"
 
@@ -13,6 +14,14 @@ namespace {
 using nlohmann::json;
 
 json numbers(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+Vec3d in_axes_of(const Pose& pose, const Vec3d& point) {
+  const Vec3d off = point - pose.position;
+  Vec3d own;
+  for (std::size_t k = 0; k < 3; ++k)
+    own[k] = pose.axes(0, k) * off.x + pose.axes(1, k) * off.y + pose.axes(2, k) * off.z;
+  return own;
+}
 
 /// The sizes that the page needs to draw a shape; lengths in metres, along its own z from its tip.
 struct FormOf {
@@ -39,6 +48,11 @@ json instrument_form_json(const Instrument& instrument) {
     form = {{"kind", "needle"}, {"radius_m", 0.5 * needle->options().diameter}};
   } else if (const auto* tool = dynamic_cast<const ContactTool*>(&instrument)) {
     form = std::visit(FormOf{}, tool->options().shape);
+  } else if (const auto* blade = dynamic_cast<const Blade*>(&instrument)) {
+    form = {{"kind", "blade"}, {"size_m", json::array()}};
+    for (const Vec3d& end : {blade->edge().from, blade->edge().to}) {
+      for (const json& x : numbers(in_axes_of(instrument.pose(), end))) form["size_m"].push_back(x);
+    }
   }
   form["name"] = instrument.name();
   return form;

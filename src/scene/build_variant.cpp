@@ -93,10 +93,17 @@ const std::vector<std::uint32_t>& set_called(const Variant& variant, const TetMe
   return it->second;
 }
 
+bool has_blade(const Variant& variant) {
+  const auto is_blade = [](const InstrumentSpec& x) { return std::holds_alternative<BladeSpec>(x.what); };
+  return std::any_of(variant.instruments.begin(), variant.instruments.end(), is_blade);
+}
+
 Simulation simulation_of(const Variant& variant, TetMesh mesh) {
   try {
     std::map<int, Tissue> tissues = region_tissues(variant, mesh);
-    return Simulation(std::move(mesh), std::move(tissues), variant.simulation);
+    SimulationOptions options = variant.simulation;
+    options.mesh_changes = options.mesh_changes || has_blade(variant);
+    return Simulation(std::move(mesh), std::move(tissues), options);
   } catch (const std::exception& error) {  // also an eigenvalue search that fails on an odd body
     fail(variant, "", error.what());
   }
@@ -143,7 +150,7 @@ void attach_interactions(const Variant& variant, BuiltVariant& built) {
   }
   for (const InstrumentSpec& x : variant.instruments) {
     built.instruments.push_back(located(variant, x.origin, [&] {
-      auto instrument = scene::make_instrument(x, simulation.mesh());
+      auto instrument = scene::make_instrument(x, simulation);
       simulation.attach(instrument);
       return instrument;
     }));
@@ -178,26 +185,40 @@ std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh
   return tissues;
 }
 
-BuiltVariant build_variant(const Variant& variant, const MeshLoader& load) {
-  BuiltVariant built{simulation_of(variant, build_mesh(variant, load)), {}, {}, {}, {}, {}};
-  Simulation& simulation = built.simulation;
+BuiltVariant::BuiltVariant(const Variant& variant, const MeshLoader& load)
+    : simulation(simulation_of(variant, build_mesh(variant, load))) {
   const TetMesh& mesh = simulation.mesh();
   for (const FixedSpec& x : variant.fixed) {
     const auto& set = set_called(variant, mesh, x.set, x.origin);
-    built.supports.push_back(located(variant, x.origin, [&] { return simulation.fix(set, x.axes); }));
+    supports.push_back(located(variant, x.origin, [&] { return simulation.fix(set, x.axes); }));
   }
   for (const ToolSpec& x : variant.tools) {
     const auto& set = set_called(variant, mesh, x.set, x.origin);
-    built.tools.push_back(located(
-        variant, x.origin, [&] { return simulation.drive(set, press(x.motion), driven_axes(x), x.motion.start); }));
+    tools.push_back(located(variant, x.origin,
+                            [&] { return simulation.drive(set, press(x.motion), driven_axes(x), x.motion.start); }));
   }
   for (const LoadSpec& x : variant.loads) {
     const auto& set = set_called(variant, mesh, x.set, x.origin);
     located(variant, x.origin, [&] { return simulation.add_load(set, x.force, ramp_over(x.ramp)); });
   }
-  attach_interactions(variant, built);
-  return built;
+  attach_interactions(variant, *this);
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    const auto* spec = std::get_if<BladeSpec>(&variant.instruments[i].what);
+    if (spec) blades_.push_back({std::dynamic_pointer_cast<Blade>(instruments[i]), spec->cut_every, 0.0});
+  }
 }
+
+StepResult BuiltVariant::step() {
+  const StepResult result = simulation.step();
+  for (Cutting& x : blades_) {
+    if (simulation.time() < x.next) continue;
+    x.blade->cut();
+    x.next = simulation.time() + x.every;
+  }
+  return result;
+}
+
+BuiltVariant build_variant(const Variant& variant, const MeshLoader& load) { return {variant, load}; }
 
 double run_duration(const Variant& variant) {
   if (variant.duration) return *variant.duration;

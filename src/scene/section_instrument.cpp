@@ -126,6 +126,42 @@ SectionSpec needle_kind() {
   return s.spec();
 }
 
+SectionSpec blade_kind() {
+  Section<BladeSpec> s(
+      "blade",
+      "A cutting edge that parts the tissue along its path (docs/cutting.md); the flat of the blade does not "
+      "touch it.");
+  const auto option = [](auto member) {
+    return [member](BladeSpec & x) -> auto& { return x.options.*member; };
+  };
+  const auto cutting = [](auto member) {
+    return [member](BladeSpec & x) -> auto& { return x.options.cutting.*member; };
+  };
+  s.key<MilliVector>("edge_from_mm", option(&BladeOptions::edge_from),
+                     "one end of its edge, in its own axes, from its tip")
+      .in("mm");
+  s.key<MilliVector>("edge_to_mm", option(&BladeOptions::edge_to), "the other end").in("mm");
+  s.key("toughness_J_m2", option(&BladeOptions::toughness), "fracture toughness of the tissue: work for each area cut")
+      .in("J/m²")
+      .within(at_least(0));
+  s.key("cut_every_s", &BladeSpec::cut_every, "how often what the edge has passed is parted").in("s").within(above(0));
+  s.key("snap", cutting(&CutOptions::snap), "moves vertices onto the cut; without it runs along faces as they are");
+  s.key("least_quality", cutting(&CutOptions::least_quality),
+        "least mean ratio of a tet that such a move leaves behind")
+      .in("-")
+      .within(between(0.01, 0.5));
+  s.key("least_step", cutting(&CutOptions::least_step),
+        "stable step that such a move may leave, over that of the body before")
+      .in("-")
+      .within(between(0.05, 1));
+  s.finish([](BladeSpec& x, const Node& table, const Place& place) {
+    if (norm(x.options.edge_to - x.options.edge_from) > 0.0) return;
+    const char* key = table.find("edge_to_mm") ? "edge_to_mm" : "edge_from_mm";
+    place.complain(*table.find(key), key, "is the other end, too: the edge has no length; give two ends");
+  });
+  return s.spec();
+}
+
 template <class What>
 KindSpec instrument_kind(SectionSpec section) {
   return {std::move(section),
@@ -232,7 +268,8 @@ const SectionSpec& instrument_section() {
     s.spec().kinds = {
         instrument_kind<NeedleOptions>(needle_kind()), instrument_kind<Contact<FlatPunch>>(punch_kind()),
         instrument_kind<Contact<Ball>>(ball_kind()),   instrument_kind<Contact<NeedleShape>>(probe_kind()),
-        instrument_kind<Contact<Plate>>(plate_kind()), instrument_kind<Contact<Block>>(block_kind())};
+        instrument_kind<Contact<Plate>>(plate_kind()), instrument_kind<Contact<Block>>(block_kind()),
+        instrument_kind<BladeSpec>(blade_kind())};
     s.finish(check_instrument);
     return s.spec();
   }();

@@ -1,5 +1,6 @@
 // What a run with a needle leaves behind: its forces beside those of the container, events as they happened, and a report
 // that can draw both.
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -64,7 +65,7 @@ TEST_F(Instruments, ForcesAreOfTheInstrumentAndTheContainer) {
     peak = std::max(peak, f["force_N"][i]);
     below = std::max(below, -f["bottom_z_N"][i] - f["side_z_N"][i]);
   }
-  EXPECT_NEAR(peak, 0.05, 0.005) << "where it gave way, to the sample";
+  EXPECT_NEAR(peak, 0.055, 0.006) << "it gives way in the step after 0.05 N are reached: a tenth of a millimetre on";
   EXPECT_GT(below, 0.02);
 }
 
@@ -105,9 +106,9 @@ motion = { kind = "press", depth_mm = 9, velocity_mm_s = 100 }
   EXPECT_EQ(surface["instruments"][1]["kind"], "ball");
   EXPECT_EQ(surface["instruments"][1]["radius_m"], 0.005);
   for (const nlohmann::json& frame : surface["frames"]) {
-    const double gone = 0.1 * frame["time_s"].get<double>();
-    EXPECT_NEAR(frame["instruments"][0]["points"].back(), 0.041 - gone, 1e-5);
-    EXPECT_NEAR(frame["instruments"][1]["points"].back(), 0.05 - gone, 1e-5);
+    const double gone = std::min(0.009, 0.1 * frame["time_s"].get<double>());
+    EXPECT_NEAR(frame["instruments"][0]["points"].back(), 0.041 - gone, 1e-7);
+    EXPECT_NEAR(frame["instruments"][1]["points"].back(), 0.05 - gone, 1e-7);
   }
   EXPECT_EQ(read_csv(folder_ / "o/main/forces_finger.csv").size(), 9u);
 }

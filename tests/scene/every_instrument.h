@@ -87,6 +87,19 @@ size_mm = [4, 5, 6]
 edge_radius_mm = 1
 motion = { kind = "press" }
 
+[[instrument]]
+kind = "blade"
+name = "scalpel"
+tip_m = [0, 0, 0.05]
+edge_from_mm = [0, -3, 1]
+edge_to_mm = [0, 4, 2]
+toughness_J_m2 = 150
+cut_every_s = 0.004
+snap = false
+least_quality = 0.2
+least_step = 0.5
+motion = { kind = "press" }
+
 [container]
 kind = "box"
 width_mm = 40

@@ -134,6 +134,19 @@ TEST(Instruments, CapsuleIsRead) {
   EXPECT_DOUBLE_EQ(c.options.averaging_length, 3e-3);
 }
 
+// A blade keeps its edge, the toughness it meets and how it cuts.
+TEST(Instruments, BladeIsRead) {
+  const Variant v = parse(kEveryInstrument).variants.at(0);
+  const auto& blade = std::get<BladeSpec>(instrument(v, "scalpel").what);
+  expect_near(blade.options.edge_from, {0, -0.003, 0.001});
+  expect_near(blade.options.edge_to, {0, 0.004, 0.002});
+  EXPECT_EQ(blade.options.toughness, 150.0);
+  EXPECT_EQ(blade.cut_every, 0.004);
+  EXPECT_FALSE(blade.options.cutting.snap);
+  EXPECT_EQ(blade.options.cutting.least_quality, 0.2);
+  EXPECT_EQ(blade.options.cutting.least_step, 0.5);
+}
+
 // A container keeps its vessel and how it holds the tissue.
 TEST(Instruments, ContainerIsRead) {
   const auto options = [](const std::string& text) { return parse(text).variants.at(0).container.value().options; };
@@ -269,6 +282,19 @@ TEST(Instruments, ANeedleRunsFromAScene) {
   }
   EXPECT_GT(peak, 0.045);
   EXPECT_NEAR(summary.peak_force_N, peak, 1e-12);
+}
+
+// A blade from a scene parts the body: new vertices come, and the edge works against the toughness of the tissue.
+TEST(Instruments, ABladeCutsFromAScene) {
+  const std::string blade =
+      "kind = \"blade\"\nedge_from_mm = [0, -30, 0]\nedge_to_mm = [0, 30, 0]\ntoughness_J_m2 = 2\n";
+  const std::string deep = changed(changed(kNeedle, "[4, 4, 4]", "[6, 6, 8]"), "depth_mm = 10", "depth_mm = 21");
+  const Scene scene = parse(changed(deep, "kind = \"needle\"\n", blade) + "[output]\nframes = 0\n");
+  BuiltVariant built(scene.variants.at(0), {});
+  const std::size_t before = built.simulation.mesh().vertices.size();
+  while (built.simulation.time() < 0.42) ASSERT_LE(built.step().status, StepStatus::inverted);
+  EXPECT_GT(built.simulation.mesh().vertices.size(), before);
+  EXPECT_GT(dynamic_cast<const Blade&>(*built.instruments.at(0)).area(), 0.3 * 0.04 * 0.02);
 }
 
 // A region that a needle is told of must be one.

@@ -75,7 +75,7 @@ export interface InstrumentForm {
   radius_m: number; // 0 where the kind has none
   length_m: number;
   tip_m: number; // of a probe: length of its tip
-  size_m: number[]; // of a block: along its own x, y, z
+  size_m: number[]; // of a block: along its own x, y, z; of a blade: both ends of its edge, six numbers
 }
 
 /** Where an instrument is in a frame. */

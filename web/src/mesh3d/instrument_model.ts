@@ -62,6 +62,8 @@ export class InstrumentModel {
         const [x, y, z] = [form.size_m[0] ?? 0, form.size_m[1] ?? 0, form.size_m[2] ?? 0];
         return new THREE.BoxGeometry(x, y, z).translate(0, 0, z / 2);
       }
+      case "blade":
+        return bladeGeometry(form.size_m, 0.4 * this.size);
       default:
         return new THREE.BufferGeometry();
     }
@@ -105,6 +107,18 @@ export class InstrumentModel {
     this.material.dispose();
     this.glass.dispose();
   }
+}
+
+/** A sheet that stands on its edge. */
+function bladeGeometry(ends: readonly number[], height: number): THREE.BufferGeometry {
+  const geometry = new THREE.BufferGeometry();
+  if (ends.length < 6) return geometry;
+  const [a, b] = [ends.slice(0, 3), ends.slice(3, 6)];
+  const up = (p: readonly number[]) => [p[0]!, p[1]!, p[2]! + height];
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute([...a, ...b, ...up(b), ...up(a)], 3));
+  geometry.setIndex([0, 1, 2, 0, 2, 3]);
+  geometry.computeVertexNormals();
+  return geometry;
 }
 
 function move(mesh: THREE.Mesh, place: InstrumentPlace): void {

@@ -56,7 +56,7 @@ export class MeshPanel {
       edges: true,
       ghost: false,
       marks: true,
-      open: shown.surface.instruments.length > 0,
+      open: shown.surface.instruments.some((form) => form.kind === "needle"),
       openAt: 0,
     };
     this.cut.hidden = !this.settings.open;
