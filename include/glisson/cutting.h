@@ -28,9 +28,9 @@ struct CutOptions {
   bool snap = true;  ///< whether vertices are moved onto the cut; false: it runs along faces as they are
   /// Least mean ratio of a tet that a move may leave behind (regular_mean_ratio; 1 is best), 0.01 … 0.5.
   double least_quality = 0.15;
-  /// Least bound of the stable step that a moved vertex may leave to a tet, over the least of all tets when the Cutter is
-  /// made, 0.05 … 1. Where tissue is very viscous, the explicit scheme's bound goes with the square of a tet's size, and the
-  /// same number lets vertices go less far.
+  /// Least bound of the stable step that a moved vertex may leave to a tet, over the bound of the body when the Cutter is
+  /// made, to which an automatic step falls when a mesh is changed at all, 0.05 … 1. Where tissue is very viscous, the
+  /// explicit scheme's bound goes with the square of a tet's size, and the same number lets vertices go less far.
   double least_step = 0.4;
 };
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "dynamics/blade_view.h"
+#include "dynamics/part_bound.h"
 #include "dynamics/simulation_parts.h"
 #include "dynamics/stable_step.h"
 #include "glisson/cutting.h"
@@ -80,29 +81,17 @@ struct Cutter::Impl {
   void open(const detail::CutFaces& cut, CutReport& report);
 };
 
-/// Finds how spread the gradients of a tet of each tissue may be, so that its bound of the step is least_step times the
-/// least of all, which is that of the most spread tet of some tissue.
+/// Finds how spread the gradients of a tet of each tissue may be, so that its bound of the step is least_step times that
+/// of the body.
 void Cutter::Impl::limit_spread(double viscosity) {
   const Body& body = scheme.body();
-  struct Worst {
-    std::size_t element;
-    double spread = 0.0;
-  };
-  std::vector<Worst> worst;
-  double least = std::numeric_limits<double>::infinity();
+  const std::vector<double> factors(body.blocks.size(), viscosity);
+  const double step = options.least_step * PartBound(body, scheme.stars(), factors).step();
   for (const TissueBlock& block : body.blocks) {
-    Worst w{block.begin};
-    for (std::size_t e = block.begin; e < block.end; ++e) {
-      const double is = body.rest[e].volume > 0.0 ? detail::spread_of(corners_at_rest(e)) : 0.0;
-      if (is > w.spread) w = {e, is};
-    }
-    if (w.spread > 0.0) least = std::min(least, element_step(body, block, w.element, 1.0, viscosity));
-    worst.push_back(w);
-  }
-  for (std::size_t b = 0; b < worst.size(); ++b) {
-    const auto& [element, is] = worst[b];
-    const double step = options.least_step * least;
-    spread.push_back(is > 0.0 ? is / mass_factor_for(body, body.blocks[b], element, step, viscosity) : 0.0);
+    std::size_t e = block.begin;
+    while (e + 1 < block.end && !(body.rest[e].volume > 0.0)) ++e;
+    const double some = body.rest[e].volume > 0.0 ? detail::spread_of(corners_at_rest(e)) : 0.0;
+    spread.push_back(some > 0.0 ? some / mass_factor_for(body, block, e, step, viscosity) : 0.0);
   }
 }
 

@@ -20,7 +20,9 @@ ExplicitScheme::ExplicitScheme(Body body, const SimulationOptions& options, Drag
     : Scheme(std::move(body), options), moving_(make_moving_body(body_, gamma_, options, info_)),
       stiffening_(moving_->advance(0.0, {}, false).stiffening),
       control_(std::make_unique<StepControl>(body_, gamma_, drag, options, stiffening_)) {
-  if (options.mesh_changes) moving_->apply({}, changer().stars(), gamma_);
+  if (!options.mesh_changes) return;
+  moving_->apply({}, changer().stars(), gamma_);
+  control_->prepare_changes(changer().stars());
 }
 
 const ExplicitScheme::StateCopy& ExplicitScheme::read_state() const {
@@ -286,7 +288,7 @@ void ExplicitScheme::load(CheckpointReader& in) {
 
 void ExplicitScheme::take_over(const BodyChange& change) {
   moving_->apply(change, changer_->stars(), gamma_);
-  control_->mesh_changed(gamma_, change.reshaped);
+  control_->mesh_changed(gamma_, change, changer_->stars());
   copy_.current = false;
 }
 

@@ -189,10 +189,11 @@ double gradient_spread(const ElementRest& rest) {
   return largest(sum);
 }
 
-/// Bound of λ tr(ε)² + 2 μ ε:ε over ‖ε‖².
+}  // namespace
+
 double modulus_bound(LameParameters lame) { return std::max(3.0 * lame.lambda + 2.0 * lame.mu, 2.0 * lame.mu); }
 
-}  // namespace
+double damped_step(double k, double c) { return mode_step({k, c, 0.0}); }
 
 namespace {
 

@@ -57,6 +57,12 @@ double element_bound_step(const Body& body, std::span<const double> stiffening, 
 /// What an element's mass is to be multiplied with to have the bound `step` at rest stiffness; below 1 where it has more.
 double mass_factor_for(const Body& body, const TissueBlock& block, std::size_t element, double step, double viscosity);
 
+/// Bound of λ tr(ε)² + 2 μ ε:ε over ‖ε‖².
+double modulus_bound(LameParameters lame);
+/// h* of a mode of unit mass: the root of k h² + 2 c h = 4 [s]; infinite where there is none.
+/// @param k  [1/s²], @param c  [1/s]
+double damped_step(double k, double c);
+
 /// The same for one element.
 double element_step(const Body& body, const TissueBlock& block, std::size_t element, double stiffening,
                     double viscosity);

@@ -48,8 +48,6 @@ StepControl::StepControl(const Body& body, std::span<const double> nodal_damping
   lately_ = seen_;
   last_.assign(stiffening.begin(), stiffening.end());
   validated_ = rest_level_ = at_least_one(stiffening);
-  const std::vector<double> one(body.blocks.size(), 1.0);
-  any_part_ = element_bound_step(body, one, viscosity_at(one));
   limits_ = rest_limits_ = limits_at(validated_);
   step_ = options.step.value_or(kSafety * limits_.pace);
   if (enforce_ && step_ > limits_.stable) refuse_above();
@@ -107,18 +105,21 @@ StepControl::Limits StepControl::bound_at(std::span<const double> stiffening) co
   return {h, h};
 }
 
-void StepControl::mesh_changed(std::span<const double> nodal_damping, std::span<const std::uint32_t> reshaped) {
+void StepControl::prepare_changes(const detail::VertexStars& stars) {
+  const std::vector<double> one(body_.blocks.size(), 1.0);
+  part_bound_ = std::make_unique<PartBound>(body_, stars, viscosity_at(one));
+}
+
+void StepControl::mesh_changed(std::span<const double> nodal_damping, const BodyChange& change,
+                               const detail::VertexStars& stars) {
   if (nodal_damping.size() != nodal_damping_.size()) guess_ = pace_guess_ = {};
   nodal_damping_ = nodal_damping;
-  const std::vector<double> viscosity = viscosity_at(std::vector<double>(body_.blocks.size(), 1.0));
-  for (const std::uint32_t e : reshaped) {
-    const TissueBlock& block = body_.block_of(e);
-    const auto b = static_cast<std::size_t>(&block - body_.blocks.data());
-    any_part_ = std::min(any_part_, element_step(body_, block, e, 1.0, viscosity[b]));
-  }
+  if (part_bound_ == nullptr) prepare_changes(stars);
+  part_bound_->change(change.touched);
+  const double part = part_bound_->step();
   // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C
   const auto bound = [&](Limits& limits, const std::vector<double>& level) {
-    const double h = any_part_ / std::sqrt(*std::max_element(level.begin(), level.end()));
+    const double h = part / std::sqrt(*std::max_element(level.begin(), level.end()));
     limits = {std::min(limits.stable, h), std::min(limits.pace, h)};
   };
   bound(limits_, validated_);
@@ -219,7 +220,7 @@ void StepControl::relax(std::span<const double> stiffening) {
 }
 
 void StepControl::save(CheckpointWriter& out) const {
-  out.put(step_), out.put(any_part_), out.put(window_), out.put(in_window_), out.put(unchecked_), out.put(caution_);
+  out.put(step_), out.put(window_), out.put(in_window_), out.put(unchecked_), out.put(caution_);
   out.put(shape_step_);
   out.put_doubles(limits_), out.put_doubles(rest_limits_);
   for (const auto* list : {&validated_, &rest_level_, &seen_, &lately_, &last_}) out.put(*list);
@@ -228,7 +229,7 @@ void StepControl::save(CheckpointWriter& out) const {
 }
 
 void StepControl::load(CheckpointReader& in) {
-  in.get(step_), in.get(any_part_), in.get(window_), in.get(in_window_), in.get(unchecked_), in.get(caution_);
+  in.get(step_), in.get(window_), in.get(in_window_), in.get(unchecked_), in.get(caution_);
   in.get(shape_step_);
   in.get_doubles(limits_), in.get_doubles(rest_limits_);
   for (auto* list : {&validated_, &rest_level_, &seen_, &lately_, &last_}) in.get_same_size(*list);

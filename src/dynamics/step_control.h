@@ -15,13 +15,15 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "dynamics/checkpoint.h"
+#include "dynamics/part_bound.h"
 #include "dynamics/stable_step.h"
 #include "glisson/simulation.h"
-#include "mechanics/body.h"
+#include "mechanics/body_change.h"
 
 namespace glisson {
 
@@ -43,11 +45,12 @@ class StepControl {
   /// @return false where a given step is above h* by now
   bool accept(std::span<const double> stiffening);
 
-  /// After elements were removed or split from each other: h* falls to the bound that holds for any part of the body,
-  /// each element with its own share of mass. A given step above that is checked against h* itself by the next
-  /// accept(), which is slow.
-  /// @param reshaped  elements that have another shape at rest
-  void mesh_changed(std::span<const double> nodal_damping, std::span<const std::uint32_t> reshaped = {});
+  /// Makes ready for mesh_changed, which does so the first time. @param stars  must outlive this
+  void prepare_changes(const detail::VertexStars& stars);
+
+  /// After elements were removed, split from each other or reshaped: h* falls to a bound from single elements
+  /// (part_bound.h). A given step above that is checked against h* itself by the next accept(), which is slow.
+  void mesh_changed(std::span<const double> nodal_damping, const BodyChange& change, const detail::VertexStars& stars);
 
   void save(CheckpointWriter& out) const;
   void load(CheckpointReader& in);
@@ -95,9 +98,9 @@ class StepControl {
   StabilityGuess guess_, pace_guess_;
   double step_ = 0.0;
   Limits limits_;
-  double any_part_;                ///< element_bound_step at rest: holds for any part of the body [s]
-  bool unchecked_ = false;         ///< a given step is above the bound of a mesh that has changed
-  std::vector<double> validated_;  ///< stiffening per block up to which step_ is known to be stable
+  std::unique_ptr<PartBound> part_bound_;  ///< none until the mesh changes
+  bool unchecked_ = false;                 ///< a given step is above the bound of a mesh that has changed
+  std::vector<double> validated_;          ///< stiffening per block up to which step_ is known to be stable
   std::vector<double> rest_level_;
   Limits rest_limits_;        ///< for rest_level_, the stiffness at the start
   std::vector<double> seen_;  ///< largest stiffening per block in this window

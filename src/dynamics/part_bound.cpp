@@ -1,0 +1,101 @@
+#include "dynamics/part_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dynamics/stable_step.h"
+
+namespace glisson {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+std::array<Vec3d, 4> gradients(const ElementRest& rest) {
+  return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
+}
+
+/// Of a symmetric matrix q I + p B with tr B = 0: q + 2 p cos(⅓ arccos(½ det B)).
+double largest_eigenvalue(Sym3<double> a) {
+  const double q = (a.xx + a.yy + a.zz) / 3.0;
+  a.xx -= q, a.yy -= q, a.zz -= q;
+  const double squares = a.xx * a.xx + a.yy * a.yy + a.zz * a.zz + 2.0 * (a.xy * a.xy + a.yz * a.yz + a.zx * a.zx);
+  const double p = std::sqrt(squares / 6.0);
+  if (!(p > 0.0)) return q;
+  const double det =
+      a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.zx) + a.zx * (a.xy * a.yz - a.yy * a.zx);
+  return q + 2.0 * p * std::cos(std::acos(std::clamp(0.5 * det / (p * p * p), -1.0, 1.0)) / 3.0);
+}
+
+std::size_t block_at(const Body& body, std::uint32_t e) {
+  return static_cast<std::size_t>(&body.block_of(e) - body.blocks.data());
+}
+
+}  // namespace
+
+PartBound::PartBound(const Body& body, const detail::VertexStars& stars, std::vector<double> viscosity)
+    : body_(body), stars_(stars), asked_(body.vertex_count, 0.0), shared_(body.elements.size(), kNever), own_(shared_) {
+  for (std::size_t b = 0; b < body.blocks.size(); ++b) {
+    elastic_.push_back(modulus_bound(body.blocks[b].elastic));
+    viscous_.push_back(std::max(0.0, viscosity[b]) * modulus_bound(body.blocks[b].viscous));
+  }
+  for (std::uint32_t v = 0; v < asked_.size(); ++v) weigh(v);
+  for (std::uint32_t e = 0; e < own_.size(); ++e) bound(e);
+}
+
+void PartBound::weigh(std::uint32_t vertex) {
+  double sum = 0.0;
+  for (const std::uint32_t e : stars_.tets_at(vertex)) {
+    const std::array<Vec3d, 4> s = gradients(body_.rest[e]);
+    const auto corner = static_cast<std::size_t>(std::find(body_.elements[e].begin(), body_.elements[e].end(), vertex) -
+                                                 body_.elements[e].begin());
+    sum += body_.rest[e].volume * elastic_[block_at(body_, e)] * dot(s[corner], s[corner]);
+  }
+  asked_[vertex] = sum;
+}
+
+void PartBound::bound(std::uint32_t e) {
+  shared_[e] = own_[e] = kNever;
+  const ElementRest& rest = body_.rest[e];
+  if (!(rest.volume > 0.0)) return;
+  const std::size_t b = block_at(body_, e);
+  const std::array<Vec3d, 4> s = gradients(rest);
+  Sym3<double> shared, own;  // Σ s sᵀ/W
+  for (std::size_t c = 0; c < 4; ++c) {
+    const std::uint32_t v = body_.elements[e][c];
+    const Sym3<double> square{s[c].x * s[c].x, s[c].y * s[c].y, s[c].z * s[c].z,
+                              s[c].x * s[c].y, s[c].y * s[c].z, s[c].z * s[c].x};
+    const double asks = rest.volume * elastic_[b] * dot(s[c], s[c]);
+    shared = shared + square * (asked_[v] / (body_.masses[v] * asks));
+    own = own + square * (1.0 / body_.quarter_mass(body_.blocks[b], e));
+  }
+  const auto step = [&](const Sym3<double>& sum) {
+    const double per_modulus = rest.volume * largest_eigenvalue(sum);
+    return damped_step(elastic_[b] * per_modulus, viscous_[b] * per_modulus);
+  };
+  shared_[e] = step(shared), own_[e] = step(own);
+}
+
+void PartBound::change(std::span<const std::uint32_t> touched) {
+  asked_.resize(body_.vertex_count, 0.0);
+  std::vector<std::uint32_t> around;
+  for (const std::uint32_t v : touched) {
+    weigh(v);
+    const auto star = stars_.tets_at(v);
+    around.insert(around.end(), star.begin(), star.end());
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  for (const std::uint32_t e : around) bound(e);
+}
+
+double PartBound::step() const {
+  const auto least = [&](const std::vector<double>& steps) {
+    double h = kNever;
+    for (std::size_t e = 0; e < steps.size(); ++e) h = body_.rest[e].volume > 0.0 ? std::min(h, steps[e]) : h;
+    return h;
+  };
+  return std::max(least(shared_), least(own_));
+}
+
+}  // namespace glisson

@@ -1,0 +1,42 @@
+// part_bound.h — a lower bound of the stable step of a body that changes, kept up to date where it changes.
+//
+// Each element's stiffness is held against a share of the masses of its vertices. Any shares that add up to the masses give
+// a bound: with W_a the share of vertex a,
+//   xᵀK_e x ≤ V m ‖Σ x_a ⊗ s_a‖² ≤ V m λ_max(Σ s_a s_aᵀ/W_a) Σ W_a |x_a|²,        m ≥ the modulus,
+// so that the largest of V m λ_max over the elements bounds that of M⁻¹K. Shares as an element's own mass, V ρ/4, need
+// nothing of its neighbours, so that the bound holds for any part of the body; but a flat tet then counts as if it were
+// alone. Here vertices divide their masses by what each element asks for, V m |s_a|²: flat tets among good ones borrow from
+// them. The better of the two is taken. Where the body changes, only the elements around are looked at again.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mechanics/body.h"
+#include "mesh/vertex_stars.h"
+
+namespace glisson {
+
+class PartBound {
+ public:
+  /// @param viscosity  per tissue block: factor on C, negative ones count as 0 [-]
+  PartBound(const Body& body, const detail::VertexStars& stars, std::vector<double> viscosity);
+
+  /// After a change of the body. @param touched  vertices with another mass, or other elements around them, ascending
+  void change(std::span<const std::uint32_t> touched);
+
+  /// h* of the body at rest stiffness, from below, nodal damping left out [s].
+  double step() const;
+
+ private:
+  void weigh(std::uint32_t vertex);
+  void bound(std::uint32_t element);
+
+  const Body& body_;
+  const detail::VertexStars& stars_;
+  std::vector<double> elastic_, viscous_;  ///< per tissue block: bounds of the moduli [Pa], [Pa s]
+  std::vector<double> asked_;              ///< per vertex: Σ V m |s_a|² over the elements around it
+  std::vector<double> shared_, own_;       ///< per element: steps by shares as asked for, by own mass [s]
+};
+
+}  // namespace glisson
