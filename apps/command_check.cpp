@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <variant>
 
 #include "commands.h"
 #include "exit_code.h"
@@ -73,6 +75,30 @@ std::string axes_text(const Axes& axes) {
   return std::string(axes.x ? "x" : "") + (axes.y ? "y" : "") + (axes.z ? "z" : "");
 }
 
+/// In the order of InstrumentSpec::what and InstrumentMotion::how.
+constexpr std::array<const char*, 7> kInstrumentWords{"needle", "punch", "ball", "probe", "plate", "block", "blade"};
+constexpr std::array<const char*, 5> kMotionWords{"press", "strokes", "sine", "push", "record"};
+static_assert(std::variant_size_v<decltype(InstrumentSpec::what)> == kInstrumentWords.size());
+static_assert(std::variant_size_v<decltype(InstrumentMotion::how)> == kMotionWords.size());
+
+void print_interactions(const Variant& v, const Taste& taste) {
+  for (const CapsuleSpec& x : v.capsules) {
+    fmt::print("  capsule  \"{}\" on {}: {:.4g} mm, E = {:.6g} Pa\n", x.options.name,
+               x.set.empty() ? "all of the surface" : set_text(taste.mesh, x.set), 1e3 * x.options.thickness,
+               x.options.youngs_modulus);
+  }
+  if (v.container) {
+    using Hold = ContainerSpec::Hold;
+    const Hold hold = v.container->hold;
+    fmt::print("  vessel   {}\n", hold == Hold::free ? "free" : hold == Hold::wet ? "wet" : "bonded");
+  }
+  for (const InstrumentSpec& x : v.instruments) {
+    const std::optional<double> end = make_driver(x)->end();
+    fmt::print("  tool     \"{}\", a {}: {}{}\n", x.name, kInstrumentWords[x.what.index()],
+               kMotionWords[x.motion.how.index()], end ? fmt::format(", until {:.4g} s", *end) : "");
+  }
+}
+
 void print_body(const Variant& v, const Taste& taste) {
   print_mesh(taste.mesh, taste.mass_kg);
   fmt::print("  tissue   \"{}\": {}\n", v.tissue.name, tissue_text(v.tissue));
@@ -91,6 +117,7 @@ void print_body(const Variant& v, const Taste& taste) {
     fmt::print("  tool     \"{}\" on {}: {:.4g} mm at {:.4g} mm/s, from {:.4g} s to {:.4g} s\n", tool.name,
                set_text(taste.mesh, tool.set), 1e3 * m.depth, 1e3 * m.velocity, m.start, press_end(m));
   }
+  print_interactions(v, taste);
 }
 
 Cost cost_of(const Variant& v, const Taste& taste, const RunSummary& summary) {

@@ -78,8 +78,10 @@ double number(const std::string& where, const std::vector<std::string_view>& lin
 }  // namespace
 
 RecordedMotion load_record(const std::filesystem::path& file, const Vec3d& direction) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) fail(file.string(), "cannot be read; check the path and that you may read it");
+  std::error_code error;
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(file, error)) in.open(file, std::ios::binary);
+  if (!in.is_open()) fail(file.string(), "cannot be read; check the path and that you may read it");
   RecordedMotion record;
   std::optional<Layout> layout;
   std::string line;
