@@ -134,6 +134,10 @@ std::vector<double> ContactTool::past() const {
   s.found_inside.save(past);
   past.push_back(static_cast<double>(s.bonds.size()));
   for (const auto& [vertex, y] : s.bonds) past.insert(past.end(), {static_cast<double>(vertex), y.x, y.y, y.z});
+  past.push_back(static_cast<double>(s.last_pressing.size()));
+  for (const auto& [t, force] : s.last_pressing) {
+    past.insert(past.end(), {static_cast<double>(t[0]), static_cast<double>(t[1]), static_cast<double>(t[2]), force});
+  }
   s.reach.save(past);
   return past;
 }
@@ -158,6 +162,15 @@ bool ContactTool::restore(std::span<const double> past) {
   for (double i = 0.0; i < bonds; ++i, past = past.subspan(4)) {
     if (!is_vertex(past[0])) return false;
     s.bonds[static_cast<std::uint32_t>(past[0])] = {past[1], past[2], past[3]};
+  }
+  if (past.empty() || !(past[0] >= 0.0 && 4.0 * past[0] < static_cast<double>(past.size()))) return false;
+  const double pressed = past[0];
+  past = past.subspan(1);
+  s.last_pressing.clear();
+  for (double i = 0.0; i < pressed; ++i, past = past.subspan(4)) {
+    if (!is_vertex(past[0]) || !is_vertex(past[1]) || !is_vertex(past[2])) return false;
+    const auto corner = [&](std::size_t c) { return static_cast<std::uint32_t>(past[c]); };
+    s.last_pressing[{corner(0), corner(1), corner(2)}] = past[3];
   }
   return s.reach.restore(past) && past.empty();
 }

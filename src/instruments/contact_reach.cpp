@@ -7,7 +7,7 @@
 namespace glisson {
 namespace {
 
-constexpr double kStretch = 2.0;  // of a patch's radius: how far its vertices may be from its sentinel
+constexpr double kStretch = 2.5;  // of a patch's radius: how far its vertices may be from its sentinel
 constexpr double kHurry = 4.0;    // times the sentinel's way in a step: how far they may go
 constexpr std::uint32_t kAbsent = std::numeric_limits<std::uint32_t>::max();
 

@@ -7,7 +7,7 @@
 namespace glisson {
 namespace {
 
-constexpr int kMostSweeps = 16;
+constexpr int kMostSweeps = 60;
 constexpr double kEnough = 1000.0;  // tolerances: rows that move by less have been solved
 constexpr int kMostCorrections = 8;
 constexpr double kAtEdge = 1e-3;  // a weight below it: the point is on an edge of its triangle

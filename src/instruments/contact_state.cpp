@@ -13,6 +13,11 @@ constexpr double kMostAllowed = 0.1;  // … and so much of the thickness
 constexpr double kStride = 0.25;      // of the thickness: a fast triangle is looked at so often on its way
 constexpr int kMostStrides = 200;
 
+Triangle corners_of(const ContactRow& row, const InteractionStep& step) {
+  return {step.vertices[row.places[0]].vertex, step.vertices[row.places[1]].vertex,
+          step.vertices[row.places[2]].vertex};
+}
+
 }  // namespace
 
 void ContactTool::State::measure(std::size_t i, const InteractionStep& step) {
@@ -84,7 +89,13 @@ void ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, 
     ContactRow row;
     for (std::size_t i = 0; i < 3; ++i) row.places[i] = step.place_of[reach.vertices()[t[i]]];
     row.count = 3, row.solid = &solid, row.allowance = allowance;
-    if (prepare(row, step, share)) rows.push_back(row);
+    if (!prepare(row, step, share)) return;
+    const auto last = last_pressing.find(corners_of(row, step));
+    if (last != last_pressing.end()) {
+      row.pressing = last->second * step.h;
+      push(row, step, row.normal * row.pressing);
+    }
+    rows.push_back(row);
     return;
   }
 }
@@ -117,7 +128,9 @@ void ContactTool::State::bear(std::uint32_t vertex, double impulse) {
 
 void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces) {
   const double rate = 1.0 / step.h;
+  last_pressing.clear();
   for (const ContactRow& row : rows) {
+    if (row.count == 3 && row.pressing > 0.0) last_pressing[corners_of(row, step)] = row.pressing * rate;
     if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
     forces.normal += row.normal * (row.pressing * rate);
     forces.friction += row.rubbing * rate;

@@ -31,6 +31,7 @@ struct ContactTool::State {
   ContactBooks books;
   bool begun = false;  ///< a step has been made since the tool was attached
   FoundInside found_inside;
+  std::map<Triangle, double> last_pressing;  ///< forces on triangles in the last step, to begin the next with [N]
   bool in_contact = false;
   double last_touch = 0.0, last_depth = 0.0;
 

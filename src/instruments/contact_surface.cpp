@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace glisson {
 namespace {
 
 constexpr std::size_t kPatchVertices = 12;
+constexpr double kPatchSize = 1.7;  // of the longest edge at its sentinel: no vertex of a patch but its rim is farther
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
@@ -43,36 +45,39 @@ std::span<const std::uint32_t> ContactSurface::triangles_at(std::uint32_t vertex
   return std::span(around_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
 }
 
-/// Grows patches over edges, each from the lowest vertex that is in none yet.
+/// Grows patches over edges, each from the lowest vertex that is in none yet, nearest vertices first.
 void ContactSurface::find_patches(std::span<const Vec3d> rest) {
   patches_.clear();
-  std::vector<std::uint32_t> patch_of(rest.size(), kNone);
-  std::vector<double> way(rest.size(), 0.0);
+  std::vector<char> taken(rest.size(), 0);
+  std::vector<std::uint32_t> seen(rest.size(), kNone);  // by which patch, last
   for (const std::uint32_t seed : vertices_) {
-    if (patch_of[seed] != kNone) continue;
+    if (taken[seed] != 0) continue;
     const auto number = static_cast<std::uint32_t>(patches_.size());
-    SurfacePatch patch{seed, {seed}, 0.0};
-    std::vector<std::uint32_t> rim;
-    patch_of[seed] = number, way[seed] = 0.0;
-    for (std::size_t k = 0; k < patch.vertices.size(); ++k) {
-      const std::uint32_t v = patch.vertices[k];
+    SurfacePatch patch{seed, {}, 0.0};
+    std::vector<std::pair<double, std::uint32_t>> rim{{0.0, seed}};  // by distance from the seed
+    seen[seed] = number;
+    double limit = 0.0;
+    for (std::size_t size = 0; size < kPatchVertices && !rim.empty(); ++size) {
+      const auto next = std::min_element(rim.begin(), rim.end(), [&](const auto& a, const auto& b) {
+        return std::pair{taken[a.second] != 0, a} < std::pair{taken[b.second] != 0, b};
+      });
+      const auto [distance, v] = *next;
+      if (taken[v] != 0 || (size > 0 && distance > kPatchSize * limit)) break;
+      rim.erase(next);
+      taken[v] = 1;
+      patch.vertices.push_back(v);
+      patch.radius = std::max(patch.radius, distance);
       for (const std::uint32_t t : triangles_at(v)) {
         for (const std::uint32_t w : triangles_[t]) {
-          if (patch_of[w] == number) continue;
-          const double length = way[v] + norm(rest[w] - rest[v]);
-          patch.radius = std::max(patch.radius, length);
-          if (patch_of[w] == kNone && patch.vertices.size() < kPatchVertices) {
-            patch_of[w] = number, way[w] = length;
-            patch.vertices.push_back(w);
-          } else {
-            rim.push_back(w);
-          }
+          if (v == seed) limit = std::max(limit, norm(rest[w] - rest[v]));
+          if (seen[w] == number) continue;
+          seen[w] = number;
+          rim.emplace_back(norm(rest[w] - rest[seed]), w);
         }
       }
     }
-    patch.vertices.insert(patch.vertices.end(), rim.begin(), rim.end());
+    for (const auto& [distance, v] : rim) patch.vertices.push_back(v), patch.radius = std::max(patch.radius, distance);
     std::sort(patch.vertices.begin(), patch.vertices.end());
-    patch.vertices.erase(std::unique(patch.vertices.begin(), patch.vertices.end()), patch.vertices.end());
     patches_.push_back(std::move(patch));
   }
 }

@@ -109,7 +109,9 @@ TEST(ContainerFriction, GoesFromFreeToBonded) {
     EXPECT_GT(-e.container->loads().side.z, side);
     EXPECT_GT(-e.tool->forces().total().z, force);
     EXPECT_GT(e.container->loads().side_radial, 0.0);
-    if (o.friction == 0.0 && !o.bonded) EXPECT_NEAR(e.container->loads().side.z, 0.0, 1e-12);
+    if (o.friction == 0.0 && !o.bonded) {
+      EXPECT_NEAR(e.container->loads().side.z, 0.0, 1e-12);
+    }
     side = -e.container->loads().side.z + 1e-4, force = -e.tool->forces().total().z;
   }
 }
