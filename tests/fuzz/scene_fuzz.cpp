@@ -48,7 +48,12 @@ void require_sound(const glisson::Variant& v) {
   require(std::visit([](const auto& law) { return law.check().empty(); }, v.tissue.law), "a law passes its own check");
   require(v.output.sample_rate > 0.0 && std::isfinite(v.output.sample_rate), "the sample rate is a rate");
   require(!v.simulation.step || *v.simulation.step > 0.0, "a step is longer than nothing");
-  require(v.duration || v.max_steps || !v.tools.empty(), "a run ends");
+  require(v.max_steps || std::isfinite(glisson::run_duration(v)), "a run ends");
+  for (const glisson::InstrumentSpec& x : v.instruments) {
+    const glisson::Vec3d at = glisson::make_driver(x)->advance(0.0, 1e-3, {}).position;
+    require(std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z), "a tool is somewhere");
+    require(std::abs(glisson::determinant(glisson::start_pose(x).axes) - 1.0) < 1e-6, "a tool's axes are a rotation");
+  }
 }
 
 bool is_small(const glisson::Variant& v) {
