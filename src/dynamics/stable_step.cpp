@@ -250,6 +250,13 @@ StableStep stable_step(const Body& body, std::span<const double> stiffening, std
     }
     h = next;
   }
+  // Drag that is taken off can leave a spectrum in which the search does not find its way; without it φ is larger, and
+  // its step is still above that of the elements.
+  if (std::any_of(viscosity.begin(), viscosity.end(), [](double w) { return w < 0.0; })) {
+    std::vector<double> none_taken_off(viscosity.begin(), viscosity.end());
+    for (double& w : none_taken_off) w = std::max(0.0, w);
+    return stable_step(body, stiffening, nodal_damping, held, guess, none_taken_off);
+  }
   return {safe, 0.0, true};
 }
 
