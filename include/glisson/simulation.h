@@ -220,11 +220,11 @@ class Simulation {
   void attach(std::shared_ptr<Interaction> interaction);
 
   /// Takes tets out at once: their stiffness, viscosity and mass are gone, nothing else changes. Numbers of tets and
-  /// vertices stay. An automatic step falls to a bound that holds whatever is removed; a given step above that bound is
+  /// vertices stay. An automatic step falls to a bound from single tets; a given step above that bound is
   /// checked against h* by the next step, which takes a search.
   /// @param tets  numbers of the mesh; those that are gone already are passed over
   /// @throws std::invalid_argument for a number that is no tet's; nothing is changed then
-  /// Cost: 1.5 µs a tet, 3 to 4 of a linear tissue, after the first call or with SimulationOptions::mesh_changes.
+  /// Cost: some 15 µs a tet, after the first call or with SimulationOptions::mesh_changes.
   RemovalReport remove_tets(std::span<const std::uint32_t> tets);
   /// Opens the body along inner faces: vertices that the faces part get copies, numbered on from the last one, with
   /// the state of their origin. Copies belong to the sets, supports and tools of their origin, and share its loads.
@@ -234,7 +234,7 @@ class Simulation {
   ///               follow, and what the energies of the tets around it differ by is booked as `removed`
   /// @throws std::invalid_argument naming a face that no tet has, that is at the boundary or has more than two tets, or a
   ///         vertex that is none or would turn a tet over; nothing is changed then
-  /// Cost: the submeshes at the faces and moved vertices are laid out anew, some 0.3 ms each.
+  /// Cost: docs/cutting.md.
   SplitReport split_faces(std::span<const Triangle> faces, std::span<const VertexMove> moves = {});
   /// @throws std::invalid_argument for a number that is no tet's
   bool is_removed(std::uint32_t tet) const;

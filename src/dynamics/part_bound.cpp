@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "dynamics/stable_step.h"
 
@@ -10,6 +11,7 @@ namespace glisson {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr std::size_t kRun = 256;  ///< elements of which the least step is kept
 
 std::array<Vec3d, 4> gradients(const ElementRest& rest) {
   return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
@@ -34,13 +36,17 @@ std::size_t block_at(const Body& body, std::uint32_t e) {
 }  // namespace
 
 PartBound::PartBound(const Body& body, const detail::VertexStars& stars, std::vector<double> viscosity)
-    : body_(body), stars_(stars), asked_(body.vertex_count, 0.0), shared_(body.elements.size(), kNever), own_(shared_) {
+    : body_(body), stars_(stars), asked_(body.vertex_count, 0.0), shared_(body.elements.size(), kNever), own_(shared_),
+      least_shared_((own_.size() + kRun - 1) / kRun, kNever), least_own_(least_shared_) {
   for (std::size_t b = 0; b < body.blocks.size(); ++b) {
     elastic_.push_back(modulus_bound(body.blocks[b].elastic));
     viscous_.push_back(std::max(0.0, viscosity[b]) * modulus_bound(body.blocks[b].viscous));
   }
   for (std::uint32_t v = 0; v < asked_.size(); ++v) weigh(v);
   for (std::uint32_t e = 0; e < own_.size(); ++e) bound(e);
+  std::vector<std::uint32_t> all(own_.size());
+  std::iota(all.begin(), all.end(), 0U);
+  find_least(all);
 }
 
 void PartBound::weigh(std::uint32_t vertex) {
@@ -55,7 +61,7 @@ void PartBound::weigh(std::uint32_t vertex) {
 }
 
 void PartBound::bound(std::uint32_t e) {
-  shared_[e] = own_[e] = kNever;
+  shared_[e] = kNever;
   const ElementRest& rest = body_.rest[e];
   if (!(rest.volume > 0.0)) return;
   const std::size_t b = block_at(body_, e);
@@ -67,19 +73,37 @@ void PartBound::bound(std::uint32_t e) {
                               s[c].x * s[c].y, s[c].y * s[c].z, s[c].z * s[c].x};
     const double asks = rest.volume * elastic_[b] * dot(s[c], s[c]);
     shared = shared + square * (asked_[v] / (body_.masses[v] * asks));
-    own = own + square * (1.0 / body_.quarter_mass(body_.blocks[b], e));
+    if (own_[e] == kNever) own = own + square * (1.0 / body_.quarter_mass(body_.blocks[b], e));
   }
   const auto step = [&](const Sym3<double>& sum) {
     const double per_modulus = rest.volume * largest_eigenvalue(sum);
     return damped_step(elastic_[b] * per_modulus, viscous_[b] * per_modulus);
   };
-  shared_[e] = step(shared), own_[e] = step(own);
+  shared_[e] = step(shared);
+  if (own_[e] == kNever) own_[e] = step(own);
 }
 
-void PartBound::change(std::span<const std::uint32_t> touched) {
+/// Least steps of runs of elements that hold some of these, ascending.
+void PartBound::find_least(std::span<const std::uint32_t> elements) {
+  std::size_t done = std::numeric_limits<std::size_t>::max();
+  for (const std::uint32_t e : elements) {
+    const std::size_t run = e / kRun;
+    if (run == done) continue;
+    done = run;
+    const auto begin = static_cast<std::ptrdiff_t>(run * kRun);
+    const auto end = std::min(begin + static_cast<std::ptrdiff_t>(kRun), std::ssize(own_));
+    least_shared_[run] = *std::min_element(shared_.begin() + begin, shared_.begin() + end);
+    least_own_[run] = *std::min_element(own_.begin() + begin, own_.begin() + end);
+  }
+}
+
+void PartBound::change(const BodyChange& change) {
   asked_.resize(body_.vertex_count, 0.0);
-  std::vector<std::uint32_t> around;
-  for (const std::uint32_t v : touched) {
+  std::vector<std::uint32_t> around = change.removed;
+  for (const auto* list : {&change.removed, &change.reshaped}) {
+    for (const std::uint32_t e : *list) own_[e] = kNever;
+  }
+  for (const std::uint32_t v : change.touched) {
     weigh(v);
     const auto star = stars_.tets_at(v);
     around.insert(around.end(), star.begin(), star.end());
@@ -87,15 +111,12 @@ void PartBound::change(std::span<const std::uint32_t> touched) {
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());
   for (const std::uint32_t e : around) bound(e);
+  find_least(around);
 }
 
 double PartBound::step() const {
-  const auto least = [&](const std::vector<double>& steps) {
-    double h = kNever;
-    for (std::size_t e = 0; e < steps.size(); ++e) h = body_.rest[e].volume > 0.0 ? std::min(h, steps[e]) : h;
-    return h;
-  };
-  return std::max(least(shared_), least(own_));
+  return std::max(*std::min_element(least_shared_.begin(), least_shared_.end()),
+                  *std::min_element(least_own_.begin(), least_own_.end()));
 }
 
 }  // namespace glisson

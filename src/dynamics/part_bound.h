@@ -12,8 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "mechanics/body.h"
-#include "mesh/vertex_stars.h"
+#include "mechanics/body_change.h"
 
 namespace glisson {
 
@@ -22,8 +21,8 @@ class PartBound {
   /// @param viscosity  per tissue block: factor on C, negative ones count as 0 [-]
   PartBound(const Body& body, const detail::VertexStars& stars, std::vector<double> viscosity);
 
-  /// After a change of the body. @param touched  vertices with another mass, or other elements around them, ascending
-  void change(std::span<const std::uint32_t> touched);
+  /// After a change of the body. Cost: 0.1 µs an element around the vertices touched.
+  void change(const BodyChange& change);
 
   /// h* of the body at rest stiffness, from below, nodal damping left out [s].
   double step() const;
@@ -31,12 +30,14 @@ class PartBound {
  private:
   void weigh(std::uint32_t vertex);
   void bound(std::uint32_t element);
+  void find_least(std::span<const std::uint32_t> elements);
 
   const Body& body_;
   const detail::VertexStars& stars_;
-  std::vector<double> elastic_, viscous_;  ///< per tissue block: bounds of the moduli [Pa], [Pa s]
-  std::vector<double> asked_;              ///< per vertex: Σ V m |s_a|² over the elements around it
-  std::vector<double> shared_, own_;       ///< per element: steps by shares as asked for, by own mass [s]
+  std::vector<double> elastic_, viscous_;         ///< per tissue block: bounds of the moduli [Pa], [Pa s]
+  std::vector<double> asked_;                     ///< per vertex: Σ V m |s_a|² over the elements around it
+  std::vector<double> shared_, own_;              ///< per element: steps by shares as asked for, by own mass [s]
+  std::vector<double> least_shared_, least_own_;  ///< per run of elements
 };
 
 }  // namespace glisson

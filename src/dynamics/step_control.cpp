@@ -115,7 +115,7 @@ void StepControl::mesh_changed(std::span<const double> nodal_damping, const Body
   if (nodal_damping.size() != nodal_damping_.size()) guess_ = pace_guess_ = {};
   nodal_damping_ = nodal_damping;
   if (part_bound_ == nullptr) prepare_changes(stars);
-  part_bound_->change(change.touched);
+  part_bound_->change(change);
   const double part = part_bound_->step();
   // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C
   const auto bound = [&](Limits& limits, const std::vector<double>& level) {

@@ -33,7 +33,7 @@ TEST(PartBounds, LieBelowTheStableStepAndFollowChanges) {
         const VertexMove move{v, body.rest_positions[v] + random_field(1, 0.05 * kCell, random)[0]};
         change = changer.cut({}, {&move, 1}, [](std::uint32_t) { return std::pair<Vec3d, Vec3d>{}; });
       }
-      bound.change(change.touched);
+      bound.change(change);
       const std::vector<double> gamma(body.vertex_count, 0.0);
       EXPECT_EQ(bound.step(), PartBound(body, changer.stars(), one).step()) << i;
       EXPECT_LE(bound.step(), stable_step(body, one, gamma).step * (1.0 + 1e-9)) << i;
