@@ -102,6 +102,7 @@ void ContactTool::constrain(const InteractionStep& step) {
   if (!s.rows.empty()) s.effort.sweeps = s.books.solve(s.rows, step);
   if (s.solid.traits.presses_between) s.add_triangles(step);
   s.effort.triangles = s.rows.size() - s.effort.vertices;
+  s.begin_triangles(step);
   if (s.effort.triangles > 0) s.effort.sweeps += s.books.solve(s.rows, step);
   s.effort.corrected = s.books.corrected();
   s.books.close(s.rows, step);

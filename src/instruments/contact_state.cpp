@@ -89,14 +89,19 @@ void ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, 
     ContactRow row;
     for (std::size_t i = 0; i < 3; ++i) row.places[i] = step.place_of[reach.vertices()[t[i]]];
     row.count = 3, row.solid = &solid, row.allowance = allowance;
-    if (!prepare(row, step, share)) return;
-    const auto last = last_pressing.find(corners_of(row, step));
-    if (last != last_pressing.end()) {
-      row.pressing = last->second * step.h;
-      push(row, step, row.normal * row.pressing);
-    }
-    rows.push_back(row);
+    if (prepare(row, step, share)) rows.push_back(row);
     return;
+  }
+}
+
+/// Begins with the forces of the last step: when all rows have been found, as they look at where the free way ends.
+void ContactTool::State::begin_triangles(const InteractionStep& step) {
+  for (ContactRow& row : rows) {
+    if (row.count != 3) continue;
+    const auto last = last_pressing.find(corners_of(row, step));
+    if (last == last_pressing.end()) continue;
+    row.pressing = last->second * step.h;
+    push(row, step, row.normal * row.pressing);
   }
 }
 

@@ -82,25 +82,28 @@ struct Throw {
 // that the books, which are kept half a kick behind, are closed. What it has done is not above zero but for rounding.
 TEST(ContactEnergy, IsNeverCreated) {
   std::mt19937 random(20261121);
-  int touched = 0, corrected = 0;
+  int touched = 0, corrected = 0, crushed = 0;
   for (int n = 0; n < 1000; ++n) {
     Throw t(random);
     const int steps = std::uniform_int_distribution<int>(20, 120)(random);
-    bool ever = false;
+    bool ever = false, inverted = false;
     for (int k = 0; k < steps; ++k) {
-      ASSERT_EQ(t.body.step().status, StepStatus::ok);
+      const StepStatus status = t.body.step().status;
+      ASSERT_TRUE(status == StepStatus::ok || status == StepStatus::inverted);
+      inverted = inverted || status == StepStatus::inverted;
       ever = ever || t.tool->touches();
       corrected += t.tool->effort().corrected ? 1 : 0;
     }
     *t.away = true;
-    for (int k = 0; k < 2; ++k) ASSERT_EQ(t.body.step().status, StepStatus::ok);
+    for (int k = 0; k < 2; ++k) ASSERT_NE(t.body.step().status, StepStatus::not_finite);
     ASSERT_FALSE(t.tool->touches());
     const Energies e = t.body.energies();
     ASSERT_LE(e.work_tools, 1e-12 * t.thrown) << "throw " << n << ", shape " << t.tool->options().shape.index();
     ASSERT_LE(e.kinetic + e.elastic, (1.0 + 1e-9) * t.thrown) << "throw " << n;
-    touched += ever ? 1 : 0;
+    touched += ever ? 1 : 0, crushed += inverted ? 1 : 0;
   }
   EXPECT_GT(touched, 700);
+  EXPECT_LT(crushed, 10);  // by an edge or a tip that meets soft tissue at 1 m/s
   RecordProperty("throws_that_touched", touched);
   RecordProperty("steps_solved_twice", corrected);
 }

@@ -151,6 +151,30 @@ TEST(Contact, PressesBetweenVertices) {
   EXPECT_EQ(t->contact_pressure().vertices.size(), 3u);
 }
 
+// A ball that wraps itself in the triangles around a vertex is solved for to the end: at rest its force stands still, from one
+// half second to the next to 0.1 %, nothing is solved twice, and friction makes it larger.
+TEST(Contact, RestsAmongTriangles) {
+  double before = 0.0;
+  for (const double friction : {0.0, 0.3}) {
+    SimulationOptions o;
+    o.damping_rate = 50.0;
+    Simulation s(slab(8), {{0, tissue()}}, o);
+    s.fix(s.mesh().vertex_sets.at("z_min"));
+    const auto t = tool(Ball{.radius = 3e-3}, friction, [](double time) {
+      return Pose{{0.0, 0.0, -std::min(2e-3, 0.01 * time)}};
+    });
+    s.attach(t);
+    test::advance_to(s, 0.5);
+    const double force = -t->forces().total().z;
+    EXPECT_GE(t->effort().triangles, 3u);
+    test::advance_to(s, 1.0);
+    EXPECT_NEAR(-t->forces().total().z, force, 1e-3 * force);
+    EXPECT_FALSE(t->effort().corrected);
+    EXPECT_GT(force, 1.01 * before);
+    before = force;
+  }
+}
+
 // Found inside a tool, tissue comes out at a limited speed, and ends up outside.
 TEST(Contact, ComesOutSlowlyWhenFoundInside) {
   Simulation s(slab(4), {{0, tissue()}});
