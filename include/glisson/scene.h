@@ -211,10 +211,19 @@ struct AxisSpec {
   std::string label;  ///< with unit, e.g. "depth [mm]"
   double scale = 1.0;
 };
+/// Points that someone measured, in the units of the chart.
+struct MeasuredSpec {
+  std::filesystem::path path;  ///< a .csv with a line of names; absolute, or relative to the current directory
+  std::string label = "measured";
+  std::string x, y;                                     ///< its columns
+  double x_scale = 1.0, x_offset = 0.0, y_scale = 1.0;  ///< x shown = x_scale (x − x_offset)
+  std::vector<double> xs, ys;                           ///< what the file holds, as shown
+};
 /// A chart of the report.
 struct ChartSpec {
   std::string title;
   AxisSpec x, y;
+  std::vector<MeasuredSpec> measured;
   std::vector<std::string> variants;  ///< names; empty: all
 };
 

@@ -47,6 +47,7 @@ nlohmann::json chart_json(const ChartSpec& chart) {
   nlohmann::json json{
       {"title", chart.title}, {"x", axis_json(chart.x)}, {"y", axis_json(chart.y)}, {"variants", nullptr}};
   if (!chart.variants.empty()) json["variants"] = chart.variants;
+  for (const MeasuredSpec& m : chart.measured) json["points"].push_back({{"label", m.label}, {"x", m.xs}, {"y", m.ys}});
   return json;
 }
 

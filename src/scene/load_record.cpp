@@ -1,40 +1,15 @@
 // load_record.cpp — a recorded way from a .csv: names first, then a line for each time.
-#include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
-#include <fstream>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "glisson/scene.h"
+#include "scene/word_table.h"
 
 namespace glisson {
 namespace {
 
-constexpr std::size_t kMostLines = 10'000'000;
-
-[[noreturn]] void fail(const std::string& where, const std::string& what) {
-  throw std::runtime_error(where + ": " + what);
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\"";
-  const auto first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
-std::vector<std::string_view> fields(std::string_view line) {
-  std::vector<std::string_view> found;
-  for (std::size_t at = 0; at <= line.size();) {
-    const std::size_t comma = std::min(line.find(',', at), line.size());
-    found.push_back(trimmed(line.substr(at, comma - at)));
-    at = comma + 1;
-  }
-  return found;
-}
+using scene::WordTable;
 
 /// A column and the factor that takes its unit to metres.
 struct Column {
@@ -42,11 +17,10 @@ struct Column {
   double scale = 1.0;
 };
 
-std::optional<Column> column(const std::vector<std::string_view>& names, const std::string& what) {
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == what + "_m") return Column{i, 1.0};
-    if (names[i] == what + "_mm") return Column{i, 1e-3};
-  }
+std::optional<Column> length_column(const WordTable& table, const std::string& what) {
+  const std::size_t m = table.column(what + "_m"), mm = table.column(what + "_mm"), all = table.names.words.size();
+  if (m < all) return Column{m, 1.0};
+  if (mm < all) return Column{mm, 1e-3};
   return {};
 }
 
@@ -56,56 +30,47 @@ struct Layout {
   std::optional<Column> depth;
   std::array<Column, 3> place{};
 
-  Layout(const std::string& where, const std::vector<std::string_view>& names) : depth(column(names, "depth")) {
-    const auto found = std::find(names.begin(), names.end(), "time_s");
-    if (found == names.end()) fail(where, "no column `time_s`; the first line names the columns: time_s, depth_m");
-    time = static_cast<std::size_t>(found - names.begin());
+  explicit Layout(const WordTable& table) : time(table.column("time_s")), depth(length_column(table, "depth")) {
+    if (time == table.names.words.size()) {
+      throw std::runtime_error(table.names.where +
+                               ": no column `time_s`; the first line names the columns: time_s, depth_m");
+    }
     if (depth) return;
-    const auto x = column(names, "x"), y = column(names, "y"), z = column(names, "z");
-    if (!x || !y || !z) fail(where, "neither `depth_m` nor `x_m`, `y_m` and `z_m` (or _mm) are among the columns");
+    const auto x = length_column(table, "x"), y = length_column(table, "y"), z = length_column(table, "z");
+    if (!x || !y || !z) {
+      throw std::runtime_error(table.names.where +
+                               ": neither `depth_m` nor `x_m`, `y_m` and `z_m` (or _mm) are among the columns");
+    }
     place = {*x, *y, *z};
   }
-};
 
-double number(const std::string& where, const std::vector<std::string_view>& line, std::size_t at) {
-  const std::string_view text = at < line.size() ? line[at] : std::string_view{};
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc{} && end == text.data() + text.size() && std::isfinite(value)) return value;
-  fail(where, "\"" + std::string(text) + "\" in column " + std::to_string(at + 1) + " is no finite number");
-}
+  Vec3d place_of(const WordTable::Row& row, const Vec3d& direction) const {
+    const auto metres = [&](const Column& c) { return c.scale * WordTable::number(row, c.at); };
+    if (depth) return direction * metres(*depth);
+    return {metres(place[0]), metres(place[1]), metres(place[2])};
+  }
+};
 
 }  // namespace
 
 RecordedMotion load_record(const std::filesystem::path& file, const Vec3d& direction) {
-  std::error_code error;
-  std::ifstream in;
-  if (std::filesystem::is_regular_file(file, error)) in.open(file, std::ios::binary);
-  if (!in.is_open()) fail(file.string(), "cannot be read; check the path and that you may read it");
+  const WordTable table = scene::read_word_table(file);
   RecordedMotion record;
-  std::optional<Layout> layout;
-  std::string line;
-  for (std::size_t n = 1; std::getline(in, line) && n <= kMostLines; ++n) {
-    const std::string where = file.string() + ":" + std::to_string(n);
-    if (trimmed(line).empty() || line.front() == '#') continue;
-    const std::vector<std::string_view> words = fields(line);
-    if (!layout) {
-      layout.emplace(where, words);
-      continue;
+  if (table.rows.size() >= 2) {
+    const Layout layout(table);
+    for (const WordTable::Row& row : table.rows) {
+      const double time = WordTable::number(row, layout.time);
+      if (!record.times.empty() && time <= record.times.back()) {
+        throw std::runtime_error(row.where + ": time_s = " + row.words[layout.time] +
+                                 " is not later than on the line before");
+      }
+      record.times.push_back(time);
+      record.positions.push_back(layout.place_of(row, direction));
     }
-    const double time = number(where, words, layout->time);
-    if (!record.times.empty() && time <= record.times.back()) {
-      fail(where, "time_s = " + std::string(words[layout->time]) + " is not later than on the line before");
-    }
-    const auto metres = [&](const Column& c) { return c.scale * number(where, words, c.at); };
-    const auto& [x, y, z] = layout->place;
-    record.times.push_back(time);
-    record.positions.push_back(layout->depth ? direction * metres(*layout->depth)
-                                             : Vec3d{metres(x), metres(y), metres(z)});
+    return record;
   }
-  if (in.bad()) fail(file.string(), "cannot be read to its end");
-  if (record.times.size() < 2) fail(file.string(), "holds fewer than two times; a way needs two or more");
-  return record;
+  if (!table.names.words.empty()) Layout{table};
+  throw std::runtime_error(file.string() + ": holds fewer than two times; a way needs two or more");
 }
 
 }  // namespace glisson

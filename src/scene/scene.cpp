@@ -13,6 +13,7 @@
 #include "scene/nearest.h"
 #include "scene/sections.h"
 #include "scene/select.h"
+#include "scene/word_table.h"
 
 namespace glisson {
 namespace {
@@ -137,6 +138,19 @@ Variant read_variant(const Node& experiment, const std::filesystem::path& base, 
   return variant;
 }
 
+void read_measured(MeasuredSpec& m) {
+  const WordTable table = read_word_table(m.path);
+  const std::size_t x = table.column(m.x), y = table.column(m.y);
+  for (const auto& [at, name] : {std::pair(x, m.x), std::pair(y, m.y)}) {
+    if (at < table.names.words.size()) continue;
+    throw std::runtime_error(m.path.string() + ": no column \"" + name + "\"; it has: " + listed(table.names.words));
+  }
+  for (const WordTable::Row& row : table.rows) {
+    m.xs.push_back(m.x_scale * (WordTable::number(row, x) - m.x_offset));
+    m.ys.push_back(m.y_scale * WordTable::number(row, y));
+  }
+}
+
 void check_charts(const Scene& scene, const Node& node, Problems& problems) {
   std::vector<std::string> known;
   for (const Variant& v : scene.variants) known.push_back(v.name);
@@ -147,6 +161,23 @@ void check_charts(const Scene& scene, const Node& node, Problems& problems) {
       const Node& word = (*(*node.find("chart")->array())[i].find("variants")->array())[k];
       problems.add(word.where, "chart." + std::to_string(i) + ".variants",
                    "no variant \"" + name + "\"; the scene has: " + listed(known));
+    }
+  }
+}
+
+/// Reads what charts show of measurements.
+void load_measured(Scene& scene, const Node& node, const std::filesystem::path& base, Problems& problems) {
+  for (std::size_t i = 0; i < scene.charts.size(); ++i) {
+    for (std::size_t k = 0; k < scene.charts[i].measured.size(); ++k) {
+      MeasuredSpec& m = scene.charts[i].measured[k];
+      const Node& chart = (*node.find("chart")->array())[i];
+      if (m.path.is_relative()) m.path = base / m.path;
+      try {
+        read_measured(m);
+      } catch (const std::exception& error) {
+        problems.add((*chart.find("measured")->array())[k].where, "chart." + std::to_string(i) + ".measured",
+                     error.what());
+      }
     }
   }
 }
@@ -167,6 +198,7 @@ Scene parse_scene(std::string_view text, const std::string& name, const std::fil
   if (problems.count() == 0) {
     check_names(expanded.variants, "variant", problems);
     check_charts(result, expanded.scene, problems);
+    load_measured(result, expanded.scene, base, problems);
   }
   problems.throw_if_any();
   if (result.title.empty()) result.title = result.file.stem().string();

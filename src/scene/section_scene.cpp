@@ -26,6 +26,23 @@ std::string unfit_as_folder(const std::string& name) {
 
 }  // namespace
 
+const SectionSpec& measured_section() {
+  static const SectionSpec section = [] {
+    using M = MeasuredSpec;
+    Section<M> s("chart.measured",
+                 "Points from a .csv, whose first line names its columns, drawn over the lines of a chart.");
+    s.key("path", &M::path, "the file, relative to the scene").must();
+    s.key("label", &M::label, "text for the legend");
+    s.key("x", &M::x, "its column along the x axis").must();
+    s.key("y", &M::y, "its column along the y axis").must();
+    s.key("x_offset", &M::x_offset, "taken off x, in its own unit, before it is scaled").in("-");
+    s.key("x_scale", &M::x_scale, "factor on x for display").in("-");
+    s.key("y_scale", &M::y_scale, "factor on y for display").in("-");
+    return s.spec();
+  }();
+  return section;
+}
+
 const SectionSpec& chart_section() {
   static const SectionSpec section = [] {
     Section<ChartSpec> s("chart",
@@ -52,6 +69,7 @@ const SectionSpec& chart_section() {
     s.key(
          "y_label", [](ChartSpec & c) -> auto& { return c.y.label; }, "label of the y axis, with unit")
         .otherwise("the column");
+    s.tables("measured", measured_section(), &ChartSpec::measured, "points that were measured");
     s.key("variants", &ChartSpec::variants, "names of the variants shown").otherwise("all");
     s.finish([](ChartSpec& c, const Node&, const Place&) {
       for (AxisSpec* axis : {&c.x, &c.y}) {

@@ -32,6 +32,7 @@ const SectionSpec& instrument_section();         ///< fills InstrumentSpec
 const SectionSpec& container_section();          ///< fills ContainerSpec
 const SectionSpec& capsule_section();            ///< fills CapsuleSpec
 const SectionSpec& output_section();             ///< fills OutputSpec
+const SectionSpec& measured_section();           ///< fills MeasuredSpec
 const SectionSpec& chart_section();              ///< fills ChartSpec
 const SectionSpec& variant_section();            ///< one experiment, complete; fills Variant
 const SectionSpec& scene_section();              ///< what a scene says once; fills Scene

@@ -100,6 +100,7 @@ export interface ChartSpec {
   x: AxisSpec;
   y: AxisSpec;
   variants: string[] | null; // names; null: all
+  points?: { label: string; x: number[]; y: number[] }[]; // measured, in the axes' display units, drawn as circles
   fits?: { label: string; x: number[]; y: number[] }[]; // extra lines, in the axes' display units, drawn dashed
 }
 

@@ -179,3 +179,23 @@ describe("a surface that is cut", () => {
     expect(variant.events).toEqual([]);
   });
 });
+
+describe("measured points", () => {
+  it("are drawn as points in the chart that asks for them", () => {
+    const raw = { title: "f", x: { column: "depth_m", scale: 1000 }, y: { column: "force_N" } };
+    const read = parseReport(
+      JSON.stringify({
+        format: 1,
+        scenes: [{ charts: [{ ...raw, points: [{ label: "1999", x: [1, 2], y: [3, null] }] }] }],
+      }),
+    );
+    if (!read.ok) throw new Error(read.reason);
+    const chart = variantCharts({ ...read.report.scenes[0]!, variants: [variant([])] })[0]!;
+    expect(chart.lines.map((line) => [line.label, line.points ?? false])).toEqual([
+      ["fast", false],
+      ["1999", true],
+    ]);
+    expect([...chart.lines[1]!.x]).toEqual([1, 2]);
+    expect(chart.lines[1]!.y[1]).toBeNaN();
+  });
+});

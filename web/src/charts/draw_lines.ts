@@ -29,6 +29,11 @@ export function drawLine(
   context.clip();
   const fit = line.style.colour < 0 && line.style.dash.length > 0;
   context.strokeStyle = stroke;
+  if (line.points) {
+    drawPoints(context, line, view, box, ratio);
+    context.restore();
+    return;
+  }
   context.lineJoin = "round";
   context.lineCap = line.style.dash.length > 0 ? "butt" : "round";
   context.beginPath();
@@ -38,6 +43,20 @@ export function drawLine(
   context.lineWidth = (fit ? 1.25 : 1.75) * ratio;
   context.stroke();
   context.restore();
+}
+
+/** An open circle at every point. */
+function drawPoints(context: CanvasRenderingContext2D, line: Line, view: Extent, box: PlotBox, ratio: number): void {
+  context.lineWidth = 1.5 * ratio;
+  const count = Math.min(line.x.length, line.y.length);
+  for (let i = 0; i < count; i++) {
+    const px = box.left + ((line.x[i]! - view.xMin) / (view.xMax - view.xMin)) * box.width;
+    const py = box.top + box.height * (1 - (line.y[i]! - view.yMin) / (view.yMax - view.yMin));
+    if (px !== px || py !== py) continue;
+    context.beginPath();
+    context.arc(px, py, 3.5 * ratio, 0, 2 * Math.PI);
+    context.stroke();
+  }
 }
 
 /** A faint whole line under the dashes, or a line that jitters would fall apart between them. */

@@ -9,6 +9,7 @@ export interface Line {
   x: Float64Array; // NaN: gap
   y: Float64Array;
   times: Float64Array | null; // [s], for the mark of the mesh's playback
+  points?: boolean; // circles at the points, no line
 }
 
 export interface ChartModel {

@@ -2,7 +2,7 @@
 import { column, depthColumn, forceColumn } from "../data/columns.ts";
 import { axisLabel, displayUnit, largestMagnitude } from "../format/units.ts";
 import type { ChartSpec, SceneData, VariantData } from "../report_data.ts";
-import { FIT_STYLE, lineStyle } from "./line_style.ts";
+import { FIT_STYLE, TOTAL_STYLE, lineStyle } from "./line_style.ts";
 import { eventMarks } from "./event_marks.ts";
 import { type ChartModel, type Line, scaled } from "./model.ts";
 
@@ -28,6 +28,18 @@ function chartOf(spec: ChartSpec, scene: SceneData): ChartModel {
       x: scaled(x, spec.x.scale),
       y: scaled(y, spec.y.scale),
       times: time ? scaled(time, 1) : null,
+    });
+  });
+  (spec.points ?? []).forEach((measured, index) => {
+    lines.push({
+      id: `points ${index}`,
+      variant: null,
+      label: measured.label || "measured",
+      style: TOTAL_STYLE,
+      x: scaled(measured.x, 1),
+      y: scaled(measured.y, 1),
+      times: null,
+      points: true,
     });
   });
   (spec.fits ?? []).forEach((fit, index) => {

@@ -176,14 +176,13 @@ function readChart(raw: Raw): ChartSpec {
     x: axis(raw["x"]),
     y: axis(raw["y"]),
     variants: Array.isArray(raw["variants"]) ? raw["variants"].map(text) : null,
-    fits: list(raw["fits"])
-      .map(record)
-      .map((fit) => ({
-        label: text(fit["label"]),
-        x: list(fit["x"]).map(numberOrNaN),
-        y: list(fit["y"]).map(numberOrNaN),
-      })),
+    points: list(raw["points"]).map((points) => readCurve(record(points))),
+    fits: list(raw["fits"]).map((fit) => readCurve(record(fit))),
   };
+}
+
+function readCurve(raw: Raw): { label: string; x: number[]; y: number[] } {
+  return { label: text(raw["label"]), x: list(raw["x"]).map(numberOrNaN), y: list(raw["y"]).map(numberOrNaN) };
 }
 
 function readTable(raw: Raw): TableData {
