@@ -76,7 +76,8 @@ class Instrument : public Interaction {
   const std::vector<InstrumentEvent>& events() const { return events_; }
 
  protected:
-  /// Moves the pose to that at the end of the step; the one before is in `before_`. Once a step, first in constrain().
+  /// Moves the pose to that at the end of the step; the one before is in `before_`. Once a step, in reach() or
+  /// first in constrain().
   void drive(const InteractionStep& step);
   void add_event(double time, double depth, std::string event) { events_.push_back({time, depth, std::move(event)}); }
   void save_motion(std::vector<double>& past) const;
@@ -87,6 +88,8 @@ class Instrument : public Interaction {
   ToolForces forces_;
 
  private:
+  bool restore_events(std::span<const double>& past);
+
   std::string name_;
   std::shared_ptr<ToolDriver> driver_;
   Vec3d direction_, start_;

@@ -30,13 +30,40 @@ void Instrument::save_motion(std::vector<double>& past) const {
     past.insert(past.end(), {f->x, f->y, f->z});
   }
   past.push_back(force_depth_);
+  past.push_back(static_cast<double>(events_.size()));
+  for (const InstrumentEvent& e : events_) {
+    past.insert(past.end(), {e.time, e.depth, static_cast<double>(e.event.size())});
+    past.insert(past.end(), e.event.begin(), e.event.end());
+  }
   const std::vector<double> driver = driver_->past();
   past.push_back(static_cast<double>(driver.size()));
   past.insert(past.end(), driver.begin(), driver.end());
 }
 
+/// Takes a list of events off the front of `past`.
+bool Instrument::restore_events(std::span<const double>& past) {
+  const auto take = [&](double most) {
+    const double value = past.empty() ? -1.0 : past.front();
+    if (!past.empty()) past = past.subspan(1);
+    return value >= 0.0 && value <= most ? static_cast<std::size_t>(value) : std::size_t(-1);
+  };
+  const std::size_t count = take(static_cast<double>(past.size()));
+  if (count == std::size_t(-1)) return false;
+  events_.assign(count, {});
+  for (InstrumentEvent& e : events_) {
+    if (past.size() < 3) return false;
+    e.time = past[0], e.depth = past[1];
+    past = past.subspan(2);
+    const std::size_t letters = take(static_cast<double>(past.size()));
+    if (letters > past.size()) return false;
+    for (const double letter : past.first(letters)) e.event.push_back(static_cast<char>(letter));
+    past = past.subspan(letters);
+  }
+  return true;
+}
+
 bool Instrument::restore_motion(std::span<const double>& past) {
-  constexpr std::size_t kOwn = 2 * 12 + 4 * 3 + 2;
+  constexpr std::size_t kOwn = 2 * 12 + 4 * 3 + 1;
   if (past.size() < kOwn) return false;
   std::size_t at = 0;
   for (Pose* pose : {&pose_, &before_}) {
@@ -49,8 +76,10 @@ bool Instrument::restore_motion(std::span<const double>& past) {
     for (std::size_t i = 0; i < 3; ++i) (*f)[i] = past[at++];
   }
   force_depth_ = past[at++];
-  const double size = past[at++];
   past = past.subspan(at);
+  if (!restore_events(past) || past.empty()) return false;
+  const double size = past.front();
+  past = past.subspan(1);
   if (!(size >= 0.0 && size <= static_cast<double>(past.size()))) return false;
   const auto n = static_cast<std::size_t>(size);
   if (!driver_->restore(past.first(n))) return false;

@@ -298,6 +298,11 @@ TEST(Needle, CheckpointContinuesToTheByte) {
     run_to(b, at + 0.3);
     EXPECT_EQ(a.simulation.state_hash(), b.simulation.state_hash()) << at;
     EXPECT_EQ(norm(a.needle->forces().total() - b.needle->forces().total()), 0.0);
+    ASSERT_EQ(a.needle->events().size(), b.needle->events().size());
+    for (std::size_t k = 0; k < a.needle->events().size(); ++k) {
+      EXPECT_EQ(a.needle->events()[k].event, b.needle->events()[k].event);
+      EXPECT_EQ(a.needle->events()[k].time, b.needle->events()[k].time);
+    }
   }
 }
 
