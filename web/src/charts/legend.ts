@@ -27,7 +27,9 @@ export class Legend {
     const swatch = svg(
       "svg",
       { class: "swatch", width: 30, height: 8, viewBox: "0 0 30 8", "aria-hidden": "true" },
-      svg("line", { x1: 0, y1: 4, x2: 30, y2: 4, "stroke-width": 2.25, "stroke-dasharray": dashes || null }),
+      line.points
+        ? svg("circle", { cx: 15, cy: 4, r: 3, fill: "none", "stroke-width": 1.5 })
+        : svg("line", { x1: 0, y1: 4, x2: 30, y2: 4, "stroke-width": 2.25, "stroke-dasharray": dashes || null }),
     );
     const title = "Show or hide this line; with Shift, show only this line";
     const item = h(
@@ -45,7 +47,7 @@ export class Legend {
   private colour(lines: readonly Line[]): void {
     for (const line of lines) {
       const stroke = strokeOf(line.style, currentTheme());
-      this.entries.get(line.id)?.item.querySelector("line")?.setAttribute("stroke", stroke);
+      this.entries.get(line.id)?.item.querySelector("line, circle")?.setAttribute("stroke", stroke);
     }
   }
 

@@ -13,6 +13,8 @@ import { interpolate } from "./interpolate.ts";
 import { webglContext } from "./webgl.ts";
 
 const SLIDER_STEPS = 600;
+/** More marks than this would hide the body: they are off until asked for. */
+const MANY_MARKS = 400;
 const EXAGGERATIONS = [1, 2, 5, 10, 20, 50];
 
 /** Variants of a scene that have a surface to show. */
@@ -114,8 +116,12 @@ export class MeshPanel {
     if (!context) return this.showMissing();
     this.view = new MeshView(this.canvas, context, this.variants, this.settings);
     this.settings.edges = this.view.edgesByDefault;
-    const edges = this.element.querySelector<HTMLInputElement>("input[name=edges]");
-    if (edges) edges.checked = this.settings.edges;
+    const { held, driven } = this.view.marked;
+    this.settings.marks = held + driven <= MANY_MARKS;
+    for (const setting of ["edges", "marks"] as const) {
+      const box = this.element.querySelector<HTMLInputElement>(`input[name=${setting}]`);
+      if (box) box.checked = this.settings[setting];
+    }
     this.refresh();
     this.describeMarks();
   }
