@@ -162,10 +162,12 @@ TetMesh Simulation::present_mesh() const {
   TetMesh present = impl_->mesh;
   present.tets.clear();
   present.regions.clear();
+  present.fibres.clear();
   for (std::uint32_t t = 0; t < impl_->mesh.tets.size(); ++t) {
     if (is_removed(t)) continue;
     present.tets.push_back(impl_->mesh.tets[t]);
     if (!impl_->mesh.regions.empty()) present.regions.push_back(impl_->mesh.regions[t]);
+    if (!impl_->mesh.fibres.empty()) present.fibres.push_back(Vec3d(impl_->mesh.fibres[t]));
   }
   return present;
 }

@@ -96,5 +96,24 @@ TEST_P(Removal, FromBodiesOfSeveralTissues) {
   expect_as_built_anew(simulation, tissues, GetParam().options(), state, GetParam().tolerance());
 }
 
+// The present mesh has a region and a fibre for each tet that is left, its own.
+TEST(PresentMesh, KeepsWhatBelongsToItsTets) {
+  TetMesh mesh = box_mesh({.cells = {2, 2, 2}});
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    mesh.regions.push_back(static_cast<int>(t));
+    mesh.fibres.push_back({1.0, static_cast<double>(t), 0.0});
+  }
+  std::map<int, Tissue> tissues;
+  for (const int region : mesh.regions) tissues[region] = {};
+  Simulation simulation(mesh, tissues);
+  simulation.remove_tets(std::vector<std::uint32_t>{0, 5});
+  const TetMesh present = simulation.present_mesh();
+  ASSERT_EQ(present.tets.size(), mesh.tets.size() - 2);
+  ASSERT_EQ(present.fibres.size(), present.tets.size());
+  EXPECT_EQ(present.regions.front(), 1);
+  EXPECT_EQ(present.fibres.front().y, 1.0);
+  EXPECT_EQ(present.fibres[4].y, 6.0);
+}
+
 }  // namespace
 }  // namespace glisson::test
