@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr std::size_t kRun = 256;  ///< elements of which the least step is kept
+constexpr double kRoom = 1.05;     ///< of asked over mass that a bound is made for
+constexpr double kSlack = 0.8;     ///< below this share of what was allowed for a better bound is worth a look
 
 std::array<Vec3d, 4> gradients(const ElementRest& rest) {
   return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
@@ -36,12 +38,14 @@ std::size_t block_at(const Body& body, std::uint32_t e) {
 }  // namespace
 
 PartBound::PartBound(const Body& body, const detail::VertexStars& stars, std::vector<double> viscosity)
-    : body_(body), stars_(stars), asked_(body.vertex_count, 0.0), shared_(body.elements.size(), kNever), own_(shared_),
-      least_shared_((own_.size() + kRun - 1) / kRun, kNever), least_own_(least_shared_) {
+    : body_(body), stars_(stars), asks_(body.elements.size()), asked_(body.vertex_count, 0.0), allowed_(asked_),
+      shared_(body.elements.size(), kNever), own_(shared_), least_shared_((own_.size() + kRun - 1) / kRun, kNever),
+      least_own_(least_shared_) {
   for (std::size_t b = 0; b < body.blocks.size(); ++b) {
     elastic_.push_back(modulus_bound(body.blocks[b].elastic));
     viscous_.push_back(std::max(0.0, viscosity[b]) * modulus_bound(body.blocks[b].viscous));
   }
+  for (std::uint32_t e = 0; e < asks_.size(); ++e) ask(e);
   for (std::uint32_t v = 0; v < asked_.size(); ++v) weigh(v);
   for (std::uint32_t e = 0; e < own_.size(); ++e) bound(e);
   std::vector<std::uint32_t> all(own_.size());
@@ -49,15 +53,21 @@ PartBound::PartBound(const Body& body, const detail::VertexStars& stars, std::ve
   find_least(all);
 }
 
+void PartBound::ask(std::uint32_t e) {
+  const std::array<Vec3d, 4> s = gradients(body_.rest[e]);
+  const double scale = body_.rest[e].volume * elastic_[block_at(body_, e)];
+  for (std::size_t c = 0; c < 4; ++c) asks_[e][c] = static_cast<float>(scale * dot(s[c], s[c]));
+}
+
 void PartBound::weigh(std::uint32_t vertex) {
   double sum = 0.0;
   for (const std::uint32_t e : stars_.tets_at(vertex)) {
-    const std::array<Vec3d, 4> s = gradients(body_.rest[e]);
     const auto corner = static_cast<std::size_t>(std::find(body_.elements[e].begin(), body_.elements[e].end(), vertex) -
                                                  body_.elements[e].begin());
-    sum += body_.rest[e].volume * elastic_[block_at(body_, e)] * dot(s[corner], s[corner]);
+    sum += asks_[e][corner];
   }
   asked_[vertex] = sum;
+  allowed_[vertex] = body_.masses[vertex] > 0.0 ? kRoom * sum / body_.masses[vertex] : 0.0;
 }
 
 void PartBound::bound(std::uint32_t e) {
@@ -71,8 +81,7 @@ void PartBound::bound(std::uint32_t e) {
     const std::uint32_t v = body_.elements[e][c];
     const Sym3<double> square{s[c].x * s[c].x, s[c].y * s[c].y, s[c].z * s[c].z,
                               s[c].x * s[c].y, s[c].y * s[c].z, s[c].z * s[c].x};
-    const double asks = rest.volume * elastic_[b] * dot(s[c], s[c]);
-    shared = shared + square * (asked_[v] / (body_.masses[v] * asks));
+    shared = shared + square * (allowed_[v] / asks_[e][c]);
     if (own_[e] == kNever) own = own + square * (1.0 / body_.quarter_mass(body_.blocks[b], e));
   }
   const auto step = [&](const Sym3<double>& sum) {
@@ -97,16 +106,39 @@ void PartBound::find_least(std::span<const std::uint32_t> elements) {
   }
 }
 
+void PartBound::look_around(std::uint32_t vertex, std::vector<std::uint32_t>& around) {
+  const auto star = stars_.tets_at(vertex);
+  around.insert(around.end(), star.begin(), star.end());
+}
+
+/// Elements are gone: their vertices have less mass, and less is asked of it.
+void PartBound::take_out(const BodyChange& change, std::vector<std::uint32_t>& around) {
+  for (const std::uint32_t e : change.removed) {
+    for (std::size_t c = 0; c < 4; ++c) asked_[body_.elements[e][c]] -= asks_[e][c];
+  }
+  for (const std::uint32_t v : change.touched) {
+    const double mass = body_.masses[v];
+    if (!(mass > 0.0) || (asked_[v] <= allowed_[v] * mass && asked_[v] >= kSlack * allowed_[v] * mass)) continue;
+    allowed_[v] = kRoom * asked_[v] / mass;
+    look_around(v, around);
+  }
+}
+
 void PartBound::change(const BodyChange& change) {
   asked_.resize(body_.vertex_count, 0.0);
+  allowed_.resize(body_.vertex_count, 0.0);
   std::vector<std::uint32_t> around = change.removed;
   for (const auto* list : {&change.removed, &change.reshaped}) {
     for (const std::uint32_t e : *list) own_[e] = kNever;
   }
-  for (const std::uint32_t v : change.touched) {
-    weigh(v);
-    const auto star = stars_.tets_at(v);
-    around.insert(around.end(), star.begin(), star.end());
+  if (change.corners.empty() && change.reshaped.empty()) {
+    take_out(change, around);
+  } else {
+    for (const std::uint32_t e : change.reshaped) ask(e);
+    for (const std::uint32_t v : change.touched) {
+      weigh(v);
+      look_around(v, around);
+    }
   }
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());

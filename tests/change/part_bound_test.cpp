@@ -1,5 +1,5 @@
 // The bound of the step from shares of masses lies between that of the single tets and h*, and following changes of a body
-// gives what finding it anew gives.
+// stays near what finding it anew gives.
 #include "dynamics/part_bound.h"
 #include "change/changed_body.h"
 #include "change/faces.h"
@@ -35,7 +35,10 @@ TEST(PartBounds, LieBelowTheStableStepAndFollowChanges) {
       }
       bound.change(change);
       const std::vector<double> gamma(body.vertex_count, 0.0);
-      EXPECT_EQ(bound.step(), PartBound(body, changer.stars(), one).step()) << i;
+      // shares are allowed for from 1 to 1.05/0.8 of what a new bound would, and the step goes with the root at most
+      const double anew = PartBound(body, changer.stars(), one).step();
+      EXPECT_GE(bound.step(), anew * std::sqrt(0.8 / 1.05)) << i;
+      EXPECT_LE(bound.step(), anew * std::sqrt(1.05 / 0.8)) << i;
       EXPECT_LE(bound.step(), stable_step(body, one, gamma).step * (1.0 + 1e-9)) << i;
       EXPECT_GE(bound.step(), element_bound_step(body, one) * (1.0 - 1e-9)) << i;
     }
