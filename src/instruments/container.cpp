@@ -14,6 +14,8 @@
 namespace glisson {
 namespace {
 
+constexpr double kMostOut = 0.02;  ///< of the container's size: how far a body may stand out of it at the start
+
 constexpr double kTouch = 1e-6;  // of the vessel's size: tissue so near to a wall that holds it touches
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -76,6 +78,7 @@ struct Container::State {
   void build();
   void add_solid(const Shape& shape, const Pose& pose);
   bool holds_at(const Vec3d& x) const { return to_frame(options.pose, x).z <= height; }
+  void require_inside(const BodyView& body) const;
   void bond_first(const BodyView& body);
   void add_rows(const InteractionStep& step);
   void hold_bonds(const InteractionStep& step);
@@ -110,6 +113,27 @@ void Container::State::build() {
     }
   }
   for (std::size_t i = 0; i < solids.size(); ++i) solids[i].shape = &shapes[i];
+}
+
+/// A body that is poured in fits: what stands out by more than meshes are rough is a mistake of sizes or places.
+void Container::State::require_inside(const BodyView& body) const {
+  double most = kMostOut * size;
+  Vec3d where;
+  bool out = false;
+  for (const std::uint32_t v : reach.surface().vertices()) {
+    const Vec3d x = body.mesh.vertices[v] + body.displacement[v];
+    if (!holds_at(x)) continue;
+    for (std::size_t k = 0; k < solids.size(); ++k) {
+      const double beyond = -distance_to(shapes[k], to_frame(solids[k].after, x)).distance;
+      if (beyond <= most) continue;
+      most = beyond, where = x, out = true;
+    }
+  }
+  if (!out) return;
+  std::ostringstream text;
+  text << "container " << options.name << ": the body stands out of it by " << 1e3 * most << " mm at (" << where.x
+       << ", " << where.y << ", " << where.z << ") m; make the container larger, or move it to where the body is";
+  throw std::invalid_argument(text.str());
 }
 
 /// Bonds what touches at the start; where floor and wall meet, to the floor.
@@ -178,6 +202,7 @@ Vec3d Container::up() const { return state_->options.pose.axes * Vec3d{0.0, 0.0,
 
 void Container::attached(const BodyView& body, double) {
   state_->reach.attach(body);
+  state_->require_inside(body);
   if (state_->options.bonded) state_->bond_first(body);
 }
 

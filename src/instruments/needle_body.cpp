@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
+#include <stdexcept>
 
 #include "instruments/needle_state.h"
 
@@ -17,6 +19,8 @@ TetMesh living(const BodyView& body) {
   }
   return mesh;
 }
+
+constexpr double kAtSurface = 1e-6;  ///< how far in a tip may start [m]
 
 double from_line(const Vec3d& x, const Vec3d& point, const Vec3d& direction) {
   const Vec3d r = x - point;
@@ -57,7 +61,24 @@ void Needle::State::forget_forces(double h) {
   step_h = h;
 }
 
-void Needle::attached(const BodyView& body, double) { body_changed(body, {}); }
+/// The needle comes from outside: between the hand and the tip there is no tissue yet.
+void Needle::attached(const BodyView& body, double) {
+  body_changed(body, {});
+  const Vec3d& tip = pose_.position;
+  const double length = state_->options.length;
+  double first = length;
+  for (const Triangle& t : state_->surface) {
+    std::array<Vec3d, 3> present;
+    for (std::size_t a = 0; a < 3; ++a) present[a] = body.mesh.vertices[t[a]] + body.displacement[t[a]];
+    const auto hit = meet(tip - direction() * length, direction(), present, present);
+    if (hit && hit->way >= 0.0) first = std::min(first, hit->way);
+  }
+  if (length - first <= kAtSurface) return;
+  std::ostringstream text;
+  text << "needle " << name() << ": its tip, at (" << tip.x << ", " << tip.y << ", " << tip.z << ") m, starts "
+       << 1e3 * (length - first) << " mm behind the surface; let it start outside, and the motion take it in";
+  throw std::invalid_argument(text.str());
+}
 
 void Needle::body_changed(const BodyView& body, std::span<const std::uint32_t>) {
   State& s = *state_;

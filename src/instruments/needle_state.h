@@ -11,6 +11,16 @@
 
 namespace glisson {
 
+/// Where a ray meets a triangle.
+struct Hit {
+  double way = 0.0;  ///< along the ray [m]
+  Vec3d rest{};      ///< of the point met [m]
+};
+
+/// Where a ray from `from` meets a triangle from either side. Ray and triangle at present, the answer at rest.
+std::optional<Hit> meet(const Vec3d& from, const Vec3d& direction, const std::array<Vec3d, 3>& present,
+                        const std::array<Vec3d, 3>& rest);
+
 /// The way of the force while the tip presses, for what springing back would set free.
 struct PressingWork {
   double work = 0.0;                                     ///< ∫ f dδ so far [J]

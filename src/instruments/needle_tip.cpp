@@ -19,12 +19,8 @@ constexpr double kRise = 0.02;        ///< of the force of puncture: a rise by t
 constexpr double kSmoothing = 0.01;   ///< of the force for that [s]
 constexpr double kLongestDrop = 0.5;  ///< [s]: after it, the least force so far counts
 
-struct Hit {
-  double way = 0.0;  ///< along the ray [m]
-  Vec3d rest{};      ///< of the point met [m]
-};
+}  // namespace
 
-/// Where a ray from `from` meets a triangle from either side. Ray and triangle at present, the answer at rest.
 std::optional<Hit> meet(const Vec3d& from, const Vec3d& direction, const std::array<Vec3d, 3>& present,
                         const std::array<Vec3d, 3>& rest) {
   const Vec3d e1 = present[1] - present[0], e2 = present[2] - present[0], p = cross(direction, e2);
@@ -35,8 +31,6 @@ std::optional<Hit> meet(const Vec3d& from, const Vec3d& direction, const std::ar
   if (!(u >= -1e-9 && v >= -1e-9 && u + v <= 1.0 + 1e-9)) return {};
   return Hit{dot(e2, q) / det, rest[0] * (1.0 - u - v) + rest[1] * u + rest[2] * v};
 }
-
-}  // namespace
 
 void PressingWork::add(double new_depth, double new_force, double cutting) {
   work += 0.5 * (force + new_force) * (new_depth - depth);

@@ -214,6 +214,20 @@ TEST(Container, CheckpointGoesOn) {
   }
 }
 
+// A body that is wider than its vessel is a mistake, and the message says by how much.
+TEST(Container, RefusesABodyThatStandsOut) {
+  const TetMesh mesh = cylinder_mesh({.radius = 0.02, .height = 0.02, .radial_cells = 3, .axial_cells = 2});
+  Simulation body(mesh, {{0, Tissue{}}});
+  ContainerOptions narrow;
+  narrow.vessel = CylinderVessel{.radius = 0.015};
+  try {
+    body.attach(std::make_shared<Container>(narrow));
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("stands out of it by 5 mm"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Container, RefusesBadOptions) {
   const auto refused = [](auto change) {
     ContainerOptions o;

@@ -334,6 +334,20 @@ TEST(Needle, BearsChangesOfTheMesh) {
   EXPECT_TRUE(std::isfinite(norm(run.simulation.displacement()[0])));
 }
 
+// A tip that starts in the tissue is a mistake of the one who set it up, and is told so; at the surface it may start.
+TEST(Needle, RefusesToStartInside) {
+  Insertion o;
+  o.start.z = 0.03;
+  try {
+    insert(o);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("10 mm behind the surface"), std::string::npos) << error.what();
+  }
+  o.start.z = 0.04;
+  EXPECT_NO_THROW(insert(o));
+}
+
 TEST(Needle, RefusesBadOptions) {
   const auto refuses = [](auto change, const char* said) {
     NeedleOptions o;
