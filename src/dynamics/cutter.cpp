@@ -147,7 +147,8 @@ bool Cutter::Impl::may_become(std::uint32_t vertex, const Tet& tet, const std::a
     const auto has = [&](std::uint32_t v) { return std::find(list.begin(), list.end(), v) != list.end(); };
     if (has(vertex) && !all_in(kSupport, has)) return false;
   }
-  for (const auto& [name, set] : simulation.mesh().vertex_sets) {
+  for (const auto& named : simulation.mesh().vertex_sets) {
+    const std::vector<std::uint32_t>& set = named.second;
     const auto has = [&](std::uint32_t v) { return std::binary_search(set.begin(), set.end(), v); };
     if (has(vertex) && !all_in(kSetSupport, has)) return false;
   }

@@ -45,7 +45,9 @@ void Scheme::add_load(std::span<const std::uint32_t> vertices, Vec3d force, std:
   acts_on(vertices);
 }
 
-void Scheme::attach(std::shared_ptr<Interaction>, const BodyView&) {
+void Scheme::attach(std::shared_ptr<Interaction>, const BodyView&) { refuse_interactions(); }
+
+void Scheme::refuse_interactions() {
   throw std::invalid_argument(
       "attach: instruments, needles and membranes need integrator = explicit, or semi_implicit for tissue without "
       "viscosity; this simulation has another. Relaxation can be modelled by maxwell branches, which explicit steps "

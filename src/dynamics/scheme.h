@@ -79,6 +79,8 @@ class Scheme {
   /// Energy that leaves with removed tets [J].
   virtual void take_out(double kinetic, double elastic) = 0;
 
+  /// @throws std::invalid_argument saying which integrators bear interactions
+  [[noreturn]] static void refuse_interactions();
   BodyChanger& changer();
   Vec3d gravity_at(double time) const;
   /// Lets those constraints take hold whose time has come by the middle of a step of h.

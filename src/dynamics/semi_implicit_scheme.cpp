@@ -13,11 +13,8 @@ SemiImplicitScheme::SemiImplicitScheme(Body body, const SimulationOptions& optio
 }
 
 void SemiImplicitScheme::attach(std::shared_ptr<Interaction> interaction, const BodyView& body) {
-  if (viscous_) {
-    Scheme::attach(std::move(interaction), body);
-  } else {
-    ExplicitScheme::attach(std::move(interaction), body);
-  }
+  if (viscous_) refuse_interactions();
+  ExplicitScheme::attach(std::move(interaction), body);
 }
 
 void SemiImplicitScheme::take_over(const BodyChange& change) {

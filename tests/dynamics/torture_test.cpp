@@ -189,7 +189,7 @@ Press press_barrel(const Tissue& tissue, Integrator integrator) {
     const StepResult r = s.step();
     out.status = r.status;
     out.force = std::max(out.force, std::abs(s.force(plate).total().x));
-    if (r.status > StepStatus::inverted) EXPECT_FALSE(r.message.empty());
+    EXPECT_TRUE(r.status <= StepStatus::inverted || !r.message.empty());
   }
   out.end = s.time();
   out.imbalance = std::abs(s.energies().imbalance()) / s.energies().work_tools;
