@@ -119,8 +119,8 @@ void add_tissue2(SceneExtras& extras, const VariantRecorder& run) {
   ChartSpec chart{.title = "Tissue 2: the force, a line and a second-order curve",
                   .x = {.column = "depth_m", .label = "depth [mm]", .scale = 1000.0},
                   .y = {.column = "force_N", .label = "force [N]", .scale = 1.0},
-                  .variants = {run.variant().name},
-                  .measured = {}};
+                  .measured = {},
+                  .variants = {run.variant().name}};
   nlohmann::json json = chart_json(chart);
   json["fits"] = {fit_line(quadratic, depth.back(), fmt::format("second order, R² = {:.5f}", quadratic.r2)),
                   fit_line(line, depth.back(), fmt::format("line, R² = {:.4f}", line.r2))};
