@@ -93,7 +93,7 @@ void Needle::Solver::find_rows(const InteractionStep& step) {
     }
   }
   if (s.stage == NeedleStage::outside || s.tip_out || !shaft::read(step, s.tip)) return;
-  tip_gap = dot(s.tip.position - before, d) - s.offset;
+  tip_gap = dot(s.tip.position - before, d);
   has_tip = tip_gap <= std::max(0.0, dot(after - before, d)) + kReach * s.options.spacing;
   if (!has_tip) return;
   all.push_back(&s.tip);

@@ -51,7 +51,7 @@ std::vector<double> Needle::past() const {
   put(s.look ? 1.0 : 0.0);
   put(s.tip.rest), put(s.tip_along), put(s.bend_tip);
   for (const bool flag : {s.tip_cuts, s.tip_out, s.withdraws, s.next_region.has_value()}) put(flag ? 1.0 : 0.0);
-  put(s.region), put(s.next_region.value_or(0)), put(s.offset), put(s.step_h);
+  put(s.region), put(s.next_region.value_or(0)), put(s.step_h);
   for (const double a :
        {s.pressing.work, s.pressing.depth, s.pressing.force, s.pressing.work_at_cutting, s.pressing.depth_at_cutting}) {
     put(a);
@@ -84,7 +84,7 @@ bool Needle::restore(std::span<const double> past) {
   s.region = static_cast<int>(get.number());
   const int next = static_cast<int>(get.number());
   s.next_region = has_next ? std::optional<int>(next) : std::nullopt;
-  s.offset = get.number(), s.step_h = get.number();
+  s.step_h = get.number();
   for (double* a : {&s.pressing.work, &s.pressing.depth, &s.pressing.force, &s.pressing.work_at_cutting,
                     &s.pressing.depth_at_cutting}) {
     *a = get.number();

@@ -67,7 +67,6 @@ struct Needle::State {
   bool tip_out = false;            ///< on the far side of the body
   int region = 0;                  ///< that the tip is in
   std::optional<int> next_region;  ///< whose boundary holds the tip
-  double offset = 0.0;             ///< of the mean of the tissue from the tip at contact, along the needle [m]
   bool withdraws = false;
   PressingWork pressing;
   DropWatch drop;

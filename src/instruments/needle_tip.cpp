@@ -66,7 +66,6 @@ void Needle::look_for_contact(const InteractionStep& step) {
   shaft::Row met;
   if (!first || first->way > s.options.length || !s.place(met, first->rest)) return;
   s.look = true;
-  s.offset = 0.0;
   const bool hole = !s.nodes.empty() && norm(s.nodes.front().rest - first->rest) < s.options.diameter;
   add_event(step.time + step.h, depth(), "contact");
   if (hole) {  // the way is open: it goes on where it was
@@ -91,7 +90,7 @@ void Needle::look_for_contact(const InteractionStep& step) {
 void Needle::press_on(const InteractionStep& step) {
   State& s = *state_;
   if (!shaft::read(step, s.tip)) return;
-  const double gap = dot(s.tip.position - pose_.position, direction()) - s.offset;
+  const double gap = dot(s.tip.position - pose_.position, direction());
   if (gap > kLetGo * s.options.zone) {
     s.stage = NeedleStage::outside;
     s.look = true;
@@ -139,7 +138,7 @@ void Needle::go_on(const InteractionStep& step) {
     return;
   }
   if (!shaft::read(step, s.tip)) {
-    s.look = true;
+    s.look = !s.tip.weights.empty();  // without: the tissue there is gone, and no looking brings it back
     return;
   }
   const double gap = dot(s.tip.position - at, direction());
