@@ -65,11 +65,7 @@ ContactPressure ContactTool::contact_pressure() const { return {state_->bearing_
 void ContactTool::attached(const BodyView& body, double) { state_->reach.attach(body); }
 
 void ContactTool::body_changed(const BodyView& body, std::span<const std::uint32_t> origins) {
-  const auto first = body.mesh.vertices.size() - origins.size();
-  for (std::size_t i = 0; i < origins.size(); ++i) {
-    const auto bond = state_->bonds.find(origins[i]);
-    if (bond != state_->bonds.end()) state_->bonds[static_cast<std::uint32_t>(first + i)] = bond->second;
-  }
+  give_to_copies(state_->bonds, body.mesh.vertices.size(), origins);
   state_->reach.attach(body);
 }
 

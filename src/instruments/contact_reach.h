@@ -1,12 +1,24 @@
 // contact_reach.h — which part of the surface solids may touch.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "instruments/contact_rows.h"
 #include "instruments/contact_surface.h"
 
 namespace glisson {
+
+/// Lets vertices that are copies, the last ones of a body, have what their origins have, by vertex.
+template <class Value>
+void give_to_copies(std::map<std::uint32_t, Value>& of_vertex, std::size_t vertices,
+                    std::span<const std::uint32_t> origins) {
+  const std::size_t first = vertices - origins.size();
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    const auto found = of_vertex.find(origins[i]);
+    if (found != of_vertex.end()) of_vertex[static_cast<std::uint32_t>(first + i)] = Value(found->second);
+  }
+}
 
 /// The part of the surface that solids may touch: patches come in as one draws near and stay.
 class ContactReach {

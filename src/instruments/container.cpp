@@ -15,8 +15,7 @@ namespace glisson {
 namespace {
 
 constexpr double kMostOut = 0.02;  ///< of the container's size: how far a body may stand out of it at the start
-
-constexpr double kTouch = 1e-6;  // of the vessel's size: tissue so near to a wall that holds it touches
+constexpr double kTouch = 1e-6;    ///< of the vessel's size: tissue so near to a wall that holds it touches
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 void refuse(const ContainerOptions& o, const char* what, double value, const char* range) {
@@ -207,11 +206,7 @@ void Container::attached(const BodyView& body, double) {
 }
 
 void Container::body_changed(const BodyView& body, std::span<const std::uint32_t> origins) {
-  const auto first = body.mesh.vertices.size() - origins.size();
-  for (std::size_t i = 0; i < origins.size(); ++i) {
-    const auto bond = state_->bonds.find(origins[i]);
-    if (bond != state_->bonds.end()) state_->bonds[static_cast<std::uint32_t>(first + i)] = bond->second;
-  }
+  give_to_copies(state_->bonds, body.mesh.vertices.size(), origins);
   state_->reach.attach(body);
 }
 

@@ -136,8 +136,8 @@ void join(std::span<const std::shared_ptr<Instrument>> instruments,
   for (const auto& instrument : instruments) {
     auto* needle = dynamic_cast<Needle*>(instrument.get());
     if (needle == nullptr) continue;
-    needle->on_puncture([capsules](const Vec3d& rest, double radius) {
-      for (const auto& capsule : capsules) capsule->open_at(rest, radius);
+    needle->on_puncture([capsules](const Vec3d& place, double radius) {
+      for (const auto& capsule : capsules) capsule->open_at(place, radius);
     });
   }
 }
