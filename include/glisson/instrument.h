@@ -88,8 +88,6 @@ class Instrument : public Interaction {
   ToolForces forces_;
 
  private:
-  bool restore_events(std::span<const double>& past);
-
   std::string name_;
   std::shared_ptr<ToolDriver> driver_;
   Vec3d direction_, start_;

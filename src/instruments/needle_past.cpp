@@ -1,51 +1,14 @@
 // needle_past.cpp — a needle's checkpoint.
 #include "instruments/needle_state.h"
+#include "instruments/past.h"
 
 namespace glisson {
-namespace {
-
-class Writer {
- public:
-  explicit Writer(std::vector<double>& out) : out_(out) {}
-  void operator()(double a) { out_.push_back(a); }
-  void operator()(const Vec3d& a) { out_.insert(out_.end(), {a.x, a.y, a.z}); }
-
- private:
-  std::vector<double>& out_;
-};
-
-class Reader {
- public:
-  explicit Reader(std::span<const double> in) : in_(in) {}
-  double number() {
-    ok_ = ok_ && at_ < in_.size();
-    return ok_ ? in_[at_++] : 0.0;
-  }
-  Vec3d vector() {
-    const double x = number(), y = number(), z = number();
-    return {x, y, z};
-  }
-  std::size_t count() {
-    const double n = number();
-    ok_ = ok_ && n >= 0.0 && n <= static_cast<double>(in_.size());
-    return ok_ ? static_cast<std::size_t>(n) : 0;
-  }
-  bool done() const { return ok_ && at_ == in_.size(); }
-  bool ok() const { return ok_; }
-
- private:
-  std::span<const double> in_;
-  std::size_t at_ = 0;
-  bool ok_ = true;
-};
-
-}  // namespace
 
 std::vector<double> Needle::past() const {
   const State& s = *state_;
   std::vector<double> past;
   save_motion(past);
-  Writer put(past);
+  PastWriter put(past);
   put(static_cast<double>(s.stage));
   put(s.named_around);
   put(s.look ? 1.0 : 0.0);
@@ -71,7 +34,7 @@ std::vector<double> Needle::past() const {
 bool Needle::restore(std::span<const double> past) {
   State& s = *state_;
   if (!restore_motion(past)) return false;
-  Reader get(past);
+  PastReader get(past);
   const double stage = get.number();
   if (!(stage == 0.0 || stage == 1.0 || stage == 2.0)) return false;
   s.stage = static_cast<NeedleStage>(static_cast<int>(stage));
