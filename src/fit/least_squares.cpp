@@ -10,6 +10,8 @@
 namespace glisson::fit {
 namespace {
 
+constexpr double kAtBound = 1e-9;  // in z
+
 /// All residuals as one block of Ceres, whose parameters are those that are free.
 class AllResiduals final : public ceres::CostFunction {
  public:
@@ -73,13 +75,9 @@ class RobustResiduals final : public ceres::CostFunction {
   }
 
  private:
-  /// d r'/d r by a central difference of the closed form; 1 near zero, where every loss is the square.
+  /// d r'/d r = ρ'(r²) r / r'; 1 near zero, where every loss is the square.
   double slope_of(double r, double robust) const {
-    if (problem_.loss().kind == LossKind::squares || std::abs(robust) < 1e-6) return 1.0;
-    const double step = 1e-5 * std::max(1.0, std::abs(r)), above = r + step, below = r - step;
-    const double high = std::copysign(std::sqrt(2.0 * problem_.cost({&above, 1})), above);
-    const double low = std::copysign(std::sqrt(2.0 * problem_.cost({&below, 1})), below);
-    return (high - low) / (2.0 * step);
+    return std::abs(robust) < 1e-12 ? 1.0 : problem_.weight(r) * r / robust;
   }
   const AllResiduals& inner_;
   const Problem& problem_;
@@ -126,12 +124,13 @@ ceres::Solver::Options solver_options(const DescentOptions& options, StopWatcher
   return o;
 }
 
-}  // namespace
-
-Optimum descend(const Problem& problem, std::span<const double> start, const DescentOptions& options) {
+/// One run of Ceres. Its steps are cut at the bounds, not solved within them: where a parameter meets one, descend()
+/// goes on with that parameter held.
+Optimum one_descent(const Problem& problem, std::span<const double> start, const DescentOptions& options,
+                    const std::vector<char>& fixed) {
   Optimum optimum;
   optimum.scaled.assign(start.begin(), start.end());
-  const std::vector<std::size_t> free = free_of(problem, options.fixed);
+  const std::vector<std::size_t> free = free_of(problem, fixed);
   AllResiduals residuals(problem, optimum.scaled, free);
   if (free.empty()) {
     const Residuals r = problem.residuals(optimum.scaled, false);
@@ -161,6 +160,43 @@ Optimum descend(const Problem& problem, std::span<const double> start, const Des
   optimum.converged = summary.termination_type == ceres::CONVERGENCE;
   optimum.iterations = static_cast<int>(summary.iterations.size());
   optimum.message = failed && !residuals.failure().empty() ? residuals.failure() : summary.message;
+  return optimum;
+}
+
+bool at_a_bound(const std::vector<double>& z) {
+  return std::any_of(z.begin(), z.end(), [](double x) { return x <= kAtBound || x >= 1.0 - kAtBound; });
+}
+
+/// The caller's own, and the parameters at a bound that the cost would push beyond it.
+std::vector<char> held_at(const Problem& problem, const std::vector<double>& z, std::vector<char> fixed) {
+  const Residuals r = problem.residuals(z, true, fixed);
+  if (r.values.empty()) return fixed;
+  for (std::size_t p = 0; p < z.size(); ++p) {
+    double gradient = 0.0;
+    for (std::size_t i = 0; i < problem.size(); ++i)
+      gradient += problem.weight(r.values[i]) * r.values[i] * r.jacobian[i * z.size() + p];
+    if ((z[p] <= kAtBound && gradient > 0.0) || (z[p] >= 1.0 - kAtBound && gradient < 0.0)) fixed[p] = 1;
+  }
+  return fixed;
+}
+
+}  // namespace
+
+Optimum descend(const Problem& problem, std::span<const double> start, const DescentOptions& options) {
+  constexpr int kPasses = 8;
+  std::vector<char> own = options.fixed;
+  own.resize(problem.parameters().size(), 0);
+  std::vector<char> fixed = own;
+  Optimum optimum = one_descent(problem, start, options, fixed);
+  for (int pass = 1; pass < kPasses && std::isfinite(optimum.cost) && at_a_bound(optimum.scaled); ++pass) {
+    const std::vector<char> held = held_at(problem, optimum.scaled, own);
+    if (held == fixed) break;
+    fixed = held;
+    Optimum next = one_descent(problem, optimum.scaled, options, fixed);
+    if (!(next.cost <= optimum.cost)) break;
+    next.iterations += optimum.iterations;
+    optimum = std::move(next);
+  }
   return optimum;
 }
 

@@ -151,4 +151,19 @@ double Problem::cost(std::span<const double> residuals) const {
   return 0.5 * sum;
 }
 
+double Problem::weight(double residual) const {
+  const double c = loss_.scale * loss_.scale, x = residual * residual / c;
+  switch (loss_.kind) {
+    case LossKind::squares:
+      return 1.0;
+    case LossKind::huber:
+      return x <= 1.0 ? 1.0 : 1.0 / std::sqrt(x);
+    case LossKind::soft_l1:
+      return 1.0 / std::sqrt(1.0 + x);
+    case LossKind::cauchy:
+      return 1.0 / (1.0 + x);
+  }
+  return 1.0;
+}
+
 }  // namespace glisson::fit

@@ -56,6 +56,8 @@ class Problem {
 
   /// ½ Σ ρ(r²).
   double cost(std::span<const double> residuals) const;
+  /// ρ'(r²): how much a residual counts, 1 without a robust loss.
+  double weight(double residual) const;
 
   /// Forward runs so far (a run of one curve each).
   std::uint64_t forward_runs() const { return runs_; }
