@@ -13,7 +13,8 @@ export interface ReportData {
   version: string; // of the program
   created: string; // ISO 8601, UTC
   machine: string; // e.g. "2 × AMD EPYC …"
-  scenes: SceneData[]; // one or more
+  scenes: SceneData[]; // one or more; may be empty where there are fits
+  fits?: FitData[];
 }
 
 export interface SceneData {
@@ -122,4 +123,117 @@ export interface CheckData {
   measured: string; // with unit
   expected: string; // with unit and source
   pass: boolean;
+}
+
+/** A fit: the parameters of a tissue that measured curves allow. Numbers that could not be found are null. */
+export interface FitData {
+  name: string; // file stem
+  title: string;
+  description: string; // plain text
+  notes: string[];
+  source: string; // FIT.toml
+  tissue: string; // tissue.toml: the result, ready for scenes; "" where there is none
+  law: string; // the law of `parameters`, e.g. "ogden, 1 term"
+  parameters: FitParameter[];
+  correlation: (number | null)[][]; // of the scaled parameters; row i belongs to parameters[i]; empty: unknown
+  x: FitAxis; // display = displacement [m] × scale, e.g. "strain [%]"
+  y: FitAxis; // display = force [N] × scale, e.g. "nominal stress [kPa]"
+  curves: FitCurve[];
+  groups: FitGroup[];
+  rms_fit: number; // [N]
+  rms_heldout: number | null; // [N]; null: no curve held out
+  spread_N: number | null; // rms of repetitions about the mean of their group, over all groups; null: none repeated
+  profiles: FitProfile[];
+  basins: FitBasin[]; // best first
+  start_costs: { cost: number; basin: number }[]; // where each start ended, in the order they ran; basin: index
+  starts: number; // run
+  starts_planned: number;
+  forward_runs: number;
+  forward: string; // which forward model was chosen, and why, in a sentence
+  forward_error_N: number | null; // its largest difference from the finest of the ladder
+  wall_s: number;
+  complete: boolean; // false: interrupted
+  bootstrap: { replicates: number; values: number[][] } | null; // one row of parameters each
+  laws: FitLaw[]; // empty: one law only
+  designs: FitDesign[]; // best first
+  conclusions: string[]; // sentences, most important first
+}
+
+/** Axis of the charts of a fit. */
+export interface FitAxis {
+  label: string; // with unit
+  scale: number;
+}
+
+export interface FitParameter {
+  name: string; // a scene's key, e.g. "tissue.hyperelastic.mu_Pa[0]"
+  unit: string; // SI, of every number here; "" or "-" where there is none
+  scale: "linear" | "log";
+  low: number;
+  high: number;
+  value: number;
+  sd: number | null;
+  ci95: [number, number] | null; // by curvature
+  ci95_profile: [number | null, number | null] | null; // by profile; null end: open within the bounds
+  ci95_bootstrap: [number, number] | null;
+  verdict: "identified" | "weak" | "not identifiable" | "at bound";
+  words: string; // why, in a sentence
+}
+
+/** One measured test; all lists equally long. */
+export interface FitCurve {
+  name: string;
+  group: string; // name of its FitGroup
+  velocity_m_s: number;
+  held_out: boolean;
+  time_s: number[];
+  displacement_m: number[];
+  measured_N: number[];
+  fitted_N: number[]; // null within: the simulation ended before
+  noise_N: number; // standard deviation of the measured force
+  rms_N: number; // of fitted − measured
+}
+
+/** Repetitions of one test; a test both fitted and held out is two groups of one name. */
+export interface FitGroup {
+  name: string;
+  held_out: boolean;
+  rms_N: number; // of fitted − measured, over its curves
+  spread_N: number | null; // rms of the repetitions about their own mean; null: one curve only
+}
+
+/** Profile likelihood of one parameter: the others optimised anew at each of its values. */
+export interface FitProfile {
+  parameter: string; // name
+  values: number[]; // rising
+  rise: number[]; // of −2 ln L above its least [-]
+  threshold: number; // of 95 %
+  words: string; // e.g. that it is flat
+}
+
+/** An optimum that starts ended in. */
+export interface FitBasin {
+  cost: number;
+  found: number; // how many starts ended here
+  values: number[]; // of the parameters
+  best: boolean;
+}
+
+export interface FitLaw {
+  name: string;
+  parameters: number;
+  rms_fit: number; // [N]
+  rms_heldout: number | null; // [N]
+  aic: number;
+  bic: number;
+  best: boolean; // the one the data support
+  words: string;
+}
+
+/** What an experiment more would bring; widths of the 95 % interval in the parameter's unit. */
+export interface FitDesign {
+  what: string;
+  parameter: string; // name
+  width_now: number;
+  width_after: number;
 }

@@ -17,18 +17,10 @@ import type {
   TableData,
   VariantData,
 } from "../report_data.ts";
+import { type Raw, finite, isRecord, list, numberOrNaN, record, text } from "./raw.ts";
+import { readFit } from "./read_fit.ts";
 
 export type ReadResult = { ok: true; report: ReportData } | { ok: false; reason: string };
-
-type Raw = Record<string, unknown>;
-
-const isRecord = (value: unknown): value is Raw => typeof value === "object" && value !== null && !Array.isArray(value);
-const record = (value: unknown): Raw => (isRecord(value) ? value : {});
-const list = (value: unknown): unknown[] => (Array.isArray(value) ? value : []);
-const text = (value: unknown): string => (value === null || value === undefined ? "" : String(value));
-const finite = (value: unknown, otherwise: number): number =>
-  typeof value === "number" && Number.isFinite(value) ? value : otherwise;
-const numberOrNaN = (value: unknown): number => (typeof value === "number" ? value : NaN);
 
 /** Reads the report of a document. */
 export function readReport(document: Document): ReadResult {
@@ -58,6 +50,7 @@ export function parseReport(json: string): ReadResult {
       created: text(raw["created"]),
       machine: text(raw["machine"]),
       scenes: list(raw["scenes"]).map((scene, index) => readScene(record(scene), index)),
+      fits: list(raw["fits"]).map((fit, index) => readFit(record(fit), index)),
     },
   };
 }
