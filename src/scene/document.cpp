@@ -143,6 +143,54 @@ std::string describe(const Node& node) {
   return std::visit(text, node.value);
 }
 
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    constexpr char kHex[] = "0123456789abcdef";
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      (out += '\\') += c;
+    else if (byte < 0x20 || byte == 0x7f)
+      ((out += "\\u00") += kHex[byte >> 4]) += kHex[byte & 15];
+    else
+      out += c;
+  }
+  return out + '"';
+}
+
+}  // namespace
+
+std::string toml_key(const std::string& key) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !key.empty() && std::all_of(key.begin(), key.end(), plain) ? key : quoted(key);
+}
+
+std::string toml_text(const Node& node) {
+  struct {
+    std::string operator()(bool b) const { return b ? "true" : "false"; }
+    std::string operator()(std::int64_t i) const { return std::to_string(i); }
+    std::string operator()(double d) const { return show(d); }
+    std::string operator()(const std::string& s) const { return quoted(s); }
+    std::string operator()(const Foreign&) const { return "\"\""; }
+    std::string operator()(const Array& a) const {
+      std::string list;
+      for (const Node& element : a) list += (list.empty() ? "" : ", ") + toml_text(element);
+      return "[" + list + "]";
+    }
+    std::string operator()(const Table& t) const {
+      std::string members;
+      for (const Member& m : t)
+        members += (members.empty() ? " " : ", ") + toml_key(m.key) + " = " + toml_text(m.value);
+      return members.empty() ? "{}" : "{" + members + " }";
+    }
+  } text;
+  return std::visit(text, node.value);
+}
+
 Node parse_document(std::string_view text, const std::string& name) {
   require_harmless(text, name);
   try {

@@ -57,6 +57,11 @@ std::string describe(const Node& node);
 /// The shortest text that reads back as the same number.
 std::string show(double value);
 
+/// The value as TOML on one line, as --set takes it: `{ kind = "linear", slope_Pa = 20000 }`. A date is written as an empty text.
+std::string toml_text(const Node& node);
+/// A key as TOML: bare, or in quotes where it has to be.
+std::string toml_key(const std::string& key);
+
 /// Members in the order of the file. @param name  stands for the file in messages. @throws SceneError
 Node parse_document(std::string_view text, const std::string& name);
 /// The value of --set KEY=TEXT: TOML where it is TOML, the text itself otherwise.

@@ -5,6 +5,7 @@
 #include "scene/nearest.h"
 #include "scene/presets.h"
 #include "scene/sections.h"
+#include "scene/tissue_file.h"
 
 namespace glisson::scene {
 namespace {
@@ -81,22 +82,25 @@ void require_known(const Overlay& overlay, const Array& variants, Problems& prob
                    (meant.empty() ? "the scene has: " + listed(names) : "did you mean \"" + meant + "\"?"));
 }
 
-/// Puts in what the presets of the body and its regions stand for. Twice is as once.
-void put_presets(Node& experiment, Problems& problems) {
-  if (Node* tissue = experiment.find("tissue"))
-    *tissue = with_preset(*tissue, true, {problems, "tissue", tissue->where});
+/// Puts in what the presets and files of the body and its regions stand for. Twice is as once.
+void put_presets(Node& experiment, const std::filesystem::path& files, Problems& problems) {
+  const auto put = [&](Node& tissue, bool named, const Place& place) {
+    tissue = with_tissue_file(tissue, files, place);
+    tissue = with_preset(tissue, named, place);
+  };
+  if (Node* tissue = experiment.find("tissue")) put(*tissue, true, {problems, "tissue", tissue->where});
   Node* regions = experiment.find("region");
   if (!regions || !regions->array()) return;
   for (std::size_t i = 0; i < regions->array()->size(); ++i) {
     Node* own = (*regions->array())[i].find("tissue");
-    if (own) *own = with_preset(*own, false, {problems, "region." + std::to_string(i) + ".tissue", own->where});
+    if (own) put(*own, false, {problems, "region." + std::to_string(i) + ".tissue", own->where});
   }
 }
 
 /// `overlay` over `base`, presets put in: what is laid over it next may change single keys of theirs.
-Node laid(const Node& base, const Node& overlay, Problems& problems) {
+Node laid(const Node& base, const Node& overlay, const std::filesystem::path& files, Problems& problems) {
   Node experiment = merged(variant_section(), base, overlay, {problems, "", overlay.where});
-  put_presets(experiment, problems);
+  put_presets(experiment, files, problems);
   return experiment;
 }
 
@@ -120,7 +124,8 @@ void inherit_tissue(Node& experiment, Problems& problems) {
 
 }  // namespace
 
-Expanded expand(const Node& root, std::span<const Override> overrides, Problems& problems) {
+Expanded expand(const Node& root, std::span<const Override> overrides, const std::filesystem::path& files,
+                Problems& problems) {
   Expanded result{Node{Table{}, root.where}, Node{Table{}, root.where}, {}};
   for (const Member& m : *root.table()) {
     if (m.key == "variant") continue;
@@ -133,12 +138,12 @@ Expanded expand(const Node& root, std::span<const Override> overrides, Problems&
     if (o.scene_key) result.scene = merged(scene_section(), result.scene, o.tree, {problems, "", o.tree.where});
   }
   Node base = result.base;
-  put_presets(base, problems);
+  put_presets(base, files, problems);
   for (const Node& variant : variants) {
-    Node experiment = laid(base, variant, problems);
+    Node experiment = laid(base, variant, files, problems);
     for (const Overlay& o : overlays) {
       const bool meant = !o.scene_key && (o.variant.empty() || o.variant == name_of(variant));
-      if (meant) experiment = laid(experiment, o.tree, problems);
+      if (meant) experiment = laid(experiment, o.tree, files, problems);
     }
     experiment.where = variant.where;
     inherit_tissue(experiment, problems);

@@ -1,6 +1,7 @@
 // expand.h — from one scene to its complete experiments, still as trees.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -16,8 +17,10 @@ struct Expanded {
   std::vector<Node> variants;  ///< base, then the variant, then --set; one or more
 };
 
-/// Lays variants and overrides over the scene. In the result presets are what they stand for, and regions inherit
+/// Lays variants and overrides over the scene. In the result presets and files of tissues are what they stand for, and regions inherit
 /// from [tissue].
-Expanded expand(const Node& root, std::span<const Override> overrides, Problems& problems);
+/// @param base  folder that files of tissues are relative to
+Expanded expand(const Node& root, std::span<const Override> overrides, const std::filesystem::path& base,
+                Problems& problems);
 
 }  // namespace glisson::scene

@@ -30,16 +30,6 @@ bool names(const Node& element, const std::string& name) {
   return false;
 }
 
-/// The element of a list that `name` means: by its name (or set), else by its index from 0.
-Node* element_called(Array& elements, const std::string& name) {
-  const auto it = std::find_if(elements.begin(), elements.end(), [&](const Node& e) { return names(e, name); });
-  if (it != elements.end()) return &*it;
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), index);
-  const bool number = error == std::errc{} && end == name.data() + name.size();
-  return number && index < elements.size() ? &elements[index] : nullptr;
-}
-
 std::string names_of(const Array& elements) {
   std::string text;
   for (std::size_t i = 0; i < elements.size(); ++i) {
@@ -53,7 +43,8 @@ std::string names_of(const Array& elements) {
 Node merged_list(const KeySpec& key, Node list, const Table& overlay, const Place& place) {
   for (const Member& m : overlay) {
     const Place here = place.inside(m.key, m.where);
-    if (Node* element = element_called(*list.array(), m.key)) {
+    if (const Node* called = element_called(*list.array(), m.key)) {
+      Node* element = list.array()->data() + (called - list.array()->data());
       *element = merged(*key.section, *element, m.value, here);
     } else {
       here.complain("no such " + key.name + "; " + names_of(*list.array()));
@@ -81,13 +72,23 @@ Node merged_member(const KeySpec& key, const Node& base, const Node& overlay, co
 
 }  // namespace
 
+const Node* element_called(const Array& elements, const std::string& name) {
+  const auto it = std::find_if(elements.begin(), elements.end(), [&](const Node& e) { return names(e, name); });
+  if (it != elements.end()) return &*it;
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), index);
+  const bool number = error == std::errc{} && end == name.data() + name.size();
+  return number && index < elements.size() ? &elements[index] : nullptr;
+}
+
 Node merged(const SectionSpec& section, const Node& base, const Node& overlay, const Place& place) {
   if (!base.table() || !overlay.table()) return overlay;
   const Node* kind = base.find("kind");
   const Node* other_kind = overlay.find("kind");
   const bool replaced = !section.kinds.empty() && other_kind && kind && kind->text() && other_kind->text() &&
                         *kind->text() != *other_kind->text();
-  if (replaced || (!section.start.empty() && overlay.find(section.start))) return overlay;
+  const auto given = [&](const std::string& key) { return overlay.find(key) != nullptr; };
+  if (replaced || std::any_of(section.starts.begin(), section.starts.end(), given)) return overlay;
   Node result = base;
   result.where = overlay.where;
   for (const Member& m : *overlay.table()) drop_excluded(section, *result.table(), m.key);

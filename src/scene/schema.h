@@ -113,7 +113,7 @@ struct SectionSpec {
   std::vector<KeySpec> keys{};
   std::vector<KindSpec> kinds;  ///< not empty: the key `kind` chooses one, whose keys are allowed too
   std::vector<Exclusion> exclusions{};
-  std::string start{};  ///< a table that gives this key takes nothing over from the one it is laid on
+  std::vector<std::string> starts{};  ///< a table that gives one of these takes nothing over from the one it is laid on
   std::vector<std::string> other_words{};  ///< further keys to suggest for a misspelt one
   std::function<void(void* target, const Node& table, const Place&)> finish{};  ///< what must hold between keys
 
@@ -132,6 +132,9 @@ void read_section(const SectionSpec& section, const Node& node, void* target, co
 
 /// `a number > 0 [Pa]`, `one of box, cylinder, file`: what a key takes, for messages and documentation.
 std::string expected(const KeySpec& key);
+
+/// The element of a list that `name` means: by its name (or set), else by its index from 0; nullptr where there is none.
+const Node* element_called(const Array& elements, const std::string& name);
 
 /// `overlay` over `base`: tables are joined key by key, everything else is replaced. A table of another `kind`
 /// replaces the whole table, as does one with the section's `start` key; a key removes those it excludes, and a list of

@@ -183,7 +183,12 @@ const SectionSpec& tissue_section() {
             .type = ValueType::text,
             .words = preset_words(),
             .default_text = "none"});
-    s.spec().start = "preset";
+    s.bare({.name = "file",
+            .help = "a file with a `[tissue]` of its own to start from, such as `glisson fit` writes, relative to the "
+                    "scene; the keys beside it win",
+            .type = ValueType::text,
+            .default_text = "none"});
+    s.spec().starts = {"preset", "file"};
     s.key("name", &Tissue::name, "name, for the report; of a preset, its own");
     s.key("youngs_modulus_Pa", &Tissue::youngs_modulus, "Young's modulus E at rest").in("Pa").within(above(0));
     s.key("poisson_ratio", &Tissue::poisson_ratio, "Poisson's ratio ν")
@@ -223,7 +228,8 @@ const SectionSpec& tissue_section() {
     s.choice<MaxwellPart>("maxwell_part", &Tissue::maxwell_part, maxwell_parts(), "stress that the branches relax");
     s.choice<VolumeChange>("volume_change", &Tissue::volume_change, volume_changes(),
                            "volume change that the bulk resists");
-    s.spec().exclusions = {{{{"youngs_modulus_Pa", "poisson_ratio"}, {"lambda_Pa", "mu_Pa"}, {"hyperelastic"}}, false},
+    s.spec().exclusions = {{{{"preset"}, {"file"}}, false},
+                           {{{"youngs_modulus_Pa", "poisson_ratio"}, {"lambda_Pa", "mu_Pa"}, {"hyperelastic"}}, false},
                            {{{"law"}, {"lambda_law", "mu_law"}, {"hyperelastic"}}, false},
                            {{{"kinematics", "law_form", "measure"}, {"hyperelastic"}}, false}};
     s.finish([](Tissue& tissue, const Node& table, const Place& place) {

@@ -1,0 +1,69 @@
+#include "scene/tissue_file.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <system_error>
+
+#include "glisson/scene.h"
+#include "scene/presets.h"
+#include "scene/sections.h"
+
+namespace glisson::scene {
+namespace {
+
+/// The [tissue] of a file; none, and a complaint, where there is none.
+std::optional<Node> read_tissue(const std::filesystem::path& file, const Place& place) {
+  std::error_code error;
+  std::ifstream stream;
+  if (std::filesystem::is_regular_file(file, error)) stream.open(file, std::ios::binary);
+  if (!stream.is_open()) {
+    place.complain(file.string() + " cannot be read; check the path, which is relative to the scene");
+    return {};
+  }
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  try {
+    const Node root = parse_document(text, file.string());
+    const Node* tissue = root.find("tissue");
+    if (tissue && tissue->table()) return *tissue;
+    place.complain(file.string() + " has no [tissue]; it is to hold one, as `glisson fit` writes it");
+  } catch (const SceneError& problem) {
+    place.complain(problem.what());
+  }
+  return {};
+}
+
+}  // namespace
+
+Node with_tissue_file(const Node& tissue, const std::filesystem::path& base, const Place& place) {
+  const Node* word = tissue.find("file");
+  if (!word || !word->text() || tissue.find("preset")) return tissue;
+  std::filesystem::path path = *word->text();
+  if (path.is_relative()) path = base / path;
+  const Place here = place.inside("file", word->where);
+  std::optional<Node> held = read_tissue(path, here);
+  if (!held) return tissue;
+  if (held->find("file")) {
+    here.complain(path.string() + " names a `file` in turn; a tissue file holds the keys themselves");
+    return tissue;
+  }
+  set_origin(*held, word->where);
+  Node own = tissue;
+  std::erase_if(*own.table(), [](const Member& m) { return m.key == "file"; });
+  if (held->find("preset")) {
+    *held = with_preset(*held, true, here);
+    std::erase_if(*held->table(), [](const Member& m) { return m.key == "preset"; });
+  }
+  Node result = merged(tissue_section(), *held, own, place);
+  result.table()->push_back({"file", word->where, *word});
+  return result;
+}
+
+std::string tissue_file_text(const Node& tissue) {
+  std::string text = "[tissue]\n";
+  for (const Member& m : *tissue.table()) text += toml_key(m.key) + " = " + toml_text(m.value) + "\n";
+  return text;
+}
+
+}  // namespace glisson::scene
