@@ -11,6 +11,7 @@
 
 #include "scene/expand.h"
 #include "scene/nearest.h"
+#include "scene/read_variant.h"
 #include "scene/sections.h"
 #include "scene/select.h"
 #include "scene/word_table.h"
@@ -99,43 +100,36 @@ void check_integrator(const Variant& variant, const Node& experiment, Problems& 
                    "branches may stay)");
 }
 
-/// Reads the files of recorded motions, and tries the motions of all instruments.
+/// Reads the file of a recorded motion along a direction.
+void complete_record(RecordSpec& record, const Vec3d& along, const std::filesystem::path& base) {
+  if (record.path.is_relative()) record.path = base / record.path;
+  record.motion = load_record(record.path, along * (1.0 / norm(along)));
+}
+
+/// Reads the files of recorded motions, and tries the motions of all tools and instruments.
 void complete_motions(Variant& variant, const Node& experiment, const std::filesystem::path& base, Problems& problems) {
+  for (std::size_t i = 0; i < variant.tools.size(); ++i) {
+    ToolSpec& x = variant.tools[i];
+    if (!x.record) continue;
+    try {
+      complete_record(*x.record, x.motion.direction, base);
+      tool_path(x);
+    } catch (const std::exception& error) {
+      problems.add((*experiment.find("tool")->array())[i].where, "tool." + std::to_string(i) + ".record", error.what());
+    }
+  }
   for (std::size_t i = 0; i < variant.instruments.size(); ++i) {
     InstrumentSpec& x = variant.instruments[i];
     const Node& motion = *(*experiment.find("instrument")->array())[i].find("motion");
     const std::string path = "instrument." + std::to_string(i) + ".motion";
     try {
-      if (auto* record = std::get_if<RecordSpec>(&x.motion.how)) {
-        if (record->path.is_relative()) record->path = base / record->path;
-        const Vec3d along = x.motion.direction.value_or(x.direction);
-        record->motion = load_record(record->path, along * (1.0 / norm(along)));
-      }
+      if (auto* record = std::get_if<RecordSpec>(&x.motion.how))
+        complete_record(*record, x.motion.direction.value_or(x.direction), base);
       make_driver(x);
     } catch (const std::exception& error) {
       problems.add(motion.where, path, error.what());
     }
   }
-}
-
-Variant read_variant(const Node& experiment, const std::filesystem::path& base, Problems& problems) {
-  Variant variant;
-  variant.scene_name = problems.file();
-  const std::size_t before = problems.count();
-  read_section(variant_section(), experiment, &variant, {problems, "", experiment.where});
-  if (problems.count() > before) return variant;
-  auto* file = std::get_if<MeshFile>(&variant.mesh);
-  if (file && file->path.is_relative()) file->path = base / file->path;
-  complete_motions(variant, experiment, base, problems);
-  if (problems.count() > before) return variant;
-  if (const Node* tools = experiment.find("tool")) check_names(*tools->array(), "tool", problems);
-  if (const Node* list = experiment.find("instrument")) check_names(*list->array(), "instrument", problems);
-  check_shared_names(variant, experiment, problems);
-  if (const Node* regions = experiment.find("region")) check_names(*regions->array(), "region", problems);
-  check_sets(variant, experiment, problems);
-  check_integrator(variant, experiment, problems);
-  check_end(variant, experiment, problems);
-  return variant;
 }
 
 void read_measured(MeasuredSpec& m) {
@@ -184,11 +178,31 @@ void load_measured(Scene& scene, const Node& node, const std::filesystem::path& 
 
 }  // namespace
 
+Variant scene::read_variant(const Node& experiment, const std::filesystem::path& base, Problems& problems) {
+  Variant variant;
+  variant.scene_name = problems.file();
+  const std::size_t before = problems.count();
+  read_section(variant_section(), experiment, &variant, {problems, "", experiment.where});
+  if (problems.count() > before) return variant;
+  auto* file = std::get_if<MeshFile>(&variant.mesh);
+  if (file && file->path.is_relative()) file->path = base / file->path;
+  complete_motions(variant, experiment, base, problems);
+  if (problems.count() > before) return variant;
+  if (const Node* tools = experiment.find("tool")) check_names(*tools->array(), "tool", problems);
+  if (const Node* list = experiment.find("instrument")) check_names(*list->array(), "instrument", problems);
+  check_shared_names(variant, experiment, problems);
+  if (const Node* regions = experiment.find("region")) check_names(*regions->array(), "region", problems);
+  check_sets(variant, experiment, problems);
+  check_integrator(variant, experiment, problems);
+  check_end(variant, experiment, problems);
+  return variant;
+}
+
 Scene parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& base,
                   std::span<const Override> overrides) {
   const Node root = parse_document(text, name);
   Problems problems(name);
-  const Expanded expanded = expand(root, overrides, problems);
+  const Expanded expanded = expand(root, overrides, base, problems);
   Scene result;
   result.file = name;
   result.source = text;
