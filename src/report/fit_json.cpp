@@ -1,0 +1,181 @@
+// fit_json.cpp — see fit_json.h.
+#include "report/fit_json.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/version.h"
+
+namespace glisson {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using fit::FitResult;
+using fit::Interval;
+
+Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+Json number(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
+
+Json numbers(const std::vector<double>& list) {
+  Json json = Json::array();
+  for (const double x : list) json.push_back(number(x));
+  return json;
+}
+
+Json interval(const std::optional<Interval>& x) {
+  return x ? Json::array({number(x->low), number(x->high)}) : Json(nullptr);
+}
+
+/// Ends that the curves leave open are null.
+Json open_interval(const std::optional<Interval>& x) {
+  if (!x) return nullptr;
+  return Json::array({x->low_open ? Json(nullptr) : number(x->low), x->high_open ? Json(nullptr) : number(x->high)});
+}
+
+Json parameter_json(const fit::ParameterResult& p) {
+  return {{"name", p.parameter.name},
+          {"unit", p.parameter.unit},
+          {"scale", p.parameter.scale == fit::Scale::linear ? "linear" : "log"},
+          {"low", p.parameter.low},
+          {"high", p.parameter.high},
+          {"value", number(p.value)},
+          {"sd", number(p.sd)},
+          {"ci95", interval(p.ci95())},
+          {"ci95_curvature", interval(p.by_curvature)},
+          {"ci95_profile", open_interval(p.by_profile)},
+          {"ci95_bootstrap", interval(p.by_bootstrap)},
+          {"verdict", p.verdict},
+          {"words", p.words}};
+}
+
+Json curve_json(const fit::CurveResult& c, const std::string& account) {
+  const std::vector<double> none(c.curve.size(), std::nan(""));
+  return {{"name", c.curve.name},
+          {"group", c.curve.group},
+          {"velocity_m_s", number(c.curve.velocity)},
+          {"held_out", c.curve.held_out},
+          {"time_s", numbers(c.curve.time)},
+          {"displacement_m", numbers(c.curve.displacement)},
+          {"measured_N", numbers(c.curve.force)},
+          {"fitted_N", numbers(c.fitted.empty() ? none : c.fitted)},
+          {"noise_N", number(c.curve.noise)},
+          {"rms_N", number(c.rms)},
+          {"account", account}};
+}
+
+Json groups_json(const FitResult& result) {
+  Json list = Json::array();
+  for (const fit::GroupResult& g : result.groups)
+    list.push_back(
+        {{"name", g.name}, {"held_out", g.held_out}, {"rms_N", number(g.rms)}, {"spread_N", number(g.spread)}});
+  return list;
+}
+
+Json basins_json(const FitResult& result) {
+  Json list = Json::array();
+  for (const fit::BasinResult& b : result.basins)
+    list.push_back(
+        {{"cost", number(b.cost)}, {"found", b.found}, {"values", numbers(b.values)}, {"best", list.empty()}});
+  return list;
+}
+
+Json starts_json(const FitResult& result) {
+  Json list = Json::array();
+  for (const fit::StartResult& s : result.starts) {
+    if (s.basin >= 0) list.push_back({{"cost", number(s.cost)}, {"basin", s.basin}});
+  }
+  return list;
+}
+
+Json profiles_json(const FitResult& result) {
+  Json list = Json::array();
+  for (const fit::ProfileResult& p : result.profiles)
+    list.push_back({{"parameter", p.parameter},
+                    {"values", numbers(p.values)},
+                    {"rise", numbers(p.rise)},
+                    {"threshold", number(p.threshold)},
+                    {"words", p.words}});
+  return list;
+}
+
+Json laws_json(const FitResult& result) {
+  Json list = Json::array();
+  for (const fit::LawResult& l : result.laws)
+    list.push_back({{"name", l.name},
+                    {"parameters", l.parameters},
+                    {"rms_fit", number(l.rms_fit)},
+                    {"rms_heldout", number(l.rms_heldout)},
+                    {"aic", number(l.aic)},
+                    {"bic", number(l.bic)},
+                    {"best", l.best},
+                    {"words", l.words}});
+  return list;
+}
+
+Json designs_json(const FitResult& result) {
+  Json list = Json::array();
+  for (const fit::DesignResult& d : result.designs)
+    list.push_back({{"what", d.what},
+                    {"parameter", d.parameter},
+                    {"width_now", number(d.width_now)},
+                    {"width_after", number(d.width_after)}});
+  return list;
+}
+
+/// Strain and stress where the specimen's size is known; else displacement and force.
+Json axis_x(const FitResult& result) {
+  if (result.height) return {{"label", "strain [%]"}, {"scale", 100.0 / *result.height}};
+  return {{"label", "displacement [mm]"}, {"scale", 1000.0}};
+}
+Json axis_y(const FitResult& result) {
+  if (result.area) return {{"label", "nominal stress [kPa]"}, {"scale", 1e-3 / *result.area}};
+  return {{"label", "force [N]"}, {"scale", 1.0}};
+}
+
+}  // namespace
+
+Json fit_json(const FitResult& result, const FitHeading& heading) {
+  Json parameters = Json::array(), curves = Json::array(), correlation = Json::array(), replicates = Json::array();
+  for (const fit::ParameterResult& p : result.parameters) parameters.push_back(parameter_json(p));
+  for (std::size_t c = 0; c < result.curves.size(); ++c)
+    curves.push_back(curve_json(result.curves[c], c < result.accounts.size() ? result.accounts[c] : ""));
+  for (const std::vector<double>& row : result.correlation) correlation.push_back(numbers(row));
+  for (const std::vector<double>& row : result.bootstrap) replicates.push_back(numbers(row));
+  Json bootstrap = nullptr;
+  if (!result.bootstrap.empty()) bootstrap = {{"replicates", result.bootstrap.size()}, {"values", replicates}};
+  Json json{{"name", heading.name},
+            {"title", heading.title},
+            {"description", heading.description},
+            {"notes", heading.notes},
+            {"version", version()},
+            {"law", result.law},
+            {"complete", result.complete},
+            {"parameters", parameters},
+            {"rms_fit", number(result.rms_fit)},
+            {"rms_heldout", number(result.rms_heldout)},
+            {"spread_N", number(result.spread)},
+            {"forward_runs", result.forward_runs},
+            {"forward_run_s", number(result.forward_run_s)},
+            {"wall_s", number(result.wall_s)},
+            {"basins", basins_json(result)},
+            {"start_costs", starts_json(result)},
+            {"starts", result.starts.size()},
+            {"starts_planned", result.starts_planned},
+            {"forward", result.forward},
+            {"forward_error_N", number(result.forward_error)},
+            {"correlation", correlation},
+            {"groups", groups_json(result)},
+            {"profiles", profiles_json(result)},
+            {"bootstrap", bootstrap},
+            {"laws", laws_json(result)},
+            {"designs", designs_json(result)},
+            {"conclusions", result.conclusions},
+            {"x", axis_x(result)},
+            {"y", axis_y(result)},
+            {"curves", curves},
+            {"tissue", result.tissue},
+            {"source", heading.source}};
+  return json;
+}
+
+}  // namespace glisson
