@@ -114,6 +114,12 @@ void print_body(const Variant& v, const Taste& taste) {
   }
   for (const ToolSpec& tool : v.tools) {
     const PressMotion& m = tool.motion;
+    if (tool.record) {
+      fmt::print("  tool     \"{}\" on {}: a recorded way of {} points, from {:.4g} s to {:.4g} s\n", tool.name,
+                 set_text(taste.mesh, tool.set), tool.record->motion.times.size(), tool_start(tool),
+                 tool_path(tool).end.value_or(0.0));
+      continue;
+    }
     fmt::print("  tool     \"{}\" on {}: {:.4g} mm at {:.4g} mm/s, from {:.4g} s to {:.4g} s\n", tool.name,
                set_text(taste.mesh, tool.set), 1e3 * m.depth, 1e3 * m.velocity, m.start, press_end(m));
   }

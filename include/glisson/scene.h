@@ -90,13 +90,25 @@ struct LoadSpec {
   double ramp = 0.0;  ///< time over which it grows from 0, linearly [s], ≥ 0
   std::string origin;
 };
+/// A recorded way from a file (load_record).
+struct RecordSpec {
+  std::filesystem::path path;  ///< absolute, or relative to the current directory; empty for a way made in memory
+  double start = 0.0;
+  RecordedMotion motion;  ///< what the file holds
+};
 struct ToolSpec {
   std::string name = "tool";
   std::string set;
   PressMotion motion;
-  bool sideways_free = false;  ///< only the component along the direction is driven (direction along an axis)
+  std::optional<RecordSpec> record;  ///< a recorded way in place of the press; what the press says then is `direction`
+  bool sideways_free = false;        ///< only the component along the direction is driven (direction along an axis)
   std::string origin;
 };
+
+/// The way of a tool, and when it has ended. @throws std::invalid_argument
+ToolPath tool_path(const ToolSpec& tool);
+/// When a tool takes hold [s].
+double tool_start(const ToolSpec& tool);
 
 /// Strokes along the instrument's direction and across it; one that has no speed of its own takes the common one.
 struct StrokesSpec {
@@ -115,12 +127,6 @@ struct PushSpec {
   std::optional<double> duration, stop;
   double mass = 0.05, damping = 5.0;
   bool guided = true;
-};
-/// A recorded way from a file (load_record).
-struct RecordSpec {
-  std::filesystem::path path;  ///< absolute, or relative to the current directory
-  double start = 0.0;
-  RecordedMotion motion;  ///< what the file holds
 };
 struct InstrumentMotion {
   std::variant<PressMotion, StrokesSpec, SineMotion, PushSpec, RecordSpec> how;

@@ -195,7 +195,7 @@ BuiltVariant::BuiltVariant(const Variant& variant, const MeshLoader& load)
   for (const ToolSpec& x : variant.tools) {
     const auto& set = set_called(variant, mesh, x.set, x.origin);
     tools.push_back(located(variant, x.origin,
-                            [&] { return simulation.drive(set, press(x.motion), driven_axes(x), x.motion.start); }));
+                            [&] { return simulation.drive(set, tool_path(x).way, driven_axes(x), tool_start(x)); }));
   }
   for (const LoadSpec& x : variant.loads) {
     const auto& set = set_called(variant, mesh, x.set, x.origin);
@@ -220,6 +220,15 @@ StepResult BuiltVariant::step() {
 
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load) { return {variant, load}; }
 
+double tool_start(const ToolSpec& tool) { return tool.record ? tool.record->start : tool.motion.start; }
+
+ToolPath tool_path(const ToolSpec& tool) {
+  if (!tool.record) return {press(tool.motion), press_end(tool.motion)};
+  RecordedMotion motion = tool.record->motion;
+  motion.start = tool.record->start;
+  return recorded_path(motion);
+}
+
 double run_duration(const Variant& variant) {
   if (variant.duration) return *variant.duration;
   double end = 0.0;
@@ -228,7 +237,7 @@ double run_duration(const Variant& variant) {
     if (time) end = std::max(end, *time);
     ends = ends || time;
   };
-  for (const ToolSpec& tool : variant.tools) until(press_end(tool.motion));
+  for (const ToolSpec& tool : variant.tools) until(tool.record ? tool_path(tool).end : press_end(tool.motion));
   for (const InstrumentSpec& x : variant.instruments) until(make_driver(x)->end());
   return ends ? end : std::numeric_limits<double>::infinity();
 }

@@ -53,6 +53,7 @@ class Run {
   double next_sample_ = 0.0;  ///< [s]
   int frames_taken_ = 0;
   std::vector<std::size_t> events_told_;  ///< per instrument
+  std::vector<Motion> records_;           ///< per tool; none where it does not follow a record
   bool ended_ = false, sampled_ = true, framed_ = false, forces_current_ = false;
   double stepping_s_ = 0.0;
   std::uint64_t stretch_steps_ = 1;
@@ -69,6 +70,7 @@ Run::Run(const Variant& variant, BuiltVariant& built, RunObserver& observer, con
   sample_.supports.resize(built.supports.size());
   sample_.instruments.resize(built.instruments.size());
   events_told_.resize(built.instruments.size(), 0);
+  for (const ToolSpec& tool : variant.tools) records_.push_back(tool.record ? tool_path(tool).way : Motion{});
 }
 
 /// The last step is the one that ends nearest to the duration.
@@ -140,11 +142,11 @@ void Run::stretch() {
 void Run::take_sample() {
   sample_.time = force_time_;
   for (std::size_t i = 0; i < built_.tools.size(); ++i) {
-    const PressMotion& motion = variant_.tools[i].motion;
-    sample_.depths[i] = press_depth(motion, force_time_);
+    const ToolSpec& tool = variant_.tools[i];
+    const Vec3d direction = tool.motion.direction * (1.0 / norm(tool.motion.direction));
+    sample_.depths[i] = tool.record ? dot(records_[i](force_time_), direction) : press_depth(tool.motion, force_time_);
     sample_.tools[i] = simulation_.force(built_.tools[i]);
-    const double along = std::abs(dot(sample_.tools[i].total(), motion.direction)) / norm(motion.direction);
-    summary_.peak_force_N = std::max(summary_.peak_force_N, along);
+    summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(sample_.tools[i].total(), direction)));
   }
   for (std::size_t i = 0; i < built_.supports.size(); ++i) sample_.supports[i] = simulation_.force(built_.supports[i]);
   for (std::size_t i = 0; i < built_.instruments.size(); ++i) {

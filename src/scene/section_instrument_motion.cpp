@@ -41,16 +41,6 @@ SectionSpec sine_kind() {
   return s.spec();
 }
 
-SectionSpec record_kind() {
-  Section<RecordSpec> s(
-      "record",
-      "A recorded way: a .csv with a line of names, `time_s` and `depth_m`, or `time_s`, `x_m`, `y_m` and "
-      "`z_m` (or _mm), gone from its first line on, smoothly between its points.");
-  s.key("path", &RecordSpec::path, "the file, relative to the scene").must();
-  s.key("start_s", &RecordSpec::start, "when the record begins").in("s").within(at_least(0));
-  return s.spec();
-}
-
 SectionSpec push_kind() {
   Section<PushSpec> s("push",
                       "A mass that is pushed: the force is given, the way follows from what the tissue answers.");
@@ -78,6 +68,19 @@ KindSpec motion_kind(SectionSpec section) {
 
 }  // namespace
 
+const SectionSpec& record_section() {
+  static const SectionSpec section = [] {
+    Section<RecordSpec> s(
+        "record",
+        "A recorded way: a .csv with a line of names, `time_s` and `depth_m`, or `time_s`, `x_m`, `y_m` and "
+        "`z_m` (or _mm), gone from its first line on, smoothly between its points.");
+    s.key("path", &RecordSpec::path, "the file, relative to the scene").must();
+    s.key("start_s", &RecordSpec::start, "when the record begins").in("s").within(at_least(0));
+    return s.spec();
+  }();
+  return section;
+}
+
 const SectionSpec& stroke_section() {
   static const SectionSpec section = [] {
     Section<Stroke> s("instrument.motion.strokes", "A straight move at one speed, and a rest after it.");
@@ -102,7 +105,7 @@ const SectionSpec& instrument_motion_section() {
         .otherwise("the instrument's");
     s.spec().kinds = {motion_kind<PressMotion>(press_kind()), motion_kind<StrokesSpec>(strokes_kind()),
                       motion_kind<SineMotion>(sine_kind()), motion_kind<PushSpec>(push_kind()),
-                      motion_kind<RecordSpec>(record_kind())};
+                      motion_kind<RecordSpec>(record_section())};
     s.finish([](InstrumentMotion& m, const Node& table, const Place& place) {
       if (m.direction) require_direction(*m.direction, table, "direction", place);
     });

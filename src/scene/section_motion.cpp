@@ -171,10 +171,15 @@ const SectionSpec& tool_section() {
         .within(at_least(0));
     s.key("hold_s", motion(&PressMotion::hold), "how long it rests at depth").in("s").within(at_least(0));
     s.key("returns", motion(&PressMotion::returns), "withdraw at the same speed after the hold");
+    s.table(
+        "record", record_section(), [](ToolSpec & t) -> auto& { return t.record.emplace(); },
+        "a recorded way, in place of speed and depth");
     s.choice<bool>("sideways", &ToolSpec::sideways_free,
                    {{"blocked", false, "the vertices move with the tool in all components"},
                     {"free", true, "only along the direction, which must be along an axis: no friction"}},
                    "what holds across the direction");
+    s.spec().exclusions = {
+        {{{"record"}, {"velocity_mm_s", "depth_mm", "start_s", "ramp_s", "hold_s", "returns"}}, false}};
     s.finish(check_tool);
     return s.spec();
   }();

@@ -358,5 +358,22 @@ TEST(Record, DrivesAnInstrument) {
               HasSubstr("s.toml:12:10: instrument.0.motion: /scenes/record_of_a_test.csv: cannot be read"));
 }
 
+// A tool follows a record, too, from its start on and along its direction; speed and depth contradict it, and an override
+// takes the place of those of the scene.
+TEST(Record, DrivesATool) {
+  const RecordFile file("time_s,depth_mm\n5,2\n6,3\n8,2.5\n");
+  const std::string record = "record = { path = \"" + file.path.string() + "\", start_s = 0.5 }";
+  const std::string text = changed(test::kSmallScene, "depth_mm = 1", record);
+  const Variant v = parse(text).variants.at(0);
+  EXPECT_DOUBLE_EQ(run_duration(v), 3.5);
+  expect_near(tool_path(v.tools.at(0)).way(1.5), {0, 0, -0.001});
+  EXPECT_EQ(tool_start(v.tools[0]), 0.5);
+  EXPECT_THAT(complaint(text + "velocity_mm_s = 5\n"), HasSubstr("tool.0.velocity_mm_s: contradicts `record`"));
+  EXPECT_THAT(complaint(changed(text, file.path.string(), "none.csv")),
+              HasSubstr("tool.0.record: /scenes/none.csv: cannot be read"));
+  const Override set{"tool.press.record.path", file.path.string()};
+  EXPECT_TRUE(parse(test::kSmallScene, {set}).variants.at(0).tools.at(0).record);
+}
+
 }  // namespace
 }  // namespace glisson
