@@ -1,0 +1,208 @@
+// check_units.cpp — numbers that look like another unit: the slip that a factor of 1000 makes without a word.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "fit/data/raw_test.h"
+
+namespace glisson::fit {
+namespace {
+
+constexpr double kFarOff = 30.0;      // between a true stress against an engineering one, ≈ 3, and a slip of 100
+constexpr double kDeepest = 1.0;      // of compression, in heights
+constexpr double kShallowest = 5e-4;  // of a test of soft tissue, in heights
+constexpr double kSoftest = 10.0, kStiffest = 2e7;   // secant moduli of soft tissues and their phantoms [Pa]
+constexpr double kSlowest = 1e-8, kFastest = 100.0;  // tools [m/s]
+constexpr double kRepetitions = 100.0;
+constexpr const char* kWayOut = ", or unlikely = true to take it as it is";
+
+double largest(const std::vector<double>& values) {
+  double most = 0.0;
+  for (const double v : values) {
+    if (std::isfinite(v)) most = std::max(most, std::abs(v));
+  }
+  return most;
+}
+
+/// How far the numbers go from the first.
+double span_of(const std::vector<double>& values) {
+  double most = 0.0;
+  for (const double v : values) most = std::max(most, std::abs(v - values.front()));
+  return most;
+}
+
+/// `84.1 kN`.
+std::string in_unit(double value, const Unit& unit) {
+  return brief(value / unit.factor) + " " + std::string(unit.name);
+}
+
+/// The unit that makes numbers `ratio` times smaller, where there is one within half a power of ten.
+const Unit* better_unit(const Source& source, double ratio) {
+  const Unit* best = nullptr;
+  double least = 0.5;
+  for (const Unit& unit : units_of(source.quantity)) {
+    const double off = std::abs(std::log10(source.unit->factor / unit.factor / ratio));
+    if (&unit != source.unit && off < least) {
+      least = off;
+      best = &unit;
+    }
+  }
+  return best;
+}
+
+/// "In N it would be 84.1 N: give unit = "N" …".
+std::string way_out(const Source& source, double value, double ratio) {
+  if (!source.unit) return std::string("; check speed_mm_s") + kWayOut;
+  const Unit* unit = better_unit(source, ratio);
+  if (!unit) return std::string("; check the unit of ") + source.title + kWayOut;
+  const double as_written = value / source.unit->factor * unit->factor;
+  return "; in " + std::string(unit->name) + " it would be " + in_unit(as_written, *unit) + ": give unit = \"" +
+         std::string(unit->name) + "\"" + kWayOut;
+}
+
+class UnitCheck {
+ public:
+  UnitCheck(const RawTest& test, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems)
+      : test_(test), spec_(spec), size_(size), problems_(problems) {}
+
+  void run() {
+    const std::size_t before = problems_.count();
+    check_depth();
+    check_columns();
+    check_speed();
+    if (problems_.count() == before) check_stiffness();
+  }
+
+ private:
+  void complain(const std::string& what) { problems_.add({std::max(test_.names_line, 1U), 1, {}}, "", what); }
+
+  std::string read_as(const Source& source, double value) const {
+    return source.title + ", read in " + std::string(source.unit->name) + ", goes to " +
+           brief(value / source.unit->factor) + " " + std::string(source.unit->name);
+  }
+
+  /// The number as the file has it: without the height or area that turned strain into way, stress into force.
+  double own(const Source& source, double si) const {
+    if (source.quantity == Quantity::strain) return si / size_.height.value_or(1.0);
+    if (source.quantity == Quantity::stress) return si / size_.area.value_or(1.0);
+    return si;
+  }
+
+  void check_depth() {
+    const double deepest = span_of(test_.displacement);
+    if (!size_.height || deepest <= 0.0) return;
+    const double strain = deepest / *size_.height;
+    if (strain <= kDeepest && strain >= kShallowest) return;
+    const Source& source = test_.displacement_source;
+    const double value = own(source, deepest);
+    double ratio = strain > kDeepest ? 1000.0 : 1e-3;
+    if (source.quantity == Quantity::strain) ratio = strain > kDeepest ? 100.0 : 1e-2;
+    complain(read_as(source, value) + ", " + brief(strain) + " of the specimen's height of " +
+             brief(*size_.height * 1e3) + " mm; a test goes to between " + brief(kShallowest) + " and " +
+             brief(kDeepest) + way_out(source, value, ratio));
+  }
+
+  void check_columns() {
+    for (const CheckColumn& check : test_.checks) {
+      const bool stress = check.source.quantity == Quantity::stress;
+      const std::optional<double>& size = stress ? size_.area : size_.height;
+      const Source& source = stress ? test_.force_source : test_.displacement_source;
+      if (!size || check.source.title == source.title) continue;
+      const double used = stress ? largest(test_.force) : span_of(test_.displacement);
+      compare(source, used, *size, check.source, largest(check.values));
+    }
+  }
+
+  void compare(const Source& source, double used, double size, const Source& other, double expected) {
+    const double ratio = used / (size * expected);
+    if (!(ratio > 0.0) || !std::isfinite(ratio) || (ratio < kFarOff && ratio > 1.0 / kFarOff)) return;
+    const bool stress = other.quantity == Quantity::stress;
+    const Unit& unit = *other.unit;
+    complain(read_as(source, own(source, used)) + (stress ? ", a stress of " : ", a strain of ") +
+             in_unit(used / size, unit) + ", but " + other.title + " goes to " + in_unit(expected, unit) +
+             way_out(source, own(source, used), ratio));
+  }
+
+  void check_speed() {
+    if (test_.size() < 2 || test_.displacement.empty()) return;
+    const double way = span_of(test_.displacement), time = test_.time.back() - test_.time.front();
+    if (!(way > 0.0) || !(time > 0.0)) return;
+    if (spec_.speed && test_.time_source.unit) {
+      const double ratio = *spec_.speed * time / way;
+      // Back and forth and rests take longer than the way alone, by less than a slip of the unit would.
+      if (ratio > 300.0 || ratio < 1.0 / kFarOff)
+        complain(read_as(test_.time_source, time) + "; at speed_mm_s = " + brief(*spec_.speed * 1e3) +
+                 " the tool goes " + brief(*spec_.speed * time * 1e3) + " mm, but " + test_.displacement_source.title +
+                 " spans " + brief(way * 1e3) + " mm" + way_out(test_.time_source, time, ratio));
+      return;
+    }
+    const double speed = way / time;
+    if (speed < kSlowest || speed > kFastest)
+      complain(test_.displacement_source.title + " and " + test_.time_source.title + " give a mean speed of " +
+               brief(speed) + " m/s; expected " + brief(kSlowest) + " to " + brief(kFastest) + "; check their units" +
+               kWayOut);
+  }
+
+  void check_stiffness() {
+    if (!size_.area || !size_.height) return;
+    const double way = span_of(test_.displacement), force = span_of(test_.force);
+    if (!(way > 0.0) || !(force > 0.0)) return;
+    const double modulus = force / *size_.area / (way / *size_.height);
+    if (modulus >= kSoftest && modulus <= kStiffest) return;
+    const double value = own(test_.force_source, force);
+    complain(read_as(test_.force_source, value) + ", a stiffness of " + brief(modulus) +
+             " Pa over the specimen; soft tissues have " + brief(kSoftest) + " to " + brief(kStiffest) + " Pa" +
+             way_out(test_.force_source, value, modulus > kStiffest ? 1000.0 : 1e-3));
+  }
+
+  const RawTest& test_;
+  const DataSpec& spec_;
+  const SpecimenSize& size_;
+  scene::Problems& problems_;
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void compare_with_median(const std::vector<RawTest>& tests, scene::Problems& problems,
+                         const std::function<double(const RawTest&)>& size,
+                         const std::function<const Source&(const RawTest&)>& source) {
+  std::vector<double> sizes;
+  for (const RawTest& test : tests) sizes.push_back(size(test));
+  const double usual = median(sizes);
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const double ratio = sizes[i] / usual;
+    const Source& from = source(tests[i]);
+    if (!from.unit || !std::isfinite(ratio) || (ratio < kRepetitions && ratio > 1.0 / kRepetitions)) continue;
+    problems.add({std::max(tests[i].names_line, 1U), 1, {}}, "",
+                 tests[i].file.filename().string() + ": " + from.title + ", read in " + std::string(from.unit->name) +
+                     ", spans " + brief(ratio) +
+                     " times what the other tests of its group span; check the unit of this "
+                     "file, give it a [[data]] of its own" +
+                     kWayOut);
+  }
+}
+
+}  // namespace
+
+void check_units(const RawTest& test, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems) {
+  if (!spec.unlikely && test.size() > 0) UnitCheck(test, spec, size, problems).run();
+}
+
+void check_repetitions(const std::vector<RawTest>& tests, scene::Problems& problems) {
+  if (tests.size() < 2) return;
+  using Test = const RawTest&;
+  compare_with_median(
+      tests, problems, [](Test t) { return span_of(t.displacement); },
+      [](Test t) -> const Source& { return t.displacement_source; });
+  compare_with_median(
+      tests, problems, [](Test t) { return span_of(t.force); }, [](Test t) -> const Source& { return t.force_source; });
+  compare_with_median(
+      tests, problems, [](Test t) { return t.time.back() - t.time.front(); },
+      [](Test t) -> const Source& { return t.time_source; });
+}
+
+}  // namespace glisson::fit

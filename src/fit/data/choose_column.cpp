@@ -1,0 +1,164 @@
+#include "fit/data/choose_column.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+#include "scene/nearest.h"
+
+namespace glisson::fit {
+namespace {
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
+  return text;
+}
+
+std::string in_quotes(const std::string& text) { return "\"" + text + "\""; }
+
+scene::Origin at_names(const CurveFile& file) { return {std::max(file.names_line, 1U), 1, {}}; }
+
+std::string names_of(const CurveFile& file) {
+  std::string text;
+  for (std::size_t i = 0; i < file.names.size(); ++i) text.append(text.empty() ? "" : ", ").append(file.title(i));
+  return text;
+}
+
+std::vector<std::size_t> matching(const CurveFile& file, const std::function<bool(const std::string&)>& matches) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < file.names.size(); ++i) {
+    if (matches(file.names[i])) found.push_back(i);
+  }
+  return found;
+}
+
+/// Exactly, else but for case, else but for the unit.
+std::vector<std::size_t> named(const CurveFile& file, const std::string& name) {
+  auto found = matching(file, [&](const std::string& n) { return n == name; });
+  if (found.empty()) found = matching(file, [&](const std::string& n) { return lower(n) == lower(name); });
+  const auto bare = [](const std::string& n) { return lower(split_title(n).name); };
+  if (found.empty()) found = matching(file, [&](const std::string& n) { return bare(n) == lower(name); });
+  return found;
+}
+
+void complain_of_several(const CurveFile& file, const std::vector<std::size_t>& found, const std::string& name,
+                         const std::string& key, scene::Problems& problems) {
+  std::string numbers;
+  for (const std::size_t i : found) numbers.append(numbers.empty() ? "" : ", ").append(std::to_string(i + 1));
+  problems.add(at_names(file), key,
+               std::to_string(found.size()) + " columns match " + in_quotes(name) + ": numbers " + numbers +
+                   "; choose one by `number`");
+}
+
+void complain_of_name(const CurveFile& file, const std::string& name, const std::string& key,
+                      scene::Problems& problems) {
+  if (file.names.empty()) {
+    problems.add(at_names(file), key,
+                 "no column " + in_quotes(name) + ": the file has no line of names; choose by `number`, 1 to " +
+                     std::to_string(file.columns) + ", or say `text.names_line`");
+    return;
+  }
+  const std::string meant = scene::nearest(name, file.names);
+  problems.add(at_names(file), key,
+               "no column " + in_quotes(name) + (meant.empty() ? "" : "; did you mean " + in_quotes(meant) + "?") +
+                   " Columns: " + names_of(file));
+}
+
+std::optional<std::size_t> index_of(const CurveFile& file, const ColumnSpec& spec, const std::string& key,
+                                    scene::Problems& problems) {
+  if (spec.number) {
+    if (*spec.number >= 1 && static_cast<std::size_t>(*spec.number) <= file.columns) return *spec.number - 1;
+    problems.add(
+        at_names(file), key,
+        "no column number " + std::to_string(*spec.number) + "; allowed: 1 to " + std::to_string(file.columns));
+    return std::nullopt;
+  }
+  const auto found = named(file, spec.name);
+  if (found.size() == 1) return found.front();
+  if (found.empty())
+    complain_of_name(file, spec.name, key, problems);
+  else
+    complain_of_several(file, found, spec.name, key, problems);
+  return std::nullopt;
+}
+
+/// The unit that is said, else that of the file, else of strain a pure number.
+const Unit* unit_of(const CurveFile& file, std::size_t column, const std::string& said, Quantity quantity,
+                    const std::string& key, scene::Problems& problems) {
+  const std::string in_file = column < file.units.size() ? file.units[column] : std::string{};
+  std::string text = said.empty() ? in_file : said;
+  if (text.empty() && quantity == Quantity::strain) text = "-";
+  const Unit* unit = find_unit(quantity, text);
+  if (unit) return unit;
+  problems.add(at_names(file), key,
+               (text.empty() ? "column " + file.title(column) + " says no unit"
+                             : "unknown unit " + in_quotes(text) + " of column " + file.title(column)) +
+                   "; give `unit` as one of " + unit_names(quantity));
+  return nullptr;
+}
+
+std::span<const std::string_view> customary(Quantity quantity) {
+  static constexpr std::array<std::string_view, 3> kTime{"time", "zeit", "temps"};
+  static constexpr std::array<std::string_view, 10> kWay{"displacement", "compression", "extension", "position",
+                                                         "depth",        "indentation", "stroke",    "crosshead",
+                                                         "travel",       "weg"};
+  static constexpr std::array<std::string_view, 3> kForce{"force", "load", "kraft"};
+  if (quantity == Quantity::time) return kTime;
+  if (quantity == Quantity::length) return kWay;
+  return kForce;
+}
+
+/// Beside a unit that is of another quantity, the word does not count: "Compression (%)", "Load cell (mV)".
+bool is_customary(const CurveFile& file, std::size_t column, Quantity quantity) {
+  if (!file.units[column].empty() && !find_unit(quantity, file.units[column])) return false;
+  const std::string name = lower(file.names[column]);
+  const auto words = customary(quantity);
+  return std::any_of(words.begin(), words.end(), [&](std::string_view w) { return name.starts_with(w); });
+}
+
+}  // namespace
+
+std::optional<ChosenColumn> choose_column(const CurveFile& file, const ColumnSpec& spec, Quantity quantity,
+                                          const std::string& key, scene::Problems& problems) {
+  const auto index = index_of(file, spec, key, problems);
+  if (!index) return std::nullopt;
+  const Unit* unit = unit_of(file, *index, spec.unit, quantity, key, problems);
+  if (!unit) return std::nullopt;
+  return ChosenColumn{*index, {file.title(*index), quantity, unit}};
+}
+
+std::optional<ChosenColumn> guess_column(const CurveFile& file, Quantity quantity, const std::string& key,
+                                         scene::Problems& problems) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < file.names.size(); ++i) {
+    if (is_customary(file, i, quantity)) found.push_back(i);
+  }
+  if (found.size() == 1) {
+    ColumnSpec spec;
+    spec.number = static_cast<std::int32_t>(found.front() + 1);
+    return choose_column(file, spec, quantity, key, problems);
+  }
+  const std::string some = file.names.empty() ? "the file has no line of names" : "columns: " + names_of(file);
+  problems.add(at_names(file), key,
+               (found.empty() ? "is not given, and no column has a customary name for it; "
+                              : "is not given, and several columns could be it; ") +
+                   some + "; say " + key + " = { " + (file.names.empty() ? "number = 1" : "name = \"…\"") +
+                   ", unit = \"" + std::string(units_of(quantity).front().name) + "\" }" +
+                   (quantity == Quantity::time ? " or speed_mm_s" : ""));
+  return std::nullopt;
+}
+
+std::vector<ChosenColumn> check_columns(const CurveFile& file) {
+  std::vector<ChosenColumn> found;
+  for (std::size_t i = 0; i < file.names.size(); ++i) {
+    for (const auto& [quantity, word] :
+         {std::pair{Quantity::stress, "stress"}, std::pair{Quantity::strain, "strain"}}) {
+      const Unit* unit = find_unit(quantity, file.units[i]);
+      if (unit && lower(file.names[i]).find(word) != std::string::npos)
+        found.push_back({i, {file.title(i), quantity, unit}});
+    }
+  }
+  return found;
+}
+
+}  // namespace glisson::fit

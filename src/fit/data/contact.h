@@ -1,0 +1,30 @@
+// contact.h — where a tool touches the specimen, from the force alone.
+//
+//      F │            ╱     F = b                              x < x_c
+//        │          ╱       F = b + k₁ (x − x_c) + k₂ (x − x_c)²   x ≥ x_c,  k₁ ≥ 0
+//      b │·········╱        least squares in b, k₁, k₂ for every x_c; the x_c of the least sum of squares,
+//        └────────┴── x     and where the sum is s² more, one standard deviation from it
+//                 x_c
+#pragma once
+
+#include <optional>
+#include <span>
+
+namespace glisson::fit {
+
+struct Contact {
+  double at = 0.0;            ///< displacement of the first touch [m]
+  double deviation = 0.0;     ///< its standard deviation [m]
+  double rest_force = 0.0;    ///< mean before contact [N]
+  std::size_t before = 0;     ///< rows before contact
+  bool extrapolated = false;  ///< no rest was seen: the force's parabola carried back to zero
+};
+
+/// Finds the first touch. A force that stays above the rest by `threshold` standard deviations of its noise for five rows
+/// tells where rest ends at the latest; the fit above, up to a tenth of the largest force (20 s at least), then places the
+/// touch. Where fewer than 5 rows are at rest, the parabola through the first rows is carried back to F = 0.
+/// @param x  displacement, rising but for noise [m] @param f  force [N]
+/// @return nothing where the force never rises above its noise
+std::optional<Contact> find_contact(std::span<const double> x, std::span<const double> f, double threshold);
+
+}  // namespace glisson::fit

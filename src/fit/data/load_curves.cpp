@@ -1,0 +1,74 @@
+#include "fit/data/load_curves.h"
+
+#include "glisson/scene.h"
+
+namespace glisson::fit {
+namespace {
+
+/// Runs something, and keeps what it throws as a user's error.
+template <class Run>
+void collect(std::string& faults, Run run) {
+  try {
+    run();
+  } catch (const SceneError& error) {
+    faults.append(faults.empty() ? "" : "\n").append(error.what());
+  }
+}
+
+std::filesystem::path placed(const std::filesystem::path& file, const std::filesystem::path& base) {
+  return (file.is_absolute() ? file : base / file).lexically_normal();
+}
+
+RawTest load_raw(const std::filesystem::path& path, const DataSpec& spec, const SpecimenSize& size) {
+  const CurveFile file = read_curve_file(path, spec.text);
+  scene::Problems problems(path.string());
+  RawTest test = raw_test(file, spec, size, problems);
+  if (problems.count() == 0) check_units(test, spec, size, problems);
+  problems.throw_if_any();
+  return test;
+}
+
+void check_group(const std::vector<RawTest>& tests, const DataSpec& spec) {
+  if (spec.unlikely) return;
+  scene::Problems problems(tests.front().file.parent_path().string());
+  check_repetitions(tests, problems);
+  problems.throw_if_any();
+}
+
+/// Names that several files share get their folders.
+void make_unique(std::vector<PreparedCurve>& curves, const DataSpec& spec) {
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (curves[j].account.name == curves[i].account.name)
+        curves[i].curve.name = spec.files[i].generic_string() + " (" + std::to_string(i + 1) + ")";
+    }
+  }
+  for (PreparedCurve& c : curves) c.account.name = c.curve.name;
+}
+
+}  // namespace
+
+std::vector<PreparedCurve> load_curves(const DataSpec& spec, const SpecimenSize& common,
+                                       const std::filesystem::path& base) {
+  const SpecimenSize size{spec.size.area ? spec.size.area : common.area,
+                          spec.size.height ? spec.size.height : common.height};
+  std::string faults;
+  std::vector<RawTest> tests;
+  for (const auto& file : spec.files)
+    collect(faults, [&] { tests.push_back(load_raw(placed(file, base), spec, size)); });
+  if (faults.empty() && !tests.empty()) collect(faults, [&] { check_group(tests, spec); });
+  std::vector<PreparedCurve> curves;
+  for (const RawTest& test : tests) {
+    collect(faults, [&] {
+      scene::Problems problems(test.file.string());
+      auto prepared = prepare(test, spec, size, problems);
+      problems.throw_if_any();
+      curves.push_back(std::move(*prepared));
+    });
+  }
+  if (!faults.empty()) throw SceneError(faults);
+  make_unique(curves, spec);
+  return curves;
+}
+
+}  // namespace glisson::fit

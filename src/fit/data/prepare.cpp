@@ -1,0 +1,201 @@
+#include "fit/data/prepare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "fit/data/contact.h"
+#include "fit/data/samples.h"
+#include "fit/data/smooth.h"
+
+namespace glisson::fit {
+namespace {
+
+constexpr std::size_t kFewestPoints = 5;
+
+class Preparation {
+ public:
+  Preparation(const RawTest& test, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems)
+      : test_(test), spec_(spec), size_(size), problems_(problems), rows_{test.time, test.displacement, test.force} {
+    account_.name = test.file.stem().string();
+    account_.file = test.file;
+    account_.rows_read = test.size() + test.rows_skipped + test.rows_merged;
+    account_.rows_skipped = test.rows_skipped;
+    account_.rows_merged = test.rows_merged;
+  }
+
+  std::optional<PreparedCurve> run() {
+    if (!enough("the file", "record or export more rows")) return std::nullopt;
+    if (spec_.filter.kind == FilterKind::median)
+      rows_.force = running_median(rows_.force, static_cast<std::size_t>(spec_.filter.half_width));
+    if (!take_cycle() || !enough("the cycle", "choose another `cycle`")) return std::nullopt;
+    if (!take_contact() || !enough("what follows contact", "check `contact`")) return std::nullopt;
+    return finish();
+  }
+
+ private:
+  bool enough(const std::string& where, const std::string& way_out) {
+    if (rows_.size() >= kFewestPoints) return true;
+    complain("too few points: " + where + " has " + std::to_string(rows_.size()) + " of the " +
+             std::to_string(account_.rows_read) + " rows read; at least " + std::to_string(kFewestPoints) +
+             " are needed; " + way_out);
+    return false;
+  }
+  void complain(const std::string& what) {
+    problems_.add({test_.lines.empty() ? 1U : test_.lines.back(), 1, {}}, "", what);
+  }
+
+  bool take_cycle() {
+    const auto turns = turning_points(rows_.displacement, spec_.cycle.least);
+    account_.cycles = turns.size() / 2;
+    const bool whole = spec_.cycle.part == CyclePart::both && !spec_.cycle.number;
+    const auto number = static_cast<std::size_t>(spec_.cycle.number.value_or(1));
+    const std::size_t first = 2 * (number - 1) + (spec_.cycle.part == CyclePart::unloading ? 1 : 0);
+    const std::size_t last = first + (spec_.cycle.part == CyclePart::both ? 2 : 1);
+    if (!whole && first + 1 >= turns.size()) {
+      complain("has no " + std::string(spec_.cycle.part == CyclePart::unloading ? "unloading" : "loading") +
+               " of cycle " + std::to_string(number) + ": " + std::to_string(account_.cycles) +
+               " found; choose another cycle.number or cycle.part, or lower cycle.least");
+      return false;
+    }
+    if (!whole) rows_ = rows_.part(turns[first], turns[std::min(last, turns.size() - 1)] + 1);
+    account_.rows_in_cycle = rows_.size();
+    return true;
+  }
+
+  bool take_contact() {
+    const ContactSpec& contact = spec_.contact;
+    if (contact.kind == ContactKind::none) {
+      account_.contact_how = "as recorded";
+      start_at(0.0, rows_.time.front());
+      return true;
+    }
+    Contact found{.at = contact.at};
+    if (contact.kind == ContactKind::detect) {
+      const auto detected = find_contact(rows_.displacement, rows_.force, contact.threshold);
+      if (!detected) {
+        complain(
+            "contact not found: the force does not rise clearly above its noise at the start; check the columns, "
+            "lower contact.threshold_sd, or give contact = { kind = \"given\", at_mm = … } or kind = \"none\"");
+        return false;
+      }
+      found = *detected;
+    }
+    account_.contact_how = contact.kind == ContactKind::given ? "given"
+                           : found.extrapolated               ? "extrapolated"
+                                                              : "detected";
+    apply(found);
+    return true;
+  }
+
+  void apply(Contact contact) {
+    const auto touch = static_cast<std::size_t>(
+        std::find_if(rows_.displacement.begin(), rows_.displacement.end(), [&](double x) { return x >= contact.at; }) -
+        rows_.displacement.begin());
+    if (spec_.contact.kind == ContactKind::given && touch > 0)
+      contact.rest_force =
+          std::accumulate(rows_.force.begin(), rows_.force.begin() + static_cast<std::ptrdiff_t>(touch), 0.0) /
+          static_cast<double>(touch);
+    account_.contact = contact.at;
+    account_.contact_deviation = contact.deviation;
+    account_.force_at_rest = spec_.contact.zero_force ? contact.rest_force : 0.0;
+    account_.rows_before_contact = touch;
+    for (double& f : rows_.force) f -= account_.force_at_rest;
+    const double start = time_at(contact.at, touch);
+    rows_ = rows_.part(touch, rows_.size());
+    start_at(contact.at, start);
+  }
+
+  /// Time at which the way crosses a displacement between two rows; before the first row, by the speed of the first rows.
+  double time_at(double x, std::size_t row) const {
+    if (row >= rows_.size()) return rows_.time.back();
+    const std::size_t other = row > 0 ? row - 1 : std::min(row + 5, rows_.size() - 1);
+    const double way = rows_.displacement[row] - rows_.displacement[other];
+    const double part = way != 0.0 ? (rows_.displacement[row] - x) / way : 0.0;
+    const double time = rows_.time[row] - part * (rows_.time[row] - rows_.time[other]);
+    return std::isfinite(time) ? std::min(time, rows_.time[row]) : rows_.time[row];
+  }
+
+  void start_at(double displacement, double time) {
+    for (double& x : rows_.displacement) x -= displacement;
+    for (double& t : rows_.time) t -= time;
+  }
+
+  std::optional<PreparedCurve> finish() {
+    if (!size_.height && (spec_.crop.min_strain || spec_.crop.max_strain)) {
+      complain(
+          "cannot be cropped by strain: the height of the specimen is not known; give height_mm or crop by "
+          "displacement");
+      return std::nullopt;
+    }
+    const double all_noise = noise_about_curve(rows_.time, rows_.force);
+    const std::size_t before = rows_.size();
+    rows_ = cropped(rows_, spec_.crop, size_.height.value_or(1.0), all_noise);
+    account_.rows_cropped = before - rows_.size();
+    if (!enough("what the crop leaves", "widen `crop`")) return std::nullopt;
+    account_.row_noise = noise_about_curve(rows_.time, rows_.force);
+    if (spec_.filter.kind == FilterKind::savitzky_golay)
+      rows_.force = local_fit(rows_.time, rows_.force, static_cast<std::size_t>(spec_.filter.half_width),
+                              static_cast<std::size_t>(spec_.filter.degree))
+                        .values;
+    const double velocity = loading_velocity();
+    const Resampled points = resampled(rows_, spec_.resample);
+    rows_ = points.rows;
+    if (!enough("what resampling leaves", "ask for more resample.points")) return std::nullopt;
+    account_.points = rows_.size();
+    return PreparedCurve{curve(velocity, account_.row_noise / std::sqrt(points.rows_a_point)), account_};
+  }
+
+  /// From the first row to the deepest.
+  double loading_velocity() const {
+    const auto& x = rows_.displacement;
+    const auto deepest = static_cast<std::size_t>(std::max_element(x.begin(), x.end()) - x.begin());
+    const std::size_t end = deepest > 0 ? deepest : x.size() - 1;
+    const double time = rows_.time[end] - rows_.time.front();
+    return time > 0.0 ? std::abs(x[end] - x.front()) / time : 0.0;
+  }
+
+  Curve curve(double velocity, double noise) {
+    Curve c;
+    c.name = account_.name;
+    c.group = spec_.group;
+    c.time = std::move(rows_.time);
+    c.displacement = std::move(rows_.displacement);
+    c.force = std::move(rows_.force);
+    c.velocity = velocity;
+    c.noise = noise;
+    c.weight = spec_.weight;
+    c.held_out = spec_.held_out;
+    return c;
+  }
+
+  const RawTest& test_;
+  const DataSpec& spec_;
+  const SpecimenSize& size_;
+  scene::Problems& problems_;
+  Samples rows_;
+  CurveAccount account_;
+};
+
+}  // namespace
+
+std::string CurveAccount::text() const {
+  std::string t = name + ": " + std::to_string(rows_read) + " rows";
+  if (rows_skipped > 0) t += ", " + std::to_string(rows_skipped) + " bad ones skipped";
+  if (rows_merged > 0) t += ", " + std::to_string(rows_merged) + " of equal time averaged";
+  if (cycles > 1) t += ", " + std::to_string(cycles) + " cycles";
+  if (contact_how != "as recorded") {
+    t += "; contact " + contact_how + " at " + brief(contact * 1e3) + " mm";
+    if (contact_deviation > 0.0) t += " ± " + brief(contact_deviation * 1e3) + " mm";
+    t += ", " + brief(force_at_rest) + " N taken off the force";
+  }
+  if (rows_cropped > 0) t += "; " + std::to_string(rows_cropped) + " rows cropped";
+  return t + "; " + std::to_string(points) + " points, noise of a row " + brief(row_noise) + " N";
+}
+
+std::optional<PreparedCurve> prepare(const RawTest& test, const DataSpec& spec, const SpecimenSize& size,
+                                     scene::Problems& problems) {
+  return Preparation(test, spec, size, problems).run();
+}
+
+}  // namespace glisson::fit

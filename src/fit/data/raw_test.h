@@ -1,0 +1,52 @@
+// raw_test.h — the columns of a file that a fit needs, in SI, positive in compression: every row, nothing cleaned.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fit/data/data_spec.h"
+#include "fit/data/units.h"
+#include "scene/problems.h"
+
+namespace glisson::fit {
+
+/// Where numbers come from, for messages about their unit.
+struct Source {
+  std::string title;  ///< `"Load (N)"`
+  Quantity quantity = Quantity::force;
+  const Unit* unit = nullptr;
+};
+
+/// A column that is not used, but must agree with one that is.
+struct CheckColumn {
+  Source source;
+  std::vector<double> values;  ///< SI; NaN where the row has none
+};
+
+struct RawTest {
+  std::filesystem::path file;
+  std::uint32_t names_line = 0;
+  std::vector<std::uint32_t> lines;  ///< of each row
+  std::vector<double> time, displacement, force;
+  Source time_source, displacement_source, force_source;
+  std::vector<CheckColumn> checks;  ///< stresses and strains beside force and way
+  std::size_t rows_skipped = 0;     ///< without a number in a column that is needed
+  std::size_t rows_merged = 0;      ///< of the same time as the row before, averaged with it
+  char separator = ',', decimal = '.';
+
+  std::size_t size() const { return time.size(); }
+};
+
+/// Chooses the columns, reads and converts them. Complains about columns, units, rows and times that cannot be used; what
+/// is returned is of use only where nothing was added to `problems`.
+RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems);
+
+/// Complains about numbers that look like another unit: a way beyond the specimen, stress and force that disagree, time and
+/// speed that do not give the way, stiffness that no soft tissue has.
+void check_units(const RawTest& test, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems);
+
+/// Complains about tests of one group of which one is about a thousand times another.
+void check_repetitions(const std::vector<RawTest>& tests, scene::Problems& problems);
+
+}  // namespace glisson::fit

@@ -1,0 +1,308 @@
+#include "fit/data/section_data.h"
+
+#include "fit/data/units.h"
+#include "scene/section.h"
+
+namespace glisson::fit {
+namespace {
+
+using scene::above;
+using scene::at_least;
+using scene::between;
+using scene::KindSpec;
+using scene::Milli;
+using scene::Node;
+using scene::OptionalMilli;
+using scene::Place;
+using scene::Section;
+using scene::SectionSpec;
+using scene::strictly_between;
+
+/// mm² of the file, m² of the struct.
+struct OptionalSquareMilli {
+  static constexpr scene::ValueType kType = scene::ValueType::number;
+  static constexpr scene::Shape kShape = scene::Shape::one;
+  static std::optional<double> read(const Node& n) { return scene::number_of(n) * 1e-6; }
+  static std::string show(const std::optional<double>& x) { return x ? scene::show(*x * 1e6) : ""; }
+};
+
+/// A kind that says which word was chosen and fills the struct itself.
+template <class Spec, class Kind>
+KindSpec kind_of(SectionSpec section, Kind kind) {
+  return {std::move(section), [kind](void* target) -> void* {
+            static_cast<Spec*>(target)->kind = kind;
+            return target;
+          }};
+}
+
+/// Complains of a unit that is none of the quantity's.
+void require_unit(const ColumnSpec& column, const Node& table, const std::string& key, Quantity quantity,
+                  const Place& place) {
+  if (column.unit.empty() || find_unit(quantity, column.unit)) return;
+  place.complain(*table.find(key)->find("unit"), key + ".unit",
+                 "unknown unit \"" + column.unit + "\"; allowed: " + unit_names(quantity));
+}
+
+void require_order(const Node& table, const std::optional<double>& low, const std::optional<double>& high,
+                   const std::string& least, const std::string& most, const Place& place) {
+  if (low && high && !(*low < *high))
+    place.complain(*table.find(most), most, "must be greater than `" + least + "`; nothing would be left");
+}
+
+SectionSpec detect_kind() {
+  Section<ContactSpec> s(
+      "detect",
+      "Where the force leaves its rest: a flat line and a parabola joined where they fit best. Where "
+      "a file begins in contact, the parabola is carried back to no force.");
+  s.key("threshold_sd", &ContactSpec::threshold,
+        "how far the force must rise above its rest to be contact, in standard deviations of its noise")
+      .in("-")
+      .within(between(1, 100));
+  s.key("zero_force", &ContactSpec::zero_force, "takes the mean force before contact off the force");
+  return s.spec();
+}
+
+SectionSpec given_kind() {
+  Section<ContactSpec> s("given", "At a displacement of the files.");
+  s.key<Milli>("at_mm", &ContactSpec::at, "displacement of the file at which the tool touches").in("mm").must();
+  s.key("zero_force", &ContactSpec::zero_force, "takes the mean force before contact off the force");
+  return s.spec();
+}
+
+SectionSpec median_kind() {
+  Section<FilterSpec> s("median", "A running median, against spikes; before contact is looked for.");
+  s.key("half_width", &FilterSpec::half_width, "rows on each side").within(between(1, 500));
+  return s.spec();
+}
+
+SectionSpec savitzky_golay_kind() {
+  Section<FilterSpec> s("savitzky_golay",
+                        "A polynomial through each row and its neighbours, after contact and crop are settled.");
+  s.key("half_width", &FilterSpec::half_width, "rows on each side").within(between(1, 500));
+  s.key("degree", &FilterSpec::degree, "of the polynomial, below twice the half-width").within(between(0, 8));
+  s.finish([](FilterSpec& x, const Node& table, const Place& place) {
+    if (x.degree < 2 * x.half_width) return;
+    const char* key = table.find("degree") ? "degree" : "half_width";
+    place.complain(*table.find(key), key,
+                   "degree " + std::to_string(x.degree) +
+                       " must be below 2 half_width = " + std::to_string(2 * x.half_width) + "; widen half_width");
+  });
+  return s.spec();
+}
+
+void add_mark_keys(Section<TextSpec>& s) {
+  s.choice<char>("separator", &TextSpec::separator,
+                 {{"auto", 0, "found"}, {",", ',', ""}, {";", ';', ""}, {"tab", '\t', ""}}, "between the columns");
+  s.choice<char>("decimal", &TextSpec::decimal, {{"auto", 0, "found"}, {".", '.', ""}, {",", ',', ""}},
+                 "mark of the decimals");
+}
+
+void require_columns(const DataSpec& x, const Node& table, const Place& place) {
+  const ColumnsSpec& c = x.columns;
+  const Node* columns = table.find("columns");
+  const Place here = place.inside("columns", columns ? columns->where : place.where);
+  if (c.strain.given && c.displacement.given)
+    here.complain(*columns->find("strain"), "strain", "contradicts `displacement`; give one of the two");
+  if (c.stress.given && c.force.given)
+    here.complain(*columns->find("stress"), "stress", "contradicts `force`; give one of the two");
+}
+
+void finish_data(DataSpec& x, const Node& table, const Place& place) {
+  x.origin = place.text();
+  if (x.files.empty()) place.complain(*table.find("files"), "files", "is empty; name at least one file");
+  require_columns(x, table, place);
+}
+
+}  // namespace
+
+const SectionSpec& column_section() {
+  static const SectionSpec section = [] {
+    Section<ColumnSpec> s("data.columns.NAME", "A column of the files, by name or by number.");
+    s.key("name", &ColumnSpec::name, "as in the file; case, blanks around it and the unit may be left out");
+    s.key("number", &ColumnSpec::number, "from 1").within(between(1, 100000));
+    s.key("unit", &ColumnSpec::unit, "of its numbers").otherwise("what the file says");
+    s.choice<Sign>("sign", &ColumnSpec::sign,
+                   {{"auto", Sign::found, "that in which the numbers go farthest from the first"},
+                    {"positive", Sign::positive, "compression and insertion are positive"},
+                    {"negative", Sign::negative, "they are negative"}},
+                   "how compression and insertion are written");
+    s.spec().exclusions = {{{{"name"}, {"number"}}, true}};
+    s.finish([](ColumnSpec& x, const Node&, const Place& place) {
+      x.given = true;
+      x.origin = place.text();
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& columns_section() {
+  static const SectionSpec section = [] {
+    Section<ColumnsSpec> s(
+        "data.columns",
+        "Which columns are what. One that is not given is found where exactly one name begins with a "
+        "customary word: time; displacement, compression, extension, depth, …; force, load.");
+    s.table("time", column_section(), &ColumnsSpec::time, "time, in s, ms or min");
+    s.table("displacement", column_section(), &ColumnsSpec::displacement,
+            "way of the tool, in m, cm, mm, µm, um or in");
+    s.table("strain", column_section(), &ColumnsSpec::strain,
+            "engineering strain, in - or %, instead of displacement; needs the height");
+    s.table("force", column_section(), &ColumnsSpec::force, "force, in N, mN, kN, gf, kgf or lbf");
+    s.table("stress", column_section(), &ColumnsSpec::stress,
+            "engineering stress, in Pa, kPa or MPa, instead of force; needs the area");
+    s.finish([](ColumnsSpec& x, const Node& table, const Place& place) {
+      require_unit(x.time, table, "time", Quantity::time, place);
+      require_unit(x.displacement, table, "displacement", Quantity::length, place);
+      require_unit(x.strain, table, "strain", Quantity::strain, place);
+      require_unit(x.force, table, "force", Quantity::force, place);
+      require_unit(x.stress, table, "stress", Quantity::stress, place);
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& text_section() {
+  static const SectionSpec section = [] {
+    Section<TextSpec> s("data.text", "How the files are written, where it shall not be found out.");
+    add_mark_keys(s);
+    s.key("names_line", &TextSpec::names_line, "line of the columns' names, from 1; 0: found").within(between(0, 1e6));
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& contact_section() {
+  static const SectionSpec section = [] {
+    Section<ContactSpec> s("data.contact", "Where the tool touches: displacement and time count from there.");
+    s.spec().kinds = {
+        kind_of<ContactSpec>(Section<ContactSpec>("none", "Displacement as recorded, nothing cut off.").spec(),
+                             ContactKind::none),
+        kind_of<ContactSpec>(detect_kind(), ContactKind::detect),
+        kind_of<ContactSpec>(given_kind(), ContactKind::given)};
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& crop_section() {
+  static const SectionSpec section = [] {
+    using C = CropSpec;
+    Section<C> s("data.crop", "What is kept, counted from contact.");
+    s.key("min_time_s", &C::min_time, "rows before it go").in("s");
+    s.key("max_time_s", &C::max_time, "rows after it go").in("s");
+    s.key<OptionalMilli>("min_displacement_mm", &C::min_displacement, "rows below it go").in("mm");
+    s.key<OptionalMilli>("max_displacement_mm", &C::max_displacement, "rows above it go").in("mm");
+    s.key("min_strain", &C::min_strain, "rows below it go; displacement over height").in("-");
+    s.key("max_strain", &C::max_strain, "rows above it go").in("-");
+    s.key("min_force_N", &C::min_force, "rows below it go").in("N");
+    s.key("max_force_N", &C::max_force, "rows above it go").in("N");
+    s.choice<CropUntil>("until", &C::until,
+                        {{"end", CropUntil::end, "the last row"},
+                         {"peak", CropUntil::peak, "the largest force"},
+                         {"drop", CropUntil::drop, "the largest force before it first drops, as at a puncture"}},
+                        "where the curve ends");
+    s.key("drop", &C::drop, "fall that ends the curve with until = \"drop\", as part of the largest force before it")
+        .in("-")
+        .within(strictly_between(0, 1));
+    s.finish([](C& x, const Node& table, const Place& place) {
+      require_order(table, x.min_time, x.max_time, "min_time_s", "max_time_s", place);
+      require_order(table, x.min_displacement, x.max_displacement, "min_displacement_mm", "max_displacement_mm", place);
+      require_order(table, x.min_strain, x.max_strain, "min_strain", "max_strain", place);
+      require_order(table, x.min_force, x.max_force, "min_force_N", "max_force_N", place);
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& cycle_section() {
+  static const SectionSpec section = [] {
+    using C = CycleSpec;
+    Section<C> s("data.cycle", "Which part of a test that goes in and out again.");
+    s.choice<CyclePart>("part", &C::part,
+                        {{"both", CyclePart::both, "in and out"},
+                         {"loading", CyclePart::loading, "on the way in"},
+                         {"unloading", CyclePart::unloading, "on the way out"}},
+                        "which way");
+    s.key("number", &C::number, "which cycle, from 1")
+        .within(between(1, 100000))
+        .otherwise("all with \"both\", else 1");
+    s.key("least", &C::least, "a turn counts from this part of the whole way back on")
+        .in("-")
+        .within(strictly_between(0, 1));
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& filter_section() {
+  static const SectionSpec section = [] {
+    Section<FilterSpec> s("data.filter",
+                          "Smooths the force. The fit averages noise by itself: a filter is for spikes.");
+    s.spec().kinds = {
+        kind_of<FilterSpec>(Section<FilterSpec>("none", "The force as recorded.").spec(), FilterKind::none),
+        kind_of<FilterSpec>(median_kind(), FilterKind::median),
+        kind_of<FilterSpec>(savitzky_golay_kind(), FilterKind::savitzky_golay)};
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& resample_section() {
+  static const SectionSpec section = [] {
+    using R = ResampleSpec;
+    Section<R> s("data.resample", "Fewer points, evenly spread.");
+    s.choice<ResampleOver>("over", &R::over,
+                           {{"time", ResampleOver::time, "even in time"},
+                            {"displacement", ResampleOver::displacement, "even in displacement, loading only"},
+                            {"none", ResampleOver::none, "every row"}},
+                           "over what");
+    s.choice<ResampleHow>("how", &R::how,
+                          {{"average", ResampleHow::average, "the mean of the rows of a bin, so that noise falls"},
+                           {"pick", ResampleHow::pick, "the row next to the middle of a bin"}},
+                          "how a point is made");
+    s.key("points", &R::points, "at most; a bin without rows gives none").within(between(5, 100000));
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& data_section() {
+  static const SectionSpec section = [] {
+    using D = DataSpec;
+    Section<D> s("data", "Measured curves: repetitions of one test, a file for each.");
+    s.key("name", &D::group, "of the test, e.g. \"2 mm/s\"; the files are its repetitions");
+    s.key("files", &D::files, "relative to FIT.toml, or to --data DIR").must();
+    s.choice<bool>("use", &D::held_out, {{"fit", false, "fitted"}, {"test", true, "held out, to test the fit"}},
+                   "what for");
+    s.key("weight", &D::weight, "factor on the residuals").in("-").within(at_least(0));
+    s.table("columns", columns_section(), &D::columns, "which columns are what");
+    s.table("text", text_section(), &D::text, "separator, decimal mark, line of names");
+    s.key<OptionalMilli>("speed_mm_s", &D::speed, "of the tool; gives the time where no column is named for it")
+        .in("mm/s")
+        .within(above(0));
+    s.key<OptionalSquareMilli>(
+         "area_mm2", [](D & d) -> auto& { return d.size.area; }, "of these specimens, across the load")
+        .in("mm²")
+        .within(above(0))
+        .otherwise("that of the specimen");
+    s.key<OptionalMilli>(
+         "height_mm", [](D & d) -> auto& { return d.size.height; }, "of these specimens, along the load")
+        .in("mm")
+        .within(above(0))
+        .otherwise("that of the specimen");
+    s.key("skip_bad_rows", &D::skip_bad_rows, "passes over rows without a number where one is needed");
+    s.key("unlikely", &D::unlikely, "takes numbers that look like a wrong unit");
+    s.table("contact", contact_section(), &D::contact, "where the tool touches");
+    s.table("cycle", cycle_section(), &D::cycle, "which part of a test in and out");
+    s.table("crop", crop_section(), &D::crop, "what is kept");
+    s.table("filter", filter_section(), &D::filter, "smoothing");
+    s.table("resample", resample_section(), &D::resample, "how many points");
+    s.finish(finish_data);
+    return s.spec();
+  }();
+  return section;
+}
+
+}  // namespace glisson::fit

@@ -1,0 +1,72 @@
+#include "fit/data/smooth.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace glisson::fit {
+namespace {
+
+/// Row `at` of the projection onto polynomials over the points of a window.
+Eigen::VectorXd weights(std::span<const double> x, std::size_t at, std::size_t degree) {
+  const auto n = static_cast<Eigen::Index>(x.size()), m = static_cast<Eigen::Index>(degree + 1);
+  const double width = std::max(x.back() - x.front(), 1e-300);
+  Eigen::MatrixXd powers(n, m);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double u = (x[static_cast<std::size_t>(i)] - x[at]) / width;
+    powers(i, 0) = 1.0;
+    for (Eigen::Index k = 1; k < m; ++k) powers(i, k) = powers(i, k - 1) * u;
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(powers);
+  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(n, m);
+  return q * q.row(static_cast<Eigen::Index>(at)).transpose();
+}
+
+}  // namespace
+
+LocalFit local_fit(std::span<const double> x, std::span<const double> y, std::size_t half_width, std::size_t degree) {
+  const std::size_t n = x.size(), width = std::min(2 * half_width + 1, n);
+  LocalFit fit{std::vector<double>(y.begin(), y.end()), std::vector<double>(n, 1.0)};
+  if (width <= degree) return fit;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t first = std::min(i - std::min(i, half_width), n - width);
+    const Eigen::VectorXd w = weights(x.subspan(first, width), i - first, degree);
+    double value = 0.0;
+    for (std::size_t k = 0; k < width; ++k) value += w[static_cast<Eigen::Index>(k)] * y[first + k];
+    fit.values[i] = value;
+    fit.leverage[i] = w[static_cast<Eigen::Index>(i - first)];
+  }
+  return fit;
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+std::vector<double> running_median(std::span<const double> y, std::size_t half_width) {
+  std::vector<double> result(y.size());
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const std::size_t first = i - std::min(i, half_width), last = std::min(i + half_width + 1, y.size());
+    result[i] =
+        median_of({y.begin() + static_cast<std::ptrdiff_t>(first), y.begin() + static_cast<std::ptrdiff_t>(last)});
+  }
+  return result;
+}
+
+double noise_about_curve(std::span<const double> x, std::span<const double> y) {
+  constexpr std::size_t kHalfWidth = 7, kDegree = 2, kFewest = 7;
+  if (x.size() < kFewest) return 0.0;
+  const LocalFit fit = local_fit(x, y, kHalfWidth, kDegree);
+  std::vector<double> residuals;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const double free = 1.0 - fit.leverage[i];
+    if (free > 1e-9) residuals.push_back(std::abs(y[i] - fit.values[i]) / std::sqrt(free));
+  }
+  return 1.4826 * median_of(std::move(residuals));
+}
+
+}  // namespace glisson::fit

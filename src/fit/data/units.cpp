@@ -1,0 +1,95 @@
+#include "fit/data/units.h"
+
+#include <array>
+#include <cstdio>
+
+namespace glisson::fit {
+namespace {
+
+constexpr std::array kTime{Unit{"s", 1.0}, Unit{"ms", 1e-3}, Unit{"min", 60.0}, Unit{"sec", 1.0}};
+constexpr std::array kLength{Unit{"mm", 1e-3}, Unit{"m", 1.0},   Unit{"cm", 1e-2},
+                             Unit{"µm", 1e-6}, Unit{"um", 1e-6}, Unit{"in", 0.0254}};
+constexpr double kGravity = 9.80665;
+constexpr double kPoundForce = 0.45359237 * kGravity;
+constexpr std::array kForce{Unit{"N", 1.0},        Unit{"mN", 1e-3},
+                            Unit{"kN", 1e3},       Unit{"gf", 1e-3 * kGravity},
+                            Unit{"kgf", kGravity}, Unit{"lbf", kPoundForce}};
+constexpr std::array kStress{Unit{"kPa", 1e3}, Unit{"Pa", 1.0}, Unit{"MPa", 1e6}};
+constexpr std::array kStrain{Unit{"-", 1.0}, Unit{"%", 1e-2}, Unit{"mm/mm", 1.0}};
+constexpr std::array kQuantities{Quantity::time, Quantity::length, Quantity::force, Quantity::stress, Quantity::strain};
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  return first == std::string_view::npos ? std::string_view{}
+                                         : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+bool is_unit(std::string_view text) {
+  for (const Quantity q : kQuantities) {
+    if (find_unit(q, text)) return true;
+  }
+  return false;
+}
+
+/// `Load (N)`: what the last pair of brackets holds, where the title ends with it.
+Title bracketed(std::string_view title) {
+  if (title.empty() || (title.back() != ')' && title.back() != ']')) return {};
+  const std::size_t open = title.rfind(title.back() == ')' ? '(' : '[');
+  if (open == std::string_view::npos) return {};
+  return {std::string(trimmed(title.substr(0, open))),
+          std::string(trimmed(title.substr(open + 1, title.size() - open - 2)))};
+}
+
+}  // namespace
+
+std::span<const Unit> units_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::time:
+      return kTime;
+    case Quantity::length:
+      return kLength;
+    case Quantity::force:
+      return kForce;
+    case Quantity::stress:
+      return kStress;
+    case Quantity::strain:
+      return kStrain;
+  }
+  return {};
+}
+
+std::string unit_names(Quantity quantity) {
+  std::string text;
+  for (const Unit& unit : units_of(quantity)) text.append(text.empty() ? "" : ", ").append(unit.name);
+  return text;
+}
+
+const Unit* find_unit(Quantity quantity, std::string_view text) {
+  constexpr std::string_view kGreekMu = "μm";  // U+03BC, where the list has the sign U+00B5
+  text = trimmed(text);
+  if (text == kGreekMu) text = "µm";
+  for (const Unit& unit : units_of(quantity)) {
+    if (unit.name == text) return &unit;
+  }
+  return nullptr;
+}
+
+Title split_title(std::string_view title) {
+  title = trimmed(title);
+  if (Title found = bracketed(title); !found.name.empty()) return found;
+  for (const char mark : {'/', '_'}) {
+    const std::size_t at = title.rfind(mark);
+    if (at == std::string_view::npos || at == 0) continue;
+    const std::string_view unit = trimmed(title.substr(at + 1));
+    if (is_unit(unit)) return {std::string(trimmed(title.substr(0, at))), std::string(unit)};
+  }
+  return {std::string(title), {}};
+}
+
+std::string brief(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
+}  // namespace glisson::fit

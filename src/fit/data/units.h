@@ -1,0 +1,35 @@
+// units.h — the units in which laboratories write times, ways, forces, stresses and strains.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace glisson::fit {
+
+enum class Quantity { time, length, force, stress, strain };
+
+struct Unit {
+  std::string_view name;
+  double factor;  ///< SI value of one
+};
+
+/// The units of a quantity, the customary one first.
+std::span<const Unit> units_of(Quantity quantity);
+/// `s, ms, min`.
+std::string unit_names(Quantity quantity);
+/// nullptr where there is no such unit. Letters count as written: mPa is no MPa.
+const Unit* find_unit(Quantity quantity, std::string_view text);
+
+/// The name of a column and the unit that stands with it.
+struct Title {
+  std::string name, unit;
+};
+/// `Load (N)`, `Strain [-]`, `Force/kN`, `depth_mm` → name and unit; without a unit the whole is the name.
+/// A unit after `/` or `_` counts only where it is one of `units_of` any quantity.
+Title split_title(std::string_view title);
+
+/// Four significant digits, for messages.
+std::string brief(double value);
+
+}  // namespace glisson::fit
