@@ -1,0 +1,218 @@
+#include "fit/forward/scene_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+
+#include "scene/nearest.h"
+
+namespace glisson::fit {
+namespace {
+
+Vec3d unit(const Vec3d& v) { return v * (1.0 / norm(v)); }
+
+/// What of an experiment moves or measures: a tool, an instrument, or the container's floor or wall.
+struct Part {
+  enum class What { tool, instrument, bottom, side } what = What::tool;
+  std::size_t index = 0;
+};
+
+std::vector<std::string> part_names(const Variant& variant) {
+  std::vector<std::string> names;
+  for (const ToolSpec& x : variant.tools) names.push_back(x.name);
+  for (const InstrumentSpec& x : variant.instruments) names.push_back(x.name);
+  return names;
+}
+
+/// The tool or instrument of that name; the only one where none is given.
+Part moving_part(const Variant& variant, const std::string& name) {
+  const std::vector<std::string> names = part_names(variant);
+  if (names.empty())
+    throw std::invalid_argument("the scene has no [[tool]] and no [[instrument]]; one has to follow the curve");
+  if (name.empty() && names.size() > 1)
+    throw std::invalid_argument("several tools could follow the curve; name one with [forward] tool: " +
+                                scene::listed(names));
+  const auto it = name.empty() ? names.begin() : std::find(names.begin(), names.end(), name);
+  if (it == names.end())
+    throw std::invalid_argument("no tool or instrument \"" + name + "\"; the scene has: " + scene::listed(names));
+  const auto i = static_cast<std::size_t>(it - names.begin());
+  const std::size_t tools = variant.tools.size();
+  return i < tools ? Part{Part::What::tool, i} : Part{Part::What::instrument, i - tools};
+}
+
+Part measured_part(const Variant& variant, const SceneModelOptions& options) {
+  const bool vessel = options.force == "bottom" || options.force == "side";
+  if (!vessel) return moving_part(variant, options.force.empty() ? options.tool : options.force);
+  if (!variant.container)
+    throw std::invalid_argument("force = \"" + options.force + "\" is that of a [container], and the scene has none");
+  return {options.force == "bottom" ? Part::What::bottom : Part::What::side, 0};
+}
+
+/// The force of the measured part at each sample, and how the run ended.
+class ForceRecorder final : public RunObserver {
+ public:
+  ForceRecorder(const Variant& variant, const Part& part) : part_(part) {
+    if (part.what == Part::What::tool) direction_ = unit(variant.tools[part.index].motion.direction);
+    if (part.what == Part::What::instrument) direction_ = unit(variant.instruments[part.index].direction);
+  }
+  void on_sample(const Sample& s) override {
+    if (!times.empty() && !(s.time > times.back())) return;
+    times.push_back(s.time);
+    forces.push_back(force_of(s));
+  }
+  std::vector<double> times, forces;
+
+ private:
+  double force_of(const Sample& s) const {
+    if (part_.what == Part::What::bottom) return -s.container->bottom.z;
+    if (part_.what == Part::What::side) return -s.container->side.z;
+    if (part_.what == Part::What::instrument) return dot(s.instruments[part_.index].forces.total(), direction_);
+    const ForceParts& f = s.tools[part_.index];
+    return dot(f.total() - f.inertial - f.gravity, direction_);
+  }
+  Part part_;
+  Vec3d direction_{0, 0, -1};
+};
+
+const char* end_words(RunSummary::End end) {
+  using End = RunSummary::End;
+  switch (end) {
+    case End::finished:
+      return "";
+    case End::interrupted:
+      return "interrupted";
+    case End::stopped_inverted:
+      return "a tetrahedron turned inside out";
+    case End::stopped_unstable:
+      return "the step has become too large; leave out step_s";
+    case End::stopped_not_finite:
+      return "a force is not finite";
+    case End::stopped_not_converged:
+      return "no equilibrium was found";
+    case End::stopped_not_held:
+      return "supports and tools leave a rigid motion free";
+  }
+  return "";
+}
+
+bool is_viscous(const Variant& v) {
+  const auto viscous = [](const RegionSpec& r) { return r.tissue.viscosity > 0.0; };
+  return v.tissue.viscosity > 0.0 || std::any_of(v.regions.begin(), v.regions.end(), viscous);
+}
+
+/// A way in time along a direction, after an approach at the speed with which it goes on.
+RecordSpec record_of(const History& history, const Vec3d& direction, double approach, double approach_time) {
+  RecordSpec record;
+  if (approach > 0.0) {
+    record.motion.times.push_back(0.0);
+    record.motion.positions.push_back({});
+  }
+  for (std::size_t i = 0; i < history.times().size(); ++i) {
+    record.motion.times.push_back(history.times()[i] - history.begin() + approach_time);
+    record.motion.positions.push_back(direction * (history.displacements()[i] + approach));
+  }
+  return record;
+}
+
+}  // namespace
+
+SceneText scene_text(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw std::runtime_error(file.string() + ": cannot be read; check the path and that you may read it");
+  return {.text = {std::istreambuf_iterator<char>(stream), {}},
+          .name = file.string(),
+          .base = file.parent_path(),
+          .overrides = {},
+          .variant = {}};
+}
+
+MeshLoader kept_meshes(MeshLoader load) {
+  if (!load) return load;
+  struct Kept {
+    std::mutex lock;
+    std::map<std::pair<std::filesystem::path, double>, TetMesh> meshes;
+  };
+  return [load = std::move(load), kept = std::make_shared<Kept>()](const MeshFile& file) {
+    const std::scoped_lock guard(kept->lock);
+    const auto key = std::pair(file.path, file.scale);
+    const auto it = kept->meshes.find(key);
+    return it != kept->meshes.end() ? it->second : kept->meshes.emplace(key, load(file)).first->second;
+  };
+}
+
+SceneModel::SceneModel(const SceneText& scene, std::span<const std::string> keys, std::vector<Curve> curves,
+                       SceneModelOptions options)
+    : MotionModel(std::move(curves)), scene_(scene.text, scene.name, scene.base, scene.overrides, scene.variant, keys),
+      options_(std::move(options)) {
+  for (std::size_t i = 0; i < this->curves(); ++i) require_curves({&curve(i), 1});
+  options_.load = kept_meshes(std::move(options_.load));
+}
+
+double SceneModel::approach_time(const Curve& c) const {
+  if (!(options_.approach > 0.0)) return 0.0;
+  double speed = c.velocity;
+  for (std::size_t i = 1; i < c.size() && !(speed > 0.0); ++i)
+    speed = (c.displacement[i] - c.displacement[0]) / (c.time[i] - c.time[0]);
+  return speed > 0.0 ? options_.approach / speed : c.time.back();
+}
+
+Variant SceneModel::variant(std::size_t index, std::span<const double> values, double contact) const {
+  Variant v = scene_.with(values);
+  const Curve& c = curve(index);
+  const History history(c, contact);
+  const double before = approach_time(c), duration = history.end() - history.begin() + before;
+  const Part part = moving_part(v, options_.tool);
+  if (part.what == Part::What::tool) {
+    ToolSpec& tool = v.tools[part.index];
+    tool.record = record_of(history, unit(tool.motion.direction), 0.0, before);
+  } else {
+    InstrumentSpec& x = v.instruments[part.index];
+    x.motion.how = record_of(history, unit(x.motion.direction.value_or(x.direction)), options_.approach, before);
+  }
+  v.duration = duration;
+  v.max_steps.reset();
+  const double samples = std::clamp(2.0 * static_cast<double>(c.size()), 200.0, 2000.0);
+  v.output = {.sample_rate = samples / duration, .frames = 0};
+  v.simulation.track_energies = false;
+  v.simulation.threads = 1;
+  if (options_.adjust) options_.adjust(v, duration);
+  return v;
+}
+
+Prediction SceneModel::predict_from(std::size_t index, std::span<const double> values, double contact) const {
+  Prediction result;
+  try {
+    const Variant v = variant(index, values, contact);
+    const Curve& c = curve(index);
+    ForceRecorder recorder(v, measured_part(v, options_));
+    const std::atomic<bool> never{false};
+    const RunSummary summary = run_variant(v, options_.load, recorder, options_.stop ? *options_.stop : never);
+    if (summary.end != RunSummary::End::finished || recorder.times.empty()) {
+      result.failure = "curve \"" + c.name + "\": the run stopped at " + std::to_string(summary.time_s) +
+                       " s: " + end_words(summary.end) + (summary.trouble.empty() ? "" : ": " + summary.trouble);
+      return result;
+    }
+    if (recorder.times.front() > 0.0 && !is_viscous(v)) {  // schemes that tell forces at the end of a step alone
+      recorder.times.insert(recorder.times.begin(), 0.0);
+      recorder.forces.insert(recorder.forces.begin(), 0.0);
+    }
+    const MonotoneCubic<double> force(std::move(recorder.times), std::move(recorder.forces));
+    const double shift = approach_time(c) - History(c, contact).begin();
+    for (const double t : c.time) {
+      result.force.push_back(force.at(t + shift));
+      if (!std::isfinite(result.force.back()))
+        throw std::runtime_error("curve \"" + c.name + "\": the force is not finite");
+    }
+  } catch (const std::exception& error) {
+    result.force.clear();
+    result.failure = error.what();
+  }
+  return result;
+}
+
+}  // namespace glisson::fit

@@ -1,0 +1,64 @@
+// scene_model.h — any scene as a forward model: its tool or instrument follows the measured displacement.
+//
+//   values ──▶ ParametricVariant ──▶ Variant ── tool on the curve's History, nothing kept but forces ──▶ run_variant ──▶ F(t)
+//
+// The scene is read once; a run parses nothing, writes nothing and keeps no energies. Runs use one thread each, since a fit
+// runs many side by side.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fit/forward/motion_model.h"
+#include "scene/parametric_variant.h"
+
+namespace glisson::fit {
+
+/// A scene's text and what is laid over it.
+struct SceneText {
+  std::string text, name;           ///< `name` stands for the file in messages
+  std::filesystem::path base;       ///< where its relative paths start
+  std::vector<Override> overrides;  ///< as --set
+  std::string variant;              ///< empty: the only one
+};
+/// From a file. @throws std::runtime_error where it cannot be read
+SceneText scene_text(const std::filesystem::path& file);
+
+struct SceneModelOptions {
+  std::string tool;       ///< the tool or instrument that follows the curve; empty: the only one
+  std::string force;      ///< whose force is measured: a tool, an instrument, "bottom" or "side"; empty: that of `tool`
+  double approach = 0.0;  ///< way of an instrument in the scene before it touches the tissue [m], ≥ 0
+  MeshLoader load{};
+  /// Last changes of the experiment before it runs for so long [s]: another integrator, another step.
+  std::function<void(Variant&, double duration)> adjust{};
+  const std::atomic<bool>* stop = nullptr;  ///< ends runs early, with a failure
+};
+
+/// The force is that on the tissue along the tool's direction, positive when it presses: elastic, viscous, damping and what
+/// capsules and contact add; without gravity and the inertia of the driven vertices, which jump to their speed at once.
+/// "bottom" is what the container's floor carries downwards, "side" its wall.
+class SceneModel final : public MotionModel {
+ public:
+  /// @param keys  of the parameters, as --set takes them; [i] addresses an element of a list of numbers
+  /// @throws SceneError, std::invalid_argument for a scene, keys or curves that cannot be used
+  SceneModel(const SceneText& scene, std::span<const std::string> keys, std::vector<Curve> curves,
+             SceneModelOptions options = {});
+  Prediction predict_from(std::size_t curve, std::span<const double> values, double contact) const override;
+
+  /// The experiment of a curve as it would run. @throws SceneError
+  Variant variant(std::size_t curve, std::span<const double> values, double contact = 0.0) const;
+
+ private:
+  double approach_time(const Curve& curve) const;
+
+  scene::ParametricVariant scene_;
+  SceneModelOptions options_;
+};
+
+/// Keeps meshes read from files, for many runs at once.
+MeshLoader kept_meshes(MeshLoader load);
+
+}  // namespace glisson::fit
