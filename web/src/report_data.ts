@@ -142,7 +142,7 @@ export interface FitData {
   groups: FitGroup[];
   rms_fit: number; // [N]
   rms_heldout: number | null; // [N]; null: no curve held out
-  spread_N: number | null; // rms of repetitions about the mean of their group, over all groups; null: none repeated
+  spread_N: number | null; // spread_N of the groups, rms over them; null: none repeated
   profiles: FitProfile[];
   basins: FitBasin[]; // best first
   start_costs: { cost: number; basin: number }[]; // where each start ended, in the order they ran; basin: index
@@ -199,7 +199,8 @@ export interface FitGroup {
   name: string;
   held_out: boolean;
   rms_N: number; // of fitted − measured, over its curves
-  spread_N: number | null; // rms of the repetitions about their own mean; null: one curve only
+  spread_N: number | null; // standard deviation (n − 1) of all repetitions of this test, fitted and held out, rms over
+  // the displacements; null: one curve only
 }
 
 /** Profile likelihood of one parameter: the others optimised anew at each of its values. */
