@@ -8,7 +8,7 @@ import { whenVisible } from "../page/visibility.ts";
 import { xAxis, yAxis } from "./axes.ts";
 import { drawLine } from "./draw_lines.ts";
 import { drawEvents } from "./event_marks.ts";
-import { Legend } from "./legend.ts";
+import { Legend, entryOf } from "./legend.ts";
 import { TOTAL_STYLE, strokeOf } from "./line_style.ts";
 import { type ChartModel, type Extent, type Line, extentOf } from "./model.ts";
 import { isRising, nearestInX, nearestOnScreen } from "./nearest.ts";
@@ -39,7 +39,7 @@ export class Chart {
     private readonly owner: string | null = null,
   ) {
     this.rising = new Map(model.lines.map((line) => [line.id, isRising(line.x)]));
-    this.home = this.view = extentOf(model.lines);
+    this.home = this.view = model.extent ?? extentOf(model.lines);
     this.legend = new Legend(model.lines, (line, only) => this.toggle(line, only));
     this.resetButton = h(
       "button",
@@ -82,7 +82,7 @@ export class Chart {
   }
 
   private describe(): string {
-    const names = this.model.lines.map((line) => line.label).join(", ");
+    const names = [...new Set(this.model.lines.map((line) => line.label))].join(", ");
     return (
       `${this.model.title}: ${this.model.yLabel} against ${this.model.xLabel}; lines: ${names}. ` +
       "Arrow keys move the cursor, Escape resets the zoom."
@@ -222,10 +222,10 @@ export class Chart {
 
   /** After lines were shown or hidden: legend, range (unless zoomed) and drawing follow. */
   private refreshShown(): void {
-    for (const line of this.model.lines) this.legend.setShown(line.id, !this.isHidden(line));
+    for (const line of this.model.lines) this.legend.setShown(entryOf(line), !this.isHidden(line));
     const zoomed = !sameExtent(this.view, this.home);
     const shown = this.shownLines();
-    this.home = extentOf(shown.length > 0 ? shown : this.model.lines);
+    this.home = this.model.extent ?? extentOf(shown.length > 0 ? shown : this.model.lines);
     if (!zoomed) this.setView(this.home);
     this.plot?.redraw(false, false);
     this.showPlayhead();
@@ -234,10 +234,10 @@ export class Chart {
   private onCursor(plot: uPlot): void {
     const left = plot.cursor.left ?? -1;
     const top = plot.cursor.top ?? -1;
-    const values = new Map<string, string>();
+    const values = new Map<string, number[]>();
     if (left < 0 || !this.marks) {
       this.marks?.clearHover();
-      this.legend.setValues(values);
+      this.legend.setValues(new Map());
       this.readout.textContent = "";
       return;
     }
@@ -247,13 +247,13 @@ export class Chart {
       const index = this.isHidden(line) ? -1 : this.indexAt(line, atX, atY, plot);
       if (index < 0) this.marks.hover(line.id, null, null);
       else {
-        values.set(line.id, formatSignificant(line.y[index]!, 4));
+        values.set(entryOf(line), [...(values.get(entryOf(line)) ?? []), line.y[index]!]);
         this.marks.hover(line.id, ...this.place(line, index, plot));
       }
     }
     const unit = unitOfLabel(this.model.xLabel);
     this.readout.textContent = `${nameOfLabel(this.model.xLabel)} ${formatSignificant(atX, 4)}\u00a0${unit}`;
-    this.legend.setValues(values);
+    this.legend.setValues(new Map([...values].map(([entry, found]) => [entry, valuesText(found)])));
   }
 
   private indexAt(line: Line, atX: number, atY: number, plot: uPlot): number {
@@ -303,6 +303,13 @@ export class Chart {
     } else return;
     event.preventDefault();
   }
+}
+
+/** One value, or from the least to the largest of several. */
+function valuesText(values: readonly number[]): string {
+  const known = values.filter(Number.isFinite);
+  const [least, most] = [formatSignificant(Math.min(...known), 4), formatSignificant(Math.max(...known), 4)];
+  return least === most ? least : `${least} … ${most}`;
 }
 
 function sameExtent(a: Extent, b: Extent): boolean {

@@ -2,6 +2,7 @@
 //
 // uPlot's own series want one rising x for all; loading and unloading, and variants that end at different
 // depths, do not have one. So uPlot keeps axes, scales, zoom and cursor, and the lines are drawn here.
+import { MEASURED_STYLE } from "./line_style.ts";
 import type { Extent, Line } from "./model.ts";
 
 export interface PlotBox {
@@ -40,7 +41,8 @@ export function drawLine(
   tracePath(context, line, view, box);
   if (line.style.dash.length > 0 && !fit) strokeUnderlay(context, ratio);
   context.setLineDash(line.style.dash.map((length) => length * ratio));
-  context.lineWidth = (fit ? 1.25 : 1.75) * ratio;
+  const thin = fit || line.style === MEASURED_STYLE;
+  context.lineWidth = (thin ? 1.25 : 1.75) * ratio;
   context.stroke();
   context.restore();
 }

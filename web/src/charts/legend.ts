@@ -4,6 +4,9 @@ import { h, svg } from "../page/dom.ts";
 import { strokeOf } from "./line_style.ts";
 import type { Line } from "./model.ts";
 
+/** Id of the legend's entry of a line. */
+export const entryOf = (line: Line) => line.entry ?? line.id;
+
 /** Room for swatch and value beside a label, in letters. */
 const VALUE_LETTERS = 9;
 
@@ -16,7 +19,7 @@ export class Legend {
     this.element = h("div", { class: "legend", role: "group", "aria-label": "Lines of this chart" });
     const longest = Math.max(0, ...lines.map((line) => line.label.length));
     this.element.style.setProperty("--legend-column", `${longest + VALUE_LETTERS}ch`);
-    for (const line of lines) this.element.append(this.entry(line, onToggle));
+    for (const line of lines) if (!this.entries.has(entryOf(line))) this.element.append(this.entry(line, onToggle));
     this.colour(lines);
     onTheme(() => this.colour(lines));
   }
@@ -40,14 +43,14 @@ export class Legend {
       value,
     );
     item.addEventListener("click", (event) => onToggle(line, event.shiftKey));
-    this.entries.set(line.id, { item, value });
+    this.entries.set(entryOf(line), { item, value });
     return item;
   }
 
   private colour(lines: readonly Line[]): void {
     for (const line of lines) {
       const stroke = strokeOf(line.style, currentTheme());
-      this.entries.get(line.id)?.item.querySelector("line, circle")?.setAttribute("stroke", stroke);
+      this.entries.get(entryOf(line))?.item.querySelector("line, circle")?.setAttribute("stroke", stroke);
     }
   }
 

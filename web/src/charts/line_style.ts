@@ -4,7 +4,7 @@
 import type { Theme } from "../page/theme.ts";
 
 export interface LineStyle {
-  colour: number; // index into the palette; −1: ink
+  colour: number; // index into the palette; −1: ink, −2: grey
   dash: readonly number[];
 }
 
@@ -13,6 +13,7 @@ const PALETTES: Record<Theme, readonly string[]> = {
   dark: ["#5ab4ec", "#f28b52", "#2fc39a", "#dd93c2", "#e3ad35", "#9ad0f2", "#a8b2bc"],
 };
 const INK: Record<Theme, string> = { light: "#1a1f26", dark: "#e8ebee" };
+const GREY: Record<Theme, string> = { light: "#8f98a2", dark: "#77828d" };
 
 const DASHES: readonly (readonly number[])[] = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 2], [14, 4], [8, 3, 2, 3, 2, 3]];
 
@@ -25,7 +26,10 @@ export function lineStyle(index: number): LineStyle {
 /** Style of a fitted line or a total. */
 export const FIT_STYLE: LineStyle = { colour: -1, dash: [4, 4] };
 export const TOTAL_STYLE: LineStyle = { colour: -1, dash: [] };
+/** Style of repeated measurements, which are many. */
+export const MEASURED_STYLE: LineStyle = { colour: -2, dash: [] };
 
 export function strokeOf(style: LineStyle, theme: Theme): string {
+  if (style.colour === MEASURED_STYLE.colour) return GREY[theme];
   return style.colour < 0 ? INK[theme] : PALETTES[theme][style.colour]!;
 }

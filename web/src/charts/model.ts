@@ -4,6 +4,7 @@ import type { LineStyle } from "./line_style.ts";
 export interface Line {
   id: string; // unique in its chart
   variant: string | null; // lines of a variant are shown and hidden in all charts of a scene together
+  entry?: string; // lines of the same variant and entry share one entry of the legend
   label: string;
   style: LineStyle;
   x: Float64Array; // NaN: gap
@@ -19,6 +20,7 @@ export interface ChartModel {
   lines: Line[];
   events: EventMark[];
   note: string;
+  extent?: Extent; // to show first; without, that of its lines
 }
 
 /** A moment of a variant that is worth a mark: where on the x axis, and what it was. */

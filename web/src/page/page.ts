@@ -1,18 +1,20 @@
-// page.ts — the whole page: head, way to the scenes, scenes, foot.
-import type { ReportData, SceneData } from "../report_data.ts";
+// page.ts — the whole page: head, way to the scenes and fits, these, foot.
+import { fitSection } from "../fit/fit_section.ts";
+import type { FitData, ReportData, SceneData } from "../report_data.ts";
 import { passed, verdict } from "./checks.ts";
 import { h } from "./dom.ts";
 import { icon } from "./icons.ts";
-import { type SceneBlock, sceneSection } from "./scene_section.ts";
+import { type SceneBlock, type SceneView, sceneSection } from "./scene_section.ts";
 import { followScroll } from "./scroll_spy.ts";
 import { toggleTheme } from "./theme.ts";
 
 export function buildPage(report: ReportData): Node {
-  const ids = uniqueIds(report.scenes);
-  const alone = report.scenes.length === 1;
-  const views = report.scenes.map((scene, at) => sceneSection(scene, ids[at]!, alone && scene.title === report.title));
+  const parts: (SceneData | FitData)[] = [...report.scenes, ...(report.fits ?? [])];
+  const ids = uniqueIds(parts);
+  const alone = parts.length === 1;
+  const views = parts.map((part, at) => section(part, ids[at]!, alone && part.title === report.title));
   const blocks = views[0]?.blocks ?? [];
-  const navigation = alone ? blockNavigation(blocks) : sceneNavigation(report.scenes, ids);
+  const navigation = alone ? blockNavigation(blocks) : sceneNavigation(parts, ids);
   followScroll(navigation, alone ? blocks.map((block) => block.element) : views.map((view) => view.element));
   const page = document.createDocumentFragment();
   page.append(
@@ -23,11 +25,15 @@ export function buildPage(report: ReportData): Node {
       "main",
       { id: "content" },
       ...views.map((view) => view.element),
-      report.scenes.length === 0 ? h("p", { class: "empty" }, "This report holds no scenes.") : null,
+      parts.length === 0 ? h("p", { class: "empty" }, "This report holds no scenes.") : null,
     ),
     foot(report),
   );
   return page;
+}
+
+function section(part: SceneData | FitData, id: string, titled: boolean): SceneView {
+  return "variants" in part ? sceneSection(part, id, titled) : fitSection(part, id, titled);
 }
 
 function head(report: ReportData): HTMLElement {
@@ -62,10 +68,11 @@ function bar(navigation: HTMLElement): HTMLElement {
   return h("div", { class: "page-bar" }, navigation, theme);
 }
 
-function sceneNavigation(scenes: readonly SceneData[], ids: readonly string[]): HTMLElement {
-  const links = scenes.map((scene, at) => {
-    const count = scene.checks.length;
-    const good = passed(scene.checks);
+function sceneNavigation(parts: readonly (SceneData | FitData)[], ids: readonly string[]): HTMLElement {
+  const links = parts.map((part, at) => {
+    const checks = "checks" in part ? part.checks : [];
+    const count = checks.length;
+    const good = passed(checks);
     const result =
       count === 0
         ? null
@@ -74,7 +81,7 @@ function sceneNavigation(scenes: readonly SceneData[], ids: readonly string[]): 
             { class: good === count ? "count pass" : "count fail", title: `${good} of ${count} checks pass` },
             `${good}/${count}`,
           );
-    return h("li", {}, h("a", { href: `#${ids[at]!}` }, h("span", {}, scene.title), result));
+    return h("li", {}, h("a", { href: `#${ids[at]!}` }, h("span", {}, part.title), result));
   });
   return h("nav", { class: "scenes", "aria-label": "Scenes" }, h("ul", {}, ...links));
 }
@@ -113,10 +120,10 @@ export function readableDate(created: string): string {
   return `${day}, ${date.toISOString().slice(11, 16)} UTC`;
 }
 
-function uniqueIds(scenes: readonly SceneData[]): string[] {
+function uniqueIds(parts: readonly { name: string }[]): string[] {
   const used = new Set<string>();
-  return scenes.map((scene, at) => {
-    const plain = scene.name.replace(/[^A-Za-z0-9_-]+/g, "-") || "scene";
+  return parts.map((part, at) => {
+    const plain = part.name.replace(/[^A-Za-z0-9_-]+/g, "-") || "scene";
     const id = used.has(plain) ? `${plain}-${at + 1}` : plain;
     used.add(id);
     return id;

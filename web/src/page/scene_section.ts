@@ -52,7 +52,7 @@ export function sceneSection(scene: SceneData, id: string, titled: boolean): Sce
       : null,
     few ? null : block("Choices", notes(scene)),
     block("Numbers", results(scene)),
-    block("Scene", sourceBlock(scene.name, scene.source)),
+    block("Scene", sourceBlock(`${scene.name}.toml`, scene.source)),
   );
   return { element, blocks };
 }

@@ -1,11 +1,11 @@
-// source_block.ts — the scene file, folded away, to be read or copied.
+// source_block.ts — a scene or another TOML file, folded away, to be read or copied.
 import { button, h } from "./dom.ts";
 
-/** The source; null where the report has none. */
-export function sourceBlock(name: string, source: string): HTMLElement | null {
+/** A file by what it is; null where the report has none. */
+export function sourceBlock(file: string, source: string, what = "Scene"): HTMLElement | null {
   if (source.trim() === "") return null;
   const said = h("span", { class: "copied", role: "status" });
-  const copy = button("Copy", "Copy the scene to the clipboard", () => {
+  const copy = button("Copy", `Copy ${file} to the clipboard`, () => {
     void copyText(source).then((done) => {
       said.textContent = done ? "Copied" : "This browser does not allow copying; select the text instead";
       setTimeout(() => (said.textContent = ""), 2500);
@@ -15,18 +15,12 @@ export function sourceBlock(name: string, source: string): HTMLElement | null {
   return h(
     "details",
     { class: "source" },
-    h(
-      "summary",
-      {},
-      "Scene ",
-      h("code", {}, `${name}.toml`),
-      h("span", { class: "muted" }, ` · ${lines.length} lines`),
-    ),
+    h("summary", {}, `${what} `, h("code", {}, file), h("span", { class: "muted" }, ` · ${lines.length} lines`)),
     h(
       "div",
       { class: "source-body" },
       h("div", { class: "source-tools" }, said, copy),
-      h("pre", { tabindex: 0, "aria-label": "Scene source" }, h("code", {}, ...lines.map(codeLine))),
+      h("pre", { tabindex: 0, "aria-label": `${what} source` }, h("code", {}, ...lines.map(codeLine))),
     ),
   );
 }

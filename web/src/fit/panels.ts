@@ -1,0 +1,80 @@
+// panels.ts — curves of a fit put into charts: a chart for each group and use, all on the same axes.
+import type { ChartModel, Extent, Line } from "../charts/model.ts";
+import { extentOf, scaled } from "../charts/model.ts";
+import { MEASURED_STYLE, TOTAL_STYLE } from "../charts/line_style.ts";
+import { axisLabel } from "../format/units.ts";
+import type { FitCurve, FitData, FitGroup } from "../report_data.ts";
+
+export const MEASURED = "measured";
+export const SIMULATED = "simulated";
+
+export interface Panel {
+  group: FitGroup;
+  curves: FitCurve[];
+}
+
+/** Groups that have curves, fitted ones first, in their own order. */
+export function panelsOf(fit: FitData): Panel[] {
+  const panels = fit.groups.map((group) => ({
+    group,
+    curves: fit.curves.filter((curve) => curve.group === group.name && curve.held_out === group.held_out),
+  }));
+  return panels
+    .filter((panel) => panel.curves.length > 0)
+    .sort((a, b) => Number(a.group.held_out) - Number(b.group.held_out));
+}
+
+/** Models of the charts; on one common range unless that would flatten one of them. */
+export function curveCharts(fit: FitData, panels: readonly Panel[]): ChartModel[] {
+  const models = panels.map((panel) => curveChart(fit, panel));
+  const common = commonExtent(models.map((model) => extentOf(model.lines)));
+  if (common) for (const model of models) model.extent = common;
+  return models;
+}
+
+function curveChart(fit: FitData, panel: Panel): ChartModel {
+  const count = panel.curves.length;
+  const lines = (["measured_N", "fitted_N"] as const).flatMap((column) =>
+    panel.curves.map((curve): Line => {
+      const measured = column === "measured_N";
+      const kind = measured ? MEASURED : SIMULATED;
+      return {
+        id: `${kind} ${curve.name}`,
+        variant: kind,
+        entry: kind,
+        label: measured && count > 1 ? `${MEASURED}, ${count} repetitions` : kind,
+        style: measured ? MEASURED_STYLE : TOTAL_STYLE,
+        x: scaled(curve.displacement_m, fit.x.scale),
+        y: scaled(curve[column], fit.y.scale),
+        times: null,
+      };
+    }),
+  );
+  return {
+    title: panelTitle(panel),
+    xLabel: axisLabel(fit.x.label),
+    yLabel: axisLabel(fit.y.label),
+    lines,
+    events: [],
+    note: "",
+  };
+}
+
+export function panelTitle(panel: Panel): string {
+  return panel.group.name || panel.curves[0]?.name || "Curves";
+}
+
+/** The range that holds all; null where the smallest chart would fill less than a quarter of it. */
+export function commonExtent(extents: readonly Extent[]): Extent | null {
+  if (extents.length === 0) return null;
+  const common = {
+    xMin: Math.min(...extents.map((extent) => extent.xMin)),
+    xMax: Math.max(...extents.map((extent) => extent.xMax)),
+    yMin: Math.min(...extents.map((extent) => extent.yMin)),
+    yMax: Math.max(...extents.map((extent) => extent.yMax)),
+  };
+  const fills = (extent: Extent) =>
+    extent.xMax - extent.xMin >= 0.25 * (common.xMax - common.xMin) &&
+    extent.yMax - extent.yMin >= 0.25 * (common.yMax - common.yMin);
+  return extents.every(fills) ? common : null;
+}

@@ -1,0 +1,73 @@
+// residuals.ts — what the simulation leaves of the measured force, against the band of its noise.
+import { h } from "../page/dom.ts";
+import { figure } from "../page/figure.ts";
+import { axisLabel, nameOfLabel, unitOfLabel } from "../format/units.ts";
+import type { FitCurve, FitData } from "../report_data.ts";
+import { type Panel, panelTitle, panelsOf } from "./panels.ts";
+import { type PlotMark, plot } from "./plot/plot.ts";
+import { type Scale, makeScale, scaleOf } from "./plot/scale.ts";
+import { use } from "./verdicts.ts";
+
+/** Points read out per curve; more would make the arrow keys useless. */
+const MOST_READ = 60;
+
+export function residualFigures(fit: FitData): HTMLElement | null {
+  const panels = panelsOf(fit);
+  if (panels.length === 0) return null;
+  const y = residualScale(fit);
+  const plots = panels.map((panel) =>
+    h(
+      "div",
+      { class: "plot-cell" },
+      h("p", { class: "plot-title" }, h("span", {}, panelTitle(panel)), use(panel.group.held_out)),
+      residualPlot(fit, panel, y),
+    ),
+  );
+  const about = h("span", { class: "figure-about" }, "Measured − simulated; grey band: ± 2 sd of the noise");
+  return figure("Residuals", h("div", { class: "plots plots-large" }, ...plots), about, "figure-wide");
+}
+
+/** Residuals of a curve in the unit of the charts. */
+export function residualsOf(curve: FitCurve, scale: number): number[] {
+  return curve.measured_N.map((measured, at) => (measured - curve.fitted_N[at]!) * scale);
+}
+
+/** One scale for all: symmetric, and wide enough for the noise. */
+export function residualScale(fit: FitData): Scale {
+  const size = Math.max(
+    0,
+    ...fit.curves.flatMap((curve) => [
+      2.2 * curve.noise_N * Math.abs(fit.y.scale),
+      ...residualsOf(curve, fit.y.scale).filter(Number.isFinite).map(Math.abs),
+    ]),
+  );
+  return makeScale(-1.08 * size, 1.08 * size);
+}
+
+function residualPlot(fit: FitData, panel: Panel, y: Scale): HTMLElement {
+  const unit = unitOfLabel(fit.y.label);
+  const noise = Math.max(...panel.curves.map((curve) => curve.noise_N)) * Math.abs(fit.y.scale);
+  const xs = panel.curves.map((curve) => curve.displacement_m.map((displacement) => displacement * fit.x.scale));
+  const residuals = panel.curves.map((curve) => residualsOf(curve, fit.y.scale));
+  const marks: PlotMark[] = [
+    { kind: "band", className: "plot-noise", x: [null, null], y: [-2 * noise, 2 * noise] },
+    { kind: "rule", className: "plot-rule", y: 0 },
+    ...panel.curves.map((_, at): PlotMark => ({
+      kind: "line",
+      className: "plot-residual",
+      x: xs[at]!,
+      y: residuals[at]!,
+    })),
+    ...panel.curves.map((curve, at): PlotMark => {
+      const every = Math.max(1, Math.ceil(xs[at]!.length / MOST_READ));
+      const thin = (values: readonly number[]) => values.filter((_, index) => index % every === 0);
+      return { kind: "line", className: "plot-hidden", name: curve.name, x: thin(xs[at]!), y: thin(residuals[at]!) };
+    }),
+  ];
+  return plot({
+    title: `Residuals of ${panelTitle(panel)}`,
+    x: { label: axisLabel(fit.x.label), scale: scaleOf(xs.flat(), 0) },
+    y: { label: unit ? `Residual [${unit}]` : `Residual of ${nameOfLabel(fit.y.label)}`, scale: y },
+    marks,
+  });
+}
