@@ -1,5 +1,6 @@
 // check_units.cpp — numbers that look like another unit: the slip that a factor of 1000 makes without a word.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -50,14 +51,24 @@ const Unit* better_unit(const Source& source, double ratio) {
   return best;
 }
 
-/// "In N it would be 84.1 N: give unit = "N" …".
+/// `columns.force = { name = "Load (N)", unit = "N" }`.
+std::string as_key(const Source& source, const Unit& unit) {
+  constexpr std::array kKeys{"time", "displacement", "force", "stress", "strain"};
+  const std::string choice = source.title.front() == '"'
+                                 ? "name = " + source.title
+                                 : "number = " + source.title.substr(source.title.find(' ') + 1);
+  return std::string("columns.") + kKeys[static_cast<std::size_t>(source.quantity)] + " = { " + choice + ", unit = \"" +
+         std::string(unit.name) + "\" }";
+}
+
+/// `; in N it would be 84.1 N: give columns.force = …`.
 std::string way_out(const Source& source, double value, double ratio) {
   if (!source.unit) return std::string("; check speed_mm_s") + kWayOut;
   const Unit* unit = better_unit(source, ratio);
   if (!unit) return std::string("; check the unit of ") + source.title + kWayOut;
   const double as_written = value / source.unit->factor * unit->factor;
-  return "; in " + std::string(unit->name) + " it would be " + in_unit(as_written, *unit) + ": give unit = \"" +
-         std::string(unit->name) + "\"" + kWayOut;
+  return "; in " + std::string(unit->name) + " it would be " + in_unit(as_written, *unit) + ": give " +
+         as_key(source, *unit) + kWayOut;
 }
 
 class UnitCheck {

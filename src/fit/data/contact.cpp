@@ -14,6 +14,8 @@ namespace glisson::fit {
 namespace {
 
 constexpr std::size_t kFewestAtRest = 5, kInARow = 5, kFewestRows = 12;
+// Up to where the parabola is fitted: farther, noise weighs less and stiffening more.
+constexpr double kPartOfRise = 0.03, kDeviations = 20.0;
 
 /// First row from which the force stays above a level for five rows; the number of rows where none does.
 std::size_t first_above(std::span<const double> f, double level) {
@@ -170,7 +172,7 @@ std::optional<Contact> find_contact(std::span<const double> x, std::span<const d
   const double rise = f.back() - rest;
   const std::size_t risen = first_above(f, rest + threshold * noise);
   if (risen == f.size() || !(rise > threshold * noise)) return std::nullopt;
-  const std::size_t upper = first_above(f, rest + std::max(0.1 * rise, 20.0 * noise));
+  const std::size_t upper = first_above(f, rest + std::max(kPartOfRise * rise, kDeviations * noise));
   const std::size_t end = std::min(loading, std::max({upper, risen + kFewestRows, kFewestRows}));
   if (!(x[end - 1] > x.front())) return std::nullopt;
   if (risen < 2 * kFewestAtRest) return extrapolated_contact(x.first(end), f.first(end), noise);

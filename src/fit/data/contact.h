@@ -21,7 +21,7 @@ struct Contact {
 };
 
 /// Finds the first touch. A force that stays above the rest by `threshold` standard deviations of its noise for five rows
-/// tells where rest ends at the latest; the fit above, up to a tenth of the largest force (20 s at least), then places the
+/// tells where rest ends at the latest; the fit above, up to 3 % of the largest force (20 s at least), then places the
 /// touch. Where fewer than 5 rows are at rest, the parabola through the first rows is carried back to F = 0.
 /// @param x  displacement, rising but for noise [m] @param f  force [N]
 /// @return nothing where the force never rises above its noise

@@ -57,16 +57,48 @@ std::vector<double> running_median(std::span<const double> y, std::size_t half_w
   return result;
 }
 
-double noise_about_curve(std::span<const double> x, std::span<const double> y) {
-  constexpr std::size_t kHalfWidth = 7, kDegree = 2, kFewest = 7;
-  if (x.size() < kFewest) return 0.0;
+namespace {
+
+std::vector<double> free_residuals(std::span<const double> x, std::span<const double> y) {
+  constexpr std::size_t kHalfWidth = 7, kDegree = 2;
   const LocalFit fit = local_fit(x, y, kHalfWidth, kDegree);
   std::vector<double> residuals;
   for (std::size_t i = 0; i < y.size(); ++i) {
     const double free = 1.0 - fit.leverage[i];
-    if (free > 1e-9) residuals.push_back(std::abs(y[i] - fit.values[i]) / std::sqrt(free));
+    residuals.push_back(free > 1e-9 ? std::abs(y[i] - fit.values[i]) / std::sqrt(free) : 0.0);
   }
-  return 1.4826 * median_of(std::move(residuals));
+  return residuals;
+}
+
+/// Puts the mean of its neighbours in place of a point that stands out by more than a limit. @return whether there was one
+bool take_out_spikes(std::vector<double>& y, const std::vector<double>& residuals, double limit) {
+  constexpr std::size_t kNear = 3;
+  bool any = false;
+  for (std::size_t i = 1; i + 1 < y.size(); ++i) {
+    const auto first = residuals.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, kNear));
+    const auto last = residuals.begin() + static_cast<std::ptrdiff_t>(std::min(i + kNear + 1, y.size()));
+    if (!(residuals[i] > limit) || *std::max_element(first, last) > residuals[i]) continue;
+    y[i] = 0.5 * (y[i - 1] + y[i + 1]);
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace
+
+double noise_about_curve(std::span<const double> x, std::span<const double> y) {
+  constexpr std::size_t kFewest = 7;
+  constexpr double kSpike = 5.0;
+  constexpr int kPasses = 4;
+  if (x.size() < kFewest) return 0.0;
+  std::vector<double> clean(y.begin(), y.end());
+  double noise = 0.0;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const std::vector<double> residuals = free_residuals(x, clean);
+    noise = 1.4826 * median_of(residuals);
+    if (!(noise > 0.0) || !take_out_spikes(clean, residuals, kSpike * noise)) break;
+  }
+  return noise;
 }
 
 }  // namespace glisson::fit

@@ -18,8 +18,10 @@ LocalFit local_fit(std::span<const double> x, std::span<const double> y, std::si
 /// Median of each point and its neighbours; fewer at the ends. Takes out spikes shorter than the half-width.
 std::vector<double> running_median(std::span<const double> y, std::size_t half_width);
 
-/// Standard deviation of y about a smooth curve, from the median distance to a local parabola: spikes do not count.
+/// Standard deviation of y about a smooth curve, from the median distance to a local parabola.
 ///   s = 1.4826 median |rᵢ| / √(1 − hᵢ),  r the residual, h the leverage
+/// Spikes of one row, above 5 s and above their neighbours, are taken out and s formed again. Noise that varies more
+/// slowly than a window of 15 rows is not seen.
 /// @return 0 where there are fewer than 7 points
 double noise_about_curve(std::span<const double> x, std::span<const double> y);
 
