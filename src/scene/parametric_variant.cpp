@@ -175,4 +175,11 @@ Tissue ParametricVariant::tissue_with(std::span<const double> values) const {
   return tissue;
 }
 
+Node ParametricVariant::tissue_tree(std::span<const double> values) const {
+  Node node = tissue_;
+  set(node, tissue_places_, values);
+  std::erase_if(*node.table(), [](const Member& m) { return m.key == "preset" || m.key == "file"; });
+  return node;
+}
+
 }  // namespace glisson::scene
