@@ -1,0 +1,325 @@
+#include "fit/forward/ladder.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <set>
+#include <stdexcept>
+
+#include "fit/forward/offset_model.h"
+
+namespace glisson::fit {
+namespace {
+
+using Adjust = std::function<void(Variant&, double)>;
+
+struct Candidate {
+  std::string name;
+  Adjust adjust;
+};
+
+bool is_viscous(const Tissue& t) { return t.viscosity > 0.0; }
+bool has_past(const Tissue& t) { return is_viscous(t) || !t.maxwell.empty(); }
+template <class Test>
+bool any_tissue(const Variant& v, Test test) {
+  return test(v.tissue) ||
+         std::any_of(v.regions.begin(), v.regions.end(), [&](const RegionSpec& r) { return test(r.tissue); });
+}
+bool bears_all(const Variant& v) { return v.instruments.empty() && v.capsules.empty() && !v.container; }
+
+Adjust stepping(Integrator integrator, int steps) {
+  return [=](Variant& v, double duration) {
+    v.simulation.integrator = integrator;
+    v.simulation.step = duration / steps;
+  };
+}
+Adjust own_step(Integrator integrator) {
+  return [=](Variant& v, double) {
+    v.simulation.integrator = integrator;
+    v.simulation.step.reset();
+    v.simulation.precision = Precision::single_precision;
+  };
+}
+/// Slow presses hardly move mass: ρ × factor lengthens the explicit step by √factor. Damping keeps its share of critical.
+Adjust heavier(double factor) {
+  return [=](Variant& v, double) {
+    v.tissue.density *= factor;
+    for (RegionSpec& r : v.regions) r.tissue.density *= factor;
+    v.simulation.damping_rate /= std::sqrt(factor);
+    v.simulation.step.reset();
+    v.simulation.precision = Precision::single_precision;
+    v.simulation.exact_steps = false;
+  };
+}
+
+/// The scene as the reference: its own settings, or those of the integrator asked for. Implicit and static runs without a step
+/// of their own take 400, or 2000 where the past counts: backward Euler is of first order.
+Adjust reference(const ForwardSpec& spec) {
+  return [asked = spec.integrator](Variant& v, double duration) {
+    const Integrator integrator = asked.value_or(v.simulation.integrator);
+    const bool long_steps = integrator == Integrator::implicit || integrator == Integrator::static_;
+    const bool own = !asked && (v.simulation.step || v.simulation.implicit.largest_step);
+    if (long_steps && !own) stepping(integrator, any_tissue(v, has_past) ? 2000 : 400)(v, duration);
+    if (!long_steps && asked) own_step(integrator)(v, duration);
+  };
+}
+
+std::vector<Candidate> candidates(const Variant& v, const ForwardSpec& spec) {
+  std::vector<Candidate> list;
+  const bool viscous = any_tissue(v, is_viscous), past = any_tissue(v, has_past);
+  if (bears_all(v)) {
+    if (!past) {
+      for (const int steps : {10, 40})
+        list.push_back({"static, " + std::to_string(steps) + " steps", stepping(Integrator::static_, steps)});
+    }
+    for (const int steps : {25, 100, 400})
+      list.push_back({"implicit, " + std::to_string(steps) + " steps", stepping(Integrator::implicit, steps)});
+  }
+  if (viscous && bears_all(v)) list.push_back({"semi-implicit", own_step(Integrator::semi_implicit)});
+  const Integrator own = spec.integrator.value_or(v.simulation.integrator);
+  const bool explicit_like = own == Integrator::explicit_ || (own == Integrator::semi_implicit && !viscous);
+  if (!explicit_like) list.push_back({"explicit", own_step(Integrator::explicit_)});
+  if (explicit_like && !viscous) {
+    for (const double factor : {100.0, 10.0}) {
+      char name[64];
+      std::snprintf(name, sizeof name, "explicit, %g times as heavy", factor);
+      list.push_back({name, heavier(factor)});
+    }
+  }
+  return list;
+}
+
+/// One curve of each group; of those without a group each.
+std::vector<std::size_t> one_of_each_group(std::span<const Curve> curves) {
+  std::vector<std::size_t> chosen;
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    if (curves[i].group.empty() || seen.insert(curves[i].group).second) chosen.push_back(i);
+  }
+  return chosen;
+}
+
+/// The start, then points of Halton's sequence within the bounds, on the scale of each parameter.
+std::vector<std::vector<double>> places_of(std::span<const Parameter> parameters, int count) {
+  constexpr int kPrimes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
+  const auto radical_inverse = [](int n, int base) {
+    double value = 0.0, digit = 1.0 / base;
+    for (; n > 0; n /= base, digit /= base) value += digit * (n % base);
+    return value;
+  };
+  std::vector<std::vector<double>> places(1);
+  for (const Parameter& p : parameters) places[0].push_back(p.start);
+  for (int k = 1; k <= count; ++k) {
+    std::vector<double> place;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const Parameter& p = parameters[i];
+      const double z = radical_inverse(k, kPrimes[i % std::size(kPrimes)]);
+      place.push_back(p.scale == Scale::linear ? p.low + z * (p.high - p.low) : p.low * std::pow(p.high / p.low, z));
+    }
+    places.push_back(std::move(place));
+  }
+  return places;
+}
+
+double peak(const std::vector<double>& force) {
+  double most = 0.0;
+  for (const double f : force) most = std::max(most, std::abs(f));
+  return most;
+}
+
+double rms(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+/// Error that is allowed on a curve where the scene gives `force`: of the noise, or of 0.5 % of the measured peak where that
+/// is not known; in proportion where the force is larger than what was measured.
+double allowance(const Curve& curve, const std::vector<double>& force, double tolerance) {
+  const double measured = peak(curve.force), simulated = peak(force);
+  const double noise = curve.noise > 0.0 ? curve.noise : 0.005 * (measured > 0.0 ? measured : simulated);
+  return tolerance * noise * (measured > 0.0 ? std::max(1.0, simulated / measured) : 1.0);
+}
+
+using Forces = std::vector<std::vector<double>>;  ///< of each curve that is compared
+
+/// Forces at one place; empty with a failure where one of them does not run.
+Forces run(const Model& model, const std::vector<std::size_t>& curves, std::span<const double> values,
+           std::string& failure) {
+  Forces forces;
+  for (const std::size_t c : curves) {
+    Prediction p = model.predict(c, values);
+    if (p.force.empty()) {
+      failure = p.failure;
+      return {};
+    }
+    forces.push_back(std::move(p.force));
+  }
+  return forces;
+}
+
+/// Makes all models from one description.
+struct Maker {
+  const ForwardProblem& problem;
+  std::vector<std::string> keys, inner;
+
+  explicit Maker(const ForwardProblem& p) : problem(p) {
+    for (const Parameter& x : p.parameters) keys.push_back(x.name);
+    inner = inner_keys(keys);
+  }
+  SceneModelOptions options(Adjust adjust) const {
+    return {.tool = problem.spec.tool,
+            .force = problem.spec.force,
+            .approach = problem.spec.approach,
+            .load = problem.load,
+            .adjust = std::move(adjust),
+            .stop = problem.stop};
+  }
+  std::shared_ptr<const Model> with_offsets(std::shared_ptr<const MotionModel> model) const {
+    if (inner.size() == keys.size()) return model;
+    return std::make_shared<OffsetModel>(std::move(model), keys);
+  }
+  std::shared_ptr<const SceneModel> scene(Adjust adjust) const {
+    return std::make_shared<SceneModel>(problem.scene, inner, problem.curves, options(std::move(adjust)));
+  }
+  std::shared_ptr<const Model> specimen(const Specimen& size) const {
+    const SceneText& s = problem.scene;
+    const auto tissue =
+        std::make_shared<scene::ParametricVariant>(s.text, s.name, s.base, s.overrides, s.variant, inner);
+    if (!tissue->only_tissue()) return nullptr;
+    return with_offsets(std::make_shared<UniaxialModel>(
+        problem.curves, size, [tissue](std::span<const double> values) { return tissue->tissue_with(values); }));
+  }
+  std::vector<double> inner_start() const {
+    std::vector<double> values;
+    for (const Parameter& p : problem.parameters) {
+      if (!is_curve_key(p.name)) values.push_back(p.start);
+    }
+    return values;
+  }
+};
+
+double seconds(std::chrono::steady_clock::time_point from) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
+}
+
+/// What the scene itself gives at each place; empty where it does not run.
+struct Comparison {
+  const ForwardProblem& problem;
+  const Ladder& ladder;
+  std::vector<Forces> truth;
+
+  /// Runs a model at a place; at the start short runs are made again, and the shortest is the cost.
+  Forces timed_run(Rung& rung, std::size_t place) const {
+    Forces forces;
+    for (int i = 0; i < 5; ++i) {
+      const auto begin = std::chrono::steady_clock::now();
+      forces = run(*rung.model, ladder.compared, ladder.places[place], rung.failure);
+      const double cost = seconds(begin);
+      if (place != 0) break;
+      rung.cost = i == 0 ? cost : std::min(rung.cost, cost);
+      if (cost > 0.02) break;
+    }
+    return forces;
+  }
+  /// Runs a model at all places and notes cost and error. A place where the scene fails says nothing.
+  void measure(Rung& rung) const {
+    for (std::size_t place = 0; place < truth.size() && rung.failure.empty(); ++place) {
+      if (truth[place].empty()) continue;
+      const Forces forces = timed_run(rung, place);
+      for (std::size_t c = 0; c < forces.size(); ++c) {
+        const double error = rms(forces[c], truth[place][c]);
+        const Curve& curve = problem.curves[ladder.compared[c]];
+        if (place == 0) rung.error = std::max(rung.error, error);
+        rung.share = std::max(rung.share, error / allowance(curve, truth[place][c], problem.spec.tolerance));
+      }
+      if (rung.share > 1.0) return;  // no need to look farther
+    }
+  }
+};
+
+}  // namespace
+
+Ladder choose_forward(const ForwardProblem& problem) {
+  const Maker make(problem);
+  Ladder ladder;
+  ladder.compared = one_of_each_group(problem.curves);
+  ladder.places = places_of(problem.parameters, problem.spec.points);
+  const std::shared_ptr<const SceneModel> scene = make.scene(reference(problem.spec));
+  const Variant variant = scene->variant(0, make.inner_start());
+  const std::optional<Specimen> size = homogeneous_specimen(variant, make.options({}));
+  if (problem.spec.kind == ForwardKind::uniaxial) {
+    const auto specimen = size ? make.specimen(*size) : nullptr;
+    if (!specimen)
+      throw std::invalid_argument(
+          "[forward] kind = \"uniaxial\" asks for a block or cylinder of one tissue between smooth plates, and for "
+          "parameters "
+          "of [tissue] alone; take kind = \"scene\" or \"auto\"");
+    ladder.rungs.push_back({.name = "specimen", .failure = {}, .model = specimen});
+    return ladder;
+  }
+  ladder.rungs.push_back({.name = "the scene", .failure = {}, .model = make.with_offsets(scene)});
+  if (problem.spec.kind == ForwardKind::scene) return ladder;
+
+  Comparison comparison{problem, ladder, std::vector<Forces>(ladder.places.size())};
+  std::string failure;
+  const auto begin = std::chrono::steady_clock::now();
+  comparison.truth[0] = run(*ladder.model(), ladder.compared, ladder.places[0], failure);
+  ladder.rungs[0].cost = seconds(begin);
+  if (!failure.empty()) throw std::runtime_error("the scene does not run at the start of the parameters: " + failure);
+  tbb::parallel_for(std::size_t{1}, ladder.places.size(), [&](std::size_t i) {
+    std::string ignored;
+    comparison.truth[i] = run(*ladder.rungs[0].model, ladder.compared, ladder.places[i], ignored);
+  });
+  for (std::size_t c = 0; c < ladder.compared.size(); ++c)
+    ladder.allowed.push_back(
+        allowance(problem.curves[ladder.compared[c]], comparison.truth[0][c], problem.spec.tolerance));
+
+  if (const auto specimen = size ? make.specimen(*size) : nullptr)
+    ladder.rungs.push_back({.name = "specimen", .failure = {}, .model = specimen});
+  for (Candidate& c : candidates(variant, problem.spec))
+    ladder.rungs.push_back(
+        {.name = c.name, .failure = {}, .model = make.with_offsets(make.scene(std::move(c.adjust)))});
+  for (std::size_t i = 1; i < ladder.rungs.size(); ++i) {
+    Rung& rung = ladder.rungs[i];
+    comparison.measure(rung);
+    if (rung.serves() && rung.cost < ladder.taken().cost) ladder.chosen = i;
+  }
+  return ladder;
+}
+
+double check_forward(const Ladder& ladder, const ForwardProblem& problem, std::span<const double> values) {
+  if (ladder.chosen == 0) return 0.0;
+  std::string failure;
+  const Forces truth = run(*ladder.rungs[0].model, ladder.compared, values, failure);
+  const Forces forces = failure.empty() ? run(*ladder.model(), ladder.compared, values, failure) : Forces{};
+  if (!failure.empty()) throw std::runtime_error("the forward models cannot be compared: " + failure);
+  double share = 0.0;
+  for (std::size_t c = 0; c < forces.size(); ++c) {
+    const Curve& curve = problem.curves[ladder.compared[c]];
+    share = std::max(share, rms(forces[c], truth[c]) / allowance(curve, truth[c], problem.spec.tolerance));
+  }
+  return share;
+}
+
+std::string describe(const Ladder& ladder) {
+  std::string text;
+  for (std::size_t i = 0; i < ladder.rungs.size(); ++i) {
+    const Rung& r = ladder.rungs[i];
+    char line[256];
+    if (!r.failure.empty())
+      std::snprintf(line, sizeof line, "%-28s fails: %.180s", r.name.c_str(), r.failure.c_str());
+    else if (i == 0 || ladder.rungs.size() == 1)
+      std::snprintf(line, sizeof line, "%-28s %10.2e s", r.name.c_str(), r.cost);
+    else
+      std::snprintf(line, sizeof line, "%-28s %10.2e s   off by %.3g N at the start, at most %.3g of what is allowed",
+                    r.name.c_str(), r.cost, r.error, r.share);
+    text += std::string(line) + (i == ladder.chosen ? "   ◀ taken\n" : "\n");
+  }
+  return text;
+}
+
+}  // namespace glisson::fit

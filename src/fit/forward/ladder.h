@@ -1,0 +1,66 @@
+// ladder.h — the cheapest forward model that keeps its error below the noise of the data.
+//
+//   specimen · static · implicit, long steps · semi-implicit · explicit, heavier tissue · …  ◀── compared ──▶  the scene itself
+//
+// All are compared at the start of the parameters and at some places within their bounds, on one curve of each group (its
+// repetitions go the same way). The cheapest whose error is everywhere below `tolerance` × noise is taken; if none is, the
+// scene as it is written.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fit/forward/scene_model.h"
+#include "fit/forward/section_forward.h"
+#include "fit/model.h"
+
+namespace glisson::fit {
+
+/// A model that was tried.
+struct Rung {
+  std::string name;     ///< "specimen", "implicit, 40 steps" …
+  double cost = 0.0;    ///< of one run of every curve compared, at the start [s]
+  double error = 0.0;   ///< largest rms difference from the scene at the start [N]
+  double share = 0.0;   ///< the largest of all places, over the error allowed there; below 1 it serves [-]
+  std::string failure;  ///< why it cannot be taken; empty: it ran everywhere
+  std::shared_ptr<const Model> model;
+  bool serves() const { return failure.empty() && share < 1.0; }
+};
+
+struct Ladder {
+  std::vector<Rung> rungs;  ///< the first is the scene itself; error 0 of itself
+  std::size_t chosen = 0;
+  std::vector<std::size_t> compared;        ///< curves
+  std::vector<double> allowed;              ///< rms difference of each of them, at the start [N]
+  std::vector<std::vector<double>> places;  ///< values of the parameters; the first is the start
+
+  const std::shared_ptr<const Model>& model() const { return rungs[chosen].model; }
+  const Rung& taken() const { return rungs[chosen]; }
+};
+
+/// What a fit needs to choose.
+struct ForwardProblem {
+  SceneText scene;
+  ForwardSpec spec;
+  std::vector<Parameter> parameters;  ///< names are keys: of the scene, or of offset_model.h
+  std::vector<Curve> curves;          ///< of all, those held out, too
+  MeshLoader load{};
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// Builds the models and chooses. @throws SceneError, std::invalid_argument for what cannot be used; std::runtime_error where
+/// the scene itself does not run at the start
+Ladder choose_forward(const ForwardProblem& problem);
+
+/// The error of the model taken at other values, e.g. the optimum: the largest rms difference from the scene over what is
+/// allowed there, below 1 where the choice holds. @throws std::runtime_error where one of them does not run
+double check_forward(const Ladder& ladder, const ForwardProblem& problem, std::span<const double> values);
+
+/// The ladder in words: a line for each model, and which was taken.
+std::string describe(const Ladder& ladder);
+
+/// The specimen that an experiment is between smooth plates; none where it is something else.
+std::optional<Specimen> homogeneous_specimen(const Variant& variant, const SceneModelOptions& options);
+
+}  // namespace glisson::fit

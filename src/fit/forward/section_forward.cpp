@@ -1,0 +1,100 @@
+#include "fit/forward/section_forward.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "scene/section.h"
+
+namespace glisson::fit {
+
+using namespace scene;
+
+const SectionSpec& forward_section() {
+  static const SectionSpec section = [] {
+    using F = ForwardSpec;
+    Section<F> s("forward", "How the forces of a fit are computed.");
+    s.choice<ForwardKind>(
+        "kind", &F::kind,
+        {{"auto", ForwardKind::automatic, "the cheapest model that stays within `tolerance` of the scene"},
+         {"uniaxial", ForwardKind::uniaxial, "a homogeneous specimen between smooth plates"},
+         {"scene", ForwardKind::scene, "the scene as it is written"}},
+        "which model");
+    s.choice<std::optional<Integrator>>("integrator", &F::integrator,
+                                        {{"explicit", Integrator::explicit_, ""},
+                                         {"semi_implicit", Integrator::semi_implicit, ""},
+                                         {"implicit", Integrator::implicit, ""},
+                                         {"static", Integrator::static_, ""}},
+                                        "integrator of the scene that the others are compared with")
+        .otherwise("the scene's");
+    s.key("tolerance", &F::tolerance, "largest rms difference from the scene, over the noise of a curve")
+        .in("-")
+        .within(above(0));
+    s.key("points", &F::points, "places within the bounds, beside the start, where models are compared")
+        .within(between(0, 100));
+    s.key("tool", &F::tool, "name of the tool or instrument that follows the curves").otherwise("the only one");
+    s.key("force", &F::force, "whose force was measured: a tool, an instrument, or `bottom` or `side` of the container")
+        .otherwise("that tool's");
+    s.key<Milli>("approach_mm", &F::approach, "way of an instrument in the scene before it touches the tissue")
+        .in("mm")
+        .within(at_least(0));
+    return s.spec();
+  }();
+  return section;
+}
+
+namespace {
+
+SectionSpec cylinder_kind() {
+  Section<SpecimenSpec> s("cylinder", "Round.");
+  s.key<Milli>("diameter_mm", &SpecimenSpec::diameter, "diameter").in("mm").within(above(0)).must();
+  s.key<Milli>("height_mm", &SpecimenSpec::height, "height at rest").in("mm").within(above(0)).must();
+  return s.spec();
+}
+
+SectionSpec block_kind() {
+  Section<SpecimenSpec> s("block", "Rectangular.");
+  s.key<Milli>("width_mm", &SpecimenSpec::width, "width").in("mm").within(above(0)).must();
+  s.key<Milli>("depth_mm", &SpecimenSpec::depth, "depth").in("mm").within(above(0)).must();
+  s.key<Milli>("height_mm", &SpecimenSpec::height, "height at rest").in("mm").within(above(0)).must();
+  return s.spec();
+}
+
+KindSpec kind_of(SectionSpec section, bool round) {
+  return {std::move(section), [round](void* target) -> void* {
+            static_cast<SpecimenSpec*>(target)->round = round;
+            return target;
+          }};
+}
+
+}  // namespace
+
+const SectionSpec& specimen_section() {
+  static const SectionSpec section = [] {
+    Section<SpecimenSpec> s("specimen", "A specimen pressed between smooth plates, in place of a scene.");
+    s.key("cells", &SpecimenSpec::cells,
+          "cubes along x, y and z of the body that the homogeneous specimen is compared with")
+        .within(between(1, 100));
+    s.spec().kinds = {kind_of(cylinder_kind(), true), kind_of(block_kind(), false)};
+    return s.spec();
+  }();
+  return section;
+}
+
+Specimen specimen_of(const SpecimenSpec& spec) {
+  const double area = spec.round ? 0.25 * std::numbers::pi * spec.diameter * spec.diameter : spec.width * spec.depth;
+  return {.area = area, .height = spec.height};
+}
+
+std::string specimen_scene(const SpecimenSpec& spec) {
+  const double area = specimen_of(spec).area;
+  const double width = spec.round ? std::sqrt(area) : spec.width;
+  std::string text = "title = \"A specimen between smooth plates\"\n\n[mesh]\nkind = \"box\"\n";
+  text += "cells = " + Codec<std::array<int, 3>>::show(spec.cells) + "\n";
+  text += "size_m = " + Codec<Vec3d>::show({width, area / width, spec.height}) + "\n\n";
+  for (const char* axis : {"x", "y", "z"})
+    text += "[[fixed]]\nset = \"" + std::string(axis) + "_min\"\naxes = \"" + axis + "\"\n\n";
+  return text +
+         "[[tool]]\nname = \"plate\"\nset = \"z_max\"\nsideways = \"free\"\n\n[motion]\nintegrator = \"implicit\"\n";
+}
+
+}  // namespace glisson::fit

@@ -1,0 +1,50 @@
+// section_forward.h — [forward] and [specimen] of a FIT.toml: how forces are computed.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "fit/forward/uniaxial.h"
+#include "glisson/simulation.h"
+#include "scene/schema.h"
+
+namespace glisson::fit {
+
+/// Which forward model a fit takes.
+enum class ForwardKind {
+  automatic,  ///< the cheapest that stays within `tolerance` of the scene (forward/ladder.h)
+  uniaxial,   ///< a homogeneous specimen between smooth plates
+  scene       ///< the scene as it is written
+};
+
+struct ForwardSpec {
+  ForwardKind kind = ForwardKind::automatic;
+  std::optional<Integrator> integrator;  ///< in place of the scene's; then it is the one to compare with
+  double tolerance = 0.3;  ///< largest rms difference from the scene, over the noise of the curve [-], > 0
+  int points = 3;          ///< places beside the start where models are compared, 0 … 100
+  std::string tool;        ///< the tool or instrument that follows the curves; empty: the only one
+  std::string force;       ///< whose force was measured; empty: that tool's
+  double approach = 0.0;   ///< way of an instrument in the scene before it touches the tissue [m], ≥ 0
+};
+
+/// A specimen between smooth plates, in place of a scene.
+struct SpecimenSpec {
+  bool round = true;
+  double diameter = 0.05;             ///< of a cylinder [m], > 0
+  double width = 0.02, depth = 0.02;  ///< of a block [m], > 0
+  double height = 0.03;               ///< [m], > 0
+  std::array<int, 3> cells{1, 1, 2};  ///< of the body that it is compared with
+};
+
+const scene::SectionSpec& forward_section();   ///< fills ForwardSpec
+const scene::SectionSpec& specimen_section();  ///< fills SpecimenSpec
+
+Specimen specimen_of(const SpecimenSpec& spec);
+
+/// A scene of the specimen without a [tissue]: a block with the area of its face, its floor and two sides held across
+/// themselves, its top pressed by a tool called "plate", sideways free. The state is the same all over, and a cylinder's
+/// force that of a block of its area.
+std::string specimen_scene(const SpecimenSpec& spec);
+
+}  // namespace glisson::fit
