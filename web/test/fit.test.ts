@@ -163,6 +163,15 @@ describe("residuals", () => {
     expect(residualsOf(curve, 10)).toEqual([5, -5, NaN]);
   });
 
+  it("have a scale however many samples there are", () => {
+    const curve = bareFit().curves[0]!;
+    const many = { ...curve, measured_N: Array(300_000).fill(1), fitted_N: Array(300_000).fill(3) };
+    expect(residualScale({ ...bareFit(), curves: [many], y: { label: "force [N]", scale: 1 } }).high).toBeCloseTo(
+      2.16,
+      9,
+    );
+  });
+
   it("share a symmetric scale that holds all of them and the noise", () => {
     const fit = largeFit();
     const scale = residualScale(fit);

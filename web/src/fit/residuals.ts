@@ -34,13 +34,13 @@ export function residualsOf(curve: FitCurve, scale: number): number[] {
 
 /** One scale for all: symmetric, and wide enough for the noise. */
 export function residualScale(fit: FitData): Scale {
-  const size = Math.max(
-    0,
-    ...fit.curves.flatMap((curve) => [
-      2.2 * curve.noise_N * Math.abs(fit.y.scale),
-      ...residualsOf(curve, fit.y.scale).filter(Number.isFinite).map(Math.abs),
-    ]),
-  );
+  let size = 0;
+  for (const curve of fit.curves) {
+    size = Math.max(size, 2.2 * curve.noise_N * Math.abs(fit.y.scale));
+    for (const residual of residualsOf(curve, fit.y.scale)) {
+      if (Number.isFinite(residual)) size = Math.max(size, Math.abs(residual));
+    }
+  }
   return makeScale(-1.08 * size, 1.08 * size);
 }
 
