@@ -263,6 +263,22 @@ TEST(Cycle, TakesTheWayThatIsAskedFor) {
   EXPECT_THAT(fault(cyclic(3), spec), HasSubstr("has no loading of cycle 4: 3 found; choose another cycle.number"));
 }
 
+// Over the way, a curve must go one way only; on the way out, too, its points come in the order of time.
+TEST(Cycle, IsResampledOverTheWayOneWayAtATime) {
+  DataSpec spec;
+  spec.resample = {ResampleOver::displacement, ResampleHow::average, 10};
+  EXPECT_THAT(fault(cyclic(1), spec),
+              HasSubstr("goes in and out again, so that a displacement comes more than once; give "
+                        "cycle.part = \"loading\""));
+  spec.cycle.part = CyclePart::unloading;
+  const Curve out = prepared(cyclic(1), spec).curve;
+  ASSERT_EQ(out.size(), 10u);
+  for (std::size_t i = 1; i < out.size(); ++i) {
+    EXPECT_GT(out.time[i], out.time[i - 1]);
+    EXPECT_LT(out.displacement[i], out.displacement[i - 1]);
+  }
+}
+
 // Noise of the way is no turn.
 TEST(Cycle, IgnoresJitter) {
   auto x = even(500, 0.0, 1.0);

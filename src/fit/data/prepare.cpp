@@ -139,11 +139,21 @@ class Preparation {
                               static_cast<std::size_t>(spec_.filter.degree))
                         .values;
     const double velocity = loading_velocity();
+    if (!can_resample()) return std::nullopt;
     const Resampled points = resampled(rows_, spec_.resample);
     rows_ = points.rows;
     if (!enough("what resampling leaves", "ask for more resample.points")) return std::nullopt;
     account_.points = rows_.size();
     return PreparedCurve{curve(velocity, account_.row_noise / std::sqrt(points.rows_a_point)), account_};
+  }
+
+  bool can_resample() {
+    if (spec_.resample.over != ResampleOver::displacement) return true;
+    if (turning_points(rows_.displacement, spec_.cycle.least).size() <= 2) return true;
+    complain(
+        "goes in and out again, so that a displacement comes more than once; give cycle.part = \"loading\", or "
+        "resample.over = \"time\"");
+    return false;
   }
 
   /// From the first row to the deepest.

@@ -10,6 +10,7 @@ namespace glisson::fit {
 namespace {
 
 constexpr std::size_t kBadRowsShown = 3;
+constexpr double kLargest = 1e30;  // of any number in SI: squares and sums of it stay finite
 
 /// A column and what turns its numbers into SI.
 struct Reading {
@@ -63,8 +64,10 @@ std::string fault_of(const CurveFile& file, const CurveFile::Row& row, const Cho
   if (column.index >= row.fields.size())
     return "has " + std::to_string(row.fields.size()) + " fields, none for " + column.source.title;
   const std::string& text = row.fields[column.index].text;
-  std::string what = text.empty() ? "is empty" : "\"" + text.substr(0, 40) + "\" is no finite number";
-  const bool other_mark = parse_number(text, file.decimal == ',' ? '.' : ',').has_value();
+  const char* fault = parse_number(text, file.decimal) ? "\" is beyond any measurement" : "\" is no finite number";
+  std::string what = text.empty() ? "is empty" : "\"" + text.substr(0, 40) + fault;
+  const bool other_mark =
+      !parse_number(text, file.decimal) && parse_number(text, file.decimal == ',' ? '.' : ',').has_value();
   if (other_mark)
     what += std::string(" with decimal `") + file.decimal + "`; say text.decimal, or choose another column";
   return what + " in " + column.source.title;
@@ -82,7 +85,7 @@ struct Rows {
     for (const Reading* r : readings) {
       const std::size_t i = r->column.index;
       const auto value = i < row.fields.size() ? parse_number(row.fields[i].text, file.decimal) : std::nullopt;
-      if (!value || !std::isfinite(*value * r->factor)) {
+      if (!value || !(std::abs(*value * r->factor) < kLargest)) {
         complain(row, r->column);
         return std::nullopt;
       }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace glisson::fit {
 namespace {
@@ -39,6 +41,16 @@ void add_mean(Samples& to, const Samples& bin) {
 void add_nearest(Samples& to, const Samples& bin, const std::vector<double>& key, double middle) {
   const auto nearer = [&](double a, double b) { return std::abs(a - middle) < std::abs(b - middle); };
   to.push(bin, static_cast<std::size_t>(std::min_element(key.begin(), key.end(), nearer) - key.begin()));
+}
+
+/// Bins over the way of an unloading come in the order of the way.
+void sort_by_time(Samples& rows) {
+  std::vector<std::size_t> order(rows.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rows.time[a] < rows.time[b]; });
+  Samples sorted;
+  for (const std::size_t row : order) sorted.push(rows, row);
+  rows = std::move(sorted);
 }
 
 }  // namespace
@@ -111,6 +123,7 @@ Resampled resampled(const Samples& rows, const ResampleSpec& spec) {
       add_nearest(result.rows, bins[b], spec.over == ResampleOver::time ? bins[b].time : bins[b].displacement,
                   start + (static_cast<double>(b) + 0.5) * width);
   }
+  sort_by_time(result.rows);
   if (spec.how == ResampleHow::average)
     result.rows_a_point = static_cast<double>(rows.size()) / static_cast<double>(result.rows.size());
   return result;
