@@ -115,8 +115,8 @@ TEST(Twin, IsCoveredWhereRepetitionsDiffer) {
   expect_covered(c);
 }
 
-// The bootstrap over six repetitions is known to be somewhat too sure, for percentiles of few curves are: 5 degrees of freedom
-// under normal quantiles give 90 % instead of 95 %. It has to hold the truth in 83 %: 100 seeds have an sd of 3 %.
+// Plain percentiles over six repetitions hold the truth in 88 %, for they stand in for normal quantiles; widened to Student's
+// with five degrees of freedom they have to hold it in 90 %. 100 seeds at a true 95 % have an sd of 2.2 %.
 TEST(Twin, IsCoveredByTheBootstrap) {
   Recipe recipe;
   recipe.copies = 6;
@@ -127,13 +127,14 @@ TEST(Twin, IsCoveredByTheBootstrap) {
     const Twin twin(kOgden, curves_of(recipe, static_cast<std::uint64_t>(s)), 100.0, ogden);
     const Optimum best = descend(twin.problem, twin.problem.to_scaled(std::vector{500.0, 4.0}));
     BootstrapOptions options;
+    options.replicates = 100;
     options.seed = static_cast<std::uint64_t>(s);
     const Bootstrap b = bootstrap(twin.problem, best.scaled, covariance(twin.problem, best.scaled), options);
     for (std::size_t i = 0; i < 2; ++i) share[i] += b.interval[i].holds(kTruth[i]) ? 1.0 / kSeeds : 0.0;
   }
   std::printf("bootstrap of six repetitions that differ: mu %.2f, alpha %.2f\n", share[0], share[1]);
-  EXPECT_GE(share[0], 0.83);
-  EXPECT_GE(share[1], 0.83);
+  EXPECT_GE(share[0], 0.90);
+  EXPECT_GE(share[1], 0.90);
 }
 
 // A robust loss with one sample in twenty far off: the intervals are still right, and narrower than those of squares.

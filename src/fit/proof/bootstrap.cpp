@@ -10,6 +10,7 @@
 #include <random>
 
 #include "fit/least_squares.h"
+#include "fit/proof/distribution.h"
 
 namespace glisson::fit {
 namespace {
@@ -67,9 +68,15 @@ class Source {
     const double effective = covariance.noise.effective;
     const double left = std::max(effective - static_cast<double>(covariance.parameters()), 1.0);
     growth_ = std::sqrt(std::max(effective / left, 1.0));
+    for (const Group& g : groups_) {
+      if (g.curves.size() >= kFewestRepetitions) freedom_ += static_cast<double>(g.curves.size() - 1);
+      for (const std::size_t c : g.curves)
+        if (g.curves.size() < kFewestRepetitions) freedom_ += covariance.noise.effective_by_curve[c];
+    }
   }
 
   bool usable() const { return !residuals_.empty(); }
+  double freedom() const { return std::max(freedom_, 1.0); }
 
   /// A problem of its own, with curves drawn anew.
   std::unique_ptr<Problem> replicate(Draw& draw) const {
@@ -146,7 +153,7 @@ class Source {
   std::vector<double> residuals_;
   std::vector<Group> groups_;
   std::vector<double> times_;
-  double growth_ = 1.0;
+  double growth_ = 1.0, freedom_ = 0.0;
 };
 
 struct Refit {
@@ -173,8 +180,9 @@ void summarise(Bootstrap& b, const Problem& problem, double level) {
     for (const double x : z) squares += (x - mean) * (x - mean);
     b.sd.push_back(std::sqrt(squares / static_cast<double>(z.size() - 1)));
     std::sort(z.begin(), z.end());
-    low[p] = percentile(z, 0.5 * (1.0 - level));
-    high[p] = percentile(z, 0.5 * (1.0 + level));
+    const double median = percentile(z, 0.5);
+    low[p] = median - b.widening * (median - percentile(z, 0.5 * (1.0 - level)));
+    high[p] = median + b.widening * (percentile(z, 0.5 * (1.0 + level)) - median);
   }
   const std::vector<double> values_low = problem.to_values(low), values_high = problem.to_values(high);
   for (std::size_t p = 0; p < parameters; ++p)
@@ -193,6 +201,9 @@ Bootstrap bootstrap(const Problem& problem, std::span<const double> optimum, con
     return b;
   }
   b.notes = source.notes();
+  constexpr double kMany = 1e6;  // degrees of freedom of a normal distribution, near enough
+  const double share = 0.5 * (1.0 + options.level);
+  b.widening = student_quantile(share, source.freedom()) / student_quantile(share, kMany);
   std::vector<Refit> refits(static_cast<std::size_t>(b.asked));
   DescentOptions descent;
   descent.most_iterations = options.most_iterations;

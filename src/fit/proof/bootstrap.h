@@ -28,8 +28,9 @@ struct Bootstrap {
   bool stopped = false;
   std::vector<std::vector<double>> scaled;  ///< z of each refit that is there, in the order of its number
   std::vector<double> sd;                   ///< of z
-  std::vector<Interval> interval;           ///< percentiles, own units; an end at the parameter's bound is open
+  std::vector<Interval> interval;           ///< widened percentiles, own units; an end at the parameter's bound is open
   std::vector<std::string> notes;           ///< for each group, how it was drawn
+  double widening = 1.0;                    ///< t / 1.96
   std::uint64_t forward_runs = 0;
 };
 
@@ -39,6 +40,10 @@ struct Bootstrap {
 ///   repetitions unbiased [RaoWu1988]; n of n would be √((n − 1) / n) short of it
 ///   fewer: the optimum's force and residuals drawn in circular blocks of three correlation times [Kunsch1989]
 ///   [PolitisRomano1992], about their mean and √(N_eff / (N_eff − p)) larger
+///
+/// Percentiles of few curves are too narrow, as normal quantiles are in place of Student's: they are moved away from the
+/// median by t / 1.96, with n − 1 degrees of freedom for each group of repetitions and N_eff for a group drawn in blocks,
+/// the expansion of [Hesterberg2015] by width instead of by level, which 200 refits would not resolve.
 ///
 /// Refits go in parallel; each has its own random numbers, from seed and number, so that any number of threads gives the same
 /// bytes. With `stop` those not begun are left out.
