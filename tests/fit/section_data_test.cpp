@@ -384,7 +384,7 @@ TEST_F(BadFile, RepetitionsThatDisagreeByAThousand) {
   const std::string keys = "files = [\"a.csv\", \"b.csv\", \"c.csv\"]\n";
   EXPECT_THAT(
       test::complaint(section(keys), {}, folder_.path()),
-      AllOf(HasSubstr("c.csv: \"Load (N)\", read in N, spans 0.001 times what the other tests of its group span"),
+      AllOf(HasSubstr("c.csv:1:1: \"Load (N)\", read in N, spans 0.001 times what the other tests of its group span"),
             HasSubstr("unlikely = true")));
   EXPECT_EQ(test::complaint(section(keys + "unlikely = true\n"), {}, folder_.path()), "");
 }

@@ -178,21 +178,23 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-void compare_with_median(const std::vector<RawTest>& tests, scene::Problems& problems,
-                         const std::function<double(const RawTest&)>& size,
-                         const std::function<const Source&(const RawTest&)>& source) {
+using Size = std::function<double(const RawTest&)>;
+using From = std::function<const Source&(const RawTest&)>;
+
+void compare_with_median(const std::vector<RawTest>& tests, const Size& size, const From& from,
+                         std::vector<std::string>& faults) {
   std::vector<double> sizes;
   for (const RawTest& test : tests) sizes.push_back(size(test));
   const double usual = median(sizes);
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const double ratio = sizes[i] / usual;
-    const Source& from = source(tests[i]);
-    if (!from.unit || !std::isfinite(ratio) || (ratio < kRepetitions && ratio > 1.0 / kRepetitions)) continue;
-    problems.add({std::max(tests[i].names_line, 1U), 1, {}}, "",
-                 tests[i].file.filename().string() + ": " + from.title + ", read in " + std::string(from.unit->name) +
-                     ", spans " + brief(ratio) +
-                     " times what the other tests of its group span; check the unit of this "
-                     "file, give it a [[data]] of its own" +
+    const Source& source = from(tests[i]);
+    if (!source.unit || !std::isfinite(ratio) || (ratio < kRepetitions && ratio > 1.0 / kRepetitions)) continue;
+    const scene::Problems place(tests[i].file.string());
+    faults.push_back(place.locate({std::max(tests[i].names_line, 1U), 1, {}}, "") + ": " + source.title + ", read in " +
+                     std::string(source.unit->name) + ", spans " + brief(ratio) +
+                     " times what the other tests of its group span; check its unit in this file, give the file a "
+                     "[[data]] of its own" +
                      kWayOut);
   }
 }
@@ -203,17 +205,20 @@ void check_units(const RawTest& test, const DataSpec& spec, const SpecimenSize& 
   if (!spec.unlikely && test.size() > 0) UnitCheck(test, spec, size, problems).run();
 }
 
-void check_repetitions(const std::vector<RawTest>& tests, scene::Problems& problems) {
-  if (tests.size() < 2) return;
+std::vector<std::string> repetition_faults(const std::vector<RawTest>& tests) {
+  std::vector<std::string> faults;
+  if (tests.size() < 2) return faults;
   using Test = const RawTest&;
+  const auto way = [](Test t) -> const Source& { return t.displacement_source; };
+  const auto force = [](Test t) -> const Source& { return t.force_source; };
+  const auto time = [](Test t) -> const Source& { return t.time_source; };
   compare_with_median(
-      tests, problems, [](Test t) { return span_of(t.displacement); },
-      [](Test t) -> const Source& { return t.displacement_source; });
+      tests, [](Test t) { return span_of(t.displacement); }, way, faults);
   compare_with_median(
-      tests, problems, [](Test t) { return span_of(t.force); }, [](Test t) -> const Source& { return t.force_source; });
+      tests, [](Test t) { return span_of(t.force); }, force, faults);
   compare_with_median(
-      tests, problems, [](Test t) { return t.time.back() - t.time.front(); },
-      [](Test t) -> const Source& { return t.time_source; });
+      tests, [](Test t) { return t.time.back() - t.time.front(); }, time, faults);
+  return faults;
 }
 
 }  // namespace glisson::fit

@@ -28,13 +28,6 @@ RawTest load_raw(const std::filesystem::path& path, const DataSpec& spec, const 
   return test;
 }
 
-void check_group(const std::vector<RawTest>& tests, const DataSpec& spec) {
-  if (spec.unlikely) return;
-  scene::Problems problems(tests.front().file.parent_path().string());
-  check_repetitions(tests, problems);
-  problems.throw_if_any();
-}
-
 /// Names that several files share get their folders.
 void make_unique(std::vector<PreparedCurve>& curves, const DataSpec& spec) {
   for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -56,7 +49,9 @@ std::vector<PreparedCurve> load_curves(const DataSpec& spec, const SpecimenSize&
   std::vector<RawTest> tests;
   for (const auto& file : spec.files)
     collect(faults, [&] { tests.push_back(load_raw(placed(file, base), spec, size)); });
-  if (faults.empty() && !tests.empty()) collect(faults, [&] { check_group(tests, spec); });
+  if (faults.empty() && !spec.unlikely) {
+    for (const std::string& fault : repetition_faults(tests)) faults.append(faults.empty() ? "" : "\n").append(fault);
+  }
   std::vector<PreparedCurve> curves;
   for (const RawTest& test : tests) {
     collect(faults, [&] {

@@ -46,7 +46,7 @@ RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize
 /// speed that do not give the way, stiffness that no soft tissue has.
 void check_units(const RawTest& test, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems);
 
-/// Complains about tests of one group of which one is about a thousand times another.
-void check_repetitions(const std::vector<RawTest>& tests, scene::Problems& problems);
+/// Complaints, `file:line:column: …`, about tests of one group of which one is a hundred times the usual or more.
+std::vector<std::string> repetition_faults(const std::vector<RawTest>& tests);
 
 }  // namespace glisson::fit

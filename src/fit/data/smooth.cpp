@@ -22,15 +22,43 @@ Eigen::VectorXd weights(std::span<const double> x, std::size_t at, std::size_t d
   return q * q.row(static_cast<Eigen::Index>(at)).transpose();
 }
 
+/// Weights of the last window, which serve again where the next one has the same spacing.
+class Window {
+ public:
+  const Eigen::VectorXd& at(std::span<const double> x, std::size_t at, std::size_t degree) {
+    if (!same_spacing(x, at)) {
+      weights_ = weights(x, at, degree);
+      last_ = x;
+      at_ = at;
+    }
+    return weights_;
+  }
+
+ private:
+  bool same_spacing(std::span<const double> x, std::size_t at) const {
+    if (last_.size() != x.size() || at_ != at) return false;
+    const double tolerance = 1e-9 * (x.back() - x.front());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (!(std::abs((x[i] - x[0]) - (last_[i] - last_[0])) <= tolerance)) return false;
+    }
+    return true;
+  }
+
+  std::span<const double> last_;
+  std::size_t at_ = 0;
+  Eigen::VectorXd weights_;
+};
+
 }  // namespace
 
 LocalFit local_fit(std::span<const double> x, std::span<const double> y, std::size_t half_width, std::size_t degree) {
   const std::size_t n = x.size(), width = std::min(2 * half_width + 1, n);
   LocalFit fit{std::vector<double>(y.begin(), y.end()), std::vector<double>(n, 1.0)};
   if (width <= degree) return fit;
+  Window window;
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t first = std::min(i - std::min(i, half_width), n - width);
-    const Eigen::VectorXd w = weights(x.subspan(first, width), i - first, degree);
+    const Eigen::VectorXd& w = window.at(x.subspan(first, width), i - first, degree);
     double value = 0.0;
     for (std::size_t k = 0; k < width; ++k) value += w[static_cast<Eigen::Index>(k)] * y[first + k];
     fit.values[i] = value;
