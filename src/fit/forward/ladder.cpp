@@ -225,8 +225,9 @@ struct Comparison {
     }
     return forces;
   }
-  /// Runs a model at all places and notes cost and error. A place where the scene fails says nothing.
-  void measure(Rung& rung) const {
+  /// Runs a model at all places and notes cost and error; only at the start where one that serves costs less already. A
+  /// place where the scene fails says nothing.
+  void measure(Rung& rung, double best_cost) const {
     for (std::size_t place = 0; place < truth.size() && rung.failure.empty(); ++place) {
       if (truth[place].empty()) continue;
       const Forces forces = timed_run(rung, place);
@@ -236,7 +237,7 @@ struct Comparison {
         if (place == 0) rung.error = std::max(rung.error, error);
         rung.share = std::max(rung.share, error / allowance(curve, truth[place][c], problem.spec.tolerance));
       }
-      if (rung.share > 1.0) return;  // no need to look farther
+      if (rung.share > 1.0 || rung.cost >= best_cost) return;
     }
   }
 };
@@ -285,7 +286,7 @@ Ladder choose_forward(const ForwardProblem& problem) {
         {.name = c.name, .failure = {}, .model = make.with_offsets(make.scene(std::move(c.adjust)))});
   for (std::size_t i = 1; i < ladder.rungs.size(); ++i) {
     Rung& rung = ladder.rungs[i];
-    comparison.measure(rung);
+    comparison.measure(rung, ladder.taken().cost);
     if (rung.serves() && rung.cost < ladder.taken().cost) ladder.chosen = i;
   }
   return ladder;

@@ -22,7 +22,7 @@ struct Rung {
   std::string name;     ///< "specimen", "implicit, 40 steps" …
   double cost = 0.0;    ///< of one run of every curve compared, at the start [s]
   double error = 0.0;   ///< largest rms difference from the scene at the start [N]
-  double share = 0.0;   ///< the largest of all places, over the error allowed there; below 1 it serves [-]
+  double share = 0.0;   ///< the largest of the places looked at, over the error allowed there; below 1 it serves [-]
   std::string failure;  ///< why it cannot be taken; empty: it ran everywhere
   std::shared_ptr<const Model> model;
   bool serves() const { return failure.empty() && share < 1.0; }

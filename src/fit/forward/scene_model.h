@@ -43,7 +43,8 @@ struct SceneModelOptions {
 class SceneModel final : public MotionModel {
  public:
   /// @param keys  of the parameters, as --set takes them; [i] addresses an element of a list of numbers
-  /// @throws SceneError, std::invalid_argument for a scene, keys or curves that cannot be used
+  /// @throws SceneError, std::invalid_argument for a text, keys or curves that cannot be used; the scene's values are checked
+  ///         with each run, or by variant()
   SceneModel(const SceneText& scene, std::span<const std::string> keys, std::vector<Curve> curves,
              SceneModelOptions options = {});
   Prediction predict_from(std::size_t curve, std::span<const double> values, double contact) const override;
