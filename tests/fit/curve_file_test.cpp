@@ -165,5 +165,29 @@ TEST(Phantom, CarriesThePublishedStresses) {
   }
 }
 
+/// Scatter of the five files at a strain [kPa].
+double scatter(const std::vector<PreparedCurve>& curves, double strain) {
+  double mean = 0.0, squares = 0.0;
+  for (const PreparedCurve& c : curves) mean += stress_at(c.curve, strain) / 5.0;
+  for (const PreparedCurve& c : curves) squares += std::pow(stress_at(c.curve, strain) - mean, 2.0);
+  return std::sqrt(squares / 4.0);
+}
+
+// Two of the five files of EF10_100T begin a quarter of a millimetre before the plate touches, by the sign of their force.
+// Counted from contact, the repetitions agree far better: 0.004 kPa instead of 0.033 at 5 %, 0.005 instead of 0.037 at 10 %;
+// a factor of 4 is asked for, so that the bound does not hang on the last digit.
+TEST(Phantom, AgreesBetterCountedFromContact) {
+  if (!have_phantoms()) GTEST_SKIP() << "the phantom files are not beside the sources";
+  DataSpec spec = phantom("EF10_100T");
+  const auto recorded = load_curves(spec, kPhantomSize, kPhantoms);
+  spec.contact.kind = ContactKind::detect;
+  const auto touched = load_curves(spec, kPhantomSize, kPhantoms);
+  EXPECT_EQ(touched[1].account.contact_how, "extrapolated");
+  EXPECT_NEAR(touched[1].account.contact, 0.26e-3, 0.02e-3);
+  EXPECT_NEAR(touched[4].account.contact, 0.24e-3, 0.02e-3);
+  for (const double strain : {0.05, 0.1})
+    EXPECT_LT(scatter(touched, strain), scatter(recorded, strain) / 4.0) << strain;
+}
+
 }  // namespace
 }  // namespace glisson::fit
