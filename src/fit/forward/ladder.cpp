@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <set>
 #include <stdexcept>
 
@@ -15,6 +16,9 @@ namespace glisson::fit {
 namespace {
 
 using Adjust = std::function<void(Variant&, double)>;
+/// Runs that are shorter than this are not broken off [s].
+constexpr double kShortest = 0.02;
+constexpr double kEver = std::numeric_limits<double>::infinity();
 
 struct Candidate {
   std::string name;
@@ -170,20 +174,21 @@ struct Maker {
     for (const Parameter& x : p.parameters) keys.push_back(x.name);
     inner = inner_keys(keys);
   }
-  SceneModelOptions options(Adjust adjust) const {
+  SceneModelOptions options(Adjust adjust, double longest) const {
     return {.tool = problem.spec.tool,
             .force = problem.spec.force,
             .approach = problem.spec.approach,
             .load = problem.load,
             .adjust = std::move(adjust),
-            .stop = problem.stop};
+            .stop = problem.stop,
+            .longest = longest};
   }
   std::shared_ptr<const Model> with_offsets(std::shared_ptr<const MotionModel> model) const {
     if (inner.size() == keys.size()) return model;
     return std::make_shared<OffsetModel>(std::move(model), keys);
   }
-  std::shared_ptr<const SceneModel> scene(Adjust adjust) const {
-    return std::make_shared<SceneModel>(problem.scene, inner, problem.curves, options(std::move(adjust)));
+  std::shared_ptr<const SceneModel> scene(Adjust adjust, double longest = kEver) const {
+    return std::make_shared<SceneModel>(problem.scene, inner, problem.curves, options(std::move(adjust), longest));
   }
   std::shared_ptr<const Model> specimen(const Specimen& size) const {
     const SceneText& s = problem.scene;
@@ -213,11 +218,11 @@ struct Comparison {
   std::vector<Forces> truth;
 
   /// Runs a model at a place; at the start short runs are made again, and the shortest is the cost.
-  Forces timed_run(Rung& rung, std::size_t place) const {
+  Forces timed_run(Rung& rung, const Model& model, std::size_t place) const {
     Forces forces;
     for (int i = 0; i < 5; ++i) {
       const auto begin = std::chrono::steady_clock::now();
-      forces = run(*rung.model, ladder.compared, ladder.places[place], rung.failure);
+      forces = run(model, ladder.compared, ladder.places[place], rung.failure);
       const double cost = seconds(begin);
       if (place != 0) break;
       rung.cost = i == 0 ? cost : std::min(rung.cost, cost);
@@ -226,11 +231,11 @@ struct Comparison {
     return forces;
   }
   /// Runs a model at all places and notes cost and error; only at the start where one that serves costs less already. A
-  /// place where the scene fails says nothing.
-  void measure(Rung& rung, double best_cost) const {
+  /// place where the scene fails says nothing. @param model  as the rung's, perhaps with an end to its patience
+  void measure(Rung& rung, const Model& model, double best_cost) const {
     for (std::size_t place = 0; place < truth.size() && rung.failure.empty(); ++place) {
       if (truth[place].empty()) continue;
-      const Forces forces = timed_run(rung, place);
+      const Forces forces = timed_run(rung, model, place);
       for (std::size_t c = 0; c < forces.size(); ++c) {
         const double error = rms(forces[c], truth[place][c]);
         const Curve& curve = problem.curves[ladder.compared[c]];
@@ -251,7 +256,7 @@ Ladder choose_forward(const ForwardProblem& problem) {
   ladder.places = places_of(problem.parameters, problem.spec.points);
   const std::shared_ptr<const SceneModel> scene = make.scene(reference(problem.spec));
   const Variant variant = scene->variant(0, make.inner_start());
-  const std::optional<Specimen> size = homogeneous_specimen(variant, make.options({}));
+  const std::optional<Specimen> size = homogeneous_specimen(variant, make.options({}, kEver));
   if (problem.spec.kind == ForwardKind::uniaxial) {
     const auto specimen = size ? make.specimen(*size) : nullptr;
     if (!specimen)
@@ -279,15 +284,17 @@ Ladder choose_forward(const ForwardProblem& problem) {
     ladder.allowed.push_back(
         allowance(problem.curves[ladder.compared[c]], comparison.truth[0][c], problem.spec.tolerance));
 
+  const auto try_out = [&](Rung rung, const Model& trial) {
+    comparison.measure(rung, trial, ladder.taken().cost);
+    ladder.rungs.push_back(std::move(rung));
+    const Rung& last = ladder.rungs.back();
+    if (last.serves() && last.cost < ladder.taken().cost) ladder.chosen = ladder.rungs.size() - 1;
+  };
   if (const auto specimen = size ? make.specimen(*size) : nullptr)
-    ladder.rungs.push_back({.name = "specimen", .failure = {}, .model = specimen});
-  for (Candidate& c : candidates(variant, problem.spec))
-    ladder.rungs.push_back(
-        {.name = c.name, .failure = {}, .model = make.with_offsets(make.scene(std::move(c.adjust)))});
-  for (std::size_t i = 1; i < ladder.rungs.size(); ++i) {
-    Rung& rung = ladder.rungs[i];
-    comparison.measure(rung, ladder.taken().cost);
-    if (rung.serves() && rung.cost < ladder.taken().cost) ladder.chosen = i;
+    try_out({.name = "specimen", .failure = {}, .model = specimen}, *specimen);
+  for (const Candidate& c : candidates(variant, problem.spec)) {
+    const auto trial = make.with_offsets(make.scene(c.adjust, std::max(kShortest, ladder.taken().cost)));
+    try_out({.name = c.name, .failure = {}, .model = make.with_offsets(make.scene(c.adjust))}, *trial);
   }
   return ladder;
 }

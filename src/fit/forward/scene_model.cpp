@@ -1,6 +1,7 @@
 #include "fit/forward/scene_model.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -53,10 +54,11 @@ Part measured_part(const Variant& variant, const SceneModelOptions& options) {
   return {options.force == "bottom" ? Part::What::bottom : Part::What::side, 0};
 }
 
-/// The force of the measured part at each sample, and how the run ended.
+/// The force of the measured part at each sample; halts a run that is not wanted any more.
 class ForceRecorder final : public RunObserver {
  public:
-  ForceRecorder(const Variant& variant, const Part& part) : part_(part) {
+  ForceRecorder(const Variant& variant, const Part& part, const SceneModelOptions& options)
+      : part_(part), stop_(options.stop), longest_(options.longest) {
     if (part.what == Part::What::tool) direction_ = unit(variant.tools[part.index].motion.direction);
     if (part.what == Part::What::instrument) direction_ = unit(variant.instruments[part.index].direction);
   }
@@ -64,10 +66,15 @@ class ForceRecorder final : public RunObserver {
     if (!times.empty() && !(s.time > times.back())) return;
     times.push_back(s.time);
     forces.push_back(force_of(s));
+    const bool late = seconds() > longest_;
+    if (late || (stop_ != nullptr && stop_->load(std::memory_order_relaxed))) halt = true;
   }
+  bool late() const { return halt && seconds() > longest_; }
   std::vector<double> times, forces;
+  std::atomic<bool> halt{false};
 
  private:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
   double force_of(const Sample& s) const {
     if (part_.what == Part::What::bottom) return -s.container->bottom.z;
     if (part_.what == Part::What::side) return -s.container->side.z;
@@ -77,6 +84,9 @@ class ForceRecorder final : public RunObserver {
   }
   Part part_;
   Vec3d direction_{0, 0, -1};
+  const std::atomic<bool>* stop_;
+  double longest_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
 const char* end_words(RunSummary::End end) {
@@ -189,9 +199,9 @@ Prediction SceneModel::predict_from(std::size_t index, std::span<const double> v
   try {
     const Variant v = variant(index, values, contact);
     const Curve& c = curve(index);
-    ForceRecorder recorder(v, measured_part(v, options_));
-    const std::atomic<bool> never{false};
-    const RunSummary summary = run_variant(v, options_.load, recorder, options_.stop ? *options_.stop : never);
+    ForceRecorder recorder(v, measured_part(v, options_), options_);
+    recorder.halt = options_.stop != nullptr && options_.stop->load();
+    const RunSummary summary = run_variant(v, options_.load, recorder, recorder.halt);
     if (summary.end != RunSummary::End::finished || recorder.times.empty()) {
       result.failure = "curve \"" + c.name + "\": the run stopped at " + std::to_string(summary.time_s) +
                        " s: " + end_words(summary.end) + (summary.trouble.empty() ? "" : ": " + summary.trouble);

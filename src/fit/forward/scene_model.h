@@ -9,6 +9,7 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,8 @@ struct SceneModelOptions {
   MeshLoader load{};
   /// Last changes of the experiment before it runs for so long [s]: another integrator, another step.
   std::function<void(Variant&, double duration)> adjust{};
-  const std::atomic<bool>* stop = nullptr;  ///< ends runs early, with a failure
+  const std::atomic<bool>* stop = nullptr;                   ///< ends runs early, with a failure
+  double longest = std::numeric_limits<double>::infinity();  ///< a run that takes longer fails [s], wall clock
 };
 
 /// The force is that on the tissue along the tool's direction, positive when it presses: elastic, viscous, damping and what
