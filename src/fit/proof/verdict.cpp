@@ -97,10 +97,9 @@ std::string words_of(const Problem& problem, const Covariance& c, const Profiles
     return s + "anywhere from " + range(e.interval, x.unit) + " fits these curves" + flat_words(problem, profiled, p);
   s += range(e.interval, x.unit);
   if (verdict == Verdict::identified) return s;
-  for (const std::string& reason : {e.low_reason, e.high_reason}) {
-    if (!reason.empty()) return s + ": " + reason + flat_words(problem, profiled, p);
-  }
-  return s + ": the curves hardly limit it";
+  const std::string& reason = e.low_reason.empty() ? e.high_reason : e.low_reason;
+  if (reason.empty()) return s + ": the curves hardly limit it";
+  return s + ": " + reason + flat_words(problem, profiled, p);
 }
 
 std::vector<std::size_t> members(const std::vector<double>& direction, double least) {
