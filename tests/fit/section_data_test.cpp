@@ -311,6 +311,9 @@ TEST_F(BadFile, TimeThatGoesBack) {
       fault(rows({{8, "3.5,2.5,0.5"}})),
       HasSubstr(
           "t.csv:8:1: time goes back: 3.5 s in \"Time (s)\" after 4 s in line 7; it must not fall: sort the rows"));
+  // late in a long record the difference is in the sixth digit
+  EXPECT_THAT(fault(kHead + "1000.1,0,0\n1000.3,1,1\n1000.2,2,2\n1000.4,3,3\n"),
+              HasSubstr("1000.2 s in \"Time (s)\" after 1000.3 s"));
   folder_.write("t.csv", rows({{8, "4,2.5,0.5"}}));
   const auto merged = load_curves(section("files = [\"t.csv\"]\n"), {}, folder_.path()).front();
   EXPECT_EQ(merged.account.rows_merged, 1u);

@@ -137,20 +137,29 @@ std::vector<double> time_of(const std::vector<double>& way, double speed) {
   return time;
 }
 
+/// What is wrong with the time of row `now` after row `before`.
+std::string backward(const RawTest& test, std::size_t before, std::size_t now) {
+  constexpr int kDigits = 9;
+  const double unit = test.time_source.unit ? test.time_source.unit->factor : 1.0;
+  const std::string name = test.time_source.unit ? std::string(test.time_source.unit->name) : "s";
+  std::string text = "time goes back: ";
+  text.append(brief(test.time[now] / unit, kDigits))
+      .append(" ")
+      .append(name)
+      .append(" in ")
+      .append(test.time_source.title);
+  text.append(" after ").append(brief(test.time[before] / unit, kDigits)).append(" ").append(name).append(" in line ");
+  return text.append(std::to_string(test.lines[before]))
+      .append("; it must not fall: sort the rows, split repeated tests into files, or choose another column");
+}
+
 /// Rows of one time become their mean; complains of times that go back.
 void merge_times(RawTest& test, const CurveFile& file, scene::Problems& problems) {
   std::size_t kept = 0, back = 0;
   double count = 1.0;
   for (std::size_t i = 1; i < test.size(); ++i) {
-    if (test.time[i] < test.time[kept] && ++back <= kBadRowsShown) {
-      const double unit = test.time_source.unit ? test.time_source.unit->factor : 1.0;
-      const std::string name = test.time_source.unit ? std::string(test.time_source.unit->name) : "s";
-      problems.add({test.lines[i], 1, {}}, "",
-                   "time goes back: " + brief(test.time[i] / unit) + " " + name + " in " + test.time_source.title +
-                       " after " + brief(test.time[kept] / unit) + " " + name + " in line " +
-                       std::to_string(test.lines[kept]) +
-                       "; it must not fall: sort the rows, split repeated tests into files, or choose another column");
-    }
+    if (test.time[i] < test.time[kept] && ++back <= kBadRowsShown)
+      problems.add({test.lines[i], 1, {}}, "", backward(test, kept, i));
     const bool same = test.time[i] == test.time[kept];
     test.rows_merged += same;
     count = same ? count + 1.0 : 1.0;

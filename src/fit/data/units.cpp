@@ -86,9 +86,9 @@ Title split_title(std::string_view title) {
   return {std::string(title), {}};
 }
 
-std::string brief(double value) {
+std::string brief(double value, int digits) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
+  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
   return text.data();
 }
 

@@ -29,7 +29,7 @@ struct Title {
 /// A unit after `/` or `_` counts only where it is one of `units_of` any quantity.
 Title split_title(std::string_view title);
 
-/// Four significant digits, for messages.
-std::string brief(double value);
+/// A few significant digits, for messages.
+std::string brief(double value, int digits = 4);
 
 }  // namespace glisson::fit
