@@ -18,5 +18,6 @@ void add_schema(CLI::App& program, Action& action);
 void add_laws(CLI::App& program, Action& action);
 void add_tissues(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
+void add_fit(CLI::App& program, Action& action);
 
 }  // namespace glisson::app

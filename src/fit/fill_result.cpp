@@ -1,0 +1,245 @@
+#include "fit/fill_result.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <set>
+
+#include "fit/proof/bootstrap.h"
+#include "fit/proof/covariance.h"
+#include "fit/proof/profile.h"
+#include "fit/proof/validation.h"
+#include "fit/proof/verdict.h"
+#include "scene/tissue_file.h"
+
+namespace glisson::fit {
+namespace {
+
+bool stopped(const FitOptions& options) { return options.stop != nullptr && options.stop->load(); }
+
+/// Three digits, and no power of ten where a plain number does.
+std::string rounded(double x, int digits = 3) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, x);
+  return text;
+}
+
+std::optional<double> known(double x) { return std::isfinite(x) ? std::optional(x) : std::nullopt; }
+
+std::string newtons_or_stress(double force, const FitResult& result) {
+  if (!result.area) return rounded(force) + " N";
+  return rounded(force) + " N (" + rounded(1e-3 * force / *result.area) + " kPa)";
+}
+
+void conclude_on_curves(const Validation& all, const FitResult& result, std::vector<std::string>& sentences) {
+  sentences.push_back("The fitted curves are met to " + newtons_or_stress(result.rms_fit, result) + " rms.");
+  for (const GroupError& g : all.groups) {
+    if (std::isnan(g.rms_heldout)) continue;
+    std::string text = "Held out, " + g.name + " is met to " + newtons_or_stress(g.rms_heldout, result) + " rms";
+    if (g.spread.curves >= 2) {
+      text += "; its repetitions differ by " + newtons_or_stress(g.spread.deviation, result) +
+              (g.within_spread ? ": as near as the test repeats." : ": further than the test repeats.");
+    } else {
+      text += ".";
+    }
+    sentences.push_back(text);
+  }
+}
+
+/// The error of held-out curves up to a displacement, beside their spread, over all of them as one test.
+std::string limited_errors(const FitCurves& curves, const std::vector<Prediction>& predictions, double limit) {
+  const Validation near = validate(curves.curves, predictions, limit);
+  if (std::isnan(near.rms_heldout)) return {};
+  std::vector<const Curve*> all;
+  for (const Curve& c : curves.curves) all.push_back(&c);
+  const glisson::fit::Spread spread = spread_of(all, limit);
+  return "Up to " + rounded(1e3 * limit) + " mm the held-out curves are met to " + rounded(near.rms_heldout) +
+         " N rms; all curves differ there by " + rounded(spread.deviation) + " N.";
+}
+
+void conclude_on_search(const LawSearch& search, std::vector<std::string>& sentences) {
+  const MultiStart& found = search.found();
+  const std::size_t finished = found.starts.size();
+  const Basin& best = found.basins.front();
+  std::string text =
+      "The best optimum was found from " + std::to_string(best.found) + " of " + std::to_string(finished) + " starts";
+  int failed = static_cast<int>(finished);
+  for (const Basin& b : found.basins) failed -= b.found;
+  if (failed > 0) text += ", " + std::to_string(failed) + " of which could not be simulated";
+  if (found.basins.size() == 1) {
+    text += "; no other was found.";
+  } else {
+    text += "; the next best of " + std::to_string(found.basins.size() - 1) + " others costs " +
+            rounded(found.basins[1].cost / std::max(best.cost, 1e-300)) + " times as much.";
+  }
+  sentences.push_back(text);
+}
+
+void conclude_on_parameters(const FitResult& result, std::vector<std::string>& sentences) {
+  for (const ParameterResult& p : result.parameters) {
+    if (p.verdict != "identified") sentences.push_back(p.parameter.name + ": " + p.verdict + ". " + p.words);
+  }
+}
+
+std::vector<double> values_of(const Problem& problem, const std::vector<double>& scaled) {
+  return problem.to_values(scaled);
+}
+
+void fill_parameters(const Problem& problem, const Optimum& optimum, const Covariance& covariance,
+                     const Profiles* profiled, FitResult& result) {
+  const std::vector<double> values = problem.to_values(optimum.scaled), slopes = problem.value_slopes(optimum.scaled);
+  const Verdicts verdicts = judge(problem, covariance, profiled);
+  result.parameters.clear();
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    ParameterResult out;
+    out.parameter = problem.parameters()[p];
+    out.value = values[p];
+    if (covariance.failure.empty()) {
+      out.sd = known(covariance.sd[p] * slopes[p]);
+      if (out.sd) out.by_curvature = covariance.interval[p];
+    }
+    if (profiled && p < profiled->of.size() && !profiled->of[p].points.empty())
+      out.by_profile = profiled->of[p].interval;
+    out.verdict = name_of(verdicts.of[p].verdict);
+    out.words = verdicts.of[p].words;
+    result.parameters.push_back(std::move(out));
+  }
+  result.correlation.clear();
+  const std::size_t n = values.size();
+  for (std::size_t p = 0; covariance.failure.empty() && p < n; ++p)
+    result.correlation.emplace_back(covariance.correlation.begin() + static_cast<std::ptrdiff_t>(p * n),
+                                    covariance.correlation.begin() + static_cast<std::ptrdiff_t>((p + 1) * n));
+  for (const std::string& sentence : verdicts.conclusions) result.conclusions.push_back(sentence);
+}
+
+void fill_profiles(const Problem& problem, const Profiles& profiled, const Covariance& covariance, double best,
+                   FitResult& result) {
+  result.profiles.clear();
+  for (const Profile& p : profiled.of) {
+    ProfileResult out;
+    out.parameter = problem.parameters()[p.parameter].name;
+    for (const ProfilePoint& point : p.points) {
+      out.values.push_back(point.value);
+      out.rise.push_back(2.0 * (point.cost - best) / covariance.cost_unit);
+    }
+    out.threshold = 2.0 * (p.threshold - best) / covariance.cost_unit;
+    if (p.flat) out.words = "Flat from " + rounded(p.flat_low) + " to " + rounded(p.flat_high) + ".";
+    if (p.interval.low_open) out.words += " Open below.";
+    if (p.interval.high_open) out.words += " Open above.";
+    result.profiles.push_back(std::move(out));
+  }
+}
+
+void fill_bootstrap(const Problem& problem, const Optimum& optimum, const Covariance& covariance, const FitSpec& spec,
+                    const FitOptions& options, FitResult& result) {
+  BootstrapOptions how;
+  how.replicates = spec.proof.bootstrap;
+  how.seed = spec.search.seed;
+  how.stop = options.stop;
+  const Bootstrap drawn = bootstrap(problem, optimum.scaled, covariance, how);
+  result.bootstrap.clear();
+  for (const std::vector<double>& z : drawn.scaled) result.bootstrap.push_back(values_of(problem, z));
+  if (drawn.scaled.size() < 10) return;  // percentiles of fewer say nothing
+  for (std::size_t p = 0; p < result.parameters.size(); ++p) result.parameters[p].by_bootstrap = drawn.interval[p];
+  std::set<std::string> told;
+  for (const std::string& note : drawn.notes) {
+    if (told.insert(note).second) result.conclusions.push_back(note);
+  }
+}
+
+}  // namespace
+
+void fill_curves(const LawSearch& search, const FitSpec& spec, const FitCurves& curves, FitResult& result) {
+  const std::vector<Prediction> predictions = search.predictions();
+  const Validation all = validate(curves.curves, predictions);
+  result.accounts = curves.accounts;
+  result.curves.clear();
+  result.groups.clear();
+  std::vector<double> spreads;
+  for (std::size_t c = 0; c < curves.curves.size(); ++c)
+    result.curves.push_back({curves.curves[c], predictions[c].force, all.curves[c].rms});
+  double squares = 0.0;
+  std::size_t repeated = 0;
+  for (const GroupError& g : all.groups) {
+    const auto spread = g.spread.curves >= 2 ? std::optional(g.spread.deviation) : std::nullopt;
+    if (!std::isnan(g.rms_fit)) result.groups.push_back({g.name, false, g.rms_fit, spread});
+    if (!std::isnan(g.rms_heldout)) result.groups.push_back({g.name, true, g.rms_heldout, spread});
+    if (spread) squares += *spread * *spread, ++repeated;
+  }
+  result.rms_fit = all.rms_fit;
+  result.rms_heldout = known(all.rms_heldout);
+  if (repeated > 0) result.spread = std::sqrt(squares / static_cast<double>(repeated));
+  conclude_on_curves(all, result, result.conclusions);
+  if (spec.proof.displacement) {
+    const std::string text = limited_errors(curves, predictions, *spec.proof.displacement);
+    if (!text.empty()) result.conclusions.push_back(text);
+  }
+}
+
+void fill_search(const LawSearch& search, const FitSpec& spec, FitResult& result) {
+  const Problem& problem = search.problem();
+  result.law = search.law().name;
+  result.starts.clear();
+  result.basins.clear();
+  for (const Basin& b : search.found().basins) result.basins.push_back({b.cost, b.found, values_of(problem, b.scaled)});
+  for (const StartRecord& s : search.found().starts) {
+    StartResult start{s.optimum.cost, -1};
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t b = 0; std::isfinite(s.optimum.cost) && b < search.found().basins.size(); ++b) {
+      const double apart = std::abs(search.found().basins[b].cost - s.optimum.cost);
+      if (apart < nearest) nearest = apart, start.basin = static_cast<int>(b);
+    }
+    result.starts.push_back(start);
+  }
+  result.starts_planned = spec.search.starts;
+  result.forward = search.forward_words();
+  result.forward_error = search.forward_error();
+  conclude_on_search(search, result.conclusions);
+}
+
+void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves, const FitOptions& options,
+                FitResult& result) {
+  constexpr int kRounds = 3;
+  const auto told = [&](const char* stage, std::size_t done, std::size_t planned) {
+    if (!options.progress) return;
+    options.progress({search.law().name, stage, done, planned, rms_at(search.problem(), search.optimum().scaled),
+                      search.found().basins.front().found, search.forward_runs()});
+  };
+  Covariance covariance;
+  std::optional<Profiles> profiled;
+  for (int round = 0; round < kRounds; ++round) {
+    covariance = fit::covariance(search.problem(), search.optimum().scaled);
+    profiled.reset();
+    if (!spec.proof.profiles || !covariance.failure.empty() || stopped(options)) break;
+    told("profiles", 0, 1);
+    ProfileOptions how;
+    how.stop = options.stop;
+    profiled = profiles(search.problem(), search.optimum(), covariance, how);
+    told("profiles", 1, 1);
+    if (profiled->better.empty() || round + 1 == kRounds) break;
+    search.improve(profiled->better);
+  }
+  result.conclusions.clear();
+  fill_curves(search, spec, curves, result);
+  fill_search(search, spec, result);
+  fill_parameters(search.problem(), search.optimum(), covariance, profiled ? &*profiled : nullptr, result);
+  if (profiled) fill_profiles(search.problem(), *profiled, covariance, search.optimum().cost, result);
+  if (!covariance.failure.empty()) {
+    result.conclusions.push_back("How sure the parameters are could not be found: " + covariance.failure);
+  } else {
+    conclude_on_parameters(result, result.conclusions);
+    result.conclusions.push_back(covariance.noise.why);
+    if (spec.proof.bootstrap > 0 && !stopped(options)) {
+      told("bootstrap", 0, 1);
+      fill_bootstrap(search.problem(), search.optimum(), covariance, spec, options, result);
+      told("bootstrap", 1, 1);
+    }
+  }
+  const DerivativeCheck& check = search.derivatives();
+  result.conclusions.push_back("Derivatives by differences of " + rounded(check.step) +
+                               " of the bounds' range agree with wider ones to " + rounded(check.error) + ".");
+  result.conclusions.push_back(result.forward);
+}
+
+}  // namespace glisson::fit

@@ -1,0 +1,183 @@
+#include "fit/law_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+#include "fit/forward/offset_model.h"
+#include "scene/document.h"
+
+namespace glisson::fit {
+namespace {
+
+/// Curves with a parameter of their own share no run with others.
+std::vector<char> with_own_parameters(const std::vector<Curve>& curves, const LawSpec& law) {
+  std::vector<char> own(curves.size(), 0);
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    for (const ParameterSpec& p : law.parameters) {
+      if (is_curve_key(p.key) && p.key.find("." + curves[c].name + ".") != std::string::npos) own[c] = 1;
+    }
+  }
+  return own;
+}
+
+/// Two digits.
+std::string rounded(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", x);
+  return x >= 100.0 ? scene::show(std::round(x)) : text;
+}
+
+}  // namespace
+
+SceneText scene_of(const FitSpec& spec, const LawSpec& law) {
+  SceneText scene;
+  if (spec.specimen) {
+    scene = {specimen_scene(*spec.specimen), spec.file.string() + ": specimen", spec.file.parent_path(), {}, ""};
+  } else {
+    scene = scene_text(spec.scene);
+    scene.variant = spec.variant;
+  }
+  scene.overrides = spec.set;
+  scene.overrides.insert(scene.overrides.end(), law.set.begin(), law.set.end());
+  return scene;
+}
+
+double rms_at(const Problem& problem, std::span<const double> scaled) {
+  const Residuals r = problem.residuals(scaled, false);
+  if (r.values.empty()) return std::numeric_limits<double>::infinity();
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < problem.curves().size(); ++c) {
+    const Curve& curve = problem.curves()[c];
+    if (!(curve.weight > 0.0)) continue;
+    const double newtons = problem.spread()[c] / curve.weight;
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+      const double f = newtons * r.values[problem.offset(c) + i];
+      squares += f * f;
+    }
+    count += curve.size();
+  }
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+}
+
+LawSearch::LawSearch(const FitSpec& spec, LawSpec law, const FitCurves& curves, const FitOptions& options)
+    : spec_(spec), law_(std::move(law)), curves_(curves), options_(options) {
+  forward_.scene = scene_of(spec, law_);
+  forward_.spec = spec.forward;
+  for (const ParameterSpec& p : law_.parameters) {
+    forward_.parameters.push_back(parameter_of(p));
+    forward_.parameters.back().name = p.key;
+  }
+  forward_.curves = curves.curves;
+  forward_.load = options.load;
+  forward_.stop = options.stop;
+  ladder_ = choose_forward(forward_);
+  take_model(ladder_.chosen);
+}
+
+void LawSearch::take_model(std::size_t rung) {
+  ladder_.chosen = rung;
+  if (model_) {
+    former_runs_ += model_->runs();
+    former_seconds_ += model_->seconds();
+  }
+  model_ = std::make_shared<CachedModel>(ladder_.model(), curves_.curves, with_own_parameters(curves_.curves, law_));
+  const std::vector<std::size_t> fitted = curves_.indices(false);
+  std::vector<Parameter> parameters;
+  for (const ParameterSpec& p : law_.parameters) parameters.push_back(parameter_of(p));
+  std::vector<Curve> chosen = curves_.chosen(fitted);
+  std::vector<double> spread = spreads_of(chosen, spec_.search.weighing);
+  problem_ = std::make_unique<Problem>(std::move(parameters), std::move(chosen), fitted, std::move(spread), *model_,
+                                       spec_.search.loss);
+}
+
+void LawSearch::search(LawMemory& memory, const std::function<void(const MultiStart&)>& told) {
+  MultiStartOptions options;
+  options.starts = spec_.search.starts;
+  options.found_again = spec_.search.found_again;
+  options.screen = spec_.search.screen;
+  options.seed = spec_.search.seed;
+  options.descent.most_iterations = spec_.search.most_iterations;
+  options.descent.stop = options_.stop;
+  std::vector<double> own;
+  for (const Parameter& p : problem_->parameters()) own.push_back(p.start);
+  derivatives_ = check_derivatives(*problem_, problem_->to_scaled(own));
+  found_ = find_optimum(*problem_, options, memory.starts, [&](const MultiStart& so_far) {
+    memory.starts = so_far.starts;
+    if (told) told(so_far);
+  });
+  if (found_.basins.empty()) return;
+  const Basin& best = found_.basins.front();
+  optimum_ = {best.scaled, best.cost, true, 0, ""};
+  if (found_.complete) look_again_at_forward(memory);
+}
+
+/// Where the optimum lies the model must be as good as where it was chosen; else the scene itself finishes the descent.
+void LawSearch::look_again_at_forward(LawMemory&) {
+  if (ladder_.chosen == 0 || (options_.stop && options_.stop->load())) return;
+  share_at_optimum_ = check_forward(ladder_, forward_, values());
+  if (*share_at_optimum_ < 1.0) return;
+  second_look_ = "At the optimum " + ladder_.taken().name + " was " + rounded(*share_at_optimum_) +
+                 " times the error allowed: the scene itself finished the descent.";
+  const std::vector<double> start = optimum_.scaled;
+  take_model(0);
+  derivatives_ = check_derivatives(*problem_, start);
+  DescentOptions options;
+  options.most_iterations = spec_.search.most_iterations;
+  options.stop = options_.stop;
+  optimum_ = descend(*problem_, start, options);
+}
+
+void LawSearch::improve(std::span<const double> scaled) {
+  DescentOptions options;
+  options.most_iterations = spec_.search.most_iterations;
+  options.stop = options_.stop;
+  Optimum better = descend(*problem_, scaled, options);
+  if (!(better.cost < optimum_.cost)) return;
+  optimum_ = std::move(better);
+  StartRecord record{{scaled.begin(), scaled.end()}, optimum_};
+  found_.starts.push_back(std::move(record));
+  found_.basins = basins_of(*problem_, found_.starts);
+}
+
+const Optimum& LawSearch::optimum() const {
+  if (!optimum_.scaled.empty()) return optimum_;
+  const std::string why = found_.starts.empty() ? "no start was finished" : found_.starts.front().optimum.message;
+  throw std::runtime_error(law_.name + ": no start ended in an optimum (" + why +
+                           "); give bounds within which the scene runs, or a `start` that does");
+}
+
+std::vector<Prediction> LawSearch::predictions() const {
+  std::vector<Prediction> all;
+  const std::vector<double> at = values();
+  for (std::size_t c = 0; c < curves_.curves.size(); ++c) all.push_back(model_->predict(c, at));
+  return all;
+}
+
+std::string LawSearch::forward_words() const {
+  const Rung& taken = ladder_.taken();
+  const Rung& scene = ladder_.rungs.front();
+  std::string words;
+  if (ladder_.rungs.size() == 1) {
+    words = "Forward model: " + taken.name + ", as asked for.";
+  } else if (ladder_.chosen == 0) {
+    words = "Forward model: the scene itself; nothing cheaper stayed within what the noise of the curves allows.";
+  } else {
+    words = "Forward model: " + taken.name + ", " + rounded(scene.cost / std::max(taken.cost, 1e-12)) +
+            " times as fast as the scene itself, and at most " + rounded(taken.share) +
+            " of what the noise of the curves allows away from it";
+    if (share_at_optimum_ && second_look_.empty()) words += " (" + rounded(*share_at_optimum_) + " at the optimum)";
+    words += ".";
+  }
+  return second_look_.empty() ? words : words + " " + second_look_;
+}
+
+std::optional<double> LawSearch::forward_error() const {
+  if (ladder_.chosen == 0) return {};
+  return ladder_.taken().error;
+}
+
+}  // namespace glisson::fit

@@ -1,0 +1,173 @@
+#include "fit/run_fit.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <stdexcept>
+
+#include "fit/fill_result.h"
+#include "fit/fit_curves.h"
+#include "fit/law_candidates.h"
+#include "fit/law_search.h"
+#include "fit/proof/covariance.h"
+#include "fit/proof/criteria.h"
+#include "fit/proof/validation.h"
+#include "fit/tissue_of_fit.h"
+
+namespace glisson::fit {
+namespace {
+
+using Searches = std::vector<std::unique_ptr<LawSearch>>;
+
+/// Area and height where the fit says them.
+SpecimenSize size_of(const FitSpec& spec) {
+  if (!spec.specimen) return {};
+  const Specimen s = specimen_of(*spec.specimen);
+  return {s.area, s.height};
+}
+
+/// The law of [[parameter]], those of [[law]], those asked for by name.
+std::vector<LawSpec> laws_of(const FitSpec& spec, const FitOptions& options, const FitCurves& curves) {
+  std::vector<LawSpec> laws;
+  if (!spec.parameters.empty() && options.laws.empty()) laws.push_back({own_law_name(spec), {}, spec.parameters});
+  laws.insert(laws.end(), spec.laws.begin(), spec.laws.end());
+  const SpecimenSize size = size_of(spec);
+  for (const std::string& name : options.laws) {
+    const double modulus =
+        size.area ? initial_modulus(curves.chosen(curves.indices(false)), *size.area, *size.height) : own_modulus(spec);
+    laws.push_back(law_candidate(name, modulus));
+  }
+  std::set<std::string> names;
+  for (const LawSpec& law : laws) {
+    if (!names.insert(law.name).second)
+      throw std::invalid_argument("the law \"" + law.name + "\" is there twice; name each once");
+  }
+  return laws;
+}
+
+class Run {
+ public:
+  Run(const FitSpec& spec, const FitOptions& options) : spec_(spec), options_(options), memory_(options.memory) {}
+  FitResult to_end();
+
+ private:
+  bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+  bool search_all(const std::vector<LawSpec>& laws);
+  std::size_t choose(FitResult& result) const;
+  void count_runs(FitResult& result) const;
+
+  const FitSpec& spec_;
+  const FitOptions& options_;
+  FitMemory memory_;
+  FitCurves curves_;
+  Searches searches_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// False where it was stopped before all laws had been looked at.
+bool Run::search_all(const std::vector<LawSpec>& laws) {
+  for (const LawSpec& law : laws) {
+    searches_.push_back(std::make_unique<LawSearch>(spec_, law, curves_, options_));
+    LawSearch& search = *searches_.back();
+    LawMemory& known = memory_[law.name];
+    search.search(known, [&](const MultiStart& so_far) {
+      if (options_.remember) options_.remember(memory_);
+      if (!options_.progress) return;
+      FitProgress p{law.name, "starts", so_far.starts.size(), static_cast<std::size_t>(spec_.search.starts)};
+      if (!so_far.basins.empty()) {
+        p.best_rms = rms_at(search.problem(), so_far.basins.front().scaled);
+        p.found = so_far.basins.front().found;
+      }
+      p.forward_runs = search.forward_runs();
+      options_.progress(p);
+    });
+    if (!search.found().complete) return false;
+  }
+  return true;
+}
+
+/// Ranks the laws; the number of the one that the data support.
+std::size_t Run::choose(FitResult& result) const {
+  std::vector<LawFit> fits;
+  std::vector<std::size_t> of;
+  for (std::size_t s = 0; s < searches_.size(); ++s) {
+    const LawSearch& search = *searches_[s];
+    if (search.found().basins.empty()) continue;
+    const Problem& problem = search.problem();
+    const Covariance known = covariance(problem, search.optimum().scaled);
+    const double effective = known.failure.empty() ? known.noise.effective : static_cast<double>(problem.size());
+    LawFit fit{
+        search.law().name, problem.parameters().size(), 2.0 * search.optimum().cost, problem.size(), effective, {}};
+    const std::vector<Prediction> predictions = search.predictions();
+    const Validation errors = validate(curves_.curves, predictions);
+    for (const CurveError& e : errors.curves) {
+      if (e.held_out) fit.heldout_rms.push_back(e.failure.empty() ? e.rms : std::numeric_limits<double>::infinity());
+    }
+    LawResult row{fit.name, static_cast<int>(fit.parameters), errors.rms_fit, {}, 0.0, 0.0, false, ""};
+    if (!std::isnan(errors.rms_heldout)) row.rms_heldout = errors.rms_heldout;
+    result.laws.push_back(std::move(row));
+    fits.push_back(std::move(fit));
+    of.push_back(s);
+  }
+  if (fits.empty()) return 0;
+  const LawRanking ranking = rank_laws(fits);
+  std::vector<LawResult> ordered;
+  for (const LawRank& rank : ranking.order) {
+    LawResult row = result.laws[rank.law];
+    row.aic = rank.criteria.aic;
+    row.bic = rank.criteria.bic;
+    row.best = rank.law == ranking.chosen;
+    row.words = row.best ? "what the data support" : (rank.as_good ? "as good" : "");
+    ordered.push_back(std::move(row));
+  }
+  result.laws = std::move(ordered);
+  result.conclusions.push_back(ranking.sentence);
+  return of[ranking.chosen];
+}
+
+void Run::count_runs(FitResult& result) const {
+  double seconds = 0.0;
+  for (const auto& search : searches_) {
+    result.forward_runs += search->forward_runs();
+    seconds += search->forward_seconds();
+  }
+  if (result.forward_runs > 0) result.forward_run_s = seconds / static_cast<double>(result.forward_runs);
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+}
+
+FitResult Run::to_end() {
+  const SpecimenSize size = size_of(spec_);
+  curves_ = read_curves(spec_, size, options_.data_folder.empty() ? spec_.file.parent_path() : options_.data_folder);
+  const std::vector<LawSpec> laws = laws_of(spec_, options_, curves_);
+  FitResult result;
+  result.area = size.area;
+  result.height = size.height;
+  const bool all = search_all(laws);
+  std::size_t chosen = 0;
+  std::vector<std::string> about_laws;
+  if (laws.size() > 1) {
+    chosen = choose(result);
+    about_laws.swap(result.conclusions);
+  }
+  LawSearch& search = *searches_[chosen];
+  result.complete = all;
+  if (!search.found().basins.empty() || all) {
+    search.optimum();  // says why there is none
+    fill_proof(search, spec_, curves_, options_, result);
+    result.tissue = tissue_of_fit(search, result, spec_);
+  } else {
+    result.starts_planned = spec_.search.starts;
+  }
+  result.complete = all && !stopped();
+  result.conclusions.insert(result.conclusions.begin(), about_laws.begin(), about_laws.end());
+  count_runs(result);
+  return result;
+}
+
+}  // namespace
+
+FitResult run_fit(const FitSpec& spec, const FitOptions& options) { return Run(spec, options).to_end(); }
+
+}  // namespace glisson::fit

@@ -1,0 +1,216 @@
+#include "fit/section_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "fit/data/section_data.h"
+#include "fit/fit_spec.h"
+#include "fit/forward/section_forward.h"
+#include "scene/section.h"
+
+namespace glisson::fit {
+namespace {
+
+using scene::Node;
+using scene::Place;
+using scene::Section;
+using scene::SectionSpec;
+using scene::ValueType;
+
+scene::KeySpec bare_table(std::string name, std::string help, std::string otherwise) {
+  return {
+      .name = std::move(name), .help = std::move(help), .type = ValueType::table, .default_text = std::move(otherwise)};
+}
+
+void check_bounds(ParameterSpec& p, const Node& table, const Place& place) {
+  p.origin = place.text();
+  if (!(p.low < p.high)) {
+    place.complain(*table.find("high"), "high",
+                   scene::show(p.high) + " is not above `low` = " + scene::show(p.low) + "; the parameter has no room");
+  }
+  if (p.scale == Scale::logarithmic && !(p.low > 0.0)) {
+    place.complain(*table.find("low"), "low",
+                   scene::show(p.low) +
+                       " is out of range; allowed: > 0 on a logarithmic scale; set scale = \"linear\" for numbers of "
+                       "either sign");
+  }
+  if (p.start && (*p.start < p.low || *p.start > p.high)) {
+    place.complain(*table.find("start"), "start",
+                   scene::show(*p.start) + " is out of range; allowed: " + scene::show(p.low) + " to " +
+                       scene::show(p.high) + ", the bounds");
+  }
+  if (p.name.empty()) p.name = p.key;
+}
+
+void check_parameters(const std::vector<ParameterSpec>& list, const Node& table, const Place& place) {
+  const Node* nodes = table.find("parameter");
+  std::set<std::string> keys, names;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Node& own = (*nodes->array())[i];
+    const Place here = place.inside("parameter." + std::to_string(i), own.where);
+    if (!keys.insert(list[i].key).second) here.complain("the key \"" + list[i].key + "\" is free twice; give it once");
+    if (!names.insert(list[i].name).second)
+      here.complain("two parameters are called \"" + list[i].name + "\"; give one another `name`");
+  }
+  if (list.empty()) place.complain("nothing is free; give one or more [[parameter]] with key, low and high");
+}
+
+void finish_fit(FitSpec& fit, const Node& table, const Place& place) {
+  if (const Node* set = table.find("set")) {
+    const std::vector<Override> more = overrides_of(*set, "");
+    fit.set.insert(fit.set.end(), more.begin(), more.end());
+  }
+  if (const Node* tissue = table.find("tissue")) fit.set.push_back({"tissue", scene::toml_text(*tissue)});
+  const bool with_laws = table.find("law") != nullptr;
+  if (!with_laws || !fit.parameters.empty()) check_parameters(fit.parameters, table, place);
+  if (fit.data.empty()) place.complain("there are no curves; give one or more [[data]] with `files`");
+  const bool any_fitted = std::any_of(fit.data.begin(), fit.data.end(), [](const DataSpec& d) { return !d.held_out; });
+  if (!fit.data.empty() && !any_fitted)
+    place.complain("all curves are held out; give one or more [[data]] with use = \"fit\"");
+}
+
+}  // namespace
+
+std::vector<Override> overrides_of(const Node& table, const std::string& prefix) {
+  std::vector<Override> list;
+  for (const scene::Member& m : *table.table()) {
+    // a key in quotes may itself be dotted: "tissue.density_kg_m3" = 1000
+    list.push_back({scene::join_path(prefix, m.key), scene::toml_text(m.value)});
+  }
+  return list;
+}
+
+const SectionSpec& parameter_section() {
+  static const SectionSpec section = [] {
+    Section<ParameterSpec> s("parameter", "A number of the scene that the fit may choose.");
+    s.key("key", &ParameterSpec::key,
+          "the scene's key, as `--set` takes it; `[i]` behind it for an element of a list of numbers")
+        .must();
+    s.key("name", &ParameterSpec::name, "what tables call it").otherwise("the key");
+    s.key("low", &ParameterSpec::low, "lower bound, in the key's unit").must();
+    s.key("high", &ParameterSpec::high, "upper bound").must();
+    s.key("start", &ParameterSpec::start, "where the first start begins").otherwise("the middle of the bounds");
+    s.choice<Scale>("scale", &ParameterSpec::scale,
+                    {{"log", Scale::logarithmic, "by factors: for numbers whose size is not known; bounds > 0"},
+                     {"linear", Scale::linear, "by differences"}},
+                    "how the range between the bounds is divided");
+    s.finish(check_bounds);
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& search_section() {
+  static const SectionSpec section = [] {
+    Section<SearchSpec> s("search", "How the optimum is looked for.");
+    s.key("starts", &SearchSpec::starts, "descents at most").within(scene::between(1, 10000));
+    s.key("found_again", &SearchSpec::found_again,
+          "ends when the best optimum has been found so often; 0: all starts are made")
+        .within(scene::between(0, 10000));
+    s.key("screen", &SearchSpec::screen, "points looked at for each start; the best becomes the start")
+        .within(scene::between(1, 1000));
+    s.key("most_iterations", &SearchSpec::most_iterations, "steps of a descent at most")
+        .within(scene::between(1, 10000));
+    s.key("seed", &SearchSpec::seed, "moves the quasi-random starts");
+    s.choice<Weighing>("weighing", &SearchSpec::weighing,
+                       {{"common", Weighing::common, "all points count alike, in newtons"},
+                        {"noise", Weighing::noise, "each curve by its own noise"},
+                        {"peak", Weighing::peak, "each curve by its own largest force"}},
+                       "how curves are weighed against each other");
+    s.choice<LossKind>(
+        "loss", [](SearchSpec & x) -> auto& { return x.loss.kind; },
+        {{"squares", LossKind::squares, "least squares"},
+         {"huber", LossKind::huber, "linear far out"},
+         {"soft_l1", LossKind::soft_l1, "smoothly linear far out"},
+         {"cauchy", LossKind::cauchy, "outliers hardly count"}},
+        "how a residual counts");
+    s.key(
+         "loss_scale", [](SearchSpec & x) -> auto& { return x.loss.scale; },
+         "residual from which on it counts less, in standard deviations of the noise")
+        .in("-")
+        .within(scene::above(0));
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& proof_section() {
+  static const SectionSpec section = [] {
+    Section<ProofSpec> s("proof", "How sure the fit is, and how that is found out.");
+    s.key("profiles", &ProofSpec::profiles, "profile likelihood of every parameter");
+    s.key("bootstrap", &ProofSpec::bootstrap, "fits to curves drawn again; 0: none").within(scene::between(0, 100000));
+    s.key<scene::OptionalMilli>("displacement_mm", &ProofSpec::displacement,
+                                "errors of held-out curves are also told up to here")
+        .in("mm")
+        .within(scene::above(0))
+        .otherwise("all");
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& fit_law_section() {
+  static const SectionSpec section = [] {
+    Section<LawSpec> s("law", "A law that is fitted beside others: what it sets in the scene, and its own parameters.");
+    s.key("name", &LawSpec::name, "for tables").must();
+    s.bare(bare_table("set", "keys of the scene and their values", "none"));
+    s.tables("parameter", parameter_section(), &LawSpec::parameters, "its free numbers").must();
+    s.finish([](LawSpec& law, const Node& table, const Place& place) {
+      if (const Node* set = table.find("set")) law.set = overrides_of(*set, "");
+      check_parameters(law.parameters, table, place);
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& experiment_section() {
+  static const SectionSpec section = [] {
+    Section<ExperimentSpec> s("experiment", "A test that could be made next: how much would it tell?");
+    s.key("name", &ExperimentSpec::name, "for tables").otherwise("its velocity and depth");
+    s.key<scene::Milli>("velocity_mm_s", &ExperimentSpec::velocity, "speed").in("mm/s").within(scene::above(0)).must();
+    s.key<scene::Milli>("depth_mm", &ExperimentSpec::depth, "how far").in("mm").within(scene::above(0)).must();
+    s.key("hold_s", &ExperimentSpec::hold, "rest at depth, the force recorded")
+        .in("s")
+        .within(scene::above(0))
+        .otherwise("none");
+    s.finish([](ExperimentSpec& e, const Node&, const Place&) {
+      if (!e.name.empty()) return;
+      e.name = scene::show(1e3 * e.velocity) + " mm/s to " + scene::show(1e3 * e.depth) + " mm";
+      if (e.hold) e.name += ", held " + scene::show(*e.hold) + " s";
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& fit_section() {
+  static const SectionSpec section = [] {
+    Section<FitSpec> s("", "What the file says before any heading.");
+    s.key("title", &FitSpec::title, "heading of the report").otherwise("the file's name");
+    s.key("description", &FitSpec::description, "what was measured, in a few sentences");
+    s.key("notes", &FitSpec::notes, "choices made, and why").otherwise("[]");
+    s.key("scene", &FitSpec::scene, "the scene that simulates the test, relative to this file");
+    s.key("variant", &FitSpec::variant, "which of the scene's variants").otherwise("its only one");
+    s.table(
+         "specimen", specimen_section(), [](FitSpec & f) -> auto& { return f.specimen.emplace(); },
+         "a plain specimen between smooth plates, in place of a scene")
+        .otherwise("none");
+    s.bare(bare_table("tissue", "of the specimen: keys as in a scene's `[tissue]`", "none"));
+    s.bare(bare_table("set", "keys of the scene and their values, as `--set` takes them", "none"));
+    s.tables("parameter", parameter_section(), &FitSpec::parameters, "what is free");
+    s.tables("data", data_section(), &FitSpec::data, "the measured curves").must();
+    s.table("forward", forward_section(), &FitSpec::forward, "how the test is simulated").otherwise("auto");
+    s.table("search", search_section(), &FitSpec::search, "how the optimum is looked for").otherwise("20 starts");
+    s.table("proof", proof_section(), &FitSpec::proof, "how sure it is").otherwise("profiles and bootstrap");
+    s.tables("law", fit_law_section(), &FitSpec::laws, "laws that are held against each other");
+    s.tables("experiment", experiment_section(), &FitSpec::experiments, "tests that could be made next");
+    s.spec().exclusions = {{{{"scene"}, {"specimen"}}, true}};
+    s.finish(finish_fit);
+    return s.spec();
+  }();
+  return section;
+}
+
+}  // namespace glisson::fit

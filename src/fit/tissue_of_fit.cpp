@@ -1,0 +1,79 @@
+#include "fit/tissue_of_fit.h"
+
+#include <cstdio>
+#include <variant>
+
+#include "fit/forward/offset_model.h"
+#include "scene/parametric_variant.h"
+#include "scene/tissue_file.h"
+
+namespace glisson::fit {
+namespace {
+
+scene::ParametricVariant experiment(const SceneText& scene, const std::vector<std::string>& keys) {
+  return {scene.text, scene.name, scene.base, scene.overrides, scene.variant, keys};
+}
+
+Tissue own_tissue(const FitSpec& spec) { return experiment(scene_of(spec, {}), {}).tissue_with({}); }
+
+std::string rounded(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return text;
+}
+
+std::string interval_text(const ParameterResult& p) {
+  const std::optional<Interval> ci = p.ci95();
+  if (!ci) return "how sure: unknown";
+  return "95 %: " + (ci->low_open ? std::string("open") : rounded(ci->low)) + " to " +
+         (ci->high_open ? std::string("open") : rounded(ci->high));
+}
+
+/// A line of a comment for each parameter that is no key of [tissue].
+std::string other_keys(const LawSearch& search, const std::vector<double>& values) {
+  std::string text;
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    const std::string& key = search.law().parameters[p].key;
+    if (key.rfind("tissue.", 0) != 0) text += "#   " + key + " = " + scene::show(values[p]) + "\n";
+  }
+  return text.empty() ? text : "# Fitted too, and no key of [tissue]:\n" + text;
+}
+
+}  // namespace
+
+std::string own_law_name(const FitSpec& spec) {
+  const Tissue tissue = own_tissue(spec);
+  const auto kind = [](const auto& law) { return std::string(law.kName); };
+  std::string name = tissue.hyperelastic ? std::visit(kind, *tissue.hyperelastic) : std::visit(kind, tissue.law);
+  if (tissue.viscosity > 0.0) name += " + viscosity";
+  if (!tissue.maxwell.empty()) name += " + relaxation";
+  return name;
+}
+
+double own_modulus(const FitSpec& spec) {
+  const LameParameters at_rest = own_tissue(spec).lame();
+  return at_rest.mu * (3.0 * at_rest.lambda + 2.0 * at_rest.mu) / (at_rest.lambda + at_rest.mu);
+}
+
+std::string tissue_of_fit(const LawSearch& search, const FitResult& result, const FitSpec& spec) {
+  std::vector<std::string> keys;
+  std::vector<double> tissue_values;
+  const std::vector<double> values = search.values();
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    if (is_curve_key(search.law().parameters[p].key)) continue;
+    keys.push_back(search.law().parameters[p].key);
+    tissue_values.push_back(values[p]);
+  }
+  std::string text = "# Fitted by `glisson fit " + spec.file.filename().string() + "`: " + spec.title + "\n";
+  text += "# Law " + result.law + "; fitted curves met to " + rounded(result.rms_fit) + " N rms";
+  if (result.rms_heldout) text += ", held-out ones to " + rounded(*result.rms_heldout) + " N";
+  text += ".\n";
+  for (const ParameterResult& p : result.parameters) {
+    text += "#   " + p.parameter.name + " = " + rounded(p.value) + (p.parameter.unit.empty() ? "" : " ") +
+            p.parameter.unit + ", " + interval_text(p) + ", " + p.verdict + "\n";
+  }
+  text += other_keys(search, values) + "\n";
+  return text + scene::tissue_file_text(experiment(search.scene(), keys).tissue_tree(tissue_values));
+}
+
+}  // namespace glisson::fit

@@ -1,0 +1,20 @@
+// tissue_of_fit.h — the tissue before and after a fit: what its law is called, how stiff it is, the file that scenes take.
+#pragma once
+
+#include <string>
+
+#include "fit/fit_result.h"
+#include "fit/law_search.h"
+
+namespace glisson::fit {
+
+/// What the law of the fit's own parameters is called: the kind of the tissue's law.
+std::string own_law_name(const FitSpec& spec);
+
+/// Young's modulus at small strain of the fit's tissue as it is written [Pa].
+double own_modulus(const FitSpec& spec);
+
+/// tissue.toml: [tissue] with the fitted numbers, and comments that say what they were fitted to and how sure they are.
+std::string tissue_of_fit(const LawSearch& search, const FitResult& result, const FitSpec& spec);
+
+}  // namespace glisson::fit
