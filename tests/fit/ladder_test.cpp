@@ -75,12 +75,13 @@ TEST(Ladder, TakesWhatTheNoiseAllows) {
   const Ladder ladder = choose_forward(p);
   for (const Rung& r : ladder.rungs) {
     EXPECT_NE(r.name, "specimen");
-    EXPECT_TRUE(&r == &ladder.taken() || !r.serves() || r.cost >= ladder.taken().cost) << describe(ladder);
+    EXPECT_TRUE(&r == &ladder.taken() || &r == &ladder.rungs[0] || !r.serves() || r.cost >= ladder.taken().cost)
+        << describe(ladder);
   }
   EXPECT_LT(ladder.taken().share, 1.0);
-  // a tolerance that nothing meets leaves the scene itself
+  // a tolerance that nothing meets leaves the scene itself, or what has its bytes: the same 400 steps
   p.spec.tolerance = 1e-12;
-  EXPECT_EQ(choose_forward(p).chosen, 0u);
+  EXPECT_EQ(choose_forward(p).taken().share, 0.0);
   p.spec.kind = ForwardKind::uniaxial;
   EXPECT_THROW(choose_forward(p), std::invalid_argument);
 }

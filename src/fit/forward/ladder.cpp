@@ -23,6 +23,7 @@ constexpr double kEver = std::numeric_limits<double>::infinity();
 struct Candidate {
   std::string name;
   Adjust adjust;
+  double factor = 0.0;  ///< of density, for explicit steps that still have to be found; 0: complete
 };
 
 bool is_viscous(const Tissue& t) { return t.viscosity > 0.0; }
@@ -48,12 +49,14 @@ Adjust own_step(Integrator integrator) {
   };
 }
 /// Slow presses hardly move mass: ρ × factor lengthens the explicit step by √factor. Damping keeps its share of critical.
-Adjust heavier(double factor) {
+/// @param step  [s], the same at all parameters: steps that follow the tissue make the force rough in them; 0: automatic
+Adjust heavier(double factor, double step) {
   return [=](Variant& v, double) {
     v.tissue.density *= factor;
     for (RegionSpec& r : v.regions) r.tissue.density *= factor;
     v.simulation.damping_rate /= std::sqrt(factor);
     v.simulation.step.reset();
+    if (step > 0.0) v.simulation.step = step;
     v.simulation.precision = Precision::single_precision;
     v.simulation.exact_steps = false;
   };
@@ -87,10 +90,11 @@ std::vector<Candidate> candidates(const Variant& v, const ForwardSpec& spec) {
   const bool explicit_like = own == Integrator::explicit_ || (own == Integrator::semi_implicit && !viscous);
   if (!explicit_like) list.push_back({"explicit", own_step(Integrator::explicit_)});
   if (explicit_like && !viscous) {
-    for (const double factor : {100.0, 10.0}) {
+    for (const double factor : {100.0, 10.0, 1.0}) {
       char name[64];
-      std::snprintf(name, sizeof name, "explicit, %g times as heavy", factor);
-      list.push_back({name, heavier(factor)});
+      std::snprintf(name, sizeof name, factor > 1.0 ? "explicit, %g times as heavy" : "explicit, steps of one size",
+                    factor);
+      list.push_back({name, {}, factor});
     }
   }
   return list;
@@ -187,8 +191,10 @@ struct Maker {
     if (inner.size() == keys.size()) return model;
     return std::make_shared<OffsetModel>(std::move(model), keys);
   }
-  std::shared_ptr<const SceneModel> scene(Adjust adjust, double longest = kEver) const {
-    return std::make_shared<SceneModel>(problem.scene, inner, problem.curves, options(std::move(adjust), longest));
+  std::shared_ptr<const SceneModel> scene(Adjust adjust, double longest = kEver, bool halves = false) const {
+    SceneModelOptions o = options(std::move(adjust), longest);
+    o.halves_step = halves;
+    return std::make_shared<SceneModel>(problem.scene, inner, problem.curves, std::move(o));
   }
   std::shared_ptr<const Model> specimen(const Specimen& size) const {
     const SceneText& s = problem.scene;
@@ -198,12 +204,25 @@ struct Maker {
     return with_offsets(std::make_shared<UniaxialModel>(
         problem.curves, size, [tissue](std::span<const double> values) { return tissue->tissue_with(values); }));
   }
-  std::vector<double> inner_start() const {
+  std::vector<double> inner_values(std::span<const double> all) const {
     std::vector<double> values;
-    for (const Parameter& p : problem.parameters) {
-      if (!is_curve_key(p.name)) values.push_back(p.start);
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      if (!is_curve_key(keys[i])) values.push_back(all[i]);
     }
     return values;
+  }
+  /// Three quarters of the smallest step that tissue 100 times as heavy ends with at any of the places, for ρ × 1.
+  double explicit_step(std::size_t curve, const std::vector<std::vector<double>>& places) const {
+    const auto trial = scene(heavier(100.0, 0.0));
+    double least = 0.0;
+    for (const auto& place : places) {
+      try {
+        const double step = trial->last_step(curve, inner_values(place));
+        least = least > 0.0 ? std::min(least, step) : step;
+      } catch (const std::exception&) {  // a place where nothing runs says nothing
+      }
+    }
+    return 0.75 * least / std::sqrt(100.0);
   }
 };
 
@@ -247,6 +266,9 @@ struct Comparison {
   }
 };
 
+/// What a model may cost to be taken [s]: less than the one that is; a smooth one some more than the scene itself.
+double patience(const Ladder& ladder) { return (ladder.chosen == 0 ? 1.5 : 1.0) * ladder.taken().cost; }
+
 }  // namespace
 
 Ladder choose_forward(const ForwardProblem& problem) {
@@ -255,7 +277,7 @@ Ladder choose_forward(const ForwardProblem& problem) {
   ladder.compared = one_of_each_group(problem.curves);
   ladder.places = places_of(problem.parameters, problem.spec.points);
   const std::shared_ptr<const SceneModel> scene = make.scene(reference(problem.spec));
-  const Variant variant = scene->variant(0, make.inner_start());
+  const Variant variant = scene->variant(0, make.inner_values(ladder.places[0]));
   const std::optional<Specimen> size = homogeneous_specimen(variant, make.options({}, kEver));
   if (problem.spec.kind == ForwardKind::uniaxial) {
     const auto specimen = size ? make.specimen(*size) : nullptr;
@@ -285,16 +307,21 @@ Ladder choose_forward(const ForwardProblem& problem) {
         allowance(problem.curves[ladder.compared[c]], comparison.truth[0][c], problem.spec.tolerance));
 
   const auto try_out = [&](Rung rung, const Model& trial) {
-    comparison.measure(rung, trial, ladder.taken().cost);
+    comparison.measure(rung, trial, patience(ladder));
     ladder.rungs.push_back(std::move(rung));
     const Rung& last = ladder.rungs.back();
-    if (last.serves() && last.cost < ladder.taken().cost) ladder.chosen = ladder.rungs.size() - 1;
+    if (last.serves() && last.cost < patience(ladder)) ladder.chosen = ladder.rungs.size() - 1;
   };
   if (const auto specimen = size ? make.specimen(*size) : nullptr)
     try_out({.name = "specimen", .failure = {}, .model = specimen}, *specimen);
-  for (const Candidate& c : candidates(variant, problem.spec)) {
-    const auto trial = make.with_offsets(make.scene(c.adjust, std::max(kShortest, ladder.taken().cost)));
-    try_out({.name = c.name, .failure = {}, .model = make.with_offsets(make.scene(c.adjust))}, *trial);
+  double step = 0.0;
+  for (Candidate& c : candidates(variant, problem.spec)) {
+    const bool own_steps = c.factor > 0.0;
+    if (own_steps && step == 0.0) step = make.explicit_step(ladder.compared[0], ladder.places);
+    if (own_steps) c.adjust = heavier(c.factor, step * std::sqrt(c.factor));
+    const auto trial = make.with_offsets(make.scene(c.adjust, std::max(kShortest, patience(ladder)), own_steps));
+    try_out({.name = c.name, .failure = {}, .model = make.with_offsets(make.scene(c.adjust, kEver, own_steps))},
+            *trial);
   }
   return ladder;
 }

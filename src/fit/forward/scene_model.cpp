@@ -62,6 +62,7 @@ class ForceRecorder final : public RunObserver {
     if (part.what == Part::What::tool) direction_ = unit(variant.tools[part.index].motion.direction);
     if (part.what == Part::What::instrument) direction_ = unit(variant.instruments[part.index].direction);
   }
+  void on_start(const Variant&, const Simulation&) override { times.clear(), forces.clear(); }
   void on_sample(const Sample& s) override {
     if (!times.empty() && !(s.time > times.back())) return;
     times.push_back(s.time);
@@ -194,17 +195,41 @@ Variant SceneModel::variant(std::size_t index, std::span<const double> values, d
   return v;
 }
 
+RunSummary SceneModel::run(Variant& v, RunObserver& observer, const std::atomic<bool>& stop) const {
+  constexpr int kMostHalvings = 5;
+  for (int i = 0;; ++i) {
+    const bool may_halve = options_.halves_step && v.simulation.step && i < kMostHalvings;
+    try {
+      RunSummary summary = run_variant(v, options_.load, observer, stop);
+      if (summary.end != RunSummary::End::stopped_unstable || !may_halve) return summary;
+    } catch (const SceneError&) {  // above h* at rest already
+      if (!may_halve) throw;
+    }
+    v.simulation.step = 0.5 * *v.simulation.step;
+  }
+}
+
+double SceneModel::last_step(std::size_t index, std::span<const double> values) const {
+  RunObserver nothing;
+  Variant v = variant(index, values);
+  const std::atomic<bool> never{false};
+  const RunSummary summary = run(v, nothing, options_.stop ? *options_.stop : never);
+  if (summary.end != RunSummary::End::finished) throw std::runtime_error(end_words(summary.end));
+  return summary.step_s;
+}
+
 Prediction SceneModel::predict_from(std::size_t index, std::span<const double> values, double contact) const {
   Prediction result;
   try {
-    const Variant v = variant(index, values, contact);
+    Variant v = variant(index, values, contact);
     const Curve& c = curve(index);
     ForceRecorder recorder(v, measured_part(v, options_), options_);
     recorder.halt = options_.stop != nullptr && options_.stop->load();
-    const RunSummary summary = run_variant(v, options_.load, recorder, recorder.halt);
+    const RunSummary summary = run(v, recorder, recorder.halt);
     if (summary.end != RunSummary::End::finished || recorder.times.empty()) {
       result.failure = "curve \"" + c.name + "\": the run stopped at " + std::to_string(summary.time_s) +
-                       " s: " + end_words(summary.end) + (summary.trouble.empty() ? "" : ": " + summary.trouble);
+                       " s: " + (recorder.late() ? "it takes too long" : end_words(summary.end)) +
+                       (summary.trouble.empty() ? "" : ": " + summary.trouble);
       return result;
     }
     if (recorder.times.front() > 0.0 && !is_viscous(v)) {  // schemes that tell forces at the end of a step alone

@@ -35,7 +35,9 @@ struct SceneModelOptions {
   MeshLoader load{};
   /// Last changes of the experiment before it runs for so long [s]: another integrator, another step.
   std::function<void(Variant&, double duration)> adjust{};
-  const std::atomic<bool>* stop = nullptr;                   ///< ends runs early, with a failure
+  const std::atomic<bool>* stop = nullptr;  ///< ends runs early, with a failure
+  /// Halves a given step of the explicit schemes, five times at most, where it is above h*; else such a run fails.
+  bool halves_step = false;
   double longest = std::numeric_limits<double>::infinity();  ///< a run that takes longer fails [s], wall clock
 };
 
@@ -53,8 +55,11 @@ class SceneModel final : public MotionModel {
 
   /// The experiment of a curve as it would run. @throws SceneError
   Variant variant(std::size_t curve, std::span<const double> values, double contact = 0.0) const;
+  /// The step with which a run at these values ends [s]. @throws std::runtime_error where it does not run
+  double last_step(std::size_t curve, std::span<const double> values) const;
 
  private:
+  RunSummary run(Variant& variant, RunObserver& observer, const std::atomic<bool>& stop) const;
   double approach_time(const Curve& curve) const;
 
   scene::ParametricVariant scene_;
