@@ -36,12 +36,11 @@ UniaxialState UniaxialPath::solve(const Stage& stage, double guess) {
   for (int i = 0; i < kSteps; ++i) {
     const Axial<Dual> P = stress(stage, Dual(side, 1.0));
     if (!std::isfinite(P.side.v) || !std::isfinite(P.along.v)) break;
-    (P.side.v > 0.0 ? high : low) = side;
     const double newton = side - P.side.v / P.side.d;
-    const double move = (newton > low && newton < high ? newton : 0.5 * (low + high)) - side;
-    side += move;
-    // Newton's next move would be of the order of this one's square: the stress is carried there to first order
-    if (std::abs(move) < 1e-8 * side) return {P.along.v + P.along.d * move, side, true};
+    // the next move would be of the order of this one's square: the stress is carried there to first order
+    if (std::abs(newton - side) < 1e-8 * side) return {P.along.v + P.along.d * (newton - side), newton, true};
+    (P.side.v > 0.0 ? high : low) = side;
+    side = newton > low && newton < high ? newton : 0.5 * (low + high);
   }
   return {stress(stage, side).along, side, false};
 }

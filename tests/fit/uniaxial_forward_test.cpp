@@ -79,7 +79,8 @@ TEST(UniaxialForward, MaxwellBranchesFollowTheirConvolution) {
   const double end = curve.time.back(), rate = 0.002 / kHeight;
   curve.time.insert(curve.time.end() - 1, end - 1e-3);
   curve.displacement.insert(curve.displacement.end() - 1, 0.2 * kHeight - 0.002 * 1e-3);
-  for (const double t : {1e-3, 0.7, 3.0, 20.0}) curve.time.push_back(end + t), curve.displacement.push_back(0.2 * kHeight);
+  for (const double t : {1e-3, 0.7, 3.0, 20.0})
+    curve.time.push_back(end + t), curve.displacement.push_back(0.2 * kHeight);
   curve.force.assign(curve.size(), 0.0);
   const std::vector<double> force = force_of(tissue, curve);
   for (std::size_t i = 0; i < curve.size(); ++i) {
