@@ -2,17 +2,26 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "glisson/scene.h"
 
 namespace glisson {
 namespace {
 
+/// A FIT.toml, which frees parameters of a scene or specimen; tests/fit reads those.
+bool is_fit(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return text.find("\n[[parameter]]") != std::string::npos;
+}
+
 // Every scene under scenes/ is read without complaint and says what it is.
 TEST(ShippedScenes, AreSound) {
   int count = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(GLISSON_SOURCE_DIR "/scenes")) {
-    if (entry.path().extension() != ".toml") continue;
+    if (entry.path().extension() != ".toml" || is_fit(entry.path())) continue;
     ++count;
     try {
       const Scene scene = load_scene(entry.path());
