@@ -310,7 +310,8 @@ TEST(EveryKey, IsInTheSceneOfThisTest) {
   collect(scene::variant_section(), keys);
   EXPECT_GT(keys.size(), 60u);
   const std::string text = kEveryKey + test::kEveryInstrument;
-  for (const char* key : {"path", "file", "record", "x_offset"}) keys.erase(key);  // of files, which have tests of their own
+  for (const char* key : {"path", "file", "record", "x_offset"})
+    keys.erase(key);  // of files, which have tests of their own
   for (const std::string& key : keys) EXPECT_NE(text.find(key), std::string::npos) << key;
 }
 
