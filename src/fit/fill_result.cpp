@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "fit/next_experiments.h"
 #include "fit/proof/bootstrap.h"
 #include "fit/proof/covariance.h"
 #include "fit/proof/profile.h"
@@ -80,6 +81,14 @@ void conclude_on_parameters(const FitResult& result, std::vector<std::string>& s
   for (const ParameterResult& p : result.parameters) {
     if (p.verdict != "identified") sentences.push_back(p.parameter.name + ": " + p.verdict + ". " + p.words);
   }
+}
+
+void conclude_on_designs(const FitResult& result, std::vector<std::string>& sentences) {
+  if (result.designs.empty()) return;
+  const DesignResult& best = result.designs.front();
+  if (!(best.width_after < best.width_now)) return;
+  sentences.push_back("Next, " + best.what + " would tell most: the interval of " + best.parameter +
+                      " would shrink to " + rounded(100.0 * best.width_after / best.width_now, 2) + " % of its width.");
 }
 
 std::vector<double> values_of(const Problem& problem, const std::vector<double>& scaled) {
@@ -220,6 +229,7 @@ void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves,
     if (profiled->better.empty() || round + 1 == kRounds) break;
     search.improve(profiled->better);
   }
+  if (!stopped(options)) search.compare_specimen();
   result.conclusions.clear();
   fill_curves(search, spec, curves, result);
   fill_search(search, spec, result);
@@ -235,6 +245,10 @@ void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves,
       fill_bootstrap(search.problem(), search.optimum(), covariance, spec, options, result);
       told("bootstrap", 1, 1);
     }
+  }
+  if (!stopped(options)) {
+    result.designs = next_experiments(search, spec, covariance);
+    conclude_on_designs(result, result.conclusions);
   }
   const DerivativeCheck& check = search.derivatives();
   result.conclusions.push_back("Derivatives by differences of " + rounded(check.step) +

@@ -67,6 +67,8 @@ LawSearch::LawSearch(const FitSpec& spec, LawSpec law, const FitCurves& curves, 
     : spec_(spec), law_(std::move(law)), curves_(curves), options_(options) {
   forward_.scene = scene_of(spec, law_);
   forward_.spec = spec.forward;
+  // A specimen deforms alike all over by what the word means; whether a body of tets does so, too, is looked at in the end.
+  if (spec.specimen && forward_.spec.kind == ForwardKind::automatic) forward_.spec.kind = ForwardKind::uniaxial;
   for (const ParameterSpec& p : law_.parameters) {
     forward_.parameters.push_back(parameter_of(p));
     forward_.parameters.back().name = p.key;
@@ -115,6 +117,27 @@ void LawSearch::search(LawMemory& memory, const std::function<void(const MultiSt
   if (found_.complete) look_again_at_forward(memory);
 }
 
+/// How far a body of tets between the plates is from the homogeneous state that was fitted.
+void LawSearch::compare_specimen() {
+  if (!spec_.specimen || spec_.forward.kind != ForwardKind::automatic || optimum_.scaled.empty()) return;
+  ForwardProblem there = forward_;
+  there.spec.kind = ForwardKind::automatic;
+  there.spec.points = 0;
+  const std::vector<double> at = values();
+  for (std::size_t p = 0; p < at.size(); ++p) there.parameters[p].start = at[p];
+  try {
+    const Ladder ladder = choose_forward(there);
+    const auto own = std::find_if(ladder.rungs.begin(), ladder.rungs.end(),
+                                  [](const Rung& r) { return r.name == "specimen" && r.failure.empty(); });
+    if (own == ladder.rungs.end()) return;
+    specimen_error_ = own->error;
+    second_look_ =
+        "A body of tets between the plates gives the same force to " + rounded(own->error) + " N at the optimum.";
+  } catch (const std::exception& error) {
+    second_look_ = std::string("A body of tets between the plates could not be compared: ") + error.what();
+  }
+}
+
 /// Where the optimum lies the model must be as good as where it was chosen; else the scene itself finishes the descent.
 void LawSearch::look_again_at_forward(LawMemory&) {
   if (ladder_.chosen == 0 || (options_.stop && options_.stop->load())) return;
@@ -143,6 +166,17 @@ void LawSearch::improve(std::span<const double> scaled) {
   found_.basins = basins_of(*problem_, found_.starts);
 }
 
+std::shared_ptr<const Model> LawSearch::model_of(std::vector<Curve> curves) const {
+  ForwardProblem other = forward_;
+  other.curves = std::move(curves);
+  other.spec.points = 0;
+  const bool as_written = ladder_.chosen == 0 && ladder_.taken().name != "specimen";
+  if (as_written) other.spec.kind = ForwardKind::scene;
+  const std::vector<double> at = values();
+  for (std::size_t p = 0; p < at.size(); ++p) other.parameters[p].start = at[p];
+  return choose_forward(other).model();
+}
+
 const Optimum& LawSearch::optimum() const {
   if (!optimum_.scaled.empty()) return optimum_;
   const std::string why = found_.starts.empty() ? "no start was finished" : found_.starts.front().optimum.message;
@@ -162,7 +196,8 @@ std::string LawSearch::forward_words() const {
   const Rung& scene = ladder_.rungs.front();
   std::string words;
   if (ladder_.rungs.size() == 1) {
-    words = "Forward model: " + taken.name + ", as asked for.";
+    words = spec_.specimen ? "Forward model: a specimen that deforms alike all over."
+                           : "Forward model: " + taken.name + ", as asked for.";
   } else if (ladder_.chosen == 0) {
     words = "Forward model: the scene itself; nothing cheaper stayed within what the noise of the curves allows.";
   } else {
@@ -176,6 +211,7 @@ std::string LawSearch::forward_words() const {
 }
 
 std::optional<double> LawSearch::forward_error() const {
+  if (specimen_error_) return specimen_error_;
   if (ladder_.chosen == 0) return {};
   return ladder_.taken().error;
 }

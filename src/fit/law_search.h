@@ -27,6 +27,8 @@ class LawSearch {
 
   /// Looks for the optimum, from what `memory` knows on; `told` hears after each batch of starts.
   void search(LawMemory& memory, const std::function<void(const MultiStart&)>& told);
+  /// Compares a specimen with a body of tets at the optimum; for forward_words().
+  void compare_specimen();
   /// Takes a lower cost that was found elsewhere for the optimum.
   void improve(std::span<const double> scaled);
 
@@ -40,6 +42,8 @@ class LawSearch {
   std::vector<double> values() const { return problem_->to_values(optimum().scaled); }
   /// Force of every curve at the optimum, in the order of the fit's curves.
   std::vector<Prediction> predictions() const;
+  /// The model taken, for other tests of the same law. @throws as the constructor
+  std::shared_ptr<const Model> model_of(std::vector<Curve> curves) const;
   std::uint64_t forward_runs() const { return former_runs_ + model_->runs(); }
   double forward_seconds() const { return former_seconds_ + model_->seconds(); }
   const SceneText& scene() const { return forward_.scene; }
@@ -63,7 +67,7 @@ class LawSearch {
   DerivativeCheck derivatives_;
   MultiStart found_;
   Optimum optimum_;
-  std::optional<double> share_at_optimum_;
+  std::optional<double> share_at_optimum_, specimen_error_;
   std::string second_look_;
   std::uint64_t former_runs_ = 0;
   double former_seconds_ = 0.0;
