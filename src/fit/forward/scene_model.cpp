@@ -90,6 +90,42 @@ class ForceRecorder final : public RunObserver {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+/// What a load cell shows of forces that ring: means over 1 % of the run before and after an instant, less near its ends, of
+/// straight lines between the samples.
+class ForceMeans {
+ public:
+  ForceMeans(const std::vector<double>& times, const std::vector<double>& forces)
+      : times_(times), forces_(forces), sums_(times.size()) {
+    for (std::size_t i = 1; i < times.size(); ++i)
+      sums_[i] = sums_[i - 1] + 0.5 * (forces[i] + forces[i - 1]) * (times[i] - times[i - 1]);
+  }
+  double at(double time) const {
+    const double first = times_.front(), last = times_.back();
+    const double half = std::min({0.01 * (last - first), time - first, last - time});
+    if (half > 1e-9 * (last - first)) return (sum(time + half) - sum(time - half)) / (2.0 * half);
+    return time <= first ? forces_.front() : (time >= last ? forces_.back() : line(time, piece(time)));
+  }
+
+ private:
+  std::size_t piece(double time) const {
+    const auto it = std::upper_bound(times_.begin() + 1, times_.end() - 1, time);
+    return static_cast<std::size_t>(it - times_.begin()) - 1;
+  }
+  double line(double time, std::size_t i) const {
+    return forces_[i] + (forces_[i + 1] - forces_[i]) * (time - times_[i]) / (times_[i + 1] - times_[i]);
+  }
+  double sum(double time) const {
+    const std::size_t i = piece(time);
+    return sums_[i] + 0.5 * (forces_[i] + line(time, i)) * (time - times_[i]);
+  }
+  const std::vector<double>&times_, &forces_;
+  std::vector<double> sums_;
+};
+
+bool rings(const Variant& v) {
+  return v.simulation.integrator == Integrator::explicit_ || v.simulation.integrator == Integrator::semi_implicit;
+}
+
 const char* end_words(RunSummary::End end) {
   using End = RunSummary::End;
   switch (end) {
@@ -192,6 +228,7 @@ Variant SceneModel::variant(std::size_t index, std::span<const double> values, d
   v.simulation.track_energies = false;
   v.simulation.threads = 1;
   if (options_.adjust) options_.adjust(v, duration);
+  if (rings(v)) v.output.sample_rate = std::max(samples, 1000.0) / duration;
   return v;
 }
 
@@ -236,10 +273,12 @@ Prediction SceneModel::predict_from(std::size_t index, std::span<const double> v
       recorder.times.insert(recorder.times.begin(), 0.0);
       recorder.forces.insert(recorder.forces.begin(), 0.0);
     }
-    const MonotoneCubic<double> force(std::move(recorder.times), std::move(recorder.forces));
+    const MonotoneCubic<double> cubic(recorder.times, recorder.forces);
+    const ForceMeans means(recorder.times, recorder.forces);
+    const bool ringing = rings(v) && recorder.times.size() > 2;
     const double shift = approach_time(c) - History(c, contact).begin();
     for (const double t : c.time) {
-      result.force.push_back(force.at(t + shift));
+      result.force.push_back(ringing ? means.at(t + shift) : cubic.at(t + shift));
       if (!std::isfinite(result.force.back()))
         throw std::runtime_error("curve \"" + c.name + "\": the force is not finite");
     }
