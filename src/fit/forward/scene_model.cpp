@@ -152,6 +152,8 @@ bool is_viscous(const Variant& v) {
   return v.tissue.viscosity > 0.0 || std::any_of(v.regions.begin(), v.regions.end(), viscous);
 }
 
+constexpr double kBeyond = 0.02;  ///< of the time of a record: how far it goes on
+
 /// A way in time along a direction, after an approach at the speed with which it goes on.
 RecordSpec record_of(const History& history, const Vec3d& direction, double approach, double approach_time) {
   RecordSpec record;
@@ -163,6 +165,13 @@ RecordSpec record_of(const History& history, const Vec3d& direction, double appr
     record.motion.times.push_back(history.times()[i] - history.begin() + approach_time);
     record.motion.positions.push_back(direction * (history.displacements()[i] + approach));
   }
+  // goes on for a while at the speed it ends with: a tool that stops within the last step makes the force jump there
+  const std::vector<double>&times = history.times(), &way = history.displacements();
+  const std::size_t n = times.size();
+  const double more = kBeyond * (times[n - 1] - times[0]);
+  const double speed = (way[n - 1] - way[n - 2]) / (times[n - 1] - times[n - 2]);
+  record.motion.times.push_back(record.motion.times.back() + more);
+  record.motion.positions.push_back(direction * (std::max(0.0, way[n - 1] + more * speed) + approach));
   return record;
 }
 
@@ -228,7 +237,10 @@ Variant SceneModel::variant(std::size_t index, std::span<const double> values, d
   v.simulation.track_energies = false;
   v.simulation.threads = 1;
   if (options_.adjust) options_.adjust(v, duration);
-  if (rings(v)) v.output.sample_rate = std::max(samples, 1000.0) / duration;
+  if (rings(v)) {
+    v.output.sample_rate = std::max(samples, 1000.0) / duration;
+    v.duration = duration + 0.5 * kBeyond * (history.end() - history.begin());  // for means about the last instants
+  }
   return v;
 }
 
