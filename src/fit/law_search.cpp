@@ -114,17 +114,14 @@ void LawSearch::search(LawMemory& memory, const std::function<void(const MultiSt
   if (found_.basins.empty()) return;
   const Basin& best = found_.basins.front();
   optimum_ = {best.scaled, best.cost, true, 0, ""};
-  if (found_.complete) look_again_at_forward(memory);
+  if (found_.complete) look_again_at_forward();
 }
 
 /// How far a body of tets between the plates is from the homogeneous state that was fitted.
 void LawSearch::compare_specimen() {
   if (!spec_.specimen || spec_.forward.kind != ForwardKind::automatic || optimum_.scaled.empty()) return;
-  ForwardProblem there = forward_;
+  ForwardProblem there = problem_at_optimum(forward_.curves);
   there.spec.kind = ForwardKind::automatic;
-  there.spec.points = 0;
-  const std::vector<double> at = values();
-  for (std::size_t p = 0; p < at.size(); ++p) there.parameters[p].start = at[p];
   try {
     const Ladder ladder = choose_forward(there);
     const auto own = std::find_if(ladder.rungs.begin(), ladder.rungs.end(),
@@ -138,20 +135,33 @@ void LawSearch::compare_specimen() {
   }
 }
 
-/// Where the optimum lies the model must be as good as where it was chosen; else the scene itself finishes the descent.
-void LawSearch::look_again_at_forward(LawMemory&) {
+/// Where the optimum lies the model must be as good as where it was chosen; else one that is finishes the descent.
+void LawSearch::look_again_at_forward() {
   if (ladder_.chosen == 0 || (options_.stop && options_.stop->load())) return;
   share_at_optimum_ = check_forward(ladder_, forward_, values());
   if (*share_at_optimum_ < 1.0) return;
-  second_look_ = "At the optimum " + ladder_.taken().name + " was " + rounded(*share_at_optimum_) +
-                 " times the error allowed: the scene itself finished the descent.";
+  second_look_ =
+      "At the optimum " + ladder_.taken().name + " was " + rounded(*share_at_optimum_) + " times the error allowed; ";
   const std::vector<double> start = optimum_.scaled;
-  take_model(0);
+  ladder_ = choose_forward(problem_at_optimum(forward_.curves));
+  second_look_ += ladder_.taken().name + " finished the descent.";
+  share_at_optimum_.reset();
+  take_model(ladder_.chosen);
   derivatives_ = check_derivatives(*problem_, start);
   DescentOptions options;
   options.most_iterations = spec_.search.most_iterations;
   options.stop = options_.stop;
   optimum_ = descend(*problem_, start, options);
+}
+
+/// The forward problem with the optimum for its start and no other places.
+ForwardProblem LawSearch::problem_at_optimum(std::vector<Curve> curves) const {
+  ForwardProblem there = forward_;
+  there.curves = std::move(curves);
+  there.spec.points = 0;
+  const std::vector<double> at = values();
+  for (std::size_t p = 0; p < at.size(); ++p) there.parameters[p].start = at[p];
+  return there;
 }
 
 void LawSearch::improve(std::span<const double> scaled) {
@@ -167,13 +177,9 @@ void LawSearch::improve(std::span<const double> scaled) {
 }
 
 std::shared_ptr<const Model> LawSearch::model_of(std::vector<Curve> curves) const {
-  ForwardProblem other = forward_;
-  other.curves = std::move(curves);
-  other.spec.points = 0;
+  ForwardProblem other = problem_at_optimum(std::move(curves));
   const bool as_written = ladder_.chosen == 0 && ladder_.taken().name != "specimen";
   if (as_written) other.spec.kind = ForwardKind::scene;
-  const std::vector<double> at = values();
-  for (std::size_t p = 0; p < at.size(); ++p) other.parameters[p].start = at[p];
   return choose_forward(other).model();
 }
 

@@ -54,7 +54,8 @@ class LawSearch {
 
  private:
   void take_model(std::size_t rung);
-  void look_again_at_forward(LawMemory& memory);
+  void look_again_at_forward();
+  ForwardProblem problem_at_optimum(std::vector<Curve> curves) const;
 
   const FitSpec& spec_;
   LawSpec law_;
