@@ -77,7 +77,7 @@ std::string axes_text(const Axes& axes) {
 
 /// In the order of InstrumentSpec::what and InstrumentMotion::how.
 constexpr std::array<const char*, 7> kInstrumentWords{"needle", "punch", "ball", "probe", "plate", "block", "blade"};
-constexpr std::array<const char*, 5> kMotionWords{"press", "strokes", "sine", "push", "record"};
+constexpr std::array<const char*, 6> kMotionWords{"press", "strokes", "sine", "push", "record", "path"};
 static_assert(std::variant_size_v<decltype(InstrumentSpec::what)> == kInstrumentWords.size());
 static_assert(std::variant_size_v<decltype(InstrumentMotion::how)> == kMotionWords.size());
 

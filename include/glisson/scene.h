@@ -101,6 +101,7 @@ struct ToolSpec {
   std::string set;
   PressMotion motion;
   std::optional<RecordSpec> record;  ///< a recorded way in place of the press; what the press says then is `direction`
+  std::optional<ToolPath> path;      ///< a program's own way, in place of both; 0 at time 0
   bool sideways_free = false;        ///< only the component along the direction is driven (direction along an axis)
   std::string origin;
 };
@@ -129,7 +130,8 @@ struct PushSpec {
   bool guided = true;
 };
 struct InstrumentMotion {
-  std::variant<PressMotion, StrokesSpec, SineMotion, PushSpec, RecordSpec> how;
+  /// The last is a program's own way; no scene file gives it.
+  std::variant<PressMotion, StrokesSpec, SineMotion, PushSpec, RecordSpec, ToolPath> how;
   std::optional<Vec3d> direction;  ///< of any length; none: the instrument's
 };
 

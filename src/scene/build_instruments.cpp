@@ -31,6 +31,7 @@ struct DriverMaker {
     m.direction = direction;
     return path(sine_path(m));
   }
+  std::shared_ptr<ToolDriver> operator()(const ToolPath& m) const { return path(m); }
   std::shared_ptr<ToolDriver> operator()(const StrokesSpec& m) const {
     StrokeMotion motion{.start = m.start, .strokes = {}};
     for (const StrokesSpec::One& s : m.strokes) {

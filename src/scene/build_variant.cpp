@@ -220,9 +220,13 @@ StepResult BuiltVariant::step() {
 
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load) { return {variant, load}; }
 
-double tool_start(const ToolSpec& tool) { return tool.record ? tool.record->start : tool.motion.start; }
+double tool_start(const ToolSpec& tool) {
+  if (tool.path) return 0.0;
+  return tool.record ? tool.record->start : tool.motion.start;
+}
 
 ToolPath tool_path(const ToolSpec& tool) {
+  if (tool.path) return *tool.path;
   if (!tool.record) return {press(tool.motion), press_end(tool.motion)};
   RecordedMotion motion = tool.record->motion;
   motion.start = tool.record->start;
@@ -237,7 +241,7 @@ double run_duration(const Variant& variant) {
     if (time) end = std::max(end, *time);
     ends = ends || time;
   };
-  for (const ToolSpec& tool : variant.tools) until(tool.record ? tool_path(tool).end : press_end(tool.motion));
+  for (const ToolSpec& tool : variant.tools) until(tool_path(tool).end);
   for (const InstrumentSpec& x : variant.instruments) until(make_driver(x)->end());
   return ends ? end : std::numeric_limits<double>::infinity();
 }

@@ -70,7 +70,9 @@ Run::Run(const Variant& variant, BuiltVariant& built, RunObserver& observer, con
   sample_.supports.resize(built.supports.size());
   sample_.instruments.resize(built.instruments.size());
   events_told_.resize(built.instruments.size(), 0);
-  for (const ToolSpec& tool : variant.tools) records_.push_back(tool.record ? tool_path(tool).way : Motion{});
+  for (const ToolSpec& tool : variant.tools) {
+    records_.push_back(tool.record || tool.path ? tool_path(tool).way : Motion{});
+  }
 }
 
 /// The last step is the one that ends nearest to the duration.
@@ -144,7 +146,7 @@ void Run::take_sample() {
   for (std::size_t i = 0; i < built_.tools.size(); ++i) {
     const ToolSpec& tool = variant_.tools[i];
     const Vec3d direction = tool.motion.direction * (1.0 / norm(tool.motion.direction));
-    sample_.depths[i] = tool.record ? dot(records_[i](force_time_), direction) : press_depth(tool.motion, force_time_);
+    sample_.depths[i] = records_[i] ? dot(records_[i](force_time_), direction) : press_depth(tool.motion, force_time_);
     sample_.tools[i] = simulation_.force(built_.tools[i]);
     summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(sample_.tools[i].total(), direction)));
   }
