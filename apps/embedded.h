@@ -5,6 +5,9 @@
 
 namespace glisson::app {
 
+/// The built page of the live view, from web/.
+std::string_view live_page();
+
 /// The built report page with its data token, from web/.
 std::string_view report_template();
 

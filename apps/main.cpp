@@ -28,6 +28,7 @@ constexpr const char* kFooter =
     "  glisson run scenes/paper/figure2.toml    one scene, all its variants\n"
     "  glisson check my_scene.toml              what a scene means and costs, without running it\n"
     "  glisson fit my_fit.toml                  a tissue for measured curves, and how sure it is\n"
+    "  glisson view my_scene.toml               touch it in the browser: push, pull, read the force\n"
     "  glisson info organ.vtu                   what a mesh file holds and what is wrong with it\n"
     "  glisson bench --quick                    what a step costs on this machine\n"
     "\n"
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
   add_laws(program, action);
   add_tissues(program, action);
   add_fit(program, action);
+  add_view(program, action);
   add_bench(program, action);
   if (names_unknown_command(program, argc, argv)) return kUserError;
   try {

@@ -1,9 +1,10 @@
-// vite.config.ts — builds the page into one HTML file that asks nothing of any network.
+// vite.config.ts — builds each page into one HTML file that asks nothing of any network: the report's, and with
+// `--mode live` that of the live view.
 //
 // Scripts, styles and fonts are inlined; the place of the data stays a single token that the program
 // splits the file at, so the build stops if the token is not there exactly once.
 import { readFileSync } from "node:fs";
-import { defineConfig, type Plugin } from "vite";
+import { defineConfig, type Plugin, type UserConfig } from "vite";
 import { viteSingleFile } from "vite-plugin-singlefile";
 
 const DATA_TOKEN = "/*GLISSON" + "_DATA*/";
@@ -42,17 +43,21 @@ function licences(): Plugin {
   };
 }
 
-export default defineConfig({
-  base: "./",
-  plugins: [viteSingleFile({ removeViteModuleLoader: true }), licences(), requireDataToken()],
-  build: {
-    target: "es2020",
-    rollupOptions: { input: "report.html" },
-    assetsInlineLimit: 100_000_000,
-    cssCodeSplit: false,
-    modulePreload: false,
-    chunkSizeWarningLimit: 2000,
-    reportCompressedSize: false,
-  },
-  test: { include: ["test/**/*.test.ts"] },
-} as Parameters<typeof defineConfig>[0]);
+export default defineConfig(({ mode }) => {
+  const live = mode === "live";
+  return {
+    base: "./",
+    plugins: [viteSingleFile({ removeViteModuleLoader: true }), licences(), ...(live ? [] : [requireDataToken()])],
+    build: {
+      target: "es2020",
+      rollupOptions: { input: live ? "live.html" : "report.html" },
+      emptyOutDir: !live,
+      assetsInlineLimit: 100_000_000,
+      cssCodeSplit: false,
+      modulePreload: false,
+      chunkSizeWarningLimit: 2000,
+      reportCompressedSize: false,
+    },
+    test: { include: ["test/**/*.test.ts"] },
+  } as UserConfig;
+});

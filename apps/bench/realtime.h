@@ -1,11 +1,5 @@
 // realtime.h — a body stepped at the pace of a clock, as a program with a haptic device would.
-//
-//   frame ──┬─ due ────────────────┬─ due ────────────────┬─
-//           │ steps, force │ wait  │ steps, force │ wait  │   one frame of simulated time in each
-//
-// A frame that is ready late lets the next one start at once, so a short delay is made up; whole frames that are over
-// before their turn are dropped, and the simulated time falls behind the clock by as much: trying to catch up would
-// only make the next frame later still.
+// frame_pace.h says how frames that are late are made up or dropped.
 #pragma once
 
 #include <atomic>

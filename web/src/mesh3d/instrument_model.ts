@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import type { InstrumentForm, InstrumentPlace } from "../report_data.ts";
 import { placeBetween, tubePositions, tubeTriangles } from "./instrument_shape.ts";
-import type { Timeline } from "./timeline.ts";
+import type { SurfaceMotion } from "./timeline.ts";
 
 const SIDES = 16;
 /** A shaft longer than this share of the body's size is drawn no longer: it would only lead out of the picture. */
@@ -20,7 +20,7 @@ export class InstrumentModel {
 
   /** @param size  diagonal of the body [m] */
   constructor(
-    private readonly timeline: Timeline,
+    private readonly timeline: SurfaceMotion,
     private readonly size: number,
   ) {
     this.meshes = timeline.instruments.map((form) => this.mesh(form));

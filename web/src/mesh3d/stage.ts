@@ -131,6 +131,26 @@ export class Stage {
     return [up * this.camera.aspect * (1 - this.barRoom() / Math.max(1, this.canvas.clientWidth)), up];
   }
 
+  /** A line from the eye through a point of the window [CSS px]. */
+  rayThrough(clientX: number, clientY: number): THREE.Raycaster {
+    const box = this.canvas.getBoundingClientRect();
+    const x = (2 * (clientX - box.left)) / box.width - 1;
+    const y = 1 - (2 * (clientY - box.top)) / box.height;
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(new THREE.Vector2(x, y), this.camera);
+    return caster;
+  }
+
+  /** Direction in which the eye looks. */
+  get forward(): THREE.Vector3 {
+    return this.camera.getWorldDirection(new THREE.Vector3());
+  }
+
+  /** Whether a drag turns the view; off while something else is dragged. */
+  set turning(on: boolean) {
+    this.controls.enabled = on;
+  }
+
   /** Turns the camera about its target [rad]. */
   turn(azimuth: number, elevation: number): void {
     const offset = this.camera.position.clone().sub(this.controls.target);

@@ -9,7 +9,7 @@ import { colourTexels } from "./colour_map.ts";
 import { uniqueEdges } from "./edges.ts";
 import { InstrumentModel } from "./instrument_model.ts";
 import { markTexture } from "./mark_texture.ts";
-import type { Timeline } from "./timeline.ts";
+import type { SurfaceMotion } from "./timeline.ts";
 
 const TEXELS = 256;
 const CREASE_DEGREES = 28;
@@ -46,11 +46,12 @@ export class SurfaceModel {
   private readonly edges: THREE.LineSegments;
   private readonly ghost = new THREE.Group();
   private readonly disposables: { dispose(): void }[] = [];
+  readonly skin: THREE.Mesh;
   private readonly skinGeometry: THREE.BufferGeometry;
   private readonly instruments: InstrumentModel;
   private shown: Uint32Array; // triangles of the skin now
 
-  constructor(readonly timeline: Timeline) {
+  constructor(readonly timeline: SurfaceMotion) {
     this.shown = timeline.triangles;
     this.size = new THREE.Box3().setFromArray(timeline.rest).getSize(new THREE.Vector3()).length();
     this.positions = new THREE.BufferAttribute(timeline.rest.slice(0, 3 * timeline.vertices), 3);
@@ -66,10 +67,18 @@ export class SurfaceModel {
     this.heldCount = this.held.geometry.index?.count ?? 0;
     this.drivenCount = this.driven.geometry.index?.count ?? 0;
     this.buildGhost();
-    const skin = this.skin();
-    this.skinGeometry = skin.geometry;
+    this.skin = this.makeSkin();
+    this.skinGeometry = this.skin.geometry;
     this.instruments = new InstrumentModel(timeline, this.size);
-    this.group.add(skin, this.edges, this.held, this.hiddenDriven, this.driven, this.ghost, this.instruments.group);
+    this.group.add(
+      this.skin,
+      this.edges,
+      this.held,
+      this.hiddenDriven,
+      this.driven,
+      this.ghost,
+      this.instruments.group,
+    );
     this.group.traverse((object) => (object.frustumCulled = false));
     this.disposables.push(this.instruments, this.edgeMaterial, this.ghostLine, this.ghostSkin);
   }
@@ -87,7 +96,7 @@ export class SurfaceModel {
     return geometry;
   }
 
-  private skin(): THREE.Mesh {
+  private makeSkin(): THREE.Mesh {
     const texture = this.keep(new THREE.DataTexture(colourTexels(TEXELS), TEXELS, 1));
     texture.colorSpace = THREE.SRGBColorSpace;
     texture.minFilter = texture.magFilter = THREE.LinearFilter;
@@ -158,6 +167,11 @@ export class SurfaceModel {
     this.lookup.needsUpdate = true;
     this.showTriangles(this.timeline.trianglesAt(time));
     this.instruments.update(time);
+  }
+
+  /** The instruments' own objects, in their order. */
+  get instrumentObjects(): readonly THREE.Object3D[] {
+    return this.instruments.group.children;
   }
 
   get hasInstruments(): boolean {

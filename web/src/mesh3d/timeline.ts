@@ -10,7 +10,21 @@ export interface Frame {
   instruments: readonly InstrumentPlace[];
 }
 
-export class Timeline {
+/** A surface that moves: recorded (Timeline) or streamed (live/live_surface.ts). */
+export interface SurfaceMotion {
+  readonly vertices: number;
+  readonly triangles: Uint32Array;
+  readonly rest: Float32Array;
+  readonly fixed: Uint8Array;
+  readonly frames: readonly Frame[];
+  readonly instruments: readonly InstrumentForm[];
+  readonly end: number; // time of the last frame [s]
+  at(time: number): { before: Frame; after: Frame; share: number };
+  sample(time: number, exaggeration: number, positions: Float32Array, intensity: Float32Array): void;
+  trianglesAt(time: number): Uint32Array;
+}
+
+export class Timeline implements SurfaceMotion {
   readonly vertices: number;
   readonly triangles: Uint32Array;
   readonly rest: Float32Array;

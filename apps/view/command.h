@@ -1,0 +1,50 @@
+// command.h — what a viewer may ask for, and the bytes that say so.
+//
+//   kind u8 │ tool u8 │ 0 u16 │ sequence u32 │ payload            little-endian; docs/view.md has the payloads
+//
+// A message is read in one place, into plain numbers within their ranges, or refused with a reason; nothing of it is
+// kept. view_fuzz.cpp feeds it any bytes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+
+namespace glisson::view {
+
+enum class CommandKind : std::uint8_t {
+  place = 1,       ///< of a tool: depth, aside along its x and y [m]
+  speed = 2,       ///< at which a tool goes there [m/s]
+  grab = 3,        ///< index: vertex of the surface; where it is to be drawn [m]
+  drag = 4,        ///< of what is grabbed: where to [m]
+  let_go = 5,      ///< of what is grabbed
+  pause = 6,       ///< index: 1 rest, 0 go on
+  step = 7,        ///< one frame while at rest
+  reset = 8,       ///< back to rest, tools in hand
+  play = 9,        ///< back to rest, then the scene's own motion
+  parameter = 10,  ///< index: which one, values[0]: to what; back to rest
+  take = 11,       ///< asks for the lead
+  give = 12        ///< gives the lead away
+};
+
+struct Command {
+  CommandKind kind = CommandKind::pause;
+  std::uint8_t tool = 0;
+  std::uint32_t sequence = 0;  ///< counted by the viewer; a frame tells the last one that acted
+  std::uint32_t index = 0;
+  std::array<float, 3> values{};
+};
+
+/// No message is longer [bytes].
+inline constexpr std::size_t kLongestCommand = 24;
+/// Lengths and speeds beyond are refused, whatever the scene [m], [m/s].
+inline constexpr float kFarthest = 100.0f, kFastest = 10.0f;
+
+/// @return the command, or why the bytes are none
+std::variant<Command, std::string> decode_command(std::span<const std::uint8_t> bytes);
+std::string encode_command(const Command& command);
+
+}  // namespace glisson::view

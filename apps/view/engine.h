@@ -1,0 +1,108 @@
+// engine.h — a scene in a thread of its own at the pace of a clock, steered and watched from another without locks.
+//
+//   server's thread                      engine's thread, every 1 ms
+//   post(command) ──▶ ring ────────────▶ commands → plan the tools' ways → steps → force
+//   latest()      ◀── three slots ◀───── state, every 8 ms: the newest wins
+//   next_sample() ◀── ring ◀──────────── force of every frame
+//
+// The engine never waits for who watches: what is not taken is overwritten or refused. Steps that do not keep pace slow the
+// simulated clock, and the state says by how much.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "glisson/scene.h"
+#include "view/command.h"
+#include "view/compute_times.h"
+#include "view/frame_pace.h"
+#include "view/latest.h"
+#include "view/live_body.h"
+#include "view/ring.h"
+#include "view/snapshot.h"
+
+namespace glisson::view {
+
+/// One frame of simulated time [s].
+inline constexpr double kFrame = 0.001;
+
+class Engine {
+ public:
+  /// Builds the body. @throws SceneError, std::invalid_argument
+  Engine(const Variant& variant, MeshLoader load);
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  void start();
+  void stop();
+
+  // Of the one thread that watches.
+  /// @return false where too many wait already
+  bool post(const Command& command) { return commands_.push(command); }
+  /// The newest state, valid until the next call; null where there is none since the last.
+  const Snapshot* latest() { return latest_.take(); }
+  bool next_sample(ForceSample& sample) { return samples_.pop(sample); }
+
+  // Known from the start, and the same after every reset.
+  const std::vector<ToolInfo>& tools() const { return tools_; }
+  const std::vector<ParameterInfo>& parameters() const { return parameters_; }
+  /// What instruments look like, a JSON list as web/src/report_data.ts has it.
+  const std::string& forms() const { return forms_; }
+  bool can_grab() const { return can_grab_; }
+  std::size_t vertices() const { return vertices_; }
+  std::size_t tets() const { return tets_; }
+
+ private:
+  void run();
+  bool apply_commands();
+  void apply(const Command& command);
+  void apply_tool(const Command& command);
+  void apply_grab(const Command& command);
+  void draw_hand();
+  void rebuild(const Variant& variant, bool keep_targets, bool play);
+  void change_parameter(std::size_t parameter, double value);
+  void frame();
+  void take_sample();
+  void publish();
+  void fill_events(Snapshot& state) const;
+  void measure_pace();
+
+  MeshLoader load_;
+  Variant variant_;  ///< as the scene has it, with the parameters changed
+  std::unique_ptr<LiveBody> body_;
+  std::vector<ToolInfo> tools_;
+  std::vector<ParameterInfo> parameters_;
+  std::string forms_;
+  bool can_grab_ = false;
+  std::size_t vertices_ = 0, tets_ = 0;
+
+  Ring<Command, 1024> commands_;
+  Ring<ForceSample, 8192> samples_;
+  Latest<Snapshot> latest_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+
+  // Of the engine's thread.
+  std::vector<double> values_, speeds_;  ///< of parameters, of tools
+  std::vector<Vec3d> targets_;
+  Vec3d hand_at_{}, hand_{}, hand_target_{};  ///< where the hand took hold, its way, and its way's target [m]
+  double reach_ = 0.0;                        ///< size of the body [m]
+  double due_s_ = 0.0;                        ///< simulated time that the last frame was to reach [s]
+  bool paused_ = false, stopped_ = false, building_ = false, restarted_ = false;
+  int frames_to_step_ = 0;
+  std::uint32_t epoch_ = 0, echo_ = 0, shape_number_ = 0;
+  std::uint64_t frames_ = 0, dropped_ = 0;
+  std::shared_ptr<const BodyShape> shape_;
+  std::size_t shape_key_ = 0;
+  ComputeTimes compute_;
+  app::WallClock::time_point published_, measured_;
+  double measured_time_ = 0.0, realtime_factor_ = 0.0;
+  std::string notice_;
+};
+
+}  // namespace glisson::view

@@ -1,0 +1,41 @@
+// grab_spring.h — a hand that holds a patch of tissue by springs: the pull of a mouse on the surface.
+//
+//   vertex i ──/\/\/\── its place in the hand        fᵢ = kᵢ (xᵢ⁰ + d − xᵢ) − cᵢ vᵢ,   kᵢ = K mᵢ / Σm
+//                                                     d: way of the hand since it took hold
+//
+// Springs in the ratio of the masses have one frequency ω² = K/Σm, so what they take off the stable step is known exactly.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "glisson/interaction.h"
+
+namespace glisson::view {
+
+class GrabSpring final : public Interaction {
+ public:
+  /// Takes hold of vertices where they are. @param stiffness  K [N/m], > 0 @param masses  per vertex of the mesh [kg]
+  void hold(std::vector<std::uint32_t> vertices, std::span<const Vec3d> displacement, std::span<const double> masses,
+            double stiffness);
+  void draw(const Vec3d& way) { way_ = way; }  ///< d [m]
+  void let_go();
+  bool holds() const { return !vertices_.empty(); }
+  Vec3d force() const { return force_; }  ///< on the tissue, of the last step [N]
+
+  void attached(const BodyView&, double) override {}
+  void body_changed(const BodyView&, std::span<const std::uint32_t>) override {}
+  std::span<const std::uint32_t> reach(double, double) override { return vertices_; }
+  void add_forces(const InteractionStep& step) override;
+  double squared_frequency() const override;
+
+ private:
+  std::vector<std::uint32_t> vertices_;  // ascending
+  std::vector<Vec3d> held_at_;           // displacement when taken hold of [m]
+  std::vector<double> share_;            // mᵢ / Σm [-]
+  double stiffness_ = 0.0, damping_ = 0.0, squared_frequency_ = 0.0;
+  Vec3d way_{}, force_{};
+};
+
+}  // namespace glisson::view

@@ -1,0 +1,55 @@
+// live_body.h — a variant whose tools are led by hand, made anew where a parameter changes.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "glisson/scene.h"
+#include "view/grab_spring.h"
+#include "view/live_way.h"
+#include "view/snapshot.h"
+
+namespace glisson::view {
+
+class LiveBody {
+ public:
+  /// @throws SceneError, std::invalid_argument where the variant has more tools than can be led
+  LiveBody(const Variant& variant, const MeshLoader& load);
+
+  BuiltVariant& built() { return *built_; }
+  const BuiltVariant& built() const { return *built_; }
+  const Variant& variant() const { return variant_; }
+  const std::vector<ToolInfo>& tools() const { return tools_; }
+  LiveWay& way(std::size_t tool) { return *ways_[tool]; }
+  std::size_t ways() const { return ways_.size(); }
+  /// Null where the integrator bears no interactions.
+  GrabSpring* grab() { return grab_.get(); }
+
+  /// Depth and force of a tool at force_time() [m], [N].
+  double depth(std::size_t tool) const;
+  Vec3d force(std::size_t tool) const;
+  ToolState tool_state(std::size_t tool) const;
+  std::shared_ptr<const BodyShape> shape() const;
+  /// Changes when the shape does: a cut makes vertices, and nothing here removes tets.
+  std::size_t shape_key() const { return built_->simulation.mesh().vertices.size(); }
+
+ private:
+  void lead_tools();
+  void lead_instruments();
+  void attach_grab();
+
+  Variant variant_;
+  std::vector<ToolInfo> tools_;
+  std::vector<std::shared_ptr<LiveWay>> ways_;
+  std::unique_ptr<BuiltVariant> built_;
+  std::shared_ptr<GrabSpring> grab_;
+};
+
+/// The numbers that a page may change, with their values in a variant: E, ν, η of the base tissue.
+std::vector<ParameterInfo> parameters_of(const Variant& variant);
+/// The variant with one of them changed; tissues of regions change in the same ratio as the base tissue.
+/// @throws std::invalid_argument for a number out of range
+Variant with_parameter(const Variant& variant, std::size_t parameter, double value);
+
+}  // namespace glisson::view

@@ -1,0 +1,79 @@
+// snapshot.h — what the engine's thread hands over of a simulation: the state at one instant, and the forces between.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "glisson/scene.h"
+
+namespace glisson::view {
+
+/// Tools and instruments that can be led; a scene has few.
+inline constexpr std::size_t kMostTools = 4;
+
+/// What can be said of a tool before anything moves.
+struct ToolInfo {
+  std::string name;
+  bool instrument = false;                     ///< else a set of vertices that is driven
+  Vec3d direction{};                           ///< of depth, a unit vector
+  Vec3d side{}, third{};                       ///< across it
+  double least_depth = 0.0, most_depth = 0.0;  ///< [m]
+  double speed = 0.01;                         ///< of the scene [m/s]
+  bool can_play = false;                       ///< the scene moves it along a path
+};
+
+/// A number of the scene that can be changed; the body is made anew with it.
+struct ParameterInfo {
+  std::string label, unit;
+  double least = 0.0, most = 0.0, value = 0.0;
+};
+
+/// Forces of one frame. Of a tool along its direction, positive when it presses [N], and its depth then [m].
+struct ForceSample {
+  std::uint32_t epoch = 0;
+  float time = 0.0f;
+  std::array<float, kMostTools> depth{}, force{};
+};
+
+struct ToolState {
+  double depth = 0.0;       ///< [m]
+  Vec3d force{};            ///< on the tissue [N]
+  std::vector<Vec3d> line;  ///< of a needle from the hand to the tip; else its tip [m]
+  Mat3d axes{};
+};
+
+struct LiveEvent {
+  std::string tool, what;
+  double time = 0.0, depth = 0.0;
+};
+
+/// The body's mesh; another one from a cut or a removal on.
+struct BodyShape {
+  TetMesh mesh;                     ///< at rest, without removed tets; vertex numbers are those of the displacement
+  std::vector<std::uint8_t> marks;  ///< per vertex: 1 held, 2 driven, 0 free
+};
+
+struct Snapshot {
+  std::uint32_t epoch = 0;  ///< counts the bodies made
+  std::uint32_t shape_number = 0;
+  std::uint64_t frame = 0;                                   ///< counts frames of the clock
+  std::uint32_t echo = 0;                                    ///< sequence of the last command that acted
+  double time = 0.0;                                         ///< simulated [s]
+  double realtime_factor = 0.0, p50_us = 0.0, p99_us = 0.0;  ///< of about the last second
+  std::uint64_t dropped = 0;                                 ///< frames that were over before their turn
+  bool paused = false, building = false, playing = false, grabbing = false, stopped = false;
+  std::shared_ptr<const BodyShape> shape;
+  std::vector<Vec3d> displacement;
+  std::vector<ToolState> tools;
+  Vec3d grab_force{};
+  std::vector<double> parameters;
+  std::vector<double> speeds;
+  std::vector<LiveEvent> events;    ///< the last ones of this body
+  std::uint32_t events_before = 0;  ///< how many came before them
+  std::string notice;               ///< something to tell; empty: nothing
+};
+
+}  // namespace glisson::view

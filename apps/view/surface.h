@@ -1,0 +1,46 @@
+// surface.h — the skin of a body, and what a frame says of it: places in 16 bits, intensity in 8.
+//
+//   keyframe   rest positions, marks and triangles; sent when the skin becomes another
+//   frame      displacement from the keyframe as 16-bit fractions of the largest, intensity as 8-bit fractions: 7 bytes
+//              a vertex, an error of 1.5e-5 of the largest displacement
+//
+// A frame needs its keyframe and no other frame, so any of them can be dropped.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "view/snapshot.h"
+
+namespace glisson::view {
+
+class Surface {
+ public:
+  explicit Surface(std::shared_ptr<const BodyShape> shape);
+
+  const BodyShape& shape() const { return *shape_; }
+  std::size_t size() const { return vertices_.size(); }
+  const std::vector<std::uint32_t>& triangles() const { return triangles_; }  ///< in surface vertices
+  /// Mesh vertex of a surface vertex.
+  std::uint32_t mesh_vertex(std::size_t i) const { return vertices_[i]; }
+  std::uint8_t mark(std::size_t i) const { return shape_->marks[vertices_[i]]; }
+  const Vec3d& rest(std::size_t i) const { return shape_->mesh.vertices[vertices_[i]]; }
+
+  /// Intensity s at each surface vertex: the mean over the tets around it [-]. @param displacement  per mesh vertex [m]
+  std::vector<double> intensity(const std::vector<Vec3d>& displacement) const;
+
+ private:
+  struct NearTet {
+    Tet tet;
+    std::array<Vec3d, 3> gradients;  ///< ∂N/∂X of its vertices 1, 2, 3 [1/m]
+  };
+  std::shared_ptr<const BodyShape> shape_;
+  std::vector<std::uint32_t> vertices_, triangles_;
+  std::vector<std::uint32_t> number_;  ///< surface vertex of each mesh vertex, or none
+  std::vector<NearTet> near_;          ///< tets with a vertex at the surface
+  std::vector<double> tets_around_;    ///< of each surface vertex
+};
+
+}  // namespace glisson::view

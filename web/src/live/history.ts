@@ -1,0 +1,48 @@
+// history.ts — forces of the body there is now, frame by frame; another body starts them anew.
+import type { Samples } from "./protocol.ts";
+
+const MOST = 120_000; // two minutes of frames
+
+export class History {
+  readonly time: number[] = [];
+  readonly depth: number[][];
+  readonly force: number[][];
+  epoch = -1;
+
+  constructor(private readonly tools: number) {
+    this.depth = Array.from({ length: tools }, () => []);
+    this.force = Array.from({ length: tools }, () => []);
+  }
+
+  add(samples: Samples): void {
+    for (const row of samples.rows) {
+      if (row.epoch < this.epoch) continue;
+      if (row.epoch > this.epoch) this.clear(row.epoch);
+      if (row.time <= (this.time[this.time.length - 1] ?? -1)) continue; // had before the line was cut
+      this.time.push(row.time);
+      for (let i = 0; i < this.tools; i++) {
+        this.depth[i]!.push(row.depth[i] ?? 0);
+        this.force[i]!.push(row.force[i] ?? 0);
+      }
+    }
+    if (this.time.length > 1.1 * MOST) this.columns().forEach((column) => column.splice(0, column.length - MOST));
+  }
+
+  clear(epoch: number): void {
+    this.epoch = epoch;
+    this.columns().forEach((column) => (column.length = 0));
+  }
+
+  private columns(): number[][] {
+    return [this.time, ...this.depth, ...this.force];
+  }
+
+  /** As a table: SI units in the names of its columns, as forces.csv has them. */
+  csv(names: readonly string[]): string {
+    const head = ["time_s", ...names.flatMap((name) => [`${name}_depth_m`, `${name}_force_N`])];
+    const rows = this.time.map((time, i) =>
+      [time, ...names.flatMap((_, k) => [this.depth[k]![i], this.force[k]![i]])].join(","),
+    );
+    return [head.join(","), ...rows].join("\n") + "\n";
+  }
+}

@@ -1,0 +1,366 @@
+// live_page.ts — the page of the live view: what is where, and which act sends what.
+import type * as THREE from "three";
+import { formatInteger, formatSignificant } from "../format/number.ts";
+import { button, download, h } from "../page/dom.ts";
+import { toggleTheme } from "../page/theme.ts";
+import { Connection, type Status } from "./connection.ts";
+import { ForcePlot } from "./force_plot.ts";
+import { History } from "./history.ts";
+import { LiveView } from "./live_view.ts";
+import type { Command, Hello, Keyframe, LiveFrame, Role, Samples, SlowState, TextMessage } from "./protocol.ts";
+import { Slider } from "./slider.ts";
+
+const PLOT_EVERY = 125; // ms
+const SEEN = 10_000; // frames that the plot over time shows: ten seconds
+
+export class LivePage {
+  readonly element = h("div", { class: "live" });
+  readonly connection: Connection;
+  readonly view: LiveView;
+  hello: Hello | null = null;
+  role: Role = { type: "role", drives: false, led: false, viewers: 0 };
+  frame: LiveFrame | null = null;
+  history = new History(0);
+  private tool = 0;
+  private waiting: Command | null = null; // the newest place or drag; one goes out a frame
+  private sliders: { depth: Slider; side: Slider; third: Slider; speed: Slider }[] = [];
+  private parameters: Slider[] = [];
+  private readonly plots = {
+    depth: new ForcePlot("Force against depth", "depth [mm]", 1000),
+    time: new ForcePlot("Force over time", "time [s]", 1),
+  };
+  private readonly title = h("h1", {}, "Glisson");
+  private readonly subtitle = h("p", { class: "muted live-subtitle" });
+  private readonly status = h("p", { class: "live-status", role: "status" });
+  private readonly notice = h("p", { class: "live-notice", role: "alert", hidden: true });
+  private readonly lead = h("div", { class: "live-lead" });
+  private readonly tools = h("section", { class: "live-panel", "aria-label": "Tools" });
+  private readonly numbers = h("dl", { class: "live-numbers" });
+  private readonly run = h("div", { class: "live-run", role: "group", "aria-label": "Run" });
+  private readonly changes = h("section", { class: "live-panel", "aria-label": "Tissue" });
+  private readonly events = h("ol", { class: "live-events" });
+  private readonly values = new Map<string, HTMLElement>();
+  private pauseButton: HTMLButtonElement | null = null;
+
+  constructor() {
+    this.connection = new Connection({
+      text: (message) => this.text(message),
+      binary: (message) => this.binary(message),
+      status: (status) => this.showStatus(status),
+    });
+    this.view = new LiveView(() => this.hello, {
+      mayAct: () => this.role.drives,
+      grab: (vertex, at) => this.send({ kind: "grab", index: vertex, values: xyz(at) }),
+      drag: (to) => this.sendSoon({ kind: "drag", values: xyz(to) }),
+      letGo: () => ((this.waiting = null), this.send({ kind: "letGo" })),
+      push: (tool, depth) => this.push(tool, depth),
+    });
+    this.element.append(this.head(), this.notice, this.body());
+    setInterval(() => this.drawPlots(), PLOT_EVERY);
+    this.showStatus({ kind: "waiting" });
+  }
+
+  private head(): HTMLElement {
+    return h(
+      "header",
+      { class: "live-head" },
+      h("div", {}, this.title, this.subtitle),
+      h(
+        "div",
+        { class: "live-side" },
+        this.status,
+        this.lead,
+        button("Dark or light", "Change between dark and light", toggleTheme),
+      ),
+    );
+  }
+
+  private body(): HTMLElement {
+    const edges = check("Edges", (on) => (this.view.edges = on));
+    const pulls = check("Drag pulls tissue", (on) => (this.view.pulls = on), true);
+    const tools = h(
+      "div",
+      { class: "live-view-tools" },
+      pulls,
+      edges,
+      button("Show all", "Bring all of the body into view (0)", () => this.view.fit()),
+      button("Save picture", "Save what is shown as a PNG", () => this.savePicture()),
+      button("Save forces", "Save the forces of this run as CSV", () => this.saveForces()),
+    );
+    return h(
+      "main",
+      { class: "live-main" },
+      h("div", { class: "live-left" }, this.view.element, this.run, tools),
+      h(
+        "div",
+        { class: "live-right" },
+        this.numbers,
+        this.tools,
+        this.plots.depth.element,
+        this.plots.time.element,
+        this.changes,
+        this.events,
+      ),
+    );
+  }
+
+  // ---- what comes in
+
+  private text(message: TextMessage): void {
+    if (message.type === "hello") this.start(message);
+    if (message.type === "role") this.showRole(message);
+    if (message.type === "state") this.showState(message);
+    if (message.type === "notice") {
+      this.notice.textContent = message.text;
+      this.notice.hidden = message.text === "";
+    }
+  }
+
+  private binary(message: Keyframe | LiveFrame | Samples): void {
+    if (message.kind === "keyframe") this.view.takeKeyframe(message);
+    if (message.kind === "samples") this.history.add(message);
+    if (message.kind !== "frame") return;
+    this.frame = message;
+    this.view.takeFrame(message);
+    this.showNumbers(message);
+    this.flush();
+  }
+
+  private start(hello: Hello): void {
+    const again = this.hello !== null;
+    this.hello = hello;
+    if (again) return; // the line was cut: everything here is as it was
+    this.history = new History(hello.tools.length);
+    document.title = `${hello.title} – Glisson`;
+    this.title.textContent = hello.title;
+    this.subtitle.textContent = `${hello.variant} · ${formatInteger(hello.tets)} tetrahedra · ${formatInteger(hello.vertices)} vertices`;
+    this.buildRun(hello);
+    this.buildTools(hello);
+    this.buildParameters(hello);
+  }
+
+  private showStatus(status: Status): void {
+    const texts = { open: "Connected", waiting: "Connecting …", ended: "" };
+    this.status.textContent = status.kind === "ended" ? status.reason : texts[status.kind];
+    this.status.dataset["kind"] = status.kind;
+    this.element.dataset["status"] = status.kind;
+  }
+
+  private showRole(role: Role): void {
+    this.role = role;
+    const others = role.viewers === 1 ? "" : ` · ${role.viewers} viewers`;
+    const act = role.drives
+      ? button("Hand over", "Let another viewer lead", () => this.send({ kind: "give" }))
+      : button("Take the lead", "Steer this simulation", () => this.send({ kind: "take" }));
+    act.disabled = !role.drives && role.led;
+    if (act.disabled) act.title = "Another viewer leads; it can hand over";
+    this.lead.replaceChildren(
+      h("span", {}, (role.drives ? "You lead" : "You watch") + others),
+      ...(role.viewers > 1 || !role.drives ? [act] : []),
+    );
+    this.element.dataset["drives"] = String(role.drives);
+    for (const field of this.element.querySelectorAll<HTMLFieldSetElement>("fieldset")) field.disabled = !role.drives;
+  }
+
+  private showState(state: SlowState): void {
+    state.parameters.forEach((value, i) => this.parameters[i]?.follow(value));
+    state.speeds_m_s.forEach((value, i) => this.sliders[i]?.speed.follow(1000 * value));
+    this.events.replaceChildren(
+      ...state.events
+        .slice(-6)
+        .map((event) =>
+          h(
+            "li",
+            {},
+            `${event.tool}: ${event.event} at ${formatSignificant(1000 * event.depth_m, 3)} mm, ${formatSignificant(event.time_s, 3)} s`,
+          ),
+        ),
+    );
+  }
+
+  // ---- panels
+
+  private buildRun(hello: Hello): void {
+    this.pauseButton = button("Pause", "Hold the clock (Space)", () => this.togglePause());
+    const step = button("Step", "One frame of 1 ms while it is held", () => this.send({ kind: "step" }));
+    const reset = button("Reset", "Back to rest, tools out", () => this.send({ kind: "reset" }));
+    const play = button("Play the scene’s motion", "Back to rest, then the tools go as the scene says", () =>
+      this.send({ kind: "play" }),
+    );
+    play.hidden = !hello.tools.some((tool) => tool.can_play);
+    this.run.replaceChildren(h("fieldset", { class: "live-buttons" }, this.pauseButton, step, reset, play));
+    this.view.canvas.addEventListener("keydown", (event) => {
+      if (event.key !== " ") return;
+      event.preventDefault();
+      this.togglePause();
+    });
+  }
+
+  private togglePause(): void {
+    if (this.role.drives) this.send({ kind: "pause", index: this.frame?.paused ? 0 : 1 });
+  }
+
+  private buildTools(hello: Hello): void {
+    const sets = hello.tools.map((tool, i) => {
+      const place = () => this.sendPlace(i);
+      const mm = 1000;
+      const aside = Math.max(5, 0.5 * mm * tool.most_m);
+      const sliders = {
+        depth: new Slider(`depth-${i}`, "Depth", "mm", mm * tool.least_m, mm * tool.most_m, 0, 0.05, "acts", place),
+        side: new Slider(`side-${i}`, "Aside x", "mm", -aside, aside, 0, 0.05, "acts", place),
+        third: new Slider(`third-${i}`, "Aside y", "mm", -aside, aside, 0, 0.05, "acts", place),
+        speed: new Slider(
+          `speed-${i}`,
+          "Speed",
+          "mm/s",
+          0.1 * mm * tool.speed_m_s,
+          10 * mm * tool.speed_m_s,
+          mm * tool.speed_m_s,
+          0.01 * mm * tool.speed_m_s,
+          "acts",
+          (value) => this.send({ kind: "speed", tool: i, values: [value / mm] }),
+        ),
+      };
+      this.sliders.push(sliders);
+      const field = h(
+        "fieldset",
+        { class: "live-tool" },
+        h("legend", {}, tool.name),
+        sliders.depth.element,
+        sliders.speed.element,
+        h("details", {}, h("summary", {}, "Move it freely"), sliders.side.element, sliders.third.element),
+      );
+      field.addEventListener("focusin", () => (this.tool = i));
+      field.addEventListener("pointerdown", () => (this.tool = i));
+      return field;
+    });
+    this.tools.replaceChildren(...sets);
+    this.tools.hidden = sets.length === 0;
+    this.plots.depth.element.hidden = this.plots.time.element.hidden = sets.length === 0;
+  }
+
+  private buildParameters(hello: Hello): void {
+    this.parameters = hello.parameters.map(
+      (info, i) =>
+        new Slider(
+          `parameter-${i}`,
+          info.label,
+          info.unit,
+          info.least,
+          info.most,
+          info.value,
+          niceStep(info.most - info.least),
+          "settles",
+          (value) => this.send({ kind: "parameter", index: i, values: [value] }),
+        ),
+    );
+    this.changes.replaceChildren(
+      h(
+        "fieldset",
+        {},
+        h("legend", {}, "Tissue"),
+        ...this.parameters.map((slider) => slider.element),
+        h("p", { class: "muted live-hint" }, "A change makes the body anew, at rest; tools go back in by themselves."),
+      ),
+    );
+  }
+
+  private number(name: string, value: string, unit: string): void {
+    let field = this.values.get(name);
+    if (!field) {
+      field = h("dd", {});
+      this.values.set(name, field);
+      this.numbers.append(h("div", {}, h("dt", {}, name), field));
+    }
+    const text = unit ? `${value} ${unit}` : value;
+    if (field.textContent !== text) field.textContent = text;
+  }
+
+  private showNumbers(frame: LiveFrame): void {
+    const tool = frame.tools[this.tool];
+    const direction = this.hello?.tools[this.tool]?.direction;
+    if (tool && direction) {
+      const force = tool.force.reduce((sum, f, i) => sum + f * direction[i]!, 0);
+      this.element.dataset["force"] = String(force);
+      this.element.dataset["depth"] = String(tool.depth);
+      this.number("Force", fixed(force, 3), "N");
+      this.number("Depth", fixed(1000 * tool.depth, 2), "mm");
+    }
+    this.number("Pull", fixed(Math.hypot(...frame.grabForce), 3), "N");
+    this.number("Time", fixed(frame.time, 2), "s");
+    const pace = frame.building
+      ? "making the body"
+      : frame.stopped
+        ? "stopped"
+        : frame.paused
+          ? "paused"
+          : `${fixed(frame.realtimeFactor, 2)} ×`;
+    this.number("Pace", pace, "");
+    this.number("Computing", `${fixed(frame.p50, 0)} / ${fixed(frame.p99, 0)}`, "µs");
+    this.number("Dropped", formatInteger(frame.dropped), "frames");
+    this.number("Latency", this.connection.latency === null ? "–" : fixed(this.connection.latency, 0), "ms");
+    this.element.dataset["epoch"] = String(frame.epoch);
+    this.element.dataset["time"] = String(frame.time);
+    if (this.pauseButton) this.pauseButton.textContent = frame.paused ? "Go on" : "Pause";
+    const targetless = frame.playing || (frame.time < 0.05 && frame.epoch !== this.followed);
+    if (targetless && tool) this.sliders[this.tool]?.depth.follow(1000 * tool.depth);
+    this.followed = frame.time >= 0.05 ? frame.epoch : this.followed;
+  }
+
+  private followed = 0;
+
+  private drawPlots(): void {
+    const { time, depth, force } = this.history;
+    if (document.hidden || !this.hello || this.hello.tools.length === 0) return;
+    this.plots.depth.show(depth[this.tool]!, force[this.tool]!);
+    this.plots.time.show(time, force[this.tool]!, Math.max(0, time.length - SEEN));
+  }
+
+  // ---- what goes out
+
+  send(command: Command): void {
+    if (command.kind === "reset")
+      this.sliders.forEach(({ depth, side, third }) => [depth, side, third].forEach((s) => s.set(0)));
+    this.connection.send(command);
+  }
+
+  private sendSoon(command: Command): void {
+    this.waiting = command;
+    requestAnimationFrame(() => this.flush());
+  }
+
+  private flush(): void {
+    if (this.waiting) this.connection.send(this.waiting);
+    this.waiting = null;
+  }
+
+  private push(tool: number, depth: number): void {
+    this.tool = tool;
+    this.sliders[tool]?.depth.set(1000 * depth);
+    this.sendPlace(tool);
+  }
+
+  private sendPlace(tool: number): void {
+    const { depth, side, third } = this.sliders[tool]!;
+    this.sendSoon({ kind: "place", tool, values: [depth.value / 1000, side.value / 1000, third.value / 1000] });
+  }
+
+  private saveForces(): void {
+    const names = this.hello?.tools.map((tool) => tool.name) ?? [];
+    download("forces.csv", new Blob([this.history.csv(names)], { type: "text/csv" }));
+  }
+
+  private savePicture(): void {
+    this.view.picture((canvas) => canvas.toBlob((blob) => blob && download("glisson.png", blob), "image/png"));
+  }
+}
+
+const xyz = (v: THREE.Vector3): [number, number, number] => [v.x, v.y, v.z];
+const fixed = (value: number, digits: number): string => value.toFixed(digits).replace("-", "−");
+const niceStep = (span: number): number => 10 ** Math.floor(Math.log10(span / 100));
+
+function check(label: string, changed: (on: boolean) => void, on = false): HTMLElement {
+  const box = h("input", { type: "checkbox", checked: on });
+  box.addEventListener("change", () => changed(box.checked));
+  return h("label", { class: "check" }, box, label);
+}

@@ -1,0 +1,58 @@
+// live_surface.ts — the streamed surface as the 3D component wants it: always one frame, the newest.
+import type { Frame, SurfaceMotion } from "../mesh3d/timeline.ts";
+import type { InstrumentForm } from "../report_data.ts";
+import type { Keyframe, LiveFrame } from "./protocol.ts";
+
+export class LiveSurface implements SurfaceMotion {
+  readonly vertices: number;
+  readonly triangles: Uint32Array;
+  readonly rest: Float32Array;
+  readonly fixed: Uint8Array;
+  readonly end = 0;
+  private readonly newest: Frame;
+
+  /** @param instruments  forms of the instruments @param sets  tools that come before them and have no form */
+  constructor(
+    keyframe: Keyframe,
+    readonly instruments: readonly InstrumentForm[],
+    private readonly sets: number,
+  ) {
+    this.rest = keyframe.rest;
+    this.vertices = keyframe.rest.length / 3;
+    this.triangles = keyframe.triangles;
+    this.fixed = keyframe.marks;
+    this.newest = {
+      time: 0,
+      displacement: new Float32Array(3 * this.vertices),
+      intensity: new Float32Array(this.vertices),
+      triangles: this.triangles,
+      instruments: [],
+    };
+  }
+
+  get frames(): readonly Frame[] {
+    return [this.newest];
+  }
+
+  take(frame: LiveFrame): void {
+    const { displacement, intensity } = this.newest;
+    const perUnit = frame.reach / 32767;
+    for (let i = 0; i < displacement.length; i++) displacement[i] = (frame.displacement[i] ?? 0) * perUnit;
+    for (let i = 0; i < intensity.length; i++) intensity[i] = ((frame.intensity[i] ?? 0) / 255) * frame.strongest;
+    this.newest.instruments = frame.tools.slice(this.sets).map(({ points, axes }) => ({ points, axes }));
+  }
+
+  at(): { before: Frame; after: Frame; share: number } {
+    return { before: this.newest, after: this.newest, share: 1 };
+  }
+
+  sample(_time: number, exaggeration: number, positions: Float32Array, intensity: Float32Array): void {
+    const { displacement } = this.newest;
+    for (let i = 0; i < positions.length; i++) positions[i] = this.rest[i]! + exaggeration * displacement[i]!;
+    intensity.set(this.newest.intensity);
+  }
+
+  trianglesAt(): Uint32Array {
+    return this.triangles;
+  }
+}

@@ -1,0 +1,242 @@
+// live_view.ts — the streamed organ in a canvas: drag tissue to pull it, a tool to push it along its axis, the rest to turn.
+import * as THREE from "three";
+import { strokeOf } from "../charts/line_style.ts";
+import { ColourBar } from "../mesh3d/colour_bar.ts";
+import { Stage } from "../mesh3d/stage.ts";
+import { SurfaceModel } from "../mesh3d/surface_model.ts";
+import { webglContext } from "../mesh3d/webgl.ts";
+import { h } from "../page/dom.ts";
+import { currentTheme, onTheme, themeColour } from "../page/theme.ts";
+import { LiveSurface } from "./live_surface.ts";
+import type { Hello, Keyframe, LiveFrame } from "./protocol.ts";
+
+const LEAST_RANGE = 0.02; // of the colour scale: noise at rest stays one colour
+const DRIVEN = 2;
+
+export interface Hands {
+  mayAct(): boolean;
+  grab(vertex: number, at: THREE.Vector3): void;
+  drag(to: THREE.Vector3): void;
+  letGo(): void;
+  push(tool: number, depth: number): void;
+}
+
+type Drag =
+  | { what: "tissue"; vertex: number; plane: THREE.Plane; offset: THREE.Vector3 }
+  | { what: "tool"; tool: number; axis: THREE.Ray; from: number; depth: number };
+
+export class LiveView {
+  readonly element: HTMLElement;
+  readonly canvas = h("canvas", {
+    class: "mesh-canvas live-canvas",
+    tabindex: 0,
+    "aria-label": "The body in three dimensions. Arrow keys turn it, plus and minus zoom, 0 shows all of it.",
+  });
+  pulls = true; // a drag on tissue pulls it
+  edges: boolean | null = null;
+  private readonly bar = new ColourBar();
+  private readonly stage: Stage | null;
+  private surface: LiveSurface | null = null;
+  private model: SurfaceModel | null = null;
+  private keyframe = -1;
+  private epoch = -1;
+  private range = LEAST_RANGE;
+  private frame: LiveFrame | null = null;
+  private fitted = false;
+  private dragged: Drag | null = null;
+  private readonly thread = new THREE.Line(
+    new THREE.BufferGeometry(),
+    new THREE.LineBasicMaterial({ depthTest: false }),
+  );
+
+  constructor(
+    private readonly hello: () => Hello | null,
+    private readonly hands: Hands,
+  ) {
+    const context = webglContext(this.canvas);
+    this.element = h("div", { class: "mesh-viewport live-viewport" }, this.canvas, this.bar.element);
+    this.stage = context ? new Stage(this.canvas, context) : null;
+    if (!this.stage) {
+      this.element.replaceChildren(
+        h(
+          "p",
+          { class: "mesh-missing" },
+          "This browser gives no WebGL 2: forces and controls work, the body is not drawn.",
+        ),
+      );
+      return;
+    }
+    this.thread.visible = this.thread.frustumCulled = false;
+    this.thread.renderOrder = 10;
+    this.stage.scene.add(this.thread);
+    onTheme(() => this.recolour());
+    this.element.addEventListener("pointerdown", (event) => this.down(event), { capture: true });
+    this.element.addEventListener("pointermove", (event) => this.move(event));
+    for (const end of ["pointerup", "pointercancel"] as const) this.element.addEventListener(end, () => this.up());
+    this.canvas.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  /** Another skin: the first, or one that was cut. */
+  takeKeyframe(keyframe: Keyframe): void {
+    const hello = this.hello();
+    if (!hello || !this.stage) return;
+    if (this.model) {
+      this.stage.scene.remove(this.model.group);
+      this.model.dispose();
+    }
+    const sets = hello.tools.filter((tool) => !tool.instrument).length;
+    this.surface = new LiveSurface(keyframe, hello.instruments, sets);
+    this.model = new SurfaceModel(this.surface);
+    this.keyframe = keyframe.number;
+    this.stage.scene.add(this.model.group);
+    this.recolour();
+    if (!this.fitted) this.fit();
+    this.fitted = true;
+  }
+
+  takeFrame(frame: LiveFrame): void {
+    if (!this.surface || !this.model || frame.keyframe !== this.keyframe) return;
+    if (frame.epoch !== this.epoch) this.range = LEAST_RANGE;
+    this.epoch = frame.epoch;
+    this.frame = frame;
+    this.surface.take(frame);
+    const grown = Math.max(this.range, frame.strongest);
+    if (grown > this.range || !this.bar.element.dataset["range"]) {
+      this.range = grown > this.range ? 1.15 * grown : grown; // in steps, so that colours do not creep
+      this.bar.setRange(this.range);
+      this.bar.element.dataset["range"] = String(this.range);
+    }
+    this.model.show({ edges: this.edges ?? this.model.edgesByDefault, ghost: false, marks: true });
+    this.model.update(0, 1, this.range);
+    this.drawThread();
+    this.stage?.invalidate();
+  }
+
+  fit(): void {
+    if (this.model) this.stage?.fit(this.model.extremes(1));
+  }
+
+  /** The picture at twice the size. */
+  picture(use: (canvas: HTMLCanvasElement) => void): void {
+    this.stage?.withFinePicture(use);
+  }
+
+  private recolour(): void {
+    const driven = strokeOf({ colour: 1, dash: [] }, currentTheme());
+    this.model?.colour({
+      edge: themeColour("--mesh-edge"),
+      ghost: themeColour("--mesh-ghost"),
+      held: themeColour("--mesh-held"),
+      instrument: themeColour("--mesh-instrument"),
+      driven,
+    });
+    (this.thread.material as THREE.LineBasicMaterial).color.set(driven);
+    this.stage?.invalidate();
+  }
+
+  private down(event: PointerEvent): void {
+    if (!this.stage || !this.model || event.button !== 0 || !event.isPrimary || event.target !== this.canvas) return;
+    this.dragged = this.hands.mayAct() ? this.take(event) : null;
+    this.stage.turning = this.dragged === null;
+    if (!this.dragged) return;
+    this.canvas.focus({ preventScroll: true });
+    this.canvas.setPointerCapture(event.pointerId);
+    if (this.dragged.what !== "tissue") return;
+    this.hands.grab(this.dragged.vertex, this.place(this.dragged.vertex));
+  }
+
+  /** What lies under the pointer: a tool, driven vertices, tissue. */
+  private take(event: PointerEvent): Drag | null {
+    const { stage, model, frame } = this;
+    const hello = this.hello();
+    if (!stage || !model || !frame || !hello) return null;
+    const caster = stage.rayThrough(event.clientX, event.clientY);
+    model.skin.geometry.computeBoundingSphere();
+    const objects = model.instrumentObjects as THREE.Object3D[];
+    for (const object of objects) (object as THREE.Mesh).geometry?.computeBoundingSphere();
+    const tool = caster.intersectObjects(objects, false)[0];
+    const skin = caster.intersectObject(model.skin, false)[0];
+    const sets = hello.tools.filter((each) => !each.instrument).length;
+    if (tool && (!skin || tool.distance <= skin.distance))
+      return this.takeTool(sets + objects.indexOf(tool.object), tool.point, caster.ray);
+    if (!skin?.face || !this.surface) return null;
+    const corners = [skin.face.a, skin.face.b, skin.face.c];
+    if (sets > 0 && corners.some((corner) => this.surface!.fixed[corner] === DRIVEN))
+      return this.takeTool(0, skin.point, caster.ray);
+    if (!this.pulls || !hello.can_grab) return null;
+    const far = (corner: number) => this.place(corner).distanceTo(skin.point);
+    const vertex = corners.reduce((best, corner) => (far(corner) < far(best) ? corner : best));
+    const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(stage.forward, skin.point);
+    return { what: "tissue", vertex, plane, offset: this.place(vertex).sub(skin.point) };
+  }
+
+  private takeTool(tool: number, point: THREE.Vector3, ray: THREE.Ray): Drag | null {
+    const info = this.hello()?.tools[tool];
+    const state = this.frame?.tools[tool];
+    if (!info || !state) return null;
+    const axis = new THREE.Ray(point.clone(), new THREE.Vector3(...(info.direction as [number, number, number])));
+    return { what: "tool", tool, axis, from: alongAxis(axis, ray), depth: state.depth };
+  }
+
+  private move(event: PointerEvent): void {
+    if (!this.dragged || !this.stage) return;
+    const { ray } = this.stage.rayThrough(event.clientX, event.clientY);
+    if (this.dragged.what === "tool") {
+      this.hands.push(this.dragged.tool, this.dragged.depth + alongAxis(this.dragged.axis, ray) - this.dragged.from);
+      return;
+    }
+    const to = ray.intersectPlane(this.dragged.plane, new THREE.Vector3());
+    if (!to) return;
+    to.add(this.dragged.offset);
+    this.target.copy(to);
+    this.hands.drag(to);
+  }
+
+  private readonly target = new THREE.Vector3();
+
+  private up(): void {
+    if (this.dragged?.what === "tissue") this.hands.letGo();
+    this.dragged = null;
+    this.thread.visible = false;
+    if (this.stage) this.stage.turning = true;
+  }
+
+  /** Where a vertex of the skin is now. */
+  private place(vertex: number): THREE.Vector3 {
+    const position = this.model!.skin.geometry.getAttribute("position") as THREE.BufferAttribute;
+    return new THREE.Vector3().fromBufferAttribute(position, vertex);
+  }
+
+  /** From what is held to where the hand is. */
+  private drawThread(): void {
+    const drag = this.dragged;
+    this.thread.visible = drag?.what === "tissue" && this.frame?.grabbing === true && this.target.lengthSq() > 0;
+    if (!this.thread.visible || drag?.what !== "tissue") return;
+    this.thread.geometry.setFromPoints([this.place(drag.vertex), this.target]);
+  }
+
+  private key(event: KeyboardEvent): void {
+    const turn: Record<string, [number, number]> = {
+      ArrowLeft: [-0.12, 0],
+      ArrowRight: [0.12, 0],
+      ArrowUp: [0, -0.12],
+      ArrowDown: [0, 0.12],
+    };
+    const by = turn[event.key];
+    if (by) this.stage?.turn(...by);
+    else if (event.key === "+" || event.key === "=") this.stage?.zoom(0.85);
+    else if (event.key === "-") this.stage?.zoom(1 / 0.85);
+    else if (event.key === "0") this.fit();
+    else return;
+    event.preventDefault();
+  }
+}
+
+/** Way along an axis of the point that is nearest to a ray [m]; nearly parallel ones give none. */
+function alongAxis(axis: THREE.Ray, ray: THREE.Ray): number {
+  const w = ray.origin.clone().sub(axis.origin);
+  const b = axis.direction.dot(ray.direction);
+  const denominator = 1 - b * b;
+  if (denominator < 0.02) return 0;
+  return (w.dot(axis.direction) - b * w.dot(ray.direction)) / denominator;
+}

@@ -1,0 +1,241 @@
+// protocol.ts — the bytes between page and program: docs/view.md has them as a table, apps/view/ the other end.
+import type { InstrumentForm } from "../report_data.ts";
+
+export interface ToolInfo {
+  name: string;
+  instrument: boolean;
+  direction: number[];
+  side: number[];
+  third: number[];
+  least_m: number;
+  most_m: number;
+  speed_m_s: number;
+  can_play: boolean;
+}
+
+export interface ParameterInfo {
+  label: string;
+  unit: string;
+  least: number;
+  most: number;
+  value: number;
+}
+
+export interface Hello {
+  type: "hello";
+  title: string;
+  variant: string;
+  version: string;
+  session: string;
+  vertices: number;
+  tets: number;
+  can_grab: boolean;
+  tools: ToolInfo[];
+  parameters: ParameterInfo[];
+  instruments: InstrumentForm[];
+}
+
+export interface Role {
+  type: "role";
+  drives: boolean;
+  led: boolean;
+  viewers: number;
+}
+
+export interface LiveEvent {
+  tool: string;
+  event: string;
+  time_s: number;
+  depth_m: number;
+}
+
+export interface SlowState {
+  type: "state";
+  epoch: number;
+  parameters: number[];
+  speeds_m_s: number[];
+  events_before: number;
+  events: LiveEvent[];
+}
+
+export interface Notice {
+  type: "notice";
+  text: string;
+}
+
+export type TextMessage = Hello | Role | SlowState | Notice;
+
+export interface Keyframe {
+  kind: "keyframe";
+  number: number;
+  rest: Float32Array;
+  triangles: Uint32Array;
+  marks: Uint8Array;
+}
+
+export interface ToolState {
+  depth: number; // [m]
+  force: [number, number, number]; // on the tissue [N]
+  axes: number[];
+  points: number[];
+}
+
+export interface LiveFrame {
+  kind: "frame";
+  keyframe: number;
+  epoch: number;
+  echo: number;
+  time: number; // simulated [s]
+  realtimeFactor: number;
+  p50: number; // of the computing of a frame [µs]
+  p99: number;
+  dropped: number;
+  paused: boolean;
+  building: boolean;
+  playing: boolean;
+  grabbing: boolean;
+  stopped: boolean;
+  grabForce: [number, number, number];
+  reach: number; // displacement = i16 / 32767 × this [m]
+  strongest: number; // intensity = u8 / 255 × this
+  tools: ToolState[];
+  displacement: Int16Array;
+  intensity: Uint8Array;
+}
+
+export interface Samples {
+  kind: "samples";
+  tools: number;
+  rows: { epoch: number; time: number; depth: number[]; force: number[] }[];
+}
+
+const FRAME_HEAD = 60;
+
+/** A binary message; null where it is none that this page knows. */
+export function decodeMessage(buffer: ArrayBuffer): Keyframe | LiveFrame | Samples | null {
+  const view = new DataView(buffer);
+  if (buffer.byteLength < 8) return null;
+  try {
+    if (view.getUint8(0) === 1) return decodeKeyframe(view);
+    if (view.getUint8(0) === 2) return decodeFrame(view);
+    if (view.getUint8(0) === 3) return decodeSamples(view);
+  } catch (error) {
+    if (!(error instanceof RangeError)) throw error; // cut short
+  }
+  return null;
+}
+
+function decodeKeyframe(view: DataView): Keyframe {
+  const [vertices, triangles] = [view.getUint32(8, true), view.getUint32(12, true)];
+  const atTriangles = 16 + 12 * vertices;
+  const atMarks = atTriangles + 12 * triangles;
+  return {
+    kind: "keyframe",
+    number: view.getUint32(4, true),
+    rest: new Float32Array(view.buffer.slice(16, atTriangles) as ArrayBuffer),
+    triangles: new Uint32Array(view.buffer.slice(atTriangles, atMarks) as ArrayBuffer),
+    marks: new Uint8Array(view.buffer as ArrayBuffer, atMarks, vertices),
+  };
+}
+
+const vector = (view: DataView, at: number): [number, number, number] => [
+  view.getFloat32(at, true),
+  view.getFloat32(at + 4, true),
+  view.getFloat32(at + 8, true),
+];
+
+function decodeFrame(view: DataView): LiveFrame {
+  const flags = view.getUint8(1);
+  const tools: ToolState[] = [];
+  let at = FRAME_HEAD;
+  for (let i = view.getUint16(2, true); i > 0; i--) {
+    const points = view.getUint32(at + 52, true);
+    tools.push({
+      depth: view.getFloat32(at, true),
+      force: vector(view, at + 4),
+      axes: floats(view, at + 16, 9),
+      points: floats(view, at + 56, 3 * points),
+    });
+    at += 56 + 12 * points;
+  }
+  const vertices = Math.floor((view.byteLength - at) / 7);
+  return {
+    kind: "frame",
+    keyframe: view.getUint32(4, true),
+    epoch: view.getUint32(8, true),
+    echo: view.getUint32(12, true),
+    time: view.getFloat64(16, true),
+    realtimeFactor: view.getFloat32(24, true),
+    p50: view.getFloat32(28, true),
+    p99: view.getFloat32(32, true),
+    dropped: view.getUint32(36, true),
+    paused: (flags & 1) !== 0,
+    building: (flags & 2) !== 0,
+    playing: (flags & 4) !== 0,
+    grabbing: (flags & 8) !== 0,
+    stopped: (flags & 16) !== 0,
+    grabForce: vector(view, 40),
+    reach: view.getFloat32(52, true),
+    strongest: view.getFloat32(56, true),
+    tools,
+    displacement: new Int16Array(view.buffer as ArrayBuffer, at, 3 * vertices),
+    intensity: new Uint8Array(view.buffer as ArrayBuffer, at + 6 * vertices, vertices),
+  };
+}
+
+const floats = (view: DataView, at: number, count: number): number[] =>
+  Array.from({ length: count }, (_, i) => view.getFloat32(at + 4 * i, true));
+
+function decodeSamples(view: DataView): Samples {
+  const tools = view.getUint8(1);
+  const rows: Samples["rows"] = [];
+  let at = 8;
+  for (let i = view.getUint32(4, true); i > 0; i--) {
+    const both = floats(view, at + 8, 2 * tools);
+    rows.push({
+      epoch: view.getUint32(at, true),
+      time: view.getFloat32(at + 4, true),
+      depth: both.filter((_, k) => k % 2 === 0),
+      force: both.filter((_, k) => k % 2 === 1),
+    });
+    at += 8 + 8 * tools;
+  }
+  return { kind: "samples", tools, rows };
+}
+
+export type Command =
+  | { kind: "place"; tool: number; values: [number, number, number] } // depth, aside [m]
+  | { kind: "speed"; tool: number; values: [number] } // [m/s]
+  | { kind: "grab"; index: number; values: [number, number, number] } // surface vertex, where to [m]
+  | { kind: "drag"; values: [number, number, number] }
+  | { kind: "pause"; index: 0 | 1 }
+  | { kind: "parameter"; index: number; values: [number] }
+  | { kind: "letGo" | "step" | "reset" | "play" | "take" | "give" };
+
+const KINDS: Record<Command["kind"], number> = {
+  place: 1,
+  speed: 2,
+  grab: 3,
+  drag: 4,
+  letGo: 5,
+  pause: 6,
+  step: 7,
+  reset: 8,
+  play: 9,
+  parameter: 10,
+  take: 11,
+  give: 12,
+};
+
+/** The bytes of a command. */
+export function encodeCommand(command: Command, sequence: number): ArrayBuffer {
+  const index = "index" in command ? [command.index] : [];
+  const values: number[] = "values" in command ? [...command.values] : [];
+  const view = new DataView(new ArrayBuffer(8 + 4 * index.length + 4 * values.length));
+  view.setUint8(0, KINDS[command.kind]);
+  view.setUint8(1, "tool" in command ? command.tool : 0);
+  view.setUint32(4, sequence, true);
+  index.forEach((value) => view.setUint32(8, value, true));
+  values.forEach((value, i) => view.setFloat32(8 + 4 * index.length + 4 * i, value, true));
+  return view.buffer;
+}

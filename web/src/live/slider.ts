@@ -1,0 +1,69 @@
+// slider.ts — a labelled slider with its value as a number that can be typed, and its unit.
+import { formatSignificant } from "../format/number.ts";
+import { h } from "../page/dom.ts";
+
+export class Slider {
+  readonly element: HTMLElement;
+  private readonly range: HTMLInputElement;
+  private readonly box: HTMLInputElement;
+  private touched = 0;
+
+  /** @param acts  on every move; @param settles  only when the hand comes off: what is dear */
+  constructor(
+    id: string,
+    label: string,
+    unit: string,
+    private readonly least: number,
+    private readonly most: number,
+    value: number,
+    step: number,
+    when: "acts" | "settles",
+    private readonly act: (value: number) => void,
+  ) {
+    const common = { min: least, max: most, step, id };
+    this.range = h("input", { type: "range", ...common, "aria-label": `${label} [${unit}]` });
+    this.box = h("input", {
+      type: "number",
+      min: least,
+      max: most,
+      step: "any",
+      "aria-label": `${label} [${unit}], number`,
+    });
+    this.element = h(
+      "div",
+      { class: "live-slider" },
+      h("label", { for: id }, label),
+      this.range,
+      h("span", { class: "live-value" }, this.box, h("span", { class: "unit" }, unit)),
+    );
+    this.set(value);
+    this.range.addEventListener("input", () => this.moved(Number(this.range.value), when === "acts"));
+    this.range.addEventListener("change", () => this.moved(Number(this.range.value), true));
+    this.box.addEventListener("change", () => this.moved(Number(this.box.value), true));
+  }
+
+  get value(): number {
+    return Number(this.range.value);
+  }
+
+  set(value: number): void {
+    this.range.value = String(value);
+    if (document.activeElement !== this.box) this.box.value = formatSignificant(value, 4).replace("−", "-");
+  }
+
+  /** From the program; not while a hand is on it. */
+  follow(value: number): void {
+    if (performance.now() - this.touched > 600) this.set(value);
+  }
+
+  private moved(value: number, send: boolean): void {
+    const kept = Math.min(this.most, Math.max(this.least, Number.isFinite(value) ? value : this.least));
+    this.touched = performance.now();
+    this.set(kept);
+    if (send) this.act(kept);
+  }
+
+  set disabled(off: boolean) {
+    this.range.disabled = this.box.disabled = off;
+  }
+}
