@@ -26,8 +26,8 @@ export class LivePage {
   private sliders: { depth: Slider; side: Slider; third: Slider; speed: Slider }[] = [];
   private parameters: Slider[] = [];
   private readonly plots = {
-    depth: new ForcePlot("Force against depth", "depth [mm]", 1000),
-    time: new ForcePlot("Force over time", "time [s]", 1),
+    depth: new ForcePlot("Force [N] against depth", "depth [mm]", 1000),
+    time: new ForcePlot("Force [N] over time", "time [s]", 1),
   };
   private readonly title = h("h1", {}, "Glisson");
   private readonly subtitle = h("p", { class: "muted live-subtitle" });
@@ -77,6 +77,7 @@ export class LivePage {
 
   private body(): HTMLElement {
     const edges = check("Edges", (on) => (this.view.edges = on));
+    this.view.onEdges = (on) => (edges.querySelector("input")!.checked = on);
     const pulls = check("Drag pulls tissue", (on) => (this.view.pulls = on), true);
     const tools = h(
       "div",

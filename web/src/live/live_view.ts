@@ -33,7 +33,8 @@ export class LiveView {
     "aria-label": "The body in three dimensions. Arrow keys turn it, plus and minus zoom, 0 shows all of it.",
   });
   pulls = true; // a drag on tissue pulls it
-  edges: boolean | null = null;
+  edges: boolean | null = null; // null: as suits the mesh
+  onEdges: (on: boolean) => void = () => {};
   private readonly bar = new ColourBar();
   private readonly stage: Stage | null;
   private surface: LiveSurface | null = null;
@@ -90,6 +91,7 @@ export class LiveView {
     this.keyframe = keyframe.number;
     this.stage.scene.add(this.model.group);
     this.recolour();
+    this.onEdges(this.edges ?? this.model.edgesByDefault);
     if (!this.fitted) this.fit();
     this.fitted = true;
   }

@@ -1,5 +1,4 @@
 // slider.ts — a labelled slider with its value as a number that can be typed, and its unit.
-import { formatSignificant } from "../format/number.ts";
 import { h } from "../page/dom.ts";
 
 export class Slider {
@@ -7,6 +6,7 @@ export class Slider {
   private readonly range: HTMLInputElement;
   private readonly box: HTMLInputElement;
   private touched = 0;
+  private held = 0;
 
   /** @param acts  on every move; @param settles  only when the hand comes off: what is dear */
   constructor(
@@ -20,7 +20,8 @@ export class Slider {
     when: "acts" | "settles",
     private readonly act: (value: number) => void,
   ) {
-    const common = { min: least, max: most, step, id };
+    // Places of the slider are multiples of the step; a typed number is kept as it is.
+    const common = { min: step * Math.ceil(least / step - 1e-9), max: most, step, id };
     this.range = h("input", { type: "range", ...common, "aria-label": `${label} [${unit}]` });
     this.box = h("input", {
       type: "number",
@@ -43,12 +44,13 @@ export class Slider {
   }
 
   get value(): number {
-    return Number(this.range.value);
+    return this.held;
   }
 
   set(value: number): void {
+    this.held = value;
     this.range.value = String(value);
-    if (document.activeElement !== this.box) this.box.value = formatSignificant(value, 4).replace("−", "-");
+    if (document.activeElement !== this.box) this.box.value = String(Number(value.toPrecision(4)));
   }
 
   /** From the program; not while a hand is on it. */

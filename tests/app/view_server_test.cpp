@@ -1,0 +1,301 @@
+// The live server lets in who may come in, keeps who misbehaves out, and lets one viewer lead.
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <thread>
+
+#include "app/program.h"
+#include "app/view_client.h"
+#include "view/access.h"
+#include "view/lead.h"
+#include "view/server.h"
+
+namespace glisson::view {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Answer;
+using test::Heard;
+using test::ViewClient;
+
+constexpr const char* kToken = "a-token-of-a-test";
+constexpr std::string_view kPage = "<!doctype html><title>the page</title>";
+
+class LiveServer : public ::testing::Test {
+ protected:
+  LiveServer() : engine_(parse_scene(test::small_scene(), "view.toml", ".").variants.front(), {}) {}
+  void SetUp() override { open({.token = kToken}); }
+  void TearDown() override {
+    server_->stop();
+    engine_.stop();
+  }
+  void open(const ServerOptions& options) {
+    server_ = std::make_unique<Server>(engine_, SceneFacts{"a scene", "main", "0", "[]"}, kPage, options);
+    engine_.start();
+    server_->start();
+  }
+  std::string host() const { return "127.0.0.1:" + std::to_string(server_->port()); }
+  std::string query(const std::string& more = "") const { return std::string("token=") + kToken + more; }
+  unsigned short port() const { return server_->port(); }
+
+  Engine engine_;
+  std::unique_ptr<Server> server_;
+};
+
+std::uint32_t u32_at(const std::string& bytes, std::size_t at) {
+  std::uint32_t x = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    x |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
+  return x;
+}
+float f32_at(const std::string& bytes, std::size_t at) { return std::bit_cast<float>(u32_at(bytes, at)); }
+
+// Secrets are equal only where every character is, and an empty one opens nothing.
+TEST(LiveAccess, ComparesSecrets) {
+  EXPECT_TRUE(same_secret("abcdef", "abcdef"));
+  for (const char* wrong : {"", "abcde", "abcdefg", "abcdeg", "Abcdef", "abcdefabcdef"})
+    EXPECT_FALSE(same_secret(wrong, "abcdef"));
+  EXPECT_FALSE(same_secret("", ""));
+  EXPECT_NE(random_key(), random_key());
+  EXPECT_EQ(random_key().size(), 32u);
+}
+
+// A Host header is ours only where no DNS could have put another page's name there.
+TEST(LiveAccess, KnowsItsHosts) {
+  const Place here{"127.0.0.1", 8080, true};
+  for (const char* ours : {"127.0.0.1:8080", "localhost:8080", "[::1]:8080"})
+    EXPECT_TRUE(host_allowed(ours, here)) << ours;
+  for (const char* other :
+       {"", "127.0.0.1", "127.0.0.1:80", "evil.example:8080", "10.0.0.7:8080", "localhost.evil.example:8080"})
+    EXPECT_FALSE(host_allowed(other, here)) << other;
+  const Place anywhere{"0.0.0.0", 8080, false};
+  EXPECT_TRUE(host_allowed("10.0.0.7:8080", anywhere));
+  EXPECT_TRUE(host_allowed("[fe80::1]:8080", anywhere));
+  EXPECT_FALSE(host_allowed("evil.example:8080", anywhere));
+  EXPECT_TRUE(origin_allowed("http://127.0.0.1:8080", "127.0.0.1:8080"));
+  EXPECT_TRUE(origin_allowed("", "127.0.0.1:8080"));
+  for (const char* other : {"null", "http://evil.example", "https://127.0.0.1:8080", "http://127.0.0.1:8081"})
+    EXPECT_FALSE(origin_allowed(other, "127.0.0.1:8080")) << other;
+}
+
+// A bucket lets a burst through, then its rate.
+TEST(LiveAccess, PacesMessages) {
+  const Pacer::Clock::time_point start{};
+  Pacer pacer(10.0, 3.0, start);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(pacer.take(start));
+  EXPECT_FALSE(pacer.take(start));
+  EXPECT_TRUE(pacer.take(start + 100ms));
+  EXPECT_FALSE(pacer.take(start + 150ms));
+  EXPECT_TRUE(pacer.take(start + 200ms));
+}
+
+// The first leads; who is cut off has the lead again when back in time, and loses it when late.
+TEST(LiveLead, IsKeptForAWhile) {
+  const Lead::Clock::time_point t{};
+  Lead lead(10s);
+  lead.came("a", t);
+  lead.came("b", t);
+  EXPECT_TRUE(lead.leads("a"));
+  EXPECT_FALSE(lead.take("b", t));
+  lead.went("a", t);
+  EXPECT_FALSE(lead.take("b", t + 9s));
+  lead.came("a", t + 9s);
+  EXPECT_TRUE(lead.leads("a"));
+  EXPECT_FALSE(lead.take("b", t + 30s)) << "it came back";
+  lead.went("a", t + 30s);
+  EXPECT_FALSE(lead.led(t + 41s));
+  EXPECT_TRUE(lead.take("b", t + 41s));
+  lead.give("b");
+  EXPECT_TRUE(lead.take("a", t + 42s));
+}
+
+// The page is given to who has the token, under our name, and nothing else is given to anyone.
+TEST_F(LiveServer, ServesOnePageToWhoHasTheToken) {
+  const Answer page = test::get(port(), "/?" + query(), host());
+  EXPECT_EQ(page.status, 200);
+  EXPECT_NE(page.text.find(kPage), std::string::npos);
+  EXPECT_NE(page.text.find("Content-Security-Policy: default-src 'none'"), std::string::npos);
+  EXPECT_NE(page.text.find("Referrer-Policy: no-referrer"), std::string::npos);
+  for (const char* wrong : {"/", "/?token=", "/?token=a-token-of-a-tess", "/?token=a-token-of-a-test2"})
+    EXPECT_EQ(test::get(port(), wrong, host()).status, 403) << wrong;
+  for (const char* file : {"/etc/passwd", "/../../etc/passwd", "/live.html", "//", "/%2e%2e/x"})
+    EXPECT_EQ(test::get(port(), file + std::string("?") + query(), host()).status, 404) << file;
+  EXPECT_EQ(test::get(port(), "/?" + query(), "evil.example:" + std::to_string(port())).status, 421);
+  EXPECT_EQ(test::get(port(), "/?" + query(), host(), "Origin: http://evil.example\r\n").status, 403);
+  EXPECT_EQ(test::get(port(), "/stream?" + query(), host()).status, 426);
+}
+
+TEST_F(LiveServer, RefusesStrangersAtTheStream) {
+  EXPECT_EQ(ViewClient(port(), "token=wrong").status(), 403);
+  EXPECT_EQ(ViewClient(port(), query(), "Origin: http://evil.example\r\n").status(), 403);
+  EXPECT_EQ(ViewClient(port(), query(), "Origin: null\r\n").status(), 403);
+  EXPECT_EQ(ViewClient(port(), query(), "Origin: http://" + host() + "\r\n").status(), 101);
+}
+
+// A viewer is told the scene, gets the skin before the first frame, and frames that go on.
+TEST_F(LiveServer, StreamsTheBody) {
+  ViewClient viewer(port(), query());
+  ASSERT_EQ(viewer.status(), 101);
+  const nlohmann::json hello = viewer.wait_for("hello");
+  EXPECT_EQ(hello["title"], "a scene");
+  EXPECT_EQ(hello["tets"], 48);
+  EXPECT_EQ(hello["tools"][0]["name"], "tool");
+  const std::string keyframe = viewer.wait_for_binary(1);
+  const std::uint32_t vertices = u32_at(keyframe, 8), triangles = u32_at(keyframe, 12);
+  EXPECT_EQ(vertices, 26u) << "all but the one in the middle";
+  EXPECT_EQ(triangles, 48u);
+  EXPECT_EQ(keyframe.size(), 16 + 13 * vertices + 12 * triangles);
+  viewer.send({.kind = CommandKind::place, .sequence = 9, .values = {0.001f, 0.0f, 0.0f}});
+  std::string frame;
+  for (int i = 0; i < 500 && (frame.empty() || f32_at(frame, 60) < 0.00099f); ++i) frame = viewer.wait_for_binary(2);
+  ASSERT_FALSE(frame.empty());
+  EXPECT_EQ(u32_at(frame, 4), u32_at(keyframe, 4)) << "the frame names its keyframe";
+  EXPECT_EQ(u32_at(frame, 12), 9u) << "the act it shows";
+  EXPECT_NEAR(f32_at(frame, 60), 0.001, 1e-5) << "depth of the tool";
+  EXPECT_LT(f32_at(frame, 72), 0.0f) << "it presses down";
+  EXPECT_NEAR(f32_at(frame, 52), 0.001, 3e-4) << "the largest displacement";
+  EXPECT_EQ(frame.size(), 60 + 56 + 7 * vertices);
+  EXPECT_GT(u32_at(viewer.wait_for_binary(3), 4), 0u) << "forces of the frames between";
+}
+
+// One leads, the others watch: what they send moves nothing, until the lead is given away.
+TEST_F(LiveServer, OneLeads) {
+  ViewClient first(port(), query());
+  EXPECT_EQ(first.wait_for("role")["drives"], true);
+  ViewClient second(port(), query());
+  const nlohmann::json role = second.wait_for("role");
+  EXPECT_EQ(role["drives"], false);
+  EXPECT_EQ(role["viewers"], 2);
+  second.send({.kind = CommandKind::pause, .sequence = 4, .index = 1});
+  second.send({.kind = CommandKind::take, .sequence = 5});
+  EXPECT_EQ(second.wait_for("role")["drives"], false);
+  EXPECT_EQ(second.wait_for_binary(2)[1] & 1, 0) << "it is not paused";
+  first.send({.kind = CommandKind::give, .sequence = 1});
+  second.send({.kind = CommandKind::take, .sequence = 6});
+  nlohmann::json now = second.wait_for("role");
+  for (int i = 0; i < 5 && now["drives"] != true; ++i) {  // the two messages may come in either order
+    second.send({.kind = CommandKind::take, .sequence = 7});
+    now = second.wait_for("role");
+  }
+  EXPECT_EQ(now["drives"], true);
+  second.send({.kind = CommandKind::pause, .sequence = 8, .index = 1});
+  bool paused = false;
+  for (int i = 0; i < 300 && !paused; ++i) paused = (second.wait_for_binary(2)[1] & 1) != 0;
+  EXPECT_TRUE(paused);
+}
+
+// A viewer whose line was cut comes back as itself, with the lead; a key that nobody has is a new viewer.
+TEST_F(LiveServer, ReconnectGoesOn) {
+  std::string session;
+  {
+    ViewClient first(port(), query());
+    session = first.wait_for("hello")["session"];
+  }
+  ViewClient other(port(), query());
+  EXPECT_EQ(other.wait_for("role")["drives"], false) << "the lead is kept for the first";
+  ViewClient again(port(), query("&session=" + session));
+  EXPECT_EQ(again.wait_for("hello")["session"], session);
+  EXPECT_EQ(again.wait_for("role")["drives"], true);
+  EXPECT_FALSE(again.wait_for_binary(1).empty()) << "the skin comes anew";
+  ViewClient elsewhere(port(), query("&session=" + session));
+  EXPECT_EQ(elsewhere.wait_for("role")["drives"], true);
+  EXPECT_EQ(again.wait_for_close().text, "continued elsewhere");
+}
+
+// What no page sends ends the connection with a reason, and the server goes on.
+TEST_F(LiveServer, ClosesOnWhatIsMalformed) {
+  const auto reason = [&](int code, const std::string& payload) {
+    ViewClient viewer(port(), query());
+    viewer.send_frame(code, payload);
+    return viewer.wait_for_close();
+  };
+  EXPECT_EQ(reason(1, "{}").close_code, 1003);
+  EXPECT_EQ(reason(2, "short").text, "a message has 8 bytes or more");
+  EXPECT_EQ(reason(2, std::string("\x63\0\0\0\0\0\0\0", 8)).text, "unknown kind of message");
+  EXPECT_EQ(reason(2, std::string(25, '\1')).close_code, 1009);
+  EXPECT_EQ(reason(2, std::string(1 << 20, '\xff')).close_code, 1009) << "a mebibyte of rubbish";
+  const Command nan{.kind = CommandKind::place, .values = {std::nanf(""), 0.0f, 0.0f}};
+  EXPECT_EQ(reason(2, encode_command(nan)).text, "a number is not finite");
+  EXPECT_EQ(ViewClient(port(), query()).wait_for("hello")["title"], "a scene");
+}
+
+// Too many messages end the connection; a page's 60 a second do not.
+TEST_F(LiveServer, LimitsTheRate) {
+  ViewClient calm(port(), query());
+  for (std::uint32_t i = 0; i < 200; ++i) calm.send({.kind = CommandKind::let_go, .sequence = i});
+  EXPECT_FALSE(calm.wait_for_binary(2).empty());
+  ViewClient flood(port(), query());
+  for (std::uint32_t i = 0; i < 5000; ++i) flood.send({.kind = CommandKind::let_go, .sequence = i});
+  const Heard end = flood.wait_for_close();
+  if (end.close_code != 0) EXPECT_EQ(end.text, "too many messages");  // or the line was reset with messages unread
+  EXPECT_FALSE(calm.wait_for_binary(2).empty()) << "the other viewer is not bothered";
+}
+
+// Any bytes, as a request or after the handshake, leave a server that serves the next viewer.
+TEST_F(LiveServer, SurvivesRandomBytes) {
+  std::mt19937 random(11);
+  for (int i = 0; i < 60; ++i) {
+    std::string bytes(1 + random() % 300, '\0');
+    for (char& c : bytes) c = static_cast<char>(random());
+    if (i % 2 == 0) {
+      test::Line line(port());
+      line.send(bytes);
+    } else {
+      ViewClient viewer(port(), query());
+      ASSERT_EQ(viewer.status(), 101) << i;
+      viewer.send_raw(bytes);
+    }
+  }
+  EXPECT_EQ(test::get(port(), "/?" + query(), host()).status, 200);
+  ViewClient viewer(port(), query());
+  EXPECT_FALSE(viewer.wait_for_binary(2).empty());
+}
+
+// A viewer that takes nothing costs the others no frame and the engine no time.
+TEST_F(LiveServer, ASlowViewerHoldsNobodyUp) {
+  ViewClient slow(port(), query());
+  slow.line().small_buffer(4096);
+  ViewClient quick(port(), query());
+  double before = -1.0;
+  for (int i = 0; i < 60; ++i) {
+    const std::string frame = quick.wait_for_binary(2);
+    ASSERT_GE(frame.size(), 60u);
+    double time = 0.0;
+    std::memcpy(&time, frame.data() + 16, 8);
+    EXPECT_GE(time, before);
+    before = time;
+  }
+  EXPECT_GT(before, 0.0);
+}
+
+// Ten viewers at once all get the body.
+TEST_F(LiveServer, ServesTenViewers) {
+  std::vector<std::unique_ptr<ViewClient>> viewers;
+  for (int i = 0; i < 10; ++i) viewers.push_back(std::make_unique<ViewClient>(port(), query()));
+  for (const auto& viewer : viewers) {
+    ASSERT_EQ(viewer->status(), 101);
+    EXPECT_FALSE(viewer->wait_for_binary(1).empty());
+    EXPECT_FALSE(viewer->wait_for_binary(2).empty());
+  }
+}
+
+TEST(LiveServerOptions, BeyondThisMachineNeedsAToken) {
+  Engine engine(parse_scene(test::small_scene(), "view.toml", ".").variants.front(), {});
+  const auto why = [&](const ServerOptions& options) -> std::string {
+    try {
+      Server server(engine, SceneFacts{"", "", "", "[]"}, kPage, options);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(why({.host = "0.0.0.0"}).find("--token"), std::string::npos);
+  EXPECT_NE(why({.host = "0.0.0.0", .token = "too-short"}).find("16"), std::string::npos);
+  EXPECT_NE(why({.host = "example.org"}).find("an address in digits"), std::string::npos);
+  EXPECT_EQ(why({.host = "localhost"}), "");
+}
+
+}  // namespace
+}  // namespace glisson::view

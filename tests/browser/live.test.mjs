@@ -1,0 +1,222 @@
+// The live view in a real browser: the body is drawn, a needle pushed by hand meets the scene's force, a change of the tissue
+// is felt, a line that was cut comes back, and strangers stay out.
+import assert from "node:assert/strict";
+import { mkdirSync } from "node:fs";
+import { join } from "node:path";
+import { after, before, describe, test } from "node:test";
+import { WEB_DIR, openBrowser, openPage, settle } from "./browser.mjs";
+import { forceOfRun, openLive, program } from "./live_under_test.mjs";
+import { pixelsOf } from "./pixels.mjs";
+
+const SCENE = `title = "A needle, live"
+[mesh]
+kind = "box"
+cells = [6, 6, 6]
+size_m = [0.03, 0.03, 0.03]
+[tissue]
+youngs_modulus_Pa = 5000
+poisson_ratio = 0.4
+[motion]
+damping_rate_per_s = 100
+[[fixed]]
+set = "z_min"
+[[instrument]]
+kind = "needle"
+name = "needle"
+tip_m = [0.0155, 0.0145, 0.0305]
+diameter_mm = 1.2
+zone_mm = 5
+rupture.force_N = 0.1
+tip.cutting_N = 0.1
+friction = { static_in_N_m = 10, static_out_N_m = 10, dynamic_in_N_m = 6, dynamic_out_N_m = 6, viscous_in_N_s_m2 = 100, viscous_out_N_s_m2 = 100 }
+[instrument.motion]
+kind = "press"
+velocity_mm_s = 20
+depth_mm = 10
+ramp_s = 0.002
+hold_s = 1
+[output]
+frames = 2
+`;
+
+/** Software WebGL tells of its slow reading when a picture is taken; that is no trouble of the page. */
+const own = (troubles) => troubles.filter((text) => !text.includes("GL Driver Message"));
+const state = (page) => page.evaluate(() => ({ ...document.querySelector(".live").dataset }));
+const shots = join(WEB_DIR, "live-screenshots");
+
+/** Waits for what the page says of itself; simulated time, not the clock, decides: the machine may be slow. */
+async function until(page, holds, what) {
+  for (let i = 0; i < 600; i++) {
+    const now = await state(page);
+    if (holds(now)) return now;
+    await page.waitForTimeout(100);
+  }
+  assert.fail(`${what}: ${JSON.stringify(await state(page))}`);
+}
+
+/** Lets the simulation go on by a time [s], which a restart would take back. */
+async function later(page, seconds) {
+  const from = Number((await state(page)).time);
+  return until(page, (s) => Number(s.time) > from + seconds, `${seconds} s later`);
+}
+
+async function type(page, label, value) {
+  const box = page.getByLabel(`${label}, number`);
+  await box.fill(String(value));
+  await box.press("Enter");
+}
+
+describe("live view", { skip: program() === null ? "the program is not built" : false }, () => {
+  let live, browser, page, troubles;
+  before(async () => {
+    mkdirSync(shots, { recursive: true });
+    live = await openLive(SCENE);
+    browser = await openBrowser({ colorScheme: "light" });
+    ({ page, troubles } = await openPage(browser.context, live.url));
+    await until(page, (s) => Number(s.time) > 0.01, "the first frames");
+  });
+  after(async () => {
+    await browser?.close();
+    assert.equal(await live?.close(), 0, "Ctrl-C ends the program cleanly");
+  });
+
+  test("draws the body and says what it is", async () => {
+    await settle(page);
+    const drawn = await pixelsOf(page, page.locator(".live-canvas"));
+    assert.ok(drawn.drawn > 0.1 && drawn.colours > 50, JSON.stringify(drawn));
+    assert.equal(await page.locator("h1").innerText(), "A needle, live");
+    assert.match(await page.locator(".live-subtitle").innerText(), /1,?.?296 tetrahedra/);
+    assert.match(await page.locator(".live-lead").innerText(), /You lead/);
+    for (const unit of ["N", "mm", "s", "µs", "ms"])
+      assert.match(await page.locator(".live-numbers").innerText(), new RegExp(`\\s${unit}(\\s|$)`, "m"));
+  });
+
+  test("a needle pushed 10 mm gives the force of the scene's own run within 1 %", async () => {
+    const expected = forceOfRun(live.file, live.folder);
+    assert.ok(Math.abs(expected) > 0.05, `the needle meets something: ${expected} N`);
+    const before = await pixelsOf(page, page.locator(".live-canvas"));
+    await type(page, "Depth [mm]", 10);
+    await until(page, (s) => Number(s.depth) > 0.009999, "10 mm deep");
+    const now = await later(page, 1);
+    assert.ok(Math.abs(Number(now.depth) - 0.01) < 1e-6, now.depth);
+    assert.ok(Math.abs(Number(now.force) / expected - 1) < 0.01, `${now.force} N by hand, ${expected} N by the run`);
+    assert.notEqual((await pixelsOf(page, page.locator(".live-canvas"))).hash, before.hash, "the picture shows it");
+    assert.match(await page.locator(".live-events").innerText(), /puncture/);
+    await page.screenshot({ path: join(shots, "needle.png") });
+  });
+
+  test("a tissue three times as stiff pushes back three times as hard", async () => {
+    await page.getByRole("button", { name: "Reset" }).click();
+    await until(page, (s) => s.epoch === "1", "a body at rest");
+    await type(page, "Depth [mm]", 0.8); // 0.3 mm into the tissue, before it is pierced: the small-strain element is linear
+    await until(page, (s) => Number(s.depth) > 0.0007999, "in contact");
+    const soft = Number((await later(page, 0.5)).force);
+    assert.ok(soft > 0.001, `it is met: ${soft} N`);
+    await type(page, "Young's modulus E [Pa]", 15000);
+    await until(page, (s) => s.epoch === "2" && Number(s.depth) > 0.0007999, "back in by itself");
+    const stiff = Number((await later(page, 0.5)).force);
+    assert.ok(Math.abs(stiff / soft - 3) < 0.1, `${soft} → ${stiff} N`);
+  });
+
+  test("the slider is moved by keys, the clock held by the space bar", async () => {
+    await page.locator("#depth-0").focus();
+    await page.keyboard.press("Home");
+    await until(page, (s) => Number(s.depth) < -0.001, "drawn back");
+    await page.locator(".live-canvas").focus();
+    await page.keyboard.press(" ");
+    await page.getByRole("button", { name: "Go on" }).waitFor();
+    const held = (await state(page)).time;
+    await page.waitForTimeout(400);
+    assert.equal((await state(page)).time, held);
+    await page.keyboard.press(" ");
+    await later(page, 0.01);
+  });
+
+  test("a drag on the tissue pulls it", async () => {
+    await page.getByRole("button", { name: "Reset" }).click();
+    await later(page, 0.02).catch(() => null);
+    const box = await page.locator(".live-canvas").boundingBox();
+    await page.mouse.move(box.x + 0.42 * box.width, box.y + 0.62 * box.height);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 0.3 * box.width, box.y + 0.6 * box.height, { steps: 8 });
+    await page.waitForFunction(() =>
+      [...document.querySelectorAll(".live-numbers div")].some((d) => /^Pull\s+0\.(?!000)\d+ N/.test(d.innerText)),
+    );
+    await page.screenshot({ path: join(shots, "pull.png") });
+    await page.mouse.up();
+  });
+
+  test("ten watch at once, a mebibyte of rubbish ends only the one that sent it", async () => {
+    const told = await page.evaluate(async () => {
+      const url = `ws://${location.host}/stream${location.search}`;
+      const sockets = Array.from({ length: 9 }, () => new WebSocket(url));
+      const frames = sockets.map(
+        (socket) => new Promise((done) => (socket.onmessage = (event) => typeof event.data !== "string" && done(true))),
+      );
+      await Promise.all(frames);
+      const bad = sockets[0];
+      const closed = new Promise((done) => (bad.onclose = (event) => done(event.code)));
+      bad.send(new Uint8Array(1 << 20).fill(255));
+      const code = await closed;
+      const open = sockets.slice(1).filter((socket) => socket.readyState === WebSocket.OPEN).length;
+      sockets.forEach((socket) => socket.close());
+      return { code, open };
+    });
+    // 1009 is what the server says; a browser that is still sending may find the line gone before it has read that.
+    assert.ok(told.code === 1009 || told.code === 1006, `closed with ${told.code}`);
+    assert.equal(told.open, 8);
+    await later(page, 0.05);
+  });
+
+  test("a wrong token gets neither page nor stream", async () => {
+    const answer = await browser.context.request.get(`${live.url}x`);
+    assert.equal(answer.status(), 403);
+    const opened = await page.evaluate(
+      () =>
+        new Promise((done) => {
+          const socket = new WebSocket(`ws://${location.host}/stream?token=wrong`);
+          socket.onopen = () => done(true);
+          socket.onerror = () => done(false);
+        }),
+    );
+    assert.equal(opened, false);
+    troubles.splice(0, troubles.length, ...troubles.filter((text) => !text.includes("/stream?token=wrong")));
+  });
+
+  test("nothing was said in the console, and all of it fits a phone", async () => {
+    assert.deepEqual(own(troubles), []);
+    const phone = await openBrowser({ viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
+    const { page: small, troubles: smallTroubles } = await openPage(phone.context, live.url);
+    await until(small, (s) => Number(s.time) > 0, "frames on the phone");
+    assert.match(await small.locator(".live-lead").innerText(), /You watch/);
+    const width = await small.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(width <= 390, `${width} px wide`);
+    await small.screenshot({ path: join(shots, "phone.png"), fullPage: true });
+    assert.deepEqual(own(smallTroubles), []);
+    await phone.close();
+  });
+});
+
+describe("a line that is cut", { skip: program() === null ? "the program is not built" : false }, () => {
+  test("comes back by itself, with the lead", async () => {
+    const live = await openLive(SCENE);
+    const browser = await openBrowser({ colorScheme: "dark" });
+    const page = await browser.context.newPage();
+    const lines = [];
+    await page.routeWebSocket(/\/stream/, (line) => {
+      line.connectToServer();
+      lines.push(line);
+    });
+    await page.goto(live.url);
+    await until(page, (s) => s.drives === "true" && Number(s.time) > 0.01, "leads");
+    await lines[0].close({ code: 1001 });
+    await until(page, (s) => s.status === "waiting", "notices");
+    await until(page, (s) => s.status === "open" && s.drives === "true", "is back");
+    await later(page, 0.05);
+    assert.ok(lines.length >= 2);
+    assert.match(lines[lines.length - 1].url(), /session=[0-9a-f]{32}/);
+    await page.screenshot({ path: join(shots, "dark.png") });
+    await browser.close();
+    await live.close();
+  });
+});
