@@ -1,0 +1,162 @@
+"""Fits of tissues to measured curves, with their results as arrays."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._core import Tissue
+from .scenes import to_toml
+from .tissues import tissue_from
+
+Array = npt.NDArray[np.float64]
+Interval = tuple[float | None, float | None]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number that was fitted. Ends of `ci95` that the curves leave open are None."""
+
+    name: str
+    unit: str
+    value: float
+    sd: float | None
+    ci95: Interval | None
+    verdict: str  #: identified, weak, not identifiable, at bound
+    words: str
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A measured curve and the force that the fitted tissue gives at its instants."""
+
+    name: str
+    group: str
+    velocity: float | None  #: [m/s]
+    held_out: bool
+    time: Array  #: [s]
+    displacement: Array  #: [m]
+    measured: Array  #: [N]
+    fitted: Array  #: [N]; NaN where the simulation failed
+    rms: float | None  #: of fitted − measured [N]
+
+
+class FitResult:
+    """What came out of a fit; `to_dict()` is fit.json."""
+
+    def __init__(self, text: str, tissue: str) -> None:
+        self.json = text  #: the text of fit.json
+        self.tissue_toml = tissue  #: the text of tissue.toml
+        self._data: dict[str, Any] = json.loads(text)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The object of fit.json."""
+        result: dict[str, Any] = json.loads(self.json)
+        return result
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """By name."""
+        rows = self._data["parameters"]
+        kept = ("name", "unit", "value", "sd", "verdict", "words")
+        return {r["name"]: Parameter(**{k: r[k] for k in kept}, ci95=tuple(r["ci95"]) if r["ci95"] else None) for r in rows}
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Of the parameters, by name."""
+        return {name: parameter.value for name, parameter in self.parameters.items()}
+
+    @property
+    def curves(self) -> list[Curve]:
+        """Measured and fitted."""
+        return [_curve(row) for row in self._data["curves"]]
+
+    @property
+    def conclusions(self) -> list[str]:
+        """What the curves tell and what they leave open, in sentences."""
+        return list(self._data.get("conclusions", []))
+
+    @property
+    def tissue(self) -> Tissue:
+        """The tissue that was found."""
+        return tissue_from(self.tissue_toml)
+
+    def write(self, folder: str | os.PathLike[str]) -> None:
+        """Writes fit.json and tissue.toml, as `glisson fit` does."""
+        place = Path(folder)
+        place.mkdir(parents=True, exist_ok=True)
+        (place / "fit.json").write_text(self.json, encoding="utf-8")
+        (place / "tissue.toml").write_text(self.tissue_toml, encoding="utf-8")
+
+    def __repr__(self) -> str:
+        return "<FitResult " + ", ".join(f"{p.name} = {p.value:.5g} {p.unit}" for p in self.parameters.values()) + ">"
+
+
+def fit(
+    description: str | os.PathLike[str] | Mapping[str, Any],
+    *,
+    laws: Sequence[str] = (),
+    data: str | os.PathLike[str] | None = None,
+    base: str | os.PathLike[str] = ".",
+    starts: int | None = None,
+    bootstrap: int | None = None,
+    progress: Callable[[str, int, int, float], object] | None = None,
+) -> FitResult:
+    """Fits a tissue to measured curves, and says how sure the answer is.
+
+    Ctrl-C, and what `progress` raises, ends it.
+
+    :param description: a FIT.toml, its text (with a line end), or a dict of its keys
+    :param laws: laws to fit beside those of the description (known_laws)
+    :param data: folder of the curves' files; none: that of the description
+    :param base: folder that a text or dict stands for
+    :param starts: descents at most, in place of the description's
+    :param bootstrap: fits to curves drawn again, in place of the description's
+    :param progress: called with stage, done, planned and the best rms so far [N]
+    :raises SceneError: with every problem of the description
+    """
+    from . import _fit
+
+    if isinstance(description, Mapping):
+        spec = _fit.parse_fit(to_toml(description), "fit", Path(base))
+    elif isinstance(description, str) and "\n" in description:
+        spec = _fit.parse_fit(description, "fit", Path(base))
+    else:
+        spec = _fit.load_fit(Path(description))
+    folder = "" if data is None else os.fspath(data)
+    return FitResult(*_fit.run(spec, list(laws), folder, starts, bootstrap, progress))
+
+
+def known_laws() -> dict[str, str]:
+    """Laws that a fit can compare, by name.
+
+    >>> sorted(known_laws())[:2]
+    ['constant', 'exponential']
+    """
+    from . import _fit
+
+    return dict(_fit.known_laws())
+
+
+def _curve(row: Mapping[str, Any]) -> Curve:
+    def numbers(key: str) -> Array:
+        return np.array([np.nan if x is None else x for x in row[key]], dtype=float)
+
+    return Curve(
+        name=row["name"],
+        group=row["group"],
+        velocity=row["velocity_m_s"],
+        held_out=row["held_out"],
+        time=numbers("time_s"),
+        displacement=numbers("displacement_m"),
+        measured=numbers("measured_N"),
+        fitted=numbers("fitted_N"),
+        rms=row["rms_N"],
+    )

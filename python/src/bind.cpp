@@ -1,0 +1,78 @@
+// bind.cpp — see bind.h.
+#include "bind.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "docstrings.h"
+
+namespace glisson::python {
+
+const char* doc(const std::string& name) {
+  const auto* found = std::find_if(std::begin(kDocstrings), std::end(kDocstrings),
+                                   [&](const auto& entry) { return name == entry.first; });
+  return found == std::end(kDocstrings) ? "" : found->second;
+}
+
+Doubles vectors(std::vector<Vec3d> values) {
+  const std::size_t n = values.size();
+  return owned<Doubles>(std::move(values), {n, 3});
+}
+Doubles scalars(std::vector<double> values) {
+  const std::size_t n = values.size();
+  return owned<Doubles>(std::move(values), {n});
+}
+Numbers indices(std::vector<std::uint32_t> values) {
+  const std::size_t n = values.size();
+  return owned<Numbers>(std::move(values), {n});
+}
+
+namespace {
+
+/// A NumPy array of one kind of number, laid out row by row.
+nb::object numpy_array(nb::handle given, const char* type) {
+  return nb::module_::import_("numpy").attr("ascontiguousarray")(given, type);
+}
+
+std::string shape_text(nb::handle array) { return nb::cast<std::string>(nb::str(nb::object(array.attr("shape")))); }
+
+}  // namespace
+
+std::vector<Vec3d> to_vectors(const ArrayLike& given, const char* name) {
+  const nb::object array = numpy_array(given, "float64");
+  const auto numbers = nb::cast<nb::ndarray<const double, nb::c_contig, nb::device::cpu>>(array);
+  if (numbers.ndim() != 2 || numbers.shape(1) != 3) {
+    throw nb::value_error((std::string(name) + " has the shape " + shape_text(array) + "; expected (n, 3)").c_str());
+  }
+  std::vector<Vec3d> values(numbers.shape(0));
+  if (!values.empty()) std::memcpy(values.data(), numbers.data(), values.size() * sizeof(Vec3d));
+  return values;
+}
+
+std::vector<std::uint32_t> to_indices(nb::handle given, std::size_t columns, const char* name) {
+  nb::object array = nb::module_::import_("numpy").attr("asarray")(given);
+  const std::string kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
+  const bool empty = nb::cast<std::size_t>(array.attr("size")) == 0;
+  if (kind == "b" && columns == 1) array = nb::module_::import_("numpy").attr("flatnonzero")(array);
+  if (kind != "b" && kind != "i" && kind != "u" && !empty) {
+    throw nb::type_error((std::string(name) + " holds no whole numbers").c_str());
+  }
+  array = numpy_array(array, "int64");
+  const auto numbers = nb::cast<nb::ndarray<const std::int64_t, nb::c_contig, nb::device::cpu>>(array);
+  const bool fits = columns == 1 ? numbers.ndim() == 1 : numbers.ndim() == 2 && numbers.shape(1) == columns;
+  if (!fits && !empty) {
+    const std::string wanted = columns == 1 ? "(n,)" : "(n, " + std::to_string(columns) + ")";
+    throw nb::value_error((std::string(name) + " has the shape " + shape_text(array) + "; expected " + wanted).c_str());
+  }
+  std::vector<std::uint32_t> values(numbers.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::int64_t v = numbers.data()[i];
+    if (v < 0 || v > std::int64_t{UINT32_MAX}) {
+      throw nb::value_error((std::string(name) + " holds " + std::to_string(v) + "; allowed: 0 or more").c_str());
+    }
+    values[i] = static_cast<std::uint32_t>(v);
+  }
+  return values;
+}
+
+}  // namespace glisson::python

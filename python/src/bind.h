@@ -1,0 +1,228 @@
+// bind.h — what the rooms of the Python module share: docstrings, words for enumerators, vectors, option structs.
+//
+//   enumerators  ⇄  words, as a scene has them: "implicit", "corotational"
+//   Vec3d, Mat3d ⇄  any three numbers in, a NumPy array out
+//   structs      ⇄  classes whose constructor takes every field by name
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "glisson/math.h"
+
+namespace glisson::python {
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+/// The docstring of a declaration of the public headers, by its name without namespace; "" where it has none.
+const char* doc(const std::string& name);
+
+/// What NumPy takes for an array.
+struct ArrayLike : nb::object {
+  NB_OBJECT_DEFAULT(ArrayLike, object, "numpy.typing.ArrayLike", check_any)
+  static bool check_any(nb::handle) { return true; }
+};
+/// Vertices: the name of a set of the mesh, numbers, or a mask.
+struct VertexChoice : nb::object {
+  NB_OBJECT_DEFAULT(VertexChoice, object, "str | numpy.typing.ArrayLike", check_any)
+  static bool check_any(nb::handle) { return true; }
+};
+
+/// NumPy arrays that are made here.
+struct Doubles : nb::object {
+  NB_OBJECT_DEFAULT(Doubles, object, "numpy.typing.NDArray[numpy.float64]", ArrayLike::check_any)
+  using Scalar = double;
+};
+struct Numbers : nb::object {
+  NB_OBJECT_DEFAULT(Numbers, object, "numpy.typing.NDArray[numpy.uint32]", ArrayLike::check_any)
+  using Scalar = std::uint32_t;
+};
+
+/// Numbers that an array takes over.
+template <class Array, class Value>
+Array owned(std::vector<Value>&& values, std::initializer_list<std::size_t> shape) {
+  using Scalar = typename Array::Scalar;
+  auto* kept = new std::vector<Value>(std::move(values));
+  nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<Value>*>(p); });
+  nb::ndarray<nb::numpy, Scalar, nb::c_contig> array(reinterpret_cast<Scalar*>(kept->data()), shape, owner);
+  return nb::steal<Array>(array.cast(nb::rv_policy::reference).release());
+}
+Doubles vectors(std::vector<Vec3d> values);     ///< (n, 3)
+Doubles scalars(std::vector<double> values);    ///< (n,)
+Numbers indices(std::vector<std::uint32_t> v);  ///< (n,)
+
+/// (n, 3) numbers as vectors. @throws nb::value_error naming what they are
+std::vector<Vec3d> to_vectors(const ArrayLike& array, const char* name);
+/// (n, columns) whole numbers from 0 on, or for one column (n,) or a mask. @throws nb::value_error
+std::vector<std::uint32_t> to_indices(nb::handle array, std::size_t columns, const char* name);
+
+/// A class of options: every field by name in its constructor, readable and writable, shown by repr().
+template <class T>
+class Options : public nb::class_<T> {
+ public:
+  Options(nb::handle scope, const char* name, const char* of) : nb::class_<T>(scope, name, doc(of)), of_(of) {
+    this->def("__init__", [](nb::pointer_and_handle<T> self, const nb::kwargs& fields) {
+      new (self.p) T();
+      nb::inst_mark_ready(self.h);
+      for (const auto& [key, value] : fields) {
+        if (!nb::hasattr(self.h, key)) {
+          throw nb::type_error(("no field \"" + nb::cast<std::string>(key) + "\"; there are " +
+                                nb::cast<std::string>(nb::str(", ").attr("join")(self.h.type().attr("_fields"))))
+                                   .c_str());
+        }
+        nb::setattr(self.h, key, value);
+      }
+    });
+    this->def("__repr__", [](nb::handle self) {
+      std::string text = nb::cast<std::string>(self.type().attr("__name__")) + "(";
+      const char* comma = "";
+      for (nb::handle field : self.type().attr("_fields")) {
+        text += comma + nb::cast<std::string>(field) + "=" + nb::cast<std::string>(nb::repr(self.attr(field)));
+        comma = ", ";
+      }
+      return text + ")";
+    });
+    this->def("__copy__", [](const T& self) { return T(self); });
+    this->def("__deepcopy__", [](const T& self, nb::handle) { return T(self); });
+    this->def("__eq__", [](nb::handle a, nb::handle b) {
+      if (!nb::isinstance<T>(b)) return false;
+      if constexpr (std::equality_comparable<T>) {
+        return nb::cast<const T&>(a) == nb::cast<const T&>(b);
+      } else {
+        const nb::object same = nb::module_::import_("numpy").attr("array_equal");
+        for (nb::handle field : a.type().attr("_fields")) {
+          const nb::object x = nb::getattr(a, field), y = nb::getattr(b, field);
+          if (nb::hasattr(x, "shape") ? !nb::cast<bool>(same(x, y)) : !x.equal(y)) return false;
+        }
+        return true;
+      }
+    });
+    this->attr("_fields") = nb::tuple();
+  }
+  template <class M>
+  Options& field(const char* name, M member) {
+    this->def_rw(name, member, doc(of_ + "::" + name));
+    this->attr("_fields") = nb::object(this->attr("_fields")) + nb::make_tuple(name);
+    return *this;
+  }
+
+ private:
+  std::string of_;
+};
+
+/// The words of an enumeration, in its order, as `'one', 'two'`; see GLISSON_WORDS.
+template <class E>
+struct Words;
+
+template <class E>
+std::vector<std::string> words_of() {
+  std::vector<std::string> words;
+  const std::string text = Words<E>::kText;
+  for (std::size_t at = text.find('\''); at != std::string::npos; at = text.find('\'', at + 1)) {
+    const std::size_t end = text.find('\'', at + 1);
+    words.push_back(text.substr(at + 1, end - at - 1));
+    at = end;
+  }
+  return words;
+}
+
+}  // namespace glisson::python
+
+/// An enumeration that Python knows by words.
+#define GLISSON_WORDS(Enum, text)                                                                                \
+  namespace glisson::python {                                                                                    \
+  template <>                                                                                                    \
+  struct Words<Enum> {                                                                                           \
+    static constexpr const char* kText = text;                                                                   \
+  };                                                                                                             \
+  }                                                                                                              \
+  namespace nanobind::detail {                                                                                   \
+  template <>                                                                                                    \
+  struct type_caster<Enum> {                                                                                     \
+    NB_TYPE_CASTER(Enum, const_name("typing.Literal[" text "]"))                                                 \
+    bool from_python(handle src, std::uint8_t, cleanup_list*) noexcept {                                         \
+      if (!PyUnicode_Check(src.ptr())) return false;                                                             \
+      const auto words = glisson::python::words_of<Enum>();                                                      \
+      for (std::size_t i = 0; i < words.size(); ++i) {                                                           \
+        if (PyUnicode_CompareWithASCIIString(src.ptr(), words[i].c_str()) == 0) {                                \
+          value = static_cast<Enum>(i);                                                                          \
+          return true;                                                                                           \
+        }                                                                                                        \
+      }                                                                                                          \
+      return false;                                                                                              \
+    }                                                                                                            \
+    static handle from_cpp(Enum word, rv_policy, cleanup_list*) noexcept {                                       \
+      return nanobind::str(glisson::python::words_of<Enum>()[static_cast<std::size_t>(word)].c_str()).release(); \
+    }                                                                                                            \
+  };                                                                                                             \
+  }
+
+namespace nanobind::detail {
+
+template <>
+struct type_caster<glisson::Vec3d> {
+  NB_TYPE_CASTER(glisson::Vec3d, io_name("collections.abc.Sequence[float] | numpy.typing.NDArray[typing.Any]",
+                                         "numpy.typing.NDArray[numpy.float64]"))
+  bool from_python(handle src, std::uint8_t, cleanup_list*) noexcept {
+    object fast = steal(PySequence_Fast(src.ptr(), ""));
+    if (!fast.is_valid() || PySequence_Fast_GET_SIZE(fast.ptr()) != 3) {
+      PyErr_Clear();
+      return false;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      value[i] = PyFloat_AsDouble(PySequence_Fast_GET_ITEM(fast.ptr(), static_cast<Py_ssize_t>(i)));
+    }
+    if (!PyErr_Occurred()) return true;
+    PyErr_Clear();
+    return false;
+  }
+  static handle from_cpp(const glisson::Vec3d& v, rv_policy, cleanup_list*) noexcept {
+    return glisson::python::scalars({v.x, v.y, v.z}).release();
+  }
+};
+
+template <>
+struct type_caster<glisson::Mat3d> {
+  using Row = make_caster<glisson::Vec3d>;
+  NB_TYPE_CASTER(glisson::Mat3d, io_name("numpy.typing.ArrayLike", "numpy.typing.NDArray[numpy.float64]"))
+  bool from_python(handle src, std::uint8_t flags, cleanup_list* cleanup) noexcept {
+    object fast = steal(PySequence_Fast(src.ptr(), ""));
+    if (!fast.is_valid() || PySequence_Fast_GET_SIZE(fast.ptr()) != 3) {
+      PyErr_Clear();
+      return false;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      Row row;
+      if (!row.from_python(PySequence_Fast_GET_ITEM(fast.ptr(), static_cast<Py_ssize_t>(i)), flags, cleanup))
+        return false;
+      value.m[i] = {row.value.x, row.value.y, row.value.z};
+    }
+    return true;
+  }
+  static handle from_cpp(const glisson::Mat3d& a, rv_policy, cleanup_list*) noexcept {
+    std::vector<double> numbers;
+    for (const auto& row : a.m) numbers.insert(numbers.end(), row.begin(), row.end());
+    return glisson::python::owned<glisson::python::Doubles>(std::move(numbers), {3, 3}).release();
+  }
+};
+
+}  // namespace nanobind::detail

@@ -1,0 +1,331 @@
+// bind_instruments.cpp — needles, contact tools, capsules, containers, blades; who moves them; what is read off them.
+#include "glisson/blade.h"
+#include "glisson/capsule.h"
+#include "glisson/contact.h"
+#include "glisson/container.h"
+#include "glisson/needle.h"
+#include "glisson/tool_motion.h"
+#include "live_simulation.h"
+#include "words.h"
+
+namespace glisson::python {
+namespace {
+
+void bind_shapes(nb::module_& m) {
+  Options<FlatPunch>(m, "FlatPunch", "FlatPunch")
+      .field("radius", &FlatPunch::radius)
+      .field("edge_radius", &FlatPunch::edge_radius)
+      .field("length", &FlatPunch::length);
+  Options<Ball>(m, "Ball", "Ball").field("radius", &Ball::radius);
+  Options<NeedleShape>(m, "NeedleShape", "NeedleShape")
+      .field("diameter", &NeedleShape::diameter)
+      .field("length", &NeedleShape::length)
+      .field("tip", &NeedleShape::tip)
+      .field("tip_angle", &NeedleShape::tip_angle);
+  Options<Plate>(m, "Plate", "Plate");
+  Options<CylinderWall>(m, "CylinderWall", "CylinderWall").field("radius", &CylinderWall::radius);
+  Options<Block>(m, "Block", "Block").field("size", &Block::size).field("edge_radius", &Block::edge_radius);
+  m.def(
+      "distance_to",
+      [](const Shape& shape, const Vec3d& x) {
+        const ShapeDistance d = distance_to(shape, x);
+        return std::pair(d.distance, d.normal);
+      },
+      "shape"_a, "x"_a, doc("distance_to"));
+  Options<CylinderVessel>(m, "CylinderVessel", "CylinderVessel")
+      .field("radius", &CylinderVessel::radius)
+      .field("height", &CylinderVessel::height);
+  Options<BoxVessel>(m, "BoxVessel", "BoxVessel")
+      .field("width", &BoxVessel::width)
+      .field("length", &BoxVessel::length)
+      .field("height", &BoxVessel::height);
+}
+
+void bind_motions(nb::module_& m) {
+  Options<SteadyMotion>(m, "SteadyMotion", "SteadyMotion")
+      .field("direction", &SteadyMotion::direction)
+      .field("velocity", &SteadyMotion::velocity)
+      .field("start", &SteadyMotion::start)
+      .field("ramp", &SteadyMotion::ramp);
+  Options<Stroke>(m, "Stroke", "Stroke")
+      .field("to", &Stroke::to)
+      .field("velocity", &Stroke::velocity)
+      .field("ramp", &Stroke::ramp)
+      .field("rest", &Stroke::rest);
+  Options<StrokeMotion>(m, "StrokeMotion", "StrokeMotion")
+      .field("start", &StrokeMotion::start)
+      .field("strokes", &StrokeMotion::strokes);
+  Options<SineMotion>(m, "SineMotion", "SineMotion")
+      .field("direction", &SineMotion::direction)
+      .field("amplitude", &SineMotion::amplitude)
+      .field("frequency", &SineMotion::frequency)
+      .field("mean", &SineMotion::mean)
+      .field("start", &SineMotion::start)
+      .field("ramp", &SineMotion::ramp)
+      .field("duration", &SineMotion::duration);
+  Options<RecordedMotion>(m, "RecordedMotion", "RecordedMotion")
+      .field("times", &RecordedMotion::times)
+      .field("positions", &RecordedMotion::positions)
+      .field("start", &RecordedMotion::start);
+  Options<HandCoupling>(m, "HandCoupling", "HandCoupling")
+      .field("stiffness", &HandCoupling::stiffness)
+      .field("damping", &HandCoupling::damping)
+      .field("mass", &HandCoupling::mass)
+      .field("period", &HandCoupling::period)
+      .field("device_damping", &HandCoupling::device_damping);
+  m.def("largest_passive_stiffness", &largest_passive_stiffness, "coupling"_a, doc("largest_passive_stiffness"));
+}
+
+using Way = std::variant<PressMotion, SteadyMotion, StrokeMotion, SineMotion, RecordedMotion, nb::object>;
+
+ToolPath path_of(const Way& way, std::optional<double> end) {
+  struct {
+    std::optional<double> end;
+    ToolPath operator()(const PressMotion& x) const { return press_path(x); }
+    ToolPath operator()(const SteadyMotion& x) const { return steady_path(x); }
+    ToolPath operator()(const StrokeMotion& x) const { return stroke_path(x); }
+    ToolPath operator()(const SineMotion& x) const { return sine_path(x); }
+    ToolPath operator()(const RecordedMotion& x) const { return recorded_path(x); }
+    ToolPath operator()(const nb::object& x) const { return {Callback<Vec3d>(x), end}; }
+  } read{end};
+  return std::visit(read, way);
+}
+
+void bind_drivers(nb::module_& m) {
+  Options<Pose>(m, "Pose", "Pose").field("position", &Pose::position).field("axes", &Pose::axes);
+  nb::class_<ToolDriver>(m, "ToolDriver", doc("ToolDriver"))
+      .def_prop_ro("start", &ToolDriver::start, doc("ToolDriver::start"))
+      .def_prop_ro("end", &ToolDriver::end, doc("ToolDriver::end"));
+  nb::class_<PathDriver, ToolDriver>(m, "PathDriver", doc("PathDriver"))
+      .def(
+          "__init__",
+          [](PathDriver* self, const Pose& start, const Way& way, std::optional<double> end) {
+            new (self) PathDriver(start, path_of(way, end));
+          },
+          "start"_a, "way"_a, "end"_a = nb::none(),
+          "`way` is a motion, or a function of time [s] that gives where the tool is from its start [m].",
+          nb::sig("def __init__(self, start: Pose, way: PressMotion | SteadyMotion | StrokeMotion | SineMotion | "
+                  "RecordedMotion | collections.abc.Callable[[float], collections.abc.Sequence[float] | "
+                  "numpy.typing.NDArray[typing.Any]], end: float | None = None) -> None"));
+  nb::class_<PushDriver, ToolDriver>(m, "PushDriver", doc("PushMotion"))
+      .def(
+          "__init__",
+          [](PushDriver* self, const Pose& start, const std::variant<double, nb::callable>& force,
+             const Vec3d& direction, double mass, double damping, bool guided, std::optional<double> stop,
+             std::optional<double> end) {
+            PushMotion motion{.direction = direction, .force = {}, .mass = mass, .damping = damping, .guided = guided};
+            motion.stop = stop, motion.end = end;
+            if (const double* steady = std::get_if<double>(&force)) {
+              motion.force = [f = *steady](double) { return f; };
+            } else {
+              motion.force = Callback<double>(std::get<nb::callable>(force));
+            }
+            new (self) PushDriver(start, std::move(motion));
+          },
+          "start"_a, "force"_a, nb::kw_only(), "direction"_a = Vec3d{0, 0, -1}, "mass"_a = PushMotion{}.mass,
+          "damping"_a = PushMotion{}.damping, "guided"_a = true, "stop"_a = nb::none(), "end"_a = nb::none(),
+          "`force` is a number or a function of time [N].",
+          nb::sig(
+              "def __init__(self, start: Pose, force: float | collections.abc.Callable[[float], float], *, direction: "
+              "collections.abc.Sequence[float] | numpy.typing.NDArray[typing.Any] = (0.0, 0.0, -1.0), mass: float = "
+              "0.05, damping: float = 5.0, guided: bool = True, stop: float | None = None, end: float | None = None) "
+              "-> None"))
+      .def_prop_ro("velocity", &PushDriver::velocity, doc("PushDriver::velocity"));
+  nb::class_<HandDriver, ToolDriver>(m, "HandDriver", doc("HandCoupling"))
+      .def(nb::init<const Pose&, const HandCoupling&>(), "start"_a, "coupling"_a = HandCoupling{},
+           doc("HandDriver::HandDriver"))
+      .def("set_target", &HandDriver::set_target, "target"_a, doc("HandDriver::set_target"))
+      .def_prop_ro("device_force", &HandDriver::device_force, doc("HandDriver::device_force"))
+      .def_prop_ro("velocity", &HandDriver::velocity, doc("HandDriver::velocity"));
+}
+
+void bind_common(nb::module_& m) {
+  nb::class_<ToolForces>(m, "ToolForces", doc("ToolForces"))
+      .def_ro("normal", &ToolForces::normal, doc("ToolForces::normal"))
+      .def_ro("friction", &ToolForces::friction, doc("ToolForces::friction"))
+      .def_ro("cutting", &ToolForces::cutting, doc("ToolForces::cutting"))
+      .def_ro("torque", &ToolForces::torque, doc("ToolForces::torque"))
+      .def_prop_ro("total", &ToolForces::total, "Sum of the parts [N]");
+  nb::class_<InstrumentEvent>(m, "InstrumentEvent", doc("InstrumentEvent"))
+      .def_ro("time", &InstrumentEvent::time, doc("InstrumentEvent::time"))
+      .def_ro("depth", &InstrumentEvent::depth, doc("InstrumentEvent::depth"))
+      .def_ro("event", &InstrumentEvent::event, doc("InstrumentEvent::event"))
+      .def("__repr__", [](const InstrumentEvent& e) {
+        return "<" + e.event + " at " + std::to_string(e.time) + " s, " + std::to_string(e.depth * 1e3) + " mm>";
+      });
+  nb::class_<Interaction>(m, "Interaction", doc("Interaction"));
+  nb::class_<Instrument, Interaction>(m, "Instrument", doc("Instrument"))
+      .def_prop_ro("name", &Instrument::name)
+      .def_prop_ro(
+          "pose", [](const Instrument& x) { return x.pose(); }, doc("Instrument::pose"))
+      .def_prop_ro(
+          "forces", [](const Instrument& x) { return x.forces(); }, doc("Instrument::forces"))
+      .def_prop_ro("depth", &Instrument::depth, doc("Instrument::depth"))
+      .def_prop_ro("force_depth", &Instrument::force_depth, doc("Instrument::force_depth"))
+      .def_prop_ro("direction", [](const Instrument& x) { return x.direction(); })
+      .def_prop_ro(
+          "events", [](const Instrument& x) { return x.events(); }, doc("Instrument::events"));
+}
+
+void bind_needle(nb::module_& m) {
+  Options<ShaftFriction>(m, "ShaftFriction", "ShaftFriction")
+      .field("static_in", &ShaftFriction::static_in)
+      .field("static_out", &ShaftFriction::static_out)
+      .field("dynamic_in", &ShaftFriction::dynamic_in)
+      .field("dynamic_out", &ShaftFriction::dynamic_out)
+      .field("viscous_in", &ShaftFriction::viscous_in)
+      .field("viscous_out", &ShaftFriction::viscous_out)
+      .field("stick_speed", &ShaftFriction::stick_speed);
+  Options<TipResistance>(m, "TipResistance", "TipResistance")
+      .field("cutting", &TipResistance::cutting)
+      .field("puncture", &TipResistance::puncture);
+  Options<Rupture>(m, "Rupture", "Rupture")
+      .field("force", &Rupture::force)
+      .field("toughness", &Rupture::toughness)
+      .field("membrane_thickness", &Rupture::membrane_thickness);
+  Options<NeedleOptions>(m, "NeedleOptions", "NeedleOptions")
+      .field("name", &NeedleOptions::name)
+      .field("diameter", &NeedleOptions::diameter)
+      .field("length", &NeedleOptions::length)
+      .field("direction", &NeedleOptions::direction)
+      .field("zone", &NeedleOptions::zone)
+      .field("spacing", &NeedleOptions::spacing)
+      .field("rupture", &NeedleOptions::rupture)
+      .field("tip", &NeedleOptions::tip)
+      .field("regions", &NeedleOptions::regions)
+      .field("friction", &NeedleOptions::friction)
+      .field("youngs_modulus", &NeedleOptions::youngs_modulus)
+      .field("inner_diameter", &NeedleOptions::inner_diameter)
+      .field("bevel_share", &NeedleOptions::bevel_share)
+      .field("bevel_side", &NeedleOptions::bevel_side);
+  nb::class_<Needle, Instrument>(m, "Needle", doc("Needle"))
+      .def(nb::init<const NeedleOptions&, std::shared_ptr<ToolDriver>>(), "options"_a, "driver"_a,
+           doc("Needle::Needle"))
+      .def_prop_ro("stage", &Needle::stage, doc("NeedleStage"))
+      .def_prop_ro("inserted_length", &Needle::inserted_length, doc("Needle::inserted_length"))
+      .def_prop_ro("tip_force", &Needle::tip_force, doc("Needle::tip_force"))
+      .def_prop_ro(
+          "path", [](const Needle& n) { return vectors(n.path()); }, doc("Needle::path"))
+      .def_prop_ro(
+          "centre_line", [](const Needle& n) { return vectors(n.centre_line()); }, doc("Needle::centre_line"))
+      .def_prop_ro("options", [](const Needle& n) { return n.options(); })
+      .def(
+          "tears",
+          [](Needle& needle, const std::shared_ptr<Capsule>& capsule) {
+            needle.on_puncture([capsule](const Vec3d& place, double radius) { capsule->open_at(place, radius); });
+          },
+          "capsule"_a, "Opens this capsule where and when the needle pierces the surface.");
+}
+
+void bind_contact(nb::module_& m) {
+  Options<ContactOptions>(m, "ContactOptions", "ContactOptions")
+      .field("name", &ContactOptions::name)
+      .field("shape", &ContactOptions::shape)
+      .field("friction", &ContactOptions::friction)
+      .field("bonded", &ContactOptions::bonded)
+      .field("direction", &ContactOptions::direction)
+      .field("push_out_speed", &ContactOptions::push_out_speed);
+  nb::class_<ContactTool, Instrument>(m, "ContactTool", doc("ContactTool"))
+      .def(nb::init<const ContactOptions&, std::shared_ptr<ToolDriver>>(), "options"_a, "driver"_a,
+           doc("ContactTool::ContactTool"))
+      .def_prop_ro("touches", &ContactTool::touches, doc("ContactTool::touches"))
+      .def_prop_ro("contact_area", &ContactTool::contact_area, doc("ContactTool::contact_area"))
+      .def_prop_ro(
+          "contact_pressure",
+          [](const ContactTool& tool) {
+            const ContactPressure p = tool.contact_pressure();
+            return std::pair(indices({p.vertices.begin(), p.vertices.end()}),
+                             scalars({p.pascals.begin(), p.pascals.end()}));
+          },
+          "Vertices that bear, and the pressure on each [Pa]");
+}
+
+void bind_vessels(nb::module_& m) {
+  Options<ContainerOptions>(m, "ContainerOptions", "ContainerOptions")
+      .field("name", &ContainerOptions::name)
+      .field("vessel", &ContainerOptions::vessel)
+      .field("pose", &ContainerOptions::pose)
+      .field("friction", &ContainerOptions::friction)
+      .field("holds_floor", &ContainerOptions::holds_floor)
+      .field("holds_wall", &ContainerOptions::holds_wall)
+      .field("bonded", &ContainerOptions::bonded)
+      .field("push_out_speed", &ContainerOptions::push_out_speed);
+  nb::class_<ContainerLoads>(m, "ContainerLoads", doc("ContainerLoads"))
+      .def_ro("bottom", &ContainerLoads::bottom, doc("ContainerLoads::bottom"))
+      .def_ro("side", &ContainerLoads::side, doc("ContainerLoads::side"))
+      .def_ro("side_radial", &ContainerLoads::side_radial, doc("ContainerLoads::side_radial"))
+      .def_prop_ro("total", &ContainerLoads::total, "Sum of both [N]");
+  nb::class_<Container, Interaction>(m, "Container", doc("Container"))
+      .def(nb::init<const ContainerOptions&>(), "options"_a, doc("Container::Container"))
+      .def_prop_ro(
+          "loads", [](const Container& c) { return c.loads(); }, doc("ContainerLoads"))
+      .def_prop_ro("up", &Container::up, doc("Container::up"));
+}
+
+void bind_capsule(nb::module_& m) {
+  Options<CapsuleOptions>(m, "CapsuleOptions", "CapsuleOptions")
+      .field("name", &CapsuleOptions::name)
+      .field("thickness", &CapsuleOptions::thickness)
+      .field("youngs_modulus", &CapsuleOptions::youngs_modulus)
+      .field("poisson_ratio", &CapsuleOptions::poisson_ratio)
+      .field("prestretch", &CapsuleOptions::prestretch)
+      .field("stiffening", &CapsuleOptions::stiffening)
+      .field("strength", &CapsuleOptions::strength)
+      .field("averaging_length", &CapsuleOptions::averaging_length)
+      .field("vertices", &CapsuleOptions::vertices)
+      .field("triangles", &CapsuleOptions::triangles);
+  nb::class_<Capsule, Interaction>(m, "Capsule", doc("Capsule"))
+      .def(nb::init<const CapsuleOptions&>(), "options"_a, doc("Capsule::Capsule"))
+      .def_prop_ro(
+          "tension",
+          [](const Capsule& c) {
+            return scalars({c.tension().begin(), c.tension().end()});
+          },
+          doc("Capsule::tension"))
+      .def_prop_ro(
+          "open_share",
+          [](const Capsule& c) {
+            return scalars({c.open_share().begin(), c.open_share().end()});
+          },
+          doc("Capsule::open_share"))
+      .def_prop_ro("largest_tension", &Capsule::largest_tension, doc("Capsule::largest_tension"))
+      .def("tension_at", &Capsule::tension_at, "place"_a, doc("Capsule::tension_at"))
+      .def("is_torn", &Capsule::is_torn, "triangle"_a, doc("Capsule::is_torn"))
+      .def_prop_ro("open_area", &Capsule::open_area, doc("Capsule::open_area"))
+      .def_prop_ro("energy", &Capsule::energy, doc("Capsule::energy"))
+      .def_prop_ro("released_energy", &Capsule::released_energy, doc("Capsule::released_energy"))
+      .def("tear", &Capsule::tear, "triangle"_a, doc("Capsule::tear"))
+      .def("open_at", &Capsule::open_at, "place"_a, "radius"_a, doc("Capsule::open_at"));
+}
+
+void bind_blade(nb::module_& m) {
+  Options<CutOptions>(m, "CutOptions", "CutOptions")
+      .field("snap", &CutOptions::snap)
+      .field("least_quality", &CutOptions::least_quality)
+      .field("least_step", &CutOptions::least_step);
+  Options<BladeOptions>(m, "BladeOptions", "BladeOptions")
+      .field("edge_from", &BladeOptions::edge_from)
+      .field("edge_to", &BladeOptions::edge_to)
+      .field("toughness", &BladeOptions::toughness)
+      .field("cutting", &BladeOptions::cutting);
+  nb::class_<Blade, Instrument>(m, "Blade", doc("BladeOptions"))
+      .def_prop_ro("area", &Blade::area, doc("Blade::area"))
+      .def_prop_ro("work_of_cut", &Blade::work_of_cut, doc("Blade::work_of_cut"))
+      .def_prop_ro("length_in_tissue", &Blade::length_in_tissue, doc("Blade::length_in_tissue"));
+}
+
+}  // namespace
+
+void bind_instruments(nb::module_& m) {
+  bind_shapes(m);
+  bind_motions(m);
+  bind_drivers(m);
+  bind_common(m);
+  bind_contact(m);
+  bind_vessels(m);
+  bind_capsule(m);
+  bind_needle(m);
+  bind_blade(m);
+}
+
+}  // namespace glisson::python

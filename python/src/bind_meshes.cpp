@@ -1,0 +1,164 @@
+// bind_meshes.cpp — meshes from arrays and generators, and what is wrong with them.
+#include <algorithm>
+
+#include "glisson/io.h"
+#include "glisson/mesh.h"
+#include "words.h"
+
+namespace glisson::python {
+namespace {
+
+using Sets = std::map<std::string, nb::object>;
+
+TetMesh mesh_of(const ArrayLike& vertices, const ArrayLike& tets, const nb::object& regions,
+                const std::map<int, std::string>& region_names, const Sets& vertex_sets, const nb::object& fibres,
+                bool orient) {
+  TetMesh mesh;
+  mesh.vertices = to_vectors(vertices, "vertices");
+  const std::vector<std::uint32_t> corners = to_indices(tets, 4, "tets");
+  for (std::size_t i = 0; i + 3 < corners.size(); i += 4) {
+    mesh.tets.push_back({corners[i], corners[i + 1], corners[i + 2], corners[i + 3]});
+  }
+  if (!regions.is_none()) {
+    for (const std::uint32_t r : to_indices(regions, 1, "regions")) mesh.regions.push_back(static_cast<int>(r));
+  }
+  mesh.region_names = region_names;
+  if (!fibres.is_none()) mesh.fibres = to_vectors(nb::borrow<ArrayLike>(fibres), "fibres");
+  for (const auto& [name, set] : vertex_sets) {
+    std::vector<std::uint32_t> numbers = to_indices(set, 1, "vertex_sets");
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    mesh.vertex_sets[name] = std::move(numbers);
+  }
+  if (orient) orient_and_inspect(mesh);
+  require_valid(mesh);
+  return mesh;
+}
+
+/// What a mesh holds, as an array that must not be written to and keeps the mesh.
+template <class Scalar, class Value>
+nb::object view(nb::handle mesh, const std::vector<Value>& values, std::initializer_list<std::size_t> shape) {
+  return nb::ndarray<nb::numpy, const Scalar, nb::c_contig>(reinterpret_cast<const Scalar*>(values.data()), shape, mesh)
+      .cast(nb::rv_policy::reference);
+}
+
+nb::object vertices_view(nb::handle self) {
+  const auto& mesh = nb::cast<const TetMesh&>(self);
+  return view<double>(self, mesh.vertices, {mesh.vertices.size(), 3});
+}
+nb::object tets_view(nb::handle self) {
+  const auto& mesh = nb::cast<const TetMesh&>(self);
+  return view<std::uint32_t>(self, mesh.tets, {mesh.tets.size(), 4});
+}
+nb::object regions_view(nb::handle self) {
+  const auto& mesh = nb::cast<const TetMesh&>(self);
+  return view<int>(self, mesh.regions, {mesh.regions.size()});
+}
+nb::object fibres_view(nb::handle self) {
+  const auto& mesh = nb::cast<const TetMesh&>(self);
+  return view<double>(self, mesh.fibres, {mesh.fibres.size(), 3});
+}
+
+std::map<std::string, Numbers> sets_of(const TetMesh& mesh) {
+  std::map<std::string, Numbers> sets;
+  for (const auto& [name, vertices] : mesh.vertex_sets) sets.emplace(name, indices(vertices));
+  return sets;
+}
+
+Numbers triangles_of(const TetMesh& mesh) {
+  std::vector<Triangle> triangles = boundary_triangles(mesh);
+  const std::size_t n = triangles.size();
+  return owned<Numbers>(std::move(triangles), {n, 3});
+}
+
+TetMesh with_set(const TetMesh& mesh, const std::string& name, const ArrayLike& vertices) {
+  TetMesh other = mesh;
+  std::vector<std::uint32_t> numbers = to_indices(vertices, 1, "vertices");
+  std::sort(numbers.begin(), numbers.end());
+  other.vertex_sets[name] = std::move(numbers);
+  require_valid(other);
+  return other;
+}
+
+void bind_report(nb::module_& m) {
+  const auto of = [](const char* field) { return doc(std::string("MeshReport::") + field); };
+  nb::class_<MeshReport>(m, "MeshReport", doc("MeshReport"))
+      .def_ro("vertices", &MeshReport::vertices, of("vertices"))
+      .def_ro("tets", &MeshReport::tets, of("tets"))
+      .def_ro("boundary_triangles", &MeshReport::boundary_triangles, of("boundary_triangles"))
+      .def_ro("box_min", &MeshReport::box_min, of("box_min"))
+      .def_ro("box_max", &MeshReport::box_max, of("box_max"))
+      .def_ro("volume", &MeshReport::volume, of("volume"))
+      .def_ro("worst_mean_ratio", &MeshReport::worst_mean_ratio, of("worst_mean_ratio"))
+      .def_ro("median_mean_ratio", &MeshReport::median_mean_ratio, of("median_mean_ratio"))
+      .def_ro("worst_tet", &MeshReport::worst_tet, of("worst_tet"))
+      .def_ro("reoriented_tets", &MeshReport::reoriented_tets, of("reoriented_tets"))
+      .def_ro("duplicate_tets", &MeshReport::duplicate_tets, of("duplicate_tets"))
+      .def_ro("degenerate_tets", &MeshReport::degenerate_tets, of("degenerate_tets"))
+      .def_ro("unused_vertices", &MeshReport::unused_vertices, of("unused_vertices"))
+      .def_ro("non_manifold_faces", &MeshReport::non_manifold_faces, of("non_manifold_faces"))
+      .def_ro("pieces", &MeshReport::pieces, of("pieces"))
+      .def_ro("warnings", &MeshReport::warnings, of("warnings"));
+}
+
+/// Keeps a copy of the options given by name: box_mesh(cells=…, size=…).
+template <class T>
+T options_from(const nb::kwargs& fields) {
+  return nb::cast<T>(nb::type<T>()(**fields));
+}
+
+}  // namespace
+
+void bind_meshes(nb::module_& m) {
+  nb::exception<FileError>(m, "FileError", PyExc_RuntimeError);
+  nb::class_<TetMesh>(m, "TetMesh", doc("TetMesh"))
+      .def(
+          "__init__",
+          [](TetMesh* self, const ArrayLike& vertices, const ArrayLike& tets, const nb::object& regions,
+             const std::map<int, std::string>& names, const Sets& sets, const nb::object& fibres,
+             bool orient) { new (self) TetMesh(mesh_of(vertices, tets, regions, names, sets, fibres, orient)); },
+          "vertices"_a, "tets"_a, nb::kw_only(), "regions"_a = nb::none(),
+          "region_names"_a = std::map<int, std::string>{}, "vertex_sets"_a = Sets{}, "fibres"_a = nb::none(),
+          "orient"_a = true, "Copies the arrays. `orient` turns inverted tets; without it they are an error.")
+      .def_prop_ro("vertices", vertices_view, doc("TetMesh::vertices"),
+                   nb::sig("def vertices(self) -> numpy.typing.NDArray[numpy.float64]"))
+      .def_prop_ro("tets", tets_view, doc("TetMesh::tets"),
+                   nb::sig("def tets(self) -> numpy.typing.NDArray[numpy.uint32]"))
+      .def_prop_ro("regions", regions_view, doc("TetMesh::regions"),
+                   nb::sig("def regions(self) -> numpy.typing.NDArray[numpy.int32]"))
+      .def_prop_ro("fibres", fibres_view, doc("TetMesh::fibres"),
+                   nb::sig("def fibres(self) -> numpy.typing.NDArray[numpy.float64]"))
+      .def_ro("region_names", &TetMesh::region_names, doc("TetMesh::region_names"))
+      .def_prop_ro("vertex_sets", sets_of, doc("TetMesh::vertex_sets"))
+      .def("with_set", with_set, "name"_a, "vertices"_a, "The mesh with one more vertex set: numbers or a mask.")
+      .def_prop_ro(
+          "volume", [](const TetMesh& mesh) { return volume(mesh); }, doc("volume"))
+      .def("boundary_triangles", triangles_of, doc("boundary_triangles"))
+      .def(
+          "inspect", [](const TetMesh& mesh) { return inspect(mesh); }, doc("inspect"))
+      .def("__eq__", [](const TetMesh& a,
+                        nb::handle b) { return nb::isinstance<TetMesh>(b) && a == nb::cast<const TetMesh&>(b); })
+      .def("__repr__", [](const TetMesh& mesh) {
+        return "<TetMesh of " + std::to_string(mesh.vertices.size()) + " vertices and " +
+               std::to_string(mesh.tets.size()) + " tets>";
+      });
+  Options<BoxOptions>(m, "BoxOptions", "BoxOptions")
+      .field("cells", &BoxOptions::cells)
+      .field("size", &BoxOptions::size)
+      .field("origin", &BoxOptions::origin)
+      .field("split", &BoxOptions::split);
+  Options<CylinderOptions>(m, "CylinderOptions", "CylinderOptions")
+      .field("radius", &CylinderOptions::radius)
+      .field("height", &CylinderOptions::height)
+      .field("radial_cells", &CylinderOptions::radial_cells)
+      .field("axial_cells", &CylinderOptions::axial_cells)
+      .field("grading", &CylinderOptions::grading);
+  m.def(
+      "box_mesh", [](const nb::kwargs& o) { return box_mesh(options_from<BoxOptions>(o)); }, doc("box_mesh"));
+  m.def(
+      "cylinder_mesh", [](const nb::kwargs& o) { return cylinder_mesh(options_from<CylinderOptions>(o)); },
+      doc("cylinder_mesh"));
+  bind_report(m);
+}
+
+}  // namespace glisson::python

@@ -1,0 +1,239 @@
+// bind_results.cpp — whole runs, and what they leave: the columns of forces.csv, events, frames, the summary.
+//
+//   run_variant ── own thread or this one, GIL released ──▶ samples kept in C++, row by row
+//                 └▶ observers in Python take the GIL; Ctrl-C and what they raise end the run
+#include <atomic>
+
+#include "glisson/scene.h"
+#include "live_simulation.h"
+#include "report/force_table.h"
+#include "report/output_file.h"
+#include "report/summary_json.h"
+#include "words.h"
+
+namespace glisson::python {
+namespace {
+
+/// Rows of numbers under columns.
+struct Table {
+  std::vector<std::string> columns;
+  std::vector<double> numbers;
+
+  std::size_t rows() const { return columns.empty() ? 0 : numbers.size() / columns.size(); }
+  nb::object array(nb::handle self) const {
+    using Array = nb::ndarray<nb::numpy, const double, nb::c_contig>;
+    return Array(numbers.data(), {rows(), columns.size()}, self).cast(nb::rv_policy::reference);
+  }
+  std::size_t place_of(const std::string& name) const {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (columns[i] == name) return i;
+    }
+    std::string known;
+    for (const std::string& column : columns) known += (known.empty() ? "" : ", ") + column;
+    throw nb::key_error(("no column \"" + name + "\"; there are: " + known).c_str());
+  }
+  Doubles column(const std::string& name) const {
+    const std::size_t place = place_of(name);
+    std::vector<double> values;
+    for (std::size_t i = place; i < numbers.size(); i += columns.size()) values.push_back(numbers[i]);
+    return scalars(std::move(values));
+  }
+  /// The bytes of the file that `glisson run` writes.
+  std::string csv() const {
+    std::string text;
+    for (std::size_t i = 0; i < columns.size(); ++i) text += (i > 0 ? "," : "") + columns[i];
+    text += '\n';
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      text += number_text(numbers[i]) + ((i + 1) % columns.size() == 0 ? "\n" : ",");
+    }
+    return text;
+  }
+};
+
+struct Event {
+  std::string instrument;
+  InstrumentEvent what;
+};
+
+struct Frame {
+  double time = 0.0;
+  std::vector<Vec3d> displacement;
+};
+
+struct RunResult {
+  Variant variant;
+  std::shared_ptr<Table> forces = std::make_shared<Table>();
+  std::map<std::string, std::shared_ptr<Table>> further;
+  std::vector<Event> events;
+  std::vector<Frame> frames;
+  RunSummary summary;
+};
+
+/// Ends runs from another thread.
+struct StopFlag {
+  std::atomic<bool> set{false};
+};
+
+class Recorder : public RunObserver {
+ public:
+  Recorder(RunResult& result, nb::object on_sample, bool frames, std::shared_ptr<StopFlag> stop)
+      : result_(result), table_(result.variant), on_sample_(std::move(on_sample)), frames_(frames),
+        stop_(std::move(stop)) {
+    result_.forces->columns = table_.columns();
+    for (const auto& file : table_.further()) {
+      result_.further[file.name] = std::make_shared<Table>(Table{ForceTable::columns_of(file), {}});
+    }
+  }
+
+  void on_sample(const Sample& sample) override {
+    append(*result_.forces, table_.row(sample));
+    for (const auto& file : table_.further()) append(*result_.further[file.name], table_.row_of(file, sample));
+    if (on_sample_.is_none()) return;
+    const nb::gil_scoped_acquire gil;
+    look_for_interrupt();
+    nb::dict row;
+    const auto& [columns, numbers] = *result_.forces;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      row[columns[i].c_str()] = numbers[numbers.size() - columns.size() + i];
+    }
+    on_sample_(row);
+  }
+  void on_event(const RunEvent& event) override {
+    result_.events.push_back({result_.variant.instruments[event.instrument].name, event.what});
+  }
+  void on_frame(const Simulation& simulation) override {
+    if (!frames_) return;
+    const auto u = simulation.displacement();
+    result_.frames.push_back({simulation.time(), {u.begin(), u.end()}});
+  }
+  void on_progress(double) override {
+    const nb::gil_scoped_acquire gil;
+    look_for_interrupt();
+  }
+  void on_end(const RunSummary& summary) override { result_.summary = summary; }
+
+ private:
+  static void append(Table& table, const std::vector<double>& row) {
+    table.numbers.insert(table.numbers.end(), row.begin(), row.end());
+  }
+  static void look_for_interrupt() {
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+  }
+
+  RunResult& result_;
+  ForceTable table_;
+  nb::object on_sample_;
+  bool frames_;
+  std::shared_ptr<StopFlag> stop_;
+};
+
+std::shared_ptr<RunResult> run(const Variant& variant, std::optional<TetMesh> mesh, nb::object on_sample, bool frames,
+                               std::shared_ptr<StopFlag> stop) {
+  auto result = std::make_shared<RunResult>();
+  result->variant = variant;
+  if (mesh) result->variant.mesh = MeshFile{};
+  if (!stop) stop = std::make_shared<StopFlag>();
+  Recorder recorder(*result, std::move(on_sample), frames, stop);
+  const MeshLoader load = mesh_loader(std::move(mesh));
+  const nb::gil_scoped_release free;
+  run_variant(result->variant, load, recorder, stop->set);
+  return result;
+}
+
+nb::dict summary_dict(const RunResult& r) {
+  const std::string json =
+      summary_json(r.summary, r.variant, std::filesystem::path(r.variant.scene_name).stem().string(), 1).dump();
+  return nb::cast<nb::dict>(nb::module_::import_("json").attr("loads")(json));
+}
+
+void bind_tables(nb::module_& m) {
+  nb::class_<Table>(m, "Table", "Columns of numbers, as a .csv of a run has them: table[\"force_N\"].")
+      .def_ro("columns", &Table::columns, "Names, with their units")
+      .def("__getitem__", &Table::column, "name"_a)
+      .def("__contains__",
+           [](const Table& t, const std::string& name) {
+             return std::find(t.columns.begin(), t.columns.end(), name) != t.columns.end();
+           })
+      .def("__len__", &Table::rows)
+      .def_prop_ro(
+          "array", [](nb::handle self) { return nb::cast<const Table&>(self).array(self); },
+          "All of it, a row a sample: a read-only view",
+          nb::sig("def array(self) -> numpy.typing.NDArray[numpy.float64]"))
+      .def("to_csv", &Table::csv, "The bytes of the file that `glisson run` writes")
+      .def(
+          "to_dict",
+          [](const Table& t) {
+            nb::dict out;
+            for (const std::string& name : t.columns) out[name.c_str()] = t.column(name);
+            return out;
+          },
+          "Arrays by column, as pandas and polars take them",
+          nb::sig("def to_dict(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]"))
+      .def("__repr__", [](const Table& t) {
+        return "<Table of " + std::to_string(t.rows()) + " rows, " + std::to_string(t.columns.size()) + " columns>";
+      });
+}
+
+}  // namespace
+
+void bind_results(nb::module_& m) {
+  bind_tables(m);
+  nb::class_<StopFlag>(m, "StopFlag", "Ends runs from another thread, at their next step.")
+      .def(nb::init<>())
+      .def("stop", [](StopFlag& flag) { flag.set = true; });
+  nb::class_<RunResult>(m, "RunResult",
+                        "What a run of one variant left: result[\"force_N\"] is a column of forces.csv.")
+      .def_prop_ro(
+          "name", [](const RunResult& r) { return r.variant.name; }, "Of the variant")
+      .def_prop_ro(
+          "label", [](const RunResult& r) { return r.variant.label.empty() ? r.variant.name : r.variant.label; },
+          "Of the variant, for charts")
+      .def_prop_ro(
+          "variant", [](const RunResult& r) { return r.variant; }, "What was run")
+      .def_ro("forces", &RunResult::forces, "forces.csv")
+      .def_ro("further", &RunResult::further, "forces_<name>.csv of every further tool and instrument")
+      .def(
+          "__getitem__", [](const RunResult& r, const std::string& name) { return r.forces->column(name); }, "name"_a)
+      .def_prop_ro(
+          "columns", [](const RunResult& r) { return r.forces->columns; }, "Of forces.csv")
+      .def_prop_ro(
+          "events",
+          [](const RunResult& r) {
+            nb::list out;
+            for (const Event& e : r.events) {
+              nb::dict event;
+              event["time_s"] = e.what.time, event["depth_m"] = e.what.depth;
+              event["event"] = e.what.event, event["instrument"] = e.instrument;
+              out.append(event);
+            }
+            return out;
+          },
+          "events.csv: punctures, releases and the like", nb::sig("def events(self) -> list[dict[str, typing.Any]]"))
+      .def_prop_ro(
+          "frames",
+          [](const RunResult& r) {
+            nb::list out;
+            for (const Frame& f : r.frames) out.append(nb::make_tuple(f.time, vectors(f.displacement)));
+            return out;
+          },
+          "Time [s] and displacement [m] of every frame, where they were asked for",
+          nb::sig("def frames(self) -> list[tuple[float, numpy.typing.NDArray[numpy.float64]]]"))
+      .def_prop_ro("summary", summary_dict, "summary.json", nb::sig("def summary(self) -> dict[str, typing.Any]"))
+      .def_prop_ro(
+          "end", [](const RunResult& r) { return std::string(end_text(r.summary.end)); },
+          "How it ended: finished, interrupted, stopped_inverted, …")
+      .def_prop_ro(
+          "trouble", [](const RunResult& r) { return trouble_text(r.summary); },
+          "A sentence on an end that is the numbers' doing, with the way out; else empty")
+      .def("__repr__", [](const RunResult& r) {
+        return "<RunResult " + r.variant.name + ": " + std::to_string(r.forces->rows()) + " samples, " +
+               std::string(end_text(r.summary.end)) + ">";
+      });
+  m.def("run_variant", run, "variant"_a, "mesh"_a = nb::none(), "on_sample"_a = nb::none(), "frames"_a = false,
+        "stop"_a = nb::none(), doc("run_variant"),
+        nb::sig("def run_variant(variant: Variant, mesh: TetMesh | None = None, on_sample: "
+                "collections.abc.Callable[[dict[str, float]], object] | None = None, frames: bool = False, stop: "
+                "StopFlag | None = None) -> RunResult"));
+}
+
+}  // namespace glisson::python

@@ -1,0 +1,124 @@
+// bind_scenes.cpp — scenes from files and text, and their variants.
+#include "glisson/scene.h"
+#include "live_simulation.h"
+#include "scene_object.h"
+#include "words.h"
+
+namespace glisson::python {
+namespace {
+
+using Overrides = std::vector<std::pair<std::string, std::string>>;
+
+std::vector<Override> overrides_of(const Overrides& pairs) {
+  std::vector<Override> overrides;
+  for (const auto& [key, value] : pairs) overrides.push_back({key, value});
+  return overrides;
+}
+
+std::string of(const char* member) { return std::string("Variant::") + member; }
+
+void bind_variant(nb::module_& m) {
+  Options<OutputSpec>(m, "OutputSpec", "OutputSpec")
+      .field("sample_rate", &OutputSpec::sample_rate)
+      .field("frames", &OutputSpec::frames);
+  nb::class_<Variant>(m, "Variant", doc("Variant"))
+      .def_rw("name", &Variant::name)
+      .def_rw("label", &Variant::label)
+      .def_rw("tissue", &Variant::tissue)
+      .def_rw("simulation", &Variant::simulation)
+      .def_rw("on_inversion", &Variant::on_inversion, doc("OnInversion"))
+      .def_rw("duration", &Variant::duration, doc(of("duration")))
+      .def_rw("max_steps", &Variant::max_steps, doc(of("max_steps")))
+      .def_rw("output", &Variant::output)
+      .def_ro("scene_name", &Variant::scene_name, doc(of("scene_name")))
+      .def_prop_ro(
+          "tools",
+          [](const Variant& v) {
+            std::vector<std::string> names;
+            for (const ToolSpec& tool : v.tools) names.push_back(tool.name);
+            return names;
+          },
+          "Names of the prescribed motions")
+      .def_prop_ro(
+          "instruments",
+          [](const Variant& v) {
+            std::vector<std::string> names;
+            for (const InstrumentSpec& x : v.instruments) names.push_back(x.name);
+            return names;
+          },
+          "Names of the instruments")
+      .def(
+          "run_duration", [](const Variant& v) { return run_duration(v); }, doc("run_duration"))
+      .def(
+          "build_mesh", [](const Variant& v) { return build_mesh(v, mesh_loader()); }, doc("build_mesh"))
+      .def("__copy__", [](const Variant& v) { return Variant(v); })
+      .def("__deepcopy__", [](const Variant& v, nb::handle) { return Variant(v); })
+      .def("__repr__", [](const Variant& v) { return "<Variant " + v.name + " of " + v.scene_name + ">"; });
+}
+
+void bind_charts(nb::module_& m) {
+  nb::class_<AxisSpec>(m, "AxisSpec", doc("AxisSpec"))
+      .def_ro("column", &AxisSpec::column)
+      .def_ro("label", &AxisSpec::label, doc("AxisSpec::label"))
+      .def_ro("scale", &AxisSpec::scale);
+  nb::class_<MeasuredSpec>(m, "MeasuredSpec", doc("MeasuredSpec"))
+      .def_ro("label", &MeasuredSpec::label)
+      .def_prop_ro(
+          "xs", [](const MeasuredSpec& s) { return scalars(s.xs); }, doc("MeasuredSpec::xs"))
+      .def_prop_ro(
+          "ys", [](const MeasuredSpec& s) { return scalars(s.ys); }, doc("MeasuredSpec::ys"));
+  nb::class_<ChartSpec>(m, "ChartSpec", doc("ChartSpec"))
+      .def_ro("title", &ChartSpec::title)
+      .def_ro("x", &ChartSpec::x)
+      .def_ro("y", &ChartSpec::y)
+      .def_ro("measured", &ChartSpec::measured)
+      .def_ro("variants", &ChartSpec::variants, doc("ChartSpec::variants"));
+}
+
+std::shared_ptr<Variant> variant_called(const SceneObject& s, const std::string& name) {
+  std::string known;
+  for (const auto& v : s.variants) {
+    if (v->name == name) return v;
+    known += (known.empty() ? "" : ", ") + v->name;
+  }
+  throw nb::key_error(("no variant \"" + name + "\"; there are: " + known).c_str());
+}
+
+}  // namespace
+
+void bind_scenes(nb::module_& m) {
+  nb::exception<SceneError>(m, "SceneError", PyExc_ValueError);
+  bind_variant(m);
+  bind_charts(m);
+  nb::class_<SceneObject>(m, "Scene", doc("Scene"))
+      .def_prop_ro("file", [](const SceneObject& s) { return s.scene.file; })
+      .def_prop_ro("title", [](const SceneObject& s) { return s.scene.title; })
+      .def_prop_ro("description", [](const SceneObject& s) { return s.scene.description; })
+      .def_prop_ro(
+          "notes", [](const SceneObject& s) { return s.scene.notes; }, doc("Scene::notes"))
+      .def_prop_ro(
+          "source", [](const SceneObject& s) { return s.scene.source; }, doc("Scene::source"))
+      .def_prop_ro(
+          "charts", [](const SceneObject& s) { return s.scene.charts; }, doc("Scene::charts"))
+      .def_ro("variants", &SceneObject::variants, "To be read, and changed before a run")
+      .def("__getitem__", variant_called, "name"_a)
+      .def("__len__", [](const SceneObject& s) { return s.variants.size(); })
+      .def("__repr__", [](const SceneObject& s) {
+        return "<Scene " + s.scene.file.string() + " with " + std::to_string(s.variants.size()) + " variants>";
+      });
+  m.def(
+      "load_scene",
+      [](const std::filesystem::path& file, const Overrides& overrides) {
+        return SceneObject(load_scene(file, overrides_of(overrides)));
+      },
+      "file"_a, "overrides"_a = Overrides{}, doc("load_scene"));
+  m.def(
+      "parse_scene",
+      [](std::string_view text, const std::string& name, const std::filesystem::path& base,
+         const Overrides& overrides) { return SceneObject(parse_scene(text, name, base, overrides_of(overrides))); },
+      "text"_a, "name"_a = "scene", "base"_a = std::filesystem::path("."), "overrides"_a = Overrides{},
+      doc("parse_scene"));
+  m.def("scene_reference_markdown", &scene_reference_markdown, doc("scene_reference_markdown"));
+}
+
+}  // namespace glisson::python

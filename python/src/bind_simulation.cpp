@@ -1,0 +1,411 @@
+// bind_simulation.cpp — simulations: built, held, driven, stepped and read.
+#include <sstream>
+
+#include "glisson/motion.h"
+#include "glisson/tool_motion.h"
+#include "live_simulation.h"
+#include "words.h"
+
+namespace glisson::python {
+namespace {
+
+using Live = LiveSimulation;
+
+std::string of(const char* member) { return std::string("Simulation::") + member; }
+
+std::vector<std::uint32_t> chosen(const Live& live, const VertexChoice& choice) {
+  if (!nb::isinstance<nb::str>(choice)) return to_indices(choice, 1, "vertices");
+  const auto name = nb::cast<std::string>(choice);
+  const auto& sets = live.get().mesh().vertex_sets;
+  const auto found = sets.find(name);
+  if (found != sets.end()) return found->second;
+  std::string known;
+  for (const auto& [set, vertices] : sets) known += (known.empty() ? "" : ", ") + set;
+  throw nb::value_error(("the mesh has no vertex set \"" + name + "\"; it has: " + known).c_str());
+}
+
+/// "xz": the components that are held or driven.
+Axes axes_of(const std::string& word) {
+  Axes axes{false, false, false};
+  for (const char c : word) {
+    bool* axis = c == 'x' ? &axes.x : c == 'y' ? &axes.y : c == 'z' ? &axes.z : nullptr;
+    if (axis == nullptr) throw nb::value_error(("axes is \"" + word + "\"; allowed: letters of \"xyz\"").c_str());
+    *axis = true;
+  }
+  return axes;
+}
+
+std::map<int, Tissue> tissues_of(const TetMesh& mesh,
+                                 const std::variant<Tissue, std::map<std::variant<int, std::string>, Tissue>>& given) {
+  std::map<int, Tissue> tissues;
+  if (const auto* one = std::get_if<Tissue>(&given)) {
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) tissues.emplace(mesh.region_of(t), *one);
+    return tissues;
+  }
+  for (const auto& [region, tissue] : std::get<1>(given)) {
+    if (const int* number = std::get_if<int>(&region)) tissues[*number] = tissue;
+    const auto* name = std::get_if<std::string>(&region);
+    bool known = name == nullptr;
+    for (const auto& [number, called] : mesh.region_names) {
+      if (name == nullptr || called != *name) continue;
+      tissues[number] = tissue;
+      known = true;
+    }
+    if (!known) throw nb::value_error(("the mesh has no region \"" + *name + "\"").c_str());
+  }
+  return tissues;
+}
+
+ConstraintId drive(Live& live, const VertexChoice& vertices, const std::variant<PressMotion, nb::object>& motion,
+                   const std::string& axes, std::optional<double> from) {
+  const std::vector<std::uint32_t> set = chosen(live, vertices);
+  if (const auto* press_motion = std::get_if<PressMotion>(&motion)) {
+    return live.get().drive(set, press(*press_motion), axes_of(axes), from.value_or(press_motion->start));
+  }
+  Motion way = Callback<Vec3d>(std::get<nb::object>(motion), live.functions);
+  return live.get().drive(set, std::move(way), axes_of(axes), from.value_or(0.0));
+}
+
+void add_load(Live& live, const VertexChoice& vertices, const Vec3d& force, const nb::object& scale) {
+  std::function<double(double)> grows;
+  if (!scale.is_none()) grows = Callback<double>(scale, live.functions);
+  live.get().add_load(chosen(live, vertices), force, std::move(grows));
+}
+
+/// A read-only array on the engine's own numbers, that keeps the simulation. A body that may be cut moves in memory, so
+/// there it is a copy.
+template <class Scalar>
+nb::object view(nb::handle self, const Scalar* data, std::initializer_list<std::size_t> shape) {
+  auto& live = nb::cast<Live&>(self);
+  using Array = nb::ndarray<nb::numpy, const Scalar, nb::c_contig>;
+  if (live.may_change()) return Array(data, shape, self).cast(nb::rv_policy::copy);
+  struct Held {
+    nb::object simulation;
+    Live* live;
+  };
+  ++live.views;
+  nb::capsule owner(new Held{nb::borrow(self), &live}, [](void* p) noexcept {
+    auto* held = static_cast<Held*>(p);
+    --held->live->views;
+    delete held;
+  });
+  return Array(data, shape, owner).cast(nb::rv_policy::reference);
+}
+
+nb::object vectors_view(nb::handle self, std::span<const Vec3d> values) {
+  return view(self, reinterpret_cast<const double*>(values.data()), {values.size(), 3});
+}
+
+void refuse_views(const Live& live) {
+  if (live.views > 0 && !live.may_change()) {
+    throw nb::buffer_error(
+        "views of the state are held, and the body is about to move in memory: copy() them and let them go, or build "
+        "the "
+        "simulation with SimulationOptions(mesh_changes=True), which hands out copies");
+  }
+}
+
+nb::bytes save(const Live& live) {
+  std::ostringstream out;
+  live.get().save(out);
+  const std::string text = std::move(out).str();
+  return nb::bytes(text.data(), text.size());
+}
+
+void load(Live& live, const nb::bytes& checkpoint) {
+  refuse_views(live);
+  std::istringstream in(std::string(checkpoint.c_str(), checkpoint.size()));
+  live.get().load(in);
+}
+
+nb::dict tet_fields(const Live& live) {
+  TetFields fields = live.get().tet_fields();
+  const std::size_t n = fields.q.size();
+  nb::dict out;
+  out["q"] = scalars(std::move(fields.q));
+  out["s"] = scalars(std::move(fields.s));
+  out["jacobian"] = scalars(std::move(fields.jacobian));
+  out["stress"] = owned<Doubles>(std::move(fields.stress), {n, 6});
+  return out;
+}
+
+SplitReport split(Live& live, const ArrayLike& faces) {
+  refuse_views(live);
+  const std::vector<std::uint32_t> corners = to_indices(faces, 3, "faces");
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+    triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  }
+  return live.get().split_faces(triangles);
+}
+
+nb::dict constraints_of(const Live& live) {
+  nb::dict out;
+  if (!live.built()) return out;
+  for (std::size_t i = 0; i < live.built()->tools.size(); ++i) {
+    out[live.variant()->tools[i].name.c_str()] = live.built()->tools[i];
+  }
+  for (std::size_t i = 0; i < live.built()->supports.size(); ++i) {
+    out[live.variant()->fixed[i].set.c_str()] = live.built()->supports[i];
+  }
+  return out;
+}
+
+void bind_options(nb::module_& m) {
+  Options<ImplicitOptions>(m, "ImplicitOptions", "ImplicitOptions")
+      .field("scheme", &ImplicitOptions::scheme)
+      .field("spectral_radius", &ImplicitOptions::spectral_radius)
+      .field("largest_step", &ImplicitOptions::largest_step)
+      .field("tolerance", &ImplicitOptions::tolerance)
+      .field("most_iterations", &ImplicitOptions::most_iterations)
+      .field("most_cuts", &ImplicitOptions::most_cuts)
+      .field("preconditioner", &ImplicitOptions::preconditioner);
+  Options<SimulationOptions>(m, "SimulationOptions", "SimulationOptions")
+      .field("integrator", &SimulationOptions::integrator)
+      .field("step", &SimulationOptions::step)
+      .field("implicit", &SimulationOptions::implicit)
+      .field("precision", &SimulationOptions::precision)
+      .field("damping_rate", &SimulationOptions::damping_rate)
+      .field("nodal_damping", &SimulationOptions::nodal_damping)
+      .field("mass_scaling_step", &SimulationOptions::mass_scaling_step)
+      .field("gravity", &SimulationOptions::gravity)
+      .field("gravity_ramp", &SimulationOptions::gravity_ramp)
+      .field("enforce_stability", &SimulationOptions::enforce_stability)
+      .field("threads", &SimulationOptions::threads)
+      .field("track_energies", &SimulationOptions::track_energies)
+      .field("exact_steps", &SimulationOptions::exact_steps)
+      .field("mesh_changes", &SimulationOptions::mesh_changes);
+}
+
+void bind_readings(nb::module_& m) {
+  nb::class_<ConstraintId>(m, "Constraint", doc("ConstraintId")).def_ro("index", &ConstraintId::index);
+  nb::class_<ForceParts>(m, "ForceParts", doc("ForceParts"))
+      .def_ro("elastic", &ForceParts::elastic)
+      .def_ro("viscous", &ForceParts::viscous)
+      .def_ro("damping", &ForceParts::damping)
+      .def_ro("inertial", &ForceParts::inertial)
+      .def_ro("gravity", &ForceParts::gravity)
+      .def_ro("load", &ForceParts::load)
+      .def_prop_ro("total", &ForceParts::total, "Sum of the parts [N]");
+  const auto energy = [](const char* field) { return doc(std::string("Energies::") + field); };
+  nb::class_<Energies>(m, "Energies", doc("Energies"))
+      .def_ro("elastic", &Energies::elastic, energy("elastic"))
+      .def_ro("kinetic", &Energies::kinetic, energy("kinetic"))
+      .def_ro("dissipated", &Energies::dissipated, energy("dissipated"))
+      .def_ro("numerical", &Energies::numerical, energy("numerical"))
+      .def_ro("work_tools", &Energies::work_tools, energy("work_tools"))
+      .def_ro("work_loads", &Energies::work_loads, energy("work_loads"))
+      .def_ro("initial", &Energies::initial, energy("initial"))
+      .def_ro("removed", &Energies::removed, energy("removed"))
+      .def_prop_ro("imbalance", &Energies::imbalance, "Left over in the identity of the class [J]");
+  nb::class_<RemovalReport>(m, "RemovalReport", doc("RemovalReport"))
+      .def_ro("tets", &RemovalReport::tets, doc("RemovalReport::tets"))
+      .def_ro("mass", &RemovalReport::mass, doc("RemovalReport::mass"))
+      .def_ro("momentum", &RemovalReport::momentum, doc("RemovalReport::momentum"))
+      .def_ro("energy", &RemovalReport::energy, doc("RemovalReport::energy"))
+      .def_ro("loose_vertices", &RemovalReport::loose_vertices, doc("RemovalReport::loose_vertices"));
+  nb::class_<SplitReport>(m, "SplitReport", doc("SplitReport"))
+      .def_ro("first_new", &SplitReport::first_new, doc("SplitReport::first_new"))
+      .def_ro("origins", &SplitReport::origins, doc("SplitReport::origins"))
+      .def_ro("closed_faces", &SplitReport::closed_faces, doc("SplitReport::closed_faces"));
+  nb::class_<EngineInfo>(m, "EngineInfo", doc("EngineInfo"))
+      .def_ro("instruction_set", &EngineInfo::instruction_set, doc("EngineInfo::instruction_set"))
+      .def_ro("threads", &EngineInfo::threads)
+      .def_ro("submeshes", &EngineInfo::submeshes)
+      .def_ro("flops_per_tet", &EngineInfo::flops_per_tet, doc("EngineInfo::flops_per_tet"))
+      .def_ro("bytes_per_tet", &EngineInfo::bytes_per_tet, doc("EngineInfo::bytes_per_tet"));
+  nb::class_<MassScaling>(m, "MassScaling", doc("MassScaling"))
+      .def_ro("added", &MassScaling::added, doc("MassScaling::added"))
+      .def_ro("share", &MassScaling::share, doc("MassScaling::share"))
+      .def_ro("tets", &MassScaling::tets, doc("MassScaling::tets"));
+  nb::class_<LimitingTet>(m, "LimitingTet", doc("LimitingTet"))
+      .def_ro("tet", &LimitingTet::tet)
+      .def_ro("altitude", &LimitingTet::altitude, doc("LimitingTet::altitude"))
+      .def_ro("step", &LimitingTet::step, doc("LimitingTet::step"));
+}
+
+void bind_setting_up(nb::class_<Live>& c) {
+  using Tissues = std::variant<Tissue, std::map<std::variant<int, std::string>, Tissue>>;
+  c.def(
+       "__init__",
+       [](Live* self, const TetMesh& mesh, const Tissues& tissues, const std::optional<SimulationOptions>& options) {
+         new (self) Live(mesh, tissues_of(mesh, tissues), options.value_or(SimulationOptions{}));
+       },
+       "mesh"_a, "tissues"_a, "options"_a = nb::none(), doc(of("Simulation")))
+      .def_static(
+          "of_variant",
+          [](const Variant& variant, std::optional<TetMesh> mesh) {
+            Variant own = variant;
+            if (mesh) own.mesh = MeshFile{};
+            return new Live(own, mesh_loader(std::move(mesh)));
+          },
+          "variant"_a, "mesh"_a = nb::none(), nb::rv_policy::take_ownership, doc("BuiltVariant"))
+      .def(
+          "fix",
+          [](Live& live, const VertexChoice& v, const std::string& axes) {
+            return live.get().fix(chosen(live, v), axes_of(axes));
+          },
+          "vertices"_a, "axes"_a = "xyz", doc(of("fix")))
+      .def("drive", drive, "vertices"_a, "motion"_a, "axes"_a = "xyz", "from_time"_a = nb::none(), doc(of("drive")),
+           nb::sig(
+               "def drive(self, vertices: str | numpy.typing.ArrayLike, motion: PressMotion | "
+               "collections.abc.Callable[[float], collections.abc.Sequence[float] | "
+               "numpy.typing.NDArray[typing.Any]], axes: str = 'xyz', from_time: float | None = None) -> Constraint"))
+      .def(
+          "add_load", add_load, "vertices"_a, "force"_a, "scale"_a = nb::none(), doc(of("add_load")),
+          nb::sig("def add_load(self, vertices: str | numpy.typing.ArrayLike, force: collections.abc.Sequence[float] | "
+                  "numpy.typing.NDArray[typing.Any], scale: collections.abc.Callable[[float], float] | None = None) -> "
+                  "None"))
+      .def(
+          "attach", [](Live& live, std::shared_ptr<Interaction> x) { live.get().attach(std::move(x)); },
+          "interaction"_a, nb::keep_alive<1, 2>(), doc(of("attach")))
+      .def(
+          "remove_tets",
+          [](Live& live, const ArrayLike& tets) { return live.get().remove_tets(to_indices(tets, 1, "tets")); },
+          "tets"_a, doc(of("remove_tets")))
+      .def("split_faces", split, "faces"_a, doc(of("split_faces")))
+      .def(
+          "is_removed", [](const Live& live, std::uint32_t tet) { return live.get().is_removed(tet); }, "tet"_a,
+          doc(of("is_removed")))
+      .def(
+          "set_state",
+          [](Live& live, const ArrayLike& u, const ArrayLike& v) {
+            live.get().set_state(to_vectors(u, "displacement"), to_vectors(v, "velocity"));
+          },
+          "displacement"_a, "velocity"_a, doc(of("set_state")));
+}
+
+void bind_stepping(nb::class_<Live>& c) {
+  c.def("step", &Live::step, "n"_a = 1,
+        "Makes n steps, each of step_size; the GIL is free meanwhile. Says \"inverted\" where a tet was turned over in "
+        "one of them.\n:raises StepError: where a step was not made, with the reason and the way out")
+      .def("advance", &Live::advance, "until"_a, "observer"_a = nb::none(), "every"_a = nb::none(),
+           "Steps until a time [s] is reached to half a step. `observer()` is called every so many seconds of the "
+           "simulation, and at the end; what it raises ends the run.")
+      .def_prop_ro(
+          "inverted_tets", [](const Live& live) { return indices(live.inverted()); },
+          "Turned over in the state that the last step started from")
+      .def("save", save, doc(of("save")))
+      .def("load", load, "checkpoint"_a, doc(of("load")));
+}
+
+void bind_reading(nb::class_<Live>& c) {
+  c.def_prop_ro(
+       "time", [](const Live& l) { return l.get().time(); }, doc(of("time")))
+      .def_prop_ro(
+          "step_size", [](const Live& l) { return l.get().step_size(); }, doc(of("step_size")))
+      .def_prop_ro(
+          "stable_step", [](const Live& l) { return l.get().stable_step(); }, doc(of("stable_step")))
+      .def_prop_ro(
+          "steps", [](const Live& l) { return l.get().steps(); }, "Made so far")
+      .def_prop_ro(
+          "force_time", [](const Live& l) { return l.get().force_time(); }, doc(of("force_time")))
+      .def_prop_ro(
+          "energies", [](const Live& l) { return l.get().energies(); }, doc(of("energies")))
+      .def_prop_ro(
+          "engine_info", [](const Live& l) { return l.get().engine_info(); }, "How it is evaluated")
+      .def_prop_ro(
+          "mass_scaling", [](const Live& l) { return l.get().mass_scaling(); }, doc("MassScaling"))
+      .def_prop_ro(
+          "mesh", [](const Live& l) { return l.get().mesh(); }, doc(of("mesh")))
+      .def_prop_ro(
+          "present_mesh", [](const Live& l) { return l.get().present_mesh(); }, doc(of("present_mesh")))
+      .def_prop_ro(
+          "state_hash", [](const Live& l) { return l.get().state_hash(); }, doc(of("state_hash")))
+      .def(
+          "limiting_tets", [](const Live& l, std::size_t most) { return l.get().limiting_tets(most); }, "most"_a = 10,
+          doc(of("limiting_tets")))
+      .def("tet_fields", tet_fields, doc("TetFields"),
+           nb::sig("def tet_fields(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]"))
+      .def(
+          "force", [](const Live& l, ConstraintId id) { return l.get().force(id); }, "constraint"_a, doc(of("force")))
+      .def_prop_ro("constraints", constraints_of, "Of a scene's variant: its tools and supports by name",
+                   nb::sig("def constraints(self) -> dict[str, Constraint]"))
+      .def_prop_ro(
+          "instruments",
+          [](const Live& l) {
+            nb::dict out;
+            if (l.built()) {
+              for (const auto& x : l.built()->instruments) out[x->name().c_str()] = nb::cast(x);
+            }
+            return out;
+          },
+          "Of a scene's variant: its instruments by name", nb::sig("def instruments(self) -> dict[str, typing.Any]"))
+      .def_prop_ro(
+          "container", [](const Live& l) { return l.built() ? l.built()->container : nullptr; },
+          "Of a scene's variant, where it has one")
+      .def_prop_ro(
+          "capsules",
+          [](const Live& l) { return l.built() ? l.built()->capsules : std::vector<std::shared_ptr<Capsule>>{}; },
+          "Of a scene's variant");
+}
+
+constexpr const char* kViewDoc =
+    "\n\nA read-only view without a copy, up to date after every step() and advance(). It keeps the simulation alive; "
+    "copy() what is to outlive the next step. With SimulationOptions(mesh_changes=True), or a blade, a copy.";
+
+void bind_views(nb::class_<Live>& c) {
+  const auto add = [&](const char* name, auto read, const char* doc_of) {
+    static std::vector<std::string> kept;
+    kept.reserve(32);
+    kept.push_back("def " + std::string(name) + "(self) -> numpy.typing.NDArray[numpy.float64]");
+    const char* signature = kept.back().c_str();
+    kept.push_back(std::string(doc_of) + kViewDoc);
+    c.def_prop_ro(name, read, kept.back().c_str(), nb::sig(signature));
+  };
+  add(
+      "displacement", [](nb::handle self) { return vectors_view(self, nb::cast<Live&>(self).get().displacement()); },
+      doc(of("displacement")));
+  add(
+      "velocity", [](nb::handle self) { return vectors_view(self, nb::cast<Live&>(self).get().velocity()); },
+      doc(of("velocity")));
+  add(
+      "masses",
+      [](nb::handle self) {
+        const std::span<const double> m = nb::cast<Live&>(self).get().masses();
+        return view(self, m.data(), {m.size()});
+      },
+      doc(of("masses")));
+  c.def_prop_ro(
+      "positions", [](const Live& l) { return vectors(l.get().positions()); }, doc(of("positions")));
+}
+
+/// For the garbage collector: motions may refer to the simulation that calls them.
+int visit_functions(PyObject* self, visitproc visit, void* arg) {
+  Py_VISIT(Py_TYPE(self));
+  if (!nb::inst_ready(self)) return 0;
+  for (const nb::object& function : nb::inst_ptr<Live>(self)->functions) Py_VISIT(function.ptr());
+  return 0;
+}
+int drop_functions(PyObject* self) {
+  const std::vector<nb::object> dropped = std::exchange(nb::inst_ptr<Live>(self)->functions, {});
+  return 0;
+}
+
+}  // namespace
+
+void bind_simulation(nb::module_& m) {
+  bind_options(m);
+  bind_readings(m);
+  nb::exception<StepError>(m, "StepError", PyExc_RuntimeError);
+  Options<PressMotion>(m, "PressMotion", "PressMotion")
+      .field("direction", &PressMotion::direction)
+      .field("velocity", &PressMotion::velocity)
+      .field("depth", &PressMotion::depth)
+      .field("start", &PressMotion::start)
+      .field("ramp", &PressMotion::ramp)
+      .field("hold", &PressMotion::hold)
+      .field("returns", &PressMotion::returns);
+  m.def("press_depth", &press_depth, "motion"_a, "time"_a, doc("press_depth"));
+  m.def("press_end", &press_end, "motion"_a, doc("press_end"));
+  static PyType_Slot slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(visit_functions)},
+                                {Py_tp_clear, reinterpret_cast<void*>(drop_functions)},
+                                {0, nullptr}};
+  nb::class_<Live> simulation(m, "Simulation", nb::type_slots(slots), doc("Simulation"));
+  bind_setting_up(simulation);
+  bind_stepping(simulation);
+  bind_views(simulation);
+  bind_reading(simulation);
+}
+
+}  // namespace glisson::python

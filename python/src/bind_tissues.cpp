@@ -1,0 +1,125 @@
+// bind_tissues.cpp — tissues, their laws, and those that have a source.
+//
+// The classes of laws are made from the laws' own description of their parameters: a new law needs no line here but its
+// name in Python.
+#include <cctype>
+
+#include "glisson/tissue.h"
+#include "glisson/tissue_presets.h"
+#include "words.h"
+
+namespace glisson::python {
+namespace {
+
+/// "SlopedLaw::slope" has the docstring; where it has none, the law's own help serves.
+template <class Law>
+void bind_law(nb::module_& m, const char* name) {
+  Options<Law> law(m, name, name);
+  law.attr("name") = std::string(Law::kName);
+  for (const LawField<Law>& field : Law::kFields) {
+    std::string key(field.key);
+    for (const char* unit : {"_Pa", "_s"}) {
+      if (key.ends_with(unit)) key.resize(key.size() - std::string_view(unit).size());
+    }
+    std::visit([&](auto member) { law.field(key.c_str(), member); }, field.member);
+  }
+}
+
+/// A stiffness law at one value, or at all of an array, of the measure.
+nb::object at_each(const nb::object& x, const std::function<double(double)>& f) {
+  if (PyFloat_Check(x.ptr()) || PyLong_Check(x.ptr())) return nb::cast(f(nb::cast<double>(x)));
+  const nb::object array = nb::module_::import_("numpy").attr("ascontiguousarray")(x, "float64");
+  const auto numbers = nb::cast<nb::ndarray<const double, nb::c_contig, nb::device::cpu>>(array);
+  std::vector<double> values(numbers.size());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = f(numbers.data()[i]);
+  return scalars(std::move(values)).attr("reshape")(array.attr("shape"));
+}
+
+void bind_laws(nb::module_& m) {
+  bind_law<ConstantLaw>(m, "ConstantLaw");
+  bind_law<StepLaw>(m, "StepLaw");
+  bind_law<LinearLaw>(m, "LinearLaw");
+  bind_law<PolynomialLaw>(m, "PolynomialLaw");
+  bind_law<ExponentialLaw>(m, "ExponentialLaw");
+  bind_law<TableLaw>(m, "TableLaw");
+  bind_law<NeoHookean>(m, "NeoHookean");
+  bind_law<MooneyRivlin>(m, "MooneyRivlin");
+  bind_law<Yeoh>(m, "Yeoh");
+  bind_law<Fung>(m, "Fung");
+  bind_law<VerondaWestmann>(m, "VerondaWestmann");
+  bind_law<Ogden>(m, "Ogden");
+  m.def(
+      "law_value",
+      [](const StiffnessLaw& law, double base, const nb::object& x) {
+        return at_each(x, [&](double at) { return law_value(law, base, at); });
+      },
+      "law"_a, "base"_a, "x"_a, doc("law_value"));
+  m.def(
+      "law_derivative",
+      [](const StiffnessLaw& law, double base, const nb::object& x) {
+        return at_each(x, [&](double at) { return law_derivative(law, base, at); });
+      },
+      "law"_a, "base"_a, "x"_a, doc("law_derivative"));
+  m.def(
+      "shear_modulus", [](const HyperelasticLaw& law) { return shear_modulus(law); }, "law"_a, doc("shear_modulus"));
+  m.def(
+      "bulk_modulus", [](const HyperelasticLaw& law) { return bulk_modulus(law); }, "law"_a, doc("bulk_modulus"));
+}
+
+std::pair<double, double> pair_of(const LameParameters& lame) { return {lame.lambda, lame.mu}; }
+
+}  // namespace
+
+void bind_tissues(nb::module_& m) {
+  bind_laws(m);
+  Options<Fibres>(m, "Fibres", "Fibres").field("direction", &Fibres::direction).field("stiffness", &Fibres::stiffness);
+  Options<MaxwellBranch>(m, "MaxwellBranch", "MaxwellBranch")
+      .field("share", &MaxwellBranch::share)
+      .field("time", &MaxwellBranch::time);
+  Options<Tissue> tissue(m, "Tissue", "Tissue");
+  tissue.field("name", &Tissue::name)
+      .field("youngs_modulus", &Tissue::youngs_modulus)
+      .field("poisson_ratio", &Tissue::poisson_ratio)
+      .field("density", &Tissue::density)
+      .field("viscosity", &Tissue::viscosity)
+      .field("viscous_tensor", &Tissue::viscous_tensor)
+      .field("measure", &Tissue::measure)
+      .field("law", &Tissue::law)
+      .field("lambda_law", &Tissue::lambda_law)
+      .field("mu_law", &Tissue::mu_law)
+      .field("kinematics", &Tissue::kinematics)
+      .field("law_form", &Tissue::law_form)
+      .field("hyperelastic", &Tissue::hyperelastic)
+      .field("fibres", &Tissue::fibres)
+      .field("maxwell", &Tissue::maxwell)
+      .field("maxwell_part", &Tissue::maxwell_part)
+      .field("volume_change", &Tissue::volume_change);
+  tissue.def(
+      "lame", [](const Tissue& t) { return pair_of(t.lame()); }, doc("Tissue::lame"));
+  tissue.def(
+      "lame_at", [](const Tissue& t, double x) { return pair_of(lame_at(t, x)); }, "x"_a, doc("lame_at"));
+  tissue.def("is_tensor_mass", &Tissue::is_tensor_mass, doc("Tissue::is_tensor_mass"));
+  tissue.def(
+      "check", [](const Tissue& t) { require_valid(t); }, doc("require_valid"));
+  m.def(
+      "lame_from_young", [](double e, double nu) { return pair_of(lame_from_young(e, nu)); }, "youngs_modulus"_a,
+      "poisson_ratio"_a, doc("lame_from_young"));
+
+  const auto of = [](const char* field) { return doc(std::string("TissuePreset::") + field); };
+  nb::class_<TissuePreset>(m, "TissuePreset", doc("TissuePreset"))
+      .def_ro("name", &TissuePreset::name, of("name"))
+      .def_ro("what", &TissuePreset::what, of("what"))
+      .def_ro("source", &TissuePreset::source, of("source"))
+      .def_ro("fitted_to", &TissuePreset::fitted_to, of("fitted_to"))
+      .def_ro("validity", &TissuePreset::validity, of("validity"))
+      .def_ro("confirmed", &TissuePreset::confirmed, of("confirmed"))
+      .def_prop_ro(
+          "tissue", [](const TissuePreset& p) { return p.tissue; }, of("tissue"))
+      .def_ro("toml", &TissuePreset::toml, of("toml"))
+      .def("__repr__", [](const TissuePreset& p) { return "<TissuePreset " + p.name + ": " + p.what + ">"; });
+  m.def("tissue_presets", &tissue_presets, doc("tissue_presets"));
+  m.def(
+      "tissue_preset", [](std::string_view name) { return tissue_preset(name); }, "name"_a, doc("tissue_preset"));
+}
+
+}  // namespace glisson::python

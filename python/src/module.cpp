@@ -1,0 +1,17 @@
+// module.cpp — glisson._core: the engine for Python. The package in python/glisson gives it its public face.
+#include <stdexcept>
+
+#include "bind.h"
+#include "rooms.h"
+
+NB_MODULE(_core, m) {
+  namespace py = glisson::python;
+  nanobind::set_leak_warnings(false);  // objects of a script may live until the interpreter ends
+  m.doc() = "The engine of glisson; import glisson instead.";
+  py::bind_meshes(m);
+  py::bind_tissues(m);
+  py::bind_instruments(m);
+  py::bind_simulation(m);
+  py::bind_scenes(m);
+  py::bind_results(m);
+}

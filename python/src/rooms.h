@@ -1,0 +1,15 @@
+// rooms.h — the parts of the Python module, one file each.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace glisson::python {
+
+void bind_meshes(nanobind::module_& m);
+void bind_tissues(nanobind::module_& m);
+void bind_instruments(nanobind::module_& m);
+void bind_scenes(nanobind::module_& m);
+void bind_simulation(nanobind::module_& m);
+void bind_results(nanobind::module_& m);
+
+}  // namespace glisson::python
