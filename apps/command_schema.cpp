@@ -1,18 +1,27 @@
-// command_schema.cpp — glisson schema: every key of a scene, as docs/scene.md has it.
+// command_schema.cpp — glisson schema: every key of a scene or of a fit, as docs/scene.md and docs/fit_file.md have them.
 #include <fmt/format.h>
+
+#include <memory>
+#include <string>
 
 #include "commands.h"
 #include "exit_code.h"
+#include "fit/fit_spec.h"
 #include "glisson/scene.h"
 
 namespace glisson::app {
 
 void add_schema(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("schema", "print every key of a scene with meaning, unit, range, default");
-  command->footer("Prints Markdown.\n\nExamples:\n  glisson schema | less\n  glisson schema > docs/scene.md");
-  command->callback([&action] {
-    action = [] {
-      fmt::print("{}", scene_reference_markdown());
+  CLI::App* command =
+      program.add_subcommand("schema", "print every key of a scene, or of a fit, with meaning, unit, range, default");
+  const auto what = std::make_shared<std::string>("scene");
+  command->add_option("what", *what, "scene or fit")->check(CLI::IsMember({"scene", "fit"}))->capture_default_str();
+  command->footer(
+      "Prints Markdown.\n\nExamples:\n  glisson schema | less\n  glisson schema > docs/scene.md\n"
+      "  glisson schema fit > docs/fit_file.md");
+  command->callback([&action, what] {
+    action = [what] {
+      fmt::print("{}", *what == "fit" ? fit::fit_reference_markdown() : scene_reference_markdown());
       return static_cast<int>(kDone);
     };
   });

@@ -79,7 +79,7 @@ void conclude_on_search(const LawSearch& search, std::vector<std::string>& sente
 
 void conclude_on_parameters(const FitResult& result, std::vector<std::string>& sentences) {
   for (const ParameterResult& p : result.parameters) {
-    if (p.verdict != "identified") sentences.push_back(p.parameter.name + ": " + p.verdict + ". " + p.words);
+    if (p.verdict != "identified") sentences.push_back(p.words);
   }
 }
 

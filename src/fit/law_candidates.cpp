@@ -9,12 +9,19 @@
 namespace glisson::fit {
 namespace {
 
-constexpr double kBulkOverModulus = 30.0;  // κ/E of the hyperelastic candidates: ν = 0.494
+// κ/E of the hyperelastic candidates
+constexpr double kBulkOfSpecimens = 1000.0;  // ν = 0.4998: a homogeneous state cannot lock
+constexpr double kBulkOfBodies = 30.0;       // ν = 0.494: tets can
+
+/// The tissue's size of moduli [Pa].
+struct Stiffness {
+  double modulus = 0.0, bulk = 0.0;
+};
 
 /// Collects what a candidate sets and frees; moduli in units of the tissue's.
 class Candidate {
  public:
-  Candidate(std::string name, double modulus) : modulus_(modulus) { law_.name = std::move(name); }
+  Candidate(std::string name, Stiffness of) : modulus_(of.modulus), bulk_(of.bulk) { law_.name = std::move(name); }
 
   Candidate& set(const std::string& key, const std::string& value) {
     law_.set.push_back({key, value});
@@ -22,8 +29,7 @@ class Candidate {
   }
   /// A hyperelastic law; κ is held where it hardly acts.
   Candidate& hyperelastic(const std::string& keys) {
-    return set("tissue.hyperelastic",
-               "{ " + keys + ", bulk_modulus_Pa = " + scene::show(kBulkOverModulus * modulus_) + " }");
+    return set("tissue.hyperelastic", "{ " + keys + ", bulk_modulus_Pa = " + scene::show(bulk_) + " }");
   }
   Candidate& modulus(const std::string& key, double least, double most) {
     return free(key, least * modulus_, most * modulus_, Scale::logarithmic);
@@ -45,66 +51,68 @@ class Candidate {
   operator LawSpec() const { return law_; }
 
  private:
-  double modulus_;
+  double modulus_, bulk_;
   LawSpec law_;
 };
 
 struct Known {
   LawName name;
-  std::function<LawSpec(const std::string&, double)> make;
+  std::function<LawSpec(const std::string&, Stiffness)> make;
 };
 
 /// A law of stiffness on top of E.
-Candidate stiffness(const std::string& name, double m) {
+Candidate of_stiffness(const std::string& name, Stiffness m) {
   return Candidate(name, m).modulus("tissue.youngs_modulus_Pa", 0.01, 30.0);
 }
 
 const std::vector<Known>& all() {
   static const std::vector<Known> list{
       {{"constant", "linear elasticity, E alone"},
-       [](const auto& n, double m) -> LawSpec { return stiffness(n, m).set("tissue.law", "{ kind = \"constant\" }"); }},
+       [](const auto& n, Stiffness m) -> LawSpec {
+         return of_stiffness(n, m).set("tissue.law", "{ kind = \"constant\" }");
+       }},
       {{"step", "E below a threshold of deformation, another modulus above (tissue 1 of the paper)"},
-       [](const auto& n, double m) -> LawSpec {
-         return stiffness(n, m)
+       [](const auto& n, Stiffness m) -> LawSpec {
+         return of_stiffness(n, m)
              .set("tissue.law", "{ kind = \"step\", threshold = 0.2, above_Pa = 1, width = 0.1 }")
              .free("tissue.law.threshold", 0.02, 1.0, Scale::linear)
              .modulus("tissue.law.above_Pa", 0.01, 1000.0);
        }},
       {{"linear", "E that grows in proportion to the deformation (tissue 2 of the paper)"},
-       [](const auto& n, double m) -> LawSpec {
-         return stiffness(n, m)
+       [](const auto& n, Stiffness m) -> LawSpec {
+         return of_stiffness(n, m)
              .set("tissue.law", "{ kind = \"linear\", slope_Pa = 0 }")
              .any_modulus("tissue.law.slope_Pa", 100.0);
        }},
       {{"polynomial", "E and two powers of the deformation"},
-       [](const auto& n, double m) -> LawSpec {
-         return stiffness(n, m)
+       [](const auto& n, Stiffness m) -> LawSpec {
+         return of_stiffness(n, m)
              .set("tissue.law", "{ kind = \"polynomial\", coefficients_Pa = [0, 0] }")
              .any_modulus("tissue.law.coefficients_Pa[0]", 100.0)
              .any_modulus("tissue.law.coefficients_Pa[1]", 500.0);
        }},
       {{"exponential", "E that grows exponentially with the deformation"},
-       [](const auto& n, double m) -> LawSpec {
-         return stiffness(n, m)
+       [](const auto& n, Stiffness m) -> LawSpec {
+         return of_stiffness(n, m)
              .set("tissue.law", "{ kind = \"exponential\", amplitude_Pa = 1, rate = 1 }")
              .modulus("tissue.law.amplitude_Pa", 1e-5, 100.0)
              .free("tissue.law.rate", 0.1, 50.0, Scale::logarithmic);
        }},
       {{"neo_hookean", "neo-Hooke, μ alone"},
-       [](const auto& n, double m) -> LawSpec {
+       [](const auto& n, Stiffness m) -> LawSpec {
          return Candidate(n, m)
              .hyperelastic("kind = \"neo_hookean\", mu_Pa = 1")
              .modulus("tissue.hyperelastic.mu_Pa", 0.003, 10.0);
        }},
       {{"mooney_rivlin", "Mooney and Rivlin, two moduli"},
-       [](const auto& n, double m) -> LawSpec {
+       [](const auto& n, Stiffness m) -> LawSpec {
          return Candidate(n, m)
              .hyperelastic("kind = \"mooney_rivlin\", c10_Pa = 1, c01_Pa = 0")
              .modulus("tissue.hyperelastic.c10_Pa", 1e-4, 10.0)
              .any_modulus("tissue.hyperelastic.c01_Pa", 3.0);
        }},
       {{"yeoh", "Yeoh, three terms of I₁"},
-       [](const auto& n, double m) -> LawSpec {
+       [](const auto& n, Stiffness m) -> LawSpec {
          return Candidate(n, m)
              .hyperelastic("kind = \"yeoh\", c1_Pa = 1, c2_Pa = 0, c3_Pa = 0")
              .modulus("tissue.hyperelastic.c1_Pa", 0.001, 10.0)
@@ -112,28 +120,28 @@ const std::vector<Known>& all() {
              .any_modulus("tissue.hyperelastic.c3_Pa", 3.0);
        }},
       {{"fung", "exponential of I₁"},
-       [](const auto& n, double m) -> LawSpec {
+       [](const auto& n, Stiffness m) -> LawSpec {
          return Candidate(n, m)
              .hyperelastic("kind = \"fung\", mu_Pa = 1, b = 1")
              .modulus("tissue.hyperelastic.mu_Pa", 0.003, 10.0)
              .free("tissue.hyperelastic.b", 0.01, 30.0, Scale::logarithmic);
        }},
       {{"veronda_westmann", "exponential of I₁ with a term of I₂"},
-       [](const auto& n, double m) -> LawSpec {
+       [](const auto& n, Stiffness m) -> LawSpec {
          return Candidate(n, m)
              .hyperelastic("kind = \"veronda_westmann\", c_Pa = 1, b = 1")
              .modulus("tissue.hyperelastic.c_Pa", 0.003, 30.0)
              .free("tissue.hyperelastic.b", 0.01, 30.0, Scale::logarithmic);
        }},
       {{"ogden", "Ogden, one term"},
-       [](const auto& n, double m) -> LawSpec {
+       [](const auto& n, Stiffness m) -> LawSpec {
          return Candidate(n, m)
              .hyperelastic("kind = \"ogden\", mu_Pa = [1], alpha = [1]")
              .modulus("tissue.hyperelastic.mu_Pa[0]", 0.003, 10.0)
              .free("tissue.hyperelastic.alpha[0]", -25.0, 25.0, Scale::linear, 2.0);
        }},
       {{"ogden2", "Ogden, two terms, one that stiffens in compression and one in tension"},
-       [](const auto& n, double m) -> LawSpec {
+       [](const auto& n, Stiffness m) -> LawSpec {
          return Candidate(n, m)
              .hyperelastic("kind = \"ogden\", mu_Pa = [1, 1], alpha = [-2, 2]")
              .modulus("tissue.hyperelastic.mu_Pa[0]", 1e-5, 10.0)
@@ -156,10 +164,11 @@ const std::vector<LawName>& known_laws() {
   return names;
 }
 
-LawSpec law_candidate(const std::string& name, double modulus) {
+LawSpec law_candidate(const std::string& name, double modulus, bool specimen) {
+  const Stiffness stiffness{modulus, (specimen ? kBulkOfSpecimens : kBulkOfBodies) * modulus};
   std::vector<std::string> names;
   for (const Known& k : all()) {
-    if (k.name.name == name) return k.make(name, modulus);
+    if (k.name.name == name) return k.make(name, stiffness);
     names.push_back(k.name.name);
   }
   const std::string meant = scene::nearest(name, names);

@@ -16,7 +16,8 @@ const std::vector<LawName>& known_laws();
 
 /// A law by name as a candidate of a fit.
 /// @param modulus  of the size of Young's modulus of the tissue at small strain [Pa], > 0; the bounds lie around it
+/// @param specimen  homogeneous: a hyperelastic law may be as good as incompressible
 /// @throws std::invalid_argument for a name that is not known, with the known ones
-LawSpec law_candidate(const std::string& name, double modulus);
+LawSpec law_candidate(const std::string& name, double modulus, bool specimen);
 
 }  // namespace glisson::fit

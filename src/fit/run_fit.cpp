@@ -37,7 +37,7 @@ std::vector<LawSpec> laws_of(const FitSpec& spec, const FitOptions& options, con
   for (const std::string& name : options.laws) {
     const double modulus =
         size.area ? initial_modulus(curves.chosen(curves.indices(false)), *size.area, *size.height) : own_modulus(spec);
-    laws.push_back(law_candidate(name, modulus));
+    laws.push_back(law_candidate(name, modulus, spec.specimen.has_value()));
   }
   std::set<std::string> names;
   for (const LawSpec& law : laws) {

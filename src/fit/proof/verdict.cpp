@@ -19,6 +19,7 @@ constexpr double kFlatPart = 0.05;   // of the bounds: a shorter flat stretch is
 struct Ends {
   Interval interval;
   std::string low_reason, high_reason;  ///< empty: closed by the curves
+  bool walked = false;                  ///< by a profile, which goes on where curvature at a bound knows nothing
 };
 
 std::string open_reason(const Problem& problem, bool open, double bound, const std::vector<std::size_t>& leans,
@@ -39,6 +40,7 @@ Ends ends_of(const Problem& problem, const Covariance& c, const Profiles* profil
     return e;
   }
   const Profile& f = profiled->of[p];
+  e.walked = true;
   e.interval = f.interval;
   e.low_reason = open_reason(problem, f.interval.low_open, x.low, f.low_leans_on, f.low_failure, "lower", x);
   e.high_reason = open_reason(problem, f.interval.high_open, x.high, f.high_leans_on, f.high_failure, "upper", x);
@@ -52,8 +54,10 @@ bool wide(const Parameter& x, const Interval& i) {
 }
 
 Verdict verdict_of(const Parameter& x, const Covariance& c, const Ends& e, std::size_t p) {
-  if (c.hold[p] != Hold::free) return Verdict::at_bound;
   const bool low = !e.low_reason.empty(), high = !e.high_reason.empty();
+  // on a flat cost the optimum ends anywhere, at a bound too: what counts is that the other bound is as good
+  if (c.hold[p] == Hold::at_low) return e.walked && high ? Verdict::not_identifiable : Verdict::at_bound;
+  if (c.hold[p] == Hold::at_high) return e.walked && low ? Verdict::not_identifiable : Verdict::at_bound;
   if (c.determined[p] == 0 || (low && high)) return Verdict::not_identifiable;
   return low || high || wide(x, e.interval) ? Verdict::weak : Verdict::identified;
 }
@@ -79,10 +83,8 @@ std::string flat_words(const Problem& problem, const Profiles* profiled, std::si
 
 std::string bound_words(const Parameter& x, Hold hold, const Ends& e) {
   const bool low = hold == Hold::at_low;
-  const std::string other = low ? e.high_reason : e.low_reason;
   std::string s = "at its " + std::string(low ? "lower" : "upper") + " bound, " + number(low ? x.low : x.high, x.unit) +
                   ": the curves ask for " + (low ? "less" : "more");
-  if (!other.empty()) return s + ", but anything within the bounds is nearly as good";
   return s + "; anything " +
          (low ? "up to " + number(e.interval.high, x.unit) : "down to " + number(e.interval.low, x.unit)) +
          " is nearly as good";

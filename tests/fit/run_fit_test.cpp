@@ -1,0 +1,260 @@
+// The way from files to a verdict: known parameters come back within their 95 % intervals as often as they should, what a
+// test cannot tell is called so, and a fit that is stopped goes on to the same end.
+#include "fit/run_fit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <random>
+
+namespace glisson::fit {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+class RunFit : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        fs::path(GLISSON_BINARY_DIR) / "run_fit_test" / ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::create_directories(folder_);
+  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+  FitSpec spec(const std::string& text) const { return parse_fit(text, (folder_ / "fit.toml").string()); }
+  fs::path folder_;
+};
+
+const std::string kSpecimen = R"(
+[specimen]
+kind = "block"
+width_mm = 20
+depth_mm = 20
+height_mm = 20
+)";
+constexpr double kArea = 4e-4, kHeight = 0.02;
+
+/// P = 2/α μ … of one Ogden term that keeps its volume: the closed form the fit does not use.
+double ogden_stress(double mu, double alpha, double stretch) {
+  return 2.0 * mu / alpha * (std::pow(stretch, alpha - 1.0) - std::pow(stretch, -0.5 * alpha - 1.0));
+}
+
+std::string ogden_csv(double mu, double alpha, double noise, std::mt19937_64& random) {
+  std::normal_distribution<double> normal(0.0, noise);
+  std::string text = "time (s);displacement (mm);force (N)\n";
+  for (int i = 1; i <= 60; ++i) {
+    const double strain = 0.5 * i / 60.0;
+    const double force = -kArea * ogden_stress(mu, alpha, 1.0 - strain) + normal(random);
+    text += std::to_string(i) + ";" + std::to_string(1e3 * strain * kHeight) + ";" + std::to_string(force) + "\n";
+  }
+  return text;
+}
+
+const std::string kOgdenFit = kSpecimen + R"(
+[tissue]
+hyperelastic = { kind = "ogden", mu_Pa = [1000], alpha = [-3], bulk_modulus_Pa = 1e8 }
+[[parameter]]
+key = "tissue.hyperelastic.mu_Pa[0]"
+low = 100
+high = 1e5
+[[parameter]]
+key = "tissue.hyperelastic.alpha[0]"
+low = -20
+high = -0.5
+scale = "linear"
+[[data]]
+files = ["a.csv", "b.csv"]
+resample.over = "none"
+[search]
+starts = 2
+[proof]
+bootstrap = 0
+)";
+
+// With noise of 2 % of the largest force the truth is inside the 95 % intervals in at least 90 of 100 seeds. Of 100 draws
+// with probability 0.95 fewer than 90 come once in 90 times; the seeds are fixed.
+TEST_F(RunFit, HoldsTheTruthWithinItsIntervals) {
+  constexpr double kMu = 2500.0, kAlpha = -6.0;
+  const FitSpec fit = spec(kOgdenFit);
+  const double noise = 0.02 * kArea * std::abs(ogden_stress(kMu, kAlpha, 0.5));
+  int held_mu = 0, held_alpha = 0;
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    std::mt19937_64 random(seed);
+    write("a.csv", ogden_csv(kMu, kAlpha, noise, random));
+    write("b.csv", ogden_csv(kMu, kAlpha, noise, random));
+    const FitResult result = run_fit(fit, {});
+    ASSERT_EQ(result.parameters.size(), 2u);
+    held_mu += result.parameters[0].ci95()->holds(kMu) ? 1 : 0;
+    held_alpha += result.parameters[1].ci95()->holds(kAlpha) ? 1 : 0;
+    if (seed == 1) {
+      EXPECT_EQ(result.parameters[0].verdict, "identified");
+      EXPECT_NEAR(result.rms_fit, noise, 0.3 * noise);
+    }
+  }
+  EXPECT_GE(held_mu, 90);
+  EXPECT_GE(held_alpha, 90);
+}
+
+// Curves without noise give back the parameters to the accuracy of the specimen's bulk modulus: κ/μ = 4e4.
+TEST_F(RunFit, FindsExactParametersFromEveryStart) {
+  std::mt19937_64 random(1);
+  write("a.csv", ogden_csv(2500.0, -6.0, 1e-9, random));
+  write("b.csv", ogden_csv(2500.0, -6.0, 1e-9, random));
+  FitSpec fit = spec(kOgdenFit);
+  fit.search.starts = 20;
+  const FitResult result = run_fit(fit, {});
+  ASSERT_EQ(result.basins.size(), 1u);
+  EXPECT_EQ(result.basins[0].found, 20);
+  EXPECT_NEAR(result.parameters[0].value, 2500.0, 2.5);
+  EXPECT_NEAR(result.parameters[1].value, -6.0, 0.006);
+}
+
+const std::string kHookeFit = kSpecimen + R"(
+[tissue]
+youngs_modulus_Pa = 3000
+[[parameter]]
+key = "tissue.youngs_modulus_Pa"
+name = "E"
+low = 100
+high = 1e5
+[[parameter]]
+key = "tissue.poisson_ratio"
+name = "nu"
+low = 0.05
+high = 0.49
+scale = "linear"
+[[data]]
+files = ["a.csv"]
+resample.over = "none"
+[search]
+starts = 6
+[proof]
+bootstrap = 0
+)";
+
+// The force between smooth plates is E A ε whatever ν is: E is known, ν is not, and the result says so.
+TEST_F(RunFit, SaysWhatOneUniaxialCurveCannotTell) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0.0, 0.001);
+  std::string text = "time (s),displacement (mm),force (N)\n";
+  for (int i = 1; i <= 50; ++i) {
+    const double d = 0.02 * i;
+    text += std::to_string(i) + "," + std::to_string(d) + "," +
+            std::to_string(4200.0 * kArea * 1e-3 * d / kHeight + normal(random)) + "\n";
+  }
+  write("a.csv", text);
+  const FitResult result = run_fit(spec(kHookeFit), {});
+  ASSERT_EQ(result.parameters.size(), 2u);
+  EXPECT_EQ(result.parameters[0].verdict, "identified");
+  EXPECT_NEAR(result.parameters[0].value, 4200.0, 42.0);
+  EXPECT_EQ(result.parameters[1].verdict, "not identifiable");
+  EXPECT_THAT(result.conclusions, Contains(HasSubstr("nu: not identifiable")));
+  EXPECT_THAT(result.parameters[1].words, HasSubstr("fits these curves"));
+  ASSERT_EQ(result.basins.size(), 1u) << "a flat valley is one optimum, not many";
+}
+
+// A fit that is stopped after the first starts and goes on from what it remembers ends where one ends that was not.
+TEST_F(RunFit, GoesOnWhereItWasStopped) {
+  std::mt19937_64 random(2);
+  write("a.csv", ogden_csv(2500.0, -6.0, 0.01, random));
+  write("b.csv", ogden_csv(2500.0, -6.0, 0.01, random));
+  FitSpec fit = spec(kOgdenFit);
+  fit.search.starts = 12;
+  const FitResult whole = run_fit(fit, {});
+  std::atomic<bool> stop{false};
+  FitOptions options;
+  options.stop = &stop;
+  FitMemory memory;
+  options.remember = [&](const FitMemory& known) {
+    memory = known;
+    stop = true;
+  };
+  const FitResult cut = run_fit(fit, options);
+  EXPECT_FALSE(cut.complete);
+  EXPECT_LT(cut.starts.size(), 12u);
+  FitOptions again;
+  again.memory = memory;
+  const FitResult resumed = run_fit(fit, again);
+  EXPECT_TRUE(resumed.complete);
+  EXPECT_LT(resumed.forward_runs, whole.forward_runs);
+  ASSERT_EQ(resumed.parameters.size(), whole.parameters.size());
+  for (std::size_t p = 0; p < whole.parameters.size(); ++p)
+    EXPECT_EQ(resumed.parameters[p].value, whole.parameters[p].value);
+}
+
+// The law that made the curves is chosen on curves held out, and no richer one.
+TEST_F(RunFit, ChoosesTheLawTheCurvesSupport) {
+  for (const char* name : {"a.csv", "b.csv", "c.csv", "d.csv", "e.csv"}) {
+    std::mt19937_64 random(static_cast<unsigned>(name[0]));
+    write(name, ogden_csv(2500.0, -6.0, 0.01, random));
+  }
+  FitSpec fit =
+      spec(kOgdenFit + "[[data]]\nname = \"held\"\nfiles = [\"c.csv\", \"d.csv\", \"e.csv\"]\nuse = \"test\"\n");
+  fit.search.starts = 8;
+  FitOptions options;
+  options.laws = {"constant", "neo_hookean", "ogden", "ogden2"};
+  const FitResult result = run_fit(fit, options);
+  EXPECT_EQ(result.law, "ogden");
+  EXPECT_THAT(result.conclusions, Contains(HasSubstr("the data support 2 parameters")));
+  options.laws = {"ogden", "ogden"};
+  EXPECT_THROW(run_fit(fit, options), std::invalid_argument);
+  options.laws = {"ogdne"};
+  try {
+    run_fit(fit, options);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("did you mean \"ogden\"?"));
+  }
+}
+
+// tissue.toml is a tissue that scenes take, with the fitted numbers.
+TEST_F(RunFit, WritesATissueForScenes) {
+  std::mt19937_64 random(3);
+  write("a.csv", ogden_csv(2500.0, -6.0, 0.001, random));
+  write("b.csv", ogden_csv(2500.0, -6.0, 0.001, random));
+  const FitResult result = run_fit(spec(kOgdenFit), {});
+  write("tissue.toml", result.tissue);
+  const Scene scene = parse_scene(
+      "[mesh]\nkind = \"box\"\n[tissue]\nfile = \"tissue.toml\"\n[motion]\nduration_s = 1\n", "scene.toml", folder_);
+  const Tissue& tissue = scene.variants.at(0).tissue;
+  ASSERT_TRUE(tissue.hyperelastic);
+  EXPECT_DOUBLE_EQ(tissue.lame().mu, result.parameters[0].value);
+  EXPECT_THAT(result.tissue, HasSubstr("# Fitted by `glisson fit fit.toml`"));
+}
+
+TEST_F(RunFit, TellsWhatIsWrongWithTheFile) {
+  const auto complaint = [&](const std::string& text) -> std::string {
+    try {
+      spec(text);
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(complaint(kOgdenFit + "[serach]\nstarts = 3\n"), HasSubstr("did you mean `search`?"));
+  EXPECT_THAT(complaint("scene = \"x.toml\"\n" + kOgdenFit), HasSubstr("contradicts"));
+  EXPECT_THAT(complaint(kSpecimen), HasSubstr("missing key `data`"));
+  EXPECT_THAT(complaint(kSpecimen + "[[data]]\nfiles = [\"a.csv\"]\n"), HasSubstr("nothing is free"));
+  const std::string parameter =
+      kSpecimen + "[[data]]\nfiles = [\"a.csv\"]\n[[parameter]]\nkey = \"tissue.poisson_ratio\"\n";
+  EXPECT_THAT(complaint(parameter + "low = 0.4\nhigh = 0.1\n"), HasSubstr("not above `low`"));
+  EXPECT_THAT(complaint(parameter + "low = -0.2\nhigh = 0.1\n"), HasSubstr("set scale = \"linear\""));
+  EXPECT_THAT(complaint(parameter + "low = 0.1\nhigh = 0.4\nstart = 0.45\n"), HasSubstr("allowed: 0.1 to 0.4"));
+}
+
+// A key that no scene has is told before anything runs.
+TEST_F(RunFit, TellsAKeyThatIsNone) {
+  std::mt19937_64 random(3);
+  write("a.csv", ogden_csv(2500.0, -6.0, 0.001, random));
+  FitSpec fit = spec(kHookeFit);
+  fit.parameters[0].key = "tissue.young_Pa";
+  EXPECT_THAT([&] { run_fit(fit, {}); }, ::testing::ThrowsMessage<std::exception>(HasSubstr("young_Pa")));
+}
+
+}  // namespace
+}  // namespace glisson::fit
