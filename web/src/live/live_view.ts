@@ -12,6 +12,8 @@ import type { Hello, Keyframe, LiveFrame } from "./protocol.ts";
 
 const LEAST_RANGE = 0.02; // of the colour scale: noise at rest stays one colour
 const DRIVEN = 2;
+const TOO_SLOW = 42; // ms from one drawing to the next
+const EASINGS = [1, 0.7, 0.5]; // shares of the pixels in each direction; with the first, edges go
 
 export interface Hands {
   mayAct(): boolean;
@@ -91,13 +93,44 @@ export class LiveView {
     this.keyframe = keyframe.number;
     this.stage.scene.add(this.model.group);
     this.recolour();
-    this.onEdges(this.edges ?? this.model.edgesByDefault);
+    this.onEdges(this.edgesShown);
     if (!this.fitted) this.fit();
     this.fitted = true;
   }
 
+  /** The newest frame is drawn at the browser's own pace; those that come between are not. */
   takeFrame(frame: LiveFrame): void {
-    if (!this.surface || !this.model || frame.keyframe !== this.keyframe) return;
+    this.newest = frame;
+    if (this.request === 0) this.request = requestAnimationFrame(() => this.drawNewest());
+  }
+
+  /** Where drawing is slow (no graphics card), edges go first, then pixels: motion is worth more than sharpness. */
+  private easeDrawing(): void {
+    const now = performance.now();
+    const late = now - this.drawnAt > TOO_SLOW && now - this.drawnAt < 1000;
+    this.drawnAt = now;
+    this.slow = Math.max(0, this.slow + (late ? 1 : -1));
+    if (this.slow < 15 || this.eased >= EASINGS.length) return;
+    this.slow = 0;
+    this.stage?.coarsen(EASINGS[this.eased++]!);
+    this.onEdges(this.edgesShown);
+  }
+
+  private get edgesShown(): boolean {
+    return this.edges ?? (this.eased === 0 && this.model?.edgesByDefault === true);
+  }
+
+  private drawnAt = 0;
+  private slow = 0;
+  private eased = 0;
+  private newest: LiveFrame | null = null;
+  private request = 0;
+
+  private drawNewest(): void {
+    this.request = 0;
+    this.easeDrawing();
+    const frame = this.newest;
+    if (!frame || !this.surface || !this.model || frame.keyframe !== this.keyframe) return;
     if (frame.epoch !== this.epoch) this.range = LEAST_RANGE;
     this.epoch = frame.epoch;
     this.frame = frame;
@@ -108,10 +141,10 @@ export class LiveView {
       this.bar.setRange(this.range);
       this.bar.element.dataset["range"] = String(this.range);
     }
-    this.model.show({ edges: this.edges ?? this.model.edgesByDefault, ghost: false, marks: true });
+    this.model.show({ edges: this.edgesShown, ghost: false, marks: true });
     this.model.update(0, 1, this.range);
     this.drawThread();
-    this.stage?.invalidate();
+    this.stage?.draw();
   }
 
   fit(): void {

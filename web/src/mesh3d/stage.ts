@@ -17,6 +17,7 @@ export class Stage {
   private readonly stops: (() => void)[] = [];
   private visible = true;
   private request = 0;
+  private share = 1; // of the pixels in each direction
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -69,7 +70,7 @@ export class Stage {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setPixelRatio(this.share * Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.setViewOffset(width, height, this.barRoom() / 2, 0, width, height);
@@ -144,6 +145,12 @@ export class Stage {
   /** Direction in which the eye looks. */
   get forward(): THREE.Vector3 {
     return this.camera.getWorldDirection(new THREE.Vector3());
+  }
+
+  /** Draws with this share of the pixels in each direction: for what cannot keep up with all of them. */
+  coarsen(share: number): void {
+    this.share = share;
+    this.resize();
   }
 
   /** Whether a drag turns the view; off while something else is dragged. */
