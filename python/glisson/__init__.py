@@ -113,6 +113,7 @@ from ._core import (
     tissue_presets,
 )
 from . import plot
+from ._version import VERSION
 from .fitting import FitResult, fit, known_laws
 from .meshes import format_report, from_meshio, from_pyvista, read_mesh, to_pyvista, write_vtu
 from .paper_figures import figures
@@ -121,5 +122,5 @@ from .scenes import load_scene, parse_scene, scenes_folder, to_toml
 from .sweeping import SweepError, sweep
 from .tissues import tabulated, tissue_from
 
-__version__ = "0.1.0"
+__version__ = VERSION
 __all__ = [name for name in dir() if not name.startswith("_") and name not in {"annotations"}]

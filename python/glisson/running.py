@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _core
 from ._core import RunResult, Scene, Simulation, StopFlag, TetMesh, Variant
 from .scenes import Overrides, as_scene
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
 
 AnyScene = Scene | Mapping[str, Any] | str | os.PathLike[str]
 
@@ -81,6 +83,8 @@ def _chosen(scene: Scene, names: Sequence[str] | None) -> list[Variant]:
 def _side_by_side(
     one: Callable[[Variant], RunResult], variants: list[Variant], threads: int, stop: StopFlag
 ) -> list[RunResult]:
+    from concurrent.futures import ThreadPoolExecutor
+
     with ThreadPoolExecutor(threads) as pool:
         futures = [pool.submit(one, variant) for variant in variants]
         try:
@@ -94,6 +98,8 @@ def _side_by_side(
 
 
 def _wait_for(futures: list[Future[RunResult]]) -> None:
+    from concurrent.futures import FIRST_COMPLETED, wait
+
     waiting = set(futures)
     while waiting:
         done, waiting = wait(waiting, timeout=0.1, return_when=FIRST_COMPLETED)

@@ -11,19 +11,20 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
-import multiprocessing
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _core
 from ._optional import need
+from ._version import VERSION
 from .running import run
 from .scenes import to_toml
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future, ProcessPoolExecutor
 
 Point = dict[str, Any]
 Row = dict[str, Any]
@@ -65,7 +66,7 @@ def sweep(
 
     A row is a variant at a point: the values of the point, `variant`, `end`, `trouble`, `steps`, `peak_force_N`, and the
     columns of forces.csv as lists; with `measure` what that gives in place of the columns. Rows lie in `out` as Parquet,
-    a file a point; points whose file is there are not run again.
+    a file a point; points whose file is there are not run again. A measure counts by its name, a scene by its text.
 
     Local workers are processes that import the calling script: keep the call under `if __name__ == "__main__":`.
 
@@ -115,7 +116,7 @@ def _tasks(scene: Any, points: Any, variants: Sequence[str] | None, measure: Mea
     called = f"{measure.__module__}.{measure.__qualname__}" if measure else ""
     tasks = []
     for point in listed:
-        what = json.dumps([content, to_toml(point), chosen, called, _core.__name__])
+        what = json.dumps([content, to_toml(point), chosen, called, VERSION])
         tasks.append(_Task(hashlib.sha256(what.encode()).hexdigest()[:16], where, point, chosen, measure))
     return tasks
 
@@ -144,6 +145,9 @@ Finished = Iterator[tuple[_Task, list[Row] | str]]
 
 def _here(tasks: list[_Task], workers: int | None, attempts: int) -> Finished:
     """Runs tasks in processes. One that is killed breaks the pool: what was under way goes to a new one."""
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
     tried = dict.fromkeys((task.key for task in tasks), 0)
     left = list(tasks)
     count = workers or os.cpu_count() or 1
@@ -168,6 +172,9 @@ def _through(
     pool: ProcessPoolExecutor, tasks: list[_Task], count: int, lost: list[_Task], rest: list[_Task]
 ) -> Finished:
     """Hands out tasks, no more at a time than there are workers, so that few are `lost` with a broken pool."""
+    from concurrent.futures import FIRST_COMPLETED, wait
+    from concurrent.futures.process import BrokenProcessPool
+
     waiting: dict[Future[list[Row]], _Task] = {}
     ahead = iter(tasks)
     broken = False

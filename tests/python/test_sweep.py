@@ -1,0 +1,99 @@
+"""Parameter studies: every point once, resumed, and through the death of a worker, here and on a Dask cluster."""
+
+import os
+import signal
+from pathlib import Path
+
+import glisson
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+SCENE = {
+    "mesh": {"kind": "box", "cells": [1, 1, 2]},
+    "motion": {"duration_s": 0.05},
+    "fixed": [{"set": "z_min"}],
+    "tool": [{"set": "z_max", "velocity_mm_s": 10, "depth_mm": 1}],
+}
+POINTS = {"tissue.youngs_modulus_Pa": [2000, 4000, 8000], "tissue.poisson_ratio": [0.3, 0.4]}
+
+
+def largest(result):
+    return {"largest_N": float(np.max(result["force_N"])), "worker": os.getpid()}
+
+
+def deadly(result):
+    """Kills its worker the first time it sees a tissue of 4000 Pa."""
+    mark = Path(os.environ["GLISSON_TEST_MARK"])
+    if result.variant.tissue.youngs_modulus == 4000 and not mark.exists():
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return largest(result)
+
+
+def always_deadly(result):
+    if result.variant.tissue.youngs_modulus == 4000:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return largest(result)
+
+
+def test_every_point_is_the_run_of_its_own(tmp_path):
+    """Rows are the runs of single points, column by column, and the Parquet files hold them."""
+    table = glisson.sweep(SCENE, POINTS, tmp_path, workers=2).to_pylist()
+    assert len(table) == 6 and len(list(tmp_path.glob("*.parquet"))) == 6
+    for row in table:
+        point = {key: row[key] for key in POINTS}
+        alone = glisson.run(SCENE, overrides=point)["main"]
+        assert row["force_N"] == alone["force_N"].tolist() and row["end"] == "finished"
+    assert pq.read_table(tmp_path).num_rows == 6
+
+
+def test_a_study_goes_on_where_it_stopped(tmp_path):
+    """Points whose file is there are not run again; new ones are; another measure is another study."""
+    first = glisson.sweep(SCENE, [{"tissue.youngs_modulus_Pa": 2000}], tmp_path, measure=largest, workers=1)
+    told = []
+    both = glisson.sweep(
+        SCENE,
+        [{"tissue.youngs_modulus_Pa": e} for e in (2000, 5000)],
+        tmp_path,
+        measure=largest,
+        workers=1,
+        progress=lambda done, planned: told.append((done, planned)),
+    )
+    assert told == [(2, 2)] and both.to_pylist()[0] == first.to_pylist()[0]
+    assert both["worker"][0] != both["worker"][1]
+
+
+def test_a_killed_worker_costs_nothing(tmp_path, monkeypatch):
+    """A worker that is killed in the middle of its point: all points are there in the end."""
+    monkeypatch.setenv("GLISSON_TEST_MARK", str(tmp_path / "mark"))
+    table = glisson.sweep(SCENE, POINTS, tmp_path / "out", measure=deadly, workers=3)
+    assert (tmp_path / "mark").exists() and table.num_rows == 6
+    assert sorted(set(table["tissue.youngs_modulus_Pa"].to_pylist())) == [2000, 4000, 8000]
+
+
+def test_points_that_cannot_be_run_are_named(tmp_path):
+    """A wrong value, and a point that kills every worker, are told at the end; the others are written."""
+    with pytest.raises(glisson.SweepError, match="poisson_ratio") as caught:
+        glisson.sweep(SCENE, {"tissue.poisson_ratio": [0.3, 0.7]}, tmp_path / "wrong", workers=1)
+    assert [point for point, _ in caught.value.failures] == [{"tissue.poisson_ratio": 0.7}]
+    assert len(list((tmp_path / "wrong").glob("*.parquet"))) == 1
+    with pytest.raises(glisson.SweepError, match="lost 2 times"):
+        glisson.sweep(SCENE, POINTS, tmp_path / "deadly", measure=always_deadly, workers=1, attempts=2)
+    assert len(list((tmp_path / "deadly").glob("*.parquet"))) == 4
+
+
+def test_a_dask_cluster_of_processes(tmp_path, monkeypatch):
+    """The same call on a cluster of three processes, one of which is killed: the same rows."""
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setenv("GLISSON_TEST_MARK", str(tmp_path / "mark"))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")]))
+    with (
+        distributed.LocalCluster(n_workers=3, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        table = glisson.sweep(SCENE, POINTS, tmp_path / "dask", measure=deadly, client=client)
+    assert (tmp_path / "mark").exists() and table.num_rows == 6
+    here = glisson.sweep(SCENE, POINTS, tmp_path / "here", measure=largest, workers=2)
+    assert table["largest_N"].to_pylist() == here["largest_N"].to_pylist()
+    assert len(set(table["worker"].to_pylist())) > 1

@@ -1,0 +1,129 @@
+"""Tissues hold every field of the engine's, laws are evaluated, presets have their sources."""
+
+import copy
+import re
+from pathlib import Path
+
+import glisson
+import numpy as np
+import pytest
+
+
+def test_every_field_is_there():
+    """The class has the fields of the C++ struct, all of them."""
+    header = (Path(__file__).parents[2] / "include/glisson/tissue.h").read_text(encoding="utf-8")
+    body = re.search(r"^struct Tissue \{\n(.*?)^\};", header, re.MULTILINE | re.DOTALL).group(1)
+    declared = re.findall(r"^  [\w:<>]+ (\w+)(?: =[^;]*|\{\})?;", body, re.MULTILINE)
+    assert len(declared) > 10 and list(glisson.Tissue._fields) == declared
+
+
+def test_defaults_and_setting():
+    """Fields are set by name in the constructor or later, copies are apart, equal tissues are equal."""
+    tissue = glisson.Tissue(youngs_modulus=5000, kinematics="green", law=glisson.LinearLaw(slope=2e4))
+    other = copy.copy(tissue)
+    assert other == tissue
+    other.viscosity = 100
+    assert tissue.viscosity == 0 and other != tissue
+    assert "youngs_modulus=5000.0" in repr(tissue) and "kinematics='green'" in repr(tissue)
+
+
+def test_words_are_those_of_scenes():
+    """A word that the binding knows, a scene knows too, and it means the same."""
+    words = {
+        "kinematics": ("small", "corotational", "green"),
+        "measure": ("intensity", "one_minus_q", "regular_mean_ratio", "radius_ratio", "solid_angle"),
+        "viscous_tensor": ("shear", "deviatoric", "proportional"),
+        "law_form": ("secant", "energy"),
+        "maxwell_part": ("deviator", "all"),
+        "volume_change": ("own", "nodal"),
+    }
+    for field, known in words.items():
+        for word in known:
+            assert getattr(glisson.tissue_from({field: word}), field) == word
+        with pytest.raises(TypeError, match="Literal"):
+            setattr(glisson.Tissue(), field, "no such word")
+    for word in ("explicit", "semi_implicit", "implicit", "static"):
+        scene = glisson.parse_scene({"mesh": {"kind": "box"}, "motion": {"integrator": word, "max_steps": 1}})
+        assert scene.variants[0].simulation.integrator == word
+
+
+def test_lame():
+    """λ = E ν / ((1+ν)(1−2ν)) and μ = E / (2(1+ν)), of a tissue and of two numbers."""
+    e, nu = 3600.0, 0.4
+    expected = (e * nu / ((1 + nu) * (1 - 2 * nu)), e / (2 * (1 + nu)))
+    assert glisson.lame_from_young(e, nu) == pytest.approx(expected, rel=1e-14)
+    tissue = glisson.Tissue(youngs_modulus=e, poisson_ratio=nu, law=glisson.LinearLaw(slope=e))
+    assert tissue.lame() == pytest.approx(expected, rel=1e-14)
+    assert tissue.lame_at(1.0) == pytest.approx(tuple(2 * x for x in expected), rel=1e-12)
+    assert tissue.is_tensor_mass()
+
+
+def test_laws_are_evaluated():
+    """A law gives numbers for numbers and arrays for arrays, and its derivative is that of its value."""
+    x = np.linspace(0, 0.4, 9).reshape(3, 3)
+    laws = [
+        glisson.ConstantLaw(),
+        glisson.StepLaw(threshold=0.2, above=7200, width=0.1),
+        glisson.LinearLaw(slope=2e4),
+        glisson.PolynomialLaw(coefficients=[1e3, 2e4]),
+        glisson.ExponentialLaw(amplitude=500, rate=6),
+        glisson.TableLaw(arguments=[0, 0.5], moduli=[3600, 9000]),
+    ]
+    for law in laws:
+        value = glisson.law_value(law, 3600, x)
+        assert value.shape == x.shape and value[1, 1] == glisson.law_value(law, 3600, float(x[1, 1]))
+        middle, h = 0.2125, 1e-6
+        slope = (glisson.law_value(law, 3600, middle + h) - glisson.law_value(law, 3600, middle - h)) / (2 * h)
+        # central differences: h² of the third derivative and 1e-16/h of rounding, both below 1e-6 relative here
+        assert glisson.law_derivative(law, 3600, middle) == pytest.approx(slope, rel=1e-5, abs=1e-4)
+
+
+def test_hyperelastic_laws():
+    """Every law of large deformation goes into a tissue and has its moduli at rest."""
+    laws = {
+        1000: glisson.NeoHookean(mu=1000, bulk_modulus=5e4),
+        1200: glisson.MooneyRivlin(c10=400, c01=200, bulk_modulus=5e4),
+        800: glisson.Yeoh(c1=400, bulk_modulus=5e4),
+        700: glisson.Fung(mu=700, b=2, bulk_modulus=5e4),
+        900: glisson.Ogden(mu=[500, 400], alpha=[2, -2], bulk_modulus=5e4),
+    }
+    for mu, law in laws.items():
+        glisson.Tissue(hyperelastic=law).check()
+        assert glisson.shear_modulus(law) == pytest.approx(mu) and glisson.bulk_modulus(law) == 5e4
+    assert glisson.VerondaWestmann.name == "veronda_westmann"
+
+
+def test_law_in_python_is_that_law():
+    """A law written in Python and the engine's own of the same formula give the same force."""
+    forces = []
+    for law in (glisson.LinearLaw(slope=2e4), glisson.tabulated(lambda s: 3600 + 2e4 * s)):
+        body = glisson.Simulation(glisson.box_mesh(), glisson.Tissue(law=law))
+        body.fix("z_min")
+        tool = body.drive([207, 211, 212], glisson.PressMotion(depth=0.005))
+        body.advance(0.2)
+        forces.append(body.force(tool).total[2])
+    assert forces[0] == pytest.approx(forces[1], rel=1e-4)  # elements are in float, and tables in their own order
+
+
+def test_wrong_tissues_are_refused():
+    """The message has field, value and range."""
+    with pytest.raises(ValueError, match=r"poisson.*0\.6"):
+        glisson.Tissue(poisson_ratio=0.6).check()
+    with pytest.raises(TypeError, match='no field "young"'):
+        glisson.Tissue(young=1)
+
+
+def test_presets_have_sources():
+    """Presets are found by name, name their source, and a wrong name is answered with the nearest."""
+    for preset in glisson.tissue_presets():
+        assert preset.source and preset.validity and glisson.tissue_preset(preset.name).tissue == preset.tissue
+        assert glisson.tissue_from(preset.toml).youngs_modulus == preset.tissue.youngs_modulus
+    name = glisson.tissue_presets()[0].name
+    with pytest.raises(ValueError, match=f'did you mean "{name}"'):
+        glisson.tissue_preset(name + "x")
+
+
+def test_branches_and_fibres():
+    """Lists of branches and fibres are taken as they are given."""
+    tissue = glisson.Tissue(maxwell=[glisson.MaxwellBranch(share=0.3, time=2)], fibres=glisson.Fibres(stiffness=1e3))
+    assert tissue.maxwell[0].time == 2 and tissue.fibres.direction.tolist() == [0, 0, 1]
