@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -59,8 +60,10 @@ fit::FitMemory memory_of(const FitCommand& command, const fs::path& state, const
   if (!known) return {};
   std::size_t starts = 0;
   for (const auto& [law, memory] : *known) starts += memory.starts.size();
-  if (!command.quiet && starts > 0)
+  if (!command.quiet && starts > 0) {
     fmt::print("going on after {} starts of an interrupted run (--fresh begins anew)\n", starts);
+    std::fflush(stdout);
+  }
   return std::move(*known);
 }
 
@@ -126,6 +129,7 @@ int run(const FitCommand& command) {
   if (command.file.empty()) throw std::invalid_argument("glisson fit needs FIT.toml; glisson fit --help tells more");
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(command.threads));
+  catch_interrupts();
   const fit::FitSpec spec = spec_of(command);
   const fs::path folder = command.out.empty() ? fs::path("out") / fs::path(command.file).stem() : fs::path(command.out);
   const fs::path state = folder / "fit.state.json";
@@ -140,7 +144,9 @@ int run(const FitCommand& command) {
   FitProgressLine progress(command.quiet);
   bool prepared = false;
   const auto prepare = [&] {
-    if (!prepared) prepare_output_folder(folder);
+    if (prepared) return;
+    prepare_output_folder(folder);
+    if (!options.memory.empty()) write_fit_state(state, fingerprint, options.memory);
     prepared = true;
   };
   options.progress = [&](const fit::FitProgress& p) { progress.show(p); };
@@ -148,7 +154,6 @@ int run(const FitCommand& command) {
     prepare();
     write_fit_state(state, fingerprint, memory);
   };
-  catch_interrupts();
   const FitResult result = run_fit(spec, options);
   progress.clear();
   prepare();

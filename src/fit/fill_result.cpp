@@ -246,7 +246,7 @@ void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves,
       told("bootstrap", 1, 1);
     }
   }
-  if (!stopped(options)) {
+  if (spec.proof.next && !stopped(options)) {
     result.designs = next_experiments(search, spec, covariance);
     conclude_on_designs(result, result.conclusions);
   }

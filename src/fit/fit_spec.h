@@ -47,6 +47,7 @@ struct SearchSpec {
 struct ProofSpec {
   bool profiles = true;
   int bootstrap = 200;                 ///< replicates, ≥ 0
+  bool next = true;                    ///< looks for the test to make next
   std::optional<double> displacement;  ///< held-out errors are also told up to this displacement [m]
 };
 

@@ -202,8 +202,8 @@ std::string LawSearch::forward_words() const {
   const Rung& scene = ladder_.rungs.front();
   std::string words;
   if (ladder_.rungs.size() == 1) {
-    words = spec_.specimen ? "Forward model: a specimen that deforms alike all over."
-                           : "Forward model: " + taken.name + ", as asked for.";
+    words = taken.name == "specimen" ? "Forward model: a specimen that deforms alike all over."
+                                     : "Forward model: " + taken.name + ", as asked for.";
   } else if (ladder_.chosen == 0) {
     words = "Forward model: the scene itself; nothing cheaper stayed within what the noise of the curves allows.";
   } else {

@@ -140,6 +140,7 @@ const SectionSpec& proof_section() {
     Section<ProofSpec> s("proof", "How sure the fit is, and how that is found out.");
     s.key("profiles", &ProofSpec::profiles, "profile likelihood of every parameter");
     s.key("bootstrap", &ProofSpec::bootstrap, "fits to curves drawn again; 0: none").within(scene::between(0, 100000));
+    s.key("next", &ProofSpec::next, "looks for the test that would tell most next");
     s.key<scene::OptionalMilli>("displacement_mm", &ProofSpec::displacement,
                                 "errors of held-out curves are also told up to here")
         .in("mm")
