@@ -98,7 +98,8 @@ std::vector<double> values_of(const Problem& problem, const std::vector<double>&
 void fill_parameters(const Problem& problem, const Optimum& optimum, const Covariance& covariance,
                      const Profiles* profiled, FitResult& result) {
   const std::vector<double> values = problem.to_values(optimum.scaled), slopes = problem.value_slopes(optimum.scaled);
-  const Verdicts verdicts = judge(problem, covariance, profiled);
+  const bool judged = covariance.failure.empty();
+  const Verdicts verdicts = judged ? judge(problem, covariance, profiled) : Verdicts{};
   result.parameters.clear();
   for (std::size_t p = 0; p < values.size(); ++p) {
     ParameterResult out;
@@ -110,8 +111,8 @@ void fill_parameters(const Problem& problem, const Optimum& optimum, const Covar
     }
     if (profiled && p < profiled->of.size() && !profiled->of[p].points.empty())
       out.by_profile = profiled->of[p].interval;
-    out.verdict = name_of(verdicts.of[p].verdict);
-    out.words = verdicts.of[p].words;
+    out.verdict = name_of(judged ? verdicts.of[p].verdict : Verdict::weak);
+    out.words = judged ? verdicts.of[p].words : out.parameter.name + ": how sure it is could not be found";
     result.parameters.push_back(std::move(out));
   }
   result.correlation.clear();
