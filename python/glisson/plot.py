@@ -47,6 +47,11 @@ def _axes(ax: Any, x: str, y: str) -> Any:
     return ax
 
 
+def _legend(ax: Any) -> None:
+    with style():
+        ax.legend(fontsize=STYLE["font.size"])
+
+
 def forces(results: Iterable[RunResult] | Mapping[str, RunResult], *, against: str = "depth", ax: Any = None) -> Any:
     """Force of the tool of every run.
 
@@ -58,7 +63,7 @@ def forces(results: Iterable[RunResult] | Mapping[str, RunResult], *, against: s
     for result in results.values() if isinstance(results, Mapping) else results:
         x = 1e3 * result["depth_m"] if against == "depth" else result["time_s"]
         ax.plot(x, result["force_N"], label=result.label)
-    ax.legend()
+    _legend(ax)
     return ax
 
 
@@ -71,7 +76,7 @@ def chart(spec: ChartSpec, results: Mapping[str, RunResult], *, ax: Any = None) 
             ax.plot(spec.x.scale * table[spec.x.column], spec.y.scale * table[spec.y.column], label=results[name].label)
     for measured in spec.measured:
         ax.plot(measured.xs, measured.ys, "o", markersize=2.5, color="0.4", label=measured.label)
-    ax.legend()
+    _legend(ax)
     return ax
 
 
@@ -94,7 +99,7 @@ def repetitions(result: FitResult, *, velocity: float | None = None, ax: Any = N
             label = ("predicted" if curve.held_out else "fitted") if not drawn else None
             ax.plot(1e3 * curve.displacement, curve.fitted, color="black", label=label)
             drawn.add(curve.group)
-    ax.legend()
+    _legend(ax)
     return ax
 
 
@@ -106,7 +111,7 @@ def laws(tissues: Iterable[Tissue] | Tissue, *, until: float = 0.5, ax: Any = No
         moduli: Any = law_value(tissue.law, tissue.youngs_modulus, at)
         ax.plot(at, 1e-3 * moduli, label=tissue.name)
     ax.set_ylim(bottom=0)
-    ax.legend()
+    _legend(ax)
     return ax
 
 
@@ -120,7 +125,7 @@ def energies(result: RunResult, *, ax: Any = None) -> Any:
         ("energy_kinetic_J", "kinetic"),
     ):
         ax.plot(result["time_s"], 1e3 * result[column], label=label)
-    ax.legend()
+    _legend(ax)
     return ax
 
 
@@ -141,6 +146,6 @@ def profiles(result: FitResult, *, axes: Any = None) -> Any:
         rise = np.array([np.nan if x is None else x for x in row["rise"]], dtype=float)
         ax.plot(row["values"], rise, ".-", markersize=4)
         ax.axhline(row["threshold"], linestyle="--", linewidth=0.8, color="0.5")
-        ax.set_xlabel(f"{row['parameter']} [{units.get(row['parameter'], '-')}]")
+        ax.set_xlabel(f"{row['parameter']} [{units.get(row['parameter']) or '-'}]")
         ax.set_ylabel("rise of −2 ln L")
     return axes
