@@ -23,6 +23,9 @@ std::vector<char> with_own_parameters(const std::vector<Curve>& curves, const La
   return own;
 }
 
+/// A descent need not go where its derivatives no longer lead: with them wrong by a part e, a cost is found to e² or so.
+double tolerance_of(const DerivativeCheck& check) { return std::clamp(0.01 * check.error * check.error, 1e-10, 1e-4); }
+
 /// Two digits.
 std::string rounded(double x) {
   char text[32];
@@ -107,6 +110,7 @@ void LawSearch::search(LawMemory& memory, const std::function<void(const MultiSt
   std::vector<double> own;
   for (const Parameter& p : problem_->parameters()) own.push_back(p.start);
   derivatives_ = check_derivatives(*problem_, problem_->to_scaled(own));
+  options.descent.tolerance = tolerance_of(derivatives_);
   found_ = find_optimum(*problem_, options, memory.starts, [&](const MultiStart& so_far) {
     memory.starts = so_far.starts;
     if (told) told(so_far);
@@ -150,6 +154,7 @@ void LawSearch::look_again_at_forward() {
   derivatives_ = check_derivatives(*problem_, start);
   DescentOptions options;
   options.most_iterations = spec_.search.most_iterations;
+  options.tolerance = tolerance_of(derivatives_);
   options.stop = options_.stop;
   optimum_ = descend(*problem_, start, options);
 }
@@ -167,6 +172,7 @@ ForwardProblem LawSearch::problem_at_optimum(std::vector<Curve> curves) const {
 void LawSearch::improve(std::span<const double> scaled) {
   DescentOptions options;
   options.most_iterations = spec_.search.most_iterations;
+  options.tolerance = tolerance_of(derivatives_);
   options.stop = options_.stop;
   Optimum better = descend(*problem_, scaled, options);
   if (!(better.cost < optimum_.cost)) return;

@@ -183,7 +183,8 @@ std::vector<char> held_at(const Problem& problem, const std::vector<double>& z, 
 }  // namespace
 
 Optimum descend(const Problem& problem, std::span<const double> start, const DescentOptions& options) {
-  constexpr int kPasses = 8;
+  constexpr int kPasses = 4;
+  DescentOptions left = options;
   std::vector<char> own = options.fixed;
   own.resize(problem.parameters().size(), 0);
   std::vector<char> fixed = own;
@@ -192,7 +193,9 @@ Optimum descend(const Problem& problem, std::span<const double> start, const Des
     const std::vector<char> held = held_at(problem, optimum.scaled, own);
     if (held == fixed) break;
     fixed = held;
-    Optimum next = one_descent(problem, optimum.scaled, options, fixed);
+    left.most_iterations = options.most_iterations - optimum.iterations;
+    if (left.most_iterations < 1) break;
+    Optimum next = one_descent(problem, optimum.scaled, left, fixed);
     if (!(next.cost <= optimum.cost)) break;
     next.iterations += optimum.iterations;
     optimum = std::move(next);
