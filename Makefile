@@ -47,7 +47,7 @@ lint:
 
 # Address and undefined behaviour, over every test but those of the page; the fuzz corpus is among them. Long physical runs
 # are left out, which were half of the time: their laws, schemes and solvers are in shorter tests too.
-LONG_RUNS := FlatPunch|FreeVibration|DeepPress|PaperPress|Scrambled|Barrel|Figure2/Measure|RandomScenes.*/[4-7]|ThousandPunctures.*/(1.|[3-9])|NeedleMesh|BovineNeedle|PunchContact|Hertz|HoldsTheTruth|Twin
+LONG_RUNS := FlatPunch|FreeVibration|DeepPress|PaperPress|Scrambled|Barrel|Figure2/Measure|RandomScenes.*/[4-7]|ThousandPunctures.*/(1.|[3-9])|NeedleMesh|BovineNeedle|PunchContact|Hertz|HoldsTheTruth|Twin|LiverVelocity|NeedleMeets
 sanitizers:
 	@scripts/configure.sh asan-ubsan tests
 	@cmake --build $(ASAN) -j $(JOBS)
