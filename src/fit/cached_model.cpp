@@ -25,7 +25,7 @@ std::shared_ptr<CachedModel::Entry> CachedModel::entry(const Key& key) const {
   std::shared_ptr<Entry>& found = known_[key];
   if (found) return found;
   found = std::make_shared<Entry>();
-  const std::shared_ptr<Entry> made = found;
+  std::shared_ptr<Entry> made = found;
   order_.push_back(key);
   if (order_.size() > most_) {
     known_.erase(order_.front());

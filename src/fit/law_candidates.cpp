@@ -65,8 +65,9 @@ Candidate of_stiffness(const std::string& name, Stiffness m) {
   return Candidate(name, m).modulus("tissue.youngs_modulus_Pa", 0.01, 30.0);
 }
 
-const std::vector<Known>& all() {
-  static const std::vector<Known> list{
+/// Laws of stiffness, on top of E.
+std::vector<Known> stiffness_laws() {
+  return {
       {{"constant", "linear elasticity, E alone"},
        [](const auto& n, Stiffness m) -> LawSpec {
          return of_stiffness(n, m).set("tissue.law", "{ kind = \"constant\" }");
@@ -98,6 +99,11 @@ const std::vector<Known>& all() {
              .modulus("tissue.law.amplitude_Pa", 1e-5, 100.0)
              .free("tissue.law.rate", 0.1, 50.0, Scale::logarithmic);
        }},
+  };
+}
+
+std::vector<Known> hyperelastic_laws() {
+  return {
       {{"neo_hookean", "neo-Hooke, μ alone"},
        [](const auto& n, Stiffness m) -> LawSpec {
          return Candidate(n, m)
@@ -150,6 +156,14 @@ const std::vector<Known>& all() {
              .free("tissue.hyperelastic.alpha[1]", 0.1, 30.0, Scale::linear);
        }},
   };
+}
+
+const std::vector<Known>& all() {
+  static const std::vector<Known> list = [] {
+    std::vector<Known> both = stiffness_laws();
+    for (Known& law : hyperelastic_laws()) both.push_back(std::move(law));
+    return both;
+  }();
   return list;
 }
 

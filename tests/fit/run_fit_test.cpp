@@ -191,7 +191,7 @@ TEST_F(RunFit, GoesOnWhereItWasStopped) {
 TEST_F(RunFit, ChoosesTheLawTheCurvesSupport) {
   for (const char* name : {"a.csv", "b.csv", "c.csv", "d.csv", "e.csv"}) {
     std::mt19937_64 random(static_cast<unsigned>(name[0]));
-    write(name, ogden_csv(2500.0, -6.0, 0.01, random));
+    write(name, ogden_csv(2500.0, -6.0, 0.05, random));
   }
   FitSpec fit =
       spec(kOgdenFit + "[[data]]\nname = \"held\"\nfiles = [\"c.csv\", \"d.csv\", \"e.csv\"]\nuse = \"test\"\n");

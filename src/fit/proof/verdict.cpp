@@ -19,7 +19,7 @@ constexpr double kFlatPart = 0.05;   // of the bounds: a shorter flat stretch is
 struct Ends {
   Interval interval;
   std::string low_reason, high_reason;  ///< empty: closed by the curves
-  bool walked = false;                  ///< by a profile, which goes on where curvature at a bound knows nothing
+  bool flat = false;                    ///< by profile: the whole range costs next to nothing
 };
 
 std::string open_reason(const Problem& problem, bool open, double bound, const std::vector<std::size_t>& leans,
@@ -40,7 +40,7 @@ Ends ends_of(const Problem& problem, const Covariance& c, const Profiles* profil
     return e;
   }
   const Profile& f = profiled->of[p];
-  e.walked = true;
+  e.flat = f.flat;
   e.interval = f.interval;
   e.low_reason = open_reason(problem, f.interval.low_open, x.low, f.low_leans_on, f.low_failure, "lower", x);
   e.high_reason = open_reason(problem, f.interval.high_open, x.high, f.high_leans_on, f.high_failure, "upper", x);
@@ -55,9 +55,8 @@ bool wide(const Parameter& x, const Interval& i) {
 
 Verdict verdict_of(const Parameter& x, const Covariance& c, const Ends& e, std::size_t p) {
   const bool low = !e.low_reason.empty(), high = !e.high_reason.empty();
-  // on a flat cost the optimum ends anywhere, at a bound too: what counts is that the other bound is as good
-  if (c.hold[p] == Hold::at_low) return e.walked && high ? Verdict::not_identifiable : Verdict::at_bound;
-  if (c.hold[p] == Hold::at_high) return e.walked && low ? Verdict::not_identifiable : Verdict::at_bound;
+  // on a flat cost the optimum ends anywhere, at a bound too
+  if (c.hold[p] != Hold::free) return e.flat ? Verdict::not_identifiable : Verdict::at_bound;
   if (c.determined[p] == 0 || (low && high)) return Verdict::not_identifiable;
   return low || high || wide(x, e.interval) ? Verdict::weak : Verdict::identified;
 }

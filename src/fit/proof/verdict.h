@@ -27,7 +27,7 @@ struct Verdicts {
 /// Judges each parameter by its interval, after [Raue2009]:
 ///
 ///   not identifiable   part of a direction that the curves do not see, or open at both ends
-///   at bound           the optimum stands at one of its bounds, and the other is not as good
+///   at bound           the optimum stands at one of its bounds, and the cost between them is not flat
 ///   weak               open at one end, or wide: a factor of 4 from end to end where it is of one sign, else half its bounds
 ///   identified         else
 ///
