@@ -47,6 +47,15 @@ std::vector<LawSpec> laws_of(const FitSpec& spec, const FitOptions& options, con
   return laws;
 }
 
+/// With a capital letter, unless it begins with the name of a parameter, and a full stop.
+std::string as_sentence(std::string text) {
+  for (const char* word : {"the ", "least "}) {
+    if (text.rfind(word, 0) == 0) text.front() = static_cast<char>(text.front() - 'a' + 'A');
+  }
+  if (!text.empty() && text.back() != '.') text += '.';
+  return text;
+}
+
 class Run {
  public:
   Run(const FitSpec& spec, const FitOptions& options) : spec_(spec), options_(options), memory_(options.memory) {}
@@ -162,6 +171,7 @@ FitResult Run::to_end() {
   }
   result.complete = all && !stopped();
   result.conclusions.insert(result.conclusions.begin(), about_laws.begin(), about_laws.end());
+  for (std::string& sentence : result.conclusions) sentence = as_sentence(std::move(sentence));
   count_runs(result);
   return result;
 }

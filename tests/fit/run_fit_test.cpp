@@ -200,7 +200,7 @@ TEST_F(RunFit, ChoosesTheLawTheCurvesSupport) {
   options.laws = {"constant", "neo_hookean", "ogden", "ogden2"};
   const FitResult result = run_fit(fit, options);
   EXPECT_EQ(result.law, "ogden");
-  EXPECT_THAT(result.conclusions, Contains(HasSubstr("the data support 2 parameters")));
+  EXPECT_THAT(result.conclusions, Contains(HasSubstr("The data support 2 parameters")));
   options.laws = {"ogden", "ogden"};
   EXPECT_THROW(run_fit(fit, options), std::invalid_argument);
   options.laws = {"ogdne"};
