@@ -42,7 +42,10 @@ OffsetModel::OffsetModel(std::shared_ptr<const MotionModel> inner, std::span<con
       known = known || inner_->curve(c).name == name;
       names += (c ? ", " : "") + inner_->curve(c).name;
     }
-    if (!known) throw std::invalid_argument(keys[i] + ": no curve \"" + name + "\"; there are: " + names);
+    if (!known) {
+      std::string what = keys[i];
+      throw std::invalid_argument(what.append(": no curve \"").append(name).append("\"; there are: ").append(names));
+    }
     offsets_.push_back({i, force, name});
   }
 }
