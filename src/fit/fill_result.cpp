@@ -12,7 +12,6 @@
 #include "fit/proof/profile.h"
 #include "fit/proof/validation.h"
 #include "fit/proof/verdict.h"
-#include "scene/tissue_file.h"
 
 namespace glisson::fit {
 namespace {
@@ -54,7 +53,7 @@ std::string limited_errors(const FitCurves& curves, const std::vector<Prediction
   if (std::isnan(near.rms_heldout)) return {};
   std::vector<const Curve*> all;
   for (const Curve& c : curves.curves) all.push_back(&c);
-  const glisson::fit::Spread spread = spread_of(all, limit);
+  const Spread spread = spread_of(all, limit);
   return "Up to " + rounded(1e3 * limit) + " mm the held-out curves are met to " + rounded(near.rms_heldout) +
          " N rms; all curves differ there by " + rounded(spread.deviation) + " N.";
 }
@@ -89,10 +88,6 @@ void conclude_on_designs(const FitResult& result, std::vector<std::string>& sent
   if (!(best.width_after < best.width_now)) return;
   sentences.push_back("Next, " + best.what + " would tell most: the interval of " + best.parameter +
                       " would shrink to " + rounded(100.0 * best.width_after / best.width_now, 2) + " % of its width.");
-}
-
-std::vector<double> values_of(const Problem& problem, const std::vector<double>& scaled) {
-  return problem.to_values(scaled);
 }
 
 void fill_parameters(const Problem& problem, const Optimum& optimum, const Covariance& covariance,
@@ -149,7 +144,7 @@ void fill_bootstrap(const Problem& problem, const Optimum& optimum, const Covari
   how.stop = options.stop;
   const Bootstrap drawn = bootstrap(problem, optimum.scaled, covariance, how);
   result.bootstrap.clear();
-  for (const std::vector<double>& z : drawn.scaled) result.bootstrap.push_back(values_of(problem, z));
+  for (const std::vector<double>& z : drawn.scaled) result.bootstrap.push_back(problem.to_values(z));
   if (drawn.scaled.size() < 10) return;  // percentiles of fewer say nothing
   for (std::size_t p = 0; p < result.parameters.size(); ++p) result.parameters[p].by_bootstrap = drawn.interval[p];
   std::set<std::string> told;
@@ -166,7 +161,6 @@ void fill_curves(const LawSearch& search, const FitSpec& spec, const FitCurves& 
   result.accounts = curves.accounts;
   result.curves.clear();
   result.groups.clear();
-  std::vector<double> spreads;
   for (std::size_t c = 0; c < curves.curves.size(); ++c)
     result.curves.push_back({curves.curves[c], predictions[c].force, all.curves[c].rms});
   double squares = 0.0;
@@ -192,7 +186,7 @@ void fill_search(const LawSearch& search, const FitSpec& spec, FitResult& result
   result.law = search.law().name;
   result.starts.clear();
   result.basins.clear();
-  for (const Basin& b : search.found().basins) result.basins.push_back({b.cost, b.found, values_of(problem, b.scaled)});
+  for (const Basin& b : search.found().basins) result.basins.push_back({b.cost, b.found, problem.to_values(b.scaled)});
   for (const StartRecord& s : search.found().starts) {
     StartResult start{s.optimum.cost, -1};
     double nearest = std::numeric_limits<double>::infinity();
@@ -248,8 +242,12 @@ void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves,
     }
   }
   if (spec.proof.next && !stopped(options)) {
-    result.designs = next_experiments(search, spec, covariance);
-    conclude_on_designs(result, result.conclusions);
+    try {
+      result.designs = next_experiments(search, spec, covariance);
+      conclude_on_designs(result, result.conclusions);
+    } catch (const std::exception& error) {  // a plan that cannot be simulated takes nothing from the fit
+      result.conclusions.push_back(std::string("The next tests could not be simulated: ") + error.what());
+    }
   }
   const DerivativeCheck& check = search.derivatives();
   result.conclusions.push_back("Derivatives by differences of " + rounded(check.step) +

@@ -99,18 +99,24 @@ void LawSearch::take_model(std::size_t rung) {
                                        spec_.search.loss);
 }
 
+DescentOptions LawSearch::descent() const {
+  DescentOptions options;
+  options.most_iterations = spec_.search.most_iterations;
+  options.tolerance = tolerance_of(derivatives_);
+  options.stop = options_.stop;
+  return options;
+}
+
 void LawSearch::search(LawMemory& memory, const std::function<void(const MultiStart&)>& told) {
   MultiStartOptions options;
   options.starts = spec_.search.starts;
   options.found_again = spec_.search.found_again;
   options.screen = spec_.search.screen;
   options.seed = spec_.search.seed;
-  options.descent.most_iterations = spec_.search.most_iterations;
-  options.descent.stop = options_.stop;
   std::vector<double> own;
   for (const Parameter& p : problem_->parameters()) own.push_back(p.start);
   derivatives_ = check_derivatives(*problem_, problem_->to_scaled(own));
-  options.descent.tolerance = tolerance_of(derivatives_);
+  options.descent = descent();
   found_ = find_optimum(*problem_, options, memory.starts, [&](const MultiStart& so_far) {
     memory.starts = so_far.starts;
     if (told) told(so_far);
@@ -118,7 +124,12 @@ void LawSearch::search(LawMemory& memory, const std::function<void(const MultiSt
   if (found_.basins.empty()) return;
   const Basin& best = found_.basins.front();
   optimum_ = {best.scaled, best.cost, true, 0, ""};
-  if (found_.complete) look_again_at_forward();
+  if (!found_.complete) return;
+  try {
+    look_again_at_forward();
+  } catch (const std::exception& error) {  // what was found stays
+    second_look_ = std::string("At the optimum the forward models could not be compared: ") + error.what();
+  }
 }
 
 /// How far a body of tets between the plates is from the homogeneous state that was fitted.
@@ -152,11 +163,7 @@ void LawSearch::look_again_at_forward() {
   share_at_optimum_.reset();
   take_model(ladder_.chosen);
   derivatives_ = check_derivatives(*problem_, start);
-  DescentOptions options;
-  options.most_iterations = spec_.search.most_iterations;
-  options.tolerance = tolerance_of(derivatives_);
-  options.stop = options_.stop;
-  optimum_ = descend(*problem_, start, options);
+  optimum_ = descend(*problem_, start, descent());
 }
 
 /// The forward problem with the optimum for its start and no other places.
@@ -170,11 +177,7 @@ ForwardProblem LawSearch::problem_at_optimum(std::vector<Curve> curves) const {
 }
 
 void LawSearch::improve(std::span<const double> scaled) {
-  DescentOptions options;
-  options.most_iterations = spec_.search.most_iterations;
-  options.tolerance = tolerance_of(derivatives_);
-  options.stop = options_.stop;
-  Optimum better = descend(*problem_, scaled, options);
+  Optimum better = descend(*problem_, scaled, descent());
   if (!(better.cost < optimum_.cost)) return;
   optimum_ = std::move(better);
   StartRecord record{{scaled.begin(), scaled.end()}, optimum_};

@@ -54,6 +54,7 @@ class LawSearch {
 
  private:
   void take_model(std::size_t rung);
+  DescentOptions descent() const;
   void look_again_at_forward();
   ForwardProblem problem_at_optimum(std::vector<Curve> curves) const;
 

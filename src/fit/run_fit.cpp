@@ -78,7 +78,12 @@ class Run {
 /// False where it was stopped before all laws had been looked at.
 bool Run::search_all(const std::vector<LawSpec>& laws) {
   for (const LawSpec& law : laws) {
-    searches_.push_back(std::make_unique<LawSearch>(spec_, law, curves_, options_));
+    try {
+      searches_.push_back(std::make_unique<LawSearch>(spec_, law, curves_, options_));
+    } catch (const std::exception&) {
+      if (stopped()) return false;  // a forward run that was halted is no fault of the law
+      throw;
+    }
     LawSearch& search = *searches_.back();
     LawMemory& known = memory_[law.name];
     search.search(known, [&](const MultiStart& so_far) {
@@ -160,8 +165,12 @@ FitResult Run::to_end() {
     chosen = choose(result);
     about_laws.swap(result.conclusions);
   }
-  LawSearch& search = *searches_[chosen];
   result.complete = all;
+  if (searches_.empty()) {  // stopped before the first law had a forward model
+    result.starts_planned = spec_.search.starts;
+    return result;
+  }
+  LawSearch& search = *searches_[chosen];
   if (!search.found().basins.empty() || all) {
     search.optimum();  // says why there is none
     fill_proof(search, spec_, curves_, options_, result);
