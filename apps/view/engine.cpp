@@ -21,17 +21,6 @@ constexpr double kPatch = 0.05;         // radius of what is grabbed, of the bod
 constexpr double kHandStiffness = 4.0;  // of E times the patch's radius: stiffer than the tissue below it, 2 E a
 constexpr std::size_t kEventsTold = 32;
 
-double size_of(const TetMesh& mesh) {
-  Vec3d low = mesh.vertices.front(), high = low;
-  for (const Vec3d& x : mesh.vertices) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], x[k]);
-      high[k] = std::max(high[k], x[k]);
-    }
-  }
-  return norm(high - low);
-}
-
 Vec3d shortened(const Vec3d& v, double most) {
   const double length = norm(v);
   return length > most ? v * (most / length) : v;
@@ -62,7 +51,7 @@ Engine::Engine(const Variant& variant, MeshLoader load) : load_(std::move(load))
   const TetMesh& mesh = body_->built().simulation.mesh();
   vertices_ = mesh.vertices.size();
   tets_ = mesh.tets.size();
-  reach_ = size_of(mesh);
+  reach_ = diagonal(mesh);
 }
 
 Engine::~Engine() { stop(); }

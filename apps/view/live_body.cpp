@@ -18,17 +18,6 @@ Vec3d any_across(const Vec3d& along) {
   return unit(cross(along, std::abs(along.z) < 0.9 ? Vec3d{0.0, 0.0, 1.0} : Vec3d{1.0, 0.0, 0.0}));
 }
 
-double diagonal(const TetMesh& mesh) {
-  Vec3d low = mesh.vertices.front(), high = low;
-  for (const Vec3d& x : mesh.vertices) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], x[k]);
-      high[k] = std::max(high[k], x[k]);
-    }
-  }
-  return norm(high - low);
-}
-
 /// Speed, ramp and farthest depth that a motion of the scene suggests.
 struct Habit {
   double speed = 0.01, ramp = kShortestRamp;
@@ -56,6 +45,17 @@ std::optional<ToolPath> scene_way(const InstrumentSpec& spec) {
 }
 
 }  // namespace
+
+double diagonal(const TetMesh& mesh) {
+  Vec3d low = mesh.vertices.front(), high = low;
+  for (const Vec3d& x : mesh.vertices) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], x[k]);
+      high[k] = std::max(high[k], x[k]);
+    }
+  }
+  return norm(high - low);
+}
 
 LiveBody::LiveBody(const Variant& variant, const MeshLoader& load) : variant_(variant) {
   if (variant.tools.size() + variant.instruments.size() > kMostTools) {

@@ -46,6 +46,9 @@ class LiveBody {
   std::shared_ptr<GrabSpring> grab_;
 };
 
+/// Of the box about a mesh [m].
+double diagonal(const TetMesh& mesh);
+
 /// The numbers that a page may change, with their values in a variant: E, ν, η of the base tissue.
 std::vector<ParameterInfo> parameters_of(const Variant& variant);
 /// The variant with one of them changed; tissues of regions change in the same ratio as the base tissue.
