@@ -11,7 +11,8 @@ endif()
 
 find_program(GLISSON_CCACHE ccache)
 if(GLISSON_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${GLISSON_CCACHE}")
+  # Paths below the source folder are made relative before they are hashed, so that a second clone finds what the first compiled.
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}" CCACHE_NOHASHDIR=1 "${GLISSON_CCACHE}")
 endif()
 
 add_library(glisson_options INTERFACE)
@@ -23,6 +24,9 @@ target_compile_options(glisson_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-r
 if(GLISSON_SANITIZE)
   target_compile_options(glisson_options INTERFACE -fsanitize=${GLISSON_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(glisson_options INTERFACE -fsanitize=${GLISSON_SANITIZE})
+  # Under the address sanitizer Eigen aligns memory by hand, unlike the Eigen inside the packaged Ceres: one would free what the
+  # other took. The sanitizer's malloc is aligned to 16 bytes like glibc's, so both may use it.
+  target_compile_definitions(glisson_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 # What io takes from VTK; the installed package asks for the same.
