@@ -79,13 +79,77 @@ describe("a scene with a needle", () => {
     assert.equal(await mesh(), opened);
   });
 
-  test("the cut moves with its slider", async () => {
+  test("the cut has a face: pale grey where the closed body has its colours, and none of its inside", async () => {
+    const open = panel.locator("input[name=open]");
+    // Below the needle's tip, in the middle of the body: of the face when open, of the dark skin when closed.
+    const tones = async () => {
+      const shot = await panel.locator("canvas").screenshot();
+      return page.evaluate(async (base64) => {
+        const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+        const picture = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+        const context = new OffscreenCanvas(picture.width, picture.height).getContext("2d");
+        context.drawImage(picture, 0, 0);
+        const [x, y] = [Math.round(0.4 * picture.width), Math.round(0.55 * picture.height)];
+        const { data } = context.getImageData(x - 15, y - 15, 30, 30);
+        let [grey, dark] = [0, 0];
+        for (let i = 0; i < data.length; i += 4) {
+          const [low, high] = [
+            Math.min(data[i], data[i + 1], data[i + 2]),
+            Math.max(data[i], data[i + 1], data[i + 2]),
+          ];
+          if (high - low < 20 && low > 150) grey += 4 / data.length;
+          if (low < 100) dark += 4 / data.length;
+        }
+        return { grey, dark };
+      }, shot.toString("base64"));
+    };
+    const opened = await tones();
+    assert.ok(opened.grey > 0.99 && opened.dark === 0, JSON.stringify(opened));
+    await open.uncheck();
+    await settle(page);
+    const closed = await tones();
+    assert.ok(closed.grey < 0.01 && closed.dark > 0.9, JSON.stringify(closed));
+    await open.check();
+    await settle(page);
+  });
+
+  test("the cut moves with its slider and goes across another axis; its place is said in millimetres", async () => {
     const place = panel.locator(".cut-place input");
+    const axis = panel.locator("select[aria-label=Cut]");
     const middle = await mesh();
-    await place.fill("0.3");
+    assert.match(await panel.locator(".cut-readout").innerText(), /^y = 18\.0\smm$/); // the needle's tip
+    await place.fill("0.75");
     await settle(page);
     assert.notEqual(await mesh(), middle);
-    await place.fill("0");
+    assert.match(await panel.locator(".cut-readout").innerText(), /^y = 30\.0\smm$/); // of 40
+    const seen = new Set([middle]);
+    for (const name of ["x", "z", "view"]) {
+      await axis.selectOption(name);
+      await settle(page);
+      seen.add(await mesh());
+    }
+    assert.equal(seen.size, 4);
+    await axis.selectOption("y");
+    await settle(page);
+    assert.equal(await mesh(), middle);
+  });
+
+  test("keys open, close and move the cut, and a reload finds it as it was left", async () => {
+    const middle = await mesh();
+    await panel.locator("canvas").focus();
+    await page.keyboard.press("c");
+    await settle(page);
+    assert.equal(await panel.locator("input[name=open]").isChecked(), false);
+    await page.keyboard.press("c");
+    await page.keyboard.press("]");
+    await settle(page);
+    assert.notEqual(await mesh(), middle);
+    await page.keyboard.press("x");
+    await page.reload();
+    await panel.scrollIntoViewIfNeeded();
+    await settle(page);
+    assert.equal(await panel.locator("select[aria-label=Cut]").inputValue(), "x");
+    await panel.locator("select[aria-label=Cut]").selectOption("y");
     await settle(page);
     assert.equal(await mesh(), middle);
   });

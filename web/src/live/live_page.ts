@@ -84,6 +84,7 @@ export class LivePage {
       { class: "live-view-tools" },
       pulls,
       edges,
+      this.view.cut.tick,
       button("Show all", "Bring all of the body into view (0)", () => this.view.fit()),
       button("Save picture", "Save what is shown as a PNG", () => this.savePicture()),
       button("Save forces", "Save the forces of this run as CSV", () => this.saveForces()),
@@ -91,7 +92,7 @@ export class LivePage {
     return h(
       "main",
       { class: "live-main" },
-      h("div", { class: "live-left" }, this.view.element, this.run, tools),
+      h("div", { class: "live-left" }, this.view.element, this.run, tools, this.view.cut.element),
       h(
         "div",
         { class: "live-right" },

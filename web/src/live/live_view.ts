@@ -1,6 +1,8 @@
 // live_view.ts — the streamed organ in a canvas: drag tissue to pull it, a tool to push it along its axis, the rest to turn.
 import * as THREE from "three";
 import { strokeOf } from "../charts/line_style.ts";
+import { type ClipBody, clipKey, clipPlane, firstSeen, rememberClip, rememberedClip } from "../mesh3d/clip.ts";
+import { ClipControls } from "../mesh3d/clip_controls.ts";
 import { ColourBar } from "../mesh3d/colour_bar.ts";
 import { Stage } from "../mesh3d/stage.ts";
 import { SurfaceModel } from "../mesh3d/surface_model.ts";
@@ -32,11 +34,18 @@ export class LiveView {
   readonly canvas = h("canvas", {
     class: "mesh-canvas live-canvas",
     tabindex: 0,
-    "aria-label": "The body in three dimensions. Arrow keys turn it, plus and minus zoom, 0 shows all of it.",
+    "aria-label":
+      "The body in three dimensions. Arrow keys turn it, plus and minus zoom, 0 shows all of it, C cuts it open.",
   });
   pulls = true; // a drag on tissue pulls it
   edges: boolean | null = null; // null: as suits the mesh
   onEdges: (on: boolean) => void = () => {};
+  private readonly clip = rememberedClip("live", { on: false, axis: "y", at: null, flipped: false });
+  readonly cut = new ClipControls(
+    this.clip,
+    () => this.clipBody,
+    () => this.cutChanged(),
+  );
   private readonly bar = new ColourBar();
   private readonly stage: Stage | null;
   private surface: LiveSurface | null = null;
@@ -72,6 +81,7 @@ export class LiveView {
     this.thread.visible = this.thread.frustumCulled = false;
     this.thread.renderOrder = 10;
     this.stage.scene.add(this.thread);
+    this.stage.beforeDrawing = () => this.model?.cutOpen(this.plane);
     onTheme(() => this.recolour());
     this.element.addEventListener("pointerdown", (event) => this.down(event), { capture: true });
     this.element.addEventListener("pointermove", (event) => this.move(event));
@@ -94,6 +104,7 @@ export class LiveView {
     this.stage.scene.add(this.model.group);
     this.recolour();
     this.onEdges(this.edgesShown);
+    this.cut.refresh();
     if (!this.fitted) this.fit();
     this.fitted = true;
   }
@@ -147,6 +158,19 @@ export class LiveView {
     this.stage?.draw();
   }
 
+  private get clipBody(): ClipBody | null {
+    return this.model?.clipBody ?? null;
+  }
+
+  private get plane(): THREE.Plane | null {
+    return this.model && this.stage ? clipPlane(this.clip, this.model.clipBody, this.stage.forward) : null;
+  }
+
+  private cutChanged(): void {
+    rememberClip("live", this.clip);
+    this.stage?.invalidate();
+  }
+
   fit(): void {
     if (this.model) this.stage?.fit(this.model.extremes(1));
   }
@@ -163,6 +187,7 @@ export class LiveView {
       ghost: themeColour("--mesh-ghost"),
       held: themeColour("--mesh-held"),
       instrument: themeColour("--mesh-instrument"),
+      cap: themeColour("--mesh-cap"),
       driven,
     });
     (this.thread.material as THREE.LineBasicMaterial).color.set(driven);
@@ -190,9 +215,10 @@ export class LiveView {
     const objects = model.instrumentObjects as THREE.Object3D[];
     for (const object of objects) (object as THREE.Mesh).geometry?.computeBoundingSphere();
     const tool = caster.intersectObjects(objects, false)[0];
-    const skin = caster.intersectObject(model.skin, false)[0];
+    const seen = firstSeen(caster.intersectObject(model.skin, false), this.plane, caster.ray);
+    const skin = seen.hit;
     const sets = hello.tools.filter((each) => !each.instrument).length;
-    if (tool && (!skin || tool.distance <= skin.distance))
+    if (tool && tool.distance <= seen.distance)
       return this.takeTool(sets + objects.indexOf(tool.object), tool.point, caster.ray);
     if (!skin?.face || !this.surface) return null;
     const corners = [skin.face.a, skin.face.b, skin.face.c];
@@ -262,7 +288,10 @@ export class LiveView {
     else if (event.key === "+" || event.key === "=") this.stage?.zoom(0.85);
     else if (event.key === "-") this.stage?.zoom(1 / 0.85);
     else if (event.key === "0") this.fit();
-    else return;
+    else if (this.clipBody && !event.ctrlKey && !event.metaKey && clipKey(event.key, this.clip, this.clipBody)) {
+      this.cutChanged();
+      this.cut.refresh();
+    } else return;
     event.preventDefault();
   }
 }

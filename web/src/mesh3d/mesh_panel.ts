@@ -5,6 +5,8 @@ import { button, download, h, select } from "../page/dom.ts";
 import { icon } from "../page/icons.ts";
 import { whenVisible } from "../page/visibility.ts";
 import type { SceneData } from "../report_data.ts";
+import { clipKey, rememberClip, rememberedClip } from "./clip.ts";
+import { ClipControls } from "./clip_controls.ts";
 import { ColourBar } from "./colour_bar.ts";
 import { type MeshVariant, MeshView, type RangeChoice, type ViewSettings } from "./mesh_view.ts";
 import { Player, speedsFor } from "./player.ts";
@@ -38,8 +40,8 @@ export class MeshPanel {
     "aria-label": "Time",
   });
   private readonly playButton: HTMLButtonElement;
-  private readonly cut = this.cutSlider();
   private readonly settings: ViewSettings;
+  private readonly cut: ClipControls;
   private readonly player: Player;
   private view: MeshView | null = null;
 
@@ -58,10 +60,18 @@ export class MeshPanel {
       edges: true,
       ghost: false,
       marks: true,
-      open: shown.surface.instruments.some((form) => form.kind === "needle"),
-      openAt: 0,
+      clip: rememberedClip(scene.name, {
+        on: shown.surface.instruments.some((form) => form.kind === "needle"),
+        axis: "y",
+        at: null,
+        flipped: false,
+      }),
     };
-    this.cut.hidden = !this.settings.open;
+    this.cut = new ClipControls(
+      this.settings.clip,
+      () => this.view?.clipBody ?? null,
+      () => this.cutChanged(),
+    );
     const [start, end] = spanOf(shown);
     this.player = new Player(
       start,
@@ -123,7 +133,13 @@ export class MeshPanel {
       if (box) box.checked = this.settings[setting];
     }
     this.refresh();
+    this.cut.refresh();
     this.describeMarks();
+  }
+
+  private cutChanged(): void {
+    rememberClip(this.scene.name, this.settings.clip);
+    this.refresh();
   }
 
   private showMissing(): void {
@@ -162,7 +178,7 @@ export class MeshPanel {
     this.slider.setAttribute("aria-valuetext", this.readout.textContent);
     const label =
       `Surface of ${this.current().label}, coloured by intensity, at ${this.readout.textContent}. ` +
-      "Arrow keys turn it, + and − zoom.";
+      "Arrow keys turn it, + and − zoom, C cuts it open.";
     this.canvas.setAttribute("aria-label", label);
     this.state.setPlayhead(end > start ? { variant: this.settings.variant, time } : null);
   }
@@ -242,34 +258,16 @@ export class MeshPanel {
         this.check("Edges", "edges"),
         this.check("Rest shape", "ghost"),
         this.check("Marks", "marks"),
-        this.check("Cut open", "open"),
+        this.cut.tick,
       ),
-      this.cut,
+      this.cut.element,
     );
   }
 
-  /** Slider for where the body is cut open. */
-  private cutSlider(): HTMLElement {
-    const slider = h("input", {
-      type: "range",
-      min: -1,
-      max: 1,
-      step: 0.01,
-      value: 0,
-      "aria-label": "Place of the cut",
-    });
-    slider.addEventListener("input", () => {
-      this.settings.openAt = Number(slider.value);
-      this.refresh();
-    });
-    return h("label", { class: "select cut-place" }, h("span", {}, "Place of the cut"), slider);
-  }
-
-  private check(label: string, setting: "edges" | "ghost" | "marks" | "open"): HTMLElement {
+  private check(label: string, setting: "edges" | "ghost" | "marks"): HTMLElement {
     const input = h("input", { type: "checkbox", name: setting, checked: this.settings[setting] });
     input.addEventListener("change", () => {
       this.settings[setting] = input.checked;
-      this.cut.hidden = !this.settings.open;
       this.refresh();
       this.describeMarks();
     });
@@ -303,10 +301,15 @@ export class MeshPanel {
       "0": () => this.view?.fit(),
       " ": () => this.player.toggle(),
     };
+    if (event.ctrlKey || event.metaKey) return;
     const action = actions[event.key];
-    if (!action || event.ctrlKey || event.metaKey) return;
+    const body = this.view?.clipBody;
+    if (action) action();
+    else if (body && clipKey(event.key, this.settings.clip, body)) {
+      this.cutChanged();
+      this.cut.refresh();
+    } else return;
     event.preventDefault();
-    action();
   }
 }
 

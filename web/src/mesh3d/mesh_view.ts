@@ -2,7 +2,7 @@
 import type { SurfaceData, VariantData } from "../report_data.ts";
 import { currentTheme, onTheme, themeColour } from "../page/theme.ts";
 import { strokeOf } from "../charts/line_style.ts";
-import * as THREE from "three";
+import { type ClipBody, type ClipSettings, clipPlane } from "./clip.ts";
 import { Stage } from "./stage.ts";
 import { SurfaceModel } from "./surface_model.ts";
 import { Timeline } from "./timeline.ts";
@@ -17,12 +17,8 @@ export interface ViewSettings {
   edges: boolean;
   ghost: boolean;
   marks: boolean;
-  open: boolean; // cut open by an upright plane
-  openAt: number; // where that stands: −1 nearest, 0 through the instrument's tip or the middle, 1 farthest
+  clip: ClipSettings;
 }
-
-/** Towards the viewer at home, level: what lies on that side of the plane is taken away. */
-const TOWARDS_VIEWER = new THREE.Vector3(0.66, -1, 0).normalize();
 
 export class MeshView {
   readonly stage: Stage;
@@ -39,6 +35,7 @@ export class MeshView {
     readonly settings: ViewSettings,
   ) {
     this.stage = new Stage(canvas, context);
+    this.stage.beforeDrawing = () => this.cut();
     this.largest = Math.max(
       0,
       ...variants.flatMap((variant) => variant.surface.frames.map((frame) => frame.intensity_max)),
@@ -90,6 +87,7 @@ export class MeshView {
       ghost: themeColour("--mesh-ghost"),
       held: themeColour("--mesh-held"),
       instrument: themeColour("--mesh-instrument"),
+      cap: themeColour("--mesh-cap"),
       driven: strokeOf({ colour: 1, dash: [] }, currentTheme()),
     });
     this.stage.invalidate();
@@ -106,7 +104,6 @@ export class MeshView {
           ? this.timeline.intensityMax
           : this.timeline.intensityAt(time);
     this.model?.show({ edges, ghost, marks });
-    this.model?.cutOpen(this.plane());
     this.model?.update(time, exaggeration, this.range);
     this.stage.invalidate();
   }
@@ -115,11 +112,12 @@ export class MeshView {
     return this.model?.hasInstruments ?? false;
   }
 
-  private plane(): THREE.Plane | null {
-    if (!this.settings.open || !this.model) return null;
-    const away = TOWARDS_VIEWER.clone().negate();
-    const through = this.model.heart.addScaledVector(away, 0.5 * this.settings.openAt * this.model.diagonal);
-    return new THREE.Plane().setFromNormalAndCoplanarPoint(away, through);
+  get clipBody(): ClipBody | null {
+    return this.model?.clipBody ?? null;
+  }
+
+  private cut(): void {
+    if (this.model) this.model.cutOpen(clipPlane(this.settings.clip, this.model.clipBody, this.stage.forward));
   }
 
   /** Brings all of the mesh into view. */

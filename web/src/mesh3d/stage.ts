@@ -18,6 +18,8 @@ export class Stage {
   private visible = true;
   private request = 0;
   private share = 1; // of the pixels in each direction
+  /** Called before each drawing: what follows the eye is set there. */
+  beforeDrawing: () => void = () => {};
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -28,6 +30,7 @@ export class Stage {
       context,
       antialias: true,
       alpha: true,
+      stencil: true, // for the face of a cut
       preserveDrawingBuffer: true,
     });
     this.renderer.setClearAlpha(0);
@@ -92,6 +95,7 @@ export class Stage {
   draw(): void {
     cancelAnimationFrame(this.request);
     this.request = 0;
+    this.beforeDrawing();
     this.renderer.render(this.scene, this.camera);
   }
 

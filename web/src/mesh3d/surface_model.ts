@@ -3,8 +3,11 @@
 //   positions (one buffer) ─┬─ skin: triangles, coloured by intensity through a 1D texture
 //                           ├─ edges
 //                           └─ held and driven vertices
+//                           ├─ cap: closes the skin where it is cut open
 //   rest positions ─────────── ghost: faint skin and its creases
 import * as THREE from "three";
+import type { ClipBody } from "./clip.ts";
+import { ClipCap } from "./clip_cap.ts";
 import { colourTexels } from "./colour_map.ts";
 import { uniqueEdges } from "./edges.ts";
 import { InstrumentModel } from "./instrument_model.ts";
@@ -26,6 +29,7 @@ export interface ModelColours {
   held: string;
   driven: string;
   instrument: string;
+  cap: string;
 }
 
 export class SurfaceModel {
@@ -39,7 +43,8 @@ export class SurfaceModel {
   private readonly edgeMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.35 });
   private readonly ghostLine = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.7, depthWrite: false });
   private readonly ghostSkin = new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.08, depthWrite: false });
-  private readonly size: number; // diagonal of the rest shape [m]
+  private readonly box: THREE.Box3; // of the rest shape
+  private readonly size: number; // its diagonal [m]
   private readonly held: THREE.Points;
   private readonly driven: THREE.Points;
   private readonly hiddenDriven: THREE.Points;
@@ -49,11 +54,13 @@ export class SurfaceModel {
   readonly skin: THREE.Mesh;
   private readonly skinGeometry: THREE.BufferGeometry;
   private readonly instruments: InstrumentModel;
+  private readonly cap: ClipCap;
   private shown: Uint32Array; // triangles of the skin now
 
   constructor(readonly timeline: SurfaceMotion) {
     this.shown = timeline.triangles;
-    this.size = new THREE.Box3().setFromArray(timeline.rest).getSize(new THREE.Vector3()).length();
+    this.box = new THREE.Box3().setFromArray(timeline.rest);
+    this.size = this.box.getSize(new THREE.Vector3()).length();
     this.positions = new THREE.BufferAttribute(timeline.rest.slice(0, 3 * timeline.vertices), 3);
     this.positions.setUsage(THREE.DynamicDrawUsage);
     this.lookup = new THREE.BufferAttribute(new Float32Array(2 * timeline.vertices).fill(0.5), 2);
@@ -70,8 +77,10 @@ export class SurfaceModel {
     this.skin = this.makeSkin();
     this.skinGeometry = this.skin.geometry;
     this.instruments = new InstrumentModel(timeline, this.size);
+    this.cap = new ClipCap(this.skinGeometry, this.box.getCenter(new THREE.Vector3()), this.size);
     this.group.add(
       this.skin,
+      this.cap.group,
       this.edges,
       this.held,
       this.hiddenDriven,
@@ -80,7 +89,7 @@ export class SurfaceModel {
       this.instruments.group,
     );
     this.group.traverse((object) => (object.frustumCulled = false));
-    this.disposables.push(this.instruments, this.edgeMaterial, this.ghostLine, this.ghostSkin);
+    this.disposables.push(this.instruments, this.cap, this.edgeMaterial, this.ghostLine, this.ghostSkin);
   }
 
   private keep<T extends { dispose(): void }>(thing: T): T {
@@ -187,25 +196,22 @@ export class SurfaceModel {
     this.edges.geometry.setIndex(new THREE.BufferAttribute(edges, 1));
   }
 
-  /** Cuts the body open: what is on the far side of the plane is shown; null: all of it. Instruments stay whole. */
+  /** Cuts the body open and closes it with a face: what the plane's normal points to stays; null: all of it. Instruments stay whole. */
   cutOpen(plane: THREE.Plane | null): void {
     const planes = plane ? [plane] : null;
-    this.group.traverse((object) => {
-      if (this.instruments.group.children.includes(object)) return;
-      const material = (object as Partial<THREE.Mesh>).material;
-      if (material && !Array.isArray(material)) material.clippingPlanes = planes;
-    });
+    for (const object of [this.skin, this.edges, this.held, this.driven, this.hiddenDriven, ...this.ghost.children])
+      ((object as THREE.Mesh).material as THREE.Material).clippingPlanes = planes;
+    this.cap.plane = plane;
   }
 
-  /** Middle of the body, or the tip of the first instrument at the end: a plane through it shows its way. */
-  get heart(): THREE.Vector3 {
+  /** What a plane is laid through: by its heart the way of the first instrument is seen. */
+  get clipBody(): ClipBody {
     const tip = this.timeline.frames[this.timeline.frames.length - 1]!.instruments[0]?.points.slice(-3);
-    if (tip && tip.length === 3) return new THREE.Vector3(...(tip as [number, number, number]));
-    return new THREE.Box3().setFromArray(this.timeline.rest).getCenter(new THREE.Vector3());
-  }
-
-  get diagonal(): number {
-    return this.size;
+    const heart =
+      tip && tip.length === 3
+        ? new THREE.Vector3(...(tip as [number, number, number]))
+        : this.box.getCenter(new THREE.Vector3());
+    return { box: this.box, heart };
   }
 
   show(parts: { edges: boolean; ghost: boolean; marks: boolean }): void {
@@ -222,6 +228,7 @@ export class SurfaceModel {
     (this.driven.material as THREE.PointsMaterial).color.set(colours.driven);
     (this.hiddenDriven.material as THREE.PointsMaterial).color.set(colours.driven);
     this.instruments.colour(colours.instrument);
+    this.cap.colour = colours.cap;
   }
 
   /** All vertices at rest and in the last frame, displacement exaggerated: what a view should hold. */
