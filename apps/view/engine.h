@@ -24,38 +24,34 @@
 #include "view/live_body.h"
 #include "view/ring.h"
 #include "view/snapshot.h"
+#include "view/source.h"
 
 namespace glisson::view {
 
 /// One frame of simulated time [s].
 inline constexpr double kFrame = 0.001;
 
-class Engine {
+class Engine final : public Source {
  public:
   /// Builds the body. @throws SceneError, std::invalid_argument
   Engine(const Variant& variant, MeshLoader load);
-  ~Engine();
+  ~Engine() override;
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  void start();
-  void stop();
+  void start() override;
+  void stop() override;
 
-  // Of the one thread that watches.
-  /// @return false where too many wait already
-  bool post(const Command& command) { return commands_.push(command); }
-  /// The newest state, valid until the next call; null where there is none since the last.
-  const Snapshot* latest() { return latest_.take(); }
-  bool next_sample(ForceSample& sample) { return samples_.pop(sample); }
+  bool post(const Command& command) override { return commands_.push(command); }
+  const Snapshot* latest() override { return latest_.take(); }
+  bool next_sample(ForceSample& sample) override { return samples_.pop(sample); }
 
-  // Known from the start, and the same after every reset.
-  const std::vector<ToolInfo>& tools() const { return tools_; }
-  const std::vector<ParameterInfo>& parameters() const { return parameters_; }
-  /// What instruments look like, a JSON list as web/src/report_data.ts has it.
-  const std::string& forms() const { return forms_; }
-  bool can_grab() const { return can_grab_; }
-  std::size_t vertices() const { return vertices_; }
-  std::size_t tets() const { return tets_; }
+  const std::vector<ToolInfo>& tools() const override { return tools_; }
+  const std::vector<ParameterInfo>& parameters() const override { return parameters_; }
+  const std::string& forms() const override { return forms_; }
+  bool can_grab() const override { return can_grab_; }
+  std::size_t vertices() const override { return vertices_; }
+  std::size_t tets() const override { return tets_; }
 
  private:
   void run();

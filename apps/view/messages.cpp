@@ -144,10 +144,10 @@ std::string samples_message(const std::deque<ForceSample>& history, std::size_t 
   return out.take();
 }
 
-std::string hello_message(const Engine& engine, const SceneFacts& facts, const std::string& session) {
+std::string hello_message(const Source& source, const SceneFacts& facts, const std::string& session) {
   json tools = json::array(), parameters = json::array();
-  for (const ToolInfo& x : engine.tools()) tools.push_back(tool_json(x));
-  for (const ParameterInfo& x : engine.parameters()) {
+  for (const ToolInfo& x : source.tools()) tools.push_back(tool_json(x));
+  for (const ParameterInfo& x : source.parameters()) {
     parameters.push_back(
         {{"label", x.label}, {"unit", x.unit}, {"least", x.least}, {"most", x.most}, {"value", x.value}});
   }
@@ -156,9 +156,9 @@ std::string hello_message(const Engine& engine, const SceneFacts& facts, const s
               {"variant", facts.variant},
               {"version", facts.version},
               {"session", session},
-              {"vertices", engine.vertices()},
-              {"tets", engine.tets()},
-              {"can_grab", engine.can_grab()},
+              {"vertices", source.vertices()},
+              {"tets", source.tets()},
+              {"can_grab", source.can_grab()},
               {"tools", std::move(tools)},
               {"parameters", std::move(parameters)},
               {"instruments", json::parse(facts.instruments)}}

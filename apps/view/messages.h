@@ -5,8 +5,8 @@
 #include <deque>
 #include <string>
 
-#include "view/engine.h"
 #include "view/snapshot.h"
+#include "view/source.h"
 #include "view/surface.h"
 
 namespace glisson::view {
@@ -26,7 +26,7 @@ struct SceneFacts {
   std::string title, variant, version;
   std::string instruments;  ///< JSON list of instrument_form_json
 };
-std::string hello_message(const Engine& engine, const SceneFacts& facts, const std::string& session);
+std::string hello_message(const Source& source, const SceneFacts& facts, const std::string& session);
 std::string role_message(bool drives, bool led, std::size_t viewers);
 std::string state_message(const Snapshot& state);
 std::string notice_message(const std::string& text);

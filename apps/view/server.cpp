@@ -68,7 +68,7 @@ struct Viewer : std::enable_shared_from_this<Viewer> {
 };
 
 struct Server::Impl {
-  Impl(Engine& engine, SceneFacts facts, std::string_view page, const ServerOptions& options);
+  Impl(Source& source, SceneFacts facts, std::string_view page, const ServerOptions& options);
   void listen();
   void accept();
   void tick();
@@ -82,7 +82,7 @@ struct Server::Impl {
   void obey(Viewer& viewer, Command command);
   void say_goodbye();
 
-  Engine& engine_;
+  Source& source_;
   SceneFacts facts_;
   std::string_view page_;
   ServerOptions options_;
@@ -249,8 +249,8 @@ void Viewer::gone() {
   server_.went(shared_from_this());
 }
 
-Server::Impl::Impl(Engine& engine, SceneFacts facts, std::string_view page, const ServerOptions& options)
-    : engine_(engine), facts_(std::move(facts)), page_(page), options_(options),
+Server::Impl::Impl(Source& source, SceneFacts facts, std::string_view page, const ServerOptions& options)
+    : source_(source), facts_(std::move(facts)), page_(page), options_(options),
       lead_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.lead_kept_s))) {
   if (options_.host == "localhost") options_.host = "127.0.0.1";
   beast::error_code error;
@@ -292,7 +292,7 @@ void Server::Impl::tick() {
 }
 
 void Server::Impl::keep_samples() {
-  for (ForceSample sample; engine_.next_sample(sample); ++samples_) history_.push_back(sample);
+  for (ForceSample sample; source_.next_sample(sample); ++samples_) history_.push_back(sample);
   while (history_.size() > kHistory) history_.pop_front();
 }
 
@@ -301,7 +301,7 @@ void Server::Impl::look() {
   const Clock::time_point now = Clock::now();
   keep_samples();
   if (led_ != lead_.led(now)) send_roles();
-  const Snapshot* state = engine_.latest();
+  const Snapshot* state = source_.latest();
   if (state == nullptr) return;
   if (state->shape_number != shape_number_) {
     shape_number_ = state->shape_number;
@@ -344,7 +344,7 @@ void Server::Impl::send_frame(Viewer& viewer) {
   if (viewer.samples_seen_ < samples_) {
     const std::uint64_t first = samples_ - history_.size();
     const std::uint64_t from = std::max(viewer.samples_seen_, first);
-    viewer.send(message(samples_message(history_, static_cast<std::size_t>(from - first), engine_.tools().size())),
+    viewer.send(message(samples_message(history_, static_cast<std::size_t>(from - first), source_.tools().size())),
                 true);
     viewer.samples_seen_ = samples_;
   }
@@ -365,7 +365,7 @@ void Server::Impl::came(const std::shared_ptr<Viewer>& viewer) {
   if (same != viewers_.end()) (*same)->close(websocket::close_code::going_away, "continued elsewhere");
   viewers_.insert(viewer);
   lead_.came(viewer->session_, Clock::now());
-  viewer->send(message(hello_message(engine_, facts_, viewer->session_)), false);
+  viewer->send(message(hello_message(source_, facts_, viewer->session_)), false);
   if (state_) viewer->send(state_, false);
   if (notice_) viewer->send(notice_, false);
   send_roles();
@@ -377,7 +377,7 @@ void Server::Impl::went(const std::shared_ptr<Viewer>& viewer) {
   const bool goes_on = std::any_of(viewers_.begin(), viewers_.end(),
                                    [&](const auto& other) { return other->session_ == viewer->session_; });
   if (lead_.leads(viewer->session_) && !goes_on) {
-    engine_.post({.kind = CommandKind::let_go});
+    source_.post({.kind = CommandKind::let_go});
     lead_.went(viewer->session_, Clock::now());
   }
   if (!stopping_) send_roles();
@@ -395,7 +395,7 @@ void Server::Impl::obey(Viewer& viewer, Command command) {
     if (!surface_ || command.index >= surface_->size()) return;
     command.index = surface_->mesh_vertex(command.index);
   }
-  engine_.post(command);
+  source_.post(command);
 }
 
 void Server::Impl::say_goodbye() {
@@ -410,8 +410,8 @@ void Server::Impl::say_goodbye() {
   timer_.async_wait([this](beast::error_code) { context_.stop(); });
 }
 
-Server::Server(Engine& engine, SceneFacts facts, std::string_view page, const ServerOptions& options)
-    : impl_(std::make_unique<Impl>(engine, std::move(facts), page, options)) {}
+Server::Server(Source& source, SceneFacts facts, std::string_view page, const ServerOptions& options)
+    : impl_(std::make_unique<Impl>(source, std::move(facts), page, options)) {}
 
 Server::~Server() { stop(); }
 

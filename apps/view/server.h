@@ -3,7 +3,7 @@
 //   GET /?token=T         the page                      anything else: 404; a wrong token: 403; a strange Host: 421
 //   GET /stream?token=T   WebSocket; &session=K goes on as the viewer that was cut off
 //
-// One thread serves everyone: each 16 ms it takes the newest state from the engine, packs it once, and hands it to the viewers
+// One thread serves everyone: each 16 ms it takes the newest state from its source, packs it once, and hands it to the viewers
 // that are ready; one that is still busy with the last frame misses this one.
 #pragma once
 
@@ -12,8 +12,8 @@
 #include <string>
 #include <string_view>
 
-#include "view/engine.h"
 #include "view/messages.h"
+#include "view/source.h"
 
 namespace glisson::view {
 
@@ -30,7 +30,7 @@ class Server {
  public:
   /// Opens the port. @param page  served at `/`, alive as long as the server
   /// @throws std::invalid_argument where the port cannot be had or the host is beyond this machine without a token
-  Server(Engine& engine, SceneFacts facts, std::string_view page, const ServerOptions& options);
+  Server(Source& source, SceneFacts facts, std::string_view page, const ServerOptions& options);
   ~Server();
 
   void start();

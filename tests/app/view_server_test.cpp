@@ -9,6 +9,7 @@
 #include "app/program.h"
 #include "app/view_client.h"
 #include "view/access.h"
+#include "view/engine.h"
 #include "view/lead.h"
 #include "view/server.h"
 
