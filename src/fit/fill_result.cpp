@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <set>
 
+#include "fit/data/units.h"
 #include "fit/next_experiments.h"
 #include "fit/proof/bootstrap.h"
 #include "fit/proof/covariance.h"
@@ -18,12 +18,7 @@ namespace {
 
 bool stopped(const FitOptions& options) { return options.stop != nullptr && options.stop->load(); }
 
-/// Three digits, and no power of ten where a plain number does.
-std::string rounded(double x, int digits = 3) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", digits, x);
-  return text;
-}
+std::string rounded(double x, int digits = 3) { return brief(x, digits); }
 
 std::optional<double> known(double x) { return std::isfinite(x) ? std::optional(x) : std::nullopt; }
 

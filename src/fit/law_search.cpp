@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
+#include "fit/data/units.h"
 #include "fit/forward/offset_model.h"
 #include "scene/document.h"
 
@@ -26,12 +26,8 @@ std::vector<char> with_own_parameters(const std::vector<Curve>& curves, const La
 /// A descent need not go where its derivatives no longer lead: with them wrong by a part e, a cost is found to e² or so.
 double tolerance_of(const DerivativeCheck& check) { return std::clamp(0.01 * check.error * check.error, 1e-10, 1e-4); }
 
-/// Two digits.
-std::string rounded(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", x);
-  return x >= 100.0 ? scene::show(std::round(x)) : text;
-}
+/// Two digits, or whole.
+std::string rounded(double x) { return x >= 100.0 ? scene::show(std::round(x)) : brief(x, 2); }
 
 }  // namespace
 

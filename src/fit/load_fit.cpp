@@ -40,7 +40,7 @@ Parameter parameter_of(const ParameterSpec& spec) {
 
 FitSpec parse_fit(std::string_view text, const std::string& name) {
   const scene::Node root = scene::parse_document(text, name);
-  scene::Problems problems(name);
+  scene::Problems problems(name, {&fit_section()});
   FitSpec fit;
   fit.file = name;
   fit.source = text;

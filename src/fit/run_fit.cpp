@@ -64,6 +64,7 @@ class Run {
  private:
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
   bool search_all(const std::vector<LawSpec>& laws);
+  bool search_one(const LawSpec& law);
   std::size_t choose(FitResult& result) const;
   void count_runs(FitResult& result) const;
 
@@ -72,6 +73,7 @@ class Run {
   FitMemory memory_;
   FitCurves curves_;
   Searches searches_;
+  std::vector<std::string> left_out_;  ///< a sentence for each law that does not run
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
@@ -79,27 +81,36 @@ class Run {
 bool Run::search_all(const std::vector<LawSpec>& laws) {
   for (const LawSpec& law : laws) {
     try {
-      searches_.push_back(std::make_unique<LawSearch>(spec_, law, curves_, options_));
-    } catch (const std::exception&) {
+      if (!search_one(law)) return false;
+    } catch (const SceneError&) {
+      throw;  // a mistake of the file, which all laws may share
+    } catch (const std::runtime_error& error) {
       if (stopped()) return false;  // a forward run that was halted is no fault of the law
-      throw;
+      if (laws.size() == 1) throw;
+      left_out_.push_back("The law " + law.name + " is left out: " + error.what());
     }
-    LawSearch& search = *searches_.back();
-    LawMemory& known = memory_[law.name];
-    search.search(known, [&](const MultiStart& so_far) {
-      if (options_.remember) options_.remember(memory_);
-      if (!options_.progress) return;
-      FitProgress p{law.name, "starts", so_far.starts.size(), static_cast<std::size_t>(spec_.search.starts)};
-      if (!so_far.basins.empty()) {
-        p.best_rms = rms_at(search.problem(), so_far.basins.front().scaled);
-        p.found = so_far.basins.front().found;
-      }
-      p.forward_runs = search.forward_runs();
-      options_.progress(p);
-    });
-    if (!search.found().complete) return false;
   }
   return true;
+}
+
+/// False where it was stopped. Throws std::runtime_error where the law does not run anywhere.
+bool Run::search_one(const LawSpec& law) {
+  auto search = std::make_unique<LawSearch>(spec_, law, curves_, options_);
+  search->search(memory_[law.name], [&](const MultiStart& so_far) {
+    if (options_.remember) options_.remember(memory_);
+    if (!options_.progress) return;
+    FitProgress p{law.name, "starts", so_far.starts.size(), static_cast<std::size_t>(spec_.search.starts)};
+    if (!so_far.basins.empty()) {
+      p.best_rms = rms_at(search->problem(), so_far.basins.front().scaled);
+      p.found = so_far.basins.front().found;
+    }
+    p.forward_runs = search->forward_runs();
+    options_.progress(p);
+  });
+  const bool complete = search->found().complete;
+  if (complete) search->optimum();  // says why there is none
+  searches_.push_back(std::move(search));
+  return complete;
 }
 
 /// Ranks the laws; the number of the one that the data support.
@@ -159,6 +170,7 @@ FitResult Run::to_end() {
   result.area = size.area;
   result.height = size.height;
   const bool all = search_all(laws);
+  if (all && searches_.empty()) throw std::runtime_error(left_out_.front() + "; nor does any other run");
   std::size_t chosen = 0;
   std::vector<std::string> about_laws;
   if (laws.size() > 1) {
@@ -172,13 +184,13 @@ FitResult Run::to_end() {
   }
   LawSearch& search = *searches_[chosen];
   if (!search.found().basins.empty() || all) {
-    search.optimum();  // says why there is none
     fill_proof(search, spec_, curves_, options_, result);
     result.tissue = tissue_of_fit(search, result, spec_);
   } else {
     result.starts_planned = spec_.search.starts;
   }
   result.complete = all && !stopped();
+  about_laws.insert(about_laws.end(), left_out_.begin(), left_out_.end());
   result.conclusions.insert(result.conclusions.begin(), about_laws.begin(), about_laws.end());
   for (std::string& sentence : result.conclusions) sentence = as_sentence(std::move(sentence));
   count_runs(result);

@@ -1,8 +1,8 @@
 #include "fit/tissue_of_fit.h"
 
-#include <cstdio>
 #include <variant>
 
+#include "fit/data/units.h"
 #include "fit/forward/offset_model.h"
 #include "scene/parametric_variant.h"
 #include "scene/tissue_file.h"
@@ -16,17 +16,11 @@ scene::ParametricVariant experiment(const SceneText& scene, const std::vector<st
 
 Tissue own_tissue(const FitSpec& spec) { return experiment(scene_of(spec, {}), {}).tissue_with({}); }
 
-std::string rounded(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g", x);
-  return text;
-}
-
 std::string interval_text(const ParameterResult& p) {
   const std::optional<Interval> ci = p.ci95();
   if (!ci) return "how sure: unknown";
-  return "95 %: " + (ci->low_open ? std::string("open") : rounded(ci->low)) + " to " +
-         (ci->high_open ? std::string("open") : rounded(ci->high));
+  return "95 %: " + (ci->low_open ? std::string("open") : brief(ci->low)) + " to " +
+         (ci->high_open ? std::string("open") : brief(ci->high));
 }
 
 /// A line of a comment for each parameter that is no key of [tissue].
@@ -65,11 +59,11 @@ std::string tissue_of_fit(const LawSearch& search, const FitResult& result, cons
     tissue_values.push_back(values[p]);
   }
   std::string text = "# Fitted by `glisson fit " + spec.file.filename().string() + "`: " + spec.title + "\n";
-  text += "# Law " + result.law + "; fitted curves met to " + rounded(result.rms_fit) + " N rms";
-  if (result.rms_heldout) text += ", held-out ones to " + rounded(*result.rms_heldout) + " N";
+  text += "# Law " + result.law + "; fitted curves met to " + brief(result.rms_fit) + " N rms";
+  if (result.rms_heldout) text += ", held-out ones to " + brief(*result.rms_heldout) + " N";
   text += ".\n";
   for (const ParameterResult& p : result.parameters) {
-    text += "#   " + p.parameter.name + " = " + rounded(p.value) + (p.parameter.unit.empty() ? "" : " ") +
+    text += "#   " + p.parameter.name + " = " + brief(p.value) + (p.parameter.unit.empty() ? "" : " ") +
             p.parameter.unit + ", " + interval_text(p) + ", " + p.verdict + "\n";
   }
   text += other_keys(search, values) + "\n";

@@ -82,7 +82,7 @@ std::size_t index_of(const Expanded& expanded, const std::string& variant, const
 
 Node experiment_of(const Node& root, std::span<const Override> overrides, const std::filesystem::path& base,
                    const std::string& variant, const std::string& file) {
-  Problems problems(file);
+  Problems problems(file, {&scene_section(), &variant_section()});
   Expanded expanded = expand(root, overrides, base, problems);
   problems.throw_if_any();
   return std::move(expanded.variants[index_of(expanded, variant, file)]);
@@ -159,7 +159,7 @@ void ParametricVariant::set(Node& root, std::span<const Place> places, std::span
 Variant ParametricVariant::with(std::span<const double> values) const {
   Node experiment = experiment_;
   set(experiment, places_, values);
-  Problems problems(name_);
+  Problems problems(name_, {&scene_section(), &variant_section()});
   Variant variant = read_variant(experiment, base_, problems);
   problems.throw_if_any();
   return variant;
@@ -168,7 +168,7 @@ Variant ParametricVariant::with(std::span<const double> values) const {
 Tissue ParametricVariant::tissue_with(std::span<const double> values) const {
   Node node = tissue_;
   set(node, tissue_places_, values);
-  Problems problems(name_);
+  Problems problems(name_, {&scene_section(), &variant_section()});
   Tissue tissue;
   read_section(tissue_section(), node, &tissue, {problems, "tissue", node.where});
   problems.throw_if_any();

@@ -8,10 +8,14 @@
 
 namespace glisson::scene {
 
+struct SectionSpec;
+
 /// Collects what is wrong; a fault that several variants inherit is said once.
 class Problems {
  public:
-  explicit Problems(std::string file) : file_(std::move(file)) {}
+  /// @param sections  of the whole document: where a key that is unknown in its place may be at home
+  explicit Problems(std::string file, std::vector<const SectionSpec*> sections = {})
+      : file_(std::move(file)), sections_(std::move(sections)) {}
 
   /// @param path  dotted key; empty where the whole scene is meant
   void add(const Origin& where, const std::string& path, const std::string& what);
@@ -20,6 +24,7 @@ class Problems {
   /// `file:line:column: path`, or `file: --set KEY`.
   std::string locate(const Origin& where, const std::string& path) const;
   const std::string& file() const { return file_; }
+  const std::vector<const SectionSpec*>& sections() const { return sections_; }
   /// @throws SceneError with one line for each problem; does nothing where there is none
   void throw_if_any();
 
@@ -29,6 +34,7 @@ class Problems {
     std::string path, what;
   };
   std::string file_;
+  std::vector<const SectionSpec*> sections_;
   std::vector<Problem> found_;
   std::size_t complaints_ = 0;
 };

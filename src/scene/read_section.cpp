@@ -20,14 +20,59 @@ std::vector<const KeySpec*> keys_of(const SectionSpec& section, const KindSpec* 
   return keys;
 }
 
-std::string unknown_key(const SectionSpec& section, const KindSpec* kind, const std::string& word) {
+/// A section of the document and the heading under which it is written.
+struct Headed {
+  const SectionSpec* section;
+  std::string path;  ///< "motion.implicit"; empty: the top of the file
+  bool list = false;
+
+  std::string heading() const {
+    if (path.empty()) return "the top of the file";
+    return list ? "[[" + path + "]]" : "[" + path + "]";
+  }
+};
+
+/// All sections of a document, those nearer to its top first.
+std::vector<Headed> headed_sections(const std::vector<const SectionSpec*>& roots) {
+  std::vector<Headed> all;
+  for (const SectionSpec* root : roots) all.push_back({root, ""});
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto go_down = [&](const SectionSpec& section, const std::string& path) {
+      for (const KeySpec& key : section.keys) {
+        if (key.section) all.push_back({key.section, join_path(path, key.name), key.shape == Shape::list});
+      }
+    };
+    const Headed here = all[i];
+    go_down(*here.section, here.path);
+    for (const KindSpec& kind : here.section->kinds) go_down(kind.section, here.path);
+  }
+  return all;
+}
+
+/// Where a key exists, e.g. "[motion]", in the sections' own keys before those of their kinds; empty: nowhere.
+std::string home_of_key(const std::string& key, const std::vector<const SectionSpec*>& roots) {
+  const std::vector<Headed> all = headed_sections(roots);
+  for (const Headed& h : all) {
+    if (h.section->find(key)) return h.heading();
+  }
+  for (const Headed& h : all) {
+    for (const KindSpec& kind : h.section->kinds) {
+      if (kind.section.find(key)) return h.heading() + " of kind \"" + kind.section.name + "\"";
+    }
+  }
+  return "";
+}
+
+std::string unknown_key(const SectionSpec& section, const KindSpec* kind, const std::string& word,
+                        const std::vector<const SectionSpec*>& roots) {
   std::vector<std::string> known = section.other_words;
   if (!section.kinds.empty()) known.push_back("kind");
   for (const KeySpec* key : keys_of(section, kind)) known.push_back(key->name);
   if (const std::string meant = nearest(word, known); !meant.empty() && meant != word) {
     return "unknown key; did you mean " + quoted(meant) + "?";
   }
-  if (const std::string home = home_of_key(word); !home.empty()) return "unknown key here; it belongs in " + home;
+  if (const std::string home = home_of_key(word, roots); !home.empty())
+    return "unknown key here; it belongs in " + home;
   return "unknown key; known here: " + listed(known);
 }
 
@@ -186,7 +231,8 @@ void read_section(const SectionSpec& section, const Node& node, void* target, co
     if (key) {
       read_member(*key, member, own ? target : filled, place);
     } else {
-      place.problems.add(member.where, join_path(place.path, member.key), unknown_key(section, kind, member.key));
+      place.problems.add(member.where, join_path(place.path, member.key),
+                         unknown_key(section, kind, member.key, place.problems.sections()));
     }
   }
   if (complete) check_missing(keys_of(section, kind), node, place);

@@ -201,7 +201,7 @@ Variant scene::read_variant(const Node& experiment, const std::filesystem::path&
 Scene parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& base,
                   std::span<const Override> overrides) {
   const Node root = parse_document(text, name);
-  Problems problems(name);
+  Problems problems(name, {&scene_section(), &variant_section()});
   const Expanded expanded = expand(root, overrides, base, problems);
   Scene result;
   result.file = name;

@@ -130,42 +130,4 @@ const SectionSpec& scene_section() {
   return section;
 }
 
-std::string home_of_key(const std::string& key) {
-  for (const SectionSpec* section :
-       {&tissue_section(), &motion_section(), &tool_section(), &output_section(), &fixed_section(), &load_section(),
-        &selection_section(), &chart_section(), &instrument_section(), &capsule_section(), &container_section()}) {
-    const bool list = section != &tissue_section() && section != &motion_section() && section != &output_section() &&
-                      section != &selection_section() && section != &container_section();
-    if (section->find(key)) return list ? "[[" + section->name + "]]" : "[" + section->name + "]";
-  }
-  for (const KindSpec& kind : mesh_section().kinds) {
-    if (kind.section.find(key)) return "[mesh] of kind \"" + kind.section.name + "\"";
-  }
-  for (const KindSpec& kind : law_section().kinds) {
-    if (kind.section.find(key)) return "[tissue.law] of kind \"" + kind.section.name + "\"";
-  }
-  for (const KindSpec& kind : hyperelastic_section().kinds) {
-    if (kind.section.find(key)) return "[tissue.hyperelastic] of kind \"" + kind.section.name + "\"";
-  }
-  for (const SectionSpec* section : {&instrument_section(), &instrument_motion_section()}) {
-    for (const KindSpec& kind : section->kinds) {
-      const bool list = section == &instrument_section();
-      if (!kind.section.find(key)) continue;
-      return (list ? "[[instrument]]" : "[instrument.motion]") + std::string(" of kind \"") + kind.section.name + "\"";
-    }
-  }
-  for (const KindSpec& kind : container_section().kinds) {
-    if (kind.section.find(key)) return "[container] of kind \"" + kind.section.name + "\"";
-  }
-  for (const SectionSpec* section :
-       {&rupture_section(), &tip_section(), &shaft_friction_section(), &stroke_section()}) {
-    if (section->find(key)) return "[" + section->name + "]";
-  }
-  if (implicit_section().find(key)) return "[motion.implicit]";
-  if (fibres_section().find(key)) return "[tissue.fibres]";
-  if (maxwell_section().find(key)) return "[[tissue.maxwell]]";
-  if (scene_section().find(key)) return "the top of the scene";
-  return variant_section().find(key) ? "a section of its own" : "";
-}
-
 }  // namespace glisson::scene

@@ -41,7 +41,4 @@ const SectionSpec& scene_section();              ///< what a scene says once; fi
 /// Complains about a direction that has no length.
 void require_direction(const Vec3d& direction, const Node& table, const std::string& key, const Place& place);
 
-/// The heading under which a key exists, e.g. "[motion]"; empty where no section has it.
-std::string home_of_key(const std::string& key);
-
 }  // namespace glisson::scene

@@ -122,6 +122,16 @@ TEST(Criteria, ChoosesTheSimplestThatIsAsGood) {
                                          testing::HasSubstr("ogden 2 with 4")));
 }
 
+// One sample that counts is too few for any AICc: then AIC chooses, by hand ln 1e4 = 9.2 for one parameter more, and it is said.
+TEST(Criteria, ChoosesByAicWhereNoLawHasAnAicc) {
+  const std::vector<LawFit> laws{{"far", 1, 1e4, 100, 1.0, {}}, {"near", 2, 1.0, 100, 1.0, {}}};
+  const LawRanking r = rank_laws(laws);
+  EXPECT_FALSE(r.corrected);
+  EXPECT_EQ(r.chosen, 1u);
+  EXPECT_NEAR(r.order[1].delta_aicc, std::log(1e4) - 2.0, 1e-12);
+  EXPECT_NE(r.sentence.find("too few for AICc"), std::string::npos) << r.sentence;
+}
+
 TEST(Criteria, RefusesLawsOfDifferentCurves) {
   const std::vector<LawFit> laws{{"a", 1, 10.0, 100, 100.0, {}}, {"b", 2, 8.0, 99, 99.0, {}}};
   EXPECT_THROW(rank_laws(laws), std::invalid_argument);

@@ -212,6 +212,39 @@ TEST_F(RunFit, ChoosesTheLawTheCurvesSupport) {
   }
 }
 
+// A law that finds no equilibrium, its stiffness being beyond any number, does not end the fit of the others; alone it does.
+TEST_F(RunFit, LeavesOutALawThatDoesNotRun) {
+  std::mt19937_64 random(4);
+  write("a.csv", ogden_csv(2500.0, -2.0, 0.01, random));
+  write("block.toml", R"(
+[mesh]
+kind = "box"
+cells = [1, 1, 1]
+size_m = [0.02, 0.02, 0.02]
+[tissue]
+hyperelastic = { kind = "neo_hookean", mu_Pa = 1000, bulk_modulus_Pa = 1e5 }
+[motion]
+integrator = "static"
+[[fixed]]
+set = "z_min"
+[[tool]]
+set = "z_max"
+)");
+  const auto law = [](const std::string& name, const std::string& range) {
+    return "[[law]]\nname = \"" + name + "\"\n[[law.parameter]]\nkey = \"tissue.hyperelastic.mu_Pa\"\n" + range;
+  };
+  const std::string head =
+      "scene = \"block.toml\"\n[forward]\nkind = \"scene\"\n[[data]]\nfiles = [\"a.csv\"]\n"
+      "[search]\nstarts = 1\n[proof]\nbootstrap = 0\nprofiles = false\nnext = false\n";
+  const std::string tame = law("tame", "low = 100\nhigh = 1e4\n"),
+                    wild = law("wild", "low = 1e306\nhigh = 1e307\nscale = \"linear\"\n");
+  const FitResult result = run_fit(spec(head + wild + tame), {});
+  EXPECT_TRUE(result.complete);
+  EXPECT_EQ(result.law, "tame");
+  EXPECT_THAT(result.conclusions, Contains(HasSubstr("The law wild is left out")));
+  EXPECT_THROW(run_fit(spec(head + wild), {}), std::runtime_error);
+}
+
 // tissue.toml is a tissue that scenes take, with the fitted numbers.
 TEST_F(RunFit, WritesATissueForScenes) {
   std::mt19937_64 random(3);
@@ -236,6 +269,8 @@ TEST_F(RunFit, TellsWhatIsWrongWithTheFile) {
     }
     return "";
   };
+  EXPECT_THAT(complaint(kOgdenFit + "found_again = 3\n"),
+              HasSubstr("proof.found_again: unknown key here; it belongs in [search]"));
   EXPECT_THAT(complaint(kOgdenFit + "[serach]\nstarts = 3\n"), HasSubstr("did you mean `search`?"));
   EXPECT_THAT(complaint("scene = \"x.toml\"\n" + kOgdenFit), HasSubstr("contradicts"));
   EXPECT_THAT(complaint(kSpecimen), HasSubstr("missing key `data`"));

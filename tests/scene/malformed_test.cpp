@@ -136,7 +136,7 @@ const std::vector<Mistake> kMistakes{
     {"VariantNamedLikeTheReport", "", "[[variant]]\nname = \"report.html\"\n",
      "s.toml:17:8: name: \"report.html\" is where the report goes; choose another"},
     {"VariantWithASceneKey", "", "[[variant]]\nname = \"a\"\ndescription = \"b\"\n",
-     "s.toml:18:1: description: unknown key here; it belongs in the top of the scene"},
+     "s.toml:18:1: description: unknown key here; it belongs in the top of the file"},
     {"MisspeltKeyOfVariant", "", "[[variant]]\nname = \"a\"\ntool.press.velocity = 1\n",
      "s.toml:18:12: tool.0.velocity: unknown key; did you mean `velocity_mm_s`?"},
     {"VariantChangesAToolThatIsNot", "", "[[variant]]\nname = \"a\"\ntool.punch.depth_mm = 1\n",

@@ -1,7 +1,6 @@
 #include "fit/data/units.h"
 
 #include <array>
-#include <cstdio>
 
 namespace glisson::fit {
 namespace {
@@ -84,12 +83,6 @@ Title split_title(std::string_view title) {
     if (is_unit(unit)) return {std::string(trimmed(title.substr(0, at))), std::string(unit)};
   }
   return {std::string(title), {}};
-}
-
-std::string brief(double value, int digits) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
-  return text.data();
 }
 
 }  // namespace glisson::fit

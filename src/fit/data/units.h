@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "mesh/text.h"
+
 namespace glisson::fit {
 
 enum class Quantity { time, length, force, stress, strain };
@@ -30,6 +32,6 @@ struct Title {
 Title split_title(std::string_view title);
 
 /// A few significant digits, for messages.
-std::string brief(double value, int digits = 4);
+inline std::string brief(double value, int digits = 4) { return detail::number_text(value, digits); }
 
 }  // namespace glisson::fit

@@ -1,8 +1,9 @@
 #include "fit/proof/combination.h"
 
 #include <cmath>
-#include <cstdio>
 #include <utility>
+
+#include "fit/data/units.h"
 
 namespace glisson::fit {
 namespace {
@@ -30,9 +31,7 @@ std::string trade(const Parameter& logarithmic, const Parameter& linear, double 
 }  // namespace
 
 std::string number(double value, const std::string& unit, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return unit.empty() ? text : std::string(text) + " " + unit;
+  return unit.empty() ? brief(value, digits) : brief(value, digits) + " " + unit;
 }
 
 std::string fixed_combination(const Problem& problem, const Covariance& covariance, std::size_t p, std::size_t q,

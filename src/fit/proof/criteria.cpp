@@ -40,14 +40,17 @@ void measure_heldout(LawRank& rank, const std::vector<double>& rms) {
   rank.heldout_error = n > 1.0 ? std::sqrt(scatter / (n - 1.0) / n) : 0.0;
 }
 
-void weigh(std::vector<LawRank>& ranks) {
-  double least_aicc = std::numeric_limits<double>::infinity(), least_bic = least_aicc, sum = 0.0;
+/// What the laws are compared by: AICc where a law has one, else AIC.
+double criterion(const LawRank& r, bool corrected) { return corrected ? r.criteria.aicc : r.criteria.aic; }
+
+void weigh(std::vector<LawRank>& ranks, bool corrected) {
+  double least = std::numeric_limits<double>::infinity(), least_bic = least, sum = 0.0;
   for (const LawRank& r : ranks) {
-    least_aicc = std::min(least_aicc, r.criteria.aicc);
+    least = std::min(least, criterion(r, corrected));
     least_bic = std::min(least_bic, r.criteria.bic);
   }
   for (LawRank& r : ranks) {
-    r.delta_aicc = std::isfinite(least_aicc) ? r.criteria.aicc - least_aicc : 0.0;
+    r.delta_aicc = criterion(r, corrected) - least;
     r.delta_bic = r.criteria.bic - least_bic;
     r.akaike_weight = std::exp(-0.5 * r.delta_aicc);
     sum += r.akaike_weight;
@@ -67,8 +70,9 @@ std::string write(const LawRanking& ranking, std::span<const LawFit> laws, bool 
   if (heldout)
     std::snprintf(text, sizeof text, " errs by %.3g N on the curves held out", c.heldout);
   else
-    std::snprintf(text, sizeof text, " has an AICc %.1f above the least (fewer than two curves are held out)",
-                  c.delta_aicc);
+    std::snprintf(text, sizeof text, " has an %s %.1f above the least (fewer than two curves are held out%s)",
+                  ranking.corrected ? "AICc" : "AIC", c.delta_aicc,
+                  ranking.corrected ? "" : ", and the samples that count are too few for AICc");
   s += text;
   if (ranking.chosen == ranking.best) return s + ", the least of all; no simpler law is as good";
   if (heldout)
@@ -104,7 +108,9 @@ LawRanking rank_laws(std::span<const LawFit> laws) {
     measure_heldout(r, laws[i].heldout_rms);
     out.order.push_back(r);
   }
-  weigh(out.order);
+  out.corrected =
+      std::any_of(out.order.begin(), out.order.end(), [](const LawRank& r) { return std::isfinite(r.criteria.aicc); });
+  weigh(out.order, out.corrected);
   const auto figure = [&](const LawRank& r) { return heldout ? r.heldout : r.delta_aicc; };
   std::stable_sort(out.order.begin(), out.order.end(),
                    [&](const LawRank& a, const LawRank& b) { return figure(a) < figure(b); });

@@ -36,7 +36,7 @@ struct LawFit {
 struct LawRank {
   std::size_t law = 0;  ///< place in the list given
   Criteria criteria;
-  double delta_aicc = 0.0, delta_bic = 0.0;  ///< above the least of all
+  double delta_aicc = 0.0, delta_bic = 0.0;  ///< above the least of all; of AIC where `corrected` is false
   double akaike_weight = 0.0;                ///< exp(−½ Δ) over the sum of all
   double heldout = 0.0;                      ///< √ of the mean square over the held-out curves [N]; 0 without any
   double heldout_error = 0.0;                ///< standard error of it, over curves [N]
@@ -47,6 +47,7 @@ struct LawRanking {
   std::vector<LawRank> order;  ///< best first: by held-out error, by AICc where fewer than two curves are held out
   std::size_t best = 0;        ///< law with the least error or AICc
   std::size_t chosen = 0;      ///< the simplest that is as good
+  bool corrected = true;       ///< false: the samples that count are too few for any law's AICc, and AIC is taken
   std::string sentence;        ///< "the data support 2 parameters: …"
 };
 
