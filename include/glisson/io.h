@@ -55,4 +55,18 @@ void write_vtu(const std::filesystem::path& file, const TetMesh& mesh, std::span
 /// interrupted run leaves a readable collection of the frames written so far.
 void write_pvd(const std::filesystem::path& file, std::span<const std::pair<double, std::filesystem::path>> frames);
 
+/// Reads such a collection. A time or a file that is missing, or a file that is not beside or below the collection, ends it:
+/// what comes before is given.
+/// @throws FileError where the file cannot be read or is no collection
+std::vector<std::pair<double, std::filesystem::path>> read_pvd(const std::filesystem::path& file);
+
+/// A frame as write_vtu wrote it.
+struct ReadFrame {
+  TetMesh mesh;  ///< vertices where they were then [m]; tets as they are, turned inside out or not
+  std::vector<Field> vertex_fields, tet_fields;
+};
+/// Reads a .vtu of tetrahedra alone as it stands, with the fields of these names as far as it has them.
+/// @throws FileError where the file cannot be used as it is
+ReadFrame read_frame(const std::filesystem::path& file, std::span<const std::string> fields);
+
 }  // namespace glisson

@@ -12,12 +12,16 @@ namespace glisson::detail {
 /// A mesh as the file gives it: tets possibly inverted, coordinates not yet scaled.
 struct RawMesh {
   TetMesh mesh;
-  std::map<std::string, std::size_t> skipped;  ///< kind of cell → how many were left out
-  std::vector<std::string> notes;              ///< sentences for the report
+  std::map<std::string, std::size_t> skipped;    ///< kind of cell → how many were left out
+  std::vector<std::string> notes;                ///< sentences for the report
+  std::vector<Field> vertex_fields, tet_fields;  ///< those that were asked for
 };
 
 /// @throws FileError "NAME: WHAT"
 [[noreturn]] void fail(const std::string& name, const std::string& what);
+
+/// All of a file. @throws FileError
+std::string read_bytes(const std::filesystem::path& file);
 
 /// Scales, checks, turns inverted tets and reports.
 /// @param name   the file as the user wrote it
@@ -28,6 +32,8 @@ ImportedMesh finish_import(RawMesh raw, const std::string& name, double scale);
 /// The reader of each format, from the bytes of a file. @throws FileError
 RawMesh read_gmsh(std::string_view bytes, const std::string& name);
 RawMesh read_vtu(std::string_view bytes, const std::string& name);
+/// @param fields  names of arrays to read besides
+RawMesh read_vtu_with(std::string_view bytes, const std::string& name, std::span<const std::string> fields);
 RawMesh read_legacy_vtk(std::string_view bytes, const std::string& name);
 
 /// Reads a mesh from memory as if it were the file `name`, whose ending tells the format. @throws as read_mesh

@@ -35,18 +35,6 @@ const Format& format_of(const std::string& name) {
                  "convert others, for instance with meshio");
 }
 
-std::string read_bytes(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) fail(file.string(), "there is no such file");
-  if (std::filesystem::is_directory(file, error)) fail(file.string(), "this is a folder, not a mesh file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(file.string(), "the file cannot be opened; check its permissions");
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) fail(file.string(), "reading stopped after " + std::to_string(bytes.size()) + " bytes");
-  if (bytes.empty()) fail(file.string(), "the file is empty");
-  return bytes;
-}
-
 std::string skipped_text(const RawMesh& raw) {
   std::string text;
   for (const auto& [kind, count] : raw.skipped) {
@@ -85,6 +73,18 @@ void sort_sets(TetMesh& mesh) {
 }  // namespace
 
 void fail(const std::string& name, const std::string& what) { throw FileError(name + ": " + what); }
+
+std::string read_bytes(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) fail(file.string(), "there is no such file");
+  if (std::filesystem::is_directory(file, error)) fail(file.string(), "this is a folder, not a mesh file");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail(file.string(), "the file cannot be opened; check its permissions");
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (stream.bad()) fail(file.string(), "reading stopped after " + std::to_string(bytes.size()) + " bytes");
+  if (bytes.empty()) fail(file.string(), "the file is empty");
+  return bytes;
+}
 
 ImportedMesh finish_import(RawMesh raw, const std::string& name, double scale) {
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();

@@ -33,8 +33,8 @@ void for_nested(vtkXMLDataElement* parent, std::string_view name, const Use& use
 
 class VtuReader {
  public:
-  VtuReader(vtkXMLDataElement& root, VtuArrays& arrays, const std::string& name)
-      : root_(root), arrays_(arrays), name_(name), grid_(name) {}
+  VtuReader(vtkXMLDataElement& root, VtuArrays& arrays, const std::string& name, std::span<const std::string> fields)
+      : root_(root), arrays_(arrays), name_(name), fields_(fields), grid_(name) {}
 
   RawMesh read() {
     vtkXMLDataElement* unstructured = root_.FindNestedElementWithName("UnstructuredGrid");
@@ -47,7 +47,10 @@ class VtuReader {
     for (auto& [array, values] : regions_) grid_.add_region_array(array, std::move(values));
     for (const auto& [array, values] : sets_) grid_.add_set_array(array, values);
     for (const auto& [array, values] : fibres_) grid_.add_fibre_array(array, values);
-    return grid_.finish();
+    RawMesh raw = grid_.finish();
+    raw.vertex_fields = std::move(vertex_fields_);
+    raw.tet_fields = std::move(tet_fields_);
+    return raw;
   }
 
  private:
@@ -55,14 +58,17 @@ class VtuReader {
   void add_piece(vtkXMLDataElement& piece);
   void add_cells(vtkXMLDataElement& piece, std::uint64_t cells);
   void add_field(vtkXMLDataElement& array);
+  void take_field(vtkXMLDataElement& array, std::uint64_t count, std::vector<Field>& fields);
   vtkXMLDataElement& cell_array(vtkXMLDataElement& piece, const char* name) const;
 
   vtkXMLDataElement& root_;
   VtuArrays& arrays_;
   std::string name_;
+  std::span<const std::string> fields_;
   VtkGrid grid_;
   std::int64_t first_vertex_ = 0;  ///< of the piece
   std::map<std::string, std::vector<double>> regions_, sets_, fibres_;
+  std::vector<Field> vertex_fields_, tet_fields_;
 };
 
 void VtuReader::add_vertices(vtkXMLDataElement& piece) {
@@ -122,6 +128,25 @@ void VtuReader::add_piece(vtkXMLDataElement& piece) {
   for_nested(piece.FindNestedElementWithName("CellData"), kDataArray,
              collect(VtkGrid::is_fibre_array, cells, fibres_, 3));
   for_nested(piece.FindNestedElementWithName("PointData"), kDataArray, collect(VtkGrid::is_set_array, points, sets_));
+  for_nested(piece.FindNestedElementWithName("PointData"), kDataArray,
+             [&](vtkXMLDataElement& array) { take_field(array, points, vertex_fields_); });
+  for_nested(piece.FindNestedElementWithName("CellData"), kDataArray,
+             [&](vtkXMLDataElement& array) { take_field(array, cells, tet_fields_); });
+}
+
+/// Pieces follow each other.
+void VtuReader::take_field(vtkXMLDataElement& array, std::uint64_t count, std::vector<Field>& fields) {
+  const std::string name = attribute(array, "Name");
+  if (std::find(fields_.begin(), fields_.end(), name) == fields_.end()) return;
+  const std::uint64_t components = arrays_.count(array, "NumberOfComponents", 1);
+  if (components != 1 && components != 3) return;
+  const std::vector<double> values = arrays_.read(array, components * count);
+  const auto known = std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; });
+  if (known == fields.end()) {
+    fields.push_back({name, static_cast<int>(components), values});
+  } else {
+    known->values.insert(known->values.end(), values.begin(), values.end());
+  }
 }
 
 void VtuReader::add_field(vtkXMLDataElement& array) {
@@ -140,7 +165,7 @@ void check_root(vtkXMLDataElement* root, const std::string& name) {
   fail(name, "a VTK file of type \"" + type.substr(0, 40) + "\"; tetrahedra come in files of type UnstructuredGrid");
 }
 
-RawMesh parse_and_read(std::string_view bytes, const std::string& name) {
+RawMesh parse_and_read(std::string_view bytes, const std::string& name, std::span<const std::string> fields) {
   std::istringstream stream{std::string(bytes)};
   vtkNew<VtkErrorLog> log;
   vtkNew<vtkXMLDataParser> parser;
@@ -150,17 +175,19 @@ RawMesh parse_and_read(std::string_view bytes, const std::string& name) {
   if (!parsed || !log->first().empty()) fail(name, "it is no XML that VTK can read: " + log->first());
   check_root(parser->GetRootElement(), name);
   VtuArrays arrays(*parser, bytes, name);
-  RawMesh raw = VtuReader(*parser->GetRootElement(), arrays, name).read();
+  RawMesh raw = VtuReader(*parser->GetRootElement(), arrays, name, fields).read();
   if (!log->first().empty()) fail(name, "VTK cannot read it: " + log->first());
   return raw;
 }
 
 }  // namespace
 
-RawMesh read_vtu(std::string_view bytes, const std::string& name) {
+RawMesh read_vtu(std::string_view bytes, const std::string& name) { return read_vtu_with(bytes, name, {}); }
+
+RawMesh read_vtu_with(std::string_view bytes, const std::string& name, std::span<const std::string> fields) {
   start_vtk();
   try {
-    return parse_and_read(bytes, name);
+    return parse_and_read(bytes, name, fields);
   } catch (const std::bad_alloc&) {
     fail(name, "its counts ask for more memory than there is: they are wrong, or the file is too large");
   } catch (const std::length_error&) {
