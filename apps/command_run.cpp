@@ -21,7 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFooter =
-    "Writes DIR/<variant>/{forces.csv, frames.pvd, frames/, summary.json} and DIR/report.html.\n"
+    "Writes DIR/<variant>/{forces.csv, frames.pvd, frames/, view.jsonl, summary.json} and DIR/report.html.\n"
+    "ParaView opens frames.pvd, `glisson view DIR` all of it.\n"
     "A former run in DIR is replaced; a folder that holds anything else is refused.\n"
     "\n"
     "Examples:\n"

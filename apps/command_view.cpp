@@ -1,4 +1,4 @@
-// command_view.cpp — glisson view: a scene that can be touched, in a browser.
+// command_view.cpp — glisson view: a scene that can be touched, or a run as it was recorded, in a browser.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -13,6 +13,7 @@
 #include "report/version.h"
 #include "scene_options.h"
 #include "view/engine.h"
+#include "view/replay.h"
 #include "view/server.h"
 
 namespace glisson::app {
@@ -21,10 +22,12 @@ namespace {
 constexpr const char* kFooter =
     "Runs one variant at the pace of the clock and serves a page to watch and steer it; prints the address to open.\n"
     "Only this machine is let in, and only with the token in the address. Ctrl-C ends it.\n"
+    "SCENE may be the folder that `glisson run` wrote: the same page plays what was recorded.\n"
     "\n"
     "Examples:\n"
     "  glisson view scenes/needle/bovine_liver.toml\n"
     "  glisson view scenes/paper/figure3a.toml --variant v10 --port 8080\n"
+    "  glisson view out/figure3a --variant v10\n"
     "  glisson view scenes/organs/liver.toml --mesh liver.vtu --host 0.0.0.0 --token \"$(openssl rand -hex 16)\"";
 
 struct Options {
@@ -35,6 +38,26 @@ struct Options {
 
 void wait_for_the_end() {
   while (!stop_flag().load()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+}
+
+/// Serves a source until Ctrl-C. @param told  printed before the address
+int serve(view::Source& source, const view::SceneFacts& facts, const std::string& told,
+          const view::ServerOptions& options) {
+  view::Server server(source, facts, live_page(), options);
+  catch_interrupts();
+  source.start();
+  server.start();
+  fmt::print("{}\n{}\nCtrl-C ends it.\n", told, server.url());
+  std::fflush(stdout);
+  wait_for_the_end();
+  server.stop();
+  source.stop();
+  return kDone;
+}
+
+std::string others(const std::string& variant, std::size_t count) {
+  if (count < 2) return {};
+  return fmt::format("variant {}, the first of {}; --variant NAME takes another\n", variant, count);
 }
 
 int view_scene(const Options& options) {
@@ -48,24 +71,40 @@ int view_scene(const Options& options) {
                                .variant = variant.label.empty() ? variant.name : variant.label,
                                .version = std::string(version()),
                                .instruments = engine.forms()};
-  view::Server server(engine, facts, live_page(), options.server);
-  catch_interrupts();
-  engine.start();
-  server.start();
-  if (scene.variants.size() > 1)
-    fmt::print("variant {}, the first of {}; --variant NAME takes another\n", variant.name, scene.variants.size());
-  fmt::print("{}, {} tets\n{}\nCtrl-C ends it.\n", facts.title, engine.tets(), server.url());
-  std::fflush(stdout);
-  wait_for_the_end();
-  server.stop();
-  engine.stop();
-  return kDone;
+  const std::string told =
+      fmt::format("{}{}, {} tets", others(variant.name, scene.variants.size()), facts.title, engine.tets());
+  return serve(engine, facts, told, options.server);
+}
+
+/// What changes a scene changes no recording.
+void require_no_changes(const SceneOptions& options) {
+  const std::string way_out = ": " + options.scene + " is a recorded run, which cannot be changed; give the scene";
+  if (!options.set.empty()) throw std::invalid_argument("--set " + options.set.front() + way_out);
+  if (!options.mesh.empty()) throw std::invalid_argument("--mesh " + options.mesh + way_out);
+  if (options.variants.size() > 1) throw std::invalid_argument("--variant: view shows one variant");
+}
+
+int view_run(const Options& options) {
+  require_no_changes(options.scene);
+  const std::string wanted = options.scene.variants.empty() ? "" : options.scene.variants.front();
+  view::RunFolder run = view::open_run(options.scene.scene, wanted);
+  const view::SceneFacts facts{
+      .title = run.title, .variant = run.label, .version = std::string(version()), .instruments = run.forms};
+  std::string told = wanted.empty() ? others(run.variant, run.variants.size()) : "";
+  told += fmt::format("{}, {} recorded frames, {} s", run.title, run.frames.size(), run.frames.back().time);
+  if (!run.notice.empty()) told += "\n" + run.notice;
+  view::Replay replay(std::move(run));
+  return serve(replay, facts, told, options.server);
+}
+
+int view_any(const Options& options) {
+  return view::is_folder(options.scene.scene) ? view_run(options) : view_scene(options);
 }
 
 }  // namespace
 
 void add_view(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("view", "touch a scene in the browser: push, pull, read the force");
+  CLI::App* command = program.add_subcommand("view", "touch a scene in the browser, or play a recorded run");
   const auto options = std::make_shared<Options>();
   add_scene_options(*command, options->scene);
   command->add_option("--port", options->server.port, "port to listen on; 0: one that is free")
@@ -91,7 +130,7 @@ void add_view(CLI::App& program, Action& action) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->footer(kFooter);
-  command->callback([options, &action] { action = [options] { return view_scene(*options); }; });
+  command->callback([options, &action] { action = [options] { return view_any(*options); }; });
 }
 
 }  // namespace glisson::app

@@ -17,7 +17,7 @@ struct Payload {
   std::size_t bytes() const { return (index ? 4 : 0) + 4 * values; }
 };
 
-bool known(std::uint8_t kind) { return kind >= 1 && kind <= 12; }
+bool known(std::uint8_t kind) { return (kind >= 1 && kind <= 12) || kind == 15 || kind == 16; }
 
 Payload payload_of(CommandKind kind) {
   switch (kind) {
@@ -25,6 +25,8 @@ Payload payload_of(CommandKind kind) {
     case CommandKind::drag:
       return {false, 3};
     case CommandKind::speed:
+    case CommandKind::seek:
+    case CommandKind::rate:
       return {false, 1};
     case CommandKind::grab:
       return {true, 3};
@@ -46,13 +48,19 @@ void put_u32(std::string& out, std::uint32_t value) {
   for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<char>(value >> shift & 255u));
 }
 
+bool in_range(CommandKind kind, float x) {
+  if (kind == CommandKind::speed) return x > 0.0f && x <= kFastest;
+  if (kind == CommandKind::seek) return x >= 0.0f && x <= kLatest;
+  if (kind == CommandKind::rate) return x >= kSlowestRate && x <= kFastestRate;
+  return std::abs(x) <= kFarthest;
+}
+
 std::string range_trouble(const Command& command, std::size_t values) {
   for (std::size_t i = 0; i < values; ++i) {
     const float x = command.values[i];
     if (!std::isfinite(x)) return "a number is not finite";
     if (command.kind == CommandKind::parameter) continue;  // the engine knows its range
-    if (command.kind == CommandKind::speed ? !(x > 0.0f && x <= kFastest) : std::abs(x) > kFarthest)
-      return "a number is out of range";
+    if (!in_range(command.kind, x)) return "a number is out of range";
   }
   if (command.kind == CommandKind::pause && command.index > 1) return "pause is 0 or 1";
   return {};

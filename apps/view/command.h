@@ -27,7 +27,9 @@ enum class CommandKind : std::uint8_t {
   play = 9,        ///< back to rest, then the scene's own motion
   parameter = 10,  ///< index: which one, values[0]: to what; back to rest
   take = 11,       ///< asks for the lead
-  give = 12        ///< gives the lead away
+  give = 12,       ///< gives the lead away
+  seek = 15,       ///< of a recorded run: to this time [s]
+  rate = 16        ///< of a recorded run: simulated time over that of the clock
 };
 
 struct Command {
@@ -42,6 +44,8 @@ struct Command {
 inline constexpr std::size_t kLongestCommand = 24;
 /// Lengths and speeds beyond are refused, whatever the scene [m], [m/s].
 inline constexpr float kFarthest = 100.0f, kFastest = 10.0f;
+/// Times and rates of a recorded run beyond are refused [s], [-].
+inline constexpr float kLatest = 1e9f, kSlowestRate = 1e-4f, kFastestRate = 1e3f;
 
 /// @return the command, or why the bytes are none
 std::variant<Command, std::string> decode_command(std::span<const std::uint8_t> bytes);

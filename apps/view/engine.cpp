@@ -122,7 +122,9 @@ void Engine::apply(const Command& command) {
       return change_parameter(command.index, static_cast<double>(command.values[0]));
     case CommandKind::take:
     case CommandKind::give:
-      return;  // the server's
+    case CommandKind::seek:
+    case CommandKind::rate:
+      return;  // the server's, a replay's
   }
 }
 

@@ -88,6 +88,11 @@ json tool_json(const ToolInfo& x) {
           {"most_m", x.most_depth},  {"speed_m_s", x.speed},       {"can_play", x.can_play}};
 }
 
+json recorded_json(const Recorded* recorded) {
+  if (recorded == nullptr) return nullptr;
+  return {{"start_s", recorded->start}, {"end_s", recorded->end}, {"frames", recorded->frames}};
+}
+
 }  // namespace
 
 std::string keyframe_message(const Surface& surface, std::uint32_t number) {
@@ -161,6 +166,7 @@ std::string hello_message(const Source& source, const SceneFacts& facts, const s
               {"can_grab", source.can_grab()},
               {"tools", std::move(tools)},
               {"parameters", std::move(parameters)},
+              {"recorded", recorded_json(source.recorded())},
               {"instruments", json::parse(facts.instruments)}}
       .dump();
 }

@@ -20,7 +20,7 @@ constexpr const char* kMarkText = "Results of glisson. A new run into this folde
 /// Whether a run writes a file of that name.
 bool is_ours(const fs::path& file) {
   static const std::regex name(
-      R"(\.glisson|report\.html|scene\.toml|fit\.toml|fit\.json|fit\.state\.json|tissue\.toml|summary\.json|forces(_.+)?\.csv|events\.csv|frames\.pvd|frame_\d+\.vtu|.+\.part)");
+      R"(\.glisson|report\.html|scene\.toml|fit\.toml|fit\.json|fit\.state\.json|tissue\.toml|summary\.json|forces(_.+)?\.csv|events\.csv|frames\.pvd|view\.jsonl|frame_\d+\.vtu|.+\.part)");
   return std::regex_match(file.filename().string(), name);
 }
 

@@ -87,7 +87,12 @@ void VariantRecorder::on_start(const Variant&, const Simulation& simulation) {
   });
 }
 
-void VariantRecorder::on_built(const BuiltVariant& built) { surface_->set_instruments(built.instruments); }
+void VariantRecorder::on_built(const BuiltVariant& built) {
+  surface_->set_instruments(built.instruments);
+  guarded([&] {
+    if (frames_) view_ = std::make_unique<ViewFile>(options_.folder, options_.scene, variant_, built.instruments);
+  });
+}
 
 void VariantRecorder::on_event(const RunEvent& event) {
   events_.push_back(event);
@@ -114,6 +119,7 @@ void VariantRecorder::on_frame(const Simulation& simulation) {
   surface_->add(simulation, fields);
   guarded([&] {
     if (frames_) frames_->add(simulation, fields);
+    if (view_) view_->add(simulation.time());
   });
 }
 

@@ -2,7 +2,7 @@
 //
 //   on_sample ─▶ forces.csv, forces_<name>.csv          on_end ─▶ summary.json
 //   on_event  ─▶ events.csv, where there are instruments
-//   on_frame  ─▶ frames.pvd, frames/*.vtu, surface with instruments
+//   on_frame  ─▶ frames.pvd, frames/*.vtu, view.jsonl, surface with instruments
 //
 // Everything on the disk is valid at any moment. A disk that refuses stops the run; the reason is kept in error().
 #pragma once
@@ -20,6 +20,7 @@
 #include "report/frame_series.h"
 #include "report/output_file.h"
 #include "report/surface_recorder.h"
+#include "report/view_file.h"
 
 namespace glisson {
 
@@ -71,6 +72,7 @@ class VariantRecorder : public RunObserver {
   std::unique_ptr<LineFile> event_file_;
   std::vector<RunEvent> events_;
   std::unique_ptr<FrameSeries> frames_;
+  std::unique_ptr<ViewFile> view_;
   std::unique_ptr<SurfaceRecorder> surface_;
   std::vector<std::vector<double>> data_;
   RunSummary summary_;

@@ -5,54 +5,12 @@ import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { WEB_DIR, openBrowser, openPage, settle } from "./browser.mjs";
-import { forceOfRun, openLive, program } from "./live_under_test.mjs";
+import { NEEDLE as SCENE, forceOfRun, openLive, program, state, until } from "./live_under_test.mjs";
 import { pixelsOf } from "./pixels.mjs";
-
-const SCENE = `title = "A needle, live"
-[mesh]
-kind = "box"
-cells = [6, 6, 6]
-size_m = [0.03, 0.03, 0.03]
-[tissue]
-youngs_modulus_Pa = 5000
-poisson_ratio = 0.4
-[motion]
-damping_rate_per_s = 100
-[[fixed]]
-set = "z_min"
-[[instrument]]
-kind = "needle"
-name = "needle"
-tip_m = [0.0155, 0.0145, 0.0305]
-diameter_mm = 1.2
-zone_mm = 5
-rupture.force_N = 0.1
-tip.cutting_N = 0.1
-friction = { static_in_N_m = 10, static_out_N_m = 10, dynamic_in_N_m = 6, dynamic_out_N_m = 6, viscous_in_N_s_m2 = 100, viscous_out_N_s_m2 = 100 }
-[instrument.motion]
-kind = "press"
-velocity_mm_s = 20
-depth_mm = 10
-ramp_s = 0.002
-hold_s = 1
-[output]
-frames = 2
-`;
 
 /** Software WebGL tells of its slow reading when a picture is taken; that is no trouble of the page. */
 const own = (troubles) => troubles.filter((text) => !text.includes("GL Driver Message"));
-const state = (page) => page.evaluate(() => ({ ...document.querySelector(".live").dataset }));
 const shots = join(WEB_DIR, "live-screenshots");
-
-/** Waits for what the page says of itself; simulated time, not the clock, decides: the machine may be slow. */
-async function until(page, holds, what) {
-  for (let i = 0; i < 600; i++) {
-    const now = await state(page);
-    if (holds(now)) return now;
-    await page.waitForTimeout(100);
-  }
-  assert.fail(`${what}: ${JSON.stringify(await state(page))}`);
-}
 
 /** Lets the simulation go on by a time [s], which a restart would take back. */
 async function later(page, seconds) {

@@ -13,12 +13,71 @@ export function program() {
   return found.find((path) => existsSync(path)) ?? null;
 }
 
+/** A needle that goes 10 mm into a small block. */
+export const NEEDLE = `title = "A needle, live"
+[mesh]
+kind = "box"
+cells = [6, 6, 6]
+size_m = [0.03, 0.03, 0.03]
+[tissue]
+youngs_modulus_Pa = 5000
+poisson_ratio = 0.4
+[motion]
+damping_rate_per_s = 100
+[[fixed]]
+set = "z_min"
+[[instrument]]
+kind = "needle"
+name = "needle"
+tip_m = [0.0155, 0.0145, 0.0305]
+diameter_mm = 1.2
+zone_mm = 5
+rupture.force_N = 0.1
+tip.cutting_N = 0.1
+friction = { static_in_N_m = 10, static_out_N_m = 10, dynamic_in_N_m = 6, dynamic_out_N_m = 6, viscous_in_N_s_m2 = 100, viscous_out_N_s_m2 = 100 }
+[instrument.motion]
+kind = "press"
+velocity_mm_s = 20
+depth_mm = 10
+ramp_s = 0.002
+hold_s = 1
+[output]
+frames = 2
+`;
+
+/** What the page says of itself. */
+export const state = (page) => page.evaluate(() => ({ ...document.querySelector(".live").dataset }));
+
+/** Waits for that; simulated time, not the clock, decides: the machine may be slow. */
+export async function until(page, holds, what) {
+  for (let i = 0; i < 600; i++) {
+    const now = await state(page);
+    if (holds(now)) return now;
+    await page.waitForTimeout(100);
+  }
+  throw new Error(`${what}: ${JSON.stringify(await state(page))}`);
+}
+
 /** Writes a scene, serves it, and knows its address; `close` ends the program as Ctrl-C does. */
 export async function openLive(scene, extra = []) {
   const folder = mkdtempSync(join(tmpdir(), "glisson-live-"));
   const file = join(folder, "scene.toml");
   writeFileSync(file, scene);
-  const child = spawn(program(), ["view", file, ...extra], { stdio: ["ignore", "pipe", "pipe"] });
+  return { ...(await serve(folder, file, extra)), file, folder };
+}
+
+/** Runs a scene and serves what that wrote, `run` its folder. */
+export async function openReplay(scene, extra = []) {
+  const folder = mkdtempSync(join(tmpdir(), "glisson-replay-"));
+  const [file, run] = [join(folder, "scene.toml"), join(folder, "out")];
+  writeFileSync(file, scene);
+  const ran = spawnSync(program(), ["run", file, "--out", run, "--quiet"], { encoding: "utf8" });
+  if (ran.status !== 0) throw new Error(ran.stderr);
+  return { ...(await serve(folder, run, extra)), run, folder };
+}
+
+async function serve(folder, shown, extra) {
+  const child = spawn(program(), ["view", shown, ...extra], { stdio: ["ignore", "pipe", "pipe"] });
   let said = "";
   const url = await new Promise((done, fail) => {
     child.stderr.on("data", (text) => (said += text));
@@ -38,7 +97,7 @@ export async function openLive(scene, extra = []) {
       });
       child.kill("SIGINT");
     });
-  return { url, file, folder, close };
+  return { url, close };
 }
 
 /** Force along the tool's direction at the end of `glisson run` of the same scene [N]. */

@@ -3,10 +3,11 @@ import uPlot from "uplot";
 import { xAxis, yAxis } from "../charts/axes.ts";
 import { strokeOf } from "../charts/line_style.ts";
 import { h } from "../page/dom.ts";
-import { currentTheme, onTheme } from "../page/theme.ts";
+import { currentTheme, onTheme, themeColour } from "../page/theme.ts";
 
 const HEIGHT = 168; // CSS px
 const MOST_POINTS = 1500; // drawn of a line
+const MARK_RADIUS = 4.5; // CSS px
 
 export class ForcePlot {
   readonly element: HTMLElement;
@@ -14,6 +15,7 @@ export class ForcePlot {
   private x: readonly number[] = [];
   private y: readonly number[] = [];
   private first = 0;
+  private mark = -1;
 
   constructor(
     title: string,
@@ -48,11 +50,12 @@ export class ForcePlot {
     onTheme(() => this.plot.redraw(false));
   }
 
-  /** Shows a line from point `first` on. */
-  show(x: readonly number[], y: readonly number[], first = 0): void {
+  /** Shows a line from point `first` on, with a ring at point `mark`; −1: none. */
+  show(x: readonly number[], y: readonly number[], first = 0, mark = -1): void {
     this.x = x;
     this.y = y;
     this.first = first;
+    this.mark = mark;
     this.plot.setData(
       [
         [0, 1],
@@ -93,6 +96,17 @@ export class ForcePlot {
     ctx.lineJoin = "round";
     ctx.strokeStyle = strokeOf({ colour: 0, dash: [] }, currentTheme());
     ctx.stroke();
+    if (this.mark >= 0 && this.mark < this.x.length) {
+      const at = [
+        plot.valToPos(this.x[this.mark]! * this.xScale, "x", true),
+        plot.valToPos(this.y[this.mark]!, "y", true),
+      ] as const;
+      ctx.beginPath();
+      ctx.arc(...at, MARK_RADIUS * devicePixelRatio, 0, 2 * Math.PI);
+      ctx.fillStyle = themeColour("--page");
+      ctx.fill();
+      ctx.stroke();
+    }
     ctx.restore();
   }
 }

@@ -28,6 +28,17 @@ export class History {
     if (this.time.length > 1.1 * MOST) this.columns().forEach((column) => column.splice(0, column.length - MOST));
   }
 
+  /** Number of the sample nearest before a time [s], −1 where there is none. */
+  indexAt(time: number): number {
+    let [low, high] = [0, this.time.length];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.time[middle]! <= time) low = middle + 1;
+      else high = middle;
+    }
+    return Math.min(this.time.length - 1, Math.max(0, low - 1));
+  }
+
   clear(epoch: number): void {
     this.epoch = epoch;
     this.columns().forEach((column) => (column.length = 0));

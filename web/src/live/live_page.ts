@@ -1,13 +1,24 @@
 // live_page.ts — the page of the live view: what is where, and which act sends what.
 import type * as THREE from "three";
 import { formatInteger, formatSignificant } from "../format/number.ts";
-import { button, download, h } from "../page/dom.ts";
+import { button, download, h, select } from "../page/dom.ts";
 import { toggleTheme } from "../page/theme.ts";
 import { Connection, type Status } from "./connection.ts";
 import { ForcePlot } from "./force_plot.ts";
 import { History } from "./history.ts";
 import { LiveView } from "./live_view.ts";
-import type { Command, Hello, Keyframe, LiveFrame, Role, Samples, SlowState, TextMessage } from "./protocol.ts";
+import { ReplayControls } from "./replay_controls.ts";
+import type {
+  Command,
+  Hello,
+  Keyframe,
+  LiveFrame,
+  Recorded,
+  Role,
+  Samples,
+  SlowState,
+  TextMessage,
+} from "./protocol.ts";
 import { Slider } from "./slider.ts";
 
 const PLOT_EVERY = 125; // ms
@@ -25,6 +36,7 @@ export class LivePage {
   private waiting: Command | null = null; // the newest place or drag; one goes out a frame
   private sliders: { depth: Slider; side: Slider; third: Slider; speed: Slider }[] = [];
   private parameters: Slider[] = [];
+  private replay: ReplayControls | null = null; // of a recorded run, in place of hands
   private readonly plots = {
     depth: new ForcePlot("Force [N] against depth", "depth [mm]", 1000),
     time: new ForcePlot("Force [N] over time", "time [s]", 1),
@@ -79,6 +91,7 @@ export class LivePage {
     const edges = check("Edges", (on) => (this.view.edges = on));
     this.view.onEdges = (on) => (edges.querySelector("input")!.checked = on);
     const pulls = check("Drag pulls tissue", (on) => (this.view.pulls = on), true);
+    pulls.classList.add("live-hand");
     const tools = h(
       "div",
       { class: "live-view-tools" },
@@ -136,9 +149,32 @@ export class LivePage {
     document.title = `${hello.title} – Glisson`;
     this.title.textContent = hello.title;
     this.subtitle.textContent = `${hello.variant} · ${formatInteger(hello.tets)} tetrahedra · ${formatInteger(hello.vertices)} vertices`;
+    this.element.dataset["recorded"] = String(hello.recorded !== null);
+    if (hello.recorded) return this.startReplay(hello, hello.recorded);
     this.buildRun(hello);
     this.buildTools(hello);
     this.buildParameters(hello);
+  }
+
+  private startReplay(hello: Hello, recorded: Recorded): void {
+    this.replay = new ReplayControls(
+      recorded,
+      (command) => this.send(command),
+      (command) => this.sendSoon(command),
+    );
+    this.run.replaceChildren(this.replay.element);
+    this.subtitle.textContent += ` · ${formatInteger(recorded.frames)} recorded frames`;
+    this.view.canvas.addEventListener("keydown", (event) => {
+      if (event.key !== " ") return;
+      event.preventDefault();
+      if (this.role.drives) this.replay?.toggle();
+    });
+    if (hello.tools.length > 1) {
+      const tools = hello.tools.map((tool, i) => ({ value: String(i), label: tool.name }));
+      this.tools.replaceChildren(select("Force of", tools, "0", (i) => (this.tool = Number(i))));
+    }
+    this.tools.hidden = hello.tools.length < 2;
+    this.changes.hidden = true;
   }
 
   private showStatus(status: Status): void {
@@ -288,8 +324,14 @@ export class LivePage {
       this.number("Force", fixed(force, 3), "N");
       this.number("Depth", fixed(1000 * tool.depth, 2), "mm");
     }
-    this.number("Pull", fixed(Math.hypot(...frame.grabForce), 3), "N");
     this.number("Time", fixed(frame.time, 2), "s");
+    this.element.dataset["epoch"] = String(frame.epoch);
+    this.element.dataset["time"] = String(frame.time);
+    if (this.replay) {
+      this.replay.follow(frame);
+      return this.number("Pace", frame.paused ? "paused" : `${formatSignificant(frame.realtimeFactor, 3)} ×`, "");
+    }
+    this.number("Pull", fixed(Math.hypot(...frame.grabForce), 3), "N");
     const pace = frame.building
       ? "making the body"
       : frame.stopped
@@ -301,8 +343,6 @@ export class LivePage {
     this.number("Computing", `${fixed(frame.p50, 0)} / ${fixed(frame.p99, 0)}`, "µs");
     this.number("Dropped", formatInteger(frame.dropped), "frames");
     this.number("Latency", this.connection.latency === null ? "–" : fixed(this.connection.latency, 0), "ms");
-    this.element.dataset["epoch"] = String(frame.epoch);
-    this.element.dataset["time"] = String(frame.time);
     if (this.pauseButton) this.pauseButton.textContent = frame.paused ? "Go on" : "Pause";
     const targetless = frame.playing || (frame.time < 0.05 && frame.epoch !== this.followed);
     if (targetless && tool) this.sliders[this.tool]?.depth.follow(1000 * tool.depth);
@@ -314,8 +354,9 @@ export class LivePage {
   private drawPlots(): void {
     const { time, depth, force } = this.history;
     if (document.hidden || !this.hello || this.hello.tools.length === 0) return;
-    this.plots.depth.show(depth[this.tool]!, force[this.tool]!);
-    this.plots.time.show(time, force[this.tool]!, Math.max(0, time.length - SEEN));
+    const mark = this.replay && this.frame ? this.history.indexAt(this.frame.time) : -1;
+    this.plots.depth.show(depth[this.tool]!, force[this.tool]!, 0, mark);
+    this.plots.time.show(time, force[this.tool]!, this.replay ? 0 : Math.max(0, time.length - SEEN), mark);
   }
 
   // ---- what goes out

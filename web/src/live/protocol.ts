@@ -21,6 +21,12 @@ export interface ParameterInfo {
   value: number;
 }
 
+export interface Recorded {
+  start_s: number;
+  end_s: number;
+  frames: number;
+}
+
 export interface Hello {
   type: "hello";
   title: string;
@@ -33,6 +39,7 @@ export interface Hello {
   tools: ToolInfo[];
   parameters: ParameterInfo[];
   instruments: InstrumentForm[];
+  recorded: Recorded | null; // a run that is played, not simulated
 }
 
 export interface Role {
@@ -210,6 +217,8 @@ export type Command =
   | { kind: "drag"; values: [number, number, number] }
   | { kind: "pause"; index: 0 | 1 }
   | { kind: "parameter"; index: number; values: [number] }
+  | { kind: "seek"; values: [number] } // of a recorded run, to this time [s]
+  | { kind: "rate"; values: [number] }
   | { kind: "letGo" | "step" | "reset" | "play" | "take" | "give" };
 
 const KINDS: Record<Command["kind"], number> = {
@@ -225,6 +234,8 @@ const KINDS: Record<Command["kind"], number> = {
   parameter: 10,
   take: 11,
   give: 12,
+  seek: 15,
+  rate: 16,
 };
 
 /** The bytes of a command. */

@@ -1,0 +1,31 @@
+// view_file.h — view.jsonl: what it takes beside frames and forces to show a run again (`glisson view DIR`).
+//
+//   {"format":1,"scene":…,"label":…,"tools":[{"name","instrument","direction"}],"held":[…],"driven":[…],"instruments":[form]}
+//   {"time_s":…,"instruments":[place]}                                                              a line for each frame
+//
+// Lines are whole whatever ends the run. Forms and places are those of web/src/report_data.ts.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "glisson/scene.h"
+#include "report/output_file.h"
+
+namespace glisson {
+
+class ViewFile {
+ public:
+  /// Writes the first line. @param scene  name of the scene @throws OutputError
+  ViewFile(const std::filesystem::path& folder, const std::string& scene, const Variant& variant,
+           std::vector<std::shared_ptr<Instrument>> instruments);
+  /// The frame of a time [s]. @throws OutputError
+  void add(double time);
+
+ private:
+  LineFile file_;
+  std::vector<std::shared_ptr<Instrument>> instruments_;
+};
+
+}  // namespace glisson

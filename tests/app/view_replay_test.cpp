@@ -1,0 +1,237 @@
+// A recorded run is shown as it was: at the times of its frames the bytes of its frames, between them straight lines; its
+// forces are those of its tables; what broke off is shown as far as it goes; memory stays within its bound.
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "app/program.h"
+#include "glisson/io.h"
+#include "view/force_lines.h"
+#include "view/replay.h"
+#include "view/run_folder.h"
+
+namespace glisson::test {
+namespace {
+
+namespace fs = std::filesystem;
+using view::CommandKind;
+
+class ViewReplay : public ProgramTest {
+ protected:
+  fs::path recorded(const std::string& more = "") {
+    const Outcome outcome =
+        run({"run", write("s.toml", small_scene(more)), "--out", "o", "--quiet", "--set", "output.frames=6"});
+    EXPECT_THAT(outcome, Exits(0));
+    return folder_ / "o";
+  }
+  std::string why(const fs::path& folder, const std::string& variant = "") {
+    try {
+      view::open_run(folder, variant);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "it was opened";
+  }
+};
+
+/// Asks a replay for a state, as the server does.
+struct Watching {
+  explicit Watching(view::RunFolder folder) : replay(std::move(folder)) { replay.start(); }
+  ~Watching() { replay.stop(); }
+  /// The first state after the replay has heard of a command.
+  view::Snapshot after(view::Command command) {
+    command.sequence = ++sequence;
+    replay.post(command);
+    for (int i = 0; i < 20000; ++i) {
+      if (const view::Snapshot* state = replay.latest(); state != nullptr && state->echo == sequence) return *state;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ADD_FAILURE() << "no state within 20 s";
+    return {};
+  }
+  view::Snapshot at(double time) { return after({.kind = CommandKind::seek, .values = {static_cast<float>(time)}}); }
+
+  view::Replay replay;
+  std::uint32_t sequence = 0;
+};
+
+std::vector<Vec3d> places(const view::Snapshot& state) {
+  std::vector<Vec3d> x = state.shape->mesh.vertices;
+  for (std::size_t v = 0; v < x.size(); ++v) x[v] += state.displacement[v];
+  return x;
+}
+
+double apart(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double most = 0.0;
+  for (std::size_t v = 0; v < std::min(a.size(), b.size()); ++v) most = std::max(most, norm(a[v] - b[v]));
+  return most;
+}
+
+// The time of a command has 32 bits: 4e-9 s at 0.05 s, at 20 mm/s less than 1e-10 m.
+constexpr double kSamePlace = 1e-9;
+
+TEST_F(ViewReplay, ShowsEachFrameAndStraightLinesBetween) {
+  const view::RunFolder run = view::open_run(recorded(), "");
+  ASSERT_EQ(run.frames.size(), 6u);
+  std::vector<std::vector<Vec3d>> frames;
+  for (const view::RunFrame& frame : run.frames) frames.push_back(read_frame(frame.file, {}).mesh.vertices);
+  Watching watching(run);
+  for (const std::size_t i : {5u, 0u, 3u, 1u, 4u, 2u})
+    EXPECT_LT(apart(places(watching.at(run.frames[i].time)), frames[i]), kSamePlace) << "frame " << i;
+  const view::Snapshot between = watching.at(0.75 * run.frames[2].time + 0.25 * run.frames[3].time);
+  std::vector<Vec3d> line;
+  for (std::size_t v = 0; v < frames[2].size(); ++v) line.push_back(frames[2][v] * 0.75 + frames[3][v] * 0.25);
+  EXPECT_LT(apart(places(between), line), kSamePlace);
+  EXPECT_EQ(between.shape_number, 1u) << "one mesh, one shape";
+}
+
+TEST_F(ViewReplay, MarksWhatIsHeldAndDriven) {
+  const view::RunFolder run = view::open_run(recorded(), "");
+  Watching watching(run);
+  const view::Snapshot state = watching.at(0.0);
+  const auto& marks = state.shape->marks;
+  EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), 9) << "the bottom";
+  EXPECT_GT(std::count(marks.begin(), marks.end(), 2), 0) << "where the tool presses";
+}
+
+TEST_F(ViewReplay, TellsTheForcesOfTheTables) {
+  const fs::path folder = recorded();
+  auto table = read_csv(folder / "main/forces.csv");
+  const view::RunFolder run = view::open_run(folder, "");
+  ASSERT_EQ(run.forces.size(), table["time_s"].size());
+  Watching watching(run);
+  view::ForceSample sample;
+  for (std::size_t i = 0; i < table["time_s"].size(); ++i) {
+    ASSERT_TRUE(watching.replay.next_sample(sample));
+    EXPECT_EQ(sample.force[0], static_cast<float>(table["force_N"][i]));
+    EXPECT_EQ(sample.depth[0], static_cast<float>(table["depth_m"][i]));
+  }
+  EXPECT_FALSE(watching.replay.next_sample(sample));
+  const std::size_t last = table["time_s"].size() - 1;
+  const view::Snapshot end = watching.at(1e9);
+  EXPECT_EQ(end.tools.at(0).depth, table["depth_m"][last]);
+  EXPECT_NEAR(dot(end.tools.at(0).force, run.tools.at(0).direction), table["force_N"][last], 1e-12);
+}
+
+TEST_F(ViewReplay, PlaysToItsEndStepsAndGoesBack) {
+  const view::RunFolder run = view::open_run(recorded(), "");
+  Watching watching(run);
+  EXPECT_TRUE(watching.at(0.0).paused);
+  EXPECT_EQ(watching.after({.kind = CommandKind::step}).time, run.frames[1].time);
+  watching.after({.kind = CommandKind::rate, .values = {100.0f}});
+  view::Snapshot state = watching.after({.kind = CommandKind::play});
+  for (int i = 0; i < 5000 && !state.paused; ++i) {
+    if (const view::Snapshot* next = watching.replay.latest()) state = *next;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(state.paused);
+  EXPECT_EQ(state.time, run.frames.back().time);
+  EXPECT_EQ(watching.after({.kind = CommandKind::reset}).time, run.frames.front().time);
+}
+
+// A hand moves nothing: the body is that of the recording whatever is asked.
+TEST_F(ViewReplay, BearsNoHand) {
+  const view::RunFolder run = view::open_run(recorded(), "");
+  Watching watching(run);
+  const std::vector<Vec3d> before = places(watching.at(0.02));
+  for (const CommandKind kind : {CommandKind::place, CommandKind::grab, CommandKind::drag, CommandKind::parameter})
+    EXPECT_EQ(apart(places(watching.after({.kind = kind, .values = {0.01f, 0.0f, 0.0f}})), before), 0.0);
+  EXPECT_FALSE(watching.replay.can_grab());
+  EXPECT_TRUE(watching.replay.parameters().empty());
+}
+
+TEST_F(ViewReplay, KeepsMemoryWithinItsBound) {
+  const view::RunFolder run = view::open_run(recorded(), "");
+  view::FrameCache cache(run,
+                         3 * 27 * sizeof(Vec3d) + 27 * sizeof(Vec3d) + 48 * sizeof(Tet));  // the mesh, three frames
+  for (int round = 0; round < 3; ++round) {
+    for (std::size_t i = 0; i < run.frames.size(); ++i) ASSERT_EQ(cache.at(i)->displacement.size(), 27u);
+    EXPECT_LE(cache.bytes(), 5 * 27 * sizeof(Vec3d) + 48 * sizeof(Tet));
+  }
+  EXPECT_EQ(cache.reads(), 18u) << "one after the other, none is kept until its turn comes again";
+  cache.at(5);
+  EXPECT_EQ(cache.reads(), 18u) << "the last is still there";
+}
+
+TEST_F(ViewReplay, OpensWhatBrokeOffAsFarAsItGoes) {
+  const fs::path folder = recorded();
+  fs::remove(folder / "main/summary.json");
+  fs::remove(folder / "main/frames/frame_0004.vtu");
+  std::string forces = read_text(folder / "main/forces.csv");
+  const std::size_t whole = static_cast<std::size_t>(std::count(forces.begin(), forces.end(), '\n')) - 1;
+  std::ofstream(folder / "main/forces.csv", std::ios::binary) << forces.substr(0, forces.size() - 9);
+  const view::RunFolder run = view::open_run(folder, "");
+  EXPECT_EQ(run.frames.size(), 4u);
+  EXPECT_EQ(run.forces.size(), whole - 1) << "the half line is none";
+  EXPECT_NE(run.notice.find("Only 4 of 6 frames"), std::string::npos) << run.notice;
+  EXPECT_NE(run.notice.find("broke off"), std::string::npos) << run.notice;
+  Watching watching(run);
+  EXPECT_EQ(watching.at(1e9).time, run.frames[3].time);
+}
+
+// A frame that is there by half is told when its turn comes, and the one before it stays.
+TEST_F(ViewReplay, TellsOfAHalfWrittenFrame) {
+  const fs::path folder = recorded(), bad = folder / "main/frames/frame_0003.vtu";
+  fs::resize_file(bad, fs::file_size(bad) / 2);
+  const view::RunFolder run = view::open_run(folder, "");
+  Watching watching(run);
+  const std::vector<Vec3d> second = read_frame(run.frames[2].file, {}).mesh.vertices;
+  const view::Snapshot state = watching.at(run.frames[3].time);
+  EXPECT_NE(state.notice.find("frame_0003.vtu"), std::string::npos) << state.notice;
+  EXPECT_LT(apart(places(state), second), kSamePlace);
+  EXPECT_EQ(watching.at(run.frames[5].time).notice, "");
+}
+
+TEST_F(ViewReplay, RunsWithoutAViewFileStillOpen) {
+  const fs::path folder = recorded();
+  fs::remove(folder / "main/view.jsonl");
+  const view::RunFolder run = view::open_run(folder, "");
+  EXPECT_NE(run.notice.find("view.jsonl"), std::string::npos);
+  EXPECT_FALSE(run.forces.empty());
+  std::ofstream(folder / "main/view.jsonl") << "{\"format\":1,\"tools\":\n";
+  EXPECT_NE(view::open_run(folder, "").notice.find("damaged"), std::string::npos);
+}
+
+TEST_F(ViewReplay, SaysWhatIsNoRunAndTheWayOut) {
+  fs::create_directories(folder_ / "empty");
+  EXPECT_NE(why(folder_ / "empty").find("give the folder that `glisson run SCENE --out DIR` wrote"), std::string::npos);
+  const fs::path folder = recorded();
+  EXPECT_NE(why(folder, "other").find("it has main"), std::string::npos);
+  EXPECT_EQ(why(folder / "main"), "it was opened") << "the folder of a variant does, too";
+  fs::remove_all(folder / "main/frames");
+  EXPECT_NE(why(folder).find("run the scene again"), std::string::npos);
+  ASSERT_THAT(run({"run", "s.toml", "--out", "o2", "--quiet", "--set", "output.frames=0"}), Exits(0));
+  EXPECT_NE(why(folder_ / "o2").find("--set output.frames=30"), std::string::npos);
+}
+
+TEST_F(ViewReplay, CommandRefusesWhatCannotBe) {
+  recorded();
+  const auto refused = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"view", "o"});
+    const Outcome outcome = run(options);
+    EXPECT_THAT(outcome, Exits(2));
+    return outcome.err;
+  };
+  EXPECT_NE(refused({"--set", "tissue.poisson_ratio=0.3"}).find("cannot be changed; give the scene"),
+            std::string::npos);
+  EXPECT_NE(refused({"--variant", "nine"}).find("it has main"), std::string::npos);
+}
+
+// A table longer than what is kept loses lines, not its peak, nor its end.
+TEST(ForceLines, ThinningKeepsPeakAndEnd) {
+  std::vector<view::ForceLine> lines;
+  for (int i = 0; i < 1000; ++i) lines.push_back({.time = 0.001 * i, .depth = {}, .force = {1.0}});
+  lines[617].force[0] = -9.0;
+  lines[999].force[0] = 0.5;
+  const std::vector<view::ForceLine> few = view::thinned(lines, 90);
+  EXPECT_LE(few.size(), 90u);
+  EXPECT_TRUE(std::any_of(few.begin(), few.end(), [](const auto& x) { return x.time == 0.617 && x.force[0] == -9.0; }));
+  EXPECT_EQ(few.back().time, 0.999);
+  EXPECT_EQ(view::forces_at(lines, 0.0005).force[0], 1.0);
+  EXPECT_NEAR(view::forces_at(lines, 0.6165).force[0], -4.0, 1e-9);
+  EXPECT_EQ(view::forces_at(lines, 7.0).time, 0.999);
+}
+
+}  // namespace
+}  // namespace glisson::test
