@@ -17,7 +17,7 @@ struct Payload {
   std::size_t bytes() const { return (index ? 4 : 0) + 4 * values; }
 };
 
-bool known(std::uint8_t kind) { return (kind >= 1 && kind <= 12) || kind == 15 || kind == 16; }
+bool known(std::uint8_t kind) { return kind >= 1 && kind <= 16; }
 
 Payload payload_of(CommandKind kind) {
   switch (kind) {
@@ -31,9 +31,12 @@ Payload payload_of(CommandKind kind) {
     case CommandKind::grab:
       return {true, 3};
     case CommandKind::pause:
+    case CommandKind::colour:
       return {true, 0};
     case CommandKind::parameter:
       return {true, 1};
+    case CommandKind::cut:
+      return {true, 6};
     default:
       return {};
   }
@@ -63,6 +66,8 @@ std::string range_trouble(const Command& command, std::size_t values) {
     if (!in_range(command.kind, x)) return "a number is out of range";
   }
   if (command.kind == CommandKind::pause && command.index > 1) return "pause is 0 or 1";
+  if (command.kind == CommandKind::colour && command.index >= kFields) return "there is no such field";
+  if (command.kind == CommandKind::cut && command.index > 1) return "a cut begins, 1, or goes on, 0";
   return {};
 }
 

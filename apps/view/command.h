@@ -28,6 +28,8 @@ enum class CommandKind : std::uint8_t {
   parameter = 10,  ///< index: which one, values[0]: to what; back to rest
   take = 11,       ///< asks for the lead
   give = 12,       ///< gives the lead away
+  cut = 13,        ///< index: 1 puts a blade there, 0 leads it there, cutting; its edge, from where to where [m]
+  colour = 14,     ///< index: Field that this viewer wants to see; needs no lead
   seek = 15,       ///< of a recorded run: to this time [s]
   rate = 16        ///< of a recorded run: simulated time over that of the clock
 };
@@ -37,11 +39,15 @@ struct Command {
   std::uint8_t tool = 0;
   std::uint32_t sequence = 0;  ///< counted by the viewer; a frame tells the last one that acted
   std::uint32_t index = 0;
-  std::array<float, 3> values{};
+  std::array<float, 6> values{};
 };
 
+/// What a surface can be coloured by. Displacement is the page's own affair: it has that anyway.
+enum class Field : std::uint8_t { none, intensity, shape, pressure };
+inline constexpr std::size_t kFields = 4;
+
 /// No message is longer [bytes].
-inline constexpr std::size_t kLongestCommand = 24;
+inline constexpr std::size_t kLongestCommand = 36;
 /// Lengths and speeds beyond are refused, whatever the scene [m], [m/s].
 inline constexpr float kFarthest = 100.0f, kFastest = 10.0f;
 /// Times and rates of a recorded run beyond are refused [s], [-].

@@ -15,9 +15,10 @@ using app::WallClock;
 
 constexpr auto kPublishEvery = std::chrono::milliseconds(8);
 constexpr auto kPublishAtRest = std::chrono::milliseconds(200);
-constexpr double kHandSpeed = 0.5;      // of what is drawn, at most [m/s]
-constexpr double kHandReach = 0.5;      // of the body's size
-constexpr double kPatch = 0.05;         // radius of what is grabbed, of the body's size
+constexpr auto kShapeEvery = std::chrono::milliseconds(100);  // of a body that is being cut
+constexpr double kHandSpeed = 0.5;                            // of what is drawn, at most [m/s]
+constexpr double kHandReach = 0.5;                            // of the body's size
+constexpr double kPatch = 0.05;                               // radius of what is grabbed, of the body's size
 constexpr double kHandStiffness = 4.0;  // of E times the patch's radius: stiffer than the tissue below it, 2 E a
 constexpr std::size_t kEventsTold = 32;
 
@@ -48,6 +49,7 @@ Engine::Engine(const Variant& variant, MeshLoader load) : load_(std::move(load))
   for (const auto& instrument : body_->built().instruments) forms.push_back(instrument_form_json(*instrument));
   forms_ = forms.dump();
   can_grab_ = body_->grab() != nullptr;
+  why_no_cut_ = body_->why_no_cut();
   const TetMesh& mesh = body_->built().simulation.mesh();
   vertices_ = mesh.vertices.size();
   tets_ = mesh.tets.size();
@@ -73,11 +75,12 @@ void Engine::run() {
   while (!stop_.load(std::memory_order_relaxed)) {
     const std::uint64_t late = schedule.skip_late();
     schedule.wait();
-    const bool asked = apply_commands();
+    const bool asked = apply_commands() || (body_->cut() != nullptr && body_->cut()->waits());
     if (restarted_) {  // making a body anew is no delay of a frame
       schedule = app::FrameSchedule(kFrame);
       restarted_ = false;
     }
+    work_on_cut();
     const bool moves = !stopped_ && (!paused_ || frames_to_step_ > 0);
     if (moves) {
       dropped_ += late;
@@ -108,6 +111,8 @@ void Engine::apply(const Command& command) {
     case CommandKind::drag:
     case CommandKind::let_go:
       return apply_grab(command);
+    case CommandKind::cut:
+      return apply_cut(command);
     case CommandKind::pause:
       paused_ = command.index == 1;
       return;
@@ -122,6 +127,7 @@ void Engine::apply(const Command& command) {
       return change_parameter(command.index, static_cast<double>(command.values[0]));
     case CommandKind::take:
     case CommandKind::give:
+    case CommandKind::colour:
     case CommandKind::seek:
     case CommandKind::rate:
       return;  // the server's, a replay's
@@ -155,14 +161,33 @@ void Engine::apply_grab(const Command& command) {
     const std::vector<Vec3d> at = simulation.positions();
     hand_at_ = at[command.index];
     hand_ = {};
-    std::vector<std::uint32_t> patch;
-    for (std::uint32_t v = 0; v < at.size(); ++v) {
-      if (norm(at[v] - hand_at_) <= kPatch * reach_) patch.push_back(v);
-    }
+    std::vector<std::uint32_t> patch = patch_around(simulation.mesh(), at, command.index, kPatch * reach_);
     const double stiffness = kHandStiffness * variant_.tissue.youngs_modulus * kPatch * reach_;
     grab->hold(std::move(patch), simulation.displacement(), simulation.masses(), stiffness);
   }
   hand_target_ = shortened(to - hand_at_, kHandReach * reach_);
+}
+
+void Engine::apply_cut(const Command& command) {
+  HandCut* cut = body_->cut();
+  if (cut == nullptr) return;
+  std::array<double, 6> x{};
+  std::copy(command.values.begin(), command.values.end(), x.begin());
+  const BladeEdge edge{{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
+  if (command.index == 1) {
+    cut->begin(edge);
+  } else {
+    cut->draw(edge);
+  }
+}
+
+/// What the library refuses is told, and the body stays as it is.
+void Engine::work_on_cut() {
+  try {
+    body_->work_on_cut(WallClock::now());
+  } catch (const std::exception& error) {
+    notice_ = error.what();
+  }
 }
 
 /// The hand follows the mouse at a bounded speed: a jump of the mouse is no blow.
@@ -260,9 +285,11 @@ void Engine::fill_events(Snapshot& state) const {
 
 void Engine::publish() {
   const Simulation& simulation = body_->built().simulation;
-  if (!shape_ || shape_key_ != body_->shape_key()) {
+  const WallClock::time_point now = WallClock::now();
+  if (!shape_ || (shape_key_ != body_->shape_key() && now - shaped_ >= kShapeEvery)) {
     shape_ = body_->shape();
     shape_key_ = body_->shape_key();
+    shaped_ = now;
     ++shape_number_;
   }
   Snapshot& state = latest_.back();
@@ -279,8 +306,11 @@ void Engine::publish() {
   state.building = building_;
   state.stopped = stopped_;
   state.shape = shape_;
-  const std::span<const Vec3d> u = simulation.displacement();
+  state.tissues = body_->tissues();
+  const std::span<const Vec3d> u = simulation.displacement(), v = simulation.velocity();
   state.displacement.assign(u.begin(), u.end());
+  state.velocity.clear();
+  if (want_velocity_.load(std::memory_order_relaxed)) state.velocity.assign(v.begin(), v.end());
   state.tools.resize(tools_.size());
   state.playing = false;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
@@ -290,6 +320,9 @@ void Engine::publish() {
   const GrabSpring* grab = body_->grab();
   state.grabbing = grab != nullptr && grab->holds();
   state.grab_force = grab != nullptr ? grab->force() : Vec3d{};
+  const HandCut* cut = body_->cut();
+  state.cut_area = cut != nullptr ? cut->area() : 0.0;
+  state.cut_longest = cut != nullptr ? cut->longest() : 0.0;
   state.parameters = values_;
   state.speeds = speeds_;
   fill_events(state);

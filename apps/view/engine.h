@@ -46,12 +46,16 @@ class Engine final : public Source {
   const Snapshot* latest() override { return latest_.take(); }
   bool next_sample(ForceSample& sample) override { return samples_.pop(sample); }
 
+  void want_velocity(bool wanted) override { want_velocity_.store(wanted, std::memory_order_relaxed); }
+
   const std::vector<ToolInfo>& tools() const override { return tools_; }
   const std::vector<ParameterInfo>& parameters() const override { return parameters_; }
   const std::string& forms() const override { return forms_; }
   bool can_grab() const override { return can_grab_; }
   std::size_t vertices() const override { return vertices_; }
   std::size_t tets() const override { return tets_; }
+  bool has_stress() const override { return true; }
+  const std::string& why_no_cut() const override { return why_no_cut_; }
 
  private:
   void run();
@@ -59,6 +63,8 @@ class Engine final : public Source {
   void apply(const Command& command);
   void apply_tool(const Command& command);
   void apply_grab(const Command& command);
+  void apply_cut(const Command& command);
+  void work_on_cut();
   void draw_hand();
   void rebuild(const Variant& variant, bool keep_targets, bool play);
   void change_parameter(std::size_t parameter, double value);
@@ -75,12 +81,13 @@ class Engine final : public Source {
   std::vector<ParameterInfo> parameters_;
   std::string forms_;
   bool can_grab_ = false;
+  std::string why_no_cut_;
   std::size_t vertices_ = 0, tets_ = 0;
 
   Ring<Command, 1024> commands_;
   Ring<ForceSample, 8192> samples_;
   Latest<Snapshot> latest_;
-  std::atomic<bool> stop_{false};
+  std::atomic<bool> stop_{false}, want_velocity_{false};
   std::thread thread_;
 
   // Of the engine's thread.
@@ -96,7 +103,7 @@ class Engine final : public Source {
   std::shared_ptr<const BodyShape> shape_;
   std::size_t shape_key_ = 0;
   ComputeTimes compute_;
-  app::WallClock::time_point published_, measured_;
+  app::WallClock::time_point published_, measured_, shaped_;
   double measured_time_ = 0.0, realtime_factor_ = 0.0;
   std::string notice_;
 };

@@ -25,17 +25,26 @@ class GrabSpring final : public Interaction {
   Vec3d force() const { return force_; }  ///< on the tissue, of the last step [N]
 
   void attached(const BodyView&, double) override {}
-  void body_changed(const BodyView&, std::span<const std::uint32_t>) override {}
+  /// Holds copies of what it holds; springs go on in the ratio of the masses there are then.
+  void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double, double) override { return vertices_; }
   void add_forces(const InteractionStep& step) override;
+  void moved(const InteractionStep& step) override;
   double squared_frequency() const override;
 
  private:
+  void share_out(std::span<const double> masses);
+
   std::vector<std::uint32_t> vertices_;  // ascending
-  std::vector<Vec3d> held_at_;           // displacement when taken hold of [m]
+  std::vector<Vec3d> held_at_, last_;    // displacement when taken hold of, and of the last step's end [m]
   std::vector<double> share_;            // mᵢ / Σm [-]
   double stiffness_ = 0.0, damping_ = 0.0, squared_frequency_ = 0.0;
   Vec3d way_{}, force_{};
 };
+
+/// Vertices within a ball about one of them that hang together with it there: a cut through the ball parts them.
+/// @param positions  present, per vertex [m]
+std::vector<std::uint32_t> patch_around(const TetMesh& mesh, const std::vector<Vec3d>& positions, std::uint32_t vertex,
+                                        double radius);
 
 }  // namespace glisson::view

@@ -64,15 +64,18 @@ LiveBody::LiveBody(const Variant& variant, const MeshLoader& load) : variant_(va
   }
   variant_.simulation.track_energies = false;
   variant_.simulation.exact_steps = false;  // a search for h* takes more than a frame
+  variant_.simulation.mesh_changes = true;
   lead_tools();
   lead_instruments();
   built_ = std::make_unique<BuiltVariant>(variant_, load);
+  tissues_ = std::make_shared<const std::map<int, Tissue>>(region_tissues(variant_, built_->simulation.mesh()));
   const double size = diagonal(built_->simulation.mesh());
   for (ToolInfo& tool : tools_) {
     if (!(tool.most_depth > 0.0)) tool.most_depth = 0.4 * size;
     tool.least_depth = -0.25 * tool.most_depth;
   }
   attach_grab();
+  take_blade();
 }
 
 void LiveBody::lead_tools() {
@@ -115,6 +118,18 @@ void LiveBody::attach_grab() {
     grab_ = grab;
   } catch (const std::invalid_argument&) {  // the integrator bears none
   }
+}
+
+void LiveBody::take_blade() {
+  try {
+    cut_ = std::make_unique<HandCut>(built_->simulation);
+  } catch (const std::exception& error) {
+    why_no_cut_ = error.what();
+  }
+}
+
+void LiveBody::work_on_cut(HandCut::Clock::time_point now) {
+  if (cut_ && cut_->work(now)) ++hand_cuts_;
 }
 
 double LiveBody::depth(std::size_t tool) const {

@@ -7,6 +7,7 @@
 
 #include "glisson/scene.h"
 #include "view/grab_spring.h"
+#include "view/hand_cut.h"
 #include "view/live_way.h"
 #include "view/snapshot.h"
 
@@ -25,25 +26,37 @@ class LiveBody {
   std::size_t ways() const { return ways_.size(); }
   /// Null where the integrator bears no interactions.
   GrabSpring* grab() { return grab_.get(); }
+  /// Null where the body cannot be cut; why says so.
+  HandCut* cut() { return cut_.get(); }
+  const HandCut* cut() const { return cut_.get(); }
+  const std::string& why_no_cut() const { return why_no_cut_; }
+  /// Lets the hand's blade go on where that is due. @throws std::invalid_argument
+  void work_on_cut(HandCut::Clock::time_point now);
 
   /// Depth and force of a tool at force_time() [m], [N].
   double depth(std::size_t tool) const;
   Vec3d force(std::size_t tool) const;
   ToolState tool_state(std::size_t tool) const;
   std::shared_ptr<const BodyShape> shape() const;
-  /// Changes when the shape does: a cut makes vertices, and nothing here removes tets.
-  std::size_t shape_key() const { return built_->simulation.mesh().vertices.size(); }
+  const std::shared_ptr<const std::map<int, Tissue>>& tissues() const { return tissues_; }
+  /// Changes when the shape does: a scene's blade makes vertices, and nothing here removes tets.
+  std::size_t shape_key() const { return built_->simulation.mesh().vertices.size() + hand_cuts_; }
 
  private:
   void lead_tools();
   void lead_instruments();
   void attach_grab();
+  void take_blade();
 
   Variant variant_;
   std::vector<ToolInfo> tools_;
   std::vector<std::shared_ptr<LiveWay>> ways_;
   std::unique_ptr<BuiltVariant> built_;
+  std::shared_ptr<const std::map<int, Tissue>> tissues_;
   std::shared_ptr<GrabSpring> grab_;
+  std::unique_ptr<HandCut> cut_;
+  std::string why_no_cut_;
+  std::size_t hand_cuts_ = 0;
 };
 
 /// Of the box about a mesh [m].

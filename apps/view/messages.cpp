@@ -12,6 +12,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMostSamples = 4000;
+constexpr std::size_t kFieldAt = 3, kRangeAt = 56;  // of a frame
 
 /// Little-endian numbers one after the other.
 class Bytes {
@@ -58,7 +59,8 @@ std::uint8_t flags_of(const Snapshot& state) {
 void put_head(Bytes& out, const Snapshot& state, std::uint32_t keyframe) {
   out.u8(static_cast<std::uint8_t>(MessageKind::frame));
   out.u8(flags_of(state));
-  out.u16(static_cast<std::uint16_t>(state.tools.size()));
+  out.u8(static_cast<std::uint8_t>(state.tools.size()));
+  out.u8(static_cast<std::uint8_t>(Field::none));
   out.u32(keyframe);
   out.u32(state.epoch);
   out.u32(state.echo);
@@ -110,25 +112,40 @@ std::string keyframe_message(const Surface& surface, std::uint32_t number) {
 }
 
 std::string frame_message(const Snapshot& state, const Surface& surface, std::uint32_t keyframe) {
-  const std::vector<double> intensity = surface.intensity(state.displacement);
-  double reach = 0.0, strongest = 0.0;
+  double reach = 0.0;
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const Vec3d& u = state.displacement[surface.mesh_vertex(i)];
     for (std::size_t k = 0; k < 3; ++k) reach = std::max(reach, std::isfinite(u[k]) ? std::abs(u[k]) : 0.0);
-    strongest = std::max(strongest, std::isfinite(intensity[i]) ? intensity[i] : 0.0);
   }
   Bytes out;
   out.reserve(256 + 7 * surface.size());
   put_head(out, state, keyframe);
   out.f32(reach);
-  out.f32(strongest);
+  out.f32(0.0);  // with_field puts the range here
+  out.f32(0.0);
   for (const ToolState& tool : state.tools) put_tool(out, tool);
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const Vec3d& u = state.displacement[surface.mesh_vertex(i)];
     for (std::size_t k = 0; k < 3; ++k) out.u16(fraction16(u[k], reach));
   }
-  for (const double s : intensity) out.u8(fraction8(s, strongest));
   return out.take();
+}
+
+std::string with_field(std::string frame, Field field, const std::vector<double>& values) {
+  double low = field == Field::shape ? 1.0 : 0.0, high = low;  // what there is at rest is in the range
+  for (const double x : values) {
+    if (!std::isfinite(x)) continue;
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  Bytes tail;
+  tail.f32(low);
+  tail.f32(high);
+  for (const double x : values) tail.u8(fraction8(x - low, high - low));
+  const std::string bytes = tail.take();
+  frame[kFieldAt] = static_cast<char>(field);
+  frame.replace(kRangeAt, 8, bytes, 0, 8);
+  return frame.append(bytes, 8, std::string::npos);
 }
 
 std::string samples_message(const std::deque<ForceSample>& history, std::size_t from, std::size_t tools) {
@@ -164,6 +181,8 @@ std::string hello_message(const Source& source, const SceneFacts& facts, const s
               {"vertices", source.vertices()},
               {"tets", source.tets()},
               {"can_grab", source.can_grab()},
+              {"why_no_cut", source.why_no_cut()},
+              {"has_stress", source.has_stress()},
               {"tools", std::move(tools)},
               {"parameters", std::move(parameters)},
               {"recorded", recorded_json(source.recorded())},
@@ -175,7 +194,7 @@ std::string role_message(bool drives, bool led, std::size_t viewers) {
   return json{{"type", "role"}, {"drives", drives}, {"led", led}, {"viewers", viewers}}.dump();
 }
 
-std::string state_message(const Snapshot& state) {
+std::string state_message(const Snapshot& state, std::size_t pieces) {
   json events = json::array();
   for (const LiveEvent& x : state.events) {
     events.push_back({{"tool", x.tool}, {"event", x.what}, {"time_s", x.time}, {"depth_m", x.depth}});
@@ -184,6 +203,9 @@ std::string state_message(const Snapshot& state) {
               {"epoch", state.epoch},
               {"parameters", state.parameters},
               {"speeds_m_s", state.speeds},
+              {"cut_area_m2", state.cut_area},
+              {"cut_longest_s", state.cut_longest},
+              {"pieces", pieces},
               {"events_before", state.events_before},
               {"events", std::move(events)}}
       .dump();

@@ -35,6 +35,8 @@ class Replay final : public Source {
   const std::vector<ParameterInfo>& parameters() const override { return parameters_; }
   const std::string& forms() const override { return run_.forms; }
   bool can_grab() const override { return false; }
+  const std::string& why_no_cut() const override { return why_no_cut_; }
+  bool has_stress() const override { return false; }
   std::size_t vertices() const override { return vertices_; }
   std::size_t tets() const override { return tets_; }
   const Recorded* recorded() const override { return &recorded_; }
@@ -56,6 +58,7 @@ class Replay final : public Source {
   Recorded recorded_;
   std::vector<ParameterInfo> parameters_;
   std::size_t vertices_ = 0, tets_ = 0;
+  std::string why_no_cut_ = "a recorded run is shown as it was";
 
   Ring<Command, 1024> commands_;
   Ring<ForceSample, 8192> samples_;

@@ -5,6 +5,7 @@
 #include "view/server.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -31,6 +32,7 @@ using Clock = std::chrono::steady_clock;
 using Message = std::shared_ptr<const std::string>;
 
 constexpr auto kTick = std::chrono::milliseconds(16);
+constexpr auto kNewsEvery = std::chrono::milliseconds(100);
 constexpr auto kPatience = std::chrono::seconds(10);  // for a request, and for a handshake
 constexpr auto kStuck = std::chrono::seconds(20);     // of a viewer that takes nothing
 constexpr std::size_t kLongestRequest = 8192;
@@ -62,6 +64,7 @@ struct Viewer : std::enable_shared_from_this<Viewer> {
   beast::flat_buffer in_;
   std::deque<std::pair<Message, bool>> out_;
   std::uint32_t keyframe_ = 0;      ///< the last one it was sent
+  Field field_ = Field::intensity;  ///< that it is shown
   std::uint64_t samples_seen_ = 0;  ///< of all there ever were
   bool open_ = false, closing_ = false;
   Clock::time_point writing_since_{};
@@ -74,8 +77,10 @@ struct Server::Impl {
   void tick();
   void look();
   void keep_samples();
-  void send_news(const Snapshot& state);
+  void send_news(const Snapshot& state, Clock::time_point now);
   void send_frame(Viewer& viewer);
+  const Message& frame_with(Field field);
+  void ask_for_fields();
   void send_roles();
   void came(const std::shared_ptr<Viewer>& viewer);
   void went(const std::shared_ptr<Viewer>& viewer);
@@ -97,12 +102,15 @@ struct Server::Impl {
 
   std::uint32_t shape_number_ = 0;
   std::unique_ptr<Surface> surface_;
-  Message keyframe_, frame_, state_, notice_;
+  Message keyframe_, state_, notice_;
+  const Snapshot* shown_ = nullptr;      ///< the newest state
+  std::array<Message, kFields> frames_;  ///< of it, as far as someone wants them
   std::uint64_t frame_number_ = 0;
   std::deque<ForceSample> history_;
   std::uint64_t samples_ = 0;  ///< all there ever were
   std::atomic<std::uint64_t> sent_{0}, missed_{0};
   bool stopping_ = false, led_ = false;
+  Clock::time_point news_{}, due_{};
 };
 
 namespace {
@@ -282,8 +290,10 @@ void Server::Impl::accept() {
   });
 }
 
+/// Every 16 ms, whatever the last one took of them.
 void Server::Impl::tick() {
-  timer_.expires_after(kTick);
+  due_ = std::max(due_ + kTick, Clock::now());
+  timer_.expires_at(due_);
   timer_.async_wait([this](beast::error_code error) {
     if (error || stopping_) return;
     look();
@@ -308,9 +318,10 @@ void Server::Impl::look() {
     surface_ = std::make_unique<Surface>(state->shape);
     keyframe_ = message(keyframe_message(*surface_, shape_number_));
   }
-  send_news(*state);
+  shown_ = state;
+  frames_ = {};
+  if (now - news_ >= kNewsEvery) send_news(*state, now);
   if (viewers_.empty()) return;
-  frame_ = message(frame_message(*state, *surface_, shape_number_));
   const auto watching = viewers_;
   for (const std::shared_ptr<Viewer>& viewer : watching) {
     if (!viewer->busy()) {
@@ -323,8 +334,9 @@ void Server::Impl::look() {
 }
 
 /// What changes seldom goes as text, and only when it has changed.
-void Server::Impl::send_news(const Snapshot& state) {
-  std::string text = state_message(state);
+void Server::Impl::send_news(const Snapshot& state, Clock::time_point now) {
+  news_ = now;
+  std::string text = state_message(state, surface_->pieces());
   std::string notice = notice_message(state.notice);
   const bool new_state = !state_ || *state_ != text, new_notice = !notice_ || *notice_ != notice;
   if (new_state) state_ = message(std::move(text));
@@ -348,8 +360,22 @@ void Server::Impl::send_frame(Viewer& viewer) {
                 true);
     viewer.samples_seen_ = samples_;
   }
-  viewer.send(frame_, true);
+  viewer.send(frame_with(viewer.field_), true);
   ++sent_;
+}
+
+/// The newest state with a field, packed for the first viewer that wants it.
+const Message& Server::Impl::frame_with(Field field) {
+  const auto frame_of = [this](Field f) -> Message& { return frames_[static_cast<std::size_t>(f)]; };
+  if (!frame_of(Field::none)) frame_of(Field::none) = message(frame_message(*shown_, *surface_, shape_number_));
+  Message& frame = frame_of(field);
+  if (!frame) frame = message(with_field(*frame_of(Field::none), field, surface_->field(field, *shown_)));
+  return frame;
+}
+
+void Server::Impl::ask_for_fields() {
+  source_.want_velocity(std::any_of(viewers_.begin(), viewers_.end(),
+                                    [](const auto& viewer) { return viewer->field_ == Field::pressure; }));
 }
 
 void Server::Impl::send_roles() {
@@ -369,11 +395,12 @@ void Server::Impl::came(const std::shared_ptr<Viewer>& viewer) {
   if (state_) viewer->send(state_, false);
   if (notice_) viewer->send(notice_, false);
   send_roles();
-  if (frame_) send_frame(*viewer);
+  if (shown_ != nullptr) send_frame(*viewer);
 }
 
 void Server::Impl::went(const std::shared_ptr<Viewer>& viewer) {
   viewers_.erase(viewer);
+  ask_for_fields();
   const bool goes_on = std::any_of(viewers_.begin(), viewers_.end(),
                                    [&](const auto& other) { return other->session_ == viewer->session_; });
   if (lead_.leads(viewer->session_) && !goes_on) {
@@ -389,6 +416,11 @@ void Server::Impl::obey(Viewer& viewer, Command command) {
     if (command.kind == CommandKind::take) lead_.take(viewer.session_, now);
     if (command.kind == CommandKind::give) lead_.give(viewer.session_);
     return send_roles();
+  }
+  if (command.kind == CommandKind::colour) {
+    viewer.field_ = static_cast<Field>(command.index);
+    if (viewer.field_ == Field::pressure && !source_.has_stress()) viewer.field_ = Field::none;
+    return ask_for_fields();
   }
   if (!lead_.leads(viewer.session_)) return;  // those who watch have been told so
   if (command.kind == CommandKind::grab) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -66,9 +67,12 @@ struct Snapshot {
   std::uint64_t dropped = 0;                                 ///< frames that were over before their turn
   bool paused = false, building = false, playing = false, grabbing = false, stopped = false;
   std::shared_ptr<const BodyShape> shape;
+  std::shared_ptr<const std::map<int, Tissue>> tissues;  ///< by region number; another one from a change on
   std::vector<Vec3d> displacement;
+  std::vector<Vec3d> velocity;  ///< where someone wants it, else empty
   std::vector<ToolState> tools;
   Vec3d grab_force{};
+  double cut_area = 0.0, cut_longest = 0.0;  ///< of what the hand's blade has cut, at rest [m²]; that a piece took [s]
   std::vector<double> parameters;
   std::vector<double> speeds;
   std::vector<LiveEvent> events;    ///< the last ones of this body

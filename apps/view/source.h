@@ -29,6 +29,8 @@ class Source {
   /// The newest state, valid until the next call; null where there is none since the last.
   virtual const Snapshot* latest() = 0;
   virtual bool next_sample(ForceSample& sample) = 0;
+  /// Whether states are to hold velocities.
+  virtual void want_velocity(bool) {}
 
   // Known from the start, and the same after every reset.
   virtual const std::vector<ToolInfo>& tools() const = 0;
@@ -36,6 +38,10 @@ class Source {
   /// What instruments look like, a JSON list as web/src/report_data.ts has it.
   virtual const std::string& forms() const = 0;
   virtual bool can_grab() const = 0;
+  /// Empty where a hand's blade cuts the body.
+  virtual const std::string& why_no_cut() const = 0;
+  /// Whether states have what the pressure in the tissue follows from.
+  virtual bool has_stress() const = 0;
   virtual std::size_t vertices() const = 0;
   virtual std::size_t tets() const = 0;
   /// Null of a body that is simulated.

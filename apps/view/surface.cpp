@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
+#include "mechanics/tet_fields.h"
 #include "tissue/shape_measure.h"
 
 namespace glisson::view {
@@ -12,21 +14,37 @@ namespace {
 
 constexpr std::uint32_t kInside = std::numeric_limits<std::uint32_t>::max();
 
-/// Rows of D_m⁻¹, D_m = [X₁ − X₀, X₂ − X₀, X₃ − X₀]: gradients of the shape functions of vertices 1, 2, 3.
-std::array<Vec3d, 3> shape_gradients(const TetMesh& mesh, const Tet& tet) {
-  const Vec3d &a = mesh.vertices[tet[0]], e1 = mesh.vertices[tet[1]] - a, e2 = mesh.vertices[tet[2]] - a,
-              e3 = mesh.vertices[tet[3]] - a;
-  const double six_volume = dot(e1, cross(e2, e3));
-  const double inverse = six_volume != 0.0 ? 1.0 / six_volume : 0.0;
-  return {cross(e2, e3) * inverse, cross(e3, e1) * inverse, cross(e1, e2) * inverse};
+/// H of a tet from the displacements of its corners.
+Mat3d gradient(const std::vector<Vec3d>& displacement, const Tet& tet, const std::array<Vec3d, 3>& s) {
+  const Vec3d& u0 = displacement[tet[0]];
+  return displacement_gradient<double>(
+      s, {displacement[tet[1]] - u0, displacement[tet[2]] - u0, displacement[tet[3]] - u0});
 }
 
 }  // namespace
 
 Surface::Surface(std::shared_ptr<const BodyShape> shape) : shape_(std::move(shape)) {
+  number_vertices();
+  count_pieces();
   const TetMesh& mesh = shape_->mesh;
-  number_.assign(mesh.vertices.size(), kInside);
-  for (const Triangle& triangle : boundary_triangles(mesh)) {
+  tets_around_.assign(vertices_.size(), 0.0);
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
+    const Tet& tet = mesh.tets[t];
+    bool near = false;
+    for (const std::uint32_t v : tet) {
+      if (number_[v] == kInside) continue;
+      tets_around_[number_[v]] += 1.0;
+      near = true;
+    }
+    if (!near) continue;
+    const std::vector<Vec3d>& x = mesh.vertices;
+    near_.push_back({tet, t, element_rest({x[tet[0]], x[tet[1]], x[tet[2]], x[tet[3]]}).s});
+  }
+}
+
+void Surface::number_vertices() {
+  number_.assign(shape_->mesh.vertices.size(), kInside);
+  for (const Triangle& triangle : boundary_triangles(shape_->mesh)) {
     for (const std::uint32_t v : triangle) {
       if (number_[v] == kInside) {
         number_[v] = static_cast<std::uint32_t>(vertices_.size());
@@ -35,35 +53,70 @@ Surface::Surface(std::shared_ptr<const BodyShape> shape) : shape_(std::move(shap
       triangles_.push_back(number_[v]);
     }
   }
-  tets_around_.assign(vertices_.size(), 0.0);
-  for (const Tet& tet : mesh.tets) {
-    bool near = false;
-    for (const std::uint32_t v : tet) {
-      if (number_[v] == kInside) continue;
-      tets_around_[number_[v]] += 1.0;
-      near = true;
-    }
-    if (near) near_.push_back({tet, shape_gradients(mesh, tet)});
-  }
 }
 
-std::vector<double> Surface::intensity(const std::vector<Vec3d>& displacement) const {
-  std::vector<double> mean(vertices_.size(), 0.0);
-  for (const auto& [tet, gradients] : near_) {
-    Mat3d H;  // Σ u_a ⊗ ∂N_a/∂X, from differences
-    for (std::size_t a = 0; a < 3; ++a) {
-      const Vec3d u = displacement[tet[a + 1]] - displacement[tet[0]];
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) H(i, j) += u[i] * gradients[a][j];
-      }
-    }
-    const double s = intensity_of(one_minus_q(H));
+/// Sets of vertices that tets join.
+void Surface::count_pieces() {
+  std::vector<std::uint32_t> parent(shape_->mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  std::vector<char> in_tet(parent.size(), 0);
+  for (const Tet& tet : shape_->mesh.tets) {
     for (const std::uint32_t v : tet) {
-      if (number_[v] != kInside) mean[number_[v]] += s;
+      in_tet[v] = 1;
+      parent[root(v)] = root(tet[0]);
     }
   }
-  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] /= std::max(1.0, tets_around_[i]);
-  return mean;
+  pieces_ = 0;
+  for (std::uint32_t v = 0; v < parent.size(); ++v) pieces_ += in_tet[v] != 0 && parent[v] == v ? 1 : 0;
+}
+
+template <class OfTet>
+std::vector<double> Surface::mean(OfTet of_tet) const {
+  std::vector<double> sum(vertices_.size(), 0.0);
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    const double value = of_tet(i);
+    for (const std::uint32_t v : near_[i].tet) {
+      if (number_[v] != kInside) sum[number_[v]] += value;
+    }
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] /= std::max(1.0, tets_around_[i]);
+  return sum;
+}
+
+std::vector<double> Surface::field(Field field, const Snapshot& state) {
+  if (field == Field::pressure) return pressure(state);
+  const auto blunt = [&](std::size_t i) {
+    return one_minus_q(gradient(state.displacement, near_[i].tet, near_[i].gradients));
+  };
+  if (field == Field::shape) return mean([&](std::size_t i) { return 1.0 - blunt(i); });
+  return mean([&](std::size_t i) { return intensity_of(blunt(i)); });
+}
+
+std::vector<double> Surface::pressure(const Snapshot& state) {
+  const TetMesh& mesh = shape_->mesh;
+  if (!near_body_ || tissues_ != state.tissues) {
+    TetMesh near;
+    near.vertices = mesh.vertices;
+    for (const NearTet& x : near_) {
+      near.tets.push_back(x.tet);
+      near.regions.push_back(mesh.region_of(x.number));
+      if (!mesh.fibres.empty()) near.fibres.push_back(Vec3d(mesh.fibres[x.number]));
+    }
+    near_body_ = std::make_unique<Body>(build_body(near, *state.tissues));
+    tissues_ = state.tissues;
+  }
+  const std::size_t vertices = mesh.vertices.size();  // those that came after this shape are at its end
+  const std::vector<Vec3d> at_rest(state.velocity.size() < vertices ? vertices : 0);
+  const std::vector<Vec3d>& velocity = at_rest.empty() ? state.velocity : at_rest;
+  const TetFields fields = tet_fields(*near_body_, state.displacement, velocity);
+  return mean([&](std::size_t i) {
+    const double* stress = &fields.stress[6 * i];
+    return -(stress[0] + stress[1] + stress[2]) / 3.0;
+  });
 }
 
 }  // namespace glisson::view

@@ -1,8 +1,8 @@
-// surface.h — the skin of a body, and what a frame says of it: places in 16 bits, intensity in 8.
+// surface.h — the skin of a body, and what a frame says of it: places in 16 bits, a field in 8.
 //
 //   keyframe   rest positions, marks and triangles; sent when the skin becomes another
-//   frame      displacement from the keyframe as 16-bit fractions of the largest, intensity as 8-bit fractions: 7 bytes
-//              a vertex, an error of 1.5e-5 of the largest displacement
+//   frame      displacement from the keyframe as 16-bit fractions of the largest, a field as 8-bit fractions of its range:
+//              7 bytes a vertex, an error of 1.5e-5 of the largest displacement
 //
 // A frame needs its keyframe and no other frame, so any of them can be dropped.
 #pragma once
@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "mechanics/body.h"
+#include "view/command.h"
 #include "view/snapshot.h"
 
 namespace glisson::view {
@@ -28,12 +30,22 @@ class Surface {
   std::uint8_t mark(std::size_t i) const { return shape_->marks[vertices_[i]]; }
   const Vec3d& rest(std::size_t i) const { return shape_->mesh.vertices[vertices_[i]]; }
 
-  /// Intensity s at each surface vertex: the mean over the tets around it [-]. @param displacement  per mesh vertex [m]
-  std::vector<double> intensity(const std::vector<Vec3d>& displacement) const;
+  std::size_t pieces() const { return pieces_; }  ///< that the body is in
+
+  /// A field at each surface vertex, the mean over the tets around it: s [-], q [-], or p = −⅓ tr σ with the parts of σ that
+  /// TetFields::stress has [Pa]. Cost: a pass over the tets at the surface; pressure makes a body of them first.
+  std::vector<double> field(Field field, const Snapshot& state);
 
  private:
+  void number_vertices();
+  void count_pieces();
+  template <class OfTet>
+  std::vector<double> mean(OfTet of_tet) const;
+  std::vector<double> pressure(const Snapshot& state);
+
   struct NearTet {
     Tet tet;
+    std::uint32_t number = 0;        ///< in the shape's mesh
     std::array<Vec3d, 3> gradients;  ///< ∂N/∂X of its vertices 1, 2, 3 [1/m]
   };
   std::shared_ptr<const BodyShape> shape_;
@@ -41,6 +53,9 @@ class Surface {
   std::vector<std::uint32_t> number_;  ///< surface vertex of each mesh vertex, or none
   std::vector<NearTet> near_;          ///< tets with a vertex at the surface
   std::vector<double> tets_around_;    ///< of each surface vertex
+  std::size_t pieces_ = 0;
+  std::shared_ptr<const std::map<int, Tissue>> tissues_;  ///< that near_body_ is of
+  std::unique_ptr<Body> near_body_;                       ///< of the tets with a vertex at the surface
 };
 
 }  // namespace glisson::view

@@ -150,15 +150,34 @@ TEST_F(LiveServer, StreamsTheBody) {
   EXPECT_EQ(keyframe.size(), 16 + 13 * vertices + 12 * triangles);
   viewer.send({.kind = CommandKind::place, .sequence = 9, .values = {0.001f, 0.0f, 0.0f}});
   std::string frame;
-  for (int i = 0; i < 500 && (frame.empty() || f32_at(frame, 60) < 0.00099f); ++i) frame = viewer.wait_for_binary(2);
+  for (int i = 0; i < 500 && (frame.empty() || f32_at(frame, 64) < 0.00099f); ++i) frame = viewer.wait_for_binary(2);
   ASSERT_FALSE(frame.empty());
   EXPECT_EQ(u32_at(frame, 4), u32_at(keyframe, 4)) << "the frame names its keyframe";
   EXPECT_EQ(u32_at(frame, 12), 9u) << "the act it shows";
-  EXPECT_NEAR(f32_at(frame, 60), 0.001, 1e-5) << "depth of the tool";
-  EXPECT_LT(f32_at(frame, 72), 0.0f) << "it presses down";
+  EXPECT_NEAR(f32_at(frame, 64), 0.001, 1e-5) << "depth of the tool";
+  EXPECT_LT(f32_at(frame, 76), 0.0f) << "it presses down";
   EXPECT_NEAR(f32_at(frame, 52), 0.001, 3e-4) << "the largest displacement";
-  EXPECT_EQ(frame.size(), 60 + 56 + 7 * vertices);
+  EXPECT_EQ(frame.size(), 64 + 56 + 7 * vertices);
+  EXPECT_EQ(frame[3], 1) << "the intensity, unless a viewer asks for another field";
   EXPECT_GT(u32_at(viewer.wait_for_binary(3), 4), 0u) << "forces of the frames between";
+}
+
+// Each viewer is shown the field it asks for, with or without the lead; one that is none is refused.
+TEST_F(LiveServer, ColoursForEachViewer) {
+  ViewClient first(port(), query()), second(port(), query()), third(port(), query());
+  const std::size_t vertices = u32_at(first.wait_for_binary(1), 8);
+  second.send({.kind = CommandKind::colour, .sequence = 1, .index = 3});
+  third.send({.kind = CommandKind::colour, .sequence = 1, .index = 0});
+  const auto wait_for_field = [](ViewClient& viewer, int field) {
+    std::string frame = viewer.wait_for_binary(2);
+    for (int i = 0; i < 500 && !frame.empty() && frame[3] != field; ++i) frame = viewer.wait_for_binary(2);
+    return frame;
+  };
+  EXPECT_EQ(wait_for_field(second, 3).size(), 64 + 56 + 7 * vertices);
+  EXPECT_EQ(wait_for_field(third, 0).size(), 64 + 56 + 6 * vertices);
+  EXPECT_EQ(first.wait_for_binary(2)[3], 1);
+  third.send({.kind = CommandKind::colour, .sequence = 2, .index = 4});
+  EXPECT_EQ(third.wait_for_close().text, "there is no such field");
 }
 
 // One leads, the others watch: what they send moves nothing, until the lead is given away.
@@ -215,10 +234,12 @@ TEST_F(LiveServer, ClosesOnWhatIsMalformed) {
   EXPECT_EQ(reason(1, "{}").close_code, 1003);
   EXPECT_EQ(reason(2, "short").text, "a message has 8 bytes or more");
   EXPECT_EQ(reason(2, std::string("\x63\0\0\0\0\0\0\0", 8)).text, "unknown kind of message");
-  EXPECT_EQ(reason(2, std::string(25, '\1')).close_code, 1009);
+  EXPECT_EQ(reason(2, std::string(37, '\1')).close_code, 1009);
   EXPECT_EQ(reason(2, std::string(1 << 20, '\xff')).close_code, 1009) << "a mebibyte of rubbish";
   const Command nan{.kind = CommandKind::place, .values = {std::nanf(""), 0.0f, 0.0f}};
   EXPECT_EQ(reason(2, encode_command(nan)).text, "a number is not finite");
+  const Command nowhere{.kind = CommandKind::cut, .index = 1, .values = {0.0f, 0.0f, 0.0f, 0.0f, std::nanf(""), 0.0f}};
+  EXPECT_EQ(reason(2, encode_command(nowhere)).text, "a number is not finite");
   EXPECT_EQ(ViewClient(port(), query()).wait_for("hello")["title"], "a scene");
 }
 
@@ -262,7 +283,7 @@ TEST_F(LiveServer, ASlowViewerHoldsNobodyUp) {
   double before = -1.0;
   for (int i = 0; i < 60; ++i) {
     const std::string frame = quick.wait_for_binary(2);
-    ASSERT_GE(frame.size(), 60u);
+    ASSERT_GE(frame.size(), 64u);
     double time = 0.0;
     std::memcpy(&time, frame.data() + 16, 8);
     EXPECT_GE(time, before);

@@ -5,24 +5,10 @@ import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { WEB_DIR, openBrowser, openPage, settle } from "./browser.mjs";
-import { NEEDLE as SCENE, forceOfRun, openLive, program, state, until } from "./live_under_test.mjs";
+import { NEEDLE as SCENE, forceOfRun, later, openLive, own, program, state, type, until } from "./live_under_test.mjs";
 import { pixelsOf } from "./pixels.mjs";
 
-/** Software WebGL tells of its slow reading when a picture is taken; that is no trouble of the page. */
-const own = (troubles) => troubles.filter((text) => !text.includes("GL Driver Message"));
 const shots = join(WEB_DIR, "live-screenshots");
-
-/** Lets the simulation go on by a time [s], which a restart would take back. */
-async function later(page, seconds) {
-  const from = Number((await state(page)).time);
-  return until(page, (s) => Number(s.time) > from + seconds, `${seconds} s later`);
-}
-
-async function type(page, label, value) {
-  const box = page.getByLabel(`${label}, number`);
-  await box.fill(String(value));
-  await box.press("Enter");
-}
 
 describe("live view", { skip: program() === null ? "the program is not built" : false }, () => {
   let live, browser, page, troubles;

@@ -108,3 +108,19 @@ export function forceOfRun(file, folder) {
   const [head, ...rows] = readFileSync(join(out, "main/forces.csv"), "utf8").trim().split("\n");
   return Number(rows[rows.length - 1].split(",")[head.split(",").indexOf("force_N")]);
 }
+
+/** Software WebGL tells of its slow reading when a picture is taken; that is no trouble of the page. */
+export const own = (troubles) => troubles.filter((text) => !text.includes("GL Driver Message"));
+
+/** Lets the simulation go on by a time [s], which a restart would take back. */
+export async function later(page, seconds) {
+  const from = Number((await state(page)).time);
+  return until(page, (s) => Number(s.time) > from + seconds, `${seconds} s later`);
+}
+
+/** Types a number into the box beside a slider. */
+export async function type(page, label, value) {
+  const box = page.getByLabel(`${label}, number`);
+  await box.fill(String(value));
+  await box.press("Enter");
+}

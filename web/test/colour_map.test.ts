@@ -56,6 +56,11 @@ describe("colour bar", () => {
     expect(barTicks(1).values.length).toBeGreaterThanOrEqual(4);
   });
 
+  it("has round numbers between two that are not", () => {
+    expect(barTicks(130, -260).values).toEqual([-200, -100, 0, 100]);
+    expect(barTicks(1, 0.873).values.map((v) => v.toFixed(2))).toEqual(["0.90", "0.95", "1.00"]);
+  });
+
   it("copes with a range of nothing", () => {
     expect(barTicks(0).values).toEqual([0]);
     expect(barTicks(NaN).values).toEqual([0]);

@@ -1,5 +1,6 @@
 // What the live page reads and writes are the bytes that apps/view/ writes and reads.
 import { describe, expect, test } from "vitest";
+import { ColourRange, COLOURINGS, colouringOf, unitOf, valuesOf } from "../src/live/colouring.ts";
 import { History } from "../src/live/history.ts";
 import { decodeMessage, encodeCommand } from "../src/live/protocol.ts";
 
@@ -17,25 +18,31 @@ describe("commands", () => {
       24, 9, 3,
     ]);
     expect(encodeCommand({ kind: "reset" }, 1).byteLength).toBe(8);
+    const cut = encodeCommand({ kind: "cut", index: 1, values: [1, 2, 3, 4, 5, 6] }, 7);
+    expect([cut.byteLength, new DataView(cut).getUint8(0), new DataView(cut).getFloat32(32, true)]).toEqual([
+      36, 13, 6,
+    ]);
   });
 });
 
 /** A frame with one tool of one point and two vertices. */
-function frame(): ArrayBuffer {
-  const view = new DataView(new ArrayBuffer(60 + 68 + 14));
+function frame(field = 3): ArrayBuffer {
+  const view = new DataView(new ArrayBuffer(64 + 68 + 14));
   view.setUint8(0, 2);
   view.setUint8(1, 1 | 8);
-  view.setUint16(2, 1, true);
+  view.setUint8(2, 1);
+  view.setUint8(3, field);
   [5, 3, 42].forEach((value, i) => view.setUint32(4 + 4 * i, value, true));
   view.setFloat64(16, 1.5, true);
   view.setFloat32(52, 0.01, true); // reach
-  view.setFloat32(56, 0.5, true); // strongest
-  view.setFloat32(60, 0.004, true); // depth of the tool
-  view.setFloat32(72, -2, true); // its force along z
-  view.setUint32(112, 1, true);
-  view.setFloat32(116, 7, true);
-  view.setInt16(128 + 2, -32767, true);
-  view.setUint8(128 + 12 + 1, 255);
+  view.setFloat32(56, -100, true); // from where to where the field goes
+  view.setFloat32(60, 155, true);
+  view.setFloat32(64, 0.004, true); // depth of the tool
+  view.setFloat32(76, -2, true); // its force along z
+  view.setUint32(116, 1, true);
+  view.setFloat32(120, 7, true);
+  view.setInt16(132 + 2, -32767, true);
+  view.setUint8(132 + 12 + 1, 255);
   return view.buffer;
 }
 
@@ -49,12 +56,51 @@ describe("messages", () => {
     expect(read.tools[0]!.force).toEqual([0, 0, -2]);
     expect(read.tools[0]!.points).toEqual([7, 0, 0]);
     expect(Array.from(read.displacement)).toEqual([0, -32767, 0, 0, 0, 0]);
-    expect(Array.from(read.intensity)).toEqual([0, 255]);
+    expect([read.field, read.low, read.high, ...read.values]).toEqual([3, -100, 155, 0, 255]);
   });
 
   test("what is cut short, or of another kind, is none", () => {
-    for (let length = 0; length < 128; length++) expect(decodeMessage(frame().slice(0, length))).toBeNull();
+    for (let length = 0; length < 132; length++) expect(decodeMessage(frame().slice(0, length))).toBeNull();
     expect(decodeMessage(new Uint8Array(64).fill(9).buffer)).toBeNull();
+  });
+});
+
+describe("colours", () => {
+  const read = () => {
+    const message = decodeMessage(frame());
+    if (message?.kind !== "frame") throw new Error("no frame");
+    return message;
+  };
+
+  test("are the field's numbers, or lengths of displacements; none where another field came", () => {
+    const out = new Float32Array(2);
+    expect(valuesOf(colouringOf("pressure"), read(), out)).toEqual({ low: -100, high: 155 });
+    expect(Array.from(out)).toEqual([-100, 155]);
+    expect(valuesOf(colouringOf("displacement"), read(), out)!.high).toBeCloseTo(0.01);
+    expect(out[1]).toBe(0);
+    expect(valuesOf(colouringOf("intensity"), read(), out)).toBeNull();
+  });
+
+  test("have a range that grows at once and shrinks late", () => {
+    const range = new ColourRange();
+    range.reset(COLOURINGS[0]!, 0.02);
+    expect(range.follow(0, 0.01, 0, 0.02, 0)).toBe(false);
+    expect(range.follow(0, 0.1, 0, 0.02, 1)).toBe(true);
+    expect(range.high).toBeCloseTo(0.115);
+    expect(range.follow(0, 0.001, 0, 0.02, 3000)).toBe(false);
+    expect(range.follow(0, 0.001, 0, 0.02, 4500)).toBe(true);
+    expect(range.low).toBe(0);
+    expect(range.high).toBeCloseTo(0.02, 12);
+    range.reset(colouringOf("shape"), 0.002);
+    range.follow(0.9, 1, 1, 0.002, 0);
+    expect(range.low).toBeCloseTo(0.885);
+    expect(range.high).toBe(1);
+  });
+
+  test("name units that suit their numbers", () => {
+    expect(unitOf(colouringOf("pressure"), -500, 20).unit).toBe("Pa");
+    expect(unitOf(colouringOf("pressure"), -5000, 20)).toMatchObject({ unit: "kPa", perUnit: 1e-3 });
+    expect(unitOf(colouringOf("displacement"), 0, 0.01).unit).toBe("mm");
   });
 });
 

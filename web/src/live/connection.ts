@@ -73,7 +73,7 @@ export class Connection {
     if (this.socket?.readyState !== WebSocket.OPEN) return;
     this.sequence = (this.sequence + 1) % 2 ** 32;
     this.socket.send(encodeCommand(command, this.sequence));
-    if (command.kind === "take" || command.kind === "give") return;
+    if (command.kind === "take" || command.kind === "give" || command.kind === "colour") return;
     this.sent.push({ sequence: this.sequence, at: performance.now() });
     if (this.sent.length > 200) this.sent.shift();
   }

@@ -6,7 +6,7 @@ import { h } from "../page/dom.ts";
 import { currentTheme, onTheme, themeColour } from "../page/theme.ts";
 
 const HEIGHT = 168; // CSS px
-const MOST_POINTS = 1500; // drawn of a line
+const LEAST_WAY = 0.6; // canvas px between two points of a line
 const MARK_RADIUS = 4.5; // CSS px
 
 export class ForcePlot {
@@ -65,10 +65,6 @@ export class ForcePlot {
     );
   }
 
-  private get stride(): number {
-    return Math.max(1, Math.ceil((this.x.length - this.first) / MOST_POINTS));
-  }
-
   private range(values: readonly number[], scale: number): [number, number] {
     let [low, high] = values === this.y ? [0, 0] : [Infinity, -Infinity];
     for (let i = this.first; i < values.length; i += 1) {
@@ -88,10 +84,14 @@ export class ForcePlot {
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
     ctx.beginPath();
-    const to = (i: number) =>
-      ctx.lineTo(plot.valToPos(this.x[i]! * this.xScale, "x", true), plot.valToPos(this.y[i]!, "y", true));
-    for (let i = this.first; i < this.x.length; i += this.stride) to(i);
-    if (this.x.length > 0) to(this.x.length - 1);
+    const [x, y] = [straight(plot, "x", this.xScale), straight(plot, "y", 1)];
+    let [atX, atY] = [NaN, NaN];
+    for (let i = this.first; i < this.x.length; i++) {
+      const [toX, toY] = [x(this.x[i]!), y(this.y[i]!)];
+      if (Math.abs(toX - atX) < LEAST_WAY && Math.abs(toY - atY) < LEAST_WAY) continue;
+      ctx.lineTo(toX, toY);
+      [atX, atY] = [toX, toY];
+    }
     ctx.lineWidth = 1.75 * devicePixelRatio;
     ctx.lineJoin = "round";
     ctx.strokeStyle = strokeOf({ colour: 0, dash: [] }, currentTheme());
@@ -109,4 +109,10 @@ export class ForcePlot {
     }
     ctx.restore();
   }
+}
+
+/** The plot's own map from numbers to canvas pixels; two of its answers say all of it. */
+function straight(plot: uPlot, axis: "x" | "y", scale: number): (value: number) => number {
+  const [zero, one] = [plot.valToPos(0, axis, true), plot.valToPos(1, axis, true)];
+  return (value) => zero + scale * value * (one - zero);
 }

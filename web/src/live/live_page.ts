@@ -6,6 +6,8 @@ import { toggleTheme } from "../page/theme.ts";
 import { Connection, type Status } from "./connection.ts";
 import { ForcePlot } from "./force_plot.ts";
 import { History } from "./history.ts";
+import { COLOURINGS, type Colouring, colouringOf } from "./colouring.ts";
+import { CutPanel } from "./cut_panel.ts";
 import { LiveView } from "./live_view.ts";
 import { ReplayControls } from "./replay_controls.ts";
 import type {
@@ -53,6 +55,14 @@ export class LivePage {
   private readonly events = h("ol", { class: "live-events" });
   private readonly values = new Map<string, HTMLElement>();
   private pauseButton: HTMLButtonElement | null = null;
+  private colouring: Colouring = COLOURINGS[0]!;
+  private readonly cutPanel: CutPanel;
+  private readonly colours = select(
+    "Colour",
+    COLOURINGS.map(({ name, label }) => ({ value: name, label })),
+    this.colouring.name,
+    (name) => this.colourBy(colouringOf(name)),
+  );
 
   constructor() {
     this.connection = new Connection({
@@ -64,9 +74,11 @@ export class LivePage {
       mayAct: () => this.role.drives,
       grab: (vertex, at) => this.send({ kind: "grab", index: vertex, values: xyz(at) }),
       drag: (to) => this.sendSoon({ kind: "drag", values: xyz(to) }),
+      cut: (begins, from, to) => this.send({ kind: "cut", index: begins ? 1 : 0, values: [...xyz(from), ...xyz(to)] }),
       letGo: () => ((this.waiting = null), this.send({ kind: "letGo" })),
       push: (tool, depth) => this.push(tool, depth),
     });
+    this.cutPanel = new CutPanel(this.view);
     this.element.append(this.head(), this.notice, this.body());
     setInterval(() => this.drawPlots(), PLOT_EVERY);
     this.showStatus({ kind: "waiting" });
@@ -90,12 +102,10 @@ export class LivePage {
   private body(): HTMLElement {
     const edges = check("Edges", (on) => (this.view.edges = on));
     this.view.onEdges = (on) => (edges.querySelector("input")!.checked = on);
-    const pulls = check("Drag pulls tissue", (on) => (this.view.pulls = on), true);
-    pulls.classList.add("live-hand");
     const tools = h(
       "div",
       { class: "live-view-tools" },
-      pulls,
+      this.colours,
       edges,
       this.view.cut.tick,
       button("Show all", "Bring all of the body into view (0)", () => this.view.fit()),
@@ -105,7 +115,15 @@ export class LivePage {
     return h(
       "main",
       { class: "live-main" },
-      h("div", { class: "live-left" }, this.view.element, this.run, tools, this.view.cut.element),
+      h(
+        "div",
+        { class: "live-left" },
+        this.view.element,
+        h("div", { class: "live-bar" }, this.cutPanel.modes, this.run),
+        this.cutPanel.element,
+        tools,
+        this.view.cut.element,
+      ),
       h(
         "div",
         { class: "live-right" },
@@ -132,7 +150,10 @@ export class LivePage {
   }
 
   private binary(message: Keyframe | LiveFrame | Samples): void {
-    if (message.kind === "keyframe") this.view.takeKeyframe(message);
+    if (message.kind === "keyframe") {
+      this.view.takeKeyframe(message);
+      this.cutPanel.takeKeyframe(message);
+    }
     if (message.kind === "samples") this.history.add(message);
     if (message.kind !== "frame") return;
     this.frame = message;
@@ -144,11 +165,14 @@ export class LivePage {
   private start(hello: Hello): void {
     const again = this.hello !== null;
     this.hello = hello;
+    this.colours.querySelector<HTMLOptionElement>("[value=pressure]")!.hidden = !hello.has_stress;
+    if (this.colouring.field !== 1) this.colourBy(this.colouring); // a new line begins with s
     if (again) return; // the line was cut: everything here is as it was
     this.history = new History(hello.tools.length);
     document.title = `${hello.title} – Glisson`;
     this.title.textContent = hello.title;
     this.subtitle.textContent = `${hello.variant} · ${formatInteger(hello.tets)} tetrahedra · ${formatInteger(hello.vertices)} vertices`;
+    this.cutPanel.start(hello);
     this.element.dataset["recorded"] = String(hello.recorded !== null);
     if (hello.recorded) return this.startReplay(hello, hello.recorded);
     this.buildRun(hello);
@@ -201,6 +225,8 @@ export class LivePage {
   }
 
   private showState(state: SlowState): void {
+    this.cutPanel.show(state);
+    this.element.dataset["pieces"] = String(state.pieces);
     state.parameters.forEach((value, i) => this.parameters[i]?.follow(value));
     state.speeds_m_s.forEach((value, i) => this.sliders[i]?.speed.follow(1000 * value));
     this.events.replaceChildren(
@@ -214,6 +240,12 @@ export class LivePage {
           ),
         ),
     );
+  }
+
+  private colourBy(colouring: Colouring): void {
+    this.colouring = colouring;
+    this.view.colours = colouring;
+    this.send({ kind: "colour", index: colouring.field });
   }
 
   // ---- panels
@@ -399,7 +431,9 @@ export class LivePage {
 }
 
 const xyz = (v: THREE.Vector3): [number, number, number] => [v.x, v.y, v.z];
-const fixed = (value: number, digits: number): string => value.toFixed(digits).replace("-", "−");
+/** With a minus, but not for what is nothing. */
+const fixed = (value: number, digits: number): string =>
+  (Math.abs(value) < 0.5 * 10 ** -digits ? 0 : value).toFixed(digits).replace("-", "−");
 const niceStep = (span: number): number => 10 ** Math.floor(Math.log10(span / 100));
 
 function check(label: string, changed: (on: boolean) => void, on = false): HTMLElement {

@@ -1,6 +1,7 @@
 // live_surface.ts — the streamed surface as the 3D component wants it: always one frame, the newest.
 import type { Frame, SurfaceMotion } from "../mesh3d/timeline.ts";
 import type { InstrumentForm } from "../report_data.ts";
+import { type Colouring, valuesOf } from "./colouring.ts";
 import type { Keyframe, LiveFrame } from "./protocol.ts";
 
 export class LiveSurface implements SurfaceMotion {
@@ -10,6 +11,7 @@ export class LiveSurface implements SurfaceMotion {
   readonly fixed: Uint8Array;
   readonly end = 0;
   private readonly newest: Frame;
+  private readonly values: Float32Array;
 
   /** @param instruments  forms of the instruments @param sets  tools that come before them and have no form */
   constructor(
@@ -20,6 +22,7 @@ export class LiveSurface implements SurfaceMotion {
     this.rest = keyframe.rest;
     this.vertices = keyframe.rest.length / 3;
     this.triangles = keyframe.triangles;
+    this.values = new Float32Array(this.vertices);
     this.fixed = keyframe.marks;
     this.newest = {
       time: 0,
@@ -34,12 +37,23 @@ export class LiveSurface implements SurfaceMotion {
     return [this.newest];
   }
 
-  take(frame: LiveFrame): void {
-    const { displacement, intensity } = this.newest;
+  /** @return between which numbers the colours lie; null: this frame does not have them */
+  take(frame: LiveFrame, colouring: Colouring): { low: number; high: number } | null {
+    const { displacement } = this.newest;
     const perUnit = frame.reach / 32767;
     for (let i = 0; i < displacement.length; i++) displacement[i] = (frame.displacement[i] ?? 0) * perUnit;
-    for (let i = 0; i < intensity.length; i++) intensity[i] = ((frame.intensity[i] ?? 0) / 255) * frame.strongest;
     this.newest.instruments = frame.tools.slice(this.sets).map(({ points, axes }) => ({ points, axes }));
+    return valuesOf(colouring, frame, this.values);
+  }
+
+  /** Numbers become places on the scale, 0 … 1. */
+  scale(low: number, high: number, down: boolean): void {
+    const { intensity } = this.newest;
+    const perUnit = high > low ? 1 / (high - low) : 0;
+    for (let i = 0; i < intensity.length; i++) {
+      const place = (this.values[i]! - low) * perUnit;
+      intensity[i] = down ? 1 - place : place;
+    }
   }
 
   at(): { before: Frame; after: Frame; share: number } {

@@ -1,4 +1,5 @@
-// live_view.ts — the streamed organ in a canvas: drag tissue to pull it, a tool to push it along its axis, the rest to turn.
+// live_view.ts — the streamed organ in a canvas: drag tissue to pull or cut it, a tool to push it along its axis, the rest
+// to turn.
 import * as THREE from "three";
 import { strokeOf } from "../charts/line_style.ts";
 import { type ClipBody, clipKey, clipPlane, firstSeen, rememberClip, rememberedClip } from "../mesh3d/clip.ts";
@@ -9,10 +10,11 @@ import { SurfaceModel } from "../mesh3d/surface_model.ts";
 import { webglContext } from "../mesh3d/webgl.ts";
 import { h } from "../page/dom.ts";
 import { currentTheme, onTheme, themeColour } from "../page/theme.ts";
+import { type Colouring, COLOURINGS, ColourRange, unitOf } from "./colouring.ts";
+import { CutTool } from "./cut_tool.ts";
 import { LiveSurface } from "./live_surface.ts";
 import type { Hello, Keyframe, LiveFrame } from "./protocol.ts";
 
-const LEAST_RANGE = 0.02; // of the colour scale: noise at rest stays one colour
 const DRIVEN = 2;
 const TOO_SLOW = 42; // ms from one drawing to the next
 const EASINGS = [1, 0.7, 0.5]; // shares of the pixels in each direction; with the first, edges go
@@ -23,7 +25,11 @@ export interface Hands {
   drag(to: THREE.Vector3): void;
   letGo(): void;
   push(tool: number, depth: number): void;
+  cut(begins: boolean, from: THREE.Vector3, to: THREE.Vector3): void;
 }
+
+/** What a drag does. */
+export type DragMode = "pull" | "cut" | "turn";
 
 type Drag =
   | { what: "tissue"; vertex: number; plane: THREE.Plane; offset: THREE.Vector3 }
@@ -35,9 +41,9 @@ export class LiveView {
     class: "mesh-canvas live-canvas",
     tabindex: 0,
     "aria-label":
-      "The body in three dimensions. Arrow keys turn it, plus and minus zoom, 0 shows all of it, C cuts it open.",
+      "The body in three dimensions. Arrow keys turn it, plus and minus zoom, 0 shows all of it, C cuts it open. With the " +
+      "blade in hand (K) arrow keys lead it, Enter puts it down and lifts it.",
   });
-  pulls = true; // a drag on tissue pulls it
   edges: boolean | null = null; // null: as suits the mesh
   onEdges: (on: boolean) => void = () => {};
   private readonly clip = rememberedClip("live", { on: false, axis: "y", at: null, flipped: false });
@@ -52,7 +58,10 @@ export class LiveView {
   private model: SurfaceModel | null = null;
   private keyframe = -1;
   private epoch = -1;
-  private range = LEAST_RANGE;
+  private readonly range = new ColourRange();
+  private colouring: Colouring = COLOURINGS[0]!;
+  private dragMode: DragMode = "pull";
+  readonly cutTool: CutTool | null = null;
   private frame: LiveFrame | null = null;
   private fitted = false;
   private dragged: Drag | null = null;
@@ -82,10 +91,14 @@ export class LiveView {
     this.thread.renderOrder = 10;
     this.stage.scene.add(this.thread);
     this.stage.beforeDrawing = () => this.model?.cutOpen(this.plane);
+    this.cutTool = new CutTool(this.stage, this.canvas, this.hands, (caster) => this.seenAt(caster));
+    this.stage.scene.add(this.cutTool.lines);
+    this.element.append(this.cutTool.crosshair);
     onTheme(() => this.recolour());
     this.element.addEventListener("pointerdown", (event) => this.down(event), { capture: true });
     this.element.addEventListener("pointermove", (event) => this.move(event));
-    for (const end of ["pointerup", "pointercancel"] as const) this.element.addEventListener(end, () => this.up());
+    for (const end of ["pointerup", "pointercancel"] as const)
+      this.element.addEventListener(end, (event) => event.isPrimary && this.up());
     this.canvas.addEventListener("keydown", (event) => this.key(event));
   }
 
@@ -102,6 +115,8 @@ export class LiveView {
     this.model = new SurfaceModel(this.surface);
     this.keyframe = keyframe.number;
     this.stage.scene.add(this.model.group);
+    this.scale = null;
+    if (this.cutTool) this.cutTool.size = this.model.diagonal;
     this.recolour();
     this.onEdges(this.edgesShown);
     this.cut.refresh();
@@ -142,18 +157,12 @@ export class LiveView {
     this.easeDrawing();
     const frame = this.newest;
     if (!frame || !this.surface || !this.model || frame.keyframe !== this.keyframe) return;
-    if (frame.epoch !== this.epoch) this.range = LEAST_RANGE;
+    if (frame.epoch !== this.epoch) this.range.reset(this.colouring, this.leastRange);
     this.epoch = frame.epoch;
     this.frame = frame;
-    this.surface.take(frame);
-    const grown = Math.max(this.range, frame.strongest);
-    if (grown > this.range || !this.bar.element.dataset["range"]) {
-      this.range = grown > this.range ? 1.15 * grown : grown; // in steps, so that colours do not creep
-      this.bar.setRange(this.range);
-      this.bar.element.dataset["range"] = String(this.range);
-    }
+    this.colourBy(this.surface.take(frame, this.colouring));
     this.model.show({ edges: this.edgesShown, ghost: false, marks: true });
-    this.model.update(0, 1, this.range);
+    this.model.update(0, 1, 1);
     this.drawThread();
     this.stage?.draw();
   }
@@ -169,6 +178,59 @@ export class LiveView {
   private cutChanged(): void {
     rememberClip("live", this.clip);
     this.stage?.invalidate();
+  }
+
+  /** Chooses what colours stand for. */
+  set colours(colouring: Colouring) {
+    this.colouring = colouring;
+    this.range.reset(colouring, this.leastRange);
+    this.showRange();
+    this.paint();
+  }
+
+  private get leastRange(): number {
+    return this.colouring.least * (this.colouring.name === "displacement" ? (this.model?.diagonal ?? 1) : 1);
+  }
+
+  /** Brings the frame's numbers to colours; those of a field that has not come yet stay as they were. */
+  private colourBy(span: { low: number; high: number } | null): void {
+    if (!span || !this.surface) return;
+    const { rest } = this.colouring;
+    const changed = this.range.follow(span.low, span.high, rest, this.leastRange, performance.now());
+    if (changed || !this.bar.element.dataset["range"]) this.showRange();
+    this.surface.scale(this.range.low, this.range.high, rest === 1);
+  }
+
+  private showRange(): void {
+    const { low, high } = this.range;
+    const { unit, perUnit } = unitOf(this.colouring, low, high);
+    this.bar.describe(this.colouring.label, `${this.colouring.symbol} [${unit}]`);
+    this.bar.setRange(perUnit * high, perUnit * low, this.colouring.rest === 1);
+    if (this.colouring.name === "none") this.bar.element.hidden = true;
+    this.bar.element.dataset["range"] = `${low} ${high}`;
+    this.bar.element.dataset["colouring"] = this.colouring.name;
+  }
+
+  /** The skin by the scale, or in one quiet colour. */
+  private paint(): void {
+    if (!this.model) return;
+    const material = this.model.skin.material as THREE.MeshLambertMaterial;
+    this.scale ??= material.map;
+    const plain = this.colouring.name === "none";
+    material.map = plain ? null : this.scale;
+    material.color.set(plain ? themeColour("--mesh-plain") : "#ffffff");
+    material.needsUpdate = true;
+    this.stage?.invalidate();
+  }
+
+  private scale: THREE.Texture | null = null;
+
+  /** What a drag on the body does. */
+  set mode(mode: DragMode) {
+    this.dragMode = mode;
+    this.canvas.dataset["mode"] = mode;
+    this.cutTool?.clear();
+    this.cutTool?.showCrosshair(false);
   }
 
   fit(): void {
@@ -190,12 +252,15 @@ export class LiveView {
       cap: themeColour("--mesh-cap"),
       driven,
     });
-    (this.thread.material as THREE.LineBasicMaterial).color.set(driven);
+    for (const line of [this.thread, this.cutTool?.lines])
+      (line?.material as THREE.LineBasicMaterial | undefined)?.color.set(driven);
+    this.paint();
     this.stage?.invalidate();
   }
 
   private down(event: PointerEvent): void {
     if (!this.stage || !this.model || event.button !== 0 || !event.isPrimary || event.target !== this.canvas) return;
+    if (this.dragMode === "cut" && this.hands.mayAct()) return this.beginCut(event);
     this.dragged = this.hands.mayAct() ? this.take(event) : null;
     this.stage.turning = this.dragged === null;
     if (!this.dragged) return;
@@ -203,6 +268,22 @@ export class LiveView {
     this.canvas.setPointerCapture(event.pointerId);
     if (this.dragged.what !== "tissue") return;
     this.hands.grab(this.dragged.vertex, this.place(this.dragged.vertex));
+  }
+
+  /** How far from the eye the body is seen in a line of sight; null: beside it. */
+  private seenAt(caster: THREE.Raycaster): number | null {
+    if (!this.model) return null;
+    this.model.skin.geometry.computeBoundingSphere();
+    const seen = firstSeen(caster.intersectObject(this.model.skin, false), this.plane, caster.ray);
+    return Number.isFinite(seen.distance) ? seen.distance : null;
+  }
+
+  private beginCut(event: PointerEvent): void {
+    this.stage!.turning = false;
+    this.canvas.focus({ preventScroll: true });
+    this.canvas.setPointerCapture(event.pointerId);
+    this.cutTool?.showCrosshair(false);
+    this.cutTool?.begin({ x: event.clientX, y: event.clientY });
   }
 
   /** What lies under the pointer: a tool, driven vertices, tissue. */
@@ -224,7 +305,7 @@ export class LiveView {
     const corners = [skin.face.a, skin.face.b, skin.face.c];
     if (sets > 0 && corners.some((corner) => this.surface!.fixed[corner] === DRIVEN))
       return this.takeTool(0, skin.point, caster.ray);
-    if (!this.pulls || !hello.can_grab) return null;
+    if (this.dragMode !== "pull" || !hello.can_grab) return null;
     const far = (corner: number) => this.place(corner).distanceTo(skin.point);
     const vertex = corners.reduce((best, corner) => (far(corner) < far(best) ? corner : best));
     const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(stage.forward, skin.point);
@@ -240,6 +321,7 @@ export class LiveView {
   }
 
   private move(event: PointerEvent): void {
+    if (event.isPrimary && event.buttons > 0) this.cutTool?.moveTo({ x: event.clientX, y: event.clientY });
     if (!this.dragged || !this.stage) return;
     const { ray } = this.stage.rayThrough(event.clientX, event.clientY);
     if (this.dragged.what === "tool") {
@@ -256,6 +338,7 @@ export class LiveView {
   private readonly target = new THREE.Vector3();
 
   private up(): void {
+    this.cutTool?.end();
     if (this.dragged?.what === "tissue") this.hands.letGo();
     this.dragged = null;
     this.thread.visible = false;
@@ -277,6 +360,7 @@ export class LiveView {
   }
 
   private key(event: KeyboardEvent): void {
+    if (this.dragMode === "cut" && this.hands.mayAct() && this.cutTool?.keyDown(event)) return event.preventDefault();
     const turn: Record<string, [number, number]> = {
       ArrowLeft: [-0.12, 0],
       ArrowRight: [0.12, 0],

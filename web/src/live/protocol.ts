@@ -36,6 +36,8 @@ export interface Hello {
   vertices: number;
   tets: number;
   can_grab: boolean;
+  why_no_cut: string; // empty: the body can be cut
+  has_stress: boolean; // pressure can be shown
   tools: ToolInfo[];
   parameters: ParameterInfo[];
   instruments: InstrumentForm[];
@@ -61,6 +63,9 @@ export interface SlowState {
   epoch: number;
   parameters: number[];
   speeds_m_s: number[];
+  cut_area_m2: number;
+  cut_longest_s: number;
+  pieces: number;
   events_before: number;
   events: LiveEvent[];
 }
@@ -104,10 +109,12 @@ export interface LiveFrame {
   stopped: boolean;
   grabForce: [number, number, number];
   reach: number; // displacement = i16 / 32767 × this [m]
-  strongest: number; // intensity = u8 / 255 × this
+  field: number; // that colours stand for; 0: none came
+  low: number; // its value = low + u8 / 255 × (high − low)
+  high: number;
   tools: ToolState[];
   displacement: Int16Array;
-  intensity: Uint8Array;
+  values: Uint8Array;
 }
 
 export interface Samples {
@@ -116,7 +123,7 @@ export interface Samples {
   rows: { epoch: number; time: number; depth: number[]; force: number[] }[];
 }
 
-const FRAME_HEAD = 60;
+const FRAME_HEAD = 64;
 
 /** A binary message; null where it is none that this page knows. */
 export function decodeMessage(buffer: ArrayBuffer): Keyframe | LiveFrame | Samples | null {
@@ -155,7 +162,7 @@ function decodeFrame(view: DataView): LiveFrame {
   const flags = view.getUint8(1);
   const tools: ToolState[] = [];
   let at = FRAME_HEAD;
-  for (let i = view.getUint16(2, true); i > 0; i--) {
+  for (let i = view.getUint8(2); i > 0; i--) {
     const points = view.getUint32(at + 52, true);
     tools.push({
       depth: view.getFloat32(at, true),
@@ -165,7 +172,8 @@ function decodeFrame(view: DataView): LiveFrame {
     });
     at += 56 + 12 * points;
   }
-  const vertices = Math.floor((view.byteLength - at) / 7);
+  const field = view.getUint8(3);
+  const vertices = Math.floor((view.byteLength - at) / (field === 0 ? 6 : 7));
   return {
     kind: "frame",
     keyframe: view.getUint32(4, true),
@@ -183,10 +191,12 @@ function decodeFrame(view: DataView): LiveFrame {
     stopped: (flags & 16) !== 0,
     grabForce: vector(view, 40),
     reach: view.getFloat32(52, true),
-    strongest: view.getFloat32(56, true),
+    field,
+    low: view.getFloat32(56, true),
+    high: view.getFloat32(60, true),
     tools,
     displacement: new Int16Array(view.buffer as ArrayBuffer, at, 3 * vertices),
-    intensity: new Uint8Array(view.buffer as ArrayBuffer, at + 6 * vertices, vertices),
+    values: new Uint8Array(view.buffer as ArrayBuffer, at + 6 * vertices, field === 0 ? 0 : vertices),
   };
 }
 
@@ -217,6 +227,8 @@ export type Command =
   | { kind: "drag"; values: [number, number, number] }
   | { kind: "pause"; index: 0 | 1 }
   | { kind: "parameter"; index: number; values: [number] }
+  | { kind: "cut"; index: 0 | 1; values: number[] } // 1 begins; the edge, from where to where [m]
+  | { kind: "colour"; index: number } // field
   | { kind: "seek"; values: [number] } // of a recorded run, to this time [s]
   | { kind: "rate"; values: [number] }
   | { kind: "letGo" | "step" | "reset" | "play" | "take" | "give" };
@@ -234,6 +246,8 @@ const KINDS: Record<Command["kind"], number> = {
   parameter: 10,
   take: 11,
   give: 12,
+  cut: 13,
+  colour: 14,
   seek: 15,
   rate: 16,
 };

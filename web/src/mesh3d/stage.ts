@@ -146,6 +146,11 @@ export class Stage {
     return caster;
   }
 
+  /** From the eye to what it looks at [m]. */
+  get distance(): number {
+    return this.camera.position.distanceTo(this.controls.target);
+  }
+
   /** Direction in which the eye looks. */
   get forward(): THREE.Vector3 {
     return this.camera.getWorldDirection(new THREE.Vector3());

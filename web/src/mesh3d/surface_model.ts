@@ -73,7 +73,6 @@ export class SurfaceModel {
     this.hiddenDriven = this.seenThrough(this.driven);
     this.heldCount = this.held.geometry.index?.count ?? 0;
     this.drivenCount = this.driven.geometry.index?.count ?? 0;
-    this.buildGhost();
     this.skin = this.makeSkin();
     this.skinGeometry = this.skin.geometry;
     this.instruments = new InstrumentModel(timeline, this.size);
@@ -205,6 +204,11 @@ export class SurfaceModel {
   }
 
   /** What a plane is laid through: by its heart the way of the first instrument is seen. */
+  /** Diagonal of the box about it at rest [m]. */
+  get diagonal(): number {
+    return this.size;
+  }
+
   get clipBody(): ClipBody {
     const tip = this.timeline.frames[this.timeline.frames.length - 1]!.instruments[0]?.points.slice(-3);
     const heart =
@@ -216,6 +220,7 @@ export class SurfaceModel {
 
   show(parts: { edges: boolean; ghost: boolean; marks: boolean }): void {
     this.edges.visible = parts.edges;
+    if (parts.ghost && this.ghost.children.length === 0) this.buildGhost();
     this.ghost.visible = parts.ghost;
     this.held.visible = this.driven.visible = this.hiddenDriven.visible = parts.marks;
   }

@@ -1,0 +1,115 @@
+// What the surface is coloured by is what the material has there: exact for homogeneous deformation.
+#include <cmath>
+
+#include "app/program.h"
+#include "tissue/shape_measure.h"
+#include "view/live_body.h"
+#include "view/messages.h"
+#include "view/surface.h"
+
+namespace glisson::view {
+namespace {
+
+/// A body at x = X + H X, moving with v = L x.
+Snapshot deformed(const LiveBody& body, const Mat3d& H, const Mat3d& L) {
+  Snapshot state;
+  state.shape = body.shape();
+  state.tissues = body.tissues();
+  for (const Vec3d& x : state.shape->mesh.vertices) {
+    state.displacement.push_back(H * x);
+    state.velocity.push_back(L * x);
+  }
+  return state;
+}
+
+Variant variant_of(const std::string& tissue) {
+  std::string text = test::small_scene();
+  const std::size_t at = text.find("youngs_modulus_Pa"), end = text.find("[motion]");
+  return parse_scene(text.replace(at, end - at, tissue + "\n"), "view.toml", ".").variants.front();
+}
+
+const Mat3d kStill{};
+
+Mat3d diagonal_of(double x, double y, double z) {
+  Mat3d m;
+  m(0, 0) = x, m(1, 1) = y, m(2, 2) = z;
+  return m;
+}
+
+// s and q of every vertex are those of the deformation, and rigid turns have none.
+TEST(LiveSurface, ShowsShape) {
+  const LiveBody body(variant_of("youngs_modulus_Pa = 3600\npoisson_ratio = 0.4"), {});
+  Mat3d H = diagonal_of(0.1, -0.05, 0.02);
+  H(0, 1) = 0.07;
+  const Snapshot state = deformed(body, H, kStill);
+  Surface surface(state.shape);
+  for (const double q : surface.field(Field::shape, state)) EXPECT_NEAR(q, 1.0 - one_minus_q(H), 1e-12);
+  for (const double s : surface.field(Field::intensity, state)) EXPECT_NEAR(s, intensity_of(one_minus_q(H)), 1e-12);
+  Mat3d turn = diagonal_of(-1.0, -1.0, 0.0);  // by a right angle about z
+  turn(0, 1) = -1.0, turn(1, 0) = 1.0;
+  for (const double q : surface.field(Field::shape, deformed(body, turn, kStill))) EXPECT_NEAR(q, 1.0, 1e-12);
+}
+
+// Pressure is −K tr ε of a linear tissue, with −⅔ η tr ε̇ of its viscosity; −κ (J − 1) of a hyperelastic one.
+TEST(LiveSurface, ShowsPressure) {
+  const LiveBody linear(variant_of("youngs_modulus_Pa = 3600\npoisson_ratio = 0.4\nviscosity_Pa_s = 5"), {});
+  const Mat3d H = diagonal_of(0.01, -0.03, 0.005), L = diagonal_of(1.0, 2.0, -0.5);
+  const double bulk = 3600.0 / (3.0 * (1.0 - 2.0 * 0.4));
+  const double expected = -bulk * (0.01 - 0.03 + 0.005) - 2.0 / 3.0 * 5.0 * 2.5;
+  Snapshot state = deformed(linear, H, L);
+  Surface surface(state.shape);
+  for (const double p : surface.field(Field::pressure, state)) EXPECT_NEAR(p, expected, 1e-9 * bulk);
+  state.velocity.clear();  // nobody asked for it yet
+  for (const double p : surface.field(Field::pressure, state)) EXPECT_NEAR(p, bulk * 0.015, 1e-9 * bulk);
+
+  const LiveBody rubber(variant_of("hyperelastic = { kind = \"neo_hookean\", mu_Pa = 1000, bulk_modulus_Pa = 20000 }"),
+                        {});
+  const Mat3d growth = diagonal_of(0.02, 0.02, 0.02);
+  const Snapshot grown = deformed(rubber, growth, kStill);
+  Surface skin(grown.shape);
+  for (const double p : skin.field(Field::pressure, grown))
+    EXPECT_NEAR(p, -20000.0 * (std::pow(1.02, 3) - 1.0), 1e-6 * 20000.0);
+}
+
+// A change of the tissue changes the pressure of the same shape.
+TEST(LiveSurface, FollowsTheTissue) {
+  const LiveBody soft(variant_of("youngs_modulus_Pa = 3600\npoisson_ratio = 0.4"), {});
+  const LiveBody stiff(variant_of("youngs_modulus_Pa = 7200\npoisson_ratio = 0.4"), {});
+  Snapshot state = deformed(soft, diagonal_of(0.01, 0.01, 0.01), kStill);
+  Surface surface(state.shape);
+  const double before = surface.field(Field::pressure, state).front();
+  state.tissues = stiff.tissues();
+  EXPECT_NEAR(surface.field(Field::pressure, state).front() / before, 2.0, 1e-9);
+}
+
+// The bytes of a field give its numbers back to half a step, and hold what a body at rest has.
+TEST(LiveSurface, PacksAFieldWithItsRange) {
+  const LiveBody body(variant_of("youngs_modulus_Pa = 3600\npoisson_ratio = 0.4"), {});
+  const Snapshot state = deformed(body, diagonal_of(0.01, 0.0, 0.0), kStill);
+  const Surface surface(state.shape);
+  const std::string frame = frame_message(state, surface, 7);
+  EXPECT_EQ(frame.size(), 64 + 6 * surface.size());
+  std::vector<double> values;
+  for (std::size_t i = 0; i < surface.size(); ++i) values.push_back(-300.0 + 17.0 * static_cast<double>(i));
+  const std::string with = with_field(frame, Field::pressure, values);
+  ASSERT_EQ(with.size(), 64 + 7 * surface.size());
+  EXPECT_EQ(with[3], 3);
+  EXPECT_EQ(with.substr(64, 6 * surface.size()), frame.substr(64));
+  const auto f32_at = [&](std::size_t at) {
+    float x = 0.0f;
+    std::memcpy(&x, with.data() + at, 4);
+    return static_cast<double>(x);
+  };
+  EXPECT_EQ(f32_at(56), -300.0);
+  EXPECT_NEAR(f32_at(60), values.back(), 1e-4);
+  const double step = (values.back() + 300.0) / 255.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(with[64 + 6 * values.size() + i]);
+    EXPECT_NEAR(-300.0 + byte * step, values[i], 0.5 * step + 1e-9);
+  }
+  const std::string still = with_field(frame, Field::shape, std::vector<double>(surface.size(), 1.0));
+  EXPECT_EQ(static_cast<unsigned char>(still.back()), 0) << "no range at rest";
+}
+
+}  // namespace
+}  // namespace glisson::view
