@@ -70,7 +70,7 @@ class Interaction {
 
   /// The body it acts on from now on. @throws std::invalid_argument where it does not fit
   virtual void attached(const BodyView& body, double time) = 0;
-  /// Tets were removed, faces split or vertices moved. Vertices and tets keep their numbers; new vertices come last.
+  /// Tets were removed, faces split, vertices moved or masses changed. Vertices and tets keep their numbers; new vertices come last.
   /// @param origins  the last vertices are copies of these
   virtual void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) = 0;
 

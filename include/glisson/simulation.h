@@ -138,7 +138,7 @@ struct ForceParts {
 };
 
 /// Energies at force_time() [J]. Exact identity of the schemes, up to rounding and the tolerance of Newton's method:
-///   kinetic + elastic + dissipated + numerical + removed = initial + work_tools + work_loads.
+///   kinetic + elastic + dissipated + numerical + removed = initial + work_tools + work_loads + changed.
 struct Energies {
   double elastic = 0.0;  ///< − work of the elastic forces; for a linear tissue the stored energy
   double kinetic = 0.0;  ///< explicit, semi-implicit: ½ Σ m v(t−h/2)·v(t+h/2), the scheme's own; implicit: ½ Σ m v²
@@ -151,8 +151,10 @@ struct Energies {
   double initial = 0.0;     ///< kinetic and elastic energy of the state given by set_state
   /// Kinetic and elastic energy that tets took with them when they were removed, or that a move of vertices at rest took.
   double removed = 0.0;
+  /// What changes of tissues brought in: stored energy at the deformation of that moment, and kinetic energy of mass.
+  double changed = 0.0;
   double imbalance() const {
-    return kinetic + elastic + dissipated + numerical + removed - initial - work_tools - work_loads;
+    return kinetic + elastic + dissipated + numerical + removed - initial - work_tools - work_loads - changed;
   }
 };
 
@@ -236,6 +238,26 @@ class Simulation {
   ///         vertex that is none or would turn a tet over; nothing is changed then
   /// Cost: docs/cutting.md.
   SplitReport split_faces(std::span<const Triangle> faces, std::span<const VertexMove> moves = {});
+  /// Gives a region another tissue from now on: all else stays as it is, deformation, velocities, time, supports, motions,
+  /// loads, interactions, tets removed and faces split. A tissue equal to the present one changes nothing.
+  ///
+  /// What a tissue remembers: Kelvin–Voigt viscosity nothing. The k-th Maxwell branch keeps its stress at this moment, g (S − q),
+  /// whatever its new share and time; branches that come new start without stress, the stress of those that go is gone.
+  /// Another density changes masses at the velocities there are, and with them momentum; mass scaling is made anew.
+  /// The jump of stored and kinetic energy is booked as Energies::changed.
+  ///
+  /// An automatic step follows at once: by a search of h*, or with SimulationOptions::exact_steps = false from the last one.
+  /// force() tells of the last step's tissue until the next step.
+  /// @param region  number of a region of the mesh
+  /// @throws std::invalid_argument for a region that no tet has, a tissue that is not valid, viscous tissue for semi_implicit
+  ///         with interactions, or where a given step is above the new h*; nothing is changed then
+  /// Cost: docs/integrators.md.
+  void set_tissue(int region, const Tissue& tissue);
+  /// The same for several regions at once, at the cost of one.
+  void set_tissues(const std::map<int, Tissue>& tissues);
+  /// Tissue of a region as it is now. @throws std::invalid_argument for a region that no tet has
+  const Tissue& tissue(int region) const;
+
   /// @throws std::invalid_argument for a number that is no tet's
   bool is_removed(std::uint32_t tet) const;
   /// The rest mesh as it is now, without the removed tets (numbers of tets are new, those of vertices the same).
@@ -276,11 +298,12 @@ class Simulation {
   Energies energies() const;
   const EngineInfo& engine_info() const;
 
-  /// Writes everything that a continued run needs beside mesh, tissues, options, constraints and loads.
+  /// Writes everything that a continued run needs beside mesh, tissues, options, constraints and loads: those of the start,
+  /// what has changed since is in it.
   /// @throws std::runtime_error where it cannot be written
   void save(std::ostream& out) const;
   /// Goes on from where another simulation was saved; this one was made in the same way (mesh, tissues, options,
-  /// constraints, loads, in their order). Tets removed and faces split since then are so here, too; where constraints or
+  /// constraints, loads, in their order). Tissues changed, tets removed and faces split since then are so here, too; where constraints or
   /// loads were added after a split, the same split comes before them here. The run has the bytes of the one saved.
   /// @throws std::runtime_error for a file that is cut, changed, of another version, mesh or set-up
   void load(std::istream& in);

@@ -106,6 +106,7 @@ struct Tissue {
   LameParameters lame() const;
   /// Whether the force is that of the paper's element: small strain, secant law, no fibres, no branches.
   bool is_tensor_mass() const;
+  bool operator==(const Tissue&) const = default;
 };
 
 /// @throws std::invalid_argument naming the field, its value and the allowed range

@@ -35,24 +35,28 @@ Axes axes_of(const std::string& word) {
   return axes;
 }
 
-std::map<int, Tissue> tissues_of(const TetMesh& mesh,
-                                 const std::variant<Tissue, std::map<std::variant<int, std::string>, Tissue>>& given) {
+using Region = std::variant<int, std::string>;
+using Tissues = std::variant<Tissue, std::map<Region, Tissue>>;
+
+int region_number(const TetMesh& mesh, const Region& region) {
+  if (const int* number = std::get_if<int>(&region)) return *number;
+  std::string known;
+  for (const auto& [number, name] : mesh.region_names) {
+    if (name == std::get<std::string>(region)) return number;
+    known += (known.empty() ? "" : ", ") + name;
+  }
+  throw nb::value_error(("the mesh has no region \"" + std::get<std::string>(region) + "\"; " +
+                         (known.empty() ? "its regions have no names" : "it has: " + known))
+                            .c_str());
+}
+
+std::map<int, Tissue> tissues_of(const TetMesh& mesh, const Tissues& given) {
   std::map<int, Tissue> tissues;
   if (const auto* one = std::get_if<Tissue>(&given)) {
     for (std::size_t t = 0; t < mesh.tets.size(); ++t) tissues.emplace(mesh.region_of(t), *one);
     return tissues;
   }
-  for (const auto& [region, tissue] : std::get<1>(given)) {
-    if (const int* number = std::get_if<int>(&region)) tissues[*number] = tissue;
-    const auto* name = std::get_if<std::string>(&region);
-    bool known = name == nullptr;
-    for (const auto& [number, called] : mesh.region_names) {
-      if (name == nullptr || called != *name) continue;
-      tissues[number] = tissue;
-      known = true;
-    }
-    if (!known) throw nb::value_error(("the mesh has no region \"" + *name + "\"").c_str());
-  }
+  for (const auto& [region, tissue] : std::get<1>(given)) tissues[region_number(mesh, region)] = tissue;
   return tissues;
 }
 
@@ -197,6 +201,7 @@ void bind_readings(nb::module_& m) {
       .def_ro("work_loads", &Energies::work_loads, energy("work_loads"))
       .def_ro("initial", &Energies::initial, energy("initial"))
       .def_ro("removed", &Energies::removed, energy("removed"))
+      .def_ro("changed", &Energies::changed, energy("changed"))
       .def_prop_ro("imbalance", &Energies::imbalance, "Left over in the identity of the class [J]");
   nb::class_<RemovalReport>(m, "RemovalReport", doc("RemovalReport"))
       .def_ro("tets", &RemovalReport::tets, doc("RemovalReport::tets"))
@@ -225,7 +230,6 @@ void bind_readings(nb::module_& m) {
 }
 
 void bind_setting_up(nb::class_<Live>& c) {
-  using Tissues = std::variant<Tissue, std::map<std::variant<int, std::string>, Tissue>>;
   c.def(
        "__init__",
        [](Live* self, const TetMesh& mesh, const Tissues& tissues, const std::optional<SimulationOptions>& options) {
@@ -264,6 +268,22 @@ void bind_setting_up(nb::class_<Live>& c) {
           [](Live& live, const ArrayLike& tets) { return live.get().remove_tets(to_indices(tets, 1, "tets")); },
           "tets"_a, doc(of("remove_tets")))
       .def("split_faces", split, "faces"_a, doc(of("split_faces")))
+      .def(
+          "set_tissue",
+          [](Live& live, const Region& region, const Tissue& tissue) {
+            live.get().set_tissue(region_number(live.get().mesh(), region), tissue);
+          },
+          "region"_a, "tissue"_a, doc(of("set_tissue")))
+      .def(
+          "set_tissues",
+          [](Live& live, const Tissues& tissues) { live.get().set_tissues(tissues_of(live.get().mesh(), tissues)); },
+          "tissues"_a, doc(of("set_tissues")))
+      .def(
+          "tissue",
+          [](const Live& live, const Region& region) {
+            return live.get().tissue(region_number(live.get().mesh(), region));
+          },
+          "region"_a = 0, doc(of("tissue")))
       .def(
           "is_removed", [](const Live& live, std::uint32_t tet) { return live.get().is_removed(tet); }, "tet"_a,
           doc(of("is_removed")))

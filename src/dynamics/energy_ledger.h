@@ -40,6 +40,15 @@ class EnergyLedger {
     now_.elastic -= elastic;
   }
 
+  /// Books energy that other tissues bring in at the present deformation and velocity [J].
+  void bring_in(double kinetic, double elastic) {
+    now_.changed += kinetic + elastic;
+    now_.kinetic += kinetic;
+    now_.elastic += elastic;
+  }
+  /// Length of the last kick, of which the second half is not booked yet [s].
+  double pending_step() const { return pending_step_; }
+
   const Energies& now() const { return now_; }
 
  private:

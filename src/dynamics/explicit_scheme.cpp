@@ -292,6 +292,47 @@ void ExplicitScheme::take_over(const BodyChange& change) {
   copy_.current = false;
 }
 
+/// The same state in a body of another kind, for tissues that the present kind does not have.
+void ExplicitScheme::build_anew(const TissueChange& change) {
+  std::vector<std::pair<std::size_t, std::vector<Sym3<double>>>> kept;
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const bool changes = std::find(change.blocks.begin(), change.blocks.end(), b) != change.blocks.end();
+    if (!changes && !body_.blocks[b].tissue.maxwell.empty()) kept.emplace_back(b, moving_->branch_stresses(b));
+  }
+  const StateCopy state = read_state();
+  std::vector<std::uint32_t> watched;
+  for (const WatchedVertex& w : moving_->watched()) watched.push_back(w.vertex);
+  moving_ = make_moving_body(body_, gamma_, options_, info_);
+  moving_->set_state(state.displacement, state.velocity);
+  moving_->watch(watched);
+  for (const auto& [b, stresses] : kept) moving_->set_branch_stresses(b, stresses);
+}
+
+/// Brings other tissues into the body; what is told of the last kick stays.
+void ExplicitScheme::follow_tissues(const TissueChange& change) {
+  const std::vector<WatchedVertex> told(moving_->watched().begin(), moving_->watched().end());
+  if (moving_->bears_tissues()) {
+    moving_->tissues_changed(change.blocks, gamma_);
+    info_ = info_of(*moving_, body_);
+  } else {
+    build_anew(change);
+  }
+  for (std::size_t i = 0; i < change.blocks.size(); ++i) {
+    moving_->set_branch_stresses(change.blocks[i], change.branch_stresses[i]);
+  }
+  if (!change.past.empty()) moving_->set_past(change.past);
+  stiffening_ = moving_->advance(0.0, {}, false).stiffening;
+  std::copy(told.begin(), told.end(), moving_->watched().begin());
+  copy_.current = false;
+}
+
+void ExplicitScheme::take_tissues(const TissueChange& change) {
+  follow_tissues(change);
+  const std::span<const Vec3d> u = displacement();
+  const bool undeformed = std::all_of(u.begin(), u.end(), [](const Vec3d& d) { return d == Vec3d{}; });
+  control_->tissues_changed(stiffening_, undeformed);
+}
+
 void ExplicitScheme::follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) {
   std::vector<std::uint32_t> followers;
   for (std::uint32_t i = 0; i < origins.size(); ++i) {

@@ -63,6 +63,12 @@ class ExplicitScheme : public Scheme {
   void take_over(const BodyChange& change) override;
   void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) override;
   void take_out(double kinetic, double elastic) override { ledger_.take_out(kinetic, elastic); }
+  std::vector<Sym3<double>> branch_stresses(std::size_t block) override { return moving_->branch_stresses(block); }
+  std::vector<double> past() const override { return moving_->past(); }
+  void take_tissues(const TissueChange& change) override;
+  void take_back_tissues(const TissueChange& change) override { follow_tissues(change); }
+  double booked_behind() const override { return ledger_.pending_step(); }
+  void bring_in(double kinetic, double elastic) override { ledger_.bring_in(kinetic, elastic); }
   void watch(std::span<const std::uint32_t> vertices);
   void begin_interactions(double h);
   void constrain_interactions(double h);
@@ -81,6 +87,8 @@ class ExplicitScheme : public Scheme {
   };
 
   const StateCopy& read_state() const;
+  void follow_tissues(const TissueChange& change);
+  void build_anew(const TissueChange& change);
   double shape_rate() const;
   void find_places();
   ForceParts watched_force(std::size_t place, const Axes& axes) const;

@@ -88,6 +88,16 @@ void ImplicitScheme::take_out(double kinetic, double elastic) {
   energies_.elastic -= elastic;
 }
 
+void ImplicitScheme::take_tissues(const TissueChange& change) {
+  tissue_.tissues_changed(change.blocks, now_.u);
+  for (std::size_t i = 0; i < change.blocks.size(); ++i) {
+    tissue_.set_branch_stresses(change.blocks[i], change.branch_stresses[i], now_.u);
+  }
+  system_.tissues_changed();
+  unit_force_ = unit_force(body_);
+  fresh_ = true;
+}
+
 /// Which components are held, and what the linear system is then on.
 void ImplicitScheme::find_free() {
   held_.assign(3 * body_.vertex_count, 0);

@@ -42,6 +42,15 @@ class ImplicitScheme final : public Scheme {
   void take_over(const BodyChange& change) override;
   void follow(std::span<const std::uint32_t>, std::uint32_t) override { fresh_ = true; }
   void take_out(double kinetic, double elastic) override;
+  std::vector<Sym3<double>> branch_stresses(std::size_t block) override {
+    return tissue_.branch_stresses(block, now_.u);
+  }
+  void take_tissues(const TissueChange& change) override;
+  void take_back_tissues(const TissueChange& change) override { take_tissues(change); }
+  void bring_in(double kinetic, double elastic) override {
+    energies_.changed += kinetic + elastic;
+    energies_.kinetic += kinetic, energies_.elastic += elastic;
+  }
 
  private:
   /// Motion and forces at one time.

@@ -14,17 +14,24 @@ std::unique_ptr<MovingBody> make_moving_body(const Body& body, std::span<const d
   const bool in_lanes = std::all_of(body.blocks.begin(), body.blocks.end(),
                                     [](const TissueBlock& block) { return engine::has_lanes(block.tissue); });
   if (options.precision == Precision::double_precision || !in_lanes) {
-    info = {.instruction_set = "double, element by element", .threads = 1};
-    return std::make_unique<engine::ElementBody>(body, nodal_damping, options.precision);
+    auto moving = std::make_unique<engine::ElementBody>(body, nodal_damping, options.precision);
+    info = info_of(*moving, body);
+    return moving;
   }
   auto moving =
       std::make_unique<engine::SubmeshBody>(body, nodal_damping, engine::SubmeshOptions{.threads = options.threads});
-  info = {.instruction_set = moving->kernels().instruction_set,
-          .threads = moving->threads(),
-          .submeshes = moving->submeshes().parts.size(),
-          .flops_per_tet = engine::flops_per_tet(body, moving->submeshes()),
-          .bytes_per_tet = engine::bytes_per_tet(moving->submeshes(), body.elements.size())};
+  info = info_of(*moving, body);
   return moving;
+}
+
+EngineInfo info_of(const MovingBody& moving, const Body& body) {
+  const auto* parts = dynamic_cast<const engine::SubmeshBody*>(&moving);
+  if (parts == nullptr) return {.instruction_set = "double, element by element", .threads = 1};
+  return {.instruction_set = parts->kernels().instruction_set,
+          .threads = parts->threads(),
+          .submeshes = parts->submeshes().parts.size(),
+          .flops_per_tet = engine::flops_per_tet(body, parts->submeshes()),
+          .bytes_per_tet = engine::bytes_per_tet(parts->submeshes(), body.elements.size())};
 }
 
 }  // namespace glisson

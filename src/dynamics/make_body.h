@@ -16,4 +16,7 @@ namespace glisson {
 std::unique_ptr<MovingBody> make_moving_body(const Body& body, std::span<const double> nodal_damping,
                                              const SimulationOptions& options, EngineInfo& info);
 
+/// What there is to say of a body.
+EngineInfo info_of(const MovingBody& moving, const Body& body);
+
 }  // namespace glisson

@@ -41,6 +41,11 @@ MassScaling scale_masses(Body& body, double step, double viscosity) {
   return scaling;
 }
 
+MassScaling scaled_masses(Body& body, const SimulationOptions& o) {
+  if (!o.mass_scaling_step) return {};
+  return scale_masses(body, *o.mass_scaling_step, o.integrator == Integrator::explicit_ ? 1.0 : 0.0);
+}
+
 std::vector<LimitingTet> limiting_tets(const Body& body, std::size_t most, double viscosity) {
   std::vector<LimitingTet> all;
   for (const TissueBlock& block : body.blocks) {

@@ -16,6 +16,9 @@ namespace glisson {
 /// @param viscosity  factor on C, 1 for the explicit scheme, 0 where viscosity does not limit the step
 MassScaling scale_masses(Body& body, double step, double viscosity);
 
+/// What the options ask for, before anything else asks for masses.
+MassScaling scaled_masses(Body& body, const SimulationOptions& options);
+
 /// The elements with the smallest bounds, smallest first, at rest stiffness.
 std::vector<LimitingTet> limiting_tets(const Body& body, std::size_t most, double viscosity);
 

@@ -9,12 +9,6 @@
 namespace glisson {
 namespace {
 
-/// Before anything else asks for masses.
-MassScaling scaled(Body& body, const SimulationOptions& o) {
-  if (!o.mass_scaling_step) return {};
-  return scale_masses(body, *o.mass_scaling_step, o.integrator == Integrator::explicit_ ? 1.0 : 0.0);
-}
-
 std::vector<double> nodal_damping(const Body& body, const SimulationOptions& o) {
   std::vector<double> gamma;
   for (const double m : body.masses) gamma.push_back(o.damping_rate * m + o.nodal_damping);
@@ -24,7 +18,7 @@ std::vector<double> nodal_damping(const Body& body, const SimulationOptions& o) 
 }  // namespace
 
 Scheme::Scheme(Body body, const SimulationOptions& options)
-    : options_(options), body_(std::move(body)), mass_scaling_(scaled(body_, options)),
+    : options_(options), body_(std::move(body)), mass_scaling_(scaled_masses(body_, options)),
       gamma_(nodal_damping(body_, options)), constraints_(body_.vertex_count), loads_(body_.vertex_count) {}
 
 BodyChanger& Scheme::changer() {
@@ -43,6 +37,13 @@ ConstraintId Scheme::add_constraint(Constraint constraint) {
 void Scheme::add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale) {
   loads_.add(vertices, force, std::move(scale));
   acts_on(vertices);
+}
+
+void Scheme::require_tissues(const BlockTissues& tissues) const {
+  for (const auto& [b, tissue] : tissues) {
+    require_valid(tissue);
+    require_fibres(body_, body_.blocks[b], tissue);
+  }
 }
 
 void Scheme::attach(std::shared_ptr<Interaction>, const BodyView&) { refuse_interactions(); }

@@ -12,6 +12,7 @@
 #include "dynamics/checkpoint.h"
 #include "dynamics/constraints.h"
 #include "dynamics/loads.h"
+#include "dynamics/tissue_change.h"
 #include "glisson/interaction.h"
 #include "glisson/simulation.h"
 #include "mechanics/body_change.h"
@@ -31,6 +32,10 @@ class Scheme {
 
   RemovalReport remove(std::span<const std::uint32_t> tets);
   SplitReport split(std::span<const Triangle> faces, std::span<const VertexMove> moves = {});
+  /// Gives blocks of the body other tissues, between two steps.
+  /// @return whether masses have changed
+  /// @throws std::invalid_argument for what the scheme or its step does not bear; nothing has changed then
+  bool set_tissues(const BlockTissues& tissues);
   /// Elements that got other vertices by the last split.
   std::span<const std::uint32_t> last_changed() const { return last_changed_; }
   /// Vertices that came last are copies of these; of all splits so far.
@@ -79,6 +84,21 @@ class Scheme {
   /// Energy that leaves with removed tets [J].
   virtual void take_out(double kinetic, double elastic) = 0;
 
+  /// @throws std::invalid_argument for tissues that are not valid, or that the scheme does not bear
+  virtual void require_tissues(const BlockTissues& tissues) const;
+  /// Stress of each element and Maxwell branch of a block at present [Pa]; asked before a change of its tissue.
+  virtual std::vector<Sym3<double>> branch_stresses(std::size_t block) = 0;
+  /// What the body knows of its past.
+  virtual std::vector<double> past() const { return {}; }
+  /// Follows a change of the body's tissues and masses. @throws std::invalid_argument where the step does not bear it
+  virtual void take_tissues(const TissueChange& change) = 0;
+  /// Follows one that take_tissues refused, which is taken back.
+  virtual void take_back_tissues(const TissueChange& change) = 0;
+  /// How far the account of energies stands behind the state [s].
+  virtual double booked_behind() const { return 0.0; }
+  /// Energy that comes in with changed tissues [J].
+  virtual void bring_in(double kinetic, double elastic) = 0;
+
   /// @throws std::invalid_argument saying which integrators bear interactions
   [[noreturn]] static void refuse_interactions();
   BodyChanger& changer();
@@ -104,6 +124,9 @@ class Scheme {
   std::uint64_t steps_ = 0;
 
  private:
+  void put_tissues(const BlockTissues& to);
+  void masses_changed();
+  std::array<double, 2> energy_of_blocks(std::span<const std::size_t> blocks) const;
   std::uint64_t fingerprint() const;
   void weigh_energy(std::span<const std::uint32_t> elements, RemovalReport& report);
   void change(const BodyChange& change);

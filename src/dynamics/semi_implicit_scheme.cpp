@@ -2,14 +2,21 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 
 namespace glisson {
 
 SemiImplicitScheme::SemiImplicitScheme(Body body, const SimulationOptions& options)
     : ExplicitScheme(std::move(body), options, Drag::at_once), viscous_(ViscousSystem::needed(body_)) {
+  watch_all_if_viscous();
+}
+
+void SemiImplicitScheme::watch_all_if_viscous() {
+  if (!viscous_) return;
   std::vector<std::uint32_t> all(body_.vertex_count);
   std::iota(all.begin(), all.end(), 0U);
-  if (viscous_) watch(all);
+  watch(all);
 }
 
 void SemiImplicitScheme::attach(std::shared_ptr<Interaction> interaction, const BodyView& body) {
@@ -19,6 +26,24 @@ void SemiImplicitScheme::attach(std::shared_ptr<Interaction> interaction, const 
 
 void SemiImplicitScheme::take_over(const BodyChange& change) {
   ExplicitScheme::take_over(change);
+  built_for_ = 0.0;
+}
+
+void SemiImplicitScheme::require_tissues(const BlockTissues& tissues) const {
+  ExplicitScheme::require_tissues(tissues);
+  for (const auto& [block, tissue] : tissues) {
+    if (!(tissue.viscosity > 0.0) || !has_interactions()) continue;
+    throw std::invalid_argument(
+        "tissue \"" + tissue.name + "\": viscosity = " + std::to_string(tissue.viscosity) +
+        " Pa s, but the integrator semi_implicit does not bear viscosity beside instruments, needles and membranes; " +
+        "take integrator = explicit, or model relaxation by maxwell branches");
+  }
+}
+
+void SemiImplicitScheme::take_tissues(const TissueChange& change) {
+  ExplicitScheme::take_tissues(change);
+  viscous_ = ViscousSystem::needed(body_);
+  watch_all_if_viscous();
   built_for_ = 0.0;
 }
 

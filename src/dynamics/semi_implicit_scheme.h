@@ -26,6 +26,9 @@ class SemiImplicitScheme final : public ExplicitScheme {
  private:
   void kick(double h) override;
   void take_over(const BodyChange& change) override;
+  void require_tissues(const BlockTissues& tissues) const override;
+  void take_tissues(const TissueChange& change) override;
+  void watch_all_if_viscous();
   void build(double h);
 
   bool viscous_;  ///< whether C is not 0; the kick is the explicit one where it is

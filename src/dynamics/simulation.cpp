@@ -10,6 +10,7 @@
 #include "dynamics/make_scheme.h"
 #include "dynamics/mass_scaling.h"
 #include "dynamics/simulation_parts.h"
+#include "dynamics/tissue_numbers.h"
 #include "mechanics/tet_fields.h"
 
 namespace glisson {
@@ -47,12 +48,34 @@ void require_options(const SimulationOptions& o) {
   check(std::isfinite(norm(o.gravity)), "|gravity| [m/s^2]", norm(o.gravity), "finite");
 }
 
-/// Tets that were removed, or faces that were split and vertices moved, by one call.
-struct MeshChange {
+/// Tets that were removed, or faces that were split and vertices moved, or tissues that were changed.
+struct Change {
   std::vector<std::uint32_t> removed, corners, moved{};
   std::vector<Vec3d> places{};
-  bool operator==(const MeshChange&) const = default;
+  std::map<int, Tissue> tissues{};
+  bool operator==(const Change&) const = default;
 };
+
+void put(CheckpointWriter& file, const Change& change) {
+  file.put(change.removed), file.put(change.corners), file.put(change.moved), file.put(change.places);
+  file.put(static_cast<std::uint32_t>(change.tissues.size()));
+  for (const auto& [region, tissue] : change.tissues) {
+    file.put(static_cast<std::int32_t>(region));
+    put(file, tissue);
+  }
+}
+
+Change get_change(CheckpointReader& file) {
+  Change change;
+  file.get(change.removed), file.get(change.corners), file.get(change.moved), file.get(change.places);
+  if (change.moved.size() != change.places.size()) CheckpointReader::fail();
+  const auto tissues = file.get<std::uint32_t>();
+  for (std::uint32_t k = 0; k < tissues; ++k) {
+    const auto region = file.get<std::int32_t>();
+    change.tissues.emplace(region, get_tissue(file));
+  }
+  return change;
+}
 
 std::uint64_t fingerprint_of(const TetMesh& mesh, const Body& body) {
   std::uint64_t hash = hash_numbers(std::span<const Vec3d>(mesh.vertices));
@@ -63,6 +86,23 @@ std::uint64_t fingerprint_of(const TetMesh& mesh, const Body& body) {
     hash = hash_numbers(std::span<const double>(moduli), hash);
   }
   return hash;
+}
+
+/// Makes a change that another simulation went through.
+void replay(const Change& change, Simulation& simulation) {
+  std::vector<Triangle> faces;
+  for (std::size_t c = 0; c + 2 < change.corners.size(); c += 3) {
+    faces.push_back({change.corners[c], change.corners[c + 1], change.corners[c + 2]});
+  }
+  std::vector<VertexMove> moves;
+  for (std::size_t m = 0; m < change.moved.size(); ++m) moves.push_back({change.moved[m], change.places[m]});
+  if (!change.tissues.empty()) {
+    simulation.set_tissues(change.tissues);
+  } else if (faces.empty() && moves.empty()) {
+    simulation.remove_tets(change.removed);
+  } else {
+    simulation.split_faces(faces, moves);
+  }
 }
 
 std::uint32_t kind_of(const SimulationOptions& o) {
@@ -77,14 +117,31 @@ struct Simulation::Impl {
   std::unique_ptr<Scheme> scheme;
   std::uint32_t kind;         ///< integrator, time scheme and precision
   std::uint64_t fingerprint;  ///< of mesh and tissues at the start
-  std::vector<MeshChange> changes;
+  std::vector<Change> changes;
   std::vector<char> removed{};  ///< per tet; empty: none
 
+  /// Block of a region. @throws std::invalid_argument where it has none
+  std::size_t block_of(int region) const;
   BodyView view() const { return {mesh, removed, scheme->body().masses, scheme->displacement()}; }
   void tell_change(std::span<const std::uint32_t> origins) {
     if (scheme->has_interactions()) scheme->tell_change(view(), origins);
   }
 };
+
+std::size_t Simulation::Impl::block_of(int region) const {
+  const Body& body = scheme->body();
+  std::ostringstream known;
+  for (std::size_t b = 0; b < body.blocks.size(); ++b) {
+    const int number = mesh.region_of(body.mesh_tet[body.blocks[b].begin]);
+    if (number == region) return b;
+    known << (b == 0 ? "" : ", ") << number;
+    if (const auto name = mesh.region_names.find(number); name != mesh.region_names.end()) {
+      known << " (\"" << name->second << "\")";
+    }
+  }
+  throw std::invalid_argument("tissue of region " + std::to_string(region) +
+                              ": no tet of the mesh is in this region; there are " + known.str());
+}
 
 Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const SimulationOptions& options) {
   require_options(options);
@@ -149,6 +206,35 @@ SplitReport Simulation::split_faces(std::span<const Triangle> faces, std::span<c
   for (const std::uint32_t e : impl_->scheme->last_changed()) mesh.tets[body.mesh_tet[e]] = body.elements[e];
   impl_->tell_change(report.origins);
   return report;
+}
+
+void Simulation::set_tissue(int region, const Tissue& tissue) { set_tissues({{region, tissue}}); }
+
+void Simulation::set_tissues(const std::map<int, Tissue>& tissues) {
+  BlockTissues others;
+  std::map<int, Tissue> changed;
+  bool values = true;
+  for (const auto& [region, tissue] : tissues) {
+    const std::size_t b = impl_->block_of(region);
+    const Tissue& now = impl_->scheme->body().blocks[b].tissue;
+    if (tissue == now) continue;
+    values = values && differ_by_values(tissue, now);
+    others.emplace_back(b, tissue);
+    changed.emplace(region, tissue);
+  }
+  if (others.empty()) return;
+  const bool masses = impl_->scheme->set_tissues(others);
+  // what a slider does fits in one entry: changes of values leave no trace but the last
+  if (values && !impl_->changes.empty() && !impl_->changes.back().tissues.empty()) {
+    for (auto& [region, tissue] : changed) impl_->changes.back().tissues.insert_or_assign(region, std::move(tissue));
+  } else {
+    impl_->changes.emplace_back().tissues = std::move(changed);
+  }
+  if (masses) impl_->tell_change({});
+}
+
+const Tissue& Simulation::tissue(int region) const {
+  return impl_->scheme->body().blocks[impl_->block_of(region)].tissue;
 }
 
 bool Simulation::is_removed(std::uint32_t tet) const {
@@ -217,9 +303,7 @@ void Simulation::save(std::ostream& out) const {
   file.put(impl_->kind);
   file.put(impl_->fingerprint);
   file.put(static_cast<std::uint64_t>(impl_->changes.size()));
-  for (const MeshChange& change : impl_->changes) {
-    file.put(change.removed), file.put(change.corners), file.put(change.moved), file.put(change.places);
-  }
+  for (const Change& change : impl_->changes) put(file, change);
   impl_->scheme->save(file);
   file.write(out);
 }
@@ -234,23 +318,13 @@ void Simulation::load(std::istream& in) {
   }
   const auto count = file.get<std::uint64_t>();
   for (std::uint64_t k = 0; k < count; ++k) {
-    MeshChange change;
-    file.get(change.removed), file.get(change.corners), file.get(change.moved), file.get(change.places);
-    if (change.moved.size() != change.places.size()) CheckpointReader::fail();
-    if (k < impl_->changes.size()) {
-      if (!(change == impl_->changes[k])) CheckpointReader::fail();
-      continue;
-    }
-    std::vector<Triangle> faces;
-    for (std::size_t c = 0; c + 2 < change.corners.size(); c += 3) {
-      faces.push_back({change.corners[c], change.corners[c + 1], change.corners[c + 2]});
-    }
-    std::vector<VertexMove> moves;
-    for (std::size_t m = 0; m < change.moved.size(); ++m) moves.push_back({change.moved[m], change.places[m]});
-    if (faces.empty() && moves.empty()) {
-      remove_tets(change.removed);
-    } else {
-      split_faces(faces, moves);
+    const Change change = get_change(file);
+    if (k >= impl_->changes.size()) {
+      replay(change, *this);
+      impl_->changes.resize(k + 1);
+      impl_->changes[k] = change;
+    } else if (!(change == impl_->changes[k])) {
+      CheckpointReader::fail();
     }
   }
   if (count < impl_->changes.size()) CheckpointReader::fail();

@@ -14,6 +14,7 @@ constexpr double kLeastCaution = 1e-3;                              ///< least f
 constexpr double kRecovery = 1.05;                                  ///< of that factor, a step
 constexpr double kViolent = 3.0;       ///< stiffening of large strain from which shape changes limit the step
 constexpr double kShapeChange = 0.01;  ///< of a tet within such a step [-]
+constexpr double kWorthALook = 2.0;    ///< how much shorter a scaled step is that single elements may better
 constexpr double kMostAhead = 4.0;     ///< how far a level runs ahead of a rise
 
 bool is_small(const TissueBlock& block) {
@@ -37,20 +38,27 @@ std::vector<double> at_least_one(std::span<const double> stiffening) {
 StepControl::StepControl(const Body& body, std::span<const double> nodal_damping, Drag drag,
                          const SimulationOptions& options, std::span<const double> stiffening)
     : body_(body), nodal_damping_(nodal_damping), drag_(drag), automatic_(!options.step),
-      enforce_(options.enforce_stability), exact_(options.exact_steps) {
+      enforce_(options.enforce_stability), exact_asked_(options.exact_steps),
+      scales_masses_(options.mass_scaling_step.has_value()) {
   if (!automatic_ && !(*options.step > 0.0 && std::isfinite(*options.step))) {
     throw std::invalid_argument("step = " + std::to_string(*options.step) +
                                 " s is outside the allowed range, > 0 and finite, or \"auto\"");
   }
-  // the bound from an earlier h* holds only where C stays what it is
-  exact_ = exact_ || (drag == Drag::at_once && !std::all_of(body.blocks.begin(), body.blocks.end(), is_small));
+  exact_ = search_is_needed();
   seen_.assign(body.blocks.size(), 0.0);
   lately_ = seen_;
   last_.assign(stiffening.begin(), stiffening.end());
   validated_ = rest_level_ = at_least_one(stiffening);
   limits_ = rest_limits_ = limits_at(validated_);
+  searched_ = {rest_limits_, rest_level_, block_numbers()};
   step_ = options.step.value_or(kSafety * limits_.pace);
-  if (enforce_ && step_ > limits_.stable) refuse_above();
+  if (enforce_ && step_ > limits_.stable) refuse_above(limits_.stable);
+}
+
+/// The bound from an earlier h* holds only where C stays what it is.
+bool StepControl::search_is_needed() const {
+  const bool small = std::all_of(body_.blocks.begin(), body_.blocks.end(), is_small);
+  return exact_asked_ || (drag_ == Drag::at_once && !small);
 }
 
 /// What is left of a step h of the tissue alone when stiffness of frequency ω acts beside it. φ(h) of the tissue is at most
@@ -64,9 +72,9 @@ double StepControl::with_beside(double step, double squared_frequency) const {
   return 2.0 * (std::sqrt(1.0 / (step * step) + squared_frequency) - 1.0 / step) / squared_frequency;
 }
 
-void StepControl::refuse_above() const {
+void StepControl::refuse_above(double stable) const {
   std::ostringstream text;
-  text << "step = " << step_ << " s is above the stable step h* = " << limits_.stable
+  text << "step = " << step_ << " s is above the stable step h* = " << stable
        << " s of this mesh and tissue, and the run would blow up. Ways out: a smaller step, or \"auto\", which takes "
        << kSafety << " h*; the integrator ";
   if (drag_ == Drag::lags) text << "\"semi_implicit\" where viscosity is what limits h*, or ";
@@ -124,8 +132,93 @@ void StepControl::mesh_changed(std::span<const double> nodal_damping, const Body
   };
   bound(limits_, validated_);
   bound(rest_limits_, rest_level_);
+  searched_ = {rest_limits_, rest_level_, block_numbers()};
   if (automatic_) step_ = std::min(step_, kSafety * limits_.pace);
   unchecked_ = enforce_ && step_ > limits_.stable;
+}
+
+std::vector<double> StepControl::block_numbers() const {
+  std::vector<double> numbers;
+  for (const TissueBlock& b : body_.blocks) {
+    const auto bulk = [](const LameParameters& l) { return l.lambda + 2.0 / 3.0 * l.mu; };
+    numbers.insert(numbers.end(), {b.elastic.mu, bulk(b.elastic), b.viscous.mu, bulk(b.viscous), b.tissue.density});
+  }
+  return numbers;
+}
+
+/// h* of the present tissues at a level of stiffness, from the last search and from below; 0 where that says nothing.
+StepControl::Limits StepControl::scaled_from_search(std::span<const double> level) const {
+  const std::vector<double> now = block_numbers();
+  const auto ratio = [](double a, double b) { return a > 0.0 ? a / b : 0.0; };  // ∞ where there was none
+  double r = 0.0, c = 0.0, d = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < level.size(); ++b) {
+    const double *to = &now[5 * b], *from = &searched_.numbers[5 * b];
+    r = std::max(r, level[b] / searched_.level[b] * std::max(ratio(to[0], from[0]), ratio(to[1], from[1])));
+    if (drag_ == Drag::lags) c = std::max({c, ratio(to[2], from[2]), ratio(to[3], from[3])});
+    d = std::min(d, to[4] / from[4]);
+  }
+  double s = std::max(std::sqrt(r / d), c / d);
+  const double g = std::min(1.0, d);
+  const bool damped = std::any_of(nodal_damping_.begin(), nodal_damping_.end(), [](double x) { return x > 0.0; });
+  if (damped && s * d > g) s = c <= g ? std::max(s, r / g) : std::numeric_limits<double>::infinity();
+  const double h = scales_masses_ || !std::isfinite(s) ? 0.0 : searched_.limits.pace / s;
+  return {h, h};
+}
+
+void StepControl::choose_limits(std::span<const double> stiffening, bool undeformed) {
+  const std::vector<double> now = at_least_one(stiffening), one(body_.blocks.size(), 1.0);
+  rest_level_ = undeformed ? now : one;
+  validated_ = now == rest_level_ ? now : level_of(stiffening, 1.0);
+  if (exact_) {
+    guess_ = pace_guess_ = {};
+    rest_limits_ = limits_at(rest_level_);
+    limits_ = validated_ == rest_level_ ? rest_limits_ : limits_at(validated_);
+    searched_ = {rest_limits_, rest_level_, block_numbers()};
+    return;
+  }
+  const auto bound = [&](const std::vector<double>& level) {
+    Limits limits = scaled_from_search(level);
+    if (limits.pace * kWorthALook > searched_.limits.pace) return limits;
+    const double h = std::max(limits.pace, element_bound_step(body_, level, viscosity_at(level)));
+    return Limits{h, h};
+  };
+  rest_limits_ = bound(rest_level_);
+  limits_ = bound(validated_);
+}
+
+StepControl::Chosen StepControl::chosen() const {
+  return {guess_, pace_guess_, limits_, rest_limits_, validated_, rest_level_, searched_, exact_};
+}
+
+void StepControl::restore(Chosen c) {
+  guess_ = std::move(c.guess), pace_guess_ = std::move(c.pace_guess);
+  limits_ = c.limits, rest_limits_ = c.rest_limits;
+  validated_ = std::move(c.validated), rest_level_ = std::move(c.rest_level);
+  searched_ = std::move(c.searched), exact_ = c.exact;
+}
+
+void StepControl::tissues_changed(std::span<const double> stiffening, bool undeformed) {
+  Chosen before = chosen();
+  exact_ = search_is_needed();
+  choose_limits(stiffening, undeformed);
+  if (!automatic_ && enforce_ && step_ > stable_step()) {
+    validated_ = at_least_one(stiffening);  // without room
+    limits_ = limits_at(validated_);
+    const double h = stable_step();
+    if (step_ > h) {
+      restore(std::move(before));
+      refuse_above(h);
+    }
+  }
+  if (automatic_) step_ = kSafety * limits_.pace;
+  part_bound_.reset();
+  unchecked_ = false;
+  std::fill(seen_.begin(), seen_.end(), 0.0);
+  lately_ = seen_;
+  last_.assign(stiffening.begin(), stiffening.end());
+  window_ = kFirstWindow, in_window_ = 0;
+  caution_ = 1.0;
+  shape_step_ = std::numeric_limits<double>::infinity();
 }
 
 /// How many times as stiff the tissue has become within the last step; holds an automatic step back while that is more
@@ -222,8 +315,10 @@ void StepControl::relax(std::span<const double> stiffening) {
 void StepControl::save(CheckpointWriter& out) const {
   out.put(step_), out.put(window_), out.put(in_window_), out.put(unchecked_), out.put(caution_);
   out.put(shape_step_);
-  out.put_doubles(limits_), out.put_doubles(rest_limits_);
-  for (const auto* list : {&validated_, &rest_level_, &seen_, &lately_, &last_}) out.put(*list);
+  for (const Limits& l : {limits_, rest_limits_, searched_.limits}) out.put_doubles(l);
+  for (const auto* list : {&validated_, &rest_level_, &seen_, &lately_, &last_, &searched_.level, &searched_.numbers}) {
+    out.put(*list);
+  }
   out.put(guess_.mode), out.put(pace_guess_.mode);
   out.put(guess_.step), out.put(pace_guess_.step);
 }
@@ -231,8 +326,10 @@ void StepControl::save(CheckpointWriter& out) const {
 void StepControl::load(CheckpointReader& in) {
   in.get(step_), in.get(window_), in.get(in_window_), in.get(unchecked_), in.get(caution_);
   in.get(shape_step_);
-  in.get_doubles(limits_), in.get_doubles(rest_limits_);
-  for (auto* list : {&validated_, &rest_level_, &seen_, &lately_, &last_}) in.get_same_size(*list);
+  for (Limits* l : {&limits_, &rest_limits_, &searched_.limits}) in.get_doubles(*l);
+  for (auto* list : {&validated_, &rest_level_, &seen_, &lately_, &last_, &searched_.level, &searched_.numbers}) {
+    in.get_same_size(*list);
+  }
   in.get(guess_.mode), in.get(pace_guess_.mode);
   in.get(guess_.step), in.get(pace_guess_.step);
 }

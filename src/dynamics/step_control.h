@@ -52,6 +52,13 @@ class StepControl {
   /// (part_bound.h). A given step above that is checked against h* itself by the next accept(), which is slow.
   void mesh_changed(std::span<const double> nodal_damping, const BodyChange& change, const detail::VertexStars& stars);
 
+  /// After tissues of the body have changed: an automatic step is found anew. Where a search takes too long it comes from
+  /// the last one: with moduli at most r, viscosity at most c and densities at least d times those it was made for,
+  ///   φ(h/s) ≤ 4 for s = max(√(r/d), c/d), with nodal damping that grows by g also for s ≥ r/g where c ≤ g.
+  /// @param undeformed  whether the stiffness is that at rest
+  /// @throws std::invalid_argument where a given step is above h*; nothing has changed then
+  void tissues_changed(std::span<const double> stiffening, bool undeformed);
+
   void save(CheckpointWriter& out) const;
   void load(CheckpointReader& in);
 
@@ -73,18 +80,39 @@ class StepControl {
   double stable_step() const { return with_beside(limits_.stable, beside_); }
 
  private:
-  static constexpr double kSafety = 0.9;  ///< automatic step over h*
+  static constexpr double kSafety = 0.9;               ///< automatic step over h*
+  static constexpr std::uint64_t kFirstWindow = 1000;  ///< [steps]
 
   /// h* of the scheme, and what an automatic step keeps below: at Drag::at_once also h* without viscosity, since
   /// viscosity hides what a longer step gets wrong.
   struct Limits {
     double stable = 0.0, pace = 0.0;  ///< [s]
   };
+  /// What a search was made for.
+  struct Searched {
+    Limits limits;
+    std::vector<double> level;    ///< stiffening per block
+    std::vector<double> numbers;  ///< per block: shear and bulk modulus, the same of viscosity, density
+  };
+  /// How steps are chosen, all that a refused change of tissues leaves as it was.
+  struct Chosen {
+    StabilityGuess guess, pace_guess;
+    Limits limits, rest_limits;
+    std::vector<double> validated, rest_level;
+    Searched searched;
+    bool exact;
+  };
+  Chosen chosen() const;
+  void restore(Chosen chosen);
+  std::vector<double> block_numbers() const;
+  Limits scaled_from_search(std::span<const double> level) const;
+  void choose_limits(std::span<const double> stiffening, bool undeformed);
+  bool search_is_needed() const;
   double with_beside(double step, double squared_frequency) const;
   std::vector<double> viscosity_at(std::span<const double> stiffening) const;
   Limits limits_at(std::span<const double> stiffening);
   Limits bound_at(std::span<const double> stiffening) const;
-  void refuse_above() const;
+  [[noreturn]] void refuse_above(double stable) const;
   bool rises(std::span<const double> stiffening, double rise);
   double watch_rise(std::span<const double> stiffening);
   std::vector<double> level_of(std::span<const double> seen, double ahead) const;
@@ -94,7 +122,8 @@ class StepControl {
   const Body& body_;
   std::span<const double> nodal_damping_;
   Drag drag_;
-  bool automatic_, enforce_, exact_;
+  bool automatic_, enforce_, exact_asked_, exact_;
+  bool scales_masses_;
   StabilityGuess guess_, pace_guess_;
   double step_ = 0.0;
   Limits limits_;
@@ -102,9 +131,10 @@ class StepControl {
   bool unchecked_ = false;                 ///< a given step is above the bound of a mesh that has changed
   std::vector<double> validated_;          ///< stiffening per block up to which step_ is known to be stable
   std::vector<double> rest_level_;
-  Limits rest_limits_;        ///< for rest_level_, the stiffness at the start
+  Limits rest_limits_;  ///< for rest_level_, the stiffness at rest
+  Searched searched_;
   std::vector<double> seen_;  ///< largest stiffening per block in this window
-  std::uint64_t window_ = 1000, in_window_ = 0;
+  std::uint64_t window_ = kFirstWindow, in_window_ = 0;
   std::vector<double> lately_;                                   ///< the same of the last few steps
   std::vector<double> last_;                                     ///< of the last step
   double shape_step_ = std::numeric_limits<double>::infinity();  ///< [s]

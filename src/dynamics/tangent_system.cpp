@@ -69,7 +69,12 @@ TangentSystem::TangentSystem(const TissueOperator& tissue, Preconditioner precon
     : tissue_(tissue),
       factorises_(preconditioner == Preconditioner::factorised ||
                   (preconditioner == Preconditioner::automatic && tissue.body().elements.size() <= kMostFactorised)) {
-  for (const TissueBlock& block : tissue.body().blocks) linear_ = linear_ && linear_tissue(block);
+  tissues_changed();
+}
+
+void TangentSystem::tissues_changed() {
+  const std::vector<TissueBlock>& blocks = tissue_.body().blocks;
+  linear_ = std::all_of(blocks.begin(), blocks.end(), linear_tissue);
 }
 
 void TangentSystem::set_free(std::vector<char> free) {

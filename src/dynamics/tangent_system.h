@@ -41,6 +41,8 @@ class TangentSystem {
 
   /// Components that are free (3 i + axis: 1). Also after the body has changed.
   void set_free(std::vector<char> free);
+  /// The tissues have changed; set_free comes next.
+  void tissues_changed();
   bool is_free(std::size_t component) const { return free_[component] != 0; }
 
   /// Takes A at a state.

@@ -4,20 +4,34 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/response_kernels.h"
 #include "mechanics/flush_denormals.h"
 
 namespace glisson::engine {
+namespace {
+
+bool all_tensor_masses(const Body& body) {
+  return std::all_of(body.blocks.begin(), body.blocks.end(),
+                     [](const TissueBlock& block) { return block.tissue.is_tensor_mass(); });
+}
+
+}  // namespace
 
 ElementBody::ElementBody(const Body& body, std::span<const double> nodal_damping, Precision precision)
     : body_(body), precision_(precision), damping_(nodal_damping.begin(), nodal_damping.end()),
       is_watched_(body.vertex_count, 0) {
   for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->assign(body.vertex_count, Vec3d{});
-  const auto paper = [](const TissueBlock& block) { return block.tissue.is_tensor_mass(); };
-  if (std::all_of(body.blocks.begin(), body.blocks.end(), paper)) {
+  if (all_tensor_masses(body)) {
     tissue_ = make_element_operator(body, precision);
   } else {
     any_ = std::make_unique<TissueOperator>(body);
   }
+}
+
+void ElementBody::bring_memory_up_to_date(double since) {
+  if (any_ == nullptr) return;
+  any_->advance_memory({u_, v_, since});
+  since_memory_ = 0.0;
 }
 
 /// Forces of the present state; a step that moves leaves this state behind as the tissue's past.
@@ -37,9 +51,7 @@ void ElementBody::set_state(std::span<const Vec3d> displacement, std::span<const
   u_.assign(displacement.begin(), displacement.end());
   v_.assign(velocity.begin(), velocity.end());
   for (WatchedVertex& w : watched_) w.displacement = u_[w.vertex], w.velocity = v_[w.vertex];
-  if (any_ == nullptr) return;
-  any_->advance_memory({u_, v_, std::numeric_limits<double>::infinity()});  // a state that is set has relaxed
-  since_memory_ = 0.0;
+  bring_memory_up_to_date(std::numeric_limits<double>::infinity());  // a state that is set has relaxed
 }
 
 void ElementBody::read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const {
@@ -81,6 +93,37 @@ void ElementBody::apply(const BodyChange& change, const detail::VertexStars&, st
   damping_.assign(nodal_damping.begin(), nodal_damping.end());
   if (tissue_ != nullptr) tissue_ = make_element_operator(body_, precision_);
   if (any_ != nullptr) any_->body_changed();
+}
+
+/// In single precision it is for tissues that lanes do not have.
+bool ElementBody::bears_tissues() const {
+  const auto in_lanes = [](const TissueBlock& block) { return has_lanes(block.tissue); };
+  return precision_ == Precision::double_precision || !std::all_of(body_.blocks.begin(), body_.blocks.end(), in_lanes);
+}
+
+void ElementBody::tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) {
+  damping_.assign(nodal_damping.begin(), nodal_damping.end());
+  if (all_tensor_masses(body_)) {
+    any_.reset();
+    tissue_ = make_element_operator(body_, precision_);
+    return;
+  }
+  tissue_.reset();
+  if (any_ == nullptr) {
+    any_ = std::make_unique<TissueOperator>(body_);
+    bring_memory_up_to_date(std::numeric_limits<double>::infinity());
+  } else {
+    any_->tissues_changed(blocks, u_);
+  }
+}
+
+std::vector<Sym3<double>> ElementBody::branch_stresses(std::size_t block) {
+  bring_memory_up_to_date(since_memory_);
+  return any_ != nullptr ? any_->branch_stresses(block, u_) : std::vector<Sym3<double>>{};
+}
+
+void ElementBody::set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) {
+  if (any_ != nullptr) any_->set_branch_stresses(block, stresses, u_);
 }
 
 void ElementBody::watch(std::span<const std::uint32_t> vertices) {

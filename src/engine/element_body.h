@@ -27,6 +27,11 @@ class ElementBody final : public MovingBody {
   /// Cost: one pass over the elements.
   void apply(const BodyChange& change, const detail::VertexStars& stars,
              std::span<const double> nodal_damping) override;
+  bool bears_tissues() const override;
+  /// Cost: one pass over the elements.
+  void tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) override;
+  std::vector<Sym3<double>> branch_stresses(std::size_t block) override;
+  void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) override;
   void watch(std::span<const std::uint32_t> vertices) override;
   std::span<WatchedVertex> watched() override { return watched_; }
   void place_watched() override;
@@ -34,6 +39,7 @@ class ElementBody final : public MovingBody {
 
  private:
   void evaluate(bool moves);
+  void bring_memory_up_to_date(double since);
   void book(std::size_t vertex, const Vec3d& before, const Vec3d& weight);
 
   const Body& body_;

@@ -15,6 +15,7 @@
 #include "glisson/interaction.h"
 #include "glisson/math.h"
 #include "mechanics/body_change.h"
+#include "tissue/strain.h"
 
 namespace glisson {
 
@@ -55,6 +56,17 @@ class MovingBody {
   /// @param nodal_damping  γ_i of every vertex, new ones included [kg/s]
   virtual void apply(const BodyChange& change, const detail::VertexStars& stars,
                      std::span<const double> nodal_damping) = 0;
+
+  /// Whether the body can go on with the tissues that its Body has; where not it is to be built anew.
+  virtual bool bears_tissues() const = 0;
+  /// Takes over tissues, and masses, that have changed in its Body. State and watched vertices stay; Maxwell branches of
+  /// the blocks that have changed carry no stress. Before the Body changes, branch_stresses has to be asked for them.
+  /// @param blocks  that have changed
+  /// @param nodal_damping  γ_i of every vertex [kg/s]
+  virtual void tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) = 0;
+  /// Stress of each element and Maxwell branch of a block at the present state: what is not relaxed yet [Pa].
+  virtual std::vector<Sym3<double>> branch_stresses(std::size_t block) = 0;
+  virtual void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) = 0;
 
   /// Adds vertices to those watched; one that is watched already stays so.
   virtual void watch(std::span<const std::uint32_t> vertices) = 0;

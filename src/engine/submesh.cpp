@@ -21,6 +21,8 @@ std::vector<Submesh> split(const Body& body, std::size_t target_tets) {
   for (std::size_t b = 0; b < body.blocks.size(); ++b) {
     std::vector<std::uint32_t> chosen(body.blocks[b].end - body.blocks[b].begin);
     std::iota(chosen.begin(), chosen.end(), static_cast<std::uint32_t>(body.blocks[b].begin));
+    std::erase_if(chosen, [&](std::uint32_t e) { return body.rest[e].volume == 0.0; });  // of a body that was cut
+    if (chosen.empty()) continue;
     const detail::TetPartition partition =
         detail::partition_tets(body.rest_positions, body.elements, chosen, target_tets);
     for (std::size_t p = 0; p < partition.parts(); ++p) {

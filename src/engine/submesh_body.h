@@ -40,6 +40,10 @@ class SubmeshBody final : public MovingBody {
   Vec3d velocity_of(std::uint32_t vertex) const override;
   void apply(const BodyChange& change, const detail::VertexStars& stars,
              std::span<const double> nodal_damping) override;
+  bool bears_tissues() const override;
+  void tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) override;
+  std::vector<Sym3<double>> branch_stresses(std::size_t block) override;
+  void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) override;
   void watch(std::span<const std::uint32_t> vertices) override;
   std::span<WatchedVertex> watched() override { return watched_; }
   void place_watched() override;
@@ -102,6 +106,9 @@ class SubmeshBody final : public MovingBody {
   void take_out(std::uint32_t element, const detail::VertexStars& stars);
   void take_states(std::span<const MovedVertex> moved);
   void lay_out_touched(const BodyChange& change);
+  bool refit(Submesh& part) const;
+  std::vector<Sym3<double>> relaxing_stresses(std::size_t block) const;
+  void make_memory_explicit();
   void run_submesh(std::size_t s, const Step& step, Scratch& scratch);
   void narrow(const Submesh& part, Scratch& scratch) const;
   void push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;

@@ -31,19 +31,6 @@ std::vector<std::uint32_t> elements_by_region(const TetMesh& mesh) {
   return order;
 }
 
-/// Tets of a tissue with fibres need a direction, where the mesh has directions at all.
-void require_fibre(const TetMesh& mesh, std::uint32_t tet, const Tissue& tissue) {
-  if (!tissue.fibres || mesh.fibres.empty() || norm(mesh.fibres[tet]) > 0.0) return;
-  throw std::invalid_argument("tet " + std::to_string(tet) + " of tissue \"" + tissue.name +
-                              "\" has fibres, but the mesh gives it a direction without length; give it one, or " +
-                              "another tissue, or leave the directions out of the mesh");
-}
-
-TissueBlock make_block(const Tissue& tissue, std::size_t begin) {
-  require_valid(tissue);
-  return {tissue, tissue.lame(), viscous_coefficients(tissue), begin, begin};
-}
-
 }  // namespace
 
 const TissueBlock& Body::block_of(std::size_t element) const {
@@ -52,6 +39,31 @@ const TissueBlock& Body::block_of(std::size_t element) const {
 
 double Body::quarter_mass(const TissueBlock& block, std::size_t e) const {
   return 0.25 * block.tissue.density * rest[e].volume * (mass_factor.empty() ? 1.0 : mass_factor[e]);
+}
+
+TissueBlock make_block(const Tissue& tissue, std::size_t begin, std::size_t end) {
+  require_valid(tissue);
+  return {tissue, tissue.lame(), viscous_coefficients(tissue), begin, end};
+}
+
+void require_fibres(const Body& body, const TissueBlock& block, const Tissue& tissue) {
+  if (!tissue.fibres || body.fibres.empty()) return;
+  for (std::size_t e = block.begin; e < block.end; ++e) {
+    if (norm(body.fibres[body.mesh_tet[e]]) > 0.0) continue;
+    throw std::invalid_argument("tet " + std::to_string(body.mesh_tet[e]) + " of tissue \"" + tissue.name +
+                                "\" has fibres, but the mesh gives it a direction without length; give it one, or " +
+                                "another tissue, or leave the directions out of the mesh");
+  }
+}
+
+void lump_masses(Body& body) {
+  body.masses.assign(body.vertex_count, 0.0);
+  for (const TissueBlock& block : body.blocks) {
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      const double quarter = body.quarter_mass(block, e);
+      for (const std::uint32_t v : body.elements[e]) body.masses[v] += quarter;
+    }
+  }
 }
 
 ElementRest element_rest(const std::array<Vec3d, 4>& x) {
@@ -67,19 +79,17 @@ Body build_body(const TetMesh& mesh, const std::map<int, Tissue>& tissues) {
   body.vertex_count = mesh.vertices.size();
   body.rest_positions = mesh.vertices;
   body.fibres = mesh.fibres;
-  body.masses.assign(body.vertex_count, 0.0);
   body.mesh_tet = elements_by_region(mesh);
   for (const std::uint32_t t : body.mesh_tet) {
     const std::size_t e = body.elements.size();
     const bool new_region = e == 0 || mesh.region_of(t) != mesh.region_of(body.mesh_tet[e - 1]);
-    if (new_region) body.blocks.push_back(make_block(tissue_of_region(mesh, tissues, mesh.region_of(t)), e));
-    require_fibre(mesh, t, body.blocks.back().tissue);
+    if (new_region) body.blocks.push_back(make_block(tissue_of_region(mesh, tissues, mesh.region_of(t)), e, e));
     body.elements.push_back(mesh.tets[t]);
     body.rest.push_back(element_rest(corners_of(mesh, mesh.tets[t])));
     body.blocks.back().end = e + 1;
-    const double quarter = 0.25 * body.blocks.back().tissue.density * body.rest.back().volume;
-    for (const std::uint32_t v : mesh.tets[t]) body.masses[v] += quarter;
   }
+  for (const TissueBlock& block : body.blocks) require_fibres(body, block, block.tissue);
+  lump_masses(body);
   return body;
 }
 

@@ -50,6 +50,13 @@ struct Body {
   double quarter_mass(const TissueBlock& block, std::size_t element) const;
 };
 
+/// A block of a valid tissue. @throws std::invalid_argument where it is not
+TissueBlock make_block(const Tissue& tissue, std::size_t begin, std::size_t end);
+/// Whether the tissue's fibres, if it has any, have a direction in every tet of a block. @throws std::invalid_argument
+void require_fibres(const Body& body, const TissueBlock& block, const Tissue& tissue);
+/// Sums what elements give to their vertices, in their order.
+void lump_masses(Body& body);
+
 /// @param tissues  by region number; every region of the mesh needs one
 /// @throws std::invalid_argument naming the region without a tissue, or what is wrong with mesh or tissue
 Body build_body(const TetMesh& mesh, const std::map<int, Tissue>& tissues);

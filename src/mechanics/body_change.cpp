@@ -41,11 +41,13 @@ Located locate(const Body& body, std::span<const std::uint32_t> elements, const 
 BodyChanger::BodyChanger(Body& body)
     : body_(body), stars_(body.elements, body.vertex_count), element_of_(body.elements.size()) {
   for (std::uint32_t e = 0; e < element_of_.size(); ++e) element_of_[body.mesh_tet[e]] = e;
-  quarter_masses_.reserve(body.elements.size());
-  for (const TissueBlock& block : body.blocks) {
-    for (std::size_t e = block.begin; e < block.end; ++e) {
-      quarter_masses_.push_back(body.quarter_mass(block, e));
-    }
+  quarter_masses_.resize(body.elements.size());
+  masses_changed();
+}
+
+void BodyChanger::masses_changed() {
+  for (const TissueBlock& block : body_.blocks) {
+    for (std::size_t e = block.begin; e < block.end; ++e) quarter_masses_[e] = body_.quarter_mass(block, e);
   }
 }
 

@@ -80,6 +80,8 @@ class BodyChanger {
   /// @throws std::invalid_argument as plan_split, and naming a vertex that is none, goes to no finite place, or turns a tet
   ///         over; nothing is changed then
   BodyChange cut(std::span<const Triangle> faces, std::span<const VertexMove> moves, const StateOf& state);
+  /// What elements weigh has changed in the body.
+  void masses_changed();
   /// Elements around vertices that are to be moved, ascending.
   std::vector<std::uint32_t> elements_around(std::span<const VertexMove> moves) const;
 

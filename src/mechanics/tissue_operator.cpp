@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mechanics/block_response.h"
 #include "mechanics/branch_weights.h"
 #include "mechanics/element_shape.h"
 
@@ -70,29 +71,6 @@ void TissueOperator::body_changed() {
   has_memory_ = branches > 0;
 }
 
-/// Mean of the elements around each vertex, of one block, weighted by volume.
-std::vector<double> TissueOperator::vertex_means(std::size_t b, const std::vector<double>& per_element) const {
-  const TissueBlock& block = body_.blocks[b];
-  std::vector<double> sum(body_.vertex_count, 0.0), volume(body_.vertex_count, 0.0);
-  for (std::size_t e = block.begin; e < block.end; ++e) {
-    for (const std::uint32_t v : body_.elements[e]) {
-      sum[v] += body_.rest[e].volume * per_element[e];
-      volume[v] += body_.rest[e].volume;
-    }
-  }
-  for (std::size_t v = 0; v < sum.size(); ++v) sum[v] = volume[v] > 0.0 ? sum[v] / volume[v] : 0.0;
-  return sum;
-}
-
-/// Replaces each element's value by the mean of those of its vertices.
-void TissueOperator::average(std::size_t b, std::vector<double>& per_element) const {
-  const std::vector<double> at = vertex_means(b, per_element);
-  for (std::size_t e = body_.blocks[b].begin; e < body_.blocks[b].end; ++e) {
-    const Tet& t = body_.elements[e];
-    per_element[e] = 0.25 * (at[t[0]] + at[t[1]] + at[t[2]] + at[t[3]]);
-  }
-}
-
 /// ϑ̄ of every element of a block that shares it; empty where none does.
 std::vector<double> TissueOperator::mean_volume_change(std::span<const Vec3d> u) const {
   std::vector<double> mean;
@@ -104,7 +82,7 @@ std::vector<double> TissueOperator::mean_volume_change(std::span<const Vec3d> u)
     for (std::size_t e = block.begin; e < block.end; ++e) {
       mean[e] = responses_[b].volume_change(element_gradient(body_, e, u));
     }
-    average(b, mean);
+    average(body_, block, mean);
   }
   return mean;
 }
@@ -157,28 +135,7 @@ void TissueOperator::forces(const TissueState& state, std::span<Vec3d> elastic, 
 /// Shared volume changes store Σ_a V_a ½ κ ϑ_a² over the vertices: ½ κ of each element's mean square.
 double TissueOperator::energy(std::span<const Vec3d> u) const {
   double sum = 0.0;
-  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
-    const TissueBlock& block = body_.blocks[b];
-    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
-    std::vector<double> square;
-    if (shared) {
-      square.assign(body_.elements.size(), 0.0);
-      for (std::size_t e = block.begin; e < block.end; ++e) {
-        square[e] = responses_[b].volume_change(element_gradient(body_, e, u));
-      }
-      const std::vector<double> at = vertex_means(b, square);
-      for (std::size_t e = block.begin; e < block.end; ++e) {
-        square[e] = 0.0;
-        for (const std::uint32_t v : body_.elements[e]) square[e] += 0.25 * at[v] * at[v];
-      }
-    }
-    for (std::size_t e = block.begin; e < block.end; ++e) {
-      const double root = shared ? std::sqrt(square[e]) : 0.0;
-      const double W =
-          responses_[b].relaxed_energy(element_gradient(body_, e, u), shapes_[e], shared ? &root : nullptr);
-      sum += body_.rest[e].volume * W;
-    }
-  }
+  for (const TissueBlock& block : body_.blocks) sum += BlockResponse(body_, block).energy(u);
   return sum;
 }
 
@@ -233,7 +190,7 @@ void TissueOperator::apply(const TissueTangent& tangent, std::span<const Vec3d> 
     const auto inner = [](const Mat3d& a, const Mat3d& c) { return trace(transposed_product(a, c)); };
     if (shared) {
       for (std::size_t e = block.begin; e < block.end; ++e) mean[e] = inner(tangent.volume[e], gradient(e));
-      average(b, mean);
+      average(body_, block, mean);
     }
     for (std::size_t e = block.begin; e < block.end; ++e) {
       const Mat3d H = gradient(e);
@@ -268,6 +225,51 @@ void TissueOperator::advance_memory(const TissueState& state) {
       before = S;
     }
   }
+}
+
+std::vector<Sym3<double>> TissueOperator::branch_stresses(std::size_t b, std::span<const Vec3d> u) const {
+  const TissueBlock& block = body_.blocks[b];
+  const std::size_t n = block.tissue.maxwell.size();
+  if (n == 0) return {};
+  const std::vector<Sym3<double>> S = BlockResponse(body_, block).relaxing(u);
+  std::vector<Sym3<double>> stresses;
+  for (std::size_t i = 0; i < S.size() * n; ++i) {
+    stresses.push_back((S[i / n] - memory_.relaxed[first_branch_[b] + i]) * block.tissue.maxwell[i % n].share);
+  }
+  return stresses;
+}
+
+void TissueOperator::tissues_changed(std::span<const std::size_t> blocks, std::span<const Vec3d> u) {
+  const TissueMemory before = std::move(memory_);
+  const std::vector<std::size_t> first_branch = first_branch_, first_stress = first_stress_;
+  memory_ = {};
+  body_changed();
+  const auto copy = [](const auto& from, std::size_t at, std::size_t count, auto& to, std::size_t place) {
+    std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(at), count, to.begin() + static_cast<std::ptrdiff_t>(place));
+  };
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    const std::size_t n = block.end - block.begin, k = block.tissue.maxwell.size();
+    if (k == 0) continue;
+    if (std::find(blocks.begin(), blocks.end(), b) != blocks.end()) {
+      set_branch_stresses(b, std::vector<Sym3<double>>(n * k), u);
+      continue;
+    }
+    copy(before.relaxed, first_branch[b], n * k, memory_.relaxed, first_branch_[b]);
+    copy(before.stress, first_stress[b], n, memory_.stress, first_stress_[b]);
+  }
+}
+
+void TissueOperator::set_branch_stresses(std::size_t b, std::span<const Sym3<double>> stresses,
+                                         std::span<const Vec3d> u) {
+  if (stresses.empty()) return;
+  const TissueBlock& block = body_.blocks[b];
+  const std::vector<Sym3<double>> S = BlockResponse(body_, block).relaxing(u);
+  const std::size_t n = block.tissue.maxwell.size();
+  for (std::size_t i = 0; i < stresses.size(); ++i) {
+    memory_.relaxed[first_branch_[b] + i] = S[i / n] - stresses[i] * (1.0 / block.tissue.maxwell[i % n].share);
+  }
+  std::copy(S.begin(), S.end(), memory_.stress.begin() + static_cast<std::ptrdiff_t>(first_stress_[b]));
 }
 
 }  // namespace glisson

@@ -76,12 +76,18 @@ class TissueOperator {
   /// Follows elements and vertices that have changed in the body; memory of an element stays.
   void body_changed();
 
+  /// Stress g (S − q) of each element and branch of a block, with the memory up to date [Pa].
+  std::vector<Sym3<double>> branch_stresses(std::size_t block, std::span<const Vec3d> u) const;
+  /// Follows tissues that have changed in the body. Branches of those blocks carry no stress then; the others keep theirs.
+  /// @param blocks  that have changed; the memory is up to date
+  void tissues_changed(std::span<const std::size_t> blocks, std::span<const Vec3d> u);
+  /// Sets what branch_stresses reads, in a memory that is up to date.
+  void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses, std::span<const Vec3d> u);
+
   const Body& body() const { return body_; }
 
  private:
   std::vector<double> mean_volume_change(std::span<const Vec3d> u) const;
-  std::vector<double> vertex_means(std::size_t block, const std::vector<double>& per_element) const;
-  void average(std::size_t block, std::vector<double>& per_element) const;
   template <class T>
   Sym3<T> overstress(std::size_t block, std::size_t e, double since, const Sym3<T>& S) const;
 

@@ -64,7 +64,8 @@ class Checkpoint : public testing::TestWithParam<Case> {
       }
     }
     const Energies e = s.energies();
-    all.insert(all.end(), {e.elastic, e.kinetic, e.dissipated, e.numerical, e.work_tools, e.work_loads, e.removed});
+    all.insert(all.end(),
+               {e.elastic, e.kinetic, e.dissipated, e.numerical, e.work_tools, e.work_loads, e.removed, e.changed});
     return all;
   }
   static int length() {

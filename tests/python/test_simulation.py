@@ -277,3 +277,38 @@ def test_a_motion_may_refer_to_its_simulation():
     del body, watcher
     gc.collect()
     assert told == [True]
+
+
+def test_a_tissue_changes_while_the_body_moves():
+    """A static press has twice the force with twice the modulus; the state stays, and the energies balance."""
+    body, _, tool = pressed(glisson.SimulationOptions(integrator="static"))
+    body.advance(1.0)
+    before, force = body.displacement.copy(), body.force(tool).total[2]
+    tissue = body.tissue()
+    tissue.youngs_modulus *= 2
+    assert body.tissue() != tissue
+    body.set_tissue(0, tissue)
+    assert body.tissue() == tissue and np.array_equal(body.displacement, before)
+    body.step()
+    assert body.force(tool).total[2] == pytest.approx(2 * force, rel=1e-6)
+    energies = body.energies
+    assert energies.changed > 0 and abs(energies.imbalance) < 1e-6 * energies.work_tools
+
+
+def test_regions_go_by_name_and_refusals_say_why():
+    """Regions have names or numbers; a tissue or region that is wrong is refused and changes nothing."""
+    mesh = glisson.box_mesh(cells=[2, 2, 4])
+    regions = (np.asarray(mesh.vertices)[np.asarray(mesh.tets)].mean(axis=1)[:, 2] > 0.04).astype(int)
+    mesh = glisson.TetMesh(mesh.vertices, mesh.tets, regions=regions, region_names={0: "soft", 1: "hard"})
+    body = glisson.Simulation(mesh, {"soft": glisson.Tissue(), "hard": glisson.Tissue(youngs_modulus=9000)})
+    body.set_tissues({"soft": glisson.Tissue(youngs_modulus=1000), 1: glisson.Tissue(youngs_modulus=2000)})
+    assert body.tissue("soft").youngs_modulus == 1000 and body.tissue(1).youngs_modulus == 2000
+    body.set_tissues(glisson.Tissue(viscosity=2))
+    assert body.tissue(0).viscosity == body.tissue("hard").viscosity == 2
+    with pytest.raises(ValueError, match="youngs_modulus"):
+        body.set_tissue(0, glisson.Tissue(youngs_modulus=-1))
+    with pytest.raises(ValueError, match="soft, hard"):
+        body.set_tissue("liver", glisson.Tissue())
+    with pytest.raises(ValueError, match="region 7"):
+        body.set_tissue(7, glisson.Tissue())
+    assert body.tissue(0).viscosity == 2

@@ -1,0 +1,40 @@
+// block_response.h — a tissue block as a whole at one state, in double: its stored energy, the stress its Maxwell
+// branches relax, and the volume changes its tets share.
+//
+// For what is asked now and then (a change of tissues, an account of energy); the loops that run every step have their own.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mechanics/body.h"
+#include "tissue/response.h"
+
+namespace glisson {
+
+/// Mean of the elements around each vertex, of one block, weighted by volume.
+/// @param per_element  of all elements of the body
+std::vector<double> vertex_means(const Body& body, const TissueBlock& block, const std::vector<double>& per_element);
+/// Replaces each element's value by the mean of those of its vertices.
+void average(const Body& body, const TissueBlock& block, std::vector<double>& per_element);
+
+class BlockResponse {
+ public:
+  /// @param body, @param block  must outlive this
+  BlockResponse(const Body& body, const TissueBlock& block) : body_(body), block_(block), response_(block.tissue) {}
+
+  /// Energy of the elastic forces [J], Response::relaxed_energy over the block.
+  double energy(std::span<const Vec3d> u) const;
+  /// S, of which each branch relaxes its share, of every element of the block [Pa].
+  std::vector<Sym3<double>> relaxing(std::span<const Vec3d> u) const;
+
+ private:
+  bool shared() const { return block_.tissue.volume_change == VolumeChange::nodal; }
+  std::vector<double> volume_changes(std::span<const Vec3d> u) const;
+
+  const Body& body_;
+  const TissueBlock& block_;
+  Response response_;
+};
+
+}  // namespace glisson
