@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "app/program.h"
+#include "support/places.h"
 
 namespace glisson::test {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-const std::string kMean = GLISSON_SOURCE_DIR "/scenes/fit/phantom_mean.toml";
+const std::string kMean = test::shipped("scenes/fit/phantom_mean.toml").string();
 
 std::string curve(double modulus) {
   std::string text = "time (s),displacement (mm),force (N)\n";

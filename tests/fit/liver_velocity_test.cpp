@@ -5,12 +5,13 @@
 #include <algorithm>
 
 #include "fit/run_fit.h"
+#include "support/places.h"
 
 namespace glisson::fit {
 namespace {
 
 TEST(LiverVelocity, FittedAtOneSpeedPredictsOthers) {
-  FitSpec spec = load_fit(GLISSON_SOURCE_DIR "/scenes/fit/liver_velocity.toml");
+  FitSpec spec = load_fit(test::shipped("scenes/fit/liver_velocity.toml"));
   spec.search.starts = 1;
   spec.proof.profiles = false;
   spec.proof.bootstrap = 0;

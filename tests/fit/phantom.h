@@ -11,10 +11,11 @@
 
 #include "fit/data/load_curves.h"
 #include "glisson/scene.h"
+#include "support/places.h"
 
 namespace glisson::fit::test {
 
-inline const std::filesystem::path kPhantoms = std::filesystem::path(GLISSON_SOURCE_DIR) / "../shared/data/phantom";
+inline const std::filesystem::path kPhantoms = glisson::test::shipped("../shared/data/phantom");
 
 inline bool have_phantoms() { return std::filesystem::exists(kPhantoms / "EF10_100T_A1.csv"); }
 

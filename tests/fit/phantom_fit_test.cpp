@@ -9,13 +9,14 @@
 #include <numbers>
 
 #include "fit/run_fit.h"
+#include "support/places.h"
 
 namespace glisson::fit {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kFolder = GLISSON_SOURCE_DIR "/../shared/data/phantom";
+const fs::path kFolder = test::shipped("../shared/data/phantom");
 
 struct Mix {
   const char* scene;
@@ -48,7 +49,7 @@ class Phantom : public ::testing::TestWithParam<Mix> {
     if (!fs::exists(kFolder))
       GTEST_SKIP() << kFolder << " is not there: the phantoms' curves are not part of this repository";
     options_.data_folder = kFolder;
-    spec_ = load_fit(fs::path(GLISSON_SOURCE_DIR "/scenes/fit") / GetParam().scene);
+    spec_ = load_fit(test::shipped("scenes/fit") / GetParam().scene);
     spec_.proof.bootstrap = 0;
   }
   FitSpec spec_;

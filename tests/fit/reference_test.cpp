@@ -6,12 +6,13 @@
 
 #include "fit/fit_spec.h"
 #include "fit/section_fit.h"
+#include "support/places.h"
 
 namespace glisson::fit {
 namespace {
 
 TEST(FitReference, IsUpToDate) {
-  std::ifstream stream(GLISSON_SOURCE_DIR "/docs/fit_file.md");
+  std::ifstream stream(test::shipped("docs/fit_file.md"));
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   EXPECT_TRUE(text == fit_reference_markdown())
       << "docs/fit_file.md differs from the schema; write it again with: glisson schema fit > docs/fit_file.md";

@@ -11,6 +11,8 @@
 #include <numbers>
 #include <random>
 
+#include "support/places.h"
+
 namespace glisson::fit {
 namespace {
 
@@ -21,8 +23,7 @@ using ::testing::HasSubstr;
 class RunFit : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ =
-        fs::path(GLISSON_BINARY_DIR) / "run_fit_test" / ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = test::written("run_fit_test") / ::testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::create_directories(folder_);
   }
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }

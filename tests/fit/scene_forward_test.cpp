@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "fit/data/curve_file.h"
+#include "support/places.h"
 #include "support/scene_runs.h"
 
 namespace glisson::fit {
@@ -168,7 +169,7 @@ TEST(SceneModel, RunsSideBySide) {
 
 /// A shipped file of the container's scene.
 Curve shipped(const std::string& name, double velocity) {
-  const std::string file = std::string(GLISSON_SOURCE_DIR) + "/scenes/fit/liver_velocity/" + name + ".csv";
+  const std::string file = (test::shipped("scenes/fit/liver_velocity") / (name + ".csv")).string();
   const CurveFile table = read_curve_file(file);
   EXPECT_EQ(table.units, (std::vector<std::string>{"s", "mm", "N"}));
   Curve c;
@@ -184,7 +185,7 @@ Curve shipped(const std::string& name, double velocity) {
 // The shipped curves are the shipped scene at the parameters that their header names, and 2 % of noise: with 150 points its
 // rms is known to 6 %, and three of these are allowed.
 TEST(SceneModel, GivesTheShippedCurves) {
-  SceneText scene = scene_text(std::string(GLISSON_SOURCE_DIR) + "/scenes/fit/liver_container.toml");
+  SceneText scene = scene_text(test::shipped("scenes/fit/liver_container.toml").string());
   scene.variant = "slow";
   const std::vector<Curve> curves{shipped("2mm_s_1", 0.002), shipped("6mm_s_2", 0.006), shipped("10mm_s_3", 0.01)};
   const std::vector<std::string> keys{"tissue.youngs_modulus_Pa", "tissue.law.slope_Pa", "tissue.viscosity_Pa_s"};

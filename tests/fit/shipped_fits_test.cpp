@@ -5,12 +5,13 @@
 #include <filesystem>
 
 #include "fit/run_fit.h"
+#include "support/places.h"
 
 namespace glisson::fit {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kFits = GLISSON_SOURCE_DIR "/scenes/fit";
+const fs::path kFits = test::shipped("scenes/fit");
 
 TEST(ShippedFits, CanBeRead) {
   for (const char* name : {"phantom_mean.toml", "phantom_ef10_100t.toml", "phantom_ef10_75t.toml",

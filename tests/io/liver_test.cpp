@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "io/raw_mesh.h"
+#include "support/places.h"
 
 namespace glisson {
 namespace {
@@ -17,7 +18,7 @@ using ::testing::IsEmpty;
 
 /// The folder of the liver's files; empty if this checkout comes without them.
 std::filesystem::path mesh_folder() {
-  const std::filesystem::path folder = GLISSON_SOURCE_DIR "/../shared/data/meshes";
+  const std::filesystem::path folder = test::shipped("../shared/data/meshes");
   return std::filesystem::exists(folder / "liver.vtu") ? folder : std::filesystem::path();
 }
 

@@ -3,6 +3,7 @@
 
 #include "change/cut_body.h"
 #include "glisson/io.h"
+#include "support/places.h"
 
 namespace glisson::test {
 namespace {
@@ -29,7 +30,7 @@ std::ptrdiff_t parts_by(const TetMesh& mesh, const CutPlane& plane) {
 }
 
 TEST(LiverCut, PartsItAsThePlaneDoes) {
-  const std::filesystem::path file = GLISSON_SOURCE_DIR "/../shared/data/meshes/liver.vtu";
+  const std::filesystem::path file = test::shipped("../shared/data/meshes/liver.vtu");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "the liver mesh is not here: " << file;
   const TetMesh mesh = read_mesh(file.string()).mesh;
   Vec3d low{1e9, 1e9, 1e9}, high = -low;

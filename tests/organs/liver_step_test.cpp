@@ -5,6 +5,7 @@
 
 #include "glisson/io.h"
 #include "glisson/simulation.h"
+#include "support/places.h"
 
 namespace glisson {
 namespace {
@@ -21,7 +22,7 @@ double step_of(const TetMesh& mesh, double viscosity, Integrator integrator) {
 
 // Its search did not converge with drag taken off, and fell back to a seventh of it.
 TEST(LiverStep, SemiImplicitBearsViscosity) {
-  const std::filesystem::path file = GLISSON_SOURCE_DIR "/../shared/data/meshes/liver.vtu";
+  const std::filesystem::path file = test::shipped("../shared/data/meshes/liver.vtu");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "the liver mesh is not here: " << file;
   TetMesh mesh = read_mesh(file.string()).mesh;
   mesh.regions.clear();

@@ -5,13 +5,14 @@
 #include <filesystem>
 
 #include "glisson/io.h"
+#include "support/places.h"
 #include "support/scene_runs.h"
 
 namespace glisson {
 namespace {
 
 TEST(Liver, IsPressedAtTheAutomaticStep) {
-  const std::filesystem::path file = GLISSON_SOURCE_DIR "/../shared/data/meshes/liver.vtu";
+  const std::filesystem::path file = test::shipped("../shared/data/meshes/liver.vtu");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "the liver mesh is not here: " << file;
   const Scene scene = test::shipped_scene("organs/liver.toml", {{"mesh.path", file.string()}});
   const MeshLoader load = [](const MeshFile& source) { return read_mesh(source.path, source.scale).mesh; };

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "../support/scene_runs.h"
+#include "support/places.h"
 
 namespace glisson {
 namespace {
@@ -19,7 +20,7 @@ struct Point {
 };
 
 std::vector<Point> measured() {
-  std::ifstream file(std::string(GLISSON_SOURCE_DIR) + "/scenes/needle/bovine_liver_measured.csv");
+  std::ifstream file(test::shipped("scenes/needle/bovine_liver_measured.csv"));
   std::vector<Point> points;
   for (std::string line; std::getline(file, line);) {
     std::istringstream fields(line);

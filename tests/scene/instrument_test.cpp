@@ -9,6 +9,7 @@
 
 #include "scene/every_instrument.h"
 #include "scene/scene_text.h"
+#include "support/places.h"
 
 namespace glisson {
 namespace {
@@ -310,7 +311,7 @@ TEST(Instruments, UnknownRegionIsToldWhenTheMeshIsKnown) {
 
 /// A file of a record that is gone with the test.
 struct RecordFile {
-  std::filesystem::path path = std::filesystem::path(GLISSON_BINARY_DIR) / "record_of_a_test.csv";
+  std::filesystem::path path = test::written("record_of_a_test.csv");
   explicit RecordFile(const std::string& text) { std::ofstream(path) << text; }
   ~RecordFile() { std::filesystem::remove(path); }
   std::string complaint() const {

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "scene/scene_text.h"
+#include "support/places.h"
 
 namespace glisson {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-const std::filesystem::path kFile = std::filesystem::path(GLISSON_BINARY_DIR) / "measured_of_a_test.csv";
+const std::filesystem::path kFile = test::written("measured_of_a_test.csv");
 
 /// The small scene with a chart that shows points of a file of this text.
 Scene scene_with(const std::string& file, const std::string& keys) {

@@ -11,6 +11,7 @@
 
 #include "glisson/tissue_presets.h"
 #include "scene/scene_text.h"
+#include "support/places.h"
 #include "tissue/response.h"
 
 namespace glisson {
@@ -23,7 +24,7 @@ using ::testing::HasSubstr;
 
 // Every preset is a tissue that the engine takes, says where it comes from, and cites a work of the bibliography.
 TEST(Presets, AreValidAndHaveASource) {
-  std::ifstream stream(GLISSON_SOURCE_DIR "/docs/references.bib");
+  std::ifstream stream(test::shipped("docs/references.bib"));
   const std::string bibliography{std::istreambuf_iterator<char>(stream), {}};
   std::set<std::string> names;
   for (const TissuePreset& p : tissue_presets()) {

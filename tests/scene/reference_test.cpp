@@ -8,18 +8,19 @@
 #include "scene/reference_text.h"
 #include "scene/scene_text.h"
 #include "scene/sections.h"
+#include "support/places.h"
 
 namespace glisson {
 namespace {
 
-std::string file_text(const std::string& path) {
+std::string file_text(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 // The committed reference is the one the program writes.
 TEST(Reference, IsUpToDate) {
-  EXPECT_EQ(file_text(GLISSON_SOURCE_DIR "/docs/scene.md"), scene_reference_markdown())
+  EXPECT_EQ(file_text(test::shipped("docs/scene.md")), scene_reference_markdown())
       << "docs/scene.md differs from the schema; write it again with: glisson schema > docs/scene.md";
 }
 

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "glisson/scene.h"
+#include "support/places.h"
 
 namespace glisson {
 namespace {
@@ -20,7 +21,7 @@ bool is_fit(const std::filesystem::path& file) {
 // Every scene under scenes/ is read without complaint and says what it is.
 TEST(ShippedScenes, AreSound) {
   int count = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(GLISSON_SOURCE_DIR "/scenes")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(test::shipped("scenes"))) {
     if (entry.path().extension() != ".toml" || is_fit(entry.path())) continue;
     ++count;
     try {
@@ -31,7 +32,7 @@ TEST(ShippedScenes, AreSound) {
       ADD_FAILURE() << error.what();
     }
   }
-  EXPECT_GT(count, 0) << "no scenes under " GLISSON_SOURCE_DIR "/scenes";
+  EXPECT_GT(count, 0) << "no scenes under " << test::shipped("scenes");
 }
 
 }  // namespace

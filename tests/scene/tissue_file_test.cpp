@@ -9,6 +9,7 @@
 #include "scene/document.h"
 #include "scene/scene_text.h"
 #include "scene/tissue_file.h"
+#include "support/places.h"
 
 namespace glisson {
 namespace {
@@ -19,8 +20,7 @@ using ::testing::HasSubstr;
 class TissueFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(GLISSON_BINARY_DIR) / "tissue_file_test" /
-              ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = test::written("tissue_file_test") / ::testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::create_directories(folder_);
   }
   void write(const std::string& text) { std::ofstream(folder_ / "tissue.toml") << text; }

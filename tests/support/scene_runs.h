@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "glisson/scene.h"
+#include "support/places.h"
 
 namespace glisson::test {
 
@@ -51,7 +52,7 @@ class Recorder final : public RunObserver {
 };
 
 inline Scene shipped_scene(const std::string& path, std::vector<Override> overrides = {}) {
-  return load_scene(std::string(GLISSON_SOURCE_DIR) + "/scenes/" + path, overrides);
+  return load_scene(test::shipped("scenes/" + path), overrides);
 }
 
 inline RunRecord run_recorded(const Variant& variant, const MeshLoader& load = {}) {
