@@ -108,10 +108,12 @@ def fit(
     starts: int | None = None,
     bootstrap: int | None = None,
     progress: Callable[[str, int, int, float], object] | None = None,
+    state: str | os.PathLike[str] | None = None,
 ) -> FitResult:
     """Fits a tissue to measured curves, and says how sure the answer is.
 
-    Ctrl-C, and what `progress` raises, ends it.
+    Ctrl-C, and what `progress` raises, ends it. With `state` the same call goes on from there; fit.state.json in the folder
+    of `glisson fit --out` is such a file.
 
     :param description: a FIT.toml, its text (with a line end), or a dict of its keys
     :param laws: laws to fit beside those of the description (known_laws)
@@ -120,6 +122,7 @@ def fit(
     :param starts: descents at most, in place of the description's
     :param bootstrap: fits to curves drawn again, in place of the description's
     :param progress: called with stage, done, planned and the best rms so far [N]
+    :param state: file that keeps what is known while the fit runs; gone when it is complete. Of another fit it is begun anew
     :raises SceneError: with every problem of the description
     """
     from . import _fit
@@ -131,7 +134,8 @@ def fit(
     else:
         spec = _fit.load_fit(Path(description))
     folder = "" if data is None else os.fspath(data)
-    return FitResult(*_fit.run(spec, list(laws), folder, starts, bootstrap, progress))
+    kept = "" if state is None else os.fspath(state)
+    return FitResult(*_fit.run(spec, list(laws), folder, starts, bootstrap, progress, kept))
 
 
 def known_laws() -> dict[str, str]:

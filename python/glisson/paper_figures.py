@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,40 +22,68 @@ SOURCES = {
     "5": "fit/liver_velocity.toml",
     "6": "fit/liver_velocity.toml",
 }
+#: Of the repetitions that figures 5 and 6 show [m/s].
+VELOCITIES = {"5": (0.002,), "6": (0.006, 0.010)}
 
 
 def figures(
-    which: Sequence[str] = ("2", "3a", "3b", "5", "6"),
+    names: str | Sequence[str] = tuple(SOURCES),
     out: str | os.PathLike[str] | None = None,
     result: FitResult | None = None,
+    progress: Callable[[str], object] | None = print,
+    state: str | os.PathLike[str] | None = None,
 ) -> dict[str, Any]:
     """Redraws the paper's figures 2, 3, 5 and 6: runs their scenes, and the fit of the last two.
 
-    Figure 2 takes a second, figure 3 some ten, the fit of 5 and 6 many minutes. Its curves are simulated: the paper
-    publishes no numbers of its measurements.
+    Figure 2 takes a second, figure 3 some ten, the fit of 5 and 6 many minutes: `names=["2", "3a", "3b"]` leaves it out. Its
+    curves are simulated: the paper publishes no numbers of its measurements.
 
-    :param out: folder for figure<name>.pdf
+    :param names: of the figures: "2", "3a", "3b", "5", "6"
+    :param out: folder for figure<name>.pdf, each written as soon as it is drawn
     :param result: of a fit of scenes/fit/liver_velocity.toml that was made before, for figures 5 and 6
+    :param progress: called with a line when something is begun, how far it is and when it is done; None: quiet
+    :param state: of the fit, as in fit(): a call that was interrupted goes on from there
     """
+    which = [names] if isinstance(names, str) else list(names)
     unknown = [name for name in which if name not in SOURCES]
     if unknown:
         raise ValueError(f"there is no figure {unknown[0]!r}; there are: {', '.join(SOURCES)}")
     pyplot = need("matplotlib.pyplot", "matplotlib", "plot")
+    tell: Callable[[str], object] = progress or (lambda _line: None)
     drawn: dict[str, Any] = {}
-    with plot.style():
-        for name in which:
-            if name in ("2", "3a", "3b"):
-                drawn[name] = _of_scene(pyplot, scenes_folder() / SOURCES[name])
-        velocities = {"5": (0.002,), "6": (0.006, 0.010)}
-        wanted = [name for name in which if name in velocities]
-        if wanted:
-            found = result or fit(scenes_folder() / SOURCES["5"])
-            drawn |= {name: _of_fit(pyplot, found, velocities[name]) for name in wanted}
-    if out is not None:
-        Path(out).mkdir(parents=True, exist_ok=True)
-        for name, figure in drawn.items():
+
+    def keep(name: str, figure: Any) -> None:
+        drawn[name] = figure
+        if out is not None:
+            Path(out).mkdir(parents=True, exist_ok=True)
             figure.savefig(Path(out) / f"figure{name}.pdf")
-    return drawn
+
+    with plot.style():
+        for name in (n for n in which if n not in VELOCITIES):
+            tell(f"figure {name}: running {SOURCES[name]}")
+            keep(name, _of_scene(pyplot, scenes_folder() / SOURCES[name]))
+        wanted = [name for name in which if name in VELOCITIES]
+        if wanted:
+            found = result or fit(scenes_folder() / SOURCES["5"], progress=_fit_lines(tell, wanted), state=state)
+            for name in wanted:
+                keep(name, _of_fit(pyplot, found, VELOCITIES[name]))
+    return {name: drawn[name] for name in which}
+
+
+def _fit_lines(tell: Callable[[str], object], wanted: Sequence[str]) -> Callable[[str, int, int, float], None]:
+    """Lines on how far the fit is, one for each tenth of a stage."""
+    told: set[tuple[str, int]] = set()
+    start = time.monotonic()
+
+    def line(stage: str, done: int, planned: int, best: float) -> None:
+        step = (stage, 10 * done // max(planned, 1))
+        if step in told:
+            return
+        told.add(step)
+        rms = f", rms {best:.3g} N so far" if best > 0 else ""
+        tell(f"figure {', '.join(wanted)}: fit, {stage} {done} of {planned}{rms}, {time.monotonic() - start:.0f} s")
+
+    return line
 
 
 def _of_scene(pyplot: Any, file: Path) -> Any:

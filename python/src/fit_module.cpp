@@ -7,16 +7,27 @@
 #include "fit/run_fit.h"
 #include "live_simulation.h"
 #include "report/fit_json.h"
+#include "report/fit_state.h"
 
 namespace {
 
 namespace nb = nanobind;
 using namespace glisson;
 
+/// Goes on from what an interrupted run of the same fit left in a file, and keeps the file up to date.
+void remember_in(const std::filesystem::path& state, const fit::FitSpec& spec, fit::FitOptions& options) {
+  const std::string fingerprint = fit_fingerprint(spec, options);
+  if (auto known = read_fit_state(state, fingerprint)) options.memory = std::move(*known);
+  options.remember = [state, fingerprint](const fit::FitMemory& memory) {
+    write_fit_state(state, fingerprint, memory);
+  };
+}
+
 /// The text of fit.json, and that of tissue.toml. Progress is told to Python, where Ctrl-C ends the fit with what is known.
 std::pair<std::string, std::string> run(fit::FitSpec spec, const std::vector<std::string>& laws,
                                         const std::filesystem::path& data, std::optional<int> starts,
-                                        std::optional<int> bootstrap, const nb::object& progress) {
+                                        std::optional<int> bootstrap, const nb::object& progress,
+                                        const std::filesystem::path& state) {
   if (starts) spec.search.starts = *starts;
   if (bootstrap) spec.proof.bootstrap = *bootstrap;
   std::atomic<bool> stop{false};
@@ -36,10 +47,12 @@ std::pair<std::string, std::string> run(fit::FitSpec spec, const std::vector<std
       stop = true;
     }
   };
+  if (!state.empty()) remember_in(state, spec, options);
   fit::FitResult result;
   {
     const nb::gil_scoped_release free;
     result = fit::run_fit(spec, options);
+    if (result.complete && !state.empty()) std::filesystem::remove(state);
   }
   if (raised) std::rethrow_exception(raised);
   const FitHeading heading{spec.file.stem().string(), spec.title, spec.description, spec.notes, spec.source};
@@ -80,8 +93,9 @@ NB_MODULE(_fit, m) {
       "Names of the laws that a fit can compare, and what they are");
   m.def("run", run, "spec"_a, "laws"_a = std::vector<std::string>{}, "data"_a = std::filesystem::path{},
         "starts"_a = nb::none(), "bootstrap"_a = nb::none(), "progress"_a = nb::none(),
-        "The texts of fit.json and tissue.toml.",
+        "state"_a = std::filesystem::path{}, "The texts of fit.json and tissue.toml.",
         nb::sig("def run(spec: FitSpec, laws: collections.abc.Sequence[str] = [], data: str | os.PathLike[str] = '', "
                 "starts: int | None = None, bootstrap: int | None = None, progress: "
-                "collections.abc.Callable[[str, int, int, float], object] | None = None) -> tuple[str, str]"));
+                "collections.abc.Callable[[str, int, int, float], object] | None = None, state: str | os.PathLike[str] "
+                "= '') -> tuple[str, str]"));
 }

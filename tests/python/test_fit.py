@@ -63,6 +63,29 @@ def test_progress_is_told_and_ends_the_fit(scenes):
         glisson.fit(scenes / "fit" / "phantom_mean.toml", progress=stop, **QUICK)
 
 
+def test_an_interrupted_fit_goes_on(scenes, tmp_path):
+    """Ctrl-C ends a fit as KeyboardInterrupt; with `state` the next call goes on with the starts that are known, and finds
+    what an uninterrupted one finds. The file is gone when the fit is complete."""
+    script = (
+        "import glisson, os, signal, sys\n"
+        "def look(stage, done, planned, rms):\n"
+        "    if stage == 'profiles': os.kill(os.getpid(), signal.SIGINT)\n"
+        "try:\n"
+        "    glisson.fit(sys.argv[1], starts=4, bootstrap=0, state=sys.argv[2], progress=look)\n"
+        "except KeyboardInterrupt:\n"
+        "    print('interrupted')\n"
+    )
+    description, state = scenes / "fit" / "phantom_mean.toml", tmp_path / "fit.state.json"
+    done = subprocess.run([sys.executable, "-c", script, description, state], capture_output=True, text=True, check=False)
+    assert done.stdout == "interrupted\n", done.stdout + done.stderr
+    known = json.loads(state.read_text(encoding="utf-8"))
+    resumed = glisson.fit(description, starts=4, bootstrap=0, state=state)
+    assert known and not state.exists()
+    whole = glisson.fit(description, starts=4, bootstrap=0)
+    assert resumed.values == whole.values
+    assert resumed.to_dict()["forward_runs"] < whole.to_dict()["forward_runs"]
+
+
 def test_messages_and_laws():
     """A description that cannot be used is refused with its keys; laws are listed by name."""
     with pytest.raises(glisson.SceneError, match="missing key `data`"):

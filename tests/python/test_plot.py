@@ -59,7 +59,9 @@ def test_fits_are_drawn(scenes):
 
 def test_the_papers_figures(tmp_path):
     """Figures 2, 3, 5 and 6 are drawn from the shipped scenes, with the curves that the paper has."""
-    drawn = glisson.figures(("2", "3a", "3b"), tmp_path)
+    lines = []
+    drawn = glisson.figures(names=("2", "3a", "3b"), out=tmp_path, progress=lines.append)
+    assert lines == [f"figure {name}: running paper/figure{name}.toml" for name in ("2", "3a", "3b")]
     assert sorted(f.name for f in tmp_path.iterdir()) == ["figure2.pdf", "figure3a.pdf", "figure3b.pdf"]
     curves = {line.get_label(): line for line in drawn["2"].axes[0].lines}
     assert list(curves) == ["linear", "tissue 1: step", "tissue 2: grows with s"]
@@ -70,6 +72,7 @@ def test_the_papers_figures(tmp_path):
     assert len(drawn["3a"].axes[0].lines) >= 3 and len(drawn["3b"].axes[0].lines) >= 3
     with pytest.raises(ValueError, match="no figure '4'; there are: 2, 3a"):
         glisson.figures(["4"])
+    assert list(glisson.figures("2", progress=None)) == ["2"]
 
 
 def test_figures_5_and_6(scenes):
