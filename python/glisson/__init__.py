@@ -34,9 +34,12 @@ from ._core import (
     ContainerLoads,
     ContainerOptions,
     CutOptions,
+    CutReport,
+    Cutter,
     CylinderOptions,
     CylinderVessel,
     CylinderWall,
+    EdgePiece,
     Energies,
     EngineInfo,
     ExponentialLaw,
@@ -51,6 +54,7 @@ from ._core import (
     Instrument,
     InstrumentEvent,
     Interaction,
+    InteractionStep,
     LimitingTet,
     LinearLaw,
     MassScaling,
@@ -63,6 +67,8 @@ from ._core import (
     NeoHookean,
     Ogden,
     OutputSpec,
+    OwnDriver,
+    OwnInteraction,
     PathDriver,
     Plate,
     PolynomialLaw,
@@ -96,6 +102,7 @@ from ._core import (
     ToolForces,
     Variant,
     VerondaWestmann,
+    Wrench,
     Yeoh,
     box_mesh,
     bulk_modulus,
@@ -114,6 +121,7 @@ from ._core import (
 )
 from . import plot
 from ._version import VERSION
+from .driving import FunctionDriver
 from .fitting import FitResult, fit, known_laws
 from .meshes import format_report, from_meshio, from_pyvista, read_mesh, to_pyvista, write_vtu
 from .paper_figures import figures

@@ -14,6 +14,20 @@ const char* doc(const std::string& name) {
   return found == std::end(kDocstrings) ? "" : found->second;
 }
 
+void set_field(nb::handle self, const std::string& field, nb::handle value) {
+  try {
+    nb::setattr(self, field.c_str(), value);
+  } catch (nb::python_error& error) {
+    if (!error.matches(PyExc_TypeError)) throw;
+    const std::string text = error.what();  // "… 1. (self, arg: float, /) -> None …"
+    const std::size_t from = text.find("arg: "), to = text.find(", /)");
+    if (from == std::string::npos || to == std::string::npos) throw;
+    const std::string wanted = text.substr(from + 5, to - from - 5);
+    throw nb::type_error(
+        (field + " = " + nb::cast<std::string>(nb::repr(value)) + " does not fit; expected " + wanted).c_str());
+  }
+}
+
 Doubles vectors(std::vector<Vec3d> values) {
   const std::size_t n = values.size();
   return owned<Doubles>(std::move(values), {n, 3});

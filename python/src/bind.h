@@ -75,6 +75,9 @@ std::vector<Vec3d> to_vectors(const ArrayLike& array, const char* name);
 /// (n, columns) whole numbers from 0 on, or for one column (n,) or a mask. @throws nb::value_error
 std::vector<std::uint32_t> to_indices(nb::handle array, std::size_t columns, const char* name);
 
+/// Gives an option class's field a value. @throws nb::type_error naming field, value and what is expected
+void set_field(nb::handle self, const std::string& field, nb::handle value);
+
 /// A class of options: every field by name in its constructor, readable and writable, shown by repr().
 template <class T>
 class Options : public nb::class_<T> {
@@ -89,7 +92,7 @@ class Options : public nb::class_<T> {
                                 nb::cast<std::string>(nb::str(", ").attr("join")(self.h.type().attr("_fields"))))
                                    .c_str());
         }
-        nb::setattr(self.h, key, value);
+        set_field(self.h, nb::cast<std::string>(key), value);
       }
     });
     this->def("__repr__", [](nb::handle self) {

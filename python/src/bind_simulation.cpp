@@ -14,7 +14,16 @@ using Live = LiveSimulation;
 std::string of(const char* member) { return std::string("Simulation::") + member; }
 
 std::vector<std::uint32_t> chosen(const Live& live, const VertexChoice& choice) {
-  if (!nb::isinstance<nb::str>(choice)) return to_indices(choice, 1, "vertices");
+  if (!nb::isinstance<nb::str>(choice)) {
+    const nb::object array = nb::module_::import_("numpy").attr("asarray")(choice);
+    const std::size_t size = nb::cast<std::size_t>(array.attr("size")), all = live.get().mesh().vertices.size();
+    if (nb::cast<std::string>(array.attr("dtype").attr("kind")) == "b" && size != all) {
+      throw nb::value_error(
+          ("vertices is a mask of " + std::to_string(size) + ", but the mesh has " + std::to_string(all) + " vertices")
+              .c_str());
+    }
+    return to_indices(choice, 1, "vertices");
+  }
   const auto name = nb::cast<std::string>(choice);
   const auto& sets = live.get().mesh().vertex_sets;
   const auto found = sets.find(name);
@@ -66,6 +75,12 @@ ConstraintId drive(Live& live, const VertexChoice& vertices, const std::variant<
   if (const auto* press_motion = std::get_if<PressMotion>(&motion)) {
     return live.get().drive(set, press(*press_motion), axes_of(axes), from.value_or(press_motion->start));
   }
+  const nb::object& function = std::get<nb::object>(motion);
+  if (PyCallable_Check(function.ptr()) == 0) {
+    throw nb::type_error(("motion = " + nb::cast<std::string>(nb::repr(function)) +
+                          " is neither a PressMotion nor a function of time [s] that gives a displacement [m]")
+                             .c_str());
+  }
   Motion way = Callback<Vec3d>(std::get<nb::object>(motion), live.functions);
   return live.get().drive(set, std::move(way), axes_of(axes), from.value_or(0.0));
 }
@@ -100,15 +115,6 @@ nb::object vectors_view(nb::handle self, std::span<const Vec3d> values) {
   return view(self, reinterpret_cast<const double*>(values.data()), {values.size(), 3});
 }
 
-void refuse_views(const Live& live) {
-  if (live.views > 0 && !live.may_change()) {
-    throw nb::buffer_error(
-        "views of the state are held, and the body is about to move in memory: copy() them and let them go, or build "
-        "the "
-        "simulation with SimulationOptions(mesh_changes=True), which hands out copies");
-  }
-}
-
 nb::bytes save(const Live& live) {
   std::ostringstream out;
   live.get().save(out);
@@ -117,7 +123,7 @@ nb::bytes save(const Live& live) {
 }
 
 void load(Live& live, const nb::bytes& checkpoint) {
-  refuse_views(live);
+  live.refuse_views();
   std::istringstream in(std::string(checkpoint.c_str(), checkpoint.size()));
   live.get().load(in);
 }
@@ -134,7 +140,7 @@ nb::dict tet_fields(const Live& live) {
 }
 
 SplitReport split(Live& live, const ArrayLike& faces) {
-  refuse_views(live);
+  live.refuse_views();
   const std::vector<std::uint32_t> corners = to_indices(faces, 3, "faces");
   std::vector<Triangle> triangles;
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
@@ -263,6 +269,15 @@ void bind_setting_up(nb::class_<Live>& c) {
       .def(
           "attach", [](Live& live, std::shared_ptr<Interaction> x) { live.get().attach(std::move(x)); },
           "interaction"_a, nb::keep_alive<1, 2>(), doc(of("attach")))
+      .def("attach_blade", &Live::attach_blade, "name"_a, "driver"_a, "direction"_a = Vec3d{0, 0, -1},
+           "options"_a = BladeOptions{}, "cut_every"_a = 0.0, nb::keep_alive<0, 1>(),
+           "Attaches a blade that cuts as the body is stepped; the arrays of the state are copies from then on.\n"
+           ":param direction: along which depth is measured\n"
+           ":param cut_every: how often it cuts [s]; 0: after every step\n"
+           ":raises ValueError: naming the option, its value and the allowed range",
+           nb::sig("def attach_blade(self, name: str, driver: ToolDriver, direction: collections.abc.Sequence[float] | "
+                   "numpy.typing.NDArray[typing.Any] = (0.0, 0.0, -1.0), options: BladeOptions = ..., cut_every: float "
+                   "= 0.0) -> Blade"))
       .def(
           "remove_tets",
           [](Live& live, const ArrayLike& tets) { return live.get().remove_tets(to_indices(tets, 1, "tets")); },

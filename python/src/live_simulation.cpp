@@ -32,11 +32,48 @@ Simulation& LiveSimulation::get() {
   return own_ ? *own_ : built_->simulation;
 }
 
+void LiveSimulation::refuse_views() const {
+  if (views == 0 || may_change_) return;
+  throw nb::buffer_error(
+      "views of the state are held, and the body is about to move in memory: copy() them and let them go, or build the "
+      "simulation with SimulationOptions(mesh_changes=True), which hands out copies");
+}
+
+std::shared_ptr<Blade> LiveSimulation::attach_blade(const std::string& name, std::shared_ptr<ToolDriver> driver,
+                                                    const Vec3d& direction, const BladeOptions& options, double every) {
+  if (!(every >= 0.0)) {
+    throw std::invalid_argument("attach_blade: cut_every = " + std::to_string(every) +
+                                " s is outside the allowed range, >= 0");
+  }
+  refuse_views();
+  Simulation& simulation = get();
+  auto blade = std::make_shared<Blade>(simulation, name, std::move(driver), direction, options);
+  simulation.attach(blade);
+  may_change_ = true;
+  blades_.push_back({blade, every, 0.0});
+  return blade;
+}
+
+/// What blades of one's own have passed; those of scenes cut by themselves.
+void LiveSimulation::cut() {
+  try {
+    for (Cutting& x : blades_) {
+      const double time = (own_ ? *own_ : built_->simulation).time();
+      if (time < x.next) continue;
+      x.blade->cut();
+      x.next = time + x.every;
+    }
+  } catch (...) {
+    if (!fault_.raised) fault_.raised = std::current_exception();
+  }
+}
+
 /// @return false where the step was not made or a callback has raised
 bool LiveSimulation::one_step(StepStatus& worst) {
   const StepResult result = own_ ? own_->step() : built_->step();
   inverted_.assign(result.inverted_tets.begin(), result.inverted_tets.end());
   const bool made = result.status == StepStatus::ok || result.status == StepStatus::inverted;
+  if (made) cut();
   if (!made) trouble_ = result.message;
   if (result.status != StepStatus::ok) worst = result.status;
   return made && !fault_.raised;

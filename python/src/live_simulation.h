@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "bind.h"
+#include "glisson/blade.h"
 #include "glisson/scene.h"
 
 namespace glisson::python {
@@ -90,12 +91,24 @@ class LiveSimulation {
 
   std::vector<std::uint32_t> inverted() const { return inverted_; }
 
+  /// @throws nb::buffer_error where views are held on a body that is about to move in memory
+  void refuse_views() const;
+  /// A blade that cuts as the simulation steps, every so many seconds. The arrays are copies from then on.
+  std::shared_ptr<Blade> attach_blade(const std::string& name, std::shared_ptr<ToolDriver> driver,
+                                      const Vec3d& direction, const BladeOptions& options, double every);
+
   /// Functions that it calls.
   std::vector<nb::object> functions;
   /// Views that Python holds on the state.
   std::atomic<int> views{0};
 
  private:
+  /// A blade and when it cuts next.
+  struct Cutting {
+    std::shared_ptr<Blade> blade;
+    double every, next;
+  };
+  void cut();
   template <class Going>
   StepStatus loop(Going going);
   bool one_step(StepStatus& worst);
@@ -103,6 +116,7 @@ class LiveSimulation {
   std::optional<Simulation> own_;
   std::optional<Variant> variant_;
   std::unique_ptr<BuiltVariant> built_;
+  std::vector<Cutting> blades_;
   Fault fault_;
   std::vector<std::uint32_t> inverted_;
   std::string trouble_;

@@ -10,6 +10,9 @@ void bind_tissues(nanobind::module_& m);
 void bind_instruments(nanobind::module_& m);
 void bind_scenes(nanobind::module_& m);
 void bind_simulation(nanobind::module_& m);
+void bind_own_driver(nanobind::module_& m);
+void bind_own_interaction(nanobind::module_& m);
+void bind_cutting(nanobind::module_& m);
 void bind_results(nanobind::module_& m);
 
 }  // namespace glisson::python

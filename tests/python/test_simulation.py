@@ -312,3 +312,16 @@ def test_regions_go_by_name_and_refusals_say_why():
     with pytest.raises(ValueError, match="region 7"):
         body.set_tissue(7, glisson.Tissue())
     assert body.tissue(0).viscosity == 2
+
+
+def test_mistakes_are_told_at_once():
+    """A mask of another length, a motion that is none, and fields of the wrong kind are refused with what was given."""
+    body = glisson.Simulation(glisson.box_mesh(cells=[2, 2, 2]), glisson.Tissue())
+    with pytest.raises(ValueError, match="mask of 3, but the mesh has 27"):
+        body.fix(np.ones(3, dtype=bool))
+    with pytest.raises(TypeError, match=r"motion = 3.0 is neither"):
+        body.drive("z_max", 3.0)
+    with pytest.raises(TypeError, match="kinematics = 'big' does not fit; expected .*'corotational'"):
+        glisson.Tissue(kinematics="big")
+    with pytest.raises(TypeError, match="youngs_modulus = 'stiff' does not fit; expected float"):
+        glisson.Tissue(youngs_modulus="stiff")

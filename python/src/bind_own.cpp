@@ -1,0 +1,329 @@
+// bind_own.cpp — drivers and interactions written in Python.
+//
+//   Simulation::step ──▶ OwnDriver::advance ──▶ takes the GIL ──▶ def advance(self, time, h, on_tool)
+//
+// A step never throws: what a method raises is kept, the tool stays where it is and the interaction does nothing until the
+// step is done, and then it comes out of step() or advance() as it is. A call into Python takes some microseconds, as long
+// as a step of a small body.
+#include "glisson/instrument.h"
+#include "live_simulation.h"
+
+namespace glisson::python {
+namespace {
+
+/// Calls `method` of a Python object unless something was raised before in this step; keeps what it raises.
+/// @return none where it was not called or has raised
+nb::object call_kept(nb::handle self, const char* method, const auto&... arguments) {
+  Fault* fault = Fault::current();
+  if (fault && fault->raised) return nb::none();
+  try {
+    return self.attr(method)(arguments...);
+  } catch (...) {
+    if (!fault) throw;
+    fault->raised = std::current_exception();
+    return nb::none();
+  }
+}
+
+std::vector<double> numbers_of(const nb::object& given) { return nb::cast<std::vector<double>>(given); }
+
+/// Leads a tool by a method of a subclass, or by a function.
+class OwnDriver : public ToolDriver {
+ public:
+  OwnDriver(const Pose& start, std::optional<double> end) : start_(start), last_(start), end_(end) {}
+
+  Pose start() const override { return start_; }
+  std::optional<double> end() const override { return end_; }
+  Pose advance(double time, double h, const Wrench& on_tool) override {
+    const nb::gil_scoped_acquire gil;
+    try {
+      const nb::object pose = call_kept(nb::find(*this), "advance", time, h, on_tool);
+      if (!pose.is_none()) last_ = pose_of(pose);
+    } catch (...) {
+      if (!Fault::current()) throw;
+      Fault::current()->raised = std::current_exception();
+    }
+    return last_;
+  }
+  std::vector<double> past() const override {
+    const nb::gil_scoped_acquire gil;
+    std::vector<double> past{last_.position.x, last_.position.y, last_.position.z};
+    for (const auto& row : last_.axes.m) past.insert(past.end(), row.begin(), row.end());
+    const std::vector<double> own = numbers_of(nb::find(*this).attr("past")());
+    past.insert(past.end(), own.begin(), own.end());
+    return past;
+  }
+  bool restore(std::span<const double> past) override {
+    if (past.size() < 12) return false;
+    last_.position = {past[0], past[1], past[2]};
+    for (std::size_t k = 0; k < 9; ++k) last_.axes(k / 3, k % 3) = past[3 + k];
+    const nb::gil_scoped_acquire gil;
+    return nb::cast<bool>(nb::find(*this).attr("restore")(std::vector<double>(past.begin() + 12, past.end())));
+  }
+
+ private:
+  /// A Pose, or its position alone.
+  Pose pose_of(const nb::object& given) const {
+    Pose pose = last_;
+    if (nb::try_cast<Pose>(given, pose) || nb::try_cast<Vec3d>(given, pose.position)) return pose;
+    throw nb::type_error(("advance returned " + nb::cast<std::string>(nb::str(nb::handle(given.type()))) +
+                          "; expected a Pose, or three numbers for its position")
+                             .c_str());
+  }
+
+  Pose start_, last_;
+  std::optional<double> end_;
+};
+
+/// A step as an interaction in Python sees it; only while it is called.
+class OwnStep {
+ public:
+  explicit OwnStep(const InteractionStep& step) : step_(&step) {}
+  void close() { step_ = nullptr; }
+
+  const InteractionStep& get() const {
+    if (step_ != nullptr) return *step_;
+    throw std::runtime_error("the step is over: read it in add_forces, constrain or moved, and keep copies");
+  }
+  template <class Read>
+  Doubles each(const Read& read) const {
+    std::vector<Vec3d> values;
+    for (std::size_t k = 0; k < get().vertices.size(); ++k) values.push_back(read(k));
+    return vectors(std::move(values));
+  }
+  Numbers numbers() const {
+    std::vector<std::uint32_t> numbers;
+    for (const WatchedVertex& w : get().vertices) numbers.push_back(w.vertex);
+    return indices(std::move(numbers));
+  }
+  /// Places of vertices, and as many vectors.
+  std::pair<std::vector<std::uint32_t>, std::vector<Vec3d>> placed(nb::handle which, const ArrayLike& given,
+                                                                   const char* name) const {
+    std::vector<std::uint32_t> places = to_indices(which, 1, "vertices");
+    std::vector<Vec3d> values = to_vectors(given, name);
+    if (places.size() != values.size()) {
+      throw nb::value_error(
+          (std::to_string(places.size()) + " vertices, but " + std::to_string(values.size()) + " " + name).c_str());
+    }
+    for (std::uint32_t& v : places) {
+      const std::uint32_t place = v < get().place_of.size() ? get().place_of[v] : InteractionStep::kNowhere;
+      if (place == InteractionStep::kNowhere) {
+        throw nb::value_error(("vertex " + std::to_string(v) + " is not at hand; name it in reach()").c_str());
+      }
+      v = place;
+    }
+    return {std::move(places), std::move(values)};
+  }
+  void add_force(nb::handle which, const ArrayLike& forces, bool viscous) const {
+    const auto [places, values] = placed(which, forces, "forces");
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      WatchedVertex& w = get().vertices[places[k]];
+      (viscous ? w.viscous : w.elastic) += values[k];
+    }
+  }
+  void push(nb::handle which, const ArrayLike& impulses) const {
+    if (get().mobility.empty()) throw std::runtime_error("push is for constrain(); forces go by add_force");
+    const auto [places, values] = placed(which, impulses, "impulses");
+    for (std::size_t k = 0; k < places.size(); ++k) get().push(places[k], values[k]);
+  }
+
+ private:
+  const InteractionStep* step_;
+};
+
+/// An interaction whose members are methods of a subclass in Python.
+class OwnInteraction : public Interaction {
+ public:
+  void attached(const BodyView& body, double time) override {
+    const nb::gil_scoped_acquire gil;
+    vertex_count_ = body.mesh.vertices.size();
+    nb::find(*this).attr("attached")(body.mesh, time);
+  }
+  void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override {
+    const nb::gil_scoped_acquire gil;
+    vertex_count_ = body.mesh.vertices.size();
+    nb::find(*this).attr("body_changed")(body.mesh, indices({origins.begin(), origins.end()}));
+  }
+  std::span<const std::uint32_t> reach(double time, double h) override {
+    const nb::gil_scoped_acquire gil;
+    reached_.clear();
+    keeping([&] {
+      const nb::object named = call_kept(nb::find(*this), "reach", time, h);
+      if (!named.is_none()) reached_ = to_indices(named, 1, "what reach() returned");
+      for (const std::uint32_t v : reached_) {
+        if (v < vertex_count_) continue;
+        reached_.clear();
+        throw nb::value_error(
+            ("reach() names vertex " + std::to_string(v) + " of " + std::to_string(vertex_count_)).c_str());
+      }
+    });
+    return reached_;
+  }
+  void add_forces(const InteractionStep& step) override { hand("add_forces", step); }
+  void constrain(const InteractionStep& step) override { hand("constrain", step); }
+  void moved(const InteractionStep& step) override {
+    hand("moved", step);
+    const nb::gil_scoped_acquire gil;
+    keeping([&] {
+      const nb::object w = call_kept(nb::find(*this), "squared_frequency");
+      if (!w.is_none()) squared_frequency_ = nb::cast<double>(w);
+    });
+  }
+  double squared_frequency() const override {
+    if (squared_frequency_) return *squared_frequency_;
+    const nb::gil_scoped_acquire gil;
+    squared_frequency_ = nb::cast<double>(nb::find(*this).attr("squared_frequency")());
+    return *squared_frequency_;
+  }
+  std::vector<double> past() const override {
+    const nb::gil_scoped_acquire gil;
+    return numbers_of(nb::find(*this).attr("past")());
+  }
+  bool restore(std::span<const double> past) override {
+    const nb::gil_scoped_acquire gil;
+    return nb::cast<bool>(nb::find(*this).attr("restore")(std::vector<double>(past.begin(), past.end())));
+  }
+
+ private:
+  /// Within a step what goes wrong is kept.
+  static void keeping(const auto& act) {
+    try {
+      act();
+    } catch (...) {
+      if (!Fault::current()) throw;
+      if (!Fault::current()->raised) Fault::current()->raised = std::current_exception();
+    }
+  }
+  void hand(const char* method, const InteractionStep& step) {
+    const nb::gil_scoped_acquire gil;
+    keeping([&] {
+      const nb::object seen = nb::cast(OwnStep(step), nb::rv_policy::move);
+      call_kept(nb::find(*this), method, seen);
+      nb::cast<OwnStep&>(seen).close();
+    });
+  }
+
+  std::size_t vertex_count_ = 0;
+  std::vector<std::uint32_t> reached_;
+  mutable std::optional<double> squared_frequency_;
+};
+
+void bind_step(nb::module_& m) {
+  const auto of = [](const char* member) { return doc(std::string("InteractionStep::") + member); };
+  const auto watched = [](const char* member) { return doc(std::string("WatchedVertex::") + member); };
+  nb::class_<OwnStep>(m, "InteractionStep",
+                      "The vertices at hand in a step, for an Interaction: arrays in the order of `vertices`, copies. "
+                      "Valid only in the call that it is handed to.")
+      .def_prop_ro(
+          "time", [](const OwnStep& s) { return s.get().time; }, of("time"))
+      .def_prop_ro(
+          "h", [](const OwnStep& s) { return s.get().h; }, of("h"))
+      .def_prop_ro("vertices", &OwnStep::numbers, "Numbers of the vertices at hand, ascending")
+      .def_prop_ro(
+          "positions", [](const OwnStep& s) { return s.each([&](std::size_t k) { return s.get().position(k); }); },
+          of("position"))
+      .def_prop_ro(
+          "displacement",
+          [](const OwnStep& s) { return s.each([&](std::size_t k) { return s.get().vertices[k].displacement; }); },
+          watched("displacement"))
+      .def_prop_ro(
+          "velocity",
+          [](const OwnStep& s) { return s.each([&](std::size_t k) { return s.get().vertices[k].velocity; }); },
+          of("vertices"))
+      .def_prop_ro(
+          "elastic",
+          [](const OwnStep& s) { return s.each([&](std::size_t k) { return s.get().vertices[k].elastic; }); },
+          watched("elastic"))
+      .def_prop_ro(
+          "viscous",
+          [](const OwnStep& s) { return s.each([&](std::size_t k) { return s.get().vertices[k].viscous; }); },
+          watched("viscous"))
+      .def_prop_ro(
+          "mobility",
+          [](const OwnStep& s) {
+            return s.each([&](std::size_t k) { return s.get().mobility.empty() ? Vec3d{} : s.get().mobility[k]; });
+          },
+          of("mobility"))
+      .def("add_force", &OwnStep::add_force, "vertices"_a, "forces"_a, "viscous"_a = false,
+           "In add_forces: forces [N], (n, 3), on vertices at hand. The account of energy takes them for elastic ones, "
+           "or for viscous ones.")
+      .def("push", &OwnStep::push, "vertices"_a, "impulses"_a,
+           "In constrain: impulses [N s], (n, 3), on vertices at hand; held components do not move.");
+}
+
+constexpr const char* kInteraction =
+    "Something of your own that acts on a body: subclass it, override what is needed, and attach it.\n\n"
+    "    class Spring(glisson.OwnInteraction):\n"
+    "        def reach(self, time, h):\n"
+    "            return [212]                                       # vertices to have at hand\n"
+    "        def add_forces(self, step):\n"
+    "            step.add_force([212], -200.0 * step.displacement[step.vertices == 212])\n"
+    "        def squared_frequency(self):\n"
+    "            return 200.0 / 1e-4                                # stiffness over mass, from above [1/s^2]\n\n"
+    "Each method that is overridden is called in every step and takes some microseconds there, as long as a step of a "
+    "small "
+    "body: for prototypes. What a method raises ends the stepping and comes out as it is.";
+
+}  // namespace
+
+void bind_own_driver(nb::module_& m) {
+  nb::class_<Wrench>(m, "Wrench", doc("Wrench"))
+      .def_ro("force", &Wrench::force, doc("Wrench::force"))
+      .def_ro("torque", &Wrench::torque, doc("Wrench::torque"));
+  nb::class_<OwnDriver, ToolDriver>(
+      m, "OwnDriver",
+      "Leads a tool by your own code: subclass it and override advance(); for a function FunctionDriver.\n\n"
+      "advance is called once a step, which takes some microseconds; what it raises ends the stepping and comes out as "
+      "it is. "
+      "Let it not hold the Simulation, which would keep both alive for good.")
+      .def(nb::init<const Pose&, std::optional<double>>(), "start"_a, "end"_a = nb::none(),
+           ":param start: where the tool starts\n:param end: time at which the motion has ended [s]; none: it does not "
+           "end by "
+           "itself")
+      .def(
+          "advance",
+          [](nb::handle, double, double, const Wrench&) -> nb::object {
+            throw nb::type_error("OwnDriver.advance(self, time, h, on_tool) is to be overridden by a subclass");
+          },
+          "time"_a, "h"_a, "on_tool"_a, doc("ToolDriver::advance"),
+          nb::sig("def advance(self, time: float, h: float, on_tool: Wrench) -> Pose | "
+                  "collections.abc.Sequence[float] | numpy.typing.NDArray[typing.Any]"))
+      .def(
+          "past", [](const OwnDriver&) { return std::vector<double>{}; },
+          "Numbers that a checkpoint is to have beside the pose; to be overridden with restore()",
+          nb::sig("def past(self) -> collections.abc.Sequence[float]"))
+      .def(
+          "restore", [](OwnDriver&, const std::vector<double>& past) { return past.empty(); }, "past"_a,
+          "Takes them back. :return: False where they are not those of such a driver");
+}
+
+void bind_own_interaction(nb::module_& m) {
+  bind_step(m);
+  const auto of = [](const char* member) { return doc(std::string("Interaction::") + member); };
+  nb::class_<OwnInteraction, Interaction>(m, "OwnInteraction", kInteraction)
+      .def(nb::init<>())
+      .def(
+          "attached", [](OwnInteraction&, const TetMesh&, double) {}, "mesh"_a, "time"_a, of("attached"))
+      .def(
+          "body_changed", [](OwnInteraction&, const TetMesh&, const ArrayLike&) {}, "mesh"_a, "origins"_a,
+          of("body_changed"))
+      .def(
+          "reach", [](OwnInteraction&, double, double) { return nb::list(); }, "time"_a, "h"_a, of("reach"),
+          nb::sig("def reach(self, time: float, h: float) -> numpy.typing.ArrayLike"))
+      .def(
+          "add_forces", [](OwnInteraction&, const OwnStep&) {}, "step"_a, of("add_forces"))
+      .def(
+          "constrain", [](OwnInteraction&, const OwnStep&) {}, "step"_a, of("constrain"))
+      .def(
+          "moved", [](OwnInteraction&, const OwnStep&) {}, "step"_a, of("moved"))
+      .def(
+          "squared_frequency", [](const OwnInteraction&) { return 0.0; }, of("squared_frequency"))
+      .def(
+          "past", [](const OwnInteraction&) { return std::vector<double>{}; }, of("past"),
+          nb::sig("def past(self) -> collections.abc.Sequence[float]"))
+      .def(
+          "restore", [](OwnInteraction&, const std::vector<double>& past) { return past.empty(); }, "past"_a,
+          of("restore"));
+}
+
+}  // namespace glisson::python
