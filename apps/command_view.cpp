@@ -67,10 +67,12 @@ int view_scene(const Options& options) {
   variant.simulation.threads = options.threads;
   MeshCache meshes(false);
   view::Engine engine(variant, meshes.loader());
-  const view::SceneFacts facts{.title = scene.title.empty() ? scene.file.stem().string() : scene.title,
-                               .variant = variant.label.empty() ? variant.name : variant.label,
-                               .version = std::string(version()),
-                               .instruments = engine.forms()};
+  const view::SceneFacts facts{
+      .title = scene.title.empty() ? scene.file.stem().string() : scene.title,
+      .variant = variant.label.empty() ? variant.name : variant.label,
+      .version = std::string(version()),
+      .instruments = engine.forms(),
+      .recorder = view::recording_writer(scene, variant, overrides_of(options.scene), engine.tools())};
   const std::string told =
       fmt::format("{}{}, {} tets", others(variant.name, scene.variants.size()), facts.title, engine.tets());
   return serve(engine, facts, told, options.server);
@@ -88,8 +90,11 @@ int view_run(const Options& options) {
   require_no_changes(options.scene);
   const std::string wanted = options.scene.variants.empty() ? "" : options.scene.variants.front();
   view::RunFolder run = view::open_run(options.scene.scene, wanted);
-  const view::SceneFacts facts{
-      .title = run.title, .variant = run.label, .version = std::string(version()), .instruments = run.forms};
+  const view::SceneFacts facts{.title = run.title,
+                               .variant = run.label,
+                               .version = std::string(version()),
+                               .instruments = run.forms,
+                               .recorder = {}};
   std::string told = wanted.empty() ? others(run.variant, run.variants.size()) : "";
   told += fmt::format("{}, {} recorded frames, {} s", run.title, run.frames.size(), run.frames.back().time);
   if (!run.notice.empty()) told += "\n" + run.notice;

@@ -77,6 +77,15 @@ void add_threads_option(CLI::App& command, int& threads) {
       ->capture_default_str();
 }
 
+std::vector<Override> overrides_of(const SceneOptions& options) {
+  std::vector<Override> overrides;
+  for (const std::string& text : options.set) overrides.push_back(parse_override(text));
+  if (options.mesh.empty()) return overrides;
+  overrides.push_back({"mesh.kind", "file"});
+  overrides.push_back({"mesh.path", std::filesystem::absolute(options.mesh).string()});
+  return overrides;
+}
+
 Scene open_scene(const SceneOptions& options) {
   std::vector<Override> overrides;
   for (const std::string& text : options.set) overrides.push_back(parse_override(text));

@@ -18,6 +18,9 @@ struct SceneOptions {
 
 void add_scene_options(CLI::App& command, SceneOptions& options);
 
+/// What --set and --mesh lay over a scene; the path of a mesh is absolute. @throws std::invalid_argument naming the option
+std::vector<Override> overrides_of(const SceneOptions& options);
+
 /// The scene with everything the options change in it; its source says so in a first comment.
 /// @throws SceneError, std::invalid_argument naming the option
 Scene open_scene(const SceneOptions& options);

@@ -239,6 +239,7 @@ void Engine::frame() {
   const WallClock::time_point begin = WallClock::now();
   for (std::size_t i = 0; i < tools_.size(); ++i) body_->way(i).plan(due_s_, kFrame);
   draw_hand();
+  began_s_ = due_s_;
   due_s_ += kFrame;
   const RunSummary::End end = app::advance_to(body_->built(), variant_.on_inversion, due_s_, stop_);
   take_sample();
@@ -249,13 +250,20 @@ void Engine::frame() {
   notice_ = end_of_run(end, body_->built().simulation);
 }
 
+/// A frame that is over before the first step has no force yet; its way is recorded.
 void Engine::take_sample() {
   const Simulation& simulation = body_->built().simulation;
-  if (simulation.steps() == 0) return;
-  ForceSample sample{.epoch = epoch_, .time = static_cast<float>(simulation.force_time())};
-  for (std::size_t i = 0; i < tools_.size(); ++i) {
-    sample.depth[i] = static_cast<float>(body_->depth(i));
-    sample.force[i] = static_cast<float>(dot(body_->force(i), tools_[i].direction));
+  ForceSample sample{.epoch = epoch_, .frame_time = began_s_};
+  for (std::size_t i = 0; i < tools_.size(); ++i) sample.way[i] = body_->way(i).at(began_s_);
+  sample.grabbed = body_->grab() != nullptr && body_->grab()->holds();
+  sample.cut = body_->cut() != nullptr && body_->cut()->area() > 0.0;
+  if (simulation.steps() > 0) {
+    sample.force_time = simulation.force_time();
+    sample.time = static_cast<float>(sample.force_time);
+    for (std::size_t i = 0; i < tools_.size(); ++i) {
+      sample.depth[i] = static_cast<float>(body_->depth(i));
+      sample.force[i] = static_cast<float>(dot(body_->force(i), tools_[i].direction));
+    }
   }
   samples_.push(sample);
 }

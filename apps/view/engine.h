@@ -95,7 +95,7 @@ class Engine final : public Source {
   std::vector<Vec3d> targets_;
   Vec3d hand_at_{}, hand_{}, hand_target_{};  ///< where the hand took hold, its way, and its way's target [m]
   double reach_ = 0.0;                        ///< size of the body [m]
-  double due_s_ = 0.0;                        ///< simulated time that the last frame was to reach [s]
+  double due_s_ = 0.0, began_s_ = 0.0;        ///< simulated times that the last frame was to reach, and began at [s]
   bool paused_ = false, stopped_ = false, building_ = false, restarted_ = false;
   int frames_to_step_ = 0;
   std::uint32_t epoch_ = 0, echo_ = 0, shape_number_ = 0;

@@ -186,6 +186,7 @@ std::string hello_message(const Source& source, const SceneFacts& facts, const s
               {"tools", std::move(tools)},
               {"parameters", std::move(parameters)},
               {"recorded", recorded_json(source.recorded())},
+              {"can_record", static_cast<bool>(facts.recorder)},
               {"instruments", json::parse(facts.instruments)}}
       .dump();
 }

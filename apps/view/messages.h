@@ -5,6 +5,7 @@
 #include <deque>
 #include <string>
 
+#include "view/scene_writer.h"
 #include "view/snapshot.h"
 #include "view/source.h"
 #include "view/surface.h"
@@ -26,7 +27,8 @@ std::string samples_message(const std::deque<ForceSample>& history, std::size_t 
 /// What a page has to know of the scene, as JSON.
 struct SceneFacts {
   std::string title, variant, version;
-  std::string instruments;  ///< JSON list of instrument_form_json
+  std::string instruments;   ///< JSON list of instrument_form_json
+  RecordingWriter recorder;  ///< none: nothing is recorded
 };
 std::string hello_message(const Source& source, const SceneFacts& facts, const std::string& session);
 std::string role_message(bool drives, bool led, std::size_t viewers);

@@ -77,6 +77,7 @@ struct Server::Impl {
   void tick();
   void look();
   void keep_samples();
+  Message archive() const;
   void send_news(const Snapshot& state, Clock::time_point now);
   void send_frame(Viewer& viewer);
   const Message& frame_with(Field field);
@@ -107,7 +108,9 @@ struct Server::Impl {
   std::array<Message, kFields> frames_;  ///< of it, as far as someone wants them
   std::uint64_t frame_number_ = 0;
   std::deque<ForceSample> history_;
-  std::uint64_t samples_ = 0;  ///< all there ever were
+  Recording recording_;
+  std::vector<double> parameters_;  ///< of the newest state
+  std::uint64_t samples_ = 0;       ///< all there ever were
   std::atomic<std::uint64_t> sent_{0}, missed_{0};
   bool stopping_ = false, led_ = false;
   Clock::time_point news_{}, due_{};
@@ -138,12 +141,20 @@ struct Request : std::enable_shared_from_this<Request> {
     if (!host_allowed(host, server_.place_)) return answer(http::status::misdirected_request, "This is no such host.");
     if (!origin_allowed(origin, host)) return answer(http::status::forbidden, "Another page may not use this one.");
     const std::string path = target.substr(0, target.find('?'));
-    if (path != "/" && path != "/stream") return answer(http::status::not_found, "There is nothing here.");
+    if (path != "/" && path != "/stream" && path != "/recording")
+      return answer(http::status::not_found, "There is nothing here.");
     if (!same_secret(query_value(target, "token"), server_.options_.token))
       return answer(http::status::forbidden, "The token is wrong: open the whole address that glisson view printed.");
     if (path == "/stream") return become_viewer();
     if (request.method() != http::verb::get) return answer(http::status::method_not_allowed, "Only GET.");
+    if (path == "/recording") return answer_recording();
     answer(http::status::ok, server_.page_, "text/html; charset=utf-8");
+  }
+
+  void answer_recording() {
+    const std::shared_ptr<const std::string> archive = server_.archive();
+    if (!archive) return answer(http::status::not_found, "Nothing has been recorded.");
+    answer(http::status::ok, *archive, "application/zip", archive);
   }
 
   void become_viewer() {
@@ -158,7 +169,9 @@ struct Request : std::enable_shared_from_this<Request> {
         ->accept(parser_.get());
   }
 
-  void answer(http::status status, std::string_view text, const char* type = "text/plain; charset=utf-8") {
+  /// @param owner  of the text, where that does not outlive the server
+  void answer(http::status status, std::string_view text, const char* type = "text/plain; charset=utf-8",
+              std::shared_ptr<const std::string> owner = {}) {
     using Body = http::span_body<const char>;
     auto response = std::make_shared<http::response<Body>>(status, 11);
     response->set(http::field::content_type, type);
@@ -169,11 +182,12 @@ struct Request : std::enable_shared_from_this<Request> {
                   "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; font-src data:; "
                   "img-src data: blob:; connect-src 'self' ws:; base-uri 'none'; form-action 'none'; "
                   "frame-ancestors 'none'");
+    if (owner) response->set(http::field::content_disposition, "attachment; filename=\"recording.zip\"");
     response->body() = {text.data(), text.size()};
     response->keep_alive(false);
     response->prepare_payload();
     stream_.expires_after(kPatience);
-    http::async_write(stream_, *response, [self = shared_from_this(), response](beast::error_code, std::size_t) {
+    http::async_write(stream_, *response, [self = shared_from_this(), response, owner](beast::error_code, std::size_t) {
       beast::error_code ignored;
       self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
     });
@@ -259,7 +273,8 @@ void Viewer::gone() {
 
 Server::Impl::Impl(Source& source, SceneFacts facts, std::string_view page, const ServerOptions& options)
     : source_(source), facts_(std::move(facts)), page_(page), options_(options),
-      lead_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.lead_kept_s))) {
+      lead_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.lead_kept_s))),
+      recording_(source.tools().size()) {
   if (options_.host == "localhost") options_.host = "127.0.0.1";
   beast::error_code error;
   const asio::ip::address address = asio::ip::make_address(options_.host, error);
@@ -302,8 +317,17 @@ void Server::Impl::tick() {
 }
 
 void Server::Impl::keep_samples() {
-  for (ForceSample sample; source_.next_sample(sample); ++samples_) history_.push_back(sample);
+  for (ForceSample sample; source_.next_sample(sample); ++samples_) {
+    history_.push_back(sample);
+    if (facts_.recorder) recording_.add(sample);
+  }
   while (history_.size() > kHistory) history_.pop_front();
+}
+
+/// Null where there is nothing to save. @throws nothing: a scene that was opened can be written again
+Message Server::Impl::archive() const {
+  if (!facts_.recorder || recording_.frames() < 2) return nullptr;
+  return message(facts_.recorder(recording_, parameters_));
 }
 
 /// Takes the newest state, packs it once and hands it to those who are ready.
@@ -313,6 +337,7 @@ void Server::Impl::look() {
   if (led_ != lead_.led(now)) send_roles();
   const Snapshot* state = source_.latest();
   if (state == nullptr) return;
+  parameters_ = state->parameters;
   if (state->shape_number != shape_number_) {
     shape_number_ = state->shape_number;
     surface_ = std::make_unique<Surface>(state->shape);

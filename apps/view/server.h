@@ -2,6 +2,7 @@
 //
 //   GET /?token=T         the page                      anything else: 404; a wrong token: 403; a strange Host: 421
 //   GET /stream?token=T   WebSocket; &session=K goes on as the viewer that was cut off
+//   GET /recording?token=T  what hands did since the body was at rest, as an archive (recording.h)
 //
 // One thread serves everyone: each 16 ms it takes the newest state from its source, packs it once, and hands it to the viewers
 // that are ready; one that is still busy with the last frame misses this one.
@@ -13,6 +14,7 @@
 #include <string_view>
 
 #include "view/messages.h"
+#include "view/recording.h"
 #include "view/source.h"
 
 namespace glisson::view {

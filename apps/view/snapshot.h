@@ -37,6 +37,10 @@ struct ForceSample {
   std::uint32_t epoch = 0;
   float time = 0.0f;
   std::array<float, kMostTools> depth{}, force{};
+  // For recording it.
+  double frame_time = 0.0, force_time = 0.0;           ///< when the frame began, of which instant the forces are [s]
+  std::array<Vec3d, kMostTools> way{};                 ///< of each tool from where it started, when the frame began [m]
+  bool grabbed = false, cut = false, changed = false;  ///< by hand, in this frame
 };
 
 struct ToolState {

@@ -33,7 +33,7 @@ class LiveServer : public ::testing::Test {
     engine_.stop();
   }
   void open(const ServerOptions& options) {
-    server_ = std::make_unique<Server>(engine_, SceneFacts{"a scene", "main", "0", "[]"}, kPage, options);
+    server_ = std::make_unique<Server>(engine_, SceneFacts{"a scene", "main", "0", "[]", {}}, kPage, options);
     engine_.start();
     server_->start();
   }
@@ -307,7 +307,7 @@ TEST(LiveServerOptions, BeyondThisMachineNeedsAToken) {
   Engine engine(parse_scene(test::small_scene(), "view.toml", ".").variants.front(), {});
   const auto why = [&](const ServerOptions& options) -> std::string {
     try {
-      Server server(engine, SceneFacts{"", "", "", "[]"}, kPage, options);
+      Server server(engine, SceneFacts{"", "", "", "[]", {}}, kPage, options);
     } catch (const std::invalid_argument& error) {
       return error.what();
     }

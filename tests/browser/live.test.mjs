@@ -1,6 +1,7 @@
 // The live view in a real browser: the body is drawn, a needle pushed by hand meets the scene's force, a change of the tissue
 // is felt, a line that was cut comes back, and strangers stay out.
 import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
@@ -88,6 +89,44 @@ describe("live view", { skip: program() === null ? "the program is not built" : 
     );
     await page.screenshot({ path: join(shots, "pull.png") });
     await page.mouse.up();
+  });
+
+  test("a body cut open shows its face, and what was taken away cannot be pulled", async () => {
+    const canvas = page.locator(".live-canvas");
+    const open = page.locator("input[name=open]");
+    const closed = (await pixelsOf(page, canvas)).hash;
+    await open.check();
+    await page.locator("select[aria-label=Cut]").selectOption("y");
+    await settle(page);
+    assert.notEqual((await pixelsOf(page, canvas)).hash, closed);
+    await page.screenshot({ path: join(shots, "cut.png") });
+    const box = await canvas.boundingBox();
+    await page.mouse.move(box.x + 0.42 * box.width, box.y + 0.62 * box.height); // where tissue was pulled before
+    await page.mouse.down();
+    await page.mouse.move(box.x + 0.3 * box.width, box.y + 0.6 * box.height, { steps: 8 });
+    await later(page, 0.2);
+    assert.match(await page.locator(".live-numbers").innerText(), /Pull\s+0\.000 N/);
+    await page.mouse.up();
+    await open.uncheck();
+  });
+
+  test("a recording goes again by glisson run and ends with the force that was felt", async () => {
+    await page.getByRole("button", { name: "Reset" }).click();
+    await until(page, (s) => Number(s.time) < 0.2, "at rest");
+    await type(page, "Depth [mm]", 5);
+    await until(page, (s) => Number(s.depth) > 0.004999, "5 mm deep");
+    const felt = await later(page, 0.3);
+    const [saved] = await Promise.all([
+      page.waitForEvent("download"),
+      page.getByRole("button", { name: "Save recording" }).click(),
+    ]);
+    const zip = join(live.folder, "recording.zip");
+    await saved.saveAs(zip);
+    const again = join(live.folder, "recording");
+    const unpacked = spawnSync("python3", ["-m", "zipfile", "-e", zip, again], { encoding: "utf8" });
+    assert.equal(unpacked.status, 0, unpacked.stderr);
+    const force = forceOfRun(join(again, "scene.toml"), again);
+    assert.ok(Math.abs(Number(felt.force) / force - 1) < 0.01, `${felt.force} N by hand, ${force} N again`);
   });
 
   test("ten watch at once, a mebibyte of rubbish ends only the one that sent it", async () => {

@@ -73,7 +73,8 @@ async function measure(url, [width, height]) {
 }
 
 const [scene, ...sizes] = process.argv.slice(2);
-const live = await openLive(readFileSync(scene, "utf8"));
-for (const size of sizes.length > 0 ? sizes : ["1440x900", "600x400"])
+for (const size of sizes.length > 0 ? sizes : ["1440x900", "600x400"]) {
+  const live = await openLive(readFileSync(scene, "utf8"));
   await measure(live.url, size.split("x").map(Number));
-await live.close();
+  await live.close();
+}

@@ -63,6 +63,11 @@ export class LivePage {
     this.colouring.name,
     (name) => this.colourBy(colouringOf(name)),
   );
+  private readonly recordButton = button(
+    "Save recording",
+    "Save all forces since the last reset, and the motion as a scene that glisson run goes again (zip)",
+    () => this.saveRecording(),
+  );
 
   constructor() {
     this.connection = new Connection({
@@ -111,6 +116,7 @@ export class LivePage {
       button("Show all", "Bring all of the body into view (0)", () => this.view.fit()),
       button("Save picture", "Save what is shown as a PNG", () => this.savePicture()),
       button("Save forces", "Save the forces of this run as CSV", () => this.saveForces()),
+      this.recordButton,
     );
     return h(
       "main",
@@ -174,6 +180,7 @@ export class LivePage {
     this.subtitle.textContent = `${hello.variant} · ${formatInteger(hello.tets)} tetrahedra · ${formatInteger(hello.vertices)} vertices`;
     this.cutPanel.start(hello);
     this.element.dataset["recorded"] = String(hello.recorded !== null);
+    this.recordButton.hidden = !hello.can_record;
     if (hello.recorded) return this.startReplay(hello, hello.recorded);
     this.buildRun(hello);
     this.buildTools(hello);
@@ -423,6 +430,15 @@ export class LivePage {
   private saveForces(): void {
     const names = this.hello?.tools.map((tool) => tool.name) ?? [];
     download("forces.csv", new Blob([this.history.csv(names)], { type: "text/csv" }));
+  }
+
+  /** The program keeps it, from the last rest on; the browser saves what it sends. */
+  private saveRecording(): void {
+    const token = new URLSearchParams(location.search).get("token") ?? "";
+    const link = h("a", { href: `/recording?${new URLSearchParams({ token })}`, download: "recording.zip" });
+    document.body.append(link);
+    link.click();
+    link.remove();
   }
 
   private savePicture(): void {

@@ -7,7 +7,7 @@ import { ClipControls } from "../mesh3d/clip_controls.ts";
 import { ColourBar } from "../mesh3d/colour_bar.ts";
 import { Stage } from "../mesh3d/stage.ts";
 import { SurfaceModel } from "../mesh3d/surface_model.ts";
-import { webglContext } from "../mesh3d/webgl.ts";
+import { drawsInSoftware, webglContext } from "../mesh3d/webgl.ts";
 import { h } from "../page/dom.ts";
 import { currentTheme, onTheme, themeColour } from "../page/theme.ts";
 import { type Colouring, COLOURINGS, ColourRange, unitOf } from "./colouring.ts";
@@ -74,7 +74,7 @@ export class LiveView {
     private readonly hello: () => Hello | null,
     private readonly hands: Hands,
   ) {
-    const context = webglContext(this.canvas);
+    const context = webglContext(this.canvas, !drawsInSoftware());
     this.element = h("div", { class: "mesh-viewport live-viewport" }, this.canvas, this.bar.element);
     this.stage = context ? new Stage(this.canvas, context) : null;
     if (!this.stage) {

@@ -42,6 +42,7 @@ export interface Hello {
   parameters: ParameterInfo[];
   instruments: InstrumentForm[];
   recorded: Recorded | null; // a run that is played, not simulated
+  can_record: boolean;
 }
 
 export interface Role {

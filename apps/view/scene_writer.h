@@ -1,0 +1,29 @@
+// scene_writer.h — a recording as files that `glisson run` goes again: the scene with ways in place of motions.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "glisson/scene.h"
+#include "view/recording.h"
+#include "view/snapshot.h"
+
+namespace glisson::view {
+
+/// Makes the archive of a recording: scene.toml, a way of each tool, forces.csv.
+/// @param parameters  as the body has them now
+using RecordingWriter = std::function<std::string(const Recording&, const std::vector<double>& parameters)>;
+
+/// @param scene     as it was opened; its source is what is written again
+/// @param variant   the one that is shown
+/// @param tools     of the source that is recorded
+RecordingWriter recording_writer(Scene scene, Variant variant, std::vector<Override> overrides,
+                                 std::vector<ToolInfo> tools);
+
+/// The files of such an archive.
+std::vector<ZipFile> recording_files(const Scene& scene, const Variant& variant, const std::vector<Override>& overrides,
+                                     const std::vector<ToolInfo>& tools, const Recording& recording,
+                                     const std::vector<double>& parameters);
+
+}  // namespace glisson::view
