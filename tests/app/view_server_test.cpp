@@ -53,6 +53,24 @@ std::uint32_t u32_at(const std::string& bytes, std::size_t at) {
 }
 float f32_at(const std::string& bytes, std::size_t at) { return std::bit_cast<float>(u32_at(bytes, at)); }
 
+// A recording goes to who knows the token, once there is one, and nobody else learns whether there is.
+TEST_F(LiveServer, HandsOutTheRecordingByTokenOnly) {
+  EXPECT_EQ(test::get(port(), "/recording?" + query(), host()).status, 404) << "nothing is recorded here";
+  server_->stop();
+  const auto writer = [](const Recording& kept, const std::vector<double>&) { return std::to_string(kept.frames()); };
+  server_ =
+      std::make_unique<Server>(engine_, SceneFacts{"", "", "", "[]", writer}, kPage, ServerOptions{.token = kToken});
+  server_->start();
+  test::Answer answer;
+  for (int i = 0; i < 3000 && answer.status != 200; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    answer = test::get(port(), "/recording?" + query(), host());
+  }
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(test::get(port(), "/recording?token=wrong", host()).status, 403);
+  EXPECT_EQ(test::get(port(), "/recording?" + query(), host(), "Origin: http://evil.example\r\n").status, 403);
+}
+
 // Secrets are equal only where every character is, and an empty one opens nothing.
 TEST(LiveAccess, ComparesSecrets) {
   EXPECT_TRUE(same_secret("abcdef", "abcdef"));
@@ -150,7 +168,7 @@ TEST_F(LiveServer, StreamsTheBody) {
   EXPECT_EQ(keyframe.size(), 16 + 13 * vertices + 12 * triangles);
   viewer.send({.kind = CommandKind::place, .sequence = 9, .values = {0.001f, 0.0f, 0.0f}});
   std::string frame;
-  for (int i = 0; i < 500 && (frame.empty() || f32_at(frame, 64) < 0.00099f); ++i) frame = viewer.wait_for_binary(2);
+  for (int i = 0; i < 500 && (frame.empty() || f32_at(frame, 64) < 0.000995f); ++i) frame = viewer.wait_for_binary(2);
   ASSERT_FALSE(frame.empty());
   EXPECT_EQ(u32_at(frame, 4), u32_at(keyframe, 4)) << "the frame names its keyframe";
   EXPECT_EQ(u32_at(frame, 12), 9u) << "the act it shows";
