@@ -60,6 +60,7 @@ TEST_F(LiveServer, HandsOutTheRecordingByTokenOnly) {
   const auto writer = [](const Recording& kept, const std::vector<double>&) { return std::to_string(kept.frames()); };
   server_ =
       std::make_unique<Server>(engine_, SceneFacts{"", "", "", "[]", writer}, kPage, ServerOptions{.token = kToken});
+  engine_.post({.kind = CommandKind::reset});  // what the first server has heard of belongs to no recording
   server_->start();
   test::Answer answer;
   for (int i = 0; i < 3000 && answer.status != 200; ++i) {
