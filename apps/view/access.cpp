@@ -19,6 +19,10 @@ std::string random_key() {
   return key;
 }
 
+bool is_key(std::string_view text) {
+  return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
 bool same_secret(std::string_view a, std::string_view b) {
   unsigned differ = a.size() == b.size() ? 0u : 1u;
   for (std::size_t i = 0; i < a.size(); ++i) {

@@ -10,6 +10,9 @@ namespace glisson::view {
 /// 128 random bits as 32 hexadecimal digits, from the system's source.
 std::string random_key();
 
+/// Whether a text could be such a key: what a viewer sends as one goes into answers.
+bool is_key(std::string_view text);
+
 /// Whether two texts are equal, in a time that depends on their lengths only.
 bool same_secret(std::string_view a, std::string_view b);
 

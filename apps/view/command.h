@@ -25,7 +25,7 @@ enum class CommandKind : std::uint8_t {
   step = 7,        ///< one frame while at rest
   reset = 8,       ///< back to rest, tools in hand
   play = 9,        ///< back to rest, then the scene's own motion
-  parameter = 10,  ///< index: which one, values[0]: to what; back to rest
+  parameter = 10,  ///< index: which one, values[0]: to what
   take = 11,       ///< asks for the lead
   give = 12,       ///< gives the lead away
   cut = 13,        ///< index: 1 puts a blade there, 0 leads it there, cutting; its edge, from where to where [m]

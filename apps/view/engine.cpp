@@ -27,6 +27,12 @@ Vec3d shortened(const Vec3d& v, double most) {
   return length > most ? v * (most / length) : v;
 }
 
+/// At rest, of any tissue [Pa].
+double youngs_modulus(const Tissue& tissue) {
+  const auto [lambda, mu] = tissue.lame();
+  return mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+}
+
 std::string end_of_run(RunSummary::End end, const Simulation& simulation) {
   RunSummary summary;
   summary.end = end;
@@ -41,7 +47,8 @@ std::string end_of_run(RunSummary::End end, const Simulation& simulation) {
 Engine::Engine(const Variant& variant, MeshLoader load) : load_(std::move(load)), variant_(variant) {
   body_ = std::make_unique<LiveBody>(variant_, load_);
   tools_ = body_->tools();
-  parameters_ = parameters_of(variant_);
+  handles_ = tissue_parameters(variant_);
+  for (const TissueParameter& x : handles_) parameters_.push_back(x.info);
   for (const ParameterInfo& x : parameters_) values_.push_back(x.value);
   for (const ToolInfo& x : tools_) speeds_.push_back(x.speed);
   targets_.resize(tools_.size());
@@ -80,6 +87,7 @@ void Engine::run() {
       schedule = app::FrameSchedule(kFrame);
       restarted_ = false;
     }
+    change_tissues();
     work_on_cut();
     const bool moves = !stopped_ && (!paused_ || frames_to_step_ > 0);
     if (moves) {
@@ -94,12 +102,16 @@ void Engine::run() {
 }
 
 bool Engine::apply_commands() {
-  bool any = false;
-  for (Command command; commands_.pop(command); any = true) {
+  std::vector<Command> asked;
+  for (Command command; commands_.pop(command);) asked.push_back(command);
+  const auto remakes = [](const Command& x) { return x.kind == CommandKind::reset || x.kind == CommandKind::play; };
+  const auto last = std::find_if(asked.rbegin(), asked.rend(), remakes);
+  for (const Command& command : asked) {
+    if (remakes(command) && &command != &*last) continue;  // the next one undoes it: a body takes seconds to make
     apply(command);
     echo_ = command.sequence;
   }
-  return any;
+  return !asked.empty();
 }
 
 void Engine::apply(const Command& command) {
@@ -124,7 +136,8 @@ void Engine::apply(const Command& command) {
     case CommandKind::play:
       return rebuild(variant_, false, true);
     case CommandKind::parameter:
-      return change_parameter(command.index, static_cast<double>(command.values[0]));
+      if (command.index < parameters_.size()) wished_[command.index] = static_cast<double>(command.values[0]);
+      return;
     case CommandKind::take:
     case CommandKind::give:
     case CommandKind::colour:
@@ -162,7 +175,7 @@ void Engine::apply_grab(const Command& command) {
     hand_at_ = at[command.index];
     hand_ = {};
     std::vector<std::uint32_t> patch = patch_around(simulation.mesh(), at, command.index, kPatch * reach_);
-    const double stiffness = kHandStiffness * variant_.tissue.youngs_modulus * kPatch * reach_;
+    const double stiffness = kHandStiffness * youngs_modulus(variant_.tissue) * kPatch * reach_;
     grab->hold(std::move(patch), simulation.displacement(), simulation.masses(), stiffness);
   }
   hand_target_ = shortened(to - hand_at_, kHandReach * reach_);
@@ -214,7 +227,7 @@ void Engine::rebuild(const Variant& variant, bool keep_targets, bool play) {
   notice_.clear();
   ++epoch_;
   due_s_ = 0.0;
-  stopped_ = false;
+  stopped_ = changed_ = false;
   shape_.reset();
   if (!keep_targets) std::fill(targets_.begin(), targets_.end(), Vec3d{});
   for (std::size_t i = 0; i < tools_.size(); ++i) {
@@ -226,13 +239,25 @@ void Engine::rebuild(const Variant& variant, bool keep_targets, bool play) {
   measured_time_ = 0.0;
 }
 
-void Engine::change_parameter(std::size_t parameter, double value) {
-  if (parameter >= parameters_.size()) return;
-  const ParameterInfo& info = parameters_[parameter];
-  const double kept = std::clamp(value, info.least, info.most);
-  const std::uint32_t before = epoch_;
-  rebuild(with_parameter(variant_, parameter, kept), true, false);
-  if (epoch_ != before) values_[parameter] = kept;
+/// Numbers that have come since the last change, all at once; then the body has as long to itself as that took.
+void Engine::change_tissues() {
+  const WallClock::time_point begin = WallClock::now();
+  if (wished_.empty() || begin < next_change_) return;
+  Variant changed = variant_;
+  std::vector<double> values = values_;
+  for (const auto& [parameter, value] : wished_) values[parameter] = set_parameter(changed, handles_[parameter], value);
+  wished_.clear();
+  try {
+    body_->set_tissues(changed);
+    changed_ = changed_ || body_->built().simulation.steps() > 0;
+    variant_ = std::move(changed);
+    values_ = std::move(values);
+    notice_.clear();
+  } catch (const std::exception& error) {
+    notice_ = error.what();
+  }
+  const WallClock::time_point end = WallClock::now();
+  next_change_ = end + (end - begin);
 }
 
 void Engine::frame() {
@@ -256,6 +281,7 @@ void Engine::take_sample() {
   ForceSample sample{.epoch = epoch_, .frame_time = began_s_};
   for (std::size_t i = 0; i < tools_.size(); ++i) sample.way[i] = body_->way(i).at(began_s_);
   sample.grabbed = body_->grab() != nullptr && body_->grab()->holds();
+  sample.changed = changed_;
   sample.cut = body_->cut() != nullptr && body_->cut()->area() > 0.0;
   if (simulation.steps() > 0) {
     sample.force_time = simulation.force_time();

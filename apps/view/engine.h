@@ -10,6 +10,7 @@
 #pragma once
 
 #include <atomic>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +23,7 @@
 #include "view/frame_pace.h"
 #include "view/latest.h"
 #include "view/live_body.h"
+#include "view/live_parameters.h"
 #include "view/ring.h"
 #include "view/snapshot.h"
 #include "view/source.h"
@@ -67,7 +69,7 @@ class Engine final : public Source {
   void work_on_cut();
   void draw_hand();
   void rebuild(const Variant& variant, bool keep_targets, bool play);
-  void change_parameter(std::size_t parameter, double value);
+  void change_tissues();
   void frame();
   void take_sample();
   void publish();
@@ -79,6 +81,7 @@ class Engine final : public Source {
   std::unique_ptr<LiveBody> body_;
   std::vector<ToolInfo> tools_;
   std::vector<ParameterInfo> parameters_;
+  std::vector<TissueParameter> handles_;  ///< on each of them
   std::string forms_;
   bool can_grab_ = false;
   std::string why_no_cut_;
@@ -91,7 +94,10 @@ class Engine final : public Source {
   std::thread thread_;
 
   // Of the engine's thread.
-  std::vector<double> values_, speeds_;  ///< of parameters, of tools
+  std::vector<double> values_, speeds_;   ///< of parameters, of tools
+  std::map<std::size_t, double> wished_;  ///< parameters that are to change
+  app::WallClock::time_point next_change_{};
+  bool changed_ = false;  ///< some tissue, since the body moves
   std::vector<Vec3d> targets_;
   Vec3d hand_at_{}, hand_{}, hand_target_{};  ///< where the hand took hold, its way, and its way's target [m]
   double reach_ = 0.0;                        ///< size of the body [m]

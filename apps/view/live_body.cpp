@@ -132,6 +132,15 @@ void LiveBody::work_on_cut(HandCut::Clock::time_point now) {
   if (cut_ && cut_->work(now)) ++hand_cuts_;
 }
 
+void LiveBody::set_tissues(const Variant& changed) {
+  Simulation& simulation = built_->simulation;
+  auto tissues = std::make_shared<const std::map<int, Tissue>>(region_tissues(changed, simulation.mesh()));
+  simulation.set_tissues(*tissues);
+  tissues_ = std::move(tissues);
+  variant_.tissue = changed.tissue;
+  variant_.regions = changed.regions;
+}
+
 double LiveBody::depth(std::size_t tool) const {
   const std::size_t sets = built_->tools.size();
   if (tool >= sets) return built_->instruments[tool - sets]->force_depth();
@@ -167,33 +176,6 @@ std::shared_ptr<const BodyShape> LiveBody::shape() const {
   for (const FixedSpec& x : variant_.fixed) mark(x.set, 1);
   for (const ToolSpec& x : variant_.tools) mark(x.set, 2);
   return shape;
-}
-
-std::vector<ParameterInfo> parameters_of(const Variant& variant) {
-  const Tissue& t = variant.tissue;
-  std::vector<ParameterInfo> parameters;
-  if (!t.hyperelastic) {
-    parameters.push_back({"Young's modulus E", "Pa", t.youngs_modulus / 5.0, t.youngs_modulus * 5.0, t.youngs_modulus});
-    parameters.push_back({"Poisson's ratio ν", "–", 0.0, 0.49, t.poisson_ratio});
-  }
-  parameters.push_back({"Viscosity η", "Pa·s", 0.0, std::max(100.0, 5.0 * t.viscosity), t.viscosity});
-  return parameters;
-}
-
-Variant with_parameter(const Variant& variant, std::size_t parameter, double value) {
-  const std::vector<ParameterInfo> all = parameters_of(variant);
-  if (parameter >= all.size()) throw std::invalid_argument("there is no such parameter");
-  Variant changed = variant;
-  const auto each = [&](auto change) {
-    change(changed.tissue);
-    for (RegionSpec& region : changed.regions) change(region.tissue);
-  };
-  const std::size_t kind = parameter + (variant.tissue.hyperelastic ? 2 : 0);
-  const double ratio = value / (variant.tissue.youngs_modulus > 0.0 ? variant.tissue.youngs_modulus : 1.0);
-  if (kind == 0) each([&](Tissue& t) { t.youngs_modulus *= ratio; });
-  if (kind == 1) each([&](Tissue& t) { t.poisson_ratio = value; });
-  if (kind == 2) each([&](Tissue& t) { t.viscosity = value; });
-  return changed;
 }
 
 }  // namespace glisson::view

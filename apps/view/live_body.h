@@ -1,4 +1,4 @@
-// live_body.h — a variant whose tools are led by hand, made anew where a parameter changes.
+// live_body.h — a variant whose tools are led by hand, and that is cut and changed by it.
 #pragma once
 
 #include <memory>
@@ -30,6 +30,9 @@ class LiveBody {
   HandCut* cut() { return cut_.get(); }
   const HandCut* cut() const { return cut_.get(); }
   const std::string& why_no_cut() const { return why_no_cut_; }
+  /// Takes over the tissues of the same variant with other numbers; all else goes on. @throws std::invalid_argument with
+  /// nothing changed
+  void set_tissues(const Variant& changed);
   /// Lets the hand's blade go on where that is due. @throws std::invalid_argument
   void work_on_cut(HandCut::Clock::time_point now);
 
@@ -61,11 +64,5 @@ class LiveBody {
 
 /// Of the box about a mesh [m].
 double diagonal(const TetMesh& mesh);
-
-/// The numbers that a page may change, with their values in a variant: E, ν, η of the base tissue.
-std::vector<ParameterInfo> parameters_of(const Variant& variant);
-/// The variant with one of them changed; tissues of regions change in the same ratio as the base tissue.
-/// @throws std::invalid_argument for a number out of range
-Variant with_parameter(const Variant& variant, std::size_t parameter, double value);
 
 }  // namespace glisson::view

@@ -170,8 +170,16 @@ std::string hello_message(const Source& source, const SceneFacts& facts, const s
   json tools = json::array(), parameters = json::array();
   for (const ToolInfo& x : source.tools()) tools.push_back(tool_json(x));
   for (const ParameterInfo& x : source.parameters()) {
-    parameters.push_back(
-        {{"label", x.label}, {"unit", x.unit}, {"least", x.least}, {"most", x.most}, {"value", x.value}});
+    parameters.push_back({{"label", x.label},
+                          {"unit", x.unit},
+                          {"least", x.least},
+                          {"most", x.most},
+                          {"value", x.value},
+                          {"log", x.log},
+                          {"tissue", x.tissue},
+                          {"group", x.group},
+                          {"formula", x.formula},
+                          {"help", x.help}});
   }
   return json{{"type", "hello"},
               {"title", facts.title},

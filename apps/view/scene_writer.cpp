@@ -2,7 +2,7 @@
 #include "view/scene_writer.h"
 
 #include "scene/recorded_scene.h"
-#include "view/live_body.h"
+#include "view/live_parameters.h"
 
 namespace glisson::view {
 namespace {
@@ -25,7 +25,8 @@ std::vector<ZipFile> recording_files(const Scene& given, const Variant& variant,
                                      const std::vector<ToolInfo>& tools, const Recording& recording,
                                      const std::vector<double>& parameters) {
   Variant now = variant;
-  for (std::size_t i = 0; i < parameters.size(); ++i) now = with_parameter(now, i, parameters[i]);
+  const std::vector<TissueParameter> handles = tissue_parameters(variant);
+  for (std::size_t i = 0; i < parameters.size(); ++i) set_parameter(now, handles.at(i), parameters[i]);
   scene::RecordedWays ways{
       .head = head_of(given, variant, recording), .files = {}, .duration = recording.duration(), .sample_rate = 1000.0};
   std::vector<ZipFile> files;

@@ -32,6 +32,7 @@ using Clock = std::chrono::steady_clock;
 using Message = std::shared_ptr<const std::string>;
 
 constexpr auto kTick = std::chrono::milliseconds(16);
+constexpr auto kAcceptAgain = std::chrono::milliseconds(100);
 constexpr auto kNewsEvery = std::chrono::milliseconds(100);
 constexpr auto kPatience = std::chrono::seconds(10);  // for a request, and for a handshake
 constexpr auto kStuck = std::chrono::seconds(20);     // of a viewer that takes nothing
@@ -74,6 +75,7 @@ struct Server::Impl {
   Impl(Source& source, SceneFacts facts, std::string_view page, const ServerOptions& options);
   void listen();
   void accept();
+  void accept_later();
   void tick();
   void look();
   void keep_samples();
@@ -96,7 +98,7 @@ struct Server::Impl {
   std::size_t connections_ = 0;  // before the context, whose handlers count it down when they go
   asio::io_context context_{1};
   tcp::acceptor acceptor_{context_};
-  asio::steady_timer timer_{context_};
+  asio::steady_timer timer_{context_}, wait_{context_};
   std::thread thread_;
   std::set<std::shared_ptr<Viewer>> viewers_;
   Lead lead_;
@@ -162,7 +164,7 @@ struct Request : std::enable_shared_from_this<Request> {
     if (server_.viewers_.size() >= server_.options_.most_viewers)
       return answer(http::status::service_unavailable, "There are too many viewers.");
     std::string session = query_value(std::string(parser_.get().target()), "session");
-    if (session.size() != 32) session = random_key();
+    if (!is_key(session)) session = random_key();
     stream_.expires_never();
     std::make_shared<Viewer>(stream_.release_socket(), server_, std::move(session),
                              server_.options_.messages_per_second)
@@ -208,6 +210,9 @@ Viewer::Viewer(tcp::socket socket, Server::Impl& server, std::string session, do
   beast::get_lowest_layer(stream_).socket().set_option(tcp::no_delay(true), ignored);
   stream_.read_message_max(kLongestCommand);
   stream_.auto_fragment(false);
+  stream_.control_callback([this](websocket::frame_type, beast::string_view) {  // pings are messages, too
+    if (!pacer_.take(Clock::now())) beast::get_lowest_layer(stream_).close();
+  });
   stream_.set_option(websocket::stream_base::timeout{kPatience, std::chrono::seconds(30), true});
 }
 
@@ -297,10 +302,19 @@ Server::Impl::Impl(Source& source, SceneFacts facts, std::string_view page, cons
   place_.port = acceptor_.local_endpoint().port();
 }
 
+/// The system may have no room for another line; asking again at once would only spin.
+void Server::Impl::accept_later() {
+  wait_.expires_after(kAcceptAgain);
+  wait_.async_wait([this](beast::error_code error) {
+    if (!error && !stopping_) accept();
+  });
+}
+
 void Server::Impl::accept() {
   acceptor_.async_accept(context_, [this](beast::error_code error, tcp::socket socket) {
     if (stopping_ || error == asio::error::operation_aborted) return;
-    if (!error && connections_ < 2 * options_.most_viewers) std::make_shared<Request>(std::move(socket), *this)->read();
+    if (error) return accept_later();
+    if (connections_ < 2 * options_.most_viewers) std::make_shared<Request>(std::move(socket), *this)->read();
     accept();
   });
 }
@@ -414,6 +428,8 @@ void Server::Impl::came(const std::shared_ptr<Viewer>& viewer) {
   const auto same = std::find_if(viewers_.begin(), viewers_.end(),
                                  [&](const auto& other) { return other->session_ == viewer->session_; });
   if (same != viewers_.end()) (*same)->close(websocket::close_code::going_away, "continued elsewhere");
+  if (viewers_.size() >= options_.most_viewers && same == viewers_.end())  // several shook hands at once
+    return viewer->close(websocket::close_code::try_again_later, "there are too many viewers");
   viewers_.insert(viewer);
   lead_.came(viewer->session_, Clock::now());
   viewer->send(message(hello_message(source_, facts_, viewer->session_)), false);
@@ -460,6 +476,7 @@ void Server::Impl::say_goodbye() {
   beast::error_code ignored;
   acceptor_.close(ignored);
   timer_.cancel();
+  wait_.cancel();
   const auto watching = viewers_;
   for (const std::shared_ptr<Viewer>& viewer : watching)
     viewer->close(websocket::close_code::going_away, "glisson view has ended");

@@ -26,10 +26,15 @@ struct ToolInfo {
   bool can_play = false;                       ///< the scene moves it along a path
 };
 
-/// A number of the scene that can be changed; the body is made anew with it.
+/// A number of a tissue that can be changed while the body moves.
 struct ParameterInfo {
   std::string label, unit;
   double least = 0.0, most = 0.0, value = 0.0;
+  bool log = false;     ///< better chosen by its logarithm
+  std::string tissue;   ///< that it is of
+  std::string group;    ///< of numbers that belong together
+  std::string formula;  ///< that they stand in; may be empty
+  std::string help;
 };
 
 /// Forces of one frame. Of a tool along its direction, positive when it presses [N], and its depth then [m].

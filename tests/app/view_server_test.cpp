@@ -243,6 +243,29 @@ TEST_F(LiveServer, ReconnectGoesOn) {
   EXPECT_EQ(again.wait_for_close().text, "continued elsewhere");
 }
 
+// A key that is none is not taken over, nor sent back: bytes that are no text would be no JSON.
+TEST_F(LiveServer, GivesANewKeyForOneThatIsNone) {
+  for (const std::string& session :
+       {std::string(32, '\xff'), std::string(32, '"'), std::string(32, 'g'), std::string(31, 'a')}) {
+    ViewClient viewer(port(), query("&session=" + session));
+    if (viewer.status() != 101) continue;  // the bytes were no request
+    const nlohmann::json hello = viewer.wait_for("hello");
+    ASSERT_TRUE(hello.is_object()) << session;
+    EXPECT_TRUE(is_key(hello["session"].get<std::string>()));
+    EXPECT_NE(hello["session"], session);
+  }
+}
+
+// A flood of pings, which are no messages, ends the line like one of messages; that of others goes on.
+TEST_F(LiveServer, LimitsPings) {
+  ViewClient calm(port(), query()), flood(port(), query());
+  for (int i = 0; i < 3000; ++i) flood.send_frame(9, "");
+  bool ended = false;
+  for (int i = 0; i < 5000 && !ended; ++i) ended = !flood.hear().has_value();
+  EXPECT_TRUE(ended);
+  EXPECT_FALSE(calm.wait_for_binary(2).empty());
+}
+
 // What no page sends ends the connection with a reason, and the server goes on.
 TEST_F(LiveServer, ClosesOnWhatIsMalformed) {
   const auto reason = [&](int code, const std::string& payload) {

@@ -22,6 +22,7 @@ import type {
   TextMessage,
 } from "./protocol.ts";
 import { Slider } from "./slider.ts";
+import { TissuePanel } from "./tissue_panel.ts";
 
 const PLOT_EVERY = 125; // ms
 const SEEN = 10_000; // frames that the plot over time shows: ten seconds
@@ -37,7 +38,7 @@ export class LivePage {
   private tool = 0;
   private waiting: Command | null = null; // the newest place or drag; one goes out a frame
   private sliders: { depth: Slider; side: Slider; third: Slider; speed: Slider }[] = [];
-  private parameters: Slider[] = [];
+  private told: SlowState | null = null;
   private replay: ReplayControls | null = null; // of a recorded run, in place of hands
   private readonly plots = {
     depth: new ForcePlot("Force [N] against depth", "depth [mm]", 1000),
@@ -51,7 +52,7 @@ export class LivePage {
   private readonly tools = h("section", { class: "live-panel", "aria-label": "Tools" });
   private readonly numbers = h("dl", { class: "live-numbers" });
   private readonly run = h("div", { class: "live-run", role: "group", "aria-label": "Run" });
-  private readonly changes = h("section", { class: "live-panel", "aria-label": "Tissue" });
+  private readonly tissue = new TissuePanel((index, value) => this.send({ kind: "parameter", index, values: [value] }));
   private readonly events = h("ol", { class: "live-events" });
   private readonly values = new Map<string, HTMLElement>();
   private pauseButton: HTMLButtonElement | null = null;
@@ -137,7 +138,7 @@ export class LivePage {
         this.tools,
         this.plots.depth.element,
         this.plots.time.element,
-        this.changes,
+        this.tissue.element,
         this.events,
       ),
     );
@@ -152,6 +153,7 @@ export class LivePage {
     if (message.type === "notice") {
       this.notice.textContent = message.text;
       this.notice.hidden = message.text === "";
+      setTimeout(() => this.told && this.tissue.follow(this.told.parameters), 700); // what was refused goes back
     }
   }
 
@@ -184,7 +186,7 @@ export class LivePage {
     if (hello.recorded) return this.startReplay(hello, hello.recorded);
     this.buildRun(hello);
     this.buildTools(hello);
-    this.buildParameters(hello);
+    this.tissue.build(hello.parameters);
   }
 
   private startReplay(hello: Hello, recorded: Recorded): void {
@@ -205,7 +207,7 @@ export class LivePage {
       this.tools.replaceChildren(select("Force of", tools, "0", (i) => (this.tool = Number(i))));
     }
     this.tools.hidden = hello.tools.length < 2;
-    this.changes.hidden = true;
+    this.tissue.element.hidden = true;
   }
 
   private showStatus(status: Status): void {
@@ -234,7 +236,8 @@ export class LivePage {
   private showState(state: SlowState): void {
     this.cutPanel.show(state);
     this.element.dataset["pieces"] = String(state.pieces);
-    state.parameters.forEach((value, i) => this.parameters[i]?.follow(value));
+    this.told = state;
+    this.tissue.follow(state.parameters);
     state.speeds_m_s.forEach((value, i) => this.sliders[i]?.speed.follow(1000 * value));
     this.events.replaceChildren(
       ...state.events
@@ -314,32 +317,6 @@ export class LivePage {
     this.tools.replaceChildren(...sets);
     this.tools.hidden = sets.length === 0;
     this.plots.depth.element.hidden = this.plots.time.element.hidden = sets.length === 0;
-  }
-
-  private buildParameters(hello: Hello): void {
-    this.parameters = hello.parameters.map(
-      (info, i) =>
-        new Slider(
-          `parameter-${i}`,
-          info.label,
-          info.unit,
-          info.least,
-          info.most,
-          info.value,
-          niceStep(info.most - info.least),
-          "settles",
-          (value) => this.send({ kind: "parameter", index: i, values: [value] }),
-        ),
-    );
-    this.changes.replaceChildren(
-      h(
-        "fieldset",
-        {},
-        h("legend", {}, "Tissue"),
-        ...this.parameters.map((slider) => slider.element),
-        h("p", { class: "muted live-hint" }, "A change makes the body anew, at rest; tools go back in by themselves."),
-      ),
-    );
   }
 
   private number(name: string, value: string, unit: string): void {
@@ -450,7 +427,6 @@ const xyz = (v: THREE.Vector3): [number, number, number] => [v.x, v.y, v.z];
 /** With a minus, but not for what is nothing. */
 const fixed = (value: number, digits: number): string =>
   (Math.abs(value) < 0.5 * 10 ** -digits ? 0 : value).toFixed(digits).replace("-", "−");
-const niceStep = (span: number): number => 10 ** Math.floor(Math.log10(span / 100));
 
 function check(label: string, changed: (on: boolean) => void, on = false): HTMLElement {
   const box = h("input", { type: "checkbox", checked: on });

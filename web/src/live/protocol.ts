@@ -19,6 +19,11 @@ export interface ParameterInfo {
   least: number;
   most: number;
   value: number;
+  log: boolean; // better chosen by its logarithm
+  tissue: string;
+  group: string;
+  formula: string;
+  help: string;
 }
 
 export interface Recorded {

@@ -12,16 +12,20 @@ export class Slider {
   constructor(
     id: string,
     label: string,
-    unit: string,
+    private readonly unit: string,
     private readonly least: number,
     private readonly most: number,
     value: number,
     step: number,
     when: "acts" | "settles",
     private readonly act: (value: number) => void,
+    private readonly scale: "linear" | "log" = "linear",
   ) {
-    // Places of the slider are multiples of the step; a typed number is kept as it is.
-    const common = { min: step * Math.ceil(least / step - 1e-9), max: most, step, id };
+    // Places of the slider are multiples of the step, or shares of the way in the logarithm; a typed number is kept as it is.
+    const common =
+      scale === "log"
+        ? { min: 0, max: 1, step: 0.005, id }
+        : { min: step * Math.ceil(least / step - 1e-9), max: most, step, id };
     this.range = h("input", { type: "range", ...common, "aria-label": `${label} [${unit}]` });
     this.box = h("input", {
       type: "number",
@@ -38,9 +42,16 @@ export class Slider {
       h("span", { class: "live-value" }, this.box, h("span", { class: "unit" }, unit)),
     );
     this.set(value);
-    this.range.addEventListener("input", () => this.moved(Number(this.range.value), when === "acts"));
-    this.range.addEventListener("change", () => this.moved(Number(this.range.value), true));
+    this.range.addEventListener("input", () => this.moved(this.placed, when === "acts"));
+    this.range.addEventListener("change", () => this.moved(this.placed, true));
     this.box.addEventListener("change", () => this.moved(Number(this.box.value), true));
+  }
+
+  /** The number at the slider's place, a log one to three digits. */
+  private get placed(): number {
+    const place = Number(this.range.value);
+    if (this.scale === "linear") return place;
+    return Number((this.least * (this.most / this.least) ** place).toPrecision(3));
   }
 
   get value(): number {
@@ -49,7 +60,10 @@ export class Slider {
 
   set(value: number): void {
     this.held = value;
-    this.range.value = String(value);
+    this.range.value = String(
+      this.scale === "log" ? Math.log(value / this.least) / Math.log(this.most / this.least) : value,
+    );
+    this.range.setAttribute("aria-valuetext", `${Number(value.toPrecision(4))} ${this.unit}`);
     if (document.activeElement !== this.box) this.box.value = String(Number(value.toPrecision(4)));
   }
 
