@@ -78,6 +78,7 @@ struct Server::Impl {
   void accept_later();
   void tick();
   void look();
+  void rest_unwatched(Clock::time_point now);
   void keep_samples();
   Message archive() const;
   void send_news(const Snapshot& state, Clock::time_point now);
@@ -115,6 +116,8 @@ struct Server::Impl {
   std::uint64_t samples_ = 0;       ///< all there ever were
   std::atomic<std::uint64_t> sent_{0}, missed_{0};
   bool stopping_ = false, led_ = false;
+  bool resting_ = false;  ///< held because nobody watches
+  Clock::time_point watched_ = Clock::now();
   Clock::time_point news_{}, due_{};
 };
 
@@ -348,6 +351,7 @@ Message Server::Impl::archive() const {
 void Server::Impl::look() {
   const Clock::time_point now = Clock::now();
   keep_samples();
+  rest_unwatched(now);
   if (led_ != lead_.led(now)) send_roles();
   const Snapshot* state = source_.latest();
   if (state == nullptr) return;
@@ -370,6 +374,14 @@ void Server::Impl::look() {
     ++missed_;
     if (now - viewer->writing_since_ > kStuck) viewer->gone();
   }
+}
+
+/// A body that nobody looks at takes no cores: the clock is held, and goes on when somebody comes.
+void Server::Impl::rest_unwatched(Clock::time_point now) {
+  if (!viewers_.empty()) watched_ = now;
+  const std::chrono::duration<double> alone = now - watched_;
+  if (resting_ || shown_ == nullptr || shown_->paused || alone.count() < options_.rest_after_s) return;
+  resting_ = source_.post({.kind = CommandKind::pause, .index = 1});
 }
 
 /// What changes seldom goes as text, and only when it has changed.
@@ -431,6 +443,7 @@ void Server::Impl::came(const std::shared_ptr<Viewer>& viewer) {
   if (viewers_.size() >= options_.most_viewers && same == viewers_.end())  // several shook hands at once
     return viewer->close(websocket::close_code::try_again_later, "there are too many viewers");
   viewers_.insert(viewer);
+  if (resting_) resting_ = !source_.post({.kind = CommandKind::pause, .index = 0});
   lead_.came(viewer->session_, Clock::now());
   viewer->send(message(hello_message(source_, facts_, viewer->session_)), false);
   if (state_) viewer->send(state_, false);

@@ -25,7 +25,8 @@ struct ServerOptions {
   std::string token;               ///< empty: a random one
   double messages_per_second = 400.0;
   std::size_t most_viewers = 32;
-  double lead_kept_s = 10.0;  ///< how long a viewer that is cut off keeps the lead [s]
+  double lead_kept_s = 10.0;   ///< how long a viewer that is cut off keeps the lead [s]
+  double rest_after_s = 10.0;  ///< without a viewer for so long the clock is held until one comes [s]
 };
 
 class Server {

@@ -345,6 +345,30 @@ TEST_F(LiveServer, ServesTenViewers) {
   }
 }
 
+class RestingServer : public LiveServer {
+  void SetUp() override { open({.token = kToken, .rest_after_s = 0.05}); }
+};
+
+// A body that nobody watches rests: who comes meets it paused, and it goes on by itself.
+TEST_F(RestingServer, HoldsTheClockWhileNobodyWatches) {
+  for (int visit = 0; visit < 2; ++visit) {
+    std::this_thread::sleep_for(1s);
+    ViewClient viewer(port(), query());
+    std::string frame = viewer.wait_for_binary(2);
+    ASSERT_GE(frame.size(), 64u);
+    EXPECT_EQ(frame[1] & 1, 1) << "at rest, visit " << visit;
+    double rested = 0.0, time = 0.0;
+    std::memcpy(&rested, frame.data() + 16, 8);
+    for (int i = 0; i < 200 && !(time > rested); ++i) {
+      frame = viewer.wait_for_binary(2);
+      ASSERT_GE(frame.size(), 64u);
+      std::memcpy(&time, frame.data() + 16, 8);
+    }
+    EXPECT_GT(time, rested);
+    EXPECT_EQ(frame[1] & 1, 0);
+  }
+}
+
 TEST(LiveServerOptions, BeyondThisMachineNeedsAToken) {
   Engine engine(parse_scene(test::small_scene(), "view.toml", ".").variants.front(), {});
   const auto why = [&](const ServerOptions& options) -> std::string {
