@@ -22,7 +22,7 @@ namespace glisson::view {
 struct ServerOptions {
   std::string host = "127.0.0.1";  ///< an address in digits, or localhost
   unsigned short port = 0;         ///< 0: one that is free
-  std::string token;               ///< empty: a random one
+  std::string token{};             ///< empty: a random one
   double messages_per_second = 400.0;
   std::size_t most_viewers = 32;
   double lead_kept_s = 10.0;   ///< how long a viewer that is cut off keeps the lead [s]

@@ -25,7 +25,7 @@ MeshLoader no_files() {
 
 /// Reads what an engine tells, as the server does.
 struct Watcher {
-  explicit Watcher(Engine& engine) : engine(engine) {}
+  explicit Watcher(Engine& watched) : engine(watched) {}
   /// Looks until `enough` says so; a minute at most: how long it takes is the machine's affair, not the contract's.
   template <class Enough>
   bool until(Enough enough) {

@@ -49,7 +49,7 @@ TEST(LiveParameters, AreThoseOfTheTissue) {
       EXPECT_TRUE(std::isfinite(info.least) && std::isfinite(info.most)) << info.label;
       EXPECT_LT(info.least, info.most) << info.label;
       EXPECT_TRUE(info.value >= info.least && info.value <= info.most) << info.label;
-      if (info.log) EXPECT_GT(info.least, 0.0) << info.label;
+      EXPECT_TRUE(!info.log || info.least > 0.0) << info.label;
       Variant changed = variant;
       const double wanted = info.log ? std::sqrt(info.value * info.most) : 0.5 * (info.value + info.most);
       EXPECT_EQ(set_parameter(changed, all[i], wanted), wanted);

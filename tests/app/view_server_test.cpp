@@ -293,7 +293,9 @@ TEST_F(LiveServer, LimitsTheRate) {
   ViewClient flood(port(), query());
   for (std::uint32_t i = 0; i < 5000; ++i) flood.send({.kind = CommandKind::let_go, .sequence = i});
   const Heard end = flood.wait_for_close();
-  if (end.close_code != 0) EXPECT_EQ(end.text, "too many messages");  // or the line was reset with messages unread
+  if (end.close_code != 0) {  // or the line was reset with messages unread
+    EXPECT_EQ(end.text, "too many messages");
+  }
   EXPECT_FALSE(calm.wait_for_binary(2).empty()) << "the other viewer is not bothered";
 }
 
