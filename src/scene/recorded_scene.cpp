@@ -13,6 +13,11 @@ namespace {
 
 Node text_node(const std::string& text) { return {text, {}}; }
 Node number_node(double value) { return {value, {}}; }
+Node list_node(const std::vector<double>& values) {
+  Array list;
+  for (const double x : values) list.push_back(number_node(x));
+  return {std::move(list), {}};
+}
 
 void set(Node& table, const std::string& key, Node value) {
   if (Node* known = table.find(key)) {
@@ -40,14 +45,52 @@ const Node& experiment_called(const Array& experiments, const std::string& name)
   return experiments.front();
 }
 
+/// `{ kind = …, … }` of a law, by the keys it describes itself with.
+template <class Laws>
+Node law_node(const Laws& laws) {
+  Node node{Table{}, {}};
+  const auto put = [&](const std::string& key, const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
+      set(node, key, number_node(value));
+    } else {
+      set(node, key, list_node(value));
+    }
+  };
+  std::visit(
+      [&](const auto& law) {
+        using Law = std::decay_t<decltype(law)>;
+        set(node, "kind", text_node(std::string(Law::kName)));
+        for (const LawField<Law>& x : Law::kFields) {
+          std::visit([&](auto member) { put(std::string(x.key), law.*member); }, x.member);
+        }
+      },
+      laws);
+  return node;
+}
+
+void put_elasticity(Node& tissue, const Tissue& now) {
+  if (now.hyperelastic) return set(tissue, "hyperelastic", law_node(*now.hyperelastic));
+  drop(tissue, {"lambda_Pa", "mu_Pa"});
+  set(tissue, "youngs_modulus_Pa", number_node(now.youngs_modulus));
+  set(tissue, "poisson_ratio", number_node(now.poisson_ratio));
+  if (now.lambda_law) set(tissue, "lambda_law", law_node(*now.lambda_law));
+  if (now.mu_law) set(tissue, "mu_law", law_node(*now.mu_law));
+  if (!now.lambda_law && !now.mu_law) set(tissue, "law", law_node(now.law));
+}
+
 /// What sliders change, as it is now.
 void put_tissue(Node& tissue, const Tissue& now) {
-  if (!now.hyperelastic) {
-    drop(tissue, {"lambda_Pa", "mu_Pa"});
-    set(tissue, "youngs_modulus_Pa", number_node(now.youngs_modulus));
-    set(tissue, "poisson_ratio", number_node(now.poisson_ratio));
-  }
+  put_elasticity(tissue, now);
   set(tissue, "viscosity_Pa_s", number_node(now.viscosity));
+  if (now.fibres) set(section(tissue, "fibres"), "stiffness_Pa", number_node(now.fibres->stiffness));
+  if (now.maxwell.empty()) return;
+  Array branches;
+  for (const MaxwellBranch& b : now.maxwell) {
+    Node& branch = branches.emplace_back(Node{Table{}, {}});
+    set(branch, "share", number_node(b.share));
+    set(branch, "time_s", number_node(b.time));
+  }
+  set(tissue, "maxwell", {std::move(branches), {}});
 }
 
 void put_tissues(Node& experiment, const Variant& variant) {

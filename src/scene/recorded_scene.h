@@ -18,7 +18,7 @@ struct RecordedWays {
   double sample_rate = 1000.0;     ///< [Hz]
 };
 
-/// The scene as TOML: variant and overrides laid out, motions replaced, stiffness and viscosity those of `variant`.
+/// The scene as TOML: variant and overrides laid out, motions replaced, the numbers of tissues those of `variant`.
 /// @param text  of the scene @param name  stands for its file in messages @param base  where its relative paths start
 /// @param variant  the experiment as it stands; its name tells which, its tissues what they are now
 /// @throws SceneError for a scene that cannot be read
