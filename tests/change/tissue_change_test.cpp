@@ -153,7 +153,8 @@ TEST_P(TissueChange, KeepsTheStateAndTheBalance) {
     EXPECT_TRUE(std::equal(u.begin(), u.end(), s.displacement().begin()));
     EXPECT_TRUE(std::equal(v.begin(), v.end(), s.velocity().begin()));
     EXPECT_EQ(s.time(), time);
-    if (!newton(GetParam()) || all[k].density == density) EXPECT_EQ(s.force({1}).total(), force);
+    const bool tells_the_past = !newton(GetParam()) || all[k].density == density;
+    EXPECT_TRUE(!tells_the_past || s.force({1}).total() == force);
     EXPECT_TRUE(s.is_removed(701));
     run(s, steps);
     const Energies e = s.energies();
@@ -226,7 +227,7 @@ TEST_P(TissueChange, RefusedLeavesAllAsItWas) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, TissueChange, testing::ValuesIn(ways()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& way) { return std::string(way.param.name); });
 
 // ---- physics
 

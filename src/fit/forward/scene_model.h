@@ -29,8 +29,8 @@ struct SceneText {
 SceneText scene_text(const std::filesystem::path& file);
 
 struct SceneModelOptions {
-  std::string tool;       ///< the tool or instrument that follows the curve; empty: the only one
-  std::string force;      ///< whose force is measured: a tool, an instrument, "bottom" or "side"; empty: that of `tool`
+  std::string tool{};     ///< the tool or instrument that follows the curve; empty: the only one
+  std::string force{};    ///< whose force is measured: a tool, an instrument, "bottom" or "side"; empty: that of `tool`
   double approach = 0.0;  ///< way of an instrument in the scene before it touches the tissue [m], ≥ 0
   MeshLoader load{};
   /// Last changes of the experiment before it runs for so long [s]: another integrator, another step.
