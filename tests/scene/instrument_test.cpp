@@ -311,7 +311,8 @@ TEST(Instruments, UnknownRegionIsToldWhenTheMeshIsKnown) {
 
 /// A file of a record that is gone with the test.
 struct RecordFile {
-  std::filesystem::path path = test::written("record_of_a_test.csv");
+  std::filesystem::path path = test::written(std::string("record_of_") +
+                                             ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv");
   explicit RecordFile(const std::string& text) { std::ofstream(path) << text; }
   ~RecordFile() { std::filesystem::remove(path); }
   std::string complaint() const {
