@@ -14,15 +14,19 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-const std::filesystem::path kFile = test::written("measured_of_a_test.csv");
+/// Of the test that runs.
+std::filesystem::path measured_file() {
+  return test::written(std::string("measured_of_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() +
+                       ".csv");
+}
 
 /// The small scene with a chart that shows points of a file of this text.
 Scene scene_with(const std::string& file, const std::string& keys) {
-  std::ofstream(kFile) << file;
+  std::ofstream(measured_file()) << file;
   const std::string chart =
-      "[[chart]]\ntitle = \"f\"\nx = \"depth_m\"\ny = \"force_N\"\n[[chart.measured]]\npath = "
-      "\"measured_of_a_test.csv\"\n";
-  return parse_scene(test::kSmallScene + chart + keys, "s.toml", kFile.parent_path());
+      "[[chart]]\ntitle = \"f\"\nx = \"depth_m\"\ny = \"force_N\"\n[[chart.measured]]\npath = \"" +
+      measured_file().filename().string() + "\"\n";
+  return parse_scene(test::kSmallScene + chart + keys, "s.toml", measured_file().parent_path());
 }
 
 std::string complaint(const std::string& file, const std::string& keys) {
@@ -49,10 +53,10 @@ TEST(Measured, IsReadAndScaled) {
 TEST(Measured, MistakesAreTold) {
   const std::string keys = "x = \"a\"\ny = \"b\"\n";
   EXPECT_EQ(complaint("a,c\n1,2\n", keys),
-            "s.toml:20:1: chart.0.measured: " + kFile.string() + ": no column \"b\"; it has: a, c");
+            "s.toml:20:1: chart.0.measured: " + measured_file().string() + ": no column \"b\"; it has: a, c");
   EXPECT_THAT(complaint("a,b\n1,2\n3,x\n", keys), HasSubstr(":3: \"x\" in column 2 is no finite number"));
   EXPECT_THAT(complaint("a,b\n", "path = 3\n"), HasSubstr("path"));
-  std::filesystem::remove(kFile);
+  std::filesystem::remove(measured_file());
   EXPECT_THAT(test::complaint(test::kSmallScene + "[[chart]]\ntitle = \"f\"\nx = \"depth_m\"\ny = \"force_N\"\n"
                                                   "measured = [{ path = \"none.csv\", x = \"a\", y = \"b\" }]\n"),
               HasSubstr("/scenes/none.csv: cannot be read"));
