@@ -356,8 +356,8 @@ TEST(Record, DrivesAnInstrument) {
   EXPECT_DOUBLE_EQ(run_duration(scene.variants.at(0)), 3.5);
   const auto driver = make_driver(scene.variants[0].instruments.at(0));
   expect_near(driver->advance(1.5, 0.0, {}).position, {0.02, 0.021, 0.031});
-  EXPECT_THAT(complaint(text),
-              HasSubstr("s.toml:12:10: instrument.0.motion: /scenes/record_of_a_test.csv: cannot be read"));
+  EXPECT_THAT(complaint(text), HasSubstr("s.toml:12:10: instrument.0.motion: /scenes/" + file.path.filename().string() +
+                                         ": cannot be read"));
 }
 
 // A tool follows a record, too, from its start on and along its direction; speed and depth contradict it, and an override
