@@ -2,6 +2,7 @@
 # run_tests.sh wheel|tests SOURCE WORK PROGRAM — what ctest runs of the Python package.
 #
 #   wheel   WORK/wheels: third-party packages, fetched once · WORK/dist: our wheel, by pip from the sources
+#           built in <build folder>-wheel
 #           WORK/clean: a virtual environment with the wheel and NumPy alone, in which it is imported
 #   tests   WORK/venv: the same with everything optional; mypy, pytest and the doctests
 #
@@ -9,6 +10,7 @@
 # not to be had; nothing is skipped.
 set -euo pipefail
 readonly goal="$1" source="$2" work="$3" program="$4"
+readonly built="$(dirname "$work")-wheel"  # beside the C++ build: ccache knows sources by their path from the build folder
 readonly python="${GLISSON_PYTHON:-python3}"
 
 fail() { printf 'python: %s\n' "$1" >&2; exit 1; }
@@ -41,7 +43,7 @@ fetch() {
 
 build_wheel() {
   rm -rf "$work/dist"
-  quiet "$work/venv/bin/pip" wheel "$source" --no-deps --no-build-isolation -w "$work/dist" --config-settings "build-dir=$work/build" ||
+  quiet "$work/venv/bin/pip" wheel "$source" --no-deps --no-build-isolation -w "$work/dist" --config-settings "build-dir=$built" ||
     fail "the wheel cannot be built (the lines above)"
   ls -l "$work/dist"
 }
