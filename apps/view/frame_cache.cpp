@@ -93,7 +93,7 @@ std::shared_ptr<const LoadedFrame> FrameCache::at(std::size_t number) {
     return kept_.front().frame;
   }
   const std::shared_ptr<const BodyShape> before = shape_;
-  const std::shared_ptr<const LoadedFrame> frame = read_once(number);
+  std::shared_ptr<const LoadedFrame> frame = read_once(number);
   const std::size_t bytes = bytes_of(*frame, frame->shape != before);
   kept_.push_front({number, bytes, frame});
   bytes_ += bytes;
