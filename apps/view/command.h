@@ -37,7 +37,7 @@ enum class CommandKind : std::uint8_t {
 struct Command {
   CommandKind kind = CommandKind::pause;
   std::uint8_t tool = 0;
-  std::uint32_t sequence = 0;  ///< counted by the viewer; a frame tells the last one that acted
+  std::uint32_t sequence = 0;  ///< counted by the viewer from 1; a frame tells the last one that acted
   std::uint32_t index = 0;
   std::array<float, 6> values{};
 };

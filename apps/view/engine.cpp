@@ -82,13 +82,14 @@ void Engine::run() {
   while (!stop_.load(std::memory_order_relaxed)) {
     const std::uint64_t late = schedule.skip_late();
     schedule.wait();
-    const bool asked = apply_commands() || (body_->cut() != nullptr && body_->cut()->waits());
+    const bool asked = apply_commands() || waits();
     if (restarted_) {  // making a body anew is no delay of a frame
       schedule = app::FrameSchedule(kFrame);
       restarted_ = false;
     }
     change_tissues();
     work_on_cut();
+    if (!waits()) echo_ = received_;
     const bool moves = !stopped_ && (!paused_ || frames_to_step_ > 0);
     if (moves) {
       dropped_ += late;
@@ -109,10 +110,13 @@ bool Engine::apply_commands() {
   for (const Command& command : asked) {
     if (remakes(command) && &command != &*last) continue;  // the next one undoes it: a body takes seconds to make
     apply(command);
-    echo_ = command.sequence;
+    if (command.sequence != 0) received_ = command.sequence;  // the server's own have none
   }
   return !asked.empty();
 }
+
+/// Whether commands that were received have not acted yet.
+bool Engine::waits() const { return !wished_.empty() || (body_->cut() != nullptr && body_->cut()->waits()); }
 
 void Engine::apply(const Command& command) {
   switch (command.kind) {

@@ -62,6 +62,7 @@ class Engine final : public Source {
  private:
   void run();
   bool apply_commands();
+  bool waits() const;
   void apply(const Command& command);
   void apply_tool(const Command& command);
   void apply_grab(const Command& command);
@@ -104,6 +105,7 @@ class Engine final : public Source {
   double due_s_ = 0.0, began_s_ = 0.0;        ///< simulated times that the last frame was to reach, and began at [s]
   bool paused_ = false, stopped_ = false, building_ = false, restarted_ = false;
   int frames_to_step_ = 0;
+  std::uint32_t received_ = 0;  ///< sequence of the last command taken from the ring
   std::uint32_t epoch_ = 0, echo_ = 0, shape_number_ = 0;
   std::uint64_t frames_ = 0, dropped_ = 0;
   std::shared_ptr<const BodyShape> shape_;

@@ -69,9 +69,9 @@ struct BodyShape {
 struct Snapshot {
   std::uint32_t epoch = 0;  ///< counts the bodies made
   std::uint32_t shape_number = 0;
-  std::uint64_t frame = 0;                                   ///< counts frames of the clock
-  std::uint32_t echo = 0;                                    ///< sequence of the last command that acted
-  double time = 0.0;                                         ///< simulated [s]
+  std::uint64_t frame = 0;  ///< counts frames of the clock
+  std::uint32_t echo = 0;   ///< sequence of the last command that acted with all before it
+  double time = 0.0;        ///< simulated [s]
   double realtime_factor = 0.0, p50_us = 0.0, p99_us = 0.0;  ///< of about the last second
   std::uint64_t dropped = 0;                                 ///< frames that were over before their turn
   bool paused = false, building = false, playing = false, grabbing = false, stopped = false;

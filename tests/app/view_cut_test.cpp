@@ -103,6 +103,22 @@ TEST(LiveCut, PartsABlockUnderAPull) {
   engine.stop();
 }
 
+// A stroke of sixteen commands waits for its pieces; the number that comes back is that of a stroke which is cut. The section
+// is 4 cm², and what a block at rest has cut of itself is that to 2 %.
+TEST(LiveCut, IsEchoedWhenItIsDone) {
+  Engine engine(block(), {});
+  engine.start();
+  for (std::uint32_t i = 0; i < 16; ++i) {
+    Command command = cut(blade(-0.005 + 0.002 * i, 0.0162), i == 0);
+    command.sequence = i + 1;
+    ASSERT_TRUE(engine.post(command));
+  }
+  Snapshot last;
+  ASSERT_TRUE(until(engine, last, [&] { return last.echo == 16; }));
+  EXPECT_NEAR(last.cut_area, 4e-4, 0.02 * 4e-4);
+  engine.stop();
+}
+
 // A cut gives the body no push. Vertices are moved onto it, to points whose velocity is interpolated between vertices: exact
 // where it is linear, so that what is left is rounding in single precision.
 TEST(LiveCut, KeepsMomentum) {
