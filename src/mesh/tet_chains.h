@@ -19,10 +19,9 @@
 #include <vector>
 
 #include "glisson/mesh.h"
+#include "mesh/face_neighbours.h"
 
 namespace glisson::detail {
-
-inline constexpr std::uint32_t kNoTet = ~0u;
 
 /// A tet and up to two neighbours of it across different faces; kNoTet where there is none, the first end being
 /// there if the second is. Numbers are positions in the given list.
