@@ -3,18 +3,30 @@
 #include <algorithm>
 
 #include "mesh/tet_chains.h"
+#include "mesh/tet_fans.h"
 
 namespace glisson::engine {
 namespace {
 
-/// Which vertices of a chain the gradients in rest belong to, of tets A, B, C.
-constexpr std::array<std::array<std::size_t, 3>, kChainTets> kGradientVertices{{{1, 2, 4}, {1, 2, 3}, {1, 3, 5}}};
+/// The vertices of tets A, B, C beside 0 and 1.
+constexpr std::array<std::array<std::size_t, 2>, kChainTets> kRingVertices{{{4, 2}, {2, 3}, {3, 5}}};
 
 /// Three tets as the kernel sees them: local vertices 0 … 5 of layout.h.
 struct Chain {
   std::array<std::uint32_t, kChainVertices> vertex;
   std::array<std::uint32_t, kChainTets> tet;  ///< A, B, C: positions in the list, or kNoTet
 };
+
+/// Whether the corners of a tet in this order are right-handed, as they are in the order of the mesh.
+bool is_right_handed(const Tet& t, Tet order) {
+  bool even = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (order[k] == t[k]) continue;
+    std::iter_swap(&order[k], std::find(order.begin(), order.end(), t[k]));
+    even = !even;
+  }
+  return even;
+}
 
 bool holds(const Tet& t, std::uint32_t vertex) { return std::find(t.begin(), t.end(), vertex) != t.end(); }
 
@@ -43,6 +55,8 @@ Chain placed(std::span<const Tet> local, const detail::TetChain& chain) {
   }
   placed.vertex[2] = B[opposite[1]];
   placed.vertex[3] = B[opposite[0]];
+  const auto& v = placed.vertex;
+  if (!is_right_handed(B, {v[0], v[1], v[2], v[3]})) std::swap(placed.vertex[0], placed.vertex[1]);
   const auto beyond = [&](std::uint32_t end) {
     return end == detail::kNoTet ? B[opposite[0]] : local[end][corner_beyond(local[end], B)];
   };
@@ -51,23 +65,72 @@ Chain placed(std::span<const Tet> local, const detail::TetChain& chain) {
   return placed;
 }
 
-/// Shape gradient of the local vertex in an element.
-Vec3d shape_gradient(const ElementRest& rest, const Tet& local, std::uint32_t vertex) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (local[a + 1] == vertex) return rest.s[a];
-  }
-  return -(rest.s[0] + rest.s[1] + rest.s[2]);
+/// The corner of `t` that is none of these.
+std::uint32_t vertex_beside(const Tet& t, std::uint32_t p, std::uint32_t q, std::uint32_t r) {
+  return *std::find_if(t.begin(), t.end(), [&](std::uint32_t v) { return v != p && v != q && v != r; });
 }
 
-/// Writes one tet of a chain into its lane.
-void write_tet(ChainBatches& out, std::size_t batch, std::size_t which, std::size_t lane, std::size_t lanes,
-               const ElementRest& rest, const Tet& local, const std::array<std::uint32_t, 3>& vertices) {
-  float* to = out.rest.data() + (batch * kChainTets + which) * kTetRest * lanes + lane;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const Vec3d s = shape_gradient(rest, local, vertices[a]);
-    for (std::size_t i = 0; i < 3; ++i) to[(3 * a + i) * lanes] = static_cast<float>(s[i]);
+/// The two chains of a fan, whose edge is 0–1 of both, with r₀ … r₃ and r₃ … r₆ as their vertices 4, 2, 3, 5.
+std::array<Chain, 2> placed(std::span<const Tet> local, const detail::TetFan& fan) {
+  const Tet& first = local[fan.tets[0]];
+  std::array<std::uint32_t, 2> edge{};
+  std::size_t on_edge = 0;
+  for (const std::uint32_t v : first) {
+    if (holds(local[fan.tets[1]], v) && holds(local[fan.tets[2]], v)) edge[on_edge++] = v;
   }
-  to[9 * lanes] = -static_cast<float>(rest.volume);
+  const std::uint32_t behind = first[corner_beyond(first, local[fan.tets[1]])];
+  const std::uint32_t ahead = vertex_beside(first, edge[0], edge[1], behind);
+  if (!is_right_handed(first, {edge[0], edge[1], behind, ahead})) std::swap(edge[0], edge[1]);
+  std::array<std::uint32_t, detail::kFanTets + 1> ring{behind};
+  for (std::size_t k = 0; k < detail::kFanTets; ++k) {
+    ring[k + 1] = vertex_beside(local[fan.tets[k]], edge[0], edge[1], ring[k]);
+  }
+  const auto chain = [&](std::size_t k) {
+    return Chain{{edge[0], edge[1], ring[k + 1], ring[k + 2], ring[k], ring[k + 3]},
+                 {fan.tets[k], fan.tets[k + 1], fan.tets[k + 2]}};
+  };
+  return {chain(0), chain(kChainTets)};
+}
+
+/// Where an element lies.
+struct Place {
+  std::size_t batch, which, lane;
+};
+Place place_at(std::size_t position, std::size_t lanes) {
+  return {position / (kChainTets * lanes), position / lanes % kChainTets, position % lanes};
+}
+
+/// Rest position of the local vertex of an element.
+const Vec3d& rest_position(const Body& body, std::uint32_t element, const Tet& local, std::uint32_t vertex) {
+  const auto corner = static_cast<std::size_t>(std::find(local.begin(), local.end(), vertex) - local.begin());
+  return body.rest_positions[body.elements[element][corner]];
+}
+
+/// Writes the rest data of one tet of a chain, those that the other chain of a fan has for both included. The vertices of
+/// the chain are there already.
+void write_tet(const Body& body, ChainBatches& out, const Place& to, std::uint32_t element, const Tet& local,
+               std::size_t lanes) {
+  const std::uint16_t* index = out.index.data() + to.batch * kChainVertices * lanes + to.lane;
+  const auto position = [&](std::size_t vertex) {
+    return rest_position(body, element, local, index[vertex * lanes] / kIndexScale);
+  };
+  const auto rest = [&](std::size_t batch) { return out.rest.data() + batch * kChainRest * lanes + to.lane; };
+  const auto put = [&](std::size_t batch, std::size_t row, const Vec3d& v) {
+    for (std::size_t i = 0; i < 3; ++i) rest(batch)[(row + i) * lanes] = static_cast<float>(v[i]);
+  };
+  const bool second = to.batch < 2 * out.pairs && to.batch % 2 == 1, closed = to.batch < 2 * out.closed_pairs;
+  const Vec3d e1 = position(1) - position(0);
+  std::array<Vec3d, 2> edges;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::size_t vertex = kRingVertices[to.which][k];
+    edges[k] = position(vertex) - position(0);
+    const Vec3d spoke = cross(e1, edges[k]);
+    put(to.batch, kRestSpoke[vertex], spoke);
+    if (second && vertex == 4) put(to.batch - 1, kRestSpoke[5], spoke);
+    if (second && closed && vertex == 5) put(to.batch - 1, kRestSpoke[4], spoke);
+  }
+  put(to.batch, kRestAcross + 3 * to.which, cross(edges[0], edges[1]));
+  rest(to.batch)[(kRestScale + to.which) * lanes] = static_cast<float>(1.0 / (6.0 * body.rest[element].volume));
 }
 
 /// The elements that chains are made of.
@@ -80,13 +143,12 @@ struct Listed {
 void resize(ChainBatches& out, std::size_t count, std::size_t lanes) {
   out.count = count;
   out.index.resize(count * kChainVertices * lanes, 0);
-  out.rest.resize(count * kChainTets * kTetRest * lanes, 0.0F);
+  out.rest.resize(count * kChainRest * lanes, 0.0F);
   out.element.resize(count * kChainTets * lanes, kNoElement);
 }
 
 void write_chain(ChainBatches& out, std::size_t batch, std::size_t lane, std::size_t lanes, const Listed& list,
-                 const detail::TetChain& tets) {
-  const Chain chain = placed(list.local, tets);
+                 const Chain& chain) {
   for (std::size_t a = 0; a < kChainVertices; ++a) {
     out.index[(batch * kChainVertices + a) * lanes + lane] = static_cast<std::uint16_t>(kIndexScale * chain.vertex[a]);
   }
@@ -94,9 +156,7 @@ void write_chain(ChainBatches& out, std::size_t batch, std::size_t lane, std::si
     const std::uint32_t t = chain.tet[which];
     if (t == detail::kNoTet) continue;
     out.element[(batch * kChainTets + which) * lanes + lane] = list.elements[t];
-    const auto& [a, b, c] = kGradientVertices[which];
-    write_tet(out, batch, which, lane, lanes, list.body.rest[list.elements[t]], list.local[t],
-              {chain.vertex[a], chain.vertex[b], chain.vertex[c]});
+    write_tet(list.body, out, {batch, which, lane}, list.elements[t], list.local[t], lanes);
   }
 }
 
@@ -109,13 +169,64 @@ bool is_free(const ChainBatches& chains, std::size_t batch, std::size_t lane, st
 
 }  // namespace
 
+namespace {
+
+/// How many fans are kept: whole batches of closed ones, then of any. What is left over makes chains.
+void choose_fans(ChainBatches& out, std::vector<detail::TetFan>& fans, std::size_t lanes) {
+  const auto closed = std::count_if(fans.begin(), fans.end(), [](const detail::TetFan& f) { return f.closed; });
+  out.closed_pairs = static_cast<std::size_t>(closed) / lanes;
+  out.pairs = fans.size() / lanes;
+  fans.resize(out.pairs * lanes);
+}
+
+/// Tets of the list that no fan has, and their positions in it.
+struct Leftover {
+  std::vector<std::uint32_t> tets;
+  std::vector<Tet> local;
+};
+
+Leftover left_over(std::span<const Tet> local, const std::vector<detail::TetFan>& fans) {
+  std::vector<char> taken(local.size(), 0);
+  for (const detail::TetFan& fan : fans) {
+    for (const std::uint32_t t : fan.tets) taken[t] = 1;
+  }
+  Leftover rest;
+  for (std::uint32_t t = 0; t < local.size(); ++t) {
+    if (taken[t] == 0) rest.tets.push_back(t), rest.local.push_back(local[t]);
+  }
+  return rest;
+}
+
+Chain in_whole_list(Chain chain, const std::vector<std::uint32_t>& position) {
+  for (std::uint32_t& t : chain.tet) t = t == detail::kNoTet ? t : position[t];
+  return chain;
+}
+
+}  // namespace
+
 ChainBatches make_chain_batches(const Body& body, std::span<const std::uint32_t> elements, std::span<const Tet> local,
                                 std::size_t lanes) {
-  const std::vector<detail::TetChain> chains = detail::chain_tets(local);
+  std::vector<detail::TetFan> fans = detail::fan_tets(local);
   ChainBatches out;
-  resize(out, (chains.size() + lanes - 1) / lanes, lanes);
-  for (std::size_t k = 0; k < chains.size(); ++k) {  // lanes of a batch are far apart
-    write_chain(out, k % out.count, k / out.count, lanes, {body, elements, local}, chains[k]);
+  choose_fans(out, fans, lanes);
+  const Leftover rest = left_over(local, fans);
+  const std::vector<detail::TetChain> chains = detail::chain_tets(rest.local);
+  const std::size_t first = 2 * out.pairs, single = (chains.size() + lanes - 1) / lanes;
+  resize(out, first + single, lanes);
+  const Listed list{body, elements, local};
+  const auto put_pairs = [&](std::size_t from, std::size_t pairs) {  // lanes of a batch are far apart
+    for (std::size_t k = 0; k < pairs * lanes; ++k) {
+      const std::array<Chain, 2> both = placed(local, fans[from * lanes + k]);
+      const std::size_t batch = 2 * (from + k % pairs);
+      write_chain(out, batch, k / pairs, lanes, list, both[0]);
+      write_chain(out, batch + 1, k / pairs, lanes, list, both[1]);
+    }
+  };
+  put_pairs(0, out.closed_pairs);
+  put_pairs(out.closed_pairs, out.pairs - out.closed_pairs);
+  for (std::size_t k = 0; k < chains.size(); ++k) {
+    write_chain(out, first + k % single, k / single, lanes, list,
+                in_whole_list(placed(rest.local, chains[k]), rest.tets));
   }
   return out;
 }
@@ -126,7 +237,7 @@ void add_chains(const Body& body, ChainBatches& out, std::span<const std::uint32
   for (const detail::TetChain& chain : detail::chain_tets(local)) {
     while (at < out.count * lanes && !is_free(out, at / lanes, at % lanes, lanes)) ++at;
     if (at == out.count * lanes) resize(out, out.count + 1, lanes);
-    write_chain(out, at / lanes, at % lanes, lanes, {body, elements, local}, chain);
+    write_chain(out, at / lanes, at % lanes, lanes, {body, elements, local}, placed(local, chain));
   }
 }
 
@@ -162,20 +273,14 @@ std::vector<std::uint32_t> elements_of_chain(const ChainBatches& chains, std::si
 }
 
 void rewrite_element(const Body& body, ChainBatches& chains, std::size_t place, const Tet& local, std::size_t lanes) {
-  const std::size_t batch = place / (kChainTets * lanes), which = place / lanes % kChainTets, lane = place % lanes;
-  std::array<std::uint32_t, 3> vertices;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const std::size_t vertex = kGradientVertices[which][a];
-    vertices[a] = chains.index[(batch * kChainVertices + vertex) * lanes + lane] / kIndexScale;
-  }
-  write_tet(chains, batch, which, lane, lanes, body.rest[chains.element[place]], local, vertices);
+  write_tet(body, chains, place_at(place, lanes), chains.element[place], local, lanes);
 }
 
 bool clear_element(ChainBatches& chains, std::uint32_t element, std::size_t lanes) {
   const std::size_t place = place_of_element(chains, element);
   if (place == chains.element.size()) return false;
-  float* rest = chains.rest.data() + place / lanes * kTetRest * lanes + place % lanes;
-  for (std::size_t k = 0; k < kTetRest; ++k) rest[k * lanes] = 0.0F;
+  const Place at = place_at(place, lanes);
+  chains.rest[(at.batch * kChainRest + kRestScale + at.which) * lanes + at.lane] = 0.0F;
   chains.element[place] = kNoElement;
   return true;
 }

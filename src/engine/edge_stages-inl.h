@@ -55,7 +55,7 @@ HWY_INLINE void load_tensor(const float* in, F (&T)[9]) {
 HWY_INLINE void push_edge(float* forces, const std::uint16_t* index, const F (&T)[9], const Xyz& p, const Xyz& q) {
   const F t = T[0] + T[4] + T[8];
   const Xyz Tp = product(T, p), Ttp = transposed_product(T, p), Tq = product(T, q), Ttq = transposed_product(T, q);
-  const auto at_i = [&](F a, F b, F c) { return hn::MulAdd(t, c, a + b); };
+  const auto at_i = [&](F a, F b, F c) GLISSON_INLINED { return hn::MulAdd(t, c, a + b); };
   add_forces(forces, index, Xyz{at_i(Tp.x, Ttq.x, q.x), at_i(Tp.y, Ttq.y, q.y), at_i(Tp.z, Ttq.z, q.z)});
   add_forces(forces, index + kLanes, minus({at_i(Ttp.x, Tq.x, q.x), at_i(Ttp.y, Tq.y, q.y), at_i(Ttp.z, Tq.z, q.z)}));
 }

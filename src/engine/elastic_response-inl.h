@@ -29,7 +29,7 @@ struct LaneModuli {
 
 HWY_INLINE LaneModuli moduli_of(const LaneResponse& r, const Block& block, std::size_t item) {
   const Lanes d;
-  const auto at = [&](const float* values) { return hn::Load(d, values + item * kLanes); };
+  const auto at = [&](const float* values) GLISSON_INLINED { return hn::Load(d, values + item * kLanes); };
   const F l = number(r.moduli.lambda), m = number(r.moduli.mu), third = number(2.0F / 3.0F);
   LaneModuli k;
   k.lambda = l * at(block.value[0]), k.mu = m * at(block.value[r.mu_law]);
@@ -116,7 +116,7 @@ void tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& t
     const Invariants<F> inv = invariants(d, H);
     const F J = inv.volume_change + one;
     const LaneModuli k = moduli_of(r, block, item);
-    const auto volume_change = [&](const Symmetric& e) {
+    const auto volume_change = [&](const Symmetric& e) GLISSON_INLINED {
       return in.mean != nullptr ? hn::Load(d, in.mean + item * kLanes) : trace_of(e);
     };
     Symmetric strain, S;

@@ -23,6 +23,8 @@
 
 #include <cstddef>
 
+#include "engine/inlined.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace glisson::engine::HWY_NAMESPACE {
 
@@ -92,16 +94,31 @@ HWY_INLINE Point force_beside(const Stress<V>& t, const V (&s)[3], const Point& 
           MulAdd(t.zz, s[2], MulAdd(t.yz, s[1], MulAdd(t.zx, s[0], f.z)))};
 }
 
+/// The same with −s.
+template <class V, class Point>
+HWY_INLINE Point force_against(const Stress<V>& t, const V (&s)[3], const Point& f) {
+  return {NegMulAdd(t.zx, s[2], NegMulAdd(t.xy, s[1], NegMulAdd(t.xx, s[0], f.x))),
+          NegMulAdd(t.yz, s[2], NegMulAdd(t.yy, s[1], NegMulAdd(t.xy, s[0], f.y))),
+          NegMulAdd(t.zz, s[2], NegMulAdd(t.yz, s[1], NegMulAdd(t.zx, s[0], f.z)))};
+}
+
 /// f = P s, for a stress that carries −V already.
 template <class V, class Point>
 HWY_INLINE Point force(const Piola<V>& t, const V (&s)[3]) {
-  const auto row = [&](const V(&p)[3]) { return MulAdd(p[2], s[2], MulAdd(p[1], s[1], p[0] * s[0])); };
+  const auto row = [&](const V(&p)[3]) GLISSON_INLINED { return MulAdd(p[2], s[2], MulAdd(p[1], s[1], p[0] * s[0])); };
   return {row(t.p[0]), row(t.p[1]), row(t.p[2])};
 }
 template <class V, class Point>
 HWY_INLINE Point force_beside(const Piola<V>& t, const V (&s)[3], const Point& f) {
-  const auto row = [&](const V(&p)[3], V beside) {
-    return MulAdd(p[2], s[2], MulAdd(p[1], s[1], MulAdd(p[0], s[0], beside)));
+  const auto row = [&](const V(&p)[3], V beside)
+                       GLISSON_INLINED { return MulAdd(p[2], s[2], MulAdd(p[1], s[1], MulAdd(p[0], s[0], beside))); };
+  return {row(t.p[0], f.x), row(t.p[1], f.y), row(t.p[2], f.z)};
+}
+
+template <class V, class Point>
+HWY_INLINE Point force_against(const Piola<V>& t, const V (&s)[3], const Point& f) {
+  const auto row = [&](const V(&p)[3], V beside) GLISSON_INLINED {
+    return NegMulAdd(p[2], s[2], NegMulAdd(p[1], s[1], NegMulAdd(p[0], s[0], beside)));
   };
   return {row(t.p[0], f.x), row(t.p[1], f.y), row(t.p[2], f.z)};
 }

@@ -20,7 +20,7 @@ namespace glisson::engine {
 /// Values of a block of batches between the stages, vectors of L lanes: item i = 3 batch + (0: A, 1: B, 2: C).
 struct Block {
   alignas(64) float gradient[kBlockTets * 9];  ///< H, [item][9][lane]
-  alignas(64) float viscous[kBlockTets * 6];   ///< σ_v, [item][6][lane]
+  alignas(64) float viscous[kBlockTets * 6];   ///< −⅙ σ_v, [item][6][lane]
   alignas(64) float x[kBlockTets];             ///< measure, [item][lane]
   alignas(64) float y[kBlockTets];             ///< see element_math-inl.h, Measured
   alignas(64) float value[2][kBlockTets];      ///< modulus of the law on E, or of those on λ and μ
@@ -39,7 +39,9 @@ struct LaneTissue {
 struct Elements {
   const float* states = nullptr;         ///< float records, kStateFloats a local vertex
   const std::uint16_t* index = nullptr;  ///< [batch][6][lane]
-  const float* rest = nullptr;           ///< [batch][30][lane]
+  const float* rest = nullptr;           ///< [batch][24][lane]
+  std::size_t pairs = 0;                 ///< of batches at the front that hold fans,
+  std::size_t closed_pairs = 0;          ///< of these the first ones, whose fans are closed
   float* elastic = nullptr;              ///< force records, of the whole force where that is pushed as one
   float* viscous = nullptr;
   LaneTissue tissue;

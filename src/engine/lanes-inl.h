@@ -25,6 +25,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "engine/inlined.h"
 #include "engine/layout.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -138,7 +139,7 @@ class Origin {
   template <class Index>
   HWY_INLINE UV difference(const Index& index) const {
     const float* a = state_record(records_, index[0]);
-    const auto d = [&](std::size_t k) { return hn::Set(Floats(), a[k] - origin_[k]); };
+    const auto d = [&](std::size_t k) GLISSON_INLINED { return hn::Set(Floats(), a[k] - origin_[k]); };
     return {{d(0), d(1), d(2)}, {d(4), d(5), d(6)}};
   }
 
@@ -166,8 +167,8 @@ class Origin {
   }
   template <class Index>
   HWY_INLINE UV difference(const Index& index) const {
-    const auto of = [&](const F* origin, std::size_t from) {
-      const auto r = [&](std::size_t l) { return hn::Sub(half(index, l, from), origin[l]); };
+    const auto of = [&](const F* origin, std::size_t from) GLISSON_INLINED {
+      const auto r = [&](std::size_t l) GLISSON_INLINED { return hn::Sub(half(index, l, from), origin[l]); };
       return transpose(r(0), r(1), r(2), r(3));
     };
     if constexpr (kWithVelocity) return {of(u_, 0), of(v_, 4)};
@@ -204,7 +205,7 @@ class Origin {
   template <class Index>
   HWY_INLINE UV difference(const Index& index) const {
     const Floats d;
-    const auto r = [&](std::size_t k) { return hn::Sub(load(index, k), r_[k]); };
+    const auto r = [&](std::size_t k) GLISSON_INLINED { return hn::Sub(load(index, k), r_[k]); };
     const Xyz a = transpose(r(0), r(1), r(2), r(3));
     if constexpr (!kWithVelocity) return UV{a};
     const Xyz b = transpose(r(4), r(5), r(6), r(7));  // blocks: u, v
@@ -229,7 +230,7 @@ class Origin {
 template <class Index>
 HWY_INLINE void add_forces(float* forces, const Index& index, const Xyz& f) {
   const Records r = transpose_back(f);
-  const auto add = [&](std::size_t lane, F records) {
+  const auto add = [&](std::size_t lane, F records) GLISSON_INLINED {
     add_block(force_record(forces, index[lane]), hn::LowerHalf(records));
     add_block(force_record(forces, index[lane + 4]), hn::UpperHalf(hn::Full128<float>(), records));
   };
@@ -253,7 +254,7 @@ class Origin {
   }
   template <class Index>
   HWY_INLINE UV difference(const Index& index) const {
-    const auto r = [&](std::size_t k) { return hn::Sub(load(index, k), r_[k]); };
+    const auto r = [&](std::size_t k) GLISSON_INLINED { return hn::Sub(load(index, k), r_[k]); };
     const Xyz a = transpose(r(0), r(1), r(2), r(3));
     if constexpr (!kWithVelocity) return UV{a};
     const Xyz b = transpose(r(4), r(5), r(6), r(7));  // blocks: u, v, u, v
@@ -268,10 +269,12 @@ class Origin {
   HWY_INLINE F load(const Index& index, std::size_t k) const {
     if constexpr (kWithVelocity) {
       const std::size_t lane = k < 4 ? k : k + 4;
-      const auto state = [&](std::size_t l) { return hn::Load(Half(), state_record(records_, index[l])); };
+      const auto state = [&](std::size_t l)
+                             GLISSON_INLINED { return hn::Load(Half(), state_record(records_, index[l])); };
       return hn::Combine(Floats(), state(lane + 4), state(lane));
     } else {
-      const auto u = [&](std::size_t l) { return hn::Load(hn::Full128<float>(), state_record(records_, index[l])); };
+      const auto u = [&](std::size_t l)
+                         GLISSON_INLINED { return hn::Load(hn::Full128<float>(), state_record(records_, index[l])); };
       return hn::Combine(Floats(), hn::Combine(Half(), u(k + 12), u(k + 8)), hn::Combine(Half(), u(k + 4), u(k)));
     }
   }
@@ -283,7 +286,7 @@ template <class Index>
 HWY_INLINE void add_forces(float* forces, const Index& index, const Xyz& f) {
   const Records r = transpose_back(f);
   const hn::Full128<float> block;
-  const auto add = [&](std::size_t lane, F records) {
+  const auto add = [&](std::size_t lane, F records) GLISSON_INLINED {
     const hn::Vec<Half> lower = hn::LowerHalf(records), upper = hn::UpperHalf(Half(), records);
     add_block(force_record(forces, index[lane]), hn::LowerHalf(lower));
     add_block(force_record(forces, index[lane + 4]), hn::UpperHalf(block, lower));

@@ -42,7 +42,7 @@ HWY_INLINE ValueSlope not_below_zero(F value, F slope) {
 
 inline void constant_law(const LaneLaw& law, const float* x, std::size_t n, float* value, float* slope) {
   const ValueSlope rest{hn::Set(Lanes(), law.base), hn::Zero(Lanes())};
-  for_lanes(x, n, value, slope, [&](F) { return rest; });
+  for_lanes(x, n, value, slope, [&](F) GLISSON_INLINED { return rest; });
 }
 
 /// numbers: rise (M above − M₀), threshold, width (0: sharp)
@@ -52,13 +52,13 @@ inline void step_law(const LaneLaw& law, const float* x, std::size_t n, float* v
   const F zero = hn::Zero(d), one = hn::Set(d, 1.0F), half = hn::Set(d, 0.5F), three = hn::Set(d, 3.0F);
   const float width = law.numbers[2];
   if (!(width > 0.0F)) {
-    for_lanes(x, n, value, slope, [&](F a) {
+    for_lanes(x, n, value, slope, [&](F a) GLISSON_INLINED {
       return ValueSlope{hn::IfThenElse(hn::Lt(a, threshold), base, base + rise), zero};
     });
     return;
   }
   const F inverse_width = hn::Set(d, 1.0F / width), six_rise = hn::Set(d, 6.0F / width) * rise;
-  for_lanes(x, n, value, slope, [&](F a) {
+  for_lanes(x, n, value, slope, [&](F a) GLISSON_INLINED {
     const F t = hn::Min(hn::Max(hn::MulAdd(a - threshold, inverse_width, half), zero), one);
     return ValueSlope{hn::MulAdd(rise, t * t * (three - (t + t)), base), six_rise * t * (one - t)};
   });
@@ -67,14 +67,14 @@ inline void step_law(const LaneLaw& law, const float* x, std::size_t n, float* v
 /// numbers: slope
 inline void linear_law(const LaneLaw& law, const float* x, std::size_t n, float* value, float* slope) {
   const F k = hn::Set(Lanes(), law.numbers[0]), base = hn::Set(Lanes(), law.base);
-  for_lanes(x, n, value, slope, [&](F a) { return not_below_zero(hn::MulAdd(k, a, base), k); });
+  for_lanes(x, n, value, slope, [&](F a) GLISSON_INLINED { return not_below_zero(hn::MulAdd(k, a, base), k); });
 }
 
 /// numbers: c₁, c₂, …
 inline void polynomial_law(const LaneLaw& law, const float* x, std::size_t n, float* value, float* slope) {
   const Lanes d;
   const F base = hn::Set(d, law.base);
-  for_lanes(x, n, value, slope, [&](F a) {
+  for_lanes(x, n, value, slope, [&](F a) GLISSON_INLINED {
     F m = hn::Zero(d), dm = hn::Zero(d);  // c₁ + c₂ x + …, and its derivative
     for (std::size_t i = law.numbers.size(); i-- > 0;) {
       dm = hn::MulAdd(dm, a, m);
@@ -89,7 +89,7 @@ inline void exponential_law(const LaneLaw& law, const float* x, std::size_t n, f
   const Lanes d;
   const F A = hn::Set(d, law.numbers[0]), b = hn::Set(d, law.numbers[1]), most = hn::Set(d, law.numbers[2]);
   const F base = hn::Set(d, law.base), one = hn::Set(d, 1.0F), zero = hn::Zero(d);
-  for_lanes(x, n, value, slope, [&](F a) {
+  for_lanes(x, n, value, slope, [&](F a) GLISSON_INLINED {
     const F e = b * a, growth = hn::Expm1(d, hn::Min(e, most));
     const F rate = hn::IfThenElse(hn::Gt(e, most), zero, A * b * (growth + one));
     return not_below_zero(hn::MulAdd(A, growth, base), rate);
@@ -101,7 +101,7 @@ inline void table_law(const LaneLaw& law, const float* x, std::size_t n, float* 
   const Lanes d;
   const std::size_t points = law.numbers.size() / 3;
   const float *at = law.numbers.data(), *modulus = at + points, *rise = modulus + points;
-  for_lanes(x, n, value, slope, [&](F a) {
+  for_lanes(x, n, value, slope, [&](F a) GLISSON_INLINED {
     F m = hn::Set(d, modulus[0]), k = hn::Zero(d), from = hn::Set(d, at[0]);
     for (std::size_t i = 0; i < points; ++i) {
       const F xi = hn::Set(d, at[i]);

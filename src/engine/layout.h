@@ -31,15 +31,31 @@
 //       4─────(0 1)───3            the difference of 1 serves three tets, those of 2 and 3 two each
 //
 //   batch of L chains: index   6 × L × 16 bit, vertex-major                          = 12 bytes a chain
-//                      rest   30 × L floats: s₁ s₂ s₄ −V of A, s₁ s₂ s₃ −V of B, s₁ s₃ s₅ −V of C = 120
+//                      rest   24 × L floats, see below                               = 96
 //
-// A chain of fewer tets has zeros for those that are missing (the middle one is always there).
+// With edges e of vertices from 0 the gradients of a tet 0 1 a b, going round as 4, 2, 3, 5, are w (e_a × e_b) of 1,
+// w (e_b × e₁) of a and w (e₁ × e_a) of b, where 1/w = e₁ · (e_a × e_b) = 6V. Kept are the products, n_a = e₁ × e_a serving
+// two tets each, and w. Forces −V σ s are −⅙ σ times the products, without w.
+//
+//   rest      [ n₂ n₃ | e₄×e₂  e₂×e₃  e₃×e₅ | w of A, B, C | n₅ | n₄ ]
+//
+// Where six tets lie around one edge they make a *fan*: two chains with the same 0 and 1, the second one's 4 being the
+// first one's 5, in the same lane of two batches that are gone through as one. Nine vertices are fetched for six tets, or
+// eight where the fan is closed, the second one's 5 being the first one's 4:
+//
+//   batches   [ closed fans, by two | open fans, by two | chains ]
+//
+// The second chain's n₄, and its n₅ in a closed fan, are not read: they lie at the end.
+//
+// A chain of fewer tets has zeros for those that are missing (the middle one is always there); one that is taken out
+// keeps its products, which its neighbours need, and loses w.
 //
 // Lane l of a batch takes chains far from those of the other lanes (of C chains in B batches, batch b takes b,
 // b + B, b + 2B, …), so that lanes seldom add to the same force record in one go.
 // Submeshes of a linear tissue hold edges instead (edges-inl.h).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -53,7 +69,11 @@ inline constexpr std::size_t kMaxLocalVertices = 65536 / kIndexScale;
 
 inline constexpr std::size_t kChainVertices = 6;
 inline constexpr std::size_t kChainTets = 3;
-inline constexpr std::size_t kTetRest = 10;      ///< three shape gradients and −V
+inline constexpr std::size_t kChainRest = 24;  ///< seven products of edges and three times w = 1/6V
+inline constexpr std::size_t kRestAcross = 6;  ///< where the products opposite edge 0–1 begin, of A, B, C
+inline constexpr std::size_t kRestScale = 15;  ///< where w of A, B, C lie
+/// Where n of a vertex begins; 0 and 1 have none.
+inline constexpr std::array<std::size_t, kChainVertices> kRestSpoke{0, 0, 0, 3, 21, 18};
 inline constexpr std::size_t kBlockBatches = 4;  ///< batches that go through a stage together
 inline constexpr std::size_t kMaxLanes = 16;
 /// Tets of a block: the values a law sees at once.

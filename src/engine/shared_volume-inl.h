@@ -33,6 +33,13 @@ HWY_INLINE F stretch_sum(const Tensor& H, F volume_change, const float* gradient
   return hn::Load(d, values);
 }
 
+/// V of a tet, 0 where there is none: 1/6w.
+HWY_INLINE F rest_volume(const float* rest, std::size_t item) {
+  const std::size_t row = item / kChainTets * kChainRest + kRestScale + item % kChainTets;
+  const F six_w = hn::Load(Lanes(), rest + row * kLanes) * number(6.0F);
+  return hn::IfThenElseZero(hn::Gt(six_w, number(0.0F)), number(1.0F) / six_w);
+}
+
 /// V ϑ of each item [m³]; `kind` says which ϑ.
 inline void volume_changes(const float* gradient, const float* rest, std::size_t items, VolumeKind kind, float* out) {
   const Lanes d;
@@ -43,8 +50,7 @@ inline void volume_changes(const float* gradient, const float* rest, std::size_t
     if (kind == VolumeKind::green) theta = trace_of(green_strain(H));
     if (kind == VolumeKind::hyperelastic) theta = invariants(d, H).volume_change;
     if (kind == VolumeKind::corotational) theta = stretch_sum(H, invariants(d, H).volume_change, at);
-    const F minus_volume = hn::Load(d, rest + (item * kTetRest + 9) * kLanes);
-    hn::Store(hn::Neg(minus_volume * theta), d, out + item * kLanes);
+    hn::Store(rest_volume(rest, item) * theta, d, out + item * kLanes);
   }
 }
 
@@ -55,7 +61,8 @@ inline void spread_to_vertices(const std::uint16_t* index, std::size_t batches, 
     const float* A = values + b * kChainTets * kLanes;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const float a = A[lane], m = A[kLanes + lane], c = A[2 * kLanes + lane];
-      const auto add = [&](std::size_t vertex, float x) { vertices[at[vertex * kLanes + lane] / kIndexScale] += x; };
+      const auto add = [&](std::size_t vertex, float x)
+                           GLISSON_INLINED { vertices[at[vertex * kLanes + lane] / kIndexScale] += x; };
       add(0, a + m + c), add(1, a + m + c), add(2, a + m), add(3, m + c), add(4, a), add(5, c);
     }
   }
@@ -67,7 +74,8 @@ inline void mean_of_vertices(const std::uint16_t* index, std::size_t batches, co
     const std::uint16_t* at = index + b * kChainVertices * kLanes;
     float* A = values + b * kChainTets * kLanes;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const auto of = [&](std::size_t vertex) { return vertices[at[vertex * kLanes + lane] / kIndexScale]; };
+      const auto of = [&](std::size_t vertex)
+                          GLISSON_INLINED { return vertices[at[vertex * kLanes + lane] / kIndexScale]; };
       const float edge = of(0) + of(1), v2 = of(2), v3 = of(3);
       A[lane] = 0.25F * (edge + v2 + of(4));
       A[kLanes + lane] = 0.25F * (edge + v2 + v3);

@@ -29,11 +29,13 @@ using LaneVector = std::vector<T, CacheLines<T>>;
 
 inline constexpr std::uint32_t kNoElement = std::numeric_limits<std::uint32_t>::max();
 
-/// Chains of tets in batches.
+/// Chains of tets in batches. Batches 2 i and 2 i + 1 for i < pairs are the two chains of fans.
 struct ChainBatches {
   std::size_t count = 0;               ///< batches
+  std::size_t pairs = 0;               ///< pairs of batches that hold fans
+  std::size_t closed_pairs = 0;        ///< of these the first ones, whose fans are all closed
   LaneVector<std::uint16_t> index;     ///< [batch][6][lane], times kIndexScale
-  LaneVector<float> rest;              ///< [batch][3 tets][10][lane]: three shape gradients [1/m], −V [m³]
+  LaneVector<float> rest;              ///< [batch][24][lane]: products of edges at rest [m²], 1/6V [1/m³]
   std::vector<std::uint32_t> element;  ///< [batch][3 tets][lane]: element of the body, kNoElement where none is
 };
 

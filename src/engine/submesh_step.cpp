@@ -33,6 +33,8 @@ Elements SubmeshBody::elements_of(const Submesh& part, Scratch& scratch) const {
   return {.states = scratch.states.data(),
           .index = part.chains.index.data(),
           .rest = part.chains.rest.data(),
+          .pairs = part.chains.pairs,
+          .closed_pairs = part.chains.closed_pairs,
           .elastic = scratch.elastic.data(),
           .viscous = scratch.viscous.data(),
           .tissue = plans_[part.block].tissue,

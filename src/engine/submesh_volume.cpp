@@ -54,7 +54,7 @@ void SubmeshBody::spread_volume(std::size_t s, Scratch& scratch) {
   for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
     const std::size_t n = std::min(kBlockBatches, part.chains.count - b), items = n * kChainTets;
     kernels_.gather_elastic(elements, b, n, scratch.block);
-    const float* rest = part.chains.rest.data() + b * kChainTets * kTetRest * kernels_.lanes;
+    const float* rest = part.chains.rest.data() + b * kChainRest * kernels_.lanes;
     kernels_.response->volume_changes(scratch.block.gradient, rest, items, kind, scratch.block.x);
     const std::uint16_t* index = part.chains.index.data() + b * kChainVertices * kernels_.lanes;
     kernels_.response->spread_to_vertices(index, n, scratch.block.x, own.theta.data());

@@ -28,7 +28,7 @@ HWY_INLINE void store_tensor(const Tensor& t, float* out) {
   for (std::size_t k = 0; k < 9; ++k) hn::Store(t.h[k / 3][k % 3], Lanes(), out + k * kLanes);
 }
 HWY_INLINE Symmetric load_symmetric(const float* in) {
-  const auto get = [&](std::size_t k) { return hn::Load(Lanes(), in + k * kLanes); };
+  const auto get = [&](std::size_t k) GLISSON_INLINED { return hn::Load(Lanes(), in + k * kLanes); };
   return {get(0), get(1), get(2), get(3), get(4), get(5)};
 }
 HWY_INLINE void store_symmetric(const Symmetric& s, float* out) {
@@ -99,7 +99,7 @@ HWY_INLINE Tensor tensor_product(const Tensor& a, const Symmetric& s) {
 }
 /// sym(Aᵀ B)
 HWY_INLINE Symmetric symmetric_product(const Tensor& a, const Tensor& b) {
-  const auto at = [&](std::size_t i, std::size_t j) {
+  const auto at = [&](std::size_t i, std::size_t j) GLISSON_INLINED {
     return hn::MulAdd(a.h[2][i], b.h[2][j], hn::MulAdd(a.h[1][i], b.h[1][j], a.h[0][i] * b.h[0][j]));
   };
   const F half = number(0.5F);

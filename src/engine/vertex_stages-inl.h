@@ -114,7 +114,7 @@ struct WorkLanes {
     kinetic = hn::MulAdd(hn::Mul(hn::Set(Doubles(), half_mass), before), after, kinetic);
   }
   HWY_INLINE void add_to(VertexWork& work) const {
-    const auto sum = [](D4 v) { return hn::GetLane(hn::SumOfLanes(Doubles(), v)); };
+    const auto sum = [](D4 v) GLISSON_INLINED { return hn::GetLane(hn::SumOfLanes(Doubles(), v)); };
     work.elastic_before += sum(elastic_before), work.elastic_after += sum(elastic_after);
     work.viscous_before += sum(viscous_before), work.viscous_after += sum(viscous_after);
     work.damping_before += sum(damping_before), work.damping_after += sum(damping_after);

@@ -24,29 +24,42 @@ Mat3d in_double(const Mat3<float>& H) {
   return out;
 }
 
-/// Runs the stage over the tets, a block at a time, as a submesh does. @return x of each; `inverted` is any J ≤ 0
+/// The rest data of a tet in the middle of a chain of one (layout.h).
+void put_rest(const ElementRest& rest, std::size_t lanes, float* lane) {
+  const double w = 1.0 / (6.0 * rest.volume);
+  const auto put = [&](std::size_t row, const Vec3d& v) {
+    for (std::size_t i = 0; i < 3; ++i) lane[(row + i) * lanes] = float(v[i]);
+  };
+  put(engine::kRestAcross + 3, rest.s[0] * (1.0 / w));
+  put(engine::kRestSpoke[3], rest.s[1] * (-1.0 / w));
+  put(engine::kRestSpoke[2], rest.s[2] * (1.0 / w));
+  lane[(engine::kRestScale + 1) * lanes] = float(w);
+}
+
+/// Runs the stage over the tets, one a chain, a block at a time as a submesh does. @return x of each; `inverted` is any
+/// J ≤ 0
 std::vector<double> measured(const Kernels& kernels, DeformationMeasure measure, const Tets& tets,
                              bool* inverted = nullptr) {
-  const std::size_t L = kernels.lanes, block_tets = engine::kChainTets * engine::kBlockBatches * L;
+  const std::size_t L = kernels.lanes, block_tets = engine::kBlockBatches * L;
   const auto block = std::make_unique<Block>();
   std::vector<double> x;
   bool any = false;
   for (std::size_t first = 0; first < tets.H.size(); first += block_tets) {
-    engine::LaneVector<float> rest(block_tets * engine::kTetRest, 0.0F);
+    engine::LaneVector<float> rest(block_tets * engine::kChainRest, 0.0F);
     std::fill(std::begin(block->gradient), std::end(block->gradient), 0.0F);
     const std::size_t n = std::min(block_tets, tets.H.size() - first);
     for (std::size_t t = 0; t < n; ++t) {
-      const std::size_t item = t / L, lane = t % L;
+      const std::size_t batch = t / L, item = engine::kChainTets * batch + 1, lane = t % L;
       for (std::size_t k = 0; k < 9; ++k) {
         block->gradient[(item * 9 + k) * L + lane] = tets.H[first + t](k / 3, k % 3);
-        rest[(item * engine::kTetRest + k) * L + lane] = float(tets.rest[first + t].s[k / 3][k % 3]);
       }
+      put_rest(tets.rest[first + t], L, rest.data() + batch * engine::kChainRest * L + lane);
     }
     engine::Elements elements;
     elements.rest = rest.data();
     elements.tissue.bulk_over_two_mu = 1.0F;
     any = kernels.measure[std::size_t(measure)](elements, 0, engine::kBlockBatches, *block) || any;
-    for (std::size_t t = 0; t < n; ++t) x.push_back(double(block->x[t]));
+    for (std::size_t t = 0; t < n; ++t) x.push_back(double(block->x[(engine::kChainTets * (t / L) + 1) * L + t % L]));
   }
   if (inverted != nullptr) *inverted = any;
   return x;

@@ -32,8 +32,10 @@ inline VertexSet all_vertices(const TetMesh& mesh) {
 }
 
 /// A box whose inner vertices are moved at random by up to `amount` of a cell, so that no two tets are alike.
-inline TetMesh jittered_box(std::array<int, 3> cells, double cell, double amount, std::mt19937& random) {
-  TetMesh mesh = box_mesh({.cells = cells, .size = {cells[0] * cell, cells[1] * cell, cells[2] * cell}});
+inline TetMesh jittered_box(std::array<int, 3> cells, double cell, double amount, std::mt19937& random,
+                            BoxSplit split = BoxSplit::kuhn) {
+  TetMesh mesh =
+      box_mesh({.cells = cells, .size = {cells[0] * cell, cells[1] * cell, cells[2] * cell}, .split = split});
   std::uniform_real_distribution<double> shift(-amount * cell, amount * cell);
   for (Vec3d& x : mesh.vertices) {
     for (std::size_t a = 0; a < 3; ++a) {
