@@ -73,6 +73,11 @@ struct LaneInvariants {
 HWY_INLINE F volume_bound(const LaneInvariants& i, F bulk) {
   return bulk * hn::MulAdd(hn::Abs(i.J - number(1.0F)), hn::Sqrt(i.stretch_squared()), i.I2);
 }
+/// κ, and what a tet that shares its volume change adds to it once it is nearly lost.
+HWY_INLINE F bulk_seen(const LaneResponse& r, bool shared, F J) {
+  const F bulk = number(r.bulk), more = number(float(1.0 + kOwnShare)) * bulk;
+  return shared ? hn::IfThenElse(hn::Gt(J, number(float(kSmallestVolume))), bulk, more) : bulk;
+}
 /// The larger of the two parts' growth since rest.
 HWY_INLINE F larger_growth(const LaneResponse& r, F isochoric, F volume) {
   return hn::Max(isochoric * number(r.rest_isochoric), volume * number(r.rest_volume));
@@ -121,15 +126,14 @@ HWY_INLINE F excess(const Invariants<F>& inv) {
 
 /// Ī₁ − 3 of tets below the smallest volume, whose stress comes from elsewhere but whose stiffness is seen here: with the
 /// power as volume_powers.h has it go on. J^(−⅔) itself would be an exponential law's end.
-HWY_INLINE F excess_beyond(const HyperState& s, bool shared) {
-  const ValueSlopeOf<double> at = volume_power<2>(kSmallestVolume, Beyond::rise);
+HWY_INLINE F excess_beyond(const HyperState& s) {
+  const ValueSlopeOf<double> at = volume_power<2>(kSmallestVolume);
   const F one = number(1.0F), y = (s.inv.volume_change + one) * number(float(1.0 / kSmallestVolume));
   const float value = float(at.value), slope = float(at.slope * kSmallestVolume), linger = float(kLinger);
   const F early = hn::Max(hn::MulSub(number(2.0F), y, one), hn::Zero(Lanes())), late = hn::Max(y, hn::Zero(Lanes()));
   const F faded = number(value) - number(slope * 0.25F * (1.0F - linger)) * hn::NegMulAdd(early, early, one) -
                   number(slope * 0.5F * linger) * hn::NegMulAdd(late, late, one);
-  const F x = y - one, risen = hn::MulAdd(x, hn::MulAdd(number(slope * -5.0F / 6.0F), x, number(slope)), number(value));
-  return hn::MulSub(shared ? risen : faded, s.I1, number(3.0F));
+  return hn::MulSub(faded, s.I1, number(3.0F));
 }
 
 template <class Law>
@@ -142,7 +146,7 @@ void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue&
     const F j = s.inv.volume_change, one = number(1.0F), pressure = pressure_of(in, r, item, j);
     const auto whole = hn::Gt(j + one, number(float(kSmallestVolume)));
     F i1 = excess(s.inv);
-    if (!hn::AllTrue(d, whole)) i1 = hn::IfThenElse(whole, i1, excess_beyond(s, in.mean != nullptr));
+    if (!hn::AllTrue(d, whole)) i1 = hn::IfThenElse(whole, i1, excess_beyond(s));
     const InvariantSlopes w = Law::slopes(r, i1);
     Tensor P = times(number(2.0F) * w.first * s.power, deviatoric_direction(s.H, s.K, j, squares_of(s.H)));
     P = plus(plus_identity(P, pressure), pressure, s.K);
@@ -163,7 +167,7 @@ void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue&
                                   number(2.0F) * hn::Sqrt(first_invariant_slope_squared(c, power)));
       bound = hn::MulAdd(hn::Abs(w.second), second, bound);
     }
-    most = hn::Max(most, larger_growth(r, bound, volume_bound(i, number(r.bulk))));
+    most = hn::Max(most, larger_growth(r, bound, volume_bound(i, bulk_seen(r, in.mean != nullptr, j + one))));
     store_tensor(P, out.piola + item * 9 * kLanes);
     rescue_if_small(in, to, item, j + one, out);
   }
@@ -264,7 +268,7 @@ inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Resc
     const F thinnest = number(float(kSmallestStretch * kSmallestStretch)), least = hn::Max(c[2], thinnest);
     const LaneInvariants i{state.I1, state.I2, state.J};
     const F bound = hn::MulAdd(two, tension, stiffest) / least;
-    most = hn::Max(most, larger_growth(r, bound, volume_bound(i, number(r.bulk))));
+    most = hn::Max(most, larger_growth(r, bound, volume_bound(i, bulk_seen(r, in.mean != nullptr, j + one))));
     // a stretch below the limit where ln λ goes on otherwise counts as a lost volume
     rescue_if_small(in, to, item, hn::IfThenElse(hn::Lt(c[2], thinnest), zero, j + one), out);
   }

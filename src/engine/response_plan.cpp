@@ -55,7 +55,7 @@ LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::
   r.rest_bound = float(1.0 / std::max(3.0 * lame.lambda + 2.0 * lame.mu, 2.0 * lame.mu));
   if (!tissue.hyperelastic) return r;
   r.bulk = float(bulk_modulus(*tissue.hyperelastic));
-  const HyperelasticBound rest = hyperelastic_bound(*tissue.hyperelastic, Mat3d{}, Beyond::fade);
+  const HyperelasticBound rest = hyperelastic_bound(*tissue.hyperelastic, Mat3d{});
   r.rest_isochoric = float(1.0 / rest.isochoric), r.rest_volume = float(1.0 / rest.volume);
   r.law = std::visit([](const auto& l) { return numbers(l); }, *tissue.hyperelastic);
   if (const auto* ogden = std::get_if<Ogden>(&*tissue.hyperelastic)) r.terms = ogden->mu.size();

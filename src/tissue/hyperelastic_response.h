@@ -37,11 +37,11 @@ T isochoric_excess(const Mat3<T>& H) {
 
 /// The isochoric part of a law of the invariants.
 template <class Law, class T>
-Mat3<T> invariant_piola(const Law& law, const Mat3<T>& H, Beyond beyond) {
+Mat3<T> invariant_piola(const Law& law, const Mat3<T>& H) {
   const T j = trace(H) + second_invariant(H) + determinant(H), J = T(1.0) + j;
   const Mat3<T> K = cofactor_change(H), F = deformation_gradient(H);
   const Sym3<T> E = green_strain(H);
-  const ValueSlopeOf<T> a = volume_power<2>(J, beyond), b = volume_power<4>(J, beyond);
+  const ValueSlopeOf<T> a = volume_power<2>(J), b = volume_power<4>(J);
   const Mat3<T> second = sum(scaled(F, trace(E)), scaled(product(F, full(E)), T(-1.0)));  // tr(E) F − F E
   if (J >= T(kSmallestVolume)) {
     const auto [w1, w2] = law.slopes(isochoric_excess(H), isochoric_excess(K));
@@ -61,11 +61,11 @@ Mat3<T> invariant_piola(const Law& law, const Mat3<T>& H, Beyond beyond) {
 }
 
 template <class Law>
-double invariant_energy(const Law& law, const Mat3d& H, Beyond beyond) {
+double invariant_energy(const Law& law, const Mat3d& H) {
   const double J = jacobian(H);
   if (J >= kSmallestVolume) return law.energy(isochoric_excess(H), isochoric_excess(cofactor_change(H)));
   const double I1 = squared_norm(deformation_gradient(H)), I2 = squared_norm(deformation_gradient(cofactor_change(H)));
-  return law.energy(volume_power<2>(J, beyond).value * I1 - 3.0, volume_power<4>(J, beyond).value * I2 - 3.0);
+  return law.energy(volume_power<2>(J).value * I1 - 3.0, volume_power<4>(J).value * I2 - 3.0);
 }
 
 /// ln λ̄ and d ln λ/dλ of the three stretches.
@@ -74,44 +74,42 @@ struct IsochoricLogarithms {
   std::array<T, 3> l, slope;
 };
 template <class T>
-IsochoricLogarithms<T> isochoric_logarithms(const std::array<T, 3>& b, Beyond beyond) {
-  const std::array<ValueSlopeOf<T>, 3> ln{stretch_logarithm(b[0], beyond), stretch_logarithm(b[1], beyond),
-                                          stretch_logarithm(b[2], beyond)};
+IsochoricLogarithms<T> isochoric_logarithms(const std::array<T, 3>& b) {
+  const std::array<ValueSlopeOf<T>, 3> ln{stretch_logarithm(b[0]), stretch_logarithm(b[1]), stretch_logarithm(b[2])};
   const T mean = (ln[0].value + ln[1].value + ln[2].value) * T(1.0 / 3.0);
   return {{ln[0].value - mean, ln[1].value - mean, ln[2].value - mean}, {ln[0].slope, ln[1].slope, ln[2].slope}};
 }
 
 template <class T>
-Mat3<T> ogden_piola(const Ogden& law, const Mat3<T>& H, Beyond beyond) {
+Mat3<T> ogden_piola(const Ogden& law, const Mat3<T>& H) {
   return isotropic_piola(H, [&](const std::array<T, 3>& b) {
-    const IsochoricLogarithms<T> ln = isochoric_logarithms(b, beyond);
+    const IsochoricLogarithms<T> ln = isochoric_logarithms(b);
     const std::array<T, 3> t = law.slopes(ln.l);
     return std::array<T, 3>{t[0] * ln.slope[0], t[1] * ln.slope[1], t[2] * ln.slope[2]};
   });
 }
 
 /// The isochoric part of any law: ∂W/∂F without κ/2 (J − 1)².
-/// @param beyond  what squashed and inverted tets meet
 template <class T>
-Mat3<T> isochoric_piola(const HyperelasticLaw& law, const Mat3<T>& H, Beyond beyond) {
+Mat3<T> isochoric_piola(const HyperelasticLaw& law, const Mat3<T>& H) {
   return std::visit(
       [&]<class Law>(const Law& l) {
         if constexpr (std::is_same_v<Law, Ogden>) {
-          return ogden_piola(l, H, beyond);
+          return ogden_piola(l, H);
         } else {
-          return invariant_piola(l, H, beyond);
+          return invariant_piola(l, H);
         }
       },
       law);
 }
 
-inline double isochoric_energy(const HyperelasticLaw& law, const Mat3d& H, Beyond beyond) {
+inline double isochoric_energy(const HyperelasticLaw& law, const Mat3d& H) {
   return std::visit(
       [&]<class Law>(const Law& l) {
         if constexpr (std::is_same_v<Law, Ogden>) {
-          return l.energy(isochoric_logarithms(principal_frame(H).b, beyond).l);
+          return l.energy(isochoric_logarithms(principal_frame(H).b).l);
         } else {
-          return invariant_energy(l, H, beyond);
+          return invariant_energy(l, H);
         }
       },
       law);

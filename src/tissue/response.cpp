@@ -30,11 +30,6 @@ StrainNumbers<T> strain_numbers(Kinematics kinematics, const Mat3<T>& H) {
   return {trace(e), contract(e, e)};
 }
 
-/// What isochoric stress does in tets that are nearly lost: a volume change of its own leads a tet back, a shared one does not.
-Beyond beyond(const Tissue& tissue) {
-  return tissue.volume_change == VolumeChange::nodal ? Beyond::rise : Beyond::fade;
-}
-
 }  // namespace
 
 Response::Response(const Tissue& tissue)
@@ -143,10 +138,10 @@ template <class T>
 Mat3<T> Response::elastic(const Mat3<T>& H, const ElementShape& shape, const T* mean) const {
   Mat3<T> P;
   if (tissue_.hyperelastic) {
-    const T theta = mean != nullptr ? *mean : volume_change(H);
+    const T own = volume_change(H);
+    const T theta = mean != nullptr ? *mean + T(kOwnShare) * lost_volume(T(1.0) + own) : own;
     const Mat3<T> cof = deformation_gradient(cofactor_change(H));
-    P = sum(isochoric_piola(*tissue_.hyperelastic, H, beyond(tissue_)),
-            scaled(cof, T(bulk_modulus(*tissue_.hyperelastic)) * theta));
+    P = sum(isochoric_piola(*tissue_.hyperelastic, H), scaled(cof, T(bulk_modulus(*tissue_.hyperelastic)) * theta));
   } else {
     const T x = measure(H, shape);
     const Moduli<T> m = moduli(x);
@@ -161,9 +156,10 @@ Mat3<T> Response::elastic(const Mat3<T>& H, const ElementShape& shape, const T* 
 double Response::energy(const Mat3d& H, const ElementShape& shape, const double* mean) const {
   double W = 0.0;
   if (tissue_.hyperelastic) {
-    const double theta = mean != nullptr ? *mean : volume_change(H);
-    W = isochoric_energy(*tissue_.hyperelastic, H, beyond(tissue_)) +
-        0.5 * bulk_modulus(*tissue_.hyperelastic) * theta * theta;
+    const double own = volume_change(H), theta = mean != nullptr ? *mean : own;
+    const double lost = mean != nullptr ? lost_volume(1.0 + own) : 0.0;
+    W = isochoric_energy(*tissue_.hyperelastic, H) +
+        0.5 * bulk_modulus(*tissue_.hyperelastic) * (theta * theta + kOwnShare * lost * lost);
   } else {
     const Moduli<double> m = moduli(measure(H, shape));
     const StrainNumbers<double> e = strain_numbers(tissue_.kinematics, H);
@@ -179,7 +175,7 @@ double Response::energy(const Mat3d& H, const ElementShape& shape, const double*
 double Response::relaxed_energy(const Mat3d& H, const ElementShape& shape, const double* mean) const {
   const double W = energy(H, shape, mean);
   if (relaxing_share_ == 0.0 || tissue_.maxwell_part == MaxwellPart::all) return (1.0 - relaxing_share_) * W;
-  if (tissue_.hyperelastic) return W - relaxing_share_ * isochoric_energy(*tissue_.hyperelastic, H, beyond(tissue_));
+  if (tissue_.hyperelastic) return W - relaxing_share_ * isochoric_energy(*tissue_.hyperelastic, H);
   const StrainNumbers<double> e = strain_numbers(tissue_.kinematics, H);
   return W - relaxing_share_ * moduli(measure(H, shape)).mu * (e.squares - e.trace * e.trace / 3.0);
 }
@@ -254,10 +250,11 @@ double Response::stiffening(const Mat3d& H, const ElementShape& shape) const {
   const double stretch = 1.0 + 2.0 * std::sqrt(contract(E, E));  // ≥ ‖F‖²
   double r = 0.0, rest = 0.0;
   if (tissue_.hyperelastic) {
-    const HyperelasticBound now = hyperelastic_bound(*tissue_.hyperelastic, H, beyond(tissue_)),
-                            at_rest = hyperelastic_bound(*tissue_.hyperelastic, Mat3d{}, beyond(tissue_));
+    const HyperelasticBound now = hyperelastic_bound(*tissue_.hyperelastic, H),
+                            at_rest = hyperelastic_bound(*tissue_.hyperelastic, Mat3d{});
     rest = std::max(3.0 * lame_.lambda + 2.0 * lame_.mu, 2.0 * lame_.mu);
-    r = std::max(now.isochoric / at_rest.isochoric, now.volume / at_rest.volume);
+    const bool pushes = tissue_.volume_change == VolumeChange::nodal && jacobian(H) < kSmallestVolume;
+    r = std::max(now.isochoric / at_rest.isochoric, (pushes ? 1.0 + kOwnShare : 1.0) * now.volume / at_rest.volume);
     if (viscosity_.mu > 0.0) r = std::max(r, stretch);
   } else {
     rest = std::max(3.0 * lame_.lambda + 2.0 * lame_.mu, 2.0 * lame_.mu);

@@ -64,7 +64,7 @@ double invariant_bound(const Law& law, const BoundInvariants& i, double power) {
 }
 
 inline double ogden_bound(const Ogden& law, const std::array<double, 3>& b) {
-  const std::array<double, 3> l = isochoric_logarithms(b, Beyond::rise).l, t = law.slopes(l);
+  const std::array<double, 3> l = isochoric_logarithms(b).l, t = law.slopes(l);
   double bend = 0.0;
   for (std::size_t k = 0; k < law.mu.size(); ++k) {
     const double e = std::max({law.alpha[k] * l[0], law.alpha[k] * l[1], law.alpha[k] * l[2]});
@@ -79,14 +79,14 @@ inline double ogden_bound(const Ogden& law, const std::array<double, 3>& b) {
 struct HyperelasticBound {
   double isochoric, volume;
 };
-inline HyperelasticBound hyperelastic_bound(const HyperelasticLaw& law, const Mat3d& H, Beyond beyond) {
+inline HyperelasticBound hyperelastic_bound(const HyperelasticLaw& law, const Mat3d& H) {
   const BoundInvariants i = bound_invariants(H);
   const double isochoric = std::visit(
       [&]<class Law>(const Law& l) {
         if constexpr (std::is_same_v<Law, Ogden>) {
           return ogden_bound(l, principal_frame(H).b);
         } else {
-          return invariant_bound(l, i, volume_power<2>(jacobian(H), beyond).value);
+          return invariant_bound(l, i, volume_power<2>(jacobian(H)).value);
         }
       },
       law);

@@ -181,6 +181,31 @@ TEST(Squashed, StressRestores) {
   EXPECT_GT(s.P(squashed(-0.5))(2, 2), 0.0);
 }
 
+// A tet whose volume change is shared meets, for a shared change of 0, the isochoric stress alone while J ≥ 0.2, and below it
+// β κ (J − 0.2) cof F too, β = 0.1: its neighbours cannot hide that it is nearly lost. The same change as a tet of its own,
+// κ (J − 1) cof F, stands for the isochoric stress here.
+TEST(Squashed, SharedVolumeLeavesAPushOfItsOwn) {
+  for (Tissue t : test::hyperelastic_tissues()) {
+    SCOPED_TRACE(t.name);
+    const Response own(t);
+    t.volume_change = VolumeChange::nodal;
+    const Response shared(t);
+    const Specimen s(t);
+    const double kappa = bulk_modulus(*t.hyperelastic), none = 0.0;
+    for (const double J : {0.9, 0.3, 0.2, 0.1, 0.0, -0.5}) {
+      Mat3d H = squashed(J);
+      H(0, 1) = 0.3;
+      const Mat3d cof = deformation_gradient(cofactor_change(H));
+      const double push = J < 0.2 ? 0.1 * kappa * (J - 0.2) : 0.0;
+      const Mat3d expected = test::difference(own.elastic(H, s.shape), scaled(cof, kappa * (J - 1.0) - push));
+      const Mat3d P = shared.elastic(H, s.shape, &none);
+      EXPECT_LE(test::size_of(test::difference(P, expected)), 1e-12 * (test::size_of(P) + kappa)) << J;
+      EXPECT_NEAR(shared.energy(H, s.shape, &none) - own.energy(H, s.shape) + 0.5 * kappa * (J - 1.0) * (J - 1.0),
+                  J < 0.2 ? 0.05 * kappa * (J - 0.2) * (J - 0.2) : 0.0, 1e-12 * (kappa + own.energy(H, s.shape)));
+    }
+  }
+}
+
 // Nothing jumps where the laws leave their formula (J and stretches of 0.2) or where J changes sign.
 TEST(Squashed, HyperelasticStressIsContinuous) {
   for (const Tissue& t : test::hyperelastic_tissues()) {
