@@ -24,7 +24,7 @@ struct InvariantSlopes {
   F first, second, bend;
 };
 
-HWY_INLINE F exponential(F e) { return hn::Exp(Lanes(), hn::Min(e, number(60.0F))); }
+HWY_INLINE F exponential(F e, double largest) { return hn::Exp(Lanes(), hn::Min(e, number(float(largest)))); }
 
 /// law: μ/2
 struct NeoHookeanLanes {
@@ -51,7 +51,7 @@ struct YeohLanes {
 /// law: μ/2, b
 struct FungLanes {
   static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F i1) {
-    const F w = number(r.law[0]) * exponential(number(r.law[1]) * i1);
+    const F w = number(r.law[0]) * exponential(number(r.law[1]) * i1, Fung::kLargestExponent);
     return {w, hn::Zero(Lanes()), w * number(r.law[1])};
   }
   static constexpr bool kSecond = false;
@@ -59,7 +59,7 @@ struct FungLanes {
 /// law: c b, b
 struct VerondaWestmannLanes {
   static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F i1) {
-    const F w = number(r.law[0]) * exponential(number(r.law[1]) * i1);
+    const F w = number(r.law[0]) * exponential(number(r.law[1]) * i1, VerondaWestmann::kLargestExponent);
     return {w, number(-0.5F * r.law[0]), w * number(r.law[1])};
   }
   static constexpr bool kSecond = true;

@@ -128,6 +128,20 @@ Tissue nearly_incompressible() {
   t.volume_change = VolumeChange::nodal;
   return t;
 }
+Tissue fung() { return hyperelastic(Fung{.mu = mu(), .b = 1.0, .bulk_modulus = kappa()}); }
+
+// Fung's exponent is some hundreds at the start. Its limit keeps the sums of forces their digits: no seed ends without a
+// balance, where 6 of 18 did with a limit of 60, and most come back: 15 of 20, of these 4.
+TEST(Fung, ComesBackFromAnywhereMoreOftenThanNot) {
+  int back = 0;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Outcome end = let_go(fung(), seed, anywhere);
+    EXPECT_LE(end.status, StepStatus::inverted) << "seed " << seed;
+    back += end.largest <= 1e-6 * 0.08 ? 1 : 0;
+  }
+  EXPECT_GE(back, 3);
+}
+
 // St Venant-Kirchhoff comes to rest with most tets inside out, and nearly incompressible tissue stays folded: equilibria of
 // their energies. Steps are made, nothing flies off, and inverted tets are reported.
 TEST(Folded, GreenAndStiffBulkEndInAnEquilibrium) {

@@ -11,15 +11,16 @@
 namespace glisson {
 
 /// W = c (e^{b (Ī₁ − 3)} − 1) − ½ c b (Ī₂ − 3) + κ/2 (J − 1)²,  μ = c b     [VerondaWestmann1970]
-/// The exponent is limited to 60: beyond, W goes on along its tangent.
+/// Beyond an exponent of 12, 1.6·10⁵ times as stiff as at rest, W goes on along its tangent: tets that are crushed or
+/// scrambled find back, and sums of forces keep their digits (docs/integrators.md, "Far from rest").
 struct VerondaWestmann {
   double c = 0.0, b = 0.0;    ///< [Pa], [-]
   double bulk_modulus = 0.0;  ///< κ [Pa], > 0
 
   static constexpr std::string_view kName = "veronda_westmann";
   static constexpr std::string_view kHelp =
-      "W = c (exp(b (Ī₁ − 3)) − 1) − ½ c b (Ī₂ − 3) + κ/2 (J − 1)², μ = c b (exponent at most 60)";
-  static constexpr double kLargestExponent = 60.0;
+      "W = c (exp(b (Ī₁ − 3)) − 1) − ½ c b (Ī₂ − 3) + κ/2 (J − 1)², μ = c b (exponent at most 12)";
+  static constexpr double kLargestExponent = 12.0;
   static constexpr std::array<LawField<VerondaWestmann>, 3> kFields{
       {{.key = "c_Pa", .member = &VerondaWestmann::c, .unit = "Pa", .min = kSmallestModulus, .help = "c"},
        {.key = "b",
