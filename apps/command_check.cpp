@@ -33,6 +33,9 @@ struct CheckOptions {
   int threads = 1;
 };
 
+constexpr std::size_t kFew = 20;      // one tet in so many is what may keep the step short alone
+constexpr double kWorthSaying = 1.2;  // how many times as long a step would be without them
+
 /// Stops a run at its first report of progress, and keeps what the run knew at its start.
 class Taste : public RunObserver {
  public:
@@ -41,12 +44,16 @@ class Taste : public RunObserver {
     step_s = simulation.step_size();
     stable_step_s = simulation.stable_step();
     for (const double m : simulation.masses()) mass_kg += m;
+    scaling = simulation.mass_scaling();
+    if (std::isfinite(stable_step_s)) limits = simulation.limiting_tets(mesh.tets.size() / kFew + 1);
   }
   void on_progress(double) override { stop = true; }
 
   std::atomic<bool> stop{false};
   TetMesh mesh;
   double step_s = 0.0, stable_step_s = 0.0, mass_kg = 0.0;
+  MassScaling scaling;
+  std::vector<LimitingTet> limits;  ///< of an explicit step: the tets with the smallest bounds
 };
 
 struct Cost {
@@ -139,15 +146,45 @@ bool stiffens(const Tissue& t) {
   return law || t.hyperelastic || t.kinematics == Kinematics::green;
 }
 
+/// Two digits, not rounded up: a step a little above the others' bound would give all of them mass.
+double two_digits_down(double x) {
+  const double last = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
+  return last * std::floor(x / last);
+}
+
+/// Which few tets keep an explicit step short, and what they cost.
+void print_limits(const Taste& taste) {
+  const MassScaling& added = taste.scaling;
+  if (!added.tets.empty()) {
+    fmt::print("  mass     {:.4g} g ({:.2g} % of the body's own) added to {} tets\n", 1e3 * added.added,
+               100.0 * added.share, added.tets.size());
+  }
+  if (taste.limits.empty()) return;
+  const LimitingTet &first = taste.limits.front(), &others = taste.limits.back();
+  if (others.step < kWorthSaying * first.step) return;
+  const auto few = std::count_if(taste.limits.begin(), taste.limits.end(),
+                                 [&](const LimitingTet& t) { return t.step < 0.95 * others.step; });
+  fmt::print(
+      "  limits   {} of the tets, tet {} of altitude {:.3g} mm first, make steps {:.2g} times as short as the others "
+      "need;\n           mass_scaling_step_s = {:.2g} gives just these more mass\n",
+      few, first.tet, 1e3 * first.altitude, others.step / first.step, two_digits_down(others.step));
+}
+
+/// The implicit integrators compute in double, whatever the scene says.
+bool in_single(const Variant& v, const Taste& taste) {
+  return v.simulation.precision == Precision::single_precision && std::isfinite(taste.stable_step_s);
+}
+
 void print_time(const Variant& v, const Taste& taste, const Cost& cost, const RunSummary& summary) {
   const bool automatic = !v.simulation.step;
-  fmt::print("  step     {:.4g} s{}, stable below {:.4g} s at rest\n", taste.step_s, automatic ? " (auto)" : " (given)",
-             taste.stable_step_s);
+  fmt::print("  step     {:.4g} s{}, {}\n", taste.step_s, automatic ? " (auto)" : " (given)",
+             std::isfinite(taste.stable_step_s) ? fmt::format("stable below {:.4g} s at rest", taste.stable_step_s)
+                                                : "stable at any step");
+  print_limits(taste);
   fmt::print("  run      {:.6g} s simulated, {:.0f} steps{}, about {} ({:.0f} ns per tet and step, {})\n",
              std::min(run_duration(v), cost.steps * taste.step_s), cost.steps,
              automatic && stiffens(v.tissue) ? " or more as the tissue stiffens" : "", duration_text(cost.wall_s),
-             summary.ns_per_tet_step,
-             v.simulation.precision == Precision::single_precision ? "single precision" : "double precision");
+             summary.ns_per_tet_step, in_single(v, taste) ? "single precision" : "double precision");
 }
 
 int check(const CheckOptions& options) {

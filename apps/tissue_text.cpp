@@ -34,13 +34,23 @@ std::string linear_text(const Tissue& t) {
   return fmt::format("E = {:.6g} Pa, ν = {:.4g}, law: {}", t.youngs_modulus, t.poisson_ratio, law);
 }
 
+std::string kinematics_text(const Tissue& t) {
+  std::string text;
+  if (t.kinematics == Kinematics::corotational) text += ", corotational";
+  if (t.kinematics == Kinematics::green) text += ", green";
+  if (t.law_form == LawForm::energy) text += ", of an energy";
+  return text;
+}
+
 }  // namespace
 
 std::string law_text(const Tissue& t) {
-  std::string text = t.hyperelastic ? hyperelastic_text(*t.hyperelastic) : linear_text(t);
+  std::string text = t.hyperelastic ? hyperelastic_text(*t.hyperelastic) : linear_text(t) + kinematics_text(t);
+  if (t.volume_change == VolumeChange::nodal) text += ", volume changes shared";
   if (t.viscosity > 0.0) text += fmt::format(", η = {:.6g} Pa·s", t.viscosity);
   if (t.fibres) text += fmt::format(", fibres of {:.6g} Pa", t.fibres->stiffness);
-  for (const MaxwellBranch& b : t.maxwell) text += fmt::format(", {:g} of it relaxes in {:g} s", b.share, b.time);
+  const char* part = t.maxwell_part == MaxwellPart::all ? "all" : "the deviator";
+  for (const MaxwellBranch& b : t.maxwell) text += fmt::format(", {:g} of {} relaxes in {:g} s", b.share, part, b.time);
   return text;
 }
 

@@ -7,7 +7,7 @@
 
 namespace glisson::app {
 
-/// `E = 3600 Pa, ν = 0.4, η = 1000 Pa·s, law: step`, or `ogden: mu_Pa = [842], …` with its relaxation.
+/// `E = 3600 Pa, ν = 0.4, law: step, corotational, η = 1000 Pa·s`, or `ogden: mu_Pa = [842], …` with its relaxation.
 std::string law_text(const Tissue& tissue);
 
 }  // namespace glisson::app

@@ -291,6 +291,7 @@ struct RunSummary {
   std::uint64_t steps = 0;
   double time_s = 0.0, step_s = 0.0, stable_step_s = 0.0, wall_s = 0.0, ns_per_tet_step = 0.0, peak_force_N = 0.0;
   Energies energies;
+  double mass_added_kg = 0.0;          ///< by mass scaling
   std::size_t inverted_tets_most = 0;  ///< the most tets inverted in one step
   double first_inversion_s = -1.0;     ///< time of it; −1: none
   std::uint64_t state_hash = 0;

@@ -197,6 +197,7 @@ void Run::summarise() {
   const double tet_steps = static_cast<double>(summary_.tets) * static_cast<double>(summary_.steps);
   summary_.ns_per_tet_step = tet_steps > 0.0 ? 1e9 * stepping_s_ / tet_steps : 0.0;
   summary_.energies = simulation_.energies();
+  summary_.mass_added_kg = simulation_.mass_scaling().added;
   summary_.state_hash = simulation_.state_hash();
 }
 

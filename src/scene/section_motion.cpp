@@ -84,6 +84,13 @@ const SectionSpec& motion_section() {
         .otherwise("\"auto\"")
         .advise("\"auto\" chooses the largest safe step")
         .accepts_auto = true;
+    s.key(
+         "mass_scaling_step_s", [](Variant & v) -> auto& { return v.simulation.mass_scaling_step; },
+         "gives mass to just those tets whose own bound of the step is shorter, until it is that; explicit and "
+         "semi_implicit. `glisson check` says which tets and how much")
+        .in("s")
+        .within(above(0))
+        .otherwise("no mass is added");
     s.table(
         "implicit", implicit_section(), [](Variant & v) -> auto& { return v.simulation.implicit; },
         "what the integrators implicit and static do");

@@ -1,4 +1,7 @@
 // The other subcommands: info, schema, laws, help, and the paper reproduced.
+#include <cmath>
+#include <regex>
+
 #include "app/program.h"
 
 namespace glisson::test {
@@ -43,6 +46,57 @@ TEST_F(Commands, InfoDescribesAMesh) {
   EXPECT_EQ(json["vertex_sets"]["z_max"], 9);
   const nlohmann::json scaled = nlohmann::json::parse(run({"info", frame, "--json", "--scale", "10"}).out);
   EXPECT_NEAR(scaled["volume_m3"].get<double>(), 8e-3, 1e-9);
+}
+
+// What a tissue is beside its numbers is said where it is not the default.
+TEST_F(Commands, CheckSaysWhatTheTissueIs) {
+  const std::string scene = write("s.toml", small_scene());
+  const Outcome outcome = run({"check", scene, "--set", "tissue.kinematics=corotational", "--set",
+                               "tissue.volume_change=nodal", "--set", "tissue.maxwell=[{share=0.4,time_s=2}]"});
+  ASSERT_THAT(outcome, Exits(0));
+  EXPECT_NE(outcome.out.find(", corotational, volume changes shared"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("0.4 of the deviator relaxes in 2 s"), std::string::npos) << outcome.out;
+  EXPECT_EQ(run({"check", scene}).out.find("corotational"), std::string::npos);
+}
+
+// A few stiff tets keep the step short: check says how many, which is first and what step mass would give; with that mass
+// the scene has the step and the summary the mass. An implicit scene has no such limit, and says so.
+TEST_F(Commands, CheckTellsWhichTetsKeepTheStepShort) {
+  const std::string scene = write("s.toml", R"([mesh]
+kind = "box"
+cells = [8, 8, 8]
+size_m = [0.04, 0.04, 0.04]
+[[region]]
+name = "stone"
+sphere_m = { center = [0.022, 0.022, 0.022], radius = 0.002 }
+tissue = { youngs_modulus_Pa = 3e5 }
+[[fixed]]
+set = "z_min"
+[[tool]]
+set = "z_max"
+depth_mm = 0.1
+)");
+  const Outcome plain = run({"check", scene});
+  ASSERT_THAT(plain, Exits(0));
+  const std::regex limits(
+      R"(limits   (\d+) of the tets, tet \d+ of altitude ([\d.]+) mm first, make steps ([\d.]+) times)"
+      R"([^;]*;\s+mass_scaling_step_s = ([\d.e-]+) gives)");
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(plain.out, found, limits)) << plain.out;
+  EXPECT_LE(std::stoi(found[1]), 12);
+  EXPECT_NEAR(std::stod(found[2]), 5.0 / std::sqrt(2.0), 0.01);
+  const std::string step = "motion.mass_scaling_step_s=" + found[4].str();
+  const Outcome scaled = run({"check", scene, "--set", step});
+  EXPECT_NE(scaled.out.find("% of the body's own) added to " + found[1].str() + " tets"), std::string::npos)
+      << scaled.out;
+  EXPECT_EQ(scaled.out.find("limits"), std::string::npos) << scaled.out;
+  ASSERT_THAT(run({"run", scene, "--set", step, "--out", "o", "--quiet"}), Exits(0));
+  const nlohmann::json summary = read_json(folder_ / "o/main/summary.json");
+  EXPECT_GE(summary["stable_step_s"].get<double>(), std::stod(found[4]));
+  EXPECT_GT(summary["mass_added_kg"].get<double>(), 0.0);
+  const Outcome implicit = run({"check", scene, "--set", "motion.integrator=implicit"});
+  EXPECT_NE(implicit.out.find("stable at any step"), std::string::npos) << implicit.out;
+  EXPECT_NE(implicit.out.find("double precision"), std::string::npos) << implicit.out;
 }
 
 // The paper's figures: all scenes in one report, every check computed and passed. The quick form ends figure 3 after

@@ -37,6 +37,7 @@ const GROUPS: readonly [string, readonly [string, string, string][]][] = [
       ["steps", "Steps", ""],
       ["step_s", "Step h", "s"],
       ["stable_step_s", "Stable step h*", "s"],
+      ["mass_added_kg", "Mass added by scaling", "kg"],
     ],
   ],
   [
