@@ -74,7 +74,7 @@ inline constexpr std::size_t kRestAcross = 6;  ///< where the products opposite 
 inline constexpr std::size_t kRestScale = 15;  ///< where w of A, B, C lie
 /// Where n of a vertex begins; 0 and 1 have none.
 inline constexpr std::array<std::size_t, kChainVertices> kRestSpoke{0, 0, 0, 3, 21, 18};
-inline constexpr std::size_t kBlockBatches = 4;  ///< batches that go through a stage together
+inline constexpr std::size_t kBlockBatches = 2;  ///< batches that go through a stage together: even, for fans
 inline constexpr std::size_t kMaxLanes = 16;
 /// Tets of a block: the values a law sees at once.
 inline constexpr std::size_t kBlockTets = kChainTets * kBlockBatches * kMaxLanes;
