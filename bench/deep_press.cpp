@@ -61,9 +61,9 @@ struct Run {
   StepStatus status = StepStatus::ok;
   std::string message;
   double time = 0.0, shortest = std::numeric_limits<double>::infinity();  ///< [s]
-  std::size_t inverted = 0;                                                ///< tets, at most
-  double imbalance = 0.0;                                                  ///< of the energies, over the tool's work
-  double seconds = 0.0;                                                    ///< of one processor
+  std::size_t inverted = 0;                                               ///< tets, at most
+  double imbalance = 0.0;                                                 ///< of the energies, over the tool's work
+  double seconds = 0.0;                                                   ///< of one processor
   std::uint64_t steps = 0;
 };
 
@@ -132,7 +132,9 @@ void run(int argc, char** argv) {
       chosen.push_back(word);
     }
   }
-  std::printf("| law | steps | shortest step | tets inside out | imbalance | processor [s] | ended |\n|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| law | steps | shortest step | tets inside out | imbalance | processor [s] | ended "
+      "|\n|---|---|---|---|---|---|---|\n");
   for (const Law& law : laws()) {
     if (!chosen.empty() && std::find(chosen.begin(), chosen.end(), law.name) == chosen.end()) continue;
     show(law.name, press_down(mesh, law.tissue, integrator));

@@ -20,6 +20,7 @@ ExplicitScheme::ExplicitScheme(Body body, const SimulationOptions& options, Drag
     : Scheme(std::move(body), options), moving_(make_moving_body(body_, gamma_, options, info_)),
       stiffening_(moving_->advance(0.0, {}, false).stiffening),
       control_(std::make_unique<StepControl>(body_, gamma_, drag, options, stiffening_)) {
+  moving_->list_above(control_->list_above());
   if (!options.mesh_changes) return;
   moving_->apply({}, changer().stars(), gamma_);
   control_->prepare_changes(changer().stars());
@@ -59,8 +60,9 @@ void ExplicitScheme::find_places() {
 
 void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
   moving_->set_state(displacement, velocity);
-  stiffening_ = moving_->advance(0.0, {}, false).stiffening;
-  control_->state_set(stiffening_);
+  control_->state_set();
+  moving_->list_above(control_->list_above());
+  take_stiffness(moving_->advance(0.0, {}, false));
   copy_.current = false;
   if (!options_.track_energies) return;
   double kinetic = 0.0;
@@ -185,14 +187,24 @@ void ExplicitScheme::book(double h, const KickWork& free) {
   ledger_.book(h, work.before, work.after, work.kinetic + free.kinetic);
 }
 
-/// Largest norm of a tet's velocity gradient [1/s]. Cost: a pass over the elements in double.
-double ExplicitScheme::shape_rate() const {
-  const std::span<const Vec3d> v = read_state().velocity;
-  double squared = 0.0;
-  for (std::size_t e = 0; e < body_.elements.size(); ++e) {
-    squared = std::max(squared, squared_norm(element_gradient(body_, e, v)));
+void ExplicitScheme::take_stiffness(const Advance& seen) {
+  stiffening_ = seen.stiffening;
+  stiff_ = seen.stiff;
+}
+
+/// How fast tets change shape whose changes count.
+std::span<const ShapeRate> ExplicitScheme::shape_rates() {
+  shape_rates_.clear();
+  for (const StiffElement& stiff : stiff_) {
+    if (!control_->is_violent(stiff)) continue;
+    const Tet& t = body_.elements[stiff.element];
+    const Vec3d origin = moving_->velocity_of(t[0]);
+    std::array<Vec3d, 3> difference;
+    for (std::size_t a = 0; a < 3; ++a) difference[a] = moving_->velocity_of(t[a + 1]) - origin;
+    const double squared = squared_norm(displacement_gradient(body_.rest[stiff.element].s, difference));
+    shape_rates_.push_back({stiff, std::sqrt(squared)});
   }
-  return std::sqrt(squared);
+  return shape_rates_;
 }
 
 void ExplicitScheme::kick(double h) {
@@ -201,8 +213,9 @@ void ExplicitScheme::kick(double h) {
 }
 
 StepResult ExplicitScheme::step() {
-  if (!control_->accept(stiffening_)) return {StepStatus::step_too_large, {}, {}};
-  control_->limit_shape_change(control_->is_violent(stiffening_) ? shape_rate() : 0.0);
+  if (!control_->accept(stiffening_, stiff_)) return {StepStatus::step_too_large, {}, {}};
+  control_->limit_shape_change(shape_rates());
+  moving_->list_above(control_->list_above());
   const double h = control_->step();
   if (!(time_ + h > time_)) {
     return {StepStatus::step_too_large,
@@ -214,7 +227,7 @@ StepResult ExplicitScheme::step() {
   take_hold(h);
   begin_interactions(h);
   const Advance& seen = moving_->advance(h, gravity_, options_.track_energies);
-  stiffening_ = seen.stiffening;
+  take_stiffness(seen);
   copy_.current = false;
   if (!seen.finite) return {StepStatus::not_finite, seen.inverted, {}};
 
@@ -257,9 +270,21 @@ void ExplicitScheme::save(CheckpointWriter& out) const {
   for (const WatchedVertex& w : moving_->watched()) out.put(w.elastic), out.put(w.viscous);
   for (const Kicked& k : kicked_) out.put_doubles(k);
   out.put(kick_step_), out.put(kick_time_), out.put(gravity_), out.put(stiffening_);
+  out.put(static_cast<std::uint64_t>(stiff_.size()));
+  for (const StiffElement& s : stiff_) out.put(s.element), out.put(s.ratio), out.put(s.norm);
   out.put_doubles(ledger_);
   control_->save(out);
   interactions_.save(out);
+}
+
+void ExplicitScheme::load_stiff(CheckpointReader& in) {
+  const auto n = in.get<std::uint64_t>();
+  if (n > body_.elements.size()) CheckpointReader::fail();
+  stiff_.assign(n, {});
+  for (StiffElement& s : stiff_) {
+    in.get(s.element), in.get(s.ratio), in.get(s.norm);
+    if (s.element >= body_.elements.size()) CheckpointReader::fail();
+  }
 }
 
 void ExplicitScheme::load(CheckpointReader& in) {
@@ -279,8 +304,10 @@ void ExplicitScheme::load(CheckpointReader& in) {
   for (WatchedVertex& w : moving_->watched()) in.get(w.elastic), in.get(w.viscous);
   for (Kicked& k : kicked_) in.get_doubles(k);
   in.get(kick_step_), in.get(kick_time_), in.get(gravity_), in.get_same_size(stiffening_);
+  load_stiff(in);
   in.get_doubles(ledger_);
   control_->load(in);
+  moving_->list_above(control_->list_above());
   interactions_.load(in);
   control_->set_beside(interactions_.squared_frequency());
   copy_.current = false;
@@ -321,7 +348,8 @@ void ExplicitScheme::follow_tissues(const TissueChange& change) {
     moving_->set_branch_stresses(change.blocks[i], change.branch_stresses[i]);
   }
   if (!change.past.empty()) moving_->set_past(change.past);
-  stiffening_ = moving_->advance(0.0, {}, false).stiffening;
+  moving_->list_above(control_->list_above());
+  take_stiffness(moving_->advance(0.0, {}, false));
   std::copy(told.begin(), told.end(), moving_->watched().begin());
   copy_.current = false;
 }
@@ -331,6 +359,8 @@ void ExplicitScheme::take_tissues(const TissueChange& change) {
   const std::span<const Vec3d> u = displacement();
   const bool undeformed = std::all_of(u.begin(), u.end(), [](const Vec3d& d) { return d == Vec3d{}; });
   control_->tissues_changed(stiffening_, undeformed);
+  stiff_.clear();  // the level of the blocks is above all of them now
+  moving_->list_above(control_->list_above());
 }
 
 void ExplicitScheme::follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) {

@@ -89,13 +89,17 @@ class ExplicitScheme : public Scheme {
   const StateCopy& read_state() const;
   void follow_tissues(const TissueChange& change);
   void build_anew(const TissueChange& change);
-  double shape_rate() const;
+  std::span<const ShapeRate> shape_rates();
+  void take_stiffness(const Advance& seen);
+  void load_stiff(CheckpointReader& in);
   void find_places();
   ForceParts watched_force(std::size_t place, const Axes& axes) const;
   KickWork watched_work() const;
   void book(double h, const KickWork& free);
 
-  std::vector<double> stiffening_;  ///< per tissue block, at the last evaluation
+  std::vector<double> stiffening_;   ///< per tissue block, at the last evaluation
+  std::vector<StiffElement> stiff_;  ///< what was listed then
+  std::vector<ShapeRate> shape_rates_;
   std::unique_ptr<StepControl> control_;
   std::vector<Vec3d> mobility_;  ///< per watched vertex [1/kg]
   mutable StateCopy copy_;

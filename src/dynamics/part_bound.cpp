@@ -19,18 +19,6 @@ std::array<Vec3d, 4> gradients(const ElementRest& rest) {
   return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
 }
 
-/// Of a symmetric matrix q I + p B with tr B = 0: q + 2 p cos(⅓ arccos(½ det B)).
-double largest_eigenvalue(Sym3<double> a) {
-  const double q = (a.xx + a.yy + a.zz) / 3.0;
-  a.xx -= q, a.yy -= q, a.zz -= q;
-  const double squares = a.xx * a.xx + a.yy * a.yy + a.zz * a.zz + 2.0 * (a.xy * a.xy + a.yz * a.yz + a.zx * a.zx);
-  const double p = std::sqrt(squares / 6.0);
-  if (!(p > 0.0)) return q;
-  const double det =
-      a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.zx) + a.zx * (a.xy * a.yz - a.yy * a.zx);
-  return q + 2.0 * p * std::cos(std::acos(std::clamp(0.5 * det / (p * p * p), -1.0, 1.0)) / 3.0);
-}
-
 std::size_t block_at(const Body& body, std::uint32_t e) {
   return static_cast<std::size_t>(&body.block_of(e) - body.blocks.data());
 }

@@ -10,6 +10,11 @@
 // short peak the bound brings it back within a few steps.
 // A step is taken with the stiffness of the one before: where that rises by more than the room within a step, steps are
 // shortened until it does not, and the level runs ahead of it. Exponential laws under impact need this.
+//
+// A few tets that are squashed would hold the step of a whole body. Those above the level of their block get one of their own
+// (stiffness_levels.h), and what they take off the step is bounded by itself; the level of the block rises where that says
+// more. The body lists which they are, so that a step in which nothing is above its level costs nothing. Once in a while the
+// body is asked for all that is stiffer than at rest, and the level of the block is chosen anew.
 #pragma once
 
 #include <algorithm>
@@ -22,6 +27,7 @@
 #include "dynamics/checkpoint.h"
 #include "dynamics/part_bound.h"
 #include "dynamics/stable_step.h"
+#include "dynamics/stiffness_levels.h"
 #include "glisson/simulation.h"
 #include "mechanics/body_change.h"
 
@@ -33,6 +39,12 @@ enum class Drag {
   at_once,  ///< at v₊: the semi-implicit one
 };
 
+/// How fast a stiff element changes shape: the norm of its velocity gradient [1/s].
+struct ShapeRate {
+  StiffElement stiff;
+  double rate = 0.0;
+};
+
 class StepControl {
  public:
   /// @param nodal_damping  γ_i per vertex [kg/s]; not copied: must last until mesh_changed names another
@@ -42,8 +54,11 @@ class StepControl {
               std::span<const double> stiffening);
 
   /// Takes in the present stiffness; lowers an automatic step where needed.
+  /// @param stiff  elements above what list_above() said before it was evaluated
   /// @return false where a given step is above h* by now
-  bool accept(std::span<const double> stiffening);
+  bool accept(std::span<const double> stiffening, std::span<const StiffElement> stiff);
+  /// Stiffness per block from which elements have to be listed for the next accept().
+  std::span<const double> list_above() const { return list_above_; }
 
   /// Makes ready for mesh_changed, which does so the first time. @param stars  must outlive this
   void prepare_changes(const detail::VertexStars& stars);
@@ -62,26 +77,27 @@ class StepControl {
   void save(CheckpointWriter& out) const;
   void load(CheckpointReader& in);
 
-  /// A state was set from outside: what its stiffness differs from that before is no rise within a step.
-  void state_set(std::span<const double> stiffening) { last_.assign(stiffening.begin(), stiffening.end()); }
-  /// Whether the next automatic step depends on how fast tets change shape: tissue of large strain that has stiffened.
-  bool is_violent(std::span<const double> stiffening) const;
-  /// Keeps an automatic step so short that no tet is strained by more than a hundredth in it.
-  /// @param rate  largest norm of a tet's velocity gradient [1/s]; 0: no limit
-  void limit_shape_change(double rate);
+  /// A state is set from outside: steps are chosen as if the body had been made in it.
+  void state_set();
+  /// Whether an automatic step depends on how fast an element changes shape: tissue of large strain that has stiffened.
+  bool is_violent(const StiffElement& element) const;
+  /// Keeps an automatic step so short that none of those is strained in it by more than a hundredth, or, where an element
+  /// could be stiffer before it asked for a shorter step, by what would make it so.
+  void limit_shape_change(std::span<const ShapeRate> changes);
 
   /// Stiffness that acts beside the tissue. @param squared_frequency  ω² on the body's masses, from above [1/s²]
-  void set_beside(double squared_frequency) { beside_ = squared_frequency; }
+  void set_beside(double squared_frequency) { tools_ = squared_frequency, join_beside(); }
 
   double step() const {
-    const double h = std::min(step_ * caution_, shape_step_);
-    return automatic_ ? with_beside(h, beside_ / (kSafety * kSafety)) : h;
+    if (!automatic_) return step_;
+    const double room = 1.0 / (kSafety * kSafety);
+    return std::min(caution_ * with_beside(step_, {room * beside_.k, beside_.c / kSafety}), shape_step_);
   }
   double stable_step() const { return with_beside(limits_.stable, beside_); }
 
  private:
-  static constexpr double kSafety = 0.9;               ///< automatic step over h*
-  static constexpr std::uint64_t kFirstWindow = 1000;  ///< [steps]
+  static constexpr double kSafety = 0.9;                                 ///< automatic step over h*
+  static constexpr std::uint64_t kFirstWindow = 1000, kFirstProbe = 64;  ///< [steps]
 
   /// h* of the scheme, and what an automatic step keeps below: at Drag::at_once also h* without viscosity, since
   /// viscosity hides what a longer step gets wrong.
@@ -94,6 +110,12 @@ class StepControl {
     std::vector<double> level;    ///< stiffening per block
     std::vector<double> numbers;  ///< per block: shear and bulk modulus, the same of viscosity, density
   };
+  /// A search since steps were chosen anew, and where it left the next one to begin.
+  struct Search {
+    std::vector<double> level;
+    Limits limits;
+    StabilityGuess guess, pace_guess;
+  };
   /// How steps are chosen, all that a refused change of tissues leaves as it was.
   struct Chosen {
     StabilityGuess guess, pace_guess;
@@ -101,6 +123,7 @@ class StepControl {
     std::vector<double> validated, rest_level;
     Searched searched;
     bool exact;
+    Beside stiff;
   };
   Chosen chosen() const;
   void restore(Chosen chosen);
@@ -108,13 +131,33 @@ class StepControl {
   Limits scaled_from_search(std::span<const double> level) const;
   void choose_limits(std::span<const double> stiffening, bool undeformed);
   bool search_is_needed() const;
-  double with_beside(double step, double squared_frequency) const;
+  void join_beside() { beside_ = {tools_ + stiff_.k, stiff_.c}; }
+  Beside beside_at(std::span<const double> level);
+  double pace_of(const Limits& limits, const Beside& beside, std::size_t above) const;
+  void take_stiff();
+  double with_beside(double step, const Beside& beside) const;
   std::vector<double> viscosity_at(std::span<const double> stiffening) const;
   Limits limits_at(std::span<const double> stiffening);
+  Limits search(std::span<const double> stiffening);
+  void forget_searches() { searches_.clear(), searches_made_ = 0; }
   Limits bound_at(std::span<const double> stiffening) const;
   [[noreturn]] void refuse_above(double stable) const;
   bool rises(std::span<const double> stiffening, double rise);
-  double watch_rise(std::span<const double> stiffening);
+  bool bears(std::span<const double> stiffening);
+  void take_base(std::vector<double> level, const Limits& limits);
+  std::size_t most_levels() const;
+  bool is_crowd(std::size_t tets) const;
+  bool is_crowded() const;
+  void choose_base(const std::vector<double>& least, bool forced);
+  std::span<const StiffElement> without_crowd(std::span<const StiffElement> stiff);
+  bool is_bounded() const;
+  double largest_damping_rate() const;
+  double slack(const StiffElement& stiff, double step) const;
+  void be_cautious(double rise);
+  void start_anew();
+  void list_from();
+  void settle();
+  void probe();
   std::vector<double> level_of(std::span<const double> seen, double ahead) const;
   void relax(std::span<const double> stiffening);
   void come_back();
@@ -125,6 +168,8 @@ class StepControl {
   bool automatic_, enforce_, exact_asked_, exact_;
   bool scales_masses_;
   StabilityGuess guess_, pace_guess_;
+  std::vector<Search> searches_;  ///< the first few, for a state that is set again and again
+  std::size_t searches_made_ = 0;
   double step_ = 0.0;
   Limits limits_;
   std::unique_ptr<PartBound> part_bound_;  ///< none until the mesh changes
@@ -136,10 +181,17 @@ class StepControl {
   std::vector<double> seen_;  ///< largest stiffening per block in this window
   std::uint64_t window_ = kFirstWindow, in_window_ = 0;
   std::vector<double> lately_;                                   ///< the same of the last few steps
-  std::vector<double> last_;                                     ///< of the last step
   double shape_step_ = std::numeric_limits<double>::infinity();  ///< [s]
-  double beside_ = 0.0;                                          ///< ω² of what acts beside the tissue [1/s²]
-  double caution_ = 1.0;  ///< factor on an automatic step while stiffness rises fast
+  StiffnessLevels levels_;
+  std::vector<double> usual_, list_above_;  ///< stiffening per block from which elements are listed, and are now
+  std::uint64_t probe_ = kFirstProbe, since_probe_ = 0;  ///< [steps]
+  std::vector<StiffElement> few_;                        ///< the stiffest of a crowd
+  std::vector<double> crowd_;  ///< per block, the stiffest of those left out; empty: none were
+  bool probes_ = false;        ///< whether more than usual is listed, to choose the level of the blocks anew
+  double damping_rate_ = 0.0;  ///< largest γ/m [1/s]
+  double tools_ = 0.0;         ///< ω² of what acts beside the tissue [1/s²]
+  Beside stiff_, beside_;      ///< of single tets; of both
+  double caution_ = 1.0;       ///< factor on an automatic step while stiffness rises fast
 };
 
 }  // namespace glisson

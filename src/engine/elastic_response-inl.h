@@ -83,18 +83,30 @@ HWY_INLINE Stretch stretch_of(const Symmetric& E, F J, F I2) {
   return {commuting_product(times(twice, E), of_sum.cof), times(number(1.0F) / of_u.determinant, of_u.cof)};
 }
 
-HWY_INLINE void see_stiffness(F r, StiffnessSeen& seen) {
-  seen.stiffness = hn::GetLane(hn::MaxOfLanes(Lanes(), hn::Max(r, number(seen.stiffness))));
+/// How stiff the tets of an item are; what is no number counts as without bound.
+HWY_INLINE void see_stiffness(ResponseBlock& out, std::size_t item, F ratio, F norm) {
+  const F none = number(std::numeric_limits<float>::infinity());
+  hn::Store(hn::IfThenElse(hn::IsNaN(ratio), none, ratio), Lanes(), out.ratio + item * kLanes);
+  hn::Store(hn::IfThenElse(hn::IsNaN(norm), none, norm), Lanes(), out.norm + item * kLanes);
+}
+
+inline float stiffest(std::size_t items, const ResponseBlock& out) {
+  F most = hn::Zero(Lanes());
+  for (std::size_t item = 0; item < items; ++item) most = hn::Max(most, hn::Load(Lanes(), out.ratio + item * kLanes));
+  return hn::GetLane(hn::MaxOfLanes(Lanes(), most));
 }
 
 /// Asks the scalar formulas for the tets of an item that lanes do not answer.
-HWY_NOINLINE void rescue_lanes(const ResponseItems& in, const Rescue& to, std::size_t item, const float* H, float* P,
-                               const float* J) {
+HWY_NOINLINE void rescue_lanes(const ResponseItems& in, const Rescue& to, std::size_t item, const float* J,
+                               ResponseBlock& out) {
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::uint32_t element = in.element[item * kLanes + lane];
     if (J[lane] > float(kSmallestVolume) || element == 0xFFFFFFFFU) continue;
     const float* mean = in.mean != nullptr ? in.mean + item * kLanes + lane : nullptr;
-    rescue(to, element, H + lane, P + lane, kLanes, mean);
+    const Stiffening stiff =
+        rescue(to, element, in.gradient + item * 9 * kLanes + lane, out.piola + item * 9 * kLanes + lane, kLanes, mean);
+    out.ratio[item * kLanes + lane] = static_cast<float>(stiff.ratio);
+    out.norm[item * kLanes + lane] = static_cast<float>(stiff.norm);
   }
 }
 HWY_INLINE void rescue_if_small(const ResponseItems& in, const Rescue& to, std::size_t item, F J, ResponseBlock& out) {
@@ -102,15 +114,14 @@ HWY_INLINE void rescue_if_small(const ResponseItems& in, const Rescue& to, std::
   if (hn::AllTrue(d, hn::Gt(J, number(float(kSmallestVolume))))) return;
   alignas(64) float volume[kMaxLanes];
   hn::Store(J, d, volume);
-  rescue_lanes(in, to, item, in.gradient + item * 9 * kLanes, out.piola + item * 9 * kLanes, volume);
+  rescue_lanes(in, to, item, volume, out);
 }
 
 template <Kinematics K>
 void tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block& block,
-                 ResponseBlock& out, StiffnessSeen& seen) {
+                 ResponseBlock& out) {
   const Lanes d;
   const F one = number(1.0F), two = number(2.0F);
-  F most = hn::Zero(d);
   for (std::size_t item = 0; item < in.items; ++item) {
     const Tensor H = load_tensor(in.gradient + item * 9 * kLanes);
     const Invariants<F> inv = invariants(d, H);
@@ -156,8 +167,8 @@ void tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& t
     } else if constexpr (K == Kinematics::corotational) {
       if (r.viscous) bound = hn::Max(bound, stretch);
     }
-    const F present = hn::Load(d, block.y + item * kLanes);
-    most = hn::Max(most, hn::IfThenZeroElse(hn::Lt(present, hn::Zero(d)), bound));
+    bound = hn::IfThenZeroElse(hn::Lt(hn::Load(d, block.y + item * kLanes), hn::Zero(d)), bound);
+    see_stiffness(out, item, bound, bound);
     if (r.energy) {
       const F work = hn::MulAdd(number(0.5F) * k.lambda_slope * t, t, k.mu_slope * squares);
       P = plus(P, one, measure_gradient(r, H, inv, x, work));
@@ -165,7 +176,6 @@ void tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& t
     store_tensor(P, out.piola + item * 9 * kLanes);
     if (K == Kinematics::corotational || r.energy) rescue_if_small(in, to, item, J, out);
   }
-  see_stiffness(most, seen);
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

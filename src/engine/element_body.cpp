@@ -152,10 +152,15 @@ void ElementBody::book(std::size_t i, const Vec3d& before, const Vec3d& weight) 
   work.kinetic += 0.5 * body_.masses[i] * dot(before, v_[i]);
 }
 
+void ElementBody::list_above(std::span<const double> stiffening) {
+  watch_.list_above.assign(stiffening.begin(), stiffening.end());
+}
+
 const Advance& ElementBody::advance(double h, const Vec3d& gravity, bool accounted) {
   const FlushDenormals flush;
   evaluate(h > 0.0);
   advance_.stiffening = watch_.stiffening;
+  advance_.stiff = watch_.stiff;
   advance_.inverted = watch_.inverted;
   advance_.work = {};
   double sum = 0.0;

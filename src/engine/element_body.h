@@ -35,6 +35,7 @@ class ElementBody final : public MovingBody {
   void watch(std::span<const std::uint32_t> vertices) override;
   std::span<WatchedVertex> watched() override { return watched_; }
   void place_watched() override;
+  void list_above(std::span<const double> stiffening) override;
   const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;
 
  private:

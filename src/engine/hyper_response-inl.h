@@ -71,16 +71,14 @@ struct LaneInvariants {
   HWY_INLINE F stretch_squared() const { return hn::NegMulAdd(number(2.0F) * J, number(1.0F) / hn::Sqrt(I1), I1); }
 };
 HWY_INLINE F volume_bound(const LaneInvariants& i, F bulk) {
-  return bulk * hn::MulAdd(hn::Abs(i.J - number(1.0F)), hn::Sqrt(i.stretch_squared()), i.I2);
+  const F more = i.J - number(1.0F);
+  const F bend = hn::IfThenElse(hn::Gt(more, hn::Zero(Lanes())), i.I1 + i.I1, i.stretch_squared());
+  return bulk * hn::MulAdd(hn::Abs(more), hn::Sqrt(bend), i.I2);
 }
-/// κ, and what a tet that shares its volume change adds to it once it is nearly lost.
-HWY_INLINE F bulk_seen(const LaneResponse& r, bool shared, F J) {
-  const F bulk = number(r.bulk), more = number(float(1.0 + kOwnShare)) * bulk;
-  return shared ? hn::IfThenElse(hn::Gt(J, number(float(kSmallestVolume))), bulk, more) : bulk;
-}
-/// The larger of the two parts' growth since rest.
-HWY_INLINE F larger_growth(const LaneResponse& r, F isochoric, F volume) {
-  return hn::Max(isochoric * number(r.rest_isochoric), volume * number(r.rest_volume));
+/// The larger of the two parts' growth since rest, and both over all that the tangent is at rest.
+HWY_INLINE void see_parts(const LaneResponse& r, std::size_t item, F isochoric, F volume, ResponseBlock& out) {
+  const F larger = hn::Max(isochoric * number(r.rest_isochoric), volume * number(r.rest_volume));
+  see_stiffness(out, item, larger, (isochoric + volume) * number(r.rest_bound));
 }
 /// Of F, with J^(−⅔); of cof F too.
 HWY_INLINE F first_invariant_bend(const LaneInvariants& i, F power) {
@@ -124,30 +122,12 @@ HWY_INLINE F excess(const Invariants<F>& inv) {
   return number(3.0F) * p / (number(1.0F) - hn::Min(p, number(0.999F)));
 }
 
-/// Ī₁ − 3 of tets below the smallest volume, whose stress comes from elsewhere but whose stiffness is seen here: with the
-/// power as volume_powers.h has it go on. J^(−⅔) itself would be an exponential law's end.
-HWY_INLINE F excess_beyond(const HyperState& s) {
-  const ValueSlopeOf<double> at = volume_power<2>(kSmallestVolume);
-  const F one = number(1.0F), y = (s.inv.volume_change + one) * number(float(1.0 / kSmallestVolume));
-  const float value = float(at.value), slope = float(at.slope * kSmallestVolume), linger = float(kLinger);
-  const F early = hn::Max(hn::MulSub(number(2.0F), y, one), hn::Zero(Lanes())), late = hn::Max(y, hn::Zero(Lanes()));
-  const F faded = number(value) - number(slope * 0.25F * (1.0F - linger)) * hn::NegMulAdd(early, early, one) -
-                  number(slope * 0.5F * linger) * hn::NegMulAdd(late, late, one);
-  return hn::MulSub(faded, s.I1, number(3.0F));
-}
-
 template <class Law>
-void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&, ResponseBlock& out,
-                   StiffnessSeen& seen) {
-  const Lanes d;
-  F most = hn::Zero(d);
+void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&, ResponseBlock& out) {
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState s = hyper_state(in.gradient + item * 9 * kLanes);
     const F j = s.inv.volume_change, one = number(1.0F), pressure = pressure_of(in, r, item, j);
-    const auto whole = hn::Gt(j + one, number(float(kSmallestVolume)));
-    F i1 = excess(s.inv);
-    if (!hn::AllTrue(d, whole)) i1 = hn::IfThenElse(whole, i1, excess_beyond(s));
-    const InvariantSlopes w = Law::slopes(r, i1);
+    const InvariantSlopes w = Law::slopes(r, excess(s.inv));
     Tensor P = times(number(2.0F) * w.first * s.power, deviatoric_direction(s.H, s.K, j, squares_of(s.H)));
     P = plus(plus_identity(P, pressure), pressure, s.K);
     const LaneInvariants i{s.I1, s.I2, s.J};
@@ -167,11 +147,10 @@ void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue&
                                   number(2.0F) * hn::Sqrt(first_invariant_slope_squared(c, power)));
       bound = hn::MulAdd(hn::Abs(w.second), second, bound);
     }
-    most = hn::Max(most, larger_growth(r, bound, volume_bound(i, bulk_seen(r, in.mean != nullptr, j + one))));
+    see_parts(r, item, bound, volume_bound(i, number(r.bulk)), out);
     store_tensor(P, out.piola + item * 9 * kLanes);
     rescue_if_small(in, to, item, j + one, out);
   }
-  see_stiffness(most, seen);
 }
 
 /// The three eigenvalues of a symmetric tensor, e₁ ≥ e₂ ≥ e₃, by the angle of its invariants. Two that are equal come out
@@ -215,12 +194,37 @@ HWY_INLINE Symmetric isotropic_function(const Symmetric& E, const Eigenvalues& a
   return plus_identity(plus(times(upper, first), bend, commuting_product(first, second)), s[0].g);
 }
 
+/// λ_max of ∂P/∂F of P = F S in the principal frame (tissue/stiffness_bound.h), from t = ∂W/∂ln λ and the sums of
+/// ∂²W/∂(ln λ̄)² of the terms, which make ∂t_i/∂ln λ_j = slope_i δ_ij − ⅓ (slope_i + slope_j) + ⅑ Σ slope.
+HWY_INLINE F stiffest_direction(const Eigenvalues& at, const PrincipalStress (&s)[3], const F (&t)[3],
+                                const F (&slope)[3], const F (&c)[3]) {
+  const F third = number(1.0F / 3.0F), half = number(0.5F);
+  F l[3], per[3], A[3][3];
+  for (std::size_t i = 0; i < 3; ++i) l[i] = hn::Sqrt(c[i]), per[i] = number(1.0F) / l[i];
+  const F ninth = (slope[0] + slope[1] + slope[2]) * number(1.0F / 9.0F);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = i; j < 3; ++j) {
+      const F both = hn::NegMulAdd(third, slope[i] + slope[j], ninth);
+      A[i][j] = per[i] * per[j] * (i == j ? both + slope[i] - t[i] : both);
+    }
+  }
+  F most = eigenvalues({A[0][0], A[1][1], A[2][2], A[0][1], A[1][2], A[0][2]}).e[0];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t first = i == 2 ? 0 : i, second = i == 2 ? 2 : i + 1;  // e of the first is the larger
+    const F sum = l[first] + l[second];
+    const F difference = divided_difference(s[first], s[second], at.e[first] - at.e[second]);
+    const F even = hn::MulAdd(half * l[second] * sum, difference, s[first].g);
+    const F odd = hn::MulAdd(s[first].g, l[first], s[second].g * l[second]) / sum;
+    most = hn::Max(most, hn::Max(even, odd));
+  }
+  return most;
+}
+
 /// law: α₁, 2μ₁/α₁, α₂, …
 inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&,
-                      ResponseBlock& out, StiffnessSeen& seen) {
+                      ResponseBlock& out) {
   const Lanes d;
   const F one = number(1.0F), two = number(2.0F), third = number(1.0F / 3.0F), zero = hn::Zero(d);
-  F most = zero;
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState state = hyper_state(in.gradient + item * 9 * kLanes);
     const F j = state.inv.volume_change;
@@ -233,14 +237,10 @@ inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Resc
       l[i] = number(0.5F) * hn::Log1p(d, twice);
     }
     const F mean = (l[0] + l[1] + l[2]) * third;
-    F stiffest = zero;
     for (std::size_t k = 0; k < r.terms; ++k) {
       const F alpha = number(r.law[2 * k]), factor = number(r.law[2 * k + 1]);
-      F g[3], top = hn::Neg(one);
-      for (std::size_t i = 0; i < 3; ++i) {
-        g[i] = hn::Expm1(d, hn::Min(alpha * (l[i] - mean), number(60.0F)));
-        top = hn::Max(top, g[i]);
-      }
+      F g[3];
+      for (std::size_t i = 0; i < 3; ++i) g[i] = hn::Expm1(d, hn::Min(alpha * (l[i] - mean), number(60.0F)));
       const F average = (g[0] + g[1] + g[2]) * third;
       for (std::size_t i = 0; i < 3; ++i) {
         const F rise = factor * alpha * (g[i] + one);
@@ -248,31 +248,25 @@ inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Resc
         slope[i] = slope[i] + rise;
         bend[i] = hn::MulAdd(alpha, rise, bend[i]);
       }
-      stiffest =
-          hn::MulAdd(hn::Abs(factor * alpha) * number(4.0F / 3.0F), top + one, stiffest);  // 8/3 μ = 4/3 (2μ/α) α
     }
     // g = τ/λ² and its derivatives by e, with dτ/d ln λ = slope, d²τ/d(ln λ)² = bend
     PrincipalStress s[3];
-    F tension = zero;
     for (std::size_t i = 0; i < 3; ++i) {
       const F inverse = one / c[i], square = inverse * inverse;
       s[i].g = t[i] * inverse;
       s[i].first = hn::NegMulAdd(two, t[i], slope[i]) * square;
       s[i].second = hn::MulAdd(number(8.0F), t[i], hn::NegMulAdd(number(6.0F), slope[i], bend[i])) * square * inverse;
-      tension = hn::Max(tension, hn::Abs(t[i]));
     }
     const Symmetric S = isotropic_function(E, at, s);
     const F pressure = pressure_of(in, r, item, j);
     const Tensor volumetric = plus_identity(times(pressure, state.K), pressure);
     store_tensor(plus(volumetric, one, tensor_product(plus_identity(state.H, one), S)), out.piola + item * 9 * kLanes);
-    const F thinnest = number(float(kSmallestStretch * kSmallestStretch)), least = hn::Max(c[2], thinnest);
     const LaneInvariants i{state.I1, state.I2, state.J};
-    const F bound = hn::MulAdd(two, tension, stiffest) / least;
-    most = hn::Max(most, larger_growth(r, bound, volume_bound(i, bulk_seen(r, in.mean != nullptr, j + one))));
+    see_parts(r, item, stiffest_direction(at, s, t, slope, c), volume_bound(i, number(r.bulk)), out);
     // a stretch below the limit where ln λ goes on otherwise counts as a lost volume
+    const F thinnest = number(float(kSmallestStretch * kSmallestStretch));
     rescue_if_small(in, to, item, hn::IfThenElse(hn::Lt(c[2], thinnest), zero, j + one), out);
   }
-  see_stiffness(most, seen);
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

@@ -15,6 +15,7 @@
 #include "glisson/interaction.h"
 #include "glisson/math.h"
 #include "mechanics/body_change.h"
+#include "mechanics/stiff_element.h"
 #include "tissue/strain.h"
 
 namespace glisson {
@@ -32,6 +33,7 @@ struct KickWork {
 struct Advance {
   bool finite = true;                   ///< false: a force was not finite; its vertices were not moved
   std::vector<double> stiffening;       ///< per tissue block: bound of tangent over rest stiffness [-]
+  std::vector<StiffElement> stiff;      ///< elements above what list_above() was told, in no order but always the same
   std::vector<std::uint32_t> inverted;  ///< tets of the mesh with J ≤ 0, ascending
   KickWork work;                        ///< of the vertices that are not watched; only where accounted
 };
@@ -74,6 +76,10 @@ class MovingBody {
   virtual std::span<WatchedVertex> watched() = 0;
   /// Takes displacement and velocity of every watched vertex over from watched().
   virtual void place_watched() = 0;
+
+  /// Lets advance() list elements that are stiffer than this.
+  /// @param stiffening  per tissue block [-]
+  virtual void list_above(std::span<const double> stiffening) = 0;
 
   /// One step of h [s] under `gravity` [m/s²]; h = 0 evaluates the forces and moves nothing.
   /// @param accounted  whether to fill `work`

@@ -26,6 +26,7 @@ const ResponseKernels* response_table() {
       .fibres = fibres,
       .maxwell = maxwell,
       .viscous = viscous,
+      .stiffest = stiffest,
       .volume_changes = volume_changes,
       .spread_to_vertices = spread_to_vertices,
       .mean_of_vertices = mean_of_vertices,

@@ -21,6 +21,8 @@ namespace glisson::engine {
 struct ResponseBlock {
   alignas(64) float piola[kBlockTets * 9];    ///< P, elastic; with Maxwell branches what is left after long times
   alignas(64) float viscous[kBlockTets * 9];  ///< P, viscous, and what the branches have not relaxed yet
+  alignas(64) float ratio[kBlockTets];        ///< tissue/response.h, Stiffening, [item][lane]; 0 where no tet is
+  alignas(64) float norm[kBlockTets];
 };
 
 /// Which volume change tets share: that of the kinematics, or J − 1.
@@ -29,7 +31,7 @@ enum class VolumeKind { small, corotational, green, hyperelastic };
 /// What the lanes need to know of a tissue.
 struct LaneResponse {
   LaneTissue moduli;
-  float rest_bound = 1.0F;                          ///< 1 over the bound of the tangent at rest [1/Pa]
+  float rest_bound = 1.0F;                          ///< 1 over λ_max of the tangent at rest [1/Pa]
   float rest_isochoric = 1.0F, rest_volume = 1.0F;  ///< 1 over those of a hyperelastic law's two parts [1/Pa]
   float bulk = 0.0F;                                ///< κ of a hyperelastic law [Pa]
   float fibre = 0.0F;                               ///< c [Pa]
@@ -69,7 +71,9 @@ struct Rescue {
 
 /// @param H  of one lane, `stride` floats apart; P likewise
 /// @param mean  volume change in the place of its own; null: its own
-void rescue(const Rescue&, std::uint32_t element, const float* H, float* P, std::size_t stride, const float* mean);
+/// @return how stiff the tet is, without fibres and viscosity
+Stiffening rescue(const Rescue&, std::uint32_t element, const float* H, float* P, std::size_t stride,
+                  const float* mean);
 
 /// tr(U − I) of a tet that lanes do not answer.
 float rescue_stretch_sum(const float* H, std::size_t stride);
@@ -83,16 +87,17 @@ struct MaxwellStep {
 
 /// The functions of one instruction set.
 struct ResponseKernels {
-  /// P of the elastic part into `out.piola`; what the tangent has come to into `seen`. By kind of elasticity.
-  using Respond = void (*)(const ResponseItems&, const LaneResponse&, const Rescue&, const Block&, ResponseBlock& out,
-                           StiffnessSeen& seen);
+  /// P of the elastic part into `out.piola`; what the tangent has come to into `out.ratio` and `out.norm`. By kind of
+  /// elasticity.
+  using Respond = void (*)(const ResponseItems&, const LaneResponse&, const Rescue&, const Block&, ResponseBlock& out);
   Respond small = nullptr, corotational = nullptr, green = nullptr;
   std::array<Respond, std::variant_size_v<HyperelasticLaw>> hyperelastic{};
   /// Adds to `out.piola`; writes and adds to `out.viscous`.
-  void (*fibres)(const ResponseItems&, const LaneResponse&, ResponseBlock& out, StiffnessSeen& seen) = nullptr;
+  void (*fibres)(const ResponseItems&, const LaneResponse&, ResponseBlock& out) = nullptr;
   void (*maxwell)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, ResponseBlock& out) = nullptr;
-  void (*viscous)(const ResponseItems&, const LaneResponse&, bool add, ResponseBlock& out,
-                  StiffnessSeen& seen) = nullptr;
+  void (*viscous)(const ResponseItems&, const LaneResponse&, bool add, ResponseBlock& out) = nullptr;
+  /// The largest of out.ratio.
+  float (*stiffest)(std::size_t items, const ResponseBlock& out) = nullptr;
   /// For volume changes that are shared (shared_volume-inl.h).
   void (*volume_changes)(const float* gradient, const float* rest, std::size_t items, VolumeKind kind,
                          float* out) = nullptr;

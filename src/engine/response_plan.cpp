@@ -73,7 +73,8 @@ LaneWeights lane_weights(double step, double time) {
   return {float(w.decay), float(w.from), float(w.to)};
 }
 
-void rescue(const Rescue& to, std::uint32_t element, const float* H, float* P, std::size_t stride, const float* mean) {
+Stiffening rescue(const Rescue& to, std::uint32_t element, const float* H, float* P, std::size_t stride,
+                  const float* mean) {
   Mat3d gradient;
   for (std::size_t k = 0; k < 9; ++k) gradient(k / 3, k % 3) = static_cast<double>(H[k * stride]);
   ElementShape shape = element_shape(*to.body, to.response->tissue(), element);
@@ -81,6 +82,7 @@ void rescue(const Rescue& to, std::uint32_t element, const float* H, float* P, s
   const double shared = mean != nullptr ? static_cast<double>(*mean) : 0.0;
   const Mat3d answer = to.response->elastic(gradient, shape, mean != nullptr ? &shared : nullptr);
   for (std::size_t k = 0; k < 9; ++k) P[k * stride] = static_cast<float>(answer(k / 3, k % 3));
+  return to.response->elastic_stiffening(gradient, shape);
 }
 
 float rescue_stretch_sum(const float* H, std::size_t stride) {

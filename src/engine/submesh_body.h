@@ -47,6 +47,9 @@ class SubmeshBody final : public MovingBody {
   void watch(std::span<const std::uint32_t> vertices) override;
   std::span<WatchedVertex> watched() override { return watched_; }
   void place_watched() override;
+  void list_above(std::span<const double> stiffening) override {
+    list_above_.assign(stiffening.begin(), stiffening.end());
+  }
   const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;
 
   const Submeshes& submeshes() const { return submeshes_; }
@@ -72,6 +75,7 @@ class SubmeshBody final : public MovingBody {
     StiffnessSeen stiffness;
     float longest_edge_squared = 0.0F;
     std::vector<std::uint32_t> tets;
+    std::vector<StiffElement> stiff;
     VertexWork work;
   };
   /// What the last look at a linear submesh for inverted tets told: gradients below 1, above, or J ≤ 0.
@@ -120,6 +124,11 @@ class SubmeshBody final : public MovingBody {
   Elements elements_of(const Submesh& part, Scratch& scratch) const;
   void measure_block(const Elements& elements, const Plan& plan, std::size_t begin, std::size_t n, Block& block,
                      Findings& found) const;
+  double list_limit(std::size_t block) const;
+  void list_by_laws(const Submesh& part, std::size_t batch, std::size_t n, const Plan& plan, const Block& block,
+                    Findings& found) const;
+  void list_response(const Submesh& part, std::size_t batch, std::size_t n, const ResponseBlock& out,
+                     Findings& found) const;
   void push_edges(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;
   bool must_look(std::size_t s, float longest_edge_squared, bool moves);
   void list_inverted(const Submesh& part, Findings& found) const;
@@ -159,6 +168,7 @@ class SubmeshBody final : public MovingBody {
   std::vector<Looked> looked_;                         ///< per submesh
   std::vector<Findings> found_, interface_found_;
   Advance advance_;
+  std::vector<double> list_above_;              ///< per tissue block: stiffening; empty: no element is listed
   std::vector<std::uint32_t> part_of_element_;  ///< submesh of each element; empty until something changes
 };
 

@@ -28,6 +28,17 @@ void SubmeshBody::set_maxwell_step(double h) {
   }
 }
 
+void SubmeshBody::list_response(const Submesh& part, std::size_t batch, std::size_t n, const ResponseBlock& out,
+                                Findings& found) const {
+  const std::size_t tets = kernels_.lanes * kChainTets;
+  const std::uint32_t* element = part.chains.element.data() + batch * tets;
+  const double limit = list_limit(part.block);
+  for (std::size_t i = 0; i < n * tets; ++i) {
+    const double ratio = double(out.ratio[i]);
+    if (element[i] != kNoElement && ratio > limit) found.stiff.push_back({element[i], ratio, double(out.norm[i])});
+  }
+}
+
 void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Findings& found) {
   Submesh& part = submeshes_.parts[s];
   const Plan& plan = plans_[part.block];
@@ -59,12 +70,13 @@ void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Fin
       stages.mean_of_vertices(index, n, shared_volumes_[s].theta.data(), scratch.mean);
     }
     measure_block(elements, plan, b, n, scratch.block, found);
-    StiffnessSeen seen;
-    large.respond(items, lanes, to, scratch.block, out, seen);
-    if (lanes.fibre > 0.0F) stages.fibres(items, lanes, out, seen);
+    large.respond(items, lanes, to, scratch.block, out);
+    if (lanes.fibre > 0.0F) stages.fibres(items, lanes, out);
     if (lanes.branches > 0) stages.maxwell(items, lanes, large.maxwell, out);
-    if (lanes.viscous) stages.viscous(items, lanes, lanes.branches > 0, out, seen);
-    found.stiffness.stiffness = std::max(found.stiffness.stiffness, seen.stiffness);
+    if (lanes.viscous) stages.viscous(items, lanes, lanes.branches > 0, out);
+    const float stiffest = stages.stiffest(items.items, out);
+    found.stiffness.stiffness = std::max(found.stiffness.stiffness, stiffest);
+    if (double(stiffest) > list_limit(part.block)) list_response(part, b, n, out, found);
     if (plan.viscous && !split) stages.merge(items.items, out);
     kernels_.push_piola(elements, b, n, out.piola, scratch.elastic.data());
     if (split) kernels_.push_piola(elements, b, n, out.viscous, scratch.viscous.data());

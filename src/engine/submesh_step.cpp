@@ -1,6 +1,7 @@
 // submesh_step.cpp — one step of a body of submeshes: the tasks drawn in submesh_body.h.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/submesh_scratch.h"
 #include "mechanics/flush_denormals.h"
@@ -13,7 +14,14 @@ constexpr std::size_t kPrefetchTets = 16384;  ///< rest data of more do not fit 
 /// A linear submesh with large gradients is looked over for inverted tets once in so many steps.
 constexpr std::uint64_t kInversionPeriod = 16;
 
+double bound_of(const StiffnessSeen& seen) { return double(seen.stiffness) + std::sqrt(double(seen.slope_squared)); }
+
 }  // namespace
+
+/// Stiffening from which elements of a block are listed.
+double SubmeshBody::list_limit(std::size_t block) const {
+  return list_above_.empty() ? std::numeric_limits<double>::infinity() : list_above_[block];
+}
 
 /// Whether elastic and viscous forces of a submesh are kept apart.
 bool SubmeshBody::splits(std::size_t s, bool accounted) const {
@@ -52,6 +60,25 @@ void SubmeshBody::measure_block(const Elements& elements, const Plan& plan, std:
   }
 }
 
+/// Lists elements of a block of batches that laws on moduli have made stiff.
+void SubmeshBody::list_by_laws(const Submesh& part, std::size_t batch, std::size_t n, const Plan& plan,
+                               const Block& block, Findings& found) const {
+  const std::size_t tets = kernels_.lanes * kChainTets;
+  const std::uint32_t* element = part.chains.element.data() + batch * tets;
+  const double mu = 1.0 / double(plan.tissue.rest_mu), bulk = mu / (2.0 * double(plan.tissue.bulk_over_two_mu));
+  const double limit = list_limit(part.block);
+  const auto larger = [&](double l, double m) { return std::max(m * mu, (l + 2.0 / 3.0 * m) * bulk); };
+  for (std::size_t i = 0; i < n * tets; ++i) {
+    if (element[i] == kNoElement) continue;
+    const double first = double(block.value[0][i]), slope = std::abs(double(block.slope[0][i]));
+    const bool two = plan.laws == 2;
+    const double value = two ? larger(first, double(block.value[1][i])) : first;
+    const double rise = two ? larger(slope, std::abs(double(block.slope[1][i]))) : slope;
+    const double r = value + rise * std::sqrt(std::max(0.0, double(block.y[i])));
+    if (r > limit) found.stiff.push_back({element[i], r, r});
+  }
+}
+
 void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const {
   const Plan& plan = plans_[part.block];
   const Elements elements = elements_of(part, scratch);
@@ -63,7 +90,11 @@ void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratc
     const std::size_t n = std::min(kBlockBatches, part.chains.count - b), values = kChainTets * n * kernels_.lanes;
     gather(elements, b, n, block);
     measure_block(elements, plan, b, n, block, found);
-    look(block, plan.tissue, values, found.stiffness);
+    StiffnessSeen seen;
+    look(block, plan.tissue, values, seen);
+    found.stiffness.stiffness = std::max(found.stiffness.stiffness, seen.stiffness);
+    found.stiffness.slope_squared = std::max(found.stiffness.slope_squared, seen.slope_squared);
+    if (bound_of(seen) > list_limit(part.block)) list_by_laws(part, b, n, plan, block, found);
     push(elements, b, n, block);
     if (split) kernels_.push_viscous(elements, b, n, block);
   }
@@ -203,7 +234,7 @@ void SubmeshBody::run_interface(std::size_t chunk, const Step& step, Scratch& sc
 /// Adds up what the tasks found, in their order.
 void SubmeshBody::gather_findings(bool accounted) {
   advance_.finite = true;
-  advance_.inverted.clear();
+  advance_.inverted.clear(), advance_.stiff.clear();
   advance_.stiffening.assign(body_.blocks.size(), 0.0);
   advance_.work = {};
   const auto book = [&](const VertexWork& w) {
@@ -219,7 +250,8 @@ void SubmeshBody::gather_findings(bool accounted) {
     advance_.finite = advance_.finite && found.finite;
     advance_.inverted.insert(advance_.inverted.end(), found.tets.begin(), found.tets.end());
     double& r = advance_.stiffening[submeshes_.parts[s].block];
-    r = std::max(r, double(found.stiffness.stiffness) + std::sqrt(double(found.stiffness.slope_squared)));
+    r = std::max(r, bound_of(found.stiffness));
+    advance_.stiff.insert(advance_.stiff.end(), found.stiff.begin(), found.stiff.end());
     if (accounted) book(found.work);
   }
   if (accounted) {

@@ -21,10 +21,9 @@ HWY_INLINE Tensor carried(const LaneResponse& r, const Tensor& H, const Symmetri
   return r.small ? full_tensor(S) : tensor_product(plus_identity(H, number(1.0F)), S);
 }
 
-inline void fibres(const ResponseItems& in, const LaneResponse& r, ResponseBlock& out, StiffnessSeen& seen) {
+inline void fibres(const ResponseItems& in, const LaneResponse& r, ResponseBlock& out) {
   const Lanes d;
   const F c = number(r.fibre), rest = number(r.rest_bound);
-  F most = hn::Zero(d);
   for (std::size_t item = 0; item < in.items; ++item) {
     const Tensor H = load_tensor(in.gradient + item * 9 * kLanes);
     const F a[3] = {hn::Load(d, in.fibre + item * 3 * kLanes), hn::Load(d, in.fibre + (item * 3 + 1) * kLanes),
@@ -44,9 +43,10 @@ inline void fibres(const ResponseItems& in, const LaneResponse& r, ResponseBlock
     store_tensor(P, out.piola + item * 9 * kLanes);
     const Symmetric E = green_strain(H);
     const F stretch = hn::MulAdd(number(2.0F), hn::Sqrt(contraction(E, E)), number(1.0F));
-    most = hn::Max(most, r.small ? c : c * (stretch + hn::Abs(along)));
+    const F more = rest * (r.small ? c : c * (stretch + hn::Abs(along)));
+    see_stiffness(out, item, hn::Load(d, out.ratio + item * kLanes) + more,
+                  hn::Load(d, out.norm + item * kLanes) + more);
   }
-  seen.stiffness += hn::GetLane(hn::MaxOfLanes(d, most * rest));
 }
 
 /// S = F⁻¹ P or its deviator, fading where J → 0; sym P for small strain.
@@ -86,9 +86,8 @@ inline void maxwell(const ResponseItems& in, const LaneResponse& r, const Maxwel
   }
 }
 
-inline void viscous(const ResponseItems& in, const LaneResponse& r, bool add, ResponseBlock& out, StiffnessSeen& seen) {
+inline void viscous(const ResponseItems& in, const LaneResponse& r, bool add, ResponseBlock& out) {
   const F a = number(r.moduli.viscous_lambda), b = number(2.0F * r.moduli.viscous_mu), one = number(1.0F);
-  F most = hn::Zero(Lanes());
   for (std::size_t item = 0; item < in.items; ++item) {
     const Tensor H = load_tensor(in.gradient + item * 9 * kLanes), rate = load_tensor(in.rate + item * 9 * kLanes);
     Symmetric e = symmetric_part(rate);
@@ -106,9 +105,10 @@ inline void viscous(const ResponseItems& in, const LaneResponse& r, bool add, Re
     Tensor P = carried(r, H, plus_identity(times(b, e), a * trace_of(e)));
     if (add) P = plus(P, one, load_tensor(out.viscous + item * 9 * kLanes));
     store_tensor(P, out.viscous + item * 9 * kLanes);
-    most = hn::Max(most, stretch);
+    if (r.small) continue;
+    const F ratio = hn::Load(Lanes(), out.ratio + item * kLanes), norm = hn::Load(Lanes(), out.norm + item * kLanes);
+    see_stiffness(out, item, hn::Max(ratio, stretch), hn::Max(norm, stretch));
   }
-  if (!r.small) see_stiffness(most, seen);
 }
 
 inline void merge(std::size_t items, ResponseBlock& out) {

@@ -29,7 +29,8 @@ struct BlockContext {
   Vec3d* elastic;
   Vec3d* viscous;
   const std::uint32_t* mesh_tet;
-  std::vector<std::uint32_t>* inverted;
+  ElementWatch* watch;
+  double list_above;  ///< stiffening
 };
 
 template <class T>
@@ -65,9 +66,12 @@ T run_block(const BlockContext<T>& c, std::size_t begin, std::size_t end, LamePa
     const Tet& t = c.elements[e];
     const KernelRest<T>& rest = c.rest[e];
     const Mat3<T> H = displacement_gradient(rest.s, differences<T>(t, c.u));
-    if (!(jacobian(H) > T(0))) c.inverted->push_back(c.mesh_tet[e]);
+    if (!(jacobian(H) > T(0))) c.watch->inverted.push_back(c.mesh_tet[e]);
     const LocalStiffness<T> k = stiffness(H, e);
     stiffening = std::max(stiffening, k.stiffening);
+    if (const auto r = static_cast<double>(k.stiffening); r > c.list_above) {
+      c.watch->stiff.push_back({static_cast<std::uint32_t>(e), r, r});
+    }
     scatter(t, rest, isotropic_stress(H, k.lambda, k.mu), c.elastic);
     if constexpr (kViscous) {
       const Mat3<T> rate = displacement_gradient(rest.s, differences<T>(t, c.v));
@@ -133,13 +137,14 @@ class ElementOperator final : public ForceOperator {
                 ElementWatch& watch) const override {
     std::fill(elastic.begin(), elastic.end(), Vec3d{});
     std::fill(viscous.begin(), viscous.end(), Vec3d{});
-    watch.inverted.clear();
-    watch.stiffening.clear();
-    const BlockContext<T> c{body_.elements.data(), rest_.data(),   metric_.data(),        u.data(),       v.data(),
-                            elastic.data(),        viscous.data(), body_.mesh_tet.data(), &watch.inverted};
-    for (const TissueBlock& block : body_.blocks) {
+    watch.reset(body_.blocks.size());
+    BlockContext<T> c{body_.elements.data(), rest_.data(),   metric_.data(),        u.data(), v.data(),
+                      elastic.data(),        viscous.data(), body_.mesh_tet.data(), &watch,   0.0};
+    for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+      const TissueBlock& block = body_.blocks[b];
+      c.list_above = watch.list_above.empty() ? std::numeric_limits<double>::infinity() : watch.list_above[b];
       const T r = block.tissue.viscosity > 0.0 ? run_tissue<true>(c, block) : run_tissue<false>(c, block);
-      watch.stiffening.push_back(static_cast<double>(r));
+      watch.stiffening[b] = static_cast<double>(r);
     }
   }
 

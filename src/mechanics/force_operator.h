@@ -4,20 +4,39 @@
 // own way in float, is compared with.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "glisson/precision.h"
 #include "mechanics/body.h"
+#include "mechanics/stiff_element.h"
 
 namespace glisson {
 
-/// What the element loop sees on its way, reset at each evaluation.
+/// What the element loop sees on its way, reset at each evaluation but for what it is to list.
 struct ElementWatch {
   std::vector<std::uint32_t> inverted;  ///< tets of the mesh with J ≤ 0, in body order
   std::vector<double> stiffening;       ///< per tissue block: bound of tangent over rest stiffness [-]
+  std::vector<double> list_above;       ///< per tissue block: stiffening from which elements are listed; empty: none is
+  std::vector<StiffElement> stiff;      ///< those, in body order
+
+  /// Takes in the stiffening of an element and its norm.
+  void see(std::size_t block, std::size_t element, double ratio, double norm) {
+    if (std::isnan(ratio)) ratio = std::numeric_limits<double>::infinity();
+    stiffening[block] = std::max(stiffening[block], ratio);
+    if (!list_above.empty() && ratio > list_above[block]) {
+      stiff.push_back({static_cast<std::uint32_t>(element), ratio, std::isnan(norm) ? ratio : norm});
+    }
+  }
+  void reset(std::size_t blocks) {
+    inverted.clear(), stiff.clear();
+    stiffening.assign(blocks, 0.0);
+  }
 };
 
 class ForceOperator {

@@ -108,8 +108,7 @@ void TissueOperator::forces(const TissueState& state, std::span<Vec3d> elastic, 
                             ElementWatch& watch) const {
   std::fill(elastic.begin(), elastic.end(), Vec3d{});
   std::fill(viscous.begin(), viscous.end(), Vec3d{});
-  watch.inverted.clear();
-  watch.stiffening.assign(body_.blocks.size(), 0.0);
+  watch.reset(body_.blocks.size());
   const std::vector<double> mean = mean_volume_change(state.u);
   for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
     const TissueBlock& block = body_.blocks[b];
@@ -127,7 +126,8 @@ void TissueOperator::forces(const TissueState& state, std::span<Vec3d> elastic, 
         P = sum(P, response.carry(H, S * -response.relaxing_share()));
       }
       scatter(body_, e, P, elastic);
-      watch.stiffening[b] = std::max(watch.stiffening[b], response.stiffening(H, shapes_[e]));
+      const Stiffening stiff = response.stiffening(H, shapes_[e]);
+      watch.see(b, e, stiff.ratio, stiff.norm);
     }
   }
 }

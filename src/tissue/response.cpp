@@ -244,37 +244,43 @@ double Response::volume_modulus(const Mat3d& H, const ElementShape& shape) const
 }
 
 /// Tensor-mass tissues: r C₀ bounds the tangent of σ(ε) as in mechanics/local_stiffness.h. With the Green strain it is
-/// carried by F on both sides, and the stress adds its own size; viscous stress is carried likewise.
-double Response::stiffening(const Mat3d& H, const ElementShape& shape) const {
-  const Sym3<double> E = green_strain(H);
-  const double stretch = 1.0 + 2.0 * std::sqrt(contract(E, E));  // ≥ ‖F‖²
-  double r = 0.0, rest = 0.0;
+/// carried by F on both sides, and the stress adds its own size.
+Stiffening Response::elastic_stiffening(const Mat3d& H, const ElementShape& shape) const {
+  const double rest = std::max(3.0 * lame_.lambda + 2.0 * lame_.mu, 2.0 * lame_.mu);
   if (tissue_.hyperelastic) {
     const HyperelasticBound now = hyperelastic_bound(*tissue_.hyperelastic, H),
                             at_rest = hyperelastic_bound(*tissue_.hyperelastic, Mat3d{});
-    rest = std::max(3.0 * lame_.lambda + 2.0 * lame_.mu, 2.0 * lame_.mu);
     const bool pushes = tissue_.volume_change == VolumeChange::nodal && jacobian(H) < kSmallestVolume;
-    r = std::max(now.isochoric / at_rest.isochoric, (pushes ? 1.0 + kOwnShare : 1.0) * now.volume / at_rest.volume);
-    if (viscosity_.mu > 0.0) r = std::max(r, stretch);
-  } else {
-    rest = std::max(3.0 * lame_.lambda + 2.0 * lame_.mu, 2.0 * lame_.mu);
-    r = tensor_mass_stiffening(H, shape);
-    if (tissue_.kinematics == Kinematics::green) {
-      const Moduli<double> m = moduli(measure(H, shape));
-      const Sym3<double> S = isotropic_stress(E, m.lambda, m.mu);
-      r = r * stretch + std::sqrt(contract(S, S)) / rest;
-    } else if (tissue_.kinematics == Kinematics::corotational && viscosity_.mu > 0.0) {
-      r = std::max(r, stretch);
-    }
+    const double volume = (pushes ? 1.0 + kOwnShare : 1.0) * now.volume;
+    return {std::max(now.isochoric / at_rest.isochoric, volume / at_rest.volume), (now.isochoric + volume) / rest};
   }
-  if (tissue_.viscous_tensor == ViscousTensor::pioletti && viscosity_.mu > 0.0) {
-    r = std::max(r, stretch * (1.0 + 2.0 * trace(E)));
+  double r = tensor_mass_stiffening(H, shape);
+  if (tissue_.kinematics == Kinematics::green) {
+    const Sym3<double> E = green_strain(H);
+    const Moduli<double> m = moduli(measure(H, shape));
+    const Sym3<double> S = isotropic_stress(E, m.lambda, m.mu);
+    r = r * (1.0 + 2.0 * std::sqrt(contract(E, E))) + std::sqrt(contract(S, S)) / rest;
+  }
+  return {r, r};
+}
+
+/// Viscous stress of large strain is carried by F on both sides.
+Stiffening Response::stiffening(const Mat3d& H, const ElementShape& shape) const {
+  const Sym3<double> E = green_strain(H);
+  const double stretch = 1.0 + 2.0 * std::sqrt(contract(E, E));  // ≥ ‖F‖²
+  Stiffening s = elastic_stiffening(H, shape);
+  if (viscosity_.mu > 0.0) {
+    const bool pioletti = tissue_.viscous_tensor == ViscousTensor::pioletti;
+    const double drag = std::max(small() ? 1.0 : stretch, pioletti ? stretch * (1.0 + 2.0 * trace(E)) : 0.0);
+    s.ratio = std::max(s.ratio, drag), s.norm = std::max(s.norm, drag);
   }
   if (tissue_.fibres) {
     const double along = std::abs(dot(shape.fibre, E * shape.fibre));
-    r += tissue_.fibres->stiffness * (small() ? 1.0 : stretch + along) / rest;
+    const double rest = std::max(3.0 * lame_.lambda + 2.0 * lame_.mu, 2.0 * lame_.mu);
+    const double more = tissue_.fibres->stiffness * (small() ? 1.0 : stretch + along) / rest;
+    s.ratio += more, s.norm += more;
   }
-  return r;
+  return s;
 }
 
 /// f + |f'| g ½ (e + √(e² + (K/2μ) t²)) of mechanics/local_stiffness.h, with the larger of the two laws' ratios.

@@ -19,6 +19,12 @@ struct ElementShape {
   Mat3d turn;                 ///< rotation of the regular tet to this one, for radius_ratio and solid_angle
 };
 
+/// How stiff a tet has become: a bound of its tangent C over that at rest, C₀ (tissue/stiffness_bound.h).
+struct Stiffening {
+  double ratio = 1.0;  ///< C ≤ r C₀: scales what is known of the whole body
+  double norm = 1.0;   ///< λ_max(C)/λ_max(C₀): says more of a tet that is stiff in one direction
+};
+
 class Response {
  public:
   explicit Response(const Tissue& tissue);
@@ -53,8 +59,10 @@ class Response {
   /// ∂²W/∂ϑ² at H [Pa].
   double volume_modulus(const Mat3d& H, const ElementShape& shape) const;
 
-  /// Bound of the tangent, elastic and viscous, over that at rest, for the stable step (tissue/stiffness_bound.h).
-  double stiffening(const Mat3d& H, const ElementShape& shape) const;
+  /// Of the tangent, elastic and viscous, for the stable step.
+  Stiffening stiffening(const Mat3d& H, const ElementShape& shape) const;
+  /// The same without fibres and viscosity.
+  Stiffening elastic_stiffening(const Mat3d& H, const ElementShape& shape) const;
 
   const Tissue& tissue() const { return tissue_; }
   const LameParameters& viscosity() const { return viscosity_; }

@@ -1,6 +1,9 @@
 // strain.h — symmetric tensors, strains and cofactors of a displacement gradient H = F − I, formed without loss of digits.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "glisson/math.h"
 
 namespace glisson {
@@ -42,6 +45,18 @@ Sym3<T> symmetric(const Mat3<T>& a) {
   const T half(0.5);
   return {
       a(0, 0), a(1, 1), a(2, 2), half * (a(0, 1) + a(1, 0)), half * (a(1, 2) + a(2, 1)), half * (a(2, 0) + a(0, 2))};
+}
+
+/// λ_max of a symmetric tensor q I + p B with tr B = 0: q + 2 p cos(⅓ arccos(½ det B)).
+inline double largest_eigenvalue(Sym3<double> a) {
+  const double q = (a.xx + a.yy + a.zz) / 3.0;
+  a.xx -= q, a.yy -= q, a.zz -= q;
+  const double squares = a.xx * a.xx + a.yy * a.yy + a.zz * a.zz + 2.0 * (a.xy * a.xy + a.yz * a.yz + a.zx * a.zx);
+  const double p = std::sqrt(squares / 6.0);
+  if (!(p > 0.0)) return q;
+  const double det =
+      a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.zx) + a.zx * (a.xy * a.yz - a.yy * a.zx);
+  return q + 2.0 * p * std::cos(std::acos(std::clamp(0.5 * det / (p * p * p), -1.0, 1.0)) / 3.0);
 }
 
 /// σ = λ tr(ε) I + 2 μ ε with ε = sym H: Hooke's law of the small-strain tensor, [Schwartz2002, eq. 1]

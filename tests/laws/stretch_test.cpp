@@ -156,7 +156,7 @@ TEST(Squashed, StressIsFinite) {
     for (const double l : {0.5, 0.2, 0.1, 1e-3, 1e-9, 1e-15, 0.0, -1e-15, -1e-3, -0.3, -1.0, -3.0}) {
       EXPECT_TRUE(std::isfinite(test::size_of(s.P(squashed(l))))) << l;
       EXPECT_TRUE(std::isfinite(s.response.energy(squashed(l), s.shape))) << l;
-      EXPECT_TRUE(std::isfinite(s.response.stiffening(squashed(l), s.shape))) << l;
+      EXPECT_TRUE(std::isfinite(s.response.stiffening(squashed(l), s.shape).ratio)) << l;
     }
     EXPECT_TRUE(std::isfinite(test::size_of(s.P(detail::diagonal(-1.0, -1.0, -1.0)))));  // a point
     EXPECT_TRUE(std::isfinite(test::size_of(s.P(detail::diagonal(-2.0, -2.0, -2.0)))));  // inside out

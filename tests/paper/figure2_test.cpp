@@ -62,6 +62,7 @@ struct Staircase {
 
 Staircase climb(Variant v) {
   v.simulation.precision = Precision::double_precision;
+  v.simulation.step = 2.2e-3;  // [s]; what the force grows by in a step is measured by it
   BuiltVariant built = build_variant(v, {});
   Simulation& simulation = built.simulation;
   const ConstraintId tool = built.tools.front();
