@@ -71,10 +71,16 @@ void StepControl::refuse_above(double stable) const {
 /// its stiffening times as large.
 std::vector<double> StepControl::viscosity_at(std::span<const double> stiffening) const {
   std::vector<double> factor(body_.blocks.size(), 1.0);
-  for (std::size_t b = 0; drag_ == Drag::at_once && b < factor.size(); ++b) {
-    factor[b] = is_small(body_.blocks[b]) ? -1.0 : stiffening[b] - 2.0;
+  for (std::size_t b = 0; b < factor.size(); ++b) {
+    if (!is_small(body_.blocks[b])) factor[b] = stiffening[b];
+    if (drag_ == Drag::at_once) factor[b] -= 2.0;
   }
   return factor;
+}
+
+/// Whether viscosity that lags grows with the level of some block.
+bool StepControl::drag_thickens() const {
+  return drag_ == Drag::lags && std::any_of(body_.blocks.begin(), body_.blocks.end(), thickens);
 }
 
 /// The same searches follow from the same start: those that were made then need not be made again.
@@ -110,11 +116,14 @@ double StepControl::largest_damping_rate() const {
 
 /// h* at this level from that at the validated one or at rest, whichever gives more; from below. With G ≤ g M a step h that
 /// the damped body bears has φ(h) of the undamped one ≤ 4 + 2 h g, which is shortened away; where g is large, h/r says more.
+/// Where C grows as K does, (h/r)² r K + 2 (h/r) r C ≤ h² K + 2 h C of the undamped one.
 StepControl::Limits StepControl::bound_at(std::span<const double> stiffening) const {
   const auto from = [&](const Limits& limits, const std::vector<double>& level) {
     double r = 1.0;
     for (std::size_t b = 0; b < level.size(); ++b) r = std::max(r, stiffening[b] / level[b]);
-    return limits.pace * std::max(1.0 / r, 1.0 / (std::sqrt(r) * (1.0 + 0.5 * limits.pace * damping_rate_)));
+    const double undamped = 1.0 + 0.5 * limits.pace * damping_rate_;
+    if (drag_thickens()) return r > 1.0 ? limits.pace / (r * undamped) : limits.pace;
+    return limits.pace * std::max(1.0 / r, 1.0 / (std::sqrt(r) * undamped));
   };
   const double h = std::max(from(limits_, validated_), from(rest_limits_, rest_level_));
   return {h, h};
@@ -134,9 +143,10 @@ void StepControl::mesh_changed(std::span<const double> nodal_damping, const Body
   if (part_bound_ == nullptr) prepare_changes(stars);
   part_bound_->change(change);
   const double part = part_bound_->step();
-  // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C
+  // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C, and h/r where C is r times as large, too
   const auto bound = [&](Limits& limits, const std::vector<double>& level) {
-    const double h = part / std::sqrt(*std::max_element(level.begin(), level.end()));
+    const double r = *std::max_element(level.begin(), level.end());
+    const double h = part / (drag_thickens() ? r : std::sqrt(r));
     limits = {std::min(limits.stable, h), std::min(limits.pace, h)};
   };
   bound(limits_, validated_);
@@ -164,8 +174,9 @@ StepControl::Limits StepControl::scaled_from_search(std::span<const double> leve
   double r = 0.0, c = 0.0, d = std::numeric_limits<double>::infinity();
   for (std::size_t b = 0; b < level.size(); ++b) {
     const double *to = &now[5 * b], *from = &searched_.numbers[5 * b];
-    r = std::max(r, level[b] / searched_.level[b] * std::max(ratio(to[0], from[0]), ratio(to[1], from[1])));
-    if (drag_ == Drag::lags) c = std::max({c, ratio(to[2], from[2]), ratio(to[3], from[3])});
+    const double rise = level[b] / searched_.level[b], thicker = is_small(body_.blocks[b]) ? 1.0 : rise;
+    r = std::max(r, rise * std::max(ratio(to[0], from[0]), ratio(to[1], from[1])));
+    if (drag_ == Drag::lags) c = std::max({c, thicker * ratio(to[2], from[2]), thicker * ratio(to[3], from[3])});
     d = std::min(d, to[4] / from[4]);
   }
   double s = std::max(std::sqrt(r / d), c / d);

@@ -140,6 +140,7 @@ class StepControl {
   Limits limits_at(std::span<const double> stiffening);
   Limits search(std::span<const double> stiffening);
   void forget_searches() { searches_.clear(), searches_made_ = 0; }
+  bool drag_thickens() const;
   Limits bound_at(std::span<const double> stiffening) const;
   [[noreturn]] void refuse_above(double stable) const;
   bool rises(std::span<const double> stiffening, double rise);

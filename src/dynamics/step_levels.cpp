@@ -69,7 +69,7 @@ Beside StepControl::beside_at(std::span<const double> level) {
   if (levels_.empty()) return {};
   std::vector<char> viscous(body_.blocks.size(), 0);
   for (std::size_t b = 0; b < viscous.size(); ++b) {
-    viscous[b] = drag_ == Drag::at_once && !is_small(body_.blocks[b]) && body_.blocks[b].viscous.mu > 0.0 ? 1 : 0;
+    viscous[b] = thickens(body_.blocks[b]) ? 1 : 0;
   }
   return levels_.beside(level, viscous);
 }

@@ -21,6 +21,11 @@ inline bool is_linear(const TissueBlock& block) {
   return is_small(block) && std::holds_alternative<ConstantLaw>(t.law) && !t.lambda_law && !t.mu_law;
 }
 
+/// Whether its viscous matrix grows with what it is stretched by: its level of stiffness is above that, too.
+inline bool thickens(const TissueBlock& block) {
+  return !is_small(block) && (block.viscous.mu > 0.0 || block.viscous.lambda > 0.0);
+}
+
 /// Softened tissue keeps the h* of its rest stiffness.
 inline std::vector<double> at_least_one(std::span<const double> stiffening) {
   std::vector<double> level(stiffening.begin(), stiffening.end());
