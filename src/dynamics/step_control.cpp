@@ -30,6 +30,7 @@ StepControl::StepControl(const Body& body, std::span<const double> nodal_damping
   exact_ = search_is_needed();
   validated_ = rest_level_ = at_least_one(stiffening);
   limits_ = rest_limits_ = limits_at(validated_);
+  keep_guess();
   searched_ = {rest_limits_, rest_level_, block_numbers()};
   step_ = options.step.value_or(kSafety * limits_.pace);
   if (enforce_ && step_ > limits_.stable) refuse_above(limits_.stable);
@@ -136,7 +137,10 @@ void StepControl::prepare_changes(const detail::VertexStars& stars) {
 
 void StepControl::mesh_changed(std::span<const double> nodal_damping, const BodyChange& change,
                                const detail::VertexStars& stars) {
-  if (nodal_damping.size() != nodal_damping_.size()) guess_ = pace_guess_ = {};
+  if (nodal_damping.size() != nodal_damping_.size()) {
+    guess_ = pace_guess_ = {};
+    keep_guess();
+  }
   nodal_damping_ = nodal_damping;
   damping_rate_ = largest_damping_rate();
   forget_searches();
@@ -194,6 +198,7 @@ void StepControl::choose_limits(std::span<const double> stiffening, bool undefor
   if (exact_) {
     guess_ = pace_guess_ = {};
     rest_limits_ = limits_at(rest_level_);
+    keep_guess();
     limits_ = validated_ == rest_level_ ? rest_limits_ : limits_at(validated_);
     searched_ = {rest_limits_, rest_level_, block_numbers()};
     return;
@@ -209,11 +214,13 @@ void StepControl::choose_limits(std::span<const double> stiffening, bool undefor
 }
 
 StepControl::Chosen StepControl::chosen() const {
-  return {guess_, pace_guess_, limits_, rest_limits_, validated_, rest_level_, searched_, exact_, stiff_};
+  return {guess_,     pace_guess_, rest_guess_, rest_pace_guess_, limits_, rest_limits_,
+          validated_, rest_level_, searched_,   exact_,           stiff_};
 }
 
 void StepControl::restore(Chosen c) {
   guess_ = std::move(c.guess), pace_guess_ = std::move(c.pace_guess);
+  rest_guess_ = std::move(c.rest_guess), rest_pace_guess_ = std::move(c.rest_pace_guess);
   limits_ = c.limits, rest_limits_ = c.rest_limits;
   validated_ = std::move(c.validated), rest_level_ = std::move(c.rest_level);
   searched_ = std::move(c.searched), exact_ = c.exact;
@@ -252,8 +259,9 @@ void StepControl::save(CheckpointWriter& out) const {
   for (const auto* list : {&validated_, &rest_level_, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
     out.put(*list);
   }
-  out.put(guess_.mode), out.put(pace_guess_.mode);
-  out.put(guess_.step), out.put(pace_guess_.step);
+  for (const StabilityGuess* g : {&guess_, &pace_guess_, &rest_guess_, &rest_pace_guess_}) {
+    out.put(g->mode), out.put(g->step);
+  }
   out.put(probe_), out.put(since_probe_), out.put(probes_);
   levels_.save(out);
 }
@@ -265,8 +273,7 @@ void StepControl::load(CheckpointReader& in) {
   for (auto* list : {&validated_, &rest_level_, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
     in.get_same_size(*list);
   }
-  in.get(guess_.mode), in.get(pace_guess_.mode);
-  in.get(guess_.step), in.get(pace_guess_.step);
+  for (StabilityGuess* g : {&guess_, &pace_guess_, &rest_guess_, &rest_pace_guess_}) in.get(g->mode), in.get(g->step);
   in.get(probe_), in.get(since_probe_), in.get(probes_);
   searches_.clear(), searches_made_ = kSearchesKept;
   levels_.load(in);

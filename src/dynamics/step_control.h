@@ -118,7 +118,7 @@ class StepControl {
   };
   /// How steps are chosen, all that a refused change of tissues leaves as it was.
   struct Chosen {
-    StabilityGuess guess, pace_guess;
+    StabilityGuess guess, pace_guess, rest_guess, rest_pace_guess;
     Limits limits, rest_limits;
     std::vector<double> validated, rest_level;
     Searched searched;
@@ -156,6 +156,7 @@ class StepControl {
   double slack(const StiffElement& stiff, double step) const;
   void be_cautious(double rise);
   void start_anew();
+  void keep_guess() { rest_guess_ = guess_, rest_pace_guess_ = pace_guess_; }
   void list_from();
   void settle();
   void probe();
@@ -169,7 +170,8 @@ class StepControl {
   bool automatic_, enforce_, exact_asked_, exact_;
   bool scales_masses_;
   StabilityGuess guess_, pace_guess_;
-  std::vector<Search> searches_;  ///< the first few, for a state that is set again and again
+  StabilityGuess rest_guess_, rest_pace_guess_;  ///< from the search at rest: where those of a new start begin
+  std::vector<Search> searches_;                 ///< the first few, for a state that is set again and again
   std::size_t searches_made_ = 0;
   double step_ = 0.0;
   Limits limits_;

@@ -29,9 +29,9 @@ constexpr std::size_t kFewTets = 64, kFewOf = 4;  ///< tets with levels of their
 
 }  // namespace
 
-/// What was seen and guessed on the way is forgotten.
+/// What was seen and guessed on the way is forgotten; the search at rest is not.
 void StepControl::start_anew() {
-  guess_ = pace_guess_ = {};
+  guess_ = rest_guess_, pace_guess_ = rest_pace_guess_;
   searches_made_ = 0;
   seen_.assign(body_.blocks.size(), 0.0);
   lately_ = seen_;
