@@ -167,10 +167,6 @@ bool is_free(const ChainBatches& chains, std::size_t batch, std::size_t lane, st
   return true;
 }
 
-}  // namespace
-
-namespace {
-
 /// How many fans are kept: whole batches of closed ones, then of any. What is left over makes chains.
 void choose_fans(ChainBatches& out, std::vector<detail::TetFan>& fans, std::size_t lanes) {
   const auto closed = std::count_if(fans.begin(), fans.end(), [](const detail::TetFan& f) { return f.closed; });

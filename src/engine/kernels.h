@@ -101,7 +101,8 @@ struct Kernels {
   void (*narrow_chosen)(const double* state, const std::uint32_t* which, const double* origin, std::size_t n,
                         float* out) = nullptr;
 
-  /// Batches [begin, begin + n): gradients, and viscous stress where `with_viscosity`.
+  /// Batches [begin, begin + n): gradients, and viscous stress where there is viscosity. Where there are fans, `begin`
+  /// is even, here and in push, and n is unless they are the last.
   void (*gather_elastic)(const Elements&, std::size_t begin, std::size_t n, Block&) = nullptr;
   void (*gather_viscous)(const Elements&, std::size_t begin, std::size_t n, Block&) = nullptr;
   /// Gradients of displacement, and of velocity into `rate`, [item][9][lane].
