@@ -134,6 +134,8 @@ class StepControl {
   void join_beside() { beside_ = {tools_ + stiff_.k, stiff_.c}; }
   Beside beside_at(std::span<const double> level);
   double pace_of(const Limits& limits, const Beside& beside, std::size_t above) const;
+  double pace_above(std::span<const double> level, double enough);
+  bool may_gain() const;
   void take_stiff();
   double with_beside(double step, const Beside& beside) const;
   std::vector<double> viscosity_at(std::span<const double> stiffening) const;

@@ -20,7 +20,7 @@ constexpr double kChangeOfSlack = 0.04;       ///< more of it for one that could
 constexpr double kCloseToLevel = 0.5;         ///< of its block's level, from which a tet's change of shape counts
 constexpr double kMostAhead = 4.0;            ///< how far a level runs ahead of a rise
 constexpr double kWorthAChange = 1.05;        ///< how much longer a step makes another level of the blocks worth it
-constexpr std::uint64_t kLongestProbe = 256;  ///< [steps]
+constexpr std::uint64_t kLongestProbe = 1024;  ///< [steps]
 constexpr double kLadder = 0.9;               ///< of one level that is tried to the next
 constexpr int kMostInVain = 8;                ///< steps of that ladder without a better one
 constexpr double kCostOfLevels = 2.0;         ///< of a tet with a level of its own, over that of a tet, a step
@@ -132,6 +132,7 @@ void StepControl::take_base(std::vector<double> level, const Limits& limits) {
   limits_ = limits;
   validated_ = std::move(level);
   if (automatic_) step_ = kSafety * limits_.pace;
+  levels_.forget_below(validated_);
   take_stiff();
 }
 
@@ -171,8 +172,10 @@ bool StepControl::is_crowded() const {
 bool StepControl::rises(std::span<const double> stiffening, double rise) {
   const double before = with_beside(limits_.pace, stiff_);
   levels_.raise(kMostAhead);
-  take_stiff();
-  if (!automatic_) return bears(stiffening);
+  if (!automatic_) {
+    take_stiff();
+    return bears(stiffening);
+  }
   unchecked_ = false;
   std::vector<double> level = level_of(stiffening, std::min(rise, kMostAhead));
   for (std::size_t b = 0; b < level.size(); ++b) {
@@ -181,14 +184,15 @@ bool StepControl::rises(std::span<const double> stiffening, double rise) {
   const bool crowded = is_crowded();
   const std::size_t above = levels_.count_above(validated_);
   const Limits all = bound_at(level);
-  const double few = crowded ? pace_of(bound_at(crowd_), beside_at(crowd_), levels_.count_above(crowd_))
-                             : pace_of(limits_, stiff_, above);
-  if (all.pace >= few) {
+  const std::vector<double>& left = crowded ? crowd_ : validated_;
+  if (all.pace >= pace_above(left, all.pace)) {
     take_base(level, exact_ ? limits_at(level) : all);
   } else if (crowded) {
     choose_base(crowd_, true);
   } else if (is_crowd(above)) {
     choose_base(validated_, false);
+  } else {
+    take_stiff();
   }
   const double shorter = before / with_beside(limits_.pace, stiff_);
   be_cautious(std::min(rise, shorter * shorter));
@@ -217,6 +221,14 @@ double StepControl::pace_of(const Limits& limits, const Beside& beside, std::siz
   return with_beside(limits.pace, beside) / (1.0 + kCostOfLevels * share);
 }
 
+/// The same with the blocks at a level and the stiffer tets beside it, whose part is reckoned only where it matters: 0 where
+/// that many are dearer than `enough` in any case.
+double StepControl::pace_above(std::span<const double> level, double enough) {
+  const Limits limits = bound_at(level);
+  const std::size_t above = levels_.count_above(level);
+  return pace_of(limits, {}, above) > enough ? pace_of(limits, beside_at(level), above) : 0.0;
+}
+
 /// Chooses the level of the blocks at which time goes on fastest, from the tets that have levels of their own.
 /// @param least  it may be  @param forced  whether the present one is too low
 void StepControl::choose_base(const std::vector<double>& least, bool forced) {
@@ -229,8 +241,7 @@ void StepControl::choose_base(const std::vector<double>& least, bool forced) {
   for (double share = 1.0; in_vain < kMostInVain; share *= kLadder) {
     std::vector<double> level = least;
     for (std::size_t b = 0; b < level.size(); ++b) level[b] = std::max(least[b], share * most[b]);
-    const std::size_t above = levels_.count_above(level);
-    const double pace = pace_of(bound_at(level), beside_at(level), above);
+    const double pace = pace_above(level, fastest);
     in_vain = pace > fastest ? 0 : in_vain + 1;
     if (pace > fastest) fastest = pace, best = level;
     if (level == least) break;
@@ -240,6 +251,11 @@ void StepControl::choose_base(const std::vector<double>& least, bool forced) {
   } else {
     take_stiff();
   }
+}
+
+/// Whether another level of the blocks could make steps longer: at most those of tissue at rest.
+bool StepControl::may_gain() const {
+  return is_bounded() && rest_limits_.pace > kWorthAChange * with_beside(limits_.pace, stiff_);
 }
 
 /// Asks for all that is stiff, or chooses by what was told.
@@ -252,7 +268,7 @@ void StepControl::probe() {
     list_from();
     return;
   }
-  if (++since_probe_ < probe_ || !is_bounded()) return;
+  if (++since_probe_ < probe_ || !may_gain()) return;
   since_probe_ = 0;
   for (std::size_t b = 0; b < validated_.size(); ++b) probes_ = probes_ || validated_[b] > kRoom * rest_level_[b];
   list_from();

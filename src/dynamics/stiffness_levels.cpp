@@ -104,7 +104,7 @@ std::vector<double> StiffnessLevels::largest(std::span<const double> base) const
 
 /// Members by element, so that sums over them do not depend on who came first.
 void StiffnessLevels::keep_ordered() {
-  std::sort(members_.begin(), members_.end(), [](const Member& a, const Member& b) { return a.element < b.element; });
+  std::ranges::sort(members_, {}, &Member::element);
   for (std::size_t i = 0; i < members_.size(); ++i) place_[members_[i].element] = static_cast<std::uint32_t>(i + 1);
 }
 
@@ -117,6 +117,15 @@ void StiffnessLevels::settle() {
   }
   std::erase_if(members_, [&](const Member& m) { return place_[m.element] == 0; });
   keep_ordered();
+}
+
+void StiffnessLevels::forget_below(std::span<const double> base) {
+  const std::size_t forgotten = std::erase_if(members_, [&](const Member& m) {
+    const bool borne = !(m.ratio > base[m.block]);
+    if (borne) place_[m.element] = 0;
+    return borne;
+  });
+  if (forgotten > 0) keep_ordered();
 }
 
 std::size_t StiffnessLevels::count_above(std::span<const double> base) const {

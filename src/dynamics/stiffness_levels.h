@@ -51,6 +51,8 @@ class StiffnessLevels {
   std::vector<double> largest(std::span<const double> base) const;
   /// Lets levels come down to the stiffest moment since the last time, with room.
   void settle();
+  /// Forgets tets that the level of their block bears: they are told again where they rise above it.
+  void forget_below(std::span<const double> base);
   /// What the tets above `base` take. @param viscous  per block, whether viscosity grows with them
   /// Cost: 0.1 µs a tet above the base.
   Beside beside(std::span<const double> base, const std::vector<char>& viscous);
