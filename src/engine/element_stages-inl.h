@@ -265,13 +265,14 @@ HWY_INLINE void push_run(const Elements& e, std::size_t batch, float* forces, co
   const F zero = hn::Zero(Lanes());
   Xyz f4{zero, zero, zero};
   const float *s4 = spoke(rest, 4), *s2 = spoke(rest, 2), *s3 = spoke(rest, 3), *s5 = spoke(rest, 5);
+  // What is on a vertex is left there while the tet after the next is reckoned.
   Xyz f2 = around.between(s4, s2, rest, 0, stress_of(item, rest_scale(rest, 0)), f4);
-  if constexpr (R != Run::closed_fan) around.leave(index, 4, f4);
   Xyz f3 = around.between(s2, s3, rest, 1, stress_of(item + 1, rest_scale(rest, 1)), f2);
-  around.leave(index, 2, f2);
+  if constexpr (R != Run::closed_fan) around.leave(index, 4, f4);
   Xyz f5 = around.between(s3, s5, rest, 2, stress_of(item + 2, rest_scale(rest, 2)), f3);
-  around.leave(index, 3, f3);
+  around.leave(index, 2, f2);
   if constexpr (R == Run::chain) {
+    around.leave(index, 3, f3);
     around.leave(index, 5, f5);
   } else {
     const std::uint16_t* next = index_of(e, batch + 1);
@@ -279,10 +280,11 @@ HWY_INLINE void push_run(const Elements& e, std::size_t batch, float* forces, co
     const float *n2 = spoke(next_rest, 2), *n3 = spoke(next_rest, 3);
     const float* n5 = R == Run::closed_fan ? s4 : spoke(next_rest, 5);
     Xyz g2 = around.between(s5, n2, next_rest, 0, stress_of(item + 3, rest_scale(next_rest, 0)), f5);
-    around.leave(index, 5, f5);
+    around.leave(index, 3, f3);
     Xyz g3 = around.between(n2, n3, next_rest, 1, stress_of(item + 4, rest_scale(next_rest, 1)), g2);
-    around.leave(next, 2, g2);
+    around.leave(index, 5, f5);
     const Xyz g5 = around.between(n3, n5, next_rest, 2, stress_of(item + 5, rest_scale(next_rest, 2)), g3);
+    around.leave(next, 2, g2);
     around.leave(next, 3, g3);
     if constexpr (R == Run::closed_fan) {
       around.leave(index, 4, sum(f4, g5));

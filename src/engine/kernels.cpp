@@ -5,7 +5,9 @@
 #define HWY_TARGET_INCLUDE "engine/kernels.cpp"
 #include <hwy/foreach_target.h>
 
-#include <algorithm>
+#include <array>
+#include <utility>
+#include <variant>
 
 #include "engine/counted.h"
 #include "engine/edge_stages-inl.h"
@@ -17,8 +19,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace glisson::engine::HWY_NAMESPACE {
 
-/// The order of StiffnessLaw's alternatives.
-constexpr LawStage kLaws[]{constant_law, step_law, linear_law, polynomial_law, exponential_law, table_law};
+template <std::size_t... K>
+constexpr auto store_laws(std::index_sequence<K...>) {
+  return std::array<LawStage, sizeof...(K)>{store_law<K>...};
+}
+template <std::size_t... K>
+constexpr auto watch_laws(std::index_sequence<K...>) {
+  return std::array<Kernels::WatchLaw, sizeof...(K)>{watch_law<K>...};
+}
+using LawNumbers = std::make_index_sequence<std::variant_size_v<StiffnessLaw>>;
 
 /// The stages of large deformation (response_kernels.cpp).
 const ResponseKernels* response_table();
@@ -35,8 +44,8 @@ const Kernels* kernels() {
       .gather_rates = gather_rates,
       .measure = {measure<DeformationMeasure::intensity>, measure<DeformationMeasure::one_minus_q>,
                   measure<DeformationMeasure::regular_mean_ratio>},
-      .law = std::to_array(kLaws),
-      .watch_young = watch_young,
+      .law = store_laws(LawNumbers()),
+      .watch_law = watch_laws(LawNumbers()),
       .watch_lame = watch_lame,
       .push_elastic = push<Push::elastic>,
       .push_viscous = push<Push::viscous>,

@@ -57,9 +57,10 @@ struct LaneLaw {
 };
 LaneLaw lane_law(const StiffnessLaw& law, double base, double unit);
 
-/// What the laws of a submesh have come to: stiffness + √slope_squared bounds tangent over rest stiffness.
+/// What the laws of a submesh have come to, lane by lane: stiffness + √slope_squared bounds tangent over rest stiffness.
 struct StiffnessSeen {
-  float stiffness = 0, slope_squared = 0;
+  alignas(64) std::array<float, kMaxLanes> stiffness{};
+  alignas(64) std::array<float, kMaxLanes> slope_squared{};
 };
 
 /// One law on an array: value[i] = M(x[i]) and slope[i] = M'(x[i]).
@@ -111,9 +112,12 @@ struct Kernels {
   using Measure = bool (*)(const Elements&, std::size_t begin, std::size_t n, Block&);
   std::array<Measure, 3> measure{};                               ///< by DeformationMeasure
   std::array<LawStage, std::variant_size_v<StiffnessLaw>> law{};  ///< by index in StiffnessLaw
-  /// Largest value and largest slope² y of a block: of a law on E, and of laws on λ and μ.
-  void (*watch_young)(const Block&, const LaneTissue&, std::size_t n, StiffnessSeen&) = nullptr;
-  void (*watch_lame)(const Block&, const LaneTissue&, std::size_t n, StiffnessSeen&) = nullptr;
+  /// Values of a law on E into the block, by index in StiffnessLaw; what they and their slopes have come to is added to what
+  /// was seen. @return whether the bound of a tet may be above the limit
+  using WatchLaw = bool (*)(const LaneLaw&, Block&, std::size_t n, float limit, StiffnessSeen&);
+  std::array<WatchLaw, std::variant_size_v<StiffnessLaw>> watch_law{};
+  /// The same of laws on λ and μ, whose values and slopes are in the block.
+  bool (*watch_lame)(const Block&, const LaneTissue&, std::size_t n, float limit, StiffnessSeen&) = nullptr;
   /// Stress and forces of a block, added to the force records: the elastic ones, the viscous ones (to theirs), or
   /// both as one.
   void (*push_elastic)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;

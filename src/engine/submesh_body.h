@@ -72,7 +72,8 @@ class SubmeshBody final : public MovingBody {
   /// What a task found.
   struct Findings {
     bool finite = true, inverted = false;
-    StiffnessSeen stiffness;
+    StiffnessSeen seen;
+    double stiffening = 0.0;
     float longest_edge_squared = 0.0F;
     std::vector<std::uint32_t> tets;
     std::vector<StiffElement> stiff;
@@ -122,10 +123,10 @@ class SubmeshBody final : public MovingBody {
   void spread_volume(std::size_t s, Scratch& scratch);
   void join_volume(std::size_t s);
   Elements elements_of(const Submesh& part, Scratch& scratch) const;
-  void measure_block(const Elements& elements, const Plan& plan, std::size_t begin, std::size_t n, Block& block,
-                     Findings& found) const;
+  void run_laws(const Plan& plan, std::size_t values, Block& block) const;
+  bool watch_laws(const Plan& plan, std::size_t values, float limit, Block& block, StiffnessSeen& seen) const;
   double list_limit(std::size_t block) const;
-  void list_by_laws(const Submesh& part, std::size_t batch, std::size_t n, const Plan& plan, const Block& block,
+  void list_by_laws(const Submesh& part, std::size_t batch, std::size_t n, const Plan& plan, Block& block,
                     Findings& found) const;
   void list_response(const Submesh& part, std::size_t batch, std::size_t n, const ResponseBlock& out,
                      Findings& found) const;

@@ -69,13 +69,14 @@ void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Fin
       const std::uint16_t* index = part.chains.index.data() + b * kChainVertices * kernels_.lanes;
       stages.mean_of_vertices(index, n, shared_volumes_[s].theta.data(), scratch.mean);
     }
-    measure_block(elements, plan, b, n, scratch.block, found);
+    if (kernels_.measure[plan.measure](elements, b, n, scratch.block)) found.inverted = true;
+    run_laws(plan, n * tets, scratch.block);
     large.respond(items, lanes, to, scratch.block, out);
     if (lanes.fibre > 0.0F) stages.fibres(items, lanes, out);
     if (lanes.branches > 0) stages.maxwell(items, lanes, large.maxwell, out);
     if (lanes.viscous) stages.viscous(items, lanes, lanes.branches > 0, out);
     const float stiffest = stages.stiffest(items.items, out);
-    found.stiffness.stiffness = std::max(found.stiffness.stiffness, stiffest);
+    found.stiffening = std::max(found.stiffening, double(stiffest));
     if (double(stiffest) > list_limit(part.block)) list_response(part, b, n, out, found);
     if (plan.viscous && !split) stages.merge(items.items, out);
     kernels_.push_piola(elements, b, n, out.piola, scratch.elastic.data());

@@ -1,5 +1,6 @@
 // submesh_step.cpp — one step of a body of submeshes: the tasks drawn in submesh_body.h.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,8 +14,16 @@ namespace {
 constexpr std::size_t kPrefetchTets = 16384;  ///< rest data of more do not fit a second-level cache of 1 MiB
 /// A linear submesh with large gradients is looked over for inverted tets once in so many steps.
 constexpr std::uint64_t kInversionPeriod = 16;
+constexpr double kFloatRoom = 1e-5;  ///< of a limit in float, below that in double
 
-double bound_of(const StiffnessSeen& seen) { return double(seen.stiffness) + std::sqrt(double(seen.slope_squared)); }
+double largest(std::array<float, kMaxLanes> lanes) {
+  for (std::size_t half = kMaxLanes / 2; half > 0; half /= 2) {
+    for (std::size_t i = 0; i < half; ++i) lanes[i] = std::max(lanes[i], lanes[i + half]);
+  }
+  return double(lanes[0]);
+}
+
+double bound_of(const StiffnessSeen& seen) { return largest(seen.stiffness) + std::sqrt(largest(seen.slope_squared)); }
 
 }  // namespace
 
@@ -50,20 +59,25 @@ Elements SubmeshBody::elements_of(const Submesh& part, Scratch& scratch) const {
           .mu_law = plans_[part.block].laws - 1};
 }
 
-/// The measure of each tet of a block and what the laws make of it.
-void SubmeshBody::measure_block(const Elements& elements, const Plan& plan, std::size_t begin, std::size_t n,
-                                Block& block, Findings& found) const {
-  if (kernels_.measure[plan.measure](elements, begin, n, block)) found.inverted = true;
-  const std::size_t values = kChainTets * n * kernels_.lanes;
+/// Values and slopes of the laws at the measures of a block.
+void SubmeshBody::run_laws(const Plan& plan, std::size_t values, Block& block) const {
   for (std::size_t l = 0; l < plan.laws; ++l) {
     kernels_.law[plan.law[l].kind](plan.law[l], block.x, values, block.value[l], block.slope[l]);
   }
 }
 
+/// The same for moduli of a small strain. @return whether elements may have become so stiff that they are to be listed
+bool SubmeshBody::watch_laws(const Plan& plan, std::size_t values, float limit, Block& block, StiffnessSeen& seen) const {
+  if (plan.laws == 1) return kernels_.watch_law[plan.law[0].kind](plan.law[0], block, values, limit, seen);
+  run_laws(plan, values, block);
+  return kernels_.watch_lame(block, plan.tissue, values, limit, seen);
+}
+
 /// Lists elements of a block of batches that laws on moduli have made stiff.
 void SubmeshBody::list_by_laws(const Submesh& part, std::size_t batch, std::size_t n, const Plan& plan,
-                               const Block& block, Findings& found) const {
+                               Block& block, Findings& found) const {
   const std::size_t tets = kernels_.lanes * kChainTets;
+  run_laws(plan, n * tets, block);
   const std::uint32_t* element = part.chains.element.data() + batch * tets;
   const double mu = 1.0 / double(plan.tissue.rest_mu), bulk = mu / (2.0 * double(plan.tissue.bulk_over_two_mu));
   const double limit = list_limit(part.block);
@@ -84,20 +98,18 @@ void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratc
   const Elements elements = elements_of(part, scratch);
   const auto gather = plan.viscous ? kernels_.gather_viscous : kernels_.gather_elastic;
   const auto push = plan.viscous && !split ? kernels_.push_merged : kernels_.push_elastic;
-  const auto look = plan.laws == 2 ? kernels_.watch_lame : kernels_.watch_young;
+  const auto measure = kernels_.measure[plan.measure];
+  const auto limit = static_cast<float>(list_limit(part.block) * (1.0 - kFloatRoom));
   Block& block = scratch.block;
   for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
     const std::size_t n = std::min(kBlockBatches, part.chains.count - b), values = kChainTets * n * kernels_.lanes;
     gather(elements, b, n, block);
-    measure_block(elements, plan, b, n, block, found);
-    StiffnessSeen seen;
-    look(block, plan.tissue, values, seen);
-    found.stiffness.stiffness = std::max(found.stiffness.stiffness, seen.stiffness);
-    found.stiffness.slope_squared = std::max(found.stiffness.slope_squared, seen.slope_squared);
-    if (bound_of(seen) > list_limit(part.block)) list_by_laws(part, b, n, plan, block, found);
+    if (measure(elements, b, n, block)) found.inverted = true;
+    if (watch_laws(plan, values, limit, block, found.seen)) list_by_laws(part, b, n, plan, block, found);
     push(elements, b, n, block);
     if (split) kernels_.push_viscous(elements, b, n, block);
   }
+  found.stiffening = bound_of(found.seen);
 }
 
 void SubmeshBody::push_edges(const Submesh& part, bool split, Scratch& scratch, Findings& found) const {
@@ -111,7 +123,7 @@ void SubmeshBody::push_edges(const Submesh& part, bool split, Scratch& scratch, 
                     .tissue = plan.tissue};
   const auto push = split ? kernels_.edges_split : (plan.viscous ? kernels_.edges_merged : kernels_.edges_elastic);
   found.longest_edge_squared = push(edges);
-  found.stiffness.stiffness = 1.0F;
+  found.stiffening = 1.0;
 }
 
 /// Whether a linear submesh is to be looked over for inverted tets. |H| < 1 leaves no room for J ≤ 0; beyond
@@ -250,7 +262,7 @@ void SubmeshBody::gather_findings(bool accounted) {
     advance_.finite = advance_.finite && found.finite;
     advance_.inverted.insert(advance_.inverted.end(), found.tets.begin(), found.tets.end());
     double& r = advance_.stiffening[submeshes_.parts[s].block];
-    r = std::max(r, bound_of(found.stiffness));
+    r = std::max(r, found.stiffening);
     advance_.stiff.insert(advance_.stiff.end(), found.stiff.begin(), found.stiff.end());
     if (accounted) book(found.work);
   }
