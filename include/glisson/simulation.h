@@ -90,7 +90,9 @@ struct SimulationOptions {
   /// some ms for a thousand tets and is exact, or take a bound from the last h* at once, at most √r smaller where
   /// the tissue has become r times stiffer (r with nodal damping). For real time: false.
   bool exact_steps = true;
-  /// Makes ready for remove_tets and split_faces at once, instead of at the first of them (O(tets), 34 bytes a tet).
+  /// Makes ready for remove_tets and split_faces at once, instead of at the first of them (O(tets), 34 bytes a tet), and lays
+  /// bodies of more than 30 000 tets out in smaller parts, which are sooner made anew where they are cut; steps take up to a
+  /// third longer for that.
   bool mesh_changes = false;
 };
 

@@ -18,8 +18,9 @@ std::unique_ptr<MovingBody> make_moving_body(const Body& body, std::span<const d
     info = info_of(*moving, body);
     return moving;
   }
-  auto moving =
-      std::make_unique<engine::SubmeshBody>(body, nodal_damping, engine::SubmeshOptions{.threads = options.threads});
+  const engine::SubmeshOptions submeshes{
+      .threads = options.threads, .submesh_tets = engine::submesh_tets(body.elements.size(), options.mesh_changes)};
+  auto moving = std::make_unique<engine::SubmeshBody>(body, nodal_damping, submeshes);
   info = info_of(*moving, body);
   return moving;
 }

@@ -112,7 +112,7 @@ void write_tet(const Body& body, ChainBatches& out, const Place& to, std::uint32
                std::size_t lanes) {
   const std::uint16_t* index = out.index.data() + to.batch * kChainVertices * lanes + to.lane;
   const auto position = [&](std::size_t vertex) {
-    return rest_position(body, element, local, index[vertex * lanes] / kIndexScale);
+    return rest_position(body, element, local, index[vertex * lanes]);
   };
   const auto rest = [&](std::size_t batch) { return out.rest.data() + batch * kChainRest * lanes + to.lane; };
   const auto put = [&](std::size_t batch, std::size_t row, const Vec3d& v) {
@@ -150,7 +150,7 @@ void resize(ChainBatches& out, std::size_t count, std::size_t lanes) {
 void write_chain(ChainBatches& out, std::size_t batch, std::size_t lane, std::size_t lanes, const Listed& list,
                  const Chain& chain) {
   for (std::size_t a = 0; a < kChainVertices; ++a) {
-    out.index[(batch * kChainVertices + a) * lanes + lane] = static_cast<std::uint16_t>(kIndexScale * chain.vertex[a]);
+    out.index[(batch * kChainVertices + a) * lanes + lane] = static_cast<std::uint16_t>(chain.vertex[a]);
   }
   for (std::size_t which = 0; which < kChainTets; ++which) {
     const std::uint32_t t = chain.tet[which];

@@ -82,8 +82,8 @@ EdgeBatches make_edge_batches(const Body& body, const TissueBlock& block, std::s
   out.tensor.assign(out.count * 9 * lanes, 0.0F);
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const std::size_t batch = e % out.count, lane = e / out.count;
-    out.index[batch * 2 * lanes + lane] = static_cast<std::uint16_t>(kIndexScale * edges[e].i);
-    out.index[(batch * 2 + 1) * lanes + lane] = static_cast<std::uint16_t>(kIndexScale * edges[e].j);
+    out.index[batch * 2 * lanes + lane] = static_cast<std::uint16_t>(edges[e].i);
+    out.index[(batch * 2 + 1) * lanes + lane] = static_cast<std::uint16_t>(edges[e].j);
     for (std::size_t k = 0; k < 9; ++k) {
       out.tensor[(batch * 9 + k) * lanes + lane] = static_cast<float>(edges[e].tensor(k / 3, k % 3));
     }
@@ -97,7 +97,7 @@ using LocalEdge = std::pair<std::uint32_t, std::uint32_t>;
 
 LocalEdge edge_at(const EdgeBatches& edges, std::size_t k, std::size_t lanes) {
   const std::uint16_t* index = edges.index.data() + k % edges.count * 2 * lanes + k / edges.count;
-  return {index[0] / kIndexScale, index[lanes] / kIndexScale};
+  return {index[0], index[lanes]};
 }
 
 /// Number of an edge that is there: they are sorted, and the lanes after the last are (0, 0).

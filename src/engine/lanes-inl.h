@@ -60,12 +60,11 @@ struct UV {
   HWY_INLINE UV(const Xyz& displacement, const Xyz& velocity) : u(displacement), v(velocity) {}
 };
 
-/// Local vertex indices are stored times kIndexScale, so that one scaled address reaches a 16- or 32-byte record.
 HWY_INLINE const float* state_record(const float* records, std::size_t index) {
-  return records + kStateFloats / kIndexScale * index;
+  return records + kStateFloats * index;
 }
 HWY_INLINE float* force_record(float* records, std::size_t index) {
-  return records + kForceFloats / kIndexScale * index;
+  return records + kForceFloats * index;
 }
 
 #if HWY_TARGET != HWY_SCALAR

@@ -12,7 +12,7 @@
 //             │ interior of 0 │ interior of 1 │  …  │ interface vertices   │
 //             └───────────────┴───────────────┴─────┴──────────────────────┘
 //
-// Each step a task takes one submesh through its own scratch memory, small enough for the first-level cache:
+// Each step a task takes one submesh through its own scratch memory, small enough for the nearest caches:
 //
 //   state ──▶ float records [u.xyz · | v.xyz ·], 32 bytes a local vertex
 //                │ chains, a batch of L lanes at a time                     (L = 16, 8, 4 or 1 by instruction set)
@@ -64,8 +64,7 @@ namespace glisson::engine {
 inline constexpr std::size_t kStateFloats = 8;   ///< float record of a local vertex: u, v
 inline constexpr std::size_t kForceFloats = 4;   ///< force record of a local vertex
 inline constexpr std::size_t kStateDoubles = 8;  ///< state record of a vertex: u, c, v, d
-inline constexpr std::size_t kIndexScale = 4;    ///< factor in stored local indices
-inline constexpr std::size_t kMaxLocalVertices = 65536 / kIndexScale;
+inline constexpr std::size_t kMaxLocalVertices = 65536;
 
 inline constexpr std::size_t kChainVertices = 6;
 inline constexpr std::size_t kChainTets = 3;

@@ -98,6 +98,12 @@ std::vector<Tet> number_locally(const Body& body, const std::vector<std::uint32_
 
 }  // namespace
 
+std::size_t submesh_tets(std::size_t tets, bool changes) {
+  constexpr std::size_t kSubmeshes = 16;
+  constexpr auto kMost = static_cast<std::size_t>(static_cast<double>(kMaxLocalVertices) / 4 / (1 + detail::kPartSlack)) - 1;
+  return changes ? kLeastSubmesh : std::clamp(tets / kSubmeshes, kLeastSubmesh, kMost);
+}
+
 bool is_linear(const TissueBlock& block) {
   return block.tissue.is_tensor_mass() && std::holds_alternative<ConstantLaw>(block.tissue.law) &&
          !block.tissue.lambda_law && !block.tissue.mu_law;
@@ -112,8 +118,8 @@ std::uint32_t Submesh::local_of_record(std::uint32_t record) const {
 void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, Submesh& part, std::size_t lanes) {
   const std::vector<Tet> local = number_locally(body, record_of_vertex, part);
   if (part.local_vertices() > kMaxLocalVertices) {
-    throw std::invalid_argument("submesh: " + std::to_string(part.local_vertices()) + " vertices do not fit 14-bit " +
-                                "numbers, at most " + std::to_string(kMaxLocalVertices) + "; aim at fewer tets");
+    throw std::invalid_argument("submesh: " + std::to_string(part.local_vertices()) + " vertices, above " +
+                                std::to_string(kMaxLocalVertices) + " that can be numbered; aim at fewer tets");
   }
   const TissueBlock& block = body.blocks[part.block];
   part.gradient_reach = gradient_reach(body, part.elements);

@@ -34,7 +34,7 @@ struct ChainBatches {
   std::size_t count = 0;               ///< batches
   std::size_t pairs = 0;               ///< pairs of batches that hold fans
   std::size_t closed_pairs = 0;        ///< of these the first ones, whose fans are all closed
-  LaneVector<std::uint16_t> index;     ///< [batch][6][lane], times kIndexScale
+  LaneVector<std::uint16_t> index;     ///< [batch][6][lane]
   LaneVector<float> rest;              ///< [batch][24][lane]: products of edges at rest [m²], 1/6V [1/m³]
   std::vector<std::uint32_t> element;  ///< [batch][3 tets][lane]: element of the body, kNoElement where none is
 };
@@ -42,7 +42,7 @@ struct ChainBatches {
 /// Edges of a linear tissue in batches (edge_stages-inl.h).
 struct EdgeBatches {
   std::size_t count = 0;
-  LaneVector<std::uint16_t> index;  ///< [batch][2][lane], times kIndexScale
+  LaneVector<std::uint16_t> index;  ///< [batch][2][lane]
   LaneVector<float> tensor;         ///< [batch][9][lane]
 };
 
@@ -81,12 +81,15 @@ struct Submeshes {
   std::vector<std::uint32_t> record_of_vertex;  ///< state record of each vertex of the mesh
 };
 
-/// Tets a submesh aims at.
-inline constexpr std::size_t kSubmeshTets = 2048;
+/// Tets a submesh aims at in a body of so many: as many as possible while there are sixteen submeshes for threads, from
+/// kLeastSubmesh up to where each could lose all connections and its vertices still be numbered.
+/// @param changes  whether the body will be cut: kLeastSubmesh, of which one is soon laid out anew
+std::size_t submesh_tets(std::size_t tets, bool changes);
+inline constexpr std::size_t kLeastSubmesh = 2048;
 
 /// @throws std::invalid_argument if a submesh has more vertices than kMaxLocalVertices
 /// @param lanes  of the kernels that will run on it
-Submeshes build_submeshes(const Body& body, std::size_t lanes, std::size_t target_tets = kSubmeshTets);
+Submeshes build_submeshes(const Body& body, std::size_t lanes, std::size_t target_tets = kLeastSubmesh);
 
 /// Lays the elements of one submesh out anew; its interior range and its elements are given.
 void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, Submesh& part, std::size_t lanes);

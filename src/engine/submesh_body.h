@@ -22,7 +22,7 @@ namespace glisson::engine {
 struct SubmeshOptions {
   int threads = 0;                   ///< 0: as many as pay for this size of body
   const Kernels* kernels = nullptr;  ///< none: those of the best instruction set
-  std::size_t submesh_tets = kSubmeshTets;
+  std::size_t submesh_tets = kLeastSubmesh;
 };
 
 class SubmeshBody final : public MovingBody {

@@ -42,9 +42,7 @@ class LayoutInvariants : public testing::TestWithParam<Layout> {
     return local < part.interior_count ? part.first_interior + local : part.shared.at(local - part.interior_count);
   }
   /// The mesh vertex of a stored local index.
-  std::uint32_t vertex_of(const Submesh& part, std::uint16_t index) const {
-    EXPECT_EQ(index % engine::kIndexScale, 0U);
-    const std::size_t local = index / engine::kIndexScale;
+  std::uint32_t vertex_of(const Submesh& part, std::uint16_t local) const {
     EXPECT_LT(local, part.local_vertices());
     return local < part.local_vertices() ? vertex_of_record_[record_of(part, local)] : engine::kNoElement;
   }
