@@ -11,7 +11,7 @@ namespace glisson {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr std::size_t kRun = 256;  ///< elements of which the least step is kept
+constexpr std::size_t kRun = 32;   ///< elements of which the least step is kept
 constexpr double kRoom = 1.05;     ///< of asked over mass that a bound is made for
 constexpr double kSlack = 0.8;     ///< below this share of what was allowed for a better bound is worth a look
 

@@ -43,9 +43,8 @@ void SubmeshBody::take_out(std::uint32_t element, const detail::VertexStars& sta
     clear_element(part.chains, element, kernels_.lanes);
     return;
   }
-  const auto in_part = [&](std::uint32_t e) { return part_of_element_[e] == p; };
   const auto local = [&](std::uint32_t vertex) { return part.local_of_record(submeshes_.record_of_vertex[vertex]); };
-  reassemble_edges(body_, body_.blocks[part.block], element, stars, in_part, local, part.edges, kernels_.lanes);
+  reassemble_edges(body_, body_.blocks[part.block], element, stars, {part_of_element_, p}, local, part.edges, kernels_.lanes);
 }
 
 /// Takes over the state of vertices that are other points of the material now.

@@ -3,6 +3,8 @@
 #include <hwy/cache_control.h>
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 
 namespace glisson::engine {
 namespace {
@@ -28,9 +30,10 @@ Mat3d edge_tensor(const TissueBlock& block, double volume, const Vec3d& si, cons
 }
 
 /// One element's share in an edge: local vertices, element and its two corners in one number, in the order in which shares
-/// are added up. 14 + 14 bits, 28 for the place of the element, 2 + 2.
+/// are added up. 16 + 16 bits, 28 for the place of the element, 2 + 2.
 using Share = std::uint64_t;
-constexpr unsigned kCornerBits = 2, kPlaceBits = 28, kLocalBits = 14;
+constexpr unsigned kCornerBits = 2, kPlaceBits = 28, kLocalBits = 16;
+static_assert(kMaxLocalVertices <= 1U << kLocalBits);
 
 std::vector<Share> sorted_shares(std::span<const Tet> local) {
   std::vector<Share> shares;
@@ -95,25 +98,43 @@ namespace {
 
 using LocalEdge = std::pair<std::uint32_t, std::uint32_t>;
 
-LocalEdge edge_at(const EdgeBatches& edges, std::size_t k, std::size_t lanes) {
-  const std::uint16_t* index = edges.index.data() + k % edges.count * 2 * lanes + k / edges.count;
+/// Where an edge lies.
+struct Place {
+  std::size_t batch, lane;
+};
+
+LocalEdge edge_at(const EdgeBatches& edges, const Place& at, std::size_t lanes) {
+  const std::uint16_t* index = edges.index.data() + at.batch * 2 * lanes + at.lane;
   return {index[0], index[lanes]};
 }
 
-/// Number of an edge that is there: they are sorted, and the lanes after the last are (0, 0).
-std::size_t find_edge(const EdgeBatches& edges, LocalEdge edge, std::size_t lanes) {
-  std::size_t low = 0, high = edges.count * lanes;
-  while (low < high) {
-    const std::size_t middle = (low + high) / 2;
-    const LocalEdge at = edge_at(edges, middle, lanes);
-    const bool padding = at.first == at.second;
-    if (!padding && at < edge) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
+/// How many of `n` come before each of six, found by halves; all six in step, so that they wait for memory together.
+/// @param comes_before  whether the one numbered so comes before the k-th of the six
+template <class ComesBefore>
+std::array<std::size_t, 6> count_before(std::size_t n, const ComesBefore& comes_before) {
+  std::array<std::size_t, 6> low{};
+  while (n > 0) {
+    const std::size_t half = n / 2;
+    for (std::size_t k = 0; k < low.size(); ++k) low[k] += comes_before(low[k] + half, k) ? n - half : 0;
+    n = half;
   }
   return low;
+}
+
+/// Places of edges that are there. They are sorted, lane after lane, and the lanes after the last are (0, 0).
+std::array<Place, 6> find_edges(const EdgeBatches& edges, const std::array<LocalEdge, 6>& wanted, std::size_t lanes) {
+  const auto is_there = [](const LocalEdge& e) { return e.first != e.second; };
+  const auto begun = count_before(lanes, [&](std::size_t lane, std::size_t k) {
+    const LocalEdge at = edge_at(edges, {0, lane}, lanes);
+    return is_there(at) && !(wanted[k] < at);
+  });
+  const auto before = count_before(edges.count, [&](std::size_t batch, std::size_t k) {
+    const LocalEdge at = edge_at(edges, {batch, begun[k] - 1}, lanes);
+    return is_there(at) && at < wanted[k];
+  });
+  std::array<Place, 6> places{};
+  for (std::size_t k = 0; k < places.size(); ++k) places[k] = {before[k], begun[k] - 1};
+  return places;
 }
 
 /// Shape gradients of the four corners.
@@ -125,64 +146,88 @@ void add(Mat3d& sum, const Mat3d& share) {
   for (std::size_t k = 0; k < 9; ++k) sum(k / 3, k % 3) += share(k / 3, k % 3);
 }
 
-/// The part of an element in one of the six edges that are assembled anew.
-struct EdgePart {
-  std::uint32_t element;
-  std::uint8_t edge, from, to;  ///< edge: 0 … 5; from, to: corners of the element
-};
-
-std::uint8_t corner_of(const Tet& tet, std::uint32_t vertex) {
-  return static_cast<std::uint8_t>(std::find(tet.begin(), tet.end(), vertex) - tet.begin());
+/// Without a branch, which nothing could foresee; 4 where it is none.
+std::size_t corner_of(const Tet& tet, std::uint32_t vertex) {
+  unsigned at = 1U << 4;
+  for (unsigned c = 0; c < 4; ++c) at |= static_cast<unsigned>(tet[c] == vertex) << c;
+  return static_cast<std::size_t>(std::countr_zero(at));
 }
 
-/// Finds the elements around the edges between four vertices, by edge, ascending. What is read lies far apart, so
-/// that most of the time goes by waiting for memory: all of it is asked for ahead.
-std::vector<EdgePart> parts_of_edges(const Body& body, const detail::VertexStars& stars, const Tet& vertices,
-                                     const std::function<bool(std::uint32_t)>& in_submesh) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (const std::uint32_t e : stars.tets_at(vertices[a])) hwy::Prefetch(&body.elements[e]);
+/// An element around some of four vertices, and which of them it holds: bit k for the k-th.
+struct Around {
+  std::uint32_t element;
+  unsigned holds;
+};
+
+/// The elements that hold two of four vertices or more, ascending: their stars gone through side by side. Nothing hangs on a
+/// branch that could not be foreseen, and what is read next is asked for.
+std::vector<Around> around_edges(const Body& body, const detail::VertexStars& stars, const Tet& vertices) {
+  constexpr std::uint32_t kEnd = std::numeric_limits<std::uint32_t>::max();
+  std::array<std::span<const std::uint32_t>, 4> left;
+  std::array<std::uint32_t, 4> head{};
+  std::size_t most = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    left[k] = stars.tets_at(vertices[k]);
+    head[k] = left[k].empty() ? kEnd : left[k].front();
+    most += left[k].size();
   }
-  std::vector<EdgePart> parts;
-  std::uint8_t first_edge = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (const std::uint32_t e : stars.tets_at(vertices[a])) {
-      const Tet& tet = body.elements[e];
-      for (std::size_t b = a + 1; b < 4; ++b) {
-        const std::uint8_t to = corner_of(tet, vertices[b]);
-        if (to == 4 || !in_submesh(e)) continue;
-        hwy::Prefetch(&body.rest[e].volume);
-        hwy::Prefetch(&body.rest[e].s[2]);
-        parts.push_back({e, static_cast<std::uint8_t>(first_edge + b - a - 1), corner_of(tet, vertices[a]), to});
-      }
+  std::vector<Around> around(most + 1);
+  std::size_t n = 0;
+  for (;;) {
+    const std::uint32_t e = std::min(std::min(head[0], head[1]), std::min(head[2], head[3]));
+    if (e == kEnd) break;
+    unsigned holds = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const bool here = head[k] == e;
+      holds |= static_cast<unsigned>(here) << k;
+      left[k] = left[k].subspan(here ? 1 : 0);
+      head[k] = left[k].empty() ? kEnd : left[k].front();
     }
-    first_edge = static_cast<std::uint8_t>(first_edge + 3 - a);
+    around[n] = {e, holds};
+    n += std::popcount(holds) > 1 ? 1 : 0;
   }
-  return parts;
+  around.resize(n);
+  for (const Around& a : around) {
+    hwy::Prefetch(&body.elements[a.element]);
+    hwy::Prefetch(&body.rest[a.element].volume);
+    hwy::Prefetch(&body.rest[a.element].s[2]);
+  }
+  return around;
 }
 
 }  // namespace
 
 void reassemble_edges(const Body& body, const TissueBlock& block, std::uint32_t element,
-                      const detail::VertexStars& stars, const std::function<bool(std::uint32_t)>& in_submesh,
+                      const detail::VertexStars& stars, const InSubmesh& submesh,
                       const std::function<std::uint32_t(std::uint32_t)>& local, EdgeBatches& edges, std::size_t lanes) {
   std::array<LocalEdge, 4> corners;  // local vertex, vertex of the mesh
   for (std::size_t a = 0; a < 4; ++a) corners[a] = {local(body.elements[element][a]), body.elements[element][a]};
   std::sort(corners.begin(), corners.end());
   const Tet vertices{corners[0].second, corners[1].second, corners[2].second, corners[3].second};
 
-  std::array<Mat3d, 6> tensors{};
-  for (const EdgePart& part : parts_of_edges(body, stars, vertices, in_submesh)) {
-    const ElementRest& rest = body.rest[part.element];
-    const std::array<Vec3d, 4> s = shape_gradients(rest);
-    add(tensors[part.edge], edge_tensor(block, rest.volume, s[part.from], s[part.to]));
+  const std::vector<Around> around = around_edges(body, stars, vertices);
+  std::array<LocalEdge, 6> wanted;
+  for (std::size_t a = 0, edge = 0; a < 4; ++a) {
+    for (std::size_t b = a + 1; b < 4; ++b, ++edge) wanted[edge] = {corners[a].first, corners[b].first};
   }
-  const Mat3d* sum = tensors.data();
-  for (std::size_t a = 0; a < 4; ++a) {
-    for (std::size_t b = a + 1; b < 4; ++b, ++sum) {
-      const std::size_t at = find_edge(edges, {corners[a].first, corners[b].first}, lanes);
-      float* tensor = edges.tensor.data() + at % edges.count * 9 * lanes + at / edges.count;
-      for (std::size_t k = 0; k < 9; ++k) tensor[k * lanes] = static_cast<float>((*sum)(k / 3, k % 3));
+  const std::array<Place, 6> places = find_edges(edges, wanted, lanes);
+  std::array<Mat3d, 6> tensors{};
+  for (const Around& a : around) {
+    if (submesh.of_element[a.element] != submesh.number) continue;
+    const ElementRest& rest = body.rest[a.element];
+    const std::array<Vec3d, 4> s = shape_gradients(rest);
+    std::array<std::size_t, 4> corner{};
+    for (std::size_t k = 0; k < 4; ++k) corner[k] = corner_of(body.elements[a.element], vertices[k]) % 4;
+    for (std::size_t from = 0, edge = 0; from < 4; ++from) {
+      for (std::size_t to = from + 1; to < 4; ++to, ++edge) {
+        if ((a.holds >> from & a.holds >> to & 1U) == 0) continue;
+        add(tensors[edge], edge_tensor(block, rest.volume, s[corner[from]], s[corner[to]]));
+      }
     }
+  }
+  for (std::size_t edge = 0; edge < 6; ++edge) {
+    float* tensor = edges.tensor.data() + places[edge].batch * 9 * lanes + places[edge].lane;
+    for (std::size_t k = 0; k < 9; ++k) tensor[k * lanes] = static_cast<float>(tensors[edge](k / 3, k % 3));
   }
 }
 

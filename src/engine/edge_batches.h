@@ -15,11 +15,16 @@ namespace glisson::engine {
 EdgeBatches make_edge_batches(const Body& body, const TissueBlock& block, std::span<const std::uint32_t> elements,
                               std::span<const Tet> local, std::size_t lanes);
 
+/// Which elements belong to a submesh.
+struct InSubmesh {
+  std::span<const std::uint32_t> of_element;  ///< submesh of each element of the body
+  std::uint32_t number = 0;
+};
+
 /// Assembles the six edges of an element anew, from the elements of the submesh that hold them still.
-/// @param in_submesh  whether an element belongs to the submesh
-/// @param local       local vertex of a vertex of the mesh
+/// @param local  local vertex of a vertex of the mesh
 void reassemble_edges(const Body& body, const TissueBlock& block, std::uint32_t element,
-                      const detail::VertexStars& stars, const std::function<bool(std::uint32_t)>& in_submesh,
+                      const detail::VertexStars& stars, const InSubmesh& submesh,
                       const std::function<std::uint32_t(std::uint32_t)>& local, EdgeBatches& edges, std::size_t lanes);
 
 }  // namespace glisson::engine

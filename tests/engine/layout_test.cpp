@@ -222,7 +222,7 @@ INSTANTIATE_TEST_SUITE_P(Layouts, LayoutInvariants,
                          [](const testing::TestParamInfo<Layout>& p) { return std::string(p.param.name); });
 
 // A step of a large body with a law reads and writes at most 72 bytes a tet: 32 of rest data, 4 of indices, 11 of state and
-// 12 of interfaces, and a little for lanes without a tet.
+// 6 of interfaces, and a little for lanes without a tet.
 TEST(LayoutSize, IsAtMost72BytesATet) {
   std::map<int, Tissue> tissues{{0, Tissue{}}};
   tissues.at(0).viscosity = 2.0;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/engine_run.h"
+#include "mesh/partition.h"
 #include "mechanics/reference.h"
 
 namespace glisson {
@@ -85,6 +86,41 @@ TEST_P(Remainders, EveryCut) {
     EXPECT_LE(test::relative_difference(cut.elastic, whole.elastic), 5e-6) << tets << " tets a submesh";
     EXPECT_LE(test::relative_difference(cut.viscous, whole.viscous), 5e-6) << tets << " tets a submesh";
   }
+}
+
+// A submesh whose tets share no vertex has as many local vertices as can be numbered: the forces are those of small submeshes.
+TEST_P(Remainders, AsManyVerticesAsCanBeNumbered) {
+  std::mt19937 random(11);
+  constexpr std::size_t kTets = engine::kMaxLocalVertices / 4;
+  TetMesh mesh;
+  for (std::uint32_t t = 0; t < kTets; ++t) {
+    const Vec3d corner{0.02 * (t % 32), 0.02 * (t / 32 % 32), 0.02 * (t / 1024)};
+    for (const Vec3d& edge : {Vec3d{}, Vec3d{0.01, 0, 0}, Vec3d{0, 0.01, 0}, Vec3d{0, 0, 0.01}}) {
+      mesh.vertices.push_back(corner + edge);
+    }
+    mesh.tets.push_back({4 * t, 4 * t + 1, 4 * t + 2, 4 * t + 3});
+  }
+  const std::vector<Vec3d> u = test::random_field(mesh.vertices.size(), 0.001, random);
+  const std::vector<Vec3d> v = test::random_field(mesh.vertices.size(), 0.01, random);
+  for (const Tissue& tissue : {stiffening(), linear(5.0)}) {
+    const Body body = build_body(mesh, {{0, tissue}});
+    const auto forces = [&](std::size_t tets) {
+      return test::engine_forces(body, u, v, {.threads = 1, .kernels = GetParam(), .submesh_tets = tets});
+    };
+    const test::EngineForces whole = forces(kTets), parts = forces(500);
+    EXPECT_LE(test::relative_difference(whole.elastic, parts.elastic), 1e-5);
+    EXPECT_LE(test::relative_difference(whole.viscous, parts.viscous), 1e-5);
+  }
+}
+
+// However many tets, a submesh of the size aimed at can lose all connections: partitions exceed it by kPartSlack at most.
+TEST(SubmeshTets, LeaveRoomForEveryCorner) {
+  EXPECT_EQ(engine::submesh_tets(768, false), 2048U);
+  EXPECT_EQ(engine::submesh_tets(96'000, false), 6000U);
+  EXPECT_EQ(engine::submesh_tets(96'000, true), 2048U);
+  const std::size_t most = engine::submesh_tets(10'000'000, false);
+  EXPECT_GT(most, 15'000U);
+  EXPECT_LE(4.0 * ((1.0 + detail::kPartSlack) * static_cast<double>(most) + 1.0), engine::kMaxLocalVertices);
 }
 
 INSTANTIATE_TEST_SUITE_P(InstructionSets, Remainders, testing::ValuesIn(test::every_kernels()), test::name_of);
