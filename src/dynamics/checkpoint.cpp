@@ -9,7 +9,7 @@ namespace glisson {
 namespace {
 
 constexpr std::string_view kMagic = "GLISCHK1";
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 constexpr std::size_t kHead = 8 + sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
 template <class T>

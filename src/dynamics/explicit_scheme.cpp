@@ -244,7 +244,7 @@ StepResult ExplicitScheme::step() {
   ++steps_;
   if (!interactions_.empty()) {
     interactions_.moved();
-    control_->set_beside(interactions_.squared_frequency());
+    control_->follow_beside(interactions_.squared_frequency());
   }
   return {seen.inverted.empty() ? StepStatus::ok : StepStatus::inverted, seen.inverted, {}};
 }

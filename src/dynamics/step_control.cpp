@@ -254,7 +254,7 @@ void StepControl::tissues_changed(std::span<const double> stiffening, bool undef
 
 void StepControl::save(CheckpointWriter& out) const {
   out.put(step_), out.put(window_), out.put(in_window_), out.put(unchecked_), out.put(caution_);
-  out.put(shape_step_);
+  out.put(shape_step_), out.put(held_);
   for (const Limits& l : {limits_, rest_limits_, searched_.limits}) out.put_doubles(l);
   for (const auto* list : {&validated_, &rest_level_, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
     out.put(*list);
@@ -268,7 +268,7 @@ void StepControl::save(CheckpointWriter& out) const {
 
 void StepControl::load(CheckpointReader& in) {
   in.get(step_), in.get(window_), in.get(in_window_), in.get(unchecked_), in.get(caution_);
-  in.get(shape_step_);
+  in.get(shape_step_), in.get(held_);
   for (Limits* l : {&limits_, &rest_limits_, &searched_.limits}) in.get_doubles(*l);
   for (auto* list : {&validated_, &rest_level_, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
     in.get_same_size(*list);

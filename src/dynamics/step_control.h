@@ -86,17 +86,21 @@ class StepControl {
   void limit_shape_change(std::span<const ShapeRate> changes);
 
   /// Stiffness that acts beside the tissue. @param squared_frequency  ω² on the body's masses, from above [1/s²]
-  void set_beside(double squared_frequency) { tools_ = squared_frequency, join_beside(); }
+  void set_beside(double squared_frequency);
+  /// The same after a step. An automatic step grows again by no more than kRegrowth a step where this falls: a torn membrane
+  /// that whips back is slack at one step and a hundred times as stiff at the next.
+  void follow_beside(double squared_frequency);
 
   double step() const {
     if (!automatic_) return step_;
     const double room = 1.0 / (kSafety * kSafety);
-    return std::min(caution_ * with_beside(step_, {room * beside_.k, beside_.c / kSafety}), shape_step_);
+    return std::min(caution_ * with_beside(step_, {room * (stiff_.k + held_), stiff_.c / kSafety}), shape_step_);
   }
   double stable_step() const { return with_beside(limits_.stable, beside_); }
 
  private:
   static constexpr double kSafety = 0.9;                                 ///< automatic step over h*
+  static constexpr double kRegrowth = 1.015;                             ///< of a step that tools held short
   static constexpr std::uint64_t kFirstWindow = 1000, kFirstProbe = 64;  ///< [steps]
 
   /// h* of the scheme, and what an automatic step keeps below: at Drag::at_once also h* without viscosity, since
@@ -195,6 +199,7 @@ class StepControl {
   bool probes_ = false;        ///< whether more than usual is listed, to choose the level of the blocks anew
   double damping_rate_ = 0.0;  ///< largest γ/m [1/s]
   double tools_ = 0.0;         ///< ω² of what acts beside the tissue [1/s²]
+  double held_ = 0.0;          ///< the same that an automatic step is chosen for: at least as much
   Beside stiff_, beside_;      ///< of single tets; of both
   double caution_ = 1.0;       ///< factor on an automatic step while stiffness rises fast
 };

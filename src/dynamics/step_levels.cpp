@@ -38,6 +38,7 @@ void StepControl::start_anew() {
   window_ = kFirstWindow, in_window_ = 0;
   probe_ = kFirstProbe, since_probe_ = 0, probes_ = false;
   caution_ = 1.0;
+  held_ = tools_;
   shape_step_ = std::numeric_limits<double>::infinity();
   levels_.clear();
   take_stiff();
@@ -72,6 +73,17 @@ Beside StepControl::beside_at(std::span<const double> level) {
     viscous[b] = thickens(body_.blocks[b]) ? 1 : 0;
   }
   return levels_.beside(level, viscous);
+}
+
+void StepControl::set_beside(double squared_frequency) {
+  tools_ = squared_frequency;
+  held_ = std::max(held_, tools_);
+  join_beside();
+}
+
+void StepControl::follow_beside(double squared_frequency) {
+  held_ /= kRegrowth * kRegrowth;
+  set_beside(squared_frequency);
 }
 
 void StepControl::take_stiff() {
