@@ -90,15 +90,15 @@ struct Tissue {
   double viscosity = 0.0;          ///< η [Pa·s], ≥ 0
   ViscousTensor viscous_tensor = ViscousTensor::shear;
   DeformationMeasure measure = DeformationMeasure::intensity;
-  StiffnessLaw law = ConstantLaw{};        ///< E(x)
-  std::optional<StiffnessLaw> lambda_law;  ///< λ(x); with it or mu_law set, `law` must be constant
-  std::optional<StiffnessLaw> mu_law;      ///< μ(x)
+  StiffnessLaw law = ConstantLaw{};          ///< E(x)
+  std::optional<StiffnessLaw> lambda_law{};  ///< λ(x); with it or mu_law set, `law` must be constant
+  std::optional<StiffnessLaw> mu_law{};      ///< μ(x)
 
   Kinematics kinematics = Kinematics::small;
   LawForm law_form = LawForm::secant;
-  std::optional<HyperelasticLaw> hyperelastic;
-  std::optional<Fibres> fibres;
-  std::vector<MaxwellBranch> maxwell;  ///< the moduli given are those of an instant; at most 8 branches
+  std::optional<HyperelasticLaw> hyperelastic{};
+  std::optional<Fibres> fibres{};
+  std::vector<MaxwellBranch> maxwell{};  ///< the moduli given are those of an instant; at most 8 branches
   MaxwellPart maxwell_part = MaxwellPart::deviator;
   VolumeChange volume_change = VolumeChange::own;
 

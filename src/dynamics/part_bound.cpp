@@ -11,9 +11,9 @@ namespace glisson {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr std::size_t kRun = 32;   ///< elements of which the least step is kept
-constexpr double kRoom = 1.05;     ///< of asked over mass that a bound is made for
-constexpr double kSlack = 0.8;     ///< below this share of what was allowed for a better bound is worth a look
+constexpr std::size_t kRun = 32;  ///< elements of which the least step is kept
+constexpr double kRoom = 1.05;    ///< of asked over mass that a bound is made for
+constexpr double kSlack = 0.8;    ///< below this share of what was allowed for a better bound is worth a look
 
 std::array<Vec3d, 4> gradients(const ElementRest& rest) {
   return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};

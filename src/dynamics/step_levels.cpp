@@ -14,17 +14,17 @@ namespace {
 constexpr std::uint64_t kLongestWindow = 64000, kShortWindow = 16;  ///< [steps]
 constexpr double kLeastCaution = 0.01;                              ///< least factor on a step while stiffness rises
 constexpr double kRecovery = 1.1;                                   ///< of that factor, a step
-constexpr double kViolent = 3.0;              ///< stiffening of large strain from which shape changes limit the step
-constexpr double kShapeChange = 0.01;         ///< of a tet within such a step [-]
-constexpr double kChangeOfSlack = 0.04;       ///< more of it for one that could be e times as stiff
-constexpr double kCloseToLevel = 0.5;         ///< of its block's level, from which a tet's change of shape counts
-constexpr double kMostAhead = 4.0;            ///< how far a level runs ahead of a rise
-constexpr double kWorthAChange = 1.05;        ///< how much longer a step makes another level of the blocks worth it
+constexpr double kViolent = 3.0;               ///< stiffening of large strain from which shape changes limit the step
+constexpr double kShapeChange = 0.01;          ///< of a tet within such a step [-]
+constexpr double kChangeOfSlack = 0.04;        ///< more of it for one that could be e times as stiff
+constexpr double kCloseToLevel = 0.5;          ///< of its block's level, from which a tet's change of shape counts
+constexpr double kMostAhead = 4.0;             ///< how far a level runs ahead of a rise
+constexpr double kWorthAChange = 1.05;         ///< how much longer a step makes another level of the blocks worth it
 constexpr std::uint64_t kLongestProbe = 1024;  ///< [steps]
-constexpr double kLadder = 0.9;               ///< of one level that is tried to the next
-constexpr int kMostInVain = 8;                ///< steps of that ladder without a better one
-constexpr double kCostOfLevels = 2.0;         ///< of a tet with a level of its own, over that of a tet, a step
-constexpr double kProbeDepth = 8.0;           ///< how far below the level of the blocks a probe looks
+constexpr double kLadder = 0.9;                ///< of one level that is tried to the next
+constexpr int kMostInVain = 8;                 ///< steps of that ladder without a better one
+constexpr double kCostOfLevels = 2.0;          ///< of a tet with a level of its own, over that of a tet, a step
+constexpr double kProbeDepth = 8.0;            ///< how far below the level of the blocks a probe looks
 constexpr std::size_t kFewTets = 64, kFewOf = 4;  ///< tets with levels of their own: so many and this part of all
 
 }  // namespace

@@ -111,9 +111,7 @@ const Vec3d& rest_position(const Body& body, std::uint32_t element, const Tet& l
 void write_tet(const Body& body, ChainBatches& out, const Place& to, std::uint32_t element, const Tet& local,
                std::size_t lanes) {
   const std::uint16_t* index = out.index.data() + to.batch * kChainVertices * lanes + to.lane;
-  const auto position = [&](std::size_t vertex) {
-    return rest_position(body, element, local, index[vertex * lanes]);
-  };
+  const auto position = [&](std::size_t vertex) { return rest_position(body, element, local, index[vertex * lanes]); };
   const auto rest = [&](std::size_t batch) { return out.rest.data() + batch * kChainRest * lanes + to.lane; };
   const auto put = [&](std::size_t batch, std::size_t row, const Vec3d& v) {
     for (std::size_t i = 0; i < 3; ++i) rest(batch)[(row + i) * lanes] = static_cast<float>(v[i]);

@@ -44,7 +44,8 @@ void SubmeshBody::take_out(std::uint32_t element, const detail::VertexStars& sta
     return;
   }
   const auto local = [&](std::uint32_t vertex) { return part.local_of_record(submeshes_.record_of_vertex[vertex]); };
-  reassemble_edges(body_, body_.blocks[part.block], element, stars, {part_of_element_, p}, local, part.edges, kernels_.lanes);
+  reassemble_edges(body_, body_.blocks[part.block], element, stars, {part_of_element_, p}, local, part.edges,
+                   kernels_.lanes);
 }
 
 /// Takes over the state of vertices that are other points of the material now.

@@ -60,12 +60,8 @@ struct UV {
   HWY_INLINE UV(const Xyz& displacement, const Xyz& velocity) : u(displacement), v(velocity) {}
 };
 
-HWY_INLINE const float* state_record(const float* records, std::size_t index) {
-  return records + kStateFloats * index;
-}
-HWY_INLINE float* force_record(float* records, std::size_t index) {
-  return records + kForceFloats * index;
-}
+HWY_INLINE const float* state_record(const float* records, std::size_t index) { return records + kStateFloats * index; }
+HWY_INLINE float* force_record(float* records, std::size_t index) { return records + kForceFloats * index; }
 
 #if HWY_TARGET != HWY_SCALAR
 

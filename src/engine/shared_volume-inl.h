@@ -61,8 +61,7 @@ inline void spread_to_vertices(const std::uint16_t* index, std::size_t batches, 
     const float* A = values + b * kChainTets * kLanes;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const float a = A[lane], m = A[kLanes + lane], c = A[2 * kLanes + lane];
-      const auto add = [&](std::size_t vertex, float x)
-                           GLISSON_INLINED { vertices[at[vertex * kLanes + lane]] += x; };
+      const auto add = [&](std::size_t vertex, float x) GLISSON_INLINED { vertices[at[vertex * kLanes + lane]] += x; };
       add(0, a + m + c), add(1, a + m + c), add(2, a + m), add(3, m + c), add(4, a), add(5, c);
     }
   }
@@ -74,8 +73,7 @@ inline void mean_of_vertices(const std::uint16_t* index, std::size_t batches, co
     const std::uint16_t* at = index + b * kChainVertices * kLanes;
     float* A = values + b * kChainTets * kLanes;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const auto of = [&](std::size_t vertex)
-                          GLISSON_INLINED { return vertices[at[vertex * kLanes + lane]]; };
+      const auto of = [&](std::size_t vertex) GLISSON_INLINED { return vertices[at[vertex * kLanes + lane]]; };
       const float edge = of(0) + of(1), v2 = of(2), v3 = of(3);
       A[lane] = 0.25F * (edge + v2 + of(4));
       A[kLanes + lane] = 0.25F * (edge + v2 + v3);

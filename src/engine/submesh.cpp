@@ -100,7 +100,8 @@ std::vector<Tet> number_locally(const Body& body, const std::vector<std::uint32_
 
 std::size_t submesh_tets(std::size_t tets, bool changes) {
   constexpr std::size_t kSubmeshes = 16;
-  constexpr auto kMost = static_cast<std::size_t>(static_cast<double>(kMaxLocalVertices) / 4 / (1 + detail::kPartSlack)) - 1;
+  constexpr auto kMost =
+      static_cast<std::size_t>(static_cast<double>(kMaxLocalVertices) / 4 / (1 + detail::kPartSlack)) - 1;
   return changes ? kLeastSubmesh : std::clamp(tets / kSubmeshes, kLeastSubmesh, kMost);
 }
 

@@ -67,15 +67,16 @@ void SubmeshBody::run_laws(const Plan& plan, std::size_t values, Block& block) c
 }
 
 /// The same for moduli of a small strain. @return whether elements may have become so stiff that they are to be listed
-bool SubmeshBody::watch_laws(const Plan& plan, std::size_t values, float limit, Block& block, StiffnessSeen& seen) const {
+bool SubmeshBody::watch_laws(const Plan& plan, std::size_t values, float limit, Block& block,
+                             StiffnessSeen& seen) const {
   if (plan.laws == 1) return kernels_.watch_law[plan.law[0].kind](plan.law[0], block, values, limit, seen);
   run_laws(plan, values, block);
   return kernels_.watch_lame(block, plan.tissue, values, limit, seen);
 }
 
 /// Lists elements of a block of batches that laws on moduli have made stiff.
-void SubmeshBody::list_by_laws(const Submesh& part, std::size_t batch, std::size_t n, const Plan& plan,
-                               Block& block, Findings& found) const {
+void SubmeshBody::list_by_laws(const Submesh& part, std::size_t batch, std::size_t n, const Plan& plan, Block& block,
+                               Findings& found) const {
   const std::size_t tets = kernels_.lanes * kChainTets;
   run_laws(plan, n * tets, block);
   const std::uint32_t* element = part.chains.element.data() + batch * tets;

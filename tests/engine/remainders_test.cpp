@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/engine_run.h"
-#include "mesh/partition.h"
 #include "mechanics/reference.h"
+#include "mesh/partition.h"
 
 namespace glisson {
 namespace {
