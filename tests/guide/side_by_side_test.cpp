@@ -1,5 +1,6 @@
 // The C++ column of the table of the commonest tasks (docs/python.md) stands in this file, word for word, and runs.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <sstream>
@@ -42,12 +43,13 @@ std::vector<std::string> cpp_column() {
   return snippets;
 }
 
-/// What the lines below need beside themselves.
+/// What the lines below need beside themselves, in a folder of its own for each test: they run side by side.
 class Files : public testing::Test {
  protected:
-  std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::path before = std::filesystem::current_path(), folder;
   void SetUp() override {
-    const auto folder = std::filesystem::path(testing::TempDir()) / "side_by_side";
+    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder = std::filesystem::path(testing::TempDir()) / ("glisson_" + name + "_" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
     std::filesystem::current_path(folder);
     write_vtu("liver.vtu", box_mesh({.size = {40, 40, 80}}));
@@ -57,7 +59,10 @@ class Files : public testing::Test {
     std::ofstream("fit.toml") << text_of(fits / "phantom_mean.toml")
                               << "\n[search]\nstarts = 2\n\n[proof]\nprofiles = false\nbootstrap = 0\n";
   }
-  void TearDown() override { std::filesystem::current_path(before); }
+  void TearDown() override {
+    std::filesystem::current_path(before);
+    std::filesystem::remove_all(folder);
+  }
 };
 
 TEST(SideBySide, ColumnStandsInThisFile) {
