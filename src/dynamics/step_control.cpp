@@ -142,7 +142,7 @@ void StepControl::mesh_changed(std::span<const double> nodal_damping, const Body
     keep_guess();
   }
   nodal_damping_ = nodal_damping;
-  if (damping_rate_ > 0.0) damping_rate_ = largest_damping_rate();
+  if (damping_rate_ > 0.0) damping_rate_ = largest_damping_rate();  // a body without damping gets none by a cut
   forget_searches();
   if (part_bound_ == nullptr) prepare_changes(stars);
   part_bound_->change(change);

@@ -146,10 +146,10 @@ void add(Mat3d& sum, const Mat3d& share) {
   for (std::size_t k = 0; k < 9; ++k) sum(k / 3, k % 3) += share(k / 3, k % 3);
 }
 
-/// Without a branch, which nothing could foresee; 4 where it is none.
+/// Without a branch, which nothing could foresee; the last one where it is none.
 std::size_t corner_of(const Tet& tet, std::uint32_t vertex) {
-  unsigned at = 1U << 4;
-  for (unsigned c = 0; c < 4; ++c) at |= static_cast<unsigned>(tet[c] == vertex) << c;
+  unsigned at = 1U << 3;
+  for (unsigned c = 0; c < 3; ++c) at |= static_cast<unsigned>(tet[c] == vertex) << c;
   return static_cast<std::size_t>(std::countr_zero(at));
 }
 
@@ -217,7 +217,7 @@ void reassemble_edges(const Body& body, const TissueBlock& block, std::uint32_t 
     const ElementRest& rest = body.rest[a.element];
     const std::array<Vec3d, 4> s = shape_gradients(rest);
     std::array<std::size_t, 4> corner{};
-    for (std::size_t k = 0; k < 4; ++k) corner[k] = corner_of(body.elements[a.element], vertices[k]) % 4;
+    for (std::size_t k = 0; k < 4; ++k) corner[k] = corner_of(body.elements[a.element], vertices[k]);
     for (std::size_t from = 0, edge = 0; from < 4; ++from) {
       for (std::size_t to = from + 1; to < 4; ++to, ++edge) {
         if ((a.holds >> from & a.holds >> to & 1U) == 0) continue;

@@ -1,6 +1,9 @@
 // However the tets fill chains, batches, blocks and submeshes, the forces are the same.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "engine/engine_run.h"
 #include "mechanics/reference.h"
 #include "mesh/partition.h"
@@ -111,6 +114,17 @@ TEST_P(Remainders, AsManyVerticesAsCanBeNumbered) {
     EXPECT_LE(test::relative_difference(whole.elastic, parts.elastic), 1e-5);
     EXPECT_LE(test::relative_difference(whole.viscous, parts.viscous), 1e-5);
   }
+  // Edges are found by halves when tets are removed: lane after lane they ascend.
+  const std::size_t lanes = GetParam()->lanes;
+  const Body body = build_body(mesh, {{0, linear(0.0)}});
+  const engine::Submeshes submeshes = engine::build_submeshes(body, lanes, kTets);
+  const engine::EdgeBatches& edges = submeshes.parts.at(0).edges;
+  std::vector<std::pair<int, int>> in_order;
+  for (std::size_t k = 0; k < 6 * kTets; ++k) {
+    const std::uint16_t* index = edges.index.data() + k % edges.count * 2 * lanes + k / edges.count;
+    in_order.emplace_back(index[0], index[lanes]);
+  }
+  EXPECT_TRUE(std::is_sorted(in_order.begin(), in_order.end()));
 }
 
 // However many tets, a submesh of the size aimed at can lose all connections: partitions exceed it by kPartSlack at most.
