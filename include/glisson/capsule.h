@@ -84,6 +84,7 @@ class Capsule final : public Interaction {
   double open_at(const Vec3d& place, double radius);
 
   /// @throws std::invalid_argument for triangles that are not at the surface, or where none is left
+  std::string label() const override { return "the capsule"; }
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;

@@ -57,6 +57,7 @@ class Container final : public Interaction {
   Vec3d up() const;                     ///< the z of its pose; axial loads are along it
   const ContainerOptions& options() const;
 
+  std::string label() const override { return "the container"; }
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;

@@ -66,6 +66,7 @@ class Instrument : public Interaction {
   Instrument(std::string name, std::shared_ptr<ToolDriver> driver, const Vec3d& direction);
 
   const std::string& name() const { return name_; }
+  std::string label() const override { return "instrument \"" + name_ + "\""; }
   const Pose& pose() const { return pose_; }            ///< at the end of the last step
   const ToolForces& forces() const { return forces_; }  ///< of the last step, at Simulation::force_time()
   double depth() const;                                 ///< way along the direction since the start [m]

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "glisson/math.h"
@@ -66,7 +67,14 @@ class InteractionStep {
 /// None may throw after `attached`.
 class Interaction {
  public:
+  Interaction() = default;
   virtual ~Interaction() = default;
+  /// A copy acts on no simulation yet.
+  Interaction(const Interaction&) {}
+  Interaction& operator=(const Interaction&) { return *this; }
+
+  /// What messages call it.
+  virtual std::string label() const { return "this interaction"; }
 
   /// The body it acts on from now on. @throws std::invalid_argument where it does not fit
   virtual void attached(const BodyView& body, double time) = 0;
@@ -94,6 +102,10 @@ class Interaction {
   virtual std::vector<double> past() const { return {}; }
   /// @return false where the numbers are not those of such an interaction
   virtual bool restore(std::span<const double> past) { return past.empty(); }
+
+ private:
+  friend class Simulation;
+  bool is_attached_ = false;  ///< to a simulation, for good: what it knows of its past is of that body
 };
 
 }  // namespace glisson

@@ -218,8 +218,8 @@ class Simulation {
   void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale = {});
 
   /// Lets an instrument, needle, membrane or other interaction act on the body from now on, after those attached before.
-  /// It may be shared, to be read and steered between steps; it acts on one simulation only.
-  /// @throws std::invalid_argument for the integrators implicit and static, and semi_implicit with viscous tissue; or what
+  /// It may be shared, to be read and steered between steps.
+  /// @throws std::invalid_argument where it acts on a simulation already, this or another one; for the integrators implicit and static, and semi_implicit with viscous tissue; or what
   ///         the interaction does not bear
   void attach(std::shared_ptr<Interaction> interaction);
 

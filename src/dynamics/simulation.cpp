@@ -172,7 +172,13 @@ void Simulation::add_load(std::span<const std::uint32_t> vertices, Vec3d force, 
 
 void Simulation::attach(std::shared_ptr<Interaction> interaction) {
   if (interaction == nullptr) throw std::invalid_argument("attach: no interaction was given");
-  impl_->scheme->attach(std::move(interaction), impl_->view());
+  if (interaction->is_attached_) {
+    throw std::invalid_argument("attach: " + interaction->label() +
+                                " acts on a simulation already, and on no other one after it: make a new one of the "
+                                "same options");
+  }
+  impl_->scheme->attach(interaction, impl_->view());
+  interaction->is_attached_ = true;
 }
 
 RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) {

@@ -40,7 +40,12 @@ BladeEdge Blade::edge() const {
   return {p.position + p.axes * from_, p.position + p.axes * to_};
 }
 
-void Blade::attached(const BodyView&, double) { find_pieces(); }
+void Blade::attached(const BodyView& body, double) {
+  if (&body.mesh != &simulation_.mesh()) {
+    throw std::invalid_argument("attach: " + label() + " was made for another simulation, which it cuts");
+  }
+  find_pieces();
+}
 
 void Blade::body_changed(const BodyView& body, std::span<const std::uint32_t>) {
   std::erase_if(pieces_, [&](const Piece& piece) { return body.is_removed(piece.at.tet); });

@@ -206,5 +206,28 @@ TEST(Interaction, ImplicitIntegratorsRefuse) {
   EXPECT_THROW(body().attach(nullptr), std::invalid_argument);
 }
 
+// What an interaction knows of its past is of one body: a second one is refused, and so is the same body again. One that was
+// refused, or is a copy, is free.
+TEST(Interaction, ActsOnOneSimulation) {
+  const auto p = probe();
+  Simulation a = body(), b = body(), still = body({.integrator = Integrator::static_});
+  EXPECT_THROW(still.attach(p), std::invalid_argument);
+  a.attach(p);
+  for (Simulation* s : {&a, &b}) {
+    try {
+      s->attach(p);
+      FAIL() << "attached twice";
+    } catch (const std::invalid_argument& refused) {
+      EXPECT_NE(std::string(refused.what()).find("acts on a simulation already"), std::string::npos) << refused.what();
+    }
+  }
+  b.attach(std::make_shared<Probe>(*p));
+  Simulation once = body();
+  once.attach(probe());
+  advance(a, 20), advance(b, 20), advance(once, 20);
+  EXPECT_EQ(a.state_hash(), once.state_hash()) << "the refused one acts once";
+  EXPECT_EQ(b.state_hash(), once.state_hash());
+}
+
 }  // namespace
 }  // namespace glisson

@@ -1,5 +1,7 @@
 // A rigid tool: nothing passes through it however fast it is, its force and torque are what the body's momentum changes by, and
 // it follows the body when that is cut.
+#include <gmock/gmock.h>
+
 #include <sstream>
 
 #include "instruments/contact_scenes.h"
@@ -51,6 +53,26 @@ Vec3d angular_momentum(const Simulation& s, const Vec3d& about) {
   const std::vector<Vec3d> x = s.positions();
   for (std::size_t i = 0; i < x.size(); ++i) L += cross(x[i] - about, s.velocity()[i] * s.masses()[i]);
   return L;
+}
+
+// A tool that is led into two bodies at once had the first one's triangles in the second one's hands: it is refused by name,
+// and the first goes on as if nobody had asked.
+TEST(Contact, BelongsToOneSimulation) {
+  const auto pressed = [](const std::shared_ptr<ContactTool>& t) {
+    Simulation s(slab(), {{0, tissue()}});
+    s.attach(t);
+    return s;
+  };
+  const auto ball = [] { return tool(Ball{0.005}, 0.3, down({0.0, 0.0, 0.005}, 0.1)); };
+  const std::shared_ptr<ContactTool> first = ball(), second = ball();
+  Simulation a = pressed(first), alone = pressed(second), b(slab(4), {{0, tissue()}});
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(a.step().made() && alone.step().made());
+  for (Simulation* s : {&a, &b}) {
+    EXPECT_THAT([&] { s->attach(first); }, ::testing::ThrowsMessage<std::invalid_argument>(
+                                               ::testing::HasSubstr("instrument \"" + first->name() + "\"")));
+  }
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(a.step().made() && b.step().made() && alone.step().made());
+  EXPECT_EQ(a.state_hash(), alone.state_hash());
 }
 
 // A free body that is struck: momentum changes by the tool's force alone, step by step, and angular momentum by its torque.

@@ -171,3 +171,18 @@ def test_a_blade_of_a_scene_cuts(scenes):
     body.step(5)
     assert blade.area >= 0 and blade.work_of_cut >= 0 and blade.length_in_tissue >= 0
     assert not np.shares_memory(before, body.displacement)
+
+
+def test_an_instrument_belongs_to_one_simulation():
+    """A second simulation, or the same one again, is refused by the instrument's name; the first one goes on."""
+    tool = glisson.ContactTool(
+        glisson.ContactOptions(shape=glisson.Ball(radius=0.005)),
+        glisson.PathDriver(pose(0.025), glisson.SteadyMotion(velocity=0.1, depth=0.01)),
+        name="finger",
+    )
+    first, second = body_with(tool), body_with()
+    for body in (first, second):
+        with pytest.raises(ValueError, match='instrument "finger" acts on a simulation already'):
+            body.attach(tool)
+    first.step(20)
+    second.step(20)
