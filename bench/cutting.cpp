@@ -5,6 +5,7 @@
 // An edge wider than a block comes down through it, off the planes of its vertices, a part of an element at a time, with a
 // step of the body in between.
 #include "glisson/cutting.h"
+#include "support/must_step.h"
 
 #include <algorithm>
 #include <chrono>
@@ -42,7 +43,7 @@ void cut_block(std::array<int, 3> cells, const Tissue& tissue, double part) {
   cutter.place(edge(0.081));
   std::vector<double> idle, cutting;
   for (double z = 0.081; z > -0.001; z -= part * cell) {
-    body.step();
+    test::must_step(body);
     start = std::chrono::steady_clock::now();
     const bool opened = cutter.advance(edge(z)).faces > 0;
     (opened ? cutting : idle).push_back(microseconds_since(start));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "glisson/simulation.h"
+#include "support/must_step.h"
 
 namespace glisson {
 namespace {
@@ -33,7 +34,7 @@ Simulation body_of(int cells, const Tissue& tissue, bool real_time) {
   Simulation s(mesh, {{0, tissue}}, o);
   s.fix(mesh.vertex_sets.at("z_min"));
   s.add_load(mesh.vertex_sets.at("z_max"), {0.05, 0.0, 0.0});
-  for (int i = 0; i < 50; ++i) s.step();
+  for (int i = 0; i < 50; ++i) test::must_step(s);
   return s;
 }
 
@@ -46,7 +47,7 @@ void change(const char* what, int cells, const Tissue& a, const Tissue& b, bool 
     s.set_tissue(0, i % 2 == 0 ? b : a);
     changes.push_back(milliseconds_since(start));
     start = std::chrono::steady_clock::now();
-    s.step();
+    test::must_step(s);
     steps.push_back(milliseconds_since(start));
   }
   std::printf("%6zu tets, %-22s %-9s %8.3f ms  (a step %7.3f ms)  state %016llx\n", s.mesh().tets.size(), what,

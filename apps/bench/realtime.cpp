@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "view/frame_pace.h"
-
 namespace glisson::app {
 namespace {
 
@@ -30,7 +28,7 @@ class Pace {
 bool Pace::frame(RealtimeResult& result) {
   due_s_ += frame_s_;
   result.end = advance_to(body_, on_inversion_, due_s_, stop_);
-  if (result.end != RunSummary::End::finished) return false;
+  if (result.end.end != RunSummary::End::finished) return false;
   if (!body_.tools.empty() && body_.simulation.steps() > 0) {
     result.peak_force_N = std::max(result.peak_force_N, norm(body_.simulation.force(body_.tools.front()).total()));
   } else if (!body_.instruments.empty()) {
@@ -62,7 +60,7 @@ RealtimeResult run_realtime(BuiltVariant& body, OnInversion on_inversion, const 
   const std::uint64_t steps_before = body.simulation.steps();
   FrameSchedule schedule(options.frame_s);
   const WallClock::time_point start = schedule.due(0);
-  while (schedule.next() < frames && result.end == RunSummary::End::finished) {
+  while (schedule.next() < frames && result.end.end == RunSummary::End::finished) {
     result.dropped += schedule.skip_late(frames);
     if (schedule.next() >= frames) break;
     schedule.wait();
@@ -72,7 +70,7 @@ RealtimeResult run_realtime(BuiltVariant& body, OnInversion on_inversion, const 
     if (whole) result.compute_s.push_back(spent);
     if (std::string news = pace.news(); !news.empty()) result.eventful.push_back({std::move(news), spent});
   }
-  if (result.end == RunSummary::End::finished) wait_until(schedule.due(frames));
+  if (result.end.end == RunSummary::End::finished) wait_until(schedule.due(frames));
   result.wall_s = seconds_between(start, WallClock::now());
   result.simulated_s = body.simulation.time() - simulated_from;
   result.steps = body.simulation.steps() - steps_before;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "glisson/scene.h"
+#include "view/frame_pace.h"
 
 namespace glisson::app {
 
@@ -28,7 +29,7 @@ struct RealtimeResult {
     double compute_s = 0.0;
   };
   std::vector<Eventful> eventful;
-  RunSummary::End end = RunSummary::End::finished;
+  AdvanceEnd end;
 };
 
 /// @param body  moves from its present time on

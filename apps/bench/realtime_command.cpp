@@ -121,14 +121,9 @@ nlohmann::ordered_json realtime_json(const Variant& variant, const BuiltVariant&
 }
 
 int exit_code_of(const RealtimeResult& result, const BuiltVariant& body) {
-  if (result.end == RunSummary::End::finished) return kDone;
-  if (result.end == RunSummary::End::interrupted) return kInterrupted;
-  RunSummary summary;
-  summary.end = result.end;
-  summary.step_s = body.simulation.step_size();
-  summary.time_s = body.simulation.time();
-  summary.stable_step_s = body.simulation.stable_step();
-  fmt::print(stderr, "glisson: {}\n", trouble_text(summary));
+  if (result.end.end == RunSummary::End::finished) return kDone;
+  if (result.end.end == RunSummary::End::interrupted) return kInterrupted;
+  fmt::print(stderr, "glisson: {}\n", trouble_text(result.end, body.simulation));
   return kNumericalEnd;
 }
 

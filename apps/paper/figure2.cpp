@@ -41,7 +41,8 @@ std::vector<Growth> growth_of(Variant variant) {
     std::vector<bool> above;
     for (const double s : built.simulation.tet_fields().s) above.push_back(s >= threshold);
     const double time = built.simulation.time();
-    built.simulation.step();
+    if (const StepResult step = built.simulation.step(); !step.made())
+      throw std::runtime_error(std::string(step.message));
     const double force = -built.simulation.force(built.tools.front()).elastic.z;
     if (time > kTransient_s) growth.push_back({time, force - force_before, above != before});
     before = std::move(above);

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "report/instrument_json.h"
-#include "report/summary_json.h"
 
 namespace glisson::view {
 namespace {
@@ -31,15 +30,6 @@ Vec3d shortened(const Vec3d& v, double most) {
 double youngs_modulus(const Tissue& tissue) {
   const auto [lambda, mu] = tissue.lame();
   return mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
-}
-
-std::string end_of_run(RunSummary::End end, const Simulation& simulation) {
-  RunSummary summary;
-  summary.end = end;
-  summary.step_s = simulation.step_size();
-  summary.time_s = simulation.time();
-  summary.stable_step_s = simulation.stable_step();
-  return trouble_text(summary);
 }
 
 }  // namespace
@@ -270,13 +260,13 @@ void Engine::frame() {
   draw_hand();
   began_s_ = due_s_;
   due_s_ += kFrame;
-  const RunSummary::End end = app::advance_to(body_->built(), variant_.on_inversion, due_s_, stop_);
+  const app::AdvanceEnd advanced = app::advance_to(body_->built(), variant_.on_inversion, due_s_, stop_);
   take_sample();
   compute_.add(app::seconds_between(begin, WallClock::now()));
   ++frames_;
-  if (end == RunSummary::End::finished || end == RunSummary::End::interrupted) return;
+  if (advanced.end == RunSummary::End::finished || advanced.end == RunSummary::End::interrupted) return;
   stopped_ = true;
-  notice_ = end_of_run(end, body_->built().simulation);
+  notice_ = trouble_text(advanced, body_->built().simulation);
 }
 
 /// A frame that is over before the first step has no force yet; its way is recorded.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <thread>
 
+#include "report/summary_json.h"
+
 namespace glisson::app {
 namespace {
 
@@ -54,13 +56,23 @@ std::uint64_t FrameSchedule::skip_late(std::uint64_t end) {
 
 void FrameSchedule::wait() { wait_until(due(next_++)); }
 
-RunSummary::End advance_to(BuiltVariant& body, OnInversion on_inversion, double until, const std::atomic<bool>& stop) {
+std::string trouble_text(const AdvanceEnd& end, const Simulation& simulation) {
+  RunSummary summary;
+  summary.end = end.end;
+  summary.trouble = end.trouble;
+  summary.inverted_tets_most = end.inverted_tets;
+  summary.time_s = simulation.time();
+  return glisson::trouble_text(summary);
+}
+
+AdvanceEnd advance_to(BuiltVariant& body, OnInversion on_inversion, double until, const std::atomic<bool>& stop) {
   while (body.simulation.time() + 0.5 * body.simulation.step_size() < until) {
-    const RunSummary::End end = end_of(body.step().status, on_inversion);
-    if (end != RunSummary::End::finished) return end;
-    if (stop.load(std::memory_order_relaxed)) return RunSummary::End::interrupted;
+    const StepResult step = body.step();
+    const RunSummary::End end = end_of(step.status, on_inversion);
+    if (end != RunSummary::End::finished) return {end, std::string(step.message), step.inverted_tets.size()};
+    if (stop.load(std::memory_order_relaxed)) return {.end = RunSummary::End::interrupted};
   }
-  return RunSummary::End::finished;
+  return {};
 }
 
 }  // namespace glisson::app

@@ -44,7 +44,16 @@ class FrameSchedule {
   std::uint64_t next_ = 0;
 };
 
-/// Steps until the step that ends nearest to a time [s]; `finished` where it got there.
-RunSummary::End advance_to(BuiltVariant& body, OnInversion on_inversion, double until, const std::atomic<bool>& stop);
+/// How steps to a time ended: `finished` where they got there.
+struct AdvanceEnd {
+  RunSummary::End end = RunSummary::End::finished;
+  std::string trouble = {};       ///< as RunSummary::trouble
+  std::size_t inverted_tets = 0;  ///< of the last step
+};
+/// What to say of an end of a body's motion; empty where nothing is wrong.
+std::string trouble_text(const AdvanceEnd& end, const Simulation& simulation);
+
+/// Steps until the step that ends nearest to a time [s].
+AdvanceEnd advance_to(BuiltVariant& body, OnInversion on_inversion, double until, const std::atomic<bool>& stop);
 
 }  // namespace glisson::app

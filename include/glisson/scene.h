@@ -304,7 +304,7 @@ struct RunSummary {
     stopped_not_converged,
     stopped_not_held
   } end = End::finished;
-  std::string trouble;  ///< what the integrator says of a step that was not made; may be empty
+  std::string trouble;  ///< why the last step was not made and what to do; empty where all were
 };
 
 /// Watches a run; called from the run's own thread, never on the hot path of a step.

@@ -58,7 +58,7 @@ struct ImplicitOptions {
   TimeScheme scheme = TimeScheme::backward_euler;  ///< of `implicit`
   double spectral_radius = 0.8;                    ///< ρ∞ of generalised_alpha [-], 0 … 1
   /// Where an automatic step begins, and above which it never grows [s], > 0; none: 10 ms, `static_` 50 ms.
-  std::optional<double> largest_step;
+  std::optional<double> largest_step{};
   double tolerance = 1e-8;   ///< of Newton's method: forces out of balance over the largest forces [-], 1e-13 … 1e-2
   int most_iterations = 25;  ///< of Newton's method, before a step is cut in two, 1 … 1000
   int most_cuts = 20;        ///< how often a step is cut in two before it is given up, 0 … 40
@@ -70,7 +70,7 @@ struct SimulationOptions {
   /// h [s], > 0. Explicit and semi-implicit: ≤ h*; none: chosen as 0.9 h*, kept below it as tissue stiffens, and grown
   /// again when it softens; semi-implicit 0.9 h* of the elastic body. Implicit and static: none: as long as converges,
   /// up to ImplicitOptions::largest_step; a given one is cut inside where it does not converge.
-  std::optional<double> step;
+  std::optional<double> step{};
   ImplicitOptions implicit{};
   Precision precision = Precision::single_precision;
   double damping_rate = 0.0;   ///< mass-proportional nodal damping γ_i/m_i [1/s], ≥ 0
@@ -119,7 +119,10 @@ enum class StepStatus {
 struct StepResult {
   StepStatus status = StepStatus::ok;
   std::span<const std::uint32_t> inverted_tets;  ///< valid until the next step
-  std::string_view message;                      ///< why a step was not made and what to do; valid until the next step
+  /// Why a step was not made and what to do, never empty then; empty where it was made. Valid until the next step.
+  std::string_view message;
+  /// Whether the step was made; where it was not, time stays as it is.
+  bool made() const { return status == StepStatus::ok || status == StepStatus::inverted; }
 };
 
 /// Which components of a vertex a constraint holds.
@@ -265,8 +268,10 @@ class Simulation {
   /// The rest mesh as it is now, without the removed tets (numbers of tets are new, those of vertices the same).
   TetMesh present_mesh() const;
 
-  /// Advances by step_size().
-  StepResult step();
+  /// Advances by step_size(). A step that is not made does not advance time: a loop over time has to look at the result.
+  [[nodiscard]] StepResult step();
+  /// Steps until the step that ends nearest to `time` [s], or until one is not made. @return what the last step returned
+  [[nodiscard]] StepResult advance_to(double time);
 
   double time() const;       ///< [s]
   double step_size() const;  ///< h of the next step [s]

@@ -72,11 +72,10 @@ void LiveSimulation::cut() {
 bool LiveSimulation::one_step(StepStatus& worst) {
   const StepResult result = own_ ? own_->step() : built_->step();
   inverted_.assign(result.inverted_tets.begin(), result.inverted_tets.end());
-  const bool made = result.status == StepStatus::ok || result.status == StepStatus::inverted;
-  if (made) cut();
-  if (!made) trouble_ = result.message;
+  if (result.made()) cut();
+  if (!result.made()) trouble_ = result.message;
   if (result.status != StepStatus::ok) worst = result.status;
-  return made && !fault_.raised;
+  return result.made() && !fault_.raised;
 }
 
 /// Steps while `going()`, without the GIL.
@@ -104,7 +103,7 @@ StepStatus LiveSimulation::loop(Going going) {
   if (interrupted) throw nb::python_error();
   fault_.rethrow();
   if (worst != StepStatus::ok && worst != StepStatus::inverted) {
-    throw StepError(trouble_.empty() ? "the step was not made: a force is not finite" : trouble_);
+    throw StepError(trouble_);
   }
   if (views > 0) get().displacement();  // brings what the views show up to date
   return worst;

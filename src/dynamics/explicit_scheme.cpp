@@ -213,7 +213,10 @@ void ExplicitScheme::kick(double h) {
 }
 
 StepResult ExplicitScheme::step() {
-  if (!control_->accept(stiffening_, stiff_)) return {StepStatus::step_too_large, {}, {}};
+  if (!control_->accept(stiffening_, stiff_)) {
+    message_ = "tissue or tools have stiffened, and " + control_->too_large();
+    return {StepStatus::step_too_large, {}, message_};
+  }
   control_->limit_shape_change(shape_rates());
   moving_->list_above(control_->list_above());
   const double h = control_->step();
@@ -229,7 +232,10 @@ StepResult ExplicitScheme::step() {
   const Advance& seen = moving_->advance(h, gravity_, options_.track_energies);
   take_stiffness(seen);
   copy_.current = false;
-  if (!seen.finite) return {StepStatus::not_finite, seen.inverted, {}};
+  if (!seen.finite) {
+    message_ = not_finite_at(time_);
+    return {StepStatus::not_finite, seen.inverted, message_};
+  }
 
   kick_step_ = h;
   kick_time_ = time_;

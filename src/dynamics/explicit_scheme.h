@@ -12,6 +12,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "dynamics/energy_ledger.h"
@@ -105,6 +106,7 @@ class ExplicitScheme : public Scheme {
   mutable StateCopy copy_;
   double kick_step_ = 0.0, kick_time_ = 0.0;  ///< of the last kick
   EnergyLedger ledger_;
+  std::string message_;                       ///< why the last step was not made
 };
 
 }  // namespace glisson

@@ -409,7 +409,8 @@ StepResult ImplicitScheme::step() {
     }
     if (!flat(view(now_.elastic)).allFinite() || !flat(view(now_.viscous)).allFinite()) {
       fresh_ = true;
-      return {StepStatus::not_finite, watch_.inverted, {}};
+      message_ = not_finite_at(time_);
+      return {StepStatus::not_finite, watch_.inverted, message_};
     }
   }
   std::optional<Backup> backup;

@@ -48,6 +48,13 @@ void Scheme::require_tissues(const BlockTissues& tissues) const {
 
 void Scheme::attach(std::shared_ptr<Interaction>, const BodyView&) { refuse_interactions(); }
 
+std::string Scheme::not_finite_at(double time) {
+  return "a force is not finite at " + std::to_string(time) +
+         " s: the tissue has been deformed beyond what its law or its precision can carry, or a motion, load or "
+         "interaction gave a number that is not finite. Ways out: look at the last frame, press less deep or more "
+         "slowly, soften the law, precision = \"double\", or integrator = \"implicit\"";
+}
+
 void Scheme::refuse_interactions() {
   throw std::invalid_argument(
       "attach: instruments, needles and membranes need integrator = explicit, or semi_implicit for tissue without "

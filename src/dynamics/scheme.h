@@ -7,6 +7,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "dynamics/checkpoint.h"
@@ -102,6 +103,8 @@ class Scheme {
   /// @throws std::invalid_argument saying which integrators bear interactions
   [[noreturn]] static void refuse_interactions();
   BodyChanger& changer();
+  /// Why a step from `time` is not made where a force is not finite, and what to do.
+  static std::string not_finite_at(double time);
   Vec3d gravity_at(double time) const;
   /// Lets those constraints take hold whose time has come by the middle of a step of h.
   /// @return whether one did

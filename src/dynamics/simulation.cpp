@@ -266,6 +266,12 @@ TetMesh Simulation::present_mesh() const {
 
 StepResult Simulation::step() { return impl_->scheme->step(); }
 
+StepResult Simulation::advance_to(double time) {
+  StepResult last;
+  while (last.made() && this->time() + 0.5 * step_size() < time) last = step();
+  return last;
+}
+
 double Simulation::time() const { return impl_->scheme->time(); }
 double Simulation::step_size() const { return impl_->scheme->step_size(); }
 double Simulation::stable_step() const { return impl_->scheme->stable_step(); }

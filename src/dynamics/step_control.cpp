@@ -56,7 +56,7 @@ double StepControl::with_beside(double step, const Beside& beside) const {
   return 4.0 / (c + std::sqrt(c * c + 4.0 * beside.k));
 }
 
-void StepControl::refuse_above(double stable) const {
+std::string StepControl::too_large(double stable) const {
   std::ostringstream text;
   text << "step = " << step_ << " s is above the stable step h* = " << stable
        << " s of this mesh and tissue, and the run would blow up. Ways out: a smaller step, or \"auto\", which takes "
@@ -65,7 +65,7 @@ void StepControl::refuse_above(double stable) const {
   text << "\"implicit\", which is stable at any step; less viscosity or more nodal damping, which raise h*; a larger "
        << "density, or mass scaling of the smallest tets, where the inertia of the tissue does not matter, h* growing "
        << "with its square root";
-  throw std::invalid_argument(text.str());
+  return text.str();
 }
 
 /// Factors of C in φ (stable_step.h). A tissue of small strain keeps its viscous matrix; any other may have one up to

@@ -22,6 +22,8 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "dynamics/checkpoint.h"
@@ -97,6 +99,8 @@ class StepControl {
     return std::min(caution_ * with_beside(step_, {room * (stiff_.k + held_), stiff_.c / kSafety}), shape_step_);
   }
   double stable_step() const { return with_beside(limits_.stable, beside_); }
+  /// What is wrong with a given step that accept() has refused, and the ways out.
+  std::string too_large() const { return too_large(stable_step()); }
 
  private:
   static constexpr double kSafety = 0.9;                                 ///< automatic step over h*
@@ -148,7 +152,8 @@ class StepControl {
   void forget_searches() { searches_.clear(), searches_made_ = 0; }
   bool drag_thickens() const;
   Limits bound_at(std::span<const double> stiffening) const;
-  [[noreturn]] void refuse_above(double stable) const;
+  [[noreturn]] void refuse_above(double stable) const { throw std::invalid_argument(too_large(stable)); }
+  std::string too_large(double stable) const;
   bool rises(std::span<const double> stiffening, double rise);
   bool bears(std::span<const double> stiffening);
   void take_base(std::vector<double> level, const Limits& limits);

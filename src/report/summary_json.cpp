@@ -47,29 +47,11 @@ std::string_view end_text(RunSummary::End end) {
 
 std::string trouble_text(const RunSummary& s) {
   if (!s.trouble.empty()) return fmt::format("stopped at {:.6g} s: {}", s.time_s, s.trouble);
-  switch (s.end) {
-    case RunSummary::End::stopped_inverted:
-      return fmt::format(
-          "stopped at {:.6g} s: {} tets are inverted (J <= 0); press less deep, refine the mesh under "
-          "the tool, or let it go on by on_inversion = \"go_on\"",
-          s.time_s, s.inverted_tets_most);
-    case RunSummary::End::stopped_unstable:
-      return fmt::format(
-          "stopped at {:.6g} s: the tissue stiffened until the given step of {:.6g} s exceeds the stable "
-          "one, {:.6g} s; give a smaller step or step = \"auto\"",
-          s.time_s, s.step_s, s.stable_step_s);
-    case RunSummary::End::stopped_not_finite:
-      return fmt::format(
-          "stopped at {:.6g} s: the state is no longer finite; look at the last frame, and press less "
-          "deep, soften the law, or take integrator = \"implicit\"",
-          s.time_s);
-    case RunSummary::End::stopped_not_converged:
-      return fmt::format("stopped at {:.6g} s: no equilibrium was found, however small the step", s.time_s);
-    case RunSummary::End::stopped_not_held:
-      return fmt::format("stopped at {:.6g} s: supports and tools leave a rigid motion free", s.time_s);
-    default:
-      return {};
-  }
+  if (s.end != RunSummary::End::stopped_inverted) return {};
+  return fmt::format(
+      "stopped at {:.6g} s: {} tets are inverted (J <= 0); press less deep, refine the mesh under "
+      "the tool, or let it go on by on_inversion = \"go_on\"",
+      s.time_s, s.inverted_tets_most);
 }
 
 nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant, const std::string& scene,

@@ -102,7 +102,7 @@ bool Run::step() {
     summary_.inverted_tets_most = std::max(summary_.inverted_tets_most, result.inverted_tets.size());
   }
   using End = RunSummary::End;
-  const bool made = result.status == StepStatus::ok || result.status == StepStatus::inverted;
+  const bool made = result.made();
   if (result.status == StepStatus::step_too_large) summary_.end = End::stopped_unstable;
   if (result.status == StepStatus::not_finite) summary_.end = End::stopped_not_finite;
   if (result.status == StepStatus::not_converged) summary_.end = End::stopped_not_converged;

@@ -1,5 +1,6 @@
 // A change that cannot be made is refused with the numbers at fault, and then nothing has changed.
 #include "change/changed_body.h"
+#include "support/must_step.h"
 
 namespace glisson::test {
 namespace {
@@ -16,7 +17,7 @@ struct Running {
     simulation.set_state(std::vector<Vec3d>(state.u.size()), state.v);
     const std::vector<std::uint32_t> gone{7, 8, 9};
     simulation.remove_tets(gone);
-    for (int i = 0; i < 10; ++i) simulation.step();
+    for (int i = 0; i < 10; ++i) test::must_step(simulation);
   }
   static SimulationOptions options(Precision precision) {
     SimulationOptions o;
@@ -40,7 +41,7 @@ void expect_refused(const Change& change, const std::vector<std::string>& parts)
     EXPECT_EQ(asked.simulation.state_hash(), other.simulation.state_hash());
     EXPECT_EQ(asked.simulation.present_mesh(), other.simulation.present_mesh());
     EXPECT_EQ(asked.simulation.step_size(), other.simulation.step_size());
-    for (int i = 0; i < 5; ++i) asked.simulation.step(), other.simulation.step();
+    for (int i = 0; i < 5; ++i) test::must_step(asked.simulation), test::must_step(other.simulation);
     EXPECT_EQ(asked.simulation.state_hash(), other.simulation.state_hash());
     EXPECT_EQ(asked.simulation.force({0}).total(), other.simulation.force({0}).total());
     EXPECT_EQ(asked.simulation.energies().removed, other.simulation.energies().removed);
@@ -88,7 +89,7 @@ TEST(Refusal, NotOfNothing) {
   EXPECT_EQ(asked.simulation.remove_tets({}).tets, 0U);
   EXPECT_EQ(asked.simulation.remove_tets(std::vector<std::uint32_t>{7, 8}).mass, 0.0);
   EXPECT_TRUE(asked.simulation.split_faces({}).origins.empty());
-  for (int i = 0; i < 5; ++i) asked.simulation.step(), other.simulation.step();
+  for (int i = 0; i < 5; ++i) test::must_step(asked.simulation), test::must_step(other.simulation);
   EXPECT_EQ(asked.simulation.state_hash(), other.simulation.state_hash());
 }
 

@@ -2,6 +2,7 @@
 #include "change/changed_body.h"
 #include "change/faces.h"
 #include "glisson/motion.h"
+#include "support/must_step.h"
 
 namespace glisson::test {
 namespace {
@@ -32,7 +33,7 @@ Trace run(const Kind& kind, int threads) {
     if (i % 3 == 1) s.remove_tets(choose(60, mesh.tets.size(), random));
     if (i % 3 == 2)
       s.split_faces(faces_on_plane(s.present_mesh(), static_cast<std::size_t>(i / 3 % 3), (2 + i / 3) * kCell));
-    for (int k = 0; k < 5; ++k) s.step();
+    for (int k = 0; k < 5; ++k) test::must_step(s);
     trace.hashes.push_back(s.state_hash());
     trace.forces.push_back(s.force(tool).total());
   }

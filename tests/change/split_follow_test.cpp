@@ -2,6 +2,7 @@
 #include "change/changed_body.h"
 #include "change/faces.h"
 #include "glisson/motion.h"
+#include "support/must_step.h"
 
 namespace glisson::test {
 namespace {
@@ -56,7 +57,7 @@ TEST_P(Followers, OfSupportsAndTools) {
   cut.split_faces(box.faces);
   Simulation built(cut.present_mesh(), {{0, GetParam().tissue}}, options);
   set_up(built);
-  for (int i = 0; i < 400; ++i) cut.step(), built.step();
+  for (int i = 0; i < 400; ++i) test::must_step(cut), test::must_step(built);
   EXPECT_LE(relative_difference(cut.displacement(), built.displacement()), GetParam().tolerance());
   for (const std::size_t c : {0U, 1U, 2U}) {
     const Vec3d expected = built.force({c}).total();
@@ -70,12 +71,12 @@ TEST_P(Followers, JoinAToolThatMoves) {
   Simulation s(box.mesh, {{0, GetParam().tissue}}, GetParam().options(std::nullopt));
   s.fix(box.set("z_min"));
   const ConstraintId tool = s.drive(box.set("z_max"), press({.velocity = 0.02, .depth = 0.01, .hold = 1.0}));
-  for (int i = 0; i < 40; ++i) s.step();
+  for (int i = 0; i < 40; ++i) test::must_step(s);
   const ForceParts before = s.force(tool);
   const SplitReport report = s.split_faces(box.faces);
   EXPECT_EQ(s.force(tool).total(), before.total());
   const double t = s.time(), h = s.step_size();
-  s.step();
+  test::must_step(s);
   for (std::size_t i = 0; i < report.origins.size(); ++i) {
     if (!std::binary_search(box.set("z_max").begin(), box.set("z_max").end(), report.origins[i])) continue;
     EXPECT_NEAR(s.displacement()[report.first_new + i].z, -0.02 * (t + h), 1e-12);
@@ -91,7 +92,7 @@ TEST_P(Followers, ShareLoads) {
   s.add_load(box.set("z_max"), force);
   s.split_faces(box.faces);
   s.split_faces(faces_on_plane(s.present_mesh(), 1, 2 * kCell));
-  for (int i = 0; i < 100; ++i) s.step();
+  for (int i = 0; i < 100; ++i) test::must_step(s);
   const Vec3d expected = force * s.time();
   EXPECT_LE(norm(momentum(s) - expected),
             (GetParam().precision == Precision::single_precision ? 1e-6 : 1e-12) * norm(expected));

@@ -8,6 +8,9 @@ int main() {
   glisson::Simulation simulation(box, {{0, glisson::Tissue{}}}, {.damping_rate = 50.0});
   simulation.fix(box.vertex_sets.at("z_min"));
   const auto tool = simulation.drive(box.vertex_sets.at("z_max"), glisson::press({.velocity = 0.01, .depth = 0.005}));
-  while (simulation.time() < 1.0) simulation.step();
+  if (const glisson::StepResult last = simulation.advance_to(1.0); !last.made()) {
+    std::printf("%.*s\n", static_cast<int>(last.message.size()), last.message.data());
+    return 1;
+  }
   std::printf("%.4f N\n", -simulation.force(tool).total().z);
 }

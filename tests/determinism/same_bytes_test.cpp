@@ -6,6 +6,7 @@
 
 #include "glisson/motion.h"
 #include "support/bodies.h"
+#include "support/must_step.h"
 
 namespace glisson {
 namespace {
@@ -27,7 +28,7 @@ Simulation busy_body(SimulationOptions options, TetMesh mesh = test::paper_mesh(
 }
 
 std::uint64_t hash_after(int steps, Simulation simulation) {
-  for (int i = 0; i < steps; ++i) simulation.step();
+  for (int i = 0; i < steps; ++i) test::must_step(simulation);
   return simulation.state_hash();
 }
 SimulationOptions in(Precision precision) {
@@ -59,7 +60,7 @@ TEST_P(SameBytes, BesideOtherThreads) {
 TEST_P(SameBytes, WatchedOrNot) {
   Simulation watched = busy_body(in(GetParam()));
   for (int i = 0; i < 300; ++i) {
-    watched.step();
+    test::must_step(watched);
     watched.tet_fields();
     watched.positions();
     watched.force({1});

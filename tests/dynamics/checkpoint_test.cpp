@@ -7,6 +7,7 @@
 
 #include "glisson/motion.h"
 #include "support/bodies.h"
+#include "support/must_step.h"
 
 namespace glisson {
 namespace {
@@ -157,7 +158,7 @@ std::string saved_press(const SimulationOptions& o = {}) {
   const TetMesh mesh = test::paper_mesh();
   Simulation s(mesh, {{0, Tissue{}}}, o);
   s.fix(mesh.vertex_sets.at("z_min"));
-  s.step();
+  test::must_step(s);
   std::ostringstream file;
   s.save(file);
   return file.str();

@@ -13,6 +13,7 @@
 #include "glisson/simulation.h"
 #include "glisson/tissue_presets.h"
 #include "glisson/tool_motion.h"
+#include "support/must_step.h"
 #include "support/places.h"
 
 namespace glisson {
@@ -89,8 +90,8 @@ TEST_F(SideBySideRuns, BuildsAndSteps) {
   const NeedleOptions options;
   const auto driver = std::make_shared<PathDriver>(Pose{{0.005, 0.005, 0.081}}, steady_path({}));
   simulation.attach(std::make_shared<Needle>(options, driver));
-  for (int i = 0; i < 20; ++i) simulation.step();
-  simulation.step();
+  for (int i = 0; i < 20; ++i) test::must_step(simulation);
+  test::must_step(simulation);
   EXPECT_LT(simulation.force(tool).total().z, 0.0);
   tissue.youngs_modulus = 7200;
   simulation.set_tissue(0, tissue);

@@ -9,6 +9,7 @@
 #include "glisson/contact.h"
 #include "glisson/simulation.h"
 #include "glisson/tool_motion.h"
+#include "support/must_step.h"
 
 namespace glisson {
 namespace {
@@ -74,7 +75,7 @@ struct Device {
     driver->set_target({{kAbove.position.x, kAbove.position.y, z}, identity<double>()});
     force = driver->device_force().z;
     const double before = z, until = slab.body.time() + coupling.period;
-    while (slab.body.time() + 0.5 * slab.body.step_size() < until) slab.body.step();
+    while (slab.body.time() + 0.5 * slab.body.step_size() < until) test::must_step(slab.body);
     constexpr int kSteps = 200;
     for (int k = 0; k < kSteps; ++k) {
       const double dt = coupling.period / kSteps;

@@ -7,6 +7,7 @@
 
 #include "mechanics/reference.h"
 #include "support/bodies.h"
+#include "support/must_step.h"
 #include "support/scene_runs.h"
 
 namespace glisson {
@@ -79,7 +80,7 @@ Staircase climb(Variant v) {
   while (simulation.time() < press_end(v.tools[0].motion)) {
     const std::vector<Vec3d> u(simulation.displacement().begin(), simulation.displacement().end());
     const std::vector<double> s = simulation.tet_fields().s;
-    simulation.step();
+    test::must_step(simulation);
     const auto old = reference::mesh_forces(sides, {{0, soft}, {1, stiff}}, u, u);
     double with_old = 0.0;
     for (const std::uint32_t i : mesh.vertex_sets.at(v.tools[0].set)) with_old += old.elastic[i].z;
