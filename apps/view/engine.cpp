@@ -338,7 +338,11 @@ void Engine::publish() {
   const std::span<const Vec3d> u = simulation.displacement(), v = simulation.velocity();
   state.displacement.assign(u.begin(), u.end());
   state.velocity.clear();
-  if (want_velocity_.load(std::memory_order_relaxed)) state.velocity.assign(v.begin(), v.end());
+  state.branches.clear();
+  if (want_pressure_.load(std::memory_order_relaxed)) {
+    state.velocity.assign(v.begin(), v.end());
+    state.branches = body_->branches();
+  }
   state.tools.resize(tools_.size());
   state.playing = false;
   for (std::size_t i = 0; i < tools_.size(); ++i) {

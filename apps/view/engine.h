@@ -48,7 +48,7 @@ class Engine final : public Source {
   const Snapshot* latest() override { return latest_.take(); }
   bool next_sample(ForceSample& sample) override { return samples_.pop(sample); }
 
-  void want_velocity(bool wanted) override { want_velocity_.store(wanted, std::memory_order_relaxed); }
+  void want_pressure(bool wanted) override { want_pressure_.store(wanted, std::memory_order_relaxed); }
 
   const std::vector<ToolInfo>& tools() const override { return tools_; }
   const std::vector<ParameterInfo>& parameters() const override { return parameters_; }
@@ -91,7 +91,7 @@ class Engine final : public Source {
   Ring<Command, 1024> commands_;
   Ring<ForceSample, 8192> samples_;
   Latest<Snapshot> latest_;
-  std::atomic<bool> stop_{false}, want_velocity_{false};
+  std::atomic<bool> stop_{false}, want_pressure_{false};
   std::thread thread_;
 
   // Of the engine's thread.

@@ -169,7 +169,7 @@ const Message& Server::Impl::frame_with(Field field) {
 }
 
 void Server::Impl::ask_for_fields() {
-  source_.want_velocity(std::any_of(viewers_.begin(), viewers_.end(),
+  source_.want_pressure(std::any_of(viewers_.begin(), viewers_.end(),
                                     [](const auto& viewer) { return viewer->field_ == Field::pressure; }));
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "glisson/scene.h"
+#include "mechanics/branch_memory.h"
 
 namespace glisson::view {
 
@@ -60,10 +61,16 @@ struct LiveEvent {
   double time = 0.0, depth = 0.0;
 };
 
+/// Where the Maxwell branches of a tet are in Snapshot::branches.
+struct BranchPlace {
+  std::uint32_t block = 0, element = 0;  ///< counted from the block's first
+};
+
 /// The body's mesh; another one from a cut or a removal on.
 struct BodyShape {
-  TetMesh mesh;                     ///< at rest, without removed tets; vertex numbers are those of the displacement
-  std::vector<std::uint8_t> marks;  ///< per vertex: 1 held, 2 driven, 0 free
+  TetMesh mesh;                       ///< at rest, without removed tets; vertex numbers are those of the displacement
+  std::vector<std::uint8_t> marks;    ///< per vertex: 1 held, 2 driven, 0 free
+  std::vector<BranchPlace> branches;  ///< per tet; empty of a recorded run
 };
 
 struct Snapshot {
@@ -78,7 +85,8 @@ struct Snapshot {
   std::shared_ptr<const BodyShape> shape;
   std::shared_ptr<const std::map<int, Tissue>> tissues;  ///< by region number; another one from a change on
   std::vector<Vec3d> displacement;
-  std::vector<Vec3d> velocity;  ///< where someone wants it, else empty
+  std::vector<Vec3d> velocity;         ///< where someone wants to see pressure, else empty
+  std::vector<BranchMemory> branches;  ///< of each tissue block, where someone wants to see pressure, else empty
   std::vector<ToolState> tools;
   Vec3d grab_force{};
   double cut_area = 0.0, cut_longest = 0.0;  ///< of what the hand's blade has cut, at rest [m²]; that a piece took [s]

@@ -30,7 +30,7 @@ class Source {
   virtual const Snapshot* latest() = 0;
   virtual bool next_sample(ForceSample& sample) = 0;
   /// Whether states are to hold velocities.
-  virtual void want_velocity(bool) {}
+  virtual void want_pressure(bool) {}
 
   // Known from the start, and the same after every reset.
   virtual const std::vector<ToolInfo>& tools() const = 0;

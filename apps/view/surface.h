@@ -32,8 +32,9 @@ class Surface {
 
   std::size_t pieces() const { return pieces_; }  ///< that the body is in
 
-  /// A field at each surface vertex, the mean over the tets around it: s [-], q [-], or p = −⅓ tr σ with the parts of σ that
-  /// TetFields::stress has [Pa]. Cost: a pass over the tets at the surface; pressure makes a body of them first.
+  /// A field at each surface vertex, the mean over the tets around it: s [-], q [-], or p = −⅓ tr σ of the stress that makes
+  /// the forces [Pa]. Cost: a pass over the tets at the surface; pressure makes a body of them first, and where tets share
+  /// their volume change of those that touch them, too.
   std::vector<double> field(Field field, const Snapshot& state);
 
  private:
@@ -42,6 +43,8 @@ class Surface {
   template <class OfTet>
   std::vector<double> mean(OfTet of_tet) const;
   std::vector<double> pressure(const Snapshot& state);
+  void build_near_body(const std::map<int, Tissue>& tissues);
+  std::vector<BranchMemory> near_branches(const Snapshot& state) const;
 
   struct NearTet {
     Tet tet;
@@ -55,7 +58,8 @@ class Surface {
   std::vector<double> tets_around_;    ///< of each surface vertex
   std::size_t pieces_ = 0;
   std::shared_ptr<const std::map<int, Tissue>> tissues_;  ///< that near_body_ is of
-  std::unique_ptr<Body> near_body_;                       ///< of the tets with a vertex at the surface
+  std::unique_ptr<Body> near_body_;  ///< of the tets with a vertex at the surface, and of those they take means with
+  std::vector<std::uint32_t> near_tets_;  ///< numbers of its tets in the shape's mesh, those of `near_` first
 };
 
 }  // namespace glisson::view

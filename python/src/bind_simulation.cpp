@@ -136,6 +136,7 @@ nb::dict tet_fields(const Live& live) {
   out["s"] = scalars(std::move(fields.s));
   out["jacobian"] = scalars(std::move(fields.jacobian));
   out["stress"] = owned<Doubles>(std::move(fields.stress), {n, 6});
+  out["piola"] = owned<Doubles>(std::move(fields.piola), {n, 3, 3});
   return out;
 }
 

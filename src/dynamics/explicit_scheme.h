@@ -35,6 +35,7 @@ class ExplicitScheme : public Scheme {
   std::span<const Vec3d> displacement() const override { return read_state().displacement; }
   std::span<const Vec3d> velocity() const override { return read_state().velocity; }
   const Energies& energies() const override { return ledger_.now(); }
+  BranchMemory branch_memory(std::size_t block) const override { return moving_->branch_memory(block); }
   void save(CheckpointWriter& out) const override;
   void load(CheckpointReader& in) override;
   /// What the constraint exerted on the tissue at the last kick.
@@ -105,8 +106,8 @@ class ExplicitScheme : public Scheme {
   std::vector<Vec3d> mobility_;  ///< per watched vertex [1/kg]
   mutable StateCopy copy_;
   double kick_step_ = 0.0, kick_time_ = 0.0;  ///< of the last kick
-  EnergyLedger ledger_;
   std::string message_;                       ///< why the last step was not made
+  EnergyLedger ledger_;
 };
 
 }  // namespace glisson

@@ -31,6 +31,7 @@ class ImplicitScheme final : public Scheme {
   std::span<const Vec3d> velocity() const override { return now_.v; }
   ForceParts force(ConstraintId constraint) const override;
   const Energies& energies() const override { return energies_; }
+  BranchMemory branch_memory(std::size_t block) const override { return tissue_.branch_memory(block, 0.0); }
   void save(CheckpointWriter& out) const override;
   void load(CheckpointReader& in) override;
 

@@ -17,6 +17,7 @@
 #include "glisson/interaction.h"
 #include "glisson/simulation.h"
 #include "mechanics/body_change.h"
+#include "mechanics/branch_memory.h"
 
 namespace glisson {
 
@@ -59,6 +60,8 @@ class Scheme {
   /// Hands a change of the mesh on to the interactions, after everything else has followed it.
   virtual void tell_change(const BodyView&, std::span<const std::uint32_t> /*origins*/) {}
   virtual const Energies& energies() const = 0;
+  /// What the Maxwell branches of a block hold at the present state.
+  virtual BranchMemory branch_memory(std::size_t block) const = 0;
 
   /// Everything that a continued run needs beside what it is made of.
   virtual void save(CheckpointWriter& out) const;
@@ -100,11 +103,11 @@ class Scheme {
   /// Energy that comes in with changed tissues [J].
   virtual void bring_in(double kinetic, double elastic) = 0;
 
+  /// Why a step from `time` is not made where a force is not finite, and what to do.
+  static std::string not_finite_at(double time);
   /// @throws std::invalid_argument saying which integrators bear interactions
   [[noreturn]] static void refuse_interactions();
   BodyChanger& changer();
-  /// Why a step from `time` is not made where a force is not finite, and what to do.
-  static std::string not_finite_at(double time);
   Vec3d gravity_at(double time) const;
   /// Lets those constraints take hold whose time has come by the middle of a step of h.
   /// @return whether one did

@@ -307,7 +307,10 @@ const EngineInfo& Simulation::engine_info() const { return impl_->scheme->info()
 Energies Simulation::energies() const { return impl_->scheme->energies(); }
 
 TetFields Simulation::tet_fields() const {
-  return glisson::tet_fields(impl_->scheme->body(), displacement(), velocity());
+  const Scheme& scheme = *impl_->scheme;
+  std::vector<BranchMemory> memory;
+  for (std::size_t b = 0; b < scheme.body().blocks.size(); ++b) memory.push_back(scheme.branch_memory(b));
+  return glisson::tet_fields(scheme.body(), displacement(), velocity(), memory);
 }
 
 void Simulation::save(std::ostream& out) const {

@@ -85,24 +85,38 @@ void SubmeshBody::make_memory_explicit() {
 }
 
 /// The memory holds m with q = m + to S, `to` of the last step (viscous_response-inl.h).
-std::vector<Sym3<double>> SubmeshBody::branch_stresses(std::size_t b) {
+BranchMemory SubmeshBody::branch_memory(std::size_t b) const {
   const TissueBlock& block = body_.blocks[b];
   const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
-  if (branches.empty()) return {};
-  std::vector<Sym3<double>> stresses((block.end - block.begin) * branches.size());
-  if (std::isinf(since_memory_)) return stresses;
-  const std::vector<Sym3<double>> S = relaxing_stresses(b);
+  BranchMemory memory;
+  if (branches.empty() || std::isinf(since_memory_)) return memory;
+  for (const MaxwellBranch& branch : branches) {
+    memory.left.push_back(1.0 - static_cast<double>(lane_weights(since_memory_, branch.time).to));
+  }
+  memory.held.resize((block.end - block.begin) * branches.size());
   for (const Submesh& part : submeshes_.parts) {
     if (part.block != b) continue;
     for_memory(part, block.tissue, kernels_.lanes, [&](std::uint32_t e, const auto& number) {
       for (std::size_t k = 0; k < branches.size(); ++k) {
         const auto m = [&](std::size_t i) { return static_cast<double>(*number(6 * k + i)); };
-        const double left = 1.0 - static_cast<double>(lane_weights(since_memory_, branches[k].time).to);
-        const std::size_t at = e - block.begin;
-        const Sym3<double> memory{m(0), m(1), m(2), m(3), m(4), m(5)};
-        stresses[at * branches.size() + k] = (S[at] * left - memory) * branches[k].share;
+        memory.held[(e - block.begin) * branches.size() + k] = {m(0), m(1), m(2), m(3), m(4), m(5)};
       }
     });
+  }
+  return memory;
+}
+
+std::vector<Sym3<double>> SubmeshBody::branch_stresses(std::size_t b) {
+  const TissueBlock& block = body_.blocks[b];
+  const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
+  std::vector<Sym3<double>> stresses((block.end - block.begin) * branches.size());
+  const BranchMemory memory = branch_memory(b);
+  if (memory.empty()) return stresses;
+  const std::vector<Sym3<double>> S = relaxing_stresses(b);
+  for (std::size_t i = 0; i < S.size(); ++i) {
+    for (std::size_t k = 0; k < branches.size(); ++k) {
+      stresses[i * branches.size() + k] = memory.stress(branches[k], i, k, S[i]);
+    }
   }
   return stresses;
 }

@@ -117,6 +117,10 @@ void ElementBody::tissues_changed(std::span<const std::size_t> blocks, std::span
   }
 }
 
+BranchMemory ElementBody::branch_memory(std::size_t block) const {
+  return any_ != nullptr ? any_->branch_memory(block, since_memory_) : BranchMemory{};
+}
+
 std::vector<Sym3<double>> ElementBody::branch_stresses(std::size_t block) {
   bring_memory_up_to_date(since_memory_);
   return any_ != nullptr ? any_->branch_stresses(block, u_) : std::vector<Sym3<double>>{};

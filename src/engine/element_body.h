@@ -30,6 +30,7 @@ class ElementBody final : public MovingBody {
   bool bears_tissues() const override;
   /// Cost: one pass over the elements.
   void tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) override;
+  BranchMemory branch_memory(std::size_t block) const override;
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override;
   void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) override;
   void watch(std::span<const std::uint32_t> vertices) override;

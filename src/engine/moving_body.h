@@ -15,6 +15,7 @@
 #include "glisson/interaction.h"
 #include "glisson/math.h"
 #include "mechanics/body_change.h"
+#include "mechanics/branch_memory.h"
 #include "mechanics/stiff_element.h"
 #include "tissue/strain.h"
 
@@ -66,6 +67,8 @@ class MovingBody {
   /// @param blocks  that have changed
   /// @param nodal_damping  γ_i of every vertex [kg/s]
   virtual void tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) = 0;
+  /// What the Maxwell branches of a block hold for the forces of the present state.
+  virtual BranchMemory branch_memory(std::size_t block) const = 0;
   /// Stress of each element and Maxwell branch of a block at the present state: what is not relaxed yet [Pa].
   virtual std::vector<Sym3<double>> branch_stresses(std::size_t block) = 0;
   virtual void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) = 0;

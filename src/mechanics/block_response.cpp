@@ -53,16 +53,40 @@ double BlockResponse::energy(std::span<const Vec3d> u) const {
   return sum;
 }
 
-std::vector<Sym3<double>> BlockResponse::relaxing(std::span<const Vec3d> u) const {
+/// Calls `visit(e, H, P)` with the elastic P of each element that is there.
+template <class Visit>
+void BlockResponse::for_elastic(std::span<const Vec3d> u, const Visit& visit) const {
   std::vector<double> mean;
   if (shared()) average(body_, block_, mean = volume_changes(u));
-  std::vector<Sym3<double>> stress(block_.end - block_.begin);
   for (std::size_t e = block_.begin; e < block_.end; ++e) {
     if (!(body_.rest[e].volume > 0.0)) continue;
     const Mat3d H = element_gradient(body_, e, u);
-    const ElementShape shape = element_shape(body_, block_.tissue, e);
-    stress[e - block_.begin] = response_.relaxing(H, response_.elastic(H, shape, shared() ? &mean[e] : nullptr));
+    visit(e, H, response_.elastic(H, element_shape(body_, block_.tissue, e), shared() ? &mean[e] : nullptr));
   }
+}
+
+std::vector<Mat3d> BlockResponse::piola(std::span<const Vec3d> u, std::span<const Vec3d> v,
+                                        const BranchMemory& memory) const {
+  const std::vector<MaxwellBranch>& branches = block_.tissue.maxwell;
+  std::vector<Mat3d> stress(block_.end - block_.begin);
+  for_elastic(u, [&](std::size_t e, const Mat3d& H, Mat3d P) {
+    const std::size_t i = e - block_.begin;
+    if (!branches.empty()) {
+      const Sym3<double> S = response_.relaxing(H, P);
+      Sym3<double> sum = S * -response_.relaxing_share();
+      for (std::size_t k = 0; k < branches.size() && !memory.empty(); ++k) sum += memory.stress(branches[k], i, k, S);
+      P = glisson::sum(P, response_.carry(H, sum));
+    }
+    if (block_.tissue.viscosity > 0.0) P = sum(P, response_.viscous(H, element_gradient(body_, e, v)));
+    stress[i] = P;
+  });
+  return stress;
+}
+
+std::vector<Sym3<double>> BlockResponse::relaxing(std::span<const Vec3d> u) const {
+  std::vector<Sym3<double>> stress(block_.end - block_.begin);
+  for_elastic(
+      u, [&](std::size_t e, const Mat3d& H, const Mat3d& P) { stress[e - block_.begin] = response_.relaxing(H, P); });
   return stress;
 }
 

@@ -1,13 +1,15 @@
-// block_response.h — a tissue block as a whole at one state, in double: its stored energy, the stress its Maxwell
-// branches relax, and the volume changes its tets share.
+// block_response.h — a tissue block as a whole at one state, in double: its stress, its stored energy, the stress its
+// Maxwell branches relax, and the volume changes its tets share.
 //
-// For what is asked now and then (a change of tissues, an account of energy); the loops that run every step have their own.
+// For what is asked now and then (fields of a frame, a change of tissues, an account of energy); the loops that run every
+// step have their own.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "mechanics/body.h"
+#include "mechanics/branch_memory.h"
 #include "tissue/response.h"
 
 namespace glisson {
@@ -23,6 +25,10 @@ class BlockResponse {
   /// @param body, @param block  must outlive this
   BlockResponse(const Body& body, const TissueBlock& block) : body_(body), block_(block), response_(block.tissue) {}
 
+  /// P of every element of the block [Pa], of which the forces follow: f_a = −V P s_a. Elastic, Kelvin–Voigt's and what
+  /// the Maxwell branches have not relaxed, with the shared volume change where the tissue has one.
+  /// @param v  velocity [m/s]
+  std::vector<Mat3d> piola(std::span<const Vec3d> u, std::span<const Vec3d> v, const BranchMemory& memory) const;
   /// Energy of the elastic forces [J], Response::relaxed_energy over the block.
   double energy(std::span<const Vec3d> u) const;
   /// S, of which each branch relaxes its share, of every element of the block [Pa].
@@ -31,6 +37,8 @@ class BlockResponse {
  private:
   bool shared() const { return block_.tissue.volume_change == VolumeChange::nodal; }
   std::vector<double> volume_changes(std::span<const Vec3d> u) const;
+  template <class Visit>
+  void for_elastic(std::span<const Vec3d> u, const Visit& visit) const;
 
   const Body& body_;
   const TissueBlock& block_;

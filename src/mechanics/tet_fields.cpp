@@ -1,5 +1,6 @@
 #include "mechanics/tet_fields.h"
 
+#include "mechanics/block_response.h"
 #include "mechanics/element_shape.h"
 
 namespace glisson {
@@ -24,17 +25,9 @@ LameParameters moduli(const Body& body, const Tissue& tissue, std::size_t e, con
   return lame_at(tissue, x);
 }
 
-/// σ = λ tr(ε) I + 2 μ ε and the viscous stress of a tensor mass.
-Sym3<double> small_stress(const Body& body, const TissueBlock& block, std::size_t e, const Mat3d& H,
-                          const Mat3d& rate) {
-  const LameParameters lame = moduli(body, block.tissue, e, H);
-  return isotropic_stress(H, lame.lambda, lame.mu) + isotropic_stress(rate, block.viscous.lambda, block.viscous.mu);
-}
-
-/// σ = P Fᵀ/J of any other; P itself for small strain.
-Sym3<double> cauchy_stress(const Response& response, const ElementShape& shape, const Mat3d& H, const Mat3d& rate) {
-  const Mat3d P = sum(response.elastic(H, shape), response.viscous(H, rate));
-  if (response.small()) return symmetric(P);
+/// σ = P Fᵀ/J; the symmetric part of P itself for small strain.
+Sym3<double> cauchy_stress(bool small, const Mat3d& H, const Mat3d& P) {
+  if (small) return symmetric(P);
   const Mat3d F = deformation_gradient(H);
   Mat3d PFt;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -45,22 +38,26 @@ Sym3<double> cauchy_stress(const Response& response, const ElementShape& shape, 
 
 }  // namespace
 
-TetFields tet_fields(const Body& body, std::span<const Vec3d> u, std::span<const Vec3d> v) {
+TetFields tet_fields(const Body& body, std::span<const Vec3d> u, std::span<const Vec3d> v,
+                     std::span<const BranchMemory> memory) {
   const std::size_t n = body.elements.size();
-  TetFields f{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), std::vector<double>(6 * n)};
-  for (const TissueBlock& block : body.blocks) {
-    const bool paper = block.tissue.is_tensor_mass();
-    const Response response(block.tissue);
+  TetFields f{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), std::vector<double>(6 * n),
+              std::vector<double>(9 * n)};
+  for (std::size_t b = 0; b < body.blocks.size(); ++b) {
+    const TissueBlock& block = body.blocks[b];
+    const bool small = Response(block.tissue).small();
+    const std::vector<Mat3d> piola =
+        BlockResponse(body, block).piola(u, v, memory.empty() ? BranchMemory{} : memory[b]);
     for (std::size_t e = block.begin; e < block.end; ++e) {
-      const Mat3d H = element_gradient(body, e, u), rate = element_gradient(body, e, v);
-      const Sym3<double> a = paper ? small_stress(body, block, e, H, rate)
-                                   : cauchy_stress(response, element_shape(body, block.tissue, e), H, rate);
+      const Mat3d H = element_gradient(body, e, u), &P = piola[e - block.begin];
       const std::size_t t = body.mesh_tet[e];
       f.q[t] = mean_ratio(H);
       f.s[t] = intensity_of(one_minus_q(H));
       f.jacobian[t] = jacobian(H);
+      const Sym3<double> a = cauchy_stress(small, H, P);
       const std::array<double, 6> stress{a.xx, a.yy, a.zz, a.xy, a.yz, a.zx};
       std::copy(stress.begin(), stress.end(), f.stress.begin() + static_cast<std::ptrdiff_t>(6 * t));
+      for (std::size_t i = 0; i < 9; ++i) f.piola[9 * t + i] = P(i / 3, i % 3);
     }
   }
   return f;

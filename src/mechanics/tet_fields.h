@@ -5,11 +5,14 @@
 
 #include "glisson/tet_fields.h"
 #include "mechanics/body.h"
+#include "mechanics/branch_memory.h"
 
 namespace glisson {
 
 /// Fields in the order of the mesh's tets, in double whatever the operator computes in.
-TetFields tet_fields(const Body& body, std::span<const Vec3d> u, std::span<const Vec3d> v);
+/// @param memory  of each tissue block; empty: all branches have relaxed
+TetFields tet_fields(const Body& body, std::span<const Vec3d> u, std::span<const Vec3d> v,
+                     std::span<const BranchMemory> memory);
 
 /// Σ V (½ λ tr(ε)² + μ ε:ε) with the moduli of the present shape [J]: the stored energy of a linear tissue.
 double secant_energy(const Body& body, std::span<const Vec3d> u);

@@ -227,6 +227,25 @@ void TissueOperator::advance_memory(const TissueState& state) {
   }
 }
 
+BranchMemory TissueOperator::branch_memory(std::size_t b, double since) const {
+  const TissueBlock& block = body_.blocks[b];
+  BranchMemory memory;
+  const std::size_t n = block.tissue.maxwell.size();
+  std::vector<BranchWeights> weights;
+  for (const MaxwellBranch& m : block.tissue.maxwell) {
+    weights.push_back(branch_weights(since, m.time));
+    memory.left.push_back(1.0 - weights.back().to);
+  }
+  for (std::size_t i = 0; n > 0 && i < block.end - block.begin; ++i) {
+    const Sym3<double>& before = memory_.stress[first_stress_[b] + i];
+    for (std::size_t k = 0; k < n; ++k) {
+      memory.held.push_back(memory_.relaxed[first_branch_[b] + i * n + k] * weights[k].decay +
+                            before * weights[k].from);
+    }
+  }
+  return memory;
+}
+
 std::vector<Sym3<double>> TissueOperator::branch_stresses(std::size_t b, std::span<const Vec3d> u) const {
   const TissueBlock& block = body_.blocks[b];
   const std::size_t n = block.tissue.maxwell.size();

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "mechanics/body.h"
+#include "mechanics/branch_memory.h"
 #include "mechanics/force_operator.h"
 #include "tissue/response.h"
 
@@ -76,6 +77,8 @@ class TissueOperator {
   /// Follows elements and vertices that have changed in the body; memory of an element stays.
   void body_changed();
 
+  /// What the branches of a block hold. @param since  time since the memory was last brought up to date [s], ≥ 0
+  BranchMemory branch_memory(std::size_t block, double since) const;
   /// Stress g (S − q) of each element and branch of a block, with the memory up to date [Pa].
   std::vector<Sym3<double>> branch_stresses(std::size_t block, std::span<const Vec3d> u) const;
   /// Follows tissues that have changed in the body. Branches of those blocks carry no stress then; the others keep theirs.

@@ -1,4 +1,5 @@
 // What the surface is coloured by is what the material has there: exact for homogeneous deformation.
+#include <algorithm>
 #include <cmath>
 
 #include "app/program.h"
@@ -69,6 +70,47 @@ TEST(LiveSurface, ShowsPressure) {
   Surface skin(grown.shape);
   for (const double p : skin.field(Field::pressure, grown))
     EXPECT_NEAR(p, -20000.0 * (std::pow(1.02, 3) - 1.0), 1e-6 * 20000.0);
+}
+
+// Pressure is that of the stress that makes the forces: with volume changes shared over vertices inside, and with branches
+// that have relaxed in part, it is the simulation's own.
+TEST(LiveSurface, ShowsThePressureOfTheForces) {
+  LiveBody body(variant_of("hyperelastic = { kind = \"neo_hookean\", mu_Pa = 1000, bulk_modulus_Pa = 20000 }\n"
+                           "volume_change = \"nodal\"\nmaxwell_part = \"all\"\n"
+                           "maxwell = [{ share = 0.5, time_s = 0.005 }]"),
+                {});
+  Simulation& simulation = body.built().simulation;
+  std::vector<Vec3d> u;
+  for (const Vec3d& x : simulation.mesh().vertices)
+    u.push_back({0.5 * x.z * x.x, -3.0 * x.y * x.y, 2.0 * x.x * x.z - 0.02 * x.y});
+  simulation.set_state(u, std::vector<Vec3d>(u.size()));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(simulation.step().made());
+  Snapshot state;
+  state.shape = body.shape(), state.tissues = body.tissues(), state.branches = body.branches();
+  state.displacement.assign(simulation.displacement().begin(), simulation.displacement().end());
+  state.velocity.assign(simulation.velocity().begin(), simulation.velocity().end());
+  Surface surface(state.shape);
+  const std::vector<double> shown = surface.field(Field::pressure, state);
+  const TetFields fields = simulation.tet_fields();
+  const TetMesh& mesh = state.shape->mesh;
+  double largest = 0.0, without = 0.0;
+  std::vector<double> expected(shown.size(), 0.0);
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    double around = 0.0;
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+      if (std::find(mesh.tets[t].begin(), mesh.tets[t].end(), surface.mesh_vertex(i)) == mesh.tets[t].end()) continue;
+      const double* s = &fields.stress[6 * t];
+      expected[i] -= (s[0] + s[1] + s[2]) / 3.0;
+      around += 1.0;
+    }
+    expected[i] /= around;
+    largest = std::max(largest, std::abs(expected[i]));
+  }
+  for (std::size_t i = 0; i < shown.size(); ++i) EXPECT_NEAR(shown[i], expected[i], 1e-9 * largest);
+  state.branches.clear();  // as if all had relaxed: another pressure, so the branches above counted
+  const std::vector<double> relaxed = surface.field(Field::pressure, state);
+  for (std::size_t i = 0; i < shown.size(); ++i) without = std::max(without, std::abs(relaxed[i] - expected[i]));
+  EXPECT_GT(without, 0.02 * largest);
 }
 
 // A change of the tissue changes the pressure of the same shape.

@@ -62,24 +62,6 @@ double inner(const Field& a, const Field& b) {
 }
 double size_of(const Field& a) { return std::sqrt(inner(a, a)); }
 
-/// Tissues whose volume change is shared with the neighbours.
-std::vector<Tissue> nodal_tissues() {
-  std::vector<Tissue> all = test::carriers();
-  for (const Tissue& t : test::fibre_tissues()) all.push_back(t);
-  for (const Tissue& t : test::maxwell_tissues()) all.push_back(t);
-  for (Tissue& t : all) {
-    t.volume_change = VolumeChange::nodal;
-    t.law = ConstantLaw{}, t.law_form = LawForm::secant;
-    t.poisson_ratio = 0.45;
-    t.name += " nodal";
-  }
-  return all;
-}
-std::vector<Tissue> all_tissues() {
-  std::vector<Tissue> all = test::every_tissue();
-  for (const Tissue& t : nodal_tissues()) all.push_back(t);
-  return all;
-}
 /// A measure of a tetrahedron's own directions differs from tet to tet, and with it the modulus: no state but rest is uniform.
 bool is_uniform(const Tissue& t) { return !test::has_directions(t); }
 
@@ -97,7 +79,7 @@ bool is_inside(const Vec3d& x) {
 
 // Patch test: an affine displacement leaves no force inside, and stores V W.
 TEST(TissueBody, PatchTest) {
-  for (const Tissue& t : all_tissues()) {
+  for (const Tissue& t : test::all_tissues()) {
     if (!is_uniform(t)) continue;
     SCOPED_TRACE(t.name);
     const Cube cube(t);
@@ -117,7 +99,7 @@ TEST(TissueBody, PatchTest) {
 
 // Shared or not, the volume change of an affine field is the same number in every tet, and so are the forces.
 TEST(TissueBody, SharedVolumeLeavesAffineFieldsAlone) {
-  for (Tissue t : nodal_tissues()) {
+  for (Tissue t : test::nodal_tissues()) {
     SCOPED_TRACE(t.name);
     const Cube shared(t);
     t.volume_change = VolumeChange::own;
@@ -133,7 +115,7 @@ constexpr double kStep = 1e-7;  // [m]: 1e-5 of strain
 
 // Newton's third law, for forces and moments; with a small strain moments only see the rest shape.
 TEST(TissueBody, ForcesAndMomentsSumToZero) {
-  for (const Tissue& t : all_tissues()) {
+  for (const Tissue& t : test::all_tissues()) {
     SCOPED_TRACE(t.name);
     const Cube cube(t);
     const Field f = cube.forces(cube.u, cube.v).sum();
@@ -160,7 +142,7 @@ bool has_exact_energy(const Tissue& t) {
 
 // f = −∂E/∂u, with shared volume changes too. Differences of E lose 1e-16 E/(2 h): 1e-7 of the force.
 TEST(TissueBody, ForcesAreTheGradientOfEnergy) {
-  for (const Tissue& t : all_tissues()) {
+  for (const Tissue& t : test::all_tissues()) {
     if (!has_exact_energy(t)) continue;
     SCOPED_TRACE(t.name);
     Cube cube(t);
@@ -215,7 +197,7 @@ double tangent_error(const Tissue& t, double rate, double since) {
 
 // The tangent of the body is the derivative of its forces, in displacement and, with a rate, in velocity.
 TEST(TissueBody, TangentIsTheDerivativeOfForces) {
-  for (const Tissue& t : all_tissues()) {
+  for (const Tissue& t : test::all_tissues()) {
     SCOPED_TRACE(t.name);
     EXPECT_LT(tangent_error(t, 0.0, 0.05), 1e-6);
     EXPECT_LT(tangent_error(t, 20.0, 0.05), 1e-6);
@@ -224,7 +206,7 @@ TEST(TissueBody, TangentIsTheDerivativeOfForces) {
 
 // K is symmetric where there is an energy.
 TEST(TissueBody, TangentIsSymmetricWhereThereIsAnEnergy) {
-  for (const Tissue& t : all_tissues()) {
+  for (const Tissue& t : test::all_tissues()) {
     if (!has_exact_energy(t)) continue;
     SCOPED_TRACE(t.name);
     Cube cube(t);

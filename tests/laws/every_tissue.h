@@ -197,6 +197,26 @@ inline bool has_directions(const Tissue& t) {
   return !t.hyperelastic && t.measure != DeformationMeasure::intensity && t.measure != DeformationMeasure::one_minus_q;
 }
 /// Whether P is the gradient of Response::energy.
+/// Tissues whose volume change is shared with the neighbours.
+inline std::vector<Tissue> nodal_tissues() {
+  std::vector<Tissue> all = carriers();
+  for (const Tissue& t : fibre_tissues()) all.push_back(t);
+  for (const Tissue& t : maxwell_tissues()) all.push_back(t);
+  for (Tissue& t : all) {
+    t.volume_change = VolumeChange::nodal;
+    t.law = ConstantLaw{}, t.law_form = LawForm::secant;
+    t.poisson_ratio = 0.45;
+    t.name += " nodal";
+  }
+  return all;
+}
+/// Those and every tissue with a volume change of its own.
+inline std::vector<Tissue> all_tissues() {
+  std::vector<Tissue> all = every_tissue();
+  for (const Tissue& t : nodal_tissues()) all.push_back(t);
+  return all;
+}
+
 inline bool is_conservative(const Tissue& t) {
   const bool constant = std::holds_alternative<ConstantLaw>(t.law) && !t.lambda_law && !t.mu_law;
   return t.hyperelastic || t.law_form == LawForm::energy || constant;

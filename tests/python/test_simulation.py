@@ -220,6 +220,8 @@ def test_tet_fields_of_a_uniform_stretch():
     lame, mu = glisson.lame_from_young(1000, 0.25)
     assert np.allclose(fields["jacobian"], 1.01, rtol=1e-9)
     assert np.allclose(fields["stress"][:, 2], (lame + 2 * mu) * 0.01, rtol=1e-9)
+    assert fields["piola"].shape == (len(mesh.tets), 3, 3)
+    assert np.allclose(fields["piola"][:, 2, 2], fields["stress"][:, 2], rtol=1e-12), "small strain: P is the stress"
     assert np.allclose(fields["q"], 3 * 1.01 ** (2 / 3) / (2 + 1.01**2), rtol=1e-9)
     assert np.allclose(fields["s"], np.sqrt(1.5 * (1 - fields["q"])), rtol=1e-6)
 
