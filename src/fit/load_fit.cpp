@@ -1,12 +1,11 @@
 // load_fit.cpp — FIT.toml in, checked FitSpec out.
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "fit/fit_spec.h"
 #include "fit/section_fit.h"
+#include "mesh/input_file.h"
 
 namespace glisson::fit {
 namespace {
@@ -53,13 +52,9 @@ FitSpec parse_fit(std::string_view text, const std::string& name) {
 }
 
 FitSpec load_fit(const fs::path& file) {
-  std::error_code error;
-  if (fs::is_directory(file, error)) throw SceneError(file.string() + ": is a folder; name a .toml file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw SceneError(file.string() + ": cannot be read; check the path and that you may read it");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) throw SceneError(file.string() + ": cannot be read to its end");
-  return parse_fit(text, file.string());
+  const detail::InputFile input = detail::read_input(file, detail::kTomlInput);
+  if (!input.problem.empty()) throw SceneError(input.problem);
+  return parse_fit(input.bytes, file.string());
 }
 
 }  // namespace glisson::fit

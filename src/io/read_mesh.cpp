@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "io/raw_mesh.h"
+#include "mesh/input_file.h"
 #include "mesh/text.h"
 
 namespace glisson {
@@ -77,13 +77,10 @@ void fail(const std::string& name, const std::string& what) { throw FileError(na
 std::string read_bytes(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::exists(file, error)) fail(file.string(), "there is no such file");
-  if (std::filesystem::is_directory(file, error)) fail(file.string(), "this is a folder, not a mesh file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(file.string(), "the file cannot be opened; check its permissions");
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) fail(file.string(), "reading stopped after " + std::to_string(bytes.size()) + " bytes");
-  if (bytes.empty()) fail(file.string(), "the file is empty");
-  return bytes;
+  InputFile input = read_input(file, kMeshInput);
+  if (!input.problem.empty()) throw FileError(input.problem);
+  if (input.bytes.empty()) fail(file.string(), "the file is empty");
+  return std::move(input.bytes);
 }
 
 ImportedMesh finish_import(RawMesh raw, const std::string& name, double scale) {

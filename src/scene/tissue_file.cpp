@@ -1,12 +1,10 @@
 #include "scene/tissue_file.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <optional>
-#include <system_error>
 
 #include "glisson/scene.h"
+#include "mesh/input_file.h"
 #include "scene/presets.h"
 #include "scene/sections.h"
 
@@ -15,16 +13,13 @@ namespace {
 
 /// The [tissue] of a file; none, and a complaint, where there is none.
 std::optional<Node> read_tissue(const std::filesystem::path& file, const Place& place) {
-  std::error_code error;
-  std::ifstream stream;
-  if (std::filesystem::is_regular_file(file, error)) stream.open(file, std::ios::binary);
-  if (!stream.is_open()) {
-    place.complain(file.string() + " cannot be read; check the path, which is relative to the scene");
+  const detail::InputFile input = detail::read_input(file, detail::kTomlInput);
+  if (!input.problem.empty()) {
+    place.complain(input.problem + "; the path is relative to the scene");
     return {};
   }
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
   try {
-    const Node root = parse_document(text, file.string());
+    const Node root = parse_document(input.bytes, file.string());
     const Node* tissue = root.find("tissue");
     if (tissue && tissue->table()) return *tissue;
     place.complain(file.string() + " has no [tissue]; it is to hold one, as `glisson fit` writes it");

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
 
+#include "mesh/input_file.h"
+
 namespace glisson::scene {
 namespace {
-
-constexpr std::size_t kMostLines = 10'000'000;
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r\"";
@@ -46,14 +46,12 @@ double WordTable::number(const Row& row, std::size_t column) {
 }
 
 WordTable read_word_table(const std::filesystem::path& file) {
-  std::error_code error;
-  std::ifstream in;
-  if (std::filesystem::is_regular_file(file, error)) in.open(file, std::ios::binary);
-  if (!in.is_open())
-    throw std::runtime_error(file.string() + ": cannot be read; check the path and that you may read it");
+  detail::InputFile input = detail::read_input(file, detail::kTableInput);
+  if (!input.problem.empty()) throw std::runtime_error(input.problem);
+  std::istringstream in(std::move(input.bytes));
   WordTable table;
   std::string line;
-  for (std::size_t n = 1; std::getline(in, line) && n <= kMostLines; ++n) {
+  for (std::size_t n = 1; std::getline(in, line); ++n) {
     if (trimmed(line).empty() || line.front() == '#') continue;
     WordTable::Row row{file.string() + ":" + std::to_string(n), fields(line)};
     if (table.names.words.empty())
@@ -61,7 +59,6 @@ WordTable read_word_table(const std::filesystem::path& file) {
     else
       table.rows.push_back(std::move(row));
   }
-  if (in.bad()) throw std::runtime_error(file.string() + ": cannot be read to its end");
   return table;
 }
 

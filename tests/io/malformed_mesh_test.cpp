@@ -240,7 +240,7 @@ TEST(MalformedMeshFile, IsRefused) {
   const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "glisson_folder.msh";
   std::filesystem::create_directories(folder);
   EXPECT_THAT(message("no/such/mesh.vtu"), ::testing::HasSubstr("no/such/mesh.vtu: there is no such file"));
-  EXPECT_THAT(message(folder), ::testing::HasSubstr("this is a folder"));
+  EXPECT_THAT(message(folder), ::testing::HasSubstr("is a folder; name a mesh file"));
   EXPECT_THAT(message("mesh.inp"), ::testing::HasSubstr("unknown ending \".inp\""));
 }
 

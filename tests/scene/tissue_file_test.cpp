@@ -72,7 +72,7 @@ TEST_F(TissueFile, MayStartFromAPreset) {
 
 TEST_F(TissueFile, ThatCannotBeUsedIsToldAtTheKey) {
   EXPECT_THAT(complaint_of("file = \"nowhere.toml\"\n"), HasSubstr("tissue.file: "));
-  EXPECT_THAT(complaint_of("file = \"nowhere.toml\"\n"), HasSubstr("nowhere.toml cannot be read; check the path"));
+  EXPECT_THAT(complaint_of("file = \"nowhere.toml\"\n"), HasSubstr("nowhere.toml: cannot be read; check the path"));
   write("youngs_modulus_Pa = 5000\n");
   EXPECT_THAT(complaint_of("file = \"tissue.toml\"\n"), HasSubstr("has no [tissue]"));
   write("[tissue\n");

@@ -4,13 +4,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <system_error>
 
 #include "fit/data/units.h"
 #include "glisson/scene.h"
+#include "mesh/input_file.h"
 #include "scene/problems.h"
 
 namespace glisson::fit {
@@ -19,7 +19,6 @@ namespace {
 using Row = CurveFile::Row;
 using Field = CurveFile::Field;
 
-constexpr std::uintmax_t kLargestFile = std::uintmax_t(256) << 20;
 constexpr std::size_t kFewestNumbers = 2;  // of a row: a way and a force
 constexpr std::size_t kLinesLookedAt = 2000;
 
@@ -315,16 +314,9 @@ CurveFile parse_curve_file(std::string text, const std::filesystem::path& file, 
 }
 
 CurveFile read_curve_file(const std::filesystem::path& file, const TextSpec& spec) {
-  std::error_code error;
-  const bool regular = std::filesystem::is_regular_file(file, error);
-  std::ifstream in;
-  if (regular) in.open(file, std::ios::binary);
-  if (!in.is_open()) throw SceneError(file.string() + ": cannot be read; check the path and that you may read it");
-  if (std::filesystem::file_size(file, error) > kLargestFile)
-    throw SceneError(file.string() + ": is larger than 256 MiB; record fewer rows or split it");
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) throw SceneError(file.string() + ": cannot be read to its end");
-  return parse_curve_file(std::move(text), file, spec);
+  detail::InputFile input = detail::read_input(file, detail::kTableInput);
+  if (!input.problem.empty()) throw SceneError(input.problem);
+  return parse_curve_file(std::move(input.bytes), file, spec);
 }
 
 }  // namespace glisson::fit

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
 
+#include "mesh/input_file.h"
 #include "scene/nearest.h"
 
 namespace glisson::fit {
@@ -178,9 +177,9 @@ RecordSpec record_of(const History& history, const Vec3d& direction, double appr
 }  // namespace
 
 SceneText scene_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw std::runtime_error(file.string() + ": cannot be read; check the path and that you may read it");
-  return {.text = {std::istreambuf_iterator<char>(stream), {}},
+  detail::InputFile input = detail::read_input(file, detail::kTomlInput);
+  if (!input.problem.empty()) throw SceneError(input.problem);
+  return {.text = std::move(input.bytes),
           .name = file.string(),
           .base = file.parent_path(),
           .overrides = {},
