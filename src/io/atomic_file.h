@@ -2,12 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
+#include <string_view>
 
 namespace glisson::detail {
 
-/// Lets `write` fill FILE.part beside the file and then renames it to `file`; removes it if `write` throws.
-/// @throws FileError if the file cannot be renamed, and what `write` throws
-void replace_file(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
+/// Writes FILE.part beside the file and then renames it to `file`; leaves no part where that fails.
+/// @throws FileError with the system's reason
+void replace_file(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace glisson::detail

@@ -1,12 +1,12 @@
 // read_frames.cpp — frames of a run come back: the collection that names them, and each with its fields.
 #include <vtkNew.h>
 #include <vtkXMLDataElement.h>
-#include <vtkXMLDataParser.h>
 
 #include <cmath>
 #include <sstream>
 
 #include "io/raw_mesh.h"
+#include "io/shallow_xml.h"
 #include "io/vtk_log.h"
 #include "io/vtk_start.h"
 
@@ -33,11 +33,11 @@ std::vector<std::pair<double, std::filesystem::path>> read_pvd(const std::filesy
   std::istringstream stream(detail::read_bytes(file));
   detail::start_vtk();
   vtkNew<detail::VtkErrorLog> log;
-  vtkNew<vtkXMLDataParser> parser;
+  vtkNew<detail::ShallowXml> parser;
   log->observe(*parser);
   parser->SetStream(&stream);
   if (parser->Parse() == 0 || parser->GetRootElement() == nullptr)
-    detail::fail(file.string(), "it is no XML that VTK can read: " + log->first());
+    detail::fail(file.string(), parser->trouble(*log.Get()));
   vtkXMLDataElement* list = parser->GetRootElement()->FindNestedElementWithName("Collection");
   if (list == nullptr) detail::fail(file.string(), "no <Collection> element: this is no collection of frames");
   std::vector<std::pair<double, std::filesystem::path>> frames;

@@ -120,19 +120,19 @@ void add_fields(std::span<const Field> fields, vtkFieldData& data) {
 }
 
 /// Base64 instead of raw bytes: the file stays well-formed XML for readers other than VTK's.
-void write(vtkUnstructuredGrid& grid, const std::filesystem::path& file) {
+/// Into memory: what VTK says of a disk that refuses is a dump of its pipeline, without the reason.
+std::string file_text(vtkUnstructuredGrid& grid, const std::filesystem::path& file) {
   vtkNew<detail::VtkErrorLog> log;
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   log->observe_pipeline(*writer);
-  writer->SetFileName(file.string().c_str());
+  writer->WriteToOutputStringOn();
   writer->SetInputData(&grid);
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOn();
   writer->SetCompressorTypeToZLib();
   writer->SetHeaderTypeToUInt64();
-  if (writer->Write() == 1 && writer->GetErrorCode() == 0 && log->first().empty()) return;
-  detail::fail(file.string(),
-               "it could not be written; check the folder, its permissions and the space left (" + log->first() + ")");
+  if (writer->Write() == 1 && writer->GetErrorCode() == 0 && log->first().empty()) return writer->GetOutputString();
+  detail::fail(file.string(), "VTK cannot put it together: " + log->first());
 }
 
 }  // namespace
@@ -149,7 +149,7 @@ void write_vtu(const std::filesystem::path& file, const TetMesh& mesh, std::span
   add_sets(mesh, *grid);
   add_fields(vertex_fields, *grid->GetPointData());
   add_fields(tet_fields, *grid->GetCellData());
-  detail::replace_file(file, [&](const std::filesystem::path& part) { write(*grid, part); });
+  detail::replace_file(file, file_text(*grid, file));
 }
 
 }  // namespace glisson

@@ -1,13 +1,13 @@
 // vtu_reader.cpp — unstructured grids in VTK's XML format: the elements of the file and what they mean here.
 #include <vtkNew.h>
 #include <vtkXMLDataElement.h>
-#include <vtkXMLDataParser.h>
 
 #include <algorithm>
 #include <new>
 #include <sstream>
 #include <stdexcept>
 
+#include "io/shallow_xml.h"
 #include "io/vtk_grid.h"
 #include "io/vtk_log.h"
 #include "io/vtk_start.h"
@@ -168,11 +168,11 @@ void check_root(vtkXMLDataElement* root, const std::string& name) {
 RawMesh parse_and_read(std::string_view bytes, const std::string& name, std::span<const std::string> fields) {
   std::istringstream stream{std::string(bytes)};
   vtkNew<VtkErrorLog> log;
-  vtkNew<vtkXMLDataParser> parser;
+  vtkNew<ShallowXml> parser;
   log->observe(*parser);
   parser->SetStream(&stream);
   const bool parsed = parser->Parse() != 0;
-  if (!parsed || !log->first().empty()) fail(name, "it is no XML that VTK can read: " + log->first());
+  if (!parsed || !log->first().empty()) fail(name, parser->trouble(*log.Get()));
   check_root(parser->GetRootElement(), name);
   VtuArrays arrays(*parser, bytes, name);
   RawMesh raw = VtuReader(*parser->GetRootElement(), arrays, name, fields).read();

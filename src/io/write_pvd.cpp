@@ -1,6 +1,5 @@
 // write_pvd.cpp — the collection of frames that ParaView plays as an animation.
 #include <charconv>
-#include <fstream>
 
 #include "io/atomic_file.h"
 #include "io/raw_mesh.h"
@@ -46,12 +45,7 @@ void write_pvd(const std::filesystem::path& file, std::span<const std::pair<doub
         "    <DataSet timestep=\"" + exact(time) + "\" part=\"0\" file=\"" + escaped(frame.generic_string()) + "\"/>\n";
   }
   text += "  </Collection>\n</VTKFile>\n";
-  detail::replace_file(file, [&](const std::filesystem::path& part) {
-    std::ofstream stream(part, std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream) detail::fail(file.string(), "it could not be written; check the permissions and the space left");
-  });
+  detail::replace_file(file, text);
 }
 
 }  // namespace glisson

@@ -103,5 +103,25 @@ TEST_F(Frames, WhatIsNoCollectionIsRefused) {
   EXPECT_THAT(why([&] { read_pvd(folder_ / "none.pvd"); }), HasSubstr("no such file"));
 }
 
+// Elements that nest without end are refused; built and freed by recursion they would overflow the stack from some 150 000
+// levels on. What nests as deep as is allowed is read.
+TEST_F(Frames, EndlessNestingIsRefused) {
+  const auto nested = [](int levels) {
+    std::string text = "<VTKFile type=\"Collection\"><Collection>";
+    for (int i = 0; i < levels; ++i) text += "<a>";
+    for (int i = 0; i < levels; ++i) text += "</a>";
+    return text + "</Collection></VTKFile>";
+  };
+  for (const int levels : {63, 300'000}) {
+    write("f.pvd", nested(levels));
+    write("f.vtu", nested(levels));
+    EXPECT_THAT(why([&] { read_pvd(folder_ / "f.pvd"); }), HasSubstr("f.pvd: its XML elements nest deeper than 64"));
+    EXPECT_THAT(why([&] { read_frame(folder_ / "f.vtu", {}); }), HasSubstr("f.vtu: its XML elements nest deeper than"));
+    EXPECT_THAT(why([&] { read_mesh(folder_ / "f.vtu"); }), HasSubstr("f.vtu: its XML elements nest deeper than 64"));
+  }
+  write("f.pvd", nested(62));
+  EXPECT_TRUE(read_pvd(folder_ / "f.pvd").empty());
+}
+
 }  // namespace
 }  // namespace glisson
