@@ -14,6 +14,7 @@
 #include "mesh_cache.h"
 #include "progress.h"
 #include "scene_options.h"
+#include "standard_streams.h"
 #include "tissue_text.h"
 
 namespace glisson::app {
@@ -65,12 +66,11 @@ std::string tissue_text(const Tissue& t) { return fmt::format("{}, ρ = {:.6g} k
 void print_mesh(const TetMesh& mesh, double mass_kg) {
   const MeshReport report = inspect(mesh);
   const Vec3d size = report.box_max - report.box_min;
-  fmt::print(
-      "  mesh     {} vertices, {} tets, {:.4g} × {:.4g} × {:.4g} mm, {:.4g} ml, {:.4g} g; shape {:.3f} worst, {:.3f} "
+  say("  mesh     {} vertices, {} tets, {:.4g} × {:.4g} × {:.4g} mm, {:.4g} ml, {:.4g} g; shape {:.3f} worst, {:.3f} "
       "median\n",
       report.vertices, report.tets, 1e3 * size.x, 1e3 * size.y, 1e3 * size.z, 1e6 * report.volume, 1e3 * mass_kg,
       report.worst_mean_ratio, report.median_mean_ratio);
-  for (const std::string& warning : report.warnings) fmt::print("           warning: {}\n", warning);
+  for (const std::string& warning : report.warnings) say("           warning: {}\n", warning);
 }
 
 std::string set_text(const TetMesh& mesh, const std::string& set) {
@@ -90,45 +90,44 @@ static_assert(std::variant_size_v<decltype(InstrumentMotion::how)> == kMotionWor
 
 void print_interactions(const Variant& v, const Taste& taste) {
   for (const CapsuleSpec& x : v.capsules) {
-    fmt::print("  capsule  \"{}\" on {}: {:.4g} mm, E = {:.6g} Pa\n", x.options.name,
-               x.set.empty() ? "all of the surface" : set_text(taste.mesh, x.set), 1e3 * x.options.thickness,
-               x.options.youngs_modulus);
+    say("  capsule  \"{}\" on {}: {:.4g} mm, E = {:.6g} Pa\n", x.options.name,
+        x.set.empty() ? "all of the surface" : set_text(taste.mesh, x.set), 1e3 * x.options.thickness,
+        x.options.youngs_modulus);
   }
   if (v.container) {
     using Hold = ContainerSpec::Hold;
     const Hold hold = v.container->hold;
-    fmt::print("  vessel   {}\n", hold == Hold::free ? "free" : hold == Hold::wet ? "wet" : "bonded");
+    say("  vessel   {}\n", hold == Hold::free ? "free" : hold == Hold::wet ? "wet" : "bonded");
   }
   for (const InstrumentSpec& x : v.instruments) {
     const std::optional<double> end = make_driver(x)->end();
-    fmt::print("  tool     \"{}\", a {}: {}{}\n", x.name, kInstrumentWords[x.what.index()],
-               kMotionWords[x.motion.how.index()], end ? fmt::format(", until {:.4g} s", *end) : "");
+    say("  tool     \"{}\", a {}: {}{}\n", x.name, kInstrumentWords[x.what.index()], kMotionWords[x.motion.how.index()],
+        end ? fmt::format(", until {:.4g} s", *end) : "");
   }
 }
 
 void print_body(const Variant& v, const Taste& taste) {
   print_mesh(taste.mesh, taste.mass_kg);
-  fmt::print("  tissue   \"{}\": {}\n", v.tissue.name, tissue_text(v.tissue));
-  for (const RegionSpec& region : v.regions)
-    fmt::print("  region   \"{}\": {}\n", region.name, tissue_text(region.tissue));
+  say("  tissue   \"{}\": {}\n", v.tissue.name, tissue_text(v.tissue));
+  for (const RegionSpec& region : v.regions) say("  region   \"{}\": {}\n", region.name, tissue_text(region.tissue));
   for (const FixedSpec& fixed : v.fixed) {
-    fmt::print("  fixed    {}, in {}\n", set_text(taste.mesh, fixed.set), axes_text(fixed.axes));
+    say("  fixed    {}, in {}\n", set_text(taste.mesh, fixed.set), axes_text(fixed.axes));
   }
-  if (v.fixed.empty()) fmt::print("  fixed    nothing: the body is free to drift\n");
+  if (v.fixed.empty()) say("  fixed    nothing: the body is free to drift\n");
   for (const LoadSpec& load : v.loads) {
-    fmt::print("  load     {}: ({:.4g}, {:.4g}, {:.4g}) N\n", set_text(taste.mesh, load.set), load.force.x,
-               load.force.y, load.force.z);
+    say("  load     {}: ({:.4g}, {:.4g}, {:.4g}) N\n", set_text(taste.mesh, load.set), load.force.x, load.force.y,
+        load.force.z);
   }
   for (const ToolSpec& tool : v.tools) {
     const PressMotion& m = tool.motion;
     if (tool.record) {
-      fmt::print("  tool     \"{}\" on {}: a recorded way of {} points, from {:.4g} s to {:.4g} s\n", tool.name,
-                 set_text(taste.mesh, tool.set), tool.record->motion.times.size(), tool_start(tool),
-                 tool_path(tool).end.value_or(0.0));
+      say("  tool     \"{}\" on {}: a recorded way of {} points, from {:.4g} s to {:.4g} s\n", tool.name,
+          set_text(taste.mesh, tool.set), tool.record->motion.times.size(), tool_start(tool),
+          tool_path(tool).end.value_or(0.0));
       continue;
     }
-    fmt::print("  tool     \"{}\" on {}: {:.4g} mm at {:.4g} mm/s, from {:.4g} s to {:.4g} s\n", tool.name,
-               set_text(taste.mesh, tool.set), 1e3 * m.depth, 1e3 * m.velocity, m.start, press_end(m));
+    say("  tool     \"{}\" on {}: {:.4g} mm at {:.4g} mm/s, from {:.4g} s to {:.4g} s\n", tool.name,
+        set_text(taste.mesh, tool.set), 1e3 * m.depth, 1e3 * m.velocity, m.start, press_end(m));
   }
   print_interactions(v, taste);
 }
@@ -156,16 +155,15 @@ double two_digits_down(double x) {
 void print_limits(const Taste& taste) {
   const MassScaling& added = taste.scaling;
   if (!added.tets.empty()) {
-    fmt::print("  mass     {:.4g} g ({:.2g} % of the body's own) added to {} tets\n", 1e3 * added.added,
-               100.0 * added.share, added.tets.size());
+    say("  mass     {:.4g} g ({:.2g} % of the body's own) added to {} tets\n", 1e3 * added.added, 100.0 * added.share,
+        added.tets.size());
   }
   if (taste.limits.empty()) return;
   const LimitingTet &first = taste.limits.front(), &others = taste.limits.back();
   if (others.step < kWorthSaying * first.step) return;
   const auto few = std::count_if(taste.limits.begin(), taste.limits.end(),
                                  [&](const LimitingTet& t) { return t.step < 0.95 * others.step; });
-  fmt::print(
-      "  limits   {} of the tets, tet {} of altitude {:.3g} mm first, make steps {:.2g} times as short as the others "
+  say("  limits   {} of the tets, tet {} of altitude {:.3g} mm first, make steps {:.2g} times as short as the others "
       "need;\n           mass_scaling_step_s = {:.2g} gives just these more mass\n",
       few, first.tet, 1e3 * first.altitude, others.step / first.step, two_digits_down(others.step));
 }
@@ -177,34 +175,34 @@ bool in_single(const Variant& v, const Taste& taste) {
 
 void print_time(const Variant& v, const Taste& taste, const Cost& cost, const RunSummary& summary) {
   const bool automatic = !v.simulation.step;
-  fmt::print("  step     {:.4g} s{}, {}\n", taste.step_s, automatic ? " (auto)" : " (given)",
-             std::isfinite(taste.stable_step_s) ? fmt::format("stable below {:.4g} s at rest", taste.stable_step_s)
-                                                : "stable at any step");
+  say("  step     {:.4g} s{}, {}\n", taste.step_s, automatic ? " (auto)" : " (given)",
+      std::isfinite(taste.stable_step_s) ? fmt::format("stable below {:.4g} s at rest", taste.stable_step_s)
+                                         : "stable at any step");
   print_limits(taste);
-  fmt::print("  run      {:.6g} s simulated, {:.0f} steps{}, about {} ({:.0f} ns per tet and step, {})\n",
-             std::min(run_duration(v), cost.steps * taste.step_s), cost.steps,
-             automatic && stiffens(v.tissue) ? " or more as the tissue stiffens" : "", duration_text(cost.wall_s),
-             summary.ns_per_tet_step, in_single(v, taste) ? "single precision" : "double precision");
+  say("  run      {:.6g} s simulated, {:.0f} steps{}, about {} ({:.0f} ns per tet and step, {})\n",
+      std::min(run_duration(v), cost.steps * taste.step_s), cost.steps,
+      automatic && stiffens(v.tissue) ? " or more as the tissue stiffens" : "", duration_text(cost.wall_s),
+      summary.ns_per_tet_step, in_single(v, taste) ? "single precision" : "double precision");
 }
 
 int check(const CheckOptions& options) {
   const Scene scene = open_scene(options.scene);
   MeshCache meshes(true);
-  fmt::print("{}: {}\n", scene.file.string(), scene.title);
+  say("{}: {}\n", scene.file.string(), scene.title);
   double total = 0.0, longest = 0.0;
   for (const Variant& variant : scene.variants) {
     Taste taste;
     const RunSummary summary = run_variant(variant, meshes.loader(), taste, taste.stop);
     const Cost cost = cost_of(variant, taste, summary);
-    fmt::print("\n{}\n", variant.label == variant.name ? variant.name : variant.name + " — " + variant.label);
+    say("\n{}\n", variant.label == variant.name ? variant.name : variant.name + " — " + variant.label);
     print_body(variant, taste);
     print_time(variant, taste, cost, summary);
     total += cost.wall_s;
     longest = std::max(longest, cost.wall_s);
   }
-  fmt::print("\n{} variant{}, about {} on {} thread{}. The scene can be run.\n", scene.variants.size(),
-             scene.variants.size() == 1 ? "" : "s", duration_text(std::max(longest, total / options.threads)),
-             options.threads, options.threads == 1 ? "" : "s");
+  say("\n{} variant{}, about {} on {} thread{}. The scene can be run.\n", scene.variants.size(),
+      scene.variants.size() == 1 ? "" : "s", duration_text(std::max(longest, total / options.threads)), options.threads,
+      options.threads == 1 ? "" : "s");
   return kDone;
 }
 

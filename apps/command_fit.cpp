@@ -22,6 +22,7 @@
 #include "report/output_folder.h"
 #include "report/report_page.h"
 #include "scene_options.h"
+#include "standard_streams.h"
 
 namespace glisson::app {
 namespace {
@@ -49,7 +50,7 @@ struct FitCommand {
 };
 
 int list_laws() {
-  for (const fit::LawName& law : fit::known_laws()) fmt::print("{:<18}{}\n", law.name, law.what);
+  for (const fit::LawName& law : fit::known_laws()) say("{:<18}{}\n", law.name, law.what);
   return kDone;
 }
 
@@ -61,7 +62,7 @@ fit::FitMemory memory_of(const FitCommand& command, const fs::path& state, const
   std::size_t starts = 0;
   for (const auto& [law, memory] : *known) starts += memory.starts.size();
   if (!command.quiet && starts > 0) {
-    fmt::print("going on after {} starts of an interrupted run (--fresh begins anew)\n", starts);
+    say("going on after {} starts of an interrupted run (--fresh begins anew)\n", starts);
     std::fflush(stdout);
   }
   return std::move(*known);
@@ -78,10 +79,10 @@ std::string interval_text(const fit::ParameterResult& p) {
 void print_parameters(const FitResult& result) {
   std::size_t width = 9;
   for (const auto& p : result.parameters) width = std::max(width, p.parameter.name.size());
-  fmt::print("{:<{}}  {:>12}  {:<6}  {:<24}  {}\n", "parameter", width, "value", "unit", "95 % interval", "verdict");
+  say("{:<{}}  {:>12}  {:<6}  {:<24}  {}\n", "parameter", width, "value", "unit", "95 % interval", "verdict");
   for (const auto& p : result.parameters) {
-    fmt::print("{:<{}}  {:>12.5g}  {:<6}  {:<24}  {}\n", p.parameter.name, width, p.value, p.parameter.unit,
-               interval_text(p), p.verdict);
+    say("{:<{}}  {:>12.5g}  {:<6}  {:<24}  {}\n", p.parameter.name, width, p.value, p.parameter.unit, interval_text(p),
+        p.verdict);
   }
 }
 
@@ -89,23 +90,23 @@ void print_laws(const FitResult& result) {
   if (result.laws.empty()) return;
   std::size_t width = 3;
   for (const auto& l : result.laws) width = std::max(width, l.name.size());
-  fmt::print("{:<{}}  {:>10}  {:>12}  {:>13}  {:>10}  {:>10}\n", "law", width, "parameters", "rms fit [N]",
-             "rms test [N]", "AIC", "BIC");
+  say("{:<{}}  {:>10}  {:>12}  {:>13}  {:>10}  {:>10}\n", "law", width, "parameters", "rms fit [N]", "rms test [N]",
+      "AIC", "BIC");
   for (const auto& l : result.laws) {
     const std::string test = l.rms_heldout ? fmt::format("{:.4g}", *l.rms_heldout) : "-";
-    fmt::print("{:<{}}  {:>10}  {:>12.4g}  {:>13}  {:>10.1f}  {:>10.1f}{}\n", l.name, width, l.parameters, l.rms_fit,
-               test, l.aic, l.bic, l.best ? "  <- what the data support" : "");
+    say("{:<{}}  {:>10}  {:>12.4g}  {:>13}  {:>10.1f}  {:>10.1f}{}\n", l.name, width, l.parameters, l.rms_fit, test,
+        l.aic, l.bic, l.best ? "  <- what the data support" : "");
   }
-  fmt::print("\n");
+  say("\n");
 }
 
 void print_result(const FitResult& result) {
   print_laws(result);
   print_parameters(result);
-  fmt::print("\n");
-  for (const std::string& sentence : result.conclusions) fmt::print("- {}\n", sentence);
-  fmt::print("\n{} forward runs of {:.3g} ms, {:.1f} s in all\n", result.forward_runs, 1e3 * result.forward_run_s,
-             result.wall_s);
+  say("\n");
+  for (const std::string& sentence : result.conclusions) say("- {}\n", sentence);
+  say("\n{} forward runs of {:.3g} ms, {:.1f} s in all\n", result.forward_runs, 1e3 * result.forward_run_s,
+      result.wall_s);
 }
 
 void write_results(const FitResult& result, const FitHeading& heading, const fs::path& folder) {
@@ -162,10 +163,10 @@ int run(const FitCommand& command) {
                 folder);
   if (result.complete) fs::remove(state);
   if (!command.quiet) print_result(result);
-  fmt::print("{}{}\n", command.quiet ? "" : "report: ", (folder / "report.html").string());
+  say("{}{}\n", command.quiet ? "" : "report: ", (folder / "report.html").string());
   if (!result.complete) {
     std::fflush(stdout);
-    fmt::print(stderr, "glisson: interrupted; the same command goes on from here\n");
+    tell("glisson: interrupted; the same command goes on from here\n");
     return kInterrupted;
   }
   return kDone;

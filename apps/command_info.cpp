@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "glisson/io.h"
+#include "standard_streams.h"
 
 namespace glisson::app {
 namespace {
@@ -55,9 +56,9 @@ int info(const InfoOptions& options) {
   const ImportedMesh imported = read_mesh(options.mesh, options.scale);
   if (options.json) {
     const auto json = info_json(options.mesh, imported.mesh, imported.report);
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    say("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
-    fmt::print("{}", format_report(options.mesh, imported.report, &imported.mesh));
+    say("{}", format_report(options.mesh, imported.report, &imported.mesh));
   }
   return kDone;
 }

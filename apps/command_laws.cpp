@@ -10,6 +10,7 @@
 #include "exit_code.h"
 #include "glisson/hyperelastic_law.h"
 #include "glisson/stiffness_law.h"
+#include "standard_streams.h"
 
 namespace glisson::app {
 namespace {
@@ -22,10 +23,10 @@ std::string range_text(double min, double max) {
 
 template <class Law>
 void print_law() {
-  fmt::print("{}\n  {}\n", Law::kName, Law::kHelp);
+  say("{}\n  {}\n", Law::kName, Law::kHelp);
   for (const auto& field : Law::kFields) {
-    fmt::print("    {:<18} [{}], {}{}: {}\n", field.key, field.unit, range_text(field.min, field.max),
-               field.required ? "" : ", optional", field.help);
+    say("    {:<18} [{}], {}{}: {}\n", field.key, field.unit, range_text(field.min, field.max),
+        field.required ? "" : ", optional", field.help);
   }
 }
 
@@ -41,9 +42,9 @@ void add_laws(CLI::App& program, Action& action) {
   command->footer("Examples:\n  glisson laws");
   command->callback([&action] {
     action = [] {
-      fmt::print("Laws of stiffness: a modulus M follows the deformation x of its tet (tissue.law)\n\n");
+      say("Laws of stiffness: a modulus M follows the deformation x of its tet (tissue.law)\n\n");
       print_laws(std::type_identity<StiffnessLaw>{});
-      fmt::print("\nHyperelastic laws: the stress is ∂W/∂F (tissue.hyperelastic)\n\n");
+      say("\nHyperelastic laws: the stress is ∂W/∂F (tissue.hyperelastic)\n\n");
       print_laws(std::type_identity<HyperelasticLaw>{});
       return static_cast<int>(kDone);
     };

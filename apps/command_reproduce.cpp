@@ -17,6 +17,7 @@
 #include "report/report_page.h"
 #include "run_end.h"
 #include "scene_options.h"
+#include "standard_streams.h"
 
 namespace glisson::app {
 namespace {
@@ -100,9 +101,8 @@ int print_checks(const std::vector<Figure>& figures) {
     for (const nlohmann::json& check : f.extras.checks) {
       const bool pass = check["pass"];
       failed += !pass;
-      fmt::print("{}  {}: {}\n      {} (expected: {})\n", pass ? "ok  " : "FAIL", name_of(f),
-                 check["what"].get<std::string>(), check["measured"].get<std::string>(),
-                 check["expected"].get<std::string>());
+      say("{}  {}: {}\n      {} (expected: {})\n", pass ? "ok  " : "FAIL", name_of(f), check["what"].get<std::string>(),
+          check["measured"].get<std::string>(), check["expected"].get<std::string>());
     }
   }
   return failed;
@@ -111,7 +111,7 @@ int print_checks(const std::vector<Figure>& figures) {
 void print_speed(const Figure& speed) {
   for (const nlohmann::json& table : speed.extras.tables) {
     for (const nlohmann::json& row : table["rows"]) {
-      fmt::print("      {:>8} ns per tet and iteration  {}\n", row[1].get<std::string>(), row[0].get<std::string>());
+      say("      {:>8} ns per tet and iteration  {}\n", row[1].get<std::string>(), row[0].get<std::string>());
     }
   }
 }
@@ -128,10 +128,10 @@ void write_report(const std::vector<Figure>& figures, const fs::path& file) {
 void print_next_steps(const fs::path& folder) {
   const std::string program = program_path();
   const std::string figure2 = (folder / "figure2").string();
-  fmt::print("\nWhat to try next:\n");
-  fmt::print("  {} run {}/scene.toml --set tissue.poisson_ratio=0.45 --out out/stiffer\n", program, figure2);
-  fmt::print("  {} check {}\n", program, (folder / "figure3b" / "scene.toml").string());
-  fmt::print("  {} info {}/linear/frames/frame_0000.vtu\n", program, figure2);
+  say("\nWhat to try next:\n");
+  say("  {} run {}/scene.toml --set tissue.poisson_ratio=0.45 --out out/stiffer\n", program, figure2);
+  say("  {} check {}\n", program, (folder / "figure3b" / "scene.toml").string());
+  say("  {} info {}/linear/frames/frame_0000.vtu\n", program, figure2);
 }
 
 int reproduce(const ReproduceOptions& options) {
@@ -154,11 +154,11 @@ int reproduce(const ReproduceOptions& options) {
   }
   add_extras(figures);
   print_results(started_of(recorders));
-  fmt::print("\n");
+  say("\n");
   const int failed = print_checks(figures);
   print_speed(figures[3]);
   write_report(figures, folder / "report.html");
-  fmt::print("\nThe report: {}\n", fs::absolute(folder / "report.html").lexically_normal().string());
+  say("\nThe report: {}\n", fs::absolute(folder / "report.html").lexically_normal().string());
   if (!interrupted()) print_next_steps(folder);
   const int end = end_of(started_of(recorders));
   return end == kDone && failed > 0 ? kFailed : end;

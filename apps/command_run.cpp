@@ -14,6 +14,7 @@
 #include "report/report_page.h"
 #include "run_end.h"
 #include "scene_options.h"
+#include "standard_streams.h"
 
 namespace glisson::app {
 namespace {
@@ -58,7 +59,7 @@ void write_report(const Scene& scene, const std::vector<const VariantRecorder*>&
 int run(const RunOptions& options) {
   const Scene scene = open_scene(options.scene);
   const fs::path folder = options.out.empty() ? fs::path("out") / scene.file.stem() : fs::path(options.out);
-  if (!options.quiet && !options.scene.mesh.empty()) fmt::print("{}\n", scene.notes.back());
+  if (!options.quiet && !options.scene.mesh.empty()) say("{}\n", scene.notes.back());
   MeshCache meshes(options.quiet);
   const std::vector<Job> jobs = jobs_of(scene, folder, options.threads);
   require_runnable(jobs, meshes.loader());
@@ -69,7 +70,7 @@ int run(const RunOptions& options) {
   const auto started = started_of(recorders);
   if (!options.quiet) print_results(started);
   write_report(scene, started, folder / "report.html");
-  fmt::print("{}{}\n", options.quiet ? "" : "report: ", (folder / "report.html").string());
+  say("{}{}\n", options.quiet ? "" : "report: ", (folder / "report.html").string());
   return end_of(started);
 }
 

@@ -8,6 +8,7 @@
 #include "exit_code.h"
 #include "fit/fit_spec.h"
 #include "glisson/scene.h"
+#include "standard_streams.h"
 
 namespace glisson::app {
 
@@ -21,7 +22,7 @@ void add_schema(CLI::App& program, Action& action) {
       "  glisson schema fit > docs/fit_file.md");
   command->callback([&action, what] {
     action = [what] {
-      fmt::print("{}", *what == "fit" ? fit::fit_reference_markdown() : scene_reference_markdown());
+      say("{}", *what == "fit" ? fit::fit_reference_markdown() : scene_reference_markdown());
       return static_cast<int>(kDone);
     };
   });

@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "glisson/tissue_presets.h"
+#include "standard_streams.h"
 #include "tissue_text.h"
 
 namespace glisson::app {
@@ -33,17 +34,15 @@ nlohmann::ordered_json preset_json(const TissuePreset& p) {
 }
 
 void print_short(const TissuePreset& p) {
-  fmt::print("{}\n  {}\n  law        {}\n  fitted to  {}\n  source     {}\n\n", p.name, p.what, law_text(p.tissue),
-             p.fitted_to, p.source);
+  say("{}\n  {}\n  law        {}\n  fitted to  {}\n  source     {}\n\n", p.name, p.what, law_text(p.tissue),
+      p.fitted_to, p.source);
 }
 
 void print_whole(const TissuePreset& p) {
-  fmt::print("{}\n  {}\n\n  law        {}\n  density    {:g} kg/m³\n", p.name, p.what, law_text(p.tissue),
-             p.tissue.density);
-  fmt::print("  fitted to  {}\n  source     {}\n  validity   {}\n  confirmed  {}\n", p.fitted_to, p.source, p.validity,
-             p.confirmed);
-  fmt::print("\nIn a scene:\n\n[tissue]\npreset = \"{}\"\n\nor, to change more than single keys:\n\n{}", p.name,
-             p.toml);
+  say("{}\n  {}\n\n  law        {}\n  density    {:g} kg/m³\n", p.name, p.what, law_text(p.tissue), p.tissue.density);
+  say("  fitted to  {}\n  source     {}\n  validity   {}\n  confirmed  {}\n", p.fitted_to, p.source, p.validity,
+      p.confirmed);
+  say("\nIn a scene:\n\n[tissue]\npreset = \"{}\"\n\nor, to change more than single keys:\n\n{}", p.name, p.toml);
 }
 
 int tissues(const TissuesOptions& options) {
@@ -51,7 +50,7 @@ int tissues(const TissuesOptions& options) {
   if (options.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const TissuePreset& p : tissue_presets()) list.push_back(preset_json(p));
-    fmt::print("{}\n", (all ? list : preset_json(tissue_preset(options.name))).dump(2));
+    say("{}\n", (all ? list : preset_json(tissue_preset(options.name))).dump(2));
     return kDone;
   }
   if (!all) {
@@ -59,7 +58,7 @@ int tissues(const TissuesOptions& options) {
     return kDone;
   }
   for (const TissuePreset& p : tissue_presets()) print_short(p);
-  fmt::print("`glisson tissues NAME` tells where one holds and prints it as TOML; docs/tissues.md compares them.\n");
+  say("`glisson tissues NAME` tells where one holds and prints it as TOML; docs/tissues.md compares them.\n");
   return kDone;
 }
 

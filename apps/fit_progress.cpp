@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "progress.h"
+#include "standard_streams.h"
 
 namespace glisson::app {
 namespace {
@@ -43,13 +44,13 @@ void FitProgressLine::show(const fit::FitProgress& p) {
   const bool due = new_stage || p.done == p.planned || Clock::now() - said_ >= kLineEvery;
   if (!live_ && !due) return;
   said_ = Clock::now();
-  fmt::print("{}{}{}", live_ ? "\r\033[K" : "", text(p), live_ ? "" : "\n");
+  say("{}{}{}", live_ ? "\r\033[K" : "", text(p), live_ ? "" : "\n");
   std::fflush(stdout);
 }
 
 void FitProgressLine::clear() {
   if (quiet_ || !live_) return;
-  fmt::print("\r\033[K");
+  say("\r\033[K");
   std::fflush(stdout);
 }
 

@@ -24,7 +24,6 @@ void catch_interrupts() {
   sigaction(SIGINT, &once, nullptr);
   sigaction(SIGTERM, &once, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 std::atomic<bool>& stop_flag() { return stop; }

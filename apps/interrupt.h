@@ -6,8 +6,7 @@
 namespace glisson::app {
 
 /// From here on the first SIGINT or SIGTERM sets stop_flag(); a second one ends the program at once.
-/// A reader of our output that goes away (`| head`) no longer ends the run, and a file above the size that the
-/// system allows is an error of that file.
+/// A reader of our output that goes away (`| head`) no longer ends the run.
 void catch_interrupts();
 
 /// Ends all runs when set; by a signal, or by a run that cannot go on.

@@ -6,16 +6,21 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "commands.h"
 #include "exit_code.h"
 #include "glisson/io.h"
 #include "glisson/scene.h"
+#include "last_words.h"
 #include "program_path.h"
 #include "report/output_file.h"
 #include "report/version.h"
+#include "standard_streams.h"
 
 namespace {
 
@@ -35,9 +40,9 @@ constexpr const char* kFooter =
     "`glisson COMMAND --help` tells more. Exit status: 0 done, 1 failed, 2 a scene, mesh or option that cannot be\n"
     "used, 3 a run ended by its numbers, 130 interrupted.";
 
-int complain(const std::exception& error, int code) {
+int complain(std::string_view what, int code) {
   std::fflush(stdout);
-  fmt::print(stderr, "glisson: {}\n", error.what());
+  tell("glisson: {}\n", what);
   return code;
 }
 
@@ -45,13 +50,17 @@ int guarded(const Action& action) {
   try {
     return action();
   } catch (const SceneError& error) {
-    return complain(error, kUserError);
+    return complain(error.what(), kUserError);
   } catch (const FileError& error) {
-    return complain(error, kUserError);
+    return complain(error.what(), kUserError);
   } catch (const std::invalid_argument& error) {
-    return complain(error, kUserError);
+    return complain(error.what(), kUserError);
+  } catch (const std::bad_alloc&) {
+    return complain(kOutOfMemory, kFailed);
+  } catch (const std::system_error& error) {
+    return complain(system_text(error), kFailed);
   } catch (const std::exception& error) {
-    return complain(error, kFailed);
+    return complain(error.what(), kFailed);
   }
 }
 
@@ -61,13 +70,11 @@ bool names_unknown_command(const CLI::App& program, int argc, char** argv) {
   std::vector<std::string> names;
   for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
   if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return false;
-  fmt::print(stderr, "glisson: there is no command \"{}\"; the commands are {}\n", argv[1], fmt::join(names, ", "));
+  tell("glisson: there is no command \"{}\"; the commands are {}\n", argv[1], fmt::join(names, ", "));
   return true;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
   if (argc > 0) program_path() = argv[0];
   CLI::App program{"Soft tissue that is non-linear, viscoelastic and touched by instruments.", "glisson"};
   program.set_version_flag("--version", std::string("glisson ") + std::string(version()));
@@ -91,4 +98,12 @@ int main(int argc, char** argv) {
     return program.exit(error) == 0 ? kDone : kUserError;
   }
   return guarded(action);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  open_standard_streams();
+  promise_last_words();
+  return end_output(run_program(argc, argv));
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "glisson/io.h"
+#include "standard_streams.h"
 
 namespace glisson::app {
 
@@ -20,7 +21,7 @@ TetMesh MeshCache::load(const MeshFile& file) {
   }
   ImportedMesh imported = read_mesh(file.path, file.scale);
   if (!quiet_) {
-    for (const std::string& warning : imported.report.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& warning : imported.report.warnings) tell("warning: {}\n", warning);
   }
   return meshes_.emplace(key, std::move(imported.mesh)).first->second;
 }

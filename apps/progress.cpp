@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "standard_streams.h"
+
 namespace glisson::app {
 namespace {
 
@@ -59,7 +61,7 @@ void Progress::started(std::size_t index) {
   Run& run = runs_[index];
   run.state = State::running;
   run.start = Clock::now();
-  if (style_ == Style::lines) fmt::print("{}: started\n", run.name);
+  if (style_ == Style::lines) say("{}: started\n", run.name);
   draw();
 }
 
@@ -70,7 +72,7 @@ void Progress::advanced(std::size_t index, double fraction) {
   const int tenths = static_cast<int>(run.fraction * 10.0 + 1e-9);
   if (style_ == Style::lines && tenths > run.said_tenths && tenths < 10) {
     const double left = elapsed(run) * (1.0 - run.fraction) / run.fraction;
-    fmt::print("{}: {} %, {} left\n", run.name, 10 * tenths, duration_text(left));
+    say("{}: {} %, {} left\n", run.name, 10 * tenths, duration_text(left));
     std::fflush(stdout);
     run.said_tenths = tenths;
   }
@@ -83,7 +85,7 @@ void Progress::ended(std::size_t index, const std::string& how) {
   run.elapsed_s = elapsed(run);
   run.state = State::done;
   if (style_ == Style::lines) {
-    fmt::print("{}: {} after {}\n", run.name, how, duration_text(run.elapsed_s));
+    say("{}: {} after {}\n", run.name, how, duration_text(run.elapsed_s));
     std::fflush(stdout);
   }
   draw();
@@ -91,7 +93,7 @@ void Progress::ended(std::size_t index, const std::string& how) {
 
 void Progress::clear() {
   if (style_ != Style::bar) return;
-  fmt::print("\r\033[K");
+  say("\r\033[K");
   std::fflush(stdout);
 }
 
@@ -138,7 +140,7 @@ std::string Progress::bar_text() const {
 void Progress::draw() {
   if (style_ != Style::bar) return;
   drawn_ = Clock::now();
-  fmt::print("\r\033[K{}", cut(bar_text(), terminal_width() - 1));
+  say("\r\033[K{}", cut(bar_text(), terminal_width() - 1));
   std::fflush(stdout);
 }
 

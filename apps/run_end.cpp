@@ -9,6 +9,7 @@
 #include "exit_code.h"
 #include "interrupt.h"
 #include "report/summary_json.h"
+#include "standard_streams.h"
 
 namespace glisson::app {
 namespace {
@@ -36,16 +37,16 @@ void print_results(const std::vector<const VariantRecorder*>& variants) {
   std::size_t width = 7;
   const std::vector<std::string> names = names_of(variants);
   for (const std::string& name : names) width = std::max(width, name.size());
-  fmt::print("{:<{}}  {:>8}  {:>9}  {:>10}  {:>8}  {:>11}  {:>12}  {}\n", "variant", width, "tets", "steps", "step [s]",
-             "wall [s]", "ns/tet/step", "peak [N]", "end");
+  say("{:<{}}  {:>8}  {:>9}  {:>10}  {:>8}  {:>11}  {:>12}  {}\n", "variant", width, "tets", "steps", "step [s]",
+      "wall [s]", "ns/tet/step", "peak [N]", "end");
   for (std::size_t i = 0; i < variants.size(); ++i) {
     const RunSummary& s = variants[i]->summary();
-    fmt::print("{:<{}}  {:>8}  {:>9}  {:>10.3e}  {:>8.2f}  {:>11.1f}  {:>12.5g}  {}", names[i], width, s.tets, s.steps,
-               s.step_s, s.wall_s, s.ns_per_tet_step, s.peak_force_N, end_text(s.end));
+    say("{:<{}}  {:>8}  {:>9}  {:>10.3e}  {:>8.2f}  {:>11.1f}  {:>12.5g}  {}", names[i], width, s.tets, s.steps,
+        s.step_s, s.wall_s, s.ns_per_tet_step, s.peak_force_N, end_text(s.end));
     if (s.inverted_tets_most > 0) {
-      fmt::print(" (up to {} inverted tets, from {:.4g} s on)", s.inverted_tets_most, s.first_inversion_s);
+      say(" (up to {} inverted tets, from {:.4g} s on)", s.inverted_tets_most, s.first_inversion_s);
     }
-    fmt::print("\n");
+    say("\n");
   }
 }
 
@@ -56,7 +57,7 @@ int end_of(const std::vector<const VariantRecorder*>& variants) {
     if (text.empty()) continue;
     trouble = true;
     std::fflush(stdout);
-    fmt::print(stderr, "glisson: {}: {}\n", v->variant().name, text);
+    tell("glisson: {}: {}\n", v->variant().name, text);
   }
   if (interrupted()) return kInterrupted;
   return trouble ? kNumericalEnd : kDone;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <new>
 #include <span>
 
 #include "glisson/io.h"
@@ -64,6 +65,8 @@ void FrameSeries::add(const Simulation& simulation, const TetFields& fields) {
     write_vtu(folder_ / file, simulation.mesh(), simulation.positions(), at_vertices, at_tets);
     frames_.emplace_back(simulation.time(), file);
     write_pvd(folder_ / "frames.pvd", frames_);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     throw OutputError(error.what());
   }

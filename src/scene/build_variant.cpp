@@ -1,6 +1,7 @@
 // build_variant.cpp — from a variant's description to a body with its supports, loads and tools.
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <set>
 
 #include "glisson/scene.h"
@@ -104,6 +105,8 @@ Simulation simulation_of(const Variant& variant, TetMesh mesh) {
     SimulationOptions options = variant.simulation;
     options.mesh_changes = options.mesh_changes || has_blade(variant);
     return Simulation(std::move(mesh), std::move(tissues), options);
+  } catch (const std::bad_alloc&) {
+    throw;                                 // no fault of the scene
   } catch (const std::exception& error) {  // also an eigenvalue search that fails on an odd body
     fail(variant, "", error.what());
   }

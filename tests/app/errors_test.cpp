@@ -98,7 +98,7 @@ TEST_F(Errors, UnwritableFolderIsTold) {
 // is an error that names the file and the reason, exit code 1; the lines written before are whole.
 TEST_F(Errors, RefusedWriteIsTold) {
   const std::string scene = write("s.toml", small_scene("[[variant]]\nname = \"a\"\noutput.frames = 0\n"));
-  const Outcome outcome = Started({"run", scene, "--out", "o"}, folder_, 4000).wait();
+  const Outcome outcome = run_in({.file_bytes = 4000}, {"run", scene, "--out", "o"});
   EXPECT_THAT(outcome, Exits(1));
   EXPECT_NE(outcome.err.find("o/a/forces.csv: cannot be written: File too large"), std::string::npos) << outcome.err;
   const std::string csv = read_text(folder_ / "o/a/forces.csv");

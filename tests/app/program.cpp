@@ -18,28 +18,33 @@ namespace {
 /// In the child: standard output and error into files, then the program.
 [[noreturn]] void become_program(std::vector<std::string> arguments, const std::filesystem::path& folder,
                                  const std::filesystem::path& out, const std::filesystem::path& err,
-                                 unsigned file_bytes) {
-  const int out_file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+                                 const Surroundings& given) {
+  const std::filesystem::path& to = given.out.empty() ? out : given.out;
+  const int out_file = open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   const int err_file = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (out_file < 0 || err_file < 0 || chdir(folder.c_str()) != 0) _exit(126);
   dup2(out_file, STDOUT_FILENO);
   dup2(err_file, STDERR_FILENO);
-  const rlimit limit{file_bytes, file_bytes};
-  if (file_bytes > 0 && setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(126);
+  close(out_file), close(err_file);
+  const rlimit file{given.file_bytes, given.file_bytes}, memory{given.memory_bytes, given.memory_bytes};
+  if (given.file_bytes > 0 && setrlimit(RLIMIT_FSIZE, &file) != 0) _exit(126);
   arguments.insert(arguments.begin(), GLISSON_PROGRAM);
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
+  if (given.memory_bytes > 0 && setrlimit(RLIMIT_AS, &memory) != 0) _exit(126);
+  for (const int descriptor : given.closed) close(descriptor);
   execv(GLISSON_PROGRAM, argv.data());
   _exit(127);
 }
 
 }  // namespace
 
-Started::Started(const std::vector<std::string>& arguments, const std::filesystem::path& folder, unsigned file_bytes)
+Started::Started(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                 const Surroundings& surroundings)
     : out_(folder / "stdout.txt"), err_(folder / "stderr.txt") {
   child_ = fork();
-  if (child_ == 0) become_program(arguments, folder, out_, err_, file_bytes);
+  if (child_ == 0) become_program(arguments, folder, out_, err_, surroundings);
 }
 
 void Started::signal(int number) const { kill(child_, number); }

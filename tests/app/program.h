@@ -30,11 +30,19 @@ MATCHER_P(Exits, code, (negation ? "any exit code but " : "exit code ") + std::t
   return arg.exit_code == code;
 }
 
+/// What the system gives a program.
+struct Surroundings {
+  unsigned file_bytes = 0;         ///< the largest file it may write; 0: no limit
+  unsigned long memory_bytes = 0;  ///< of address space; 0: no limit
+  std::vector<int> closed{};       ///< descriptors that are closed when it starts
+  std::filesystem::path out{};     ///< standard output; empty: a file that Outcome reads
+};
+
 /// A program that has been started; its output goes to files.
 class Started {
  public:
-  /// @param file_bytes  the largest file it may write; 0: no limit
-  Started(const std::vector<std::string>& arguments, const std::filesystem::path& folder, unsigned file_bytes = 0);
+  Started(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+          const Surroundings& surroundings = {});
   void signal(int number) const;
   std::string output_so_far() const;
   /// Waits for its end, five minutes at most.
@@ -53,6 +61,9 @@ class ProgramTest : public ::testing::Test {
 
   /// Runs the program in the test's folder.
   Outcome run(const std::vector<std::string>& arguments) { return Started(arguments, folder_).wait(); }
+  Outcome run_in(const Surroundings& surroundings, const std::vector<std::string>& arguments) {
+    return Started(arguments, folder_, surroundings).wait();
+  }
   Started start(const std::vector<std::string>& arguments) { return {arguments, folder_}; }
   /// Writes a file into the folder and returns its path.
   std::string write(const std::string& name, const std::string& text) const;

@@ -1,0 +1,106 @@
+// What the system withholds from the program (descriptors, room, memory) is a message and an exit code, and never a file of
+// results that holds something else.
+#include <algorithm>
+
+#include "app/program.h"
+
+namespace glisson::test {
+namespace {
+
+using Surrounded = ProgramTest;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// Whichever of the descriptors 0 to 2 are closed, a run writes the same files as with all of them: the first file that it
+// opens would else be given the number of standard output or error, and hold what is printed.
+TEST_F(Surrounded, ClosedDescriptorsChangeNoFile) {
+  const std::string scene = write("s.toml", small_scene());
+  ASSERT_THAT(run({"run", scene, "--out", "o"}), Exits(0));
+  const std::vector<std::vector<int>> sets{{0}, {1}, {2}, {0, 1}, {1, 2}, {0, 1, 2}};
+  for (const std::vector<int>& closed : sets) {
+    ASSERT_THAT(run_in({.closed = closed}, {"run", scene, "--out", "c"}), Exits(0));
+    for (const char* file : {"main/forces.csv", "main/view.jsonl", "main/frames.pvd", "main/frames/frame_0000.vtu",
+                             "scene.toml", ".glisson"}) {
+      EXPECT_EQ(read_text(folder_ / "c" / file), read_text(folder_ / "o" / file)) << file << ", closed " << closed[0];
+    }
+  }
+  const std::string wrong = write("w.toml", small_scene("[tisue]\n"));
+  EXPECT_THAT(run_in({.closed = {2}}, {"run", wrong, "--out", "w"}), Exits(2));
+}
+
+// What is printed and cannot be written is told, by every command, and the exit code says so; a run is not lost by it.
+TEST_F(Surrounded, FullStandardOutputIsTold) {
+  const std::string scene = write("s.toml", small_scene());
+  const std::vector<std::vector<std::string>> commands{{"--version"}, {"schema"},       {"laws"},
+                                                       {"tissues"},   {"check", scene}, {"run", scene, "--out", "o"}};
+  for (const auto& command : commands) {
+    const Outcome outcome = run_in({.out = "/dev/full"}, command);
+    EXPECT_THAT(outcome, Exits(1)) << command.front();
+    EXPECT_THAT(outcome.err, HasSubstr("standard output cannot be written")) << command.front();
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "o/report.html"));
+  EXPECT_EQ(read_json(folder_ / "o/main/summary.json")["end"], "finished");
+}
+
+// A frame that the disk refuses is told with file and reason, and without VTK's account of its pipeline.
+TEST_F(Surrounded, RefusedFrameIsToldPlainly) {
+  const std::string scene = write("s.toml", small_scene());
+  const Outcome outcome = run_in({.file_bytes = 2000}, {"run", scene, "--out", "o"});
+  EXPECT_THAT(outcome, Exits(1));
+  EXPECT_THAT(outcome.err, HasSubstr("o/main/frames/frame_0000.vtu: it cannot be written: File too large"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("vtk")));
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "o/main/frames/frame_0000.vtu.part"));
+}
+
+// A file above the system's limit is an error of that file for every command, also where it is standard output.
+TEST_F(Surrounded, NoCommandEndsBySignalAtTheSizeLimit) {
+  const std::string scene = write("s.toml", small_scene());
+  const Outcome schema = run_in({.file_bytes = 1000}, {"schema"});
+  EXPECT_THAT(schema, Exits(1));
+  EXPECT_THAT(schema.err, HasSubstr("standard output cannot be written: File too large"));
+  const Outcome first = run_in({.file_bytes = 20}, {"run", scene, "--out", "o"});
+  EXPECT_THAT(first, Exits(1));
+  EXPECT_THAT(first.err, HasSubstr("cannot be written: File too large"));
+}
+
+// Memory that the system refuses is told as that, with the way out: no fault of the scene, no name of an exception.
+TEST_F(Surrounded, RefusedMemoryIsTold) {
+  const std::string scene = write("s.toml", small_scene());
+  const std::vector<std::string> large{"run",       scene, "--out", "o",
+                                       "--threads", "1",   "--set", "mesh.cells=[90, 90, 90]"};
+  const Outcome outcome = run_in({.memory_bytes = 400ul << 20}, large);
+  EXPECT_THAT(outcome, Exits(1));
+  EXPECT_THAT(outcome.err, HasSubstr("the system refused more memory"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("bad_alloc")));
+}
+
+// A device or a pipe in the place of a scene, a fit, a mesh or a table is refused; it is not read to the end of memory.
+TEST_F(Surrounded, DevicesAreNoInput) {
+  std::filesystem::create_symlink("/dev/zero", folder_ / "zero.vtu");
+  const std::string measured =
+      write("m.toml",
+            small_scene(
+                "[[chart]]\ntitle = \"a\"\nx = \"time_s\"\ny = \"force_N\"\n[[chart.measured]]\npath = \"/dev/zero\"\n"
+                "x = \"a\"\ny = \"b\"\n"));
+  const std::string tissue = write("t.toml", small_scene("[[variant]]\nname = \"a\"\ntissue.file = \"/dev/zero\"\n"));
+  const std::vector<std::vector<std::string>> commands{{"check", "/dev/zero"}, {"run", "/dev/zero"},
+                                                       {"fit", "/dev/zero"},   {"info", "zero.vtu"},
+                                                       {"check", measured},    {"check", tissue}};
+  for (const auto& command : commands) {
+    const Outcome outcome = run_in({.memory_bytes = 2ul << 30}, command);
+    EXPECT_THAT(outcome, Exits(2)) << command.back();
+    EXPECT_THAT(outcome.err, HasSubstr("is a device, a pipe or a socket")) << command.back();
+  }
+}
+
+// A text file beyond any scene is refused by its size, before it is read.
+TEST_F(Surrounded, HugeTextsAreRefused) {
+  std::filesystem::resize_file(write("s.toml", "a"), std::uintmax_t{40} << 30);  // of holes
+  const Outcome outcome = run({"check", "s.toml"});
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err, HasSubstr("s.toml: is larger than 16 MiB"));
+}
+
+}  // namespace
+}  // namespace glisson::test
