@@ -1,13 +1,13 @@
 // output_folder.cpp — see output_folder.h.
 #include "report/output_folder.h"
 
-#include <regex>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include "report/output_file.h"
+#include "scene/result_names.h"
 
 namespace glisson {
 namespace {
@@ -16,13 +16,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kMark = ".glisson";
 constexpr const char* kMarkText = "Results of glisson. A new run into this folder replaces them.\n";
-
-/// Whether a run writes a file of that name.
-bool is_ours(const fs::path& file) {
-  static const std::regex name(
-      R"(\.glisson|report\.html|scene\.toml|fit\.toml|fit\.json|fit\.state\.json|tissue\.toml|summary\.json|forces(_.+)?\.csv|events\.csv|frames\.pvd|view\.jsonl|frame_\d+\.vtu|.+\.part)");
-  return std::regex_match(file.filename().string(), name);
-}
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& reason) {
   throw std::invalid_argument(folder.string() + ": " + reason +
@@ -34,7 +27,8 @@ std::vector<fs::path> former_run(const fs::path& folder) {
   std::vector<fs::path> found;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     const bool ours =
-        !entry.is_symlink() && (entry.is_directory() || (entry.is_regular_file() && is_ours(entry.path())));
+        !entry.is_symlink() &&
+        (entry.is_directory() || (entry.is_regular_file() && scene::is_result_file(entry.path().filename().string())));
     if (!ours)
       refuse(folder, "holds " + entry.path().lexically_relative(folder).string() + ", which glisson did not write");
     found.push_back(entry.path());

@@ -80,6 +80,8 @@ const std::string_view kReferenceRun = R"(## What a run does
    1/`sample_rate_hz`; the last line is of the last step. Depth, forces and energies on a line are of the same instant.
    Without a [[tool]] its first columns are of the first instrument: pressing (`normal_N`), `friction_N` and `cutting_N`
    add up to `force_N`. Every further tool and instrument has a forces_NAME.csv.
+   So names of variants, tools and instruments are none of the files' own (`scene.toml`, `forces.csv` …), hold no `/`,
+   and differ in more than upper and lower case.
 5. events.csv has a line for what instruments meet: contact, puncture, drop (the end of the sudden fall of the force),
    inner puncture, withdrawal, release. Both files are whole up to the last sample, however a run ends.
 6. Frames are evenly spaced, the first at rest and the last at the end.

@@ -2,16 +2,14 @@
 #include "glisson/scene.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <set>
-#include <system_error>
 
+#include "mesh/input_file.h"
 #include "scene/expand.h"
 #include "scene/nearest.h"
 #include "scene/read_variant.h"
+#include "scene/result_names.h"
 #include "scene/sections.h"
 #include "scene/select.h"
 #include "scene/word_table.h"
@@ -48,12 +46,10 @@ void check_names(const Array& list, const std::string& path, Problems& problems)
   std::set<std::string> seen;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const Node* name = list[i].find("name");
-    std::string folded = name && name->text() ? *name->text() : path;
-    std::transform(folded.begin(), folded.end(), folded.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (seen.insert(folded).second) continue;
+    const std::string own = name && name->text() ? *name->text() : path;
+    if (seen.insert(folded(own)).second) continue;
     problems.add(name ? name->where : list[i].where, path + "." + std::to_string(i) + ".name",
-                 "\"" + (name ? *name->text() : folded) +
-                     "\" is taken (upper and lower case count as the same); names must differ");
+                 "\"" + own + "\" is taken (upper and lower case count as the same); names must differ");
   }
 }
 
@@ -61,9 +57,10 @@ void check_names(const Array& list, const std::string& path, Problems& problems)
 void check_shared_names(const Variant& variant, const Node& experiment, Problems& problems) {
   for (std::size_t i = 0; i < variant.instruments.size(); ++i) {
     for (const ToolSpec& tool : variant.tools) {
-      if (tool.name != variant.instruments[i].name) continue;
+      if (folded(tool.name) != folded(variant.instruments[i].name)) continue;
       problems.add((*experiment.find("instrument")->array())[i].where, "instrument." + std::to_string(i) + ".name",
-                   "\"" + tool.name + "\" is taken by a tool; names must differ");
+                   "\"" + variant.instruments[i].name +
+                       "\" is taken by a tool (upper and lower case count as the same); names must differ");
     }
   }
 }
@@ -220,13 +217,9 @@ Scene parse_scene(std::string_view text, const std::string& name, const std::fil
 }
 
 Scene load_scene(const std::filesystem::path& file, std::span<const Override> overrides) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) throw SceneError(file.string() + ": is a folder; name a .toml file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw SceneError(file.string() + ": cannot be read; check the path and that you may read it");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) throw SceneError(file.string() + ": cannot be read to its end");
-  return parse_scene(text, file.string(), file.parent_path(), overrides);
+  const detail::InputFile input = detail::read_input(file, detail::kTomlInput);
+  if (!input.problem.empty()) throw SceneError(input.problem);
+  return parse_scene(input.bytes, file.string(), file.parent_path(), overrides);
 }
 
 }  // namespace glisson

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "glisson/scene.h"
+#include "scene/result_names.h"
 #include "scene/section.h"
 #include "scene/sections.h"
 
@@ -171,6 +172,8 @@ KindSpec instrument_kind(SectionSpec section) {
 /// What must hold of an instrument's directions, and where it was written.
 void check_instrument(InstrumentSpec& x, const Node& table, const Place& place) {
   x.origin = place.text();
+  const std::string unfit = unfit_as_table(x.name);
+  if (const Node* name = table.find("name"); name && !unfit.empty()) place.complain(*name, "name", unfit);
   require_direction(x.direction, table, "direction", place);
   if (norm(cross(x.side, x.direction)) > 1e-6 * norm(x.side) * norm(x.direction)) return;
   place.complain(table.find("side") ? *table.find("side") : *table.find("direction"),

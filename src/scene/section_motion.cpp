@@ -1,5 +1,6 @@
 // section_motion.cpp — [motion]: time, damping, gravity; what holds, loads and presses the body; [output].
 #include "glisson/scene.h"
+#include "scene/result_names.h"
 #include "scene/section.h"
 #include "scene/sections.h"
 
@@ -17,6 +18,8 @@ bool along_an_axis(const Vec3d& d) { return (d.x != 0.0) + (d.y != 0.0) + (d.z !
 /// What must hold of a tool's direction.
 void check_tool(ToolSpec& tool, const Node& table, const Place& place) {
   tool.origin = place.text();
+  const std::string unfit = unfit_as_table(tool.name);
+  if (const Node* name = table.find("name"); name && !unfit.empty()) place.complain(*name, "name", unfit);
   const Vec3d& d = tool.motion.direction;
   const Node* given = table.find("direction");
   if (!(norm(d) > 0.0) || !std::isfinite(norm(d))) {

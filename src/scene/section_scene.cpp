@@ -1,31 +1,10 @@
 // section_scene.cpp — the top level: what a scene says once, and what each of its variants consists of.
-#include <algorithm>
-#include <cctype>
-
 #include "glisson/scene.h"
+#include "scene/result_names.h"
 #include "scene/section.h"
 #include "scene/sections.h"
 
 namespace glisson::scene {
-namespace {
-
-constexpr std::size_t kLongestName = 80;
-
-/// What makes a variant's name unfit for a folder; empty where it is fit.
-std::string unfit_as_folder(const std::string& name) {
-  const auto plain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
-  };
-  if (name.empty()) return "is empty";
-  if (name.size() > kLongestName) return "is longer than " + std::to_string(kLongestName) + " characters";
-  if (!std::all_of(name.begin(), name.end(), plain) || name.front() == '.' || name.front() == '-') {
-    return "\"" + name + "\" cannot be a folder; use letters, digits, `_`, `-` and `.`, a letter or digit first";
-  }
-  return name == "report.html" ? "\"report.html\" is where the report goes; choose another" : "";
-}
-
-}  // namespace
-
 const SectionSpec& measured_section() {
   static const SectionSpec section = [] {
     using M = MeasuredSpec;

@@ -134,7 +134,21 @@ const std::vector<Mistake> kMistakes{
     {"VariantThatIsNoFolder", "", "[[variant]]\nname = \"../up\"\n",
      "s.toml:17:8: name: \"../up\" cannot be a folder; use letters, digits, `_`, `-` and `.`, a letter or digit first"},
     {"VariantNamedLikeTheReport", "", "[[variant]]\nname = \"report.html\"\n",
-     "s.toml:17:8: name: \"report.html\" is where the report goes; choose another"},
+     "s.toml:17:8: name: \"report.html\" is the name of a file or folder that glisson itself writes; choose another"},
+    {"VariantNamedLikeTheScene", "", "[[variant]]\nname = \"Scene.TOML\"\n",
+     "s.toml:17:8: name: \"Scene.TOML\" is the name of a file or folder that glisson itself writes; choose another"},
+    {"VariantThatEndsWithADot", "", "[[variant]]\nname = \"a.\"\n",
+     "s.toml:17:8: name: \"a.\" ends with a dot, which some file systems drop; choose another"},
+    {"ToolNamedLikeATable", "name = \"press\"", "name = \"forces.csv\"",
+     "s.toml:13:8: tool.0.name: \"forces.csv\" is the name of a file or folder that glisson itself writes; choose "
+     "another"},
+    {"ToolThatIsAPath", "name = \"press\"", "name = \"../../press\"",
+     "s.toml:13:8: tool.0.name: \"../../press\" cannot be part of a file's name and of a row of events.csv; leave out "
+     "/ \\ : * ? \" < > | ,"},
+    {"ToolWithALineEnd", "name = \"press\"", "name = \"a\\nb\"",
+     "s.toml:13:8: tool.0.name: holds a control character, and it becomes part of a file's name; use letters, digits, "
+     "blanks, `_`, `-`"},
+    {"ToolWithoutAName", "name = \"press\"", "name = \"\"", "s.toml:13:8: tool.0.name: is empty"},
     {"VariantWithASceneKey", "", "[[variant]]\nname = \"a\"\ndescription = \"b\"\n",
      "s.toml:18:1: description: unknown key here; it belongs in the top of the file"},
     {"MisspeltKeyOfVariant", "", "[[variant]]\nname = \"a\"\ntool.press.velocity = 1\n",
