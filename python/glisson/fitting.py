@@ -124,6 +124,7 @@ def fit(
     :param progress: called with stage, done, planned and the best rms so far [N]
     :param state: file that keeps what is known while the fit runs; gone when it is complete. Of another fit it is begun anew
     :raises SceneError: with every problem of the description
+    :raises ValueError: naming a state that is not as it was written; delete it
     """
     from . import _fit
 

@@ -29,6 +29,19 @@ double tolerance_of(const DerivativeCheck& check) { return std::clamp(0.01 * che
 /// Two digits, or whole.
 std::string rounded(double x) { return x >= 100.0 ? scene::show(std::round(x)) : brief(x, 2); }
 
+/// How many times as fast as the scene the model taken is.
+double speedup_of(const Ladder& ladder) { return ladder.rungs.front().cost / std::max(ladder.taken().cost, 1e-12); }
+
+/// What an interrupted run knows is of as many parameters as the law has.
+void require_fitting(const LawMemory& memory, std::size_t parameters, const std::string& law) {
+  for (const StartRecord& s : memory.starts) {
+    if (s.from.size() == parameters && s.optimum.scaled.size() == parameters) continue;
+    throw std::invalid_argument("a start that an interrupted run made of the law " + law + " has " +
+                                std::to_string(s.optimum.scaled.size()) + " parameters, and the law has " +
+                                std::to_string(parameters) + "; begin anew by --fresh");
+  }
+}
+
 }  // namespace
 
 SceneText scene_of(const FitSpec& spec, const LawSpec& law) {
@@ -75,7 +88,11 @@ LawSearch::LawSearch(const FitSpec& spec, LawSpec law, const FitCurves& curves, 
   forward_.curves = curves.curves;
   forward_.load = options.load;
   forward_.stop = options.stop;
+  const auto known = options.memory.find(law_.name);
+  const bool goes_on = known != options.memory.end() && !known->second.starts.empty();
+  if (goes_on) forward_.taken = known->second.forward;
   ladder_ = choose_forward(forward_);
+  speedup_ = goes_on ? known->second.speedup : speedup_of(ladder_);
   take_model(ladder_.chosen);
 }
 
@@ -104,6 +121,9 @@ DescentOptions LawSearch::descent() const {
 }
 
 void LawSearch::search(LawMemory& memory, const std::function<void(const MultiStart&)>& told) {
+  require_fitting(memory, law_.parameters.size(), law_.name);
+  memory.forward = ladder_.taken().name;
+  memory.speedup = speedup_;
   MultiStartOptions options;
   options.starts = spec_.search.starts;
   options.found_again = spec_.search.found_again;
@@ -155,6 +175,7 @@ void LawSearch::look_again_at_forward() {
       "At the optimum " + ladder_.taken().name + " was " + rounded(*share_at_optimum_) + " times the error allowed; ";
   const std::vector<double> start = optimum_.scaled;
   ladder_ = choose_forward(problem_at_optimum(forward_.curves));
+  speedup_ = speedup_of(ladder_);
   second_look_ += ladder_.taken().name + " finished the descent.";
   share_at_optimum_.reset();
   take_model(ladder_.chosen);
@@ -167,6 +188,7 @@ ForwardProblem LawSearch::problem_at_optimum(std::vector<Curve> curves) const {
   ForwardProblem there = forward_;
   there.curves = std::move(curves);
   there.spec.points = 0;
+  there.taken.clear();
   const std::vector<double> at = values();
   for (std::size_t p = 0; p < at.size(); ++p) there.parameters[p].start = at[p];
   return there;
@@ -204,15 +226,14 @@ std::vector<Prediction> LawSearch::predictions() const {
 
 std::string LawSearch::forward_words() const {
   const Rung& taken = ladder_.taken();
-  const Rung& scene = ladder_.rungs.front();
   std::string words;
-  if (ladder_.rungs.size() == 1) {
+  if (forward_.spec.kind != ForwardKind::automatic) {
     words = taken.name == "specimen" ? "Forward model: a specimen that deforms alike all over."
                                      : "Forward model: " + taken.name + ", as asked for.";
   } else if (ladder_.chosen == 0) {
     words = "Forward model: the scene itself; nothing cheaper stayed within what the noise of the curves allows.";
   } else {
-    words = "Forward model: " + taken.name + ", " + rounded(scene.cost / std::max(taken.cost, 1e-12)) +
+    words = "Forward model: " + taken.name + ", " + rounded(speedup_) +
             " times as fast as the scene itself, and at most " + rounded(taken.share) +
             " of what the noise of the curves allows away from it";
     if (share_at_optimum_ && second_look_.empty()) words += " (" + rounded(*share_at_optimum_) + " at the optimum)";

@@ -71,6 +71,7 @@ class LawSearch {
   Optimum optimum_;
   std::optional<double> share_at_optimum_, specimen_error_;
   std::string second_look_;
+  double speedup_ = 1.0;  ///< of the model taken over the scene, by the clock of the run that chose it
   std::uint64_t former_runs_ = 0;
   double former_seconds_ = 0.0;
 };

@@ -18,6 +18,8 @@ namespace glisson::fit {
 /// What is known of one law when a fit is interrupted.
 struct LawMemory {
   std::vector<StartRecord> starts;
+  std::string forward;   ///< name of the forward model that was chosen; empty: not yet
+  double speedup = 0.0;  ///< how many times as fast as the scene it was then
 };
 /// Everything that need not be done again, by law.
 using FitMemory = std::map<std::string, LawMemory>;

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
 
+#include "dynamics/checkpoint.h"
+#include "mesh/input_file.h"
 #include "report/output_file.h"
 #include "report/version.h"
 
@@ -15,22 +18,30 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// FNV-1a.
+constexpr int kFormat = 2;
+
+/// A number for parts in their order: "a", "b" is not "ab".
 class Fingerprint {
  public:
   void add(std::string_view bytes) {
-    for (const char c : bytes) value_ = (value_ ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-    value_ = (value_ ^ 0xffu) * 1099511628211ull;  // so that "a", "b" is not "ab"
+    constexpr std::byte kEnd{0xff};
+    value_ = hash_bytes(std::span(&kEnd, 1), hash_bytes(std::as_bytes(std::span(bytes)), value_));
   }
-  void add_file(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    add(std::string{std::istreambuf_iterator<char>(stream), {}});
-  }
+  /// What is wrong with a file is told by those who need its contents.
+  void add_file(const std::filesystem::path& file) { add(detail::read_input(file, detail::kTableInput).bytes); }
   std::string text() const { return fmt::format("{:016x}", value_); }
 
  private:
-  std::uint64_t value_ = 14695981039346656037ull;
+  std::uint64_t value_ = kHashStart;
 };
+
+/// Over everything but itself; numbers are written so that they read back as the same, so the text is, too.
+std::string checksum(const Json& json) {
+  Fingerprint sum;
+  sum.add(json.at("fingerprint").dump());
+  sum.add(json.at("laws").dump());
+  return sum.text();
+}
 
 Json start_json(const fit::StartRecord& s) {
   // a failed descent has an infinite cost, which JSON has no word for
@@ -43,21 +54,82 @@ Json start_json(const fit::StartRecord& s) {
           {"message", s.optimum.message}};
 }
 
+/// A state that is not as it was written. what() is the fault alone.
+struct Damage : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+const Json& member(const Json& json, const char* key, bool (Json::*is)() const, const char* kind) {
+  const auto found = json.is_object() ? json.find(key) : json.end();
+  if (found == json.end() || !(*found.*is)()) throw Damage(fmt::format("`{}` is missing or no {}", key, kind));
+  return *found;
+}
+
+/// Parameters on their scale from 0 to 1.
+std::vector<double> scaled_of(const Json& json, const char* key) {
+  std::vector<double> list;
+  for (const Json& x : member(json, key, &Json::is_array, "list")) {
+    const double z = x.is_number() ? x.get<double>() : -1.0;
+    if (!(z >= 0.0 && z <= 1.0)) throw Damage(fmt::format("`{}` holds something else than numbers from 0 to 1", key));
+    list.push_back(z);
+  }
+  if (list.empty()) throw Damage(fmt::format("`{}` is empty", key));
+  return list;
+}
+
+double cost_of(const Json& json) {
+  if (json.contains("cost") && json["cost"].is_null()) return std::numeric_limits<double>::infinity();
+  const double cost = member(json, "cost", &Json::is_number, "number").get<double>();
+  if (!(cost >= 0.0)) throw Damage("a `cost` is below 0");
+  return cost;
+}
+
 fit::StartRecord start_of(const Json& json) {
   fit::StartRecord s;
-  s.from = json.at("from").get<std::vector<double>>();
-  s.optimum.scaled = json.at("to").get<std::vector<double>>();
-  s.optimum.cost = json.at("cost").is_null() ? std::numeric_limits<double>::infinity() : json.at("cost").get<double>();
-  s.optimum.converged = json.at("converged").get<bool>();
-  s.optimum.iterations = json.at("iterations").get<int>();
-  s.optimum.message = json.at("message").get<std::string>();
+  s.from = scaled_of(json, "from");
+  s.optimum.scaled = scaled_of(json, "to");
+  if (s.from.size() != s.optimum.scaled.size()) throw Damage("`from` and `to` differ in length");
+  s.optimum.cost = cost_of(json);
+  s.optimum.converged = member(json, "converged", &Json::is_boolean, "yes or no").get<bool>();
+  const auto iterations = member(json, "iterations", &Json::is_number_integer, "whole number").get<std::int64_t>();
+  if (iterations < 0 || iterations > std::numeric_limits<int>::max()) throw Damage("`iterations` is out of range");
+  s.optimum.iterations = static_cast<int>(iterations);
+  s.optimum.message = member(json, "message", &Json::is_string, "text").get<std::string>();
   return s;
 }
 
 fit::LawMemory law_of(const Json& json) {
   fit::LawMemory law;
-  for (const Json& s : json.at("starts")) law.starts.push_back(start_of(s));
+  for (const Json& s : member(json, "starts", &Json::is_array, "list")) {
+    law.starts.push_back(start_of(s));
+    if (law.starts.back().from.size() != law.starts.front().from.size()) throw Damage("`starts` differ in length");
+  }
+  if (!json.contains("forward")) return law;
+  law.forward = member(json, "forward", &Json::is_string, "text").get<std::string>();
+  law.speedup = member(json, "speedup", &Json::is_number, "number").get<double>();
   return law;
+}
+
+/// Parsed, but not deeper than a state nests: what reads and frees a tree does so by recursion.
+Json parse_state(const std::string& bytes) {
+  constexpr int kDeepest = 8;
+  return Json::parse(bytes, [](int depth, Json::parse_event_t, const Json&) {
+    if (depth > kDeepest) throw Damage("its lists nest too deep");
+    return true;
+  });
+}
+
+std::optional<fit::FitMemory> memory_of(const std::string& bytes, const std::string& fingerprint) {
+  const Json json = parse_state(bytes);
+  if (member(json, "format", &Json::is_number_integer, "whole number") != kFormat) return {};
+  member(json, "laws", &Json::is_object, "table");
+  member(json, "fingerprint", &Json::is_string, "text");
+  if (member(json, "checksum", &Json::is_string, "text") != checksum(json))
+    throw Damage("its checksum is wrong, bytes have changed since it was written");
+  if (json["fingerprint"] != fingerprint) return {};
+  fit::FitMemory memory;
+  for (const auto& [name, law] : json["laws"].items()) memory[name] = law_of(law);
+  return memory;
 }
 
 }  // namespace
@@ -81,21 +153,29 @@ void write_fit_state(const std::filesystem::path& file, const std::string& finge
     Json starts = Json::array();
     for (const fit::StartRecord& s : law.starts) starts.push_back(start_json(s));
     laws[name] = {{"starts", starts}};
+    if (law.forward.empty()) continue;
+    laws[name]["forward"] = law.forward;
+    laws[name]["speedup"] = law.speedup;
   }
-  write_whole(file, Json{{"format", 1}, {"fingerprint", fingerprint}, {"laws", laws}}.dump() + "\n");
+  Json json{{"format", kFormat}, {"fingerprint", fingerprint}, {"laws", laws}};
+  json["checksum"] = checksum(json);
+  write_whole(file, json.dump() + "\n");
 }
 
 std::optional<fit::FitMemory> read_fit_state(const std::filesystem::path& file, const std::string& fingerprint) {
-  std::ifstream stream(file);
-  if (!stream) return {};
+  std::error_code error;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(file, error))) return {};
+  const detail::InputFile input = detail::read_input(file, detail::kStateInput);
+  const auto refuse = [&](const std::string& why) {
+    return std::invalid_argument(file.string() + ": " + why + "; delete it, or begin anew by --fresh");
+  };
+  if (!input.problem.empty()) throw std::invalid_argument(input.problem + ", or begin anew by --fresh");
   try {
-    const Json json = Json::parse(stream);
-    if (json.at("format") != 1 || json.at("fingerprint") != fingerprint) return {};
-    fit::FitMemory memory;
-    for (const auto& [name, law] : json.at("laws").items()) memory[name] = law_of(law);
-    return memory;
+    return memory_of(input.bytes, fingerprint);
+  } catch (const Damage& damage) {
+    throw refuse(damage.what());
   } catch (const nlohmann::json::exception&) {
-    return {};
+    throw refuse("is no state of a fit: its JSON is broken");
   }
 }
 

@@ -188,6 +188,90 @@ TEST_F(RunFit, GoesOnWhereItWasStopped) {
     EXPECT_EQ(resumed.parameters[p].value, whole.parameters[p].value);
 }
 
+const std::string kPressedBlock = R"([mesh]
+kind = "box"
+cells = [2, 2, 2]
+size_m = [0.02, 0.02, 0.02]
+[tissue]
+youngs_modulus_Pa = 3000
+[motion]
+integrator = "implicit"
+step_s = 0.005
+[[fixed]]
+set = "z_min"
+[[tool]]
+set = "z_max"
+depth_mm = 1
+velocity_mm_s = 0.4
+)";
+const std::string kSceneFit = R"(scene = "s.toml"
+[[parameter]]
+key = "tissue.youngs_modulus_Pa"
+low = 1000
+high = 20000
+[[data]]
+files = ["a.csv"]
+[search]
+starts = 8
+[proof]
+bootstrap = 0
+profiles = false
+next = false
+)";
+
+// What the clock chose is chosen once: a resumed fit takes the forward model of the run that was stopped, and says the same
+// of it. Of the result only its own runs and times may differ.
+TEST_F(RunFit, SaysTheSameOfItsForwardModelWhenItGoesOn) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal(0.0, 0.001);
+  std::string text = "time (s),displacement (mm),force (N)\n";
+  for (int i = 0; i <= 50; ++i) {
+    const double force = 4200.0 * kArea * 2e-5 * i / kHeight + normal(random);
+    text += std::to_string(0.05 * i) + "," + std::to_string(0.02 * i) + "," + std::to_string(force) + "\n";
+  }
+  write("a.csv", text);
+  write("s.toml", kPressedBlock);
+  FitSpec fit = spec(kSceneFit);
+  FitOptions options;
+  std::atomic<bool> stop{false};
+  options.stop = &stop;
+  FitMemory memory;
+  options.remember = [&](const FitMemory& known) {
+    memory = known;
+    stop = true;
+  };
+  EXPECT_FALSE(run_fit(fit, options).complete);
+  ASSERT_EQ(memory.size(), 1u);
+  LawMemory& law = memory.begin()->second;
+  ASSERT_NE(law.forward, "the scene") << "one of the cheaper models serves";
+  law.speedup = 1234.0;  // no clock of this machine says that by itself
+  FitOptions again;
+  again.memory = memory;
+  const FitResult resumed = run_fit(fit, again);
+  EXPECT_THAT(resumed.forward, HasSubstr("Forward model: " + law.forward + ", 1234 times as fast"));
+  law.forward = "implicit, 17 steps";
+  again.memory = memory;
+  EXPECT_THROW(run_fit(fit, again), std::invalid_argument);
+}
+
+// A start with another number of parameters than the law has is refused, whoever wrote it.
+TEST_F(RunFit, RefusesStartsOfAnotherLaw) {
+  std::mt19937_64 random(2);
+  write("a.csv", ogden_csv(2500.0, -6.0, 0.01, random));
+  write("b.csv", ogden_csv(2500.0, -6.0, 0.01, random));
+  FitOptions options;
+  options.remember = [&](const FitMemory& known) { options.memory = known; };
+  const FitSpec fit = spec(kOgdenFit);
+  run_fit(fit, options);
+  ASSERT_FALSE(options.memory.empty());
+  StartRecord& first = options.memory.begin()->second.starts.front();
+  for (const std::vector<double>& list :
+       {std::vector<double>{}, std::vector<double>{0.5}, std::vector<double>(3, 0.5)}) {
+    first.optimum.scaled = list;
+    EXPECT_THROW(run_fit(fit, options), std::invalid_argument) << list.size();
+  }
+}
+
 // The law that made the curves is chosen on curves held out, and no richer one.
 TEST_F(RunFit, ChoosesTheLawTheCurvesSupport) {
   for (const char* name : {"a.csv", "b.csv", "c.csv", "d.csv", "e.csv"}) {

@@ -306,23 +306,30 @@ Ladder choose_forward(const ForwardProblem& problem) {
     ladder.allowed.push_back(
         allowance(problem.curves[ladder.compared[c]], comparison.truth[0][c], problem.spec.tolerance));
 
+  const bool known = !problem.taken.empty();
+  const auto wanted = [&](const std::string& name) { return !known || name == problem.taken; };
   const auto try_out = [&](Rung rung, const Model& trial) {
-    comparison.measure(rung, trial, patience(ladder));
+    comparison.measure(rung, trial, known ? kEver : patience(ladder));
     ladder.rungs.push_back(std::move(rung));
     const Rung& last = ladder.rungs.back();
-    if (last.serves() && last.cost < patience(ladder)) ladder.chosen = ladder.rungs.size() - 1;
+    if (last.serves() && (known || last.cost < patience(ladder))) ladder.chosen = ladder.rungs.size() - 1;
   };
-  if (const auto specimen = size ? make.specimen(*size) : nullptr)
+  if (const auto specimen = size && wanted("specimen") ? make.specimen(*size) : nullptr)
     try_out({.name = "specimen", .failure = {}, .model = specimen}, *specimen);
   double step = 0.0;
   for (Candidate& c : candidates(variant, problem.spec)) {
+    if (!wanted(c.name)) continue;
     const bool own_steps = c.factor > 0.0;
     if (own_steps && step == 0.0) step = make.explicit_step(ladder.compared[0], ladder.places);
     if (own_steps) c.adjust = heavier(c.factor, step * std::sqrt(c.factor));
-    const auto trial = make.with_offsets(make.scene(c.adjust, std::max(kShortest, patience(ladder)), own_steps));
+    const double longest = known ? kEver : std::max(kShortest, patience(ladder));
+    const auto trial = make.with_offsets(make.scene(c.adjust, longest, own_steps));
     try_out({.name = c.name, .failure = {}, .model = make.with_offsets(make.scene(c.adjust, kEver, own_steps))},
             *trial);
   }
+  if (known && ladder.taken().name != problem.taken)
+    throw std::invalid_argument("the forward model \"" + problem.taken +
+                                "\", which an interrupted run chose, is none for this fit; begin anew by --fresh");
   return ladder;
 }
 

@@ -47,10 +47,11 @@ struct ForwardProblem {
   std::vector<Curve> curves;          ///< of all, those held out, too
   MeshLoader load{};
   const std::atomic<bool>* stop = nullptr;
+  std::string taken;  ///< the model that an interrupted run of the same fit chose by its clock; empty: choose
 };
 
 /// Builds the models and chooses. @throws SceneError, std::invalid_argument for what cannot be used; std::runtime_error where
-/// the scene itself does not run at the start
+/// the scene itself does not run at the start. @throws std::invalid_argument also where the model taken is none of these
 Ladder choose_forward(const ForwardProblem& problem);
 
 /// The error of the model taken at other values, e.g. the optimum: the largest rms difference from the scene over what is
