@@ -28,6 +28,15 @@ SpecimenSize size_of(const FitSpec& spec) {
   return {s.area, s.height};
 }
 
+/// A description alone may name no parameter: those of laws that are asked for come with them.
+void require_something_free(const FitSpec& spec, const FitOptions& options) {
+  if (!spec.parameters.empty() || !spec.laws.empty() || !options.laws.empty()) return;
+  throw SceneError(
+      spec.file.string() +
+      ": nothing is free; give one or more [[parameter]] with key, low and high, or fit laws by name: --laws "
+      "constant,linear (glisson fit --list-laws)");
+}
+
 /// The law of [[parameter]], those of [[law]], those asked for by name.
 std::vector<LawSpec> laws_of(const FitSpec& spec, const FitOptions& options, const FitCurves& curves) {
   std::vector<LawSpec> laws;
@@ -163,6 +172,7 @@ void Run::count_runs(FitResult& result) const {
 }
 
 FitResult Run::to_end() {
+  require_something_free(spec_, options_);
   const SpecimenSize size = size_of(spec_);
   curves_ = read_curves(spec_, size, options_.data_folder.empty() ? spec_.file.parent_path() : options_.data_folder);
   const std::vector<LawSpec> laws = laws_of(spec_, options_, curves_);

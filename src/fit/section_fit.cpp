@@ -62,8 +62,7 @@ void finish_fit(FitSpec& fit, const Node& table, const Place& place) {
     fit.set.insert(fit.set.end(), more.begin(), more.end());
   }
   if (const Node* tissue = table.find("tissue")) fit.set.push_back({"tissue", scene::toml_text(*tissue)});
-  const bool with_laws = table.find("law") != nullptr;
-  if (!with_laws || !fit.parameters.empty()) check_parameters(fit.parameters, table, place);
+  if (!fit.parameters.empty()) check_parameters(fit.parameters, table, place);
   if (fit.data.empty()) place.complain("there are no curves; give one or more [[data]] with `files`");
   const bool any_fitted = std::any_of(fit.data.begin(), fit.data.end(), [](const DataSpec& d) { return !d.held_out; });
   if (!fit.data.empty() && !any_fitted)

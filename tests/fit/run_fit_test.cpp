@@ -272,6 +272,25 @@ TEST_F(RunFit, RefusesStartsOfAnotherLaw) {
   }
 }
 
+// Laws that are asked for bring their own parameters: the description needs none. Without either, nothing is free.
+TEST_F(RunFit, LawsByNameNeedNoParameters) {
+  std::mt19937_64 random(2);
+  write("a.csv", ogden_csv(2500.0, -6.0, 0.01, random));
+  FitSpec fit = spec(kSpecimen +
+                     "[[data]]\nfiles = [\"a.csv\"]\nresample.over = \"none\"\n[search]\nstarts = 2\n"
+                     "[proof]\nbootstrap = 0\nprofiles = false\nnext = false\n");
+  FitOptions options;
+  options.laws = {"constant", "neo_hookean"};
+  EXPECT_EQ(run_fit(fit, options).laws.size(), 2u);
+  try {
+    run_fit(fit, {});
+    FAIL() << "nothing is free";
+  } catch (const SceneError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("fit.toml: nothing is free; give one or more [[parameter]]"));
+    EXPECT_THAT(error.what(), HasSubstr("--laws"));
+  }
+}
+
 // The law that made the curves is chosen on curves held out, and no richer one.
 TEST_F(RunFit, ChoosesTheLawTheCurvesSupport) {
   for (const char* name : {"a.csv", "b.csv", "c.csv", "d.csv", "e.csv"}) {
@@ -359,7 +378,6 @@ TEST_F(RunFit, TellsWhatIsWrongWithTheFile) {
   EXPECT_THAT(complaint(kOgdenFit + "[serach]\nstarts = 3\n"), HasSubstr("did you mean `search`?"));
   EXPECT_THAT(complaint("scene = \"x.toml\"\n" + kOgdenFit), HasSubstr("contradicts"));
   EXPECT_THAT(complaint(kSpecimen), HasSubstr("missing key `data`"));
-  EXPECT_THAT(complaint(kSpecimen + "[[data]]\nfiles = [\"a.csv\"]\n"), HasSubstr("nothing is free"));
   const std::string parameter =
       kSpecimen + "[[data]]\nfiles = [\"a.csv\"]\n[[parameter]]\nkey = \"tissue.poisson_ratio\"\n";
   EXPECT_THAT(complaint(parameter + "low = 0.4\nhigh = 0.1\n"), HasSubstr("not above `low`"));
