@@ -78,6 +78,9 @@ std::vector<std::uint32_t> to_indices(nb::handle array, std::size_t columns, con
 /// Gives an option class's field a value. @throws nb::type_error naming field, value and what is expected
 void set_field(nb::handle self, const std::string& field, nb::handle value);
 
+/// Refuses a field that a class of options has not, naming the nearest that it has. @throws nb::type_error
+[[noreturn]] void no_such_field(nb::handle type, const std::string& field);
+
 /// A class of options: every field by name in its constructor, readable and writable, shown by repr().
 template <class T>
 class Options : public nb::class_<T> {
@@ -87,12 +90,9 @@ class Options : public nb::class_<T> {
       new (self.p) T();
       nb::inst_mark_ready(self.h);
       for (const auto& [key, value] : fields) {
-        if (!nb::hasattr(self.h, key)) {
-          throw nb::type_error(("no field \"" + nb::cast<std::string>(key) + "\"; there are " +
-                                nb::cast<std::string>(nb::str(", ").attr("join")(self.h.type().attr("_fields"))))
-                                   .c_str());
-        }
-        set_field(self.h, nb::cast<std::string>(key), value);
+        const auto name = nb::cast<std::string>(key);
+        if (!nb::hasattr(self.h, key)) no_such_field(self.h.type(), name);
+        set_field(self.h, name, value);
       }
     });
     this->def("__repr__", [](nb::handle self) {

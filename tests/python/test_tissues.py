@@ -109,8 +109,25 @@ def test_wrong_tissues_are_refused():
     """The message has field, value and range."""
     with pytest.raises(ValueError, match=r"poisson.*0\.6"):
         glisson.Tissue(poisson_ratio=0.6).check()
-    with pytest.raises(TypeError, match='no field "young"'):
-        glisson.Tissue(young=1)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: glisson.Tissue(young_modulus=1), r"Tissue: unknown field 'young_modulus': did you mean 'youngs_modulus'\?"),
+        (lambda: glisson.Tissue(Density=1), r"unknown field 'Density': did you mean 'density'\?"),
+        (lambda: glisson.LinearLaw(slop=1), r"LinearLaw: unknown field 'slop': did you mean 'slope'\?"),
+        (lambda: glisson.PressMotion(velocty=1), r"PressMotion: unknown field 'velocty': did you mean 'velocity'\?"),
+        (lambda: glisson.SimulationOptions(integrater="implicit"), r"unknown field 'integrater': did you mean 'integrator'\?"),
+        (lambda: glisson.NeedleOptions(dimeter=1), r"NeedleOptions: unknown field 'dimeter': did you mean 'diameter'\?"),
+        (lambda: glisson.box_mesh(cell=[1, 1, 1]), r"BoxOptions: unknown field 'cell': did you mean 'cells'\?"),
+        (lambda: glisson.Tissue(colour=1), r"Tissue: unknown field 'colour'; there are .*youngs_modulus"),
+    ],
+)
+def test_unknown_fields_are_answered_with_the_nearest(make, message):
+    """Every class of options answers a misspelt field as a scene does a misspelt key."""
+    with pytest.raises(TypeError, match=message):
+        make()
 
 
 def test_presets_have_sources():
