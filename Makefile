@@ -8,7 +8,7 @@ PROGRAM := $(BUILD)/bin/glisson
 OUT ?= out/reproduce
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check setup format clean citations layout lint sanitizers races
+.PHONY: help run test check setup format clean citations figures layout lint sanitizers races
 .NOTPARALLEL:
 
 help:  ## this list
@@ -30,12 +30,15 @@ test:  ## build with tests and run them: engine, consumer package, report page
 	@cmake --build $(BUILD) -j $(JOBS)
 	@cd $(BUILD) && $(CTEST)
 
-check:  ## sanitizers, fuzz corpus, layout, lint, citations: all of them, even when one fails
+check:  ## sanitizers, fuzz corpus, layout, lint, citations, figures: all of them, even when one fails
 	@scripts/setup.sh check
-	@$(MAKE) --no-print-directory --keep-going citations layout lint sanitizers
+	@$(MAKE) --no-print-directory --keep-going citations figures layout lint sanitizers
 
 citations:
 	@scripts/check_citations
+
+figures:
+	@scripts/check_figures
 
 layout:
 	@scripts/check_format.sh
