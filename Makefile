@@ -8,37 +8,43 @@ PROGRAM := $(BUILD)/bin/glisson
 OUT ?= out/reproduce
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check setup format clean citations figures layout lint sanitizers races
+.PHONY: help run test check setup format clean citations figures pages layout lint sanitizers races
 .NOTPARALLEL:
 
 help:  ## this list
 	@echo "Glisson: soft tissue that is non-linear, viscoelastic and touched by instruments"
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
 
-setup:  ## install the packages that are missing (SECTION=run, test or check; all of them: check)
+setup:  ## install the packages that are missing (SECTION=run, python, test or check; all of them: check)
 	@scripts/setup.sh $(or $(SECTION),check)
 
 run:  ## build the program and reproduce the paper's figures into one report
 	@scripts/setup.sh run
+	@echo "make run: 6 minutes on two idle cores, 20 on an old or busy machine; seconds once it is built"
 	@scripts/configure.sh release
-	@cmake --build $(BUILD) -j $(JOBS) --target glisson_program
+	@scripts/build.sh $(BUILD) $(JOBS) glisson_program
 	$(PROGRAM) reproduce --out $(OUT)
 
 test:  ## build with tests and run them: engine, consumer package, report page
 	@scripts/setup.sh test
 	@scripts/configure.sh release tests
-	@cmake --build $(BUILD) -j $(JOBS)
+	@scripts/build.sh $(BUILD) $(JOBS)
 	@cd $(BUILD) && $(CTEST)
 
-check:  ## sanitizers, fuzz corpus, layout, lint, citations, figures: all of them, even when one fails
+check:  ## sanitizers, fuzz corpus, layout, lint, citations, figures, pages: all of them, even when one fails
 	@scripts/setup.sh check
-	@$(MAKE) --no-print-directory --keep-going citations figures layout lint sanitizers
+	@$(MAKE) --no-print-directory --keep-going citations figures pages layout lint sanitizers
 
 citations:
 	@scripts/check_citations
 
 figures:
 	@scripts/check_figures
+
+# The clone compiles what this checkout has compiled, through the compiler's cache; FULL=1 does without, and runs all blocks.
+pages:  ## run the blocks of README and docs as they are printed, in a fresh clone (FULL=1: the long ones too)
+	@scripts/setup.sh python
+	@scripts/read_pages $(if $(FULL),--full) $(PAGES)
 
 layout:
 	@scripts/check_format.sh
@@ -53,7 +59,7 @@ lint:
 LONG_RUNS := FlatPunch|FreeVibration|DeepPress|PaperPress|Scrambled|Barrel|Figure2/Measure|RandomScenes.*/[4-7]|ThousandPunctures.*/(1.|[3-9])|NeedleMesh|BovineNeedle|PunchContact|Hertz|HoldsTheTruth|Twin|LiverVelocity|NeedleMeets
 sanitizers:
 	@scripts/configure.sh asan-ubsan tests
-	@cmake --build $(ASAN) -j $(JOBS)
+	@scripts/build.sh $(ASAN) $(JOBS)
 	@cd $(ASAN) && $(CTEST) -LE web -E '$(LONG_RUNS)'
 
 # Not part of check: a third build. `races` finds what two threads touch without a word to each other.

@@ -38,7 +38,7 @@ and any section above, laid over that of the scene:
 Without any `[[variant]]` the scene is one experiment called `main`. Regions inherit from the `[tissue]` of their
 variant.
 
-```toml
+```toml pattern
 [[variant]]
 name = "slow"
 label = "2 mm/s"
@@ -56,7 +56,7 @@ const std::string_view kReferenceOverrides = R"(## Overrides
 `glisson run SCENE --set KEY=VALUE` changes a scene without editing it. KEY is the dotted path of a key, with names or
 numbers for elements of lists; VALUE is TOML, or plain text where it is not:
 
-```sh
+```text
 glisson run scene.toml --set tissue.density_kg_m3=1060
 glisson run scene.toml --set tool.press.velocity_mm_s=2 --set tissue.law.kind=linear --set tissue.law.slope_Pa=2e4
 glisson run scene.toml --set 'mesh={kind="file", path="/data/liver.vtu"}'

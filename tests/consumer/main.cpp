@@ -1,7 +1,8 @@
-// The README's ten lines: a box of tissue, held below, pressed from above.
+// The README's program: a box of tissue, held below, pressed from above.
 #include "glisson/motion.h"
 
 #include <cstdio>
+#include <string>
 
 int main() {
   const glisson::TetMesh box = glisson::box_mesh({});
@@ -9,7 +10,7 @@ int main() {
   simulation.fix(box.vertex_sets.at("z_min"));
   const auto tool = simulation.drive(box.vertex_sets.at("z_max"), glisson::press({.velocity = 0.01, .depth = 0.005}));
   if (const glisson::StepResult last = simulation.advance_to(1.0); !last.made()) {
-    std::printf("%.*s\n", static_cast<int>(last.message.size()), last.message.data());
+    std::fprintf(stderr, "%s\n", std::string(last.message).c_str());  // why, and what to do
     return 1;
   }
   std::printf("%.4f N\n", -simulation.force(tool).total().z);

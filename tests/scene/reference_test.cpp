@@ -79,7 +79,7 @@ TEST(Reference, ExampleParses) {
 // The snippets on variants and overrides do what is said of them.
 TEST(Reference, SnippetsParse) {
   const std::string text(scene::kReferenceVariants);
-  const std::size_t begin = text.find("```toml\n") + 8;
+  const std::size_t begin = text.find('\n', text.find("```toml")) + 1;
   const std::string snippet = text.substr(begin, text.find("```", begin) - begin);
   const Scene scene = test::parse(test::kSmallScene + snippet, {{"tissue.density_kg_m3", "1060"},
                                                                 {"tissue.law.kind", "linear"},
