@@ -22,7 +22,9 @@ std::string selection_parts() {
 
 std::string scene_reference_markdown() {
   std::string text(kReferenceIntroduction);
-  text.append("## A complete example\n\n```toml file=scene.toml\n").append(kReferenceExample).append("```\n\n## Sections\n\n");
+  text.append("## A complete example\n\n```toml file=scene.toml\n")
+      .append(kReferenceExample)
+      .append("```\n\n## Sections\n\n");
   text += "### The top of the scene\n\n" + scene_section().help + "\n\n" + key_table(scene_section());
   text += section_text(mesh_section(), "`[mesh]`");
   text += section_text(selection_section(), "`[sets.NAME]`") + selection_parts();
