@@ -12,8 +12,9 @@ set(glisson_offered glisson_options glisson glisson_scene glisson_io glisson_fit
 
 function(glisson_describe_build out)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+  file(REAL_PATH "${CMAKE_CXX_COMPILER}" compiler)  # c++ and g++ are often the same
   set(text "")
-  foreach(name CMAKE_SOURCE_DIR CMAKE_SYSTEM_PROCESSOR CMAKE_CXX_COMPILER CMAKE_CXX_COMPILER_ID CMAKE_CXX_COMPILER_VERSION
+  foreach(name CMAKE_SOURCE_DIR CMAKE_SYSTEM_PROCESSOR compiler CMAKE_CXX_COMPILER_ID CMAKE_CXX_COMPILER_VERSION
       CMAKE_BUILD_TYPE CMAKE_CXX_FLAGS CMAKE_CXX_FLAGS_${type} CMAKE_INTERPROCEDURAL_OPTIMIZATION GLISSON_SANITIZE
       Eigen3_DIR hwy_DIR TBB_DIR tomlplusplus_DIR VTK_DIR Ceres_DIR nlohmann_json_DIR fmt_DIR)
     string(APPEND text "${name}=${${name}}\n")

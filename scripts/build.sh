@@ -15,7 +15,7 @@ span() {  # seconds, as one reads them
 
 show() {  # done, of all, seconds
   local left="" text
-  [ "$3" -lt 5 ] || left=", about $(span $(($3 * ($2 - $1) / $1))) left"
+  [ "$3" -lt 5 ] || [ "$1" = "$2" ] || left=", about $(span $(($3 * ($2 - $1) / $1))) left"
   text="[$1/$2] $(span "$3")$left"
   if [ -t 1 ]; then printf '\r\033[K%s' "$text"; else echo "$text"; fi
 }

@@ -21,8 +21,8 @@ class Build(unittest.TestCase):
             return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
 
     def test_time_left_follows_from_the_steps_done(self):
-        done = self.built("@50/200@40.123@ Building a.o", "@51/200@41.0@ Building b.o", "@100/200@100.0@ Building c.o")
-        self.assertEqual(done.stdout, "[50/200] 40 s, about 2 min left\n[100/200] 2 min, about 2 min left\n")
+        done = self.built("@50/200@40.123@ Building a.o", "@51/200@41.0@ Building b.o", "@100/200@100.0@ Building c.o", "@200/200@200.0@ Linking")
+        self.assertEqual(done.stdout, "[50/200] 40 s, about 2 min left\n[100/200] 2 min, about 2 min left\n[200/200] 3 min\n")
 
     def test_nothing_is_foretold_in_the_first_seconds(self):
         self.assertEqual(self.built("@1/200@0.2@ Building a.o").stdout, "[1/200] 0 s\n")

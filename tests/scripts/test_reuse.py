@@ -65,6 +65,11 @@ class Reuse(unittest.TestCase):
         self.assertTrue(self.reused())
         self.assertEqual(self.answer("wheel"), 1)
 
+    def test_a_compiler_by_another_name_is_the_same(self):
+        self.made("release")
+        (self.root / "cxx").symlink_to(shutil.which("c++"))
+        self.assertTrue(self.reused(f"-DCMAKE_CXX_COMPILER={self.root}/cxx"))
+
     def test_a_folder_behind_its_sources_is_brought_up_to_date(self):
         self.made("release")
         (self.root / "glisson_report.cpp").write_text("int glisson_report() { return 7; }\n", encoding="utf-8")
