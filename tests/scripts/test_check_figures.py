@@ -36,7 +36,7 @@ class CheckFigures(unittest.TestCase):
         self.assertIn("1 faults", self.faults(TABLE + caption(commit="main")))
 
     def test_a_reason_stands_for_a_measurement(self):
-        self.assertIn("1 tables, 0 faults", self.faults(TABLE + "<!-- not measured: bounds that the tests hold -->\n"))
+        self.assertIn("1 tables, 0 faults", self.faults(TABLE + "<!-- no command: bounds that the tests hold -->\n"))
 
     def test_commands_that_are_gone_are_named(self):
         for command, gone in (
