@@ -18,6 +18,7 @@
 #include "mesh_cache.h"
 #include "report/fit_json.h"
 #include "report/fit_state.h"
+#include "report/json_text.h"
 #include "report/output_file.h"
 #include "report/output_folder.h"
 #include "report/report_page.h"
@@ -111,7 +112,7 @@ void print_result(const FitResult& result) {
 
 void write_results(const FitResult& result, const FitHeading& heading, const fs::path& folder) {
   const nlohmann::ordered_json json = fit_json(result, heading);
-  write_whole(folder / "fit.json", json.dump(1) + "\n");
+  write_whole(folder / "fit.json", json_text(json, 1) + "\n");
   if (!result.tissue.empty()) write_whole(folder / "tissue.toml", result.tissue);
   nlohmann::json page = report_json(heading.title, "a fit", nlohmann::json::array());
   page["fits"] = nlohmann::json::array({nlohmann::json(json)});

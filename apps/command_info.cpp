@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "glisson/io.h"
+#include "report/json_text.h"
 #include "standard_streams.h"
 
 namespace glisson::app {
@@ -56,7 +57,7 @@ int info(const InfoOptions& options) {
   const ImportedMesh imported = read_mesh(options.mesh, options.scale);
   if (options.json) {
     const auto json = info_json(options.mesh, imported.mesh, imported.report);
-    say("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    say("{}\n", json_text(json, 2));
   } else {
     say("{}", format_report(options.mesh, imported.report, &imported.mesh));
   }

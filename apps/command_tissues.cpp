@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "glisson/tissue_presets.h"
+#include "report/json_text.h"
 #include "standard_streams.h"
 #include "tissue_text.h"
 
@@ -50,7 +51,7 @@ int tissues(const TissuesOptions& options) {
   if (options.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const TissuePreset& p : tissue_presets()) list.push_back(preset_json(p));
-    say("{}\n", (all ? list : preset_json(tissue_preset(options.name))).dump(2));
+    say("{}\n", json_text(all ? list : preset_json(tissue_preset(options.name)), 2));
     return kDone;
   }
   if (!all) {

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "report/json_text.h"
+
 namespace glisson::app {
 namespace {
 
@@ -54,7 +56,7 @@ std::string change_note(const SceneOptions& options) {
   for (const std::string& set : options.set) note += " --set '" + set + "'";
   if (!options.mesh.empty()) note += " --mesh " + options.mesh;
   for (const std::string& variant : options.variants) note += " --variant " + variant;
-  return note.empty() ? note : "# run with" + note + "\n";
+  return note.empty() ? note : valid_utf8("# run with" + note + "\n");  // a comment of TOML is UTF-8, too
 }
 
 }  // namespace

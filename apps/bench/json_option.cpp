@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "report/json_text.h"
 #include "report/output_file.h"
 
 namespace glisson::app {
@@ -27,7 +28,7 @@ void add_json_option(CLI::App& command, std::string& file) {
 
 void write_json(const std::string& file, const nlohmann::ordered_json& json) {
   if (file.empty()) return;
-  write_whole(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  write_whole(file, json_text(json, 2) + "\n");
   fmt::print("written: {}\n", file);
 }
 

@@ -7,6 +7,7 @@
 #include "glisson/scene.h"
 #include "live_simulation.h"
 #include "report/force_table.h"
+#include "report/json_text.h"
 #include "report/output_file.h"
 #include "report/summary_json.h"
 #include "words.h"
@@ -142,7 +143,7 @@ std::shared_ptr<RunResult> run(const Variant& variant, std::optional<TetMesh> me
 
 nb::dict summary_dict(const RunResult& r) {
   const std::string json =
-      summary_json(r.summary, r.variant, std::filesystem::path(r.variant.scene_name).stem().string(), 1).dump();
+      json_text(summary_json(r.summary, r.variant, std::filesystem::path(r.variant.scene_name).stem().string(), 1));
   return nb::cast<nb::dict>(nb::module_::import_("json").attr("loads")(json));
 }
 

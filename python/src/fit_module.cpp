@@ -8,6 +8,7 @@
 #include "live_simulation.h"
 #include "report/fit_json.h"
 #include "report/fit_state.h"
+#include "report/json_text.h"
 
 namespace {
 
@@ -56,7 +57,7 @@ std::pair<std::string, std::string> run(fit::FitSpec spec, const std::vector<std
   }
   if (raised) std::rethrow_exception(raised);
   const FitHeading heading{spec.file.stem().string(), spec.title, spec.description, spec.notes, spec.source};
-  return {fit_json(result, heading).dump(1) + "\n", result.tissue};
+  return {json_text(fit_json(result, heading), 1) + "\n", result.tissue};
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "dynamics/checkpoint.h"
 #include "mesh/input_file.h"
+#include "report/json_text.h"
 #include "report/output_file.h"
 #include "report/version.h"
 
@@ -38,8 +39,8 @@ class Fingerprint {
 /// Over everything but itself; numbers are written so that they read back as the same, so the text is, too.
 std::string checksum(const Json& json) {
   Fingerprint sum;
-  sum.add(json.at("fingerprint").dump());
-  sum.add(json.at("laws").dump());
+  sum.add(json_text(json.at("fingerprint")));
+  sum.add(json_text(json.at("laws")));
   return sum.text();
 }
 
@@ -110,17 +111,8 @@ fit::LawMemory law_of(const Json& json) {
   return law;
 }
 
-/// Parsed, but not deeper than a state nests: what reads and frees a tree does so by recursion.
-Json parse_state(const std::string& bytes) {
-  constexpr int kDeepest = 8;
-  return Json::parse(bytes, [](int depth, Json::parse_event_t, const Json&) {
-    if (depth > kDeepest) throw Damage("its lists nest too deep");
-    return true;
-  });
-}
-
 std::optional<fit::FitMemory> memory_of(const std::string& bytes, const std::string& fingerprint) {
-  const Json json = parse_state(bytes);
+  const Json json = parse_json(bytes);
   if (member(json, "format", &Json::is_number_integer, "whole number") != kFormat) return {};
   member(json, "laws", &Json::is_object, "table");
   member(json, "fingerprint", &Json::is_string, "text");
@@ -159,7 +151,7 @@ void write_fit_state(const std::filesystem::path& file, const std::string& finge
   }
   Json json{{"format", kFormat}, {"fingerprint", fingerprint}, {"laws", laws}};
   json["checksum"] = checksum(json);
-  write_whole(file, json.dump() + "\n");
+  write_whole(file, json_text(json) + "\n");
 }
 
 std::optional<fit::FitMemory> read_fit_state(const std::filesystem::path& file, const std::string& fingerprint) {
@@ -174,6 +166,8 @@ std::optional<fit::FitMemory> read_fit_state(const std::filesystem::path& file, 
     return memory_of(input.bytes, fingerprint);
   } catch (const Damage& damage) {
     throw refuse(damage.what());
+  } catch (const JsonError& error) {
+    throw refuse(std::string("is no state of a fit: ") + error.what());
   } catch (const nlohmann::json::exception&) {
     throw refuse("is no state of a fit: its JSON is broken");
   }

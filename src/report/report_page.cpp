@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "report/json_text.h"
 #include "report/law_data.h"
 #include "report/version.h"
 
@@ -91,8 +92,7 @@ std::string report_page(std::string_view page_template, const nlohmann::json& re
   if (at == std::string_view::npos || page_template.find(kDataToken, at + 1) != std::string_view::npos) {
     throw std::logic_error("the report template of this build does not hold its data token exactly once");
   }
-  // Names read from mesh files may hold bytes that are no UTF-8: they are replaced, not refused.
-  const std::string data = report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string data = json_text(report);
   std::string page;
   page.reserve(page_template.size() + data.size() + data.size() / 64);
   page += page_template.substr(0, at);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "report/json_text.h"
 #include "report/law_data.h"
 #include "report/summary_json.h"
 
@@ -127,7 +128,7 @@ void VariantRecorder::on_end(const RunSummary& summary) {
   summary_ = summary;
   guarded([&] {
     const auto json = summary_json(summary_, variant_, options_.scene, options_.threads);
-    write_whole(options_.folder / "summary.json", json.dump(2) + "\n");
+    write_whole(options_.folder / "summary.json", json_text(json, 2) + "\n");
   });
 }
 

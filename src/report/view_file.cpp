@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/instrument_json.h"
+#include "report/json_text.h"
 
 namespace glisson {
 namespace {
@@ -39,13 +40,13 @@ json head(const std::string& scene, const Variant& variant,
 ViewFile::ViewFile(const std::filesystem::path& folder, const std::string& scene, const Variant& variant,
                    std::vector<std::shared_ptr<Instrument>> instruments)
     : file_(folder / "view.jsonl"), instruments_(std::move(instruments)) {
-  file_.write(head(scene, variant, instruments_).dump());
+  file_.write(json_text(head(scene, variant, instruments_)));
 }
 
 void ViewFile::add(double time) {
   json places = json::array();
   for (const auto& x : instruments_) places.push_back(instrument_place_json(*x));
-  file_.write(json{{"time_s", time}, {"instruments", std::move(places)}}.dump());
+  file_.write(json_text(json{{"time_s", time}, {"instruments", std::move(places)}}));
 }
 
 }  // namespace glisson
