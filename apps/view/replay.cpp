@@ -132,7 +132,7 @@ std::shared_ptr<const LoadedFrame> Replay::readable_before(std::size_t frame) {
   while (frame > 0) {
     try {
       return frames_.at(--frame);
-    } catch (const FileError&) {
+    } catch (const std::exception&) {
     }
   }
   return shown_;
@@ -149,7 +149,7 @@ void Replay::show_body(Snapshot& state) {
     notice_.clear();
     shown_ = frames_.at(before);
     if (share > 0.0) next = frames_.at(after);
-  } catch (const FileError& error) {
+  } catch (const std::exception& error) {  // a forged frame may be anything but a file that cannot be read
     notice_ = std::string(error.what()) + "; the frame before it is shown.";
     if (!frames_.has(before)) shown_ = readable_before(before);
   }
@@ -175,7 +175,7 @@ void Replay::show_tools(Snapshot& state) const {
   std::size_t instrument = 0;
   for (std::size_t i = 0; i < run_.tools.size(); ++i) {
     ToolState& tool = state.tools[i];
-    tool = {.depth = 0.0, .force = {}, .line = {}, .axes = identity<double>()};
+    tool = {.depth = 0.0, .aside = {}, .force = {}, .line = {}, .axes = identity<double>()};
     if (run_.tools[i].instrument) {
       const std::size_t k = instrument++;
       if (k < a.instruments.size()) tool = a.instruments[k];

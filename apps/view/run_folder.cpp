@@ -4,20 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
 #include "glisson/io.h"
 #include "glisson/scene.h"
+#include "report/json_field.h"
+#include "view/outside_file.h"
+#include "view/view_lines.h"
 
 namespace glisson::view {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-
-constexpr double kNear = 1e-9;  // of times that are the same [s]
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
   throw std::invalid_argument(folder.string() + ": " + why);
@@ -63,62 +63,6 @@ fs::path variant_folder(const fs::path& folder, const std::string& wanted, RunFo
   return folder / run.variant;
 }
 
-Vec3d vector_of(const json& list) {
-  Vec3d v;
-  for (std::size_t k = 0; k < 3; ++k) v[k] = list.at(k).get<double>();
-  return v;
-}
-
-void take_head(const json& head, RunFolder& run) {
-  if (head.at("format") != 1) throw std::runtime_error("of another format");
-  run.label = head.at("label");
-  run.title = head.at("scene");
-  head.at("held").get_to(run.held);
-  head.at("driven").get_to(run.driven);
-  run.forms = head.at("instruments").dump();
-  for (const json& x : head.at("tools")) {
-    run.tools.push_back(
-        {.name = x.at("name"), .instrument = x.at("instrument"), .direction = vector_of(x.at("direction"))});
-  }
-}
-
-ToolState place_of(const json& place) {
-  ToolState state{.depth = 0.0, .force = {}, .line = {}, .axes = identity<double>()};
-  const json& points = place.at("points");
-  for (std::size_t i = 0; i + 2 < points.size(); i += 3)
-    state.line.push_back({points[i].get<double>(), points[i + 1].get<double>(), points[i + 2].get<double>()});
-  const json& axes = place.at("axes");
-  for (std::size_t k = 0; k < 9 && axes.size() == 9; ++k) state.axes(k / 3, k % 3) = axes[k].get<double>();
-  return state;
-}
-
-/// Who and where, as far as view.jsonl goes.
-void take_view_file(const fs::path& file, RunFolder& run) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string line;
-  std::size_t frame = 0;
-  try {
-    for (bool first = true; std::getline(stream, line) && !stream.eof(); first = false) {
-      const json x = json::parse(line);
-      if (first) {
-        take_head(x, run);
-        continue;
-      }
-      const double time = x.at("time_s");
-      while (frame < run.frames.size() && run.frames[frame].time < time - kNear) ++frame;
-      if (frame == run.frames.size() || run.frames[frame].time > time + kNear) continue;
-      for (const json& place : x.at("instruments")) run.frames[frame].instruments.push_back(place_of(place));
-    }
-  } catch (const std::exception& error) {
-    run.notice +=
-        "view.jsonl is damaged (" + std::string(error.what()) + "): instruments are shown as far as it goes.\n";
-  }
-  if (run.tools.empty())
-    run.notice +=
-        "No view.jsonl tells of tools and instruments, as runs of an older glisson left none: forces.csv is shown "
-        "as that of a tool. Run the scene again to see them.\n";
-}
-
 void take_frames(const fs::path& folder, RunFolder& run) {
   const std::size_t named = [&] {
     std::vector<std::pair<double, fs::path>> frames;
@@ -144,6 +88,7 @@ void take_forces(const fs::path& folder, RunFolder& run) {
   if (run.tools.size() > kMostTools) run.tools.resize(kMostTools);
   std::vector<fs::path> files{folder / "forces.csv"};
   for (std::size_t i = 1; i < run.tools.size(); ++i) files.push_back(folder / ("forces_" + run.tools[i].name + ".csv"));
+  for (const fs::path& file : files) can_be_read(file, std::numeric_limits<std::uintmax_t>::max());
   try {
     run.forces = read_forces(files);
   } catch (const std::runtime_error& error) {
@@ -152,7 +97,7 @@ void take_forces(const fs::path& folder, RunFolder& run) {
 }
 
 void take_events(const fs::path& file, RunFolder& run) {
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = open_outside(file);
   std::string line;
   std::getline(stream, line);
   while (std::getline(stream, line) && !stream.eof()) {
@@ -167,20 +112,25 @@ void take_events(const fs::path& file, RunFolder& run) {
   }
 }
 
-/// How the run ended: a summary is the last that it writes.
-void take_end(const fs::path& folder, RunFolder& run) {
-  const json summary = json::parse(std::ifstream(folder / "summary.json"), nullptr, false);
-  if (!summary.is_object()) {
+/// How the run ended: a summary is the last that it writes. What is none is told, and the run is shown.
+void take_end(const fs::path& file, RunFolder& run) {
+  if (!can_be_read(file)) {
     run.notice += "The run broke off, or still goes on: it is shown up to its last whole frame.\n";
     return;
   }
-  const std::string end = summary.value("end", "finished");
-  if (end != "finished") run.notice += "The run ended before its time: " + end + ".\n";
+  std::ifstream stream = open_outside(file);
+  try {
+    const nlohmann::json summary = parse_json(std::string{std::istreambuf_iterator<char>(stream), {}});
+    const std::string end = JsonField(summary).at("end").text();
+    if (end != "finished") run.notice += "The run ended before its time: " + end + ".\n";
+  } catch (const JsonError& error) {
+    run.notice += "summary.json is damaged: " + std::string(error.what()) + "; how the run ended is not known.\n";
+  }
 }
 
 /// The heading that the scene beside the run gives, where it can be read.
 void take_title(const fs::path& file, RunFolder& run) {
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = open_outside(file);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   try {
     const std::string title = parse_scene(text, file.string(), file.parent_path()).title;
@@ -205,7 +155,7 @@ RunFolder open_run(const fs::path& given, const std::string& variant) {
   take_view_file(own / "view.jsonl", run);
   take_forces(own, run);
   take_events(own / "events.csv", run);
-  take_end(own, run);
+  take_end(own / "summary.json", run);
   take_title((own == folder ? folder.parent_path() : folder) / "scene.toml", run);
   if (!run.notice.empty()) run.notice.pop_back();
   return run;

@@ -50,9 +50,10 @@ struct ForceSample {
 };
 
 struct ToolState {
-  double depth = 0.0;       ///< [m]
-  Vec3d force{};            ///< on the tissue [N]
-  std::vector<Vec3d> line;  ///< of a needle from the hand to the tip; else its tip [m]
+  double depth = 0.0;             ///< [m]
+  std::array<double, 2> aside{};  ///< along its own x and y [m]
+  Vec3d force{};                  ///< on the tissue [N]
+  std::vector<Vec3d> line;        ///< of a needle from the hand to the tip; else its tip [m]
   Mat3d axes{};
 };
 
