@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "report/instrument_json.h"
+#include "report/json_text.h"
 
 namespace glisson::view {
 namespace {
@@ -44,7 +45,7 @@ Engine::Engine(const Variant& variant, MeshLoader load) : load_(std::move(load))
   targets_.resize(tools_.size());
   nlohmann::json forms = nlohmann::json::array();
   for (const auto& instrument : body_->built().instruments) forms.push_back(instrument_form_json(*instrument));
-  forms_ = forms.dump();
+  forms_ = json_text(forms);
   can_grab_ = body_->grab() != nullptr;
   why_no_cut_ = body_->why_no_cut();
   const TetMesh& mesh = body_->built().simulation.mesh();
@@ -72,24 +73,38 @@ void Engine::run() {
   while (!stop_.load(std::memory_order_relaxed)) {
     const std::uint64_t late = schedule.skip_late();
     schedule.wait();
-    const bool asked = apply_commands() || waits();
+    guarded_turn(late);
     if (restarted_) {  // making a body anew is no delay of a frame
       schedule = app::FrameSchedule(kFrame);
       restarted_ = false;
     }
-    change_tissues();
-    work_on_cut();
-    if (!waits()) echo_ = received_;
-    const bool moves = !stopped_ && (!paused_ || frames_to_step_ > 0);
-    if (moves) {
-      dropped_ += late;
-      frame();
-    }
-    frames_to_step_ = std::max(0, frames_to_step_ - 1);
-    measure_pace();
-    const auto since = WallClock::now() - published_;
-    if (since >= (moves || asked ? WallClock::duration(kPublishEvery) : WallClock::duration(kPublishAtRest))) publish();
   }
+}
+
+/// A fault of a turn holds the body and is told; commands go on, and a reset makes another body.
+void Engine::guarded_turn(std::uint64_t late) {
+  try {
+    turn(late);
+  } catch (const std::exception& error) {
+    stopped_ = true;
+    notice_ = std::string("the body is held after a fault of the program: ") + error.what() + "; Reset makes it anew";
+  }
+}
+
+void Engine::turn(std::uint64_t late) {
+  const bool asked = apply_commands() || waits();
+  change_tissues();
+  work_on_cut();
+  if (!waits()) echo_ = received_;
+  const bool moves = !stopped_ && (!paused_ || frames_to_step_ > 0);
+  if (moves) {
+    dropped_ += late;
+    frame();
+  }
+  frames_to_step_ = std::max(0, frames_to_step_ - 1);
+  measure_pace();
+  const auto since = WallClock::now() - published_;
+  if (since >= (moves || asked ? WallClock::duration(kPublishEvery) : WallClock::duration(kPublishAtRest))) publish();
 }
 
 bool Engine::apply_commands() {

@@ -43,6 +43,9 @@ class Engine final : public Source {
 
   void start() override;
   void stop() override;
+  /// What the thread does every 1 ms, without it and without a clock: for tests and measurements.
+  /// @param late  frames that were over before their turn
+  void turn(std::uint64_t late = 0);
 
   bool post(const Command& command) override { return commands_.push(command); }
   const Snapshot* latest() override { return latest_.take(); }
@@ -61,6 +64,7 @@ class Engine final : public Source {
 
  private:
   void run();
+  void guarded_turn(std::uint64_t late);
   bool apply_commands();
   bool waits() const;
   void apply(const Command& command);

@@ -148,6 +148,11 @@ double LiveBody::depth(std::size_t tool) const {
   return dot(ways_[tool]->at(built_->simulation.force_time()), tools_[tool].direction);
 }
 
+std::array<double, 2> LiveBody::aside(std::size_t tool) const {
+  const Vec3d way = ways_[tool]->at(built_->simulation.force_time());
+  return {dot(way, tools_[tool].side), dot(way, tools_[tool].third)};
+}
+
 Vec3d LiveBody::force(std::size_t tool) const {
   const std::size_t sets = built_->tools.size();
   if (tool >= sets) return built_->instruments[tool - sets]->forces().total();
@@ -155,7 +160,8 @@ Vec3d LiveBody::force(std::size_t tool) const {
 }
 
 ToolState LiveBody::tool_state(std::size_t tool) const {
-  ToolState state{.depth = depth(tool), .force = force(tool), .line = {}, .axes = identity<double>()};
+  ToolState state{
+      .depth = depth(tool), .aside = aside(tool), .force = force(tool), .line = {}, .axes = identity<double>()};
   const std::size_t sets = built_->tools.size();
   if (tool < sets) return state;
   const Instrument& x = *built_->instruments[tool - sets];

@@ -38,6 +38,8 @@ class LiveBody {
 
   /// Depth and force of a tool at force_time() [m], [N].
   double depth(std::size_t tool) const;
+  /// Of its way then, along its x and y [m].
+  std::array<double, 2> aside(std::size_t tool) const;
   Vec3d force(std::size_t tool) const;
   ToolState tool_state(std::size_t tool) const;
   std::shared_ptr<const BodyShape> shape() const;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "report/json_text.h"
+
 namespace glisson::view {
 namespace {
 
@@ -78,8 +80,15 @@ void put_tool(Bytes& out, const ToolState& tool) {
   for (const auto& row : tool.axes.m) {
     for (const double x : row) out.f32(x);
   }
+  for (const double x : tool.aside) out.f32(x);
   out.u32(static_cast<std::uint32_t>(tool.line.size()));
   for (const Vec3d& x : tool.line) out.vec(x);
+}
+
+/// A displacement as it is drawn: at the rim of the picture where it leads beyond, since all are fractions of the largest.
+Vec3d shown(const Vec3d& u, const Surface& surface) {
+  const double far = norm(u), most = surface.rim();
+  return far > most ? u * (most / far) : u;
 }
 
 json numbers(const Vec3d& v) { return {v.x, v.y, v.z}; }
@@ -114,7 +123,7 @@ std::string keyframe_message(const Surface& surface, std::uint32_t number) {
 std::string frame_message(const Snapshot& state, const Surface& surface, std::uint32_t keyframe) {
   double reach = 0.0;
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    const Vec3d& u = state.displacement[surface.mesh_vertex(i)];
+    const Vec3d u = shown(state.displacement[surface.mesh_vertex(i)], surface);
     for (std::size_t k = 0; k < 3; ++k) reach = std::max(reach, std::isfinite(u[k]) ? std::abs(u[k]) : 0.0);
   }
   Bytes out;
@@ -125,7 +134,7 @@ std::string frame_message(const Snapshot& state, const Surface& surface, std::ui
   out.f32(0.0);
   for (const ToolState& tool : state.tools) put_tool(out, tool);
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    const Vec3d& u = state.displacement[surface.mesh_vertex(i)];
+    const Vec3d u = shown(state.displacement[surface.mesh_vertex(i)], surface);
     for (std::size_t k = 0; k < 3; ++k) out.u16(fraction16(u[k], reach));
   }
   return out.take();
@@ -181,26 +190,25 @@ std::string hello_message(const Source& source, const SceneFacts& facts, const s
                           {"formula", x.formula},
                           {"help", x.help}});
   }
-  return json{{"type", "hello"},
-              {"title", facts.title},
-              {"variant", facts.variant},
-              {"version", facts.version},
-              {"session", session},
-              {"vertices", source.vertices()},
-              {"tets", source.tets()},
-              {"can_grab", source.can_grab()},
-              {"why_no_cut", source.why_no_cut()},
-              {"has_stress", source.has_stress()},
-              {"tools", std::move(tools)},
-              {"parameters", std::move(parameters)},
-              {"recorded", recorded_json(source.recorded())},
-              {"can_record", static_cast<bool>(facts.recorder)},
-              {"instruments", json::parse(facts.instruments)}}
-      .dump();
+  return json_text(json{{"type", "hello"},
+                        {"title", facts.title},
+                        {"variant", facts.variant},
+                        {"version", facts.version},
+                        {"session", session},
+                        {"vertices", source.vertices()},
+                        {"tets", source.tets()},
+                        {"can_grab", source.can_grab()},
+                        {"why_no_cut", source.why_no_cut()},
+                        {"has_stress", source.has_stress()},
+                        {"tools", std::move(tools)},
+                        {"parameters", std::move(parameters)},
+                        {"recorded", recorded_json(source.recorded())},
+                        {"can_record", static_cast<bool>(facts.recorder)},
+                        {"instruments", json::parse(facts.instruments)}});
 }
 
 std::string role_message(bool drives, bool led, std::size_t viewers) {
-  return json{{"type", "role"}, {"drives", drives}, {"led", led}, {"viewers", viewers}}.dump();
+  return json_text(json{{"type", "role"}, {"drives", drives}, {"led", led}, {"viewers", viewers}});
 }
 
 std::string state_message(const Snapshot& state, std::size_t pieces) {
@@ -208,18 +216,17 @@ std::string state_message(const Snapshot& state, std::size_t pieces) {
   for (const LiveEvent& x : state.events) {
     events.push_back({{"tool", x.tool}, {"event", x.what}, {"time_s", x.time}, {"depth_m", x.depth}});
   }
-  return json{{"type", "state"},
-              {"epoch", state.epoch},
-              {"parameters", state.parameters},
-              {"speeds_m_s", state.speeds},
-              {"cut_area_m2", state.cut_area},
-              {"cut_longest_s", state.cut_longest},
-              {"pieces", pieces},
-              {"events_before", state.events_before},
-              {"events", std::move(events)}}
-      .dump();
+  return json_text(json{{"type", "state"},
+                        {"epoch", state.epoch},
+                        {"parameters", state.parameters},
+                        {"speeds_m_s", state.speeds},
+                        {"cut_area_m2", state.cut_area},
+                        {"cut_longest_s", state.cut_longest},
+                        {"pieces", pieces},
+                        {"events_before", state.events_before},
+                        {"events", std::move(events)}});
 }
 
-std::string notice_message(const std::string& text) { return json{{"type", "notice"}, {"text", text}}.dump(); }
+std::string notice_message(const std::string& text) { return json_text(json{{"type", "notice"}, {"text", text}}); }
 
 }  // namespace glisson::view

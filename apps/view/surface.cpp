@@ -8,10 +8,12 @@
 
 #include "mechanics/tet_fields.h"
 #include "tissue/shape_measure.h"
+#include "view/live_body.h"
 
 namespace glisson::view {
 namespace {
 
+constexpr double kRim = 10.0;  // of the picture, in diagonals of the body
 constexpr std::uint32_t kInside = std::numeric_limits<std::uint32_t>::max();
 
 /// H of a tet from the displacements of its corners.
@@ -26,6 +28,7 @@ Mat3d gradient(const std::vector<Vec3d>& displacement, const Tet& tet, const std
 Surface::Surface(std::shared_ptr<const BodyShape> shape) : shape_(std::move(shape)) {
   number_vertices();
   count_pieces();
+  rim_ = kRim * diagonal(shape_->mesh);
   const TetMesh& mesh = shape_->mesh;
   tets_around_.assign(vertices_.size(), 0.0);
   for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
@@ -72,6 +75,11 @@ void Surface::count_pieces() {
   }
   pieces_ = 0;
   for (std::uint32_t v = 0; v < parent.size(); ++v) pieces_ += in_tet[v] != 0 && parent[v] == v ? 1 : 0;
+}
+
+bool Surface::strays(const Snapshot& state) const {
+  return std::any_of(vertices_.begin(), vertices_.end(),
+                     [&](std::uint32_t v) { return norm(state.displacement[v]) > rim_; });
 }
 
 template <class OfTet>

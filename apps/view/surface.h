@@ -30,6 +30,11 @@ class Surface {
   std::uint8_t mark(std::size_t i) const { return shape_->marks[vertices_[i]]; }
   const Vec3d& rest(std::size_t i) const { return shape_->mesh.vertices[vertices_[i]]; }
 
+  /// Displacements beyond are drawn there [m]: a piece that was cut free flies on for ever where nothing damps it, and with 10 m
+  /// for the largest one the 16 bits of the others would be 0.3 mm each. Ten diagonals of the body at rest.
+  double rim() const { return rim_; }
+  /// Whether some of the surface has left for beyond the rim.
+  bool strays(const Snapshot& state) const;
   std::size_t pieces() const { return pieces_; }  ///< that the body is in
 
   /// A field at each surface vertex, the mean over the tets around it: s [-], q [-], or p = −⅓ tr σ of the stress that makes
@@ -57,6 +62,7 @@ class Surface {
   std::vector<NearTet> near_;          ///< tets with a vertex at the surface
   std::vector<double> tets_around_;    ///< of each surface vertex
   std::size_t pieces_ = 0;
+  double rim_ = 0.0;
   std::shared_ptr<const std::map<int, Tissue>> tissues_;  ///< that near_body_ is of
   std::unique_ptr<Body> near_body_;  ///< of the tets with a vertex at the surface, and of those they take means with
   std::vector<std::uint32_t> near_tets_;  ///< numbers of its tets in the shape's mesh, those of `near_` first

@@ -17,7 +17,7 @@
 namespace glisson {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 constexpr int kFormat = 2;
 

@@ -50,6 +50,67 @@ describe("live view", { skip: program() === null ? "the program is not built" : 
     await page.screenshot({ path: join(shots, "needle.png") });
   });
 
+  test("the slider shows where the needle is led to, its mark and the number below where it is", async () => {
+    await page.getByRole("button", { name: "Reset" }).click();
+    await until(page, (s) => Number(s.time) < 0.2, "at rest");
+    await type(page, "Speed [mm/s]", 2);
+    await type(page, "Depth [mm]", 8);
+    await until(page, (s) => Number(s.depth) > 0.0005, "on its way");
+    await page.getByRole("button", { name: "Pause" }).click();
+    await page.getByRole("button", { name: "Go on" }).waitFor();
+    await page.screenshot({ path: join(shots, "on-its-way.png") });
+    const shown = await page.evaluate(() => {
+      const range = document.querySelector("#depth-0");
+      const row = range.closest(".live-slider");
+      const [track, mark] = [range.getBoundingClientRect(), row.querySelector(".live-mark").getBoundingClientRect()];
+      return {
+        target: Number(range.value),
+        now: row.querySelector(".live-now").textContent,
+        share: (mark.left + mark.width / 2 - track.left - 8) / (track.width - 16),
+        range: [Number(range.min), Number(range.max)],
+        depth: 1000 * Number(document.querySelector(".live").dataset.depth),
+      };
+    });
+    assert.equal(shown.target, 8);
+    assert.ok(shown.depth < 7, `still on its way at ${shown.depth} mm`);
+    assert.equal(shown.now, `now ${shown.depth.toFixed(2)} mm`);
+    const share = (shown.depth - shown.range[0]) / (shown.range[1] - shown.range[0]);
+    assert.ok(Math.abs(shown.share - share) < 0.02, `${shown.share}, expected ${share}`);
+    await page.getByRole("button", { name: "Go on" }).click();
+    await type(page, "Speed [mm/s]", 20);
+  });
+
+  test("numbers keep apart however long they are", async () => {
+    for (const width of [1440, 900, 390, 360]) {
+      await page.setViewportSize({ width, height: 900 });
+      const apart = await page.evaluate(() => {
+        const numbers = document.querySelector(".live-numbers");
+        const long = numbers.cloneNode(true);
+        const texts = ["−123.456\u00a0N", "−1234.56\u00a0mm", "12345.67\u00a0s", "10.000\u00a0N", "making the body"];
+        texts.push("1\u202f914 / 22\u202f418\u00a0µs", "191\u202f831\u00a0frames", "12345\u00a0ms");
+        long.querySelectorAll("dd").forEach((dd, i) => (dd.textContent = texts[i]));
+        numbers.after(long);
+        const room = long.getBoundingClientRect();
+        const boxes = [...long.querySelectorAll("dt, dd")].map((field) => {
+          const range = document.createRange();
+          range.selectNodeContents(field);
+          return range.getBoundingClientRect();
+        });
+        const meet = (a, b) => a.left < b.right + 4 && b.left < a.right + 4 && a.top < b.bottom && b.top < a.bottom;
+        const outside = boxes.filter((box) => box.left < room.left - 1 || box.right > room.right + 1).length;
+        let collisions = 0;
+        for (let i = 0; i < boxes.length; i += 2)
+          for (let k = 0; k < boxes.length; k++)
+            if (k !== i && k !== i + 1 && (meet(boxes[i], boxes[k]) || meet(boxes[i + 1], boxes[k]))) collisions++;
+        const fields = boxes.length;
+        long.remove();
+        return { fields, collisions, outside };
+      });
+      assert.deepEqual(apart, { fields: 16, collisions: 0, outside: 0 }, `${width} px wide`);
+    }
+    await page.setViewportSize({ width: 1440, height: 900 });
+  });
+
   test("a tissue three times as stiff pushes back three times as hard", async () => {
     await page.getByRole("button", { name: "Reset" }).click();
     await until(page, (s) => s.epoch === "1", "a body at rest");

@@ -27,7 +27,7 @@ describe("commands", () => {
 
 /** A frame with one tool of one point and two vertices. */
 function frame(field = 3): ArrayBuffer {
-  const view = new DataView(new ArrayBuffer(64 + 68 + 14));
+  const view = new DataView(new ArrayBuffer(64 + 76 + 14));
   view.setUint8(0, 2);
   view.setUint8(1, 1 | 8);
   view.setUint8(2, 1);
@@ -39,10 +39,12 @@ function frame(field = 3): ArrayBuffer {
   view.setFloat32(60, 155, true);
   view.setFloat32(64, 0.004, true); // depth of the tool
   view.setFloat32(76, -2, true); // its force along z
-  view.setUint32(116, 1, true);
-  view.setFloat32(120, 7, true);
-  view.setInt16(132 + 2, -32767, true);
-  view.setUint8(132 + 12 + 1, 255);
+  view.setFloat32(116, 0.5, true); // how far aside it is
+  view.setFloat32(120, -0.25, true);
+  view.setUint32(124, 1, true);
+  view.setFloat32(128, 7, true);
+  view.setInt16(140 + 2, -32767, true);
+  view.setUint8(140 + 12 + 1, 255);
   return view.buffer;
 }
 
@@ -54,6 +56,7 @@ describe("messages", () => {
     expect([read.paused, read.building, read.grabbing]).toEqual([true, false, true]);
     expect(read.tools[0]!.depth).toBeCloseTo(0.004);
     expect(read.tools[0]!.force).toEqual([0, 0, -2]);
+    expect(read.tools[0]!.aside).toEqual([0.5, -0.25]);
     expect(read.tools[0]!.points).toEqual([7, 0, 0]);
     expect(Array.from(read.displacement)).toEqual([0, -32767, 0, 0, 0, 0]);
     expect([read.field, read.low, read.high, ...read.values]).toEqual([3, -100, 155, 0, 255]);

@@ -20,9 +20,17 @@ import type {
   Samples,
   SlowState,
   TextMessage,
+  ToolState,
 } from "./protocol.ts";
 import { Slider } from "./slider.ts";
 import { TissuePanel } from "./tissue_panel.ts";
+
+interface ToolSliders {
+  depth: Slider;
+  side: Slider;
+  third: Slider;
+  speed: Slider;
+}
 
 const PLOT_EVERY = 125; // ms
 const SEEN = 10_000; // frames that the plot over time shows: ten seconds
@@ -37,7 +45,7 @@ export class LivePage {
   history = new History(0);
   private tool = 0;
   private waiting: Command | null = null; // the newest place or drag; one goes out a frame
-  private sliders: { depth: Slider; side: Slider; third: Slider; speed: Slider }[] = [];
+  private sliders: ToolSliders[] = [];
   private told: SlowState | null = null;
   private replay: ReplayControls | null = null; // of a recorded run, in place of hands
   private readonly plots = {
@@ -326,7 +334,7 @@ export class LivePage {
       this.values.set(name, field);
       this.numbers.append(h("div", {}, h("dt", {}, name), field));
     }
-    const text = unit ? `${value} ${unit}` : value;
+    const text = unit ? `${value}\u00a0${unit}` : value;
     if (field.textContent !== text) field.textContent = text;
   }
 
@@ -356,13 +364,24 @@ export class LivePage {
           ? "paused"
           : `${fixed(frame.realtimeFactor, 2)} ×`;
     this.number("Pace", pace, "");
-    this.number("Computing", `${fixed(frame.p50, 0)} / ${fixed(frame.p99, 0)}`, "µs");
+    this.number("Computing", `${formatInteger(frame.p50)} / ${formatInteger(frame.p99)}`, "µs");
     this.number("Dropped", formatInteger(frame.dropped), "frames");
     this.number("Latency", this.connection.latency === null ? "–" : fixed(this.connection.latency, 0), "ms");
     if (this.pauseButton) this.pauseButton.textContent = frame.paused ? "Go on" : "Pause";
+    frame.tools.forEach((state, i) => this.showPlace(this.sliders[i], state));
     const targetless = frame.playing || (frame.time < 0.05 && frame.epoch !== this.followed);
     if (targetless && tool) this.sliders[this.tool]?.depth.follow(1000 * tool.depth);
     this.followed = frame.time >= 0.05 ? frame.epoch : this.followed;
+  }
+
+  /** Sliders show where a tool is led to, their marks where it is; who only watches knows of no target. */
+  private showPlace(sliders: ToolSliders | undefined, state: ToolState): void {
+    if (!sliders) return;
+    const places = [state.depth, ...state.aside].map((metres) => 1000 * metres);
+    [sliders.depth, sliders.side, sliders.third].forEach((slider, k) => {
+      slider.showNow(places[k]!, 2);
+      if (!this.role.drives) slider.follow(places[k]!);
+    });
   }
 
   private followed = 0;

@@ -93,6 +93,7 @@ export interface Keyframe {
 
 export interface ToolState {
   depth: number; // [m]
+  aside: number[]; // along its own x and y [m]
   force: [number, number, number]; // on the tissue [N]
   axes: number[];
   points: number[];
@@ -169,14 +170,15 @@ function decodeFrame(view: DataView): LiveFrame {
   const tools: ToolState[] = [];
   let at = FRAME_HEAD;
   for (let i = view.getUint8(2); i > 0; i--) {
-    const points = view.getUint32(at + 52, true);
+    const points = view.getUint32(at + 60, true);
     tools.push({
       depth: view.getFloat32(at, true),
       force: vector(view, at + 4),
       axes: floats(view, at + 16, 9),
-      points: floats(view, at + 56, 3 * points),
+      aside: floats(view, at + 52, 2),
+      points: floats(view, at + 64, 3 * points),
     });
-    at += 56 + 12 * points;
+    at += 64 + 12 * points;
   }
   const field = view.getUint8(3);
   const vertices = Math.floor((view.byteLength - at) / (field === 0 ? 6 : 7));

@@ -5,6 +5,8 @@ export class Slider {
   readonly element: HTMLElement;
   private readonly range: HTMLInputElement;
   private readonly box: HTMLInputElement;
+  private readonly mark = h("i", { class: "live-mark", hidden: true });
+  private readonly now = h("output", { class: "live-now", hidden: true });
   private touched = 0;
   private held = 0;
 
@@ -38,8 +40,9 @@ export class Slider {
       "div",
       { class: "live-slider" },
       h("label", { for: id }, label),
-      this.range,
+      h("span", { class: "live-track" }, this.range, this.mark),
       h("span", { class: "live-value" }, this.box, h("span", { class: "unit" }, unit)),
+      this.now,
     );
     this.set(value);
     this.range.addEventListener("input", () => this.moved(this.placed, when === "acts"));
@@ -60,11 +63,23 @@ export class Slider {
 
   set(value: number): void {
     this.held = value;
-    this.range.value = String(
-      this.scale === "log" ? Math.log(value / this.least) / Math.log(this.most / this.least) : value,
-    );
+    this.range.value = String(this.place(value));
     this.range.setAttribute("aria-valuetext", `${Number(value.toPrecision(4))} ${this.unit}`);
     if (document.activeElement !== this.box) this.box.value = String(Number(value.toPrecision(4)));
+  }
+
+  /** Where what it leads is now: a mark on the slider and a number below, beside the target that the slider itself shows. */
+  showNow(value: number, digits: number): void {
+    const [least, most] = [Number(this.range.min), Number(this.range.max)];
+    const share = Math.min(1, Math.max(0, (this.place(value) - least) / (most - least)));
+    const text = `now ${(Math.abs(value) < 0.5 * 10 ** -digits ? 0 : value).toFixed(digits).replace("-", "−")} ${this.unit}`;
+    this.mark.hidden = this.now.hidden = false;
+    this.mark.style.setProperty("--share", share.toFixed(4));
+    if (this.now.textContent !== text) this.now.textContent = text;
+  }
+
+  private place(value: number): number {
+    return this.scale === "log" ? Math.log(value / this.least) / Math.log(this.most / this.least) : value;
   }
 
   /** From the program; not while a hand is on it. */
