@@ -23,6 +23,13 @@ bool is_key(std::string_view text) {
   return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
+bool is_handshake_key(std::string_view text) {
+  constexpr std::size_t kDigits = 22;
+  constexpr std::string_view kBase64 = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  return text.size() == kDigits + 2 && text.substr(kDigits) == "==" &&
+         text.substr(0, kDigits).find_first_not_of(kBase64) == std::string_view::npos;
+}
+
 bool same_secret(std::string_view a, std::string_view b) {
   unsigned differ = a.size() == b.size() ? 0u : 1u;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -73,11 +80,11 @@ bool origin_allowed(std::string_view origin, std::string_view host) {
   return origin.empty() || origin == "http://" + std::string(host);
 }
 
-bool Pacer::take(Clock::time_point now) {
+bool Pacer::take(Clock::time_point now, double count) {
   left_ = std::min(most_, left_ + rate_ * std::chrono::duration<double>(now - last_).count());
   last_ = now;
-  if (left_ < 1.0) return false;
-  left_ -= 1.0;
+  if (left_ < count) return false;
+  left_ -= count;
   return true;
 }
 

@@ -13,6 +13,9 @@ std::string random_key();
 /// Whether a text could be such a key: what a viewer sends as one goes into answers.
 bool is_key(std::string_view text);
 
+/// Whether a text is a key of a WebSocket's handshake: 16 bytes in base64.
+bool is_handshake_key(std::string_view text);
+
 /// Whether two texts are equal, in a time that depends on their lengths only.
 bool same_secret(std::string_view a, std::string_view b);
 
@@ -32,14 +35,14 @@ bool host_allowed(std::string_view host, const Place& place);
 /// make one of: they are let in by their token alone.
 bool origin_allowed(std::string_view origin, std::string_view host);
 
-/// A bucket of messages that fills at a rate.
+/// A bucket of messages, or of bytes, that fills at a rate.
 class Pacer {
  public:
   using Clock = std::chrono::steady_clock;
   Pacer(double per_second, double most, Clock::time_point now)
       : rate_(per_second), most_(most), left_(most), last_(now) {}
-  /// Takes one out. @return false where there is none
-  bool take(Clock::time_point now);
+  /// Takes some out. @return false where there are not as many
+  bool take(Clock::time_point now, double count = 1.0);
 
  private:
   double rate_, most_, left_;

@@ -10,7 +10,8 @@
 namespace glisson::view {
 namespace {
 
-constexpr double kFrameSlack = 1e-4;  // of a second: frames follow each other every millisecond
+constexpr std::size_t kPiece = 32768;  // of a table that is handed on [bytes]
+constexpr double kFrameSlack = 1e-4;   // of a second: frames follow each other every millisecond
 
 void note(double& first, bool now, double time) {
   if (now && first < 0.0) first = time;
@@ -33,7 +34,7 @@ void Recording::add(const ForceSample& sample) {
   if (sample.epoch != epoch_) *this = Recording(tools_, most_bytes_);
   epoch_ = sample.epoch;
   if (full_ || gap_) return;
-  if (numbers_.size() * sizeof(double) >= most_bytes_) {
+  if (frames_ * stride() * sizeof(double) >= most_bytes_) {
     full_ = true;
     return;
   }
@@ -42,12 +43,14 @@ void Recording::add(const ForceSample& sample) {
     gap_ = true;
     return;
   }
-  numbers_.push_back(sample.frame_time);
-  numbers_.push_back(sample.force_time);
+  if (frames_ == blocks_.size() * kBlockFrames) blocks_.emplace_back(new double[kBlockFrames * stride()]);
+  double* at = &blocks_.back()[frames_ % kBlockFrames * stride()];
+  *at++ = sample.frame_time;
+  *at++ = sample.force_time;
   for (std::size_t i = 0; i < tools_; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) numbers_.push_back(sample.way[i][k]);
-    numbers_.push_back(static_cast<double>(sample.depth[i]));
-    numbers_.push_back(static_cast<double>(sample.force[i]));
+    for (std::size_t k = 0; k < 3; ++k) *at++ = sample.way[i][k];
+    *at++ = static_cast<double>(sample.depth[i]);
+    *at++ = static_cast<double>(sample.force[i]);
   }
   ++frames_;
   note(grabbed_, sample.grabbed, sample.frame_time);
@@ -67,28 +70,34 @@ std::string Recording::unsaid() const {
   return text;
 }
 
-std::string Recording::forces_csv(const std::vector<ToolInfo>& tools) const {
-  std::string text = "time_s";
-  for (std::size_t i = 0; i < tools_; ++i)
-    text += "," + column(tools[i].name) + "_depth_m," + column(tools[i].name) + "_force_N";
-  text += '\n';
+template <class Row>
+void Recording::table(std::string text, const TextSink& out, Row row) const {
   for (std::size_t f = 0; f < frames_; ++f) {
+    row(text, f);
+    text += '\n';
+    if (text.size() < kPiece) continue;
+    if (!out(text)) return;
+    text.clear();
+  }
+  out(text);
+}
+
+void Recording::forces_csv(const std::vector<ToolInfo>& tools, const TextSink& out) const {
+  std::string head = "time_s";
+  for (std::size_t i = 0; i < tools_; ++i)
+    head += "," + column(tools[i].name) + "_depth_m," + column(tools[i].name) + "_force_N";
+  table(head + "\n", out, [this](std::string& text, std::size_t f) {
     text += number_text(value(f, 1));
     for (std::size_t i = 0; i < tools_; ++i)
       text += "," + number_text(value(f, 5 + 5 * i)) + "," + number_text(value(f, 6 + 5 * i));
-    text += '\n';
-  }
-  return text;
+  });
 }
 
-std::string Recording::way_csv(std::size_t tool) const {
-  std::string text = "time_s,x_m,y_m,z_m\n";
-  for (std::size_t f = 0; f < frames_; ++f) {
+void Recording::way_csv(std::size_t tool, const TextSink& out) const {
+  table("time_s,x_m,y_m,z_m\n", out, [this, tool](std::string& text, std::size_t f) {
     text += number_text(value(f, 0));
     for (std::size_t k = 0; k < 3; ++k) text += "," + number_text(value(f, 2 + 5 * tool + k));
-    text += '\n';
-  }
-  return text;
+  });
 }
 
 std::string way_file(const std::vector<ToolInfo>& tools, std::size_t tool) {

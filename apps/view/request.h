@@ -10,16 +10,19 @@ struct Request : std::enable_shared_from_this<Request> {
   ~Request();
   void read();
   void decide();
+  /// What is wrong with its headers, answered; else false.
+  bool refused();
   void answer_recording();
   void become_viewer();
-  /// @param owner  of the text, where that does not outlive the server
-  void answer(http::status status, std::string_view text, const char* type = "text/plain; charset=utf-8",
-              std::shared_ptr<const std::string> owner = {});
+  /// @param text  outlives the server
+  void answer(http::status status, std::string_view text, const char* type = "text/plain; charset=utf-8");
+  void drop();
 
   beast::tcp_stream stream_;
   Server::Impl& server_;
   beast::flat_buffer in_;
   http::request_parser<http::string_body> parser_;
+  bool known_ = false;  ///< it has shown the token
 };
 
 }  // namespace glisson::view

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,9 +12,10 @@
 
 namespace glisson::view {
 
-/// Makes the archive of a recording: scene.toml, a way of each tool, forces.csv.
-/// @param parameters  as the body has them now
-using RecordingWriter = std::function<std::string(const Recording&, const std::vector<double>& parameters)>;
+/// Names the files of a recording's archive: scene.toml, a way of each tool, forces.csv. Their contents are made when they are
+/// asked for, by any thread. @param parameters  as the body has them now
+using RecordingWriter =
+    std::function<std::vector<ZipFile>(std::shared_ptr<const Recording>, const std::vector<double>& parameters)>;
 
 /// @param scene     as it was opened; its source is what is written again
 /// @param variant   the one that is shown
@@ -23,7 +25,7 @@ RecordingWriter recording_writer(Scene scene, Variant variant, std::vector<Overr
 
 /// The files of such an archive.
 std::vector<ZipFile> recording_files(const Scene& scene, const Variant& variant, const std::vector<Override>& overrides,
-                                     const std::vector<ToolInfo>& tools, const Recording& recording,
+                                     const std::vector<ToolInfo>& tools, std::shared_ptr<const Recording> recording,
                                      const std::vector<double>& parameters);
 
 }  // namespace glisson::view

@@ -5,6 +5,7 @@
 #include "view/server.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <stdexcept>
 
 #include "view/request.h"
@@ -19,14 +20,19 @@ constexpr auto kStuck = std::chrono::seconds(20);  // of a viewer that takes not
 constexpr std::size_t kHistory = 20000;            // forces kept for viewers that come later
 constexpr std::size_t kShortestToken = 16;
 
+constexpr const char* kStray =
+    "A piece that nothing holds has flown out of the picture and is drawn at its rim; Reset makes the body whole.";
+
 Message message(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
 }  // namespace
 
 Server::Impl::Impl(Source& source, SceneFacts facts, std::string_view page, const ServerOptions& options)
-    : source_(source), facts_(std::move(facts)), page_(page), options_(options),
+    : source_(source), facts_(std::move(facts)), page_(page), options_(options), strangers_(2 * options.most_viewers),
       lead_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.lead_kept_s))),
-      recording_(source.tools().size()) {
+      recording_(source.tools().size()),
+      archives_(
+          context_, [this] { return facts_.recorder(recording_.snapshot(), parameters_); }, standstill()) {
   if (options_.host == "localhost") options_.host = "127.0.0.1";
   beast::error_code error;
   const asio::ip::address address = asio::ip::make_address(options_.host, error);
@@ -61,7 +67,7 @@ void Server::Impl::accept() {
   acceptor_.async_accept(context_, [this](beast::error_code error, tcp::socket socket) {
     if (stopping_ || error == asio::error::operation_aborted) return;
     if (error) return accept_later();
-    if (connections_ < 2 * options_.most_viewers) std::make_shared<Request>(std::move(socket), *this)->read();
+    std::make_shared<Request>(std::move(socket), *this)->read();
     accept();
   });
 }
@@ -72,9 +78,39 @@ void Server::Impl::tick() {
   timer_.expires_at(due_);
   timer_.async_wait([this](beast::error_code error) {
     if (error || stopping_) return;
-    look();
+    try {
+      look();
+    } catch (const std::exception& trouble) {
+      survive(trouble);
+    }
     tick();
   });
+}
+
+/// Whatever a handler throws, the next one has its turn.
+void Server::Impl::serve() {
+  for (bool over = false; !over;) {
+    try {
+      context_.run();
+      over = true;
+    } catch (const std::exception& trouble) {
+      survive(trouble);
+    }
+  }
+}
+
+void Server::Impl::survive(const std::exception& error) {
+  const std::string text = std::string("the server goes on after a fault of its own: ") + error.what();
+  if (text == survived_) return;
+  survived_ = text;
+  std::fprintf(stderr, "glisson: %s\n", text.c_str());
+  notice_ = message(notice_message(text));  // send_news keeps it
+  const auto watching = viewers_;
+  for (const std::shared_ptr<Viewer>& viewer : watching) viewer->send(notice_, false);
+}
+
+Clock::duration Server::Impl::standstill() const {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options_.standstill_s));
 }
 
 void Server::Impl::keep_samples() {
@@ -85,16 +121,11 @@ void Server::Impl::keep_samples() {
   while (history_.size() > kHistory) history_.pop_front();
 }
 
-/// Null where there is nothing to save. @throws nothing: a scene that was opened can be written again
-Message Server::Impl::archive() const {
-  if (!facts_.recorder || recording_.frames() < 2) return nullptr;
-  return message(facts_.recorder(recording_, parameters_));
-}
-
 /// Takes the newest state, packs it once and hands it to those who are ready.
 void Server::Impl::look() {
   const Clock::time_point now = Clock::now();
   keep_samples();
+  cut_off_floods();
   rest_unwatched(now);
   if (led_ != lead_.led(now)) send_roles();
   const Snapshot* state = source_.latest();
@@ -120,6 +151,13 @@ void Server::Impl::look() {
   }
 }
 
+void Server::Impl::cut_off_floods() {
+  const auto watching = viewers_;
+  for (const std::shared_ptr<Viewer>& viewer : watching) {
+    if (viewer->floods()) viewer->gone();
+  }
+}
+
 /// A body that nobody looks at takes no cores: the clock is held, and goes on when somebody comes.
 void Server::Impl::rest_unwatched(Clock::time_point now) {
   if (!viewers_.empty()) watched_ = now;
@@ -132,7 +170,11 @@ void Server::Impl::rest_unwatched(Clock::time_point now) {
 void Server::Impl::send_news(const Snapshot& state, Clock::time_point now) {
   news_ = now;
   std::string text = state_message(state, surface_->pieces());
-  std::string notice = notice_message(state.notice);
+  const std::string stray = surface_->strays(state) ? kStray : "";
+  std::string told;
+  for (const std::string& line : {state.notice, stray, survived_})
+    told += (told.empty() || line.empty() ? "" : "\n") + line;
+  std::string notice = notice_message(told);
   const bool new_state = !state_ || *state_ != text, new_notice = !notice_ || *notice_ != notice;
   if (new_state) state_ = message(std::move(text));
   if (new_notice) notice_ = message(std::move(notice));
@@ -249,13 +291,14 @@ Server::~Server() { stop(); }
 void Server::start() {
   impl_->accept();
   impl_->tick();
-  impl_->thread_ = std::thread([this] { impl_->context_.run(); });
+  impl_->thread_ = std::thread([this] { impl_->serve(); });
 }
 
 void Server::stop() {
   if (!impl_->thread_.joinable()) return;
   asio::post(impl_->context_, [this] { impl_->say_goodbye(); });
   impl_->thread_.join();
+  impl_->archives_.stop();
 }
 
 unsigned short Server::port() const { return impl_->place_.port; }

@@ -5,7 +5,8 @@
 //   GET /recording?token=T  what hands did since the body was at rest, as an archive (recording.h)
 //
 // One thread serves everyone: each 16 ms it takes the newest state from its source, packs it once, and hands it to the viewers
-// that are ready; one that is still busy with the last frame misses this one.
+// that are ready; one that is still busy with the last frame misses this one. Recordings go out from another thread
+// (archive_sender.h).
 #pragma once
 
 #include <cstdint>
@@ -27,6 +28,7 @@ struct ServerOptions {
   std::size_t most_viewers = 32;
   double lead_kept_s = 10.0;   ///< how long a viewer that is cut off keeps the lead [s]
   double rest_after_s = 10.0;  ///< without a viewer for so long the clock is held until one comes [s]
+  double standstill_s = 20.0;  ///< a line that takes nothing of its answer for so long is cut off [s]
 };
 
 class Server {

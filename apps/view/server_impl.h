@@ -8,7 +8,9 @@
 #include <thread>
 #include <vector>
 
+#include "view/archive_sender.h"
 #include "view/lead.h"
+#include "view/strangers.h"
 #include "view/viewer.h"
 
 namespace glisson::view {
@@ -17,11 +19,17 @@ struct Server::Impl {
   Impl(Source& source, SceneFacts facts, std::string_view page, const ServerOptions& options);
   void accept();
   void accept_later();
+  void serve();
   void tick();
   void look();
+  void cut_off_floods();
   void rest_unwatched(Clock::time_point now);
   void keep_samples();
-  Message archive() const;
+  /// Says on stderr and to viewers what went wrong here and now, once each; the thread goes on.
+  void survive(const std::exception& error);
+  bool has_recording() const { return facts_.recorder && recording_.frames() >= 2; }
+  std::size_t most_connections() const { return 2 * options_.most_viewers; }
+  Clock::duration standstill() const;
   void send_news(const Snapshot& state, Clock::time_point now);
   void send_frame(Viewer& viewer);
   const Message& frame_with(Field field);
@@ -37,7 +45,8 @@ struct Server::Impl {
   std::string_view page_;
   ServerOptions options_;
   Place place_;
-  std::size_t connections_ = 0;  // before the context, whose handlers count it down when they go
+  std::size_t answers_ = 0;  // strangers and these before the context, whose handlers count them down when they go
+  Strangers strangers_;
   asio::io_context context_{1};
   tcp::acceptor acceptor_{context_};
   asio::steady_timer timer_{context_}, wait_{context_};
@@ -53,6 +62,8 @@ struct Server::Impl {
   std::uint64_t frame_number_ = 0;
   std::deque<ForceSample> history_;
   Recording recording_;
+  ArchiveSender archives_;
+  std::string survived_;            ///< the last trouble told
   std::vector<double> parameters_;  ///< of the newest state
   std::uint64_t samples_ = 0;       ///< all there ever were
   std::atomic<std::uint64_t> sent_{0}, missed_{0};

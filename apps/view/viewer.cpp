@@ -6,20 +6,24 @@
 namespace glisson::view {
 namespace {
 
-constexpr std::size_t kMostTexts = 64;   // that may wait for a viewer
-constexpr int kSendBuffer = 256 * 1024;  // or the kernel keeps seconds of frames for a slow viewer
+constexpr std::size_t kMostTexts = 64;                    // that may wait for a viewer
+constexpr double kLongestFrame = kLongestCommand + 14.0;  // with the head of a frame [bytes]
+constexpr std::uint16_t kNoCloseCode = 5000;  // from here on RFC 6455 §7.4.2 has no codes, but beast takes them
+constexpr int kSendBuffer = 256 * 1024;       // or the kernel keeps seconds of frames for a slow viewer
 
 }  // namespace
 
 Viewer::Viewer(tcp::socket socket, Server::Impl& server, std::string session, double rate)
-    : stream_(std::move(socket)), server_(server), session_(std::move(session)), pacer_(rate, rate, Clock::now()) {
+    : stream_(ReadPace(rate * kLongestFrame), std::move(socket)), server_(server), session_(std::move(session)),
+      pacer_(rate, rate, Clock::now()) {
   beast::error_code ignored;
   beast::get_lowest_layer(stream_).socket().set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
   beast::get_lowest_layer(stream_).socket().set_option(tcp::no_delay(true), ignored);
   stream_.read_message_max(kLongestCommand);
   stream_.auto_fragment(false);
-  stream_.control_callback([this](websocket::frame_type, beast::string_view) {  // pings are messages, too
-    if (!pacer_.take(Clock::now())) beast::get_lowest_layer(stream_).close();
+  stream_.control_callback([this](websocket::frame_type kind, beast::string_view) {  // pings are messages, too
+    const bool no_code = kind == websocket::frame_type::close && stream_.reason().code >= kNoCloseCode;
+    if (no_code || !pacer_.take(Clock::now())) beast::get_lowest_layer(stream_).close();
   });
   stream_.set_option(websocket::stream_base::timeout{kPatience, std::chrono::seconds(30), true});
 }

@@ -1,6 +1,7 @@
 // viewer.h — a page that is connected: one WebSocket, what waits to go out to it, what it has been sent.
 #pragma once
 
+#include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -11,6 +12,7 @@
 
 #include "view/access.h"
 #include "view/messages.h"
+#include "view/read_pace.h"
 #include "view/server.h"
 
 namespace glisson::view {
@@ -36,8 +38,10 @@ struct Viewer : std::enable_shared_from_this<Viewer> {
   void close(websocket::close_code code, const char* reason);
   void gone();
   bool busy() const { return !out_.empty(); }
+  /// Whether it sends more bytes than the messages it may send have.
+  bool floods() const { return beast::get_lowest_layer(stream_).rate_policy().exceeded(); }
 
-  websocket::stream<beast::tcp_stream> stream_;
+  websocket::stream<beast::basic_stream<tcp, asio::any_io_executor, ReadPace>> stream_;
   Server::Impl& server_;
   std::string session_;
   Pacer pacer_;

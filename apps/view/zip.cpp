@@ -3,14 +3,16 @@
 //   local head, content │ local head, content │ … │ directory: a head for each │ end: where the directory is
 #include "view/zip.h"
 
-#include <array>
-#include <cstdint>
+#include <boost/crc.hpp>
+#include <limits>
+#include <stdexcept>
 
 namespace glisson::view {
 namespace {
 
 constexpr std::uint32_t kLocal = 0x04034b50, kEntry = 0x02014b50, kEnd = 0x06054b50;
 constexpr std::uint16_t kVersion = 20, kUtf8 = 0x0800, kStored = 0, kTime = 0, kDate = (2000 - 1980) << 9 | 1 << 5 | 1;
+constexpr std::uint64_t kLocalBytes = 30, kEntryBytes = 46, kEndBytes = 22;  // of each, without a name
 
 class Bytes {
  public:
@@ -25,66 +27,84 @@ class Bytes {
   }
 };
 
-std::uint32_t crc32(const std::string& content) {
-  static const std::array<std::uint32_t, 256> kTable = [] {
-    std::array<std::uint32_t, 256> table{};
-    for (std::uint32_t i = 0; i < 256; ++i) {
-      std::uint32_t x = i;
-      for (int bit = 0; bit < 8; ++bit) x = (x & 1u) != 0 ? x >> 1 ^ 0xedb88320u : x >> 1;
-      table[i] = x;
-    }
-    return table;
-  }();
-  std::uint32_t crc = 0xffffffffu;
-  for (const char c : content) crc = kTable[(crc ^ static_cast<std::uint8_t>(c)) & 255u] ^ crc >> 8;
-  return ~crc;
-}
-
 /// What the head of a file and its entry in the directory share.
-void put_facts(Bytes& out, const ZipFile& file, std::uint32_t crc) {
+void put_facts(Bytes& out, const std::string& name, std::uint32_t crc, std::uint64_t bytes) {
   out.u16(kVersion);
   out.u16(kUtf8);
   out.u16(kStored);
   out.u16(kTime);
   out.u16(kDate);
   out.u32(crc);
-  out.u32(static_cast<std::uint32_t>(file.content.size()));
-  out.u32(static_cast<std::uint32_t>(file.content.size()));
-  out.u16(static_cast<std::uint16_t>(file.name.size()));
+  out.u32(static_cast<std::uint32_t>(bytes));
+  out.u32(static_cast<std::uint32_t>(bytes));
+  out.u16(static_cast<std::uint16_t>(name.size()));
   out.u16(0);  // no further field
 }
 
 }  // namespace
 
-std::string zip(std::span<const ZipFile> files) {
-  Bytes out, directory;
-  for (const ZipFile& file : files) {
-    const std::uint32_t crc = crc32(file.content);
-    const auto at = static_cast<std::uint32_t>(out.bytes.size());
-    out.u32(kLocal);
-    put_facts(out, file, crc);
-    out.text(file.name);
-    out.text(file.content);
-    directory.u32(kEntry);
-    directory.u16(kVersion);
-    put_facts(directory, file, crc);
-    for (int i = 0; i < 3; ++i) directory.u16(0);  // no comment, first disk, no inner attributes
-    directory.u32(0);
-    directory.u32(at);
-    directory.text(file.name);
+ZipFile text_file(std::string name, std::string text) {
+  return {std::move(name), [text = std::move(text)](const TextSink& out) { out(text); }};
+}
+
+ZipArchive::ZipArchive(std::vector<ZipFile> files, const std::function<bool()>& goes_on) {
+  std::uint64_t directory = kEndBytes;
+  for (ZipFile& file : files) {
+    Entry entry{.file = std::move(file), .at = static_cast<std::uint32_t>(bytes_)};
+    boost::crc_32_type crc;
+    entry.file.content([&](std::string_view piece) {
+      crc.process_bytes(piece.data(), piece.size());
+      entry.bytes += piece.size();
+      return whole_ = whole_ && goes_on();
+    });
+    entry.crc = crc.checksum();
+    bytes_ += kLocalBytes + entry.file.name.size() + entry.bytes;
+    directory += kEntryBytes + entry.file.name.size();
+    if (bytes_ + directory > std::numeric_limits<std::uint32_t>::max())
+      throw std::length_error("an archive of 4 GiB or more");
+    entries_.push_back(std::move(entry));
   }
-  const auto begin = static_cast<std::uint32_t>(out.bytes.size());
-  out.text(directory.bytes);
-  const auto count = static_cast<std::uint16_t>(files.size());
+  bytes_ += directory;
+}
+
+std::string ZipArchive::directory() const {
+  Bytes out;
+  std::uint64_t begin = 0;
+  for (const Entry& x : entries_) {
+    out.u32(kEntry);
+    out.u16(kVersion);
+    put_facts(out, x.file.name, x.crc, x.bytes);
+    for (int i = 0; i < 3; ++i) out.u16(0);  // no comment, first disk, no inner attributes
+    out.u32(0);
+    out.u32(x.at);
+    out.text(x.file.name);
+    begin = x.at + kLocalBytes + x.file.name.size() + x.bytes;
+  }
+  const auto bytes = static_cast<std::uint32_t>(out.bytes.size());
+  const auto count = static_cast<std::uint16_t>(entries_.size());
   out.u32(kEnd);
   out.u16(0);
   out.u16(0);
   out.u16(count);
   out.u16(count);
-  out.u32(static_cast<std::uint32_t>(directory.bytes.size()));
-  out.u32(begin);
+  out.u32(bytes);
+  out.u32(static_cast<std::uint32_t>(begin));
   out.u16(0);
   return std::move(out.bytes);
+}
+
+bool ZipArchive::write(const TextSink& out) const {
+  bool wanted = true;
+  for (const Entry& x : entries_) {
+    Bytes head;
+    head.u32(kLocal);
+    put_facts(head, x.file.name, x.crc, x.bytes);
+    head.text(x.file.name);
+    if (!out(head.bytes)) return false;
+    x.file.content([&](std::string_view piece) { return wanted = out(piece); });
+    if (!wanted) return false;
+  }
+  return out(directory());
 }
 
 }  // namespace glisson::view

@@ -19,6 +19,15 @@ using view::CommandKind;
 using view::ForceSample;
 using view::Recording;
 
+std::string content_of(const view::ZipFile& file) {
+  std::string text;
+  file.content([&](std::string_view piece) {
+    text += piece;
+    return true;
+  });
+  return text;
+}
+
 class ViewRecording : public ProgramTest {
  protected:
   /// Leads the first tool to depths [m], one after the other, each until it is there and 50 ms beyond.
@@ -52,7 +61,7 @@ class ViewRecording : public ProgramTest {
   void unpack(const std::vector<view::ZipFile>& files) const {
     std::filesystem::create_directories(folder_ / "recording");
     for (const view::ZipFile& file : files)
-      std::ofstream(folder_ / "recording" / file.name, std::ios::binary) << file.content;
+      std::ofstream(folder_ / "recording" / file.name, std::ios::binary) << content_of(file);
   }
 };
 
@@ -60,7 +69,8 @@ std::vector<view::ZipFile> files_of(const Scene& scene, const view::Engine& engi
                                     const std::vector<Override>& overrides = {}) {
   std::vector<double> parameters;
   for (const view::ParameterInfo& x : engine.parameters()) parameters.push_back(x.value);
-  return view::recording_files(scene, scene.variants.front(), overrides, engine.tools(), recording, parameters);
+  return view::recording_files(scene, scene.variants.front(), overrides, engine.tools(), recording.snapshot(),
+                               parameters);
 }
 
 /// A value at a time from a table of increasing times.
@@ -129,8 +139,8 @@ TEST_F(ViewRecording, WritesTheExperimentAsItStood) {
   view::Engine engine(scene.variants[1], {});
   Recording recording(engine.tools().size());
   for (int i = 0; i < 5; ++i) recording.add({.epoch = 0, .frame_time = 0.001 * i, .force_time = 0.001 * i});
-  const auto files =
-      view::recording_files(scene, scene.variants[1], overrides, engine.tools(), recording, {12000.0, 0.3, 7.0});
+  const auto files = view::recording_files(scene, scene.variants[1], overrides, engine.tools(), recording.snapshot(),
+                                           {12000.0, 0.3, 7.0});
   unpack(files);
   const Scene again = load_scene(folder_ / "recording/scene.toml");
   ASSERT_EQ(again.variants.size(), 1u);
@@ -152,7 +162,7 @@ TEST_F(ViewRecording, SaysWhatASceneCannot) {
             "Tissue was pulled by hand from 0.004 s on.\nThe body was cut by hand from 0.006 s on.\n");
   const Scene scene = parse_scene(small_scene(), "s.toml", ".");
   const view::Engine engine(scene.variants.front(), {});
-  const std::string text = files_of(scene, engine, recording).back().content;
+  const std::string text = content_of(files_of(scene, engine, recording).back());
   EXPECT_EQ(text.substr(0, 1), "#");
   EXPECT_NE(text.find("# The body was cut by hand from 0.006 s on."), std::string::npos) << text;
 }
@@ -173,11 +183,45 @@ TEST_F(ViewRecording, BeginsWithEachBodyAndIsBounded) {
   EXPECT_NE(recording.unsaid().find("keep up"), std::string::npos);
 }
 
+// What goes out while the body moves on is what was there when it was asked for, in pieces of a bounded size.
+TEST_F(ViewRecording, SnapshotsStandStill) {
+  Recording recording(1);
+  const auto add = [&](int from, int to) {
+    for (int i = from; i < to; ++i) recording.add({.epoch = 0, .frame_time = 0.001 * i, .force_time = 0.001 * i});
+  };
+  const std::vector<view::ToolInfo> tools{{.name = "t"}};
+  const auto text_of = [&](const Recording& kept) {
+    return content_of({"", [&](const view::TextSink& out) {
+                         kept.forces_csv(tools, [&](std::string_view piece) {
+                           EXPECT_LE(piece.size(), 66000u);
+                           return out(piece);
+                         });
+                       }});
+  };
+  add(0, 6000);
+  const std::shared_ptr<const Recording> then = recording.snapshot();
+  const std::string text = text_of(*then);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 6001);
+  add(6000, 20000);
+  EXPECT_EQ(text_of(*then), text);
+  EXPECT_EQ(text_of(recording).substr(0, text.size()), text);
+  recording.add({.epoch = 1, .frame_time = 0.0});
+  EXPECT_EQ(text_of(*then), text) << "a new body begins another recording, and takes nothing away";
+}
+
 // Python's own reader checks names, sizes and checksums.
 TEST_F(ViewRecording, ArchiveOpensElsewhere) {
-  const std::vector<view::ZipFile> files{
-      {"a.txt", "some text\n"}, {"empty", ""}, {"b.bin", std::string(70000, '\x9c')}};
-  std::ofstream(folder_ / "x.zip", std::ios::binary) << view::zip(files);
+  const view::ZipFile in_pieces{"b.bin", [](const view::TextSink& out) {
+                                  for (int i = 0; i < 7; ++i) out(std::string(10000, '\x9c'));
+                                }};
+  const view::ZipArchive archive({view::text_file("a.txt", "some text\n"), view::text_file("empty", ""), in_pieces});
+  std::string bytes;
+  EXPECT_TRUE(archive.write([&](std::string_view piece) {
+    bytes += piece;
+    return true;
+  }));
+  EXPECT_EQ(bytes.size(), archive.bytes()) << "as its head says";
+  std::ofstream(folder_ / "x.zip", std::ios::binary) << bytes;
   const std::string command =
       "cd '" + folder_.string() +
       "' && python3 -c \"import zipfile; z = zipfile.ZipFile('x.zip'); assert z.testzip() is None; "

@@ -57,7 +57,9 @@ float f32_at(const std::string& bytes, std::size_t at) { return std::bit_cast<fl
 TEST_F(LiveServer, HandsOutTheRecordingByTokenOnly) {
   EXPECT_EQ(test::get(port(), "/recording?" + query(), host()).status, 404) << "nothing is recorded here";
   server_->stop();
-  const auto writer = [](const Recording& kept, const std::vector<double>&) { return std::to_string(kept.frames()); };
+  const auto writer = [](std::shared_ptr<const Recording> kept, const std::vector<double>&) {
+    return std::vector{text_file("frames", std::to_string(kept->frames()))};
+  };
   server_ =
       std::make_unique<Server>(engine_, SceneFacts{"", "", "", "[]", writer}, kPage, ServerOptions{.token = kToken});
   engine_.post({.kind = CommandKind::reset});  // what the first server has heard of belongs to no recording
@@ -176,7 +178,7 @@ TEST_F(LiveServer, StreamsTheBody) {
   EXPECT_NEAR(f32_at(frame, 64), 0.001, 1e-5) << "depth of the tool";
   EXPECT_LT(f32_at(frame, 76), 0.0f) << "it presses down";
   EXPECT_NEAR(f32_at(frame, 52), 0.001, 3e-4) << "the largest displacement";
-  EXPECT_EQ(frame.size(), 64 + 56 + 7 * vertices);
+  EXPECT_EQ(frame.size(), 64 + 64 + 7 * vertices);
   EXPECT_EQ(frame[3], 1) << "the intensity, unless a viewer asks for another field";
   EXPECT_GT(u32_at(viewer.wait_for_binary(3), 4), 0u) << "forces of the frames between";
 }
@@ -192,8 +194,8 @@ TEST_F(LiveServer, ColoursForEachViewer) {
     for (int i = 0; i < 500 && !frame.empty() && frame[3] != field; ++i) frame = viewer.wait_for_binary(2);
     return frame;
   };
-  EXPECT_EQ(wait_for_field(second, 3).size(), 64 + 56 + 7 * vertices);
-  EXPECT_EQ(wait_for_field(third, 0).size(), 64 + 56 + 6 * vertices);
+  EXPECT_EQ(wait_for_field(second, 3).size(), 64 + 64 + 7 * vertices);
+  EXPECT_EQ(wait_for_field(third, 0).size(), 64 + 64 + 6 * vertices);
   EXPECT_EQ(first.wait_for_binary(2)[3], 1);
   third.send({.kind = CommandKind::colour, .sequence = 2, .index = 4});
   EXPECT_EQ(third.wait_for_close().text, "there is no such field");
