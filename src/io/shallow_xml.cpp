@@ -6,8 +6,9 @@ namespace glisson::detail {
 
 vtkStandardNewMacro(ShallowXml);
 
-int ShallowXml::Parse() {
-  const int parsed = Superclass::Parse();
+/// Before Parse() looks at the root element, which a tree that was broken off has not.
+int ShallowXml::ParseXML() {
+  const int parsed = Superclass::ParseXML();
   return too_deep_ ? 0 : parsed;
 }
 

@@ -19,11 +19,11 @@ class ShallowXml : public vtkXMLDataParser {
   using Superclass = vtkXMLDataParser;
 
   static constexpr int kDeepest = 64;
-  int Parse() override;
   /// What was wrong with the text. @param log  that observed the parser
   std::string trouble(const VtkErrorLog& log) const;
 
  protected:
+  int ParseXML() override;
   void StartElement(const char* name, const char** attributes) override;
   void EndElement(const char* name) override;
   int ParsingComplete() override;

@@ -55,13 +55,9 @@ TEST_F(Surrounded, RefusedFrameIsToldPlainly) {
 
 // A file above the system's limit is an error of that file for every command, also where it is standard output.
 TEST_F(Surrounded, NoCommandEndsBySignalAtTheSizeLimit) {
-  const std::string scene = write("s.toml", small_scene());
   const Outcome schema = run_in({.file_bytes = 1000}, {"schema"});
   EXPECT_THAT(schema, Exits(1));
   EXPECT_THAT(schema.err, HasSubstr("standard output cannot be written: File too large"));
-  const Outcome first = run_in({.file_bytes = 20}, {"run", scene, "--out", "o"});
-  EXPECT_THAT(first, Exits(1));
-  EXPECT_THAT(first.err, HasSubstr("cannot be written: File too large"));
 }
 
 // Memory that the system refuses is told as that, with the way out: no fault of the scene, no name of an exception.
