@@ -19,7 +19,7 @@ class Pages(unittest.TestCase):
     def test_blocks_of_a_page_share_a_folder_and_an_empty_home(self):
         page = (
             "```toml file=a/b.toml\nx = 1\n```\n```sh\ngrep 'x = 1' a/b.toml && echo kept >left\n```\n"
-            '```sh\ngrep kept left\ntest -z "$(ls -A "$HOME")"\ntest -z "${LANG:-}${USER:-}"\n```\n'
+            '```sh\ngrep kept left\ntest -z "$(ls -A "$HOME")"\ntest -z "${PYTHONPATH:-}${USER:-}"\n```\n'
         )
         status, said = self.read(page)
         self.assertEqual(status, 0, said)
