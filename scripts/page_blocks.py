@@ -81,6 +81,8 @@ def block_faults(block: Block, commands: Commands) -> list[str]:
             tomllib.loads(block.text)
         except tomllib.TOMLDecodeError as error:
             return [f"no TOML: {error}"]
+    if block.language == "sh" and any("&&" in line for line in block.text.splitlines()[:-1]):
+        return ["a failure before && would go unnoticed: give each command a line, or end the block there"]
     if block.language in ("sh", "text"):
         named = [line.strip() for line in block.text.splitlines() if COMMAND.match(line.strip())]
         return [fault for line in named if (fault := commands.fault(line.split(" && ")[0]))]

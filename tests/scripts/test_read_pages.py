@@ -18,7 +18,7 @@ class Pages(unittest.TestCase):
 
     def test_blocks_of_a_page_share_a_folder_and_an_empty_home(self):
         page = (
-            "```toml file=a/b.toml\nx = 1\n```\n```sh\ngrep 'x = 1' a/b.toml && echo kept >left\n```\n"
+            "```toml file=a/b.toml\nx = 1\n```\n```sh\ngrep 'x = 1' a/b.toml\necho kept >left\n```\n"
             '```sh\ngrep kept left\ntest -z "$(ls -A "$HOME")"\ntest -z "${PYTHONPATH:-}${USER:-}"\n```\n'
         )
         status, said = self.read(page)
@@ -26,7 +26,7 @@ class Pages(unittest.TestCase):
         self.assertIn("pages: 2 passed, 0 failed, 0 left out", said)
 
     def test_a_failure_names_place_command_code_and_last_lines(self):
-        status, said = self.read("# A\n\n```sh\ntrue\necho before && sh -c 'echo reason; exit 3'\necho after\n```\n```sh\ntrue\n```\n")
+        status, said = self.read("# A\n\n```sh\ntrue\nsh -c 'echo reason; exit 3'\necho after\n```\n```sh\ntrue\n```\n")
         self.assertEqual(status, 1)
         self.assertIn("docs/page.md:3 sh: failed, line 5: `sh -c 'echo reason; exit 3'` ended with exit code 3", said)
         self.assertIn("    reason\n", said)
@@ -54,6 +54,7 @@ class Pages(unittest.TestCase):
             ("```toml pattern\nx = \n```\n", "no TOML"),
             ("```text\nbuild/release/bin/glisson run FILE --colour\n```\n", "glisson run has no option --colour"),
             ("```sh\nbuild/release/bin/glisson run scenes/paper/none.toml\n```\n", "there is no scenes/paper/none.toml"),
+            ("```sh\nfalse && true\ntrue\n```\n", "would go unnoticed"),
             ("Then\n\n    glisson view FILE\n", "docs/page.md:3: an indented command"),
         ):
             status, said = self.read(text, "--look")
