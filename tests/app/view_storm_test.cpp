@@ -86,16 +86,17 @@ struct Storm {
 // The acts that lead there: two cuts part a slice from what is held and what is led, a hand draws it at 0.5 m/s and lets go.
 TEST(ViewStorm, APieceThatIsThrownIsDrawnAtTheRim) {
   Storm storm;
-  storm.sever(0.015f);
-  storm.sever(0.025f);
+  storm.sever(0.008f);
+  storm.sever(0.032f);
   ASSERT_TRUE(
       storm.until([&] { return storm.last.echo == storm.sequence && Surface(storm.last.shape).pieces() == 3; }));
   const std::vector<Vec3d>& rest = storm.last.shape->mesh.vertices;
-  std::uint32_t vertex = 0;  // of the slice: at a side, nearest to its middle height
+  const Vec3d side{0.04, 0.04 / 3.0, 0.04 / 3.0};
+  std::uint32_t vertex = 0;  // within the slice, at a side
   for (std::uint32_t v = 0; v < rest.size(); ++v) {
-    if (norm(rest[v] - Vec3d{0.04, 0.02, 0.02}) < norm(rest[vertex] - Vec3d{0.04, 0.02, 0.02})) vertex = v;
+    if (norm(rest[v] - side) < norm(rest[vertex] - side)) vertex = v;
   }
-  storm.act(CommandKind::grab, vertex, {0.2f, 0.02f, 0.02f});
+  storm.act(CommandKind::grab, vertex, {0.2f, 0.0133f, 0.0133f});
   for (int i = 0; i < 60; ++i) storm.turn();
   storm.act(CommandKind::let_go);
   ASSERT_TRUE(storm.until([&] { return storm.farthest() > 1.2 * storm.rim(); })) << storm.farthest() << " m";
