@@ -152,6 +152,7 @@ int run(const FitCommand& command) {
     prepared = true;
   };
   options.progress = [&](const fit::FitProgress& p) { progress.show(p); };
+  options.forecast = [&](const fit::FitForecast& f) { progress.show(f, command.threads); };
   options.remember = [&](const fit::FitMemory& memory) {
     prepare();
     write_fit_state(state, fingerprint, memory);

@@ -48,6 +48,18 @@ void FitProgressLine::show(const fit::FitProgress& p) {
   std::fflush(stdout);
 }
 
+void FitProgressLine::show(const fit::FitForecast& f, int threads) {
+  if (quiet_ || !(f.run_s > 0.0)) return;
+  const std::lock_guard lock(mutex_);
+  const auto duration = [&](std::uint64_t runs) {
+    return duration_text(static_cast<double>(runs) * f.run_s / static_cast<double>(threads));
+  };
+  fmt::print("{}{}: forward model {}, {:.2g} s a run and core: {} to {} runs, about {} to {} on {} thread{}\n",
+             live_ ? "\r\033[K" : "", f.law, f.forward, f.run_s, f.least_runs, f.most_runs, duration(f.least_runs),
+             duration(f.most_runs), threads, threads == 1 ? "" : "s");
+  std::fflush(stdout);
+}
+
 void FitProgressLine::clear() {
   if (quiet_ || !live_) return;
   say("\r\033[K");

@@ -14,6 +14,8 @@ class FitProgressLine {
   explicit FitProgressLine(bool quiet);
   /// Safe to call from any thread.
   void show(const fit::FitProgress& progress);
+  /// A line of its own. @param threads  that runs are spread over
+  void show(const fit::FitForecast& forecast, int threads);
   /// Takes the live line away.
   void clear();
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "fit/data/units.h"
+#include "fit/local_problem.h"
 #include "fit/next_experiments.h"
 #include "fit/proof/bootstrap.h"
 #include "fit/proof/covariance.h"
@@ -131,6 +132,21 @@ void fill_profiles(const Problem& problem, const Profiles& profiled, const Covar
   }
 }
 
+/// Profiles by runs of the model, or by a cubic in its place where that holds; the cubic is dropped where it does not.
+Profiles profiles_of(const LawSearch& search, const Covariance& covariance, const FitOptions& options,
+                     std::unique_ptr<LocalProblem>& local) {
+  ProfileOptions how;
+  how.stop = options.stop;
+  // a specimen of one tissue costs less than what would stand in for it
+  local = search.ladder().taken().name == "specimen" ? nullptr : LocalProblem::about(search.problem(), covariance);
+  if (local) {
+    Profiles found = profiles(local->problem(), search.optimum(), covariance, how);
+    if (stopped(options) || local->holds(found, search.optimum().cost)) return found;
+    local.reset();
+  }
+  return profiles(search.problem(), search.optimum(), covariance, how);
+}
+
 void fill_bootstrap(const Problem& problem, const Optimum& optimum, const Covariance& covariance, const FitSpec& spec,
                     const FitOptions& options, FitResult& result) {
   BootstrapOptions how;
@@ -207,14 +223,13 @@ void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves,
   };
   Covariance covariance;
   std::optional<Profiles> profiled;
+  std::unique_ptr<LocalProblem> local;
   for (int round = 0; round < kRounds; ++round) {
     covariance = fit::covariance(search.problem(), search.optimum().scaled);
     profiled.reset();
     if (!spec.proof.profiles || !covariance.failure.empty() || stopped(options)) break;
     told("profiles", 0, 1);
-    ProfileOptions how;
-    how.stop = options.stop;
-    profiled = profiles(search.problem(), search.optimum(), covariance, how);
+    profiled = profiles_of(search, covariance, options, local);
     told("profiles", 1, 1);
     if (profiled->better.empty() || round + 1 == kRounds) break;
     search.improve(profiled->better);
@@ -230,9 +245,10 @@ void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves,
   } else {
     conclude_on_parameters(result, result.conclusions);
     result.conclusions.push_back(covariance.noise.why);
+    if (local) result.conclusions.push_back(local->words());
     if (spec.proof.bootstrap > 0 && !stopped(options)) {
       told("bootstrap", 0, 1);
-      fill_bootstrap(search.problem(), search.optimum(), covariance, spec, options, result);
+      fill_bootstrap(local ? local->problem() : search.problem(), search.optimum(), covariance, spec, options, result);
       told("bootstrap", 1, 1);
     }
   }

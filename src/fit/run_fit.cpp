@@ -9,6 +9,7 @@
 
 #include "fit/fill_result.h"
 #include "fit/fit_curves.h"
+#include "fit/forecast.h"
 #include "fit/law_candidates.h"
 #include "fit/law_search.h"
 #include "fit/proof/covariance.h"
@@ -104,7 +105,9 @@ bool Run::search_all(const std::vector<LawSpec>& laws) {
 
 /// False where it was stopped. Throws std::runtime_error where the law does not run anywhere.
 bool Run::search_one(const LawSpec& law) {
+  if (options_.progress) options_.progress({law.name, "forward models", 0, 1});
   auto search = std::make_unique<LawSearch>(spec_, law, curves_, options_);
+  if (options_.forecast) options_.forecast(forecast_of(*search, spec_, memory_[law.name].starts.size()));
   search->search(memory_[law.name], [&](const MultiStart& so_far) {
     if (options_.remember) options_.remember(memory_);
     if (!options_.progress) return;

@@ -26,11 +26,19 @@ using FitMemory = std::map<std::string, LawMemory>;
 
 struct FitProgress {
   std::string law;    ///< that is fitted
-  std::string stage;  ///< "starts", "profiles", "bootstrap"
+  std::string stage;  ///< "forward models", "starts", "profiles", "bootstrap"
   std::size_t done = 0, planned = 1;
   double best_rms = 0.0;  ///< [N]; of all fitted curves
   int found = 0;          ///< how often the best optimum was found so far
   std::uint64_t forward_runs = 0;
+};
+
+/// What a law's fit will take, told when its forward model is chosen.
+struct FitForecast {
+  std::string law, forward;  ///< the forward model's name
+  std::uint64_t least_runs = 0,
+                most_runs = 0;  ///< forward runs: where every descent goes well, where starts have to go on
+  double run_s = 0.0;           ///< of one run, one core
 };
 
 struct FitOptions {
@@ -40,6 +48,7 @@ struct FitOptions {
   const std::atomic<bool>* stop = nullptr;
   FitMemory memory;  ///< of an interrupted run of the same fit
   std::function<void(const FitProgress&)> progress;
+  std::function<void(const FitForecast&)> forecast;
   std::function<void(const FitMemory&)> remember;
 };
 

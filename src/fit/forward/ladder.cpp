@@ -1,5 +1,6 @@
 #include "fit/forward/ladder.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -24,6 +25,8 @@ struct Candidate {
   std::string name;
   Adjust adjust;
   double factor = 0.0;  ///< of density, for explicit steps that still have to be found; 0: complete
+  Integrator integrator{};
+  int steps = 0;  ///< as of Rung
 };
 
 bool is_viscous(const Tissue& t) { return t.viscosity > 0.0; }
@@ -74,27 +77,32 @@ Adjust reference(const ForwardSpec& spec) {
   };
 }
 
+Candidate equal_steps(const char* name, Integrator integrator, int steps) {
+  return {.name = std::string(name) + ", " + std::to_string(steps) + " steps",
+          .adjust = stepping(integrator, steps),
+          .integrator = integrator,
+          .steps = steps};
+}
+
 std::vector<Candidate> candidates(const Variant& v, const ForwardSpec& spec) {
   std::vector<Candidate> list;
   const bool viscous = any_tissue(v, is_viscous), past = any_tissue(v, has_past);
   if (bears_all(v)) {
     if (!past) {
-      for (const int steps : {10, 40})
-        list.push_back({"static, " + std::to_string(steps) + " steps", stepping(Integrator::static_, steps)});
+      for (const int steps : {10, 40}) list.push_back(equal_steps("static", Integrator::static_, steps));
     }
-    for (const int steps : {25, 100, 400})
-      list.push_back({"implicit, " + std::to_string(steps) + " steps", stepping(Integrator::implicit, steps)});
+    for (const int steps : {25, 100, 400}) list.push_back(equal_steps("implicit", Integrator::implicit, steps));
   }
-  if (viscous && bears_all(v)) list.push_back({"semi-implicit", own_step(Integrator::semi_implicit)});
+  if (viscous && bears_all(v)) list.push_back({.name = "semi-implicit", .adjust = own_step(Integrator::semi_implicit)});
   const Integrator own = spec.integrator.value_or(v.simulation.integrator);
   const bool explicit_like = own == Integrator::explicit_ || (own == Integrator::semi_implicit && !viscous);
-  if (!explicit_like) list.push_back({"explicit", own_step(Integrator::explicit_)});
+  if (!explicit_like) list.push_back({.name = "explicit", .adjust = own_step(Integrator::explicit_)});
   if (explicit_like && !viscous) {
     for (const double factor : {100.0, 10.0, 1.0}) {
       char name[64];
       std::snprintf(name, sizeof name, factor > 1.0 ? "explicit, %g times as heavy" : "explicit, steps of one size",
                     factor);
-      list.push_back({name, {}, factor});
+      list.push_back({.name = name, .adjust = {}, .factor = factor});
     }
   }
   return list;
@@ -160,6 +168,22 @@ Forces run(const Model& model, const std::vector<std::size_t>& curves, std::span
   Forces forces;
   for (const std::size_t c : curves) {
     Prediction p = model.predict(c, values);
+    if (p.force.empty()) {
+      failure = p.failure;
+      return {};
+    }
+    forces.push_back(std::move(p.force));
+  }
+  return forces;
+}
+
+/// The same with the curves side by side, where nobody looks at the clock.
+Forces run_side_by_side(const Model& model, const std::vector<std::size_t>& curves, std::span<const double> values,
+                        std::string& failure) {
+  std::vector<Prediction> runs(curves.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t c) { runs[c] = model.predict(curves[c], values); });
+  Forces forces;
+  for (Prediction& p : runs) {
     if (p.force.empty()) {
       failure = p.failure;
       return {};
@@ -238,12 +262,12 @@ struct Comparison {
 
   /// Runs a model at a place; at the start short runs are made again, and the shortest is the cost.
   Forces timed_run(Rung& rung, const Model& model, std::size_t place) const {
+    if (place != 0) return run_side_by_side(model, ladder.compared, ladder.places[place], rung.failure);
     Forces forces;
     for (int i = 0; i < 5; ++i) {
       const auto begin = std::chrono::steady_clock::now();
       forces = run(model, ladder.compared, ladder.places[place], rung.failure);
       const double cost = seconds(begin);
-      if (place != 0) break;
       rung.cost = i == 0 ? cost : std::min(rung.cost, cost);
       if (cost > 0.02) break;
     }
@@ -265,6 +289,42 @@ struct Comparison {
     }
   }
 };
+
+/// The scene itself at all places, side by side; its cost is that at the start. A place where it fails is left empty.
+/// @throws std::runtime_error where it does not run at the start
+std::vector<Forces> true_forces(Ladder& ladder) {
+  struct Truth {
+    Prediction prediction;
+    double cost = 0.0;
+  };
+  const std::size_t curves = ladder.compared.size();
+  std::vector<Truth> runs(ladder.places.size() * curves);
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, runs.size(), 1),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          const auto begin = std::chrono::steady_clock::now();
+          runs[i].prediction = ladder.rungs[0].model->predict(ladder.compared[i % curves], ladder.places[i / curves]);
+          runs[i].cost = seconds(begin);
+        }
+      },
+      tbb::simple_partitioner());
+  std::vector<Forces> truth(ladder.places.size());
+  for (std::size_t place = 0; place < truth.size(); ++place) {
+    for (std::size_t c = 0; c < curves; ++c) {
+      Truth& one = runs[place * curves + c];
+      if (place == 0) ladder.rungs[0].cost += one.cost;
+      if (one.prediction.force.empty()) {
+        if (place == 0)
+          throw std::runtime_error("the scene does not run at the start of the parameters: " + one.prediction.failure);
+        truth[place].clear();
+        break;
+      }
+      truth[place].push_back(std::move(one.prediction.force));
+    }
+  }
+  return truth;
+}
 
 /// What a model may cost to be taken [s]: less than the one that is; a smooth one some more than the scene itself.
 double patience(const Ladder& ladder) { return (ladder.chosen == 0 ? 1.5 : 1.0) * ladder.taken().cost; }
@@ -292,16 +352,7 @@ Ladder choose_forward(const ForwardProblem& problem) {
   ladder.rungs.push_back({.name = "the scene", .failure = {}, .model = make.with_offsets(scene)});
   if (problem.spec.kind == ForwardKind::scene) return ladder;
 
-  Comparison comparison{problem, ladder, std::vector<Forces>(ladder.places.size())};
-  std::string failure;
-  const auto begin = std::chrono::steady_clock::now();
-  comparison.truth[0] = run(*ladder.model(), ladder.compared, ladder.places[0], failure);
-  ladder.rungs[0].cost = seconds(begin);
-  if (!failure.empty()) throw std::runtime_error("the scene does not run at the start of the parameters: " + failure);
-  tbb::parallel_for(std::size_t{1}, ladder.places.size(), [&](std::size_t i) {
-    std::string ignored;
-    comparison.truth[i] = run(*ladder.rungs[0].model, ladder.compared, ladder.places[i], ignored);
-  });
+  Comparison comparison{problem, ladder, true_forces(ladder)};
   for (std::size_t c = 0; c < ladder.compared.size(); ++c)
     ladder.allowed.push_back(
         allowance(problem.curves[ladder.compared[c]], comparison.truth[0][c], problem.spec.tolerance));
@@ -324,7 +375,11 @@ Ladder choose_forward(const ForwardProblem& problem) {
     if (own_steps) c.adjust = heavier(c.factor, step * std::sqrt(c.factor));
     const double longest = known ? kEver : std::max(kShortest, patience(ladder));
     const auto trial = make.with_offsets(make.scene(c.adjust, longest, own_steps));
-    try_out({.name = c.name, .failure = {}, .model = make.with_offsets(make.scene(c.adjust, kEver, own_steps))},
+    try_out({.name = c.name,
+             .failure = {},
+             .model = make.with_offsets(make.scene(c.adjust, kEver, own_steps)),
+             .integrator = c.integrator,
+             .steps = c.steps},
             *trial);
   }
   if (known && ladder.taken().name != problem.taken)
@@ -333,11 +388,27 @@ Ladder choose_forward(const ForwardProblem& problem) {
   return ladder;
 }
 
+std::shared_ptr<const Model> model_for(const Ladder& ladder, const ForwardProblem& compared,
+                                       const ForwardProblem& other) {
+  const Rung& taken = ladder.taken();
+  if (taken.steps == 0) return nullptr;
+  double longest = 0.0;
+  for (const std::size_t c : ladder.compared)
+    longest = std::max(longest, compared.curves[c].time.back() - compared.curves[c].time.front());
+  const auto adjust = [integrator = taken.integrator, steps = taken.steps, longest](Variant& v, double duration) {
+    const double share = longest > 0.0 ? std::max(1.0, duration / longest) : 1.0;
+    stepping(integrator, static_cast<int>(std::ceil(steps * share - 1e-9)))(v, duration);
+  };
+  const Maker make(other);
+  return make.with_offsets(make.scene(adjust));
+}
+
 double check_forward(const Ladder& ladder, const ForwardProblem& problem, std::span<const double> values) {
   if (ladder.chosen == 0) return 0.0;
   std::string failure;
-  const Forces truth = run(*ladder.rungs[0].model, ladder.compared, values, failure);
-  const Forces forces = failure.empty() ? run(*ladder.model(), ladder.compared, values, failure) : Forces{};
+  const Forces truth = run_side_by_side(*ladder.rungs[0].model, ladder.compared, values, failure);
+  const Forces forces =
+      failure.empty() ? run_side_by_side(*ladder.model(), ladder.compared, values, failure) : Forces{};
   if (!failure.empty()) throw std::runtime_error("the forward models cannot be compared: " + failure);
   double share = 0.0;
   for (std::size_t c = 0; c < forces.size(); ++c) {

@@ -25,6 +25,8 @@ struct Rung {
   double share = 0.0;   ///< the largest of the places looked at, over the error allowed there; below 1 it serves [-]
   std::string failure;  ///< why it cannot be taken; empty: it ran everywhere
   std::shared_ptr<const Model> model;
+  Integrator integrator{};  ///< of `steps`
+  int steps = 0;            ///< equal ones that every run has; 0: the model chooses its steps otherwise
   bool serves() const { return failure.empty() && share < 1.0; }
 };
 
@@ -53,6 +55,11 @@ struct ForwardProblem {
 /// Builds the models and chooses. @throws SceneError, std::invalid_argument for what cannot be used; std::runtime_error where
 /// the scene itself does not run at the start. @throws std::invalid_argument also where the model taken is none of these
 Ladder choose_forward(const ForwardProblem& problem);
+
+/// The model taken for other curves than those it was compared on, where it goes by equal steps: none of them is longer than
+/// the longest that was compared. nullptr where the steps are chosen otherwise: then other curves want a choice of their own.
+std::shared_ptr<const Model> model_for(const Ladder& ladder, const ForwardProblem& compared,
+                                       const ForwardProblem& other);
 
 /// The error of the model taken at other values, e.g. the optimum: the largest rms difference from the scene over what is
 /// allowed there, below 1 where the choice holds. @throws std::runtime_error where one of them does not run
