@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "backend/cpu/instruction_set.h"
 #include "bench/bench_text.h"
 #include "bench/json_option.h"
 #include "bench/measure.h"
@@ -28,7 +29,8 @@ constexpr const char* kFooter =
     "\n"
     "Examples:\n"
     "  glisson bench --quick\n"
-    "  glisson bench --mesh liver.vtu --json bench.json\n"
+    "  glisson bench --mesh liver.vtu --mesh kidney.vtu --json bench.json\n"
+    "  glisson bench --sizes 768,5000,20000 --isa avx2\n"
     "  glisson bench --sizes 96000 --models linear,full --threads 1,2,4\n"
     "  glisson bench --sizes 96000 --models all --threads 1";
 
@@ -36,7 +38,8 @@ struct BenchOptions {
   std::vector<int> threads;
   std::vector<std::size_t> sizes;
   std::vector<std::string> models{"linear", "law", "full"};
-  std::string mesh, json;
+  std::vector<std::string> meshes;
+  std::string isa, json;
   bool quick = false;
 };
 
@@ -60,7 +63,7 @@ std::vector<T> sorted_once(std::vector<T> values) {
 BenchOptions completed(BenchOptions options) {
   if (options.threads.empty()) options.threads = all_threads();
   if (options.sizes.empty()) {
-    options.sizes = known_sizes();
+    options.sizes = usual_sizes();
     if (options.quick) std::erase_if(options.sizes, [](std::size_t size) { return size > 500'000; });
   }
   options.threads = sorted_once(options.threads);
@@ -70,10 +73,16 @@ BenchOptions completed(BenchOptions options) {
 
 std::vector<BenchBody> bodies_of(const BenchOptions& options) {
   std::vector<BenchBody> bodies;
-  for (const std::size_t size : options.sizes) bodies.push_back(box_body(size));
-  if (!options.mesh.empty()) {
-    const std::string name = std::filesystem::path(options.mesh).stem().string();
-    bodies.push_back(file_body(name, MeshCache(false).load({.path = options.mesh})));
+  const auto there = [&](const std::string& name) {
+    return std::any_of(bodies.begin(), bodies.end(), [&](const BenchBody& body) { return body.name == name; });
+  };
+  for (const std::size_t size : options.sizes) {
+    BenchBody body = box_body(size);
+    if (!there(body.name)) bodies.push_back(std::move(body));  // two sizes may be nearest to one box
+  }
+  for (const std::string& mesh : options.meshes) {
+    const std::string name = std::filesystem::path(mesh).stem().string();
+    bodies.push_back(file_body(there(name) ? mesh : name, MeshCache(false).load({.path = mesh})));
   }
   return bodies;
 }
@@ -117,6 +126,7 @@ void measure_body(const BenchBody& body, std::vector<BenchCase> cases, const Mea
 }
 
 int bench(const BenchOptions& given) {
+  if (!given.isa.empty()) cpu::use_instruction_set(given.isa);
   const BenchOptions options = completed(given);
   const MeasureOptions how = options.quick ? MeasureOptions{5, 0.03} : MeasureOptions{};
   const std::vector<BenchCase> cases = cases_of(options);
@@ -141,10 +151,12 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
       ->type_name("LIST")
       ->delimiter(',')
       ->check(CLI::Range(1, 1024));
-  command.add_option("--sizes", options.sizes, "tets: 768, 96000, 1000000")
+  command
+      .add_option("--sizes", options.sizes,
+                  "boxes of about so many tets; 768, 96000, 1000000 where not given. A size takes 1 kB a tet")
       ->type_name("LIST")
       ->delimiter(',')
-      ->check(CLI::IsMember(known_sizes()));
+      ->check(CLI::Range(std::size_t{6}, std::size_t{50'000'000}));
   std::vector<std::string> known = model_names();
   known.emplace_back("all");
   command
@@ -154,7 +166,12 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
       ->delimiter(',')
       ->check(CLI::IsMember(known))
       ->capture_default_str();
-  command.add_option("--mesh", options.mesh, "measure this mesh too (.vtu, .vtk, .msh)")->type_name("FILE");
+  command.add_option("--mesh", options.meshes, "measure these meshes too (.vtu, .vtk, .msh)")->type_name("FILE…");
+  command
+      .add_option("--isa", options.isa,
+                  "instruction set of kernels and peak: avx512, avx2, sse4; the best where not given")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(cpu::instruction_sets()));
   command.add_flag("--quick", options.quick, "fewer and shorter repetitions, without the million tets");
   add_json_option(command, options.json);
 }

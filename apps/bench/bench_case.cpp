@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
-#include <stdexcept>
 
 #include "bench/smooth_state.h"
 
@@ -42,6 +43,16 @@ const std::map<std::size_t, BoxOptions>& boxes() {
   return map;
 }
 
+/// Figure 1's box of as many cubes as come nearest, twice as many along z; six tets each.
+BoxOptions box_of(std::size_t tets) {
+  const double cubes = static_cast<double>(tets) / 6.0;
+  const int side = std::max(1, static_cast<int>(std::lround(std::cbrt(0.5 * cubes))));
+  const int length = std::max(1, static_cast<int>(std::lround(cubes / (side * side))));
+  BoxOptions box{.cells = {side, side, length}};
+  box.size[2] = box.size[0] * length / side;
+  return box;
+}
+
 }  // namespace
 
 std::vector<Model> every_model() {
@@ -71,7 +82,7 @@ Tissue model_tissue(Model model) {
   return tissue;
 }
 
-std::vector<std::size_t> known_sizes() {
+std::vector<std::size_t> usual_sizes() {
   std::vector<std::size_t> sizes;
   for (const auto& [size, box] : boxes()) sizes.push_back(size);
   return sizes;
@@ -79,9 +90,8 @@ std::vector<std::size_t> known_sizes() {
 
 BenchBody box_body(std::size_t size) {
   const auto found = boxes().find(size);
-  if (found == boxes().end()) throw std::invalid_argument(fmt::format("there is no body of {} tets", size));
-  const auto& cells = found->second.cells;
-  return file_body(fmt::format("box {}×{}×{}", cells[0], cells[1], cells[2]), box_mesh(found->second));
+  const BoxOptions box = found != boxes().end() ? found->second : box_of(size);
+  return file_body(fmt::format("box {}×{}×{}", box.cells[0], box.cells[1], box.cells[2]), box_mesh(box));
 }
 
 BenchBody file_body(std::string name, TetMesh mesh) {

@@ -46,9 +46,9 @@ struct BenchBody {
   std::vector<Vec3d> displacement, velocity;  ///< [m], [m/s]
 };
 
-/// The sizes `--sizes` knows: about that many tets, a box of cubes each.
-std::vector<std::size_t> known_sizes();
-/// @throws std::invalid_argument for a size that is not known
+/// What is measured where no `--sizes` are given: about that many tets, a box of cubes each.
+std::vector<std::size_t> usual_sizes();
+/// A box of about so many tets, ≥ 6: of six times a whole number of cubes.
 BenchBody box_body(std::size_t size);
 BenchBody file_body(std::string name, TetMesh mesh);
 

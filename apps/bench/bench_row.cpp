@@ -12,9 +12,9 @@ namespace glisson::app {
 namespace {
 
 /// The row of a body, a model and a number of threads; null where it was not measured.
-const BenchRow* find_row(const std::vector<BenchRow>& rows, std::size_t tets, Model model, int threads) {
+const BenchRow* find_row(const std::vector<BenchRow>& rows, const std::string& mesh, Model model, int threads) {
   const auto found = std::find_if(rows.begin(), rows.end(), [&](const BenchRow& row) {
-    return row.tets == tets && row.what.model == model && row.what.threads == threads;
+    return row.mesh == mesh && row.what.model == model && row.what.threads == threads;
   });
   return found == rows.end() ? nullptr : &*found;
 }
@@ -30,7 +30,10 @@ const cpu::MachinePeak& BenchResult::peak(int threads) const {
   throw std::out_of_range(fmt::format("the roofs of {} threads were not measured", threads));
 }
 
+bool disturbed(const BenchRow& row) { return row.spread > 0.15 || row.ns_per_tet_step > 1.1 * row.ns_p10; }
+
 double fraction_of_fma_peak(const BenchRow& row, const cpu::MachinePeak& peak) {
+  if (row.engine.instruction_set != peak.instruction_set) return 0.0;
   return 1e9 * row.engine.flops_per_tet / row.ns_per_tet_step / peak.multiply_add_flops;
 }
 
@@ -56,7 +59,13 @@ std::vector<BenchRatio> ratios(const BenchResult& result) {
     if (over != nullptr && under != nullptr) all.push_back({name, over->ns_per_tet_step / under->ns_per_tet_step});
   };
   const auto like = [&](const BenchRow& row, Model model, int threads) {
-    return find_row(result.rows, row.tets, model, threads);
+    return find_row(result.rows, row.mesh, model, threads);
+  };
+  const auto of_size = [&](std::size_t tets, int threads) -> const BenchRow* {
+    for (const BenchRow& row : result.rows) {
+      if (row.tets == tets) return find_row(result.rows, row.mesh, Model::full, threads);
+    }
+    return nullptr;
   };
   for (const BenchRow& row : result.rows) {
     if (row.what.model > Model::full && row.what.threads == 1) {
@@ -69,8 +78,7 @@ std::vector<BenchRatio> ratios(const BenchResult& result) {
     if (threads == 1) add("full / law, " + which, &row, like(row, Model::law, 1));
     if (threads > 1) add(fmt::format("1 thread / {}, full, {}", threads, which), like(row, Model::full, 1), &row);
     if (row.tets > 500'000) {
-      add(fmt::format("{} / 96000 tets, full, {}", row.tets, threads_text(threads)), &row,
-          find_row(result.rows, 96'000, Model::full, threads));
+      add(fmt::format("{} / 96000 tets, full, {}", row.tets, threads_text(threads)), &row, of_size(96'000, threads));
     }
   }
   for (const BenchRow& row : result.accounting) {

@@ -17,9 +17,12 @@ namespace {
 constexpr double kBusy = 0.5;  // load average from which figures are not to be trusted
 
 constexpr const char* kLegend =
-    "ns        median wall time per tet and step of {} repetitions of about {:g} s; spread is (p90 - p10) / median\n"
+    "ns, p10   wall time per tet and step: median of {} repetitions of about {:g} s, and tenth percentile of bursts "
+    "of\n"
+    "          2 ms, which other programs reach into less; spread is (p90 - p10) / median of the repetitions\n"
+    "*         disturbed: the spread is above 15 %, or the median 10 % above p10; take p10, or measure again\n"
     "flops     useful additions, multiplications, divisions and roots per tet and step, a fused one counted as two;\n"
-    "          padding is not counted\n"
+    "          padding and the bounds of the stable step are not counted (docs/engine.md)\n"
     "bytes     rest data and state per tet that a step goes through\n"
     "of FMA, of memory\n"
     "          flops and bytes over the roofs measured in this run with as many threads; bodies that fit the caches\n"
@@ -42,11 +45,11 @@ std::string roof_text(const cpu::MachinePeak& p) {
 }
 
 std::string row_text(const BenchRow& row, const cpu::MachinePeak& peak, std::size_t width) {
-  return fmt::format("{:<{}}  {:<16} {:>8} {:>7} {:>8.2f} {:>8} {:>7} {:>7} {:>8} {:>9}  {:016x}\n", row.mesh, width,
-                     model_name(row.what.model), row.tets, row.what.threads, row.ns_per_tet_step, percent(row.spread),
-                     count(row.engine.flops_per_tet), count(row.engine.bytes_per_tet),
-                     percent(fraction_of_fma_peak(row, peak)), percent(fraction_of_bandwidth(row, peak)),
-                     row.state_hash);
+  return fmt::format("{:<{}}  {:<16} {:>8} {:>7} {:>8.2f}{} {:>7.2f} {:>7} {:>7} {:>7} {:>8} {:>9}  {:016x}\n",
+                     row.mesh, width, model_name(row.what.model), row.tets, row.what.threads, row.ns_per_tet_step,
+                     disturbed(row) ? "*" : " ", row.ns_p10, percent(row.spread), count(row.engine.flops_per_tet),
+                     count(row.engine.bytes_per_tet), percent(fraction_of_fma_peak(row, peak)),
+                     percent(fraction_of_bandwidth(row, peak)), row.state_hash);
 }
 
 nlohmann::ordered_json row_json(const BenchRow& row, const cpu::MachinePeak& peak) {
@@ -55,7 +58,11 @@ nlohmann::ordered_json row_json(const BenchRow& row, const cpu::MachinePeak& pea
   json["tets"] = row.tets;
   json["threads"] = row.what.threads;
   json["ns_per_tet_step"] = row.ns_per_tet_step;
+  json["ns_p10"] = row.ns_p10;
   json["spread"] = row.spread;
+  json["disturbed"] = disturbed(row);
+  json["preempted"] = row.preempted;
+  json["instruction_set"] = row.engine.instruction_set;
   json["flops_per_tet"] = row.engine.flops_per_tet;
   json["bytes_per_tet"] = row.engine.bytes_per_tet;
   json["fraction_of_fma_peak"] = fraction_of_fma_peak(row, peak);
@@ -74,6 +81,7 @@ nlohmann::ordered_json row_json(const BenchRow& row, const cpu::MachinePeak& pea
 
 nlohmann::ordered_json peak_json(const cpu::MachinePeak& peak) {
   return {{"threads", peak.threads},
+          {"instruction_set", peak.instruction_set},
           {"fma_peak_gflops", 1e-9 * peak.multiply_add_flops},
           {"bandwidth_GBps", 1e-9 * peak.memory_bytes()},
           {"bandwidth_kind", peak.memory_kind()},
@@ -93,8 +101,9 @@ std::string bench_table(const BenchResult& result, const MeasureOptions& options
   }
   std::size_t width = 4;
   for (const BenchRow& row : result.rows) width = std::max(width, characters(row.mesh));
-  text += fmt::format("\n{:<{}}  {:<16} {:>8} {:>7} {:>8} {:>8} {:>7} {:>7} {:>8} {:>9}  {}\n", "body", width, "model",
-                      "tets", "threads", "ns", "spread", "flops", "bytes", "of FMA", "of memory", "state");
+  text +=
+      fmt::format("\n{:<{}}  {:<16} {:>8} {:>7} {:>8}  {:>7} {:>7} {:>7} {:>7} {:>8} {:>9}  {}\n", "body", width,
+                  "model", "tets", "threads", "ns", "p10", "spread", "flops", "bytes", "of FMA", "of memory", "state");
   for (const BenchRow& row : result.rows) text += row_text(row, result.peak(row.what.threads), width);
   text += "\n" + fmt::format(kLegend, options.repetitions, options.repetition_s, kHashSteps) + "\n";
   for (const BenchRatio& ratio : ratios(result)) {
@@ -118,6 +127,7 @@ nlohmann::ordered_json machine_json() {
 
 nlohmann::ordered_json bench_json(const BenchResult& result, const MeasureOptions& options) {
   nlohmann::ordered_json json = machine_json();
+  if (!result.rows.empty()) json["instruction_set"] = result.rows.front().engine.instruction_set;
   json["fma_peak_gflops"] = 1e-9 * result.peaks.front().multiply_add_flops;
   json["bandwidth_GBps"] = 1e-9 * result.peaks.front().memory_bytes();
   json["load_average"] = result.load_average;

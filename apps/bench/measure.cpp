@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -18,8 +20,16 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kOneByOne = 500'000;      // tets from which cases are built one after the other
 constexpr std::uint64_t kStepsFromState = 200;  // timed at a stretch: viscosity must not wipe the motion out
+constexpr double kBurst = 0.002;                // [s]; shorter than what a scheduler hands out
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// How often threads of this program have lost a core to others.
+std::uint64_t preemptions() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_nivcsw);
+}
 
 /// A body built for one case, and its times.
 class Trial {
@@ -33,14 +43,16 @@ class Trial {
  private:
   void restore();
   void steps(std::uint64_t count);
+  double stretch();
   [[noreturn]] void fail(const std::string& what) const;
 
   const BenchBody& body_;
   BenchCase case_;
   Simulation simulation_;
   std::uint64_t stretch_ = 1, stretches_ = 1;  // steps from a restored state, and how often
-  std::uint64_t hash_ = 0, end_hash_ = 0;
-  std::vector<double> ns_;  // per tet and step, one a repetition
+  std::uint64_t burst_ = 1;                    // steps of a burst
+  std::uint64_t hash_ = 0, end_hash_ = 0, preempted_ = 0;
+  std::vector<double> ns_, bursts_;  // per tet and step, one a repetition, one a burst
 };
 
 SimulationOptions simulation_options(const BenchCase& what) {
@@ -83,17 +95,32 @@ void Trial::prepare(double repetition_s) {
   }
   const double wanted = std::max(2.0, repetition_s / step_s);
   stretch_ = std::min(static_cast<std::uint64_t>(wanted), kStepsFromState);
+  burst_ = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(kBurst / step_s), 1, stretch_);
   stretches_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(wanted) / stretch_);
 }
 
-void Trial::repeat() {
+/// Steps from a restored state, timed burst by burst. @return [s]
+double Trial::stretch() {
+  restore();
   double seconds = 0.0;
-  for (std::uint64_t i = 0; i < stretches_; ++i) {
-    restore();
+  for (std::uint64_t done = 0; done < stretch_;) {
+    const std::uint64_t count = std::min(burst_, stretch_ - done);
     const Clock::time_point begin = Clock::now();
-    steps(stretch_);
-    seconds += seconds_since(begin);
+    steps(count);
+    const double took = seconds_since(begin);
+    seconds += took;
+    done += count;
+    if (count == burst_)
+      bursts_.push_back(1e9 * took / (static_cast<double>(body_.mesh.tets.size()) * static_cast<double>(count)));
   }
+  return seconds;
+}
+
+void Trial::repeat() {
+  const std::uint64_t before = preemptions();
+  double seconds = 0.0;
+  for (std::uint64_t i = 0; i < stretches_; ++i) seconds += stretch();
+  preempted_ += preemptions() - before;
   const double tet_steps = static_cast<double>(body_.mesh.tets.size()) * static_cast<double>(stretch_ * stretches_);
   const std::uint64_t hash = simulation_.state_hash();
   if (!ns_.empty() && hash != end_hash_) fail("the same steps from the same state have led to another state");
@@ -107,7 +134,9 @@ BenchRow Trial::row() const {
           .tets = body_.mesh.tets.size(),
           .engine = simulation_.engine_info(),
           .ns_per_tet_step = percentile(ns_, 50.0),
+          .ns_p10 = percentile(bursts_, 10.0),
           .spread = relative_spread(ns_),
+          .preempted = preempted_,
           .step_s = simulation_.step_size(),
           .steps = stretch_ * stretches_ * ns_.size(),
           .state_hash = hash_,

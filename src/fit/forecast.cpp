@@ -9,7 +9,7 @@ namespace {
 
 // Seen in fits of one to five parameters: iterations of a descent from a start, from a profile's last point and from the
 // optimum of the curves that replicates are drawn from; points of one side of a profile.
-constexpr std::size_t kFewIterations = 4, kManyIterations = 10, kProfileIterations = 3, kReplicateIterations = 2;
+constexpr std::size_t kFewIterations = 8, kManyIterations = 14, kProfileIterations = 3, kReplicateIterations = 2;
 constexpr std::size_t kProfilePoints = 6;
 constexpr std::size_t kDerivativeSteps = 4;  // derivative_check.cpp
 constexpr std::size_t kPlans = 7;            // next_experiments.cpp

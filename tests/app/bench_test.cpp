@@ -14,6 +14,10 @@ constexpr std::initializer_list<const char*> kRow{"model",
                                                   "tets",
                                                   "threads",
                                                   "spread",
+                                                  "ns_p10",
+                                                  "disturbed",
+                                                  "preempted",
+                                                  "instruction_set",
                                                   "flops_per_tet",
                                                   "ns_per_tet_step",
                                                   "bytes_per_tet",
@@ -45,6 +49,10 @@ TEST_F(Bench, QuickRunWritesACompleteResult) {
     EXPECT_LE(row["fraction_of_fma_peak"].get<double>(), 3.0);
     EXPECT_GT(row["fraction_of_bandwidth"].get<double>(), 0.0);
     EXPECT_GE(row["steps"], 10);
+    EXPECT_GT(row["ns_p10"].get<double>(), 0.0);
+    const bool apart =
+        row["spread"].get<double>() > 0.15 || row["ns_per_tet_step"].get<double>() > 1.1 * row["ns_p10"].get<double>();
+    EXPECT_EQ(row["disturbed"], apart);
     const std::string hash = row["state_hash"];
     EXPECT_EQ(hashes.try_emplace(row["model"], hash).first->second, hash);
   }
@@ -62,7 +70,11 @@ TEST_F(Bench, EveryModelIsMeasured) {
   const nlohmann::json json = read_json(folder_ / "b.json");
   ASSERT_EQ(json["rows"].size(), 15u);
   std::set<std::string> hashes;
-  for (const nlohmann::json& row : json["rows"]) hashes.insert(row["state_hash"].get<std::string>());
+  for (const nlohmann::json& row : json["rows"]) {
+    hashes.insert(row["state_hash"].get<std::string>());
+    EXPECT_GT(row["flops_per_tet"].get<double>(), 0.0) << row["model"];
+    EXPECT_GT(row["fraction_of_fma_peak"].get<double>(), 0.0) << row["model"];
+  }
   EXPECT_EQ(hashes.size(), 15u) << "each tissue moves in its own way";
   EXPECT_GT(json["ratios"]["ogden / linear, 768 tets"].get<double>(), 1.0);
 }
@@ -78,16 +90,48 @@ TEST_F(Bench, StateIsTheSameFromRunToRun) {
             read_json(folder_ / "b.json")["rows"][0]["state_hash"]);
 }
 
+// Any sizes: each the box of cubes that comes nearest, once.
+TEST_F(Bench, TakesAnySizes) {
+  ASSERT_THAT(run({"bench", "--quick", "--sizes", "100,300,301,1200", "--models", "full", "--threads", "1", "--json",
+                   "b.json"}),
+              Exits(0));
+  std::vector<int> tets;
+  for (const nlohmann::json& row : read_json(folder_ / "b.json")["rows"]) tets.push_back(row["tets"]);
+  EXPECT_EQ(tets, (std::vector{102, 300, 1200}));
+}
+
+// An instruction set that is asked for is that of the kernels and of the peak they are held against, in every row; all reach
+// the same state to rounding, and the hash may differ.
+TEST_F(Bench, AForcedInstructionSetIsThatOfKernelsAndPeak) {
+  std::set<std::string> names;
+  for (const std::string isa : {"avx512", "avx2", "sse4"}) {
+    const Outcome outcome = run({"bench", "--quick", "--sizes", "768", "--models", "linear,full,neo_hookean",
+                                 "--threads", "1", "--isa", isa, "--json", isa + ".json"});
+    if (outcome.err.find("--isa: " + isa + " not in {") != std::string::npos) continue;  // this machine has none
+    ASSERT_THAT(outcome, Exits(0));
+    const nlohmann::json json = read_json(folder_ / (isa + ".json"));
+    const std::string name = json["instruction_set"];
+    EXPECT_TRUE(names.insert(name).second) << isa << " ran in " << name << " again";
+    EXPECT_EQ(json["peaks"][0]["instruction_set"], name);
+    for (const nlohmann::json& row : json["rows"]) {
+      EXPECT_EQ(row["instruction_set"], name);
+      EXPECT_GT(row["fraction_of_fma_peak"].get<double>(), 0.0);
+    }
+  }
+  EXPECT_FALSE(names.empty());
+}
+
 // A mesh from a file is measured as one tissue, whatever regions it has.
 TEST_F(Bench, TakesAMeshFile) {
   ASSERT_THAT(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"}), Exits(0));
   const std::string mesh = (folder_ / "o/main/frames/frame_0000.vtu").string();
   ASSERT_THAT(run({"bench", "--quick", "--sizes", "768", "--models", "linear", "--threads", "1", "--mesh", mesh,
-                   "--json", "b.json"}),
+                   "--mesh", mesh, "--json", "b.json"}),
               Exits(0));
   const nlohmann::json rows = read_json(folder_ / "b.json")["rows"];
-  ASSERT_EQ(rows.size(), 2u);
+  ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[1]["mesh"], "frame_0000");
+  EXPECT_EQ(rows[2]["mesh"], mesh) << "told apart from the first of that name";
   EXPECT_EQ(rows[1]["tets"], 48);
 }
 
@@ -98,7 +142,8 @@ TEST_F(Bench, WrongOptionsAreErrors) {
     EXPECT_THAT(outcome, Exits(2));
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
   };
-  expect_error({"bench", "--sizes", "500"}, "--sizes: 500 not in {768,96000,1000000}");
+  expect_error({"bench", "--sizes", "5"}, "--sizes: Value 5 not in range");
+  expect_error({"bench", "--isa", "avx9"}, "--isa: avx9 not in {");
   expect_error({"bench", "--models", "quadratic"}, "--models: quadratic not in {linear,law,full,corotational,");
   expect_error({"bench", "--threads", "0"}, "--threads: Value 0 not in range");
   expect_error({"bench", "--mesh", "none.vtu"}, "none.vtu: there is no such mesh");

@@ -101,6 +101,7 @@ void measure_memory(MachinePeak& peak) {
 
 MachinePeak measure_machine_peak(int threads) {
   MachinePeak peak{.threads = std::max(1, threads)};
+  peak.instruction_set = instruction_set();
   peak.multiply_add_flops = multiply_add_flops(peak.threads);
   measure_memory(peak);
   return peak;
@@ -108,7 +109,7 @@ MachinePeak measure_machine_peak(int threads) {
 
 MachinePeak best_of(const MachinePeak& a, const MachinePeak& b) {
   return {a.threads, std::max(a.multiply_add_flops, b.multiply_add_flops), std::max(a.read_bytes, b.read_bytes),
-          std::max(a.triad_bytes, b.triad_bytes)};
+          std::max(a.triad_bytes, b.triad_bytes), a.instruction_set};
 }
 
 std::string instruction_set() { return peak_kernels().instruction_set; }

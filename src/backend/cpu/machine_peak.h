@@ -16,9 +16,10 @@ namespace glisson::cpu {
 /// Roofs for a number of threads at work at the same time; all of them together.
 struct MachinePeak {
   int threads = 1;
-  double multiply_add_flops = 0.0;  ///< float multiply-adds in the widest instruction set, two flops each [flop/s]
+  double multiply_add_flops = 0.0;  ///< float multiply-adds in the instruction set chosen, two flops each [flop/s]
   double read_bytes = 0.0;          ///< sum of an array: bytes read [B/s]
   double triad_bytes = 0.0;         ///< a ← b + s c with stores past the caches: bytes read and written [B/s]
+  std::string instruction_set{};    ///< of multiply_add_flops
 
   /// The memory roof: the larger of the two [B/s].
   double memory_bytes() const { return read_bytes > triad_bytes ? read_bytes : triad_bytes; }
