@@ -18,6 +18,7 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "mesh_cache.h"
+#include "standard_streams.h"
 
 namespace glisson::app {
 namespace {
@@ -116,7 +117,7 @@ bool wants_accounting(const BenchBody& body, const std::vector<BenchCase>& cases
 }
 
 void measure_body(const BenchBody& body, std::vector<BenchCase> cases, const MeasureOptions& how, BenchResult& result) {
-  fmt::print(stderr, "bench: {}, {} tets\n", body.name, body.mesh.tets.size());
+  tell("bench: {}, {} tets\n", body.name, body.mesh.tets.size());
   if (wants_accounting(body, cases)) {
     cases.push_back({.model = Model::full, .threads = cases.front().threads, .accounting = true});
   }
@@ -138,11 +139,11 @@ int bench(const BenchOptions& given) {
     measure_body(body, cases, how, result);
   }
   measure_peaks(options, result.peaks);
-  fmt::print("{}", bench_table(result, how));
+  say("{}", bench_table(result, how));
   write_json(options.json, bench_json(result, how));
   const std::string mismatch = hash_mismatch(result.rows);
   if (mismatch.empty()) return kDone;
-  fmt::print(stderr, "glisson: {}\n", mismatch);
+  tell("glisson: {}\n", mismatch);
   return kFailed;
 }
 

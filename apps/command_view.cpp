@@ -12,6 +12,7 @@
 #include "mesh_cache.h"
 #include "report/version.h"
 #include "scene_options.h"
+#include "standard_streams.h"
 #include "view/engine.h"
 #include "view/replay.h"
 #include "view/server.h"
@@ -47,7 +48,7 @@ int serve(view::Source& source, const view::SceneFacts& facts, const std::string
   catch_interrupts();
   source.start();
   server.start();
-  fmt::print("{}\n{}\nCtrl-C ends it.\n", told, server.url());
+  say("{}\n{}\nCtrl-C ends it.\n", told, server.url());
   std::fflush(stdout);
   wait_for_the_end();
   server.stop();

@@ -54,9 +54,9 @@ void FitProgressLine::show(const fit::FitForecast& f, int threads) {
   const auto duration = [&](std::uint64_t runs) {
     return duration_text(static_cast<double>(runs) * f.run_s / static_cast<double>(threads));
   };
-  fmt::print("{}{}: forward model {}, {:.2g} s a run and core: {} to {} runs, about {} to {} on {} thread{}\n",
-             live_ ? "\r\033[K" : "", f.law, f.forward, f.run_s, f.least_runs, f.most_runs, duration(f.least_runs),
-             duration(f.most_runs), threads, threads == 1 ? "" : "s");
+  say("{}{}: forward model {}, {:.2g} s a run and core: {} to {} runs, about {} to {} on {} thread{}\n",
+      live_ ? "\r\033[K" : "", f.law, f.forward, f.run_s, f.least_runs, f.most_runs, duration(f.least_runs),
+      duration(f.most_runs), threads, threads == 1 ? "" : "s");
   std::fflush(stdout);
 }
 

@@ -7,6 +7,7 @@
 
 #include "report/json_text.h"
 #include "report/output_file.h"
+#include "standard_streams.h"
 
 namespace glisson::app {
 namespace {
@@ -29,7 +30,7 @@ void add_json_option(CLI::App& command, std::string& file) {
 void write_json(const std::string& file, const nlohmann::ordered_json& json) {
   if (file.empty()) return;
   write_whole(file, json_text(json, 2) + "\n");
-  fmt::print("written: {}\n", file);
+  say("written: {}\n", file);
 }
 
 }  // namespace glisson::app

@@ -17,6 +17,7 @@
 #include "mesh_cache.h"
 #include "report/summary_json.h"
 #include "scene_options.h"
+#include "standard_streams.h"
 
 namespace glisson::app {
 namespace {
@@ -48,7 +49,7 @@ Variant choose_variant(const Options& options) {
   variant.simulation.track_energies = false;
   variant.simulation.exact_steps = false;  // a search for h* takes more than a frame
   if (scene.variants.size() > 1) {
-    fmt::print("variant {}, the first of {}; --variant NAME takes another\n", variant.name, scene.variants.size());
+    say("variant {}, the first of {}; --variant NAME takes another\n", variant.name, scene.variants.size());
   }
   return variant;
 }
@@ -76,19 +77,19 @@ Figures figures_of(const RealtimeResult& result, double frame_s) {
 void print_figures(const Variant& variant, const BuiltVariant& body, const RealtimeResult& r, const Figures& f,
                    double frame_s) {
   const EngineInfo& engine = body.simulation.engine_info();
-  fmt::print("{}, {}: {} tets, h = {:.4g} s, {:.1f} steps a frame of {:g} ms, threads {}\n", variant.scene_name,
-             variant.name, body.simulation.mesh().tets.size(), body.simulation.step_size(), f.steps_per_frame,
-             1e3 * frame_s, engine.threads);
-  fmt::print("  frames   {} computed in {:.3f} s, {} missed ({:.2f} %), {} dropped\n", f.frames, r.wall_s, f.missed,
-             f.frames > 0 ? 100.0 * static_cast<double>(f.missed) / static_cast<double>(f.frames) : 0.0, r.dropped);
-  fmt::print("  compute  p50 {:.1f} µs, p99 {:.1f} µs, p99.9 {:.1f} µs, max {:.1f} µs\n", f.p50_us, f.p99_us, f.p999_us,
-             f.max_us);
+  say("{}, {}: {} tets, h = {:.4g} s, {:.1f} steps a frame of {:g} ms, threads {}\n", variant.scene_name, variant.name,
+      body.simulation.mesh().tets.size(), body.simulation.step_size(), f.steps_per_frame, 1e3 * frame_s,
+      engine.threads);
+  say("  frames   {} computed in {:.3f} s, {} missed ({:.2f} %), {} dropped\n", f.frames, r.wall_s, f.missed,
+      f.frames > 0 ? 100.0 * static_cast<double>(f.missed) / static_cast<double>(f.frames) : 0.0, r.dropped);
+  say("  compute  p50 {:.1f} µs, p99 {:.1f} µs, p99.9 {:.1f} µs, max {:.1f} µs\n", f.p50_us, f.p99_us, f.p999_us,
+      f.max_us);
   for (std::size_t i = 0; i < std::min(r.eventful.size(), kMostEventful); ++i) {
-    fmt::print("  event    {}: {:.1f} µs in that frame\n", r.eventful[i].events, 1e6 * r.eventful[i].compute_s);
+    say("  event    {}: {:.1f} µs in that frame\n", r.eventful[i].events, 1e6 * r.eventful[i].compute_s);
   }
-  fmt::print("  force    {:.4g} N at most on the tool\n", r.peak_force_N);
-  fmt::print("  pace     {}: {:.3f} s simulated in {:.3f} s, real-time factor {:.3f}\n",
-             r.dropped == 0 ? "kept" : "not kept", r.simulated_s, r.wall_s, f.realtime_factor);
+  say("  force    {:.4g} N at most on the tool\n", r.peak_force_N);
+  say("  pace     {}: {:.3f} s simulated in {:.3f} s, real-time factor {:.3f}\n", r.dropped == 0 ? "kept" : "not kept",
+      r.simulated_s, r.wall_s, f.realtime_factor);
 }
 
 nlohmann::ordered_json realtime_json(const Variant& variant, const BuiltVariant& body, const RealtimeResult& r,
@@ -97,7 +98,7 @@ nlohmann::ordered_json realtime_json(const Variant& variant, const BuiltVariant&
   nlohmann::ordered_json json = machine_json();
   json["scene"] = variant.scene_name;
   json["variant"] = variant.name;
-  json["end"] = end_text(r.end);
+  json["end"] = end_text(r.end.end);
   json["tets"] = body.simulation.mesh().tets.size();
   json["threads"] = engine.threads;
   json["h_s"] = body.simulation.step_size();
@@ -123,7 +124,7 @@ nlohmann::ordered_json realtime_json(const Variant& variant, const BuiltVariant&
 int exit_code_of(const RealtimeResult& result, const BuiltVariant& body) {
   if (result.end.end == RunSummary::End::finished) return kDone;
   if (result.end.end == RunSummary::End::interrupted) return kInterrupted;
-  fmt::print(stderr, "glisson: {}\n", trouble_text(result.end, body.simulation));
+  tell("glisson: {}\n", trouble_text(result.end, body.simulation));
   return kNumericalEnd;
 }
 

@@ -166,8 +166,8 @@ std::optional<fit::FitMemory> read_fit_state(const std::filesystem::path& file, 
     return memory_of(input.bytes, fingerprint);
   } catch (const Damage& damage) {
     throw refuse(damage.what());
-  } catch (const JsonError& error) {
-    throw refuse(std::string("is no state of a fit: ") + error.what());
+  } catch (const JsonError& broken) {
+    throw refuse(std::string("is no state of a fit: ") + broken.what());
   } catch (const nlohmann::json::exception&) {
     throw refuse("is no state of a fit: its JSON is broken");
   }
