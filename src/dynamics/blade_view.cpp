@@ -144,6 +144,7 @@ void BladeView::load(CheckpointReader& in) {
   const std::size_t n = scheme_.body().vertex_count;
   const auto fits = [&](std::size_t size) { return size == 0 || size == n; };
   if (root_.size() != n || first_.size() != n || !fits(before_.size()) || !fits(now_.size())) CheckpointReader::fail();
+  if (std::any_of(root_.begin(), root_.end(), [n](std::uint32_t v) { return v >= n; })) CheckpointReader::fail();
 }
 
 }  // namespace glisson

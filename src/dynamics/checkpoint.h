@@ -67,6 +67,9 @@ class CheckpointReader {
     std::array<char, sizeof(T)> bytes;
     std::memcpy(bytes.data(), take(sizeof(T)), sizeof(T));
     if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
+    if constexpr (std::is_same_v<T, bool>) {
+      if (bytes[0] != 0 && bytes[0] != 1) fail();
+    }
     value = std::bit_cast<T>(bytes);
   }
   template <class T>

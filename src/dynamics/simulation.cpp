@@ -335,7 +335,11 @@ void Simulation::load(std::istream& in) {
   for (std::uint64_t k = 0; k < count; ++k) {
     const Change change = get_change(file);
     if (k >= impl_->changes.size()) {
-      replay(change, *this);
+      try {
+        replay(change, *this);
+      } catch (const std::invalid_argument&) {  // of a tet, face or tissue that this body does not have
+        CheckpointReader::fail();
+      }
       impl_->changes.resize(k + 1);
       impl_->changes[k] = change;
     } else if (!(change == impl_->changes[k])) {

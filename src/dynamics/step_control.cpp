@@ -273,7 +273,10 @@ void StepControl::load(CheckpointReader& in) {
   for (auto* list : {&validated_, &rest_level_, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
     in.get_same_size(*list);
   }
-  for (StabilityGuess* g : {&guess_, &pace_guess_, &rest_guess_, &rest_pace_guess_}) in.get(g->mode), in.get(g->step);
+  for (StabilityGuess* g : {&guess_, &pace_guess_, &rest_guess_, &rest_pace_guess_}) {
+    in.get(g->mode), in.get(g->step);
+    if (!g->mode.empty() && g->mode.size() != 3 * body_.vertex_count) CheckpointReader::fail();
+  }
   in.get(probe_), in.get(since_probe_), in.get(probes_);
   searches_.clear(), searches_made_ = kSearchesKept;
   levels_.load(in);

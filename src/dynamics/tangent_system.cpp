@@ -245,6 +245,7 @@ void TangentSystem::save(CheckpointWriter& out) const {
 void TangentSystem::load(CheckpointReader& in) {
   in.get(has_factor_), in.get(current_), in.get(terms_.rate), in.get(terms_.weight), in.get(state_.since);
   in.get(diagonal_);
+  if (!diagonal_.empty() && 3 * diagonal_.size() != free_.size()) CheckpointReader::fail();
   if (!has_factor_) return;
   find_pattern();
   std::vector<double> values(static_cast<std::size_t>(matrix_.nonZeros()));

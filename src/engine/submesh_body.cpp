@@ -2,6 +2,7 @@
 #include "engine/submesh_body.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "engine/response_batches.h"
@@ -127,6 +128,11 @@ bool SubmeshBody::set_past(std::span<const double> past) {
   const std::vector<std::size_t> first = first_memory_numbers();
   const std::size_t begin = 2 + looked_.size();
   if (past.size() != begin + first.back()) return false;
+  const auto whole_below = [](double n, double end) { return n >= 0.0 && n < end && n == std::floor(n); };
+  constexpr double kMostSteps = 9e15;  // above, a double skips whole numbers
+  const std::span<const double> looked = past.subspan(2, looked_.size());
+  const auto is_look = [&](double n) { return whole_below(n, 1.0 + static_cast<double>(Looked::inverted)); };
+  if (!whole_below(past[0], kMostSteps) || !std::all_of(looked.begin(), looked.end(), is_look)) return false;
   steps_ = static_cast<std::uint64_t>(past[0]);
   since_memory_ = past[1];
   for (std::size_t p = 0; p < looked_.size(); ++p) looked_[p] = static_cast<Looked>(static_cast<int>(past[2 + p]));

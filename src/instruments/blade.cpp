@@ -5,11 +5,12 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "mesh/past.h"
+
 namespace glisson {
 namespace {
 
 constexpr int kSweeps = 3;  ///< over the pieces of the edge, which share vertices
-constexpr std::size_t kPieceNumbers = 10;
 
 void require(bool ok, const std::string& name, const char* option, double value, const char* range) {
   if (ok) return;
@@ -137,20 +138,21 @@ std::vector<double> Blade::past() const {
 }
 
 bool Blade::restore(std::span<const double> past) {
-  if (!restore_motion(past) || past.size() % kPieceNumbers != 1) return false;
-  area_ = past[0];
+  if (!restore_motion(past)) return false;
+  PastReader get(past);
+  const TetMesh& mesh = simulation_.mesh();
+  area_ = get.number();
   pieces_.clear();
-  for (std::size_t i = 1; i < past.size(); i += kPieceNumbers) {
+  while (get.ok() && !get.done()) {
     Piece piece;
-    piece.at.tet = static_cast<std::uint32_t>(past[i]);
-    piece.at.length = past[i + 1];
-    for (std::size_t c = 0; c < 4; ++c) {
-      piece.at.weights[c] = past[i + 2 + c];
-      piece.vertices[c] = static_cast<std::uint32_t>(past[i + 6 + c]);
-    }
+    piece.at.tet = static_cast<std::uint32_t>(get.index(mesh.tets.size()));
+    piece.at.length = get.number();
+    for (double& w : piece.at.weights) w = get.number();
+    for (std::uint32_t& v : piece.vertices) v = static_cast<std::uint32_t>(get.index(mesh.vertices.size()));
+    if (get.ok() && (simulation_.is_removed(piece.at.tet) || piece.vertices != mesh.tets[piece.at.tet])) get.refuse();
     pieces_.push_back(piece);
   }
-  return true;
+  return get.ok();
 }
 
 }  // namespace glisson

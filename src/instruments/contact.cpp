@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "instruments/contact_state.h"
+#include "mesh/past.h"
 
 namespace glisson {
 namespace {
@@ -140,36 +141,31 @@ std::vector<double> ContactTool::past() const {
 }
 
 bool ContactTool::restore(std::span<const double> past) {
-  constexpr std::size_t kOwn = 7 + 12;
   State& s = *state_;
-  if (!restore_motion(past) || past.size() < kOwn) return false;
-  s.lost = past[0] != 0.0, s.in_contact = past[1] != 0.0, s.begun = past[2] != 0.0;
-  s.last_touch = past[3], s.last_depth = past[4], s.books.set_taken(past[5]), s.last_h = past[6];
-  for (std::size_t i = 0; i < 3; ++i) s.solid.before.position[i] = past[7 + i];
-  for (std::size_t i = 0; i < 9; ++i) s.solid.before.axes(i / 3, i % 3) = past[10 + i];
-  past = past.subspan(kOwn);
-  if (!s.found_inside.restore(past) || past.empty()) return false;
-  const double bonds = past[0];
-  past = past.subspan(1);
-  if (!(bonds >= 0.0 && 4.0 * bonds <= static_cast<double>(past.size()))) return false;
-  const auto is_vertex = [&](double v) {
-    return v >= 0.0 && v < static_cast<double>(s.reach.surface().body_vertices());
-  };
+  if (!restore_motion(past)) return false;
+  PastReader get(past);
+  s.lost = get.flag(), s.in_contact = get.flag(), s.begun = get.flag();
+  s.last_touch = get.number(), s.last_depth = get.number();
+  s.books.set_taken(get.number());
+  s.last_h = get.number();
+  s.solid.before.position = get.vector();
+  for (auto& row : s.solid.before.axes.m) {
+    for (double& a : row) a = get.number();
+  }
+  s.found_inside.restore(get);
+  const auto vertex = [&] { return static_cast<std::uint32_t>(get.index(s.reach.surface().body_vertices())); };
   s.bonds.clear();
-  for (double i = 0.0; i < bonds; ++i, past = past.subspan(4)) {
-    if (!is_vertex(past[0])) return false;
-    s.bonds[static_cast<std::uint32_t>(past[0])] = {past[1], past[2], past[3]};
+  for (std::size_t left = get.count(4); left > 0; --left) {
+    const std::uint32_t v = vertex();
+    s.bonds[v] = get.vector();
   }
-  if (past.empty() || !(past[0] >= 0.0 && 4.0 * past[0] < static_cast<double>(past.size()))) return false;
-  const double pressed = past[0];
-  past = past.subspan(1);
   s.last_pressing.clear();
-  for (double i = 0.0; i < pressed; ++i, past = past.subspan(4)) {
-    if (!is_vertex(past[0]) || !is_vertex(past[1]) || !is_vertex(past[2])) return false;
-    const auto corner = [&](std::size_t c) { return static_cast<std::uint32_t>(past[c]); };
-    s.last_pressing[{corner(0), corner(1), corner(2)}] = past[3];
+  for (std::size_t left = get.count(4); left > 0; --left) {
+    const std::uint32_t a = vertex(), b = vertex(), c = vertex();
+    s.last_pressing[{a, b, c}] = get.number();
   }
-  return s.reach.restore(past) && past.empty();
+  s.reach.restore(get);
+  return get.done();
 }
 
 }  // namespace glisson

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "mesh/past.h"
 
 namespace glisson {
 namespace {
@@ -98,16 +101,13 @@ void FoundInside::save(std::vector<double>& past) const {
   for (const auto& [vertex, solid] : inside_) past.push_back(vertex), past.push_back(solid);
 }
 
-bool FoundInside::restore(std::span<const double>& past) {
+void FoundInside::restore(PastReader& past) {
+  constexpr std::size_t kAny = std::numeric_limits<std::uint32_t>::max();  // looked up, never gone to
   inside_.clear();
-  if (past.empty() || !(past[0] >= 0.0 && 2.0 * past[0] < static_cast<double>(past.size()))) return false;
-  const double count = past[0];
-  past = past.subspan(1);
-  for (double i = 0.0; i < count; ++i, past = past.subspan(2)) {
-    if (!(past[0] >= 0.0 && past[0] < 4294967296.0 && past[1] >= 0.0 && past[1] < 100.0)) return false;
-    inside_.insert({static_cast<std::uint32_t>(past[0]), static_cast<std::uint32_t>(past[1])});
+  for (std::size_t left = past.count(2); left > 0; --left) {
+    const std::size_t vertex = past.index(kAny), solid = past.index(kAny);
+    inside_.insert({static_cast<std::uint32_t>(vertex), static_cast<std::uint32_t>(solid)});
   }
-  return true;
 }
 
 }  // namespace glisson

@@ -15,6 +15,8 @@
 
 namespace glisson {
 
+class PastReader;
+
 class ContactBooks {
  public:
   /// Keeps v₋ of all vertices at hand: to be called in add_forces.
@@ -53,7 +55,7 @@ class FoundInside {
   /// After prepare().
   void settle(const ContactRow& row, std::uint32_t vertex, std::uint32_t solid);
   void save(std::vector<double>& past) const;
-  bool restore(std::span<const double>& past);
+  void restore(PastReader& past);
 
  private:
   std::set<std::pair<std::uint32_t, std::uint32_t>> inside_;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/past.h"
+
 namespace glisson {
 namespace {
 
@@ -83,17 +85,14 @@ void ContactReach::save(std::vector<double>& past) const {
   }
 }
 
-bool ContactReach::restore(std::span<const double>& past) {
-  if (past.size() < 2 + 7 * sentinels_.size() || past[0] != static_cast<double>(sentinels_.size())) return false;
-  sentinels_asked_ = past[1] != 0.0;
-  past = past.subspan(2);
+void ContactReach::restore(PastReader& past) {
+  if (past.number() != static_cast<double>(sentinels_.size())) return past.refuse();
+  sentinels_asked_ = past.flag();
   for (Sentinel& s : sentinels_) {
-    s.position = {past[0], past[1], past[2]}, s.velocity = {past[3], past[4], past[5]};
-    s.asked = past[6] != 0.0;
-    past = past.subspan(7);
+    s.position = past.vector(), s.velocity = past.vector();
+    s.asked = past.flag();
   }
   gather();
-  return true;
 }
 
 }  // namespace glisson

@@ -9,6 +9,8 @@
 
 namespace glisson {
 
+class PastReader;
+
 /// Lets vertices that are copies, the last ones of a body, have what their origins have, by vertex.
 template <class Value>
 void give_to_copies(std::map<std::uint32_t, Value>& of_vertex, std::size_t vertices,
@@ -35,7 +37,7 @@ class ContactReach {
   std::span<const Triangle> triangles() const { return my_triangles_; }
 
   void save(std::vector<double>& past) const;
-  bool restore(std::span<const double>& past);
+  void restore(PastReader& past);
 
  private:
   /// Of a patch.

@@ -10,6 +10,7 @@
 
 #include "instruments/contact_books.h"
 #include "instruments/contact_reach.h"
+#include "mesh/past.h"
 
 namespace glisson {
 namespace {
@@ -245,20 +246,19 @@ std::vector<double> Container::past() const {
 
 bool Container::restore(std::span<const double> past) {
   State& s = *state_;
-  if (past.size() < 3) return false;
-  s.begun = past[0] != 0.0;
-  s.books.set_taken(past[1]);
-  const double bonds = past[2];
-  past = past.subspan(3);
-  if (!(bonds >= 0.0 && 5.0 * bonds <= static_cast<double>(past.size()))) return false;
+  PastReader get(past);
+  s.begun = get.flag();
+  s.books.set_taken(get.number());
   s.bonds.clear();
-  for (double i = 0.0; i < bonds; ++i, past = past.subspan(5)) {
-    const bool known = past[0] >= 0.0 && past[0] < static_cast<double>(s.reach.surface().body_vertices()) &&
-                       past[1] >= 0.0 && past[1] < static_cast<double>(s.solids.size());
-    if (!known) return false;
-    s.bonds[static_cast<std::uint32_t>(past[0])] = {static_cast<std::uint32_t>(past[1]), {past[2], past[3], past[4]}};
+  for (std::size_t left = get.count(5); left > 0; --left) {
+    const auto vertex = static_cast<std::uint32_t>(get.index(s.reach.surface().body_vertices()));
+    const auto solid = static_cast<std::uint32_t>(get.index(s.solids.size()));
+    const Vec3d place = get.vector();
+    if (get.ok()) s.bonds[vertex] = {solid, place};
   }
-  return s.found_inside.restore(past) && s.reach.restore(past) && past.empty();
+  s.found_inside.restore(get);
+  s.reach.restore(get);
+  return get.done();
 }
 
 }  // namespace glisson

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "instruments/past.h"
+#include "mesh/past.h"
 
 namespace glisson {
 
@@ -51,10 +51,12 @@ bool Instrument::restore_motion(std::span<const double>& past) {
   }
   for (Vec3d* f : {&forces_.normal, &forces_.friction, &forces_.cutting, &forces_.torque}) *f = get.vector();
   force_depth_ = get.number();
-  events_.assign(get.count(), {});
+  constexpr std::size_t kEventNumbers = 3;  // or more
+  events_.assign(get.count(kEventNumbers), {});
   for (InstrumentEvent& e : events_) {
     e.time = get.number(), e.depth = get.number();
-    for (const double letter : get.take(get.count())) e.event.push_back(static_cast<char>(letter));
+    e.event.resize(get.count());
+    for (char& letter : e.event) letter = static_cast<char>(get.whole());
   }
   const std::span<const double> driver = get.take(get.count());
   past = get.left();

@@ -1,6 +1,6 @@
 // needle_past.cpp — a needle's checkpoint.
 #include "instruments/needle_state.h"
-#include "instruments/past.h"
+#include "mesh/past.h"
 
 namespace glisson {
 
@@ -35,24 +35,22 @@ bool Needle::restore(std::span<const double> past) {
   State& s = *state_;
   if (!restore_motion(past)) return false;
   PastReader get(past);
-  const double stage = get.number();
-  if (!(stage == 0.0 || stage == 1.0 || stage == 2.0)) return false;
-  s.stage = static_cast<NeedleStage>(static_cast<int>(stage));
+  s.stage = static_cast<NeedleStage>(get.index(3));
   s.named_around = get.vector();
-  s.look = get.number() != 0.0;
+  s.look = get.flag();
   const Vec3d tip = get.vector();
   s.tip_along = get.number(), s.bend_tip = get.vector();
-  s.tip_cuts = get.number() != 0.0, s.tip_out = get.number() != 0.0, s.withdraws = get.number() != 0.0;
-  const bool has_next = get.number() != 0.0;
-  s.region = static_cast<int>(get.number());
-  const int next = static_cast<int>(get.number());
+  s.tip_cuts = get.flag(), s.tip_out = get.flag(), s.withdraws = get.flag();
+  const bool has_next = get.flag();
+  s.region = get.whole();
+  const int next = get.whole();
   s.next_region = has_next ? std::optional<int>(next) : std::nullopt;
   s.step_h = get.number();
   for (double* a : {&s.pressing.work, &s.pressing.depth, &s.pressing.force, &s.pressing.work_at_cutting,
                     &s.pressing.depth_at_cutting}) {
     *a = get.number();
   }
-  s.drop.armed = get.number() != 0.0;
+  s.drop.armed = get.flag();
   for (double* a : {&s.drop.puncture_force, &s.drop.force, &s.drop.least, &s.drop.time, &s.drop.depth})
     *a = get.number();
   const std::size_t nodes = get.count();
@@ -62,14 +60,11 @@ bool Needle::restore(std::span<const double> past) {
   for (std::size_t j = 0; j < nodes && get.ok(); ++j) {
     const Vec3d rest = get.vector();
     if (!s.place(s.nodes[j], rest)) s.nodes[j].rest = rest;
-    s.slips[j] = get.number() != 0.0 ? 1 : 0, s.along[j] = get.number();
+    s.slips[j] = get.flag() ? 1 : 0, s.along[j] = get.number();
     s.bend[j] = get.vector();
   }
   s.entry_triangles.assign(get.count(), 0);
-  for (std::size_t& t : s.entry_triangles) {
-    t = static_cast<std::size_t>(get.number());
-    if (t >= s.surface.size()) return false;
-  }
+  for (std::size_t& t : s.entry_triangles) t = get.index(s.surface.size());
   if (s.stage != NeedleStage::outside && !s.place(s.tip, tip)) s.tip.rest = tip;
   return get.done();
 }

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "mesh/faces.h"
+#include "mesh/past.h"
 
 namespace glisson::detail {
 namespace {
@@ -13,6 +14,7 @@ constexpr double kSameCut = 0.25;  ///< of an edge: a crossing nearer than that 
 constexpr std::size_t kCrumb =
     4;  ///< tets gone through that hang together without any other are no piece, up to so many
 constexpr std::size_t kPastNumbers = 9;
+constexpr std::size_t kAllCorners = 15;  ///< of a tet, a bit each
 
 /// The corners connected with corner 0 by edges that are not crossed, as bits; 0 unless the others are connected, too.
 constexpr std::uint8_t group_of(unsigned crossed) {
@@ -288,25 +290,22 @@ std::vector<double> CutSheet::past() const {
 }
 
 bool CutSheet::restore(std::span<const double> past) {
-  if (past.size() < 2) return false;
-  const auto count = static_cast<std::size_t>(past[0]), earlier = static_cast<std::size_t>(past[1]);
-  if (count + earlier > past.size() || past.size() != 2 + (count + earlier) * kPastNumbers + on_cut_.size())
-    return false;
+  PastReader get(past);
+  const std::size_t count = get.count(kPastNumbers), earlier = get.count(kPastNumbers);
+  if (!get.ok() || get.left().size() != (count + earlier) * kPastNumbers + on_cut_.size()) return false;
   std::vector<CutTet> all(count + earlier);
-  const double* number = past.data() + 2;
   for (CutTet& cut : all) {
-    cut.tet = static_cast<std::uint32_t>(number[0]);
-    if (cut.tet >= place_of_.size()) return false;
-    std::copy_n(number + 1, 6, cut.at.begin());
-    cut.through = number[7] != 0.0;
-    cut.stays = static_cast<std::uint8_t>(number[8]);
-    number += kPastNumbers;
+    cut.tet = static_cast<std::uint32_t>(get.index(place_of_.size()));
+    for (double& at : cut.at) at = get.number();
+    cut.through = get.flag();
+    cut.stays = static_cast<std::uint8_t>(get.index(kAllCorners + 1));
   }
+  if (!get.ok()) return false;
   cut_.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
   before_.assign(all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
   std::fill(place_of_.begin(), place_of_.end(), kNone);
   for (std::uint32_t i = 0; i < cut_.size(); ++i) place_of_[cut_[i].tet] = i;
-  for (char& on : on_cut_) on = *number++ != 0.0 ? 1 : 0;
+  for (char& on : on_cut_) on = get.flag() ? 1 : 0;
   return true;
 }
 

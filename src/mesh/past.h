@@ -1,6 +1,8 @@
-// past.h — the numbers of an interaction's checkpoint, one after the other.
+// past.h — the numbers of a checkpoint's part, one after the other.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -34,18 +36,33 @@ class PastReader {
     const double x = number(), y = number(), z = number();
     return {x, y, z};
   }
-  /// How many follow, at most as many as numbers are left.
-  std::size_t count() {
+  bool flag() { return index(2) == 1; }
+  /// A whole number that an int holds.
+  int whole() {
     const double n = number();
-    ok_ = ok_ && n >= 0.0 && n <= static_cast<double>(in_.size());
+    ok_ = ok_ && std::abs(n) <= 2147483647.0 && n == std::floor(n);
+    return ok_ ? static_cast<int>(n) : 0;
+  }
+  /// A whole number below `end`.
+  std::size_t index(std::size_t end) {
+    const double n = number();
+    ok_ = ok_ && n >= 0.0 && n < static_cast<double>(end) && n == std::floor(n);
     return ok_ ? static_cast<std::size_t>(n) : 0;
   }
+  /// How many follow, of `each` numbers: not more than are left.
+  std::size_t count(std::size_t each = 1) {
+    const std::size_t left = in_.empty() ? 0 : in_.size() - 1;
+    return index(left / each + 1);
+  }
+  /// @param n  of count()
   std::span<const double> take(std::size_t n) {
     const std::span<const double> taken = in_.first(n);
     in_ = in_.subspan(n);
     return taken;
   }
   std::span<const double> left() const { return in_; }
+  /// What is read does not fit.
+  void refuse() { ok_ = false; }
   bool ok() const { return ok_; }
   bool done() const { return ok_ && in_.empty(); }
 
