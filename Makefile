@@ -8,12 +8,12 @@ PROGRAM := $(BUILD)/bin/glisson
 OUT ?= out/reproduce
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check setup format clean citations figures pages layout lint sanitizers races
+.PHONY: help run test check setup format clean citations figures pages layout lint sanitizers races fuzz fuzz-keep
 .NOTPARALLEL:
 
 help:  ## this list
 	@echo "Glisson: soft tissue that is non-linear, viscoelastic and touched by instruments"
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 18
 
 setup:  ## install the packages that are missing (SECTION=run, python, test or check; all of them: check)
 	@scripts/setup.sh $(or $(SECTION),check)
@@ -68,6 +68,17 @@ races:  ## the engine's tests under the thread sanitizer
 	@scripts/configure.sh tsan tests
 	@cmake --build build/tsan -j $(JOBS) --target determinism_tests engine_tests change_tests
 	@cd build/tsan && $(CTEST) -R 'Threads|SameBytes|SubmeshBody|SideBySide|Forces|Step'
+
+# Not part of check either: a fourth build, with clang. TARGETS="mesh run" takes some of them.
+SECONDS_EACH ?= 60
+fuzz:  ## every parser against made-up input (SECONDS_EACH=900 for each; JOBS at a time; TARGETS="mesh run")
+	@scripts/setup.sh check
+	@scripts/configure.sh fuzz tests
+	@cmake --build build/fuzz -j $(JOBS) --target $(or $(TARGETS:%=fuzz_%),fuzzers)
+	@scripts/fuzz build/fuzz run --seconds $(SECONDS_EACH) --jobs $(JOBS) $(TARGETS)
+
+fuzz-keep:  ## take what `make fuzz` found into tests/fuzz/corpus, where it reaches new code
+	@scripts/fuzz build/fuzz keep $(TARGETS)
 
 format:  ## lay out the sources in place with clang-format
 	@scripts/setup.sh check

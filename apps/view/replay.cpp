@@ -58,6 +58,11 @@ void Replay::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
+void Replay::show(double time) {
+  seek(time);
+  publish();
+}
+
 void Replay::run() {
   publish();
   WallClock::time_point last = WallClock::now(), published = last;

@@ -27,6 +27,8 @@ class Replay final : public Source {
 
   void start() override;
   void stop() override;
+  /// Makes the state at a time [s] the latest, for who watches without the thread: not between start() and stop().
+  void show(double time);
   bool post(const Command& command) override { return commands_.push(command); }
   const Snapshot* latest() override { return latest_.take(); }
   bool next_sample(ForceSample& sample) override { return samples_.pop(sample); }

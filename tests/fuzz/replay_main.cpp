@@ -1,6 +1,7 @@
 // replay_main.cpp — runs files through a fuzz target's entry point without libFuzzer.
 //
 //   fuzz_replay_NAME FILE_OR_FOLDER…
+//   fuzz_replay_NAME --seeds FOLDER      writes the seeds anew, of a target that makes them
 //
 // A crash or an exception that the entry point lets through ends the program with an error, after the file's
 // name has been printed. So does an empty corpus: a test that ran nothing has proved nothing.
@@ -15,6 +16,8 @@
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+/// Of targets whose seeds follow a format of ours that changes.
+__attribute__((weak)) void write_seeds(const std::filesystem::path& folder);
 
 namespace {
 
@@ -50,6 +53,11 @@ bool replay(const std::filesystem::path& file, std::size_t& bytes) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 3 && std::string(argv[1]) == "--seeds") {
+    if (write_seeds == nullptr) return 1;
+    write_seeds(argv[2]);
+    return 0;
+  }
   std::size_t files = 0, failed = 0, bytes = 0;
   for (int i = 1; i < argc; ++i) {
     for (const std::filesystem::path& file : files_of(argv[i])) {
