@@ -471,7 +471,8 @@ void ImplicitScheme::load(CheckpointReader& in) {
   std::vector<Vec3d> last_change;
   in.get(last_change), in.get(last_h_), in.get(step_), in.get(fresh_);
   in.get_doubles(energies_);
-  const auto fits = [&](std::size_t size) { return size == body_.vertex_count || (size == 0 && last_h_ == 0.0); };
+  const bool begun = !fresh_ || last_h_ != 0.0;  // else the first step makes room
+  const auto fits = [&](std::size_t size) { return size == body_.vertex_count || (size == 0 && !begun); };
   const auto is_tet = [&](std::uint32_t t) { return t < body_.elements.size(); };
   if (!fits(last_change.size()) || !std::all_of(watch_.inverted.begin(), watch_.inverted.end(), is_tet))
     CheckpointReader::fail();
