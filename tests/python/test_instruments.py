@@ -176,9 +176,8 @@ def test_a_blade_of_a_scene_cuts(scenes):
 def test_an_instrument_belongs_to_one_simulation():
     """A second simulation, or the same one again, is refused by the instrument's name; the first one goes on."""
     tool = glisson.ContactTool(
-        glisson.ContactOptions(shape=glisson.Ball(radius=0.005)),
-        glisson.PathDriver(pose(0.025), glisson.SteadyMotion(velocity=0.1, depth=0.01)),
-        name="finger",
+        glisson.ContactOptions(name="finger", shape=glisson.Ball(radius=0.005)),
+        glisson.PathDriver(pose(0.025), glisson.SteadyMotion(velocity=0.1)),
     )
     first, second = body_with(tool), body_with()
     for body in (first, second):
