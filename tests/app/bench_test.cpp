@@ -96,7 +96,8 @@ TEST_F(Bench, TakesAnySizes) {
                    "b.json"}),
               Exits(0));
   std::vector<int> tets;
-  for (const nlohmann::json& row : read_json(folder_ / "b.json")["rows"]) tets.push_back(row["tets"]);
+  const nlohmann::json json = read_json(folder_ / "b.json");
+  for (const nlohmann::json& row : json["rows"]) tets.push_back(row["tets"]);
   EXPECT_EQ(tets, (std::vector{96, 324, 1200})) << "2×2×4, 3×3×6, 5×5×8";
 }
 
