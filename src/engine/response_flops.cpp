@@ -89,7 +89,6 @@ inline F Neg(F a) { return after(0, -a.value, a); }
 inline F Min(F a, F b) { return after(0, std::min(a.value, b.value), a, b); }
 inline F Max(F a, F b) { return after(0, std::max(a.value, b.value), a, b); }
 inline bool Lt(F a, F b) { return a.value < b.value; }
-inline bool Le(F a, F b) { return a.value <= b.value; }
 inline bool Gt(F a, F b) { return a.value > b.value; }
 inline bool AllTrue(Lanes, bool all) { return all; }
 /// Both are worked out in lanes.
@@ -97,9 +96,8 @@ inline F IfThenElse(bool choice, F yes, F no) { return after(0, choice ? yes.val
 inline F guess_inverse_cube_root(Lanes, F a) { return after(0, 1.0F / std::cbrt(a.value), a); }
 
 namespace hn {
-using N_TRACED::Abs, N_TRACED::AllTrue, N_TRACED::Gt, N_TRACED::IfThenElse, N_TRACED::Le, N_TRACED::Lt, N_TRACED::Max,
-    N_TRACED::Min, N_TRACED::MulAdd, N_TRACED::MulSub, N_TRACED::Neg, N_TRACED::NegMulAdd, N_TRACED::Set,
-    N_TRACED::Sqrt;
+using N_TRACED::Abs, N_TRACED::AllTrue, N_TRACED::Gt, N_TRACED::IfThenElse, N_TRACED::Lt, N_TRACED::Max, N_TRACED::Min,
+    N_TRACED::MulAdd, N_TRACED::MulSub, N_TRACED::Neg, N_TRACED::NegMulAdd, N_TRACED::Set, N_TRACED::Sqrt;
 inline F Zero(Lanes) { return {}; }
 inline F IfThenElseZero(bool choice, F yes) { return choice ? yes : F{}; }
 inline F IfThenZeroElse(bool choice, F no) { return choice ? F{} : no; }
