@@ -55,8 +55,8 @@ lint:
 	@scripts/lint.sh $(ASAN) $(JOBS)
 
 # Address and undefined behaviour, over every test but those of the page; the fuzz corpus is among them. Long physical runs
-# are left out, which were half of the time: their laws, schemes and solvers are in shorter tests too.
-LONG_RUNS := FlatPunch|FreeVibration|DeepPress|PaperPress|Scrambled|Barrel|Figure2/Measure|RandomScenes.*/[4-7]|ThousandPunctures.*/(1.|[3-9])|NeedleMesh|BovineNeedle|PunchContact|Hertz|HoldsTheTruth|Twin|LiverVelocity|NeedleMeets
+# are left out, which were half of the time: their laws, schemes and solvers are in shorter tests too; so are tests of scripts.
+LONG_RUNS := FlatPunch|FreeVibration|DeepPress|PaperPress|Scrambled|Barrel|Figure2/Measure|RandomScenes.*/[4-7]|ThousandPunctures.*/(1.|[3-9])|NeedleMesh|BovineNeedle|PunchContact|Hertz|HoldsTheTruth|Twin|LiverVelocity|NeedleMeets|StandIn|FromAnywhere|IsNeverCreated|PureBending|script_tests
 sanitizers:
 	@scripts/configure.sh asan-ubsan tests
 	@scripts/build.sh $(ASAN) $(JOBS)
