@@ -2,7 +2,7 @@
 //
 // Prints the least time of many rounds, since the machine may be busy with something else: docs/capsule.md quotes it.
 //   capsule_bench [cells]
-#include "glisson/capsule.h"
+#include "glisson/instruments/capsule.h"
 
 #include <chrono>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <limits>
 
-#include "glisson/simulation.h"
-#include "instruments/membrane.h"
+#include "glisson/simulation/simulation.h"
+#include "instruments/capsule/membrane.h"
 #include "support/must_step.h"
 
 namespace glisson {

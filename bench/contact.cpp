@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "glisson/contact.h"
-#include "glisson/simulation.h"
+#include "glisson/instruments/contact.h"
+#include "glisson/simulation/simulation.h"
 #include "support/must_step.h"
 
 namespace {

@@ -4,7 +4,7 @@
 //
 // An edge wider than a block comes down through it, off the planes of its vertices, a part of an element at a time, with a
 // step of the body in between.
-#include "glisson/cutting.h"
+#include "glisson/instruments/cutting.h"
 #include "support/must_step.h"
 
 #include <algorithm>

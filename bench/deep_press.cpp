@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
+#include "glisson/instruments/motion.h"
 #include "glisson/io.h"
-#include "glisson/motion.h"
-#include "glisson/simulation.h"
+#include "glisson/simulation/simulation.h"
 
 namespace {
 

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "glisson/motion.h"
-#include "glisson/simulation.h"
+#include "glisson/instruments/motion.h"
+#include "glisson/simulation/simulation.h"
 #include "support/must_step.h"
 
 namespace {

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "glisson/simulation.h"
+#include "glisson/simulation/simulation.h"
 #include "support/must_step.h"
 
 namespace glisson {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "glisson/material/tissue.h"
 #include "glisson/mesh.h"
-#include "glisson/tissue.h"
 
 namespace glisson::app {
 

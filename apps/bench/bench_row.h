@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "backend/cpu/machine_peak.h"
 #include "bench/bench_case.h"
-#include "glisson/simulation.h"
+#include "bench/peak/machine_peak.h"
+#include "glisson/simulation/simulation.h"
 
 namespace glisson::app {
 

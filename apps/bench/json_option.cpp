@@ -5,9 +5,9 @@
 
 #include <filesystem>
 
+#include "cli/standard_streams.h"
 #include "report/json_text.h"
 #include "report/output_file.h"
-#include "standard_streams.h"
 
 namespace glisson::app {
 namespace {

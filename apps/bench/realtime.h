@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "glisson/scene.h"
-#include "view/frame_pace.h"
+#include "glisson/scene/scene.h"
+#include "view/engine/frame_pace.h"
 
 namespace glisson::app {
 

@@ -12,12 +12,12 @@
 #include "bench/json_option.h"
 #include "bench/percentile.h"
 #include "bench/realtime.h"
-#include "exit_code.h"
-#include "interrupt.h"
-#include "mesh_cache.h"
+#include "cli/exit_code.h"
+#include "cli/interrupt.h"
+#include "cli/mesh_cache.h"
+#include "cli/scene_options.h"
+#include "cli/standard_streams.h"
 #include "report/summary_json.h"
-#include "scene_options.h"
-#include "standard_streams.h"
 
 namespace glisson::app {
 namespace {

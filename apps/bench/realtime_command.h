@@ -1,7 +1,7 @@
 // realtime_command.h — glisson bench realtime.
 #pragma once
 
-#include "commands.h"
+#include "cli/commands.h"
 
 namespace glisson::app {
 

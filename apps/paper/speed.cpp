@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "interrupt.h"
+#include "cli/interrupt.h"
 #include "paper/curve_fit.h"
 #include "paper/figures.h"
 

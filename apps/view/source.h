@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "view/command.h"
-#include "view/snapshot.h"
+#include "view/engine/snapshot.h"
+#include "view/protocol/command.h"
 
 namespace glisson::view {
 

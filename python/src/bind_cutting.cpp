@@ -1,7 +1,7 @@
 // bind_cutting.cpp — a blade's edge led through a body by hand. Blades that are instruments: Simulation.attach_blade.
 #include <sstream>
 
-#include "glisson/cutting.h"
+#include "glisson/instruments/cutting.h"
 #include "live_simulation.h"
 
 namespace glisson::python {

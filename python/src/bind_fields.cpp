@@ -1,6 +1,6 @@
 // bind_fields.cpp — the name of a field that there is not, answered as a scene answers a key that there is not.
+#include "base/nearest.h"
 #include "bind.h"
-#include "scene/nearest.h"
 
 namespace glisson::python {
 

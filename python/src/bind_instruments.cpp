@@ -1,10 +1,10 @@
 // bind_instruments.cpp — needles, contact tools, capsules, containers, blades; who moves them; what is read off them.
-#include "glisson/blade.h"
-#include "glisson/capsule.h"
-#include "glisson/contact.h"
-#include "glisson/container.h"
-#include "glisson/needle.h"
-#include "glisson/tool_motion.h"
+#include "glisson/instruments/blade.h"
+#include "glisson/instruments/capsule.h"
+#include "glisson/instruments/contact.h"
+#include "glisson/instruments/container.h"
+#include "glisson/instruments/needle.h"
+#include "glisson/instruments/tool_motion.h"
 #include "live_simulation.h"
 #include "words.h"
 

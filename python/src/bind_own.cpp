@@ -5,7 +5,7 @@
 // A step never throws: what a method raises is kept, the tool stays where it is and the interaction does nothing until the
 // step is done, and then it comes out of step() or advance() as it is. A call into Python takes some microseconds, as long
 // as a step of a small body.
-#include "glisson/instrument.h"
+#include "glisson/instruments/instrument.h"
 #include "live_simulation.h"
 
 namespace glisson::python {

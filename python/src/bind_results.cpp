@@ -4,7 +4,7 @@
 //                 └▶ observers in Python take the GIL; Ctrl-C and what they raise end the run
 #include <atomic>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 #include "live_simulation.h"
 #include "report/force_table.h"
 #include "report/json_text.h"

@@ -1,5 +1,5 @@
 // bind_scenes.cpp — scenes from files and text, and their variants.
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 #include "live_simulation.h"
 #include "scene_object.h"
 #include "words.h"

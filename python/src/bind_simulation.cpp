@@ -1,8 +1,8 @@
 // bind_simulation.cpp — simulations: built, held, driven, stepped and read.
 #include <sstream>
 
-#include "glisson/motion.h"
-#include "glisson/tool_motion.h"
+#include "glisson/instruments/motion.h"
+#include "glisson/instruments/tool_motion.h"
 #include "live_simulation.h"
 #include "words.h"
 

@@ -4,8 +4,8 @@
 // name in Python.
 #include <cctype>
 
-#include "glisson/tissue.h"
-#include "glisson/tissue_presets.h"
+#include "glisson/material/tissue.h"
+#include "glisson/material/tissue_presets.h"
 #include "words.h"
 
 namespace glisson::python {

@@ -3,8 +3,8 @@
 #include <atomic>
 
 #include "bind.h"
-#include "fit/law_candidates.h"
 #include "fit/run_fit.h"
+#include "fit/search/law_candidates.h"
 #include "live_simulation.h"
 #include "report/fit_json.h"
 #include "report/fit_state.h"

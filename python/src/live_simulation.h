@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "bind.h"
-#include "glisson/blade.h"
-#include "glisson/scene.h"
+#include "glisson/instruments/blade.h"
+#include "glisson/scene/scene.h"
 
 namespace glisson::python {
 

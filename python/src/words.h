@@ -2,12 +2,12 @@
 #pragma once
 
 #include "bind.h"
-#include "glisson/contact.h"
+#include "glisson/instruments/contact.h"
+#include "glisson/instruments/needle.h"
+#include "glisson/material/tissue.h"
 #include "glisson/mesh.h"
-#include "glisson/needle.h"
-#include "glisson/scene.h"
-#include "glisson/simulation.h"
-#include "glisson/tissue.h"
+#include "glisson/scene/scene.h"
+#include "glisson/simulation/simulation.h"
 
 GLISSON_WORDS(glisson::BoxSplit, "'kuhn', 'alternating'")
 GLISSON_WORDS(glisson::DeformationMeasure,

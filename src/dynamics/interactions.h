@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/checkpoint.h"
-#include "dynamics/constraints.h"
-#include "glisson/interaction.h"
+#include "dynamics/state/checkpoint.h"
+#include "dynamics/state/constraints.h"
+#include "glisson/simulation/interaction.h"
 
 namespace glisson {
 

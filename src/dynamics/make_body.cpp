@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "engine/element_body.h"
-#include "engine/flops.h"
-#include "engine/response_kernels.h"
+#include "engine/kernels/flops.h"
+#include "engine/kernels/response_kernels.h"
 #include "engine/submesh_body.h"
 
 namespace glisson {

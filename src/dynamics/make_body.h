@@ -4,9 +4,9 @@
 #include <memory>
 #include <span>
 
+#include "element/body.h"
 #include "engine/moving_body.h"
-#include "glisson/simulation.h"
-#include "mechanics/body.h"
+#include "glisson/simulation/simulation.h"
 
 namespace glisson {
 

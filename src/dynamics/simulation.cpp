@@ -1,5 +1,5 @@
 // simulation.cpp — the public face of a body in motion: checks what comes in, and hands on.
-#include "glisson/simulation.h"
+#include "glisson/simulation/simulation.h"
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,11 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "dynamics/make_scheme.h"
-#include "dynamics/mass_scaling.h"
+#include "dynamics/schemes/make_scheme.h"
 #include "dynamics/simulation_parts.h"
-#include "dynamics/tissue_numbers.h"
-#include "mechanics/tet_fields.h"
+#include "dynamics/state/tissue_numbers.h"
+#include "dynamics/step/mass_scaling.h"
+#include "element/tet_fields.h"
 
 namespace glisson {
 namespace {

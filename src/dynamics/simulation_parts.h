@@ -1,8 +1,8 @@
 // simulation_parts.h — the inside of a simulation, for what the library itself builds upon it.
 #pragma once
 
-#include "dynamics/scheme.h"
-#include "glisson/simulation.h"
+#include "dynamics/schemes/scheme.h"
+#include "glisson/simulation/simulation.h"
 
 namespace glisson {
 

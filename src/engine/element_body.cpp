@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/response_kernels.h"
-#include "mechanics/flush_denormals.h"
+#include "element/flush_denormals.h"
+#include "engine/kernels/response_kernels.h"
 
 namespace glisson::engine {
 namespace {

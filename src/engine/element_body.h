@@ -6,9 +6,9 @@
 
 #include <memory>
 
+#include "element/force_operator.h"
+#include "element/tissue_operator.h"
 #include "engine/moving_body.h"
-#include "mechanics/force_operator.h"
-#include "mechanics/tissue_operator.h"
 
 namespace glisson::engine {
 

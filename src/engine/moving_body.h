@@ -12,12 +12,12 @@
 #include <span>
 #include <vector>
 
-#include "glisson/interaction.h"
+#include "element/body_change.h"
+#include "element/branch_memory.h"
+#include "element/stiff_element.h"
 #include "glisson/math.h"
-#include "mechanics/body_change.h"
-#include "mechanics/branch_memory.h"
-#include "mechanics/stiff_element.h"
-#include "tissue/strain.h"
+#include "glisson/simulation/interaction.h"
+#include "material/strain.h"
 
 namespace glisson {
 

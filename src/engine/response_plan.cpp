@@ -1,9 +1,9 @@
 // response_plan.cpp — what the stages of large deformation need of a tissue, worked out once.
 #include <cmath>
 
-#include "engine/response_kernels.h"
-#include "mechanics/element_shape.h"
-#include "tissue/stiffness_bound.h"
+#include "element/element_shape.h"
+#include "engine/kernels/response_kernels.h"
+#include "material/stiffness_bound.h"
 
 namespace glisson::engine {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/response_batches.h"
+#include "engine/layout/response_batches.h"
 #include "engine/submesh_scratch.h"
 
 namespace glisson::engine {

@@ -11,10 +11,10 @@
 
 #include <memory>
 
-#include "engine/kernels.h"
+#include "engine/kernels/kernels.h"
+#include "engine/kernels/response_kernels.h"
+#include "engine/layout/submesh.h"
 #include "engine/moving_body.h"
-#include "engine/response_kernels.h"
-#include "engine/submesh.h"
 #include "engine/task_pool.h"
 
 namespace glisson::engine {

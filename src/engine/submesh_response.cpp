@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/response_batches.h"
+#include "engine/layout/response_batches.h"
 #include "engine/submesh_scratch.h"
 
 namespace glisson::engine {

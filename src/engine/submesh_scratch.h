@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "engine/response_kernels.h"
+#include "engine/kernels/response_kernels.h"
 #include "engine/submesh_body.h"
 
 namespace glisson::engine {

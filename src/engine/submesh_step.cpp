@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "element/flush_denormals.h"
 #include "engine/submesh_scratch.h"
-#include "mechanics/flush_denormals.h"
-#include "tissue/shape_measure.h"
+#include "material/shape_measure.h"
 
 namespace glisson::engine {
 namespace {

@@ -6,13 +6,13 @@
 #include <set>
 
 #include "fit/data/units.h"
-#include "fit/local_problem.h"
-#include "fit/next_experiments.h"
-#include "fit/proof/bootstrap.h"
-#include "fit/proof/covariance.h"
-#include "fit/proof/profile.h"
-#include "fit/proof/validation.h"
-#include "fit/proof/verdict.h"
+#include "fit/search/local_problem.h"
+#include "fit/uncertainty/bootstrap.h"
+#include "fit/uncertainty/covariance.h"
+#include "fit/uncertainty/next_experiments.h"
+#include "fit/uncertainty/profile.h"
+#include "fit/uncertainty/validation.h"
+#include "fit/uncertainty/verdict.h"
 
 namespace glisson::fit {
 namespace {

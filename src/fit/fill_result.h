@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fit/fit_result.h"
-#include "fit/law_search.h"
+#include "fit/search/law_search.h"
 
 namespace glisson::fit {
 

@@ -8,7 +8,7 @@
 
 #include "fit/curve.h"
 #include "fit/model.h"
-#include "fit/proof/interval.h"
+#include "fit/uncertainty/interval.h"
 
 namespace glisson::fit {
 

@@ -10,8 +10,8 @@
 #include "fit/data/data_spec.h"
 #include "fit/forward/section_forward.h"
 #include "fit/model.h"
-#include "fit/problem.h"
-#include "glisson/scene.h"
+#include "fit/search/problem.h"
+#include "glisson/scene/scene.h"
 
 namespace glisson::fit {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
+#include "base/input_file.h"
 #include "fit/fit_spec.h"
 #include "fit/section_fit.h"
-#include "mesh/input_file.h"
 
 namespace glisson::fit {
 namespace {

@@ -1,5 +1,5 @@
 // reference.cpp — docs/fit_file.md, written from the description the reader itself uses.
-#include "scene/reference_sections.h"
+#include "scene/describe/reference_sections.h"
 
 #include "fit/data/section_data.h"
 #include "fit/fit_spec.h"

@@ -9,13 +9,13 @@
 
 #include "fit/fill_result.h"
 #include "fit/fit_curves.h"
-#include "fit/forecast.h"
-#include "fit/law_candidates.h"
-#include "fit/law_search.h"
-#include "fit/proof/covariance.h"
-#include "fit/proof/criteria.h"
-#include "fit/proof/validation.h"
+#include "fit/search/law_candidates.h"
+#include "fit/search/law_search.h"
 #include "fit/tissue_of_fit.h"
+#include "fit/uncertainty/covariance.h"
+#include "fit/uncertainty/criteria.h"
+#include "fit/uncertainty/forecast.h"
+#include "fit/uncertainty/validation.h"
 
 namespace glisson::fit {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "fit/fit_result.h"
 #include "fit/fit_spec.h"
-#include "fit/multi_start.h"
-#include "glisson/scene.h"
+#include "fit/search/multi_start.h"
+#include "glisson/scene/scene.h"
 
 namespace glisson::fit {
 

@@ -7,7 +7,7 @@
 #include "fit/data/section_data.h"
 #include "fit/fit_spec.h"
 #include "fit/forward/section_forward.h"
-#include "scene/section.h"
+#include "scene/parse/section.h"
 
 namespace glisson::fit {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "glisson/scene.h"
-#include "scene/schema.h"
+#include "glisson/scene/scene.h"
+#include "scene/parse/schema.h"
 
 namespace glisson::fit {
 

@@ -4,8 +4,8 @@
 
 #include "fit/data/units.h"
 #include "fit/forward/offset_model.h"
-#include "scene/parametric_variant.h"
-#include "scene/tissue_file.h"
+#include "scene/build/parametric_variant.h"
+#include "scene/parse/tissue_file.h"
 
 namespace glisson::fit {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "fit/fit_result.h"
-#include "fit/law_search.h"
+#include "fit/search/law_search.h"
 
 namespace glisson::fit {
 

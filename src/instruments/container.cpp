@@ -1,5 +1,5 @@
 // container.cpp — the floor and the wall as solids that stand still, and what presses on each.
-#include "glisson/container.h"
+#include "glisson/instruments/container.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "instruments/contact_books.h"
-#include "instruments/contact_reach.h"
-#include "mesh/past.h"
+#include "base/past.h"
+#include "instruments/contact/contact_books.h"
+#include "instruments/contact/contact_reach.h"
 
 namespace glisson {
 namespace {

@@ -1,8 +1,8 @@
-#include "glisson/instrument.h"
+#include "glisson/instruments/instrument.h"
 
 #include <stdexcept>
 
-#include "mesh/past.h"
+#include "base/past.h"
 
 namespace glisson {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/text.h"
 #include "glisson/io.h"
-#include "mesh/text.h"
 
 namespace glisson {
 namespace {

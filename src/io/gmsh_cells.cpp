@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mesh/text.h"
+#include "base/text.h"
 
 namespace glisson::detail {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/input_file.h"
+#include "base/text.h"
 #include "io/raw_mesh.h"
-#include "mesh/input_file.h"
-#include "mesh/text.h"
 
 namespace glisson {
 namespace detail {

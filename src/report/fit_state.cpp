@@ -8,8 +8,8 @@
 #include <span>
 #include <stdexcept>
 
-#include "dynamics/checkpoint.h"
-#include "mesh/input_file.h"
+#include "base/input_file.h"
+#include "dynamics/state/checkpoint.h"
 #include "report/json_text.h"
 #include "report/output_file.h"
 #include "report/version.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 
 namespace glisson {
 

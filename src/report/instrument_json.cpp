@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "glisson/blade.h"
-#include "glisson/contact.h"
-#include "glisson/needle.h"
+#include "glisson/instruments/blade.h"
+#include "glisson/instruments/contact.h"
+#include "glisson/instruments/needle.h"
 
 namespace glisson {
 namespace {

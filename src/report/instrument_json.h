@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "glisson/instrument.h"
+#include "glisson/instruments/instrument.h"
 
 namespace glisson {
 

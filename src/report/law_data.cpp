@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tissue/uniaxial.h"
+#include "material/uniaxial.h"
 
 namespace glisson {
 namespace {

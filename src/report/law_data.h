@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 
 namespace glisson {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "report/output_file.h"
-#include "scene/result_names.h"
+#include "scene/run/result_names.h"
 
 namespace glisson {
 namespace {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 #include "report/variant_recorder.h"
 
 namespace glisson {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 
 namespace glisson {
 

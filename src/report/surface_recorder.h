@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 
 namespace glisson {
 

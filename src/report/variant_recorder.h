@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 #include "report/force_table.h"
 #include "report/frame_series.h"
 #include "report/output_file.h"

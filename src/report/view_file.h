@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 #include "report/output_file.h"
 
 namespace glisson {

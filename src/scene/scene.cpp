@@ -1,18 +1,18 @@
 // scene.cpp — text in, checked scene out.
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "mesh/input_file.h"
-#include "scene/expand.h"
-#include "scene/nearest.h"
-#include "scene/read_variant.h"
-#include "scene/result_names.h"
-#include "scene/sections.h"
-#include "scene/select.h"
-#include "scene/word_table.h"
+#include "base/input_file.h"
+#include "base/nearest.h"
+#include "scene/parse/expand.h"
+#include "scene/parse/read_variant.h"
+#include "scene/parse/sections.h"
+#include "scene/parse/select.h"
+#include "scene/parse/word_table.h"
+#include "scene/run/result_names.h"
 
 namespace glisson {
 namespace {

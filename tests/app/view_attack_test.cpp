@@ -10,10 +10,10 @@
 
 #include "app/program.h"
 #include "app/view_client.h"
-#include "view/access.h"
-#include "view/engine.h"
-#include "view/server.h"
-#include "view/strangers.h"
+#include "view/engine/engine.h"
+#include "view/server/access.h"
+#include "view/server/server.h"
+#include "view/server/strangers.h"
 
 namespace glisson::view {
 namespace {

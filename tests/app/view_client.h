@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "view/command.h"
+#include "view/protocol/command.h"
 
 namespace glisson::test {
 

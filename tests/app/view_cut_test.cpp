@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "app/program.h"
-#include "view/engine.h"
-#include "view/surface.h"
+#include "view/engine/engine.h"
+#include "view/engine/surface.h"
 
 namespace glisson::view {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "app/program.h"
 #include "glisson/io.h"
-#include "view/command.h"
-#include "view/engine.h"
-#include "view/latest.h"
-#include "view/ring.h"
+#include "view/engine/engine.h"
+#include "view/protocol/command.h"
+#include "view/protocol/latest.h"
+#include "view/server/ring.h"
 
 namespace glisson::view {
 namespace {

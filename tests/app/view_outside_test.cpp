@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "app/program.h"
-#include "view/run_folder.h"
+#include "view/replay/run_folder.h"
 
 namespace glisson::test {
 namespace {

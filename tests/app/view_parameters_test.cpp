@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "app/program.h"
-#include "view/live_body.h"
-#include "view/live_parameters.h"
+#include "view/engine/live_body.h"
+#include "view/engine/live_parameters.h"
 
 namespace glisson::view {
 namespace {

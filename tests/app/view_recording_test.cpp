@@ -5,11 +5,11 @@
 #include <thread>
 
 #include "app/program.h"
-#include "glisson/scene.h"
-#include "view/engine.h"
-#include "view/recording.h"
-#include "view/scene_writer.h"
-#include "view/zip.h"
+#include "glisson/scene/scene.h"
+#include "view/engine/engine.h"
+#include "view/engine/recording.h"
+#include "view/engine/scene_writer.h"
+#include "view/protocol/zip.h"
 
 namespace glisson::test {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "app/program.h"
 #include "glisson/io.h"
-#include "view/force_lines.h"
-#include "view/replay.h"
-#include "view/run_folder.h"
+#include "view/protocol/force_lines.h"
+#include "view/replay/replay.h"
+#include "view/replay/run_folder.h"
 
 namespace glisson::test {
 namespace {

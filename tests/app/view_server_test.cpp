@@ -8,10 +8,10 @@
 
 #include "app/program.h"
 #include "app/view_client.h"
-#include "view/access.h"
-#include "view/engine.h"
-#include "view/lead.h"
-#include "view/server.h"
+#include "view/engine/engine.h"
+#include "view/engine/lead.h"
+#include "view/server/access.h"
+#include "view/server/server.h"
 
 namespace glisson::view {
 namespace {

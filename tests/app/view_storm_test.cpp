@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "app/program.h"
-#include "view/engine.h"
-#include "view/live_body.h"
-#include "view/messages.h"
-#include "view/surface.h"
+#include "view/engine/engine.h"
+#include "view/engine/live_body.h"
+#include "view/engine/surface.h"
+#include "view/protocol/messages.h"
 
 namespace glisson::view {
 namespace {

@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "app/program.h"
-#include "tissue/shape_measure.h"
-#include "view/live_body.h"
-#include "view/messages.h"
-#include "view/surface.h"
+#include "material/shape_measure.h"
+#include "view/engine/live_body.h"
+#include "view/engine/surface.h"
+#include "view/protocol/messages.h"
 
 namespace glisson::view {
 namespace {

@@ -9,8 +9,8 @@
 #include "report/json_field.h"
 #include "report/json_text.h"
 #include "support/places.h"
-#include "view/messages.h"
-#include "view/run_folder.h"
+#include "view/protocol/messages.h"
+#include "view/replay/run_folder.h"
 
 namespace glisson::test {
 namespace {

@@ -1,8 +1,8 @@
 // What leaves with removed tets is accounted for: mass, momentum, energy; and the balance stays exact while it moves.
 #include "change/changed_body.h"
-#include "glisson/motion.h"
-#include "mechanics/body.h"
-#include "mechanics/tet_fields.h"
+#include "element/body.h"
+#include "element/tet_fields.h"
+#include "glisson/instruments/motion.h"
 
 namespace glisson::test {
 namespace {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "glisson/simulation.h"
+#include "glisson/simulation/simulation.h"
 #include "support/bodies.h"
 
 namespace glisson::test {

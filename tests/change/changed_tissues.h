@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 
 namespace glisson::test {

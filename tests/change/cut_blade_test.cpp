@@ -2,8 +2,8 @@
 #include <sstream>
 
 #include "change/cut_body.h"
-#include "glisson/blade.h"
-#include "glisson/tool_motion.h"
+#include "glisson/instruments/blade.h"
+#include "glisson/instruments/tool_motion.h"
 
 namespace glisson::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "change/changed_body.h"
-#include "glisson/cutting.h"
+#include "glisson/instruments/cutting.h"
 
 namespace glisson::test {
 

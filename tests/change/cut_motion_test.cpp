@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "change/cut_body.h"
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 #include "support/must_step.h"
 
 namespace glisson::test {

@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "change/cut_body.h"
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 
 namespace glisson::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "glisson/simulation.h"
+#include "glisson/simulation/simulation.h"
 
 namespace glisson::test {
 

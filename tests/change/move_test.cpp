@@ -2,7 +2,7 @@
 // is left is one built anew.
 #include "change/changed_body.h"
 #include "change/faces.h"
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 
 namespace glisson::test {
 namespace {

@@ -1,10 +1,10 @@
 // The bound of the step from shares of masses lies between that of the single tets and h*, and following changes of a body
 // stays near what finding it anew gives.
-#include "dynamics/part_bound.h"
+#include "dynamics/step/part_bound.h"
 #include "change/changed_body.h"
 #include "change/faces.h"
-#include "dynamics/stable_step.h"
-#include "mechanics/body_change.h"
+#include "dynamics/step/stable_step.h"
+#include "element/body_change.h"
 
 namespace glisson::test {
 namespace {

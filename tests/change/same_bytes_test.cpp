@@ -1,7 +1,7 @@
 // A run with removals and splits gives the same bytes on any number of threads, and again.
 #include "change/changed_body.h"
 #include "change/faces.h"
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 #include "support/must_step.h"
 
 namespace glisson::test {

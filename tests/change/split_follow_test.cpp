@@ -1,7 +1,7 @@
 // Copies of split vertices belong to the sets, supports and tools of their origin, and share its loads.
 #include "change/changed_body.h"
 #include "change/faces.h"
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 #include "support/must_step.h"
 
 namespace glisson::test {

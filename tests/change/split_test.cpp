@@ -1,7 +1,7 @@
 // Splitting along faces leaves the body that one would build of the parted mesh: same forces, mass, motion, energy.
 #include "change/changed_body.h"
 #include "change/faces.h"
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 
 namespace glisson::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "change/changed_tissues.h"
-#include "mechanics/block_response.h"
+#include "element/block_response.h"
 #include "support/column.h"
 
 namespace glisson {

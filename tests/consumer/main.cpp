@@ -1,5 +1,5 @@
 // The README's program: a box of tissue, held below, pressed from above.
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 
 #include <cstdio>
 #include <string>

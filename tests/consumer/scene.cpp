@@ -1,5 +1,5 @@
 // A scene from text, run by somebody else's program.
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 
 #include <cstdio>
 

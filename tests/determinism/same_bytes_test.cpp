@@ -4,7 +4,7 @@
 #include <thread>
 #include <vector>
 
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 #include "support/must_step.h"
 

@@ -4,7 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "mechanics/reference.h"
+#include "material/reference/reference.h"
 #include "support/column.h"
 
 namespace glisson::test {

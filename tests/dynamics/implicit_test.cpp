@@ -6,7 +6,7 @@
 #include <ostream>
 
 #include "dynamics/columns.h"
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 
 namespace glisson {

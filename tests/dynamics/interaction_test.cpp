@@ -1,12 +1,12 @@
 // What a program attaches to a body acts as a load or a support of the same meaning would, and the books stay exact.
-#include "glisson/interaction.h"
+#include "glisson/simulation/interaction.h"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 #include <stdexcept>
 
-#include "glisson/simulation.h"
+#include "glisson/simulation/simulation.h"
 
 namespace glisson {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "glisson/motion.h"
-#include "glisson/simulation.h"
+#include "glisson/instruments/motion.h"
+#include "glisson/simulation/simulation.h"
 #include "laws/every_tissue.h"
 #include "support/bodies.h"
 

@@ -8,8 +8,8 @@
 #include <ostream>
 
 #include "dynamics/columns.h"
-#include "dynamics/viscous_system.h"
-#include "glisson/motion.h"
+#include "dynamics/solvers/viscous_system.h"
+#include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 #include "support/must_step.h"
 

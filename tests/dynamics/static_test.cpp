@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "glisson/motion.h"
-#include "mechanics/tissue_operator.h"
+#include "element/tissue_operator.h"
+#include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 
 namespace glisson {

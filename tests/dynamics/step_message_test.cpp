@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "glisson/motion.h"
-#include "glisson/simulation.h"
+#include "glisson/instruments/motion.h"
+#include "glisson/simulation/simulation.h"
 
 namespace glisson {
 namespace {

@@ -1,6 +1,6 @@
 // What single stiff tets take off the step: never less than they do by the dense spectrum, and far less than if the whole body
 // were as stiff.
-#include "dynamics/stiffness_levels.h"
+#include "dynamics/step/stiffness_levels.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "dynamics/stable_step.h"
+#include "dynamics/step/stable_step.h"
 #include "support/bodies.h"
 
 namespace glisson {

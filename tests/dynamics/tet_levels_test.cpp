@@ -5,7 +5,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 #include "support/must_step.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <ostream>
 
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 
 namespace glisson {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "element/body.h"
 #include "engine/submesh_body.h"
-#include "mechanics/body.h"
 #include "support/bodies.h"
 
 namespace glisson::test {

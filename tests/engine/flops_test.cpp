@@ -1,5 +1,5 @@
 // Operations are counted from the stages as they run: what reaches the forces, and nothing else.
-#include "engine/flops.h"
+#include "engine/kernels/flops.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/engine_run.h"
-#include "mechanics/reference.h"
+#include "material/reference/reference.h"
 #include "support/samples.h"
 
 namespace glisson {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "engine/engine_run.h"
-#include "tissue/shape_measure.h"
+#include "material/shape_measure.h"
 
 namespace glisson {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "engine/engine_run.h"
-#include "mechanics/reference.h"
-#include "mesh/partition.h"
+#include "material/reference/reference.h"
+#include "mesh/partition/partition.h"
 
 namespace glisson {
 namespace {

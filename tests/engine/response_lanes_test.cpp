@@ -2,10 +2,10 @@
 // step is told, tets that are flat or inverted, and the memory of Maxwell branches over many steps.
 #include <gtest/gtest.h>
 
+#include "element/tissue_operator.h"
 #include "engine/element_body.h"
 #include "engine/engine_run.h"
 #include "laws/every_tissue.h"
-#include "mechanics/tissue_operator.h"
 
 namespace glisson {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "element/force_operator.h"
 #include "engine/engine_run.h"
-#include "mechanics/force_operator.h"
 #include "support/samples.h"
 
 namespace glisson {

@@ -1,5 +1,5 @@
 // Drawn anew, curves scatter the optimum as new experiments would, and the bytes depend on the seed alone.
-#include "fit/proof/bootstrap.h"
+#include "fit/uncertainty/bootstrap.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fit/least_squares.h"
+#include "fit/search/least_squares.h"
 #include "small_models.h"
 
 namespace glisson::fit {

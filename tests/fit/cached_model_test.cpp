@@ -1,6 +1,6 @@
 // A forward run is made once for curves of the same history and for a point asked again, from any number of threads, and what
 // is forgotten is made again with the same result.
-#include "fit/cached_model.h"
+#include "fit/search/cached_model.h"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>

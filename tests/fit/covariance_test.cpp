@@ -1,6 +1,6 @@
 // Curvature gives the covariance of linear regression exactly, corrected where residuals swing or curves differ, and never
 // inverts a direction that the curves do not see.
-#include "fit/proof/covariance.h"
+#include "fit/uncertainty/covariance.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fit/least_squares.h"
-#include "fit/proof/autocorrelation.h"
-#include "fit/proof/distribution.h"
-#include "fit/proof/influence.h"
+#include "fit/search/least_squares.h"
+#include "fit/uncertainty/autocorrelation.h"
+#include "fit/uncertainty/distribution.h"
+#include "fit/uncertainty/influence.h"
 #include "small_models.h"
 
 namespace glisson::fit {

@@ -1,6 +1,6 @@
 // Information criteria have their closed forms and find the order that made the data; the held-out rule prefers the simplest
 // law that predicts as well.
-#include "fit/proof/criteria.h"
+#include "fit/uncertainty/criteria.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The step of the differences falls where truncation and rounding are both small, and the error told bounds the true one.
-#include "fit/derivative_check.h"
+#include "fit/search/derivative_check.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The experiment that is forecast to tell most does so when it is made, by as much as was forecast.
-#include "fit/proof/design.h"
+#include "fit/uncertainty/design.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fit/least_squares.h"
+#include "fit/search/least_squares.h"
 #include "small_models.h"
 
 namespace glisson::fit {

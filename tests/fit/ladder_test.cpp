@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "scene/document.h"
-#include "scene/problems.h"
+#include "scene/parse/document.h"
+#include "scene/parse/problems.h"
 
 namespace glisson::fit {
 namespace {

@@ -1,6 +1,6 @@
 // The descent finds the closed-form optimum of a linear model, stays within bounds, bears a bad point under a robust loss,
 // and refuses a model that fails without throwing.
-#include "fit/least_squares.h"
+#include "fit/search/least_squares.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "fit/local_problem.h"
+#include "fit/search/local_problem.h"
 #include "fit/small_models.h"
 
 namespace glisson::fit {

@@ -1,6 +1,6 @@
 // Many starts find the lower of two optima and say how often, tell a flat valley from two places, give the same bytes on one
 // thread and on many, and go on from what is known.
-#include "fit/multi_start.h"
+#include "fit/search/multi_start.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "fit/data/load_curves.h"
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 #include "support/places.h"
 
 namespace glisson::fit::test {

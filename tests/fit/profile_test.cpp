@@ -1,6 +1,6 @@
 // Profiles end where linear theory and the exact likelihood end, stay open where curves do not object, and bring back a lower
 // cost that they find on the way.
-#include "fit/proof/profile.h"
+#include "fit/uncertainty/profile.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "fit/phantom.h"
-#include "scene/problems.h"
-#include "scene/reference_sections.h"
+#include "scene/describe/reference_sections.h"
+#include "scene/parse/problems.h"
 
 namespace glisson::fit {
 namespace {

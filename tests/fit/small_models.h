@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "fit/problem.h"
+#include "fit/search/problem.h"
 
 namespace glisson::fit::testing_models {
 

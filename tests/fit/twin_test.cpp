@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fit/least_squares.h"
-#include "fit/proof/bootstrap.h"
-#include "fit/proof/covariance.h"
-#include "fit/proof/profile.h"
+#include "fit/search/least_squares.h"
+#include "fit/uncertainty/bootstrap.h"
+#include "fit/uncertainty/covariance.h"
+#include "fit/uncertainty/profile.h"
 #include "small_models.h"
 
 namespace glisson::fit {

@@ -1,5 +1,5 @@
 // Errors per curve, group and set add up by samples, and repetitions are compared at the same displacements, where all have data.
-#include "fit/proof/validation.h"
+#include "fit/uncertainty/validation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The words say what the numbers mean: which parameter is known, which is not, and which combination is known all the same.
-#include "fit/proof/verdict.h"
+#include "fit/uncertainty/verdict.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fit/proof/combination.h"
+#include "fit/uncertainty/combination.h"
 #include "small_models.h"
 
 namespace glisson::fit {

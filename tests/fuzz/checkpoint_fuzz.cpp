@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "forged_file.h"
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 #include "support.h"
 
 namespace {

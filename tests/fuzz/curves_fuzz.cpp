@@ -10,7 +10,7 @@
 #include <string>
 
 #include "fit/data/prepare.h"
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 
 namespace {
 

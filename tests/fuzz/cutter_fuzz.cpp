@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "forged_file.h"
-#include "glisson/cutting.h"
-#include "glisson/simulation.h"
+#include "glisson/instruments/cutting.h"
+#include "glisson/simulation/simulation.h"
 #include "support.h"
 
 namespace {

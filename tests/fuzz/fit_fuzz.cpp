@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "fit/fit_spec.h"
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 #include "support.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

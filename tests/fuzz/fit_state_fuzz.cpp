@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "dynamics/checkpoint.h"
+#include "dynamics/state/checkpoint.h"
 #include "fit/run_fit.h"
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 #include "report/fit_state.h"
 #include "support.h"
 

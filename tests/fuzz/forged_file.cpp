@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "dynamics/checkpoint.h"
+#include "dynamics/state/checkpoint.h"
 #include "support.h"
 
 namespace glisson::fuzz {

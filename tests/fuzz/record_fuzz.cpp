@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 #include "support.h"
 
 namespace {

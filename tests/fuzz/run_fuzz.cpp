@@ -9,9 +9,9 @@
 
 #include "glisson/io.h"
 #include "support.h"
-#include "view/messages.h"
-#include "view/replay.h"
-#include "view/run_folder.h"
+#include "view/protocol/messages.h"
+#include "view/replay/replay.h"
+#include "view/replay/run_folder.h"
 
 namespace {
 

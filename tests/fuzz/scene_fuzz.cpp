@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 
 namespace {
 

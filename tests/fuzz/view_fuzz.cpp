@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "view/access.h"
-#include "view/command.h"
+#include "view/protocol/command.h"
+#include "view/server/access.h"
 
 namespace {
 

@@ -6,13 +6,13 @@
 #include <sstream>
 
 #include "fit/run_fit.h"
+#include "glisson/instruments/motion.h"
+#include "glisson/instruments/needle.h"
+#include "glisson/instruments/tool_motion.h"
 #include "glisson/io.h"
-#include "glisson/motion.h"
-#include "glisson/needle.h"
-#include "glisson/scene.h"
-#include "glisson/simulation.h"
-#include "glisson/tissue_presets.h"
-#include "glisson/tool_motion.h"
+#include "glisson/material/tissue_presets.h"
+#include "glisson/scene/scene.h"
+#include "glisson/simulation/simulation.h"
 #include "support/must_step.h"
 #include "support/places.h"
 

@@ -7,8 +7,8 @@
 #include <random>
 #include <sstream>
 
-#include "glisson/capsule.h"
-#include "glisson/simulation.h"
+#include "glisson/instruments/capsule.h"
+#include "glisson/simulation/simulation.h"
 
 namespace glisson {
 namespace {

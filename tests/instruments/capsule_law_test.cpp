@@ -4,8 +4,8 @@
 
 #include <Eigen/Dense>
 
+#include "instruments/capsule/membrane.h"
 #include "instruments/capsule_sheets.h"
-#include "instruments/membrane.h"
 
 namespace glisson {
 namespace {

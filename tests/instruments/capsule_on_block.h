@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "glisson/capsule.h"
+#include "glisson/instruments/capsule.h"
 #include "instruments/capsule_sheets.h"
 
 namespace glisson {

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "instruments/membrane.h"
+#include "instruments/capsule/membrane.h"
 
 namespace glisson {
 

@@ -4,8 +4,8 @@
 
 #include <numbers>
 
+#include "instruments/capsule/capsule_surface.h"
 #include "instruments/capsule_on_block.h"
-#include "instruments/capsule_surface.h"
 
 namespace glisson {
 namespace {

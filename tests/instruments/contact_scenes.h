@@ -6,8 +6,8 @@
 #include <functional>
 #include <memory>
 
-#include "glisson/contact.h"
-#include "glisson/simulation.h"
+#include "glisson/instruments/contact.h"
+#include "glisson/simulation/simulation.h"
 #include "support/bodies.h"
 
 namespace glisson::test {

@@ -1,6 +1,6 @@
 // A container holds tissue as its walls would, from free to bonded, and feels what the tissue exerts on it: in slow motion the
 // load on bottom and sides is what the tool pushes with.
-#include "glisson/container.h"
+#include "glisson/instruments/container.h"
 
 #include <sstream>
 

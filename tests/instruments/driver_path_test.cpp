@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "glisson/tool_motion.h"
+#include "glisson/instruments/tool_motion.h"
 
 namespace glisson {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "glisson/tool_motion.h"
+#include "glisson/instruments/tool_motion.h"
 
 namespace glisson {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "glisson/contact.h"
-#include "glisson/simulation.h"
-#include "glisson/tool_motion.h"
+#include "glisson/instruments/contact.h"
+#include "glisson/instruments/tool_motion.h"
+#include "glisson/simulation/simulation.h"
 #include "support/must_step.h"
 
 namespace glisson {

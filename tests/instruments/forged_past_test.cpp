@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "glisson/blade.h"
-#include "glisson/container.h"
+#include "glisson/instruments/blade.h"
+#include "glisson/instruments/container.h"
 #include "instruments/contact_scenes.h"
 
 namespace glisson {

@@ -3,8 +3,8 @@
 
 #include <Eigen/Dense>
 
-#include "instruments/shaft.h"
-#include "instruments/tissue_zone.h"
+#include "instruments/needle/shaft.h"
+#include "instruments/needle/tissue_zone.h"
 
 namespace glisson {
 namespace {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "glisson/needle.h"
-#include "glisson/simulation.h"
-#include "glisson/tool_motion.h"
+#include "glisson/instruments/needle.h"
+#include "glisson/instruments/tool_motion.h"
+#include "glisson/simulation/simulation.h"
 
 namespace glisson::test {
 

@@ -1,6 +1,6 @@
 // A needle in soft tissue: it presses, breaks through at the stated force, cuts, rubs, rests and comes out, and every force on
 // the hand is borne by what holds the tissue.
-#include "glisson/needle.h"
+#include "glisson/instruments/needle.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // A shape's distance is that to its surface, negative inside, with its gradient as normal; what is no shape is refused.
 #include <random>
 
+#include "instruments/contact/shape.h"
 #include "instruments/contact_scenes.h"
-#include "instruments/shape.h"
 
 namespace glisson {
 namespace {

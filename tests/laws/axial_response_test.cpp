@@ -1,5 +1,5 @@
 // axial_response_test.cpp — the short formulas of a stretched specimen are those of the general response.
-#include "tissue/axial_response.h"
+#include "material/axial_response.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <functional>
 
+#include "element/tissue_operator.h"
 #include "laws/every_tissue.h"
-#include "mechanics/tissue_operator.h"
 #include "support/bodies.h"
 
 namespace glisson {

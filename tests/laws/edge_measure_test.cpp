@@ -1,12 +1,12 @@
 // Radius ratio and minimum solid angle against the rest tetrahedron: what they see, and how they are scaled.
-#include "tissue/edge_measure.h"
+#include "material/edge_measure.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "element/element_shape.h"
 #include "laws/every_tissue.h"
-#include "mechanics/element_shape.h"
 #include "support/bodies.h"
 
 namespace glisson {

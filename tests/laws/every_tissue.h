@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "glisson/tissue.h"
-#include "mechanics/reference_stress.h"
-#include "tissue/response.h"
+#include "glisson/material/tissue.h"
+#include "material/reference/reference_stress.h"
+#include "material/response.h"
 
 namespace glisson::test {
 

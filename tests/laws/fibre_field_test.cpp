@@ -1,8 +1,8 @@
 // Directions of fibres from the mesh: each tet has its own, and one that is missing is told.
 #include <gtest/gtest.h>
 
-#include "mechanics/element_shape.h"
-#include "mechanics/tissue_operator.h"
+#include "element/element_shape.h"
+#include "element/tissue_operator.h"
 
 namespace glisson {
 namespace {

@@ -4,7 +4,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "laws/every_tissue.h"
-#include "tissue/stiffness_bound.h"
+#include "material/stiffness_bound.h"
 
 namespace glisson {
 namespace {

@@ -1,5 +1,5 @@
 // The curve of a tensile test: closed forms of linear and of incompressible tissue.
-#include "tissue/uniaxial.h"
+#include "material/uniaxial.h"
 
 #include <gtest/gtest.h>
 

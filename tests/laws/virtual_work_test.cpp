@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/make_body.h"
+#include "element/tet_fields.h"
 #include "engine/moving_body.h"
 #include "laws/every_tissue.h"
-#include "mechanics/tet_fields.h"
 #include "support/bodies.h"
 
 namespace glisson {

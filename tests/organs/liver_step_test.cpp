@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "glisson/io.h"
-#include "glisson/simulation.h"
+#include "glisson/simulation/simulation.h"
 #include "support/places.h"
 
 namespace glisson {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mechanics/reference.h"
+#include "material/reference/reference.h"
 #include "support/bodies.h"
 #include "support/must_step.h"
 #include "support/scene_runs.h"

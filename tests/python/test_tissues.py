@@ -11,7 +11,7 @@ import pytest
 
 def test_every_field_is_there():
     """The class has the fields of the C++ struct, all of them."""
-    header = (Path(__file__).parents[2] / "include/glisson/tissue.h").read_text(encoding="utf-8")
+    header = (Path(__file__).parents[2] / "include/glisson/material/tissue.h").read_text(encoding="utf-8")
     body = re.search(r"^struct Tissue \{\n(.*?)^\};", header, re.MULTILINE | re.DOTALL).group(1)
     declared = re.findall(r"^  [\w:<>]+ (\w+)(?: =[^;]*|\{\})?;", body, re.MULTILINE)
     assert len(declared) > 10 and list(glisson.Tissue._fields) == declared

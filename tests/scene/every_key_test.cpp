@@ -6,8 +6,8 @@
 #include <set>
 
 #include "scene/every_instrument.h"
+#include "scene/parse/sections.h"
 #include "scene/scene_text.h"
-#include "scene/sections.h"
 
 namespace glisson {
 namespace {

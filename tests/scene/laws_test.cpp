@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-#include "scene/document.h"
+#include "scene/parse/document.h"
 #include "scene/scene_text.h"
 
 namespace glisson {

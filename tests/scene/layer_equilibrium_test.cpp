@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "glisson/motion.h"
-#include "glisson/tissue_presets.h"
+#include "glisson/instruments/motion.h"
+#include "glisson/material/tissue_presets.h"
 
 namespace glisson {
 namespace {

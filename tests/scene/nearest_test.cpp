@@ -1,5 +1,5 @@
 // nearest_test.cpp — the word that was probably meant.
-#include "scene/nearest.h"
+#include "base/nearest.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // parametric_variant_test.cpp — setting numbers in a scene read once is as reading it anew with --set.
-#include "scene/parametric_variant.h"
+#include "scene/build/parametric_variant.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

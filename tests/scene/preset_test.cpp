@@ -9,10 +9,10 @@
 #include <regex>
 #include <set>
 
-#include "glisson/tissue_presets.h"
+#include "glisson/material/tissue_presets.h"
+#include "material/response.h"
 #include "scene/scene_text.h"
 #include "support/places.h"
-#include "tissue/response.h"
 
 namespace glisson {
 namespace {

@@ -5,9 +5,9 @@
 #include <iterator>
 #include <type_traits>
 
-#include "scene/reference_text.h"
+#include "scene/describe/reference_text.h"
+#include "scene/parse/sections.h"
 #include "scene/scene_text.h"
-#include "scene/sections.h"
 #include "support/places.h"
 
 namespace glisson {

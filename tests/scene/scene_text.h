@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 
 namespace glisson::test {
 

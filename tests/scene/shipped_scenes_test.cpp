@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 #include "support/places.h"
 
 namespace glisson {

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "scene/document.h"
+#include "scene/parse/document.h"
+#include "scene/parse/tissue_file.h"
 #include "scene/scene_text.h"
-#include "scene/tissue_file.h"
 #include "support/places.h"
 
 namespace glisson {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "glisson/mesh.h"
-#include "glisson/simulation.h"
+#include "glisson/simulation/simulation.h"
 
 namespace glisson::test {
 

@@ -1,7 +1,7 @@
 // column.h — a column that cannot bulge, which is one-dimensional: what schemes are held against closed forms on.
 #pragma once
 
-#include "glisson/simulation.h"
+#include "glisson/simulation/simulation.h"
 #include "support/bodies.h"
 
 namespace glisson::test {

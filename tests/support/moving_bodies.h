@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
+#include "element/body.h"
 #include "engine/moving_body.h"
-#include "mechanics/body.h"
 #include "support/bodies.h"
 
 namespace glisson::test {

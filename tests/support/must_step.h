@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "glisson/simulation.h"
+#include "glisson/simulation/simulation.h"
 
 namespace glisson::test {
 

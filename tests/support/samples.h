@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "glisson/tissue.h"
+#include "glisson/material/tissue.h"
 #include "support/bodies.h"
 #include "support/random.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 #include "support/places.h"
 
 namespace glisson::test {

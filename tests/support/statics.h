@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
 
-#include "mechanics/tissue_operator.h"
+#include "element/tissue_operator.h"
 
 namespace glisson::test {
 

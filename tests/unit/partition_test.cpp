@@ -1,5 +1,5 @@
 // A partition loses no tet, keeps its parts of one size and holds few vertices twice: what submeshes rest on.
-#include "mesh/partition.h"
+#include "mesh/partition/partition.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -9,7 +9,7 @@
 #include <numeric>
 #include <random>
 
-#include "mesh/star_moves.h"
+#include "mesh/cut/star_moves.h"
 #include "support/random.h"
 
 namespace glisson::detail {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 
 namespace glisson {
 namespace {

@@ -1,14 +1,14 @@
 // The shape measures: their values on the cube split, what they are blind to, and their precision near rest.
-#include "tissue/shape_measure.h"
+#include "material/shape_measure.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
 
+#include "element/body.h"
 #include "glisson/mesh.h"
-#include "mechanics/body.h"
-#include "mechanics/reference.h"
+#include "material/reference/reference.h"
 #include "support/random.h"
 
 namespace glisson {

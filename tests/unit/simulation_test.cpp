@@ -1,12 +1,12 @@
 // The simulation's contract: statuses instead of exceptions, refusals that say why, forces that add up.
-#include "glisson/simulation.h"
+#include "glisson/simulation/simulation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
-#include "glisson/motion.h"
+#include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 #include "support/must_step.h"
 

@@ -1,6 +1,6 @@
 // Splitting along faces doubles the vertices that the cut passes through and no other: a cut mesh is what is left
 // when tets are glued together at all faces but the split ones.
-#include "mesh/split_faces.h"
+#include "mesh/cut/split_faces.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <random>
 #include <set>
 
-#include "mesh/faces.h"
+#include "mesh/topology/faces.h"
 #include "support/random.h"
 
 namespace glisson::detail {

@@ -1,12 +1,12 @@
 // Laws of stiffness: each does what its formula says, in float and double, and knows its own derivative.
-#include "glisson/stiffness_law.h"
+#include "glisson/material/stiffness_law.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
-#include "glisson/tissue.h"
+#include "glisson/material/tissue.h"
 
 namespace glisson {
 namespace {

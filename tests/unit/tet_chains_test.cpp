@@ -1,5 +1,5 @@
 // Chains of face neighbours: every tet once, neighbours share exactly a face, and there are as few chains as can be.
-#include "mesh/tet_chains.h"
+#include "mesh/partition/tet_chains.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "mesh/partition.h"
+#include "mesh/partition/partition.h"
 #include "support/random.h"
 
 namespace glisson::detail {

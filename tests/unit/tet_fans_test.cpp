@@ -1,5 +1,5 @@
 // Fans: six tets around one edge in order, no tet twice, and most of a mesh in them.
-#include "mesh/tet_fans.h"
+#include "mesh/partition/tet_fans.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "mesh/partition.h"
+#include "mesh/partition/partition.h"
 #include "support/random.h"
 
 namespace glisson::detail {

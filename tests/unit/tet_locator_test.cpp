@@ -1,5 +1,5 @@
 // A point of the rest mesh is found in the tet that holds it, and only there.
-#include "mesh/tet_locator.h"
+#include "mesh/inspect/tet_locator.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

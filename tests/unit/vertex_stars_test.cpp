@@ -1,5 +1,5 @@
 // The stars of vertices stay those of the mesh through any sequence of changes: what removal and cutting rest on.
-#include "mesh/vertex_stars.h"
+#include "mesh/topology/vertex_stars.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

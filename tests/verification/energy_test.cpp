@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "glisson/motion.h"
-#include "mechanics/body.h"
-#include "mechanics/tet_fields.h"
+#include "element/body.h"
+#include "element/tet_fields.h"
+#include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 #include "support/must_step.h"
 

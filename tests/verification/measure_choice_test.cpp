@@ -4,7 +4,7 @@
 // that the force at 10 mm is the same; what is left is the shape of the curve on the way.
 #include <gtest/gtest.h>
 
-#include "mechanics/element_shape.h"
+#include "element/element_shape.h"
 #include "support/bodies.h"
 #include "support/statics.h"
 

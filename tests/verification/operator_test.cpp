@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "mechanics/force_operator.h"
-#include "mechanics/reference.h"
-#include "mechanics/tet_fields.h"
+#include "element/force_operator.h"
+#include "element/tet_fields.h"
+#include "material/reference/reference.h"
+#include "material/shape_measure.h"
 #include "support/samples.h"
-#include "tissue/shape_measure.h"
 
 namespace glisson {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <Eigen/SparseCholesky>
 
-#include "glisson/motion.h"
-#include "mechanics/reference.h"
+#include "glisson/instruments/motion.h"
+#include "material/reference/reference.h"
 #include "support/bodies.h"
 
 namespace glisson {

@@ -1,14 +1,14 @@
 // The stable step h* is the true limit of the paper's scheme: figures for the paper's mesh, runs on both sides.
-#include "dynamics/stable_step.h"
+#include "dynamics/step/stable_step.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "glisson/motion.h"
-#include "glisson/simulation.h"
-#include "mechanics/reference.h"
+#include "glisson/instruments/motion.h"
+#include "glisson/simulation/simulation.h"
+#include "material/reference/reference.h"
 #include "support/bodies.h"
 
 namespace glisson {

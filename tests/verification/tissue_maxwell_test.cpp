@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "mechanics/reference_stress.h"
+#include "material/reference/reference_stress.h"
 #include "support/bodies.h"
 #include "support/statics.h"
 

@@ -8,8 +8,8 @@
 
 #include <algorithm>
 
+#include "element/tissue_operator.h"
 #include "laws/every_tissue.h"
-#include "mechanics/tissue_operator.h"
 #include "support/bodies.h"
 
 namespace glisson {

@@ -4,7 +4,7 @@
 #include <array>
 #include <functional>
 
-#include "scene/nearest.h"
+#include "base/nearest.h"
 
 namespace glisson::fit {
 namespace {

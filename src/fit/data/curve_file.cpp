@@ -8,10 +8,10 @@
 #include <map>
 #include <system_error>
 
+#include "base/input_file.h"
 #include "fit/data/units.h"
-#include "glisson/scene.h"
-#include "mesh/input_file.h"
-#include "scene/problems.h"
+#include "glisson/scene/scene.h"
+#include "scene/parse/problems.h"
 
 namespace glisson::fit {
 namespace {

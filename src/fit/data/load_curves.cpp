@@ -1,6 +1,6 @@
 #include "fit/data/load_curves.h"
 
-#include "glisson/scene.h"
+#include "glisson/scene/scene.h"
 
 namespace glisson::fit {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "fit/data/data_spec.h"
 #include "fit/data/units.h"
-#include "scene/problems.h"
+#include "scene/parse/problems.h"
 
 namespace glisson::fit {
 

@@ -1,7 +1,7 @@
 #include "fit/data/section_data.h"
 
 #include "fit/data/units.h"
-#include "scene/section.h"
+#include "scene/parse/section.h"
 
 namespace glisson::fit {
 namespace {

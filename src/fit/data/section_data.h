@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fit/data/data_spec.h"
-#include "scene/schema.h"
+#include "scene/parse/schema.h"
 
 namespace glisson::fit {
 

@@ -6,7 +6,7 @@
 
 #include "fit/curve.h"
 #include "fit/model.h"
-#include "instruments/monotone_cubic.h"
+#include "instruments/motion/monotone_cubic.h"
 
 namespace glisson::fit {
 

@@ -8,8 +8,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "mesh/input_file.h"
-#include "scene/nearest.h"
+#include "base/input_file.h"
+#include "base/nearest.h"
 
 namespace glisson::fit {
 namespace {

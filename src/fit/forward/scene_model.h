@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "fit/forward/motion_model.h"
-#include "scene/parametric_variant.h"
+#include "scene/build/parametric_variant.h"
 
 namespace glisson::fit {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/section.h"
+#include "scene/parse/section.h"
 
 namespace glisson::fit {
 

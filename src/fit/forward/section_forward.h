@@ -6,8 +6,8 @@
 #include <string>
 
 #include "fit/forward/uniaxial.h"
-#include "glisson/simulation.h"
-#include "scene/schema.h"
+#include "glisson/simulation/simulation.h"
+#include "scene/parse/schema.h"
 
 namespace glisson::fit {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tissue/uniaxial_path.h"
+#include "material/uniaxial_path.h"
 
 namespace glisson::fit {
 namespace {

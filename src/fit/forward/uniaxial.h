@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fit/forward/motion_model.h"
-#include "glisson/tissue.h"
+#include "glisson/material/tissue.h"
 
 namespace glisson::fit {
 

@@ -1,0 +1,127 @@
+// batch.cpp — see batch.h.
+#include "cli/batch.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "report/summary_json.h"
+
+namespace glisson::app {
+namespace {
+
+/// Hands every call to the recorder, to the job's own observer and to the progress.
+class Fan : public RunObserver {
+ public:
+  Fan(VariantRecorder& recorder, RunObserver* also, Progress& progress, std::size_t index)
+      : recorder_(recorder), also_(also), progress_(progress), index_(index) {}
+
+  void on_start(const Variant& variant, const Simulation& simulation) override {
+    progress_.started(index_);
+    recorder_.on_start(variant, simulation);
+    if (also_ != nullptr) also_->on_start(variant, simulation);
+  }
+  void on_built(const BuiltVariant& built) override {
+    recorder_.on_built(built);
+    if (also_ != nullptr) also_->on_built(built);
+  }
+  void on_event(const RunEvent& event) override {
+    recorder_.on_event(event);
+    if (also_ != nullptr) also_->on_event(event);
+  }
+  void on_sample(const Sample& sample) override {
+    recorder_.on_sample(sample);
+    if (also_ != nullptr) also_->on_sample(sample);
+  }
+  void on_frame(const Simulation& simulation) override {
+    recorder_.on_frame(simulation);
+    if (also_ != nullptr) also_->on_frame(simulation);
+  }
+  void on_progress(double fraction) override { progress_.advanced(index_, fraction); }
+  void on_end(const RunSummary& summary) override {
+    recorder_.on_end(summary);
+    if (also_ != nullptr) also_->on_end(summary);
+    progress_.ended(index_, std::string(end_text(summary.end)));
+  }
+
+ private:
+  VariantRecorder& recorder_;
+  RunObserver* also_;
+  Progress& progress_;
+  std::size_t index_;
+};
+
+/// Steps a variant may need, up to a factor common to all: viscosity shortens the stable step.
+double likely_cost(const Variant& variant) {
+  const double viscous = 1e3 * variant.tissue.viscosity / variant.tissue.youngs_modulus;
+  return run_duration(variant) * (1.0 + viscous);
+}
+
+std::vector<std::size_t> longest_first(const std::vector<Job>& jobs) {
+  std::vector<std::size_t> order(jobs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return likely_cost(jobs[a].variant) > likely_cost(jobs[b].variant);
+  });
+  return order;
+}
+
+/// Runs `work(i)` for every i in `order`, `threads` at a time, until the stop flag is set. The first exception
+/// sets it and is thrown again at the end.
+template <class Work>
+void run_side_by_side(const std::vector<std::size_t>& order, int threads, Work work) {
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto worker = [&] {
+    for (std::size_t i = next++; i < order.size() && !stop_flag(); i = next++) {
+      try {
+        work(order[i]);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!failure) failure = std::current_exception();
+        stop_flag() = true;
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (int i = 1; i < threads; ++i) others.emplace_back(worker);
+    worker();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace
+
+void require_runnable(const std::vector<Job>& jobs, const MeshLoader& load) {
+  for (const Job& job : jobs) build_variant(job.variant, load);
+}
+
+std::vector<std::unique_ptr<VariantRecorder>> run_batch(const std::vector<Job>& jobs, const BatchOptions& options,
+                                                        const MeshLoader& load) {
+  std::vector<std::unique_ptr<VariantRecorder>> recorders;
+  std::vector<std::string> names;
+  for (const Job& job : jobs) {
+    recorders.push_back(std::make_unique<VariantRecorder>(job.variant, job.recorder, stop_flag()));
+    names.push_back(job.name);
+  }
+  Progress progress(std::move(names), options.threads, Progress::style_for(options.quiet));
+  run_side_by_side(longest_first(jobs), options.threads, [&](std::size_t i) {
+    Fan observer(*recorders[i], jobs[i].also.get(), progress, i);
+    run_variant(jobs[i].variant, load, observer, stop_flag());
+  });
+  progress.clear();
+  for (const auto& recorder : recorders) {
+    if (!recorder->error().empty()) throw OutputError(recorder->error());
+  }
+  return recorders;
+}
+
+}  // namespace glisson::app

@@ -1,0 +1,201 @@
+// command_bench.cpp — glisson bench: what a step costs on this machine, and how near its limits that is.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bench/bench_text.h"
+#include "bench/json_option.h"
+#include "bench/measure.h"
+#include "bench/realtime_command.h"
+#include "cli/commands.h"
+#include "cli/exit_code.h"
+#include "cli/mesh_cache.h"
+#include "cli/standard_streams.h"
+#include "engine/kernels/instruction_set.h"
+
+namespace glisson::app {
+namespace {
+
+constexpr const char* kFooter =
+    "Measures the machine's multiply-add peak and memory bandwidth, then the step of bodies that are generated here,\n"
+    "and holds one against the other. Takes about a minute, with --quick a few seconds; close other programs. Exit\n"
+    "status 1 where a body ends in another state on another number of threads.\n"
+    "\n"
+    "Examples:\n"
+    "  glisson bench --quick\n"
+    "  glisson bench --mesh liver.vtu --mesh kidney.vtu --json bench.json\n"
+    "  glisson bench --sizes 768,5000,20000 --isa avx2\n"
+    "  glisson bench --sizes 96000 --models linear,full --threads 1,2,4\n"
+    "  glisson bench --sizes 96000 --models all --threads 1";
+
+struct BenchOptions {
+  std::vector<int> threads;
+  std::vector<std::size_t> sizes;
+  std::vector<std::string> models{"linear", "law", "full"};
+  std::vector<std::string> meshes;
+  std::string isa, json;
+  bool quick = false;
+};
+
+/// 1, 2, 4, … and the number of cores.
+std::vector<int> all_threads() {
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<int> threads;
+  for (int n = 1; n < cores; n *= 2) threads.push_back(n);
+  threads.push_back(cores);
+  return threads;
+}
+
+template <class T>
+std::vector<T> sorted_once(std::vector<T> values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+/// What is left open is filled in: all sizes, but with --quick not the million; all numbers of threads.
+BenchOptions completed(BenchOptions options) {
+  if (options.threads.empty()) options.threads = all_threads();
+  if (options.sizes.empty()) {
+    options.sizes = usual_sizes();
+    if (options.quick) std::erase_if(options.sizes, [](std::size_t size) { return size > 500'000; });
+  }
+  options.threads = sorted_once(options.threads);
+  options.sizes = sorted_once(options.sizes);
+  return options;
+}
+
+std::vector<BenchBody> bodies_of(const BenchOptions& options) {
+  std::vector<BenchBody> bodies;
+  const auto there = [&](const std::string& name) {
+    return std::any_of(bodies.begin(), bodies.end(), [&](const BenchBody& body) { return body.name == name; });
+  };
+  for (const std::size_t size : options.sizes) {
+    BenchBody body = box_body(size);
+    if (!there(body.name)) bodies.push_back(std::move(body));  // two sizes may be nearest to one box
+  }
+  for (const std::string& mesh : options.meshes) {
+    const std::string name = std::filesystem::path(mesh).stem().string();
+    bodies.push_back(file_body(there(name) ? mesh : name, MeshCache(false).load({.path = mesh})));
+  }
+  return bodies;
+}
+
+std::vector<BenchCase> cases_of(const BenchOptions& options) {
+  std::vector<BenchCase> cases;
+  for (const Model model : every_model()) {
+    const auto& wanted = options.models;
+    const bool all = std::find(wanted.begin(), wanted.end(), "all") != wanted.end();
+    if (!all && std::find(wanted.begin(), wanted.end(), model_name(model)) == wanted.end()) continue;
+    for (const int threads : options.threads) cases.push_back({.model = model, .threads = threads});
+  }
+  return cases;
+}
+
+void measure_peaks(const BenchOptions& options, std::vector<cpu::MachinePeak>& peaks) {
+  for (std::size_t i = 0; i < options.threads.size(); ++i) {
+    const cpu::MachinePeak peak = cpu::measure_machine_peak(options.threads[i]);
+    if (i < peaks.size()) {
+      peaks[i] = best_of(peaks[i], peak);
+    } else {
+      peaks.push_back(peak);
+    }
+  }
+}
+
+/// The full model on the fewest threads is measured a second time with its energies kept.
+bool wants_accounting(const BenchBody& body, const std::vector<BenchCase>& cases) {
+  const auto full = [](const BenchCase& c) { return c.model == Model::full; };
+  return body.mesh.tets.size() == 96'000 && std::any_of(cases.begin(), cases.end(), full);
+}
+
+void measure_body(const BenchBody& body, std::vector<BenchCase> cases, const MeasureOptions& how, BenchResult& result) {
+  tell("bench: {}, {} tets\n", body.name, body.mesh.tets.size());
+  if (wants_accounting(body, cases)) {
+    cases.push_back({.model = Model::full, .threads = cases.front().threads, .accounting = true});
+  }
+  for (BenchRow& row : measure(body, cases, how)) {
+    (row.what.accounting ? result.accounting : result.rows).push_back(std::move(row));
+  }
+}
+
+int bench(const BenchOptions& given) {
+  if (!given.isa.empty()) cpu::use_instruction_set(given.isa);
+  const BenchOptions options = completed(given);
+  const MeasureOptions how = options.quick ? MeasureOptions{5, 0.03} : MeasureOptions{};
+  const std::vector<BenchCase> cases = cases_of(options);
+  const std::vector<BenchBody> bodies = bodies_of(options);
+  BenchResult result;
+  getloadavg(&result.load_average, 1);
+  for (const BenchBody& body : bodies) {
+    measure_peaks(options, result.peaks);  // several times in a run: the best is nearest to what the machine can do
+    measure_body(body, cases, how, result);
+  }
+  measure_peaks(options, result.peaks);
+  say("{}", bench_table(result, how));
+  write_json(options.json, bench_json(result, how));
+  const std::string mismatch = hash_mismatch(result.rows);
+  if (mismatch.empty()) return kDone;
+  tell("glisson: {}\n", mismatch);
+  return kFailed;
+}
+
+void add_bench_options(CLI::App& command, BenchOptions& options) {
+  command.add_option("--threads", options.threads, "numbers of threads; 1, 2, 4 … to all cores where not given")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1024));
+  command
+      .add_option("--sizes", options.sizes,
+                  "boxes of about so many tets; 768, 96000, 1000000 where not given. A size takes 1 kB a tet")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->check(CLI::Range(std::size_t{6}, std::size_t{50'000'000}));
+  std::vector<std::string> known = model_names();
+  known.emplace_back("all");
+  command
+      .add_option("--models", options.models,
+                  "linear; law: E follows the shape; full: and viscosity; the laws of large deformation by name; all")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->check(CLI::IsMember(known))
+      ->capture_default_str();
+  command.add_option("--mesh", options.meshes, "measure these meshes too (.vtu, .vtk, .msh)")->type_name("FILE…");
+  command
+      .add_option("--isa", options.isa,
+                  "instruction set of kernels and peak: avx512, avx2, sse4; the best where not given")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(cpu::instruction_sets()));
+  command.add_flag("--quick", options.quick, "fewer and shorter repetitions, without the million tets");
+  add_json_option(command, options.json);
+}
+
+/// `glisson bench --json x realtime SCENE` would silently leave x alone.
+void require_no_options(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() > 0) throw CLI::ValidationError(option->get_name(), "give the options of realtime after it");
+  }
+}
+
+}  // namespace
+
+void add_bench(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("bench", "measure the speed of a step against the machine's limits");
+  const auto options = std::make_shared<BenchOptions>();
+  add_bench_options(*command, *options);
+  const CLI::App* realtime = add_realtime(*command, action);
+  command->footer(kFooter);
+  command->callback([options, command, realtime, &action] {
+    if (realtime->parsed()) return require_no_options(*command);
+    action = [options] { return bench(*options); };
+  });
+}
+
+}  // namespace glisson::app

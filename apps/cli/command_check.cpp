@@ -1,0 +1,220 @@
+// command_check.cpp — glisson check: what a scene means and what it would cost, from a tenth of a second of each variant.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "cli/commands.h"
+#include "cli/exit_code.h"
+#include "cli/mesh_cache.h"
+#include "cli/progress.h"
+#include "cli/scene_options.h"
+#include "cli/standard_streams.h"
+#include "cli/tissue_text.h"
+
+namespace glisson::app {
+namespace {
+
+constexpr const char* kFooter =
+    "Reads the scene, builds every variant, steps it for a tenth of a second of your time and prints mesh, vertex\n"
+    "sets, tissue, stable step, and the steps and the time a run will take. Writes nothing. Exit status 2 if the\n"
+    "scene cannot be run.\n"
+    "\n"
+    "Examples:\n"
+    "  glisson check scenes/paper/figure3b.toml\n"
+    "  glisson check scenes/organs/liver.toml --mesh liver.vtu --set tissue.poisson_ratio=0.45";
+
+struct CheckOptions {
+  SceneOptions scene;
+  int threads = 1;
+};
+
+constexpr std::size_t kFew = 20;      // one tet in so many is what may keep the step short alone
+constexpr double kWorthSaying = 1.2;  // how many times as long a step would be without them
+
+/// Stops a run at its first report of progress, and keeps what the run knew at its start.
+class Taste : public RunObserver {
+ public:
+  void on_start(const Variant&, const Simulation& simulation) override {
+    mesh = simulation.mesh();
+    step_s = simulation.step_size();
+    stable_step_s = simulation.stable_step();
+    for (const double m : simulation.masses()) mass_kg += m;
+    scaling = simulation.mass_scaling();
+    if (std::isfinite(stable_step_s)) limits = simulation.limiting_tets(mesh.tets.size() / kFew + 1);
+  }
+  void on_progress(double) override { stop = true; }
+
+  std::atomic<bool> stop{false};
+  TetMesh mesh;
+  double step_s = 0.0, stable_step_s = 0.0, mass_kg = 0.0;
+  MassScaling scaling;
+  std::vector<LimitingTet> limits;  ///< of an explicit step: the tets with the smallest bounds
+};
+
+struct Cost {
+  double steps = 0.0, wall_s = 0.0;
+};
+
+std::string tissue_text(const Tissue& t) { return fmt::format("{}, ρ = {:.6g} kg/m³", law_text(t), t.density); }
+
+void print_mesh(const TetMesh& mesh, double mass_kg) {
+  const MeshReport report = inspect(mesh);
+  const Vec3d size = report.box_max - report.box_min;
+  say("  mesh     {} vertices, {} tets, {:.4g} × {:.4g} × {:.4g} mm, {:.4g} ml, {:.4g} g; shape {:.3f} worst, {:.3f} "
+      "median\n",
+      report.vertices, report.tets, 1e3 * size.x, 1e3 * size.y, 1e3 * size.z, 1e6 * report.volume, 1e3 * mass_kg,
+      report.worst_mean_ratio, report.median_mean_ratio);
+  for (const std::string& warning : report.warnings) say("           warning: {}\n", warning);
+}
+
+std::string set_text(const TetMesh& mesh, const std::string& set) {
+  const auto found = mesh.vertex_sets.find(set);
+  return fmt::format("\"{}\", {} vertices", set, found == mesh.vertex_sets.end() ? 0 : found->second.size());
+}
+
+std::string axes_text(const Axes& axes) {
+  return std::string(axes.x ? "x" : "") + (axes.y ? "y" : "") + (axes.z ? "z" : "");
+}
+
+/// In the order of InstrumentSpec::what and InstrumentMotion::how.
+constexpr std::array<const char*, 7> kInstrumentWords{"needle", "punch", "ball", "probe", "plate", "block", "blade"};
+constexpr std::array<const char*, 6> kMotionWords{"press", "strokes", "sine", "push", "record", "path"};
+static_assert(std::variant_size_v<decltype(InstrumentSpec::what)> == kInstrumentWords.size());
+static_assert(std::variant_size_v<decltype(InstrumentMotion::how)> == kMotionWords.size());
+
+void print_interactions(const Variant& v, const Taste& taste) {
+  for (const CapsuleSpec& x : v.capsules) {
+    say("  capsule  \"{}\" on {}: {:.4g} mm, E = {:.6g} Pa\n", x.options.name,
+        x.set.empty() ? "all of the surface" : set_text(taste.mesh, x.set), 1e3 * x.options.thickness,
+        x.options.youngs_modulus);
+  }
+  if (v.container) {
+    using Hold = ContainerSpec::Hold;
+    const Hold hold = v.container->hold;
+    say("  vessel   {}\n", hold == Hold::free ? "free" : hold == Hold::wet ? "wet" : "bonded");
+  }
+  for (const InstrumentSpec& x : v.instruments) {
+    const std::optional<double> end = make_driver(x)->end();
+    say("  tool     \"{}\", a {}: {}{}\n", x.name, kInstrumentWords[x.what.index()], kMotionWords[x.motion.how.index()],
+        end ? fmt::format(", until {:.4g} s", *end) : "");
+  }
+}
+
+void print_body(const Variant& v, const Taste& taste) {
+  print_mesh(taste.mesh, taste.mass_kg);
+  say("  tissue   \"{}\": {}\n", v.tissue.name, tissue_text(v.tissue));
+  for (const RegionSpec& region : v.regions) say("  region   \"{}\": {}\n", region.name, tissue_text(region.tissue));
+  for (const FixedSpec& fixed : v.fixed) {
+    say("  fixed    {}, in {}\n", set_text(taste.mesh, fixed.set), axes_text(fixed.axes));
+  }
+  if (v.fixed.empty()) say("  fixed    nothing: the body is free to drift\n");
+  for (const LoadSpec& load : v.loads) {
+    say("  load     {}: ({:.4g}, {:.4g}, {:.4g}) N\n", set_text(taste.mesh, load.set), load.force.x, load.force.y,
+        load.force.z);
+  }
+  for (const ToolSpec& tool : v.tools) {
+    const PressMotion& m = tool.motion;
+    if (tool.record) {
+      say("  tool     \"{}\" on {}: a recorded way of {} points, from {:.4g} s to {:.4g} s\n", tool.name,
+          set_text(taste.mesh, tool.set), tool.record->motion.times.size(), tool_start(tool),
+          tool_path(tool).end.value_or(0.0));
+      continue;
+    }
+    say("  tool     \"{}\" on {}: {:.4g} mm at {:.4g} mm/s, from {:.4g} s to {:.4g} s\n", tool.name,
+        set_text(taste.mesh, tool.set), 1e3 * m.depth, 1e3 * m.velocity, m.start, press_end(m));
+  }
+  print_interactions(v, taste);
+}
+
+Cost cost_of(const Variant& v, const Taste& taste, const RunSummary& summary) {
+  Cost cost;
+  cost.steps = std::ceil(run_duration(v) / taste.step_s);
+  if (v.max_steps) cost.steps = std::min(cost.steps, static_cast<double>(*v.max_steps));
+  cost.wall_s = cost.steps * summary.ns_per_tet_step * 1e-9 * static_cast<double>(summary.tets);
+  return cost;
+}
+
+bool stiffens(const Tissue& t) {
+  const bool law = !std::holds_alternative<ConstantLaw>(t.law) || t.lambda_law || t.mu_law;
+  return law || t.hyperelastic || t.kinematics == Kinematics::green;
+}
+
+/// Two digits, not rounded up: a step a little above the others' bound would give all of them mass.
+double two_digits_down(double x) {
+  const double last = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
+  return last * std::floor(x / last);
+}
+
+/// Which few tets keep an explicit step short, and what they cost.
+void print_limits(const Taste& taste) {
+  const MassScaling& added = taste.scaling;
+  if (!added.tets.empty()) {
+    say("  mass     {:.4g} g ({:.2g} % of the body's own) added to {} tets\n", 1e3 * added.added, 100.0 * added.share,
+        added.tets.size());
+  }
+  if (taste.limits.empty()) return;
+  const LimitingTet &first = taste.limits.front(), &others = taste.limits.back();
+  if (others.step < kWorthSaying * first.step) return;
+  const auto few = std::count_if(taste.limits.begin(), taste.limits.end(),
+                                 [&](const LimitingTet& t) { return t.step < 0.95 * others.step; });
+  say("  limits   {} of the tets, tet {} of altitude {:.3g} mm first, make steps {:.2g} times as short as the others "
+      "need;\n           mass_scaling_step_s = {:.2g} gives just these more mass\n",
+      few, first.tet, 1e3 * first.altitude, others.step / first.step, two_digits_down(others.step));
+}
+
+/// The implicit integrators compute in double, whatever the scene says.
+bool in_single(const Variant& v, const Taste& taste) {
+  return v.simulation.precision == Precision::single_precision && std::isfinite(taste.stable_step_s);
+}
+
+void print_time(const Variant& v, const Taste& taste, const Cost& cost, const RunSummary& summary) {
+  const bool automatic = !v.simulation.step;
+  say("  step     {:.4g} s{}, {}\n", taste.step_s, automatic ? " (auto)" : " (given)",
+      std::isfinite(taste.stable_step_s) ? fmt::format("stable below {:.4g} s at rest", taste.stable_step_s)
+                                         : "stable at any step");
+  print_limits(taste);
+  say("  run      {:.6g} s simulated, {:.0f} steps{}, about {} ({:.0f} ns per tet and step, {})\n",
+      std::min(run_duration(v), cost.steps * taste.step_s), cost.steps,
+      automatic && stiffens(v.tissue) ? " or more as the tissue stiffens" : "", duration_text(cost.wall_s),
+      summary.ns_per_tet_step, in_single(v, taste) ? "single precision" : "double precision");
+}
+
+int check(const CheckOptions& options) {
+  const Scene scene = open_scene(options.scene);
+  MeshCache meshes(true);
+  say("{}: {}\n", scene.file.string(), scene.title);
+  double total = 0.0, longest = 0.0;
+  for (const Variant& variant : scene.variants) {
+    Taste taste;
+    const RunSummary summary = run_variant(variant, meshes.loader(), taste, taste.stop);
+    const Cost cost = cost_of(variant, taste, summary);
+    say("\n{}\n", variant.label == variant.name ? variant.name : variant.name + " — " + variant.label);
+    print_body(variant, taste);
+    print_time(variant, taste, cost, summary);
+    total += cost.wall_s;
+    longest = std::max(longest, cost.wall_s);
+  }
+  say("\n{} variant{}, about {} on {} thread{}. The scene can be run.\n", scene.variants.size(),
+      scene.variants.size() == 1 ? "" : "s", duration_text(std::max(longest, total / options.threads)), options.threads,
+      options.threads == 1 ? "" : "s");
+  return kDone;
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("check", "what a scene means and costs, without running it");
+  const auto options = std::make_shared<CheckOptions>();
+  add_scene_options(*command, options->scene);
+  add_threads_option(*command, options->threads);
+  command->footer(kFooter);
+  command->callback([options, &action] { action = [options] { return check(*options); }; });
+}
+
+}  // namespace glisson::app

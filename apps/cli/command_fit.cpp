@@ -1,0 +1,202 @@
+// command_fit.cpp — glisson fit: measured curves in, a tissue out, with proof of how sure it is.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <tbb/global_control.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "cli/commands.h"
+#include "cli/embedded.h"
+#include "cli/exit_code.h"
+#include "cli/fit_progress.h"
+#include "cli/interrupt.h"
+#include "cli/mesh_cache.h"
+#include "cli/scene_options.h"
+#include "cli/standard_streams.h"
+#include "fit/run_fit.h"
+#include "fit/search/law_candidates.h"
+#include "report/fit_json.h"
+#include "report/fit_state.h"
+#include "report/json_text.h"
+#include "report/output_file.h"
+#include "report/output_folder.h"
+#include "report/report_page.h"
+
+namespace glisson::app {
+namespace {
+
+namespace fs = std::filesystem;
+using fit::FitResult;
+
+constexpr const char* kFooter =
+    "Writes DIR/{tissue.toml, fit.json, report.html, fit.toml}. tissue.toml is a tissue for scenes:\n"
+    "[tissue] file = \"DIR/tissue.toml\". Ctrl-C keeps what is known; the same command goes on from there.\n"
+    "docs/fit.md explains, docs/fit_file.md lists every key of FIT.toml.\n"
+    "\n"
+    "Examples:\n"
+    "  glisson fit scenes/fit/phantom_mean.toml\n"
+    "  glisson fit scenes/fit/phantom_ef10_100t.toml --data ~/phantom --laws constant,linear,ogden,yeoh\n"
+    "  glisson fit scenes/fit/liver_velocity.toml --out out/liver\n"
+    "  glisson fit --list-laws";
+
+struct FitCommand {
+  std::string file, out, data;
+  std::vector<std::string> laws;
+  std::optional<int> starts, bootstrap;
+  int threads = 1;
+  bool quiet = false, fresh = false, list_laws = false;
+};
+
+int list_laws() {
+  for (const fit::LawName& law : fit::known_laws()) say("{:<18}{}\n", law.name, law.what);
+  return kDone;
+}
+
+/// What an interrupted run of this very fit left in the folder.
+fit::FitMemory memory_of(const FitCommand& command, const fs::path& state, const std::string& fingerprint) {
+  if (command.fresh) return {};
+  std::optional<fit::FitMemory> known = read_fit_state(state, fingerprint);
+  if (!known) return {};
+  std::size_t starts = 0;
+  for (const auto& [law, memory] : *known) starts += memory.starts.size();
+  if (!command.quiet && starts > 0) {
+    say("going on after {} starts of an interrupted run (--fresh begins anew)\n", starts);
+    std::fflush(stdout);
+  }
+  return std::move(*known);
+}
+
+std::string interval_text(const fit::ParameterResult& p) {
+  const std::optional<fit::Interval> ci = p.ci95();
+  if (!ci) return "unknown";
+  const std::string low = ci->low_open ? "open" : fmt::format("{:.4g}", ci->low);
+  const std::string high = ci->high_open ? "open" : fmt::format("{:.4g}", ci->high);
+  return low + " to " + high;
+}
+
+void print_parameters(const FitResult& result) {
+  std::size_t width = 9;
+  for (const auto& p : result.parameters) width = std::max(width, p.parameter.name.size());
+  say("{:<{}}  {:>12}  {:<6}  {:<24}  {}\n", "parameter", width, "value", "unit", "95 % interval", "verdict");
+  for (const auto& p : result.parameters) {
+    say("{:<{}}  {:>12.5g}  {:<6}  {:<24}  {}\n", p.parameter.name, width, p.value, p.parameter.unit, interval_text(p),
+        p.verdict);
+  }
+}
+
+void print_laws(const FitResult& result) {
+  if (result.laws.empty()) return;
+  std::size_t width = 3;
+  for (const auto& l : result.laws) width = std::max(width, l.name.size());
+  say("{:<{}}  {:>10}  {:>12}  {:>13}  {:>10}  {:>10}\n", "law", width, "parameters", "rms fit [N]", "rms test [N]",
+      "AIC", "BIC");
+  for (const auto& l : result.laws) {
+    const std::string test = l.rms_heldout ? fmt::format("{:.4g}", *l.rms_heldout) : "-";
+    say("{:<{}}  {:>10}  {:>12.4g}  {:>13}  {:>10.1f}  {:>10.1f}{}\n", l.name, width, l.parameters, l.rms_fit, test,
+        l.aic, l.bic, l.best ? "  <- what the data support" : "");
+  }
+  say("\n");
+}
+
+void print_result(const FitResult& result) {
+  print_laws(result);
+  print_parameters(result);
+  say("\n");
+  for (const std::string& sentence : result.conclusions) say("- {}\n", sentence);
+  say("\n{} forward runs of {:.3g} ms, {:.1f} s in all\n", result.forward_runs, 1e3 * result.forward_run_s,
+      result.wall_s);
+}
+
+void write_results(const FitResult& result, const FitHeading& heading, const fs::path& folder) {
+  const nlohmann::ordered_json json = fit_json(result, heading);
+  write_whole(folder / "fit.json", json_text(json, 1) + "\n");
+  if (!result.tissue.empty()) write_whole(folder / "tissue.toml", result.tissue);
+  nlohmann::json page = report_json(heading.title, "a fit", nlohmann::json::array());
+  page["fits"] = nlohmann::json::array({nlohmann::json(json)});
+  write_whole(folder / "report.html", report_page(report_template(), page));
+}
+
+fit::FitSpec spec_of(const FitCommand& command) {
+  fit::FitSpec spec = fit::load_fit(command.file);
+  if (command.starts) spec.search.starts = *command.starts;
+  if (command.bootstrap) spec.proof.bootstrap = *command.bootstrap;
+  return spec;
+}
+
+int run(const FitCommand& command) {
+  if (command.list_laws) return list_laws();
+  if (command.file.empty()) throw std::invalid_argument("glisson fit needs FIT.toml; glisson fit --help tells more");
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(command.threads));
+  catch_interrupts();
+  const fit::FitSpec spec = spec_of(command);
+  const fs::path folder = command.out.empty() ? fs::path("out") / fs::path(command.file).stem() : fs::path(command.out);
+  const fs::path state = folder / "fit.state.json";
+  MeshCache meshes(command.quiet);
+  fit::FitOptions options;
+  options.laws = command.laws;
+  options.data_folder = command.data;
+  options.load = meshes.loader();
+  options.stop = &stop_flag();
+  const std::string fingerprint = fit_fingerprint(spec, options);
+  options.memory = memory_of(command, state, fingerprint);
+  FitProgressLine progress(command.quiet);
+  bool prepared = false;
+  const auto prepare = [&] {
+    if (prepared) return;
+    prepare_output_folder(folder);
+    if (!options.memory.empty()) write_fit_state(state, fingerprint, options.memory);
+    prepared = true;
+  };
+  options.progress = [&](const fit::FitProgress& p) { progress.show(p); };
+  options.forecast = [&](const fit::FitForecast& f) { progress.show(f, command.threads); };
+  options.remember = [&](const fit::FitMemory& memory) {
+    prepare();
+    write_fit_state(state, fingerprint, memory);
+  };
+  const FitResult result = run_fit(spec, options);
+  progress.clear();
+  prepare();
+  write_whole(folder / "fit.toml", spec.source);
+  write_results(result, {fs::path(command.file).stem().string(), spec.title, spec.description, spec.notes, spec.source},
+                folder);
+  if (result.complete) fs::remove(state);
+  if (!command.quiet) print_result(result);
+  say("{}{}\n", command.quiet ? "" : "report: ", (folder / "report.html").string());
+  if (!result.complete) {
+    std::fflush(stdout);
+    tell("glisson: interrupted; the same command goes on from here\n");
+    return kInterrupted;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_fit(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("fit", "fit a tissue to measured curves, and say how sure it is");
+  const auto options = std::make_shared<FitCommand>();
+  command->add_option("fit", options->file, "description of the fit (TOML)")->type_name("FIT");
+  command->add_option("--out", options->out, "folder of the results; out/<name> where not given")->type_name("DIR");
+  command->add_option("--data", options->data, "folder of the curves' files; that of FIT where not given")
+      ->type_name("DIR");
+  command->add_option("--laws", options->laws, "fit each of these laws and tell which the data support")
+      ->delimiter(',')
+      ->type_name("NAME,…");
+  command->add_flag("--list-laws", options->list_laws, "print the laws that --laws knows");
+  command->add_option("--starts", options->starts, "descents at most")->type_name("N")->check(CLI::Range(1, 10000));
+  command->add_option("--bootstrap", options->bootstrap, "fits to curves drawn again; 0: none")
+      ->type_name("N")
+      ->check(CLI::Range(0, 100000));
+  command->add_flag("--fresh", options->fresh, "do not go on from an interrupted run");
+  add_threads_option(*command, options->threads);
+  command->get_option("--threads")->description("threads; results do not depend on it");
+  command->add_flag("--quiet", options->quiet, "print nothing but errors and the report's path");
+  command->footer(kFooter);
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace glisson::app

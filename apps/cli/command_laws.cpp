@@ -1,0 +1,54 @@
+// command_laws.cpp — glisson laws: laws of stiffness and hyperelastic laws, from their own descriptions.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <type_traits>
+#include <variant>
+
+#include "cli/commands.h"
+#include "cli/exit_code.h"
+#include "cli/standard_streams.h"
+#include "glisson/material/hyperelastic_law.h"
+#include "glisson/material/stiffness_law.h"
+
+namespace glisson::app {
+namespace {
+
+std::string range_text(double min, double max) {
+  if (std::isinf(min) && std::isinf(max)) return "any";
+  if (std::isinf(max)) return fmt::format("{:g} or more", min);
+  return std::isinf(min) ? fmt::format("up to {:g}", max) : fmt::format("{:g} to {:g}", min, max);
+}
+
+template <class Law>
+void print_law() {
+  say("{}\n  {}\n", Law::kName, Law::kHelp);
+  for (const auto& field : Law::kFields) {
+    say("    {:<18} [{}], {}{}: {}\n", field.key, field.unit, range_text(field.min, field.max),
+        field.required ? "" : ", optional", field.help);
+  }
+}
+
+template <class... Laws>
+void print_laws(std::type_identity<std::variant<Laws...>>) {
+  (print_law<Laws>(), ...);
+}
+
+}  // namespace
+
+void add_laws(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("laws", "print the laws of tissues, with their parameters");
+  command->footer("Examples:\n  glisson laws");
+  command->callback([&action] {
+    action = [] {
+      say("Laws of stiffness: a modulus M follows the deformation x of its tet (tissue.law)\n\n");
+      print_laws(std::type_identity<StiffnessLaw>{});
+      say("\nHyperelastic laws: the stress is ∂W/∂F (tissue.hyperelastic)\n\n");
+      print_laws(std::type_identity<HyperelasticLaw>{});
+      return static_cast<int>(kDone);
+    };
+  });
+}
+
+}  // namespace glisson::app

@@ -1,0 +1,55 @@
+#include "cli/last_words.h"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "cli/exit_code.h"
+
+namespace glisson::app {
+
+const char* const kOutOfMemory =
+    "the system refused more memory; give it more (ulimit -v, the container's limit), or take a coarser mesh, fewer "
+    "frames, or one variant at a time (--threads 1)";
+
+namespace {
+
+/// To standard error without a byte of memory.
+void put(const char* text) { [[maybe_unused]] const auto written = write(STDERR_FILENO, text, std::strlen(text)); }
+
+[[noreturn]] void end_with_a_sentence() {
+  put("glisson: ");
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+    put("ended by a fault of its own; please report it");
+  } catch (const std::bad_alloc&) {
+    put(kOutOfMemory);
+  } catch (const std::exception& error) {
+    put("ended by an error that nothing was ready for: ");
+    put(error.what());
+  } catch (...) {
+    put("ended by a fault of its own; please report it");
+  }
+  put("\n");
+  std::_Exit(kFailed);
+}
+
+}  // namespace
+
+void promise_last_words() {
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::set_terminate(end_with_a_sentence);
+}
+
+std::string system_text(const std::system_error& error) {
+  if (error.code() != std::errc::resource_unavailable_try_again) return error.what();
+  return std::string("the system refused another thread (") + error.what() +
+         "); give it more memory or threads (ulimit -v, ulimit -u), or take fewer: --threads 1";
+}
+
+}  // namespace glisson::app

@@ -1,0 +1,109 @@
+// main.cpp — the glisson program: reads the command line, runs one subcommand, says what went wrong and how.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/exit_code.h"
+#include "cli/last_words.h"
+#include "cli/program_path.h"
+#include "cli/standard_streams.h"
+#include "glisson/io.h"
+#include "glisson/scene/scene.h"
+#include "report/output_file.h"
+#include "report/version.h"
+
+namespace {
+
+using namespace glisson;
+using namespace glisson::app;
+
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  glisson reproduce                        the paper's figures, in one report\n"
+    "  glisson run scenes/paper/figure2.toml    one scene, all its variants\n"
+    "  glisson check my_scene.toml              what a scene means and costs, without running it\n"
+    "  glisson fit my_fit.toml                  a tissue for measured curves, and how sure it is\n"
+    "  glisson view my_scene.toml               touch it in the browser: push, pull, read the force\n"
+    "  glisson info organ.vtu                   what a mesh file holds and what is wrong with it\n"
+    "  glisson bench --quick                    what a step costs on this machine\n"
+    "\n"
+    "`glisson COMMAND --help` tells more. Exit status: 0 done, 1 failed, 2 a scene, mesh or option that cannot be\n"
+    "used, 3 a run ended by its numbers, 130 interrupted.";
+
+int complain(std::string_view what, int code) {
+  std::fflush(stdout);
+  tell("glisson: {}\n", what);
+  return code;
+}
+
+int guarded(const Action& action) {
+  try {
+    return action();
+  } catch (const SceneError& error) {
+    return complain(error.what(), kUserError);
+  } catch (const FileError& error) {
+    return complain(error.what(), kUserError);
+  } catch (const std::invalid_argument& error) {
+    return complain(error.what(), kUserError);
+  } catch (const std::bad_alloc&) {
+    return complain(kOutOfMemory, kFailed);
+  } catch (const std::system_error& error) {
+    return complain(system_text(error), kFailed);
+  } catch (const std::exception& error) {
+    return complain(error.what(), kFailed);
+  }
+}
+
+/// Says which commands there are when the first word is none of them; CLI11 would only say that one is required.
+bool names_unknown_command(const CLI::App& program, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return false;
+  std::vector<std::string> names;
+  for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return false;
+  tell("glisson: there is no command \"{}\"; the commands are {}\n", argv[1], fmt::join(names, ", "));
+  return true;
+}
+
+int run_program(int argc, char** argv) {
+  if (argc > 0) program_path() = argv[0];
+  CLI::App program{"Soft tissue that is non-linear, viscoelastic and touched by instruments.", "glisson"};
+  program.set_version_flag("--version", std::string("glisson ") + std::string(version()));
+  program.footer(kFooter);
+  program.require_subcommand(1);
+  Action action;
+  add_run(program, action);
+  add_check(program, action);
+  add_info(program, action);
+  add_reproduce(program, action);
+  add_schema(program, action);
+  add_laws(program, action);
+  add_tissues(program, action);
+  add_fit(program, action);
+  add_view(program, action);
+  add_bench(program, action);
+  if (names_unknown_command(program, argc, argv)) return kUserError;
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kDone : kUserError;
+  }
+  return guarded(action);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  open_standard_streams();
+  promise_last_words();
+  return end_output(run_program(argc, argv));
+}

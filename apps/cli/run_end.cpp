@@ -1,0 +1,66 @@
+// run_end.cpp — see run_end.h.
+#include "cli/run_end.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "cli/exit_code.h"
+#include "cli/interrupt.h"
+#include "cli/standard_streams.h"
+#include "report/summary_json.h"
+
+namespace glisson::app {
+namespace {
+
+/// Names of the variants, with their scene where there are several.
+std::vector<std::string> names_of(const std::vector<const VariantRecorder*>& variants) {
+  const bool one_scene = std::all_of(variants.begin(), variants.end(),
+                                     [&](const VariantRecorder* v) { return v->scene() == variants.front()->scene(); });
+  std::vector<std::string> names;
+  for (const VariantRecorder* v : variants) names.push_back((one_scene ? "" : v->scene() + "/") + v->variant().name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<const VariantRecorder*> started_of(const std::vector<std::unique_ptr<VariantRecorder>>& recorders) {
+  std::vector<const VariantRecorder*> started;
+  for (const auto& recorder : recorders) {
+    if (recorder->started()) started.push_back(recorder.get());
+  }
+  return started;
+}
+
+void print_results(const std::vector<const VariantRecorder*>& variants) {
+  std::size_t width = 7;
+  const std::vector<std::string> names = names_of(variants);
+  for (const std::string& name : names) width = std::max(width, name.size());
+  say("{:<{}}  {:>8}  {:>9}  {:>10}  {:>8}  {:>11}  {:>12}  {}\n", "variant", width, "tets", "steps", "step [s]",
+      "wall [s]", "ns/tet/step", "peak [N]", "end");
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    const RunSummary& s = variants[i]->summary();
+    say("{:<{}}  {:>8}  {:>9}  {:>10.3e}  {:>8.2f}  {:>11.1f}  {:>12.5g}  {}", names[i], width, s.tets, s.steps,
+        s.step_s, s.wall_s, s.ns_per_tet_step, s.peak_force_N, end_text(s.end));
+    if (s.inverted_tets_most > 0) {
+      say(" (up to {} inverted tets, from {:.4g} s on)", s.inverted_tets_most, s.first_inversion_s);
+    }
+    say("\n");
+  }
+}
+
+int end_of(const std::vector<const VariantRecorder*>& variants) {
+  bool trouble = false;
+  for (const VariantRecorder* v : variants) {
+    const std::string text = trouble_text(v->summary());
+    if (text.empty()) continue;
+    trouble = true;
+    std::fflush(stdout);
+    tell("glisson: {}: {}\n", v->variant().name, text);
+  }
+  if (interrupted()) return kInterrupted;
+  return trouble ? kNumericalEnd : kDone;
+}
+
+}  // namespace glisson::app

@@ -1,0 +1,57 @@
+#include "cli/tissue_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <vector>
+
+namespace glisson::app {
+namespace {
+
+std::string value_text(double x) { return fmt::format("{:g}", x); }
+std::string value_text(const std::vector<double>& list) { return fmt::format("[{:g}]", fmt::join(list, ", ")); }
+
+/// The law's word and its keys as a scene has them.
+std::string hyperelastic_text(const HyperelasticLaw& law) {
+  return std::visit(
+      []<class Law>(const Law& l) {
+        std::string text;
+        for (const LawField<Law>& field : Law::kFields) {
+          const std::string value = std::visit([&](auto member) { return value_text(l.*member); }, field.member);
+          text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", field.key, value);
+        }
+        return fmt::format("{}: {}", Law::kName, text);
+      },
+      law);
+}
+
+std::string linear_text(const Tissue& t) {
+  std::string law(law_name(t.law));
+  if (t.lambda_law || t.mu_law) {
+    law = fmt::format("λ {}, μ {}", t.lambda_law ? law_name(*t.lambda_law) : "constant",
+                      t.mu_law ? law_name(*t.mu_law) : "constant");
+  }
+  return fmt::format("E = {:.6g} Pa, ν = {:.4g}, law: {}", t.youngs_modulus, t.poisson_ratio, law);
+}
+
+std::string kinematics_text(const Tissue& t) {
+  std::string text;
+  if (t.kinematics == Kinematics::corotational) text += ", corotational";
+  if (t.kinematics == Kinematics::green) text += ", green";
+  if (t.law_form == LawForm::energy) text += ", of an energy";
+  return text;
+}
+
+}  // namespace
+
+std::string law_text(const Tissue& t) {
+  std::string text = t.hyperelastic ? hyperelastic_text(*t.hyperelastic) : linear_text(t) + kinematics_text(t);
+  if (t.volume_change == VolumeChange::nodal) text += ", volume changes shared";
+  if (t.viscosity > 0.0) text += fmt::format(", η = {:.6g} Pa·s", t.viscosity);
+  if (t.fibres) text += fmt::format(", fibres of {:.6g} Pa", t.fibres->stiffness);
+  const char* part = t.maxwell_part == MaxwellPart::all ? "all" : "the deviator";
+  for (const MaxwellBranch& b : t.maxwell) text += fmt::format(", {:g} of {} relaxes in {:g} s", b.share, part, b.time);
+  return text;
+}
+
+}  // namespace glisson::app

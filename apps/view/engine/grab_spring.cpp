@@ -1,0 +1,108 @@
+// grab_spring.cpp — see grab_spring.h.
+#include "view/engine/grab_spring.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace glisson::view {
+namespace {
+
+constexpr double kDampingRatio = 0.5;
+/// What damping of that ratio takes off the explicit step, as a share of frequency: (√(1 + ζ²) − ζ)⁻².
+constexpr double kForDamping = 2.7;
+
+}  // namespace
+
+void GrabSpring::hold(std::vector<std::uint32_t> vertices, std::span<const Vec3d> displacement,
+                      std::span<const double> masses, double stiffness) {
+  let_go();
+  vertices_ = std::move(vertices);
+  std::sort(vertices_.begin(), vertices_.end());
+  for (const std::uint32_t v : vertices_) held_at_.push_back(displacement[v]);
+  last_ = held_at_;
+  stiffness_ = stiffness;
+  share_out(masses);
+}
+
+void GrabSpring::share_out(std::span<const double> masses) {
+  double mass = 0.0;
+  for (const std::uint32_t v : vertices_) mass += masses[v];
+  if (!(mass > 0.0)) return let_go();
+  share_.clear();
+  for (const std::uint32_t v : vertices_) share_.push_back(masses[v] / mass);
+  squared_frequency_ = stiffness_ / mass;
+  damping_ = 2.0 * kDampingRatio * std::sqrt(stiffness_ * mass);
+}
+
+void GrabSpring::body_changed(const BodyView& body, std::span<const std::uint32_t> origins) {
+  if (!holds()) return;
+  const std::size_t first_new = body.masses.size() - origins.size();
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    const auto at = std::lower_bound(vertices_.begin(), vertices_.end(), origins[i]);
+    if (at == vertices_.end() || *at != origins[i]) continue;
+    const auto place = at - vertices_.begin();
+    vertices_.push_back(static_cast<std::uint32_t>(first_new + i));
+    held_at_.push_back(Vec3d(held_at_[static_cast<std::size_t>(place)]));
+    last_.push_back(Vec3d(last_[static_cast<std::size_t>(place)]));
+  }
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {  // another point of the material is no pull
+    const Vec3d& now = body.displacement[vertices_[i]];
+    held_at_[i] += now - last_[i];
+    last_[i] = now;
+  }
+  share_out(body.masses);
+}
+
+void GrabSpring::let_go() {
+  vertices_.clear();
+  held_at_.clear();
+  last_.clear();
+  share_.clear();
+  way_ = force_ = {};
+  squared_frequency_ = 0.0;
+}
+
+void GrabSpring::add_forces(const InteractionStep& step) {
+  force_ = {};
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const std::uint32_t place = step.place_of[vertices_[i]];
+    if (place == InteractionStep::kNowhere) continue;
+    WatchedVertex& v = step.vertices[place];
+    const Vec3d spring = (held_at_[i] + way_ - v.displacement) * (share_[i] * stiffness_);
+    const Vec3d damper = v.velocity * (-share_[i] * damping_);
+    v.elastic += spring;
+    v.viscous += damper;
+    force_ += spring + damper;
+  }
+}
+
+void GrabSpring::moved(const InteractionStep& step) {
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const std::uint32_t place = step.place_of[vertices_[i]];
+    if (place != InteractionStep::kNowhere) last_[i] = step.vertices[place].displacement;
+  }
+}
+
+double GrabSpring::squared_frequency() const { return kForDamping * squared_frequency_; }
+
+std::vector<std::uint32_t> patch_around(const TetMesh& mesh, const std::vector<Vec3d>& positions, std::uint32_t vertex,
+                                        double radius) {
+  std::vector<char> taken(positions.size(), 0);
+  std::vector<std::uint32_t> patch{vertex};
+  taken[vertex] = 1;
+  const auto within = [&](std::uint32_t v) { return norm(positions[v] - positions[vertex]) <= radius; };
+  for (std::size_t before = 0; before != patch.size();) {
+    before = patch.size();
+    for (const Tet& tet : mesh.tets) {
+      if (std::none_of(tet.begin(), tet.end(), [&](std::uint32_t v) { return taken[v] != 0; })) continue;
+      for (const std::uint32_t v : tet) {
+        if (taken[v] != 0 || !within(v)) continue;
+        taken[v] = 1;
+        patch.push_back(v);
+      }
+    }
+  }
+  return patch;
+}
+
+}  // namespace glisson::view

@@ -1,0 +1,203 @@
+// live_body.cpp — see live_body.h.
+#include "view/engine/live_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "dynamics/simulation_parts.h"
+#include "glisson/instruments/needle.h"
+
+namespace glisson::view {
+namespace {
+
+constexpr double kShortestRamp = 0.002;  // over which a tool gathers speed [s]
+
+Vec3d unit(const Vec3d& v) { return v * (1.0 / norm(v)); }
+
+Vec3d any_across(const Vec3d& along) {
+  return unit(cross(along, std::abs(along.z) < 0.9 ? Vec3d{0.0, 0.0, 1.0} : Vec3d{1.0, 0.0, 0.0}));
+}
+
+/// Speed, ramp and farthest depth that a motion of the scene suggests.
+struct Habit {
+  double speed = 0.01, ramp = kShortestRamp;
+  std::optional<double> depth;
+
+  void operator()(const PressMotion& m) {
+    speed = m.velocity;
+    ramp = std::max(ramp, m.ramp);
+    depth = m.depth;
+  }
+  void operator()(const StrokesSpec& m) {
+    speed = m.velocity;
+    for (const StrokesSpec::One& s : m.strokes) depth = std::max(depth.value_or(0.0), s.depth);
+  }
+  template <class Other>
+  void operator()(const Other&) {}
+};
+
+/// The scene's way of an instrument; none where it is pushed.
+std::optional<ToolPath> scene_way(const InstrumentSpec& spec) {
+  if (std::holds_alternative<PushSpec>(spec.motion.how)) return {};
+  const std::shared_ptr<ToolDriver> driver = make_driver(spec);
+  return ToolPath{[driver](double t) { return driver->advance(t, 0.0, {}).position - driver->start().position; },
+                  driver->end()};
+}
+
+}  // namespace
+
+double diagonal(const TetMesh& mesh) {
+  Vec3d low = mesh.vertices.front(), high = low;
+  for (const Vec3d& x : mesh.vertices) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], x[k]);
+      high[k] = std::max(high[k], x[k]);
+    }
+  }
+  return norm(high - low);
+}
+
+LiveBody::LiveBody(const Variant& variant, const MeshLoader& load) : variant_(variant) {
+  if (variant.tools.size() + variant.instruments.size() > kMostTools) {
+    throw std::invalid_argument("glisson view leads " + std::to_string(kMostTools) + " tools at most; the scene has " +
+                                std::to_string(variant.tools.size() + variant.instruments.size()));
+  }
+  variant_.simulation.track_energies = false;
+  variant_.simulation.exact_steps = false;  // a search for h* takes more than a frame
+  variant_.simulation.mesh_changes = true;
+  lead_tools();
+  lead_instruments();
+  built_ = std::make_unique<BuiltVariant>(variant_, load);
+  tissues_ = std::make_shared<const std::map<int, Tissue>>(region_tissues(variant_, built_->simulation.mesh()));
+  const double size = diagonal(built_->simulation.mesh());
+  for (ToolInfo& tool : tools_) {
+    if (!(tool.most_depth > 0.0)) tool.most_depth = 0.4 * size;
+    tool.least_depth = -0.25 * tool.most_depth;
+  }
+  attach_grab();
+  take_blade();
+}
+
+void LiveBody::lead_tools() {
+  for (ToolSpec& x : variant_.tools) {
+    Habit habit;
+    habit(x.motion);
+    if (x.record) habit.depth.reset();
+    ToolInfo info{.name = x.name, .direction = unit(x.motion.direction), .speed = habit.speed, .can_play = true};
+    info.side = any_across(info.direction);
+    info.third = cross(info.direction, info.side);
+    info.most_depth = 1.25 * habit.depth.value_or(0.0);
+    ways_.push_back(std::make_shared<LiveWay>(habit.speed, habit.ramp, tool_path(x)));
+    x.path = ToolPath{[way = ways_.back()](double t) { return way->at(t); }, {}};
+    tools_.push_back(info);
+  }
+}
+
+void LiveBody::lead_instruments() {
+  for (InstrumentSpec& x : variant_.instruments) {
+    Habit habit;
+    std::visit(habit, x.motion.how);
+    ToolInfo info{.name = x.name, .instrument = true, .direction = unit(x.direction), .speed = habit.speed};
+    const Pose start = start_pose(x);
+    for (std::size_t i = 0; i < 3; ++i) {
+      info.side[i] = start.axes(i, 0);
+      info.third[i] = start.axes(i, 1);
+    }
+    info.most_depth = 1.25 * habit.depth.value_or(0.0);
+    ways_.push_back(std::make_shared<LiveWay>(habit.speed, habit.ramp, scene_way(x)));
+    info.can_play = ways_.back()->can_play();
+    x.motion.how = ToolPath{[way = ways_.back()](double t) { return way->at(t); }, {}};
+    tools_.push_back(info);
+  }
+}
+
+void LiveBody::attach_grab() {
+  auto grab = std::make_shared<GrabSpring>();
+  try {
+    built_->simulation.attach(grab);
+    grab_ = grab;
+  } catch (const std::invalid_argument&) {  // the integrator bears none
+  }
+}
+
+void LiveBody::take_blade() {
+  try {
+    cut_ = std::make_unique<HandCut>(built_->simulation);
+  } catch (const std::exception& error) {
+    why_no_cut_ = error.what();
+  }
+}
+
+void LiveBody::work_on_cut(HandCut::Clock::time_point now) {
+  if (cut_ && cut_->work(now)) ++hand_cuts_;
+}
+
+void LiveBody::set_tissues(const Variant& changed) {
+  Simulation& simulation = built_->simulation;
+  auto tissues = std::make_shared<const std::map<int, Tissue>>(region_tissues(changed, simulation.mesh()));
+  simulation.set_tissues(*tissues);
+  tissues_ = std::move(tissues);
+  variant_.tissue = changed.tissue;
+  variant_.regions = changed.regions;
+}
+
+double LiveBody::depth(std::size_t tool) const {
+  const std::size_t sets = built_->tools.size();
+  if (tool >= sets) return built_->instruments[tool - sets]->force_depth();
+  return dot(ways_[tool]->at(built_->simulation.force_time()), tools_[tool].direction);
+}
+
+std::array<double, 2> LiveBody::aside(std::size_t tool) const {
+  const Vec3d way = ways_[tool]->at(built_->simulation.force_time());
+  return {dot(way, tools_[tool].side), dot(way, tools_[tool].third)};
+}
+
+Vec3d LiveBody::force(std::size_t tool) const {
+  const std::size_t sets = built_->tools.size();
+  if (tool >= sets) return built_->instruments[tool - sets]->forces().total();
+  return built_->simulation.steps() > 0 ? built_->simulation.force(built_->tools[tool]).total() : Vec3d{};
+}
+
+ToolState LiveBody::tool_state(std::size_t tool) const {
+  ToolState state{
+      .depth = depth(tool), .aside = aside(tool), .force = force(tool), .line = {}, .axes = identity<double>()};
+  const std::size_t sets = built_->tools.size();
+  if (tool < sets) return state;
+  const Instrument& x = *built_->instruments[tool - sets];
+  const auto* needle = dynamic_cast<const Needle*>(&x);
+  state.line = needle != nullptr ? needle->centre_line() : std::vector<Vec3d>{x.pose().position};
+  state.axes = x.pose().axes;
+  return state;
+}
+
+std::shared_ptr<const BodyShape> LiveBody::shape() const {
+  auto shape = std::make_shared<BodyShape>();
+  shape->mesh = built_->simulation.present_mesh();
+  shape->marks.assign(shape->mesh.vertices.size(), 0);
+  const auto mark = [&](const std::string& set, std::uint8_t value) {
+    const auto found = built_->simulation.mesh().vertex_sets.find(set);
+    if (found == built_->simulation.mesh().vertex_sets.end()) return;
+    for (const std::uint32_t v : found->second) shape->marks[v] = value;
+  };
+  for (const FixedSpec& x : variant_.fixed) mark(x.set, 1);
+  for (const ToolSpec& x : variant_.tools) mark(x.set, 2);
+  const Body& body = SimulationParts::scheme(built_->simulation).body();
+  shape->branches.resize(shape->mesh.tets.size());  // nothing here removes tets: those of the mesh are all there
+  for (std::uint32_t b = 0; b < body.blocks.size(); ++b) {
+    const std::size_t begin = body.blocks[b].begin;
+    for (std::size_t e = begin; e < body.blocks[b].end; ++e) {
+      shape->branches[body.mesh_tet[e]] = {b, static_cast<std::uint32_t>(e - begin)};
+    }
+  }
+  return shape;
+}
+
+std::vector<BranchMemory> LiveBody::branches() const {
+  const Scheme& scheme = SimulationParts::scheme(built_->simulation);
+  std::vector<BranchMemory> memory;
+  for (std::size_t b = 0; b < scheme.body().blocks.size(); ++b) memory.push_back(scheme.branch_memory(b));
+  return memory;
+}
+
+}  // namespace glisson::view

@@ -1,0 +1,54 @@
+// scene_writer.cpp — see scene_writer.h.
+#include "view/engine/scene_writer.h"
+
+#include "report/json_text.h"
+#include "scene/run/recorded_scene.h"
+#include "view/engine/live_parameters.h"
+
+namespace glisson::view {
+namespace {
+
+std::string head_of(const Scene& scene, const Variant& variant, const Recording& recording) {
+  std::string head = "Recorded in glisson view: " + scene.title + ", " +
+                     (variant.label.empty() ? variant.name : variant.label) +
+                     ".\n`glisson run scene.toml` goes these ways again; what was felt then is in forces.csv.\n";
+  if (const auto* mesh = std::get_if<MeshFile>(&variant.mesh); mesh != nullptr && scene.file.has_filename())
+    head += "Its mesh is a file: put this beside " + scene.file.filename().string() + ", or give `--mesh FILE`.\n";
+  const std::string unsaid = recording.unsaid();
+  if (!unsaid.empty())
+    head += "\nNot in this scene, as none can say it, so that forces differ from then on:\n" + unsaid;
+  return head;
+}
+
+}  // namespace
+
+std::vector<ZipFile> recording_files(const Scene& given, const Variant& variant, const std::vector<Override>& overrides,
+                                     const std::vector<ToolInfo>& tools, std::shared_ptr<const Recording> recording,
+                                     const std::vector<double>& parameters) {
+  Variant now = variant;
+  const std::vector<TissueParameter> handles = tissue_parameters(variant);
+  for (std::size_t i = 0; i < parameters.size(); ++i) set_parameter(now, handles.at(i), parameters[i]);
+  scene::RecordedWays ways{.head = head_of(given, variant, *recording),
+                           .files = {},
+                           .duration = recording->duration(),
+                           .sample_rate = 1000.0};
+  std::vector<ZipFile> files;
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    ways.files.push_back(way_file(tools, i));
+    files.push_back({ways.files.back(), [recording, i](const TextSink& out) { recording->way_csv(i, out); }});
+  }
+  files.push_back({"forces.csv", [recording, tools](const TextSink& out) { recording->forces_csv(tools, out); }});
+  const std::filesystem::path base = given.file.parent_path();
+  const std::string text = scene::recorded_scene(given.source, given.file.string(), base, overrides, now, ways);
+  files.push_back(text_file("scene.toml", valid_utf8(text)));
+  return files;
+}
+
+RecordingWriter recording_writer(Scene scene, Variant variant, std::vector<Override> overrides,
+                                 std::vector<ToolInfo> tools) {
+  return [=](std::shared_ptr<const Recording> recording, const std::vector<double>& parameters) {
+    return recording_files(scene, variant, overrides, tools, std::move(recording), parameters);
+  };
+}
+
+}  // namespace glisson::view

@@ -1,0 +1,167 @@
+// surface.cpp — see surface.h.
+#include "view/engine/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "element/tet_fields.h"
+#include "material/shape_measure.h"
+#include "view/engine/live_body.h"
+
+namespace glisson::view {
+namespace {
+
+constexpr double kRim = 10.0;  // of the picture, in diagonals of the body
+constexpr std::uint32_t kInside = std::numeric_limits<std::uint32_t>::max();
+
+/// H of a tet from the displacements of its corners.
+Mat3d gradient(const std::vector<Vec3d>& displacement, const Tet& tet, const std::array<Vec3d, 3>& s) {
+  const Vec3d& u0 = displacement[tet[0]];
+  return displacement_gradient<double>(
+      s, {displacement[tet[1]] - u0, displacement[tet[2]] - u0, displacement[tet[3]] - u0});
+}
+
+}  // namespace
+
+Surface::Surface(std::shared_ptr<const BodyShape> shape) : shape_(std::move(shape)) {
+  number_vertices();
+  count_pieces();
+  rim_ = kRim * diagonal(shape_->mesh);
+  const TetMesh& mesh = shape_->mesh;
+  tets_around_.assign(vertices_.size(), 0.0);
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
+    const Tet& tet = mesh.tets[t];
+    bool near = false;
+    for (const std::uint32_t v : tet) {
+      if (number_[v] == kInside) continue;
+      tets_around_[number_[v]] += 1.0;
+      near = true;
+    }
+    if (!near) continue;
+    const std::vector<Vec3d>& x = mesh.vertices;
+    near_.push_back({tet, t, element_rest({x[tet[0]], x[tet[1]], x[tet[2]], x[tet[3]]}).s});
+  }
+}
+
+void Surface::number_vertices() {
+  number_.assign(shape_->mesh.vertices.size(), kInside);
+  for (const Triangle& triangle : boundary_triangles(shape_->mesh)) {
+    for (const std::uint32_t v : triangle) {
+      if (number_[v] == kInside) {
+        number_[v] = static_cast<std::uint32_t>(vertices_.size());
+        vertices_.push_back(v);
+      }
+      triangles_.push_back(number_[v]);
+    }
+  }
+}
+
+/// Sets of vertices that tets join.
+void Surface::count_pieces() {
+  std::vector<std::uint32_t> parent(shape_->mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  std::vector<char> in_tet(parent.size(), 0);
+  for (const Tet& tet : shape_->mesh.tets) {
+    for (const std::uint32_t v : tet) {
+      in_tet[v] = 1;
+      parent[root(v)] = root(tet[0]);
+    }
+  }
+  pieces_ = 0;
+  for (std::uint32_t v = 0; v < parent.size(); ++v) pieces_ += in_tet[v] != 0 && parent[v] == v ? 1 : 0;
+}
+
+bool Surface::strays(const Snapshot& state) const {
+  return std::any_of(vertices_.begin(), vertices_.end(),
+                     [&](std::uint32_t v) { return norm(state.displacement[v]) > rim_; });
+}
+
+template <class OfTet>
+std::vector<double> Surface::mean(OfTet of_tet) const {
+  std::vector<double> sum(vertices_.size(), 0.0);
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    const double value = of_tet(i);
+    for (const std::uint32_t v : near_[i].tet) {
+      if (number_[v] != kInside) sum[number_[v]] += value;
+    }
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] /= std::max(1.0, tets_around_[i]);
+  return sum;
+}
+
+std::vector<double> Surface::field(Field field, const Snapshot& state) {
+  if (field == Field::pressure) return pressure(state);
+  const auto blunt = [&](std::size_t i) {
+    return one_minus_q(gradient(state.displacement, near_[i].tet, near_[i].gradients));
+  };
+  if (field == Field::shape) return mean([&](std::size_t i) { return 1.0 - blunt(i); });
+  return mean([&](std::size_t i) { return intensity_of(blunt(i)); });
+}
+
+/// A mean over a vertex needs all tets around it: those at the surface alone have inner vertices, too.
+void Surface::build_near_body(const std::map<int, Tissue>& tissues) {
+  const TetMesh& mesh = shape_->mesh;
+  near_tets_.clear();
+  std::vector<char> met(mesh.tets.size(), 0), touched(mesh.vertices.size(), 0);
+  for (const NearTet& x : near_) {
+    near_tets_.push_back(x.number);
+    met[x.number] = 1;
+    for (const std::uint32_t v : x.tet) touched[v] = 1;
+  }
+  const bool shares = std::any_of(tissues.begin(), tissues.end(), [](const auto& of_region) {
+    return of_region.second.volume_change == VolumeChange::nodal;
+  });
+  for (std::uint32_t t = 0; shares && t < mesh.tets.size(); ++t) {
+    const Tet& tet = mesh.tets[t];
+    const bool touches = std::any_of(tet.begin(), tet.end(), [&](std::uint32_t v) { return touched[v] != 0; });
+    if (met[t] == 0 && touches) near_tets_.push_back(t);
+  }
+  TetMesh near;
+  near.vertices = mesh.vertices;
+  for (const std::uint32_t t : near_tets_) {
+    near.tets.push_back(mesh.tets[t]);
+    near.regions.push_back(mesh.region_of(t));
+    if (!mesh.fibres.empty()) near.fibres.push_back(Vec3d(mesh.fibres[t]));
+  }
+  near_body_ = std::make_unique<Body>(build_body(near, tissues));
+}
+
+/// Of the blocks of the body near the surface; none where nobody has asked for them before this state.
+std::vector<BranchMemory> Surface::near_branches(const Snapshot& state) const {
+  if (state.branches.empty() || shape_->branches.empty()) return {};
+  std::vector<BranchMemory> memory(near_body_->blocks.size());
+  for (std::size_t b = 0; b < memory.size(); ++b) {
+    const TissueBlock& block = near_body_->blocks[b];
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      const BranchPlace& at = shape_->branches[near_tets_[near_body_->mesh_tet[e]]];
+      const BranchMemory& all = state.branches[at.block];
+      memory[b].left = all.left;
+      const auto first = all.held.begin() + static_cast<std::ptrdiff_t>(at.element * all.left.size());
+      memory[b].held.insert(memory[b].held.end(), first, first + static_cast<std::ptrdiff_t>(all.left.size()));
+    }
+  }
+  return memory;
+}
+
+std::vector<double> Surface::pressure(const Snapshot& state) {
+  if (!near_body_ || tissues_ != state.tissues) {
+    build_near_body(*state.tissues);
+    tissues_ = state.tissues;
+  }
+  const std::size_t vertices = shape_->mesh.vertices.size();  // those that came after this shape are at its end
+  const std::vector<Vec3d> at_rest(state.velocity.size() < vertices ? vertices : 0);
+  const std::vector<Vec3d>& velocity = at_rest.empty() ? state.velocity : at_rest;
+  const TetFields fields = tet_fields(*near_body_, state.displacement, velocity, near_branches(state));
+  return mean([&](std::size_t i) {
+    const double* stress = &fields.stress[6 * i];
+    return -(stress[0] + stress[1] + stress[2]) / 3.0;
+  });
+}
+
+}  // namespace glisson::view

@@ -1,0 +1,71 @@
+// surface.h — the skin of a body, and what a frame says of it: places in 16 bits, a field in 8.
+//
+//   keyframe   rest positions, marks and triangles; sent when the skin becomes another
+//   frame      displacement from the keyframe as 16-bit fractions of the largest, a field as 8-bit fractions of its range:
+//              7 bytes a vertex, an error of 1.5e-5 of the largest displacement
+//
+// A frame needs its keyframe and no other frame, so any of them can be dropped.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "element/body.h"
+#include "view/engine/snapshot.h"
+#include "view/protocol/command.h"
+
+namespace glisson::view {
+
+class Surface {
+ public:
+  explicit Surface(std::shared_ptr<const BodyShape> shape);
+
+  const BodyShape& shape() const { return *shape_; }
+  std::size_t size() const { return vertices_.size(); }
+  const std::vector<std::uint32_t>& triangles() const { return triangles_; }  ///< in surface vertices
+  /// Mesh vertex of a surface vertex.
+  std::uint32_t mesh_vertex(std::size_t i) const { return vertices_[i]; }
+  std::uint8_t mark(std::size_t i) const { return shape_->marks[vertices_[i]]; }
+  const Vec3d& rest(std::size_t i) const { return shape_->mesh.vertices[vertices_[i]]; }
+
+  /// Displacements beyond are drawn there [m]: a piece that was cut free flies on for ever where nothing damps it, and with 10 m
+  /// for the largest one the 16 bits of the others would be 0.3 mm each. Ten diagonals of the body at rest.
+  double rim() const { return rim_; }
+  /// Whether some of the surface has left for beyond the rim.
+  bool strays(const Snapshot& state) const;
+  std::size_t pieces() const { return pieces_; }  ///< that the body is in
+
+  /// A field at each surface vertex, the mean over the tets around it: s [-], q [-], or p = −⅓ tr σ of the stress that makes
+  /// the forces [Pa]. Cost: a pass over the tets at the surface; pressure makes a body of them first, and where tets share
+  /// their volume change of those that touch them, too.
+  std::vector<double> field(Field field, const Snapshot& state);
+
+ private:
+  void number_vertices();
+  void count_pieces();
+  template <class OfTet>
+  std::vector<double> mean(OfTet of_tet) const;
+  std::vector<double> pressure(const Snapshot& state);
+  void build_near_body(const std::map<int, Tissue>& tissues);
+  std::vector<BranchMemory> near_branches(const Snapshot& state) const;
+
+  struct NearTet {
+    Tet tet;
+    std::uint32_t number = 0;        ///< in the shape's mesh
+    std::array<Vec3d, 3> gradients;  ///< ∂N/∂X of its vertices 1, 2, 3 [1/m]
+  };
+  std::shared_ptr<const BodyShape> shape_;
+  std::vector<std::uint32_t> vertices_, triangles_;
+  std::vector<std::uint32_t> number_;  ///< surface vertex of each mesh vertex, or none
+  std::vector<NearTet> near_;          ///< tets with a vertex at the surface
+  std::vector<double> tets_around_;    ///< of each surface vertex
+  std::size_t pieces_ = 0;
+  double rim_ = 0.0;
+  std::shared_ptr<const std::map<int, Tissue>> tissues_;  ///< that near_body_ is of
+  std::unique_ptr<Body> near_body_;  ///< of the tets with a vertex at the surface, and of those they take means with
+  std::vector<std::uint32_t> near_tets_;  ///< numbers of its tets in the shape's mesh, those of `near_` first
+};
+
+}  // namespace glisson::view

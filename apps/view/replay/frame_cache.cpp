@@ -1,0 +1,107 @@
+// frame_cache.cpp — see frame_cache.h.
+#include "view/replay/frame_cache.h"
+
+#include <algorithm>
+#include <array>
+
+#include "glisson/io.h"
+#include "view/engine/live_body.h"
+
+namespace glisson::view {
+namespace {
+
+constexpr double kSameRest = 1e-6;  // of the body's size: rest places are differences, and carry rounding
+
+/// Displacements of a frame; its vertices are moved back to rest.
+std::vector<Vec3d> to_rest(ReadFrame& frame, const std::string& file) {
+  if (frame.vertex_fields.empty() || frame.vertex_fields.front().components != 3)
+    throw FileError(file + ": no array displacement_m; this is no frame of glisson run");
+  const std::vector<double>& u = frame.vertex_fields.front().values;
+  std::vector<Vec3d> displacement(frame.mesh.vertices.size());
+  for (std::size_t v = 0; v < displacement.size(); ++v) {
+    displacement[v] = {u[3 * v], u[3 * v + 1], u[3 * v + 2]};
+    frame.mesh.vertices[v] -= displacement[v];
+  }
+  return displacement;
+}
+
+bool same_body(const BodyShape& known, const TetMesh& mesh) {
+  if (known.mesh.tets != mesh.tets || known.mesh.vertices.size() != mesh.vertices.size()) return false;
+  const double near = kSameRest * diagonal(mesh);
+  return std::equal(mesh.vertices.begin(), mesh.vertices.end(), known.mesh.vertices.begin(),
+                    [near](const Vec3d& a, const Vec3d& b) { return norm(a - b) <= near; });
+}
+
+std::shared_ptr<const BodyShape> shape_of(TetMesh mesh, const RunFolder& run) {
+  auto shape = std::make_shared<BodyShape>();
+  shape->marks.assign(mesh.vertices.size(), 0);
+  const auto mark = [&](const std::vector<std::string>& sets, std::uint8_t value) {
+    for (const std::string& name : sets) {
+      const auto found = mesh.vertex_sets.find(name);
+      if (found == mesh.vertex_sets.end()) continue;
+      for (const std::uint32_t v : found->second) shape->marks[v] = value;
+    }
+  };
+  mark(run.held, 1);
+  mark(run.driven, 2);
+  shape->mesh = std::move(mesh);
+  return shape;
+}
+
+std::size_t bytes_of(const LoadedFrame& frame, bool own_shape) {
+  const TetMesh& mesh = frame.shape->mesh;
+  const std::size_t shape = sizeof(Vec3d) * mesh.vertices.size() + sizeof(Tet) * mesh.tets.size();
+  return sizeof(Vec3d) * frame.displacement.size() + (own_shape ? shape : 0);
+}
+
+}  // namespace
+
+bool FrameCache::has(std::size_t number) const {
+  return std::any_of(kept_.begin(), kept_.end(), [number](const Kept& x) { return x.number == number; });
+}
+
+std::shared_ptr<const LoadedFrame> FrameCache::read(std::size_t number) {
+  static const std::array<std::string, 1> kFields{"displacement_m"};
+  const std::string file = run_.frames[number].file.string();
+  ReadFrame frame = read_frame(file, kFields);
+  auto loaded = std::make_shared<LoadedFrame>();
+  loaded->displacement = to_rest(frame, file);
+  if (!shape_ || !same_body(*shape_, frame.mesh)) {
+    const auto known =
+        std::find_if(kept_.begin(), kept_.end(), [&](const Kept& x) { return same_body(*x.frame->shape, frame.mesh); });
+    shape_ = known != kept_.end() ? known->frame->shape : shape_of(std::move(frame.mesh), run_);
+  }
+  loaded->shape = shape_;
+  ++reads_;
+  return loaded;
+}
+
+std::shared_ptr<const LoadedFrame> FrameCache::read_once(std::size_t number) {
+  if (const auto known = unreadable_.find(number); known != unreadable_.end()) throw FileError(known->second);
+  try {
+    return read(number);
+  } catch (const FileError& error) {
+    unreadable_[number] = error.what();
+    throw;
+  }
+}
+
+std::shared_ptr<const LoadedFrame> FrameCache::at(std::size_t number) {
+  const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& x) { return x.number == number; });
+  if (found != kept_.end()) {
+    kept_.splice(kept_.begin(), kept_, found);
+    return kept_.front().frame;
+  }
+  const std::shared_ptr<const BodyShape> before = shape_;
+  std::shared_ptr<const LoadedFrame> frame = read_once(number);
+  const std::size_t bytes = bytes_of(*frame, frame->shape != before);
+  kept_.push_front({number, bytes, frame});
+  bytes_ += bytes;
+  while (bytes_ > most_ && kept_.size() > 2) {
+    bytes_ -= kept_.back().bytes;
+    kept_.pop_back();
+  }
+  return frame;
+}
+
+}  // namespace glisson::view

@@ -1,0 +1,76 @@
+// server_impl.h — the state of the server, and what its parts (request.h, viewer.h) ask of it; one thread's.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <boost/asio/steady_timer.hpp>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "view/engine/lead.h"
+#include "view/server/archive_sender.h"
+#include "view/server/strangers.h"
+#include "view/server/viewer.h"
+
+namespace glisson::view {
+
+struct Server::Impl {
+  Impl(Source& source, SceneFacts facts, std::string_view page, const ServerOptions& options);
+  void accept();
+  void accept_later();
+  void serve();
+  void tick();
+  void look();
+  void cut_off_floods();
+  void rest_unwatched(Clock::time_point now);
+  void keep_samples();
+  /// Says on stderr and to viewers what went wrong here and now, once each; the thread goes on.
+  void survive(const std::exception& error);
+  bool has_recording() const { return facts_.recorder && recording_.frames() >= 2; }
+  std::size_t most_connections() const { return 2 * options_.most_viewers; }
+  Clock::duration standstill() const;
+  void send_news(const Snapshot& state, Clock::time_point now);
+  void send_frame(Viewer& viewer);
+  const Message& frame_with(Field field);
+  void ask_for_fields();
+  void send_roles();
+  void came(const std::shared_ptr<Viewer>& viewer);
+  void went(const std::shared_ptr<Viewer>& viewer);
+  void obey(Viewer& viewer, Command command);
+  void say_goodbye();
+
+  Source& source_;
+  SceneFacts facts_;
+  std::string_view page_;
+  ServerOptions options_;
+  Place place_;
+  std::size_t answers_ = 0;  // strangers and these before the context, whose handlers count them down when they go
+  Strangers strangers_;
+  asio::io_context context_{1};
+  tcp::acceptor acceptor_{context_};
+  asio::steady_timer timer_{context_}, wait_{context_};
+  std::thread thread_;
+  std::set<std::shared_ptr<Viewer>> viewers_;
+  Lead lead_;
+
+  std::uint32_t shape_number_ = 0;
+  std::unique_ptr<Surface> surface_;
+  Message keyframe_, state_, notice_;
+  const Snapshot* shown_ = nullptr;      ///< the newest state
+  std::array<Message, kFields> frames_;  ///< of it, as far as someone wants them
+  std::uint64_t frame_number_ = 0;
+  std::deque<ForceSample> history_;
+  Recording recording_;
+  ArchiveSender archives_;
+  std::string survived_;            ///< the last trouble told
+  std::vector<double> parameters_;  ///< of the newest state
+  std::uint64_t samples_ = 0;       ///< all there ever were
+  std::atomic<std::uint64_t> sent_{0}, missed_{0};
+  bool stopping_ = false, led_ = false;
+  bool resting_ = false;  ///< held because nobody watches
+  Clock::time_point watched_ = Clock::now();
+  Clock::time_point news_{}, due_{};
+};
+
+}  // namespace glisson::view

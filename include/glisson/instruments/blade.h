@@ -1,0 +1,61 @@
+// blade.h — a blade as an instrument: its edge meets tissue, which resists by its fracture toughness, and cuts it.
+//
+//   Simulation::step ── pose, resistance ──▶ Blade ── cut() between steps ──▶ Cutter ── faces part ──▶ Simulation
+//
+// What the edge has to break resists with  G l  against its way through the tissue, l the length of edge in tissue that is
+// not cut: the work of a cut is G times its area. Tissue that needs less than that to be taken along by the edge is taken
+// along and not cut. The flat of the blade does not touch the tissue; attach a contact tool of its shape for that.
+#pragma once
+
+#include "glisson/instruments/cutting.h"
+#include "glisson/instruments/instrument.h"
+
+namespace glisson {
+
+struct BladeOptions {
+  Vec3d edge_from{0.0, -0.01, 0.0}, edge_to{0.0, 0.01, 0.0};  ///< ends of the cutting edge in the tool's own axes [m]
+  double toughness = 100.0;                                   ///< G of the tissue [J/m²], ≥ 0
+  CutOptions cutting{};
+};
+
+class Blade final : public Instrument {
+ public:
+  /// @param simulation  it will be attached to; must outlive this, and stay where it is
+  /// @throws std::invalid_argument naming the option, its value and the allowed range
+  Blade(Simulation& simulation, std::string name, std::shared_ptr<ToolDriver> driver, const Vec3d& direction,
+        const BladeOptions& options = {});
+
+  /// Cuts what the edge has passed since the last call; to be called between steps, every one or every few.
+  CutReport cut();
+
+  BladeEdge edge() const;                                    ///< where it is now [m]
+  double area() const { return area_; }                      ///< cut so far, at rest [m²]
+  double work_of_cut() const { return toughness_ * area_; }  ///< [J]
+  double length_in_tissue() const;                           ///< of edge that has tissue to break [m]
+  Cutter& cutter() { return cutter_; }                       ///< for its checkpoint
+
+  void attached(const BodyView& body, double time) override;
+  void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
+  std::span<const std::uint32_t> reach(double time, double h) override;
+  void constrain(const InteractionStep& step) override;
+  std::vector<double> past() const override;
+  bool restore(std::span<const double> past) override;
+
+ private:
+  /// A piece of the edge and the vertices of the tet it is in.
+  struct Piece {
+    EdgePiece at;
+    Tet vertices{};
+  };
+  void find_pieces();
+  void resist(const InteractionStep& step, const Piece& piece, const Vec3d& velocity, const Vec3d& along);
+
+  Simulation& simulation_;
+  Cutter cutter_;
+  Vec3d from_, to_;
+  double toughness_, area_ = 0.0;
+  std::vector<Piece> pieces_;
+  std::vector<std::uint32_t> reached_;
+};
+
+}  // namespace glisson

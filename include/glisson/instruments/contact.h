@@ -1,0 +1,127 @@
+// contact.h — rigid instruments that press on the surface of a body: punches, balls, needles' outsides, plates, blocks.
+//
+//   tool's frame:      │  hand  │ z          A shape is a signed distance φ with its outward normal, in the tool's own frame.
+//                      │        │ ▲          The origin is the tip, the body of the tool lies at z > 0: with the axes of
+//                      └───┬────┘ └──▶ x     space as its own, a tool stands above the tissue and presses along −z.
+//   tissue ════════════════╧═══════════════
+//
+// At the end of a step no point of the surface may be inside the tool; what moves it out is an impulse along the normal,
+// never a spring, so that there is no stiffness to choose and none in the stable step. Friction is Coulomb's cone on the
+// motion relative to the tool (docs/contact.md).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "glisson/instruments/instrument.h"
+
+namespace glisson {
+
+/// Flat-ended cylinder.
+struct FlatPunch {
+  double radius = 5e-3;      ///< [m], > 0
+  double edge_radius = 0.0;  ///< of the rounded edge [m], 0 … radius
+  double length = 0.1;       ///< [m], ≥ 2 edge_radius
+};
+
+struct Ball {
+  double radius = 5e-3;  ///< [m], > 0; its centre is at z = radius
+};
+
+enum class TipForm {
+  conical,
+  bevelled,  ///< cut off by one plane; the point is at x = +radius
+  blunt      ///< half a ball
+};
+
+/// A needle as a solid, for palpation and coarse contact; Needle pierces.
+struct NeedleShape {
+  double diameter = 1.27e-3;  ///< [m], > 0
+  double length = 0.1;        ///< with the tip [m]
+  TipForm tip = TipForm::conical;
+  double tip_angle =
+      0.35;  ///< conical: of the whole cone; bevelled: between its plane and the shaft [rad], 0.02 … 3.1 or 1.55
+};
+
+/// All of z ≥ 0.
+struct Plate {};
+
+/// Everything outside a cylinder about z that has no ends: its wall seen from inside.
+struct CylinderWall {
+  double radius = 0.05;  ///< [m], > 0
+};
+
+/// A box that stands on the middle of its lower face.
+struct Block {
+  Vec3d size{0.01, 0.01, 0.01};  ///< [m], > 0
+  double edge_radius = 0.0;      ///< [m], 0 … half the smallest size
+};
+
+using Shape = std::variant<FlatPunch, Ball, NeedleShape, Plate, CylinderWall, Block>;
+
+/// How far a point is outside a shape, negative inside, and which way out is nearest.
+struct ShapeDistance {
+  double distance = 0.0;  ///< φ [m]; never more than the true distance, and equal to it but near the rim of a bevel
+  Vec3d normal{};         ///< ∇φ, a unit vector
+};
+
+/// @param x  in the frame of the shape [m]. Cost: 5 to 20 ns
+ShapeDistance distance_to(const Shape& shape, const Vec3d& x);
+
+/// @throws std::invalid_argument naming the shape, the size, its value and the allowed range
+void require_valid(const Shape& shape);
+
+struct ContactOptions {
+  std::string name = "tool";
+  Shape shape = FlatPunch{};
+  double friction = 0.0;         ///< Coulomb's μ [-], ≥ 0; ∞: never slips while it presses
+  bool bonded = false;           ///< what has touched stays where it touched, pulled or pressed; friction is not used
+  Vec3d direction{0, 0, -1};     ///< along which depth is measured; any length
+  double push_out_speed = 0.05;  ///< of tissue that is inside the tool when it is attached, at most [m/s], > 0
+};
+
+/// What presses on the tool, per vertex of the surface.
+struct ContactPressure {
+  std::span<const std::uint32_t> vertices;  ///< ascending; those that bear
+  std::span<const double> pascals;  ///< normal force over a third of the present area of the triangles around it
+};
+
+/// A rigid tool in contact with the surface of the body, of either side of a cut too.
+class ContactTool final : public Instrument {
+ public:
+  /// @throws std::invalid_argument naming the option, its value and the allowed range
+  ContactTool(const ContactOptions& options, std::shared_ptr<ToolDriver> driver);
+  ~ContactTool() override;
+
+  /// Of the last step; valid until the next.
+  ContactPressure contact_pressure() const;
+  bool touches() const;         ///< in the last step
+  double contact_area() const;  ///< of the vertices that bear [m²]
+  /// Rows that the last step solved, and sweeps over them.
+  struct Effort {
+    std::size_t vertices = 0, triangles = 0;
+    int sweeps = 0;
+    bool corrected = false;  ///< solved twice, so as to create no energy
+  };
+  Effort effort() const;
+  const ContactOptions& options() const;
+
+  void attached(const BodyView& body, double time) override;
+  void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
+  std::span<const std::uint32_t> reach(double time, double h) override;
+  void add_forces(const InteractionStep& step) override;
+  void constrain(const InteractionStep& step) override;
+  void moved(const InteractionStep& step) override;
+  std::vector<double> past() const override;
+  bool restore(std::span<const double> past) override;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace glisson

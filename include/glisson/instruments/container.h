@@ -1,0 +1,75 @@
+// container.h — a rigid vessel that tissue lies in, with sensors for the load on its bottom and its sides.
+//
+//      │        │      open above; the pose is at the middle of the floor, z points up
+//      │ tissue │
+//      └────────┘      loads are what the tissue exerts on the container: a block at rest loads the bottom by −z
+//
+// From free to bonded: friction 0 lets tissue slide and lift off; μ is Coulomb's; infinite μ does not slip while it presses;
+// `holds_floor` and `holds_wall` keep what touches from lifting off though it may slide, as a wet vessel does;
+// `bonded` keeps it where it touched. In slow motion tool and container balance (docs/contact.md).
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "glisson/instruments/instrument.h"
+
+namespace glisson {
+
+struct CylinderVessel {
+  double radius = 0.05;                                     ///< inside [m], > 0
+  double height = std::numeric_limits<double>::infinity();  ///< of the wall [m], > 0
+};
+
+struct BoxVessel {
+  double width = 0.04, length = 0.04;                       ///< inside, along x and y [m], > 0
+  double height = std::numeric_limits<double>::infinity();  ///< of the walls [m], > 0
+};
+
+struct ContainerOptions {
+  std::string name = "container";
+  std::variant<CylinderVessel, BoxVessel> vessel = CylinderVessel{};
+  Pose pose{};                   ///< middle of the floor; its z is up
+  double friction = 0.0;         ///< Coulomb's μ [-], ≥ 0, may be infinite
+  bool holds_floor = false;      ///< tissue on the floor does not lift off
+  bool holds_wall = false;       ///< tissue at the wall does not come off
+  bool bonded = false;           ///< what has touched stays where it touched; friction is not used
+  double push_out_speed = 0.05;  ///< of tissue that is outside the vessel when it is attached, at most [m/s], > 0
+};
+
+/// What the tissue exerts on the container [N], at Simulation::force_time().
+struct ContainerLoads {
+  Vec3d bottom{};            ///< on the floor
+  Vec3d side{};              ///< on all of the wall
+  double side_radial = 0.0;  ///< Σ f·n over the wall, n pointing out of the vessel: positive where tissue presses
+  Vec3d total() const { return bottom + side; }
+};
+
+class Container final : public Interaction {
+ public:
+  /// @throws std::invalid_argument naming the option, its value and the allowed range
+  explicit Container(const ContainerOptions& options);
+  ~Container() override;
+
+  const ContainerLoads& loads() const;  ///< of the last step
+  Vec3d up() const;                     ///< the z of its pose; axial loads are along it
+  const ContainerOptions& options() const;
+
+  std::string label() const override { return "the container"; }
+  void attached(const BodyView& body, double time) override;
+  void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
+  std::span<const std::uint32_t> reach(double time, double h) override;
+  void add_forces(const InteractionStep& step) override;
+  void constrain(const InteractionStep& step) override;
+  void moved(const InteractionStep& step) override;
+  std::vector<double> past() const override;
+  bool restore(std::span<const double> past) override;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace glisson

@@ -1,0 +1,99 @@
+// instrument.h — what all instruments have: a pose that someone drives, forces that can be read, events.
+//
+//   ToolDriver ── pose at t + h ──▶ Instrument ── impulses ──▶ tissue
+//        ▲                               │
+//        └────── what the tissue exerts ─┘          (recorded paths ignore it; pushes and hands do not)
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "glisson/math.h"
+#include "glisson/simulation/interaction.h"
+
+namespace glisson {
+
+/// Where a tool is and how it is turned.
+struct Pose {
+  Vec3d position{};                 ///< of the tool's origin (its tip) [m]
+  Mat3d axes = identity<double>();  ///< columns: the tool's own x, y, z in space; a rotation
+};
+
+/// A force and a torque about the tool's origin.
+struct Wrench {
+  Vec3d force{};   ///< [N]
+  Vec3d torque{};  ///< [N m]
+};
+
+/// What a tool exerts on the tissue, with its parts [N]: total = normal + friction + cutting.
+struct ToolForces {
+  Vec3d normal{};    ///< pressing: across surfaces in contact, across the shaft of a needle, at a tip that does not cut
+  Vec3d friction{};  ///< along surfaces in contact and along the shaft
+  Vec3d cutting{};   ///< at a tip or edge that parts tissue
+  Vec3d torque{};    ///< of all, about the tool's origin [N m]
+  Vec3d total() const { return normal + friction + cutting; }
+};
+
+/// Something worth a mark on the force curve.
+struct InstrumentEvent {
+  double time = 0.0;   ///< [s]
+  double depth = 0.0;  ///< of the tool along its direction, from where it started [m]
+  std::string event;   ///< contact, puncture, drop, inner puncture, withdrawal, release …
+};
+
+/// Who moves a tool: a path, a push, a program outside.
+class ToolDriver {
+ public:
+  virtual ~ToolDriver() = default;
+  /// Where the tool starts.
+  virtual Pose start() const = 0;
+  /// Where it is at the end of the step from `time` to `time` + h.
+  /// @param on_tool  what the tissue exerted on it in the last step
+  virtual Pose advance(double time, double h, const Wrench& on_tool) = 0;
+  /// Time at which the motion has ended [s]; none: it does not end by itself.
+  virtual std::optional<double> end() const { return {}; }
+  /// For checkpoints, as Interaction's.
+  virtual std::vector<double> past() const { return {}; }
+  virtual bool restore(std::span<const double> past) { return past.empty(); }
+};
+
+/// A tool in contact with, or inside, the body.
+class Instrument : public Interaction {
+ public:
+  /// @param driver  not none @param direction  along which depth is measured, a unit vector
+  Instrument(std::string name, std::shared_ptr<ToolDriver> driver, const Vec3d& direction);
+
+  const std::string& name() const { return name_; }
+  std::string label() const override { return "instrument \"" + name_ + "\""; }
+  const Pose& pose() const { return pose_; }            ///< at the end of the last step
+  const ToolForces& forces() const { return forces_; }  ///< of the last step, at Simulation::force_time()
+  double depth() const;                                 ///< way along the direction since the start [m]
+  double force_depth() const { return force_depth_; }   ///< the same at the time the forces are of [m]
+  const Vec3d& direction() const { return direction_; }
+  const ToolDriver& driver() const { return *driver_; }
+  /// All events so far, in their order.
+  const std::vector<InstrumentEvent>& events() const { return events_; }
+
+ protected:
+  /// Moves the pose to that at the end of the step; the one before is in `before_`. Once a step, in reach() or
+  /// first in constrain().
+  void drive(const InteractionStep& step);
+  void add_event(double time, double depth, std::string event) { events_.push_back({time, depth, std::move(event)}); }
+  void save_motion(std::vector<double>& past) const;
+  /// @param past  from which what was taken is cut off
+  bool restore_motion(std::span<const double>& past);
+
+  Pose pose_, before_;
+  ToolForces forces_;
+
+ private:
+  std::string name_;
+  std::shared_ptr<ToolDriver> driver_;
+  Vec3d direction_, start_;
+  double force_depth_ = 0.0;
+  std::vector<InstrumentEvent> events_;
+};
+
+}  // namespace glisson

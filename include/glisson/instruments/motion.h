@@ -1,0 +1,28 @@
+// motion.h — the paths a tool follows.
+#pragma once
+
+#include "glisson/math.h"
+#include "glisson/simulation/simulation.h"
+
+namespace glisson {
+
+/// Press along a direction to a depth, optionally hold, optionally return.
+struct PressMotion {
+  Vec3d direction{0.0, 0.0, -1.0};  ///< need not be a unit vector; not zero
+  double velocity = 0.01;           ///< speed [m/s], > 0
+  double depth = 0.01;              ///< [m], > 0
+  double start = 0.0;               ///< time at which the motion begins [s], ≥ 0; give it to drive() as `from` too
+  double ramp = 0.0;     ///< time over which the speed rises from 0, linearly [s], ≥ 0; 0: at once, as in the paper
+  double hold = 0.0;     ///< rest at depth [s], ≥ 0
+  bool returns = false;  ///< withdraw at the same speed after the hold
+};
+
+/// Depth along the direction at time t [m].
+double press_depth(const PressMotion& motion, double time);
+/// Time at which the motion has ended [s].
+double press_end(const PressMotion& motion);
+/// The motion as displacement for Simulation::drive.
+/// @throws std::invalid_argument naming the field, its value and the allowed range
+Motion press(const PressMotion& motion);
+
+}  // namespace glisson

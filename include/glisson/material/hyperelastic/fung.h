@@ -1,0 +1,49 @@
+// fung.h — Fung's exponential in its isotropic form, as Demiray wrote it.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "glisson/material/stiffness/law_field.h"
+
+namespace glisson {
+
+/// W = μ/(2b) (e^{b (Ī₁ − 3)} − 1) + κ/2 (J − 1)²     [Demiray1972]
+/// Beyond an exponent of 12, 1.6·10⁵ times as stiff as at rest, W goes on along its tangent: tets that are crushed or
+/// scrambled find back, and sums of forces keep their digits (docs/integrators.md, "Far from rest").
+struct Fung {
+  double mu = 0.0, b = 0.0;   ///< [Pa], [-]
+  double bulk_modulus = 0.0;  ///< κ [Pa], > 0
+
+  static constexpr std::string_view kName = "fung";
+  static constexpr std::string_view kHelp = "W = μ/(2b) (exp(b (Ī₁ − 3)) − 1) + κ/2 (J − 1)² (exponent at most 12)";
+  static constexpr double kLargestExponent = 12.0;
+  static constexpr std::array<LawField<Fung>, 3> kFields{
+      {{.key = "mu_Pa", .member = &Fung::mu, .unit = "Pa", .min = kSmallestModulus, .help = "μ, shear modulus at rest"},
+       {.key = "b", .member = &Fung::b, .unit = "-", .min = 1e-6, .max = 1000.0, .help = "b, rate of stiffening"},
+       bulk_modulus_field<Fung>()}};
+
+  double shear_modulus() const { return mu; }
+  template <class T>
+  T energy(T i1, T /*i2*/) const {
+    using std::expm1;
+    const T e = T(b) * i1;
+    const double top = std::exp(kLargestExponent);
+    const T growth = e < T(kLargestExponent) ? expm1(e) : T(top - 1.0) + T(top) * (e - T(kLargestExponent));
+    return T(0.5 * mu / b) * growth;
+  }
+  /// ∂W/∂Ī₁, ∂W/∂Ī₂ [Pa].
+  template <class T>
+  std::array<T, 2> slopes(T i1, T /*i2*/) const {
+    using std::exp;
+    const T e = T(b) * i1;
+    return {T(0.5 * mu) * exp(e < T(kLargestExponent) ? e : T(kLargestExponent)), T(0.0)};
+  }
+  std::string check() const { return {}; }
+
+  bool operator==(const Fung&) const = default;
+};
+
+}  // namespace glisson

@@ -1,0 +1,42 @@
+// neo_hookean.h — rubber at its simplest: one modulus, stresses linear in stretch squared.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "glisson/material/stiffness/law_field.h"
+
+namespace glisson {
+
+/// W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)²
+struct NeoHookean {
+  double mu = 1285.714;       ///< μ [Pa], > 0
+  double bulk_modulus = 0.0;  ///< κ [Pa], > 0
+
+  static constexpr std::string_view kName = "neo_hookean";
+  static constexpr std::string_view kHelp = "W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)²";
+  static constexpr std::array<LawField<NeoHookean>, 2> kFields{{{.key = "mu_Pa",
+                                                                 .member = &NeoHookean::mu,
+                                                                 .unit = "Pa",
+                                                                 .min = kSmallestModulus,
+                                                                 .help = "μ, shear modulus at rest"},
+                                                                bulk_modulus_field<NeoHookean>()}};
+
+  double shear_modulus() const { return mu; }
+  template <class T>
+  T energy(T i1, T /*i2*/) const {
+    return T(0.5 * mu) * i1;
+  }
+  /// ∂W/∂Ī₁, ∂W/∂Ī₂ [Pa].
+  template <class T>
+  std::array<T, 2> slopes(T /*i1*/, T /*i2*/) const {
+    return {T(0.5 * mu), T(0.0)};
+  }
+  std::string check() const { return {}; }
+
+  bool operator==(const NeoHookean&) const = default;
+};
+
+}  // namespace glisson

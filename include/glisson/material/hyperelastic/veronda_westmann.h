@@ -1,0 +1,55 @@
+// veronda_westmann.h — the exponential law of skin, much used for abdominal organs and breast.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "glisson/material/stiffness/law_field.h"
+
+namespace glisson {
+
+/// W = c (e^{b (Ī₁ − 3)} − 1) − ½ c b (Ī₂ − 3) + κ/2 (J − 1)²,  μ = c b     [VerondaWestmann1970]
+/// Beyond an exponent of 12, 1.6·10⁵ times as stiff as at rest, W goes on along its tangent: tets that are crushed or
+/// scrambled find back, and sums of forces keep their digits (docs/integrators.md, "Far from rest").
+struct VerondaWestmann {
+  double c = 0.0, b = 0.0;    ///< [Pa], [-]
+  double bulk_modulus = 0.0;  ///< κ [Pa], > 0
+
+  static constexpr std::string_view kName = "veronda_westmann";
+  static constexpr std::string_view kHelp =
+      "W = c (exp(b (Ī₁ − 3)) − 1) − ½ c b (Ī₂ − 3) + κ/2 (J − 1)², μ = c b (exponent at most 12)";
+  static constexpr double kLargestExponent = 12.0;
+  static constexpr std::array<LawField<VerondaWestmann>, 3> kFields{
+      {{.key = "c_Pa", .member = &VerondaWestmann::c, .unit = "Pa", .min = kSmallestModulus, .help = "c"},
+       {.key = "b",
+        .member = &VerondaWestmann::b,
+        .unit = "-",
+        .min = 1e-6,
+        .max = 1000.0,
+        .help = "b, rate of stiffening"},
+       bulk_modulus_field<VerondaWestmann>()}};
+
+  double shear_modulus() const { return c * b; }
+  template <class T>
+  T energy(T i1, T i2) const {
+    using std::exp, std::expm1;
+    const T e = T(b) * i1;
+    const double top = std::exp(kLargestExponent);
+    const T growth = e < T(kLargestExponent) ? expm1(e) : T(top - 1.0) + T(top) * (e - T(kLargestExponent));
+    return T(c) * growth - T(0.5 * c * b) * i2;
+  }
+  /// ∂W/∂Ī₁, ∂W/∂Ī₂ [Pa].
+  template <class T>
+  std::array<T, 2> slopes(T i1, T /*i2*/) const {
+    using std::exp;
+    const T e = T(b) * i1;
+    return {T(c * b) * exp(e < T(kLargestExponent) ? e : T(kLargestExponent)), T(-0.5 * c * b)};
+  }
+  std::string check() const { return {}; }
+
+  bool operator==(const VerondaWestmann&) const = default;
+};
+
+}  // namespace glisson

@@ -1,0 +1,44 @@
+// yeoh.h — a cubic in the first invariant: soft, then stiffening.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "glisson/material/stiffness/law_field.h"
+
+namespace glisson {
+
+/// W = c₁ (Ī₁ − 3) + c₂ (Ī₁ − 3)² + c₃ (Ī₁ − 3)³ + κ/2 (J − 1)²,  μ = 2 c₁
+struct Yeoh {
+  double c1 = 0.0, c2 = 0.0, c3 = 0.0;  ///< [Pa]
+  double bulk_modulus = 0.0;            ///< κ [Pa], > 0
+
+  static constexpr std::string_view kName = "yeoh";
+  static constexpr std::string_view kHelp = "W = c₁ (Ī₁ − 3) + c₂ (Ī₁ − 3)² + c₃ (Ī₁ − 3)³ + κ/2 (J − 1)², μ = 2 c₁";
+  static constexpr std::array<LawField<Yeoh>, 4> kFields{
+      {{.key = "c1_Pa",
+        .member = &Yeoh::c1,
+        .unit = "Pa",
+        .min = kSmallestModulus,
+        .help = "c₁, half the shear modulus at rest"},
+       {.key = "c2_Pa", .member = &Yeoh::c2, .unit = "Pa", .required = false, .help = "c₂"},
+       {.key = "c3_Pa", .member = &Yeoh::c3, .unit = "Pa", .required = false, .help = "c₃"},
+       bulk_modulus_field<Yeoh>()}};
+
+  double shear_modulus() const { return 2.0 * c1; }
+  template <class T>
+  T energy(T i1, T /*i2*/) const {
+    return i1 * (T(c1) + i1 * (T(c2) + i1 * T(c3)));
+  }
+  /// ∂W/∂Ī₁, ∂W/∂Ī₂ [Pa].
+  template <class T>
+  std::array<T, 2> slopes(T i1, T /*i2*/) const {
+    return {T(c1) + i1 * (T(2.0 * c2) + i1 * T(3.0 * c3)), T(0.0)};
+  }
+  std::string check() const { return {}; }
+
+  bool operator==(const Yeoh&) const = default;
+};
+
+}  // namespace glisson

@@ -1,0 +1,36 @@
+// hyperelastic_law.h — the one list of laws that derive the stress from an energy of large deformation.
+//
+// Each is one file under hyperelastic/ with `kName`, `kHelp`, `kFields` (its scene keys and messages), `check`,
+// `shear_modulus`, and its energy W beside κ/2 (J − 1)², as a function
+//   of Ī₁ − 3 = J^(−⅔) I₁ − 3 and Ī₂ − 3 = J^(−4/3) I₂ − 3:   energy(i1, i2), slopes(i1, i2)
+//   or of the logarithms of λ̄_i = J^(−⅓) λ_i (Ogden):          energy(l), slopes(l)
+// in a scalar T: double, or a number that carries a derivative (src/material/dual.h).
+#pragma once
+
+#include <string_view>
+#include <variant>
+
+#include "glisson/material/hyperelastic/fung.h"
+#include "glisson/material/hyperelastic/mooney_rivlin.h"
+#include "glisson/material/hyperelastic/neo_hookean.h"
+#include "glisson/material/hyperelastic/ogden.h"
+#include "glisson/material/hyperelastic/veronda_westmann.h"
+#include "glisson/material/hyperelastic/yeoh.h"
+
+namespace glisson {
+
+using HyperelasticLaw = std::variant<NeoHookean, MooneyRivlin, Yeoh, Fung, VerondaWestmann, Ogden>;
+
+inline std::string_view law_name(const HyperelasticLaw& law) {
+  return std::visit([](const auto& l) { return l.kName; }, law);
+}
+/// μ at rest [Pa].
+inline double shear_modulus(const HyperelasticLaw& law) {
+  return std::visit([](const auto& l) { return l.shear_modulus(); }, law);
+}
+/// κ [Pa].
+inline double bulk_modulus(const HyperelasticLaw& law) {
+  return std::visit([](const auto& l) { return l.bulk_modulus; }, law);
+}
+
+}  // namespace glisson

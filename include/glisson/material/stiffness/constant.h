@@ -1,0 +1,32 @@
+// constant.h — the linear tissue: the modulus does not depend on deformation.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "glisson/material/stiffness/law_field.h"
+
+namespace glisson {
+
+/// M(x) = M₀.
+struct ConstantLaw {
+  static constexpr std::string_view kName = "constant";
+  static constexpr std::string_view kHelp = "M(x) = M₀: a linear tissue";
+  static constexpr std::array<LawField<ConstantLaw>, 0> kFields{};
+
+  template <class T>
+  T value(T base, T /*x*/) const {
+    return base;
+  }
+  template <class T>
+  T derivative(T /*base*/, T /*x*/) const {
+    return T(0);
+  }
+  /// Empty, or what is wrong with the parameters taken together.
+  std::string check() const { return {}; }
+
+  bool operator==(const ConstantLaw&) const = default;
+};
+
+}  // namespace glisson

@@ -1,0 +1,29 @@
+// tissue_presets.h — tissues with a source: what was measured, how, and where it holds.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "glisson/material/tissue.h"
+
+namespace glisson {
+
+/// A tissue to start from, `[tissue] preset = "NAME"` in a scene.
+struct TissuePreset {
+  std::string name, what;  ///< one word, and what it is
+  std::string source;      ///< the work, "[Key]: …", Key of docs/references.bib
+  std::string fitted_to;   ///< the measurement: test, range, rate, result
+  std::string validity;    ///< where it holds, and what the source leaves open
+  std::string confirmed;   ///< against what the figures were checked
+  Tissue tissue;
+  std::string toml;  ///< the tissue as a scene's [tissue] table
+};
+
+/// All presets, in the order of the list.
+const std::vector<TissuePreset>& tissue_presets();
+
+/// The preset of that name. @throws std::invalid_argument naming the nearest one, or all
+const TissuePreset& tissue_preset(std::string_view name);
+
+}  // namespace glisson

@@ -1,0 +1,371 @@
+// scene.h — experiments as TOML files: read, checked against the schema, run.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "glisson/instruments/blade.h"
+#include "glisson/instruments/capsule.h"
+#include "glisson/instruments/contact.h"
+#include "glisson/instruments/container.h"
+#include "glisson/instruments/motion.h"
+#include "glisson/instruments/needle.h"
+#include "glisson/instruments/tool_motion.h"
+#include "glisson/material/tissue.h"
+#include "glisson/mesh.h"
+#include "glisson/simulation/simulation.h"
+
+namespace glisson {
+
+/// A scene that cannot be used. what() has one line for each thing that is wrong, in the order of the file:
+/// `file:line:column: key: what is wrong, value, allowed range, way out`; for a value given to --set
+/// `file: --set KEY: …`.
+class SceneError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct MeshFile {
+  std::filesystem::path path;  ///< absolute, or relative to the current directory
+  double scale = 1.0;          ///< factor on coordinates
+};
+using MeshSource = std::variant<BoxOptions, CylinderOptions, MeshFile>;
+
+// `origin` in the structs below is where the scene says it, `file:line:column: key`, for messages that can only be
+// made once the mesh is known. It may be empty.
+
+/// Picks vertices by where they are at rest. Exactly one way per selection.
+struct Selection {
+  struct Box {
+    Vec3d min, max;
+  };  ///< inclusive [m]
+  struct Sphere {
+    Vec3d center;
+    double radius;
+  };  ///< inclusive [m]
+  struct Nearest {
+    Vec3d point;
+    int count = 1;
+  };  ///< the `count` nearest to a point [m], ≥ 1
+  struct Side {
+    int axis;
+    bool upper;
+    double depth;
+  };  ///< within `depth` [m] of the lowest/highest vertex along an axis
+  struct Ids {
+    std::vector<std::uint32_t> vertices;
+  };
+  std::variant<Box, Sphere, Nearest, Side, Ids> where;
+  bool surface_only = false;
+  std::string origin;
+};
+
+/// A region of tets by where their centroid lies at rest; overrides the mesh's own regions.
+struct RegionSpec {
+  std::string name;
+  std::variant<std::monostate, Selection::Box, Selection::Sphere>
+      where;  ///< monostate: the mesh's region of that name or number
+  Tissue tissue;
+  std::string origin;
+};
+
+struct FixedSpec {
+  std::string set;
+  Axes axes;
+  std::string origin;
+};
+struct LoadSpec {
+  std::string set;
+  Vec3d force;        ///< [N], spread over the set by equal parts
+  double ramp = 0.0;  ///< time over which it grows from 0, linearly [s], ≥ 0
+  std::string origin;
+};
+/// A recorded way from a file (load_record).
+struct RecordSpec {
+  std::filesystem::path path;  ///< absolute, or relative to the current directory; empty for a way made in memory
+  double start = 0.0;
+  RecordedMotion motion;  ///< what the file holds
+};
+struct ToolSpec {
+  std::string name = "tool";
+  std::string set;
+  PressMotion motion;
+  std::optional<RecordSpec> record;  ///< a recorded way in place of the press; what the press says then is `direction`
+  std::optional<ToolPath> path;      ///< a program's own way, in place of both; 0 at time 0
+  bool sideways_free = false;        ///< only the component along the direction is driven (direction along an axis)
+  std::string origin;
+};
+
+/// The way of a tool, and when it has ended. @throws std::invalid_argument
+ToolPath tool_path(const ToolSpec& tool);
+/// When a tool takes hold [s].
+double tool_start(const ToolSpec& tool);
+
+/// Strokes along the instrument's direction and across it; one that has no speed of its own takes the common one.
+struct StrokesSpec {
+  struct One {
+    double depth = 0.0;  ///< where it ends, along the direction from the start [m]
+    Vec3d aside{};       ///< and beside it [m]
+    std::optional<double> velocity;
+    double ramp = 0.0, rest = 0.0;
+  };
+  double velocity = 0.01, start = 0.0;
+  std::vector<One> strokes;
+};
+/// A push that rises over `ramp` and may swing:  F = w(t/ramp) (force + swing sin 2π f t).
+struct PushSpec {
+  double force = 1.0, swing = 0.0, frequency = 1.0, start = 0.0, ramp = 0.0;
+  std::optional<double> duration, stop;
+  double mass = 0.05, damping = 5.0;
+  bool guided = true;
+};
+struct InstrumentMotion {
+  /// The last is a program's own way; no scene file gives it.
+  std::variant<PressMotion, StrokesSpec, SineMotion, PushSpec, RecordSpec, ToolPath> how;
+  std::optional<Vec3d> direction;  ///< of any length; none: the instrument's
+};
+
+/// A rigid tool of some shape that presses on the surface.
+template <class Form>
+struct ContactSpec {
+  Form form;
+  double friction = 0.0;
+  bool bonded = false;
+  double push_out_speed = ContactOptions{}.push_out_speed;
+};
+/// A blade, and how often it parts what its edge has passed.
+struct BladeSpec {
+  BladeOptions options;
+  double cut_every = 1e-3;  ///< [s], > 0
+};
+/// Something that presses, pierces or cuts, and how it moves.
+struct InstrumentSpec {
+  std::string name = "instrument";
+  Vec3d tip{};                      ///< where its tip starts [m]
+  Vec3d direction{0.0, 0.0, -1.0};  ///< in which it points, of any length
+  Vec3d side{1.0, 0.0, 0.0};        ///< where its own x axis points, as far as that is across the direction
+  InstrumentMotion motion;
+  std::variant<NeedleOptions, ContactSpec<FlatPunch>, ContactSpec<Ball>, ContactSpec<NeedleShape>, ContactSpec<Plate>,
+               ContactSpec<Block>, BladeSpec>
+      what;
+  std::map<std::string, TipResistance> regions;  ///< of a needle, by region name
+  std::string origin;
+};
+/// Where an instrument starts and how it is turned: its own z axis points back along its direction.
+Pose start_pose(const InstrumentSpec& instrument);
+/// Its driver. @throws std::invalid_argument
+std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& instrument);
+
+/// A file of numbers separated by commas: a line of names, `time_s` and `depth_m`, or `time_s`, `x_m`, `y_m` and `z_m`
+/// (or _mm), then a line for each time. @param direction  of depths, a unit vector
+/// @throws std::runtime_error `file:line: what is wrong`
+RecordedMotion load_record(const std::filesystem::path& file, const Vec3d& direction);
+
+/// A rigid vessel around the body, upright.
+struct ContainerSpec {
+  enum class Hold { free, wet, bonded };
+  Hold hold = Hold::free;  ///< what `options` says of it in three switches
+  ContainerOptions options;
+  std::string origin;
+};
+
+/// A membrane on a part of the surface.
+struct CapsuleSpec {
+  CapsuleOptions options;
+  std::string set;  ///< vertex set; empty: all of the surface
+  std::string origin;
+};
+
+struct OutputSpec {
+  double sample_rate = 500.0;  ///< [Hz], > 0
+  int frames = 60;             ///< frames of the whole run, 0 or more
+};
+
+/// One experiment, complete: what the variants of a scene are expanded to.
+struct Variant {
+  std::string name = "main";
+  std::string label;
+  MeshSource mesh;
+  std::map<std::string, Selection> sets;
+  Tissue tissue;
+  std::vector<RegionSpec> regions;
+  std::vector<FixedSpec> fixed;
+  std::vector<LoadSpec> loads;
+  std::vector<ToolSpec> tools;
+  std::vector<InstrumentSpec> instruments;
+  std::vector<CapsuleSpec> capsules;
+  std::optional<ContainerSpec> container;
+  SimulationOptions simulation;
+  OnInversion on_inversion = OnInversion::go_on;
+  std::optional<double> duration;          ///< [s]; none: until the last motion has ended
+  std::optional<std::uint64_t> max_steps;  ///< stops after that many steps
+  OutputSpec output;
+  std::string scene_name = "scene";  ///< the scene's file, for messages
+};
+
+/// A column of forces.csv on an axis of a chart: display = value × scale.
+struct AxisSpec {
+  std::string column;
+  std::string label;  ///< with unit, e.g. "depth [mm]"
+  double scale = 1.0;
+};
+/// Points that someone measured, in the units of the chart.
+struct MeasuredSpec {
+  std::filesystem::path path;  ///< a .csv with a line of names; absolute, or relative to the current directory
+  std::string label = "measured";
+  std::string x, y;                                     ///< its columns
+  double x_scale = 1.0, x_offset = 0.0, y_scale = 1.0;  ///< x shown = x_scale (x − x_offset)
+  std::vector<double> xs, ys;                           ///< what the file holds, as shown
+};
+/// A chart of the report.
+struct ChartSpec {
+  std::string title;
+  AxisSpec x, y;
+  std::vector<MeasuredSpec> measured;
+  std::vector<std::string> variants;  ///< names; empty: all
+};
+
+struct Scene {
+  std::filesystem::path file;
+  std::string title, description;
+  std::vector<std::string> notes;  ///< what was chosen where the source is silent, and why
+  std::string source;              ///< the text of the file
+  std::vector<Variant> variants;   ///< one or more
+  std::vector<ChartSpec> charts;   ///< empty: the report's own choice
+};
+
+/// `key=value` as given to --set: dotted key, TOML value (a bare word is taken as a string).
+struct Override {
+  std::string key, value;
+};
+
+/// Reads a scene. @throws SceneError
+Scene load_scene(const std::filesystem::path& file, std::span<const Override> overrides = {});
+/// The same from text; `name` stands for the file in messages, relative mesh paths start at `base`.
+Scene parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& base,
+                  std::span<const Override> overrides = {});
+
+/// The reference of every key in Markdown: docs/scene.md is this text.
+std::string scene_reference_markdown();
+
+/// Reads a mesh file; the io library's read_mesh, handed in so that scenes do not link VTK.
+using MeshLoader = std::function<TetMesh(const MeshFile&)>;
+
+/// What an instrument does at the time of a sample.
+struct InstrumentSample {
+  double depth = 0.0;  ///< along its direction, from where it started [m]
+  ToolForces forces;   ///< on the tissue
+};
+
+/// One line of forces.csv. Scalars of the tool are along its direction, positive when it presses.
+struct Sample {
+  double time = 0.0;                          ///< [s]
+  std::vector<double> depths;                 ///< per tool [m]
+  std::vector<ForceParts> tools;              ///< per tool: what it exerts on the tissue
+  std::vector<ForceParts> supports;           ///< per fixed set: what it exerts on the tissue
+  std::vector<InstrumentSample> instruments;  ///< per instrument
+  std::optional<ContainerLoads> container;    ///< what the tissue exerts on it
+  Energies energies;
+};
+
+/// One line of events.csv.
+struct RunEvent {
+  std::size_t instrument = 0;  ///< of the variant
+  InstrumentEvent what;
+};
+
+struct BuiltVariant;
+
+struct RunSummary {
+  std::size_t vertices = 0, tets = 0;
+  std::uint64_t steps = 0;
+  double time_s = 0.0, step_s = 0.0, stable_step_s = 0.0, wall_s = 0.0, ns_per_tet_step = 0.0, peak_force_N = 0.0;
+  Energies energies;
+  double mass_added_kg = 0.0;          ///< by mass scaling
+  std::size_t inverted_tets_most = 0;  ///< the most tets inverted in one step
+  double first_inversion_s = -1.0;     ///< time of it; −1: none
+  std::uint64_t state_hash = 0;
+  enum class End {
+    finished,
+    interrupted,
+    stopped_inverted,
+    stopped_unstable,
+    stopped_not_finite,
+    stopped_not_converged,
+    stopped_not_held
+  } end = End::finished;
+  std::string trouble;  ///< why the last step was not made and what to do; empty where all were
+};
+
+/// Watches a run; called from the run's own thread, never on the hot path of a step.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  virtual void on_start(const Variant&, const Simulation&) {}
+  /// Right after on_start; what it names lives until on_end has returned.
+  virtual void on_built(const BuiltVariant&) {}
+  virtual void on_sample(const Sample&) {}
+  /// Before the first sample that is not earlier.
+  virtual void on_event(const RunEvent&) {}
+  virtual void on_frame(const Simulation&) {}
+  virtual void on_progress(double /*fraction*/) {}  ///< about ten times a second
+  virtual void on_end(const RunSummary&) {}
+};
+
+/// Mesh, sets and regions of a variant, ready to simulate. @throws SceneError, and what `load` throws
+TetMesh build_mesh(const Variant& variant, const MeshLoader& load);
+
+/// Tissue of each region number that occurs in a mesh made by build_mesh.
+std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh);
+
+/// The body of a variant with its supports, loads and tools, at rest. It stays where it is: blades know their body.
+struct BuiltVariant {
+  /// @throws SceneError where mesh, sets, tissues, step or constraints cannot be used
+  BuiltVariant(const Variant& variant, const MeshLoader& load);
+  BuiltVariant(const BuiltVariant&) = delete;
+  BuiltVariant& operator=(const BuiltVariant&) = delete;
+
+  Simulation simulation;
+  std::vector<ConstraintId> supports;                    ///< per variant.fixed
+  std::vector<ConstraintId> tools;                       ///< per variant.tools
+  std::vector<std::shared_ptr<Instrument>> instruments;  ///< per variant.instruments
+  std::vector<std::shared_ptr<Capsule>> capsules;        ///< per variant.capsules
+  std::shared_ptr<Container> container;                  ///< null: there is none
+
+  /// A step of the body; after it, blades cut where it is time to.
+  StepResult step();
+
+ private:
+  struct Cutting {
+    std::shared_ptr<Blade> blade;
+    double every = 0.0, next = 0.0;  ///< [s]
+  };
+  std::vector<Cutting> blades_;
+};
+/// @throws SceneError, as BuiltVariant
+BuiltVariant build_variant(const Variant& variant, const MeshLoader& load);
+
+/// Time at which a variant's run ends [s]; infinite where only max_steps ends it.
+double run_duration(const Variant& variant);
+
+/// Builds and runs a variant to its end, or until `stop` is set.
+///
+/// The last step is the one that ends nearest to run_duration(). A sample is taken from the step that starts nearest
+/// to each multiple of 1/sample_rate, and one more from the last step, so that the curve ends where the run does;
+/// its time, depth, forces and energies are all of the instant at which that step starts. Frames are evenly spaced,
+/// the first at rest, the last at the end.
+/// @throws SceneError before the first step; after it, only what the observer throws
+RunSummary run_variant(const Variant& variant, const MeshLoader& load, RunObserver& observer,
+                       const std::atomic<bool>& stop);
+
+}  // namespace glisson

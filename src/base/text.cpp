@@ -1,0 +1,29 @@
+#include "base/text.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace glisson::detail {
+
+std::string number_text(double value, int digits) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.*g", digits, value);
+  return buffer;
+}
+
+std::string count_text(std::size_t count, const std::string& singular, const std::string& plural) {
+  return std::to_string(count) + ' ' + (count == 1 ? singular : plural);
+}
+
+std::string index_list(std::span<const std::uint32_t> indices, std::size_t shown) {
+  std::string text;
+  const std::size_t n = std::min(shown, indices.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i > 0) text += ", ";
+    text += std::to_string(indices[i]);
+  }
+  if (indices.size() > n) text += " and " + std::to_string(indices.size() - n) + " more";
+  return text;
+}
+
+}  // namespace glisson::detail

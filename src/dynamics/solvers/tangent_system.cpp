@@ -1,0 +1,284 @@
+#include "dynamics/solvers/tangent_system.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace glisson {
+namespace {
+
+constexpr std::size_t kMostFactorised = 20000;  ///< tets up to which `automatic` factorises (docs/integrators.md)
+constexpr int kWornOut = 15;                    ///< iterations after which the factor is made anew
+constexpr int kMostIterations = 2000;
+constexpr double kAsymmetry = 1e-9;  ///< of an element's tangent, relative, up to which it counts as symmetric
+
+bool linear_tissue(const TissueBlock& block) {
+  const Tissue& t = block.tissue;
+  return !t.hyperelastic && t.kinematics == Kinematics::small && std::holds_alternative<ConstantLaw>(t.law) &&
+         !t.lambda_law && !t.mu_law;
+}
+
+/// Shape gradients of the four vertices.
+std::array<Vec3d, 4> gradients(const ElementRest& rest) {
+  return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
+}
+
+bool is_symmetric(const TissueTangent& tangent) {
+  for (std::size_t e = 0; e < tangent.local.size(); ++e) {
+    const ElementTangent& C = tangent.local[e];
+    const double size = C.lpNorm<Eigen::Infinity>();
+    if ((C - C.transpose()).lpNorm<Eigen::Infinity>() > kAsymmetry * size) return false;
+    if (tangent.volume.empty()) continue;
+    for (std::size_t i = 0; i < 9; ++i) {
+      const double own = tangent.modulus[e] * tangent.volume[e](i / 3, i % 3);
+      if (std::abs(tangent.pressure[e](i / 3, i % 3) - own) > kAsymmetry * size) return false;
+    }
+  }
+  return true;
+}
+
+/// The element's C with the bulk that it shares as if it were its own.
+ElementTangent whole_tangent(const TissueTangent& tangent, std::size_t e) {
+  using Nine = Eigen::Map<const Eigen::Matrix<double, 9, 1>>;
+  ElementTangent C = tangent.local[e];
+  if (!tangent.volume.empty())
+    C += Nine(tangent.pressure[e].m[0].data()) * Nine(tangent.volume[e].m[0].data()).transpose();
+  return C;
+}
+
+/// V s_a C s_b, symmetric part over the pair: the 3 × 3 block of vertices a and b.
+Eigen::Matrix3d block_of(const ElementTangent& C, double volume, const Vec3d& a, const Vec3d& b) {
+  Eigen::Matrix3d K;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      double sum = 0.0;
+      for (Eigen::Index j = 0; j < 3; ++j) {
+        const Eigen::Index row = 3 * i + j, column = 3 * k;
+        const double along = C(row, column) * b.x + C(row, column + 1) * b.y + C(row, column + 2) * b.z;
+        sum += a[static_cast<std::size_t>(j)] * along;
+      }
+      K(i, k) = volume * sum;
+    }
+  }
+  return K;
+}
+
+}  // namespace
+
+TangentSystem::TangentSystem(const TissueOperator& tissue, Preconditioner preconditioner)
+    : tissue_(tissue),
+      factorises_(preconditioner == Preconditioner::factorised ||
+                  (preconditioner == Preconditioner::automatic && tissue.body().elements.size() <= kMostFactorised)) {
+  tissues_changed();
+}
+
+void TangentSystem::tissues_changed() {
+  const std::vector<TissueBlock>& blocks = tissue_.body().blocks;
+  linear_ = std::all_of(blocks.begin(), blocks.end(), linear_tissue);
+}
+
+void TangentSystem::set_free(std::vector<char> free) {
+  free_ = std::move(free);
+  x_.assign(free_.size() / 3, Vec3d{});
+  y_.assign(free_.size() / 3, Vec3d{});
+  known_ = has_pattern_ = has_factor_ = current_ = false;
+}
+
+void TangentSystem::linearise(const TissueState& state, const Terms& terms, bool semidefinite) {
+  const bool same = linear_ && terms.rate == terms_.rate && state.since == state_.since;
+  current_ = current_ && same && terms.weight == terms_.weight &&
+             std::equal(diagonal_.begin(), diagonal_.end(), terms.diagonal.begin(), terms.diagonal.end());
+  diagonal_.assign(terms.diagonal.begin(), terms.diagonal.end());
+  terms_ = terms;
+  terms_.diagonal = diagonal_;
+  state_ = state;
+  if (same && known_) return;
+  tissue_.linearise(state, terms.rate, semidefinite, tangent_);
+  symmetric_ = is_symmetric(tangent_);
+  known_ = true;
+}
+
+void TangentSystem::apply(std::span<const Vec3d> x, std::span<Vec3d> y) const {
+  tissue_.apply(tangent_, x, y);
+  for (std::size_t i = 0; i < x.size(); ++i) y[i] = y[i] * terms_.weight + x[i] * diagonal_[i];
+}
+
+/// Which entries the lower triangle of A has on the free components, and where each element's go.
+void TangentSystem::find_pattern() {
+  const Body& body = tissue_.body();
+  number_.assign(free_.size(), -1);
+  int rows = 0;
+  for (std::size_t c = 0; c < free_.size(); ++c) number_[c] = free_[c] != 0 ? rows++ : -1;
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto visit = [&](auto&& act) {
+    for (std::size_t e = 0; e < body.elements.size(); ++e) {
+      for (std::size_t r = 0; r < 12; ++r) {
+        for (std::size_t c = 0; c < 12; ++c) {
+          const int row = number_[3 * body.elements[e][r / 3] + r % 3],
+                    column = number_[3 * body.elements[e][c / 3] + c % 3];
+          act(e, 12 * r + c, row, column);
+        }
+      }
+    }
+  };
+  visit([&](std::size_t, std::size_t, int row, int column) {
+    if (column >= 0 && row >= column) entries.emplace_back(row, column, 0.0);
+  });
+  for (int r = 0; r < rows; ++r) entries.emplace_back(r, r, 0.0);
+  matrix_.resize(rows, rows);
+  matrix_.setFromTriplets(entries.begin(), entries.end());
+  const auto place = [&](int row, int column) {
+    const int* begin = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
+    const int* end = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
+    return static_cast<int>(std::lower_bound(begin, end, row) - matrix_.innerIndexPtr());
+  };
+  position_.resize(body.elements.size());
+  visit([&](std::size_t e, std::size_t entry, int row, int column) {
+    position_[e][entry] = column >= 0 && row >= column ? place(row, column) : -1;
+  });
+  diagonal_position_.resize(static_cast<std::size_t>(rows));
+  for (int r = 0; r < rows; ++r) diagonal_position_[static_cast<std::size_t>(r)] = place(r, r);
+  factor_.analyzePattern(matrix_);
+  packed_.resize(rows);
+  has_pattern_ = true;
+}
+
+void TangentSystem::assemble(const TissueTangent& tangent) {
+  const Body& body = tissue_.body();
+  double* values = matrix_.valuePtr();
+  std::fill_n(values, matrix_.nonZeros(), 0.0);
+  for (std::size_t e = 0; e < body.elements.size(); ++e) {
+    ElementTangent C = whole_tangent(tangent, e);
+    C = (0.5 * terms_.weight * (C + C.transpose())).eval();
+    const std::array<Vec3d, 4> s = gradients(body.rest[e]);
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b < 4; ++b) {
+        const Eigen::Matrix3d K = block_of(C, body.rest[e].volume, s[a], s[b]);
+        for (std::size_t entry = 0; entry < 9; ++entry) {
+          const int at = position_[e][12 * (3 * a + entry / 3) + 3 * b + entry % 3];
+          if (at >= 0) values[at] += K(static_cast<Eigen::Index>(entry / 3), static_cast<Eigen::Index>(entry % 3));
+        }
+      }
+    }
+  }
+  for (std::size_t c = 0; c < number_.size(); ++c) {
+    if (number_[c] >= 0) values[diagonal_position_[static_cast<std::size_t>(number_[c])]] += diagonal_[c / 3];
+  }
+}
+
+bool TangentSystem::factorise(const TissueTangent& tangent) {
+  assemble(tangent);
+  factor_.factorize(matrix_);
+  return factor_.info() == Eigen::Success;
+}
+
+void TangentSystem::refresh() {
+  if (!has_pattern_) find_pattern();
+  has_factor_ = factorise(tangent_);
+  if (!has_factor_) {
+    TissueTangent definite;
+    tissue_.linearise(state_, terms_.rate, true, definite);
+    has_factor_ = factorise(definite);
+  }
+  current_ = true;
+  if (!has_factor_) find_blocks();
+}
+
+void TangentSystem::find_blocks() {
+  const Body& body = tissue_.body();
+  std::vector<Eigen::Matrix3d> sum(body.vertex_count, Eigen::Matrix3d::Zero());
+  for (std::size_t e = 0; e < body.elements.size(); ++e) {
+    const ElementTangent C = whole_tangent(tangent_, e);
+    const std::array<Vec3d, 4> s = gradients(body.rest[e]);
+    for (std::size_t a = 0; a < 4; ++a) {
+      const Eigen::Matrix3d K = block_of(C, body.rest[e].volume * terms_.weight, s[a], s[a]);
+      sum[body.elements[e][a]] += 0.5 * (K + K.transpose());
+    }
+  }
+  inverse_blocks_.resize(sum.size());
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    sum[i].diagonal().array() += diagonal_[i];
+    const Eigen::Vector3d diagonal = sum[i].diagonal();
+    for (Eigen::Index a = 0; a < 3; ++a) {
+      if (free_[3 * i + static_cast<std::size_t>(a)] != 0) continue;
+      sum[i].row(a).setZero(), sum[i].col(a).setZero();
+      sum[i](a, a) = 1.0;
+    }
+    const Eigen::LLT<Eigen::Matrix3d> llt(sum[i]);
+    if (llt.info() == Eigen::Success) {
+      inverse_blocks_[i] = llt.solve(Eigen::Matrix3d::Identity());
+    } else {
+      const Eigen::Vector3d safe = diagonal.cwiseAbs().cwiseMax(1e-12 * diagonal.cwiseAbs().maxCoeff() + 1e-300);
+      inverse_blocks_[i] = safe.cwiseInverse().asDiagonal();
+    }
+  }
+}
+
+void TangentSystem::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
+  z.setZero(r.size());
+  if (has_factor_) {
+    for (std::size_t c = 0; c < number_.size(); ++c) {
+      if (number_[c] >= 0) packed_[number_[c]] = r[static_cast<Eigen::Index>(c)];
+    }
+    packed_ = factor_.solve(packed_).eval();
+    for (std::size_t c = 0; c < number_.size(); ++c) {
+      if (number_[c] >= 0) z[static_cast<Eigen::Index>(c)] = packed_[number_[c]];
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < inverse_blocks_.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(3 * i);
+    z.segment<3>(at) = inverse_blocks_[i] * r.segment<3>(at);
+    for (Eigen::Index a = 0; a < 3; ++a) {
+      if (free_[3 * i + static_cast<std::size_t>(a)] == 0) z[at + a] = 0.0;
+    }
+  }
+}
+
+/// The matrix that was factorised, and for which terms: iterations go on with it to the last bit.
+void TangentSystem::save(CheckpointWriter& out) const {
+  out.put(has_factor_), out.put(current_), out.put(terms_.rate), out.put(terms_.weight), out.put(state_.since);
+  out.put(diagonal_);
+  if (has_factor_) out.put(std::vector<double>(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros()));
+}
+
+void TangentSystem::load(CheckpointReader& in) {
+  in.get(has_factor_), in.get(current_), in.get(terms_.rate), in.get(terms_.weight), in.get(state_.since);
+  in.get(diagonal_);
+  if (!diagonal_.empty() && 3 * diagonal_.size() != free_.size()) CheckpointReader::fail();
+  if (!has_factor_) return;
+  find_pattern();
+  std::vector<double> values(static_cast<std::size_t>(matrix_.nonZeros()));
+  in.get_same_size(values);
+  std::copy(values.begin(), values.end(), matrix_.valuePtr());
+  factor_.factorize(matrix_);
+  has_factor_ = factor_.info() == Eigen::Success;
+}
+
+KrylovResult TangentSystem::solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& x) {
+  const auto product = [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+    flat(std::span<Vec3d>(x_)) = in;
+    apply(x_, y_);
+    out = flat(std::span<const Vec3d>(y_));
+    for (std::size_t c = 0; c < free_.size(); ++c) {
+      if (free_[c] == 0) out[static_cast<Eigen::Index>(c)] = 0.0;
+    }
+  };
+  const auto nearly = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { precondition(r, z); };
+  const auto run = [&](int most) {
+    return symmetric_ ? conjugate_gradients(product, nearly, b, tolerance, most, x)
+                      : bicgstab(product, nearly, b, tolerance, most, x);
+  };
+  if (!factorises_) {
+    find_blocks();
+    return run(kMostIterations);
+  }
+  if (has_factor_ && !current_) {  // an earlier factor: good as long as few iterations do
+    const KrylovResult old = run(kWornOut);
+    if (old.converged) return old;
+  }
+  if (!current_) refresh();
+  return run(has_factor_ ? kMostIterations / 10 : kMostIterations);
+}
+
+}  // namespace glisson

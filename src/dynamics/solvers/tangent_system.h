@@ -1,0 +1,94 @@
+// tangent_system.h — the linear system of a Newton iteration, on the components that are free to move.
+//
+//   A = k K(u, rate) + diag(d)        K of mechanics/tissue_operator.h, applied without being assembled
+//
+// Only the preconditioner is assembled: a sparse Cholesky factor of A's symmetric part at some earlier state, kept
+// over iterations and steps until the iterations say that it has become bad; or the 3 × 3 blocks of A's diagonal.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "dynamics/solvers/krylov.h"
+#include "dynamics/state/checkpoint.h"
+#include "element/tissue_operator.h"
+#include "glisson/simulation/simulation.h"
+
+namespace glisson {
+
+/// A field of vectors as one of numbers.
+inline Eigen::Map<Eigen::VectorXd> flat(std::span<Vec3d> field) {
+  static_assert(sizeof(Vec3d) == 3 * sizeof(double));
+  return {&field.front().x, static_cast<Eigen::Index>(3 * field.size())};
+}
+inline Eigen::Map<const Eigen::VectorXd> flat(std::span<const Vec3d> field) {
+  return {&field.front().x, static_cast<Eigen::Index>(3 * field.size())};
+}
+
+class TangentSystem {
+ public:
+  /// What A is made of.
+  struct Terms {
+    double rate = 0.0;                 ///< dv/du in K [1/s]
+    double weight = 1.0;               ///< k
+    std::span<const double> diagonal;  ///< d of each vertex [kg/s²]
+  };
+
+  /// @param tissue  must outlive this
+  TangentSystem(const TissueOperator& tissue, Preconditioner preconditioner);
+
+  /// Components that are free (3 i + axis: 1). Also after the body has changed.
+  void set_free(std::vector<char> free);
+  /// The tissues have changed; set_free comes next.
+  void tissues_changed();
+  bool is_free(std::size_t component) const { return free_[component] != 0; }
+
+  /// Takes A at a state.
+  /// @param semidefinite  as TissueOperator::linearise
+  void linearise(const TissueState& state, const Terms& terms, bool semidefinite);
+  void save(CheckpointWriter& out) const;
+  /// After set_free, with the same components as when it was saved.
+  void load(CheckpointReader& in);
+  /// Whether A may be kept while its terms do not change: every tissue is linear.
+  bool is_linear() const { return linear_; }
+
+  /// y = A x on all components, held ones included.
+  void apply(std::span<const Vec3d> x, std::span<Vec3d> y) const;
+  /// x ≈ A⁻¹ b on the free components, 0 on the others.
+  KrylovResult solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& x);
+
+ private:
+  using Matrix = Eigen::SparseMatrix<double>;
+  void find_pattern();
+  void assemble(const TissueTangent& tangent);
+  bool factorise(const TissueTangent& tangent);
+  void refresh();
+  void find_blocks();
+  void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
+
+  const TissueOperator& tissue_;
+  bool factorises_, linear_ = true, symmetric_ = true;
+  std::vector<char> free_;
+  Terms terms_;
+  std::vector<double> diagonal_;
+  TissueState state_;
+  TissueTangent tangent_;
+  mutable std::vector<Vec3d> x_, y_;
+
+  // factorised
+  std::vector<int> number_;                     ///< per component: its row among the free ones, −1
+  Matrix matrix_;                               ///< lower triangle
+  std::vector<std::array<int, 144>> position_;  ///< per element: where its entries are in the matrix, −1
+  std::vector<int> diagonal_position_;          ///< per row
+  Eigen::SimplicialLLT<Matrix> factor_;
+  mutable Eigen::VectorXd packed_;
+  bool known_ = false;  ///< tangent_ is that of this body
+  bool has_pattern_ = false, has_factor_ = false;
+  bool current_ = false;  ///< the factor is that of A
+
+  std::vector<Eigen::Matrix3d> inverse_blocks_;  ///< per vertex
+};
+
+}  // namespace glisson

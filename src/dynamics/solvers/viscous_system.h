@@ -1,0 +1,63 @@
+// viscous_system.h — (M + hγ + hC) x = b: the constant matrix of the semi-implicit scheme.
+//
+// C is the viscous matrix at rest. Small bodies are factorised once (envelope_cholesky.h); for large ones, whose factor is
+// no longer read at the speed of a cache, conjugate gradients start from the last answer.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <span>
+#include <vector>
+
+#include "dynamics/solvers/envelope_cholesky.h"
+#include "element/body.h"
+
+namespace glisson {
+
+class ViscousSystem {
+ public:
+  /// Entries of a factor up to which it pays (docs/integrators.md): some 20 000 tets.
+  static constexpr std::size_t kMostEntries = 10000000;
+
+  /// Whether the body has any viscosity: without it the matrix is diagonal and this is not needed.
+  static bool needed(const Body& body);
+
+  /// @param nodal_damping  γ_i per vertex [kg/s]
+  /// @param h  step [s]
+  /// @param held  per component: 1 where x is given
+  /// @param most_entries  of a factor; a body that needs more iterates
+  /// @return false where the matrix is not positive
+  bool build(const Body& body, std::span<const double> nodal_damping, double h, std::vector<char> held,
+             std::size_t most_entries = kMostEntries);
+
+  /// Fills the free components of x.
+  /// @param b  [kg m/s], @param x  [m/s]; its held components are given
+  void solve(std::span<const Vec3d> b, std::span<Vec3d> x);
+  /// C x of the held components [N]; 0 for the others.
+  void held_drag(std::span<const Vec3d> x, std::span<Vec3d> drag) const;
+
+  /// The last answer, which the next one starts from.
+  std::vector<double> last() const { return {last_.begin(), last_.end()}; }
+  /// @return false where it has another size
+  bool set_last(std::span<const double> last);
+  bool is_free(std::size_t component) const { return held_[component] == 0; }
+  bool is_factorised() const { return factorised_; }
+
+ private:
+  using Matrix = Eigen::SparseMatrix<double>;
+  void number(const Body& body);
+  void iterate(Eigen::VectorXd& x);
+
+  double h_ = 0.0;
+  std::vector<char> held_;
+  std::vector<Eigen::Index> row_;                       ///< per component: among the free or among the held
+  std::vector<std::size_t> free_of_row_, held_of_row_;  ///< components
+  Matrix matrix_;                                       ///< free × free
+  Eigen::SparseMatrix<double, Eigen::RowMajor> rows_;   ///< free × free, for conjugate gradients
+  Matrix coupling_;                                     ///< C, held × free
+  Matrix held_block_;                                   ///< C, held × held
+  bool factorised_ = false;
+  EnvelopeCholesky factor_;
+  Eigen::VectorXd packed_, last_, inverse_diagonal_;
+};
+
+}  // namespace glisson

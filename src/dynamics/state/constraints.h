@@ -1,0 +1,47 @@
+// constraints.h — which vertex components are held or driven, and by which constraint.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "glisson/simulation/simulation.h"
+
+namespace glisson {
+
+/// A set of vertices that is held (no motion) or driven along a path.
+struct Constraint {
+  std::vector<std::uint32_t> vertices;
+  Axes axes;
+  Motion motion;      ///< none: held at rest
+  double from = 0.0;  ///< time at which it takes hold [s]; the vertices are free before it
+};
+
+/// All constraints of a body; a component belongs to one of them at most.
+class Constraints {
+ public:
+  explicit Constraints(std::size_t vertex_count) : held_(3 * vertex_count, 0) {}
+
+  /// @throws std::invalid_argument for an empty set, a vertex out of range or a component held already
+  ConstraintId add(Constraint constraint);
+
+  /// Lets new vertices, numbered on from the last, follow what holds the vertices they are copies of.
+  /// @return per constraint: which of its vertices have copies, as positions in its list; the copies come last in it
+  std::vector<std::vector<std::size_t>> add_copies(std::span<const std::uint32_t> origins);
+
+  std::span<const Constraint> all() const { return all_; }
+  const Constraint& at(ConstraintId id) const;
+  bool holds(std::size_t vertex, std::size_t axis) const { return held_[3 * vertex + axis] != 0; }
+
+ private:
+  std::vector<Constraint> all_;
+  std::vector<char> held_;  ///< per vertex component
+};
+
+inline bool has_axis(const Axes& axes, std::size_t axis) { return axis == 0 ? axes.x : (axis == 1 ? axes.y : axes.z); }
+
+/// The components of `v` along `axes`, the others 0.
+Vec3d masked(const Vec3d& v, const Axes& axes);
+
+}  // namespace glisson

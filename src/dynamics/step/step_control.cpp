@@ -1,0 +1,305 @@
+#include "dynamics/step/step_control.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ranges>
+#include <sstream>
+#include <stdexcept>
+
+#include "dynamics/step/step_rules.h"
+
+namespace glisson {
+namespace {
+
+constexpr double kWorthALook = 2.0;       ///< how much shorter a scaled step is that single elements may better
+constexpr std::size_t kSearchesKept = 4;  ///< since steps were chosen anew
+
+}  // namespace
+
+StepControl::StepControl(const Body& body, std::span<const double> nodal_damping, Drag drag,
+                         const SimulationOptions& options, std::span<const double> stiffening)
+    : body_(body), nodal_damping_(nodal_damping), drag_(drag), automatic_(!options.step),
+      enforce_(options.enforce_stability), exact_asked_(options.exact_steps),
+      scales_masses_(options.mass_scaling_step.has_value()), levels_(body) {
+  if (!automatic_ && !(*options.step > 0.0 && std::isfinite(*options.step))) {
+    throw std::invalid_argument("step = " + std::to_string(*options.step) +
+                                " s is outside the allowed range, > 0 and finite, or \"auto\"");
+  }
+  damping_rate_ = largest_damping_rate();
+  exact_ = search_is_needed();
+  validated_ = rest_level_ = at_least_one(stiffening);
+  limits_ = rest_limits_ = limits_at(validated_);
+  keep_guess();
+  searched_ = {rest_limits_, rest_level_, block_numbers()};
+  step_ = options.step.value_or(kSafety * limits_.pace);
+  if (enforce_ && step_ > limits_.stable) refuse_above(limits_.stable);
+  forget_searches();
+  start_anew();
+}
+
+/// The bound from an earlier h* holds only where C stays what it is.
+bool StepControl::search_is_needed() const {
+  const bool small = std::all_of(body_.blocks.begin(), body_.blocks.end(), is_small);
+  return exact_asked_ || (drag_ == Drag::at_once && !small);
+}
+
+/// What is left of a step h of the tissue alone when stiffness k and viscosity c act beside it. φ(h) of the tissue is at most
+/// 4 h/h₁ below a step h₁ it bears, 4 (h/h₁)² where nothing drags, and φ(h) + k h² + 2 c h ≤ 4 must hold.
+double StepControl::with_beside(double step, const Beside& beside) const {
+  if (!(beside.k > 0.0) && !(beside.c > 0.0)) return step;
+  const bool drags = std::any_of(body_.blocks.begin(), body_.blocks.end(), [](const TissueBlock& b) {
+    return b.viscous.mu != 0.0 || b.viscous.lambda != 0.0 || !b.tissue.maxwell.empty();
+  });
+  if (!drags) return 1.0 / std::sqrt(1.0 / (step * step) + 0.25 * beside.k);
+  const double c = beside.c + 2.0 / step;  // of k h² + 2 c h = 4
+  return 4.0 / (c + std::sqrt(c * c + 4.0 * beside.k));
+}
+
+std::string StepControl::too_large(double stable) const {
+  std::ostringstream text;
+  text << "step = " << step_ << " s is above the stable step h* = " << stable
+       << " s of this mesh and tissue, and the run would blow up. Ways out: a smaller step, or \"auto\", which takes "
+       << kSafety << " h*; the integrator ";
+  if (drag_ == Drag::lags) text << "\"semi_implicit\" where viscosity is what limits h*, or ";
+  text << "\"implicit\", which is stable at any step; less viscosity or more nodal damping, which raise h*; a larger "
+       << "density, or mass scaling of the smallest tets, where the inertia of the tissue does not matter, h* growing "
+       << "with its square root";
+  return text.str();
+}
+
+/// Factors of C in φ (stable_step.h). A tissue of small strain keeps its viscous matrix; any other may have one up to
+/// its stiffening times as large.
+std::vector<double> StepControl::viscosity_at(std::span<const double> stiffening) const {
+  std::vector<double> factor(body_.blocks.size(), 1.0);
+  for (std::size_t b = 0; b < factor.size(); ++b) {
+    if (!is_small(body_.blocks[b])) factor[b] = stiffening[b];
+    if (drag_ == Drag::at_once) factor[b] -= 2.0;
+  }
+  return factor;
+}
+
+/// Whether viscosity that lags grows with the level of some block.
+bool StepControl::drag_thickens() const {
+  return drag_ == Drag::lags && std::any_of(body_.blocks.begin(), body_.blocks.end(), thickens);
+}
+
+/// The same searches follow from the same start: those that were made then need not be made again.
+StepControl::Limits StepControl::limits_at(std::span<const double> stiffening) {
+  const std::size_t i = searches_made_++;
+  if (i < searches_.size() && std::ranges::equal(searches_[i].level, stiffening)) {
+    guess_ = searches_[i].guess, pace_guess_ = searches_[i].pace_guess;
+    return searches_[i].limits;
+  }
+  const Limits limits = search(stiffening);
+  searches_.resize(std::min(i, searches_.size()));
+  if (i < kSearchesKept) {
+    searches_.push_back({{stiffening.begin(), stiffening.end()}, limits, guess_, pace_guess_});
+  }
+  return limits;
+}
+
+StepControl::Limits StepControl::search(std::span<const double> stiffening) {
+  const double h = glisson::stable_step(body_, stiffening, nodal_damping_, {}, &guess_, viscosity_at(stiffening)).step;
+  if (drag_ == Drag::lags) return {h, h};
+  const std::vector<double> none(body_.blocks.size(), 0.0);
+  return {h, std::min(h, glisson::stable_step(body_, stiffening, nodal_damping_, {}, &pace_guess_, none).step)};
+}
+
+/// Largest γ/m of a vertex [1/s].
+double StepControl::largest_damping_rate() const {
+  double rate = 0.0;
+  for (std::size_t i = 0; i < nodal_damping_.size(); ++i) {
+    if (body_.masses[i] > 0.0) rate = std::max(rate, nodal_damping_[i] / body_.masses[i]);
+  }
+  return rate;
+}
+
+/// h* at this level from that at the validated one or at rest, whichever gives more; from below. With G ≤ g M a step h that
+/// the damped body bears has φ(h) of the undamped one ≤ 4 + 2 h g, which is shortened away; where g is large, h/r says more.
+/// Where C grows as K does, (h/r)² r K + 2 (h/r) r C ≤ h² K + 2 h C of the undamped one.
+StepControl::Limits StepControl::bound_at(std::span<const double> stiffening) const {
+  const auto from = [&](const Limits& limits, const std::vector<double>& level) {
+    double r = 1.0;
+    for (std::size_t b = 0; b < level.size(); ++b) r = std::max(r, stiffening[b] / level[b]);
+    const double undamped = 1.0 + 0.5 * limits.pace * damping_rate_;
+    if (drag_thickens()) return r > 1.0 ? limits.pace / (r * undamped) : limits.pace;
+    return limits.pace * std::max(1.0 / r, 1.0 / (std::sqrt(r) * undamped));
+  };
+  const double h = std::max(from(limits_, validated_), from(rest_limits_, rest_level_));
+  return {h, h};
+}
+
+void StepControl::prepare_changes(const detail::VertexStars& stars) {
+  const std::vector<double> one(body_.blocks.size(), 1.0);
+  part_bound_ = std::make_unique<PartBound>(body_, stars, viscosity_at(one));
+}
+
+void StepControl::mesh_changed(std::span<const double> nodal_damping, const BodyChange& change,
+                               const detail::VertexStars& stars) {
+  if (nodal_damping.size() != nodal_damping_.size()) {
+    guess_ = pace_guess_ = {};
+    keep_guess();
+  }
+  nodal_damping_ = nodal_damping;
+  if (damping_rate_ > 0.0) damping_rate_ = largest_damping_rate();  // a body without damping gets none by a cut
+  forget_searches();
+  if (part_bound_ == nullptr) prepare_changes(stars);
+  part_bound_->change(change);
+  const double part = part_bound_->step();
+  // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C, and h/r where C is r times as large, too
+  const auto bound = [&](Limits& limits, const std::vector<double>& level) {
+    const double r = *std::max_element(level.begin(), level.end());
+    const double h = part / (drag_thickens() ? r : std::sqrt(r));
+    limits = {std::min(limits.stable, h), std::min(limits.pace, h)};
+  };
+  bound(limits_, validated_);
+  bound(rest_limits_, rest_level_);
+  searched_ = {rest_limits_, rest_level_, block_numbers()};
+  if (automatic_) step_ = std::min(step_, kSafety * limits_.pace);
+  levels_.remove(change.removed);
+  take_stiff();
+  unchecked_ = enforce_ && step_ > limits_.stable;
+}
+
+std::vector<double> StepControl::block_numbers() const {
+  std::vector<double> numbers;
+  for (const TissueBlock& b : body_.blocks) {
+    const auto bulk = [](const LameParameters& l) { return l.lambda + 2.0 / 3.0 * l.mu; };
+    numbers.insert(numbers.end(), {b.elastic.mu, bulk(b.elastic), b.viscous.mu, bulk(b.viscous), b.tissue.density});
+  }
+  return numbers;
+}
+
+/// h* of the present tissues at a level of stiffness, from the last search and from below; 0 where that says nothing.
+StepControl::Limits StepControl::scaled_from_search(std::span<const double> level) const {
+  const std::vector<double> now = block_numbers();
+  const auto ratio = [](double a, double b) { return a > 0.0 ? a / b : 0.0; };  // ∞ where there was none
+  double r = 0.0, c = 0.0, d = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < level.size(); ++b) {
+    const double *to = &now[5 * b], *from = &searched_.numbers[5 * b];
+    const double rise = level[b] / searched_.level[b], thicker = is_small(body_.blocks[b]) ? 1.0 : rise;
+    r = std::max(r, rise * std::max(ratio(to[0], from[0]), ratio(to[1], from[1])));
+    if (drag_ == Drag::lags) c = std::max({c, thicker * ratio(to[2], from[2]), thicker * ratio(to[3], from[3])});
+    d = std::min(d, to[4] / from[4]);
+  }
+  double s = std::max(std::sqrt(r / d), c / d);
+  const double g = std::min(1.0, d);
+  const bool damped = std::any_of(nodal_damping_.begin(), nodal_damping_.end(), [](double x) { return x > 0.0; });
+  if (damped && s * d > g) s = c <= g ? std::max(s, r / g) : std::numeric_limits<double>::infinity();
+  const double h = scales_masses_ || !std::isfinite(s) ? 0.0 : searched_.limits.pace / s;
+  return {h, h};
+}
+
+void StepControl::choose_limits(std::span<const double> stiffening, bool undeformed) {
+  const std::vector<double> now = at_least_one(stiffening), one(body_.blocks.size(), 1.0);
+  rest_level_ = undeformed ? now : one;
+  validated_ = now == rest_level_ ? now : level_of(stiffening, 1.0);
+  if (exact_) {
+    guess_ = pace_guess_ = {};
+    rest_limits_ = limits_at(rest_level_);
+    keep_guess();
+    limits_ = validated_ == rest_level_ ? rest_limits_ : limits_at(validated_);
+    searched_ = {rest_limits_, rest_level_, block_numbers()};
+    return;
+  }
+  const auto bound = [&](const std::vector<double>& level) {
+    Limits limits = scaled_from_search(level);
+    if (limits.pace * kWorthALook > searched_.limits.pace) return limits;
+    const double h = std::max(limits.pace, element_bound_step(body_, level, viscosity_at(level)));
+    return Limits{h, h};
+  };
+  rest_limits_ = bound(rest_level_);
+  limits_ = bound(validated_);
+}
+
+StepControl::Chosen StepControl::chosen() const {
+  return {guess_,     pace_guess_, rest_guess_, rest_pace_guess_, limits_, rest_limits_,
+          validated_, rest_level_, searched_,   exact_,           stiff_};
+}
+
+void StepControl::restore(Chosen c) {
+  guess_ = std::move(c.guess), pace_guess_ = std::move(c.pace_guess);
+  rest_guess_ = std::move(c.rest_guess), rest_pace_guess_ = std::move(c.rest_pace_guess);
+  limits_ = c.limits, rest_limits_ = c.rest_limits;
+  validated_ = std::move(c.validated), rest_level_ = std::move(c.rest_level);
+  searched_ = std::move(c.searched), exact_ = c.exact;
+  stiff_ = c.stiff;
+  join_beside();
+}
+
+void StepControl::tissues_changed(std::span<const double> stiffening, bool undeformed) {
+  Chosen before = chosen();
+  stiff_ = {};  // the level of the blocks is chosen for all tets
+  join_beside();
+  exact_ = search_is_needed();
+  damping_rate_ = largest_damping_rate();
+  forget_searches();
+  choose_limits(stiffening, undeformed);
+  if (!automatic_ && enforce_ && step_ > stable_step()) {
+    validated_ = at_least_one(stiffening);  // without room
+    limits_ = limits_at(validated_);
+    const double h = stable_step();
+    if (step_ > h) {
+      restore(std::move(before));
+      refuse_above(h);
+    }
+  }
+  if (automatic_) step_ = kSafety * limits_.pace;
+  part_bound_.reset();
+  unchecked_ = false;
+  forget_searches();
+  start_anew();
+}
+
+void StepControl::save(CheckpointWriter& out) const {
+  out.put(step_), out.put(window_), out.put(in_window_), out.put(unchecked_), out.put(caution_);
+  out.put(shape_step_), out.put(held_);
+  for (const Limits& l : {limits_, rest_limits_, searched_.limits}) out.put_doubles(l);
+  for (const auto* list : {&validated_, &rest_level_, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
+    out.put(*list);
+  }
+  for (const StabilityGuess* g : {&guess_, &pace_guess_, &rest_guess_, &rest_pace_guess_}) {
+    out.put(g->mode), out.put(g->step);
+  }
+  out.put(probe_), out.put(since_probe_), out.put(probes_);
+  levels_.save(out);
+}
+
+void StepControl::load(CheckpointReader& in) {
+  in.get(step_), in.get(window_), in.get(in_window_), in.get(unchecked_), in.get(caution_);
+  in.get(shape_step_), in.get(held_);
+  for (Limits* l : {&limits_, &rest_limits_, &searched_.limits}) in.get_doubles(*l);
+  for (auto* list : {&validated_, &rest_level_, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
+    in.get_same_size(*list);
+  }
+  for (StabilityGuess* g : {&guess_, &pace_guess_, &rest_guess_, &rest_pace_guess_}) {
+    in.get(g->mode), in.get(g->step);
+    if (!g->mode.empty() && g->mode.size() != 3 * body_.vertex_count) CheckpointReader::fail();
+  }
+  in.get(probe_), in.get(since_probe_), in.get(probes_);
+  searches_.clear(), searches_made_ = kSearchesKept;
+  levels_.load(in);
+  take_stiff();
+}
+
+bool StepControl::accept(std::span<const double> stiffening, std::span<const StiffElement> stiff) {
+  if (!enforce_) return true;
+  for (const double r : stiffening) {
+    if (!std::isfinite(r)) return true;  // the state is beyond repair; the step reports that it is not finite
+  }
+  const std::span<const StiffElement> few = without_crowd(stiff);
+  const StiffnessLevels::Met met = levels_.meet(few, validated_, crowd_.empty() ? usual_ : crowd_);
+  if (met.above || is_crowded() || unchecked_) {
+    if (!rises(stiffening, met.rise)) return false;
+  } else {
+    be_cautious(1.0);
+  }
+  if (automatic_) {
+    probe();
+    relax(stiffening);
+  }
+  return automatic_ || step_ <= stable_step();
+}
+
+}  // namespace glisson

@@ -1,0 +1,326 @@
+// step_levels.cpp — how steps follow what becomes stiff: levels of single tets, those of the blocks, and what they forget again.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "dynamics/step/step_control.h"
+#include "dynamics/step/step_rules.h"
+
+namespace glisson {
+namespace {
+
+constexpr std::uint64_t kLongestWindow = 64000, kShortWindow = 16;  ///< [steps]
+constexpr double kLeastCaution = 0.01;                              ///< least factor on a step while stiffness rises
+constexpr double kRecovery = 1.1;                                   ///< of that factor, a step
+constexpr double kViolent = 3.0;               ///< stiffening of large strain from which shape changes limit the step
+constexpr double kShapeChange = 0.01;          ///< of a tet within such a step [-]
+constexpr double kChangeOfSlack = 0.04;        ///< more of it for one that could be e times as stiff
+constexpr double kCloseToLevel = 0.5;          ///< of its block's level, from which a tet's change of shape counts
+constexpr double kMostAhead = 4.0;             ///< how far a level runs ahead of a rise
+constexpr double kWorthAChange = 1.05;         ///< how much longer a step makes another level of the blocks worth it
+constexpr std::uint64_t kLongestProbe = 1024;  ///< [steps]
+constexpr double kLadder = 0.9;                ///< of one level that is tried to the next
+constexpr int kMostInVain = 8;                 ///< steps of that ladder without a better one
+constexpr double kCostOfLevels = 2.0;          ///< of a tet with a level of its own, over that of a tet, a step
+constexpr double kProbeDepth = 8.0;            ///< how far below the level of the blocks a probe looks
+constexpr std::size_t kFewTets = 64, kFewOf = 4;  ///< tets with levels of their own: so many and this part of all
+
+}  // namespace
+
+/// What was seen and guessed on the way is forgotten; the search at rest is not.
+void StepControl::start_anew() {
+  guess_ = rest_guess_, pace_guess_ = rest_pace_guess_;
+  searches_made_ = 0;
+  seen_.assign(body_.blocks.size(), 0.0);
+  lately_ = seen_;
+  window_ = kFirstWindow, in_window_ = 0;
+  probe_ = kFirstProbe, since_probe_ = 0, probes_ = false;
+  caution_ = 1.0;
+  held_ = tools_;
+  shape_step_ = std::numeric_limits<double>::infinity();
+  levels_.clear();
+  take_stiff();
+}
+
+void StepControl::state_set() {
+  validated_ = rest_level_, limits_ = rest_limits_;
+  if (automatic_) step_ = kSafety * limits_.pace;
+  start_anew();
+}
+
+/// Elements are listed from the level of their block on; where a tet's changes of shape may count, from below.
+void StepControl::list_from() {
+  usual_ = validated_;
+  for (std::size_t b = 0; b < usual_.size(); ++b) {
+    if (!enforce_) usual_[b] = std::numeric_limits<double>::infinity();
+    if (automatic_ && !is_small(body_.blocks[b])) {
+      usual_[b] = std::min(usual_[b], std::max(kViolent, kCloseToLevel * usual_[b]));
+    }
+  }
+  list_above_ = usual_;
+  for (std::size_t b = 0; probes_ && b < usual_.size(); ++b) {
+    list_above_[b] = std::min(usual_[b], std::max(rest_level_[b], validated_[b] / kProbeDepth));
+  }
+}
+
+/// What single tets take off the step, which depends on the level of their blocks.
+Beside StepControl::beside_at(std::span<const double> level) {
+  if (levels_.empty()) return {};
+  std::vector<char> viscous(body_.blocks.size(), 0);
+  for (std::size_t b = 0; b < viscous.size(); ++b) {
+    viscous[b] = thickens(body_.blocks[b]) ? 1 : 0;
+  }
+  return levels_.beside(level, viscous);
+}
+
+void StepControl::set_beside(double squared_frequency) {
+  tools_ = squared_frequency;
+  held_ = std::max(held_, tools_);
+  join_beside();
+}
+
+void StepControl::follow_beside(double squared_frequency) {
+  held_ /= kRegrowth * kRegrowth;
+  set_beside(squared_frequency);
+}
+
+void StepControl::take_stiff() {
+  stiff_ = beside_at(validated_);
+  join_beside();
+  list_from();
+}
+
+/// Holds an automatic step back while stiffness rises by more than the room within a step.
+void StepControl::be_cautious(double rise) {
+  caution_ = rise > kRoom ? std::max(kLeastCaution, caution_ * std::log(kRoom) / std::log(rise))
+                          : std::min(1.0, kRecovery * caution_);
+}
+
+bool StepControl::is_violent(const StiffElement& element) const {
+  return automatic_ && enforce_ && element.ratio > kViolent && !is_small(body_.block_of(element.element));
+}
+
+/// How many times as stiff an element could be before it alone asked for a shorter step.
+double StepControl::slack(const StiffElement& stiff, double step) const {
+  const ElementRest& rest = body_.rest[stiff.element];
+  const std::array<Vec3d, 4> s{-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
+  double per_mass = 0.0;
+  for (std::size_t a = 0; a < 4; ++a) per_mass += dot(s[a], s[a]) / body_.masses[body_.elements[stiff.element][a]];
+  const double modulus = stiff.norm * modulus_bound(body_.block_of(stiff.element).elastic);
+  return 4.0 / (step * step * rest.volume * modulus * per_mass);
+}
+
+void StepControl::limit_shape_change(std::span<const ShapeRate> changes) {
+  shape_step_ = std::numeric_limits<double>::infinity();
+  const double h = step();
+  for (const ShapeRate& c : changes) {
+    if (c.rate * h <= kShapeChange) continue;
+    const double most = kShapeChange + kChangeOfSlack * std::log(std::max(1.0, slack(c.stiff, h)));
+    shape_step_ = std::min(shape_step_, most / c.rate);
+  }
+}
+
+/// What a step is to be found for: the seen stiffness with room, not below that at rest.
+std::vector<double> StepControl::level_of(std::span<const double> seen, double ahead) const {
+  std::vector<double> level = at_least_one(seen);
+  for (std::size_t b = 0; b < level.size(); ++b) {
+    if (!is_linear(body_.blocks[b])) level[b] = std::max(rest_level_[b], kRoom * ahead * level[b]);
+  }
+  return level;
+}
+
+/// Whether limits at a level follow from those at another.
+bool StepControl::is_bounded() const {
+  return drag_ == Drag::lags || std::all_of(body_.blocks.begin(), body_.blocks.end(), is_small);
+}
+
+std::size_t StepControl::most_levels() const { return kFewTets + body_.elements.size() / kFewOf; }
+
+bool StepControl::is_crowd(std::size_t tets) const { return tets > most_levels(); }
+
+void StepControl::take_base(std::vector<double> level, const Limits& limits) {
+  limits_ = limits;
+  validated_ = std::move(level);
+  if (automatic_) step_ = kSafety * limits_.pace;
+  levels_.forget_below(validated_);
+  take_stiff();
+}
+
+/// The stiffest of what is told, where that is too much to look after each; the level of the blocks has to bear the others.
+std::span<const StiffElement> StepControl::without_crowd(std::span<const StiffElement> stiff) {
+  crowd_.clear();
+  if (!is_crowd(stiff.size())) return stiff;
+  const std::size_t few = most_levels();
+  std::vector<double> ratios;
+  for (const StiffElement& s : stiff) ratios.push_back(s.ratio);
+  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(few), ratios.end(), std::greater<>());
+  const double limit = ratios[few];
+  few_.clear();
+  crowd_.assign(body_.blocks.size(), 0.0);
+  for (const StiffElement& s : stiff) {
+    double& left = crowd_[static_cast<std::size_t>(&body_.block_of(s.element) - body_.blocks.data())];
+    if (s.ratio > limit) {
+      few_.push_back(s);
+    } else {
+      left = std::max(left, s.ratio);
+    }
+  }
+  const std::vector<double>& least = probes_ ? list_above_ : validated_;
+  for (std::size_t b = 0; b < crowd_.size(); ++b) crowd_[b] = std::max(crowd_[b], least[b]);
+  return few_;
+}
+
+/// Whether some of a crowd that is not looked after is above the level of its block.
+bool StepControl::is_crowded() const {
+  for (std::size_t b = 0; b < crowd_.size(); ++b) {
+    if (crowd_[b] > validated_[b]) return true;
+  }
+  return false;
+}
+
+/// Takes in tets above their levels, by levels of their own or by that of the blocks; false where a given step does not bear it.
+bool StepControl::rises(std::span<const double> stiffening, double rise) {
+  const double before = with_beside(limits_.pace, stiff_);
+  levels_.raise(kMostAhead);
+  if (!automatic_) {
+    take_stiff();
+    return bears(stiffening);
+  }
+  unchecked_ = false;
+  std::vector<double> level = level_of(stiffening, std::min(rise, kMostAhead));
+  for (std::size_t b = 0; b < level.size(); ++b) {
+    if (!is_linear(body_.blocks[b])) level[b] = std::max(validated_[b], level[b]);
+  }
+  const bool crowded = is_crowded();
+  const std::size_t above = levels_.count_above(validated_);
+  const Limits all = bound_at(level);
+  const std::vector<double>& left = crowded ? crowd_ : validated_;
+  if (all.pace >= pace_above(left, all.pace)) {
+    take_base(level, exact_ ? limits_at(level) : all);
+  } else if (crowded) {
+    choose_base(crowd_, true);
+  } else if (is_crowd(above)) {
+    choose_base(validated_, false);
+  } else {
+    take_stiff();
+  }
+  const double shorter = before / with_beside(limits_.pace, stiff_);
+  be_cautious(std::min(rise, shorter * shorter));
+  return true;
+}
+
+/// Whether a given step bears the stiffness there is: by levels of single tets, by that of the blocks, by that without room.
+bool StepControl::bears(std::span<const double> stiffening) {
+  unchecked_ = false;
+  if (!is_crowded() && step_ <= stable_step()) return true;
+  std::vector<double> level = level_of(stiffening, 1.0);
+  for (std::size_t b = 0; b < level.size(); ++b) {
+    if (!is_linear(body_.blocks[b])) level[b] = std::max(validated_[b], level[b]);
+  }
+  levels_.clear();
+  take_base(level, limits_at(level));
+  if (step_ <= limits_.stable) return true;
+  level = at_least_one(stiffening);
+  take_base(level, limits_at(level));
+  return step_ <= limits_.stable;
+}
+
+/// How fast time goes on at a level of the blocks, with what looking after the tets above it costs.
+double StepControl::pace_of(const Limits& limits, const Beside& beside, std::size_t above) const {
+  const double share = static_cast<double>(above) / static_cast<double>(body_.elements.size());
+  return with_beside(limits.pace, beside) / (1.0 + kCostOfLevels * share);
+}
+
+/// The same with the blocks at a level and the stiffer tets beside it, whose part is reckoned only where it matters: 0 where
+/// that many are dearer than `enough` in any case.
+double StepControl::pace_above(std::span<const double> level, double enough) {
+  const Limits limits = bound_at(level);
+  const std::size_t above = levels_.count_above(level);
+  return pace_of(limits, {}, above) > enough ? pace_of(limits, beside_at(level), above) : 0.0;
+}
+
+/// Chooses the level of the blocks at which time goes on fastest, from the tets that have levels of their own.
+/// @param least  it may be  @param forced  whether the present one is too low
+void StepControl::choose_base(const std::vector<double>& least, bool forced) {
+  levels_.complete();
+  const std::vector<double> most = levels_.largest(least);
+  std::vector<double> best;
+  double fastest = 0.0;
+  if (!forced) fastest = kWorthAChange * pace_of(limits_, beside_at(validated_), levels_.count_above(validated_));
+  int in_vain = 0;
+  for (double share = 1.0; in_vain < kMostInVain; share *= kLadder) {
+    std::vector<double> level = least;
+    for (std::size_t b = 0; b < level.size(); ++b) level[b] = std::max(least[b], share * most[b]);
+    const double pace = pace_above(level, fastest);
+    in_vain = pace > fastest ? 0 : in_vain + 1;
+    if (pace > fastest) fastest = pace, best = level;
+    if (level == least) break;
+  }
+  if (!best.empty()) {
+    take_base(best, bound_at(best));
+  } else {
+    take_stiff();
+  }
+}
+
+/// Whether another level of the blocks could make steps longer: at most those of tissue at rest.
+bool StepControl::may_gain() const {
+  return is_bounded() && rest_limits_.pace > kWorthAChange * with_beside(limits_.pace, stiff_);
+}
+
+/// Asks for all that is stiff, or chooses by what was told.
+void StepControl::probe() {
+  if (probes_) {
+    const std::vector<double> before = validated_;
+    choose_base(crowd_.empty() ? list_above_ : crowd_, false);
+    probe_ = validated_ == before ? std::min(2 * probe_, kLongestProbe) : kFirstProbe;
+    probes_ = false;
+    list_from();
+    return;
+  }
+  if (++since_probe_ < probe_ || !may_gain()) return;
+  since_probe_ = 0;
+  for (std::size_t b = 0; b < validated_.size(); ++b) probes_ = probes_ || validated_[b] > kRoom * rest_level_[b];
+  list_from();
+}
+
+/// Lets levels follow what was seen in the last few steps; where the bound alone allows twice the step, it is taken, without a
+/// search.
+void StepControl::settle() {
+  if (!levels_.empty()) {
+    levels_.settle();
+    take_stiff();
+  }
+  std::vector<double> level = level_of(lately_, 1.0);
+  std::fill(lately_.begin(), lately_.end(), 0.0);
+  const Limits bound = bound_at(level);
+  if (!is_bounded() || kSafety * bound.pace < 2.0 * step_) return;
+  take_base(std::move(level), bound);
+}
+
+/// Lets an automatic step grow at the end of a window in which the tissue was well softer than the validated level.
+void StepControl::relax(std::span<const double> stiffening) {
+  for (std::size_t b = 0; b < seen_.size(); ++b) {
+    seen_[b] = std::max(seen_[b], stiffening[b]);
+    lately_[b] = std::max(lately_[b], stiffening[b]);
+  }
+  ++in_window_;
+  if (in_window_ % kShortWindow == 0) settle();
+  if (in_window_ < window_) return;
+  std::vector<double> level = level_of(seen_, 1.0);
+  bool softer = false;
+  for (std::size_t b = 0; b < level.size(); ++b) {
+    level[b] = std::min(validated_[b], level[b]);
+    softer = softer || level[b] * kRoom < validated_[b];
+  }
+  in_window_ = 0;
+  std::fill(seen_.begin(), seen_.end(), 0.0);
+  if (!softer) return;
+  const Limits limits = exact_ ? limits_at(level) : bound_at(level);
+  take_base(std::move(level), {limits.stable, std::max(limits_.pace, limits.pace)});
+  window_ = std::min<std::uint64_t>(2 * window_, kLongestWindow);
+}
+
+}  // namespace glisson

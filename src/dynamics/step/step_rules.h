@@ -1,0 +1,36 @@
+// step_rules.h — what the parts of the step's control have in common.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "element/body.h"
+
+namespace glisson {
+
+inline constexpr double kRoom = 1.2;  ///< stiffening that a new h* allows for beyond the present one
+
+inline bool is_small(const TissueBlock& block) {
+  return !block.tissue.hyperelastic && block.tissue.kinematics == Kinematics::small;
+}
+
+inline bool is_linear(const TissueBlock& block) {
+  const Tissue& t = block.tissue;
+  return is_small(block) && std::holds_alternative<ConstantLaw>(t.law) && !t.lambda_law && !t.mu_law;
+}
+
+/// Whether its viscous matrix grows with what it is stretched by: its level of stiffness is above that, too.
+inline bool thickens(const TissueBlock& block) {
+  return !is_small(block) && (block.viscous.mu > 0.0 || block.viscous.lambda > 0.0);
+}
+
+/// Softened tissue keeps the h* of its rest stiffness.
+inline std::vector<double> at_least_one(std::span<const double> stiffening) {
+  std::vector<double> level(stiffening.begin(), stiffening.end());
+  for (double& r : level) r = std::max(r, 1.0);
+  return level;
+}
+
+}  // namespace glisson

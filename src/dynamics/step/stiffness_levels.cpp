@@ -1,0 +1,209 @@
+#include "dynamics/step/stiffness_levels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "dynamics/step/stable_step.h"
+
+namespace glisson {
+namespace {
+
+constexpr double kRoom = 1.05, kMostRoom = 3.0;  ///< of a level above the stiffness seen
+
+std::array<Vec3d, 4> gradients(const ElementRest& rest) {
+  return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
+}
+
+std::uint32_t block_number_of(const Body& body, std::uint32_t element) {
+  return static_cast<std::uint32_t>(&body.block_of(element) - body.blocks.data());
+}
+
+/// A tet above the base: what it asks of its vertices' masses.
+struct Asking {
+  std::uint32_t element;
+  double k, c;               ///< V x m, of stiffness and of viscosity
+  std::array<double, 4> of;  ///< V x m |s_a|²
+};
+
+/// Σ s sᵀ/W with the shares W of the masses.
+Sym3<double> over_shares(const Body& body, const Asking& a, const std::vector<double>& asked) {
+  const std::array<Vec3d, 4> s = gradients(body.rest[a.element]);
+  Sym3<double> sum;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::uint32_t v = body.elements[a.element][i];
+    const double per_share = asked[v] / (body.masses[v] * a.of[i]);
+    sum += Sym3<double>{s[i].x * s[i].x, s[i].y * s[i].y, s[i].z * s[i].z,
+                        s[i].x * s[i].y, s[i].y * s[i].z, s[i].z * s[i].x} *
+           per_share;
+  }
+  return sum;
+}
+
+}  // namespace
+
+StiffnessLevels::Member& StiffnessLevels::member(std::uint32_t element) {
+  if (place_.empty()) place_.assign(body_.elements.size(), 0);
+  std::uint32_t& place = place_[element];
+  if (place == 0) {
+    members_.push_back({.element = element, .block = block_number_of(body_, element)});
+    place = static_cast<std::uint32_t>(members_.size());
+  }
+  return members_[place - 1];
+}
+
+bool StiffnessLevels::is_above(const Member& m, double base) {
+  return m.last > base && (m.last > m.ratio || m.seen_norm > m.norm);
+}
+
+/// Up to half of what the worst tet takes a level costs nothing.
+double StiffnessLevels::room_of(const Member& m) { return std::clamp(0.5 / m.part, kRoom, kMostRoom); }
+
+StiffnessLevels::Met StiffnessLevels::meet(std::span<const StiffElement> stiff, std::span<const double> base,
+                                           std::span<const double> unseen) {
+  Met met;
+  ++meetings_;
+  above_.clear();
+  for (const StiffElement& s : stiff) {
+    Member& m = member(s.element);
+    m.before = meetings_ == 1 ? s.ratio : (m.met + 1 == meetings_ ? m.last : unseen[m.block]);
+    m.last = s.ratio, m.met = meetings_;
+    m.seen_ratio = std::max(m.seen_ratio, s.ratio), m.seen_norm = std::max(m.seen_norm, s.norm);
+    if (!is_above(m, base[m.block])) continue;
+    above_.push_back(s.element);
+    met.above = true;
+    met.rise = std::max(met.rise, s.ratio / std::max(1.0, m.before));
+  }
+  return met;
+}
+
+void StiffnessLevels::raise(double most_ahead) {
+  for (const std::uint32_t e : above_) {
+    Member& m = members_[place_[e] - 1];
+    const double ahead = room_of(m) * std::clamp(m.last / std::max(1.0, m.before), 1.0, most_ahead);
+    m.ratio = std::max(m.ratio, ahead * m.last), m.norm = std::max(m.norm, ahead * m.seen_norm);
+  }
+}
+
+void StiffnessLevels::complete() {
+  for (Member& m : members_) {
+    if (m.met != meetings_) continue;
+    if (m.ratio < m.last) m.ratio = kRoom * m.last;
+    if (m.norm < m.seen_norm) m.norm = kRoom * m.seen_norm;
+  }
+}
+
+std::vector<double> StiffnessLevels::largest(std::span<const double> base) const {
+  std::vector<double> level(base.begin(), base.end());
+  for (const Member& m : members_) {
+    double& of_block = level[m.block];
+    of_block = std::max(of_block, m.ratio);
+  }
+  return level;
+}
+
+/// Members by element, so that sums over them do not depend on who came first.
+void StiffnessLevels::keep_ordered() {
+  std::ranges::sort(members_, {}, &Member::element);
+  for (std::size_t i = 0; i < members_.size(); ++i) place_[members_[i].element] = static_cast<std::uint32_t>(i + 1);
+}
+
+void StiffnessLevels::settle() {
+  for (Member& m : members_) {
+    const double room = room_of(m);
+    m.ratio = std::min(m.ratio, room * m.seen_ratio), m.norm = std::min(m.norm, room * m.seen_norm);
+    if (m.seen_ratio == 0.0) place_[m.element] = 0;
+    m.seen_ratio = m.seen_norm = 0.0;
+  }
+  std::erase_if(members_, [&](const Member& m) { return place_[m.element] == 0; });
+  keep_ordered();
+}
+
+void StiffnessLevels::forget_below(std::span<const double> base) {
+  const std::size_t forgotten = std::erase_if(members_, [&](const Member& m) {
+    const bool borne = !(m.ratio > base[m.block]);
+    if (borne) place_[m.element] = 0;
+    return borne;
+  });
+  if (forgotten > 0) keep_ordered();
+}
+
+std::size_t StiffnessLevels::count_above(std::span<const double> base) const {
+  return static_cast<std::size_t>(
+      std::count_if(members_.begin(), members_.end(), [&](const Member& m) { return m.ratio > base[m.block]; }));
+}
+
+Beside StiffnessLevels::beside(std::span<const double> base, const std::vector<char>& viscous) {
+  std::vector<Asking> all;
+  std::vector<Member*> whose;
+  for (Member& m : members_) {
+    m.part = 1.0;
+    const std::size_t b = m.block;
+    if (!(m.ratio > base[b]) || !(body_.rest[m.element].volume > 0.0)) continue;
+    const double more = m.ratio - base[b], volume = body_.rest[m.element].volume;
+    Asking a{m.element, volume * std::min(more, m.norm) * modulus_bound(body_.blocks[b].elastic), 0.0, {}};
+    if (viscous[b] != 0) a.c = volume * more * modulus_bound(body_.blocks[b].viscous);
+    const std::array<Vec3d, 4> s = gradients(body_.rest[m.element]);
+    for (std::size_t i = 0; i < 4; ++i) a.of[i] = a.k * dot(s[i], s[i]);
+    all.push_back(a), whose.push_back(&m);
+  }
+  if (asked_.size() != body_.vertex_count) asked_.assign(body_.vertex_count, 0.0);
+  for (const Asking& a : all) {
+    for (std::size_t i = 0; i < 4; ++i) asked_[body_.elements[a.element][i]] += a.of[i];
+  }
+  std::vector<double> upper;  // the trace is above λ_max
+  for (const Asking& a : all) upper.push_back(trace(over_shares(body_, a, asked_)));
+  Beside most;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].k * upper[i] <= most.k && all[i].c * upper[i] <= most.c) continue;
+    const double per_mass = largest_eigenvalue(over_shares(body_, all[i], asked_));
+    most = {std::max(most.k, all[i].k * per_mass), std::max(most.c, all[i].c * per_mass)};
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    whose[i]->part = most.k > 0.0 ? all[i].k * upper[i] / most.k : 1.0;
+    for (const std::uint32_t v : body_.elements[all[i].element]) asked_[v] = 0.0;
+  }
+  return most;
+}
+
+void StiffnessLevels::remove(std::span<const std::uint32_t> elements) {
+  if (members_.empty()) return;
+  for (const std::uint32_t e : elements) {
+    if (place_[e] == 0) continue;
+    members_[place_[e] - 1].ratio = -1.0;
+    place_[e] = 0;
+  }
+  std::erase_if(members_, [](const Member& m) { return m.ratio < 0.0; });
+  keep_ordered();
+}
+
+void StiffnessLevels::clear() {
+  for (const Member& m : members_) place_[m.element] = 0;
+  members_.clear(), above_.clear();
+  meetings_ = 0;
+}
+
+void StiffnessLevels::save(CheckpointWriter& out) const {
+  out.put(static_cast<std::uint64_t>(members_.size()));
+  for (const Member& m : members_) {
+    out.put(m.element), out.put(m.met);
+    for (const double d : {m.ratio, m.norm, m.seen_ratio, m.seen_norm, m.last, m.before, m.part}) out.put(d);
+  }
+  out.put(meetings_);
+}
+
+void StiffnessLevels::load(CheckpointReader& in) {
+  clear();
+  const auto n = in.get<std::uint64_t>();
+  if (n > body_.elements.size()) CheckpointReader::fail();
+  for (std::uint64_t i = 0; i < n; ++i) {
+    const auto element = in.get<std::uint32_t>();
+    if (element >= body_.elements.size()) CheckpointReader::fail();
+    Member& m = member(element);
+    in.get(m.met);
+    for (double* d : {&m.ratio, &m.norm, &m.seen_ratio, &m.seen_norm, &m.last, &m.before, &m.part}) in.get(*d);
+  }
+  in.get(meetings_);
+}
+
+}  // namespace glisson

@@ -1,0 +1,294 @@
+#include "element/tissue_operator.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "element/block_response.h"
+#include "element/element_shape.h"
+#include "material/branch_weights.h"
+
+namespace glisson {
+namespace {
+
+/// Adds f_a = −V P s_a to the four vertices.
+void scatter(const Body& body, std::size_t e, const Mat3d& P, std::span<Vec3d> force) {
+  const Tet& t = body.elements[e];
+  const ElementRest& rest = body.rest[e];
+  Vec3d sum{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Vec3d f = (P * rest.s[a]) * -rest.volume;
+    force[t[a + 1]] += f;
+    sum += f;
+  }
+  force[t[0]] -= sum;
+}
+
+/// The nearest matrix whose symmetric part has no negative eigenvalue.
+void make_semidefinite(ElementTangent& C) {
+  const ElementTangent even = 0.5 * (C + C.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver{Eigen::Matrix<double, 9, 9>(even)};
+  if (solver.eigenvalues().minCoeff() >= 0.0) return;
+  const auto& V = solver.eigenvectors();
+  C = V * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
+}
+
+}  // namespace
+
+void append_memory(const TissueMemory& memory, std::vector<double>& numbers) {
+  for (const auto* list : {&memory.relaxed, &memory.stress}) {
+    for (const Sym3<double>& s : *list) numbers.insert(numbers.end(), {s.xx, s.yy, s.zz, s.xy, s.yz, s.zx});
+  }
+}
+
+bool take_memory(std::span<const double> numbers, TissueMemory& memory) {
+  if (numbers.size() != 6 * (memory.relaxed.size() + memory.stress.size())) return false;
+  const double* n = numbers.data();
+  for (auto* list : {&memory.relaxed, &memory.stress}) {
+    for (Sym3<double>& s : *list) s = {n[0], n[1], n[2], n[3], n[4], n[5]}, n += 6;
+  }
+  return true;
+}
+
+TissueOperator::TissueOperator(const Body& body) : body_(body) { body_changed(); }
+
+void TissueOperator::body_changed() {
+  responses_.clear();
+  shapes_.assign(body_.elements.size(), {});
+  first_branch_.clear(), first_stress_.clear();
+  std::size_t branches = 0, stresses = 0;
+  shares_volume_ = false;
+  for (const TissueBlock& block : body_.blocks) {
+    responses_.emplace_back(block.tissue);
+    first_branch_.push_back(branches), first_stress_.push_back(stresses);
+    const std::size_t n = block.end - block.begin, k = block.tissue.maxwell.size();
+    branches += n * k, stresses += k > 0 ? n : 0;
+    shares_volume_ = shares_volume_ || block.tissue.volume_change == VolumeChange::nodal;
+    for (std::size_t e = block.begin; e < block.end; ++e) shapes_[e] = element_shape(body_, block.tissue, e);
+  }
+  memory_.relaxed.resize(branches);
+  memory_.stress.resize(stresses);
+  has_memory_ = branches > 0;
+}
+
+/// ϑ̄ of every element of a block that shares it; empty where none does.
+std::vector<double> TissueOperator::mean_volume_change(std::span<const Vec3d> u) const {
+  std::vector<double> mean;
+  if (!shares_volume_) return mean;
+  mean.assign(body_.elements.size(), 0.0);
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    if (block.tissue.volume_change != VolumeChange::nodal) continue;
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      mean[e] = responses_[b].volume_change(element_gradient(body_, e, u));
+    }
+    average(body_, block, mean);
+  }
+  return mean;
+}
+
+/// Σ g (S − q): what the branches have not relaxed yet.
+template <class T>
+Sym3<T> TissueOperator::overstress(std::size_t b, std::size_t e, double since, const Sym3<T>& S) const {
+  const TissueBlock& block = body_.blocks[b];
+  const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
+  const std::size_t at = e - block.begin;
+  const Sym3<T> before = with_scalar<T>(memory_.stress[first_stress_[b] + at]);
+  Sym3<T> sum{};
+  for (std::size_t k = 0; k < branches.size(); ++k) {
+    const BranchWeights w = branch_weights(since, branches[k].time);
+    const Sym3<T> q = with_scalar<T>(memory_.relaxed[first_branch_[b] + at * branches.size() + k]) * T(w.decay) +
+                      before * T(w.from) + S * T(w.to);
+    sum += (S - q) * T(branches[k].share);
+  }
+  return sum;
+}
+
+void TissueOperator::forces(const TissueState& state, std::span<Vec3d> elastic, std::span<Vec3d> viscous,
+                            ElementWatch& watch) const {
+  std::fill(elastic.begin(), elastic.end(), Vec3d{});
+  std::fill(viscous.begin(), viscous.end(), Vec3d{});
+  watch.reset(body_.blocks.size());
+  const std::vector<double> mean = mean_volume_change(state.u);
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    const Response& response = responses_[b];
+    const bool dashpot = block.tissue.viscosity > 0.0, branches = !block.tissue.maxwell.empty();
+    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      const Mat3d H = element_gradient(body_, e, state.u);
+      if (!(jacobian(H) > 0.0)) watch.inverted.push_back(body_.mesh_tet[e]);
+      Mat3d P = response.elastic(H, shapes_[e], shared ? &mean[e] : nullptr);
+      if (dashpot) scatter(body_, e, response.viscous(H, element_gradient(body_, e, state.v)), viscous);
+      if (branches) {
+        const Sym3<double> S = response.relaxing(H, P);
+        scatter(body_, e, response.carry(H, overstress(b, e, state.since, S)), viscous);
+        P = sum(P, response.carry(H, S * -response.relaxing_share()));
+      }
+      scatter(body_, e, P, elastic);
+      const Stiffening stiff = response.stiffening(H, shapes_[e]);
+      watch.see(b, e, stiff.ratio, stiff.norm);
+    }
+  }
+}
+
+/// Shared volume changes store Σ_a V_a ½ κ ϑ_a² over the vertices: ½ κ of each element's mean square.
+double TissueOperator::energy(std::span<const Vec3d> u) const {
+  double sum = 0.0;
+  for (const TissueBlock& block : body_.blocks) sum += BlockResponse(body_, block).energy(u);
+  return sum;
+}
+
+void TissueOperator::linearise(const TissueState& state, double rate, bool semidefinite, TissueTangent& out) const {
+  const std::vector<double> mean = mean_volume_change(state.u);
+  out.local.resize(body_.elements.size());
+  out.volume.assign(shares_volume_ ? body_.elements.size() : 0, Mat3d{});
+  out.pressure.assign(out.volume.size(), Mat3d{});
+  out.modulus.assign(out.volume.size(), 0.0);
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    const Response& response = responses_[b];
+    const bool dashpot = block.tissue.viscosity > 0.0, branches = !block.tissue.maxwell.empty();
+    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      const Mat3d H0 = element_gradient(body_, e, state.u), R0 = element_gradient(body_, e, state.v);
+      Mat3<Dual> H = with_scalar<Dual>(H0), R = with_scalar<Dual>(R0);
+      const auto stress = [&](Dual theta) {
+        Mat3<Dual> P = response.elastic(H, shapes_[e], shared ? &theta : nullptr);
+        if (!branches) return P;
+        const Sym3<Dual> S = response.relaxing(H, P);
+        return sum(P, response.carry(H, overstress(b, e, state.since, S) - S * Dual(response.relaxing_share())));
+      };
+      const double fixed = shared ? mean[e] : 0.0;
+      for (std::size_t c = 0; c < 9; ++c) {
+        H(c / 3, c % 3).d = 1.0, R(c / 3, c % 3).d = rate;
+        Mat3<Dual> P = stress(fixed);
+        if (dashpot) P = sum(P, response.viscous(H, R));
+        for (std::size_t r = 0; r < 9; ++r) {
+          out.local[e](static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = P(r / 3, r % 3).d;
+        }
+        H(c / 3, c % 3).d = 0.0, R(c / 3, c % 3).d = 0.0;
+      }
+      if (semidefinite) make_semidefinite(out.local[e]);
+      if (shared) {
+        out.volume[e] = response.volume_direction(H0);
+        out.pressure[e] = detail::derivatives_of(stress({fixed, 1.0}));
+        out.modulus[e] = response.volume_modulus(H0, shapes_[e]);
+      }
+    }
+  }
+}
+
+void TissueOperator::apply(const TissueTangent& tangent, std::span<const Vec3d> x, std::span<Vec3d> y) const {
+  using Nine = Eigen::Matrix<double, 9, 1>;
+  std::fill(y.begin(), y.end(), Vec3d{});
+  std::vector<double> mean(shares_volume_ ? body_.elements.size() : 0, 0.0);
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    const auto gradient = [&](std::size_t e) { return element_gradient(body_, e, x); };
+    const auto inner = [](const Mat3d& a, const Mat3d& c) { return trace(transposed_product(a, c)); };
+    if (shared) {
+      for (std::size_t e = block.begin; e < block.end; ++e) mean[e] = inner(tangent.volume[e], gradient(e));
+      average(body_, block, mean);
+    }
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      const Mat3d H = gradient(e);
+      Mat3d P;
+      Eigen::Map<Nine>(P.m[0].data()) = tangent.local[e] * Eigen::Map<const Nine>(H.m[0].data());
+      if (shared) P = sum(P, scaled(tangent.pressure[e], mean[e]));
+      scatter(body_, e, scaled(P, -1.0), y);
+    }
+  }
+}
+
+void TissueOperator::advance_memory(const TissueState& state) {
+  if (!has_memory_) return;
+  const std::vector<double> mean = mean_volume_change(state.u);
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
+    if (branches.empty()) continue;
+    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    std::vector<BranchWeights> weights;
+    for (const MaxwellBranch& m : branches) weights.push_back(branch_weights(state.since, m.time));
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      const std::size_t at = e - block.begin;
+      const Mat3d H = element_gradient(body_, e, state.u);
+      const Sym3<double> S =
+          responses_[b].relaxing(H, responses_[b].elastic(H, shapes_[e], shared ? &mean[e] : nullptr));
+      Sym3<double>& before = memory_.stress[first_stress_[b] + at];
+      for (std::size_t k = 0; k < branches.size(); ++k) {
+        Sym3<double>& q = memory_.relaxed[first_branch_[b] + at * branches.size() + k];
+        q = q * weights[k].decay + before * weights[k].from + S * weights[k].to;
+      }
+      before = S;
+    }
+  }
+}
+
+BranchMemory TissueOperator::branch_memory(std::size_t b, double since) const {
+  const TissueBlock& block = body_.blocks[b];
+  BranchMemory memory;
+  const std::size_t n = block.tissue.maxwell.size();
+  std::vector<BranchWeights> weights;
+  for (const MaxwellBranch& m : block.tissue.maxwell) {
+    weights.push_back(branch_weights(since, m.time));
+    memory.left.push_back(1.0 - weights.back().to);
+  }
+  for (std::size_t i = 0; n > 0 && i < block.end - block.begin; ++i) {
+    const Sym3<double>& before = memory_.stress[first_stress_[b] + i];
+    for (std::size_t k = 0; k < n; ++k) {
+      memory.held.push_back(memory_.relaxed[first_branch_[b] + i * n + k] * weights[k].decay +
+                            before * weights[k].from);
+    }
+  }
+  return memory;
+}
+
+std::vector<Sym3<double>> TissueOperator::branch_stresses(std::size_t b, std::span<const Vec3d> u) const {
+  const TissueBlock& block = body_.blocks[b];
+  const std::size_t n = block.tissue.maxwell.size();
+  if (n == 0) return {};
+  const std::vector<Sym3<double>> S = BlockResponse(body_, block).relaxing(u);
+  std::vector<Sym3<double>> stresses;
+  for (std::size_t i = 0; i < S.size() * n; ++i) {
+    stresses.push_back((S[i / n] - memory_.relaxed[first_branch_[b] + i]) * block.tissue.maxwell[i % n].share);
+  }
+  return stresses;
+}
+
+void TissueOperator::tissues_changed(std::span<const std::size_t> blocks, std::span<const Vec3d> u) {
+  const TissueMemory before = std::move(memory_);
+  const std::vector<std::size_t> first_branch = first_branch_, first_stress = first_stress_;
+  memory_ = {};
+  body_changed();
+  const auto copy = [](const auto& from, std::size_t at, std::size_t count, auto& to, std::size_t place) {
+    std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(at), count, to.begin() + static_cast<std::ptrdiff_t>(place));
+  };
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    const std::size_t n = block.end - block.begin, k = block.tissue.maxwell.size();
+    if (k == 0) continue;
+    if (std::find(blocks.begin(), blocks.end(), b) != blocks.end()) {
+      set_branch_stresses(b, std::vector<Sym3<double>>(n * k), u);
+      continue;
+    }
+    copy(before.relaxed, first_branch[b], n * k, memory_.relaxed, first_branch_[b]);
+    copy(before.stress, first_stress[b], n, memory_.stress, first_stress_[b]);
+  }
+}
+
+void TissueOperator::set_branch_stresses(std::size_t b, std::span<const Sym3<double>> stresses,
+                                         std::span<const Vec3d> u) {
+  if (stresses.empty()) return;
+  const TissueBlock& block = body_.blocks[b];
+  const std::vector<Sym3<double>> S = BlockResponse(body_, block).relaxing(u);
+  const std::size_t n = block.tissue.maxwell.size();
+  for (std::size_t i = 0; i < stresses.size(); ++i) {
+    memory_.relaxed[first_branch_[b] + i] = S[i / n] - stresses[i] * (1.0 / block.tissue.maxwell[i % n].share);
+  }
+  std::copy(S.begin(), S.end(), memory_.stress.begin() + static_cast<std::ptrdiff_t>(first_stress_[b]));
+}
+
+}  // namespace glisson

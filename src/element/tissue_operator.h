@@ -1,0 +1,106 @@
+// tissue_operator.h — forces, tangents and energy of a body of any tissue, in double, one element at a time.
+//
+//   f_a = −V P s_a                       P of tissue/response.h, at H and Ḣ of the element
+//   K = Σ V s_a ∂(P·s_b)/∂u, C likewise  exact, by numbers that carry their derivative
+//
+// What the implicit schemes and statics run on, what runs in double precision, and what the submesh engine is compared
+// with. Tissues whose volume change is shared (VolumeChange::nodal) take a pass over the elements before.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "element/body.h"
+#include "element/branch_memory.h"
+#include "element/force_operator.h"
+#include "material/response.h"
+
+namespace glisson {
+
+/// What a tissue remembers of its past: of each element and Maxwell branch the relaxed stress, and the stress then.
+struct TissueMemory {
+  std::vector<Sym3<double>> relaxed;  ///< q of branch k of element e at first_branch(e) + k [Pa]
+  std::vector<Sym3<double>> stress;   ///< S of each element of a tissue with branches, else empty [Pa]
+  bool operator==(const TissueMemory&) const = default;
+};
+
+/// Appends the numbers of a memory.
+void append_memory(const TissueMemory& memory, std::vector<double>& numbers);
+/// Takes them back, all that are there.
+/// @param memory  of the same size
+/// @return false, with the memory as it was, where there are more or fewer
+bool take_memory(std::span<const double> numbers, TissueMemory& memory);
+
+/// The state a body is asked about.
+struct TissueState {
+  std::span<const Vec3d> u;  ///< displacement [m]
+  std::span<const Vec3d> v;  ///< velocity [m/s]
+  double since = 0.0;        ///< time since the memory was last brought up to date [s], ≥ 0
+};
+
+/// ∂P/∂F of every element, row-major 9 × 9: row 3 i + j of P_ij, column 3 k + l of F_kl [Pa].
+using ElementTangent = Eigen::Matrix<double, 9, 9, Eigen::RowMajor>;
+
+/// The linearised forces at one state.
+struct TissueTangent {
+  std::vector<ElementTangent> local;  ///< of each element; with shared volume change, at constant mean
+  std::vector<Mat3d> volume;          ///< ∂ϑ/∂F of each element with shared volume change, else empty
+  std::vector<Mat3d> pressure;        ///< ∂P/∂ϑ̄ of those by the shared mean, Maxwell branches included [Pa]
+  std::vector<double> modulus;        ///< ∂²W/∂ϑ² of those without branches [Pa]
+};
+
+class TissueOperator {
+ public:
+  /// @param body  must outlive this
+  explicit TissueOperator(const Body& body);
+
+  /// Overwrites `elastic` and `viscous` [N]. Elastic is what is left after long times; viscous is the rest: Kelvin–Voigt
+  /// and what the Maxwell branches have not relaxed yet.
+  void forces(const TissueState& state, std::span<Vec3d> elastic, std::span<Vec3d> viscous, ElementWatch& watch) const;
+  /// Energy of the elastic forces [J], Response::relaxed_energy over the body.
+  double energy(std::span<const Vec3d> u) const;
+
+  /// ∂(−f)/∂u + rate ∂(−f)/∂v at a state, for schemes in which dv = rate du [1/s].
+  /// @param semidefinite  whether negative eigenvalues of each element's symmetric part are set to 0
+  void linearise(const TissueState& state, double rate, bool semidefinite, TissueTangent& out) const;
+  /// y = K x.
+  void apply(const TissueTangent& tangent, std::span<const Vec3d> x, std::span<Vec3d> y) const;
+
+  /// Takes the state in as the past: relaxed stresses go on by `state.since`, exactly for stress linear in time.
+  void advance_memory(const TissueState& state);
+  const TissueMemory& memory() const { return memory_; }
+  void set_memory(TissueMemory memory) { memory_ = std::move(memory); }
+  bool has_memory() const { return has_memory_; }
+
+  /// Follows elements and vertices that have changed in the body; memory of an element stays.
+  void body_changed();
+
+  /// What the branches of a block hold. @param since  time since the memory was last brought up to date [s], ≥ 0
+  BranchMemory branch_memory(std::size_t block, double since) const;
+  /// Stress g (S − q) of each element and branch of a block, with the memory up to date [Pa].
+  std::vector<Sym3<double>> branch_stresses(std::size_t block, std::span<const Vec3d> u) const;
+  /// Follows tissues that have changed in the body. Branches of those blocks carry no stress then; the others keep theirs.
+  /// @param blocks  that have changed; the memory is up to date
+  void tissues_changed(std::span<const std::size_t> blocks, std::span<const Vec3d> u);
+  /// Sets what branch_stresses reads, in a memory that is up to date.
+  void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses, std::span<const Vec3d> u);
+
+  const Body& body() const { return body_; }
+
+ private:
+  std::vector<double> mean_volume_change(std::span<const Vec3d> u) const;
+  template <class T>
+  Sym3<T> overstress(std::size_t block, std::size_t e, double since, const Sym3<T>& S) const;
+
+  const Body& body_;
+  std::vector<Response> responses_;        ///< per tissue block
+  std::vector<ElementShape> shapes_;       ///< per element
+  std::vector<std::size_t> first_branch_;  ///< per block: place of its first element's branches in memory
+  std::vector<std::size_t> first_stress_;  ///< per block: place of its first element's stress
+  TissueMemory memory_;
+  bool has_memory_ = false, shares_volume_ = false;
+};
+
+}  // namespace glisson

@@ -1,0 +1,288 @@
+// hyper_response-inl.h — hyperelastic laws in lanes: src/material/hyperelastic_response.h, and the bounds of
+// src/material/stiffness_bound.h.
+//
+// Ogden's powers need principal stretches, but not their directions: S is the polynomial in E that takes the right values
+// at its eigenvalues.
+//
+// Included once per instruction set, never from outside response_kernels.cpp.
+#if defined(GLISSON_HYPER_RESPONSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef GLISSON_HYPER_RESPONSE_INL_H_
+#undef GLISSON_HYPER_RESPONSE_INL_H_
+#else
+#define GLISSON_HYPER_RESPONSE_INL_H_
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+
+#include "engine/kernels/elastic_response-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace glisson::engine::HWY_NAMESPACE {
+
+/// ∂W/∂Ī₁, ∂W/∂Ī₂ and ∂²W/∂Ī₁².
+struct InvariantSlopes {
+  F first, second, bend;
+};
+
+HWY_INLINE F exponential(F e, double largest) { return hn::Exp(Lanes(), hn::Min(e, number(float(largest)))); }
+
+/// law: μ/2
+struct NeoHookeanLanes {
+  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F) {
+    return {number(r.law[0]), hn::Zero(Lanes()), hn::Zero(Lanes())};
+  }
+  static constexpr bool kSecond = false;
+};
+/// law: c₁₀, c₀₁
+struct MooneyRivlinLanes {
+  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F) {
+    return {number(r.law[0]), number(r.law[1]), hn::Zero(Lanes())};
+  }
+  static constexpr bool kSecond = true;
+};
+/// law: c₁, c₂, c₃
+struct YeohLanes {
+  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F i1) {
+    const F c2 = number(2.0F * r.law[1]), c3 = number(3.0F * r.law[2]);
+    return {hn::MulAdd(i1, hn::MulAdd(i1, c3, c2), number(r.law[0])), hn::Zero(Lanes()), hn::MulAdd(i1, c3 + c3, c2)};
+  }
+  static constexpr bool kSecond = false;
+};
+/// law: μ/2, b
+struct FungLanes {
+  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F i1) {
+    const F w = number(r.law[0]) * exponential(number(r.law[1]) * i1, Fung::kLargestExponent);
+    return {w, hn::Zero(Lanes()), w * number(r.law[1])};
+  }
+  static constexpr bool kSecond = false;
+};
+/// law: c b, b
+struct VerondaWestmannLanes {
+  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F i1) {
+    const F w = number(r.law[0]) * exponential(number(r.law[1]) * i1, VerondaWestmann::kLargestExponent);
+    return {w, number(-0.5F * r.law[0]), w * number(r.law[1])};
+  }
+  static constexpr bool kSecond = true;
+};
+
+/// I₁, I₂ and J for the bounds, and λ_max² of them.
+struct LaneInvariants {
+  F I1, I2, J;
+  HWY_INLINE F stretch_squared() const { return hn::NegMulAdd(number(2.0F) * J, number(1.0F) / hn::Sqrt(I1), I1); }
+};
+HWY_INLINE F volume_bound(const LaneInvariants& i, F bulk) {
+  const F more = i.J - number(1.0F);
+  const F bend = hn::IfThenElse(hn::Gt(more, hn::Zero(Lanes())), i.I1 + i.I1, i.stretch_squared());
+  return bulk * hn::MulAdd(hn::Abs(more), hn::Sqrt(bend), i.I2);
+}
+/// The larger of the two parts' growth since rest, and both over all that the tangent is at rest.
+HWY_INLINE void see_parts(const LaneResponse& r, std::size_t item, F isochoric, F volume, ResponseBlock& out) {
+  const F larger = hn::Max(isochoric * number(r.rest_isochoric), volume * number(r.rest_volume));
+  see_stiffness(out, item, larger, (isochoric + volume) * number(r.rest_bound));
+}
+/// Of F, with J^(−⅔); of cof F too.
+HWY_INLINE F first_invariant_bend(const LaneInvariants& i, F power) {
+  const F per_J = number(1.0F) / i.J, product = i.I1 * i.I2 * per_J * per_J;
+  const F inner = hn::MulAdd(number(10.0F / 9.0F), product, number(2.0F)) +
+                  hn::MulAdd(number(2.0F / 3.0F) * i.I1 * per_J, hn::Sqrt(i.stretch_squared()),
+                             number(4.0F / 3.0F) * (hn::Sqrt(product) - number(3.0F)));
+  return inner * power;
+}
+HWY_INLINE F first_invariant_slope_squared(const LaneInvariants& i, F power) {
+  const F inner = hn::MulSub(i.I1 * i.I1, i.I2 / (number(9.0F) * i.J * i.J), i.I1);
+  return number(4.0F) * power * power * hn::Max(inner, hn::Zero(Lanes()));
+}
+
+/// κ (J − 1) cof F, and what all laws share.
+struct HyperState {
+  Tensor H, K;
+  Invariants<F> inv;
+  F J, I1, I2, power;  ///< J^(−⅔)
+};
+HWY_INLINE HyperState hyper_state(const float* gradient) {
+  const Lanes d;
+  HyperState s;
+  s.H = load_tensor(gradient);
+  s.K = cofactor_change(s.H);
+  s.inv = invariants(d, s.H);
+  s.J = hn::Max(s.inv.volume_change + number(1.0F), number(float(kSmallestVolume)));
+  s.I1 = hn::MulAdd(number(2.0F), s.inv.trace, squares_of(s.H)) + number(3.0F);
+  s.I2 = hn::MulAdd(number(2.0F), trace(s.K), squares_of(s.K)) + number(3.0F);
+  const F root = inverse_cube_root(d, s.J);
+  s.power = root * root;
+  return s;
+}
+/// κ times the volume change, of its own or shared.
+HWY_INLINE F pressure_of(const ResponseItems& in, const LaneResponse& r, std::size_t item, F own) {
+  return number(r.bulk) * (in.mean != nullptr ? hn::Load(Lanes(), in.mean + item * kLanes) : own);
+}
+/// Ī₁ − 3 from 1 − q.
+HWY_INLINE F excess(const Invariants<F>& inv) {
+  const F p = one_minus_q(Lanes(), inv);
+  return number(3.0F) * p / (number(1.0F) - hn::Min(p, number(0.999F)));
+}
+
+template <class Law>
+void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&, ResponseBlock& out) {
+  for (std::size_t item = 0; item < in.items; ++item) {
+    const HyperState s = hyper_state(in.gradient + item * 9 * kLanes);
+    const F j = s.inv.volume_change, one = number(1.0F), pressure = pressure_of(in, r, item, j);
+    const InvariantSlopes w = Law::slopes(r, excess(s.inv));
+    Tensor P = times(number(2.0F) * w.first * s.power, deviatoric_direction(s.H, s.K, j, squares_of(s.H)));
+    P = plus(plus_identity(P, pressure), pressure, s.K);
+    const LaneInvariants i{s.I1, s.I2, s.J};
+    F bound = hn::MulAdd(hn::Abs(w.first), first_invariant_bend(i, s.power),
+                         hn::Abs(w.bend) * first_invariant_slope_squared(i, s.power));
+    if constexpr (Law::kSecond) {
+      const Symmetric E = green_strain(s.H);
+      const Tensor F1 = plus_identity(s.H, one);
+      const F three_J = number(3.0F) * s.J, t = trace_of(E);
+      const F left = hn::NegMulAdd(number(2.0F), trace(s.K), hn::MulSub(number(3.0F), j, squares_of(s.K))) / three_J;
+      Tensor D = plus_identity(plus(s.H, left - one, s.K), left);
+      D = plus(plus(D, t, F1), number(-1.0F), tensor_product(F1, E));
+      P = plus(P, number(4.0F) * w.second * s.power * s.power, D);
+      const LaneInvariants c{s.I2, s.I1 * s.J * s.J, s.J * s.J};
+      const F power = s.power * s.power;
+      const F second = hn::MulAdd(first_invariant_bend(c, power), i.stretch_squared(),
+                                  number(2.0F) * hn::Sqrt(first_invariant_slope_squared(c, power)));
+      bound = hn::MulAdd(hn::Abs(w.second), second, bound);
+    }
+    see_parts(r, item, bound, volume_bound(i, number(r.bulk)), out);
+    store_tensor(P, out.piola + item * 9 * kLanes);
+    rescue_if_small(in, to, item, j + one, out);
+  }
+}
+
+/// cos(⅓ arccos r) for −1 ≤ r ≤ 1, within 6e-8: with w = √(½(1 + r)), the cosine of half the angle, it is cos(⅔ arccos w), which
+/// is smooth from w = 0 to 1 and taken from a polynomial through eight Chebyshev points.
+HWY_INLINE F cosine_of_third(F r) {
+  const Lanes d;
+  const F half = number(0.5F);
+  const F w = hn::Sqrt(hn::Max(hn::MulAdd(r, half, half), hn::Zero(d))), w2 = w * w;
+  const F p01 = hn::MulAdd(w, number(0.577346917F), number(0.500000026F));
+  const F p23 = hn::MulAdd(w, number(0.0528414091F), number(-0.111038511F));
+  const F p45 = hn::MulAdd(w, number(0.0160472804F), number(-0.0302353976F));
+  const F p67 = hn::MulAdd(w, number(0.00112763624F), number(-0.00608934568F));
+  return hn::MulAdd(hn::MulAdd(p67, w2, p45), w2 * w2, hn::MulAdd(p23, w2, p01));
+}
+
+/// The three eigenvalues of a symmetric tensor, e₁ ≥ e₂ ≥ e₃, by the angle of its invariants. Two that are equal come out
+/// up to 3e-4 of the third's distance apart, which an interpolation between them does not notice.
+struct Eigenvalues {
+  F e[3];
+};
+HWY_INLINE Eigenvalues eigenvalues(const Symmetric& E) {
+  const Lanes d;
+  const F mean = trace_of(E) * number(1.0F / 3.0F), one = number(1.0F);
+  const Symmetric D = plus_identity(E, hn::Neg(mean));
+  const F p = hn::Sqrt(contraction(D, D) * number(1.0F / 6.0F));
+  const F cube = hn::Max(p * p * p, number(1e-36F));
+  const F r = hn::Min(hn::Max(cofactors_of(D).determinant * number(0.5F) / cube, hn::Neg(one)), one);
+  const F c = cosine_of_third(r);
+  const F s = hn::Sqrt(hn::Max(hn::NegMulAdd(c, c, one), hn::Zero(d)));
+  const F first = hn::MulAdd(p + p, c, mean);
+  const F third = hn::NegMulAdd(p, hn::MulAdd(number(1.7320508F), s, c), mean);
+  return {{first, number(3.0F) * mean - first - third, third}};
+}
+
+/// g of a principal direction, S = Σ g_i n_i ⊗ n_i, with its first two derivatives by the eigenvalue e of E.
+struct PrincipalStress {
+  F g, first, second;
+};
+
+/// The divided difference g[e_a, e_b] over d = e_a − e_b ≥ 0; where they are close by the derivatives at both ends,
+/// ½ (g_a' + g_b') − d/12 (g_a'' − g_b''), which is off by d⁴/720 of the fifth derivative.
+HWY_INLINE F divided_difference(const PrincipalStress& a, const PrincipalStress& b, F d) {
+  const F limit = number(0.03F);
+  const F near = hn::MulAdd(number(-1.0F / 12.0F) * d, a.second - b.second, number(0.5F) * (a.first + b.first));
+  return hn::IfThenElse(hn::Lt(d, limit), near, (a.g - b.g) / hn::Max(d, limit));
+}
+
+/// S = g₁ I + g[e₁,e₂] (E − e₁ I) + g[e₁,e₂,e₃] (E − e₁ I)(E − e₂ I): no eigenvectors.
+HWY_INLINE Symmetric isotropic_function(const Symmetric& E, const Eigenvalues& at, const PrincipalStress (&s)[3]) {
+  const F upper = divided_difference(s[0], s[1], at.e[0] - at.e[1]);
+  const F lower = divided_difference(s[1], s[2], at.e[1] - at.e[2]);
+  const F bend = (upper - lower) / hn::Max(at.e[0] - at.e[2], number(1e-20F));
+  const Symmetric first = plus_identity(E, hn::Neg(at.e[0])), second = plus_identity(E, hn::Neg(at.e[1]));
+  return plus_identity(plus(times(upper, first), bend, commuting_product(first, second)), s[0].g);
+}
+
+/// λ_max of ∂P/∂F of P = F S in the principal frame (tissue/stiffness_bound.h), from t = ∂W/∂ln λ and the sums of
+/// ∂²W/∂(ln λ̄)² of the terms, which make ∂t_i/∂ln λ_j = slope_i δ_ij − ⅓ (slope_i + slope_j) + ⅑ Σ slope.
+HWY_INLINE F stiffest_direction(const Eigenvalues& at, const PrincipalStress (&s)[3], const F (&t)[3],
+                                const F (&slope)[3], const F (&c)[3]) {
+  const F third = number(1.0F / 3.0F), half = number(0.5F);
+  F l[3], per[3], A[3][3];
+  for (std::size_t i = 0; i < 3; ++i) l[i] = hn::Sqrt(c[i]), per[i] = number(1.0F) / l[i];
+  const F ninth = (slope[0] + slope[1] + slope[2]) * number(1.0F / 9.0F);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = i; j < 3; ++j) {
+      const F both = hn::NegMulAdd(third, slope[i] + slope[j], ninth);
+      A[i][j] = per[i] * per[j] * (i == j ? both + slope[i] - t[i] : both);
+    }
+  }
+  F most = eigenvalues({A[0][0], A[1][1], A[2][2], A[0][1], A[1][2], A[0][2]}).e[0];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t first = i == 2 ? 0 : i, second = i == 2 ? 2 : i + 1;  // e of the first is the larger
+    const F sum = l[first] + l[second];
+    const F difference = divided_difference(s[first], s[second], at.e[first] - at.e[second]);
+    const F even = hn::MulAdd(half * l[second] * sum, difference, s[first].g);
+    const F odd = hn::MulAdd(s[first].g, l[first], s[second].g * l[second]) / sum;
+    most = hn::Max(most, hn::Max(even, odd));
+  }
+  return most;
+}
+
+/// law: α₁, 2μ₁/α₁, α₂, …
+inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&,
+                      ResponseBlock& out) {
+  const Lanes d;
+  const F one = number(1.0F), two = number(2.0F), third = number(1.0F / 3.0F), zero = hn::Zero(d);
+  for (std::size_t item = 0; item < in.items; ++item) {
+    const HyperState state = hyper_state(in.gradient + item * 9 * kLanes);
+    const F j = state.inv.volume_change;
+    const Symmetric E = green_strain(state.H);
+    const Eigenvalues at = eigenvalues(E);
+    F l[3], c[3], t[3] = {zero, zero, zero}, slope[3] = {zero, zero, zero}, bend[3] = {zero, zero, zero};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const F twice = hn::Max(at.e[i] + at.e[i], number(-0.999F));
+      c[i] = twice + one;
+      l[i] = number(0.5F) * hn::Log1p(d, twice);
+    }
+    const F mean = (l[0] + l[1] + l[2]) * third;
+    for (std::size_t k = 0; k < r.terms; ++k) {
+      const F alpha = number(r.law[2 * k]), factor = number(r.law[2 * k + 1]);
+      F g[3];
+      for (std::size_t i = 0; i < 3; ++i) g[i] = hn::Expm1(d, hn::Min(alpha * (l[i] - mean), number(60.0F)));
+      const F average = (g[0] + g[1] + g[2]) * third;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const F rise = factor * alpha * (g[i] + one);
+        t[i] = hn::MulAdd(factor, g[i] - average, t[i]);
+        slope[i] = slope[i] + rise;
+        bend[i] = hn::MulAdd(alpha, rise, bend[i]);
+      }
+    }
+    // g = τ/λ² and its derivatives by e, with dτ/d ln λ = slope, d²τ/d(ln λ)² = bend
+    PrincipalStress s[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const F inverse = one / c[i], square = inverse * inverse;
+      s[i].g = t[i] * inverse;
+      s[i].first = hn::NegMulAdd(two, t[i], slope[i]) * square;
+      s[i].second = hn::MulAdd(number(8.0F), t[i], hn::NegMulAdd(number(6.0F), slope[i], bend[i])) * square * inverse;
+    }
+    const Symmetric S = isotropic_function(E, at, s);
+    const F pressure = pressure_of(in, r, item, j);
+    const Tensor volumetric = plus_identity(times(pressure, state.K), pressure);
+    store_tensor(plus(volumetric, one, tensor_product(plus_identity(state.H, one), S)), out.piola + item * 9 * kLanes);
+    const LaneInvariants i{state.I1, state.I2, state.J};
+    see_parts(r, item, stiffest_direction(at, s, t, slope, c), volume_bound(i, number(r.bulk)), out);
+    // a stretch below the limit where ln λ goes on otherwise counts as a lost volume
+    const F thinnest = number(float(kSmallestStretch * kSmallestStretch));
+    rescue_if_small(in, to, item, hn::IfThenElse(hn::Lt(c[2], thinnest), zero, j + one), out);
+  }
+}
+
+}  // namespace glisson::engine::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // GLISSON_HYPER_RESPONSE_INL_H_

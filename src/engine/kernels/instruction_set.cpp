@@ -1,0 +1,53 @@
+// instruction_set.cpp — a word for each family of Highway's targets.
+#include "engine/kernels/instruction_set.h"
+
+#include <hwy/highway.h>
+
+#include <stdexcept>
+#include <string_view>
+
+namespace glisson::cpu {
+namespace {
+
+/// The word for a target, by Highway's name of it; empty for those that nobody asks for.
+std::string_view word_of(std::string_view target) {
+  if (target.starts_with("AVX3")) return "avx512";
+  if (target == "AVX2") return "avx2";
+  if (target == "SSE4") return "sse4";
+  if (target == "NEON") return "neon";
+  return {};
+}
+
+/// Targets of this machine and this build that a word stands for; of all words where it is empty.
+std::int64_t targets_of(std::string_view word) {
+  std::int64_t mask = 0;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    const std::string_view own = word_of(hwy::TargetName(target));
+    if (!own.empty() && (word.empty() || own == word)) mask |= target;
+  }
+  return mask;
+}
+
+}  // namespace
+
+std::vector<std::string> instruction_sets() {
+  std::vector<std::string> words;
+  for (const char* word : {"avx512", "avx2", "sse4", "neon"}) {
+    if (targets_of(word) != 0) words.emplace_back(word);
+  }
+  return words;
+}
+
+void use_instruction_set(const std::string& name) {
+  const std::int64_t wanted = name.empty() ? 0 : targets_of(name);
+  if (wanted == 0) {
+    std::string known;
+    for (const std::string& word : instruction_sets()) known += (known.empty() ? "" : ", ") + word;
+    throw std::invalid_argument("instruction set \"" + name +
+                                "\": this machine or this build does not have it; there are: " +
+                                (known.empty() ? "none to choose from" : known));
+  }
+  hwy::DisableTargets(~wanted);
+}
+
+}  // namespace glisson::cpu

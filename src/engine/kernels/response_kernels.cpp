@@ -1,0 +1,38 @@
+// response_kernels.cpp — the stages of response_kernels.h compiled once for each instruction set. kernels.cpp, which is
+// compiled for the same ones, hands them out.
+#include "engine/kernels/targets.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/kernels/response_kernels.cpp"
+#include <hwy/foreach_target.h>
+
+#include "engine/kernels/hyper_response-inl.h"
+#include "engine/kernels/response_kernels.h"
+#include "engine/kernels/shared_volume-inl.h"
+#include "engine/kernels/viscous_response-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace glisson::engine::HWY_NAMESPACE {
+
+const ResponseKernels* response_table();
+const ResponseKernels* response_table() {
+  static const ResponseKernels table{
+      .small = tensor_mass<Kinematics::small>,
+      .corotational = tensor_mass<Kinematics::corotational>,
+      .green = tensor_mass<Kinematics::green>,
+      // in the order of HyperelasticLaw
+      .hyperelastic = {invariant_law<NeoHookeanLanes>, invariant_law<MooneyRivlinLanes>, invariant_law<YeohLanes>,
+                       invariant_law<FungLanes>, invariant_law<VerondaWestmannLanes>, ogden_law},
+      .fibres = fibres,
+      .maxwell = maxwell,
+      .viscous = viscous,
+      .stiffest = stiffest,
+      .volume_changes = volume_changes,
+      .spread_to_vertices = spread_to_vertices,
+      .mean_of_vertices = mean_of_vertices,
+      .merge = merge};
+  return &table;
+}
+
+}  // namespace glisson::engine::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();

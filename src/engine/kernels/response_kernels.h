@@ -1,0 +1,119 @@
+// response_kernels.h — the stages of tissues beyond the paper's: H in, first Piola–Kirchhoff stress P out.
+//
+//   gather H, Ḣ ──▶ [measure, law] ──▶ respond: P ──▶ fibres ──▶ Maxwell ──▶ viscous ──▶ push
+//
+// A tet whose J has fallen below kSmallestVolume is answered by tissue/response.h instead, in double, one at a time: lanes
+// hold the formulas for tissue, that one those for tets that are flat or inverted.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "element/body.h"
+#include "engine/kernels/kernels.h"
+#include "material/branch_weights.h"
+#include "material/response.h"
+
+namespace glisson::engine {
+
+/// Values of a block between the stages, beside those of Block: items as there.
+struct ResponseBlock {
+  alignas(64) float piola[kBlockTets * 9];    ///< P, elastic; with Maxwell branches what is left after long times
+  alignas(64) float viscous[kBlockTets * 9];  ///< P, viscous, and what the branches have not relaxed yet
+  alignas(64) float ratio[kBlockTets];        ///< tissue/response.h, Stiffening, [item][lane]; 0 where no tet is
+  alignas(64) float norm[kBlockTets];
+};
+
+/// Which volume change tets share: that of the kinematics, or J − 1.
+enum class VolumeKind { small, corotational, green, hyperelastic };
+
+/// What the lanes need to know of a tissue.
+struct LaneResponse {
+  LaneTissue moduli;
+  float rest_bound = 1.0F;                          ///< 1 over λ_max of the tangent at rest [1/Pa]
+  float rest_isochoric = 1.0F, rest_volume = 1.0F;  ///< 1 over those of a hyperelastic law's two parts [1/Pa]
+  float bulk = 0.0F;                                ///< κ of a hyperelastic law [Pa]
+  float fibre = 0.0F;                               ///< c [Pa]
+  float relaxing = 0.0F;                            ///< Σ g
+  std::array<float, 7> law{};  ///< numbers of the hyperelastic law: response_kernels.cpp says which
+  std::size_t terms = 0;       ///< of an Ogden law
+  std::size_t mu_law = 0;      ///< which of the block's two laws scales μ
+  std::size_t branches = 0;    ///< of Maxwell
+  std::array<float, 8> share{};
+  bool small = false, deviator = true, viscous = false, pioletti = false, energy = false;
+  DeformationMeasure measure{};
+  VolumeKind volume = VolumeKind::small;
+};
+
+/// A branch's weights over one step: q goes on from its past by them (mechanics/tissue_operator.cpp).
+struct LaneWeights {
+  float decay = 1.0F;
+  float from = 0.0F, to = 0.0F;
+};
+
+/// What a stage works on.
+struct ResponseItems {
+  const float* gradient = nullptr;         ///< H, [item][9][lane]
+  const float* rate = nullptr;             ///< Ḣ, the same
+  const float* mean = nullptr;             ///< volume change of all that share it, [item][lane]; null: its own
+  const float* fibre = nullptr;            ///< unit directions, [item][3][lane]
+  float* memory = nullptr;                 ///< [item][branch][6][lane] [Pa]
+  const std::uint32_t* element = nullptr;  ///< of the body, [item][lane]; kNoElement where none is
+  std::size_t items = 0;
+};
+
+/// How the stages tell of a tet that lanes do not answer.
+struct Rescue {
+  const Body* body = nullptr;
+  const Response* response = nullptr;
+};
+
+/// @param H  of one lane, `stride` floats apart; P likewise
+/// @param mean  volume change in the place of its own; null: its own
+/// @return how stiff the tet is, without fibres and viscosity
+Stiffening rescue(const Rescue&, std::uint32_t element, const float* H, float* P, std::size_t stride,
+                  const float* mean);
+
+/// tr(U − I) of a tet that lanes do not answer.
+float rescue_stretch_sum(const float* H, std::size_t stride);
+
+/// A step of the branches: with `previous` to the state that is asked for, with `next` on from it.
+struct MaxwellStep {
+  std::array<LaneWeights, 8> previous, next;
+  bool relaxed = false;  ///< whether q is S: a state that was set
+  bool moves = false;    ///< whether the memory goes on
+};
+
+/// The functions of one instruction set.
+struct ResponseKernels {
+  /// P of the elastic part into `out.piola`; what the tangent has come to into `out.ratio` and `out.norm`. By kind of
+  /// elasticity.
+  using Respond = void (*)(const ResponseItems&, const LaneResponse&, const Rescue&, const Block&, ResponseBlock& out);
+  Respond small = nullptr, corotational = nullptr, green = nullptr;
+  std::array<Respond, std::variant_size_v<HyperelasticLaw>> hyperelastic{};
+  /// Adds to `out.piola`; writes and adds to `out.viscous`.
+  void (*fibres)(const ResponseItems&, const LaneResponse&, ResponseBlock& out) = nullptr;
+  void (*maxwell)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, ResponseBlock& out) = nullptr;
+  void (*viscous)(const ResponseItems&, const LaneResponse&, bool add, ResponseBlock& out) = nullptr;
+  /// The largest of out.ratio.
+  float (*stiffest)(std::size_t items, const ResponseBlock& out) = nullptr;
+  /// For volume changes that are shared (shared_volume-inl.h).
+  void (*volume_changes)(const float* gradient, const float* rest, std::size_t items, VolumeKind kind,
+                         float* out) = nullptr;
+  void (*spread_to_vertices)(const std::uint16_t* index, std::size_t batches, const float* values,
+                             float* vertices) = nullptr;
+  void (*mean_of_vertices)(const std::uint16_t* index, std::size_t batches, const float* vertices,
+                           float* values) = nullptr;
+  /// out.piola += out.viscous
+  void (*merge)(std::size_t items, ResponseBlock& out) = nullptr;
+};
+
+/// Whether lanes have all that a tissue asks for; others move in double, one tet at a time.
+bool has_lanes(const Tissue& tissue);
+LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::size_t mu_law);
+LaneWeights lane_weights(double step, double time);
+/// The elastic stage of a tissue.
+ResponseKernels::Respond respond_stage(const ResponseKernels& kernels, const Tissue& tissue);
+
+}  // namespace glisson::engine

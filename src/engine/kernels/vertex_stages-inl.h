@@ -1,0 +1,194 @@
+// vertex_stages-inl.h — the state in double and back: narrow to float records, kick and drift, book the work.
+//
+// Included once per instruction set, never from outside kernels.cpp.
+#if defined(GLISSON_VERTEX_STAGES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef GLISSON_VERTEX_STAGES_INL_H_
+#undef GLISSON_VERTEX_STAGES_INL_H_
+#else
+#define GLISSON_VERTEX_STAGES_INL_H_
+#endif
+
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+
+#include "engine/kernels/kernels.h"
+#include "engine/kernels/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace glisson::engine::HWY_NAMESPACE {
+
+/// Up to four doubles: one of the two halves of a state record, or a part of it.
+using Doubles = hn::CappedTag<double, 4>;
+using D4 = hn::Vec<Doubles>;
+using Narrow = hn::Rebind<float, Doubles>;
+inline constexpr std::size_t kDoubles = HWY_TARGET == HWY_SCALAR ? 1 : (HWY_MAX_BYTES >= 32 ? 4 : 2);
+
+/// A whole state record, or as much of it as a vector holds.
+using Record = hn::CappedTag<double, kStateDoubles>;
+using NarrowRecord = hn::Rebind<float, Record>;
+inline constexpr std::size_t kRecordLanes = HWY_TARGET == HWY_SCALAR ? 1 : HWY_MAX_BYTES / sizeof(double);
+
+/// Only differences against `origin` reach float, so that a body far from rest loses no digits.
+HWY_INLINE void narrow_one(const double* state, const double* origin, float* out) {
+  for (std::size_t k = 0; k < kStateDoubles; k += kRecordLanes) {
+    const auto difference = hn::Sub(hn::Load(Record(), state + k), hn::Load(Record(), origin + k));
+    hn::Store(hn::DemoteTo(NarrowRecord(), difference), NarrowRecord(), out + k);
+  }
+}
+
+inline void narrow(const double* state, const double* origin, std::size_t n, float* out) {
+  for (std::size_t i = 0; i < n; ++i) narrow_one(state + i * kStateDoubles, origin, out + i * kStateFloats);
+}
+
+inline void narrow_chosen(const double* state, const std::uint32_t* which, const double* origin, std::size_t n,
+                          float* out) {
+  constexpr std::size_t kAhead = 8;
+  for (std::size_t i = 0; i < n; ++i) {
+    hwy::Prefetch(state + which[std::min(i + kAhead, n - 1)] * kStateDoubles);
+    narrow_one(state + which[i] * kStateDoubles, origin, out + i * kStateFloats);
+  }
+}
+
+inline void add(float* a, const float* b, std::size_t n) {
+  const Lanes d;
+  for (std::size_t i = 0; i < n; i += kLanes) hn::Store(hn::Load(d, a + i) + hn::Load(d, b + i), d, a + i);
+}
+
+/// 0 · value is NaN for those that are not finite. Four sums, so that none waits for the other.
+inline bool all_finite(const float* values, std::size_t n) {
+  const Lanes d;
+  const F zero = hn::Zero(d);
+  F sum[4] = {zero, zero, zero, zero};
+  for (std::size_t i = 0; i < n; i += 4 * kLanes) {
+    for (std::size_t k = 0; k < 4 && i + k * kLanes < n; ++k) {
+      sum[k] = hn::MulAdd(hn::Load(d, values + i + k * kLanes), zero, sum[k]);
+    }
+  }
+  const F all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  return hn::AllTrue(d, hn::Eq(all, all));
+}
+
+/// One force record, or as much of it as a vector holds.
+using ForceLanes = hn::CappedTag<float, kForceFloats>;
+inline constexpr std::size_t kForceLanes = HWY_TARGET == HWY_SCALAR ? 1 : kForceFloats;
+
+inline void sum_slots(const float* slots, const std::uint32_t* begin, const std::uint32_t* which, std::size_t n,
+                      float* out) {
+  const ForceLanes d;
+  for (std::size_t v = 0; v < n; ++v) {
+    for (std::size_t k = 0; k < kForceFloats; k += kForceLanes) {
+      auto sum = hn::Zero(d);
+      for (std::uint32_t i = begin[v]; i < begin[v + 1]; ++i) {
+        sum = hn::Add(sum, hn::Load(d, slots + which[i] * kForceFloats + k));
+      }
+      hn::Store(sum, d, out + v * kForceFloats + k);
+    }
+  }
+}
+
+/// All bits in x, y, z and none in w, for the part from position k. The w of a record are its coefficients: a
+/// change that is masked and a drift by h where this is set leave them as they are.
+HWY_INLINE D4 xyz_bits(std::size_t k) {
+  const Doubles d;
+  return hn::VecFromMask(d, hn::FirstN(d, k < 3 ? 3 - k : 0));
+}
+
+/// Sums of VertexWork, a component each.
+struct WorkLanes {
+  D4 elastic_before, elastic_after, viscous_before, viscous_after;
+  D4 damping_before, damping_after, loads_before, loads_after, kinetic;
+
+  HWY_INLINE WorkLanes() {
+    const D4 zero = hn::Zero(Doubles());
+    elastic_before = elastic_after = viscous_before = viscous_after = zero;
+    damping_before = damping_after = loads_before = loads_after = kinetic = zero;
+  }
+  HWY_INLINE void book(D4 elastic, D4 viscous, D4 drag, D4 weight, double half_mass, D4 before, D4 after) {
+    elastic_before = hn::MulAdd(elastic, before, elastic_before),
+    elastic_after = hn::MulAdd(elastic, after, elastic_after);
+    viscous_before = hn::MulAdd(viscous, before, viscous_before),
+    viscous_after = hn::MulAdd(viscous, after, viscous_after);
+    damping_before = hn::MulAdd(drag, before, damping_before), damping_after = hn::MulAdd(drag, after, damping_after);
+    loads_before = hn::MulAdd(weight, before, loads_before), loads_after = hn::MulAdd(weight, after, loads_after);
+    kinetic = hn::MulAdd(hn::Mul(hn::Set(Doubles(), half_mass), before), after, kinetic);
+  }
+  HWY_INLINE void add_to(VertexWork& work) const {
+    const auto sum = [](D4 v) GLISSON_INLINED { return hn::GetLane(hn::SumOfLanes(Doubles(), v)); };
+    work.elastic_before += sum(elastic_before), work.elastic_after += sum(elastic_after);
+    work.viscous_before += sum(viscous_before), work.viscous_after += sum(viscous_after);
+    work.damping_before += sum(damping_before), work.damping_after += sum(damping_after);
+    work.loads_before += sum(loads_before), work.loads_after += sum(loads_after);
+    work.kinetic += sum(kinetic);
+  }
+};
+
+template <bool kAccounted>
+HWY_INLINE void advance(double* state, const float* elastic, const float* viscous, const Kick& kick, WorkLanes& work) {
+  const Doubles d;
+  const double c = state[3], damping = state[7];
+  for (std::size_t k = 0; k < 4; k += kDoubles) {
+    const D4 xyz = xyz_bits(k), h = hn::And(xyz, hn::Set(d, kick.step));
+    const D4 before = hn::Load(d, state + 4 + k), u = hn::Load(d, state + k), g = hn::Load(d, kick.gravity.data() + k);
+    const D4 fall = hn::Mul(hn::Set(d, kick.step), g);
+    const D4 fe = hn::PromoteTo(d, hn::Load(Narrow(), elastic + k));
+    D4 force = fe;
+    if constexpr (kAccounted) force = hn::Add(fe, hn::PromoteTo(d, hn::Load(Narrow(), viscous + k)));
+    const D4 change = hn::MulAdd(hn::Set(d, c), force, hn::NegMulAdd(hn::Set(d, damping), hn::Add(before, fall), fall));
+    const D4 after = hn::Add(before, hn::And(xyz, change));
+    hn::Store(after, d, state + 4 + k);
+    hn::Store(hn::MulAdd(h, after, u), d, state + k);
+    if constexpr (kAccounted) {
+      const D4 v0 = hn::And(xyz, before), v1 = hn::And(xyz, after);
+      const double inverse = c > 0.0 ? 1.0 / c : 0.0, mass = kick.step * (1.0 - damping) * inverse;
+      const D4 drag = hn::Mul(hn::Set(d, -damping * inverse), v1);
+      work.book(fe, hn::Sub(force, fe), drag, hn::Mul(hn::Set(d, mass), g), 0.5 * mass, v0, v1);
+    }
+  }
+}
+
+#if HWY_TARGET != HWY_SCALAR && HWY_MAX_BYTES == 64
+
+/// A whole record at a time: both halves take the velocity's change, the lower one adds h times it to u.
+///   [u c | v d]  →  v₊ in both halves  →  [h h h 0 | 1 1 1 1] [v₊ d | v₊ d] + [u c | 0]
+inline void integrate(double* state, const float* force, std::size_t n, const Kick& kick) {
+  const Record d;
+  const auto lower = hn::VecFromMask(d, hn::FirstN(d, 4));
+  const auto xyz = hn::Combine(d, xyz_bits(0), xyz_bits(0));
+  const auto fall = hn::Mul(hn::Set(d, kick.step), hn::Combine(d, hn::Load(Doubles(), kick.gravity.data()),
+                                                               hn::Load(Doubles(), kick.gravity.data())));
+  const auto drift = hn::IfThenElse(hn::FirstN(d, 4), hn::And(xyz, hn::Set(d, kick.step)), hn::Set(d, 1.0));
+  for (std::size_t i = 0; i < n; ++i, state += kStateDoubles, force += kForceFloats) {
+    const auto record = hn::Load(d, state), before = hn::ConcatUpperUpper(d, record, record);
+    const auto f = hn::PromoteTo(d, hn::LoadDup128(NarrowRecord(), force));
+    const auto drag = hn::NegMulAdd(hn::Set(d, state[7]), hn::Add(before, fall), fall);
+    const auto change = hn::MulAdd(hn::Set(d, state[3]), f, drag);
+    const auto after = hn::Add(before, hn::And(xyz, change));
+    hn::Store(hn::MulAdd(drift, after, hn::And(lower, record)), d, state);
+  }
+}
+
+#else
+
+inline void integrate(double* state, const float* force, std::size_t n, const Kick& kick) {
+  WorkLanes none;
+  for (std::size_t i = 0; i < n; ++i) {
+    advance<false>(state + i * kStateDoubles, force + i * kForceFloats, nullptr, kick, none);
+  }
+}
+
+#endif
+
+inline void integrate_accounted(double* state, const float* elastic, const float* viscous, std::size_t n,
+                                const Kick& kick, VertexWork& work) {
+  WorkLanes sums;
+  for (std::size_t i = 0; i < n; ++i) {
+    advance<true>(state + i * kStateDoubles, elastic + i * kForceFloats, viscous + i * kForceFloats, kick, sums);
+  }
+  sums.add_to(work);
+}
+
+}  // namespace glisson::engine::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // GLISSON_VERTEX_STAGES_INL_H_

@@ -1,0 +1,28 @@
+// response_batches.h — what tissues beyond the paper's keep of each tet, in the lanes of its chain.
+#pragma once
+
+#include "engine/layout/submesh.h"
+
+namespace glisson::engine {
+
+/// Fills the fibre directions of a submesh, and its Maxwell memory with that of the same elements before.
+/// @param before  the batches in whose lanes the memory lies; none: nothing is remembered yet
+void lay_out_response(const Body& body, const Tissue& tissue, const ChainBatches& before, Submesh& part,
+                      std::size_t lanes);
+
+/// Numbers that the memory of one element takes: six for each branch.
+inline std::size_t memory_numbers(const Tissue& tissue) { return 6 * tissue.maxwell.size(); }
+
+/// Calls `visit(element, numbers)` for each element of a submesh with Maxwell memory, `numbers` a function from the number's
+/// place, 0 … memory_numbers − 1, to where it lies.
+template <class Part, class Visit>
+void for_memory(Part& part, const Tissue& tissue, std::size_t lanes, const Visit& visit) {
+  const std::size_t n = memory_numbers(tissue);
+  for (std::size_t k = 0; n > 0 && k < part.chains.element.size(); ++k) {
+    if (part.chains.element[k] == kNoElement) continue;
+    auto* first = part.memory.data() + k / lanes * n * lanes + k % lanes;
+    visit(part.chains.element[k], [=](std::size_t i) { return first + i * lanes; });
+  }
+}
+
+}  // namespace glisson::engine

@@ -1,0 +1,66 @@
+#include "fit/uncertainty/autocorrelation.h"
+
+#include <algorithm>
+
+#include "fit/uncertainty/distribution.h"
+
+namespace glisson::fit {
+namespace {
+
+double product_at(std::span<const double> x, std::size_t lag) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + lag < x.size(); ++i) sum += x[i] * x[i + lag];
+  return sum;
+}
+
+/// Looks at no more lags than the sequence lasts: a series of n samples would cost n² otherwise.
+double positive_sequence_time(std::span<const double> x, double squares) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k + 1 < x.size(); k += 2) {
+    const double pair = product_at(x, k) + product_at(x, k + 1);
+    if (pair <= 0.0) break;
+    sum += pair / squares;
+  }
+  return 2.0 * sum - 1.0;
+}
+
+double first_order_time(double rho, double n, double parameters) {
+  // ρ̂ = ρ − (2ρ + p (1 + ρ)) / n, solved for ρ
+  const double share = 1.0 - (2.0 + parameters) / n;
+  if (share <= 0.0) return n;
+  const double corrected = (rho + parameters / n) / share;
+  return corrected >= 1.0 ? n : (1.0 + corrected) / (1.0 - corrected);
+}
+
+}  // namespace
+
+std::vector<double> autocorrelation(std::span<const double> series, std::size_t lags) {
+  const std::size_t n = series.size();
+  std::vector<double> rho(n == 0 ? 0 : std::min(lags, n - 1) + 1, 0.0);
+  for (std::size_t k = 0; k < rho.size(); ++k) rho[k] = product_at(series, k);
+  if (rho.empty() || rho[0] == 0.0) return std::vector<double>(rho.size(), 0.0);
+  const double squares = rho[0];
+  for (double& r : rho) r /= squares;
+  return rho;
+}
+
+double correlation_time(std::span<const double> series, double parameters) {
+  const auto n = static_cast<double>(series.size());
+  const double squares = product_at(series, 0);
+  if (series.size() < 3 || squares == 0.0) return 1.0;
+  const double first = first_order_time(product_at(series, 1) / squares, n, parameters);
+  return std::clamp(std::max(positive_sequence_time(series, squares), first), 1.0, n);
+}
+
+double independence_probability(const std::vector<std::vector<double>>& series) {
+  double sum = 0.0, freedom = 0.0;
+  for (const std::vector<double>& x : series) {
+    const auto n = static_cast<double>(x.size());
+    const std::vector<double> rho = autocorrelation(x, std::min<std::size_t>(10, x.size() / 5));
+    for (std::size_t k = 1; k < rho.size(); ++k) sum += n * (n + 2.0) * rho[k] * rho[k] / (n - static_cast<double>(k));
+    freedom += rho.size() > 1 ? static_cast<double>(rho.size() - 1) : 0.0;
+  }
+  return freedom > 0.0 ? chi_squared_tail(sum, freedom) : 1.0;
+}
+
+}  // namespace glisson::fit

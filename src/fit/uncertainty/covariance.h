@@ -1,0 +1,88 @@
+// covariance.h — how sure a fit is, from the curvature of its cost at the optimum.
+//
+// Nothing is inverted that the curves do not determine: J is split into directions of z (singular vectors), weakest first,
+// and a direction without weight is reported, not divided by. What the noise is decides the rest:
+//
+//   independent      C = σ² (JᵀJ)⁻¹                                     residuals look like white noise
+//   autocorrelated   C = (JᵀJ)⁻¹ (Σ_c σ_c² τ_c J_cᵀJ_c) (JᵀJ)⁻¹         they swing: τ_c samples count as one
+//   by_curve         C = (JᵀJ)⁻¹ (Σ_c u_c u_cᵀ) (JᵀJ)⁻¹ (G − 1) / G     repetitions differ from one another
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fit/search/problem.h"
+#include "fit/uncertainty/interval.h"
+
+namespace glisson::fit {
+
+enum class Hold { free, at_low, at_high };
+enum class NoiseKind { independent, autocorrelated, by_curve };
+const char* name_of(NoiseKind kind);
+
+/// A combination of the parameters that the curves see as one, Σ vector_p z_p.
+struct Direction {
+  std::vector<double> vector;  ///< of unit length, in z; 0 for held parameters
+  double singular = 0.0;       ///< ‖J vector‖
+  bool determined = true;      ///< false: the curves do not see it at all
+  double sd = 0.0;             ///< in z; infinite where it is not determined
+};
+
+struct NoiseEstimate {
+  NoiseKind kind = NoiseKind::independent;
+  std::string why;                         ///< a sentence: which of the three is used, on what evidence
+  double variance = 0.0;                   ///< σ² of the scaled residuals
+  std::size_t samples = 0;                 ///< residuals with weight
+  double effective = 0.0;                  ///< Σ_c n_c / τ_c
+  std::vector<double> effective_by_curve;  ///< n_c / τ_c; 0 for curves without weight
+  double independence = 1.0;               ///< probability of such autocorrelations from independent samples
+  std::optional<double> common = {};  ///< probability of such differences between curves from one set of parameters
+};
+
+struct Covariance {
+  std::string failure;  ///< why there is none (a forward run failed); empty: there is
+  std::vector<double> scaled;
+  std::vector<Hold> hold;        ///< parameters at a bound are held there and left out
+  std::vector<char> determined;  ///< 0: held, or part of a direction that the curves do not see
+  NoiseEstimate noise;
+  double level = 0.95;
+  double freedom = 0.0;               ///< degrees of freedom of Student's t
+  double quantile = 0.0;              ///< of Student's t, two-sided
+  std::vector<double> sd;             ///< in z; infinite where not determined, NaN where held
+  std::vector<Interval> interval;     ///< own units; open at bounds
+  std::vector<double> matrix;         ///< C, row-major, in z; of the determined directions only
+  std::vector<double> correlation;    ///< row-major; ± 1 within directions that are not determined
+  std::vector<double> information;    ///< JᵀJ, row-major, in z
+  std::vector<double> inflation;      ///< C_pp over that of independent noise
+  std::vector<Direction> directions;  ///< of the free parameters, weakest first
+  double cost_unit = 0.0;             ///< 2 Δcost / cost_unit is χ² of one degree of freedom, for independent noise
+
+  std::size_t parameters() const { return scaled.size(); }
+  /// Variance of Σ weights_p z_p, of the determined directions.
+  double variance_of(std::span<const double> weights) const;
+};
+
+struct CovarianceOptions {
+  double level = 0.95;
+  double rank_tolerance =
+      1e-5;  ///< a direction below it, over the strongest, is not determined: differences see no less
+  double bound_tolerance = 1e-6;        ///< in z
+  double significance = 0.05;           ///< of the tests that choose the noise
+  std::optional<NoiseKind> force = {};  ///< instead of the tests; by_curve falls back where there are too few curves
+};
+
+/// Covariance, intervals by Student's t and correlations at an optimum.
+///
+///   z_p ± t(N_eff − p) √C_pp, mapped to the parameter's unit (on a logarithmic scale the interval is lopsided)  [SeberWild1989]
+///   σ² = Σ ψ² / N · N_eff / (N_eff − p) / mean(ψ')², ψ the influence of the loss; squares: ψ = r, ψ' = 1         [Huber1981]
+///   u_c = (I − J_cᵀJ_c (JᵀJ)⁻¹)⁻¹ J_cᵀr_c: the curves' own pull, freed of their part in the fit; t of G − 1      [BellMcCaffrey2002]
+///
+/// by_curve is used with four curves or more that differ by more than their own noise explains, by the F test of
+/// [Chow1960] on a refit of each curve to first order; else autocorrelated, where [LjungBox1978] finds that the residuals are.
+/// Where a single set of parameters passes the first test, all curves count fully.
+Covariance covariance(const Problem& problem, std::span<const double> scaled, const CovarianceOptions& options = {});
+
+}  // namespace glisson::fit

@@ -1,0 +1,146 @@
+#include "instruments/capsule/capsule_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace glisson {
+
+void require_options(const CapsuleOptions& o) {
+  const auto check = [&](bool ok, const char* option, double value, const char* range, const char* way_out) {
+    if (ok) return;
+    std::ostringstream text;
+    text << o.name << '.' << option << " = " << value << " is outside the allowed range, " << range << "; " << way_out;
+    throw std::invalid_argument(text.str());
+  };
+  const auto is_positive = [](double x) { return x > 0.0 && std::isfinite(x); };
+  check(is_positive(o.thickness), "thickness [m]", o.thickness, "> 0", "an organ's capsule has 2e-5 to 2e-4 m");
+  check(is_positive(o.youngs_modulus), "youngs_modulus [Pa]", o.youngs_modulus, "> 0",
+        "porcine Glisson's capsule has 8.2e6 Pa at small strain");
+  check(o.poisson_ratio >= 0.0 && o.poisson_ratio <= 0.5, "poisson_ratio", o.poisson_ratio, "0 … 0.5",
+        "0.5 keeps the volume of the sheet");
+  check(o.prestretch >= 1.0 && o.prestretch <= 2.0, "prestretch", o.prestretch, "1 … 2",
+        "1 is a sheet without tension");
+  check(o.stiffening >= 0.0 && o.stiffening <= 1000.0, "stiffening", o.stiffening, "0 … 1000", "0 is a linear sheet");
+  if (o.strength) {
+    check(is_positive(*o.strength), "strength [N/m]", *o.strength, "> 0",
+          "leave it out for a capsule that does not tear");
+  }
+  check(is_positive(o.averaging_length), "averaging_length [m]", o.averaging_length, "> 0",
+        "take two edges of the surface triangles or more");
+  if (!o.vertices.empty() && !o.triangles.empty()) {
+    throw std::invalid_argument(o.name + ": both vertices and triangles are given; choose the surface by one of them");
+  }
+}
+
+/// Numbers the vertices, makes the sheet anew over them and looks at the present state.
+void Capsule::State::lay_out(const BodyView& body, bool sharply) {
+  vertices.clear();
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (is_gone[t] == 0) vertices.insert(vertices.end(), triangles[t].begin(), triangles[t].end());
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  rest.clear(), now.clear();
+  std::vector<double> masses;
+  for (const std::uint32_t v : vertices) {
+    rest.push_back(body.mesh.vertices[v]);
+    now.push_back(rest.back() + body.displacement[v]);
+    masses.push_back(body.masses[v]);
+  }
+  local.assign(triangles.size(), Triangle{});
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t i = 0; i < 3 && is_gone[t] == 0; ++i) {
+      const auto at = std::lower_bound(vertices.begin(), vertices.end(), triangles[t][i]) - vertices.begin();
+      local[t][i] = static_cast<std::uint32_t>(at);
+    }
+  }
+  const CapsuleOptions& o = options;
+  membrane = Membrane(local, rest, {o.youngs_modulus * o.thickness, o.poisson_ratio, o.stiffening, o.prestretch});
+  membrane.set_masses(masses);
+  if (sharply) membrane.sharpen(rest);
+  counts.assign(triangles.size(), 0);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    membrane.keep(t, kept_share(open[t]));
+    counts[t] = is_gone[t] == 0 && open[t] < 1.0 && membrane.rest_area(t) > 0.0;
+  }
+  near = {};
+  is_named = false;
+  evaluate();
+  frequency_before = frequency;
+}
+
+/// Forces and the frequency at the present positions.
+void Capsule::State::evaluate() {
+  forces.assign(vertices.size(), Vec3d{});
+  membrane.add_forces(now, forces);
+  tension_is_current = false;
+  frequency_before = frequency;
+  frequency = membrane.squared_frequency();
+}
+
+const std::vector<double>& Capsule::State::tensions() {
+  if (tension_is_current) return tension;
+  tension.assign(triangles.size(), 0.0);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (counts[t] != 0) tension[t] = membrane.tension(t);
+  }
+  tension_is_current = true;
+  return tension;
+}
+
+PointOnTriangle Capsule::State::nearest_to(const Vec3d& place) {
+  const PointOnTriangle point = nearest_point(local, now, counts, place, nearest);
+  nearest = point.triangle;
+  return point;
+}
+
+Vec3d Capsule::State::centre(std::size_t triangle) const {
+  const Triangle& t = local[triangle];
+  return (now[t[0]] + now[t[1]] + now[t[2]]) * (1.0 / 3.0);
+}
+
+/// Raises the open share of a triangle; what it stored goes in proportion.
+void Capsule::State::open_to(std::size_t triangle, double share) {
+  share = std::clamp(share, open[triangle], 1.0);
+  if (share > 1.0 - 1e-9) share = 1.0;
+  const double kept = kept_share(share);
+  released += (membrane.kept(triangle) - kept) * membrane.energy(now, triangle);
+  membrane.keep(triangle, kept);
+  open[triangle] = share;
+  if (share == 1.0) counts[triangle] = 0, tension_is_current = false;
+}
+
+/// Tension over the disc about a triangle, of what is whole [N/m].
+double Capsule::State::mean_tension(std::size_t triangle) {
+  if (near.first.empty()) near = find_neighbours(local, rest, 0.5 * options.averaging_length);
+  double sum = 0.0, area = 0.0;
+  for (std::uint32_t k = near.first[triangle]; k < near.first[triangle + 1]; ++k) {
+    const std::uint32_t t = near.list[k];
+    if (counts[t] == 0) continue;
+    const double share = membrane.kept(t) * membrane.rest_area(t);
+    sum += share * membrane.tension(t);
+    area += share;
+  }
+  return area > 0.0 ? sum / area : 0.0;
+}
+
+/// Opens the triangle with the largest mean tension above the strength: one a step, so that a tear runs from
+/// neighbour to neighbour and a sheet under even tension does not vanish at once.
+void Capsule::State::tear_where_due() {
+  if (!options.strength || membrane.largest_tension() < *options.strength) return;
+  std::size_t worst = triangles.size();
+  double most = *options.strength;
+  const std::vector<double>& of = tensions();
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (counts[t] == 0 || of[t] < *options.strength) continue;
+    const double mean = mean_tension(t);
+    if (mean >= most && (mean > most || worst == triangles.size())) most = mean, worst = t;
+  }
+  if (worst == triangles.size()) return;
+  events.push_back({time, CapsuleEvent::What::tear, centre(worst), membrane.rest_area(worst) * (1.0 - open[worst])});
+  open_to(worst, 1.0);
+}
+
+}  // namespace glisson

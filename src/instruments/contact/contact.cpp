@@ -1,0 +1,171 @@
+// contact.cpp — a rigid tool against the surface: which points, then their impulses, then what the tool feels.
+//
+//   reach: pose at t + h ─▶ patches it might touch        constrain: vertices ─▶ solve ─▶ triangles ─▶ solve ─▶ forces
+//
+// The driver is asked in reach(), before the step, so that the way the tool will go is known when vertices are named.
+#include "glisson/instruments/contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "base/past.h"
+#include "instruments/contact/contact_state.h"
+
+namespace glisson {
+namespace {
+
+constexpr double kQuiet = 5e-3;  // without contact for so long, a tool has let go [s]
+
+void require(const ContactOptions& o) {
+  const auto refuse = [&](const char* what, double value, const char* range) {
+    std::ostringstream text;
+    text << "contact tool " << o.name << ": " << what << " = " << value << " is outside the allowed range, " << range;
+    throw std::invalid_argument(text.str());
+  };
+  if (!(o.friction >= 0.0)) refuse("friction [-]", o.friction, ">= 0; infinite: it never slips");
+  if (!(o.push_out_speed > 0.0) || !std::isfinite(o.push_out_speed)) {
+    refuse("push_out_speed [m/s]", o.push_out_speed, "> 0 and finite");
+  }
+  if (!std::isfinite(norm(o.direction))) refuse("length of direction", norm(o.direction), "finite and not 0");
+  require_valid(o.shape);
+}
+
+const ContactOptions& checked(const ContactOptions& options) {
+  require(options);
+  return options;
+}
+
+}  // namespace
+
+ContactTool::ContactTool(const ContactOptions& options, std::shared_ptr<ToolDriver> driver)
+    : Instrument(checked(options).name, std::move(driver), options.direction), state_(std::make_unique<State>()) {
+  state_->options = options;
+  if (!is_sound(pose_)) {
+    throw std::invalid_argument("contact tool " + options.name +
+                                ": its driver starts at a pose that is not finite, or whose axes are no rotation");
+  }
+  state_->solid.traits = traits_of(state_->options.shape);
+  state_->solid.friction = options.bonded ? std::numeric_limits<double>::infinity() : options.friction;
+  state_->solid.push_out_speed = options.push_out_speed;
+  state_->solid.shape = &state_->options.shape;
+}
+
+ContactTool::~ContactTool() = default;
+
+const ContactOptions& ContactTool::options() const { return state_->options; }
+bool ContactTool::touches() const {
+  const auto bears = [](double impulse) { return impulse != 0.0; };
+  return std::any_of(state_->pressed.begin(), state_->pressed.end(), bears);
+}
+double ContactTool::contact_area() const { return state_->area; }
+ContactTool::Effort ContactTool::effort() const { return state_->effort; }
+ContactPressure ContactTool::contact_pressure() const { return {state_->bearing_vertices, state_->pressures}; }
+
+void ContactTool::attached(const BodyView& body, double) { state_->reach.attach(body); }
+
+void ContactTool::body_changed(const BodyView& body, std::span<const std::uint32_t> origins) {
+  give_to_copies(state_->bonds, body.mesh.vertices.size(), origins);
+  state_->reach.attach(body);
+}
+
+std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
+  State& s = *state_;
+  if (s.lost) return {};
+  InteractionStep step;
+  step.time = time, step.h = h;
+  drive(step);
+  if (!is_sound(pose_)) {
+    pose_ = before_, s.lost = true;
+    add_event(time, force_depth(), "lost");
+    return {};
+  }
+  s.solid.earlier = s.solid.before, s.solid.last_h = s.last_h;
+  s.solid.before = before_, s.solid.after = pose_;
+  s.last_h = h;
+  return s.reach.ask({&s.solid, 1}, h);
+}
+
+void ContactTool::add_forces(const InteractionStep& step) { state_->books.begin(step); }
+
+void ContactTool::constrain(const InteractionStep& step) {
+  State& s = *state_;
+  forces_ = {};
+  s.rows.clear(), s.pressed.clear(), s.effort = {};
+  if (s.lost) return;
+  s.add_vertices(step);
+  s.effort.vertices = s.rows.size();
+  if (!s.rows.empty()) s.effort.sweeps = s.books.solve(s.rows, step);
+  if (s.solid.traits.presses_between) s.add_triangles(step);
+  s.effort.triangles = s.rows.size() - s.effort.vertices;
+  s.begin_triangles(step);
+  if (s.effort.triangles > 0) s.effort.sweeps += s.books.solve(s.rows, step);
+  s.effort.corrected = s.books.corrected();
+  s.books.close(s.rows, step);
+  if (s.options.bonded) s.bond(step, forces_);
+  s.collect(step, forces_);
+
+  if (touches()) {
+    if (!s.in_contact) add_event(step.time, force_depth(), "contact");
+    s.in_contact = true, s.last_touch = step.time, s.last_depth = force_depth();
+  } else if (s.in_contact && step.time > s.last_touch + kQuiet) {
+    s.in_contact = false;
+    add_event(s.last_touch, s.last_depth, "release");
+  }
+}
+
+void ContactTool::moved(const InteractionStep& step) {
+  state_->reach.look(step);
+  state_->weigh(step);
+}
+
+std::vector<double> ContactTool::past() const {
+  const State& s = *state_;
+  std::vector<double> past;
+  save_motion(past);
+  past.insert(past.end(), {s.lost ? 1.0 : 0.0, s.in_contact ? 1.0 : 0.0, s.begun ? 1.0 : 0.0, s.last_touch,
+                           s.last_depth, s.books.taken(), s.last_h});
+  const Pose& p = s.solid.before;
+  past.insert(past.end(), {p.position.x, p.position.y, p.position.z});
+  for (const auto& row : p.axes.m) past.insert(past.end(), row.begin(), row.end());
+  s.found_inside.save(past);
+  past.push_back(static_cast<double>(s.bonds.size()));
+  for (const auto& [vertex, y] : s.bonds) past.insert(past.end(), {static_cast<double>(vertex), y.x, y.y, y.z});
+  past.push_back(static_cast<double>(s.last_pressing.size()));
+  for (const auto& [t, force] : s.last_pressing) {
+    past.insert(past.end(), {static_cast<double>(t[0]), static_cast<double>(t[1]), static_cast<double>(t[2]), force});
+  }
+  s.reach.save(past);
+  return past;
+}
+
+bool ContactTool::restore(std::span<const double> past) {
+  State& s = *state_;
+  if (!restore_motion(past)) return false;
+  PastReader get(past);
+  s.lost = get.flag(), s.in_contact = get.flag(), s.begun = get.flag();
+  s.last_touch = get.number(), s.last_depth = get.number();
+  s.books.set_taken(get.number());
+  s.last_h = get.number();
+  s.solid.before.position = get.vector();
+  for (auto& row : s.solid.before.axes.m) {
+    for (double& a : row) a = get.number();
+  }
+  s.found_inside.restore(get);
+  const auto vertex = [&] { return static_cast<std::uint32_t>(get.index(s.reach.surface().body_vertices())); };
+  s.bonds.clear();
+  for (std::size_t left = get.count(4); left > 0; --left) {
+    const std::uint32_t v = vertex();
+    s.bonds[v] = get.vector();
+  }
+  s.last_pressing.clear();
+  for (std::size_t left = get.count(4); left > 0; --left) {
+    const std::uint32_t a = vertex(), b = vertex(), c = vertex();
+    s.last_pressing[{a, b, c}] = get.number();
+  }
+  s.reach.restore(get);
+  return get.done();
+}
+
+}  // namespace glisson

@@ -1,0 +1,98 @@
+#include "instruments/contact/contact_reach.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/past.h"
+
+namespace glisson {
+namespace {
+
+constexpr double kStretch = 2.5;  // of a patch's radius: how far its vertices may be from its sentinel
+constexpr double kHurry = 4.0;    // times the sentinel's way in a step: how far they may go
+constexpr std::uint32_t kAbsent = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+void ContactReach::attach(const BodyView& body) {
+  surface_.build(body);
+  sentinels_.clear();
+  for (const SurfacePatch& p : surface_.patches()) {
+    sentinels_.push_back({body.mesh.vertices[p.sentinel] + body.displacement[p.sentinel], {}, false});
+  }
+  sentinels_asked_ = false;
+  gather();
+}
+
+/// φ is never less along the way than half of what its ends have beyond that way.
+bool ContactReach::may_reach(const ContactSolid& solid, const SurfacePatch& patch, const Sentinel& s, double h) const {
+  const Vec3d before = to_frame(solid.before, s.position), after = to_frame(solid.after, s.position);
+  const double apart = 0.5 * (distance_to(*solid.shape, before).distance + distance_to(*solid.shape, after).distance -
+                              norm(after - before));
+  return !(apart > kStretch * patch.radius + kHurry * h * norm(s.velocity));
+}
+
+std::span<const std::uint32_t> ContactReach::ask(std::span<const ContactSolid> solids, double h) {
+  asking_.clear();
+  for (std::size_t k = 0; k < sentinels_.size(); ++k) {
+    const SurfacePatch& patch = surface_.patches()[k];
+    if (!sentinels_asked_) asking_.push_back(patch.sentinel);
+    const auto near = [&](const ContactSolid& s) { return may_reach(s, patch, sentinels_[k], h); };
+    if (sentinels_[k].asked || std::none_of(solids.begin(), solids.end(), near)) continue;
+    sentinels_[k].asked = true;
+    asking_.insert(asking_.end(), patch.vertices.begin(), patch.vertices.end());
+  }
+  const bool grown = asking_.size() > (sentinels_asked_ ? 0 : sentinels_.size());
+  sentinels_asked_ = true;
+  if (grown) gather();
+  return asking_;
+}
+
+void ContactReach::look(const InteractionStep& step) {
+  for (std::size_t k = 0; k < sentinels_.size(); ++k) {
+    if (sentinels_[k].asked) continue;
+    const std::uint32_t place = step.place_of[surface_.patches()[k].sentinel];
+    if (place == InteractionStep::kNowhere) continue;
+    sentinels_[k].position = step.position(place), sentinels_[k].velocity = step.vertices[place].velocity;
+  }
+}
+
+/// Lists what has been asked for.
+void ContactReach::gather() {
+  mine_.clear();
+  for (std::size_t k = 0; k < sentinels_.size(); ++k) {
+    const std::vector<std::uint32_t>& v = surface_.patches()[k].vertices;
+    if (sentinels_[k].asked) mine_.insert(mine_.end(), v.begin(), v.end());
+  }
+  std::sort(mine_.begin(), mine_.end());
+  mine_.erase(std::unique(mine_.begin(), mine_.end()), mine_.end());
+  std::vector<std::uint32_t> place(surface_.body_vertices(), kAbsent);
+  for (std::uint32_t i = 0; i < mine_.size(); ++i) place[mine_[i]] = i;
+  my_triangles_.clear();
+  for (const Triangle& t : surface_.triangles()) {
+    const Triangle local{place[t[0]], place[t[1]], place[t[2]]};
+    if (std::find(local.begin(), local.end(), kAbsent) == local.end()) my_triangles_.push_back(local);
+  }
+}
+
+void ContactReach::save(std::vector<double>& past) const {
+  past.push_back(static_cast<double>(sentinels_.size()));
+  past.push_back(sentinels_asked_ ? 1.0 : 0.0);
+  for (const Sentinel& s : sentinels_) {
+    past.insert(past.end(), {s.position.x, s.position.y, s.position.z, s.velocity.x, s.velocity.y, s.velocity.z,
+                             s.asked ? 1.0 : 0.0});
+  }
+}
+
+void ContactReach::restore(PastReader& past) {
+  if (past.number() != static_cast<double>(sentinels_.size())) return past.refuse();
+  sentinels_asked_ = past.flag();
+  for (Sentinel& s : sentinels_) {
+    s.position = past.vector(), s.velocity = past.vector();
+    s.asked = past.flag();
+  }
+  gather();
+}
+
+}  // namespace glisson

@@ -1,0 +1,59 @@
+// contact_reach.h — which part of the surface solids may touch.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "instruments/contact/contact_rows.h"
+#include "instruments/contact/contact_surface.h"
+
+namespace glisson {
+
+class PastReader;
+
+/// Lets vertices that are copies, the last ones of a body, have what their origins have, by vertex.
+template <class Value>
+void give_to_copies(std::map<std::uint32_t, Value>& of_vertex, std::size_t vertices,
+                    std::span<const std::uint32_t> origins) {
+  const std::size_t first = vertices - origins.size();
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    const auto found = of_vertex.find(origins[i]);
+    if (found != of_vertex.end()) of_vertex[static_cast<std::uint32_t>(first + i)] = Value(found->second);
+  }
+}
+
+/// The part of the surface that solids may touch: patches come in as one draws near and stay.
+class ContactReach {
+ public:
+  void attach(const BodyView& body);
+  /// Vertices to bring to hand, the sentinels of all patches at first. @param solids  their way in the coming step
+  std::span<const std::uint32_t> ask(std::span<const ContactSolid> solids, double h);
+  /// Where the sentinels are after a step.
+  void look(const InteractionStep& step);
+
+  const ContactSurface& surface() const { return surface_; }
+  std::span<const std::uint32_t> vertices() const { return mine_; }
+  /// Triangles with all corners among vertices(), and these as places there.
+  std::span<const Triangle> triangles() const { return my_triangles_; }
+
+  void save(std::vector<double>& past) const;
+  void restore(PastReader& past);
+
+ private:
+  /// Of a patch.
+  struct Sentinel {
+    Vec3d position, velocity;
+    bool asked = false;
+  };
+
+  bool may_reach(const ContactSolid& solid, const SurfacePatch& patch, const Sentinel& s, double h) const;
+  void gather();
+
+  ContactSurface surface_;
+  std::vector<Sentinel> sentinels_;
+  std::vector<std::uint32_t> mine_, asking_;
+  std::vector<Triangle> my_triangles_;
+  bool sentinels_asked_ = false;
+};
+
+}  // namespace glisson

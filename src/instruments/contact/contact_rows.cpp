@@ -1,0 +1,319 @@
+#include "instruments/contact/contact_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace glisson {
+namespace {
+
+constexpr int kMostSweeps = 60;
+constexpr double kEnough = 1000.0;  // tolerances: rows that move by less have been solved
+constexpr int kMostCorrections = 8;
+constexpr double kAtEdge = 1e-3;  // a weight below it: the point is on an edge of its triangle
+constexpr double kAlike = 0.8;  // cosine between normals of solid and triangle that are one but for the triangle's size
+constexpr double kAway = -0.2;  // … below which they do not face each other
+constexpr int kMostProbes = 24;     // of a triangle
+constexpr double kSettling = 5e-3;  // tissue found inside a tool leaves by its depth over this time [s]
+constexpr double kFast = 0.25;      // of the thickness
+constexpr double kNear = 0.1;       // of its way: a point that ends so near takes part
+
+using Corners = std::array<Vec3d, 3>;
+
+/// φ with the allowance of the row taken off.
+ShapeDistance distance_of(const ContactRow& row, const Vec3d& y) {
+  ShapeDistance d = distance_to(*row.solid->shape, y);
+  d.distance += row.allowance;
+  return d;
+}
+
+double phi(const ContactRow& row, const Vec3d& y) { return distance_of(row, y).distance; }
+
+Corners between(const Corners& a, const Corners& b, double share) {
+  return {a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share, a[2] + (b[2] - a[2]) * share};
+}
+
+/// Where the vertices of a row are in the frame of the solid.
+Corners at_start(const ContactRow& row) {
+  const Pose& p = row.solid->before;
+  return {to_frame(p, row.origins[0]), to_frame(p, row.origins[1]), to_frame(p, row.origins[2])};
+}
+Corners at_end(const ContactRow& row, const InteractionStep& step) {
+  Corners c{};
+  for (std::uint32_t i = 0; i < row.count; ++i) {
+    c[i] = to_frame(row.solid->after, row.origins[i] + step.vertices[row.places[i]].velocity * step.h);
+  }
+  return c;
+}
+
+Vec3d mean(const ContactRow& row, const Corners& c) {
+  if (row.count == 1) return c[0];
+  return c[0] * row.weights[0] + c[1] * row.weights[1] + c[2] * row.weights[2];
+}
+
+/// Share of the way at which a point is not outside any more; above 1: never. φ is never more than the distance, so that
+/// nothing is passed over.
+double first_touch(const ContactRow& row, const Vec3d& a, const Vec3d& b) {
+  const double close = row.solid->tolerance(), length = norm(b - a);
+  double way = 0.0;
+  for (int k = 0; k < 64 && way <= length; ++k) {
+    const double d = phi(row, a + (b - a) * (way / length));
+    if (d <= close) return way / length;
+    way += d;
+  }
+  return way <= length ? way / length : 2.0;
+}
+
+/// Velocity per impulse of a point that is a mean of vertices.
+Vec3d response_of(const ContactRow& row, const InteractionStep& step) {
+  Vec3d sum;
+  for (std::uint32_t i = 0; i < row.count; ++i) {
+    sum += step.mobility[row.places[i]] * (row.weights[i] * row.weights[i]);
+  }
+  return sum;
+}
+
+Vec3d scaled(const Vec3d& a, const Vec3d& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+
+/// Where the point of a row is held: where it starts, if it touches there, or where it enters.
+bool meets(ContactRow& row, const Vec3d& end) {
+  const double way = norm(end - row.start), close = row.solid->tolerance(), reach = kNear * way + close;
+  const ShapeDistance before = distance_of(row, row.start);
+  row.fast = way > kFast * row.solid->traits.thickness;
+  row.inside = std::max(0.0, -before.distance - close);
+  if (before.distance <= close + (row.solid->holds ? row.solid->grip : 0.0)) {
+    row.n = before.normal, row.face = row.start - row.n * before.distance;
+    return row.fast || row.solid->holds || phi(row, end) <= reach;
+  }
+  const double share = std::min(1.0, first_touch(row, row.start, end));
+  const Vec3d y = row.start + (end - row.start) * share;
+  const ShapeDistance d = distance_of(row, y);
+  row.n = d.normal, row.face = y - row.n * d.distance;
+  return d.distance <= reach;
+}
+
+/// The weights of the point of a triangle that is to be held: its deepest at the end, or where a fast one first enters.
+void choose_point(ContactRow& row, const Corners& start, const Corners& end, double share) {
+  double depth = 0.0;
+  row.weights = deepest(*row.solid->shape, share < 1.0 ? between(start, end, share) : end, depth);
+}
+
+/// Impulse along the normal that the point needs if it is to end at `level`, and no less than none.
+/// @param base  where it ends without that impulse @param way  by how much a unit impulse moves it
+double needed(const ContactRow& row, const Vec3d& base, const Vec3d& way, double per_impulse) {
+  const double close = row.solid->tolerance();
+  const double flat = (dot(row.n, row.face - base) + row.level) / per_impulse;
+  if (row.solid->holds) return flat;
+  if (flat <= 0.0 && !row.solid->traits.hollow) return 0.0;
+  double s = std::max(0.0, flat), d = phi(row, base + way * s) - row.level;
+  for (int k = 0; k < kMostCorrections && d < -close; ++k) {  // hollow: the wall rises beyond its tangent plane
+    const double next = s - d / per_impulse, further = phi(row, base + way * next) - row.level;
+    if (!(further > d)) return s;
+    s = next, d = further;
+  }
+  const double speed = norm(way);
+  for (int k = 0; k < kMostCorrections && s > 0.0 && d > close; ++k) {  // down from the tangent plane to the solid
+    s -= d / speed;
+    if (s <= 0.0) return row.fast ? std::max(0.0, flat) : 0.0;
+    d = phi(row, base + way * s) - row.level;
+  }
+  return s;
+}
+
+/// The impulse across the normal that would stop the point against the solid.
+Vec3d sticking(const ContactRow& row, const Vec3d& slip) {
+  const Vec3d &w = row.response, &n = row.normal;
+  if (w.x == w.y && w.y == w.z) return slip * (-1.0 / w.x);
+  const Vec3d helper = std::abs(n.x) < 0.6 ? Vec3d{1.0, 0.0, 0.0} : Vec3d{0.0, 1.0, 0.0};
+  const Vec3d c = cross(n, helper), s = c * (1.0 / norm(c)), t = cross(n, s);
+  double ss = dot(s, scaled(w, s)), tt = dot(t, scaled(w, t));
+  const double st = dot(s, scaled(w, t)), floor = 1e-9 * std::max({w.x, w.y, w.z});
+  // a way that supports hold altogether: friction acts there up to its limit, where it has one
+  ss += floor, tt += floor;
+  const double det = ss * tt - st * st, a = -dot(slip, s), b = -dot(slip, t);
+  Vec3d r = s * ((tt * a - st * b) / det) + t * ((ss * b - st * a) / det);
+  if (std::isinf(row.solid->friction)) {
+    for (std::size_t i = 0; i < 3; ++i) r[i] = w[i] > 0.0 ? r[i] : 0.0;
+  }
+  return r;
+}
+
+/// Speed of the point along the normal against the solid [m/s]; the solid's is that of its own point where the row's starts.
+double speed_off(const ContactRow& row, const InteractionStep& step) {
+  Vec3d v;
+  for (std::uint32_t i = 0; i < row.count; ++i) v += step.vertices[row.places[i]].velocity * row.weights[i];
+  return dot(row.normal, v - row.carried);
+}
+
+/// @return by how much the point was moved [m]
+double rub(ContactRow& row, const InteractionStep& step) {
+  const double limit = row.pressing > 0.0 ? row.solid->friction * row.pressing : 0.0;
+  if (limit == 0.0 && row.rubbing == Vec3d{}) return 0.0;
+  const Vec3d drift = row.solid->after.axes * (end_of(row, step) - row.start) * (1.0 / step.h);
+  const Vec3d undone = drift - scaled(row.response, row.rubbing);
+  Vec3d wanted = sticking(row, undone - row.normal * dot(undone, row.normal));
+  const double size = norm(wanted);
+  if (size > limit) wanted *= limit / size;
+  const Vec3d change = wanted - row.rubbing;
+  row.rubbing = wanted;
+  push(row, step, change);
+  return norm(scaled(row.response, change)) * step.h;
+}
+
+double press(ContactRow& row, const InteractionStep& step) {
+  const Vec3d way = direction_to_frame(row.solid->after, scaled(row.response, row.normal)) * step.h;
+  const double per_impulse = row.along * step.h;
+  double wanted = needed(row, end_of(row, step) - way * row.pressing, way, per_impulse);
+  if (row.most) wanted = std::min(wanted, std::max(0.0, row.pressing + (*row.most - speed_off(row, step)) / row.along));
+  const double change = wanted - row.pressing;
+  row.pressing = wanted;
+  if (change != 0.0) push(row, step, row.normal * change);
+  return std::abs(change) * per_impulse;
+}
+
+/// The point of a triangle nearest to the centre of a ball: by the regions of corners, edges and face.
+std::array<double, 3> nearest_to(const Ball& ball, const Corners& c, double& depth) {
+  const Vec3d p{0.0, 0.0, ball.radius}, ab = c[1] - c[0], ac = c[2] - c[0], ap = p - c[0], bp = p - c[1], cp = p - c[2];
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+               d6 = dot(ac, cp);
+  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  std::array<double, 3> w{};
+  if (d1 <= 0.0 && d2 <= 0.0) {
+    w = {1.0, 0.0, 0.0};
+  } else if (d3 >= 0.0 && d4 <= d3) {
+    w = {0.0, 1.0, 0.0};
+  } else if (d6 >= 0.0 && d5 <= d6) {
+    w = {0.0, 0.0, 1.0};
+  } else if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+    const double t = d1 / (d1 - d3);
+    w = {1.0 - t, t, 0.0};
+  } else if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+    const double t = d2 / (d2 - d6);
+    w = {1.0 - t, 0.0, t};
+  } else if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
+    const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    w = {0.0, 1.0 - t, t};
+  } else {
+    const double sum = va + vb + vc;
+    w = {va / sum, vb / sum, vc / sum};
+  }
+  depth = norm(c[0] * w[0] + c[1] * w[1] + c[2] * w[2] - p) - ball.radius;
+  return w;
+}
+
+/// Inside a triangle, and at a sharp rim of the solid, contact is normal to the triangle.
+void turn_to_triangle(ContactRow& row, const Corners& at) {
+  const Vec3d outward = cross(at[1] - at[0], at[2] - at[0]);
+  const double area = norm(outward);
+  if (!(area > 0.0)) return;
+  const Vec3d inward = outward * (-1.0 / area);
+  const double cosine = dot(row.n, inward);
+  const bool inside = std::min({row.weights[0], row.weights[1], row.weights[2]}) > kAtEdge;
+  if (cosine > kAway && (inside || cosine < kAlike)) row.n = inward;
+}
+
+}  // namespace
+
+void push(const ContactRow& row, const InteractionStep& step, const Vec3d& impulse) {
+  for (std::uint32_t i = 0; i < row.count; ++i) step.push(row.places[i], impulse * row.weights[i]);
+}
+
+Vec3d stopping(const InteractionStep& step, std::size_t place, const Vec3d& wanted) {
+  const Vec3d change = wanted - step.vertices[place].velocity, &a = step.mobility[place];
+  return {a.x > 0.0 ? change.x / a.x : 0.0, a.y > 0.0 ? change.y / a.y : 0.0, a.z > 0.0 ? change.z / a.z : 0.0};
+}
+
+double ContactSolid::tolerance() const { return std::isfinite(traits.thickness) ? 1e-9 * traits.thickness : 1e-12; }
+
+Vec3d end_of(const ContactRow& row, const InteractionStep& step) { return mean(row, at_end(row, step)); }
+
+bool prepare(ContactRow& row, const InteractionStep& step, double share) {
+  for (std::uint32_t i = 0; i < row.count; ++i) row.origins[i] = step.position(row.places[i]);
+  const Corners start = at_start(row), end = at_end(row, step);
+  if (row.count == 3) choose_point(row, start, end, share);
+  row.start = mean(row, start);
+  row.origin = mean(row, row.origins);
+  if (!meets(row, mean(row, end))) return false;
+  if (row.count == 3) turn_to_triangle(row, start);
+  row.normal = row.solid->after.axes * row.n;
+  row.response = response_of(row, step);
+  row.along = dot(row.normal, scaled(row.response, row.normal));
+  row.level = -std::max(0.0, row.inside - step.h * std::min(row.solid->push_out_speed, row.inside / kSettling));
+  const ContactSolid& solid = *row.solid;
+  row.carried = (to_space(solid.after, row.start) - row.origin) * (1.0 / step.h);
+  row.carried_before = row.carried;
+  if (solid.last_h > 0.0) row.carried_before = (row.origin - to_space(solid.earlier, row.start)) * (1.0 / solid.last_h);
+  if (row.comes_out) {
+    const Vec3d growth = row.normal * ((row.inside + row.level) / step.h);
+    row.carried += growth, row.carried_before += growth;
+  }
+  return row.along > 1e-9 * std::max({row.response.x, row.response.y, row.response.z});
+}
+
+int solve(std::span<ContactRow> rows, const InteractionStep& step) {
+  double enough = 0.0;
+  for (const ContactRow& row : rows) enough = std::max(enough, kEnough * row.solid->tolerance());
+  // a row whose vertices no other row has pushed since it was solved is solved still
+  std::uint32_t clock = 1;
+  std::vector<std::uint32_t> pushed(step.vertices.size(), clock), seen(rows.size(), 0);
+  for (int sweep = 1; sweep <= kMostSweeps; ++sweep) {
+    double change = 0.0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      ContactRow& row = rows[k];
+      std::uint32_t latest = 0;
+      for (std::uint32_t i = 0; i < row.count; ++i) latest = std::max(latest, pushed[row.places[i]]);
+      if (latest <= seen[k]) continue;
+      const bool alone = row.response.x == row.response.y && row.response.y == row.response.z;
+      const double pressed = press(row, step), rubbed = rub(row, step);
+      change = std::max({change, pressed, rubbed});
+      if (pressed > 0.0 || rubbed > 0.0) {
+        ++clock;
+        for (std::uint32_t i = 0; i < row.count; ++i) pushed[row.places[i]] = clock;
+      }
+      // rubbing moves a point along a curved solid, and off it where supports hold some of its ways: once more then
+      if (rubbed <= enough || (alone && row.solid->traits.flat)) seen[k] = clock;
+    }
+    if (change <= enough) return sweep;
+  }
+  return kMostSweeps;
+}
+
+std::array<double, 3> deepest(const Shape& shape, const std::array<Vec3d, 3>& corners, double& depth) {
+  if (const Ball* ball = std::get_if<Ball>(&shape)) return nearest_to(*ball, corners, depth);
+  std::array<ShapeDistance, 3> at_corners;
+  for (std::size_t i = 0; i < 3; ++i) at_corners[i] = distance_to(shape, corners[i]);
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < 3; ++i) first = at_corners[i].distance < at_corners[first].distance ? i : first;
+  std::array<double, 3> best{};
+  best[first] = 1.0;
+  depth = at_corners[first].distance;
+  const auto at = [&](const std::array<double, 3>& w) {
+    return corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2];
+  };
+  ShapeDistance d = at_corners[first];
+  const std::array<double, 3> third{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
+  const ShapeDistance middle = distance_to(shape, at(third));
+  if (middle.distance < depth) best = third, depth = middle.distance, d = middle;
+  double step = 0.5;
+  for (int k = 0; k < kMostProbes && step > 1e-4; ++k) {
+    // slopes of φ along the weights, the mean taken off so that they add up to none
+    std::array<double, 3> slope{dot(d.normal, corners[0]), dot(d.normal, corners[1]), dot(d.normal, corners[2])};
+    const double middle_slope = (slope[0] + slope[1] + slope[2]) / 3.0;
+    double largest = 0.0;
+    for (double& s : slope) s -= middle_slope, largest = std::max(largest, std::abs(s));
+    if (!(largest > 0.0)) break;
+    std::array<double, 3> w = best;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) w[i] = std::max(0.0, w[i] - step * slope[i] / largest), sum += w[i];
+    for (double& x : w) x /= sum;
+    const ShapeDistance next = distance_to(shape, at(w));
+    if (next.distance < depth) {
+      best = w, depth = next.distance, d = next;
+    } else {
+      step *= 0.5;
+    }
+  }
+  return best;
+}
+
+}  // namespace glisson

@@ -1,0 +1,88 @@
+// contact_rows.h — points of the surface that a rigid solid holds out, and the impulses that do so.
+//
+// All is seen in the frame of the solid, so that a moving solid is at rest there:
+//
+//   start ──── free path of the step ────▶ end        φ ≥ 0 is to hold at the end; n is taken where the path meets the
+//        ╲n                                           solid, at `face`; a point that touches already takes n at its start
+//   ══════╪═══════ surface of the solid
+//        face
+//
+// n at the start, and the distance at the end: with that a point that slides without friction along a curved solid gains and
+// loses no energy over steps of one length, as in the SHAKE integrator of constrained motion [Ryckaert1977].
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "glisson/instruments/instrument.h"
+#include "instruments/contact/shape.h"
+
+namespace glisson {
+
+/// A rigid solid during a step.
+struct ContactSolid {
+  const Shape* shape = nullptr;
+  ShapeTraits traits{};
+  Pose before, after;            ///< at t and t + h
+  Pose earlier;                  ///< a step before t
+  double last_h = 0.0;           ///< length of that step [s]; 0: there was none
+  double friction = 0.0;         ///< μ [-], may be infinite
+  double push_out_speed = 0.05;  ///< [m/s]
+  bool holds = false;            ///< what touches does not lift off …
+  double grip = 0.0;             ///< … and touches where it is no farther than this [m]
+  /// Distance that counts as none [m].
+  double tolerance() const;
+};
+
+/// A point of the surface, with what was found about it.
+struct ContactRow {
+  std::array<std::uint32_t, 3> places{};  ///< among the vertices at hand
+  std::array<double, 3> weights{1.0, 0.0, 0.0};
+  std::uint32_t count = 1;  ///< 1: a vertex, 3: a point of a triangle
+  const ContactSolid* solid = nullptr;
+
+  std::array<Vec3d, 3> origins{};  ///< of the vertices at time t, in space [m]
+  Vec3d origin{};                  ///< of the point
+  Vec3d start, face, n;            ///< in the frame of the solid [m], [m], [-]
+  Vec3d normal;                    ///< n in space, at t + h
+  double allowance = 0.0;          ///< so deep it may be in the solid [m]
+  bool comes_out = false;  ///< it was inside when the tool was attached: the solid is taken to grow to its size there
+  double inside = 0.0;     ///< how deep it was in the solid at the start [m]
+  double level = 0.0;      ///< φ asked for at the end [m], ≤ 0: less than 0 where the point was inside already
+  bool fast = false;       ///< it passes through more than a part of the solid in this step
+  Vec3d response;          ///< velocity per impulse at the point, per component [1/kg]
+  double along = 0.0;      ///< n·response·n
+  Vec3d carried, carried_before;  ///< velocity of the solid where the point starts, in this step and the last [m/s]
+  std::optional<double> most;     ///< speed off the solid that it may get at most [m/s]
+
+  double pressing = 0.0;  ///< impulse along the normal [N s]
+  Vec3d rubbing{};        ///< impulse across it
+
+  Vec3d impulse() const { return normal * pressing + rubbing; }
+};
+
+/// Where the point is in the frame of the solid at the end of the step, with the present velocities.
+Vec3d end_of(const ContactRow& row, const InteractionStep& step);
+
+/// Looks where a vertex, or the deepest point of a triangle, meets the solid.
+/// @param share  of the way at which a triangle's deepest point is taken; 1: at the end
+/// @return false where it does not come near, or cannot be moved
+bool prepare(ContactRow& row, const InteractionStep& step, double share = 1.0);
+
+/// Solves for all impulses and pushes. @return sweeps
+int solve(std::span<ContactRow> rows, const InteractionStep& step);
+
+/// Gives the point an impulse [N s].
+void push(const ContactRow& row, const InteractionStep& step, const Vec3d& impulse);
+
+/// The impulse that gives the vertex at a place the velocity wanted, in components that may move [N s].
+Vec3d stopping(const InteractionStep& step, std::size_t place, const Vec3d& wanted);
+
+/// Barycentric weights of the deepest point of a triangle in a convex solid. @param corners  in the frame of the solid
+/// @param depth  its φ, on return. Cost: 20 ns for a ball, 0.5 µs for others
+std::array<double, 3> deepest(const Shape& shape, const std::array<Vec3d, 3>& corners, double& depth);
+
+}  // namespace glisson

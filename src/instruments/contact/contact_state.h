@@ -1,0 +1,50 @@
+// contact_state.h — what a ContactTool keeps: the rows of a step, what is bonded, what bears.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "instruments/contact/contact_books.h"
+#include "instruments/contact/contact_reach.h"
+#include "instruments/contact/contact_rows.h"
+
+namespace glisson {
+
+struct ContactTool::State {
+  ContactOptions options;
+  ContactSolid solid;
+  ContactReach reach;
+  double last_h = 0.0;
+  bool lost = false;  ///< its pose made no sense: it has left
+
+  std::vector<ContactRow> rows;
+  std::vector<Vec3d> starts, ends;       ///< per vertex of the reach, in the frame of the tool
+  std::vector<double> at_ends;           ///< φ there
+  std::map<std::uint32_t, Vec3d> bonds;  ///< vertex → place in the frame of the tool
+  std::vector<double> pressed;           ///< per vertex of the reach: impulse along its normal in this step [N s]
+  std::vector<std::uint32_t> touched;    ///< vertices of the reach that have rows, as places there
+  std::vector<std::uint32_t> bearing_vertices;
+  std::vector<double> pressures;
+  double area = 0.0;
+  Effort effort{};
+
+  ContactBooks books;
+  bool begun = false;  ///< a step has been made since the tool was attached
+  FoundInside found_inside;
+  std::map<Triangle, double> last_pressing;  ///< forces on triangles in the last step, to begin the next with [N]
+  bool in_contact = false;
+  double last_touch = 0.0, last_depth = 0.0;
+
+  void add_vertices(const InteractionStep& step);
+  void measure(std::size_t i, const InteractionStep& step);
+  double least_of(const std::array<Vec3d, 3>& corners) const;
+  void bear(std::uint32_t vertex, double impulse);
+  void add_triangles(const InteractionStep& step);
+  void add_triangle(std::uint32_t strides, const Triangle& corners, double allowance, const InteractionStep& step);
+  void begin_triangles(const InteractionStep& step);
+  void bond(const InteractionStep& step, ToolForces& forces);
+  void collect(const InteractionStep& step, ToolForces& forces);
+  void weigh(const InteractionStep& step);
+};
+
+}  // namespace glisson

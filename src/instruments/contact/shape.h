@@ -1,0 +1,32 @@
+// shape.h — what the contact solver asks of a shape beside its distance.
+#pragma once
+
+#include "glisson/instruments/contact.h"
+
+namespace glisson {
+
+/// What can be known of a shape before anything is near it.
+struct ShapeTraits {
+  double thickness = 0.0;  ///< the least way through it [m]; infinite for a half space
+  /// Whether it can press on a triangle and on none of its corners: shapes that are neither flat nor hollow.
+  bool presses_between = true;
+  bool flat = false;    ///< φ is linear
+  bool hollow = false;  ///< φ is not convex
+};
+
+ShapeTraits traits_of(const Shape& shape);
+
+/// x in the frame of a pose, and back.
+inline Vec3d to_frame(const Pose& pose, const Vec3d& x) {
+  const Vec3d d = x - pose.position;
+  const auto& m = pose.axes.m;
+  return {m[0][0] * d.x + m[1][0] * d.y + m[2][0] * d.z, m[0][1] * d.x + m[1][1] * d.y + m[2][1] * d.z,
+          m[0][2] * d.x + m[1][2] * d.y + m[2][2] * d.z};
+}
+inline Vec3d direction_to_frame(const Pose& pose, const Vec3d& d) { return to_frame({{}, pose.axes}, d); }
+inline Vec3d to_space(const Pose& pose, const Vec3d& y) { return pose.position + pose.axes * y; }
+
+/// Whether all numbers are finite and the axes a rotation, to 1e-6.
+bool is_sound(const Pose& pose);
+
+}  // namespace glisson

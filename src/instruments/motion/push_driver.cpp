@@ -1,0 +1,75 @@
+// push_driver.cpp — a mass that is pushed, and a step of it that stiff contact cannot throw back.
+//
+//   (m + h c + h² k̂) v⁺ = m v + h (F + f),   y⁺ = y + h v⁺        f the tissue's answer of the last step
+//
+// An answer f = −k y is borne where h² k < 4 m + 2 h² k̂, a mass that is dragged along where it is lighter than m. Both show in
+// the change of the answer over the way, k̂ = −Δf·Δy/Δy²; it is used where h² k̂ > m only.
+#include <algorithm>
+#include <cmath>
+
+#include "glisson/instruments/tool_motion.h"
+#include "instruments/motion/motion_check.h"
+
+namespace glisson {
+namespace {
+
+constexpr double kForgets = 0.98;    // of k̂, each step
+constexpr double kLeastWay = 1e-10;  // over which a change of force says something [m]
+
+}  // namespace
+
+PushDriver::PushDriver(const Pose& start, PushMotion motion) : start_(start), motion_(std::move(motion)) {
+  if (!motion_.force) throw std::invalid_argument("push: no force was given");
+  motion_.direction = unit_of("push", motion_.direction);
+  require_number("push: mass [kg]", motion_.mass, Sign::positive);
+  require_number("push: damping [N s/m]", motion_.damping, Sign::not_negative);
+  if (motion_.stop) require_number("push: stop [m]", *motion_.stop, Sign::positive);
+}
+
+void PushDriver::learn_stiffness(const Vec3d& force) {
+  const Vec3d way = way_ - last_way_;
+  const double squared = dot(way, way);
+  stiffness_ *= kForgets;
+  if (squared > kLeastWay * kLeastWay) {
+    stiffness_ = std::max(stiffness_, -dot(force - last_force_, way) / squared);
+  }
+  last_way_ = way_;
+  last_force_ = force;
+}
+
+Pose PushDriver::advance(double time, double h, const Wrench& on_tool) {
+  const Vec3d& d = motion_.direction;
+  const Vec3d answer = motion_.guided ? d * dot(on_tool.force, d) : on_tool.force;
+  learn_stiffness(answer);
+  const double stiff = h * h * stiffness_ > motion_.mass ? h * h * stiffness_ : 0.0;
+  const Vec3d impulse = (d * motion_.force(time) + answer) * h;
+  velocity_ = (velocity_ * motion_.mass + impulse) * (1.0 / (motion_.mass + h * motion_.damping + stiff));
+  way_ += velocity_ * h;
+  const double beyond = motion_.stop ? dot(way_, d) - *motion_.stop : 0.0;
+  if (beyond > 0.0) {
+    way_ = way_ - d * beyond;
+    velocity_ = velocity_ - d * std::max(0.0, dot(velocity_, d));
+  }
+  return {start_.position + way_, start_.axes};
+}
+
+std::vector<double> PushDriver::past() const {
+  std::vector<double> numbers;
+  for (const Vec3d* v : {&way_, &velocity_, &last_way_, &last_force_}) {
+    numbers.insert(numbers.end(), {v->x, v->y, v->z});
+  }
+  numbers.push_back(stiffness_);
+  return numbers;
+}
+
+bool PushDriver::restore(std::span<const double> past) {
+  if (past.size() != 13) return false;
+  std::size_t at = 0;
+  for (Vec3d* v : {&way_, &velocity_, &last_way_, &last_force_}) {
+    for (std::size_t i = 0; i < 3; ++i) (*v)[i] = past[at++];
+  }
+  stiffness_ = past[at];
+  return true;
+}
+
+}  // namespace glisson

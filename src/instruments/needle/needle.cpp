@@ -1,0 +1,216 @@
+// needle.cpp — the forces of a needle in a step: rows of the path, solved along and across.
+#include "glisson/instruments/needle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "instruments/needle/needle_options.h"
+#include "instruments/needle/needle_state.h"
+
+namespace glisson {
+namespace {
+
+constexpr double kPullBack = 0.2;  ///< share of an error of position that a step takes back
+constexpr double kSlack = 1e-3;    ///< compliance of a row over the mean of W: rows of one vertex would have no answer
+constexpr double kLeastMobility = 1e-30;  ///< [1/kg]: so that rows of held tissue have an answer, too
+constexpr double kReach = 1e-3;           ///< of the spacing: how far before the path's end the tip is there
+
+/// The part of a vector across a direction.
+Vec3d across(const Vec3d& a, const Vec3d& direction) { return a - direction * dot(a, direction); }
+
+}  // namespace
+
+Needle::Needle(const NeedleOptions& options, std::shared_ptr<ToolDriver> driver)
+    : Instrument(options.name, std::move(driver), options.direction), state_(std::make_unique<State>()) {
+  require_needle(options);
+  state_->options = options;
+}
+
+Needle::~Needle() = default;
+
+NeedleStage Needle::stage() const { return state_->stage; }
+const NeedleOptions& Needle::options() const { return state_->options; }
+void Needle::on_puncture(std::function<void(const Vec3d&, double)> told) { state_->told = std::move(told); }
+
+double Needle::tip_force() const { return state_->step_h > 0.0 ? state_->tip_along / state_->step_h : 0.0; }
+
+double Needle::inserted_length() const {
+  if (state_->stage != NeedleStage::inside || state_->nodes.empty()) return 0.0;
+  return std::max(0.0, dot(pose_.position - state_->nodes.front().position, direction()));
+}
+
+std::vector<Vec3d> Needle::path() const {
+  std::vector<Vec3d> points;
+  for (const shaft::Row& node : state_->nodes) points.push_back(node.position);
+  if (state_->stage == NeedleStage::inside) points.push_back(state_->tip.position);
+  return points;
+}
+
+std::vector<Vec3d> Needle::centre_line() const {
+  const State& s = *state_;
+  std::vector<Vec3d> line{pose_.position - direction() * s.options.length};
+  for (std::size_t j = 0; j < s.nodes.size(); ++j) {
+    const double behind = dot(s.nodes[j].position - pose_.position, direction());
+    if (behind >= 0.0 || j >= s.bend.size()) continue;
+    line.push_back(pose_.position + direction() * behind + s.bend[j]);
+  }
+  line.push_back(pose_.position + s.bend_tip);
+  return line;
+}
+
+/// The rows that the needle acts on in a step, and what it does there.
+struct Needle::Solver {
+  State& s;
+  Vec3d d, before, after;  ///< the needle's direction; its tip at t and t + h, as if nothing bent it
+  double h;
+  std::vector<const shaft::Row*> all{};  ///< nodes behind the tip, then the tip if it acts
+  std::vector<std::size_t> node{};       ///< number of each among the nodes
+  std::vector<double> from_hand{};       ///< [m]
+  bool has_tip = false;
+  double tip_gap = 0.0;  ///< of the path's end before the tip [m]; negative: the tip is beyond it
+
+  Vec3d needle_velocity() const { return (after - before) * (1.0 / h); }
+  void find_rows(const InteractionStep& step);
+  std::vector<Vec3d> across_it(const Eigen::MatrixXd& W);
+  std::vector<double> along_it(const Eigen::MatrixXd& W);
+
+ private:
+  Eigen::MatrixXd wanted_across(std::size_t held, const Vec3d& bevel, const Eigen::MatrixXd& W,
+                                const Eigen::MatrixXd& C) const;
+  void bend(std::span<const Vec3d> impulse, const Eigen::MatrixXd& C);
+  shaft::AxialLimit limit_of(std::size_t row) const;
+};
+
+void Needle::Solver::find_rows(const InteractionStep& step) {
+  if (s.stage == NeedleStage::inside) {
+    for (std::size_t j = 0; j < s.nodes.size(); ++j) {
+      if (!shaft::read(step, s.nodes[j])) continue;
+      const double behind = dot(s.nodes[j].position - before, d);
+      if (behind >= 0.0) continue;
+      all.push_back(&s.nodes[j]);
+      node.push_back(j);
+      from_hand.push_back(s.options.length + behind);
+    }
+  }
+  if (s.stage == NeedleStage::outside || s.tip_out || !shaft::read(step, s.tip)) return;
+  tip_gap = dot(s.tip.position - before, d);
+  has_tip = tip_gap <= std::max(0.0, dot(after - before, d)) + kReach * s.options.spacing;
+  if (!has_tip) return;
+  all.push_back(&s.tip);
+  from_hand.push_back(s.options.length);
+}
+
+/// What the impulses across the needle have to make up for, per held row [m/s].
+Eigen::MatrixXd Needle::Solver::wanted_across(std::size_t held, const Vec3d& bevel, const Eigen::MatrixXd& W,
+                                              const Eigen::MatrixXd& C) const {
+  Eigen::MatrixXd wanted(static_cast<Eigen::Index>(held), 3);
+  for (std::size_t j = 0; j < held; ++j) {
+    const bool is_node = j < node.size();
+    const Vec3d bent = !is_node ? s.bend_tip : node[j] < s.bend.size() ? s.bend[node[j]] : Vec3d{};
+    const Vec3d off = across(all[j]->position - before, d);
+    Vec3d way = (off - bent) * (1.0 - kPullBack) - off - across(all[j]->velocity - needle_velocity(), d) * h;
+    const auto row = static_cast<Eigen::Index>(j);
+    if (all.size() > held) {  // the tip cuts: what the bevel bends, and what it does to the tissue
+      const auto tip = static_cast<Eigen::Index>(held);
+      way += bevel * (C(row, tip) + h * h * W(row, tip));
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) wanted(row, static_cast<Eigen::Index>(axis)) = way[axis] / h;
+  }
+  return wanted;
+}
+
+/// y = −C p/h at each row; the bevel's own load is among p.
+void Needle::Solver::bend(std::span<const Vec3d> impulse, const Eigen::MatrixXd& C) {
+  s.bend.assign(s.nodes.size(), Vec3d{});
+  s.bend_tip = {};
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    Vec3d y;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      y -= impulse[k] * (C(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(k)) / h);
+    }
+    (j < node.size() ? s.bend[node[j]] : s.bend_tip) = y;
+  }
+  if (!has_tip && !node.empty()) s.bend_tip = s.bend[node.back()];
+}
+
+/// Impulses across the needle, per row: the tissue stays on the bent needle, all but a tip that cuts.
+std::vector<Vec3d> Needle::Solver::across_it(const Eigen::MatrixXd& W) {
+  const bool cuts = has_tip && s.tip_cuts;
+  const std::size_t held = all.size() - (cuts ? 1 : 0);
+  std::vector<Vec3d> impulse(all.size());
+  const Eigen::MatrixXd C = shaft::cantilever(from_hand, s.bending_stiffness());
+  const Vec3d side = across(s.options.bevel_side, d);
+  Vec3d bevel;  // [N]
+  if (cuts && norm(side) > 0.0) bevel = side * (s.options.bevel_share * s.tip_along / (s.step_h * norm(side)));
+  if (cuts) impulse.back() = bevel * -h;
+  if (held > 0) {
+    const auto n = static_cast<Eigen::Index>(held);
+    Eigen::MatrixXd A = W.topLeftCorner(n, n) + C.topLeftCorner(n, n) / (h * h);
+    A.diagonal().array() += kSlack * W.topLeftCorner(n, n).diagonal().mean() + kLeastMobility;
+    const Eigen::MatrixXd p = A.ldlt().solve(wanted_across(held, bevel, W, C));
+    for (Eigen::Index j = 0; j < n; ++j) impulse[static_cast<std::size_t>(j)] = across({p(j, 0), p(j, 1), p(j, 2)}, d);
+  }
+  bend(impulse, C);
+  return impulse;
+}
+
+/// A node stands for the shaft half way to its neighbours, the last one for all of it up to the tip.
+shaft::AxialLimit Needle::Solver::limit_of(std::size_t row) const {
+  if (row >= node.size()) return {.length = 0.0, .slips = false, .is_tip = true, .tip_limit = s.tip_limit()};
+  const double here = from_hand[row], before_it = row > 0 ? from_hand[row - 1] : here;
+  const double after_it = row + 1 == node.size() ? 2.0 * s.options.length - here : from_hand[row + 1];
+  return {.length = std::max(0.0, 0.5 * (after_it - before_it)),
+          .slips = s.slips[node[row]] != 0,
+          .is_tip = false,
+          .tip_limit = 0.0};
+}
+
+/// Impulses along the needle, per row.
+std::vector<double> Needle::Solver::along_it(const Eigen::MatrixXd& W) {
+  std::vector<double> speed, p;
+  std::vector<shaft::AxialLimit> limits;
+  const double again = s.step_h > 0.0 ? h / s.step_h : 0.0;  // the last step's forces are a good start
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    const bool is_tip = j >= node.size();
+    speed.push_back(dot(needle_velocity() - all[j]->velocity, d));
+    if (is_tip) speed.back() -= tip_gap * (tip_gap > 0.0 ? 1.0 : kPullBack) / h;
+    limits.push_back(limit_of(j));
+    p.push_back(again * (is_tip ? s.tip_along : s.along[node[j]]));
+  }
+  const std::vector<char> slips = shaft::solve_along(W, speed, limits, s.options.friction, h, p);
+  std::fill(s.along.begin(), s.along.end(), 0.0);
+  for (std::size_t j = 0; j < node.size(); ++j) {
+    s.slips[node[j]] = slips[j];
+    s.along[node[j]] = p[j];
+  }
+  s.tip_along = has_tip ? p.back() : 0.0;
+  s.tip_cuts = has_tip && s.stage == NeedleStage::inside && slips.back() != 0;
+  return p;
+}
+
+void Needle::constrain(const InteractionStep& step) {
+  drive(step);
+  forces_ = {};
+  State& s = *state_;
+  Solver solver{.s = s, .d = direction(), .before = before_.position, .after = pose_.position, .h = step.h};
+  solver.find_rows(step);
+  if (solver.all.empty()) {
+    s.forget_forces(step.h);
+    return;
+  }
+  const Eigen::MatrixXd W = s.mobility.of(step, s.nodes, solver.node, solver.has_tip ? &s.tip : nullptr);
+  const std::vector<Vec3d> sideways = solver.across_it(W);
+  const std::vector<double> along = solver.along_it(W);
+  s.step_h = step.h;
+  for (std::size_t j = 0; j < solver.all.size(); ++j) {
+    const Vec3d lengthways = direction() * along[j];
+    shaft::push(step, *solver.all[j], sideways[j] + lengthways);
+    const bool is_tip = j >= solver.node.size();
+    forces_.normal += sideways[j] * (1.0 / step.h);
+    (is_tip ? (s.stage == NeedleStage::inside ? forces_.cutting : forces_.normal) : forces_.friction) +=
+        lengthways * (1.0 / step.h);
+    forces_.torque += cross(solver.all[j]->position - before_.position, (sideways[j] + lengthways) * (1.0 / step.h));
+  }
+}
+
+}  // namespace glisson

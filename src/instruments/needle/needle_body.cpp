@@ -1,0 +1,132 @@
+// needle_body.cpp — what a needle knows of the body: its surface, where points lie, which vertices it may act on.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+
+#include "instruments/needle/needle_state.h"
+
+namespace glisson {
+namespace {
+
+/// The mesh without what was removed, for its surface.
+TetMesh living(const BodyView& body) {
+  TetMesh mesh;
+  mesh.vertices = body.mesh.vertices;
+  for (std::size_t t = 0; t < body.mesh.tets.size(); ++t) {
+    if (!body.is_removed(t)) mesh.tets.push_back(body.mesh.tets[t]);
+  }
+  return mesh;
+}
+
+constexpr double kAtSurface = 1e-6;  ///< how far in a tip may start [m]
+
+double from_line(const Vec3d& x, const Vec3d& point, const Vec3d& direction) {
+  const Vec3d r = x - point;
+  return norm(r - direction * dot(r, direction));
+}
+
+}  // namespace
+
+double Needle::State::bending_stiffness() const {
+  if (!options.youngs_modulus) return 0.0;
+  const double outer = options.diameter, inner = options.inner_diameter;
+  return *options.youngs_modulus * std::numbers::pi / 64.0 * (std::pow(outer, 4) - std::pow(inner, 4));
+}
+
+TipResistance Needle::State::resistance(int region_number) const {
+  const auto found = options.regions.find(region_number);
+  return found != options.regions.end() ? found->second : TipResistance{options.tip.cutting, 0.0};
+}
+
+double Needle::State::tip_limit() const {
+  if (stage != NeedleStage::inside) return std::numeric_limits<double>::infinity();
+  if (!next_region) return resistance(region).cutting;
+  return std::max(resistance(*next_region).puncture, resistance(region).cutting);
+}
+
+bool Needle::State::place(shaft::Row& row, const Vec3d& rest) const {
+  std::vector<VertexWeight> weights = zone_weights(*locator, *mesh, rest, options.zone);
+  if (weights.empty()) return false;
+  row.rest = rest;
+  row.weights = std::move(weights);
+  return true;
+}
+
+void Needle::State::forget_forces(double h) {
+  std::fill(along.begin(), along.end(), 0.0);
+  tip_along = 0.0;
+  tip_cuts = false;
+  step_h = h;
+}
+
+/// The needle comes from outside: between the hand and the tip there is no tissue yet.
+void Needle::attached(const BodyView& body, double) {
+  body_changed(body, {});
+  const Vec3d& tip = pose_.position;
+  const double length = state_->options.length;
+  double first = length;
+  for (const Triangle& t : state_->surface) {
+    std::array<Vec3d, 3> present;
+    for (std::size_t a = 0; a < 3; ++a) present[a] = body.mesh.vertices[t[a]] + body.displacement[t[a]];
+    const auto hit = meet(tip - direction() * length, direction(), present, present);
+    if (hit && hit->way >= 0.0) first = std::min(first, hit->way);
+  }
+  if (length - first <= kAtSurface) return;
+  std::ostringstream text;
+  text << "needle " << name() << ": its tip, at (" << tip.x << ", " << tip.y << ", " << tip.z << ") m, starts "
+       << 1e3 * (length - first) << " mm behind the surface; let it start outside, and the motion take it in";
+  throw std::invalid_argument(text.str());
+}
+
+void Needle::body_changed(const BodyView& body, std::span<const std::uint32_t>) {
+  State& s = *state_;
+  s.mesh = &body.mesh;
+  s.locator = std::make_unique<detail::TetLocator>(body.mesh, body.removed);
+  s.surface = body.removed.empty() ? boundary_triangles(body.mesh) : boundary_triangles(living(body));
+  s.look = true;
+  s.mobility.forget();
+  for (shaft::Row& node : s.nodes) {
+    if (!s.place(node, Vec3d(node.rest))) node.weights.clear();  // the tissue there is gone: the node no longer acts
+  }
+  if (s.stage != NeedleStage::outside && !s.place(s.tip, Vec3d(s.tip.rest))) s.tip.weights.clear();
+}
+
+/// Before contact: the surface around the needle's line. Then: the tissue that path and tip act on, with some ahead.
+std::span<const std::uint32_t> Needle::reach(double, double) {
+  State& s = *state_;
+  const double ahead = 2.0 * s.options.zone + 2.0 * s.options.spacing;
+  const bool touches = s.stage != NeedleStage::outside;
+  const Vec3d around = touches ? s.tip.rest : pose_.position;
+  const double moved = touches ? norm(around - s.named_around) : from_line(around, s.named_around, direction());
+  s.wanted.clear();
+  if (!s.look && moved < s.options.zone) return s.wanted;
+  s.look = false;
+  s.named_around = around;
+  if (touches) {
+    for (std::uint32_t v = 0; v < s.mesh->vertices.size(); ++v) {
+      if (norm(s.mesh->vertices[v] - around) < ahead) s.wanted.push_back(v);
+    }
+    for (const VertexWeight& w : s.tip.weights) s.wanted.push_back(w.vertex);
+    for (const shaft::Row& node : s.nodes) {
+      for (const VertexWeight& w : node.weights) s.wanted.push_back(w.vertex);
+    }
+    return s.wanted;
+  }
+  s.entry_triangles.clear();
+  for (std::size_t t = 0; t < s.surface.size(); ++t) {
+    double nearest = std::numeric_limits<double>::infinity(), size = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Vec3d& x = s.mesh->vertices[s.surface[t][a]];
+      nearest = std::min(nearest, from_line(x, around, direction()));
+      size = std::max(size, norm(x - s.mesh->vertices[s.surface[t][(a + 1) % 3]]));
+    }
+    if (nearest > 2.0 * ahead + size) continue;
+    s.entry_triangles.push_back(t);
+    s.wanted.insert(s.wanted.end(), s.surface[t].begin(), s.surface[t].end());
+  }
+  return s.wanted;
+}
+
+}  // namespace glisson

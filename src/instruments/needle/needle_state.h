@@ -1,0 +1,89 @@
+// needle_state.h — what a needle knows between steps.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "glisson/instruments/needle.h"
+#include "instruments/needle/shaft.h"
+
+namespace glisson {
+
+/// Where a ray meets a triangle.
+struct Hit {
+  double way = 0.0;  ///< along the ray [m]
+  Vec3d rest{};      ///< of the point met [m]
+};
+
+/// Where a ray from `from` meets a triangle from either side. Ray and triangle at present, the answer at rest.
+std::optional<Hit> meet(const Vec3d& from, const Vec3d& direction, const std::array<Vec3d, 3>& present,
+                        const std::array<Vec3d, 3>& rest);
+
+/// The way of the force while the tip presses, for what springing back would set free.
+struct PressingWork {
+  double work = 0.0;                                     ///< ∫ f dδ so far [J]
+  double depth = 0.0;                                    ///< of the tip since contact, at the last step [m]
+  double force = 0.0;                                    ///< at the last step [N]
+  double work_at_cutting = 0.0, depth_at_cutting = 0.0;  ///< where the force rose through that of cutting
+
+  void add(double new_depth, double new_force, double cutting);
+  /// Energy that is free when the tissue springs back until the tip only cuts [J].
+  double free_energy(double cutting) const;
+};
+
+/// After a puncture the force falls to a least value and rises again: the end of the drop. Looked for in the force smoothed
+/// over some ms, since in the first step the tip has let go and the shaft has not yet taken hold.
+struct DropWatch {
+  bool armed = false;
+  double puncture_force = 0.0, force = 0.0, least = 0.0, time = 0.0, depth = 0.0;
+};
+
+struct Needle::State {
+  NeedleOptions options;
+  NeedleStage stage = NeedleStage::outside;
+  std::function<void(const Vec3d&, double)> told;
+
+  // the body
+  const TetMesh* mesh = nullptr;
+  std::unique_ptr<detail::TetLocator> locator;
+  std::vector<Triangle> surface;
+
+  // vertices at hand
+  std::vector<std::uint32_t> wanted;         ///< named by reach
+  bool look = true;                          ///< whether reach is to name some
+  Vec3d named_around{};                      ///< rest position that vertices were last named for
+  std::vector<std::size_t> entry_triangles;  ///< of the surface, that the needle may meet first
+
+  // the path
+  std::vector<shaft::Row> nodes;  ///< from the surface on
+  shaft::Row tip;                 ///< where the path ends
+  std::vector<char> slips;        ///< per node
+  std::vector<double> along;      ///< per node: impulse along the needle in the last step [N s]
+  shaft::MobilityMatrix mobility;
+  double tip_along = 0.0;          ///< the same of the tip
+  bool tip_cuts = false;           ///< in the last step
+  bool tip_out = false;            ///< on the far side of the body
+  int region = 0;                  ///< that the tip is in
+  std::optional<int> next_region;  ///< whose boundary holds the tip
+  bool withdraws = false;
+  PressingWork pressing;
+  DropWatch drop;
+
+  // the last step
+  Vec3d bend_tip{};         ///< deflection of the tip [m]
+  std::vector<Vec3d> bend;  ///< of the needle at each node [m]
+  double step_h = 0.0;
+
+  void forget_forces(double h);
+  double bending_stiffness() const;  ///< E I [N m²]; 0: rigid
+  TipResistance resistance(int region_number) const;
+  double tip_limit() const;  ///< [N]
+  /// Sets a row to a rest position. @return false where no tissue is around it; the row is as it was then
+  bool place(shaft::Row& row, const Vec3d& rest) const;
+  void cut_to(const InteractionStep& step, const Vec3d& at, const Vec3d& direction);
+  Vec3d last_before(const Vec3d& next, int there) const;
+};
+
+}  // namespace glisson

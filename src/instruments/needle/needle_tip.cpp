@@ -1,0 +1,238 @@
+// needle_tip.cpp — what a needle's tip does between steps: it meets the surface, breaks it, cuts on, and comes back.
+//
+//   outside ──contact──▶ pressing ──puncture──▶ inside ──withdrawn──▶ outside
+//      ▲                    │ release              │ region boundary: inner puncture
+//      └────────────────────┘                      └ through the far side: exit
+#include <algorithm>
+#include <cmath>
+
+#include "instruments/needle/needle_state.h"
+
+namespace glisson {
+namespace {
+
+constexpr int kSearches = 4;          ///< of the rest position of the tip, a step
+constexpr int kBisections = 12;       ///< of a region's boundary
+constexpr double kClose = 1e-7;       ///< of the rest position of the tip [m]
+constexpr double kLetGo = 0.05;       ///< of the zone: a tip that far off the surface has let go of it
+constexpr double kRise = 0.02;        ///< of the force of puncture: a rise by this ends the drop
+constexpr double kSmoothing = 0.01;   ///< of the force for that [s]
+constexpr double kLongestDrop = 0.5;  ///< [s]: after it, the least force so far counts
+
+}  // namespace
+
+std::optional<Hit> meet(const Vec3d& from, const Vec3d& direction, const std::array<Vec3d, 3>& present,
+                        const std::array<Vec3d, 3>& rest) {
+  const Vec3d e1 = present[1] - present[0], e2 = present[2] - present[0], p = cross(direction, e2);
+  const double det = dot(e1, p);
+  if (det == 0.0) return {};
+  const Vec3d t = from - present[0], q = cross(t, e1);
+  const double u = dot(t, p) / det, v = dot(direction, q) / det;
+  if (!(u >= -1e-9 && v >= -1e-9 && u + v <= 1.0 + 1e-9)) return {};
+  return Hit{dot(e2, q) / det, rest[0] * (1.0 - u - v) + rest[1] * u + rest[2] * v};
+}
+
+void PressingWork::add(double new_depth, double new_force, double cutting) {
+  work += 0.5 * (force + new_force) * (new_depth - depth);
+  depth = new_depth;
+  force = new_force;
+  if (new_force <= cutting) {
+    work_at_cutting = work;
+    depth_at_cutting = depth;
+  }
+}
+
+double PressingWork::free_energy(double cutting) const {
+  return work - work_at_cutting - cutting * (depth - depth_at_cutting);
+}
+
+/// The surface that the needle's line meets first, seen from the hand: has the tip come through it?
+void Needle::look_for_contact(const InteractionStep& step) {
+  State& s = *state_;
+  const Vec3d from = pose_.position - direction() * s.options.length;
+  std::optional<Hit> first;
+  for (const std::size_t t : s.entry_triangles) {
+    std::array<Vec3d, 3> present, rest;
+    bool known = true;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::uint32_t v = s.surface[t][a], place = step.place_of[v];
+      known = known && place != InteractionStep::kNowhere;
+      rest[a] = step.rest[v];
+      if (known) present[a] = step.position(place);
+    }
+    const auto hit = known ? meet(from, direction(), present, rest) : std::nullopt;
+    if (hit && hit->way >= 0.0 && (!first || hit->way < first->way)) first = hit;
+  }
+  shaft::Row met;
+  if (!first || first->way > s.options.length || !s.place(met, first->rest)) return;
+  s.look = true;
+  const bool hole = !s.nodes.empty() && norm(s.nodes.front().rest - first->rest) < s.options.diameter;
+  add_event(step.time + step.h, depth(), "contact");
+  if (hole) {  // the way is open: it goes on where it was
+    s.stage = NeedleStage::inside;
+    s.withdraws = false;
+    return;
+  }
+  s.tip = std::move(met);
+  s.nodes.clear();
+  s.mobility.forget();
+  s.slips.clear();
+  s.along.clear();
+  s.stage = NeedleStage::pressing;
+  s.tip_out = s.withdraws = false;
+  s.next_region.reset();
+  s.pressing = {};
+  const auto below = s.locator->locate(first->rest + direction() * (1e-3 * s.options.zone));
+  s.region = below ? s.mesh->region_of(below->tet) : 0;
+}
+
+/// The tip on the unbroken surface: it may break it, or let go.
+void Needle::press_on(const InteractionStep& step) {
+  State& s = *state_;
+  if (!shaft::read(step, s.tip)) return;
+  const double gap = dot(s.tip.position - pose_.position, direction());
+  if (gap > kLetGo * s.options.zone) {
+    s.stage = NeedleStage::outside;
+    s.look = true;
+    add_event(step.time + step.h, depth(), "release");
+    return;
+  }
+  const double force = tip_force(), cutting = s.resistance(s.region).cutting;
+  if (!(force > 0.0)) return;
+  const double pressed = dot(pose_.position - s.tip.rest, direction());
+  s.pressing.add(pressed, force, cutting);
+  const Rupture& r = s.options.rupture;
+  const bool breaks = r.force ? force >= *r.force
+                      : r.toughness
+                          ? s.pressing.free_energy(cutting) >= *r.toughness * s.options.diameter * r.membrane_thickness
+                          : force >= cutting;
+  if (breaks) pierce(step);
+}
+
+void Needle::pierce(const InteractionStep& step) {
+  State& s = *state_;
+  s.stage = NeedleStage::inside;
+  s.nodes.assign(1, s.tip);
+  s.slips.assign(1, 1);
+  s.along.assign(1, 0.0);
+  s.bend.assign(1, Vec3d{});
+  const double force = tip_force();
+  s.drop = {true, force, force, force, step.time, depth()};
+  add_event(step.time + step.h, depth(), "puncture");
+  if (s.told) s.told(pose_.position, 0.5 * s.options.diameter);
+}
+
+/// The tip in the tissue: where it cut, the path ends where it is now.
+void Needle::go_on(const InteractionStep& step) {
+  State& s = *state_;
+  const Vec3d at = pose_.position + s.bend_tip;
+  if (shaft::read(step, s.nodes.front()) &&
+      dot(s.nodes.front().position - pose_.position, direction()) > kLetGo * s.options.zone) {
+    s.stage = NeedleStage::outside;
+    s.look = true;
+    add_event(step.time + step.h, depth(), "release");
+    return;
+  }
+  if (s.tip_out) {
+    s.tip_out = dot(s.tip.position - at, direction()) < 0.0;
+    return;
+  }
+  if (!shaft::read(step, s.tip)) {
+    s.look = !s.tip.weights.empty();  // without: the tissue there is gone, and no looking brings it back
+    return;
+  }
+  const double gap = dot(s.tip.position - at, direction());
+  if (!s.withdraws && gap > kLetGo * s.options.zone && dot(pose_.position - before_.position, direction()) < 0.0) {
+    s.withdraws = true;
+    add_event(step.time + step.h, depth(), "withdrawal");
+  }
+  if (gap <= 0.0) s.withdraws = false;
+  if (!s.tip_cuts) return;
+  if (s.next_region) {
+    s.region = *s.next_region;
+    s.next_region.reset();
+    add_event(step.time + step.h, depth(), "inner puncture");
+  }
+  s.cut_to(step, at, direction());
+  if (s.tip_out) add_event(step.time + step.h, depth(), "exit");
+}
+
+/// Finds the rest position of what is at the tip now, and ends the path there.
+void Needle::State::cut_to(const InteractionStep& step, const Vec3d& at, const Vec3d& direction) {
+  for (int search = 0; search < kSearches; ++search) {
+    const Vec3d way = at - tip.position;
+    if (norm(way) < kClose || dot(way, direction) <= 0.0) break;
+    const Vec3d next = tip.rest + way * std::min(1.0, 0.5 * options.spacing / norm(way));
+    const auto found = locator->locate(next);
+    if (!found) {
+      tip_out = true;
+      break;
+    }
+    const int there = mesh->region_of(found->tet);
+    const bool enters = there != region;
+    shaft::Row moved;
+    if (!place(moved, enters ? last_before(next, there) : next)) break;
+    if (!shaft::read(step, moved)) {  // tissue that is not at hand yet: the rest of the way in the next step
+      look = true;
+      break;
+    }
+    tip = std::move(moved);
+    if (!enters) continue;
+    if (resistance(there).puncture > resistance(region).cutting) {
+      next_region = there;
+      break;
+    }
+    region = there;
+  }
+  while (norm(tip.rest - nodes.back().rest) >= options.spacing) {
+    const Vec3d way = tip.rest - nodes.back().rest;
+    shaft::Row node;
+    if (!place(node, nodes.back().rest + way * (options.spacing / norm(way))) || !shaft::read(step, node)) break;
+    nodes.push_back(std::move(node));
+    slips.push_back(1);
+    along.push_back(0.0);
+    bend.push_back(bend_tip);
+  }
+}
+
+/// The last point on the way from the tip to `next` that is not in the region there yet.
+Vec3d Needle::State::last_before(const Vec3d& next, int there) const {
+  double inside = 0.0, beyond = 1.0;
+  for (int k = 0; k < kBisections; ++k) {
+    const double middle = 0.5 * (inside + beyond);
+    const auto found = locator->locate(tip.rest + (next - tip.rest) * middle);
+    (found && mesh->region_of(found->tet) == there ? beyond : inside) = middle;
+  }
+  return tip.rest + (next - tip.rest) * inside;
+}
+
+void Needle::watch_drop(double time, double h) {
+  DropWatch& d = state_->drop;
+  if (!d.armed) return;
+  d.force += (dot(forces_.total(), direction()) - d.force) * (1.0 - std::exp(-h / kSmoothing));
+  if (d.force < d.least) {
+    d.least = d.force;
+    d.time = time;
+    d.depth = force_depth();
+  }
+  if (d.force < d.least + kRise * d.puncture_force && time - d.time < kLongestDrop) return;
+  d.armed = false;
+  add_event(d.time, d.depth, "drop");
+}
+
+void Needle::moved(const InteractionStep& step) {
+  watch_drop(step.time, step.h);
+  switch (state_->stage) {
+    case NeedleStage::outside:
+      look_for_contact(step);
+      break;
+    case NeedleStage::pressing:
+      press_on(step);
+      break;
+    case NeedleStage::inside:
+      go_on(step);
+      break;
+  }
+}
+
+}  // namespace glisson

@@ -1,0 +1,183 @@
+#include "material/axial_response.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace glisson {
+namespace {
+
+/// Ī₁ − 3, Ī₂ − 3 and k of them.
+template <class T>
+struct Isochoric {
+  T k, i1, i2;
+
+  explicit Isochoric(Axial<T> h) {
+    using std::cbrt;
+    const T e = (h.along - h.side) / (h.side + T(1.0));  // c/a − 1
+    k = cbrt((T(1.0) + e) * (T(1.0) + e));
+    const T less = e * (T(2.0) + e) / (k * k + k + T(1.0));  // k − 1
+    i1 = less * less * (k + T(2.0)) / k;
+    i2 = less * less * (T(2.0) * k + T(1.0)) / (k * k);
+  }
+};
+
+/// a² − c².
+template <class T>
+T difference_of_squares(Axial<T> h) {
+  return (h.side - h.along) * (h.side + h.along + T(2.0));
+}
+
+/// ∂Ī₁/∂λ of each single stretch: 2 J^(−⅔) (λ − I₁/3λ).
+template <class T>
+Axial<T> first_slopes(Axial<T> h, T power) {
+  const T d = T(2.0 / 3.0) * power * difference_of_squares(h);
+  return {d / (h.side + T(1.0)), T(-2.0) * d / (h.along + T(1.0))};
+}
+/// ∂Ī₂/∂λ of each.
+template <class T>
+Axial<T> second_slopes(Axial<T> h, T power) {
+  const T a = h.side + T(1.0), d = T(2.0 / 3.0) * power * difference_of_squares(h) * a;
+  return {d, T(-2.0) * d * a / (h.along + T(1.0))};
+}
+
+Mat3<double> full_of(Axial<double> h) { return {{{{h.side, 0, 0}, {0, h.side, 0}, {0, 0, h.along}}}}; }
+Mat3<Dual> full_of(Axial<Dual> h) { return {{{{h.side, 0.0, 0.0}, {0.0, h.side, 0.0}, {0.0, 0.0, h.along}}}}; }
+
+bool is_constant(const Tissue& tissue) {
+  const auto constant = [](const std::optional<StiffnessLaw>& law) {
+    return !law || std::holds_alternative<ConstantLaw>(*law);
+  };
+  return constant(tissue.law) && constant(tissue.lambda_law) && constant(tissue.mu_law);
+}
+
+}  // namespace
+
+AxialResponse::AxialResponse(const Tissue& tissue)
+    : response_(tissue), lame_(tissue.lame()), viscosity_(viscous_coefficients(tissue)), small_(response_.small()),
+      constant_(is_constant(tissue)) {
+  if (tissue.fibres && tissue.fibres->stiffness > 0.0)
+    throw std::invalid_argument("tissue \"" + tissue.name +
+                                "\" has fibres, across which a specimen does not stay round; "
+                                "take a scene in place of the homogeneous specimen");
+  const bool of_shape =
+      tissue.measure == DeformationMeasure::intensity || tissue.measure == DeformationMeasure::one_minus_q;
+  if (!tissue.hyperelastic && !constant_ && !of_shape)
+    throw std::invalid_argument(
+        "tissue \"" + tissue.name +
+        "\" has a law of a measure that depends on the mesh; allowed: "
+        "measure = \"intensity\" or \"one_minus_q\", or take a scene in place of the homogeneous "
+        "specimen");
+}
+
+template <class T>
+Axial<T> AxialResponse::hyperelastic(Axial<T> h) const {
+  using std::cbrt, std::log1p;
+  const HyperelasticLaw& law = *tissue().hyperelastic;
+  const T a = h.side + T(1.0), c = h.along + T(1.0);
+  const T aa = h.side * (h.side + T(2.0));                                  // a² − 1
+  const T pressure = T(bulk_modulus(law)) * (aa + h.along + aa * h.along);  // κ (J − 1)
+  const Axial<T> bulk{pressure * a * c, pressure * a * a};
+  return bulk + std::visit(
+                    [&]<class Law>(const Law& l) -> Axial<T> {
+                      if constexpr (std::is_same_v<Law, Ogden>) {
+                        const T third = log1p((h.along - h.side) / a) * T(1.0 / 3.0);
+                        const std::array<T, 3> t = l.slopes(std::array<T, 3>{-third, -third, third + third});
+                        return {t[0] / a, t[2] / c};
+                      } else {
+                        const Isochoric<T> x(h);
+                        const std::array<T, 2> w = l.slopes(x.i1, x.i2);
+                        const T root = cbrt(a * a * c), first = T(1.0) / (root * root);
+                        return first_slopes(h, first) * w[0] + second_slopes(h, first * first) * w[1];
+                      }
+                    },
+                    law);
+}
+
+template <class T>
+Axial<T> AxialResponse::tensor_mass(Axial<T> h) const {
+  using std::sqrt;
+  const Tissue& x = tissue();
+  const bool green = x.kinematics == Kinematics::green;
+  const T half(0.5);
+  const Axial<T> e = green ? Axial<T>{h.side + half * h.side * h.side, h.along + half * h.along * h.along} : h;
+  T lambda(lame_.lambda), mu(lame_.mu), lambda_slope(0.0), mu_slope(0.0), measure(0.0), less_q(0.0), i1(0.0);
+  if (!constant_) {
+    i1 = Isochoric<T>(h).i1;
+    less_q = i1 / (i1 + T(3.0));  // 1 − q
+    measure = x.measure == DeformationMeasure::intensity ? intensity_of(less_q) : less_q;
+    const auto at = [&](const StiffnessLaw& law, double base, T& value, T& slope) {
+      std::visit([&](const auto& l) { value = l.value(T(base), measure), slope = l.derivative(T(base), measure); },
+                 law);
+    };
+    if (x.lambda_law || x.mu_law) {
+      at(x.lambda_law.value_or(ConstantLaw{}), lame_.lambda, lambda, lambda_slope);
+      at(x.mu_law.value_or(ConstantLaw{}), lame_.mu, mu, mu_slope);
+    } else {
+      T E, slope;
+      at(x.law, x.youngs_modulus, E, slope);
+      const T l(lame_.lambda / x.youngs_modulus), m(lame_.mu / x.youngs_modulus);
+      lambda = l * E, mu = m * E, lambda_slope = l * slope, mu_slope = m * slope;
+    }
+  }
+  const T dilation = e.side + e.side + e.along, p = lambda * dilation;
+  Axial<T> P{p + T(2.0) * mu * e.side, p + T(2.0) * mu * e.along};
+  if (green) P = {P.side * (h.side + T(1.0)), P.along * (h.along + T(1.0))};
+  if (constant_ || x.law_form == LawForm::secant) return P;
+  // ∂W/∂x ∂x/∂λ of W = ½ λ(x) tr(ε)² + μ(x) ε:ε, with ∂(1 − q)/∂λ = 3/Ī₁² ∂Ī₁/∂λ
+  using std::cbrt;
+  const T squares = T(2.0) * e.side * e.side + e.along * e.along;
+  T rise = half * lambda_slope * dilation * dilation + mu_slope * squares;
+  if (x.measure == DeformationMeasure::intensity) {
+    if (!(measure > T(1e-12))) return P;
+    rise = rise * T(0.75) / measure;
+  }
+  const T a = h.side + T(1.0), root = cbrt(a * a * (h.along + T(1.0))), invariant = i1 + T(3.0);
+  return P + first_slopes(h, T(1.0) / (root * root)) * (rise * T(3.0) / (invariant * invariant));
+}
+
+template <class T>
+Axial<T> AxialResponse::elastic(Axial<T> h) const {
+  const double a = value_of(h.side) + 1.0, c = value_of(h.along) + 1.0;
+  if (std::min(a, c) < kSmallestStretch || a * a * c < kSmallestVolume) {
+    const Mat3<T> P = response_.elastic(full_of(h), ElementShape{});
+    return {P(0, 0), P(2, 2)};
+  }
+  return tissue().hyperelastic ? hyperelastic(h) : tensor_mass(h);
+}
+
+template <class T>
+Axial<T> AxialResponse::viscous(Axial<T> h, Axial<T> rate) const {
+  const T a = h.side + T(1.0), c = h.along + T(1.0);
+  const Axial<T> e = small_ ? rate : Axial<T>{a * rate.side, c * rate.along};
+  const T p = T(viscosity_.lambda) * (e.side + e.side + e.along), two_mu(2.0 * viscosity_.mu);
+  const Axial<T> P = carry(h, {p + two_mu * e.side, p + two_mu * e.along});
+  if (tissue().viscous_tensor != ViscousTensor::pioletti) return P;
+  const T excess = T(2.0) * h.side * (h.side + T(2.0)) + h.along * (h.along + T(2.0));  // I₁ − 3
+  return P * (excess > T(0.0) ? excess : T(0.0));
+}
+
+template <class T>
+Axial<T> AxialResponse::relaxing(Axial<T> h, Axial<T> P) const {
+  const T a = h.side + T(1.0), c = h.along + T(1.0);
+  const bool all = tissue().maxwell_part == MaxwellPart::all;
+  if (small_) {
+    if (all) return P;
+    const T third = (P.along - P.side) * T(1.0 / 3.0);
+    return {-third, third + third};
+  }
+  const T J = a * a * c;
+  if (!(J > T(0.5 * kSmallestVolume))) return {T(0.0), T(0.0)};
+  const T fade = J < T(kSmallestVolume) ? T(2.0 / kSmallestVolume) * J - T(1.0) : T(1.0);
+  if (all) return Axial<T>{P.side / a, P.along / c} * fade;
+  const T third = (P.along * c - P.side * a) * T(1.0 / 3.0);  // of the Kirchhoff stress
+  return Axial<T>{-third / (a * a), (third + third) / (c * c)} * fade;
+}
+
+template Axial<double> AxialResponse::elastic(Axial<double>) const;
+template Axial<Dual> AxialResponse::elastic(Axial<Dual>) const;
+template Axial<double> AxialResponse::viscous(Axial<double>, Axial<double>) const;
+template Axial<Dual> AxialResponse::viscous(Axial<Dual>, Axial<Dual>) const;
+template Axial<double> AxialResponse::relaxing(Axial<double>, Axial<double>) const;
+template Axial<Dual> AxialResponse::relaxing(Axial<Dual>, Axial<Dual>) const;
+
+}  // namespace glisson

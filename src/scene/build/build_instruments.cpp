@@ -1,0 +1,147 @@
+// build_instruments.cpp — from what a scene says of instruments and membranes to those that act on the body.
+#include "scene/build/build_instruments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/nearest.h"
+#include "glisson/mesh.h"
+#include "scene/parse/select.h"
+
+namespace glisson {
+namespace {
+
+Vec3d unit(const Vec3d& v) { return v * (1.0 / norm(v)); }
+
+Vec3d moving_direction(const InstrumentSpec& x) { return unit(x.motion.direction.value_or(x.direction)); }
+
+/// A path or a push from each kind of motion.
+struct DriverMaker {
+  Pose start;
+  Vec3d direction;
+
+  std::shared_ptr<ToolDriver> path(ToolPath path) const { return std::make_shared<PathDriver>(start, std::move(path)); }
+
+  std::shared_ptr<ToolDriver> operator()(PressMotion m) const {
+    m.direction = direction;
+    return path(press_path(m));
+  }
+  std::shared_ptr<ToolDriver> operator()(SineMotion m) const {
+    m.direction = direction;
+    return path(sine_path(m));
+  }
+  std::shared_ptr<ToolDriver> operator()(const ToolPath& m) const { return path(m); }
+  std::shared_ptr<ToolDriver> operator()(const StrokesSpec& m) const {
+    StrokeMotion motion{.start = m.start, .strokes = {}};
+    for (const StrokesSpec::One& s : m.strokes) {
+      motion.strokes.push_back({.to = direction * s.depth + s.aside,
+                                .velocity = s.velocity.value_or(m.velocity),
+                                .ramp = s.ramp,
+                                .rest = s.rest});
+    }
+    return path(stroke_path(motion));
+  }
+  std::shared_ptr<ToolDriver> operator()(const RecordSpec& m) const {
+    RecordedMotion motion = m.motion;
+    motion.start = m.start;
+    return path(recorded_path(motion));
+  }
+  std::shared_ptr<ToolDriver> operator()(const PushSpec& m) const {
+    PushMotion push{.direction = direction, .force = {}, .mass = m.mass, .damping = m.damping, .guided = m.guided};
+    push.force = [m](double time) {
+      const double t = time - m.start;
+      if (t < 0.0) return 0.0;
+      const double x = m.ramp > 0.0 ? std::min(1.0, t / m.ramp) : 1.0;
+      return x * x * (3.0 - 2.0 * x) * (m.force + m.swing * std::sin(2.0 * std::numbers::pi * m.frequency * t));
+    };
+    push.stop = m.stop;
+    if (m.duration) push.end = m.start + *m.duration;
+    return std::make_shared<PushDriver>(start, push);
+  }
+};
+
+/// The tissue's needs by region number.
+std::map<int, TipResistance> by_number(const InstrumentSpec& x, const TetMesh& mesh) {
+  std::map<int, TipResistance> numbers;
+  for (const auto& [name, resistance] : x.regions) {
+    const int number = scene::region_number(mesh, name);
+    if (number < 0)
+      throw std::invalid_argument("the mesh has no region \"" + name + "\"; `regions` names those it has");
+    numbers[number] = resistance;
+  }
+  return numbers;
+}
+
+struct InstrumentMaker {
+  const InstrumentSpec& spec;
+  Simulation& simulation;
+
+  std::shared_ptr<Instrument> operator()(NeedleOptions options) const {
+    options.name = spec.name;
+    options.direction = spec.direction;
+    options.bevel_side = spec.side;
+    options.regions = by_number(spec, simulation.mesh());
+    return std::make_shared<Needle>(options, make_driver(spec));
+  }
+  std::shared_ptr<Instrument> operator()(const BladeSpec& x) const {
+    return std::make_shared<Blade>(simulation, spec.name, make_driver(spec), spec.direction, x.options);
+  }
+  template <class Form>
+  std::shared_ptr<Instrument> operator()(const ContactSpec<Form>& x) const {
+    const ContactOptions options{.name = spec.name,
+                                 .shape = x.form,
+                                 .friction = x.friction,
+                                 .bonded = x.bonded,
+                                 .direction = spec.direction,
+                                 .push_out_speed = x.push_out_speed};
+    return std::make_shared<ContactTool>(options, make_driver(spec));
+  }
+};
+
+}  // namespace
+
+Pose start_pose(const InstrumentSpec& x) {
+  const Vec3d back = -unit(x.direction);
+  const Vec3d side = unit(x.side - back * dot(x.side, back));
+  const Vec3d third = cross(back, side);
+  Pose pose;
+  pose.position = x.tip;
+  for (std::size_t i = 0; i < 3; ++i) {
+    pose.axes(i, 0) = side[i];
+    pose.axes(i, 1) = third[i];
+    pose.axes(i, 2) = back[i];
+  }
+  return pose;
+}
+
+std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& x) {
+  return std::visit(DriverMaker{start_pose(x), moving_direction(x)}, x.motion.how);
+}
+
+namespace scene {
+
+std::shared_ptr<Instrument> make_instrument(const InstrumentSpec& spec, Simulation& simulation) {
+  return std::visit(InstrumentMaker{spec, simulation}, spec.what);
+}
+
+std::shared_ptr<Capsule> make_capsule(const CapsuleSpec& spec, std::span<const std::uint32_t> set) {
+  CapsuleOptions options = spec.options;
+  options.vertices.assign(set.begin(), set.end());
+  return std::make_shared<Capsule>(options);
+}
+
+void join(std::span<const std::shared_ptr<Instrument>> instruments,
+          const std::vector<std::shared_ptr<Capsule>>& capsules) {
+  if (capsules.empty()) return;
+  for (const auto& instrument : instruments) {
+    auto* needle = dynamic_cast<Needle*>(instrument.get());
+    if (needle == nullptr) continue;
+    needle->on_puncture([capsules](const Vec3d& place, double radius) {
+      for (const auto& capsule : capsules) capsule->open_at(place, radius);
+    });
+  }
+}
+
+}  // namespace scene
+}  // namespace glisson

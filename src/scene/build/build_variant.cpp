@@ -1,0 +1,252 @@
+// build_variant.cpp — from a variant's description to a body with its supports, loads and tools.
+#include <algorithm>
+#include <limits>
+#include <new>
+#include <set>
+
+#include "base/nearest.h"
+#include "glisson/scene/scene.h"
+#include "scene/build/build_instruments.h"
+#include "scene/parse/select.h"
+
+namespace glisson {
+namespace {
+
+[[noreturn]] void fail(const Variant& variant, const std::string& origin, const std::string& what) {
+  const std::string name = variant.name == "main" ? "" : ": variant " + variant.name;
+  throw SceneError((origin.empty() ? variant.scene_name + name : origin) + ": " + what);
+}
+
+TetMesh source_mesh(const Variant& variant, const MeshLoader& load) {
+  if (const auto* file = std::get_if<MeshFile>(&variant.mesh)) {
+    if (!load) fail(variant, "", "no reader for mesh files was given, and [mesh] asks for " + file->path.string());
+    return load(*file);
+  }
+  try {
+    if (const auto* box = std::get_if<BoxOptions>(&variant.mesh)) return box_mesh(*box);
+    return cylinder_mesh(std::get<CylinderOptions>(variant.mesh));
+  } catch (const std::invalid_argument& error) {
+    fail(variant, "", std::string("mesh: ") + error.what());
+  }
+}
+
+void require_not_empty(const Variant& variant, const TetMesh& mesh) {
+  if (mesh.vertices.empty() || mesh.tets.empty()) {
+    fail(variant, "",
+         "mesh: " + std::to_string(mesh.vertices.size()) + " vertices and " + std::to_string(mesh.tets.size()) +
+             " tets; at least one tetrahedron is needed");
+  }
+}
+
+/// `4, 7 (vessel)`: the regions of a mesh.
+std::string region_list(const TetMesh& mesh) {
+  std::set<int> numbers;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) numbers.insert(mesh.region_of(t));
+  std::vector<std::string> regions;
+  for (const int n : numbers) {
+    const auto name = mesh.region_names.find(n);
+    const bool named = name != mesh.region_names.end() && !name->second.empty();
+    regions.push_back(std::to_string(n) + (named ? " (" + name->second + ")" : ""));
+  }
+  return scene::listed(regions);
+}
+
+/// Gives the tets of a region a number of their own, after checking that there are any.
+void mark_region(const Variant& variant, const RegionSpec& region, TetMesh& mesh) {
+  const int own = scene::region_number(mesh, region.name);
+  if (std::holds_alternative<std::monostate>(region.where)) {
+    if (own < 0) {
+      fail(variant, region.origin,
+           "the mesh has no region \"" + region.name + "\"; it has: " + region_list(mesh) +
+               ". Give `box_m` or `sphere_m` to make one");
+    }
+    return;
+  }
+  if (own >= 0) {
+    fail(variant, region.origin,
+         "the mesh has a region \"" + region.name +
+             "\" already; choose another name, or leave out "
+             "the box or ball to give that region this tissue");
+  }
+  const std::vector<std::size_t> tets = scene::tets_within(mesh, region);
+  if (tets.empty()) {
+    fail(variant, region.origin,
+         "no tet has its centroid in the region \"" + region.name + "\"; the mesh spans " + scene::extent_text(mesh));
+  }
+  if (mesh.regions.empty()) mesh.regions.assign(mesh.tets.size(), 0);
+  int number = *std::max_element(mesh.regions.begin(), mesh.regions.end());
+  if (!mesh.region_names.empty()) number = std::max(number, mesh.region_names.rbegin()->first);
+  if (number == std::numeric_limits<int>::max()) fail(variant, region.origin, "the mesh has no free region number");
+  for (const std::size_t t : tets) mesh.regions[t] = number + 1;
+  mesh.region_names[number + 1] = region.name;
+}
+
+/// A vertex set by name, or what sets there are.
+const std::vector<std::uint32_t>& set_called(const Variant& variant, const TetMesh& mesh, const std::string& name,
+                                             const std::string& origin) {
+  const auto it = mesh.vertex_sets.find(name);
+  if (it == mesh.vertex_sets.end()) {
+    std::vector<std::string> known;
+    for (const auto& [set, vertices] : mesh.vertex_sets) known.push_back(set);
+    fail(variant, origin, scene::no_such_set(name, known));
+  }
+  if (it->second.empty()) fail(variant, origin, "the vertex set \"" + name + "\" of the mesh is empty");
+  return it->second;
+}
+
+bool has_blade(const Variant& variant) {
+  const auto is_blade = [](const InstrumentSpec& x) { return std::holds_alternative<BladeSpec>(x.what); };
+  return std::any_of(variant.instruments.begin(), variant.instruments.end(), is_blade);
+}
+
+Simulation simulation_of(const Variant& variant, TetMesh mesh) {
+  try {
+    std::map<int, Tissue> tissues = region_tissues(variant, mesh);
+    SimulationOptions options = variant.simulation;
+    options.mesh_changes = options.mesh_changes || has_blade(variant);
+    return Simulation(std::move(mesh), std::move(tissues), options);
+  } catch (const std::bad_alloc&) {
+    throw;                                 // no fault of the scene
+  } catch (const std::exception& error) {  // also an eigenvalue search that fails on an odd body
+    fail(variant, "", error.what());
+  }
+}
+
+Axes driven_axes(const ToolSpec& tool) {
+  const Vec3d& d = tool.motion.direction;
+  return tool.sideways_free ? Axes{d.x != 0.0, d.y != 0.0, d.z != 0.0} : Axes{};
+}
+
+std::function<double(double)> ramp_over(double seconds) {
+  if (seconds <= 0.0) return {};
+  return [seconds](double t) { return std::min(1.0, t / seconds); };
+}
+
+/// Runs `make`, saying of what it throws where the scene asked for it.
+template <class Make>
+auto located(const Variant& variant, const std::string& origin, Make make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& error) {
+    fail(variant, origin, error.what());
+  }
+}
+
+/// Capsules first: what they pull is known when instruments solve for what holds at the end of the step.
+void attach_interactions(const Variant& variant, BuiltVariant& built) {
+  Simulation& simulation = built.simulation;
+  for (const CapsuleSpec& x : variant.capsules) {
+    std::span<const std::uint32_t> set;
+    if (!x.set.empty()) set = set_called(variant, simulation.mesh(), x.set, x.origin);
+    built.capsules.push_back(located(variant, x.origin, [&] {
+      auto capsule = scene::make_capsule(x, set);
+      simulation.attach(capsule);
+      return capsule;
+    }));
+  }
+  if (variant.container) {
+    built.container = located(variant, variant.container->origin, [&] {
+      auto container = std::make_shared<Container>(variant.container->options);
+      simulation.attach(container);
+      return container;
+    });
+  }
+  for (const InstrumentSpec& x : variant.instruments) {
+    built.instruments.push_back(located(variant, x.origin, [&] {
+      auto instrument = scene::make_instrument(x, simulation);
+      simulation.attach(instrument);
+      return instrument;
+    }));
+  }
+  scene::join(built.instruments, built.capsules);
+}
+
+}  // namespace
+
+TetMesh build_mesh(const Variant& variant, const MeshLoader& load) {
+  TetMesh mesh = source_mesh(variant, load);
+  require_not_empty(variant, mesh);
+  for (const auto& [name, selection] : variant.sets)
+    mesh.vertex_sets[name] = scene::select_vertices(mesh, name, selection);
+  for (const RegionSpec& region : variant.regions) mark_region(variant, region, mesh);
+  for (const FixedSpec& x : variant.fixed) set_called(variant, mesh, x.set, x.origin);
+  for (const LoadSpec& x : variant.loads) set_called(variant, mesh, x.set, x.origin);
+  for (const ToolSpec& x : variant.tools) set_called(variant, mesh, x.set, x.origin);
+  for (const CapsuleSpec& x : variant.capsules) {
+    if (!x.set.empty()) set_called(variant, mesh, x.set, x.origin);
+  }
+  return mesh;
+}
+
+std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh) {
+  std::map<int, Tissue> tissues;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) tissues.try_emplace(mesh.region_of(t), variant.tissue);
+  for (const RegionSpec& region : variant.regions) {
+    const auto it = tissues.find(scene::region_number(mesh, region.name));
+    if (it != tissues.end()) it->second = region.tissue;
+  }
+  return tissues;
+}
+
+BuiltVariant::BuiltVariant(const Variant& variant, const MeshLoader& load)
+    : simulation(simulation_of(variant, build_mesh(variant, load))) {
+  const TetMesh& mesh = simulation.mesh();
+  for (const FixedSpec& x : variant.fixed) {
+    const auto& set = set_called(variant, mesh, x.set, x.origin);
+    supports.push_back(located(variant, x.origin, [&] { return simulation.fix(set, x.axes); }));
+  }
+  for (const ToolSpec& x : variant.tools) {
+    const auto& set = set_called(variant, mesh, x.set, x.origin);
+    tools.push_back(located(variant, x.origin,
+                            [&] { return simulation.drive(set, tool_path(x).way, driven_axes(x), tool_start(x)); }));
+  }
+  for (const LoadSpec& x : variant.loads) {
+    const auto& set = set_called(variant, mesh, x.set, x.origin);
+    located(variant, x.origin, [&] { return simulation.add_load(set, x.force, ramp_over(x.ramp)); });
+  }
+  attach_interactions(variant, *this);
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    const auto* spec = std::get_if<BladeSpec>(&variant.instruments[i].what);
+    if (spec) blades_.push_back({std::dynamic_pointer_cast<Blade>(instruments[i]), spec->cut_every, 0.0});
+  }
+}
+
+StepResult BuiltVariant::step() {
+  const StepResult result = simulation.step();
+  for (Cutting& x : blades_) {
+    if (simulation.time() < x.next) continue;
+    x.blade->cut();
+    x.next = simulation.time() + x.every;
+  }
+  return result;
+}
+
+BuiltVariant build_variant(const Variant& variant, const MeshLoader& load) { return {variant, load}; }
+
+double tool_start(const ToolSpec& tool) {
+  if (tool.path) return 0.0;
+  return tool.record ? tool.record->start : tool.motion.start;
+}
+
+ToolPath tool_path(const ToolSpec& tool) {
+  if (tool.path) return *tool.path;
+  if (!tool.record) return {press(tool.motion), press_end(tool.motion)};
+  RecordedMotion motion = tool.record->motion;
+  motion.start = tool.record->start;
+  return recorded_path(motion);
+}
+
+double run_duration(const Variant& variant) {
+  if (variant.duration) return *variant.duration;
+  double end = 0.0;
+  bool ends = false;
+  const auto until = [&](std::optional<double> time) {
+    if (time) end = std::max(end, *time);
+    ends = ends || time;
+  };
+  for (const ToolSpec& tool : variant.tools) until(tool_path(tool).end);
+  for (const InstrumentSpec& x : variant.instruments) until(make_driver(x)->end());
+  return ends ? end : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace glisson

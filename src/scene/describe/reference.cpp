@@ -1,0 +1,58 @@
+// reference.cpp — docs/scene.md, written from the schema.
+#include "glisson/scene/scene.h"
+#include "scene/describe/reference_sections.h"
+#include "scene/describe/reference_text.h"
+#include "scene/parse/sections.h"
+
+namespace glisson {
+namespace {
+
+using namespace scene;
+
+std::string selection_parts() {
+  std::string text;
+  for (const KeySpec& key : selection_section().keys) {
+    if (!key.section) continue;
+    text += "`" + key.name + "`: " + key.section->help + "\n\n" + key_table(*key.section) + word_list(*key.section);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string scene_reference_markdown() {
+  std::string text(kReferenceIntroduction);
+  text.append("## A complete example\n\n```toml file=scene.toml\n")
+      .append(kReferenceExample)
+      .append("```\n\n## Sections\n\n");
+  text += "### The top of the scene\n\n" + scene_section().help + "\n\n" + key_table(scene_section());
+  text += section_text(mesh_section(), "`[mesh]`");
+  text += section_text(selection_section(), "`[sets.NAME]`") + selection_parts();
+  text += section_text(tissue_section(), "`[tissue]`");
+  text += section_text(hyperelastic_section(), "`[tissue.hyperelastic]`");
+  text += section_text(fibres_section(), "`[tissue.fibres]`");
+  text += section_text(maxwell_section(), "`[[tissue.maxwell]]`");
+  text += section_text(law_section(), "`[tissue.law]`, `[tissue.lambda_law]`, `[tissue.mu_law]`");
+  text += section_text(region_section(), "`[[region]]`");
+  text += section_text(motion_section(), "`[motion]`");
+  text += section_text(implicit_section(), "`[motion.implicit]`");
+  text += section_text(fixed_section(), "`[[fixed]]`");
+  text += section_text(load_section(), "`[[load]]`");
+  text += section_text(tool_section(), "`[[tool]]`");
+  text += section_text(record_section(), "`[tool.record]`");
+  text += section_text(instrument_section(), "`[[instrument]]`");
+  text += section_text(instrument_motion_section(), "`[instrument.motion]`");
+  text += section_text(stroke_section(), "`[[instrument.motion.strokes]]`");
+  text += section_text(rupture_section(), "`[instrument.rupture]`");
+  text += section_text(tip_section(), "`[instrument.tip]`, `[instrument.regions.NAME]`");
+  text += section_text(shaft_friction_section(), "`[instrument.friction]`");
+  text += section_text(container_section(), "`[container]`");
+  text += section_text(capsule_section(), "`[[capsule]]`");
+  text += section_text(output_section(), "`[output]`");
+  text += section_text(chart_section(), "`[[chart]]`");
+  text += section_text(measured_section(), "`[[chart.measured]]`");
+  text += section_text(variant_section(), "`[[variant]]`");
+  return text.append(kReferenceVariants).append(kReferenceOverrides).append(kReferenceRun);
+}
+
+}  // namespace glisson

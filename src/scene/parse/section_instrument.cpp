@@ -1,0 +1,282 @@
+// section_instrument.cpp — [[instrument]]: needles that pierce and shapes that press.
+#include <cmath>
+
+#include "glisson/scene/scene.h"
+#include "scene/parse/section.h"
+#include "scene/parse/sections.h"
+#include "scene/run/result_names.h"
+
+namespace glisson::scene {
+namespace {
+
+template <class Form>
+using Contact = ContactSpec<Form>;
+
+/// What all shapes that press have beside their sizes.
+template <class Form>
+void add_contact_keys(Section<Contact<Form>>& s) {
+  s.key("friction", &Contact<Form>::friction, "Coulomb's μ against the surface").in("-").within(at_least(0));
+  s.key("bonded", &Contact<Form>::bonded, "what has touched stays where it touched, pulled or pressed");
+  s.template key<Milli>("push_out_speed_mm_s", &Contact<Form>::push_out_speed,
+                        "of tissue that is inside the tool at the start, at most")
+      .in("mm/s")
+      .within(above(0));
+}
+
+/// A size of a shape [m], written in mm.
+template <class Form, class Member>
+KeySpec& size_key(Section<Contact<Form>>& s, const std::string& name, Member member, const std::string& help) {
+  return s
+      .template key<Milli>(
+          name, [member](Contact<Form> & x) -> auto& { return x.form.*member; }, help)
+      .in("mm")
+      .within(above(0));
+}
+
+template <class Form>
+SectionSpec checked(Section<Contact<Form>> s) {
+  add_contact_keys(s);
+  s.finish([](Contact<Form>& x, const Node&, const Place& place) {
+    try {
+      require_valid(glisson::Shape(x.form));
+    } catch (const std::invalid_argument& error) {
+      place.complain(error.what());
+    }
+  });
+  return s.spec();
+}
+
+SectionSpec punch_kind() {
+  Section<Contact<FlatPunch>> s("punch", "A cylinder with a flat end that presses on the surface.");
+  size_key(s, "radius_mm", &FlatPunch::radius, "radius");
+  size_key(s, "edge_radius_mm", &FlatPunch::edge_radius, "of the rounded edge").within(at_least(0));
+  size_key(s, "length_mm", &FlatPunch::length, "length");
+  return checked(s);
+}
+
+SectionSpec ball_kind() {
+  Section<Contact<Ball>> s("ball", "A ball that presses on the surface; its tip is its lowest point.");
+  size_key(s, "radius_mm", &Ball::radius, "radius");
+  return checked(s);
+}
+
+SectionSpec probe_kind() {
+  Section<Contact<NeedleShape>> s("probe", "The outside of a needle, which presses and does not pierce.");
+  size_key(s, "diameter_mm", &NeedleShape::diameter, "diameter");
+  size_key(s, "length_mm", &NeedleShape::length, "length with the tip");
+  s.choice<TipForm>(
+      "tip", [](Contact<NeedleShape> & x) -> auto& { return x.form.tip; },
+      {{"conical", TipForm::conical, "a cone"},
+       {"bevelled", TipForm::bevelled, "cut off by one plane, its point to the side"},
+       {"blunt", TipForm::blunt, "half a ball"}},
+      "form of the tip");
+  s.key(
+       "tip_angle_rad", [](Contact<NeedleShape> & x) -> auto& { return x.form.tip_angle; },
+       "of the whole cone, or between the bevel and the shaft")
+      .in("rad")
+      .within(between(0.02, 3.1));
+  return checked(s);
+}
+
+SectionSpec plate_kind() {
+  Section<Contact<Plate>> s("plate", "A plane without end that presses on the surface.");
+  return checked(s);
+}
+
+SectionSpec block_kind() {
+  Section<Contact<Block>> s("block", "A box that presses with its lower face.");
+  s.key<MilliVector>(
+       "size_mm", [](Contact<Block> & x) -> auto& { return x.form.size; }, "edges along its own x, y and z")
+      .in("mm")
+      .within(above(0));
+  size_key(s, "edge_radius_mm", &Block::edge_radius, "of the rounded edges").within(at_least(0));
+  return checked(s);
+}
+
+SectionSpec needle_kind() {
+  Section<NeedleOptions> s("needle",
+                           "A needle that presses, pierces, cuts its way, rubs along its shaft and comes back "
+                           "(docs/needles.md).");
+  s.key<Milli>("diameter_mm", &NeedleOptions::diameter, "diameter").in("mm").within(above(0));
+  s.key<Milli>("length_mm", &NeedleOptions::length, "from the hand to the tip").in("mm").within(above(0));
+  s.key<Milli>("zone_mm", &NeedleOptions::zone, "radius of the tissue around a point of the path that takes its force")
+      .in("mm")
+      .within(above(0));
+  s.key<Milli>("spacing_mm", &NeedleOptions::spacing, "of points of the path").in("mm").within(above(0));
+  s.table("rupture", rupture_section(), &NeedleOptions::rupture, "when the surface gives way");
+  s.table("tip", tip_section(), &NeedleOptions::tip, "what the tip needs to go on");
+  s.table("friction", shaft_friction_section(), &NeedleOptions::friction, "along the inserted shaft");
+  s.key("youngs_modulus_Pa", &NeedleOptions::youngs_modulus, "of the needle, which bends as a cantilever from the hand")
+      .in("Pa")
+      .within(above(0))
+      .otherwise("rigid");
+  s.key<Milli>("inner_diameter_mm", &NeedleOptions::inner_diameter, "of a tube, for its bending")
+      .in("mm")
+      .within(at_least(0));
+  s.key("bevel_share", &NeedleOptions::bevel_share,
+        "sideways force of a bevelled tip while it cuts, over that of cutting")
+      .in("-")
+      .within(at_least(0));
+  s.finish([](NeedleOptions& x, const Node& table, const Place& place) {
+    if (x.inner_diameter >= x.diameter && x.inner_diameter > 0.0) {
+      place.complain(*table.find("inner_diameter_mm"), "inner_diameter_mm",
+                     show(1e3 * x.inner_diameter) +
+                         " mm is out of range; allowed: below `diameter_mm` = " + show(1e3 * x.diameter) + " mm");
+    }
+  });
+  return s.spec();
+}
+
+SectionSpec blade_kind() {
+  Section<BladeSpec> s(
+      "blade",
+      "A cutting edge that parts the tissue along its path (docs/cutting.md); the flat of the blade does not "
+      "touch it.");
+  const auto option = [](auto member) {
+    return [member](BladeSpec & x) -> auto& { return x.options.*member; };
+  };
+  const auto cutting = [](auto member) {
+    return [member](BladeSpec & x) -> auto& { return x.options.cutting.*member; };
+  };
+  s.key<MilliVector>("edge_from_mm", option(&BladeOptions::edge_from),
+                     "one end of its edge, in its own axes, from its tip")
+      .in("mm");
+  s.key<MilliVector>("edge_to_mm", option(&BladeOptions::edge_to), "the other end").in("mm");
+  s.key("toughness_J_m2", option(&BladeOptions::toughness), "fracture toughness of the tissue: work for each area cut")
+      .in("J/m²")
+      .within(at_least(0));
+  s.key("cut_every_s", &BladeSpec::cut_every, "how often what the edge has passed is parted").in("s").within(above(0));
+  s.key("snap", cutting(&CutOptions::snap), "moves vertices onto the cut; without it runs along faces as they are");
+  s.key("least_quality", cutting(&CutOptions::least_quality),
+        "least mean ratio of a tet that such a move leaves behind")
+      .in("-")
+      .within(between(0.01, 0.5));
+  s.key("least_step", cutting(&CutOptions::least_step),
+        "stable step that such a move may leave, over that of the body before")
+      .in("-")
+      .within(between(0.05, 1));
+  s.finish([](BladeSpec& x, const Node& table, const Place& place) {
+    if (norm(x.options.edge_to - x.options.edge_from) > 0.0) return;
+    const char* key = table.find("edge_to_mm") ? "edge_to_mm" : "edge_from_mm";
+    place.complain(*table.find(key), key, "is the other end, too: the edge has no length; give two ends");
+  });
+  return s.spec();
+}
+
+template <class What>
+KindSpec instrument_kind(SectionSpec section) {
+  return {std::move(section),
+          [](void* spec) -> void* { return &static_cast<InstrumentSpec*>(spec)->what.emplace<What>(); }};
+}
+
+/// What must hold of an instrument's directions, and where it was written.
+void check_instrument(InstrumentSpec& x, const Node& table, const Place& place) {
+  x.origin = place.text();
+  const std::string unfit = unfit_as_table(x.name);
+  if (const Node* name = table.find("name"); name && !unfit.empty()) place.complain(*name, "name", unfit);
+  require_direction(x.direction, table, "direction", place);
+  if (norm(cross(x.side, x.direction)) > 1e-6 * norm(x.side) * norm(x.direction)) return;
+  place.complain(table.find("side") ? *table.find("side") : *table.find("direction"),
+                 table.find("side") ? "side" : "direction",
+                 "`side` " + Codec<Vec3d>::show(x.side) + " does not point across `direction` " +
+                     Codec<Vec3d>::show(x.direction) + "; give another side, such as [0, 1, 0]");
+}
+
+}  // namespace
+
+void require_direction(const Vec3d& direction, const Node& table, const std::string& key, const Place& place) {
+  if (norm(direction) > 0.0 && std::isfinite(norm(direction))) return;
+  place.complain(
+      *table.find(key), key,
+      Codec<Vec3d>::show(direction) + " has no direction; give a vector that is not zero, such as [0, 0, -1]");
+}
+
+const SectionSpec& rupture_section() {
+  static const SectionSpec section = [] {
+    Section<Rupture> s(
+        "instrument.rupture",
+        "When the surface gives way under a needle's tip. Neither given: at the cutting force of what is below.");
+    s.key("force_N", &Rupture::force, "at this force of the tip").in("N").within(above(0)).otherwise("");
+    s.key("toughness_J_m2", &Rupture::toughness,
+          "when springing back sets free this energy for each area of the slit, one diameter long")
+        .in("J/m²")
+        .within(above(0))
+        .otherwise("");
+    s.key<Milli>("membrane_thickness_mm", &Rupture::membrane_thickness, "depth of that slit").in("mm").within(above(0));
+    s.spec().exclusions = {{{{"force_N"}, {"toughness_J_m2"}}, false}};
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& tip_section() {
+  static const SectionSpec section = [] {
+    Section<TipResistance> s(
+        "instrument.tip",
+        "What a needle's tip needs. `regions.NAME` says the same of a region, whose boundary may ask "
+        "for more: `regions.vessel = { cutting_N = 0.5, puncture_N = 1.2 }`.");
+    s.key("cutting_N", &TipResistance::cutting, "force while it cuts on").in("N").within(at_least(0));
+    s.key("puncture_N", &TipResistance::puncture, "of a region: force to enter it; 0: that of cutting")
+        .in("N")
+        .within(at_least(0));
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& shaft_friction_section() {
+  static const SectionSpec section = [] {
+    using F = ShaftFriction;
+    Section<F> s(
+        "instrument.friction",
+        "Stick–slip along a needle's inserted shaft, for each metre of it: `_in` while it goes in, `_out` while it "
+        "comes out.");
+    s.key("static_in_N_m", &F::static_in, "most it holds while it sticks").in("N/m").within(at_least(0));
+    s.key("static_out_N_m", &F::static_out, "the same, coming out").in("N/m").within(at_least(0));
+    s.key("dynamic_in_N_m", &F::dynamic_in, "while it slips").in("N/m").within(at_least(0));
+    s.key("dynamic_out_N_m", &F::dynamic_out, "the same, coming out").in("N/m").within(at_least(0));
+    s.key("viscous_in_N_s_m2", &F::viscous_in, "and for each speed").in("N s/m²").within(at_least(0));
+    s.key("viscous_out_N_s_m2", &F::viscous_out, "the same, coming out").in("N s/m²").within(at_least(0));
+    s.key<Milli>("stick_speed_mm_s", &F::stick_speed, "slower than this it may stick again")
+        .in("mm/s")
+        .within(above(0));
+    s.finish([](F& x, const Node& table, const Place& place) {
+      const auto check = [&](double dynamic, double most, const char* key, const char* other) {
+        if (dynamic <= most) return;
+        place.complain(
+            table.find(key) ? *table.find(key) : table, key,
+            show(dynamic) + " N/m is out of range; allowed: at most `" + other + "` = " + show(most) + " N/m");
+      };
+      check(x.dynamic_in, x.static_in, "dynamic_in_N_m", "static_in_N_m");
+      check(x.dynamic_out, x.static_out, "dynamic_out_N_m", "static_out_N_m");
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& instrument_section() {
+  static const SectionSpec section = [] {
+    Section<InstrumentSpec> s(
+        "instrument",
+        "A rigid or bending tool beside the body, of the `kind` given: it meets the surface in "
+        "contact, or pierces it. Needs the integrator explicit, or semi_implicit without viscosity.");
+    s.key("name", &InstrumentSpec::name, "name; no two tools or instruments of an experiment share one");
+    s.key("tip_m", &InstrumentSpec::tip, "where its tip is at the start").in("m").must();
+    s.key("direction", &InstrumentSpec::direction, "in which it points, of any length").in("-");
+    s.key("side", &InstrumentSpec::side, "where its own x axis, and a bevelled tip, points, as far as that is across")
+        .in("-");
+    s.table("motion", instrument_motion_section(), &InstrumentSpec::motion, "how it moves").must();
+    s.named_tables("regions", tip_section(), &InstrumentSpec::regions, "of a needle: what its tip needs in regions");
+    s.spec().kinds = {
+        instrument_kind<NeedleOptions>(needle_kind()), instrument_kind<Contact<FlatPunch>>(punch_kind()),
+        instrument_kind<Contact<Ball>>(ball_kind()),   instrument_kind<Contact<NeedleShape>>(probe_kind()),
+        instrument_kind<Contact<Plate>>(plate_kind()), instrument_kind<Contact<Block>>(block_kind()),
+        instrument_kind<BladeSpec>(blade_kind())};
+    s.finish(check_instrument);
+    return s.spec();
+  }();
+  return section;
+}
+
+}  // namespace glisson::scene

@@ -1,0 +1,162 @@
+// section_mesh.cpp — [mesh]: where the tetrahedra come from, and [sets]: vertices picked by place.
+#include "glisson/scene/scene.h"
+#include "scene/parse/section.h"
+#include "scene/parse/sections.h"
+
+namespace glisson::scene {
+namespace {
+
+constexpr double kMostCells = 2000;  // along one axis; 2000³ cubes do not fit a machine, 2000 × 1 × 1 does
+
+SectionSpec box_kind() {
+  Section<BoxOptions> s("box",
+                        "A box of cubes, six tetrahedra each, with the vertex sets `x_min`, `x_max`, `y_min`, "
+                        "`y_max`, `z_min`, `z_max`.");
+  s.key("cells", &BoxOptions::cells, "cubes along x, y and z").within(between(1, kMostCells));
+  s.key("size_m", &BoxOptions::size, "edge lengths of the box").in("m").within(above(0));
+  s.key("origin_m", &BoxOptions::origin, "lowest corner").in("m");
+  s.choice<BoxSplit>("split", &BoxOptions::split,
+                     {{"kuhn", BoxSplit::kuhn, "every cube along its (0,0,0)–(1,1,1) diagonal"},
+                      {"alternating", BoxSplit::alternating, "mirrored in every second cube, no preferred diagonal"}},
+                     "how a cube is split in six");
+  return s.spec();
+}
+
+SectionSpec cylinder_kind() {
+  Section<CylinderOptions> s("cylinder",
+                             "A cylinder about the z axis from z = 0, its rings graded toward the axis, with "
+                             "the vertex sets `bottom`, `top`, `wall`, `axis`.");
+  s.key("radius_m", &CylinderOptions::radius, "radius").in("m").within(above(0));
+  s.key("height_m", &CylinderOptions::height, "height").in("m").within(above(0));
+  s.key("radial_cells", &CylinderOptions::radial_cells, "rings from the axis to the wall").within(between(1, 1000));
+  s.key("axial_cells", &CylinderOptions::axial_cells, "layers along the axis").within(between(1, kMostCells));
+  s.key("grading", &CylinderOptions::grading, "width of the outermost ring over that of the innermost")
+      .in("-")
+      .within(between(1, 1000))
+      .advise("1 makes all rings equally wide");
+  return s.spec();
+}
+
+SectionSpec file_kind() {
+  Section<MeshFile> s("file",
+                      "A mesh of tetrahedra from a file: .vtu, .vtk, .msh (Gmsh 2.2 or 4.1). Its named groups "
+                      "become vertex sets and regions.");
+  s.key("path", &MeshFile::path, "the file, relative to the scene").must();
+  s.key("scale", &MeshFile::scale, "factor on the coordinates; 0.001 for a file in millimetres")
+      .in("-")
+      .within(above(0));
+  s.finish([](MeshFile& file, const Node& table, const Place& place) {
+    if (file.path.empty()) place.complain(*table.find("path"), "path", "is empty; name a .vtu, .vtk or .msh file");
+  });
+  return s.spec();
+}
+
+template <class Kind>
+KindSpec mesh_kind(SectionSpec section) {
+  return {std::move(section), [](void* source) -> void* { return &static_cast<MeshSource*>(source)->emplace<Kind>(); }};
+}
+
+SectionSpec box_selection() {
+  Section<Selection::Box> s("box_m", "An axis-aligned box, its faces included.");
+  s.key("min", &Selection::Box::min, "lowest corner").in("m").must();
+  s.key("max", &Selection::Box::max, "highest corner").in("m").must();
+  s.finish([](Selection::Box& box, const Node& table, const Place& place) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (box.min[i] <= box.max[i]) continue;
+      place.complain(*table.find("max"), "max",
+                     std::string(1, "xyz"[i]) + " of `max` (" + show(box.max[i]) + " m) is below that of `min` (" +
+                         show(box.min[i]) + " m); exchange them");
+    }
+  });
+  return s.spec();
+}
+
+SectionSpec sphere_selection() {
+  Section<Selection::Sphere> s("sphere_m", "A ball, its surface included.");
+  s.key("center", &Selection::Sphere::center, "centre").in("m").must();
+  s.key("radius", &Selection::Sphere::radius, "radius").in("m").within(above(0)).must();
+  return s.spec();
+}
+
+SectionSpec nearest_selection() {
+  Section<Selection::Nearest> s("nearest_m", "The vertices nearest to a point.");
+  s.key("point", &Selection::Nearest::point, "the point").in("m").must();
+  s.key("count", &Selection::Nearest::count, "how many").within(between(1, Codec<int>::kLargest));
+  return s.spec();
+}
+
+SectionSpec side_selection() {
+  Section<Selection::Side> s("side", "One side of the body.");
+  s.choice<int>("axis", &Selection::Side::axis, {{"x", 0, ""}, {"y", 1, ""}, {"z", 2, ""}}, "axis across the side")
+      .must();
+  s.choice<bool>("end", &Selection::Side::upper,
+                 {{"lower", false, "the side with the smallest coordinate"}, {"upper", true, "the largest"}},
+                 "which end of the axis")
+      .must();
+  s.key("depth_m", &Selection::Side::depth, "vertices at most this far from the outermost one")
+      .in("m")
+      .within(at_least(0))
+      .must();
+  return s.spec();
+}
+
+template <class Place>
+auto where_of(auto owner) {
+  return [owner](auto& o) -> Place& { return (o.*owner).template emplace<Place>(); };
+}
+
+}  // namespace
+
+const SectionSpec& mesh_section() {
+  static const SectionSpec section = [] {
+    SectionSpec s;
+    s.name = "mesh";
+    s.help = "The body: a generated mesh or one from a file. `kind` says which.";
+    s.kinds = {mesh_kind<BoxOptions>(box_kind()), mesh_kind<CylinderOptions>(cylinder_kind()),
+               mesh_kind<MeshFile>(file_kind())};
+    return s;
+  }();
+  return section;
+}
+
+const SectionSpec& box_section() {
+  static const SectionSpec section = box_selection();
+  return section;
+}
+
+const SectionSpec& sphere_section() {
+  static const SectionSpec section = sphere_selection();
+  return section;
+}
+
+const SectionSpec& selection_section() {
+  static const SectionSpec nearest = nearest_selection(), side = side_selection();
+  static const SectionSpec section = [] {
+    Section<Selection> s(
+        "sets.NAME",
+        "A vertex set, by where vertices are at rest. It takes the place of a set of the mesh with the same name.");
+    const auto where = &Selection::where;
+    s.table("box_m", box_section(), where_of<Selection::Box>(where), "vertices in a box");
+    s.table("sphere_m", sphere_section(), where_of<Selection::Sphere>(where), "vertices in a ball");
+    s.table("nearest_m", nearest, where_of<Selection::Nearest>(where), "the vertices nearest to a point");
+    s.table("side", side, where_of<Selection::Side>(where), "vertices of one side");
+    s.key(
+         "vertices",
+         [](Selection& x) -> std::vector<std::uint32_t>& { return x.where.emplace<Selection::Ids>().vertices; },
+         "vertex numbers, from 0")
+        .within(between(0, 4294967295.0))
+        .otherwise("");
+    s.key("surface_only", &Selection::surface_only, "pick among the vertices of the surface only");
+    s.spec().exclusions = {{{{"box_m"}, {"sphere_m"}, {"nearest_m"}, {"side"}, {"vertices"}}, true}};
+    s.finish([](Selection& x, const Node& table, const Place& place) {
+      x.origin = place.text();
+      const auto* ids = std::get_if<Selection::Ids>(&x.where);
+      if (ids && ids->vertices.empty())
+        place.complain(*table.find("vertices"), "vertices", "is empty; name at least one vertex");
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+}  // namespace glisson::scene

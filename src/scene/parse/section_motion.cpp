@@ -1,0 +1,212 @@
+// section_motion.cpp — [motion]: time, damping, gravity; what holds, loads and presses the body; [output].
+#include "glisson/scene/scene.h"
+#include "scene/parse/section.h"
+#include "scene/parse/sections.h"
+#include "scene/run/result_names.h"
+
+namespace glisson::scene {
+namespace {
+
+std::vector<Choice<Axes>> axes_choices() {
+  return {{"xyz", {true, true, true}, "all"}, {"xy", {true, true, false}, ""}, {"xz", {true, false, true}, ""},
+          {"yz", {false, true, true}, ""},    {"x", {true, false, false}, ""}, {"y", {false, true, false}, ""},
+          {"z", {false, false, true}, ""}};
+}
+
+bool along_an_axis(const Vec3d& d) { return (d.x != 0.0) + (d.y != 0.0) + (d.z != 0.0) == 1; }
+
+/// What must hold of a tool's direction.
+void check_tool(ToolSpec& tool, const Node& table, const Place& place) {
+  tool.origin = place.text();
+  const std::string unfit = unfit_as_table(tool.name);
+  if (const Node* name = table.find("name"); name && !unfit.empty()) place.complain(*name, "name", unfit);
+  const Vec3d& d = tool.motion.direction;
+  const Node* given = table.find("direction");
+  if (!(norm(d) > 0.0) || !std::isfinite(norm(d))) {
+    place.complain(*given, "direction",
+                   Codec<Vec3d>::show(d) + " has no direction; give a vector that is not zero, such as [0, 0, -1]");
+  } else if (tool.sideways_free && !along_an_axis(d)) {
+    place.complain(
+        *given, "direction",
+        Codec<Vec3d>::show(d) +
+            " is not along an axis, which `sideways = \"free\"` needs; use sideways = \"blocked\" or turn the mesh");
+  }
+}
+
+}  // namespace
+
+const SectionSpec& implicit_section() {
+  static const SectionSpec section = [] {
+    using Options = ImplicitOptions;
+    Section<Options> s("motion.implicit", "What the integrators implicit and static do.");
+    s.choice<TimeScheme>("scheme", &Options::scheme,
+                         {{"backward_euler", TimeScheme::backward_euler, "first order; damps what it cannot resolve"},
+                          {"newmark", TimeScheme::newmark, "second order, keeps the energy of a linear body"},
+                          {"generalised_alpha", TimeScheme::generalised_alpha,
+                           "second order, damps what it cannot resolve by `spectral_radius`"}},
+                         "scheme in time, of integrator implicit");
+    s.key("spectral_radius", &Options::spectral_radius, "ρ∞ of generalised_alpha").in("-").within(between(0, 1));
+    s.key("largest_step_s", &Options::largest_step, "where an automatic step begins, and above which it never grows")
+        .in("s")
+        .within(above(0))
+        .otherwise("0.01, static 0.05");
+    s.key("tolerance", &Options::tolerance, "forces out of balance over the largest forces")
+        .in("-")
+        .within(between(1e-13, 1e-2));
+    s.key("most_iterations", &Options::most_iterations, "of Newton's method, before a step is cut in two")
+        .within(between(1, 1000));
+    s.key("most_cuts", &Options::most_cuts, "how often a step is cut in two before the run stops")
+        .within(between(0, 40));
+    s.choice<Preconditioner>("preconditioner", &Options::preconditioner,
+                             {{"auto", Preconditioner::automatic, "by the size of the body"},
+                              {"factorised", Preconditioner::factorised, "sparse Cholesky, kept as long as it serves"},
+                              {"block_diagonal", Preconditioner::block_diagonal, "3 × 3 a vertex"}},
+                             "what speeds up the linear solves");
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& motion_section() {
+  static const SectionSpec section = [] {
+    Section<Variant> s("motion", "How time runs: the integrator, its step, damping, gravity, and when the run ends.");
+    s.choice<Integrator>(
+        "integrator", [](Variant & v) -> auto& { return v.simulation.integrator; },
+        {{"explicit", Integrator::explicit_,
+          "the paper's equation 4: displacements from forces at the start of the step"},
+         {"semi_implicit", Integrator::semi_implicit, "the same, viscosity taken at the end of the step"},
+         {"implicit", Integrator::implicit, "Newton's method each step, stable at any step"},
+         {"static", Integrator::static_, "equilibrium without inertia and viscosity; time orders motions and loads"}},
+        "how the body is advanced in time");
+    s.key(
+         "step_s", [](Variant & v) -> auto& { return v.simulation.step; },
+         "time step h; \"auto\" takes 0.9 of the stable step and follows the tissue, implicit and static as much as "
+         "converges")
+        .in("s")
+        .within(above(0))
+        .otherwise("\"auto\"")
+        .advise("\"auto\" chooses the largest safe step")
+        .accepts_auto = true;
+    s.key(
+         "mass_scaling_step_s", [](Variant & v) -> auto& { return v.simulation.mass_scaling_step; },
+         "gives mass to just those tets whose own bound of the step is shorter, until it is that; explicit and "
+         "semi_implicit. `glisson check` says which tets and how much")
+        .in("s")
+        .within(above(0))
+        .otherwise("no mass is added");
+    s.table(
+        "implicit", implicit_section(), [](Variant & v) -> auto& { return v.simulation.implicit; },
+        "what the integrators implicit and static do");
+    s.choice<Precision>(
+        "precision", [](Variant & v) -> auto& { return v.simulation.precision; },
+        {{"single", Precision::single_precision, "elements in float, state in double"},
+         {"double", Precision::double_precision, "everything in double"}},
+        "precision of the element arithmetic");
+    s.key(
+         "damping_rate_per_s", [](Variant & v) -> auto& { return v.simulation.damping_rate; },
+         "nodal damping in proportion to mass, γ/m")
+        .in("1/s")
+        .within(at_least(0));
+    s.key(
+         "nodal_damping_kg_per_s", [](Variant & v) -> auto& { return v.simulation.nodal_damping; },
+         "nodal damping γ, equal at all vertices, added to it")
+        .in("kg/s")
+        .within(at_least(0));
+    s.key(
+         "gravity_m_s2", [](Variant & v) -> auto& { return v.simulation.gravity; }, "gravity")
+        .in("m/s²");
+    s.key(
+         "gravity_ramp_s", [](Variant & v) -> auto& { return v.simulation.gravity_ramp; },
+         "time over which gravity grows from 0")
+        .in("s")
+        .within(at_least(0));
+    s.choice<OnInversion>(
+        "on_inversion", &Variant::on_inversion,
+        {{"go_on", OnInversion::go_on, "count them and go on"}, {"stop", OnInversion::stop, "end the run there"}},
+        "what to do when a tetrahedron turns inside out");
+    s.key("duration_s", &Variant::duration, "time simulated")
+        .in("s")
+        .within(above(0))
+        .otherwise("until the last tool has ended its motion");
+    s.key("max_steps", &Variant::max_steps, "the run ends after that many steps")
+        .within(between(1, Codec<std::uint64_t>::kLargest))
+        .otherwise("no limit");
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& fixed_section() {
+  static const SectionSpec section = [] {
+    Section<FixedSpec> s("fixed", "Holds the vertices of a set where they are.");
+    s.key("set", &FixedSpec::set, "name of a vertex set").must();
+    s.choice<Axes>("axes", &FixedSpec::axes, axes_choices(), "components that are held").otherwise("\"xyz\"");
+    s.finish([](FixedSpec& x, const Node&, const Place& place) { x.origin = place.text(); });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& load_section() {
+  static const SectionSpec section = [] {
+    Section<LoadSpec> s("load", "A force on the vertices of a set, spread by equal parts.");
+    s.key("set", &LoadSpec::set, "name of a vertex set").must();
+    s.key("force_N", &LoadSpec::force, "the whole force").in("N").must();
+    s.key("ramp_s", &LoadSpec::ramp, "time over which it grows from 0, linearly").in("s").within(at_least(0));
+    s.finish([](LoadSpec& x, const Node&, const Place& place) { x.origin = place.text(); });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& tool_section() {
+  static const SectionSpec section = [] {
+    Section<ToolSpec> s("tool",
+                        "A tool that presses: the vertices of a set are moved along a direction, and the force that "
+                        "this takes is measured.");
+    const auto motion = [](auto member) {
+      return [member](ToolSpec & t) -> auto& { return t.motion.*member; };
+    };
+    s.key("name", &ToolSpec::name, "name; no two tools of an experiment share one");
+    s.key("set", &ToolSpec::set, "name of the vertex set it moves").must();
+    s.key("direction", motion(&PressMotion::direction), "direction of pressing, of any length").in("-");
+    s.key<Milli>("velocity_mm_s", motion(&PressMotion::velocity), "speed").in("mm/s").within(above(0));
+    s.key<Milli>("depth_mm", motion(&PressMotion::depth), "how far it presses").in("mm").within(above(0));
+    s.key("start_s", motion(&PressMotion::start),
+          "when the tool takes hold and its motion begins; until then its vertices are free")
+        .in("s")
+        .within(at_least(0));
+    s.key("ramp_s", motion(&PressMotion::ramp), "time over which the speed rises from 0; 0: at once, as in the paper")
+        .in("s")
+        .within(at_least(0));
+    s.key("hold_s", motion(&PressMotion::hold), "how long it rests at depth").in("s").within(at_least(0));
+    s.key("returns", motion(&PressMotion::returns), "withdraw at the same speed after the hold");
+    s.table(
+        "record", record_section(), [](ToolSpec & t) -> auto& { return t.record.emplace(); },
+        "a recorded way, in place of speed and depth");
+    s.choice<bool>("sideways", &ToolSpec::sideways_free,
+                   {{"blocked", false, "the vertices move with the tool in all components"},
+                    {"free", true, "only along the direction, which must be along an axis: no friction"}},
+                   "what holds across the direction");
+    s.spec().exclusions = {
+        {{{"record"}, {"velocity_mm_s", "depth_mm", "start_s", "ramp_s", "hold_s", "returns"}}, false}};
+    s.finish(check_tool);
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& output_section() {
+  static const SectionSpec section = [] {
+    Section<OutputSpec> s("output", "How much of the run is kept.");
+    s.key("sample_rate_hz", &OutputSpec::sample_rate, "lines of forces.csv per second simulated")
+        .in("Hz")
+        .within(above(0));
+    s.key("frames", &OutputSpec::frames, "states of the whole body kept over the run; 0: none")
+        .within(between(0, 100000));
+    return s.spec();
+  }();
+  return section;
+}
+
+}  // namespace glisson::scene

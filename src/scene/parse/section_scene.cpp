@@ -1,0 +1,112 @@
+// section_scene.cpp — the top level: what a scene says once, and what each of its variants consists of.
+#include "glisson/scene/scene.h"
+#include "scene/parse/section.h"
+#include "scene/parse/sections.h"
+#include "scene/run/result_names.h"
+
+namespace glisson::scene {
+const SectionSpec& measured_section() {
+  static const SectionSpec section = [] {
+    using M = MeasuredSpec;
+    Section<M> s("chart.measured",
+                 "Points from a .csv, whose first line names its columns, drawn over the lines of a chart.");
+    s.key("path", &M::path, "the file, relative to the scene").must();
+    s.key("label", &M::label, "text for the legend");
+    s.key("x", &M::x, "its column along the x axis").must();
+    s.key("y", &M::y, "its column along the y axis").must();
+    s.key("x_offset", &M::x_offset, "taken off x, in its own unit, before it is scaled").in("-");
+    s.key("x_scale", &M::x_scale, "factor on x for display").in("-");
+    s.key("y_scale", &M::y_scale, "factor on y for display").in("-");
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& chart_section() {
+  static const SectionSpec section = [] {
+    Section<ChartSpec> s("chart",
+                         "A chart of the report. Without any, the report shows force against depth and against time.");
+    s.key("title", &ChartSpec::title, "heading").must();
+    s.key(
+         "x", [](ChartSpec & c) -> auto& { return c.x.column; },
+         "column of forces.csv along the x axis, e.g. `depth_m`")
+        .must();
+    s.key(
+         "y", [](ChartSpec & c) -> auto& { return c.y.column; },
+         "column of forces.csv along the y axis, e.g. `elastic_N`")
+        .must();
+    s.key(
+         "x_scale", [](ChartSpec & c) -> auto& { return c.x.scale; },
+         "factor on x for display; 1000 shows metres as millimetres")
+        .in("-");
+    s.key(
+         "y_scale", [](ChartSpec & c) -> auto& { return c.y.scale; }, "factor on y for display")
+        .in("-");
+    s.key(
+         "x_label", [](ChartSpec & c) -> auto& { return c.x.label; }, "label of the x axis, with unit")
+        .otherwise("the column");
+    s.key(
+         "y_label", [](ChartSpec & c) -> auto& { return c.y.label; }, "label of the y axis, with unit")
+        .otherwise("the column");
+    s.tables("measured", measured_section(), &ChartSpec::measured, "points that were measured");
+    s.key("variants", &ChartSpec::variants, "names of the variants shown").otherwise("all");
+    s.finish([](ChartSpec& c, const Node&, const Place&) {
+      for (AxisSpec* axis : {&c.x, &c.y}) {
+        if (axis->label.empty()) axis->label = axis->column;
+      }
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& variant_section() {
+  static const SectionSpec section = [] {
+    Section<Variant> s("variant", "One experiment beside others in the same scene: its name, and whatever differs.");
+    s.key("name", &Variant::name, "name, unique, and fit for a folder: its results go to `OUT/NAME/`")
+        .otherwise("**required**");
+    s.key("label", &Variant::label, "text for legends").otherwise("the name");
+    s.table("mesh", mesh_section(), &Variant::mesh, "the body's mesh").must();
+    s.named_tables("sets", selection_section(), &Variant::sets, "vertex sets by place");
+    s.table("tissue", tissue_section(), &Variant::tissue, "what the body is made of");
+    s.tables("region", region_section(), &Variant::regions, "parts with a tissue of their own");
+    s.table(
+        "motion", motion_section(), [](Variant& v) -> Variant& { return v; }, "time, damping, gravity");
+    s.tables("fixed", fixed_section(), &Variant::fixed, "sets that are held");
+    s.tables("load", load_section(), &Variant::loads, "forces on sets");
+    s.tables("tool", tool_section(), &Variant::tools, "what presses by moving vertices");
+    s.tables("instrument", instrument_section(), &Variant::instruments, "what presses in contact, and pierces");
+    s.table(
+        "container", container_section(), [](Variant & v) -> auto& { return v.container.emplace(); },
+        "a rigid vessel around the body");
+    s.tables("capsule", capsule_section(), &Variant::capsules, "membranes on the surface");
+    s.table("output", output_section(), &Variant::output, "how much is kept");
+    for (const KeySpec& key : scene_section().keys) s.spec().other_words.push_back(key.name);
+    s.finish([](Variant& v, const Node& table, const Place& place) {
+      const Node* name = table.find("name");
+      const std::string unfit = unfit_as_folder(v.name);
+      if (name && !unfit.empty()) place.complain(*name, "name", unfit);
+      if (v.label.empty()) v.label = v.name;
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& scene_section() {
+  static const SectionSpec section = [] {
+    Section<Scene> s("", "What a scene says once, before any heading.");
+    s.key("title", &Scene::title, "heading of the report").otherwise("the file's name");
+    s.key("description", &Scene::description, "what the experiment is, in a few sentences");
+    s.key("notes", &Scene::notes, "choices made where the source of the experiment is silent, and why").otherwise("[]");
+    s.tables("chart", chart_section(), &Scene::charts, "charts of the report");
+    s.bare({.name = "variant",
+            .help = "experiments that differ in some keys",
+            .type = ValueType::table,
+            .shape = Shape::list});
+    return s.spec();
+  }();
+  return section;
+}
+
+}  // namespace glisson::scene

@@ -1,0 +1,44 @@
+// sections.h — the sections of a scene.
+#pragma once
+
+#include <string>
+
+#include "glisson/math.h"
+#include "scene/parse/schema.h"
+
+namespace glisson::scene {
+
+const SectionSpec& mesh_section();               ///< fills MeshSource
+const SectionSpec& box_section();                ///< fills Selection::Box
+const SectionSpec& sphere_section();             ///< fills Selection::Sphere
+const SectionSpec& selection_section();          ///< fills Selection
+const SectionSpec& law_section();                ///< fills StiffnessLaw
+const SectionSpec& hyperelastic_section();       ///< fills HyperelasticLaw
+const SectionSpec& fibres_section();             ///< fills Fibres
+const SectionSpec& maxwell_section();            ///< fills MaxwellBranch
+const SectionSpec& tissue_section();             ///< fills Tissue
+const SectionSpec& region_section();             ///< fills RegionSpec
+const SectionSpec& implicit_section();           ///< fills ImplicitOptions
+const SectionSpec& motion_section();             ///< fills Variant
+const SectionSpec& fixed_section();              ///< fills FixedSpec
+const SectionSpec& load_section();               ///< fills LoadSpec
+const SectionSpec& record_section();             ///< fills RecordSpec
+const SectionSpec& tool_section();               ///< fills ToolSpec
+const SectionSpec& rupture_section();            ///< fills Rupture
+const SectionSpec& tip_section();                ///< fills TipResistance
+const SectionSpec& shaft_friction_section();     ///< fills ShaftFriction
+const SectionSpec& stroke_section();             ///< fills StrokesSpec::One
+const SectionSpec& instrument_motion_section();  ///< fills InstrumentMotion
+const SectionSpec& instrument_section();         ///< fills InstrumentSpec
+const SectionSpec& container_section();          ///< fills ContainerSpec
+const SectionSpec& capsule_section();            ///< fills CapsuleSpec
+const SectionSpec& output_section();             ///< fills OutputSpec
+const SectionSpec& measured_section();           ///< fills MeasuredSpec
+const SectionSpec& chart_section();              ///< fills ChartSpec
+const SectionSpec& variant_section();            ///< one experiment, complete; fills Variant
+const SectionSpec& scene_section();              ///< what a scene says once; fills Scene
+
+/// Complains about a direction that has no length.
+void require_direction(const Vec3d& direction, const Node& table, const std::string& key, const Place& place);
+
+}  // namespace glisson::scene

@@ -1,0 +1,233 @@
+// run_variant.cpp — the time loop of a variant and what it shows to its observer.
+//
+//   ┌─ stretch of steps, timed as one: nothing but step() and three comparisons a step ─┐
+//   │ step step step … until a sample or a frame is due, or about 20 ms have passed     │
+//   └──────────────┬────────────────────────────────────────────────────────────────────┘
+//                  ▼ not timed: sample, frame, progress
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "glisson/scene/scene.h"
+
+namespace glisson {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+class Run {
+ public:
+  Run(const Variant& variant, BuiltVariant& built, RunObserver& observer, const std::atomic<bool>& stop);
+  RunSummary to_end();
+
+ private:
+  bool finished() const;
+  double fraction(double time, std::uint64_t steps) const;
+  bool sample_due() const { return next_sample_ < next_force_time() + 0.5 * simulation_.step_size(); }
+  /// Time that the forces after the next step are of: its start, or its end for the schemes that solve for it.
+  double next_force_time() const { return simulation_.time() + (forces_at_end_ ? simulation_.step_size() : 0.0); }
+  bool frame_due() const;
+  void stretch();
+  bool step();
+  void take_sample();
+  void tell_events();
+  void take_frame();
+  void show_progress();
+  void summarise();
+
+  const Variant& variant_;
+  Simulation& simulation_;
+  BuiltVariant& built_;
+  RunObserver& observer_;
+  const std::atomic<bool>& stop_;
+  double duration_;
+  std::uint64_t most_steps_;
+  bool forces_at_end_;
+
+  Sample sample_;
+  RunSummary summary_;
+  double force_time_ = 0.0;  ///< that the forces of the last step made are of [s]
+  std::uint64_t samples_due_ = 0;
+  double next_sample_ = 0.0;  ///< [s]
+  int frames_taken_ = 0;
+  std::vector<std::size_t> events_told_;  ///< per instrument
+  std::vector<Motion> records_;           ///< per tool; none where it does not follow a record
+  bool ended_ = false, sampled_ = true, framed_ = false, forces_current_ = false;
+  double stepping_s_ = 0.0;
+  std::uint64_t stretch_steps_ = 1;
+  Clock::time_point begin_ = Clock::now(), last_progress_ = begin_;
+};
+
+Run::Run(const Variant& variant, BuiltVariant& built, RunObserver& observer, const std::atomic<bool>& stop)
+    : variant_(variant), simulation_(built.simulation), built_(built), observer_(observer), stop_(stop),
+      duration_(run_duration(variant)), most_steps_(variant.max_steps.value_or(std::uint64_t(-1))),
+      forces_at_end_(variant.simulation.integrator == Integrator::implicit ||
+                     variant.simulation.integrator == Integrator::static_) {
+  sample_.depths.resize(built.tools.size());
+  sample_.tools.resize(built.tools.size());
+  sample_.supports.resize(built.supports.size());
+  sample_.instruments.resize(built.instruments.size());
+  events_told_.resize(built.instruments.size(), 0);
+  for (const ToolSpec& tool : variant.tools) {
+    records_.push_back(tool.record || tool.path ? tool_path(tool).way : Motion{});
+  }
+}
+
+/// The last step is the one that ends nearest to the duration.
+bool Run::finished() const {
+  const bool at_end = simulation_.steps() > 0 && duration_ - simulation_.time() <= 0.5 * simulation_.step_size();
+  return ended_ || at_end || simulation_.steps() >= most_steps_;
+}
+
+/// How much of the run is behind it at a time and a number of steps, in [0, 1].
+double Run::fraction(double time, std::uint64_t steps) const {
+  return std::min(1.0, std::max(time / duration_, static_cast<double>(steps) / static_cast<double>(most_steps_)));
+}
+
+/// Frames are evenly spaced over the run; the one nearest to each time is taken.
+bool Run::frame_due() const {
+  if (frames_taken_ >= variant_.output.frames || variant_.output.frames < 2) return false;
+  const double now = fraction(simulation_.time() + 0.5 * simulation_.step_size(), simulation_.steps());
+  return now >= static_cast<double>(frames_taken_) / (variant_.output.frames - 1);
+}
+
+/// One step; false where it was not made.
+bool Run::step() {
+  const double start = simulation_.time();
+  const StepResult result = built_.step();
+  if (!result.inverted_tets.empty()) {
+    if (summary_.first_inversion_s < 0.0) summary_.first_inversion_s = start;
+    summary_.inverted_tets_most = std::max(summary_.inverted_tets_most, result.inverted_tets.size());
+  }
+  using End = RunSummary::End;
+  const bool made = result.made();
+  if (result.status == StepStatus::step_too_large) summary_.end = End::stopped_unstable;
+  if (result.status == StepStatus::not_finite) summary_.end = End::stopped_not_finite;
+  if (result.status == StepStatus::not_converged) summary_.end = End::stopped_not_converged;
+  if (result.status == StepStatus::not_held) summary_.end = End::stopped_not_held;
+  if (!made) summary_.trouble = result.message;
+  const bool stops = result.status == StepStatus::inverted && variant_.on_inversion == OnInversion::stop;
+  if (stops) summary_.end = End::stopped_inverted;
+  ended_ = !made || stops;
+  forces_current_ = made;
+  if (!made) return false;
+  force_time_ = simulation_.force_time();
+  summary_.step_s = simulation_.step_size();  // of this step: it may have become smaller within it
+  sampled_ = framed_ = false;
+  return true;
+}
+
+/// Steps until something is due. Only this is timed.
+void Run::stretch() {
+  const Clock::time_point begin = Clock::now();
+  const std::uint64_t first = simulation_.steps(), last = first + stretch_steps_;
+  bool due = false;
+  while (!due && !finished() && simulation_.steps() < last) {
+    if (stop_.load(std::memory_order_relaxed)) {
+      summary_.end = RunSummary::End::interrupted;
+      ended_ = true;
+      break;
+    }
+    due = sample_due();
+    if (!step()) break;
+    due = due || frame_due();
+  }
+  stepping_s_ += seconds_since(begin);
+  const auto steps = static_cast<double>(simulation_.steps());
+  if (steps > 0)
+    stretch_steps_ = static_cast<std::uint64_t>(std::clamp(0.02 * steps / std::max(stepping_s_, 1e-9), 1.0, 4096.0));
+}
+
+/// Forces, depths and energies of the instant that the forces are of.
+void Run::take_sample() {
+  sample_.time = force_time_;
+  for (std::size_t i = 0; i < built_.tools.size(); ++i) {
+    const ToolSpec& tool = variant_.tools[i];
+    const Vec3d direction = tool.motion.direction * (1.0 / norm(tool.motion.direction));
+    sample_.depths[i] = records_[i] ? dot(records_[i](force_time_), direction) : press_depth(tool.motion, force_time_);
+    sample_.tools[i] = simulation_.force(built_.tools[i]);
+    summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(sample_.tools[i].total(), direction)));
+  }
+  for (std::size_t i = 0; i < built_.supports.size(); ++i) sample_.supports[i] = simulation_.force(built_.supports[i]);
+  for (std::size_t i = 0; i < built_.instruments.size(); ++i) {
+    const Instrument& x = *built_.instruments[i];
+    sample_.instruments[i] = {x.force_depth(), x.forces()};
+    summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(x.forces().total(), x.direction())));
+  }
+  if (built_.container) sample_.container = built_.container->loads();
+  sample_.energies = simulation_.energies();
+  tell_events();
+  observer_.on_sample(sample_);
+  sampled_ = true;
+  const double passed = (force_time_ + 0.5 * summary_.step_s) * variant_.output.sample_rate;
+  samples_due_ = std::max(samples_due_ + 1, static_cast<std::uint64_t>(std::min(std::ceil(passed), 9e15)));
+  next_sample_ = static_cast<double>(samples_due_) / variant_.output.sample_rate;
+}
+
+void Run::tell_events() {
+  for (std::size_t i = 0; i < built_.instruments.size(); ++i) {
+    const std::vector<InstrumentEvent>& events = built_.instruments[i]->events();
+    for (std::size_t& told = events_told_[i]; told < events.size(); ++told) observer_.on_event({i, events[told]});
+  }
+}
+
+void Run::take_frame() {
+  observer_.on_frame(simulation_);
+  framed_ = true;
+  ++frames_taken_;
+  while (frame_due()) ++frames_taken_;
+}
+
+void Run::show_progress() {
+  if (seconds_since(last_progress_) < 0.1) return;
+  last_progress_ = Clock::now();
+  observer_.on_progress(fraction(simulation_.time(), simulation_.steps()));
+}
+
+void Run::summarise() {
+  summary_.vertices = simulation_.mesh().vertices.size();
+  summary_.tets = simulation_.mesh().tets.size();
+  summary_.steps = simulation_.steps();
+  summary_.time_s = simulation_.time();
+  summary_.stable_step_s = simulation_.stable_step();
+  if (summary_.steps == 0) summary_.step_s = simulation_.step_size();
+  summary_.wall_s = seconds_since(begin_);
+  const double tet_steps = static_cast<double>(summary_.tets) * static_cast<double>(summary_.steps);
+  summary_.ns_per_tet_step = tet_steps > 0.0 ? 1e9 * stepping_s_ / tet_steps : 0.0;
+  summary_.energies = simulation_.energies();
+  summary_.mass_added_kg = simulation_.mass_scaling().added;
+  summary_.state_hash = simulation_.state_hash();
+}
+
+RunSummary Run::to_end() {
+  observer_.on_start(variant_, simulation_);
+  observer_.on_built(built_);
+  begin_ = last_progress_ = Clock::now();
+  if (variant_.output.frames > 1) take_frame();
+  while (!finished()) {
+    const std::uint64_t before = simulation_.steps();
+    stretch();
+    const bool stepped = simulation_.steps() > before && forces_current_;
+    if (stepped && (next_sample_ < force_time_ + 0.5 * summary_.step_s)) take_sample();
+    if (stepped && frame_due()) take_frame();
+    show_progress();
+  }
+  if (!sampled_ && forces_current_) take_sample();
+  if (!framed_ && simulation_.steps() > 0 && variant_.output.frames > 0) take_frame();
+  tell_events();
+  summarise();
+  observer_.on_end(summary_);
+  return summary_;
+}
+
+}  // namespace
+
+RunSummary run_variant(const Variant& variant, const MeshLoader& load, RunObserver& observer,
+                       const std::atomic<bool>& stop) {
+  BuiltVariant built = build_variant(variant, load);
+  return Run(variant, built, observer, stop).to_end();
+}
+
+}  // namespace glisson
