@@ -23,7 +23,7 @@
 namespace glisson::app {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kBenchFooter =
     "Measures the machine's multiply-add peak and memory bandwidth, then the step of bodies that are generated here,\n"
     "and holds one against the other. Takes about a minute, with --quick a few seconds; close other programs. Exit\n"
     "status 1 where a body ends in another state on another number of threads.\n"
@@ -191,7 +191,7 @@ void add_bench(CLI::App& program, Action& action) {
   const auto options = std::make_shared<BenchOptions>();
   add_bench_options(*command, *options);
   const CLI::App* realtime = add_realtime(*command, action);
-  command->footer(kFooter);
+  command->footer(kBenchFooter);
   command->callback([options, command, realtime, &action] {
     if (realtime->parsed()) return require_no_options(*command);
     action = [options] { return bench(*options); };

@@ -20,7 +20,7 @@
 namespace glisson::app {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kCheckFooter =
     "Reads the scene, builds every variant, steps it for a tenth of a second of your time and prints mesh, vertex\n"
     "sets, tissue, stable step, and the steps and the time a run will take. Writes nothing. Exit status 2 if the\n"
     "scene cannot be run.\n"
@@ -213,7 +213,7 @@ void add_check(CLI::App& program, Action& action) {
   const auto options = std::make_shared<CheckOptions>();
   add_scene_options(*command, options->scene);
   add_threads_option(*command, options->threads);
-  command->footer(kFooter);
+  command->footer(kCheckFooter);
   command->callback([options, &action] { action = [options] { return check(*options); }; });
 }
 

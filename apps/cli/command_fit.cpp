@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 using fit::FitResult;
 
-constexpr const char* kFooter =
+constexpr const char* kFitFooter =
     "Writes DIR/{tissue.toml, fit.json, report.html, fit.toml}. tissue.toml is a tissue for scenes:\n"
     "[tissue] file = \"DIR/tissue.toml\". Ctrl-C keeps what is known; the same command goes on from there.\n"
     "docs/fit.md explains, docs/fit_file.md lists every key of FIT.toml.\n"
@@ -195,7 +195,7 @@ void add_fit(CLI::App& program, Action& action) {
   add_threads_option(*command, options->threads);
   command->get_option("--threads")->description("threads; results do not depend on it");
   command->add_flag("--quiet", options->quiet, "print nothing but errors and the report's path");
-  command->footer(kFooter);
+  command->footer(kFitFooter);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

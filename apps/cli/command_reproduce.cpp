@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFooter =
+constexpr const char* kReproduceFooter =
     "Runs the scenes of scenes/paper/, which travel inside the program, checks what can be checked and writes\n"
     "DIR/<scene>/<variant>/ and one DIR/report.html. Takes a minute or two; with --quick some seconds: figure 3 ends\n"
     "after 0.1 s of motion.\n"
@@ -172,7 +172,7 @@ void add_reproduce(CLI::App& program, Action& action) {
   command->add_option("--out", options->out, "folder of the results")->type_name("DIR")->capture_default_str();
   add_threads_option(*command, options->threads);
   command->add_flag("--quick", options->quick, "end figure 3 after 0.1 s of motion");
-  command->footer(kFooter);
+  command->footer(kReproduceFooter);
   command->callback([options, &action] { action = [options] { return reproduce(*options); }; });
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFooter =
+constexpr const char* kRunFooter =
     "Writes DIR/<variant>/{forces.csv, frames.pvd, frames/, view.jsonl, summary.json} and DIR/report.html.\n"
     "ParaView opens frames.pvd, `glisson view DIR` all of it.\n"
     "A former run in DIR is replaced; a folder that holds anything else is refused.\n"
@@ -84,7 +84,7 @@ void add_run(CLI::App& program, Action& action) {
       ->type_name("DIR");
   add_threads_option(*command, options->threads);
   command->add_flag("--quiet", options->quiet, "print nothing but errors and the report's path");
-  command->footer(kFooter);
+  command->footer(kRunFooter);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -20,7 +20,7 @@
 namespace glisson::app {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kViewFooter =
     "Runs one variant at the pace of the clock and serves a page to watch and steer it; prints the address to open.\n"
     "Only this machine is let in, and only with the token in the address. Ctrl-C ends it.\n"
     "SCENE may be the folder that `glisson run` wrote: the same page plays what was recorded.\n"
@@ -135,7 +135,7 @@ void add_view(CLI::App& program, Action& action) {
       ->type_name("N")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  command->footer(kFooter);
+  command->footer(kViewFooter);
   command->callback([options, &action] { action = [options] { return view_any(*options); }; });
 }
 

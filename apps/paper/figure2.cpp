@@ -24,10 +24,6 @@ struct Growth {
   bool crossed;
 };
 
-TetMesh no_file(const MeshFile& file) {
-  throw std::logic_error("a paper scene reads no file, got " + file.path.string());
-}
-
 /// Runs a variant step by step, so that the force and the state of the law are seen at the same instant.
 std::vector<Growth> growth_of(Variant variant) {
   variant.simulation.step = kEvenStep_s;

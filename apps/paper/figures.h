@@ -5,6 +5,7 @@
 #pragma once
 
 #include <map>
+#include <stdexcept>
 #include <string>
 
 #include "report/report_page.h"
@@ -14,6 +15,11 @@ namespace glisson::app {
 
 /// The recorded variants of one scene by name; only those whose run has finished.
 using Finished = std::map<std::string, const VariantRecorder*>;
+
+/// The paper's scenes make their meshes themselves.
+inline TetMesh no_file(const MeshFile& file) {
+  throw std::logic_error("a paper scene reads no file, got " + file.path.string());
+}
 
 /// Figure 2: tissue 2 against line and quadratic, the force steps of tissue 1 against tetrahedra that cross the
 /// threshold, the slow stiffness of the linear tissue.

@@ -16,10 +16,6 @@ constexpr int kRounds = 25;
 constexpr double kPaperFullNs = 84.6e3;  // per tet and iteration: 6.5 s / 100 / 768, 550 MHz Pentium II
 constexpr double kPaperRatio = 5.0;      // full over linear
 
-TetMesh no_file(const MeshFile& file) {
-  throw std::logic_error("a paper scene reads no file, got " + file.path.string());
-}
-
 struct Timing {
   std::string name, label;
   std::vector<double> ns;  // per tet and step, one a round

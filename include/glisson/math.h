@@ -59,6 +59,12 @@ T norm(const Vec3<T>& a) {
   return std::sqrt(dot(a, a));
 }
 
+/// v / |v|; v is not zero.
+template <class T>
+Vec3<T> unit(const Vec3<T>& v) {
+  return v * (T(1) / norm(v));
+}
+
 template <class T>
 constexpr Mat3<T> identity() {
   return {{{{T(1), T(0), T(0)}, {T(0), T(1), T(0)}, {T(0), T(0), T(1)}}}};

@@ -15,6 +15,13 @@ std::string count_text(std::size_t count, const std::string& singular, const std
   return std::to_string(count) + ' ' + (count == 1 ? singular : plural);
 }
 
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\v\f";
+  const auto first = text.find_first_not_of(kBlank);
+  return first == std::string_view::npos ? std::string_view{}
+                                         : text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
 std::string index_list(std::span<const std::uint32_t> indices, std::size_t shown) {
   std::string text;
   const std::size_t n = std::min(shown, indices.size());

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace glisson::detail {
 
@@ -13,6 +14,9 @@ std::string number_text(double value, int digits = 6);
 
 /// "1 tet", "3 tets": a count with its noun.
 std::string count_text(std::size_t count, const std::string& singular, const std::string& plural);
+
+/// Without blanks (space, tab, \\r, \\v, \\f) at both ends.
+std::string_view trimmed(std::string_view text);
 
 /// The first indices and how many more there are: "3, 17, 20 and 5 more".
 std::string index_list(std::span<const std::uint32_t> indices, std::size_t shown = 8);

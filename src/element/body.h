@@ -23,6 +23,11 @@ struct ElementRest {
   std::array<Vec3d, 3> s{};  ///< [1/m]
 };
 
+/// ∂N_a/∂X of all four vertices [1/m].
+inline std::array<Vec3d, 4> shape_gradients(const ElementRest& rest) {
+  return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
+}
+
 /// @param corners  rest positions of the four vertices [m], positively oriented
 ElementRest element_rest(const std::array<Vec3d, 4>& corners);
 

@@ -19,7 +19,7 @@ struct ValueType {
   Kind kind;
 };
 
-constexpr ValueType kTypes[] = {
+constexpr ValueType kValueTypes[] = {
     {"bit", 1, Kind::bits},
     {"char", 8, Kind::signed_integer},
     {"signed_char", 8, Kind::signed_integer},
@@ -39,9 +39,10 @@ constexpr ValueType kTypes[] = {
     {"utf8_string", 8, Kind::text},
 };
 
-const ValueType* find_type(std::string_view name) {
-  const auto* found = std::find_if(std::begin(kTypes), std::end(kTypes), [&](const auto& t) { return name == t.name; });
-  return found == std::end(kTypes) ? nullptr : found;
+const ValueType* find_value_type(std::string_view name) {
+  const auto* found =
+      std::find_if(std::begin(kValueTypes), std::end(kValueTypes), [&](const auto& t) { return name == t.name; });
+  return found == std::end(kValueTypes) ? nullptr : found;
 }
 
 bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
@@ -128,7 +129,7 @@ std::uint64_t LegacyVtkSource::count(const char* what) {
 
 std::string LegacyVtkSource::type() {
   std::string text = lower_case(word("a type"));
-  if (find_type(text) == nullptr) refuse("values of type \"" + text.substr(0, 40) + "\" are not read");
+  if (find_value_type(text) == nullptr) refuse("values of type \"" + text.substr(0, 40) + "\" are not read");
   return text;
 }
 
@@ -184,7 +185,7 @@ void LegacyVtkSource::skip_strings(std::uint64_t number) {
 }
 
 void LegacyVtkSource::values(std::uint64_t number, const std::string& type_name, std::vector<double>* keep) {
-  const ValueType& type = *find_type(type_name);
+  const ValueType& type = *find_value_type(type_name);
   if (type.kind == Kind::text) return skip_strings(number);
   if (binary_) {
     const std::string_view block = binary_block(number, type.bits);
@@ -200,7 +201,7 @@ void LegacyVtkSource::values(std::uint64_t number, const std::string& type_name,
 }
 
 std::vector<std::int64_t> LegacyVtkSource::integers(std::uint64_t number, const std::string& type_name) {
-  const ValueType& type = *find_type(type_name);
+  const ValueType& type = *find_value_type(type_name);
   if (type.bits < 32 || type.kind == Kind::real) {
     refuse("cells in values of type \"" + type_name + "\"; they must be integers of 32 or 64 bits");
   }

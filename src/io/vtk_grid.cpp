@@ -18,28 +18,29 @@ struct CellType {
   const char* plural;
 };
 
-constexpr CellType kTypes[] = {{1, 1, "vertices"},
-                               {2, 0, "poly-vertices"},
-                               {3, 2, "lines"},
-                               {4, 0, "polylines"},
-                               {5, 3, "triangles"},
-                               {6, 0, "triangle strips"},
-                               {7, 0, "polygons"},
-                               {8, 4, "pixels"},
-                               {9, 4, "quadrangles"},
-                               {10, 4, "tetrahedra"},
-                               {11, 8, "voxels"},
-                               {12, 8, "hexahedra"},
-                               {13, 6, "prisms"},
-                               {14, 5, "pyramids"},
-                               {21, 3, "3-node lines"},
-                               {22, 6, "6-node triangles"},
-                               {24, 10, "10-node tetrahedra"},
-                               {42, 0, "polyhedra"}};
+constexpr CellType kCellTypes[] = {{1, 1, "vertices"},
+                                   {2, 0, "poly-vertices"},
+                                   {3, 2, "lines"},
+                                   {4, 0, "polylines"},
+                                   {5, 3, "triangles"},
+                                   {6, 0, "triangle strips"},
+                                   {7, 0, "polygons"},
+                                   {8, 4, "pixels"},
+                                   {9, 4, "quadrangles"},
+                                   {10, 4, "tetrahedra"},
+                                   {11, 8, "voxels"},
+                                   {12, 8, "hexahedra"},
+                                   {13, 6, "prisms"},
+                                   {14, 5, "pyramids"},
+                                   {21, 3, "3-node lines"},
+                                   {22, 6, "6-node triangles"},
+                                   {24, 10, "10-node tetrahedra"},
+                                   {42, 0, "polyhedra"}};
 
-const CellType* find_type(int type) {
-  const auto* found = std::find_if(std::begin(kTypes), std::end(kTypes), [&](const auto& t) { return t.type == type; });
-  return found == std::end(kTypes) ? nullptr : found;
+const CellType* find_cell_type(int type) {
+  const auto* found =
+      std::find_if(std::begin(kCellTypes), std::end(kCellTypes), [&](const auto& t) { return t.type == type; });
+  return found == std::end(kCellTypes) ? nullptr : found;
 }
 
 std::optional<int> whole_number(double value) {
@@ -53,7 +54,7 @@ std::optional<int> whole_number(double value) {
 void VtkGrid::add_cell(int type, std::span<const std::int64_t> vertices) {
   const std::size_t cell = cells_++;
   const auto where = [&] { return name_ + ", cell " + std::to_string(cell); };
-  const CellType* known = find_type(type);
+  const CellType* known = find_cell_type(type);
   if (known != nullptr && known->points != 0 && known->points != vertices.size()) {
     fail(where(), "type " + std::to_string(type) + " (" + known->plural + ") takes " + std::to_string(known->points) +
                       " vertices; it has " + std::to_string(vertices.size()));

@@ -15,7 +15,7 @@ int sextet(char c) {
   return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+bool is_xml_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
 /// Bytes in their order, from raw data or from base64 text that may be padded in between.
 class ByteStream {
@@ -53,7 +53,7 @@ class ByteStream {
     while (have_ < 8) {
       if (position_ >= data_.size()) cut_off();
       const char c = data_[position_++];
-      if (is_space(c)) continue;
+      if (is_xml_space(c)) continue;
       if (c == '=') {  // what is left of the bits is padding
         have_ = 0;
         continue;

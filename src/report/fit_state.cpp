@@ -17,7 +17,7 @@
 namespace glisson {
 namespace {
 
-using Json = nlohmann::json;
+using FlatJson = nlohmann::json;
 
 constexpr int kFormat = 2;
 
@@ -37,16 +37,16 @@ class Fingerprint {
 };
 
 /// Over everything but itself; numbers are written so that they read back as the same, so the text is, too.
-std::string checksum(const Json& json) {
+std::string checksum(const FlatJson& json) {
   Fingerprint sum;
   sum.add(json_text(json.at("fingerprint")));
   sum.add(json_text(json.at("laws")));
   return sum.text();
 }
 
-Json start_json(const fit::StartRecord& s) {
+FlatJson start_json(const fit::StartRecord& s) {
   // a failed descent has an infinite cost, which JSON has no word for
-  const Json cost = std::isfinite(s.optimum.cost) ? Json(s.optimum.cost) : Json(nullptr);
+  const FlatJson cost = std::isfinite(s.optimum.cost) ? FlatJson(s.optimum.cost) : FlatJson(nullptr);
   return {{"from", s.from},
           {"to", s.optimum.scaled},
           {"cost", cost},
@@ -60,16 +60,16 @@ struct Damage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-const Json& member(const Json& json, const char* key, bool (Json::*is)() const, const char* kind) {
+const FlatJson& member(const FlatJson& json, const char* key, bool (FlatJson::*is)() const, const char* kind) {
   const auto found = json.is_object() ? json.find(key) : json.end();
   if (found == json.end() || !(*found.*is)()) throw Damage(fmt::format("`{}` is missing or no {}", key, kind));
   return *found;
 }
 
 /// Parameters on their scale from 0 to 1.
-std::vector<double> scaled_of(const Json& json, const char* key) {
+std::vector<double> scaled_of(const FlatJson& json, const char* key) {
   std::vector<double> list;
-  for (const Json& x : member(json, key, &Json::is_array, "list")) {
+  for (const FlatJson& x : member(json, key, &FlatJson::is_array, "list")) {
     const double z = x.is_number() ? x.get<double>() : -1.0;
     if (!(z >= 0.0 && z <= 1.0)) throw Damage(fmt::format("`{}` holds something else than numbers from 0 to 1", key));
     list.push_back(z);
@@ -78,45 +78,45 @@ std::vector<double> scaled_of(const Json& json, const char* key) {
   return list;
 }
 
-double cost_of(const Json& json) {
+double cost_of(const FlatJson& json) {
   if (json.contains("cost") && json["cost"].is_null()) return std::numeric_limits<double>::infinity();
-  const double cost = member(json, "cost", &Json::is_number, "number").get<double>();
+  const double cost = member(json, "cost", &FlatJson::is_number, "number").get<double>();
   if (!(cost >= 0.0)) throw Damage("a `cost` is below 0");
   return cost;
 }
 
-fit::StartRecord start_of(const Json& json) {
+fit::StartRecord start_of(const FlatJson& json) {
   fit::StartRecord s;
   s.from = scaled_of(json, "from");
   s.optimum.scaled = scaled_of(json, "to");
   if (s.from.size() != s.optimum.scaled.size()) throw Damage("`from` and `to` differ in length");
   s.optimum.cost = cost_of(json);
-  s.optimum.converged = member(json, "converged", &Json::is_boolean, "yes or no").get<bool>();
-  const auto iterations = member(json, "iterations", &Json::is_number_integer, "whole number").get<std::int64_t>();
+  s.optimum.converged = member(json, "converged", &FlatJson::is_boolean, "yes or no").get<bool>();
+  const auto iterations = member(json, "iterations", &FlatJson::is_number_integer, "whole number").get<std::int64_t>();
   if (iterations < 0 || iterations > std::numeric_limits<int>::max()) throw Damage("`iterations` is out of range");
   s.optimum.iterations = static_cast<int>(iterations);
-  s.optimum.message = member(json, "message", &Json::is_string, "text").get<std::string>();
+  s.optimum.message = member(json, "message", &FlatJson::is_string, "text").get<std::string>();
   return s;
 }
 
-fit::LawMemory law_of(const Json& json) {
+fit::LawMemory law_of(const FlatJson& json) {
   fit::LawMemory law;
-  for (const Json& s : member(json, "starts", &Json::is_array, "list")) {
+  for (const FlatJson& s : member(json, "starts", &FlatJson::is_array, "list")) {
     law.starts.push_back(start_of(s));
     if (law.starts.back().from.size() != law.starts.front().from.size()) throw Damage("`starts` differ in length");
   }
   if (!json.contains("forward")) return law;
-  law.forward = member(json, "forward", &Json::is_string, "text").get<std::string>();
-  law.speedup = member(json, "speedup", &Json::is_number, "number").get<double>();
+  law.forward = member(json, "forward", &FlatJson::is_string, "text").get<std::string>();
+  law.speedup = member(json, "speedup", &FlatJson::is_number, "number").get<double>();
   return law;
 }
 
 std::optional<fit::FitMemory> memory_of(const std::string& bytes, const std::string& fingerprint) {
-  const Json json = parse_json(bytes);
-  if (member(json, "format", &Json::is_number_integer, "whole number") != kFormat) return {};
-  member(json, "laws", &Json::is_object, "table");
-  member(json, "fingerprint", &Json::is_string, "text");
-  if (member(json, "checksum", &Json::is_string, "text") != checksum(json))
+  const FlatJson json = parse_json(bytes);
+  if (member(json, "format", &FlatJson::is_number_integer, "whole number") != kFormat) return {};
+  member(json, "laws", &FlatJson::is_object, "table");
+  member(json, "fingerprint", &FlatJson::is_string, "text");
+  if (member(json, "checksum", &FlatJson::is_string, "text") != checksum(json))
     throw Damage("its checksum is wrong, bytes have changed since it was written");
   if (json["fingerprint"] != fingerprint) return {};
   fit::FitMemory memory;
@@ -140,16 +140,16 @@ std::string fit_fingerprint(const fit::FitSpec& spec, const fit::FitOptions& opt
 }
 
 void write_fit_state(const std::filesystem::path& file, const std::string& fingerprint, const fit::FitMemory& memory) {
-  Json laws = Json::object();
+  FlatJson laws = FlatJson::object();
   for (const auto& [name, law] : memory) {
-    Json starts = Json::array();
+    FlatJson starts = FlatJson::array();
     for (const fit::StartRecord& s : law.starts) starts.push_back(start_json(s));
     laws[name] = {{"starts", starts}};
     if (law.forward.empty()) continue;
     laws[name]["forward"] = law.forward;
     laws[name]["speedup"] = law.speedup;
   }
-  Json json{{"format", kFormat}, {"fingerprint", fingerprint}, {"laws", laws}};
+  FlatJson json{{"format", kFormat}, {"fingerprint", fingerprint}, {"laws", laws}};
   json["checksum"] = checksum(json);
   write_whole(file, json_text(json) + "\n");
 }

@@ -13,8 +13,6 @@ const std::vector<std::string> kInstrumentColumns{"time_s",  "depth_m",  "force_
 const std::vector<std::string> kEnergyColumns{"energy_elastic_J", "energy_kinetic_J", "energy_dissipated_J",
                                               "work_tools_J", "work_loads_J"};
 
-Vec3d unit(const Vec3d& direction) { return direction * (1.0 / norm(direction)); }
-
 /// A set held by two entries (x by one, z by the other) has two sets of columns: the second is named <set>_2.
 std::vector<std::string> support_columns(const Variant& variant) {
   std::vector<std::string> columns;

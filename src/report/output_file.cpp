@@ -11,7 +11,7 @@
 namespace glisson {
 namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& reason) {
+[[noreturn]] void cannot_write(const std::filesystem::path& file, const std::string& reason) {
   throw OutputError(file.string() + ": cannot be written: " + reason +
                     "; choose a folder with room and write permission by --out DIR");
 }
@@ -28,14 +28,14 @@ std::string number_text(double value) {
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) refuse(folder, error.message());
+  if (error) cannot_write(folder, error.message());
 }
 
 void write_whole(const std::filesystem::path& file, std::string_view text) {
   std::filesystem::path part = file;
   part += ".part";
   std::FILE* out = std::fopen(part.c_str(), "wb");
-  if (out == nullptr) refuse(file, std::strerror(errno));
+  if (out == nullptr) cannot_write(file, std::strerror(errno));
   const bool written = std::fwrite(text.data(), 1, text.size(), out) == text.size();
   const int write_error = errno;
   const bool closed = std::fclose(out) == 0;
@@ -43,21 +43,21 @@ void write_whole(const std::filesystem::path& file, std::string_view text) {
   std::error_code error;
   if (!written || !closed) {
     std::filesystem::remove(part, error);
-    refuse(file, std::strerror(written ? close_error : write_error));
+    cannot_write(file, std::strerror(written ? close_error : write_error));
   }
   std::filesystem::rename(part, file, error);
-  if (error) refuse(file, error.message());
+  if (error) cannot_write(file, error.message());
 }
 
 LineFile::LineFile(std::filesystem::path file) : path_(std::move(file)), file_(std::fopen(path_.c_str(), "wb")) {
-  if (!file_) refuse(path_, std::strerror(errno));
+  if (!file_) cannot_write(path_, std::strerror(errno));
 }
 
 void LineFile::write(std::string_view line) {
   std::string text(line);
   text += '\n';
   const bool written = std::fwrite(text.data(), 1, text.size(), file_.get()) == text.size();
-  if (!written || std::fflush(file_.get()) != 0) refuse(path_, std::strerror(errno));
+  if (!written || std::fflush(file_.get()) != 0) cannot_write(path_, std::strerror(errno));
 }
 
 }  // namespace glisson

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 constexpr const char* kMark = ".glisson";
 constexpr const char* kMarkText = "Results of glisson. A new run into this folder replaces them.\n";
 
-[[noreturn]] void refuse(const fs::path& folder, const std::string& reason) {
+[[noreturn]] void refuse_folder(const fs::path& folder, const std::string& reason) {
   throw std::invalid_argument(folder.string() + ": " + reason +
                               "; choose another folder by --out DIR, or empty this one yourself");
 }
@@ -30,7 +30,8 @@ std::vector<fs::path> former_run(const fs::path& folder) {
         !entry.is_symlink() &&
         (entry.is_directory() || (entry.is_regular_file() && scene::is_result_file(entry.path().filename().string())));
     if (!ours)
-      refuse(folder, "holds " + entry.path().lexically_relative(folder).string() + ", which glisson did not write");
+      refuse_folder(folder,
+                    "holds " + entry.path().lexically_relative(folder).string() + ", which glisson did not write");
     found.push_back(entry.path());
   }
   return {found.rbegin(), found.rend()};
@@ -40,9 +41,9 @@ std::vector<fs::path> former_run(const fs::path& folder) {
 
 void prepare_output_folder(const fs::path& folder) {
   try {
-    if (fs::exists(folder) && !fs::is_directory(folder)) refuse(folder, "is a file, not a folder");
+    if (fs::exists(folder) && !fs::is_directory(folder)) refuse_folder(folder, "is a file, not a folder");
     if (fs::exists(folder) && !fs::is_empty(folder)) {
-      if (!fs::exists(folder / kMark)) refuse(folder, "is not empty and holds no results of glisson");
+      if (!fs::exists(folder / kMark)) refuse_folder(folder, "is not empty and holds no results of glisson");
       for (const fs::path& file : former_run(folder)) fs::remove(file);
     }
   } catch (const fs::filesystem_error& error) {

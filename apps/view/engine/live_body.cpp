@@ -13,8 +13,6 @@ namespace {
 
 constexpr double kShortestRamp = 0.002;  // over which a tool gathers speed [s]
 
-Vec3d unit(const Vec3d& v) { return v * (1.0 / norm(v)); }
-
 Vec3d any_across(const Vec3d& along) {
   return unit(cross(along, std::abs(along.z) < 0.9 ? Vec3d{0.0, 0.0, 1.0} : Vec3d{1.0, 0.0, 0.0}));
 }

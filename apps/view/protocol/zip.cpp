@@ -14,7 +14,7 @@ constexpr std::uint32_t kLocal = 0x04034b50, kEntry = 0x02014b50, kEnd = 0x06054
 constexpr std::uint16_t kVersion = 20, kUtf8 = 0x0800, kStored = 0, kTime = 0, kDate = (2000 - 1980) << 9 | 1 << 5 | 1;
 constexpr std::uint64_t kLocalBytes = 30, kEntryBytes = 46, kEndBytes = 22;  // of each, without a name
 
-class Bytes {
+class ZipBytes {
  public:
   void u16(std::uint16_t x) { put(x, 2); }
   void u32(std::uint32_t x) { put(x, 4); }
@@ -28,7 +28,7 @@ class Bytes {
 };
 
 /// What the head of a file and its entry in the directory share.
-void put_facts(Bytes& out, const std::string& name, std::uint32_t crc, std::uint64_t bytes) {
+void put_facts(ZipBytes& out, const std::string& name, std::uint32_t crc, std::uint64_t bytes) {
   out.u16(kVersion);
   out.u16(kUtf8);
   out.u16(kStored);
@@ -68,7 +68,7 @@ ZipArchive::ZipArchive(std::vector<ZipFile> files, const std::function<bool()>& 
 }
 
 std::string ZipArchive::directory() const {
-  Bytes out;
+  ZipBytes out;
   std::uint64_t begin = 0;
   for (const Entry& x : entries_) {
     out.u32(kEntry);
@@ -96,7 +96,7 @@ std::string ZipArchive::directory() const {
 bool ZipArchive::write(const TextSink& out) const {
   bool wanted = true;
   for (const Entry& x : entries_) {
-    Bytes head;
+    ZipBytes head;
     head.u32(kLocal);
     put_facts(head, x.file.name, x.crc, x.bytes);
     head.text(x.file.name);

@@ -19,7 +19,7 @@ using Line = ArchiveSender::Line;
 
 constexpr std::size_t kMostWaiting = 8;
 constexpr std::size_t kPiece = 64 * 1024;
-constexpr int kSendBuffer = 256 * 1024;                       // or the kernel keeps megabytes for a slow line
+constexpr int kArchiveSendBuffer = 256 * 1024;                // or the kernel keeps megabytes for a slow line
 constexpr auto kLookForStop = std::chrono::milliseconds(50);  // while a line stands still
 
 /// A line that is written to by a thread that waits for it.
@@ -30,7 +30,7 @@ class SlowLine {
     const auto protocol = line.local_endpoint().protocol();
     stream_.socket().assign(protocol, line.release());
     beast::error_code ignored;
-    stream_.socket().set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
+    stream_.socket().set_option(asio::socket_base::send_buffer_size(kArchiveSendBuffer), ignored);
   }
 
   /// @return false where it stood still, was closed, or the program ends

@@ -18,11 +18,6 @@ bool linear_tissue(const TissueBlock& block) {
          !t.lambda_law && !t.mu_law;
 }
 
-/// Shape gradients of the four vertices.
-std::array<Vec3d, 4> gradients(const ElementRest& rest) {
-  return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
-}
-
 bool is_symmetric(const TissueTangent& tangent) {
   for (std::size_t e = 0; e < tangent.local.size(); ++e) {
     const ElementTangent& C = tangent.local[e];
@@ -150,7 +145,7 @@ void TangentSystem::assemble(const TissueTangent& tangent) {
   for (std::size_t e = 0; e < body.elements.size(); ++e) {
     ElementTangent C = whole_tangent(tangent, e);
     C = (0.5 * terms_.weight * (C + C.transpose())).eval();
-    const std::array<Vec3d, 4> s = gradients(body.rest[e]);
+    const std::array<Vec3d, 4> s = shape_gradients(body.rest[e]);
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = 0; b < 4; ++b) {
         const Eigen::Matrix3d K = block_of(C, body.rest[e].volume, s[a], s[b]);
@@ -189,7 +184,7 @@ void TangentSystem::find_blocks() {
   std::vector<Eigen::Matrix3d> sum(body.vertex_count, Eigen::Matrix3d::Zero());
   for (std::size_t e = 0; e < body.elements.size(); ++e) {
     const ElementTangent C = whole_tangent(tangent_, e);
-    const std::array<Vec3d, 4> s = gradients(body.rest[e]);
+    const std::array<Vec3d, 4> s = shape_gradients(body.rest[e]);
     for (std::size_t a = 0; a < 4; ++a) {
       const Eigen::Matrix3d K = block_of(C, body.rest[e].volume * terms_.weight, s[a], s[a]);
       sum[body.elements[e][a]] += 0.5 * (K + K.transpose());

@@ -9,12 +9,7 @@ namespace glisson {
 namespace {
 
 constexpr double kTolerance = 1e-6;  ///< of conjugate gradients
-constexpr int kMostIterations = 1000;
-
-/// The shape gradients of the four vertices.
-std::array<Vec3d, 4> gradients(const ElementRest& rest) {
-  return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
-}
+constexpr int kMostViscousIterations = 1000;
 
 }  // namespace
 
@@ -64,7 +59,7 @@ bool ViscousSystem::build(const Body& body, std::span<const double> nodal_dampin
     inner.emplace_back(row_[c], row_[c], body.masses[c / 3] + h * nodal_damping[c / 3]);
   for (const TissueBlock& block : body.blocks) {
     for (std::size_t e = block.begin; e < block.end; ++e) {
-      const std::array<Vec3d, 4> s = gradients(body.rest[e]);
+      const std::array<Vec3d, 4> s = shape_gradients(body.rest[e]);
       const double V = body.rest[e].volume, a = V * block.viscous.lambda, b = V * block.viscous.mu;
       for (std::size_t k = 0; k < 144; ++k) {  // a s_p s_qᵀ + b (s_q s_pᵀ + s_p·s_q I)
         const std::size_t p = k / 36, q = k / 9 % 4, i = k / 3 % 3, j = k % 3;
@@ -97,7 +92,7 @@ void ViscousSystem::iterate(Eigen::VectorXd& x) {
   Eigen::VectorXd more;
   const double rest = left.norm();
   if (rest > kTolerance * size) {
-    conjugate_gradients(product, nearly, left, kTolerance * size / rest, kMostIterations, more);
+    conjugate_gradients(product, nearly, left, kTolerance * size / rest, kMostViscousIterations, more);
     last_ += more;
   }
   x = last_;

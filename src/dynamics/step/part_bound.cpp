@@ -11,13 +11,9 @@ namespace glisson {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr std::size_t kRun = 32;  ///< elements of which the least step is kept
-constexpr double kRoom = 1.05;    ///< of asked over mass that a bound is made for
-constexpr double kSlack = 0.8;    ///< below this share of what was allowed for a better bound is worth a look
-
-std::array<Vec3d, 4> gradients(const ElementRest& rest) {
-  return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
-}
+constexpr std::size_t kRun = 32;      ///< elements of which the least step is kept
+constexpr double kMassMargin = 1.05;  ///< of asked over mass that a bound is made for
+constexpr double kSlack = 0.8;        ///< below this share of what was allowed for a better bound is worth a look
 
 std::size_t block_at(const Body& body, std::uint32_t e) {
   return static_cast<std::size_t>(&body.block_of(e) - body.blocks.data());
@@ -42,7 +38,7 @@ PartBound::PartBound(const Body& body, const detail::VertexStars& stars, std::ve
 }
 
 void PartBound::ask(std::uint32_t e) {
-  const std::array<Vec3d, 4> s = gradients(body_.rest[e]);
+  const std::array<Vec3d, 4> s = shape_gradients(body_.rest[e]);
   const double scale = body_.rest[e].volume * elastic_[block_at(body_, e)];
   for (std::size_t c = 0; c < 4; ++c) asks_[e][c] = static_cast<float>(scale * dot(s[c], s[c]));
 }
@@ -55,7 +51,7 @@ void PartBound::weigh(std::uint32_t vertex) {
     sum += asks_[e][corner];
   }
   asked_[vertex] = sum;
-  allowed_[vertex] = body_.masses[vertex] > 0.0 ? kRoom * sum / body_.masses[vertex] : 0.0;
+  allowed_[vertex] = body_.masses[vertex] > 0.0 ? kMassMargin * sum / body_.masses[vertex] : 0.0;
 }
 
 void PartBound::bound(std::uint32_t e) {
@@ -63,7 +59,7 @@ void PartBound::bound(std::uint32_t e) {
   const ElementRest& rest = body_.rest[e];
   if (!(rest.volume > 0.0)) return;
   const std::size_t b = block_at(body_, e);
-  const std::array<Vec3d, 4> s = gradients(rest);
+  const std::array<Vec3d, 4> s = shape_gradients(rest);
   Sym3<double> shared, own;  // Σ s sᵀ/W
   for (std::size_t c = 0; c < 4; ++c) {
     const std::uint32_t v = body_.elements[e][c];
@@ -107,7 +103,7 @@ void PartBound::take_out(const BodyChange& change, std::vector<std::uint32_t>& a
   for (const std::uint32_t v : change.touched) {
     const double mass = body_.masses[v];
     if (!(mass > 0.0) || (asked_[v] <= allowed_[v] * mass && asked_[v] >= kSlack * allowed_[v] * mass)) continue;
-    allowed_[v] = kRoom * asked_[v] / mass;
+    allowed_[v] = kMassMargin * asked_[v] / mass;
     look_around(v, around);
   }
 }

@@ -94,8 +94,8 @@ void StepControl::take_stiff() {
 
 /// Holds an automatic step back while stiffness rises by more than the room within a step.
 void StepControl::be_cautious(double rise) {
-  caution_ = rise > kRoom ? std::max(kLeastCaution, caution_ * std::log(kRoom) / std::log(rise))
-                          : std::min(1.0, kRecovery * caution_);
+  caution_ = rise > kStiffeningMargin ? std::max(kLeastCaution, caution_ * std::log(kStiffeningMargin) / std::log(rise))
+                                      : std::min(1.0, kRecovery * caution_);
 }
 
 bool StepControl::is_violent(const StiffElement& element) const {
@@ -126,7 +126,7 @@ void StepControl::limit_shape_change(std::span<const ShapeRate> changes) {
 std::vector<double> StepControl::level_of(std::span<const double> seen, double ahead) const {
   std::vector<double> level = at_least_one(seen);
   for (std::size_t b = 0; b < level.size(); ++b) {
-    if (!is_linear(body_.blocks[b])) level[b] = std::max(rest_level_[b], kRoom * ahead * level[b]);
+    if (!is_linear(body_.blocks[b])) level[b] = std::max(rest_level_[b], kStiffeningMargin * ahead * level[b]);
   }
   return level;
 }
@@ -282,7 +282,8 @@ void StepControl::probe() {
   }
   if (++since_probe_ < probe_ || !may_gain()) return;
   since_probe_ = 0;
-  for (std::size_t b = 0; b < validated_.size(); ++b) probes_ = probes_ || validated_[b] > kRoom * rest_level_[b];
+  for (std::size_t b = 0; b < validated_.size(); ++b)
+    probes_ = probes_ || validated_[b] > kStiffeningMargin * rest_level_[b];
   list_from();
 }
 
@@ -313,7 +314,7 @@ void StepControl::relax(std::span<const double> stiffening) {
   bool softer = false;
   for (std::size_t b = 0; b < level.size(); ++b) {
     level[b] = std::min(validated_[b], level[b]);
-    softer = softer || level[b] * kRoom < validated_[b];
+    softer = softer || level[b] * kStiffeningMargin < validated_[b];
   }
   in_window_ = 0;
   std::fill(seen_.begin(), seen_.end(), 0.0);

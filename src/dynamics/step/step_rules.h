@@ -10,7 +10,7 @@
 
 namespace glisson {
 
-inline constexpr double kRoom = 1.2;  ///< stiffening that a new h* allows for beyond the present one
+inline constexpr double kStiffeningMargin = 1.2;  ///< stiffening that a new h* allows for beyond the present one
 
 inline bool is_small(const TissueBlock& block) {
   return !block.tissue.hyperelastic && block.tissue.kinematics == Kinematics::small;

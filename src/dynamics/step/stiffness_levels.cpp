@@ -9,11 +9,7 @@
 namespace glisson {
 namespace {
 
-constexpr double kRoom = 1.05, kMostRoom = 3.0;  ///< of a level above the stiffness seen
-
-std::array<Vec3d, 4> gradients(const ElementRest& rest) {
-  return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
-}
+constexpr double kLevelMargin = 1.05, kMostLevelMargin = 3.0;  ///< of a level above the stiffness seen
 
 std::uint32_t block_number_of(const Body& body, std::uint32_t element) {
   return static_cast<std::uint32_t>(&body.block_of(element) - body.blocks.data());
@@ -28,7 +24,7 @@ struct Asking {
 
 /// Σ s sᵀ/W with the shares W of the masses.
 Sym3<double> over_shares(const Body& body, const Asking& a, const std::vector<double>& asked) {
-  const std::array<Vec3d, 4> s = gradients(body.rest[a.element]);
+  const std::array<Vec3d, 4> s = shape_gradients(body.rest[a.element]);
   Sym3<double> sum;
   for (std::size_t i = 0; i < 4; ++i) {
     const std::uint32_t v = body.elements[a.element][i];
@@ -57,7 +53,7 @@ bool StiffnessLevels::is_above(const Member& m, double base) {
 }
 
 /// Up to half of what the worst tet takes a level costs nothing.
-double StiffnessLevels::room_of(const Member& m) { return std::clamp(0.5 / m.part, kRoom, kMostRoom); }
+double StiffnessLevels::room_of(const Member& m) { return std::clamp(0.5 / m.part, kLevelMargin, kMostLevelMargin); }
 
 StiffnessLevels::Met StiffnessLevels::meet(std::span<const StiffElement> stiff, std::span<const double> base,
                                            std::span<const double> unseen) {
@@ -88,8 +84,8 @@ void StiffnessLevels::raise(double most_ahead) {
 void StiffnessLevels::complete() {
   for (Member& m : members_) {
     if (m.met != meetings_) continue;
-    if (m.ratio < m.last) m.ratio = kRoom * m.last;
-    if (m.norm < m.seen_norm) m.norm = kRoom * m.seen_norm;
+    if (m.ratio < m.last) m.ratio = kLevelMargin * m.last;
+    if (m.norm < m.seen_norm) m.norm = kLevelMargin * m.seen_norm;
   }
 }
 
@@ -143,7 +139,7 @@ Beside StiffnessLevels::beside(std::span<const double> base, const std::vector<c
     const double more = m.ratio - base[b], volume = body_.rest[m.element].volume;
     Asking a{m.element, volume * std::min(more, m.norm) * modulus_bound(body_.blocks[b].elastic), 0.0, {}};
     if (viscous[b] != 0) a.c = volume * more * modulus_bound(body_.blocks[b].viscous);
-    const std::array<Vec3d, 4> s = gradients(body_.rest[m.element]);
+    const std::array<Vec3d, 4> s = shape_gradients(body_.rest[m.element]);
     for (std::size_t i = 0; i < 4; ++i) a.of[i] = a.k * dot(s[i], s[i]);
     all.push_back(a), whose.push_back(&m);
   }

@@ -99,11 +99,11 @@ namespace {
 using LocalEdge = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Where an edge lies.
-struct Place {
+struct EdgePlace {
   std::size_t batch, lane;
 };
 
-LocalEdge edge_at(const EdgeBatches& edges, const Place& at, std::size_t lanes) {
+LocalEdge edge_at(const EdgeBatches& edges, const EdgePlace& at, std::size_t lanes) {
   const std::uint16_t* index = edges.index.data() + at.batch * 2 * lanes + at.lane;
   return {index[0], index[lanes]};
 }
@@ -122,7 +122,8 @@ std::array<std::size_t, 6> count_before(std::size_t n, const ComesBefore& comes_
 }
 
 /// Places of edges that are there. They are sorted, lane after lane, and the lanes after the last are (0, 0).
-std::array<Place, 6> find_edges(const EdgeBatches& edges, const std::array<LocalEdge, 6>& wanted, std::size_t lanes) {
+std::array<EdgePlace, 6> find_edges(const EdgeBatches& edges, const std::array<LocalEdge, 6>& wanted,
+                                    std::size_t lanes) {
   const auto is_there = [](const LocalEdge& e) { return e.first != e.second; };
   const auto begun = count_before(lanes, [&](std::size_t lane, std::size_t k) {
     const LocalEdge at = edge_at(edges, {0, lane}, lanes);
@@ -132,14 +133,9 @@ std::array<Place, 6> find_edges(const EdgeBatches& edges, const std::array<Local
     const LocalEdge at = edge_at(edges, {batch, begun[k] - 1}, lanes);
     return is_there(at) && at < wanted[k];
   });
-  std::array<Place, 6> places{};
+  std::array<EdgePlace, 6> places{};
   for (std::size_t k = 0; k < places.size(); ++k) places[k] = {before[k], begun[k] - 1};
   return places;
-}
-
-/// Shape gradients of the four corners.
-std::array<Vec3d, 4> shape_gradients(const ElementRest& rest) {
-  return {-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
 }
 
 void add(Mat3d& sum, const Mat3d& share) {
@@ -210,7 +206,7 @@ void reassemble_edges(const Body& body, const TissueBlock& block, std::uint32_t 
   for (std::size_t a = 0, edge = 0; a < 4; ++a) {
     for (std::size_t b = a + 1; b < 4; ++b, ++edge) wanted[edge] = {corners[a].first, corners[b].first};
   }
-  const std::array<Place, 6> places = find_edges(edges, wanted, lanes);
+  const std::array<EdgePlace, 6> places = find_edges(edges, wanted, lanes);
   std::array<Mat3d, 6> tensors{};
   for (const Around& a : around) {
     if (submesh.of_element[a.element] != submesh.number) continue;

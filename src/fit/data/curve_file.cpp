@@ -34,13 +34,6 @@ struct Style {
 constexpr std::array kStyles{Style{';', '.'},  Style{';', ','}, Style{'\t', '.'},
                              Style{'\t', ','}, Style{',', '.'}, Style{',', ','}};
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\v\f";
-  const auto first = text.find_first_not_of(kBlank);
-  return first == std::string_view::npos ? std::string_view{}
-                                         : text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
 [[noreturn]] void fail(const std::filesystem::path& file, std::uint32_t line, const std::string& what) {
   throw SceneError(file.string() + ":" + std::to_string(line) + ":1: " + what);
 }
@@ -90,7 +83,7 @@ std::vector<Line> lines_of(std::string_view text) {
     ++number;
     const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
     const std::string_view line = text.substr(at, end - at);
-    if (!trimmed(line).empty()) lines.push_back({number, line});
+    if (!detail::trimmed(line).empty()) lines.push_back({number, line});
     at = end + (text.substr(end, 2) == "\r\n" ? 2 : 1);
   }
   return lines;
@@ -122,7 +115,7 @@ Row split(const Line& line, char separator) {
     if (at < text.size() && text[at] == '"') word = quoted_field(text, at);
     const std::size_t end = std::min(text.find(separator, std::min(at, text.size())), text.size());
     if (at < end) word += text.substr(at, end - at);
-    row.fields.push_back({std::string(trimmed(word)), column});
+    row.fields.push_back({std::string(detail::trimmed(word)), column});
     at = end + 1;
   }
   while (row.fields.size() > 1 && row.fields.back().text.empty()) row.fields.pop_back();  // trailing separators
@@ -188,7 +181,7 @@ bool is_words(const Row& row, char decimal) {
 
 std::string without_brackets(std::string_view text) {
   if (text.size() >= 2 && (text.front() == '(' || text.front() == '[')) text = text.substr(1, text.size() - 2);
-  return std::string(trimmed(text));
+  return std::string(detail::trimmed(text));
 }
 
 bool is_unit_text(const std::string& text) {
@@ -271,7 +264,7 @@ std::string CurveFile::title(std::size_t column) const {
 }
 
 std::optional<double> parse_number(std::string_view text, char decimal) {
-  text = trimmed(text);
+  text = detail::trimmed(text);
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   std::string plain(text);
   if (decimal == ',') {

@@ -17,12 +17,6 @@ constexpr std::array kStress{Unit{"kPa", 1e3}, Unit{"Pa", 1.0}, Unit{"MPa", 1e6}
 constexpr std::array kStrain{Unit{"-", 1.0}, Unit{"%", 1e-2}, Unit{"mm/mm", 1.0}};
 constexpr std::array kQuantities{Quantity::time, Quantity::length, Quantity::force, Quantity::stress, Quantity::strain};
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  return first == std::string_view::npos ? std::string_view{}
-                                         : text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 bool is_unit(std::string_view text) {
   for (const Quantity q : kQuantities) {
     if (find_unit(q, text)) return true;
@@ -35,8 +29,8 @@ Title bracketed(std::string_view title) {
   if (title.empty() || (title.back() != ')' && title.back() != ']')) return {};
   const std::size_t open = title.rfind(title.back() == ')' ? '(' : '[');
   if (open == std::string_view::npos) return {};
-  return {std::string(trimmed(title.substr(0, open))),
-          std::string(trimmed(title.substr(open + 1, title.size() - open - 2)))};
+  return {std::string(detail::trimmed(title.substr(0, open))),
+          std::string(detail::trimmed(title.substr(open + 1, title.size() - open - 2)))};
 }
 
 }  // namespace
@@ -65,7 +59,7 @@ std::string unit_names(Quantity quantity) {
 
 const Unit* find_unit(Quantity quantity, std::string_view text) {
   constexpr std::string_view kGreekMu = "μm";  // U+03BC, where the list has the sign U+00B5
-  text = trimmed(text);
+  text = detail::trimmed(text);
   if (text == kGreekMu) text = "µm";
   for (const Unit& unit : units_of(quantity)) {
     if (unit.name == text) return &unit;
@@ -74,13 +68,13 @@ const Unit* find_unit(Quantity quantity, std::string_view text) {
 }
 
 Title split_title(std::string_view title) {
-  title = trimmed(title);
+  title = detail::trimmed(title);
   if (Title found = bracketed(title); !found.name.empty()) return found;
   for (const char mark : {'/', '_'}) {
     const std::size_t at = title.rfind(mark);
     if (at == std::string_view::npos || at == 0) continue;
-    const std::string_view unit = trimmed(title.substr(at + 1));
-    if (is_unit(unit)) return {std::string(trimmed(title.substr(0, at))), std::string(unit)};
+    const std::string_view unit = detail::trimmed(title.substr(at + 1));
+    if (is_unit(unit)) return {std::string(detail::trimmed(title.substr(0, at))), std::string(unit)};
   }
   return {std::string(title), {}};
 }

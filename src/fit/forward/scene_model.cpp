@@ -14,8 +14,6 @@
 namespace glisson::fit {
 namespace {
 
-Vec3d unit(const Vec3d& v) { return v * (1.0 / norm(v)); }
-
 /// What of an experiment moves or measures: a tool, an instrument, or the container's floor or wall.
 struct Part {
   enum class What { tool, instrument, bottom, side } what = What::tool;

@@ -13,8 +13,6 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kTakesPart = 1e-3;  // of a unit vector: below it a parameter is no part of a direction
 
 std::vector<std::size_t> free_parameters(const Covariance& c) {
   std::vector<std::size_t> free;

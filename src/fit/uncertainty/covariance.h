@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +19,9 @@
 #include "fit/uncertainty/interval.h"
 
 namespace glisson::fit {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr double kTakesPart = 1e-3;  ///< of a unit vector: below it a parameter is no part of a direction
 
 enum class Hold { free, at_low, at_high };
 enum class NoiseKind { independent, autocorrelated, by_curve };

@@ -14,8 +14,6 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 constexpr double kUnseen =
     1e-10;  // of the strongest eigenvalue: a direction's weight that differences cannot tell from 0
-constexpr double kTakesPart = 1e-3;  // of a unit vector
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What is known of the free parameters: a matrix of information, and how much wider than it says.
 struct Knowledge {

@@ -21,7 +21,7 @@ std::string format(const char* pattern, double a, double b) {
   return text;
 }
 
-std::string percent(double probability) {
+std::string probability_text(double probability) {
   return probability < 0.001 ? "p < 0.001" : format("p = %.3f", probability, 0.0);
 }
 
@@ -105,7 +105,7 @@ NoiseEstimate NoiseStudy::choose(const CovarianceOptions& options) {
   e.independence = independence_probability(series);
   const bool clusters = clusters_possible();
   if (clusters) e.common = common_probability();
-  const std::string white = percent(e.independence);
+  const std::string white = probability_text(e.independence);
   if (options.force) {
     const bool refused = *options.force == NoiseKind::by_curve && !clusters;
     set_effective(refused ? NoiseKind::autocorrelated : *options.force);
@@ -113,7 +113,7 @@ NoiseEstimate NoiseStudy::choose(const CovarianceOptions& options) {
                     : "as asked for";
   } else if (clusters && (!e.common || *e.common < options.significance)) {
     set_effective(NoiseKind::by_curve);
-    e.why = e.common ? "the curves differ by more than their own noise explains (" + percent(*e.common) +
+    e.why = e.common ? "the curves differ by more than their own noise explains (" + probability_text(*e.common) +
                            "): each curve counts as one sample"
                      : "the residuals swing so slowly that each curve counts as one sample";
   } else if (e.independence < options.significance) {

@@ -51,8 +51,6 @@ unsigned corner_bit(const Tet& tet, std::uint32_t vertex) {
   return 1U << static_cast<unsigned>(std::find(tet.begin(), tet.end(), vertex) - tet.begin());
 }
 
-bool holds(const Tet& tet, std::uint32_t vertex) { return std::find(tet.begin(), tet.end(), vertex) != tet.end(); }
-
 std::vector<std::uint32_t> tets_around(std::span<const Tet> tets, const VertexStars& stars, const EdgeCrossing& c) {
   std::vector<std::uint32_t> around;
   for (const std::uint32_t t : stars.tets_at(c.low)) {

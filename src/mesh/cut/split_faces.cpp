@@ -3,6 +3,7 @@
 // All groups are found in the numbers before the split. So vertices do not depend on each other, and the order in
 // which they are visited shows in nothing but the numbers of the copies.
 #include "mesh/cut/split_faces.h"
+#include "mesh/topology/faces.h"
 
 #include <algorithm>
 #include <bit>
@@ -26,8 +27,6 @@ struct Crack {
 std::uint8_t corner_of(const Tet& tet, std::uint32_t vertex) {
   return static_cast<std::uint8_t>(std::find(tet.begin(), tet.end(), vertex) - tet.begin());
 }
-
-bool holds(const Tet& tet, std::uint32_t vertex) { return corner_of(tet, vertex) < 4; }
 
 /// The first two tets that hold a face and how many there are.
 struct Sides {

@@ -1,6 +1,7 @@
 // faces.h — which tetrahedra meet at which face.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <span>
 #include <vector>
@@ -11,6 +12,11 @@ namespace glisson::detail {
 
 /// Corners of a tet's face opposite its corner i, outward oriented for a positively oriented tet.
 inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kFaceCorners{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+/// Whether a tet has the vertex among its corners.
+inline bool holds(const Tet& tet, std::uint32_t vertex) {
+  return std::find(tet.begin(), tet.end(), vertex) != tet.end();
+}
 
 /// One side of a face: the tet and its corner opposite to it.
 struct FaceSide {

@@ -12,8 +12,6 @@
 namespace glisson {
 namespace {
 
-Vec3d unit(const Vec3d& v) { return v * (1.0 / norm(v)); }
-
 Vec3d moving_direction(const InstrumentSpec& x) { return unit(x.motion.direction.value_or(x.direction)); }
 
 /// A path or a push from each kind of motion.

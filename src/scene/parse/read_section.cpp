@@ -8,7 +8,7 @@
 namespace glisson::scene {
 namespace {
 
-std::string quoted(const std::string& key) { return "`" + key + "`"; }
+std::string in_ticks(const std::string& key) { return "`" + key + "`"; }
 
 /// The keys a table of this section may have, given its kind.
 std::vector<const KeySpec*> keys_of(const SectionSpec& section, const KindSpec* kind) {
@@ -69,7 +69,7 @@ std::string unknown_key(const SectionSpec& section, const KindSpec* kind, const 
   if (!section.kinds.empty()) known.push_back("kind");
   for (const KeySpec* key : keys_of(section, kind)) known.push_back(key->name);
   if (const std::string meant = nearest(word, known); !meant.empty() && meant != word) {
-    return "unknown key; did you mean " + quoted(meant) + "?";
+    return "unknown key; did you mean " + in_ticks(meant) + "?";
   }
   if (const std::string home = home_of_key(word, roots); !home.empty())
     return "unknown key here; it belongs in " + home;
@@ -186,14 +186,15 @@ void check_exclusion(const Exclusion& exclusion, const Node& node, bool complete
   std::vector<std::string> all;
   const Member* given = nullptr;
   for (const auto& group : exclusion.groups) {
-    for (const std::string& key : group) all.push_back(quoted(key));
+    for (const std::string& key : group) all.push_back(in_ticks(key));
     const Member* member = first_given(node, group);
     if (given && member) {
       const bool later = earlier(given->where, member->where);
       const Member& second = later ? *member : *given;
       const Member& first = later ? *given : *member;
-      place.problems.add(second.where, join_path(place.path, second.key),
-                         "contradicts " + quoted(first.key) + " (" + source_of(first.where) + "); give one of the two");
+      place.problems.add(
+          second.where, join_path(place.path, second.key),
+          "contradicts " + in_ticks(first.key) + " (" + source_of(first.where) + "); give one of the two");
     }
     if (member) given = member;
   }
@@ -205,7 +206,7 @@ void check_missing(const std::vector<const KeySpec*>& keys, const Node& node, co
     if (!key->required || node.find(key->name)) continue;
     std::string takes = expected(*key);
     if (key->range.bounded()) takes.append(" ").append(key->range.text());
-    place.complain("missing key " + quoted(key->name) + ": " + takes + "; " + key->help);
+    place.complain("missing key " + in_ticks(key->name) + ": " + takes + "; " + key->help);
   }
 }
 
