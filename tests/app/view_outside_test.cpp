@@ -9,7 +9,7 @@
 #include "app/program.h"
 #include "view/replay/run_folder.h"
 
-namespace glisson::test {
+namespace glisson::test::view_outside_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,4 +78,4 @@ TEST_F(ViewOutside, WhatIsNoRegularFileIsRefused) {
 }
 
 }  // namespace
-}  // namespace glisson::test
+}  // namespace glisson::test::view_outside_test

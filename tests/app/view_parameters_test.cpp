@@ -5,7 +5,7 @@
 #include "view/engine/live_body.h"
 #include "view/engine/live_parameters.h"
 
-namespace glisson::view {
+namespace glisson::view::view_parameters_test {
 namespace {
 
 Variant variant_of(const std::string& tissue, const std::string& more = "") {
@@ -100,4 +100,4 @@ TEST(LiveParameters, ChangeTheMovingBody) {
 }
 
 }  // namespace
-}  // namespace glisson::view
+}  // namespace glisson::view::view_parameters_test

@@ -13,7 +13,7 @@
 #include "view/server/access.h"
 #include "view/server/server.h"
 
-namespace glisson::view {
+namespace glisson::view::view_server_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -390,4 +390,4 @@ TEST(LiveServerOptions, BeyondThisMachineNeedsAToken) {
 }
 
 }  // namespace
-}  // namespace glisson::view
+}  // namespace glisson::view::view_server_test

@@ -8,7 +8,7 @@
 #include "view/engine/surface.h"
 #include "view/protocol/messages.h"
 
-namespace glisson::view {
+namespace glisson::view::view_surface_test {
 namespace {
 
 /// A body at x = X + H X, moving with v = L x.
@@ -154,4 +154,4 @@ TEST(LiveSurface, PacksAFieldWithItsRange) {
 }
 
 }  // namespace
-}  // namespace glisson::view
+}  // namespace glisson::view::view_surface_test

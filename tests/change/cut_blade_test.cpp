@@ -5,7 +5,7 @@
 #include "glisson/instruments/blade.h"
 #include "glisson/instruments/tool_motion.h"
 
-namespace glisson::test {
+namespace glisson::test::cut_blade_test {
 namespace {
 
 constexpr double kCell = 0.005, kWidth = 8 * kCell;
@@ -139,4 +139,4 @@ TEST(BladeOptionsRefused, NameTheOption) {
 }
 
 }  // namespace
-}  // namespace glisson::test
+}  // namespace glisson::test::cut_blade_test

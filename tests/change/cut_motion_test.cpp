@@ -5,7 +5,7 @@
 #include "glisson/instruments/motion.h"
 #include "support/must_step.h"
 
-namespace glisson::test {
+namespace glisson::test::cut_motion_test {
 namespace {
 
 class CutsInMotion : public testing::TestWithParam<Kind> {};
@@ -211,4 +211,4 @@ TEST(CutsOfOtherIntegrators, PartTheBody) {
 }
 
 }  // namespace
-}  // namespace glisson::test
+}  // namespace glisson::test::cut_motion_test

@@ -1,7 +1,7 @@
 // A blade led through a body along a plane parts it into the two sides of the plane, and nothing is lost by it.
 #include "change/cut_body.h"
 
-namespace glisson::test {
+namespace glisson::test::cut_plane_test {
 namespace {
 
 constexpr double kCell = 0.01;
@@ -264,4 +264,4 @@ TEST_P(CutPlanes, OverTheSamePathOpenNothing) {
 }
 
 }  // namespace
-}  // namespace glisson::test
+}  // namespace glisson::test::cut_plane_test

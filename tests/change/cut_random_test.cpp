@@ -5,7 +5,7 @@
 #include "change/cut_body.h"
 #include "glisson/instruments/motion.h"
 
-namespace glisson::test {
+namespace glisson::test::cut_random_test {
 namespace {
 
 constexpr double kCell = 0.01;
@@ -187,4 +187,4 @@ TEST(CrossingCuts, MakeFourAndEightPieces) {
 }
 
 }  // namespace
-}  // namespace glisson::test
+}  // namespace glisson::test::cut_random_test

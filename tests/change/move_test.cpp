@@ -4,7 +4,7 @@
 #include "change/faces.h"
 #include "glisson/instruments/motion.h"
 
-namespace glisson::test {
+namespace glisson::test::move_test {
 namespace {
 
 class Moves : public testing::TestWithParam<Kind> {};
@@ -146,4 +146,4 @@ TEST(MovesRefused, LeaveEverythingAsItWas) {
 }
 
 }  // namespace
-}  // namespace glisson::test
+}  // namespace glisson::test::move_test

@@ -6,7 +6,7 @@
 #include "dynamics/step/stable_step.h"
 #include "element/body_change.h"
 
-namespace glisson::test {
+namespace glisson::test::part_bound_test {
 namespace {
 
 constexpr double kCell = 0.01;
@@ -56,4 +56,4 @@ TEST(PartBounds, AreHigherWhereFlatTetsHaveGoodNeighbours) {
 }
 
 }  // namespace
-}  // namespace glisson::test
+}  // namespace glisson::test::part_bound_test

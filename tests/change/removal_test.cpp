@@ -2,7 +2,7 @@
 #include "change/changed_body.h"
 #include "support/must_step.h"
 
-namespace glisson::test {
+namespace glisson::test::removal_test {
 namespace {
 
 class Removal : public testing::TestWithParam<Kind> {};
@@ -117,4 +117,4 @@ TEST(PresentMesh, KeepsWhatBelongsToItsTets) {
 }
 
 }  // namespace
-}  // namespace glisson::test
+}  // namespace glisson::test::removal_test

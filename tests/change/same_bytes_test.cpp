@@ -4,7 +4,7 @@
 #include "glisson/instruments/motion.h"
 #include "support/must_step.h"
 
-namespace glisson::test {
+namespace glisson::test::same_bytes_test {
 namespace {
 
 class SameBytes : public testing::TestWithParam<Kind> {};
@@ -49,4 +49,4 @@ TEST_P(SameBytes, OnAnyNumberOfThreadsAndAgain) {
 }
 
 }  // namespace
-}  // namespace glisson::test
+}  // namespace glisson::test::same_bytes_test

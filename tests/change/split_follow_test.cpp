@@ -4,7 +4,7 @@
 #include "glisson/instruments/motion.h"
 #include "support/must_step.h"
 
-namespace glisson::test {
+namespace glisson::test::split_follow_test {
 namespace {
 
 class Followers : public testing::TestWithParam<Kind> {};
@@ -117,4 +117,4 @@ TEST(FollowersOfSupports, AreHeldAlready) {
 }
 
 }  // namespace
-}  // namespace glisson::test
+}  // namespace glisson::test::split_follow_test

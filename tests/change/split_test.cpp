@@ -3,7 +3,7 @@
 #include "change/faces.h"
 #include "glisson/instruments/motion.h"
 
-namespace glisson::test {
+namespace glisson::test::split_test {
 namespace {
 
 class Split : public testing::TestWithParam<Kind> {};
@@ -117,4 +117,4 @@ TEST_P(Split, TheUpperHalfFallsFreely) {
 }
 
 }  // namespace
-}  // namespace glisson::test
+}  // namespace glisson::test::split_test

@@ -3,7 +3,7 @@
 #include "change/faces.h"
 #include "support/must_step.h"
 
-namespace glisson::test {
+namespace glisson::test::step_test {
 namespace {
 
 class Step : public testing::TestWithParam<Kind> {};
@@ -126,4 +126,4 @@ TEST_P(Step, GivenIsHeldAgainstTheStableStepOfWhatIsLeft) {
 }
 
 }  // namespace
-}  // namespace glisson::test
+}  // namespace glisson::test::step_test

@@ -9,7 +9,7 @@
 #include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 
-namespace glisson {
+namespace glisson::implicit_test {
 namespace {
 
 SimulationOptions implicit(TimeScheme scheme, double h) {
@@ -259,4 +259,4 @@ TEST(Implicit, RefusesBadOptions) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::implicit_test

@@ -13,7 +13,7 @@
 #include "support/bodies.h"
 #include "support/must_step.h"
 
-namespace glisson {
+namespace glisson::semi_implicit_test {
 namespace {
 
 Tissue viscous(double eta, ViscousTensor tensor = ViscousTensor::shear) {
@@ -260,4 +260,4 @@ TEST(ViscousSystem, SolvesTheSystem) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::semi_implicit_test

@@ -8,7 +8,7 @@
 #include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 
-namespace glisson {
+namespace glisson::step_limits_test {
 namespace {
 
 // A step above h* is refused with the ways out: the integrators that bear it, a smaller step, mass.
@@ -207,4 +207,4 @@ std::string law_name_of(const testing::TestParamInfo<Law>& law) { return law.par
 INSTANTIATE_TEST_SUITE_P(Laws, DeepPress, testing::ValuesIn(laws()), law_name_of);
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::step_limits_test

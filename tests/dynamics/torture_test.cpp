@@ -8,7 +8,7 @@
 #include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 
-namespace glisson {
+namespace glisson::torture_test {
 namespace {
 
 struct Law {
@@ -285,4 +285,4 @@ INSTANTIATE_TEST_SUITE_P(
     law_name_of);
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::torture_test

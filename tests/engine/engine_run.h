@@ -50,7 +50,9 @@ inline EngineState state_of(const MovingBody& moving, std::size_t vertices) {
 }
 
 /// The name of an instruction set as that of a test.
-inline std::string name_of(const testing::TestParamInfo<const engine::Kernels*>& p) { return p.param->instruction_set; }
+inline std::string kernels_name(const testing::TestParamInfo<const engine::Kernels*>& p) {
+  return p.param->instruction_set;
+}
 
 }  // namespace glisson::test
 

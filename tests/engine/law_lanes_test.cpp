@@ -170,7 +170,7 @@ TEST_P(LawLanes, TablesEndFlat) {
   expect_all(many);
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, LawLanes, testing::ValuesIn(test::every_kernels()), test::name_of);
+INSTANTIATE_TEST_SUITE_P(InstructionSets, LawLanes, testing::ValuesIn(test::every_kernels()), test::kernels_name);
 
 }  // namespace
 }  // namespace glisson

@@ -214,7 +214,7 @@ TEST_P(MeasureLanes, Padding) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, MeasureLanes, testing::ValuesIn(test::every_kernels()), test::name_of);
+INSTANTIATE_TEST_SUITE_P(InstructionSets, MeasureLanes, testing::ValuesIn(test::every_kernels()), test::kernels_name);
 
 }  // namespace
 }  // namespace glisson

@@ -71,7 +71,7 @@ TEST_P(NotFinite, GoesWithTheState) {
   EXPECT_EQ(test::state_of(moving, u_.size()), test::state_of(fresh, u_.size()));
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, NotFinite, testing::ValuesIn(test::every_kernels()), test::name_of);
+INSTANTIATE_TEST_SUITE_P(InstructionSets, NotFinite, testing::ValuesIn(test::every_kernels()), test::kernels_name);
 
 }  // namespace
 }  // namespace glisson

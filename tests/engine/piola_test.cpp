@@ -98,7 +98,7 @@ TEST_P(PiolaLanes, ForcesAreMinusVolumeTimesStressTimesGradient) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, PiolaLanes, testing::ValuesIn(test::every_kernels()), test::name_of);
+INSTANTIATE_TEST_SUITE_P(InstructionSets, PiolaLanes, testing::ValuesIn(test::every_kernels()), test::kernels_name);
 
 }  // namespace
 }  // namespace glisson

@@ -137,7 +137,7 @@ TEST(SubmeshTets, LeaveRoomForEveryCorner) {
   EXPECT_LE(4.0 * ((1.0 + detail::kPartSlack) * static_cast<double>(most) + 1.0), engine::kMaxLocalVertices);
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, Remainders, testing::ValuesIn(test::every_kernels()), test::name_of);
+INSTANTIATE_TEST_SUITE_P(InstructionSets, Remainders, testing::ValuesIn(test::every_kernels()), test::kernels_name);
 
 }  // namespace
 }  // namespace glisson

@@ -105,7 +105,7 @@ TEST_P(Step, LeavesAVertexInNoTetWhereItIs) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, Step, testing::ValuesIn(test::every_kernels()), test::name_of);
+INSTANTIATE_TEST_SUITE_P(InstructionSets, Step, testing::ValuesIn(test::every_kernels()), test::kernels_name);
 
 // Two hundred steps on one instruction set end where they do on any other: their forces differ by the order of a
 // few sums, 1e-6 of the largest. Velocity has it all at the pitch of the mesh, displacement little of it.

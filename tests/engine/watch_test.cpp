@@ -131,7 +131,7 @@ TEST_P(Watch, PlacingMovesExactlyThose) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, Watch, testing::ValuesIn(test::every_kernels()), test::name_of);
+INSTANTIATE_TEST_SUITE_P(InstructionSets, Watch, testing::ValuesIn(test::every_kernels()), test::kernels_name);
 
 }  // namespace
 }  // namespace glisson

@@ -14,12 +14,12 @@
 namespace glisson::fit {
 namespace {
 
-using test::Folder;
-using test::have_phantoms;
-using test::kPhantoms;
-using test::kPhantomSize;
-using test::spec_of;
-using test::text_of;
+using phantom::Folder;
+using phantom::have_phantoms;
+using phantom::kPhantoms;
+using phantom::kPhantomSize;
+using phantom::spec_of;
+using phantom::text_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -102,7 +102,7 @@ TEST(CurveFile, SaysWhatIsNoTable) {
   EXPECT_THAT(fault("\xFF\xFE"
                     "1"),
               HasSubstr("UTF-16; save it as UTF-8"));
-  EXPECT_THAT(test::complaint(spec_of({"/no/such.csv"})), HasSubstr("/no/such.csv: cannot be read; check the path"));
+  EXPECT_THAT(phantom::complaint(spec_of({"/no/such.csv"})), HasSubstr("/no/such.csv: cannot be read; check the path"));
 }
 
 TEST(CurveFile, ReadsNoThousandsAndNoHalfNumbers) {

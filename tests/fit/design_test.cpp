@@ -10,7 +10,7 @@
 #include "fit/search/least_squares.h"
 #include "small_models.h"
 
-namespace glisson::fit {
+namespace glisson::fit::design_test {
 namespace {
 
 using testing::HasSubstr;
@@ -157,4 +157,4 @@ TEST(Design, PutsCandidatesThatFailLast) {
 }
 
 }  // namespace
-}  // namespace glisson::fit
+}  // namespace glisson::fit::design_test

@@ -9,7 +9,7 @@
 #include "fit/search/local_problem.h"
 #include "fit/small_models.h"
 
-namespace glisson::fit {
+namespace glisson::fit::local_model_test {
 namespace {
 
 using namespace testing_models;
@@ -118,4 +118,4 @@ TEST(LocalProblem, IsNotTakenWhereADirectionIsNotDetermined) {
 }
 
 }  // namespace
-}  // namespace glisson::fit
+}  // namespace glisson::fit::local_model_test

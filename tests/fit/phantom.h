@@ -13,7 +13,7 @@
 #include "glisson/scene/scene.h"
 #include "support/places.h"
 
-namespace glisson::fit::test {
+namespace glisson::fit::phantom {
 
 inline const std::filesystem::path kPhantoms = glisson::test::shipped("../shared/data/phantom");
 
@@ -69,4 +69,4 @@ inline std::string complaint(const DataSpec& spec, const SpecimenSize& size = {}
   return {};
 }
 
-}  // namespace glisson::fit::test
+}  // namespace glisson::fit::phantom

@@ -14,7 +14,7 @@
 #include "fit/data/samples.h"
 #include "fit/data/smooth.h"
 
-namespace glisson::fit {
+namespace glisson::fit::prepare_test {
 namespace {
 
 using testing::ElementsAre;
@@ -367,4 +367,4 @@ TEST(Prepare, StatesTheNoiseOfItsPoints) {
 }
 
 }  // namespace
-}  // namespace glisson::fit
+}  // namespace glisson::fit::prepare_test

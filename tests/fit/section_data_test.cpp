@@ -17,11 +17,11 @@
 namespace glisson::fit {
 namespace {
 
-using test::Folder;
-using test::have_phantoms;
-using test::kPhantoms;
-using test::kPhantomSize;
-using test::text_of;
+using phantom::Folder;
+using phantom::have_phantoms;
+using phantom::kPhantoms;
+using phantom::kPhantomSize;
+using phantom::text_of;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -250,7 +250,7 @@ class BadFile : public testing::Test {
  protected:
   std::string fault(const std::string& text, const std::string& keys = {}, const SpecimenSize& size = {}) {
     folder_.write("t.csv", text);
-    return test::complaint(section("files = [\"t.csv\"]\n" + keys), size, folder_.path());
+    return phantom::complaint(section("files = [\"t.csv\"]\n" + keys), size, folder_.path());
   }
   Folder folder_{"bad_files"};
 };
@@ -332,7 +332,8 @@ TEST_F(BadFile, TooFewPointsAndEmptyFile) {
 TEST_F(BadFile, TellsEverythingAtOnce) {
   folder_.write("a.csv", rows({{5, "2,NaN,0.2"}, {8, "3.5,2.5,0.5"}}));
   folder_.write("b.csv", "");
-  const std::string text = test::complaint(section("files = [\"a.csv\", \"b.csv\", \"c.csv\"]\n"), {}, folder_.path());
+  const std::string text =
+      phantom::complaint(section("files = [\"a.csv\", \"b.csv\", \"c.csv\"]\n"), {}, folder_.path());
   EXPECT_THAT(text, AllOf(HasSubstr("a.csv:5:3: "), HasSubstr("a.csv:8:1: time goes back"),
                           HasSubstr("b.csv:1:1: is empty"), HasSubstr("c.csv: cannot be read")));
 }
@@ -386,10 +387,10 @@ TEST_F(BadFile, RepetitionsThatDisagreeByAThousand) {
   folder_.write("c.csv", other);
   const std::string keys = "files = [\"a.csv\", \"b.csv\", \"c.csv\"]\n";
   EXPECT_THAT(
-      test::complaint(section(keys), {}, folder_.path()),
+      phantom::complaint(section(keys), {}, folder_.path()),
       AllOf(HasSubstr("c.csv:1:1: \"Load (N)\", read in N, spans 0.001 times what the other tests of its group span"),
             HasSubstr("unlikely = true")));
-  EXPECT_EQ(test::complaint(section(keys + "unlikely = true\n"), {}, folder_.path()), "");
+  EXPECT_EQ(phantom::complaint(section(keys + "unlikely = true\n"), {}, folder_.path()), "");
 }
 
 // Negative is compression where a machine says so: found, or told.

@@ -10,7 +10,7 @@
 #include "fit/uncertainty/profile.h"
 #include "small_models.h"
 
-namespace glisson::fit {
+namespace glisson::fit::twin_test {
 namespace {
 
 using testing_models::Noise;
@@ -165,4 +165,4 @@ TEST(Twin, IsCoveredUnderARobustLoss) {
 }
 
 }  // namespace
-}  // namespace glisson::fit
+}  // namespace glisson::fit::twin_test

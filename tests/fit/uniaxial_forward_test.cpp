@@ -9,7 +9,7 @@
 #include "fit/forward/offset_model.h"
 #include "fit/forward/scene_model.h"
 
-namespace glisson::fit {
+namespace glisson::fit::uniaxial_forward_test {
 namespace {
 
 constexpr double kArea = 4e-4, kHeight = 0.02;
@@ -258,4 +258,4 @@ TEST(UniaxialForward, IsAskedFromManyThreadsAndFailsInWords) {
 }
 
 }  // namespace
-}  // namespace glisson::fit
+}  // namespace glisson::fit::uniaxial_forward_test

@@ -10,7 +10,7 @@
 #include "fit/uncertainty/combination.h"
 #include "small_models.h"
 
-namespace glisson::fit {
+namespace glisson::fit::verdict_test {
 namespace {
 
 using testing::AllOf;
@@ -140,4 +140,4 @@ TEST(Combination, WritesExponentsAndFactors) {
 }
 
 }  // namespace
-}  // namespace glisson::fit
+}  // namespace glisson::fit::verdict_test

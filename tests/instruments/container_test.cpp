@@ -6,7 +6,7 @@
 
 #include "instruments/contact_scenes.h"
 
-namespace glisson {
+namespace glisson::container_test {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -244,4 +244,4 @@ TEST(Container, RefusesBadOptions) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::container_test

@@ -6,7 +6,7 @@
 
 #include "glisson/instruments/tool_motion.h"
 
-namespace glisson {
+namespace glisson::driver_push_test {
 namespace {
 
 constexpr double kStep = 1e-4;  // [s]
@@ -152,4 +152,4 @@ TEST(PushDriver, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::driver_push_test

@@ -7,7 +7,7 @@
 #include "glisson/instruments/container.h"
 #include "instruments/contact_scenes.h"
 
-namespace glisson {
+namespace glisson::forged_past_test {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -83,4 +83,4 @@ TEST(ForgedPast, IsRefusedWhereItIsCut) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::forged_past_test

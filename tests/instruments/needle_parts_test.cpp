@@ -6,7 +6,7 @@
 #include "instruments/needle/shaft.h"
 #include "instruments/needle/tissue_zone.h"
 
-namespace glisson {
+namespace glisson::needle_parts_test {
 namespace {
 
 const TetMesh& fine() {
@@ -152,4 +152,4 @@ TEST(Shaft, TipPushesOnlyAndUpToItsLimit) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::needle_parts_test

@@ -5,7 +5,7 @@
 // tests/verification/punch_test.cpp, where the displacement under the punch is prescribed.
 #include "instruments/pressed_layer.h"
 
-namespace glisson {
+namespace glisson::punch_contact_test {
 namespace {
 
 struct Punch {
@@ -124,4 +124,4 @@ TEST(PunchContactPressure, RisesToTheEdgeAndAddsUp) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::punch_contact_test

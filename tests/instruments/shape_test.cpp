@@ -4,7 +4,7 @@
 #include "instruments/contact/shape.h"
 #include "instruments/contact_scenes.h"
 
-namespace glisson {
+namespace glisson::shape_test {
 namespace {
 
 struct Case {
@@ -110,4 +110,4 @@ TEST(Shape, RefusesBadSizes) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::shape_test

@@ -8,7 +8,7 @@
 namespace glisson {
 namespace {
 
-std::vector<Tissue> every_tissue() {
+std::vector<Tissue> every_axial_tissue() {
   std::vector<Tissue> all;
   for (const HyperelasticLaw& law : std::initializer_list<HyperelasticLaw>{
            NeoHookean{1000, 9000}, MooneyRivlin{300, 200, 9000},
@@ -47,7 +47,7 @@ double difference(Axial<double> a, const Mat3d& b, double size) {
 TEST(AxialResponse, IsTheResponseOfDiagonalGradients) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> strain(-0.6, 1.0), rate(-3, 3);
-  for (Tissue tissue : every_tissue()) {
+  for (Tissue tissue : every_axial_tissue()) {
     tissue.viscosity = 30.0;
     tissue.maxwell = {{0.3, 1.0}};
     for (const ViscousTensor v : {ViscousTensor::shear, ViscousTensor::deviatoric, ViscousTensor::pioletti}) {

@@ -8,7 +8,7 @@
 
 #include "laws/every_tissue.h"
 
-namespace glisson {
+namespace glisson::energy_test {
 namespace {
 
 using test::Draw;
@@ -188,4 +188,4 @@ TEST(Tangent, OfViscousStress) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::energy_test

@@ -8,7 +8,7 @@
 #include "laws/every_tissue.h"
 #include "support/bodies.h"
 
-namespace glisson {
+namespace glisson::virtual_work_test {
 namespace {
 
 constexpr double kEdge = 0.03;   // of the cube [m]
@@ -114,4 +114,4 @@ TEST(VirtualWork, IsAskedForWithoutATrace) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::virtual_work_test

@@ -6,7 +6,7 @@
 
 #include "support/scene_runs.h"
 
-namespace glisson {
+namespace glisson::figure3_test {
 namespace {
 
 /// Time at which the start is over: the first wave has crossed the body and come back, at 10 mm/s the tissue has
@@ -73,4 +73,4 @@ TEST(Figure3a, OverheadIsThereFromTheStart) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::figure3_test

@@ -7,7 +7,7 @@
 
 #include "scene/scene_text.h"
 
-namespace glisson {
+namespace glisson::run_variant_test {
 namespace {
 
 using test::kSmallScene;
@@ -254,4 +254,4 @@ TEST(RunVariant, CanPressWithoutFriction) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::run_variant_test

@@ -8,7 +8,7 @@
 #include "support/bodies.h"
 #include "support/statics.h"
 
-namespace glisson {
+namespace glisson::measure_choice_test {
 namespace {
 
 constexpr double kDepth = 0.010;  // [m]
@@ -143,4 +143,4 @@ INSTANTIATE_TEST_SUITE_P(Figure2, MeasureOrder,
                                          Choice{DeformationMeasure::one_minus_q, BoxSplit::alternating}));
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::measure_choice_test

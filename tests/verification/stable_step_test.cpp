@@ -11,7 +11,7 @@
 #include "material/reference/reference.h"
 #include "support/bodies.h"
 
-namespace glisson {
+namespace glisson::stable_step_test {
 namespace {
 
 Tissue viscous_tissue(double eta, ViscousTensor tensor) {
@@ -275,4 +275,4 @@ TEST(StableStep, TooLargeAStepIsAnError) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::stable_step_test

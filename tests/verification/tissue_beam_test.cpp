@@ -11,7 +11,7 @@
 #include "support/bodies.h"
 #include "support/statics.h"
 
-namespace glisson {
+namespace glisson::tissue_beam_test {
 namespace {
 
 constexpr double kSide = 0.01;  // of the section [m]
@@ -200,4 +200,4 @@ TEST(LargeDeflectionOfSmallStrain, KnowsNoRotation) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::tissue_beam_test

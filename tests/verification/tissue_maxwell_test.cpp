@@ -11,7 +11,7 @@
 #include "support/bodies.h"
 #include "support/statics.h"
 
-namespace glisson {
+namespace glisson::tissue_maxwell_test {
 namespace {
 
 constexpr double kSide = 0.01;  // [m]
@@ -257,4 +257,4 @@ TEST(Maxwell, RelaxationAtLargeStrain) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::tissue_maxwell_test
