@@ -8,8 +8,8 @@
 #include <chrono>
 
 #include "build_info.h"
+#include "glisson/version.h"
 #include "report/report_page.h"
-#include "report/version.h"
 
 namespace glisson::app {
 namespace {
@@ -120,7 +120,7 @@ nlohmann::ordered_json machine_json() {
   json["compiler"] = GLISSON_BUILD_COMPILER;
   json["flags"] = GLISSON_BUILD_FLAGS;
   json["commit"] = GLISSON_BUILD_COMMIT;
-  json["version"] = version();
+  json["version"] = GLISSON_VERSION;
   json["date"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
   return json;
 }

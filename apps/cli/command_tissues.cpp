@@ -9,7 +9,7 @@
 #include "cli/exit_code.h"
 #include "cli/standard_streams.h"
 #include "cli/tissue_text.h"
-#include "glisson/material/tissue_presets.h"
+#include "glisson/scene/tissue_presets.h"
 #include "report/json_text.h"
 
 namespace glisson::app {

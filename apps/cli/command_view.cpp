@@ -12,7 +12,7 @@
 #include "cli/mesh_cache.h"
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
-#include "report/version.h"
+#include "glisson/version.h"
 #include "view/engine/engine.h"
 #include "view/replay/replay.h"
 #include "view/server/server.h"
@@ -71,7 +71,7 @@ int view_scene(const Options& options) {
   const view::SceneFacts facts{
       .title = scene.title.empty() ? scene.file.stem().string() : scene.title,
       .variant = variant.label.empty() ? variant.name : variant.label,
-      .version = std::string(version()),
+      .version = GLISSON_VERSION,
       .instruments = engine.forms(),
       .recorder = view::recording_writer(scene, variant, overrides_of(options.scene), engine.tools())};
   const std::string told =
@@ -91,11 +91,8 @@ int view_run(const Options& options) {
   require_no_changes(options.scene);
   const std::string wanted = options.scene.variants.empty() ? "" : options.scene.variants.front();
   view::RunFolder run = view::open_run(options.scene.scene, wanted);
-  const view::SceneFacts facts{.title = run.title,
-                               .variant = run.label,
-                               .version = std::string(version()),
-                               .instruments = run.forms,
-                               .recorder = {}};
+  const view::SceneFacts facts{
+      .title = run.title, .variant = run.label, .version = GLISSON_VERSION, .instruments = run.forms, .recorder = {}};
   std::string told = wanted.empty() ? others(run.variant, run.variants.size()) : "";
   told += fmt::format("{}, {} recorded frames, {} s", run.title, run.frames.size(), run.frames.back().time);
   if (!run.notice.empty()) told += "\n" + run.notice;

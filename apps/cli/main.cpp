@@ -19,8 +19,8 @@
 #include "cli/standard_streams.h"
 #include "glisson/io.h"
 #include "glisson/scene/scene.h"
+#include "glisson/version.h"
 #include "report/output_file.h"
-#include "report/version.h"
 
 namespace {
 
@@ -77,7 +77,7 @@ bool names_unknown_command(const CLI::App& program, int argc, char** argv) {
 int run_program(int argc, char** argv) {
   if (argc > 0) program_path() = argv[0];
   CLI::App program{"Soft tissue that is non-linear, viscoelastic and touched by instruments.", "glisson"};
-  program.set_version_flag("--version", std::string("glisson ") + std::string(version()));
+  program.set_version_flag("--version", "glisson " GLISSON_VERSION);
   program.footer(kFooter);
   program.require_subcommand(1);
   Action action;

@@ -5,7 +5,7 @@
 #include <cctype>
 
 #include "glisson/material/tissue.h"
-#include "glisson/material/tissue_presets.h"
+#include "glisson/scene/tissue_presets.h"
 #include "words.h"
 
 namespace glisson::python {

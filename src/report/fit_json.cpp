@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/version.h"
+#include "glisson/version.h"
 
 namespace glisson {
 namespace {
@@ -147,7 +147,7 @@ Json fit_json(const FitResult& result, const FitHeading& heading) {
             {"title", heading.title},
             {"description", heading.description},
             {"notes", heading.notes},
-            {"version", version()},
+            {"version", GLISSON_VERSION},
             {"law", result.law},
             {"complete", result.complete},
             {"parameters", parameters},

@@ -10,9 +10,9 @@
 
 #include "base/input_file.h"
 #include "dynamics/state/checkpoint.h"
+#include "glisson/version.h"
 #include "report/json_text.h"
 #include "report/output_file.h"
-#include "report/version.h"
 
 namespace glisson {
 namespace {
@@ -128,7 +128,7 @@ std::optional<fit::FitMemory> memory_of(const std::string& bytes, const std::str
 
 std::string fit_fingerprint(const fit::FitSpec& spec, const fit::FitOptions& options) {
   Fingerprint print;
-  print.add(version());
+  print.add(GLISSON_VERSION);
   print.add(spec.source);
   if (!spec.scene.empty()) print.add_file(spec.scene);
   const std::filesystem::path base = options.data_folder.empty() ? spec.file.parent_path() : options.data_folder;

@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <thread>
 
+#include "glisson/version.h"
 #include "report/json_text.h"
 #include "report/law_data.h"
-#include "report/version.h"
 
 namespace glisson {
 namespace {
@@ -81,7 +81,7 @@ nlohmann::json report_json(const std::string& title, const std::string& subtitle
   return {{"format", 1},
           {"title", title},
           {"subtitle", subtitle},
-          {"version", version()},
+          {"version", GLISSON_VERSION},
           {"created", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))},
           {"machine", machine_text()},
           {"scenes", std::move(scenes)}};

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "report/version.h"
+#include "glisson/version.h"
 
 namespace glisson {
 
@@ -86,7 +86,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
   json["precision"] = variant.simulation.precision == Precision::single_precision ? "single" : "double";
   json["threads"] = threads;
   json["state_hash"] = fmt::format("{:016x}", s.state_hash);
-  json["version"] = version();
+  json["version"] = GLISSON_VERSION;
   return json;
 }
 

@@ -1,5 +1,5 @@
 // The README's program: a box of tissue, held below, pressed from above.
-#include "glisson/instruments/motion.h"
+#include "glisson/glisson.h"
 
 #include <cstdio>
 #include <string>

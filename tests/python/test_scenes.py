@@ -177,5 +177,5 @@ def test_toml_of_odd_values():
 
 def test_versions_agree():
     """The package has the version of the C++ project."""
-    project = (Path(__file__).parents[2] / "CMakeLists.txt").read_text(encoding="utf-8")
-    assert f"project(Glisson VERSION {glisson.__version__} " in project
+    project = (Path(__file__).parents[2] / "include/glisson/version.h").read_text(encoding="utf-8")
+    assert f'#define GLISSON_VERSION "{glisson.__version__}"' in project

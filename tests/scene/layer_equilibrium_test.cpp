@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "glisson/instruments/motion.h"
-#include "glisson/material/tissue_presets.h"
+#include "glisson/scene/tissue_presets.h"
 
 namespace glisson {
 namespace {

@@ -9,7 +9,7 @@
 #include <regex>
 #include <set>
 
-#include "glisson/material/tissue_presets.h"
+#include "glisson/scene/tissue_presets.h"
 #include "material/response.h"
 #include "scene/scene_text.h"
 #include "support/places.h"

@@ -2,4 +2,4 @@
 find_package(Python 3.11 REQUIRED COMPONENTS Interpreter)
 add_test(NAME script_tests WORKING_DIRECTORY "${CMAKE_CURRENT_LIST_DIR}"
   COMMAND "${Python_EXECUTABLE}" -B -m unittest discover -p "test_*.py")
-set_tests_properties(script_tests PROPERTIES TIMEOUT 1200)
+set_tests_properties(script_tests PROPERTIES TIMEOUT 1200 LABELS scripts)

@@ -1,0 +1,18 @@
+// glisson.h — everything that the library `Glisson::glisson` offers.
+//
+// Scenes (glisson/scene/scene.h, Glisson::scene) and mesh files (glisson/io.h, Glisson::io) are libraries of their own.
+#pragma once
+
+#include "glisson/instruments/blade.h"
+#include "glisson/instruments/capsule.h"
+#include "glisson/instruments/contact.h"
+#include "glisson/instruments/container.h"
+#include "glisson/instruments/cutting.h"
+#include "glisson/instruments/motion.h"
+#include "glisson/instruments/needle.h"
+#include "glisson/instruments/tool_motion.h"
+#include "glisson/math.h"
+#include "glisson/mesh.h"
+#include "glisson/simulation/simulation.h"
+#include "glisson/simulation/tet_fields.h"
+#include "glisson/version.h"
