@@ -11,7 +11,7 @@ command -v clang-tidy >/dev/null || { echo "lint: clang-tidy not found (make set
 # Only what this build compiles: a folder can hold sources of an option that is off. Rooms that are compiled as one unit are
 # looked at as one, each header once.
 mapfile -t sources < <(sed -n 's|^ *"file": "\(.*\)",\{0,1\}$|\1|p' "$build/compile_commands.json" |
-  grep -E "^$PWD/($build/)?(src|apps)/" | sort -u)
+  grep -E "^$PWD/($build/)?(src|apps)/.*\.c(pp|xx)$" | sort -u)
 [ ${#sources[@]} -gt 0 ] || { echo "lint: no sources of src/ or apps/ in $build" >&2; exit 1; }
 
 # Flags of g++ that clang does not know are no finding.

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/nearest.h"
-#include "glisson/material/tissue_presets.h"
+#include "glisson/scene/tissue_presets.h"
 #include "scene/parse/section.h"
 #include "scene/parse/sections.h"
 
