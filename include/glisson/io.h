@@ -1,5 +1,5 @@
-// io.h — meshes in, meshes and frames out. Links VTK; the core library never does.
-// The functions may be called in several threads at once, each for a file of its own.
+// io.h — reads meshes, writes meshes and frames. Links VTK; the core library never does.
+// The functions may be called from several threads at once, each for its own file.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace glisson {
 
-/// A file that cannot be used: what() holds file, line or element, the value, and what to do.
+/// A file that cannot be used: what() gives file, line or element, the value, and what to do.
 class FileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -24,17 +24,17 @@ struct ImportedMesh {
   MeshReport report;
 };
 
-/// Reads a tetrahedral mesh: .vtu, .vtk (legacy), .msh (Gmsh 2.2 and 4.1, ASCII and binary).
-/// Named groups of the file (Gmsh physical names; integer cell arrays such as "region") become regions
-/// and vertex sets: in VTK files the cell array "region", the point arrays "set:NAME" and the field arrays
-/// "region:NAME" that write_vtu writes. A cell array "fibre" (also "fibres", "fiber", "fibers", "fibre_direction") of three
-/// components gives TetMesh::fibres. Cells that are not linear tetrahedra are skipped, counted and said
-/// in the report; inverted tets are turned and said. Degenerate or duplicate tets stay, and are said.
+/// Reads a tetrahedral mesh: .vtu, .vtk (legacy), .msh (Gmsh 2.2 and 4.1, ASCII and binary). Named groups of the file
+/// (Gmsh physical names; integer cell arrays such as "region") become regions and vertex sets: in VTK files the cell
+/// array "region", the point arrays "set:NAME" and the field arrays "region:NAME" that write_vtu writes. A cell array
+/// "fibre" (also "fibres", "fiber", "fibers", "fibre_direction") of three components gives TetMesh::fibres. Cells that
+/// are not linear tetrahedra are skipped and counted in the report; inverted tets are reoriented and reported.
+/// Degenerate or duplicate tets are kept and reported.
 /// @param scale  factor applied to all coordinates (0.001 for a file in millimetres), > 0
-/// @throws FileError where the file cannot be used as it is
+/// @throws FileError if the file cannot be used as it is
 ImportedMesh read_mesh(const std::filesystem::path& file, double scale = 1.0);
 
-/// What `glisson info MESH` prints: counts, box, extent, volume, shape, pieces and warnings, one a line.
+/// The output of `glisson info MESH`: counts, box, extent, volume, shape, pieces and warnings, one per line.
 /// @param name  the file, as the user wrote it
 /// @param mesh  if given, its regions and vertex sets are listed too
 std::string format_report(const std::string& name, const MeshReport& report, const TetMesh* mesh = nullptr);
@@ -55,18 +55,17 @@ void write_vtu(const std::filesystem::path& file, const TetMesh& mesh, std::span
 /// interrupted run leaves a readable collection of the frames written so far.
 void write_pvd(const std::filesystem::path& file, std::span<const std::pair<double, std::filesystem::path>> frames);
 
-/// Reads such a collection. A time or a file that is missing, or a file that is not beside or below the collection, ends it:
-/// what comes before is given.
-/// @throws FileError where the file cannot be read or is no collection
+/// Reads such a collection, up to the first missing time or file, or file outside the collection's folder.
+/// @throws FileError if the file cannot be read or is not a collection
 std::vector<std::pair<double, std::filesystem::path>> read_pvd(const std::filesystem::path& file);
 
 /// A frame as write_vtu wrote it.
 struct ReadFrame {
-  TetMesh mesh;  ///< vertices where they were then [m]; tets as they are, turned inside out or not
+  TetMesh mesh;  ///< vertex positions of the frame [m]; tets as stored, inverted or not
   std::vector<Field> vertex_fields, tet_fields;
 };
-/// Reads a .vtu of tetrahedra alone as it stands, with the fields of these names as far as it has them.
-/// @throws FileError where the file cannot be used as it is
+/// Reads a .vtu that has only tetrahedra, without changes, and those of the named fields that it has.
+/// @throws FileError if the file cannot be used as it is
 ReadFrame read_frame(const std::filesystem::path& file, std::span<const std::string> fields);
 
 }  // namespace glisson

@@ -89,7 +89,7 @@ constexpr T determinant(const Mat3<T>& a) {
 }
 // clang-format on
 
-/// Inverse by cofactors; the caller makes sure that the determinant is not zero.
+/// Inverse by cofactors. The determinant must not be zero.
 template <class T>
 constexpr Mat3<T> inverse(const Mat3<T>& a) {
   const T d = T(1) / determinant(a);

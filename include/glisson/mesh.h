@@ -1,4 +1,4 @@
-// mesh.h — tetrahedral meshes: the type, the generators, the surface, and what is wrong with a mesh.
+// mesh.h — tetrahedral meshes: the type, the generators, the surface, the inspection.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ struct TetMesh {
   bool operator==(const TetMesh&) const = default;
 };
 
-/// A vertex and where it is to be at rest.
+/// A vertex and its new rest position.
 struct VertexMove {
   std::uint32_t vertex = 0;
   Vec3d rest{};  ///< [m]
@@ -81,20 +81,20 @@ TetMesh cylinder_mesh(const CylinderOptions& options);
 /// @throws std::invalid_argument as inspect
 std::vector<Triangle> boundary_triangles(const TetMesh& mesh);
 
-/// What a mesh holds and what is suspicious about it; `warnings` says it in sentences.
+/// Content and defects of a mesh; `warnings` describes the defects in sentences.
 struct MeshReport {
   std::size_t vertices = 0, tets = 0, boundary_triangles = 0;
   Vec3d box_min, box_max;                                  ///< bounding box of the vertices in use [m]
   double volume = 0.0;                                     ///< [m³]
   double worst_mean_ratio = 0.0, median_mean_ratio = 0.0;  ///< regular_mean_ratio; 1 is best
   std::size_t worst_tet = 0;
-  std::vector<std::uint32_t> reoriented_tets;  ///< were inverted in the file, now turned
+  std::vector<std::uint32_t> reoriented_tets;  ///< were inverted in the file, now reoriented
   std::vector<std::uint32_t> duplicate_tets;   ///< same four vertices as an earlier tet
   std::vector<std::uint32_t> degenerate_tets;  ///< zero volume or a vertex twice
   std::vector<std::uint32_t> unused_vertices;  ///< in no tet
   std::size_t non_manifold_faces = 0;          ///< faces shared by more than two tets
   std::size_t pieces = 0;                      ///< face-connected components
-  std::vector<std::string> warnings;           ///< one sentence each, with element numbers and the way out
+  std::vector<std::string> warnings;           ///< one sentence each, with element numbers and a remedy
 };
 
 /// Examines a mesh without changing it (reoriented_tets then lists tets with negative volume).
@@ -102,7 +102,7 @@ struct MeshReport {
 /// Cost: about 0.3 s and 80 bytes a tet for a million tets.
 MeshReport inspect(const TetMesh& mesh);
 
-/// Turns inverted tets and then examines: what every reader runs before it hands a mesh out. @throws as inspect
+/// Reorients inverted tets and then inspects; every reader calls it before it returns a mesh. @throws as inspect
 MeshReport orient_and_inspect(TetMesh& mesh);
 
 /// @throws std::invalid_argument with the first index, size or orientation at fault

@@ -1,10 +1,10 @@
-// blade.h — a blade as an instrument: its edge meets tissue, which resists by its fracture toughness, and cuts it.
+// blade.h — a blade as an instrument: its edge meets the fracture toughness of the tissue and cuts it.
 //
-//   Simulation::step ── pose, resistance ──▶ Blade ── cut() between steps ──▶ Cutter ── faces part ──▶ Simulation
+//   Simulation::step ── pose, resistance ──▶ Blade ── cut() between steps ──▶ Cutter ── split faces ─▶ Simulation
 //
-// What the edge has to break resists with  G l  against its way through the tissue, l the length of edge in tissue that is
-// not cut: the work of a cut is G times its area. Tissue that needs less than that to be taken along by the edge is taken
-// along and not cut. The flat of the blade does not touch the tissue; attach a contact tool of its shape for that.
+// The edge meets a resistance of G l along its path, with l the length of edge in uncut tissue: the work of a cut is G
+// times its area. Tissue that yields to less than that is carried along and not cut. The flat of the blade does not
+// touch the tissue; attach a contact tool of its shape for that.
 #pragma once
 
 #include "glisson/instruments/cutting.h"
@@ -25,13 +25,13 @@ class Blade final : public Instrument {
   Blade(Simulation& simulation, std::string name, std::shared_ptr<ToolDriver> driver, const Vec3d& direction,
         const BladeOptions& options = {});
 
-  /// Cuts what the edge has passed since the last call; to be called between steps, every one or every few.
+  /// Cuts the tissue that the edge has passed since the last call; to be called between steps, every one or every few.
   CutReport cut();
 
-  BladeEdge edge() const;                                    ///< where it is now [m]
+  BladeEdge edge() const;                                    ///< present position [m]
   double area() const { return area_; }                      ///< cut so far, at rest [m²]
   double work_of_cut() const { return toughness_ * area_; }  ///< [J]
-  double length_in_tissue() const;                           ///< of edge that has tissue to break [m]
+  double length_in_tissue() const;                           ///< length of edge in uncut tissue [m]
   Cutter& cutter() { return cutter_; }                       ///< for its checkpoint
 
   void attached(const BodyView& body, double time) override;
@@ -42,7 +42,7 @@ class Blade final : public Instrument {
   bool restore(std::span<const double> past) override;
 
  private:
-  /// A piece of the edge and the vertices of the tet it is in.
+  /// A piece of the edge and the vertices of its tet.
   struct Piece {
     EdgePiece at;
     Tet vertices{};

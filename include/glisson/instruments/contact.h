@@ -1,12 +1,12 @@
-// contact.h — rigid instruments that press on the surface of a body: punches, balls, needles' outsides, plates, blocks.
+// contact.h — rigid instruments that press on the surface of a body: punches, balls, needle shapes, plates, blocks.
 //
 //   tool's frame:      │  hand  │ z          A shape is a signed distance φ with its outward normal, in the tool's own frame.
 //                      │        │ ▲          The origin is the tip, the body of the tool lies at z > 0: with the axes of
 //                      └───┬────┘ └──▶ x     space as its own, a tool stands above the tissue and presses along −z.
 //   tissue ════════════════╧═══════════════
 //
-// At the end of a step no point of the surface may be inside the tool; what moves it out is an impulse along the normal,
-// never a spring, so that there is no stiffness to choose and none in the stable step. Friction is Coulomb's cone on the
+// At the end of a step no point of the surface may be inside the tool; an impulse along the normal moves it out, never
+// a spring, so that there is no stiffness to choose and no effect on the stable step. Friction is Coulomb's cone on the
 // motion relative to the tool (docs/contact.md).
 #pragma once
 
@@ -24,7 +24,7 @@ namespace glisson {
 /// Flat-ended cylinder.
 struct FlatPunch {
   double radius = 5e-3;      ///< [m], > 0
-  double edge_radius = 0.0;  ///< of the rounded edge [m], 0 … radius
+  double edge_radius = 0.0;  ///< radius of the rounded edge [m], 0 … radius
   double length = 0.1;       ///< [m], ≥ 2 edge_radius
 };
 
@@ -34,8 +34,8 @@ struct Ball {
 
 enum class TipForm {
   conical,
-  bevelled,  ///< cut off by one plane; the point is at x = +radius
-  blunt      ///< half a ball
+  bevelled,  ///< cut by one plane; the point is at x = +radius
+  blunt      ///< a hemisphere
 };
 
 /// A needle as a solid, for palpation and coarse contact; Needle pierces.
@@ -44,13 +44,13 @@ struct NeedleShape {
   double length = 0.1;        ///< with the tip [m]
   TipForm tip = TipForm::conical;
   double tip_angle =
-      0.35;  ///< conical: of the whole cone; bevelled: between its plane and the shaft [rad], 0.02 … 3.1 or 1.55
+      0.35;  ///< conical: full angle of the cone; bevelled: between its plane and the shaft [rad], 0.02 … 3.1 or 1.55
 };
 
 /// All of z ≥ 0.
 struct Plate {};
 
-/// Everything outside a cylinder about z that has no ends: its wall seen from inside.
+/// Everything outside an infinite cylinder about z: its wall seen from inside.
 struct CylinderWall {
   double radius = 0.05;  ///< [m], > 0
 };
@@ -63,9 +63,9 @@ struct Block {
 
 using Shape = std::variant<FlatPunch, Ball, NeedleShape, Plate, CylinderWall, Block>;
 
-/// How far a point is outside a shape, negative inside, and which way out is nearest.
+/// Signed distance of a point from a shape, negative inside, and its gradient.
 struct ShapeDistance {
-  double distance = 0.0;  ///< φ [m]; never more than the true distance, and equal to it but near the rim of a bevel
+  double distance = 0.0;  ///< φ [m]; never more than the true distance, and equal to it except near the rim of a bevel
   Vec3d normal{};         ///< ∇φ, a unit vector
 };
 
@@ -79,18 +79,18 @@ struct ContactOptions {
   std::string name = "tool";
   Shape shape = FlatPunch{};
   double friction = 0.0;         ///< Coulomb's μ [-], ≥ 0; ∞: never slips while it presses
-  bool bonded = false;           ///< what has touched stays where it touched, pulled or pressed; friction is not used
-  Vec3d direction{0, 0, -1};     ///< along which depth is measured; any length
-  double push_out_speed = 0.05;  ///< of tissue that is inside the tool when it is attached, at most [m/s], > 0
+  bool bonded = false;           ///< points that touched stay in place, pulled or pressed; friction is not used
+  Vec3d direction{0, 0, -1};     ///< direction of the depth; any length
+  double push_out_speed = 0.05;  ///< largest speed of tissue that is inside the tool when it is attached [m/s], > 0
 };
 
-/// What presses on the tool, per vertex of the surface.
+/// Pressure on the tool, per vertex of the surface.
 struct ContactPressure {
-  std::span<const std::uint32_t> vertices;  ///< ascending; those that bear
+  std::span<const std::uint32_t> vertices;  ///< loaded vertices, ascending
   std::span<const double> pascals;  ///< normal force over a third of the present area of the triangles around it
 };
 
-/// A rigid tool in contact with the surface of the body, of either side of a cut too.
+/// A rigid tool in contact with the surface of the body, including both sides of a cut.
 class ContactTool final : public Instrument {
  public:
   /// @throws std::invalid_argument naming the option, its value and the allowed range
@@ -100,8 +100,8 @@ class ContactTool final : public Instrument {
   /// Of the last step; valid until the next.
   ContactPressure contact_pressure() const;
   bool touches() const;         ///< in the last step
-  double contact_area() const;  ///< of the vertices that bear [m²]
-  /// Rows that the last step solved, and sweeps over them.
+  double contact_area() const;  ///< of the loaded vertices [m²]
+  /// Rows solved in the last step, and sweeps over them.
   struct Effort {
     std::size_t vertices = 0, triangles = 0;
     int sweeps = 0;

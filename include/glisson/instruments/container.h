@@ -1,12 +1,12 @@
-// container.h — a rigid vessel that tissue lies in, with sensors for the load on its bottom and its sides.
+// container.h — a rigid vessel around tissue, with sensors for the load on its bottom and its sides.
 //
-//      │        │      open above; the pose is at the middle of the floor, z points up
+//      │        │      open at the top; the pose is at the centre of the floor, z points up
 //      │ tissue │
-//      └────────┘      loads are what the tissue exerts on the container: a block at rest loads the bottom by −z
+//      └────────┘      loads are forces of the tissue on the container: a block at rest loads the bottom by −z
 //
-// From free to bonded: friction 0 lets tissue slide and lift off; μ is Coulomb's; infinite μ does not slip while it presses;
-// `holds_floor` and `holds_wall` keep what touches from lifting off though it may slide, as a wet vessel does;
-// `bonded` keeps it where it touched. In slow motion tool and container balance (docs/contact.md).
+// From free to bonded: friction 0 lets tissue slide and lift off; μ is Coulomb's; infinite μ does not slip while it
+// presses; `holds_floor` and `holds_wall` prevent lift-off but allow sliding, as in a wet vessel; `bonded` fixes points
+// that touched. In slow motion tool and container balance (docs/contact.md).
 #pragma once
 
 #include <limits>
@@ -19,30 +19,30 @@
 namespace glisson {
 
 struct CylinderVessel {
-  double radius = 0.05;                                     ///< inside [m], > 0
+  double radius = 0.05;                                     ///< inner radius [m], > 0
   double height = std::numeric_limits<double>::infinity();  ///< of the wall [m], > 0
 };
 
 struct BoxVessel {
-  double width = 0.04, length = 0.04;                       ///< inside, along x and y [m], > 0
+  double width = 0.04, length = 0.04;                       ///< inner size along x and y [m], > 0
   double height = std::numeric_limits<double>::infinity();  ///< of the walls [m], > 0
 };
 
 struct ContainerOptions {
   std::string name = "container";
   std::variant<CylinderVessel, BoxVessel> vessel = CylinderVessel{};
-  Pose pose{};                   ///< middle of the floor; its z is up
+  Pose pose{};                   ///< centre of the floor; its z is up
   double friction = 0.0;         ///< Coulomb's μ [-], ≥ 0, may be infinite
   bool holds_floor = false;      ///< tissue on the floor does not lift off
-  bool holds_wall = false;       ///< tissue at the wall does not come off
-  bool bonded = false;           ///< what has touched stays where it touched; friction is not used
-  double push_out_speed = 0.05;  ///< of tissue that is outside the vessel when it is attached, at most [m/s], > 0
+  bool holds_wall = false;       ///< tissue at the wall does not lift off
+  bool bonded = false;           ///< points that touched stay in place; friction is not used
+  double push_out_speed = 0.05;  ///< largest speed of tissue that is outside the vessel when it is attached [m/s], > 0
 };
 
-/// What the tissue exerts on the container [N], at Simulation::force_time().
+/// Forces of the tissue on the container [N], at Simulation::force_time().
 struct ContainerLoads {
   Vec3d bottom{};            ///< on the floor
-  Vec3d side{};              ///< on all of the wall
+  Vec3d side{};              ///< on the whole wall
   double side_radial = 0.0;  ///< Σ f·n over the wall, n pointing out of the vessel: positive where tissue presses
   Vec3d total() const { return bottom + side; }
 };

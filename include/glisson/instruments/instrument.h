@@ -1,8 +1,8 @@
-// instrument.h — what all instruments have: a pose that someone drives, forces that can be read, events.
+// instrument.h — base of all instruments: a driven pose, forces to read, events.
 //
 //   ToolDriver ── pose at t + h ──▶ Instrument ── impulses ──▶ tissue
 //        ▲                               │
-//        └────── what the tissue exerts ─┘          (recorded paths ignore it; pushes and hands do not)
+//        └────── force of the tissue ────┘          (used by pushes and hands, not by recorded paths)
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace glisson {
 
-/// Where a tool is and how it is turned.
+/// Position and rotation of a tool.
 struct Pose {
   Vec3d position{};                 ///< of the tool's origin (its tip) [m]
   Mat3d axes = identity<double>();  ///< columns: the tool's own x, y, z in space; a rotation
@@ -27,30 +27,30 @@ struct Wrench {
   Vec3d torque{};  ///< [N m]
 };
 
-/// What a tool exerts on the tissue, with its parts [N]: total = normal + friction + cutting.
+/// Force of a tool on the tissue, by component [N]: total = normal + friction + cutting.
 struct ToolForces {
   Vec3d normal{};    ///< pressing: across surfaces in contact, across the shaft of a needle, at a tip that does not cut
   Vec3d friction{};  ///< along surfaces in contact and along the shaft
-  Vec3d cutting{};   ///< at a tip or edge that parts tissue
-  Vec3d torque{};    ///< of all, about the tool's origin [N m]
+  Vec3d cutting{};   ///< at a tip or edge that cuts tissue
+  Vec3d torque{};    ///< of all components, about the tool's origin [N m]
   Vec3d total() const { return normal + friction + cutting; }
 };
 
-/// Something worth a mark on the force curve.
+/// An event to mark on the force curve.
 struct InstrumentEvent {
   double time = 0.0;   ///< [s]
-  double depth = 0.0;  ///< of the tool along its direction, from where it started [m]
+  double depth = 0.0;  ///< displacement of the tool along its direction, from its start [m]
   std::string event;   ///< contact, puncture, drop, inner puncture, withdrawal, release …
 };
 
-/// Who moves a tool: a path, a push, a program outside.
+/// Moves a tool: along a path, by a push, or from another program.
 class ToolDriver {
  public:
   virtual ~ToolDriver() = default;
-  /// Where the tool starts.
+  /// Initial pose of the tool.
   virtual Pose start() const = 0;
-  /// Where it is at the end of the step from `time` to `time` + h.
-  /// @param on_tool  what the tissue exerted on it in the last step
+  /// Pose at the end of the step from `time` to `time` + h.
+  /// @param on_tool  force of the tissue on the tool in the last step
   virtual Pose advance(double time, double h, const Wrench& on_tool) = 0;
   /// Time at which the motion has ended [s]; none: it does not end by itself.
   virtual std::optional<double> end() const { return {}; }
@@ -69,15 +69,15 @@ class Instrument : public Interaction {
   std::string label() const override { return "instrument \"" + name_ + "\""; }
   const Pose& pose() const { return pose_; }            ///< at the end of the last step
   const ToolForces& forces() const { return forces_; }  ///< of the last step, at Simulation::force_time()
-  double depth() const;                                 ///< way along the direction since the start [m]
-  double force_depth() const { return force_depth_; }   ///< the same at the time the forces are of [m]
+  double depth() const;                                 ///< displacement along the direction since the start [m]
+  double force_depth() const { return force_depth_; }   ///< the same at the time of the forces [m]
   const Vec3d& direction() const { return direction_; }
   const ToolDriver& driver() const { return *driver_; }
-  /// All events so far, in their order.
+  /// All events so far, in order.
   const std::vector<InstrumentEvent>& events() const { return events_; }
 
  protected:
-  /// Moves the pose to that at the end of the step; the one before is in `before_`. Once a step, in reach() or
+  /// Moves the pose to the end of the step; the previous one is in `before_`. To be called once a step, in reach() or
   /// first in constrain().
   void drive(const InteractionStep& step);
   void add_event(double time, double depth, std::string event) { events_.push_back({time, depth, std::move(event)}); }

@@ -1,4 +1,4 @@
-// motion.h — the paths a tool follows.
+// motion.h — the press of a tool.
 #pragma once
 
 #include "glisson/math.h"
@@ -12,7 +12,7 @@ struct PressMotion {
   double velocity = 0.01;           ///< speed [m/s], > 0
   double depth = 0.01;              ///< [m], > 0
   double start = 0.0;               ///< time at which the motion begins [s], ≥ 0; give it to drive() as `from` too
-  double ramp = 0.0;     ///< time over which the speed rises from 0, linearly [s], ≥ 0; 0: at once, as in the paper
+  double ramp = 0.0;     ///< time of a linear rise of the speed from 0 [s], ≥ 0; 0: a sudden start, as in the paper
   double hold = 0.0;     ///< rest at depth [s], ≥ 0
   bool returns = false;  ///< withdraw at the same speed after the hold
 };

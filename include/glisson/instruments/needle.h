@@ -1,15 +1,15 @@
-// needle.h — a needle that presses, pierces, cuts its way, rubs along its shaft, rests and comes back.
+// needle.h — a needle that presses, pierces, cuts, rubs along its shaft, rests and withdraws.
 //
 //            hand ┬                 material points of the path, one every `spacing`:
 //                 │                   across the shaft they stay on it, and bend it,
 //     surface ════╪════  P₀           along it they stick until friction yields
 //                 │
-//      tissue     ·      P₁           the tip is held back until its force reaches what is needed to pierce or
-//                 ·      P₂           to cut; then the path grows by where it goes
+//      tissue     ·      P₁           the tip is held back until its force suffices to pierce or
+//                 ·      P₂           to cut; then the path grows along its track
 //                 ▼ tip
 //
-// The tissue is not remeshed: the path is embedded. A point of it stands for the tissue within `zone` of it, so that forces
-// do not depend on the mesh as long as that resolves the zone (docs/needles.md).
+// The tissue is not remeshed: the path is embedded. A path point represents the tissue within `zone` of it, so that
+// forces do not depend on the mesh as long as it resolves the zone (docs/needles.md).
 #pragma once
 
 #include <functional>
@@ -22,25 +22,25 @@
 
 namespace glisson {
 
-/// Stick–slip along the inserted shaft, per metre, for a needle that goes in or comes out
-/// (modified Karnopp) [Okamura2004].
+/// Stick–slip along the inserted shaft, per metre, for a needle that goes in or comes out (modified Karnopp)
+/// [Okamura2004].
 struct ShaftFriction {
-  double static_in = 0.0, static_out = 0.0;    ///< most it holds while it sticks, D [N/m], ≥ 0
-  double dynamic_in = 0.0, dynamic_out = 0.0;  ///< while it slips, C [N/m], 0 … D
+  double static_in = 0.0, static_out = 0.0;    ///< largest force while it sticks, D [N/m], ≥ 0
+  double dynamic_in = 0.0, dynamic_out = 0.0;  ///< force while it slips, C [N/m], 0 … D
   double viscous_in = 0.0, viscous_out = 0.0;  ///< b [N s/m²], ≥ 0
-  double stick_speed = 1e-4;                   ///< slower than this it may stick again [m/s], > 0
+  double stick_speed = 1e-4;                   ///< below this slip speed it may stick again [m/s], > 0
 };
 
-/// What the tip needs in a region, or at its boundary.
+/// Resistance at the tip in a region, or at its boundary.
 struct TipResistance {
-  double cutting = 0.0;   ///< force while it cuts on through the region [N], ≥ 0
+  double cutting = 0.0;   ///< cutting force in the region [N], ≥ 0
   double puncture = 0.0;  ///< force to enter the region through its boundary [N], ≥ 0; 0: the cutting force
 };
 
-/// When the surface gives way under the tip.
+/// Puncture criterion of the surface under the tip.
 struct Rupture {
-  std::optional<double> force;      ///< at this force of the tip [N], > 0; or
-  std::optional<double> toughness;  ///< when springing back sets free this energy per area of the slit [J/m²], > 0 …
+  std::optional<double> force;       ///< puncture at this force of the tip [N], > 0; or
+  std::optional<double> toughness;   ///< when spring-back releases this energy per area of the slit [J/m²], > 0 …
   double membrane_thickness = 1e-4;  ///< … of this thickness, one needle diameter long [m], > 0
 };
 
@@ -48,32 +48,32 @@ struct NeedleOptions {
   std::string name = "needle";
   double diameter = 1.27e-3;  ///< [m], > 0; 18 G
   double length = 0.1;        ///< from the hand to the tip [m], > 0
-  Vec3d direction{0, 0, -1};  ///< of the needle at the start, from the hand to the tip; any length
-  double zone = 3e-3;         ///< radius of the tissue around a point that takes its force [m], > 0
-  double spacing = 2e-3;      ///< of path points [m], > 0; less than a third of the zone only costs time
-  Rupture rupture{};          ///< neither given: the surface is pierced at the cutting force of what is below
+  Vec3d direction{0, 0, -1};  ///< initial direction, from the hand to the tip; any length
+  double zone = 3e-3;         ///< radius of the tissue around a path point that carries its force [m], > 0
+  double spacing = 2e-3;      ///< distance of path points [m], > 0; less than a third of the zone only costs time
+  Rupture rupture{};          ///< neither given: puncture at the cutting force of the tissue below
   TipResistance tip{};        ///< of regions that `regions` does not name; its puncture is not used
   std::map<int, TipResistance> regions{};  ///< by region number
   ShaftFriction friction{};
   /// Young's modulus [Pa], > 0: the needle bends as a cantilever from the hand; none: it is rigid.
   std::optional<double> youngs_modulus{};
-  double inner_diameter = 0.0;  ///< of a tube, for its bending [m], 0 … diameter
-  /// Sideways force on a bevelled tip while it cuts, over the cutting force [-], ≥ 0, and where it points to. It steers
-  /// needles that bend.
+  double inner_diameter = 0.0;  ///< inner diameter of a tube, for its bending [m], 0 … diameter
+  /// Sideways force on a bevelled tip relative to its cutting force [-], ≥ 0, and its direction. It steers needles that
+  /// bend.
   double bevel_share = 0.0;
   Vec3d bevel_side{1, 0, 0};  ///< across the direction; any length
 };
 
-/// Where a needle stands.
+/// Stage of an insertion.
 enum class NeedleStage {
-  outside,   ///< does not touch
-  pressing,  ///< the tip presses on the surface, which holds
+  outside,   ///< no contact
+  pressing,  ///< the tip presses on the intact surface
   inside     ///< the surface is pierced
 };
 
 class Needle final : public Instrument {
  public:
-  /// @param driver  moves the tip of the needle as if nothing bent it; its axes are not used: the needle keeps its direction
+  /// @param driver  moves the tip of the unbent needle; its axes are not used: the needle keeps its direction
   /// @throws std::invalid_argument naming the option, its value and the allowed range
   /// Depth and events count along the needle from where its tip starts.
   Needle(const NeedleOptions& options, std::shared_ptr<ToolDriver> driver);
@@ -81,11 +81,11 @@ class Needle final : public Instrument {
 
   NeedleStage stage() const;
   double inserted_length() const;          ///< of the shaft in tissue [m]
-  double tip_force() const;                ///< along the needle, what the tip exerts [N]
-  std::vector<Vec3d> path() const;         ///< material points from the surface to the deepest, where they are now [m]
+  double tip_force() const;                ///< force of the tip along the needle [N]
+  std::vector<Vec3d> path() const;         ///< material points from the surface to the deepest, present positions [m]
   std::vector<Vec3d> centre_line() const;  ///< of the needle from the hand to the tip, as bent [m]
   const NeedleOptions& options() const;
-  /// Is told of the hole when the surface gives way: its place in space [m] and radius [m]. For a capsule that tears.
+  /// Sets the callback for a puncture (position [m], radius [m]), for example to open a capsule.
   void on_puncture(std::function<void(const Vec3d& place, double radius)> told);
 
   void attached(const BodyView& body, double time) override;

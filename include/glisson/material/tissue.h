@@ -1,4 +1,4 @@
-// tissue.h — what a tissue is: elasticity, its law against deformation, viscosity, density.
+// tissue.h — a tissue: elasticity, stiffness law, viscosity, density.
 #pragma once
 
 #include <optional>
@@ -11,61 +11,62 @@
 
 namespace glisson {
 
-/// The number of a tetrahedron that a stiffness law takes as its argument.
+/// The measure of deformation of a tetrahedron: the argument of a stiffness law.
 enum class DeformationMeasure {
   intensity,           ///< s = √(3 (1 − q) / 2), 0 at rest, ≈ ‖dev ε‖
   one_minus_q,         ///< 1 − q(F), 0 at rest, ≈ ⅔ ‖dev ε‖²
   regular_mean_ratio,  ///< 12 (3V)^⅔ / Σ l² of the deformed tet; the paper's raw measure, mesh-dependent at rest
   radius_ratio,  ///< √(5 (1 − ρ) / 4), ρ three times in- over circumradius against the rest tet   [LiuJoe1994]
-  solid_angle    ///< 0.831 (1 − σ), σ the smallest solid angle's sine of half against the rest tet [LiuJoe1994]
+  solid_angle    ///< 0.831 (1 − σ), σ the sine of half the smallest solid angle, against the rest tet [LiuJoe1994]
 };
 
-/// Which constant tensor carries the viscosity η, [Schwartz2002, eq. 7] (the paper leaves it open).
+/// The constant tensor of the viscosity η, [Schwartz2002, eq. 7] (the paper does not define it).
 enum class ViscousTensor {
   shear,         ///< σ_v = 2 η ε̇
   deviatoric,    ///< σ_v = 2 η dev ε̇
   proportional,  ///< (η/E) × the elastic tensor at rest
-  pioletti       ///< S_v = 2 η (I₁ − 3) Ė: none at rest, more the more it is stretched         [Pioletti1998]
+  pioletti       ///< S_v = 2 η (I₁ − 3) Ė: 0 at rest, grows with stretch         [Pioletti1998]
 };
 
-/// How a tensor-mass tissue measures strain ε from H = F − I; the stress is λ tr(ε) I + 2 μ ε in all three.
+/// Strain ε of a tensor-mass tissue as a function of H = F − I; the stress is λ tr(ε) I + 2 μ ε in all three.
 enum class Kinematics {
   small,         ///< ε = sym H, the paper's: a rotation by θ is taken for the strain cos θ − 1
   corotational,  ///< ε = U − I of the polar decomposition F = R U, P = R σ; for large rotations, safe when inverted
   green          ///< E = ½ (FᵀF − I), P = F S: St Venant–Kirchhoff                       [Picinbono2003]
 };
 
-/// What force a law of stiffness gives.
+/// The force of a stiffness law.
 enum class LawForm {
   secant,  ///< σ = λ(x) tr(ε) I + 2 μ(x) ε, the paper's: not the gradient of an energy
   energy   ///< P = ∂W/∂F, W = ½ λ(x) tr(ε)² + μ(x) ε:ε
 };
 
-/// Fibres that stiffen the tissue along one direction a: W_f = ½ c (a·E a)², E = ½ (FᵀF − I) (of kinematics small: sym H).
+/// Fibres that stiffen the tissue along one direction a: W_f = ½ c (a·E a)², E = ½ (FᵀF − I) (of kinematics small: sym
+/// H).
 /// With moduli λ_L, μ_L along and λ_T, μ_T across the fibres, c = λ_L − λ_T + 2 (μ_L − μ_T) [Picinbono2003].
 struct Fibres {
-  Vec3d direction{0.0, 0.0, 1.0};  ///< a at rest, any length but 0; a mesh's own directions win (TetMesh::fibres)
+  Vec3d direction{0.0, 0.0, 1.0};  ///< a at rest, any length but 0; TetMesh::fibres override it
   double stiffness = 0.0;          ///< c [Pa], ≥ 0
   bool operator==(const Fibres&) const = default;
 };
 
 /// One branch of a generalised Maxwell body: μ(t) = μ₀ (1 − Σ g (1 − e^(−t/τ))).
 struct MaxwellBranch {
-  double share = 0.0;  ///< g, part of the instantaneous modulus that relaxes [-], > 0; all together < 1
+  double share = 0.0;  ///< g, share of the instantaneous modulus that relaxes [-], > 0; sum < 1
   double time = 1.0;   ///< τ [s], > 0
   bool operator==(const MaxwellBranch&) const = default;
 };
 
-/// Which stress the Maxwell branches relax.
+/// The stress that the Maxwell branches relax.
 enum class MaxwellPart {
   deviator,  ///< its deviator: bulk stays elastic
   all
 };
 
-/// Cure of volumetric locking, which makes linear tets too stiff from ν = 0.45 on.
+/// Treatment of the volume change; linear tets lock from ν = 0.45 on.
 enum class VolumeChange {
-  own,   ///< each tet its own, as the paper
-  nodal  ///< mean of its vertices' mean over their tets, weighted by volume [BonetBurton1998]
+  own,   ///< of each element, as in the paper
+  nodal  ///< average nodal: mean of the vertices' means over their tets, weighted by volume [BonetBurton1998]
 };
 
 /// λ and μ of linear elasticity [Pa].
@@ -80,8 +81,8 @@ LameParameters lame_from_young(double youngs_modulus, double poisson_ratio);
 /// Kelvin–Voigt viscosity and Maxwell branches.
 ///
 /// Either `law` acts on E with ν constant (so λ and μ scale alike), or `lambda_law` and `mu_law` act on
-/// λ and μ apart. Each maps the base modulus and the measure to a modulus in Pa. With `hyperelastic` the stress is
-/// ∂W/∂F of that law instead; E, ν, kinematics and the laws of stiffness are not used then.
+/// λ and μ separately. Each maps the base modulus and the measure to a modulus in Pa. With `hyperelastic` the stress is
+/// ∂W/∂F of that law instead; E, ν, kinematics and the stiffness laws are not used then.
 struct Tissue {
   std::string name = "tissue";
   double youngs_modulus = 3600.0;  ///< E at rest [Pa], > 0
@@ -98,11 +99,11 @@ struct Tissue {
   LawForm law_form = LawForm::secant;
   std::optional<HyperelasticLaw> hyperelastic{};
   std::optional<Fibres> fibres{};
-  std::vector<MaxwellBranch> maxwell{};  ///< the moduli given are those of an instant; at most 8 branches
+  std::vector<MaxwellBranch> maxwell{};  ///< the given moduli are then the instantaneous ones; at most 8 branches
   MaxwellPart maxwell_part = MaxwellPart::deviator;
   VolumeChange volume_change = VolumeChange::own;
 
-  /// λ and μ at rest, in an instant; of the hyperelastic law where there is one.
+  /// Instantaneous λ and μ at rest; those of the hyperelastic law where there is one.
   LameParameters lame() const;
   /// Whether the force is that of the paper's element: small strain, secant law, no fibres, no branches.
   bool is_tensor_mass() const;

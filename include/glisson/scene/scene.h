@@ -1,4 +1,4 @@
-// scene.h — experiments as TOML files: read, checked against the schema, run.
+// scene.h — experiments as TOML files: reading, checking against the schema, running.
 #pragma once
 
 #include <atomic>
@@ -27,9 +27,8 @@
 
 namespace glisson {
 
-/// A scene that cannot be used. what() has one line for each thing that is wrong, in the order of the file:
-/// `file:line:column: key: what is wrong, value, allowed range, way out`; for a value given to --set
-/// `file: --set KEY: …`.
+/// A scene that cannot be used. what() has one line for each error, in the order of the file: `file:line:column: key:
+/// error, value, allowed range, remedy`; for a value given to --set `file: --set KEY: …`.
 class SceneError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -41,10 +40,10 @@ struct MeshFile {
 };
 using MeshSource = std::variant<BoxOptions, CylinderOptions, MeshFile>;
 
-// `origin` in the structs below is where the scene says it, `file:line:column: key`, for messages that can only be
-// made once the mesh is known. It may be empty.
+// `origin` in the structs below is the place in the scene, `file:line:column: key`, for messages that need the mesh. It
+// may be empty.
 
-/// Picks vertices by where they are at rest. Exactly one way per selection.
+/// Selects vertices by their rest positions, by exactly one criterion.
 struct Selection {
   struct Box {
     Vec3d min, max;
@@ -70,7 +69,7 @@ struct Selection {
   std::string origin;
 };
 
-/// A region of tets by where their centroid lies at rest; overrides the mesh's own regions.
+/// A region of tets by their centroids at rest; overrides the mesh's own regions.
 struct RegionSpec {
   std::string name;
   std::variant<std::monostate, Selection::Box, Selection::Sphere>
@@ -86,13 +85,13 @@ struct FixedSpec {
 };
 struct LoadSpec {
   std::string set;
-  Vec3d force;        ///< [N], spread over the set by equal parts
+  Vec3d force;        ///< [N], divided equally over the set
   double ramp = 0.0;  ///< time over which it grows from 0, linearly [s], ≥ 0
   std::string origin;
 };
-/// A recorded way from a file (load_record).
+/// A recorded path from a file (load_record).
 struct RecordSpec {
-  std::filesystem::path path;  ///< absolute, or relative to the current directory; empty for a way made in memory
+  std::filesystem::path path;  ///< absolute, or relative to the current directory; empty for a path made in memory
   double start = 0.0;
   RecordedMotion motion;  ///< what the file holds
 };
@@ -100,29 +99,29 @@ struct ToolSpec {
   std::string name = "tool";
   std::string set;
   PressMotion motion;
-  std::optional<RecordSpec> record;  ///< a recorded way in place of the press; what the press says then is `direction`
-  std::optional<ToolPath> path;      ///< a program's own way, in place of both; 0 at time 0
+  std::optional<RecordSpec> record;  ///< a recorded path in place of the press, of which only `direction` is used then
+  std::optional<ToolPath> path;      ///< a program's own path, in place of both; 0 at time 0
   bool sideways_free = false;        ///< only the component along the direction is driven (direction along an axis)
   std::string origin;
 };
 
-/// The way of a tool, and when it has ended. @throws std::invalid_argument
+/// The path of a tool, and its end. @throws std::invalid_argument
 ToolPath tool_path(const ToolSpec& tool);
-/// When a tool takes hold [s].
+/// Start of a tool's motion [s].
 double tool_start(const ToolSpec& tool);
 
-/// Strokes along the instrument's direction and across it; one that has no speed of its own takes the common one.
+/// Strokes along the instrument's direction and across it; one without its own speed uses the common one.
 struct StrokesSpec {
   struct One {
-    double depth = 0.0;  ///< where it ends, along the direction from the start [m]
-    Vec3d aside{};       ///< and beside it [m]
+    double depth = 0.0;  ///< end point along the direction, from the start [m]
+    Vec3d aside{};       ///< end point across the direction [m]
     std::optional<double> velocity;
     double ramp = 0.0, rest = 0.0;
   };
   double velocity = 0.01, start = 0.0;
   std::vector<One> strokes;
 };
-/// A push that rises over `ramp` and may swing:  F = w(t/ramp) (force + swing sin 2π f t).
+/// A push that rises over `ramp` and may oscillate:  F = w(t/ramp) (force + swing sin 2π f t).
 struct PushSpec {
   double force = 1.0, swing = 0.0, frequency = 1.0, start = 0.0, ramp = 0.0;
   std::optional<double> duration, stop;
@@ -130,7 +129,7 @@ struct PushSpec {
   bool guided = true;
 };
 struct InstrumentMotion {
-  /// The last is a program's own way; no scene file gives it.
+  /// The last is a program's own path; no scene file gives it.
   std::variant<PressMotion, StrokesSpec, SineMotion, PushSpec, RecordSpec, ToolPath> how;
   std::optional<Vec3d> direction;  ///< of any length; none: the instrument's
 };
@@ -143,17 +142,17 @@ struct ContactSpec {
   bool bonded = false;
   double push_out_speed = ContactOptions{}.push_out_speed;
 };
-/// A blade, and how often it parts what its edge has passed.
+/// A blade, and the interval of its cuts.
 struct BladeSpec {
   BladeOptions options;
   double cut_every = 1e-3;  ///< [s], > 0
 };
-/// Something that presses, pierces or cuts, and how it moves.
+/// An instrument that presses, pierces or cuts, and its motion.
 struct InstrumentSpec {
   std::string name = "instrument";
-  Vec3d tip{};                      ///< where its tip starts [m]
-  Vec3d direction{0.0, 0.0, -1.0};  ///< in which it points, of any length
-  Vec3d side{1.0, 0.0, 0.0};        ///< where its own x axis points, as far as that is across the direction
+  Vec3d tip{};                      ///< initial position of its tip [m]
+  Vec3d direction{0.0, 0.0, -1.0};  ///< direction of its tip, of any length
+  Vec3d side{1.0, 0.0, 0.0};        ///< direction of its own x axis; the component across `direction` counts
   InstrumentMotion motion;
   std::variant<NeedleOptions, ContactSpec<FlatPunch>, ContactSpec<Ball>, ContactSpec<NeedleShape>, ContactSpec<Plate>,
                ContactSpec<Block>, BladeSpec>
@@ -161,7 +160,7 @@ struct InstrumentSpec {
   std::map<std::string, TipResistance> regions;  ///< of a needle, by region name
   std::string origin;
 };
-/// Where an instrument starts and how it is turned: its own z axis points back along its direction.
+/// Initial pose of an instrument: its own z axis points back along its direction.
 Pose start_pose(const InstrumentSpec& instrument);
 /// Its driver. @throws std::invalid_argument
 std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& instrument);
@@ -174,7 +173,7 @@ RecordedMotion load_record(const std::filesystem::path& file, const Vec3d& direc
 /// A rigid vessel around the body, upright.
 struct ContainerSpec {
   enum class Hold { free, wet, bonded };
-  Hold hold = Hold::free;  ///< what `options` says of it in three switches
+  Hold hold = Hold::free;  ///< sets three switches of `options`
   ContainerOptions options;
   std::string origin;
 };
@@ -182,7 +181,7 @@ struct ContainerSpec {
 /// A membrane on a part of the surface.
 struct CapsuleSpec {
   CapsuleOptions options;
-  std::string set;  ///< vertex set; empty: all of the surface
+  std::string set;  ///< vertex set; empty: the whole surface
   std::string origin;
 };
 
@@ -191,7 +190,7 @@ struct OutputSpec {
   int frames = 60;             ///< frames of the whole run, 0 or more
 };
 
-/// One experiment, complete: what the variants of a scene are expanded to.
+/// One complete experiment: a variant of a scene after expansion.
 struct Variant {
   std::string name = "main";
   std::string label;
@@ -219,13 +218,13 @@ struct AxisSpec {
   std::string label;  ///< with unit, e.g. "depth [mm]"
   double scale = 1.0;
 };
-/// Points that someone measured, in the units of the chart.
+/// Measured points, in the units of the chart.
 struct MeasuredSpec {
   std::filesystem::path path;  ///< a .csv with a line of names; absolute, or relative to the current directory
   std::string label = "measured";
   std::string x, y;                                     ///< its columns
   double x_scale = 1.0, x_offset = 0.0, y_scale = 1.0;  ///< x shown = x_scale (x − x_offset)
-  std::vector<double> xs, ys;                           ///< what the file holds, as shown
+  std::vector<double> xs, ys;                           ///< content of the file, as shown
 };
 /// A chart of the report.
 struct ChartSpec {
@@ -238,7 +237,7 @@ struct ChartSpec {
 struct Scene {
   std::filesystem::path file;
   std::string title, description;
-  std::vector<std::string> notes;  ///< what was chosen where the source is silent, and why
+  std::vector<std::string> notes;  ///< choices where the source gives no value, and the reasons
   std::string source;              ///< the text of the file
   std::vector<Variant> variants;   ///< one or more
   std::vector<ChartSpec> charts;   ///< empty: the report's own choice
@@ -258,12 +257,12 @@ Scene parse_scene(std::string_view text, const std::string& name, const std::fil
 /// The reference of every key in Markdown: docs/scene.md is this text.
 std::string scene_reference_markdown();
 
-/// Reads a mesh file; the io library's read_mesh, handed in so that scenes do not link VTK.
+/// Reads a mesh file; the io library's read_mesh, passed in so that scenes do not link VTK.
 using MeshLoader = std::function<TetMesh(const MeshFile&)>;
 
-/// What an instrument does at the time of a sample.
+/// State of an instrument at the time of a sample.
 struct InstrumentSample {
-  double depth = 0.0;  ///< along its direction, from where it started [m]
+  double depth = 0.0;  ///< along its direction, from its start [m]
   ToolForces forces;   ///< on the tissue
 };
 
@@ -271,10 +270,10 @@ struct InstrumentSample {
 struct Sample {
   double time = 0.0;                          ///< [s]
   std::vector<double> depths;                 ///< per tool [m]
-  std::vector<ForceParts> tools;              ///< per tool: what it exerts on the tissue
-  std::vector<ForceParts> supports;           ///< per fixed set: what it exerts on the tissue
+  std::vector<ForceParts> tools;              ///< per tool: its force on the tissue
+  std::vector<ForceParts> supports;           ///< per fixed set: its force on the tissue
   std::vector<InstrumentSample> instruments;  ///< per instrument
-  std::optional<ContainerLoads> container;    ///< what the tissue exerts on it
+  std::optional<ContainerLoads> container;    ///< forces of the tissue on it
   Energies energies;
 };
 
@@ -292,7 +291,7 @@ struct RunSummary {
   double time_s = 0.0, step_s = 0.0, stable_step_s = 0.0, wall_s = 0.0, ns_per_tet_step = 0.0, peak_force_N = 0.0;
   Energies energies;
   double mass_added_kg = 0.0;          ///< by mass scaling
-  std::size_t inverted_tets_most = 0;  ///< the most tets inverted in one step
+  std::size_t inverted_tets_most = 0;  ///< largest number of tets inverted in one step
   double first_inversion_s = -1.0;     ///< time of it; −1: none
   std::uint64_t state_hash = 0;
   enum class End {
@@ -304,15 +303,15 @@ struct RunSummary {
     stopped_not_converged,
     stopped_not_held
   } end = End::finished;
-  std::string trouble;  ///< why the last step was not made and what to do; empty where all were
+  std::string trouble;  ///< why the last step was not made and what to do; empty if all were
 };
 
-/// Watches a run; called from the run's own thread, never on the hot path of a step.
+/// Observes a run; called from the run's own thread, never on the hot path of a step.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
   virtual void on_start(const Variant&, const Simulation&) {}
-  /// Right after on_start; what it names lives until on_end has returned.
+  /// Right after on_start; the objects live until on_end has returned.
   virtual void on_built(const BuiltVariant&) {}
   virtual void on_sample(const Sample&) {}
   /// Before the first sample that is not earlier.
@@ -328,9 +327,9 @@ TetMesh build_mesh(const Variant& variant, const MeshLoader& load);
 /// Tissue of each region number that occurs in a mesh made by build_mesh.
 std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh);
 
-/// The body of a variant with its supports, loads and tools, at rest. It stays where it is: blades know their body.
+/// The body of a variant with its supports, loads and tools, at rest. It cannot be moved: blades refer to it.
 struct BuiltVariant {
-  /// @throws SceneError where mesh, sets, tissues, step or constraints cannot be used
+  /// @throws SceneError if mesh, sets, tissues, step or constraints cannot be used
   BuiltVariant(const Variant& variant, const MeshLoader& load);
   BuiltVariant(const BuiltVariant&) = delete;
   BuiltVariant& operator=(const BuiltVariant&) = delete;
@@ -340,9 +339,9 @@ struct BuiltVariant {
   std::vector<ConstraintId> tools;                       ///< per variant.tools
   std::vector<std::shared_ptr<Instrument>> instruments;  ///< per variant.instruments
   std::vector<std::shared_ptr<Capsule>> capsules;        ///< per variant.capsules
-  std::shared_ptr<Container> container;                  ///< null: there is none
+  std::shared_ptr<Container> container;                  ///< null: none
 
-  /// A step of the body; after it, blades cut where it is time to.
+  /// A step of the body, followed by the cuts of blades that are due.
   StepResult step();
 
  private:

@@ -1,4 +1,4 @@
-// tissue_presets.h — tissues with a source: what was measured, how, and where it holds.
+// tissue_presets.h — tissues with a source: the measurement, its method, and its validity.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct TissuePreset {
   std::string source;      ///< the work, "[Key]: …", Key of docs/references.bib
   std::string fitted_to;   ///< the measurement: test, range, rate, result
   std::string validity;    ///< where it holds, and what the source leaves open
-  std::string confirmed;   ///< against what the figures were checked
+  std::string confirmed;   ///< the source that was checked
   Tissue tissue;
   std::string toml;  ///< the tissue as a scene's [tissue] table
 };

@@ -1,13 +1,13 @@
-// interaction.h — what acts on a body beside supports, prescribed motions and loads: instruments in contact, needles,
-// membranes. Programs may bring their own.
+// interaction.h — base of everything that acts on a body besides supports, motions and loads: instruments, needles,
+// membranes. Programs may derive their own.
 //
 //   a step from t to t + h, with v₋ and v₊ the velocities before and after t:
-//     reach ─▶ tissue forces at u(t) ─▶ add_forces ─▶ v₊ as if free, then as motions ask ─▶ constrain ─▶ u(t+h) ─▶ moved
+//     reach ─▶ tissue forces at u(t) ─▶ add_forces ─▶ v₊ as if free, then with motions ─▶ constrain ─▶ u(t+h) ─▶ moved
 //
-// An interaction names the vertices it may act on; these are kept at hand in double. Forces that follow from the state
-// alone (membranes, springs) are added to the tissue's own; what must hold at the end of the step (no penetration,
-// friction, a path through the tissue) is solved for on velocities, by impulses. Interactions act one after the other, in
-// the order in which they were attached.
+// An interaction names the vertices it may act on, its active vertices; they are held in double. Forces that follow
+// from the state alone (membranes, springs) are added to the tissue's own; conditions at the end of the step (no
+// penetration, friction, a path through the tissue) are enforced on velocities, by impulses. Interactions act one after
+// the other, in the order in which they were attached.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@
 
 namespace glisson {
 
-/// A vertex at hand: one that something beside the tissue acts on.
+/// An active vertex: one that a support, motion or interaction acts on.
 struct WatchedVertex {
   std::uint32_t vertex = 0;
   Vec3d elastic, viscous;  ///< forces of the tissue at time t [N]
@@ -29,16 +29,16 @@ struct WatchedVertex {
   Vec3d velocity;          ///< [m/s]
 };
 
-/// The body as it is now, for interactions.
+/// The present body, for interactions.
 struct BodyView {
-  const TetMesh& mesh;                  ///< at rest, with all tets there ever were, in present numbers
-  std::span<const char> removed;        ///< per tet: 1 where it is gone; empty: none is
+  const TetMesh& mesh;                  ///< at rest, including removed tets, in present numbers
+  std::span<const char> removed;        ///< per tet: 1 if removed; empty: none is
   std::span<const double> masses;       ///< lumped, per vertex [kg]
   std::span<const Vec3d> displacement;  ///< per vertex [m]
   bool is_removed(std::size_t tet) const { return !removed.empty() && removed[tet] != 0; }
 };
 
-/// The vertices at hand in a step.
+/// The active vertices in a step.
 class InteractionStep {
  public:
   static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
@@ -50,12 +50,12 @@ class InteractionStep {
   std::span<const Vec3d> rest;              ///< per vertex of the mesh: rest position [m]
   /// Per place: velocity per impulse, 1/(m + γh), in each component; 0 where a support or motion holds it [1/kg].
   std::span<const Vec3d> mobility;
-  std::span<Vec3d> impulses;  ///< per place: sum of what interactions gave it in this step [N s]
+  std::span<Vec3d> impulses;  ///< per place: sum of the impulses of this step [N s]
 
-  /// Where the vertex at a place is at time t, or at t + h after moved() [m].
+  /// Position of the vertex at a place at time t, or at t + h after moved() [m].
   Vec3d position(std::size_t place) const { return rest[vertices[place].vertex] + vertices[place].displacement; }
 
-  /// Gives the vertex at a place an impulse [N s]; held components do not move.
+  /// Applies an impulse [N s] to the vertex at a place; held components do not move.
   void push(std::size_t place, const Vec3d& impulse) const {
     const Vec3d& a = mobility[place];
     vertices[place].velocity += Vec3d{a.x * impulse.x, a.y * impulse.y, a.z * impulse.z};
@@ -63,39 +63,40 @@ class InteractionStep {
   }
 };
 
-/// Something that acts on a body. Members are called by the Simulation it is attached to, in the order drawn above.
+/// Acts on a body. The Simulation it is attached to calls the members in the order drawn above.
 /// None may throw after `attached`.
 class Interaction {
  public:
   Interaction() = default;
   virtual ~Interaction() = default;
-  /// A copy acts on no simulation yet.
+  /// A copy is not attached.
   Interaction(const Interaction&) {}
   Interaction& operator=(const Interaction&) { return *this; }
 
-  /// What messages call it.
+  /// Its name in messages.
   virtual std::string label() const { return "this interaction"; }
 
-  /// The body it acts on from now on. @throws std::invalid_argument where it does not fit
+  /// Called once with the body it acts on. @throws std::invalid_argument if the body does not suit it
   virtual void attached(const BodyView& body, double time) = 0;
-  /// Tets were removed, faces split, vertices moved or masses changed. Vertices and tets keep their numbers; new vertices come last.
+  /// Tets were removed, faces split, vertices moved or masses changed. Vertices and tets keep their numbers; new
+  /// vertices come last.
   /// @param origins  the last vertices are copies of these
   virtual void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) = 0;
 
-  /// Vertices it may act on in the step from `time` to `time` + h, beside those it named before, which stay at hand.
+  /// Vertices it may act on in the step from `time` to `time` + h, besides those named before, which stay active.
   /// Valid until the next call. Cost: naming none is free; naming some takes a pass over the vertices of the body.
   virtual std::span<const std::uint32_t> reach(double time, double h) = 0;
 
-  /// Adds forces that follow from the present state to `elastic` or `viscous` of vertices.
+  /// Adds forces that follow from the present state to `elastic` or `viscous` of active vertices.
   virtual void add_forces(const InteractionStep&) {}
   /// Corrects v₊ by impulses.
   virtual void constrain(const InteractionStep&) {}
   /// The step has been made: displacements are those at t + h.
   virtual void moved(const InteractionStep&) {}
 
-  /// Square of a frequency that add_forces' stiffness has on the masses of the body, from above [1/s²]; it is kept out of
-  /// the stable step. Asked for after every step: where it follows the state it has to see one step ahead. Constraints
-  /// have none.
+  /// Upper bound of the squared frequency of the added stiffness (add_forces) on the masses of the body [1/s²]; it
+  /// shortens the stable step. Called after every step: a value that follows the state has to cover the next step.
+  /// Constraints add no stiffness.
   virtual double squared_frequency() const { return 0.0; }
 
   /// What it knows of its past, for a checkpoint. restore() takes such numbers back to the last bit.
@@ -105,7 +106,7 @@ class Interaction {
 
  private:
   friend class Simulation;
-  bool is_attached_ = false;  ///< to a simulation, for good: what it knows of its past is of that body
+  bool is_attached_ = false;  ///< to a simulation, permanently: its state belongs to that body
 };
 
 }  // namespace glisson
