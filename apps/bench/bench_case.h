@@ -22,7 +22,7 @@ enum class Model {
   green_energy,  ///< Green strain, E doubles at s = 0.5, as an energy
   fibres,        ///< Green strain and fibres
   neo_hookean,
-  nodal,    ///< neo-Hookean, volume changes shared over vertices
+  nodal,    ///< neo-Hookean, nodal volume changes
   maxwell,  ///< neo-Hookean, two branches
   mooney_rivlin,
   yeoh,

@@ -19,16 +19,16 @@ constexpr double kBusy = 0.5;  // load average from which figures are not to be 
 constexpr const char* kLegend =
     "ns, p10   wall time per tet and step: median of {} repetitions of about {:g} s, and tenth percentile of bursts "
     "of\n"
-    "          2 ms, which other programs reach into less; spread is (p90 - p10) / median of the repetitions\n"
+    "          2 ms, which other programs disturb less; spread is (p90 - p10) / median of the repetitions\n"
     "*         disturbed: the spread is above 15 %, or the median 10 % above p10; take p10, or measure again\n"
     "flops     useful additions, multiplications, divisions and roots per tet and step, a fused one counted as two;\n"
     "          padding and the bounds of the stable step are not counted (docs/engine.md)\n"
-    "bytes     rest data and state per tet that a step goes through\n"
+    "bytes     rest data and state read or written per tet and step\n"
     "of FMA, of memory\n"
     "          flops and bytes over the roofs measured in this run with as many threads; bodies that fit the caches\n"
     "          can exceed the memory roof\n"
     "state     hash after {} steps from the same state, equal for all threads or the run fails\n"
-    "Energies are not kept (SimulationOptions::track_energies = false) but where said.\n";
+    "Energies are not computed (SimulationOptions::track_energies = false) unless stated.\n";
 
 std::string percent(double fraction) { return fraction > 0.0 ? fmt::format("{:.1f} %", 100.0 * fraction) : "-"; }
 std::string count(double value) { return value > 0.0 ? fmt::format("{:.1f}", value) : "-"; }

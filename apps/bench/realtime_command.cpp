@@ -24,8 +24,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Steps the scene at wall-clock pace: one frame of simulated time per frame of the clock, then the tool's force.\n"
-    "A frame whose computing takes longer than a frame is missed; frames that are over before their turn are dropped,\n"
-    "and the simulated time falls behind by them. Writes nothing but FILE; energies are not kept.\n"
+    "A frame whose computing takes longer than a frame is missed; overdue frames are dropped,\n"
+    "and the simulated time falls behind by them. Writes nothing but FILE; energies are not computed.\n"
     "\n"
     "Examples:\n"
     "  glisson bench realtime scenes/paper/figure3b.toml --variant eta_0\n"
@@ -156,8 +156,7 @@ CLI::App* add_realtime(CLI::App& bench, Action& action) {
       ->type_name("MS")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();
-  command
-      ->add_option("--threads", options->threads, "threads of the engine; 0: as many as pay for the size of the body")
+  command->add_option("--threads", options->threads, "threads of the engine; 0: chosen by the size of the body")
       ->type_name("N")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

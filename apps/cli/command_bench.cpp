@@ -25,8 +25,8 @@ namespace {
 
 constexpr const char* kBenchFooter =
     "Measures the machine's multiply-add peak and memory bandwidth, then the step of bodies that are generated here,\n"
-    "and holds one against the other. Takes about a minute, with --quick a few seconds; close other programs. Exit\n"
-    "status 1 where a body ends in another state on another number of threads.\n"
+    "and compares the two. Takes about a minute, with --quick a few seconds; close other programs. Exit\n"
+    "status 1 if a body ends in different states on different numbers of threads.\n"
     "\n"
     "Examples:\n"
     "  glisson bench --quick\n"
@@ -148,13 +148,13 @@ int bench(const BenchOptions& given) {
 }
 
 void add_bench_options(CLI::App& command, BenchOptions& options) {
-  command.add_option("--threads", options.threads, "numbers of threads; 1, 2, 4 … to all cores where not given")
+  command.add_option("--threads", options.threads, "numbers of threads; default 1, 2, 4 … up to all cores")
       ->type_name("LIST")
       ->delimiter(',')
       ->check(CLI::Range(1, 1024));
   command
       .add_option("--sizes", options.sizes,
-                  "boxes of about so many tets; 768, 96000, 1000000 where not given. A size takes 1 kB a tet")
+                  "boxes of about this many tets; default 768, 96000, 1000000. A size needs 1 kB per tet")
       ->type_name("LIST")
       ->delimiter(',')
       ->check(CLI::Range(std::size_t{6}, std::size_t{50'000'000}));
@@ -162,15 +162,14 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
   known.emplace_back("all");
   command
       .add_option("--models", options.models,
-                  "linear; law: E follows the shape; full: and viscosity; the laws of large deformation by name; all")
+                  "linear; law: E follows the shape; full: law and viscosity; the large-deformation laws by name; all")
       ->type_name("LIST")
       ->delimiter(',')
       ->check(CLI::IsMember(known))
       ->capture_default_str();
   command.add_option("--mesh", options.meshes, "measure these meshes too (.vtu, .vtk, .msh)")->type_name("FILE…");
   command
-      .add_option("--isa", options.isa,
-                  "instruction set of kernels and peak: avx512, avx2, sse4; the best where not given")
+      .add_option("--isa", options.isa, "instruction set of kernels and peak: avx512, avx2, sse4; default: the best")
       ->type_name("NAME")
       ->check(CLI::IsMember(cpu::instruction_sets()));
   command.add_flag("--quick", options.quick, "fewer and shorter repetitions, without the million tets");

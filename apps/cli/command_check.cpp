@@ -20,8 +20,8 @@
 namespace glisson::app {
 namespace {
 
-constexpr const char* kCheckFooter =
-    "Reads the scene, builds every variant, steps it for a tenth of a second of your time and prints mesh, vertex\n"
+constexpr const char* kFooter =
+    "Reads the scene, builds every variant, steps it for a tenth of a second and prints mesh, vertex\n"
     "sets, tissue, stable step, and the steps and the time a run will take. Writes nothing. Exit status 2 if the\n"
     "scene cannot be run.\n"
     "\n"
@@ -121,7 +121,7 @@ void print_body(const Variant& v, const Taste& taste) {
   for (const ToolSpec& tool : v.tools) {
     const PressMotion& m = tool.motion;
     if (tool.record) {
-      say("  tool     \"{}\" on {}: a recorded way of {} points, from {:.4g} s to {:.4g} s\n", tool.name,
+      say("  tool     \"{}\" on {}: a recorded path of {} points, from {:.4g} s to {:.4g} s\n", tool.name,
           set_text(taste.mesh, tool.set), tool.record->motion.times.size(), tool_start(tool),
           tool_path(tool).end.value_or(0.0));
       continue;
@@ -163,8 +163,8 @@ void print_limits(const Taste& taste) {
   if (others.step < kWorthSaying * first.step) return;
   const auto few = std::count_if(taste.limits.begin(), taste.limits.end(),
                                  [&](const LimitingTet& t) { return t.step < 0.95 * others.step; });
-  say("  limits   {} of the tets, tet {} of altitude {:.3g} mm first, make steps {:.2g} times as short as the others "
-      "need;\n           mass_scaling_step_s = {:.2g} gives just these more mass\n",
+  say("  limits   {} of the tets, first tet {} with altitude {:.3g} mm, make steps {:.2g} times as short as the others "
+      "need;\n           mass_scaling_step_s = {:.2g} adds mass only to these\n",
       few, first.tet, 1e3 * first.altitude, others.step / first.step, two_digits_down(others.step));
 }
 
@@ -209,7 +209,7 @@ int check(const CheckOptions& options) {
 }  // namespace
 
 void add_check(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("check", "what a scene means and costs, without running it");
+  CLI::App* command = program.add_subcommand("check", "check a scene and its cost, without running it");
   const auto options = std::make_shared<CheckOptions>();
   add_scene_options(*command, options->scene);
   add_threads_option(*command, options->threads);

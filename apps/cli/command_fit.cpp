@@ -33,7 +33,7 @@ using fit::FitResult;
 
 constexpr const char* kFitFooter =
     "Writes DIR/{tissue.toml, fit.json, report.html, fit.toml}. tissue.toml is a tissue for scenes:\n"
-    "[tissue] file = \"DIR/tissue.toml\". Ctrl-C keeps what is known; the same command goes on from there.\n"
+    "[tissue] file = \"DIR/tissue.toml\". Ctrl-C keeps the results so far; the same command resumes.\n"
     "docs/fit.md explains, docs/fit_file.md lists every key of FIT.toml.\n"
     "\n"
     "Examples:\n"
@@ -63,7 +63,7 @@ fit::FitMemory memory_of(const FitCommand& command, const fs::path& state, const
   std::size_t starts = 0;
   for (const auto& [law, memory] : *known) starts += memory.starts.size();
   if (!command.quiet && starts > 0) {
-    say("going on after {} starts of an interrupted run (--fresh begins anew)\n", starts);
+    say("resuming after {} starts of an interrupted run (--fresh starts again)\n", starts);
     std::fflush(stdout);
   }
   return std::move(*known);
@@ -128,7 +128,7 @@ fit::FitSpec spec_of(const FitCommand& command) {
 
 int run(const FitCommand& command) {
   if (command.list_laws) return list_laws();
-  if (command.file.empty()) throw std::invalid_argument("glisson fit needs FIT.toml; glisson fit --help tells more");
+  if (command.file.empty()) throw std::invalid_argument("glisson fit needs FIT.toml; see glisson fit --help");
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(command.threads));
   catch_interrupts();
@@ -168,7 +168,7 @@ int run(const FitCommand& command) {
   say("{}{}\n", command.quiet ? "" : "report: ", (folder / "report.html").string());
   if (!result.complete) {
     std::fflush(stdout);
-    tell("glisson: interrupted; the same command goes on from here\n");
+    tell("glisson: interrupted; the same command resumes\n");
     return kInterrupted;
   }
   return kDone;
@@ -177,21 +177,22 @@ int run(const FitCommand& command) {
 }  // namespace
 
 void add_fit(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("fit", "fit a tissue to measured curves, and say how sure it is");
+  CLI::App* command = program.add_subcommand("fit", "fit a tissue to measured curves, with uncertainties");
   const auto options = std::make_shared<FitCommand>();
   command->add_option("fit", options->file, "description of the fit (TOML)")->type_name("FIT");
-  command->add_option("--out", options->out, "folder of the results; out/<name> where not given")->type_name("DIR");
-  command->add_option("--data", options->data, "folder of the curves' files; that of FIT where not given")
-      ->type_name("DIR");
-  command->add_option("--laws", options->laws, "fit each of these laws and tell which the data support")
+  command->add_option("--out", options->out, "folder of the results; default out/<name>")->type_name("DIR");
+  command->add_option("--data", options->data, "folder of the curves' files; default: that of FIT")->type_name("DIR");
+  command->add_option("--laws", options->laws, "fit each of these laws and report which the data support")
       ->delimiter(',')
       ->type_name("NAME,…");
   command->add_flag("--list-laws", options->list_laws, "print the laws that --laws knows");
-  command->add_option("--starts", options->starts, "descents at most")->type_name("N")->check(CLI::Range(1, 10000));
-  command->add_option("--bootstrap", options->bootstrap, "fits to curves drawn again; 0: none")
+  command->add_option("--starts", options->starts, "largest number of descents")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000));
+  command->add_option("--bootstrap", options->bootstrap, "fits to resampled curves; 0: none")
       ->type_name("N")
       ->check(CLI::Range(0, 100000));
-  command->add_flag("--fresh", options->fresh, "do not go on from an interrupted run");
+  command->add_flag("--fresh", options->fresh, "do not resume an interrupted run");
   add_threads_option(*command, options->threads);
   command->get_option("--threads")->description("threads; results do not depend on it");
   command->add_flag("--quiet", options->quiet, "print nothing but errors and the report's path");

@@ -1,4 +1,4 @@
-// command_info.cpp — glisson info: what a mesh file holds and what is wrong with it.
+// command_info.cpp — glisson info: contents and defects of a mesh file.
 #include <fmt/format.h>
 
 #include <map>
@@ -67,7 +67,7 @@ int info(const InfoOptions& options) {
 }  // namespace
 
 void add_info(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("info", "what a mesh file holds and what is wrong with it");
+  CLI::App* command = program.add_subcommand("info", "contents and defects of a mesh file");
   const auto options = std::make_shared<InfoOptions>();
   command->add_option("mesh", options->mesh, "mesh file: .vtu, .vtk, .msh")->required()->type_name("MESH");
   command->add_option("--scale", options->scale, "factor on coordinates: 0.001 for a file in millimetres")

@@ -24,8 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kReproduceFooter =
-    "Runs the scenes of scenes/paper/, which travel inside the program, checks what can be checked and writes\n"
+constexpr const char* kFooter =
+    "Runs the scenes of scenes/paper/, which are built into the program, checks the results and writes\n"
     "DIR/<scene>/<variant>/ and one DIR/report.html. Takes a minute or two; with --quick some seconds: figure 3 ends\n"
     "after 0.1 s of motion.\n"
     "\n"

@@ -80,8 +80,7 @@ void add_run(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("run", "run a scene: forces, frames and a report of every variant");
   const auto options = std::make_shared<RunOptions>();
   add_scene_options(*command, options->scene);
-  command->add_option("--out", options->out, "folder of the results; out/<scene name> where not given")
-      ->type_name("DIR");
+  command->add_option("--out", options->out, "folder of the results; default out/<scene name>")->type_name("DIR");
   add_threads_option(*command, options->threads);
   command->add_flag("--quiet", options->quiet, "print nothing but errors and the report's path");
   command->footer(kRunFooter);

@@ -59,16 +59,16 @@ int tissues(const TissuesOptions& options) {
     return kDone;
   }
   for (const TissuePreset& p : tissue_presets()) print_short(p);
-  say("`glisson tissues NAME` tells where one holds and prints it as TOML; docs/tissues.md compares them.\n");
+  say("`glisson tissues NAME` shows the validity of a preset and prints it as TOML; docs/tissues.md compares them.\n");
   return kDone;
 }
 
 }  // namespace
 
 void add_tissues(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("tissues", "print the tissues with a source that scenes can start from");
+  CLI::App* command = program.add_subcommand("tissues", "print the tissue presets for scenes");
   const auto options = std::make_shared<TissuesOptions>();
-  command->add_option("name", options->name, "one of them: everything about it");
+  command->add_option("name", options->name, "print this preset in full");
   command->add_flag("--json", options->json, "print JSON");
   command->footer("Examples:\n  glisson tissues\n  glisson tissues brain_miller");
   command->callback([options, &action] { action = [options] { return tissues(*options); }; });

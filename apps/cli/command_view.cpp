@@ -20,10 +20,10 @@
 namespace glisson::app {
 namespace {
 
-constexpr const char* kViewFooter =
-    "Runs one variant at the pace of the clock and serves a page to watch and steer it; prints the address to open.\n"
-    "Only this machine is let in, and only with the token in the address. Ctrl-C ends it.\n"
-    "SCENE may be the folder that `glisson run` wrote: the same page plays what was recorded.\n"
+constexpr const char* kFooter =
+    "Runs one variant in real time and serves a page to watch and control it; prints the address to open.\n"
+    "Only this machine can connect, and only with the token in the address. Ctrl-C ends it.\n"
+    "SCENE may be the folder that `glisson run` wrote: the same page plays the recording.\n"
     "\n"
     "Examples:\n"
     "  glisson view scenes/needle/bovine_liver.toml\n"
@@ -110,13 +110,13 @@ void add_view(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("view", "touch a scene in the browser, or play a recorded run");
   const auto options = std::make_shared<Options>();
   add_scene_options(*command, options->scene);
-  command->add_option("--port", options->server.port, "port to listen on; 0: one that is free")
+  command->add_option("--port", options->server.port, "port to listen on; 0: any free port")
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--host", options->server.host, "address to listen on; one beyond this machine needs a --token")
       ->type_name("ADDRESS")
       ->capture_default_str();
-  command->add_option("--token", options->server.token, "what the address of the page must hold; none: a random one")
+  command->add_option("--token", options->server.token, "token in the address of the page; default: random")
       ->type_name("TEXT")
       ->check(CLI::Validator(
           [](const std::string& text) {
@@ -127,8 +127,7 @@ void add_view(CLI::App& program, Action& action) {
                                               : std::string("16 characters or more, of letters, digits, - _ .");
           },
           "", "token"));
-  command
-      ->add_option("--threads", options->threads, "threads of the engine; 0: as many as pay for the size of the body")
+  command->add_option("--threads", options->threads, "threads of the engine; 0: chosen by the size of the body")
       ->type_name("N")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

@@ -26,14 +26,14 @@ void put(const char* text) { [[maybe_unused]] const auto written = write(STDERR_
   put("glisson: ");
   try {
     if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
-    put("ended by a fault of its own; please report it");
+    put("ended by an internal error; please report it");
   } catch (const std::bad_alloc&) {
     put(kOutOfMemory);
   } catch (const std::exception& error) {
-    put("ended by an error that nothing was ready for: ");
+    put("ended by an unexpected error: ");
     put(error.what());
   } catch (...) {
-    put("ended by a fault of its own; please report it");
+    put("ended by an internal error; please report it");
   }
   put("\n");
   std::_Exit(kFailed);

@@ -31,14 +31,14 @@ constexpr const char* kFooter =
     "Examples:\n"
     "  glisson reproduce                        the paper's figures, in one report\n"
     "  glisson run scenes/paper/figure2.toml    one scene, all its variants\n"
-    "  glisson check my_scene.toml              what a scene means and costs, without running it\n"
-    "  glisson fit my_fit.toml                  a tissue for measured curves, and how sure it is\n"
-    "  glisson view my_scene.toml               touch it in the browser: push, pull, read the force\n"
-    "  glisson info organ.vtu                   what a mesh file holds and what is wrong with it\n"
+    "  glisson check my_scene.toml              check a scene and its cost, without running it\n"
+    "  glisson fit my_fit.toml                  a tissue for measured curves, with uncertainties\n"
+    "  glisson view my_scene.toml               run it live in the browser: push, pull, read the force\n"
+    "  glisson info organ.vtu                   contents and defects of a mesh file\n"
     "  glisson bench --quick                    what a step costs on this machine\n"
     "\n"
-    "`glisson COMMAND --help` tells more. Exit status: 0 done, 1 failed, 2 a scene, mesh or option that cannot be\n"
-    "used, 3 a run ended by its numbers, 130 interrupted.";
+    "See also `glisson COMMAND --help`. Exit status: 0 done, 1 failed, 2 a scene, mesh or option that cannot be\n"
+    "used, 3 a run ended by a numerical failure, 130 interrupted.";
 
 int complain(std::string_view what, int code) {
   std::fflush(stdout);
@@ -76,7 +76,7 @@ bool names_unknown_command(const CLI::App& program, int argc, char** argv) {
 
 int run_program(int argc, char** argv) {
   if (argc > 0) program_path() = argv[0];
-  CLI::App program{"Soft tissue that is non-linear, viscoelastic and touched by instruments.", "glisson"};
+  CLI::App program{"Simulation of non-linear, viscoelastic soft tissue touched by instruments.", "glisson"};
   program.set_version_flag("--version", "glisson " GLISSON_VERSION);
   program.footer(kFooter);
   program.require_subcommand(1);

@@ -73,7 +73,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 
 void add_threads_option(CLI::App& command, int& threads) {
   threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  command.add_option("--threads", threads, "variants that run at a time; results do not depend on it")
+  command.add_option("--threads", threads, "variants that run in parallel; results do not depend on it")
       ->type_name("N")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

@@ -119,7 +119,7 @@ def fit(
     :param laws: laws to fit beside those of the description (known_laws)
     :param data: folder of the curves' files; none: that of the description
     :param base: folder that a text or dict stands for
-    :param starts: descents at most, in place of the description's
+    :param starts: largest number of descents, in place of the description's
     :param bootstrap: fits to curves drawn again, in place of the description's
     :param progress: called with stage, done, planned and the best rms so far [N]
     :param state: file that keeps what is known while the fit runs; gone when it is complete. Of another fit it is begun anew

@@ -103,7 +103,7 @@ void bind_drivers(nb::module_& m) {
             new (self) PathDriver(start, path_of(way, end));
           },
           "start"_a, "way"_a, "end"_a = nb::none(),
-          "`way` is a motion, or a function of time [s] that gives where the tool is from its start [m].",
+          "`way` is a motion, or a function of time [s] that returns the displacement from the start [m].",
           nb::sig("def __init__(self, start: Pose, way: PressMotion | SteadyMotion | StrokeMotion | SineMotion | "
                   "RecordedMotion | collections.abc.Callable[[float], collections.abc.Sequence[float] | "
                   "numpy.typing.NDArray[typing.Any]], end: float | None = None) -> None"));
@@ -237,7 +237,7 @@ void bind_contact(nb::module_& m) {
             return std::pair(indices({p.vertices.begin(), p.vertices.end()}),
                              scalars({p.pascals.begin(), p.pascals.end()}));
           },
-          "Vertices that bear, and the pressure on each [Pa]");
+          "Loaded vertices, and the pressure on each [Pa]");
 }
 
 void bind_vessels(nb::module_& m) {

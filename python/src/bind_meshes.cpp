@@ -119,7 +119,7 @@ void bind_meshes(nb::module_& m) {
              bool orient) { new (self) TetMesh(mesh_of(vertices, tets, regions, names, sets, fibres, orient)); },
           "vertices"_a, "tets"_a, nb::kw_only(), "regions"_a = nb::none(),
           "region_names"_a = std::map<int, std::string>{}, "vertex_sets"_a = Sets{}, "fibres"_a = nb::none(),
-          "orient"_a = true, "Copies the arrays. `orient` turns inverted tets; without it they are an error.")
+          "orient"_a = true, "Copies the arrays. `orient` reorients inverted tets; without it they are an error.")
       .def_prop_ro("vertices", vertices_view, doc("TetMesh::vertices"),
                    nb::sig("def vertices(self) -> numpy.typing.NDArray[numpy.float64]"))
       .def_prop_ro("tets", tets_view, doc("TetMesh::tets"),

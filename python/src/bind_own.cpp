@@ -108,7 +108,7 @@ class OwnStep {
     for (std::uint32_t& v : places) {
       const std::uint32_t place = v < get().place_of.size() ? get().place_of[v] : InteractionStep::kNowhere;
       if (place == InteractionStep::kNowhere) {
-        throw nb::value_error(("vertex " + std::to_string(v) + " is not at hand; name it in reach()").c_str());
+        throw nb::value_error(("vertex " + std::to_string(v) + " is not active; name it in reach()").c_str());
       }
       v = place;
     }
@@ -212,13 +212,13 @@ void bind_step(nb::module_& m) {
   const auto of = [](const char* member) { return doc(std::string("InteractionStep::") + member); };
   const auto watched = [](const char* member) { return doc(std::string("WatchedVertex::") + member); };
   nb::class_<OwnStep>(m, "InteractionStep",
-                      "The vertices at hand in a step, for an Interaction: arrays in the order of `vertices`, copies. "
-                      "Valid only in the call that it is handed to.")
+                      "The active vertices in a step, for an Interaction: arrays in the order of `vertices`, copies. "
+                      "Valid only in the call that receives it.")
       .def_prop_ro(
           "time", [](const OwnStep& s) { return s.get().time; }, of("time"))
       .def_prop_ro(
           "h", [](const OwnStep& s) { return s.get().h; }, of("h"))
-      .def_prop_ro("vertices", &OwnStep::numbers, "Numbers of the vertices at hand, ascending")
+      .def_prop_ro("vertices", &OwnStep::numbers, "Numbers of the active vertices, ascending")
       .def_prop_ro(
           "positions", [](const OwnStep& s) { return s.each([&](std::size_t k) { return s.get().position(k); }); },
           of("position"))
@@ -245,24 +245,24 @@ void bind_step(nb::module_& m) {
           },
           of("mobility"))
       .def("add_force", &OwnStep::add_force, "vertices"_a, "forces"_a, "viscous"_a = false,
-           "In add_forces: forces [N], (n, 3), on vertices at hand. The account of energy takes them for elastic ones, "
-           "or for viscous ones.")
+           "In add_forces: forces [N], (n, 3), on active vertices. They count as elastic or as viscous forces in the "
+           "energy balance.")
       .def("push", &OwnStep::push, "vertices"_a, "impulses"_a,
-           "In constrain: impulses [N s], (n, 3), on vertices at hand; held components do not move.");
+           "In constrain: impulses [N s], (n, 3), on active vertices; held components do not move.");
 }
 
 constexpr const char* kInteraction =
-    "Something of your own that acts on a body: subclass it, override what is needed, and attach it.\n\n"
+    "Base of your own interaction with a body: subclass it, override the methods you need, and attach it.\n\n"
     "    class Spring(glisson.OwnInteraction):\n"
     "        def reach(self, time, h):\n"
-    "            return [212]                                       # vertices to have at hand\n"
+    "            return [212]                                       # active vertices\n"
     "        def add_forces(self, step):\n"
     "            step.add_force([212], -200.0 * step.displacement[step.vertices == 212])\n"
     "        def squared_frequency(self):\n"
-    "            return 200.0 / 1e-4                                # stiffness over mass, from above [1/s^2]\n\n"
+    "            return 200.0 / 1e-4                                # upper bound of stiffness over mass [1/s^2]\n\n"
     "Each method that is overridden is called in every step and takes some microseconds there, as long as a step of a "
     "small "
-    "body: for prototypes. What a method raises ends the stepping and comes out as it is.";
+    "body: for prototypes. An exception in a method ends the stepping and is raised unchanged.";
 
 }  // namespace
 
@@ -272,10 +272,9 @@ void bind_own_driver(nb::module_& m) {
       .def_ro("torque", &Wrench::torque, doc("Wrench::torque"));
   nb::class_<OwnDriver, ToolDriver>(
       m, "OwnDriver",
-      "Leads a tool by your own code: subclass it and override advance(); for a function FunctionDriver.\n\n"
-      "advance is called once a step, which takes some microseconds; what it raises ends the stepping and comes out as "
-      "it is. "
-      "Let it not hold the Simulation, which would keep both alive for good.")
+      "Moves a tool by your own code: subclass it and override advance(); for a function use FunctionDriver.\n\n"
+      "advance is called once a step, which takes some microseconds; an exception ends the stepping and is raised "
+      "unchanged. It must not hold the Simulation: the reference cycle would never be freed.")
       .def(nb::init<const Pose&, std::optional<double>>(), "start"_a, "end"_a = nb::none(),
            ":param start: where the tool starts\n:param end: time at which the motion has ended [s]; none: it does not "
            "end by "

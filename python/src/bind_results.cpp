@@ -148,7 +148,7 @@ nb::dict summary_dict(const RunResult& r) {
 }
 
 void bind_tables(nb::module_& m) {
-  nb::class_<Table>(m, "Table", "Columns of numbers, as a .csv of a run has them: table[\"force_N\"].")
+  nb::class_<Table>(m, "Table", "Columns of numbers, as in a .csv of a run: table[\"force_N\"].")
       .def_ro("columns", &Table::columns, "Names, with their units")
       .def("__getitem__", &Table::column, "name"_a)
       .def("__contains__",
@@ -182,8 +182,7 @@ void bind_results(nb::module_& m) {
   nb::class_<StopFlag>(m, "StopFlag", "Ends runs from another thread, at their next step.")
       .def(nb::init<>())
       .def("stop", [](StopFlag& flag) { flag.set = true; });
-  nb::class_<RunResult>(m, "RunResult",
-                        "What a run of one variant left: result[\"force_N\"] is a column of forces.csv.")
+  nb::class_<RunResult>(m, "RunResult", "Results of one variant: result[\"force_N\"] is a column of forces.csv.")
       .def_prop_ro(
           "name", [](const RunResult& r) { return r.variant.name; }, "Of the variant")
       .def_prop_ro(
@@ -225,7 +224,7 @@ void bind_results(nb::module_& m) {
           "How it ended: finished, interrupted, stopped_inverted, …")
       .def_prop_ro(
           "trouble", [](const RunResult& r) { return trouble_text(r.summary); },
-          "A sentence on an end that is the numbers' doing, with the way out; else empty")
+          "Message about a numerical failure, with a remedy; else empty")
       .def("__repr__", [](const RunResult& r) {
         return "<RunResult " + r.variant.name + ": " + std::to_string(r.forces->rows()) + " samples, " +
                std::string(end_text(r.summary.end)) + ">";

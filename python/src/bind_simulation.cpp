@@ -313,14 +313,14 @@ void bind_setting_up(nb::class_<Live>& c) {
 
 void bind_stepping(nb::class_<Live>& c) {
   c.def("step", &Live::step, "n"_a = 1,
-        "Makes n steps, each of step_size; the GIL is free meanwhile. Says \"inverted\" where a tet was turned over in "
-        "one of them.\n:raises StepError: where a step was not made, with the reason and the way out")
+        "Makes n steps, each of step_size; the GIL is released meanwhile. Returns \"inverted\" if a tet inverted in "
+        "one of them.\n:raises StepError: if a step was not made, with the reason and a remedy")
       .def("advance", &Live::advance, "until"_a, "observer"_a = nb::none(), "every"_a = nb::none(),
-           "Steps until a time [s] is reached to half a step. `observer()` is called every so many seconds of the "
-           "simulation, and at the end; what it raises ends the run.")
+           "Steps until a time [s] is reached to half a step. `observer()` is called at this interval of simulated "
+           "time, and at the end; an exception in it ends the run.")
       .def_prop_ro(
           "inverted_tets", [](const Live& live) { return indices(live.inverted()); },
-          "Turned over in the state that the last step started from")
+          "Inverted tets in the state that the last step started from")
       .def("save", save, doc(of("save")))
       .def("load", load, "checkpoint"_a, doc(of("load")));
 }

@@ -27,7 +27,7 @@ LiveSimulation::LiveSimulation(const Variant& variant, const MeshLoader& load)
 Simulation& LiveSimulation::get() {
   const std::thread::id busy = stepping_;
   if (busy != std::thread::id{} && busy != std::this_thread::get_id()) {
-    throw std::runtime_error("the simulation is stepping in another thread; wait for it, or ask from an observer");
+    throw std::runtime_error("the simulation is stepping in another thread; wait for it, or read it from an observer");
   }
   return own_ ? *own_ : built_->simulation;
 }
@@ -35,8 +35,8 @@ Simulation& LiveSimulation::get() {
 void LiveSimulation::refuse_views() const {
   if (views == 0 || may_change_) return;
   throw nb::buffer_error(
-      "views of the state are held, and the body is about to move in memory: copy() them and let them go, or build the "
-      "simulation with SimulationOptions(mesh_changes=True), which hands out copies");
+      "views of the state are held, and the body is about to move in memory: copy() and release them, or build the "
+      "simulation with SimulationOptions(mesh_changes=True), which returns copies");
 }
 
 std::shared_ptr<Blade> LiveSimulation::attach_blade(const std::string& name, std::shared_ptr<ToolDriver> driver,

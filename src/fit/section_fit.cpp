@@ -82,16 +82,16 @@ std::vector<Override> overrides_of(const Node& table, const std::string& prefix)
 
 const SectionSpec& parameter_section() {
   static const SectionSpec section = [] {
-    Section<ParameterSpec> s("parameter", "A number of the scene that the fit may choose.");
+    Section<ParameterSpec> s("parameter", "A number of the scene that the fit varies.");
     s.key("key", &ParameterSpec::key,
-          "the scene's key, as `--set` takes it; `[i]` behind it for an element of a list of numbers")
+          "the scene's key, as for `--set`; append `[i]` for an element of a list of numbers")
         .must();
-    s.key("name", &ParameterSpec::name, "what tables call it").otherwise("the key");
+    s.key("name", &ParameterSpec::name, "its name in tables").otherwise("the key");
     s.key("low", &ParameterSpec::low, "lower bound, in the key's unit").must();
     s.key("high", &ParameterSpec::high, "upper bound").must();
-    s.key("start", &ParameterSpec::start, "where the first start begins").otherwise("the middle of the bounds");
+    s.key("start", &ParameterSpec::start, "value of the first start").otherwise("the middle of the bounds");
     s.choice<Scale>("scale", &ParameterSpec::scale,
-                    {{"log", Scale::logarithmic, "by factors: for numbers whose size is not known; bounds > 0"},
+                    {{"log", Scale::logarithmic, "by factors: for numbers of unknown size; bounds > 0"},
                      {"linear", Scale::linear, "by differences"}},
                     "how the range between the bounds is divided");
     s.finish(check_bounds);
@@ -102,31 +102,31 @@ const SectionSpec& parameter_section() {
 
 const SectionSpec& search_section() {
   static const SectionSpec section = [] {
-    Section<SearchSpec> s("search", "How the optimum is looked for.");
-    s.key("starts", &SearchSpec::starts, "descents at most").within(scene::between(1, 10000));
+    Section<SearchSpec> s("search", "Search for the optimum.");
+    s.key("starts", &SearchSpec::starts, "largest number of descents").within(scene::between(1, 10000));
     s.key("found_again", &SearchSpec::found_again,
-          "ends when the best optimum has been found so often; 0: all starts are made")
+          "ends when the best optimum has been found this many times; 0: all starts are made")
         .within(scene::between(0, 10000));
-    s.key("screen", &SearchSpec::screen, "points looked at for each start; the best becomes the start")
+    s.key("screen", &SearchSpec::screen, "points screened for each start; the best becomes the start")
         .within(scene::between(1, 1000));
-    s.key("most_iterations", &SearchSpec::most_iterations, "steps of a descent at most")
+    s.key("most_iterations", &SearchSpec::most_iterations, "largest number of steps of a descent")
         .within(scene::between(1, 10000));
-    s.key("seed", &SearchSpec::seed, "moves the quasi-random starts");
+    s.key("seed", &SearchSpec::seed, "seed of the quasi-random starts");
     s.choice<Weighing>("weighing", &SearchSpec::weighing,
-                       {{"common", Weighing::common, "all points count alike, in newtons"},
+                       {{"common", Weighing::common, "all points have equal weight, in newtons"},
                         {"noise", Weighing::noise, "each curve by its own noise"},
                         {"peak", Weighing::peak, "each curve by its own largest force"}},
-                       "how curves are weighed against each other");
+                       "relative weight of the curves");
     s.choice<LossKind>(
         "loss", [](SearchSpec & x) -> auto& { return x.loss.kind; },
         {{"squares", LossKind::squares, "least squares"},
-         {"huber", LossKind::huber, "linear far out"},
-         {"soft_l1", LossKind::soft_l1, "smoothly linear far out"},
-         {"cauchy", LossKind::cauchy, "outliers hardly count"}},
-        "how a residual counts");
+         {"huber", LossKind::huber, "linear for large residuals"},
+         {"soft_l1", LossKind::soft_l1, "smoothly linear for large residuals"},
+         {"cauchy", LossKind::cauchy, "outliers have little weight"}},
+        "cost of a residual");
     s.key(
          "loss_scale", [](SearchSpec & x) -> auto& { return x.loss.scale; },
-         "residual from which on it counts less, in standard deviations of the noise")
+         "residual beyond which the weight falls, in standard deviations of the noise")
         .in("-")
         .within(scene::above(0));
     return s.spec();
@@ -136,12 +136,12 @@ const SectionSpec& search_section() {
 
 const SectionSpec& proof_section() {
   static const SectionSpec section = [] {
-    Section<ProofSpec> s("proof", "How sure the fit is, and how that is found out.");
+    Section<ProofSpec> s("proof", "Uncertainty of the fit.");
     s.key("profiles", &ProofSpec::profiles, "profile likelihood of every parameter");
-    s.key("bootstrap", &ProofSpec::bootstrap, "fits to curves drawn again; 0: none").within(scene::between(0, 100000));
-    s.key("next", &ProofSpec::next, "looks for the test that would tell most next");
+    s.key("bootstrap", &ProofSpec::bootstrap, "fits to resampled curves; 0: none").within(scene::between(0, 100000));
+    s.key("next", &ProofSpec::next, "searches for the most informative next test");
     s.key<scene::OptionalMilli>("displacement_mm", &ProofSpec::displacement,
-                                "errors of held-out curves are also told up to here")
+                                "errors of held-out curves are also reported up to here")
         .in("mm")
         .within(scene::above(0))
         .otherwise("all");
@@ -152,10 +152,10 @@ const SectionSpec& proof_section() {
 
 const SectionSpec& fit_law_section() {
   static const SectionSpec section = [] {
-    Section<LawSpec> s("law", "A law that is fitted beside others: what it sets in the scene, and its own parameters.");
-    s.key("name", &LawSpec::name, "for tables").must();
+    Section<LawSpec> s("law", "A law to compare with others: the keys it sets in the scene, and its own parameters.");
+    s.key("name", &LawSpec::name, "name in tables").must();
     s.bare(bare_table("set", "keys of the scene and their values", "none"));
-    s.tables("parameter", parameter_section(), &LawSpec::parameters, "its free numbers").must();
+    s.tables("parameter", parameter_section(), &LawSpec::parameters, "its free parameters").must();
     s.finish([](LawSpec& law, const Node& table, const Place& place) {
       if (const Node* set = table.find("set")) law.set = overrides_of(*set, "");
       check_parameters(law.parameters, table, place);
@@ -167,10 +167,10 @@ const SectionSpec& fit_law_section() {
 
 const SectionSpec& experiment_section() {
   static const SectionSpec section = [] {
-    Section<ExperimentSpec> s("experiment", "A test that could be made next: how much would it tell?");
-    s.key("name", &ExperimentSpec::name, "for tables").otherwise("its velocity and depth");
+    Section<ExperimentSpec> s("experiment", "A candidate for the next test; the fit reports how much it would tell.");
+    s.key("name", &ExperimentSpec::name, "name in tables").otherwise("its velocity and depth");
     s.key<scene::Milli>("velocity_mm_s", &ExperimentSpec::velocity, "speed").in("mm/s").within(scene::above(0)).must();
-    s.key<scene::Milli>("depth_mm", &ExperimentSpec::depth, "how far").in("mm").within(scene::above(0)).must();
+    s.key<scene::Milli>("depth_mm", &ExperimentSpec::depth, "depth").in("mm").within(scene::above(0)).must();
     s.key("hold_s", &ExperimentSpec::hold, "rest at depth, the force recorded")
         .in("s")
         .within(scene::above(0))
@@ -187,25 +187,25 @@ const SectionSpec& experiment_section() {
 
 const SectionSpec& fit_section() {
   static const SectionSpec section = [] {
-    Section<FitSpec> s("", "What the file says before any heading.");
+    Section<FitSpec> s("", "Keys before any heading.");
     s.key("title", &FitSpec::title, "heading of the report").otherwise("the file's name");
     s.key("description", &FitSpec::description, "what was measured, in a few sentences");
-    s.key("notes", &FitSpec::notes, "choices made, and why").otherwise("[]");
+    s.key("notes", &FitSpec::notes, "choices made, and the reasons").otherwise("[]");
     s.key("scene", &FitSpec::scene, "the scene that simulates the test, relative to this file");
-    s.key("variant", &FitSpec::variant, "which of the scene's variants").otherwise("its only one");
+    s.key("variant", &FitSpec::variant, "variant of the scene").otherwise("the only one");
     s.table(
          "specimen", specimen_section(), [](FitSpec & f) -> auto& { return f.specimen.emplace(); },
          "a plain specimen between smooth plates, in place of a scene")
         .otherwise("none");
     s.bare(bare_table("tissue", "of the specimen: keys as in a scene's `[tissue]`", "none"));
     s.bare(bare_table("set", "keys of the scene and their values, as `--set` takes them", "none"));
-    s.tables("parameter", parameter_section(), &FitSpec::parameters, "what is free");
+    s.tables("parameter", parameter_section(), &FitSpec::parameters, "free parameters");
     s.tables("data", data_section(), &FitSpec::data, "the measured curves").must();
     s.table("forward", forward_section(), &FitSpec::forward, "how the test is simulated").otherwise("auto");
-    s.table("search", search_section(), &FitSpec::search, "how the optimum is looked for").otherwise("20 starts");
-    s.table("proof", proof_section(), &FitSpec::proof, "how sure it is").otherwise("profiles and bootstrap");
-    s.tables("law", fit_law_section(), &FitSpec::laws, "laws that are held against each other");
-    s.tables("experiment", experiment_section(), &FitSpec::experiments, "tests that could be made next");
+    s.table("search", search_section(), &FitSpec::search, "search for the optimum").otherwise("20 starts");
+    s.table("proof", proof_section(), &FitSpec::proof, "uncertainty of the fit").otherwise("profiles and bootstrap");
+    s.tables("law", fit_law_section(), &FitSpec::laws, "laws to compare");
+    s.tables("experiment", experiment_section(), &FitSpec::experiments, "candidates for the next test");
     s.spec().exclusions = {{{{"scene"}, {"specimen"}}, true}};
     s.finish(finish_fit);
     return s.spec();

@@ -27,8 +27,8 @@ void require_hyperelastic(const Tissue& t) {
     if (t.volume_change == VolumeChange::nodal && t.law_form == LawForm::energy) {
       throw std::invalid_argument(
           "tissue \"" + t.name +
-          "\": volume_change nodal and law_form energy exclude each other: a law of the single "
-          "tet has no energy in volumes shared with others; take law_form secant or volume_change own");
+          "\": volume_change nodal and law_form energy exclude each other: a law of the element has no energy in "
+          "averaged volumes; take law_form secant or volume_change own");
     }
     return;
   }
@@ -41,7 +41,7 @@ void require_hyperelastic(const Tissue& t) {
   if (!(bulk > 0.0 && std::isfinite(bulk))) refuse(t, "hyperelastic bulk_modulus [Pa]", bulk, "> 0 and finite");
   const bool lawless = std::holds_alternative<ConstantLaw>(t.law) && !t.lambda_law && !t.mu_law;
   if (!lawless)
-    throw std::invalid_argument(where + "a law of stiffness beside it has no meaning; give one or the other");
+    throw std::invalid_argument(where + "it cannot be combined with a stiffness law; give one or the other");
 }
 
 void require_kinematics(const Tissue& t) {

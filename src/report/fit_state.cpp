@@ -159,9 +159,9 @@ std::optional<fit::FitMemory> read_fit_state(const std::filesystem::path& file, 
   if (!std::filesystem::exists(std::filesystem::symlink_status(file, error))) return {};
   const detail::InputFile input = detail::read_input(file, detail::kStateInput);
   const auto refuse = [&](const std::string& why) {
-    return std::invalid_argument(file.string() + ": " + why + "; delete it, or begin anew by --fresh");
+    return std::invalid_argument(file.string() + ": " + why + "; delete it, or start again with --fresh");
   };
-  if (!input.problem.empty()) throw std::invalid_argument(input.problem + ", or begin anew by --fresh");
+  if (!input.problem.empty()) throw std::invalid_argument(input.problem + ", or start again with --fresh");
   try {
     return memory_of(input.bytes, fingerprint);
   } catch (const Damage& damage) {

@@ -13,7 +13,7 @@ namespace {
 
 [[noreturn]] void cannot_write(const std::filesystem::path& file, const std::string& reason) {
   throw OutputError(file.string() + ": cannot be written: " + reason +
-                    "; choose a folder with room and write permission by --out DIR");
+                    "; choose a folder with free space and write permission with --out DIR");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ constexpr const char* kMarkText = "Results of glisson. A new run into this folde
 
 [[noreturn]] void refuse_folder(const fs::path& folder, const std::string& reason) {
   throw std::invalid_argument(folder.string() + ": " + reason +
-                              "; choose another folder by --out DIR, or empty this one yourself");
+                              "; choose another folder with --out DIR, or empty this one yourself");
 }
 
 /// Files and folders below `folder`, the deepest first. Links are not followed and are not ours.
@@ -48,7 +48,7 @@ void prepare_output_folder(const fs::path& folder) {
     }
   } catch (const fs::filesystem_error& error) {
     throw OutputError(folder.string() + ": cannot be prepared: " + error.code().message() +
-                      "; choose another folder by --out DIR");
+                      "; choose another folder with --out DIR");
   }
   make_folder(folder);
   write_whole(folder / kMark, kMarkText);

@@ -50,7 +50,7 @@ std::string trouble_text(const RunSummary& s) {
   if (s.end != RunSummary::End::stopped_inverted) return {};
   return fmt::format(
       "stopped at {:.6g} s: {} tets are inverted (J <= 0); press less deep, refine the mesh under "
-      "the tool, or let it go on by on_inversion = \"go_on\"",
+      "the tool, or continue with on_inversion = \"go_on\"",
       s.time_s, s.inverted_tets_most);
 }
 

@@ -78,7 +78,7 @@ TEST_F(FitState, NoChangedByteIsBelieved) {
         }
       } else {
         EXPECT_THAT(said, HasSubstr("fit.state.json: ")) << at;
-        EXPECT_THAT(said, HasSubstr("delete it, or begin anew by --fresh")) << at;
+        EXPECT_THAT(said, HasSubstr("delete it, or start again with --fresh")) << at;
       }
     }
   }
@@ -107,12 +107,12 @@ TEST_F(FitState, OtherFilesAreRefused) {
   for (const std::string& text : {std::string(), std::string("[]"), std::string("null"), std::string("{\"format\":2}"),
                                   std::string(100'000, '['), "{\"format\":2,\"laws\":" + std::string(100'000, '[')}) {
     write("fit.state.json", text);
-    EXPECT_THAT(complaint(), HasSubstr("begin anew by --fresh")) << text.substr(0, 40);
+    EXPECT_THAT(complaint(), HasSubstr("start again with --fresh")) << text.substr(0, 40);
   }
   for (const char* target : {"/dev/zero", "/"}) {
     std::filesystem::remove(file_);
     std::filesystem::create_symlink(target, file_);
-    EXPECT_THAT(complaint(), HasSubstr("begin anew by --fresh")) << target;
+    EXPECT_THAT(complaint(), HasSubstr("start again with --fresh")) << target;
   }
 }
 
@@ -183,7 +183,7 @@ TEST_F(ResumedFit, RefusesAnEditedStateAndBeginsAnew) {
   const Outcome edited = run(command("o"));
   EXPECT_THAT(edited, Exits(2));
   EXPECT_THAT(edited.err, HasSubstr("o/fit.state.json: its checksum is wrong"));
-  EXPECT_THAT(edited.err, HasSubstr("delete it, or begin anew by --fresh"));
+  EXPECT_THAT(edited.err, HasSubstr("delete it, or start again with --fresh"));
   state["laws"].begin().value()["starts"][0]["to"] = nlohmann::json::array();
   write("o/fit.state.json", state.dump());
   EXPECT_THAT(run(command("o")), Exits(2));

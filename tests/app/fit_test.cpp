@@ -90,15 +90,15 @@ TEST_F(Fit, GoesOnAfterAnInterruption) {
   program.signal(SIGINT);
   const Outcome cut = program.wait();
   ASSERT_THAT(cut, Exits(130));
-  EXPECT_THAT(cut.err, HasSubstr("the same command goes on from here"));
+  EXPECT_THAT(cut.err, HasSubstr("the same command resumes"));
   ASSERT_TRUE(fs::exists(folder_ / "o/fit.state.json"));
   EXPECT_FALSE(read_json(folder_ / "o/fit.json")["complete"]);
   const std::size_t known = read_json(folder_ / "o/fit.state.json")["laws"].begin().value()["starts"].size();
   EXPECT_GE(known, 4u);
   Started again = start(command);
-  for (int i = 0; i < 3000 && again.output_so_far().find("going on after") == std::string::npos; ++i)
+  for (int i = 0; i < 3000 && again.output_so_far().find("resuming after") == std::string::npos; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_THAT(again.output_so_far(), HasSubstr("going on after " + std::to_string(known) + " starts"));
+  EXPECT_THAT(again.output_so_far(), HasSubstr("resuming after " + std::to_string(known) + " starts"));
   std::this_thread::sleep_for(std::chrono::seconds(1));
   again.signal(SIGTERM);
   EXPECT_THAT(again.wait(), Exits(130));

@@ -256,7 +256,7 @@ TEST_F(ViewAttack, AFaultOfTheServersThreadIsSurvived) {
   source_.breaks = true;
   std::string told;
   for (int i = 0; i < 100 && told.empty(); ++i) told = viewer.wait_for("notice")["text"].get<std::string>();
-  EXPECT_EQ(told, "the server goes on after a fault of its own: no such thing as caf\xef\xbf\xbd");
+  EXPECT_EQ(told, "the server continues after an internal error: no such thing as caf\xef\xbf\xbd");
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(viewer.wait_for_binary(2).empty());
   ViewClient later(port(), query());
   EXPECT_FALSE(later.wait_for_binary(2).empty());

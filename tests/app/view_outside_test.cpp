@@ -67,7 +67,7 @@ TEST_F(ViewOutside, WhatIsNoRegularFileIsRefused) {
     ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
     const Outcome outcome = run({"view", "o"});
     EXPECT_THAT(outcome, Exits(2)) << name;
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr(file.filename().string()), HasSubstr("no regular file"))) << name;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(file.filename().string()), HasSubstr("not a regular file"))) << name;
     fs::remove(file);
     fs::create_symlink("/dev/zero", file);
     EXPECT_THROW(view::open_run(folder_ / "o", ""), std::invalid_argument) << name;

@@ -173,7 +173,7 @@ TEST_F(ViewRecording, BeginsWithEachBodyAndIsBounded) {
   for (int i = 0; i < 30; ++i) recording.add({.epoch = 1, .frame_time = 0.001 * i});
   EXPECT_EQ(recording.frames(), 10u);
   EXPECT_TRUE(recording.full());
-  EXPECT_NE(recording.unsaid().find("too long"), std::string::npos);
+  EXPECT_NE(recording.unsaid().find("maximum size"), std::string::npos);
   recording.add({.epoch = 2, .frame_time = 0.0});
   EXPECT_EQ(recording.frames(), 1u);
   EXPECT_EQ(recording.unsaid(), "");

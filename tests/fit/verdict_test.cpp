@@ -123,7 +123,7 @@ TEST(Verdict, TellsEntangledFromIdentified) {
   const Verdicts w = verdicts(poor.problem, {1000.0, 6.0});
   EXPECT_EQ(w.of[1].verdict, Verdict::weak);
   EXPECT_THAT(w.conclusions,
-              Contains(AllOf(StartsWith("mu and alpha make up for each other"), HasSubstr("correlation 0.9"))));
+              Contains(AllOf(StartsWith("mu and alpha compensate each other"), HasSubstr("correlation 0.9"))));
   EXPECT_THAT(w.conclusions, Contains(StartsWith("least known: ")));
 }
 

@@ -187,7 +187,7 @@ def test_impulses_hold_a_vertex():
 
 
 def test_mistakes_of_an_interaction_are_told():
-    """Vertices that are not there or not at hand, wrong shapes, a step kept for later, and what it raises itself."""
+    """Vertices that are not there or not active, wrong shapes, a step kept for later, and what it raises itself."""
 
     class Wrong(glisson.OwnInteraction):
         def __init__(self, act):
@@ -207,7 +207,7 @@ def test_mistakes_of_an_interaction_are_told():
 
     cases = [
         (after("forces", lambda s: None, named=(99999,)), ValueError, "99999"),
-        (after("forces", lambda s: s.add_force([20], [[0, 0, 1]])), ValueError, "not at hand"),
+        (after("forces", lambda s: s.add_force([20], [[0, 0, 1]])), ValueError, "not active"),
         (after("forces", lambda s: s.add_force([3], [0, 0, 1])), ValueError, "expected"),
         (after("forces", lambda s: s.push([3], [[0, 0, 1]])), RuntimeError, "constrain"),
         (after("forces", lambda s: 1 / 0), ZeroDivisionError, "division"),

@@ -87,7 +87,8 @@ void Engine::guarded_turn(std::uint64_t late) {
     turn(late);
   } catch (const std::exception& error) {
     stopped_ = true;
-    notice_ = std::string("the body is held after a fault of the program: ") + error.what() + "; Reset makes it anew";
+    notice_ =
+        std::string("the simulation is paused after an internal error: ") + error.what() + "; Reset rebuilds the body";
   }
 }
 

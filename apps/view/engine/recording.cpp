@@ -65,8 +65,8 @@ std::string Recording::unsaid() const {
       at("Tissue was pulled by hand from ", grabbed_, " s on.\n") +
       at("The body was cut by hand from ", cut_, " s on.\n") +
       at("The tissue was changed while it moved, first at ", changed_, " s; this scene has it as it was at the end.\n");
-  if (full_) text += "The recording ends here: it had become too long to be kept.\n";
-  if (gap_) text += "The recording ends here: the program could not keep up with it.\n";
+  if (full_) text += "The recording ends here: it reached its maximum size.\n";
+  if (gap_) text += "The recording ends here: the program could not write it fast enough.\n";
   return text;
 }
 

@@ -11,12 +11,12 @@ namespace {
 std::string head_of(const Scene& scene, const Variant& variant, const Recording& recording) {
   std::string head = "Recorded in glisson view: " + scene.title + ", " +
                      (variant.label.empty() ? variant.name : variant.label) +
-                     ".\n`glisson run scene.toml` goes these ways again; what was felt then is in forces.csv.\n";
+                     ".\n`glisson run scene.toml` follows these paths again; the recorded forces are in forces.csv.\n";
   if (const auto* mesh = std::get_if<MeshFile>(&variant.mesh); mesh != nullptr && scene.file.has_filename())
     head += "Its mesh is a file: put this beside " + scene.file.filename().string() + ", or give `--mesh FILE`.\n";
   const std::string unsaid = recording.unsaid();
   if (!unsaid.empty())
-    head += "\nNot in this scene, as none can say it, so that forces differ from then on:\n" + unsaid;
+    head += "\nNot part of this scene, because a scene cannot describe it; forces differ from then on:\n" + unsaid;
   return head;
 }
 

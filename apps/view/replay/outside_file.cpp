@@ -13,7 +13,7 @@ bool can_be_read(const fs::path& file, std::uintmax_t most) {
   const fs::file_status status = fs::status(file, error);
   if (status.type() == fs::file_type::not_found) return false;
   if (!fs::is_regular_file(status))
-    throw std::invalid_argument(file.string() + ": no regular file (" +
+    throw std::invalid_argument(file.string() + ": not a regular file (" +
                                 (error ? error.message() : "a pipe, a device or a folder") +
                                 "); remove it, or run the scene again");
   const std::uintmax_t size = fs::file_size(file, error);

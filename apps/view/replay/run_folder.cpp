@@ -115,16 +115,16 @@ void take_events(const fs::path& file, RunFolder& run) {
 /// How the run ended: a summary is the last that it writes. What is none is told, and the run is shown.
 void take_end(const fs::path& file, RunFolder& run) {
   if (!can_be_read(file)) {
-    run.notice += "The run broke off, or still goes on: it is shown up to its last whole frame.\n";
+    run.notice += "The run was interrupted, or is still running: it is shown up to its last complete frame.\n";
     return;
   }
   std::ifstream stream = open_outside(file);
   try {
     const nlohmann::json summary = parse_json(std::string{std::istreambuf_iterator<char>(stream), {}});
     const std::string end = JsonField(summary).at("end").text();
-    if (end != "finished") run.notice += "The run ended before its time: " + end + ".\n";
+    if (end != "finished") run.notice += "The run ended early: " + end + ".\n";
   } catch (const JsonError& error) {
-    run.notice += "summary.json is damaged: " + std::string(error.what()) + "; how the run ended is not known.\n";
+    run.notice += "summary.json is damaged: " + std::string(error.what()) + "; the end of the run is unknown.\n";
   }
 }
 

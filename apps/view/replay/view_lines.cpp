@@ -82,12 +82,12 @@ void take_view_file(const std::filesystem::path& file, RunFolder& run) {
     }
   } catch (const JsonError& error) {
     run.notice += "view.jsonl, line " + std::to_string(number) + ": " + error.what() +
-                  "; instruments are shown as far as the lines before it go.\n";
+                  "; instruments are shown up to the line before it.\n";
   }
   if (run.tools.empty())
     run.notice +=
-        "No view.jsonl tells of tools and instruments, as runs of an older glisson left none: forces.csv is shown "
-        "as that of a tool. Run the scene again to see them.\n";
+        "There is no view.jsonl: the run is from an older glisson, and forces.csv is shown as that of one tool. Run "
+        "the scene again to see its tools and instruments.\n";
 }
 
 }  // namespace glisson::view

@@ -59,12 +59,12 @@ void Request::read() {
 bool Request::refused() {
   const http::request<http::string_body>& request = parser_.get();
   for (const http::field once : {http::field::host, http::field::origin, http::field::sec_websocket_key}) {
-    if (request.count(once) > 1) return answer(http::status::bad_request, "A header stands there twice."), true;
+    if (request.count(once) > 1) return answer(http::status::bad_request, "A header occurs twice."), true;
   }
   const std::string host(request[http::field::host]), origin(request[http::field::origin]);
-  if (!host_allowed(host, server_.place_))
-    return answer(http::status::misdirected_request, "This is no such host."), true;
-  if (!origin_allowed(origin, host)) return answer(http::status::forbidden, "Another page may not use this one."), true;
+  if (!host_allowed(host, server_.place_)) return answer(http::status::misdirected_request, "Unknown host."), true;
+  if (!origin_allowed(origin, host))
+    return answer(http::status::forbidden, "Requests from another page are refused."), true;
   return false;
 }
 
@@ -72,8 +72,7 @@ void Request::decide() {
   if (refused()) return;
   const std::string target(parser_.get().target());
   const std::string path = target.substr(0, target.find('?'));
-  if (path != "/" && path != "/stream" && path != "/recording")
-    return answer(http::status::not_found, "There is nothing here.");
+  if (path != "/" && path != "/stream" && path != "/recording") return answer(http::status::not_found, "Not found.");
   if (!same_secret(query_value(target, "token"), server_.options_.token))
     return answer(http::status::forbidden, "The token is wrong: open the whole address that glisson view printed.");
   if (server_.answers_ >= server_.most_connections()) return drop();
@@ -89,14 +88,14 @@ void Request::decide() {
 void Request::answer_recording() {
   if (!server_.has_recording()) return answer(http::status::not_found, "Nothing has been recorded.");
   if (server_.archives_.full())
-    return answer(http::status::service_unavailable, "The recording is being saved by others; try again in a moment.");
+    return answer(http::status::service_unavailable, "Other viewers are saving the recording; try again in a moment.");
   stream_.expires_never();
   server_.archives_.take(stream_.release_socket());
 }
 
 void Request::become_viewer() {
   const http::request<http::string_body>& request = parser_.get();
-  if (!websocket::is_upgrade(request)) return answer(http::status::upgrade_required, "This is a WebSocket.");
+  if (!websocket::is_upgrade(request)) return answer(http::status::upgrade_required, "This address is a WebSocket.");
   if (!is_handshake_key(std::string(request[http::field::sec_websocket_key])))
     return answer(http::status::bad_request, "Sec-WebSocket-Key is 16 bytes in base64.");
   if (server_.viewers_.size() >= server_.options_.most_viewers)

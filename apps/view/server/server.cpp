@@ -20,8 +20,7 @@ constexpr auto kStuck = std::chrono::seconds(20);  // of a viewer that takes not
 constexpr std::size_t kHistory = 20000;            // forces kept for viewers that come later
 constexpr std::size_t kShortestToken = 16;
 
-constexpr const char* kStray =
-    "A piece that nothing holds has flown out of the picture and is drawn at its rim; Reset makes the body whole.";
+constexpr const char* kStray = "A loose piece has left the view and is drawn at its edge; Reset makes the body whole.";
 
 Message message(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
@@ -100,7 +99,7 @@ void Server::Impl::serve() {
 }
 
 void Server::Impl::survive(const std::exception& error) {
-  const std::string text = std::string("the server goes on after a fault of its own: ") + error.what();
+  const std::string text = std::string("the server continues after an internal error: ") + error.what();
   if (text == survived_) return;
   survived_ = text;
   std::fprintf(stderr, "glisson: %s\n", text.c_str());

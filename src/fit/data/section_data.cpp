@@ -50,36 +50,36 @@ void require_order(const Node& table, const std::optional<double>& low, const st
 }
 
 SectionSpec detect_kind() {
-  Section<ContactSpec> s(
-      "detect",
-      "Where the force leaves its rest: a flat line and a parabola joined where they fit best. Where "
-      "a file begins in contact, the parabola is carried back to no force.");
+  Section<ContactSpec> s("detect",
+                         "Where the force starts to rise: a flat line and a parabola joined where they fit best. If a "
+                         "file begins in contact, the parabola is extrapolated to zero force.");
   s.key("threshold_sd", &ContactSpec::threshold,
-        "how far the force must rise above its rest to be contact, in standard deviations of its noise")
+        "rise of the force above its mean before contact that counts as contact, in standard deviations of its noise")
       .in("-")
       .within(between(1, 100));
-  s.key("zero_force", &ContactSpec::zero_force, "takes the mean force before contact off the force");
+  s.key("zero_force", &ContactSpec::zero_force, "subtracts the mean force before contact");
   return s.spec();
 }
 
 SectionSpec given_kind() {
-  Section<ContactSpec> s("given", "At a displacement of the files.");
-  s.key<Milli>("at_mm", &ContactSpec::at, "displacement of the file at which the tool touches").in("mm").must();
-  s.key("zero_force", &ContactSpec::zero_force, "takes the mean force before contact off the force");
+  Section<ContactSpec> s("given", "At a given displacement of the files.");
+  s.key<Milli>("at_mm", &ContactSpec::at, "displacement in the file at first contact").in("mm").must();
+  s.key("zero_force", &ContactSpec::zero_force, "subtracts the mean force before contact");
   return s.spec();
 }
 
 SectionSpec median_kind() {
-  Section<FilterSpec> s("median", "A running median, against spikes; before contact is looked for.");
+  Section<FilterSpec> s("median", "A running median against spikes, applied before contact detection.");
   s.key("half_width", &FilterSpec::half_width, "rows on each side").within(between(1, 500));
   return s.spec();
 }
 
 SectionSpec savitzky_golay_kind() {
-  Section<FilterSpec> s("savitzky_golay",
-                        "A polynomial through each row and its neighbours, after contact and crop are settled.");
+  Section<FilterSpec> s(
+      "savitzky_golay",
+      "A polynomial through each row and its neighbours, applied after contact detection and cropping.");
   s.key("half_width", &FilterSpec::half_width, "rows on each side").within(between(1, 500));
-  s.key("degree", &FilterSpec::degree, "of the polynomial, below twice the half-width").within(between(0, 8));
+  s.key("degree", &FilterSpec::degree, "degree of the polynomial, below twice the half-width").within(between(0, 8));
   s.finish([](FilterSpec& x, const Node& table, const Place& place) {
     if (x.degree < 2 * x.half_width) return;
     const char* key = table.find("degree") ? "degree" : "half_width";
@@ -92,9 +92,10 @@ SectionSpec savitzky_golay_kind() {
 
 void add_mark_keys(Section<TextSpec>& s) {
   s.choice<char>("separator", &TextSpec::separator,
-                 {{"auto", 0, "found"}, {",", ',', ""}, {";", ';', ""}, {"tab", '\t', ""}}, "between the columns");
-  s.choice<char>("decimal", &TextSpec::decimal, {{"auto", 0, "found"}, {".", '.', ""}, {",", ',', ""}},
-                 "mark of the decimals");
+                 {{"auto", 0, "detected"}, {",", ',', ""}, {";", ';', ""}, {"tab", '\t', ""}},
+                 "separator of the columns");
+  s.choice<char>("decimal", &TextSpec::decimal, {{"auto", 0, "detected"}, {".", '.', ""}, {",", ',', ""}},
+                 "decimal mark");
 }
 
 void require_columns(const DataSpec& x, const Node& table, const Place& place) {
@@ -118,14 +119,14 @@ void finish_data(DataSpec& x, const Node& table, const Place& place) {
 const SectionSpec& column_section() {
   static const SectionSpec section = [] {
     Section<ColumnSpec> s("data.columns.NAME", "A column of the files, by name or by number.");
-    s.key("name", &ColumnSpec::name, "as in the file; case, blanks around it and the unit may be left out");
-    s.key("number", &ColumnSpec::number, "from 1").within(between(1, 100000));
-    s.key("unit", &ColumnSpec::unit, "of its numbers").otherwise("what the file says");
+    s.key("name", &ColumnSpec::name, "name in the file; case, surrounding blanks and the unit may be omitted");
+    s.key("number", &ColumnSpec::number, "column number, from 1").within(between(1, 100000));
+    s.key("unit", &ColumnSpec::unit, "unit of its numbers").otherwise("unit given in the file");
     s.choice<Sign>("sign", &ColumnSpec::sign,
-                   {{"auto", Sign::found, "that in which the numbers go farthest from the first"},
+                   {{"auto", Sign::found, "the direction of the largest deviation from the first row"},
                     {"positive", Sign::positive, "compression and insertion are positive"},
                     {"negative", Sign::negative, "they are negative"}},
-                   "how compression and insertion are written");
+                   "sign of compression and insertion");
     s.spec().exclusions = {{{{"name"}, {"number"}}, true}};
     s.finish([](ColumnSpec& x, const Node&, const Place& place) {
       x.given = true;
@@ -138,13 +139,12 @@ const SectionSpec& column_section() {
 
 const SectionSpec& columns_section() {
   static const SectionSpec section = [] {
-    Section<ColumnsSpec> s(
-        "data.columns",
-        "Which columns are what. One that is not given is found where exactly one name begins with a "
-        "customary word: time; displacement, compression, extension, depth, …; force, load.");
+    Section<ColumnsSpec> s("data.columns",
+                           "Meaning of the columns. A column that is not given is detected if exactly one name begins "
+                           "with a customary word: time; displacement, compression, extension, depth, …; force, load.");
     s.table("time", column_section(), &ColumnsSpec::time, "time, in s, ms or min");
     s.table("displacement", column_section(), &ColumnsSpec::displacement,
-            "way of the tool, in m, cm, mm, µm, um or in");
+            "displacement of the tool, in m, cm, mm, µm, um or in");
     s.table("strain", column_section(), &ColumnsSpec::strain,
             "engineering strain, in - or %, instead of displacement; needs the height");
     s.table("force", column_section(), &ColumnsSpec::force, "force, in N, mN, kN, gf, kgf or lbf");
@@ -164,9 +164,10 @@ const SectionSpec& columns_section() {
 
 const SectionSpec& text_section() {
   static const SectionSpec section = [] {
-    Section<TextSpec> s("data.text", "How the files are written, where it shall not be found out.");
+    Section<TextSpec> s("data.text", "Format of the files, where it should not be detected.");
     add_mark_keys(s);
-    s.key("names_line", &TextSpec::names_line, "line of the columns' names, from 1; 0: found").within(between(0, 1e6));
+    s.key("names_line", &TextSpec::names_line, "line of the columns' names, from 1; 0: detected")
+        .within(between(0, 1e6));
     return s.spec();
   }();
   return section;
@@ -174,9 +175,9 @@ const SectionSpec& text_section() {
 
 const SectionSpec& contact_section() {
   static const SectionSpec section = [] {
-    Section<ContactSpec> s("data.contact", "Where the tool touches: displacement and time count from there.");
+    Section<ContactSpec> s("data.contact", "First contact of the tool: displacement and time count from there.");
     s.spec().kinds = {
-        kind_of<ContactSpec>(Section<ContactSpec>("none", "Displacement as recorded, nothing cut off.").spec(),
+        kind_of<ContactSpec>(Section<ContactSpec>("none", "Displacement as recorded, nothing removed.").spec(),
                              ContactKind::none),
         kind_of<ContactSpec>(detect_kind(), ContactKind::detect),
         kind_of<ContactSpec>(given_kind(), ContactKind::given)};
@@ -188,21 +189,22 @@ const SectionSpec& contact_section() {
 const SectionSpec& crop_section() {
   static const SectionSpec section = [] {
     using C = CropSpec;
-    Section<C> s("data.crop", "What is kept, counted from contact.");
-    s.key("min_time_s", &C::min_time, "rows before it go").in("s");
-    s.key("max_time_s", &C::max_time, "rows after it go").in("s");
-    s.key<OptionalMilli>("min_displacement_mm", &C::min_displacement, "rows below it go").in("mm");
-    s.key<OptionalMilli>("max_displacement_mm", &C::max_displacement, "rows above it go").in("mm");
-    s.key("min_strain", &C::min_strain, "rows below it go; displacement over height").in("-");
-    s.key("max_strain", &C::max_strain, "rows above it go").in("-");
-    s.key("min_force_N", &C::min_force, "rows below it go").in("N");
-    s.key("max_force_N", &C::max_force, "rows above it go").in("N");
+    Section<C> s("data.crop", "Range to keep, counted from contact.");
+    s.key("min_time_s", &C::min_time, "rows before it are dropped").in("s");
+    s.key("max_time_s", &C::max_time, "rows after it are dropped").in("s");
+    s.key<OptionalMilli>("min_displacement_mm", &C::min_displacement, "rows below it are dropped").in("mm");
+    s.key<OptionalMilli>("max_displacement_mm", &C::max_displacement, "rows above it are dropped").in("mm");
+    s.key("min_strain", &C::min_strain, "rows below it are dropped; displacement over height").in("-");
+    s.key("max_strain", &C::max_strain, "rows above it are dropped").in("-");
+    s.key("min_force_N", &C::min_force, "rows below it are dropped").in("N");
+    s.key("max_force_N", &C::max_force, "rows above it are dropped").in("N");
     s.choice<CropUntil>("until", &C::until,
                         {{"end", CropUntil::end, "the last row"},
                          {"peak", CropUntil::peak, "the largest force"},
                          {"drop", CropUntil::drop, "the largest force before it first drops, as at a puncture"}},
-                        "where the curve ends");
-    s.key("drop", &C::drop, "fall that ends the curve with until = \"drop\", as part of the largest force before it")
+                        "end of the curve");
+    s.key("drop", &C::drop,
+          "fall that ends the curve with until = \"drop\", as a fraction of the largest force before it")
         .in("-")
         .within(strictly_between(0, 1));
     s.finish([](C& x, const Node& table, const Place& place) {
@@ -219,16 +221,16 @@ const SectionSpec& crop_section() {
 const SectionSpec& cycle_section() {
   static const SectionSpec section = [] {
     using C = CycleSpec;
-    Section<C> s("data.cycle", "Which part of a test that goes in and out again.");
+    Section<C> s("data.cycle", "Part of a test with loading and unloading.");
     s.choice<CyclePart>("part", &C::part,
-                        {{"both", CyclePart::both, "in and out"},
-                         {"loading", CyclePart::loading, "on the way in"},
-                         {"unloading", CyclePart::unloading, "on the way out"}},
-                        "which way");
+                        {{"both", CyclePart::both, "loading and unloading"},
+                         {"loading", CyclePart::loading, "loading only"},
+                         {"unloading", CyclePart::unloading, "unloading only"}},
+                        "part of the cycle");
     s.key("number", &C::number, "which cycle, from 1")
         .within(between(1, 100000))
         .otherwise("all with \"both\", else 1");
-    s.key("least", &C::least, "a turn counts from this part of the whole way back on")
+    s.key("least", &C::least, "smallest reversal that counts as a turn, as a fraction of the whole travel")
         .in("-")
         .within(strictly_between(0, 1));
     return s.spec();
@@ -239,7 +241,7 @@ const SectionSpec& cycle_section() {
 const SectionSpec& filter_section() {
   static const SectionSpec section = [] {
     Section<FilterSpec> s("data.filter",
-                          "Smooths the force. The fit averages noise by itself: a filter is for spikes.");
+                          "Smooths the force. The fit averages noise itself; use a filter against spikes.");
     s.spec().kinds = {
         kind_of<FilterSpec>(Section<FilterSpec>("none", "The force as recorded.").spec(), FilterKind::none),
         kind_of<FilterSpec>(median_kind(), FilterKind::median),
@@ -254,15 +256,15 @@ const SectionSpec& resample_section() {
     using R = ResampleSpec;
     Section<R> s("data.resample", "Fewer points, evenly spread.");
     s.choice<ResampleOver>("over", &R::over,
-                           {{"time", ResampleOver::time, "even in time"},
-                            {"displacement", ResampleOver::displacement, "even in displacement, loading only"},
+                           {{"time", ResampleOver::time, "evenly spaced in time"},
+                            {"displacement", ResampleOver::displacement, "evenly spaced in displacement, loading only"},
                             {"none", ResampleOver::none, "every row"}},
-                           "over what");
+                           "abscissa of the points");
     s.choice<ResampleHow>("how", &R::how,
-                          {{"average", ResampleHow::average, "the mean of the rows of a bin, so that noise falls"},
+                          {{"average", ResampleHow::average, "the mean of the rows of a bin, which reduces noise"},
                            {"pick", ResampleHow::pick, "the row next to the middle of a bin"}},
-                          "how a point is made");
-    s.key("points", &R::points, "at most; a bin without rows gives none").within(between(5, 100000));
+                          "value of a point");
+    s.key("points", &R::points, "largest number of points; a bin without rows gives none").within(between(5, 100000));
     return s.spec();
   }();
   return section;
@@ -271,34 +273,34 @@ const SectionSpec& resample_section() {
 const SectionSpec& data_section() {
   static const SectionSpec section = [] {
     using D = DataSpec;
-    Section<D> s("data", "Measured curves: repetitions of one test, a file for each.");
-    s.key("name", &D::group, "of the test, e.g. \"2 mm/s\"; the files are its repetitions");
-    s.key("files", &D::files, "relative to FIT.toml, or to --data DIR").must();
+    Section<D> s("data", "Measured curves: repetitions of one test, one file each.");
+    s.key("name", &D::group, "name of the test, e.g. \"2 mm/s\"; the files are its repetitions");
+    s.key("files", &D::files, "files, relative to FIT.toml, or to --data DIR").must();
     s.choice<bool>("use", &D::held_out, {{"fit", false, "fitted"}, {"test", true, "held out, to test the fit"}},
-                   "what for");
+                   "purpose");
     s.key("weight", &D::weight, "factor on the residuals").in("-").within(at_least(0));
-    s.table("columns", columns_section(), &D::columns, "which columns are what");
+    s.table("columns", columns_section(), &D::columns, "meaning of the columns");
     s.table("text", text_section(), &D::text, "separator, decimal mark, line of names");
-    s.key<OptionalMilli>("speed_mm_s", &D::speed, "of the tool; gives the time where no column is named for it")
+    s.key<OptionalMilli>("speed_mm_s", &D::speed, "speed of the tool; gives the time where no column contains it")
         .in("mm/s")
         .within(above(0));
     s.key<OptionalSquareMilli>(
-         "area_mm2", [](D & d) -> auto& { return d.size.area; }, "of these specimens, across the load")
+         "area_mm2", [](D & d) -> auto& { return d.size.area; }, "area of these specimens, across the load")
         .in("mm²")
         .within(above(0))
         .otherwise("that of the specimen");
     s.key<OptionalMilli>(
-         "height_mm", [](D & d) -> auto& { return d.size.height; }, "of these specimens, along the load")
+         "height_mm", [](D & d) -> auto& { return d.size.height; }, "height of these specimens, along the load")
         .in("mm")
         .within(above(0))
         .otherwise("that of the specimen");
-    s.key("skip_bad_rows", &D::skip_bad_rows, "passes over rows without a number where one is needed");
-    s.key("unlikely", &D::unlikely, "takes numbers that look like a wrong unit");
-    s.table("contact", contact_section(), &D::contact, "where the tool touches");
-    s.table("cycle", cycle_section(), &D::cycle, "which part of a test in and out");
-    s.table("crop", crop_section(), &D::crop, "what is kept");
+    s.key("skip_bad_rows", &D::skip_bad_rows, "skips rows that lack a required number");
+    s.key("unlikely", &D::unlikely, "accepts numbers that look like a wrong unit");
+    s.table("contact", contact_section(), &D::contact, "first contact of the tool");
+    s.table("cycle", cycle_section(), &D::cycle, "part of a test with loading and unloading");
+    s.table("crop", crop_section(), &D::crop, "range to keep");
     s.table("filter", filter_section(), &D::filter, "smoothing");
-    s.table("resample", resample_section(), &D::resample, "how many points");
+    s.table("resample", resample_section(), &D::resample, "number of points");
     s.finish(finish_data);
     return s.spec();
   }();

@@ -383,8 +383,9 @@ Ladder choose_forward(const ForwardProblem& problem) {
             *trial);
   }
   if (known && ladder.taken().name != problem.taken)
-    throw std::invalid_argument("the forward model \"" + problem.taken +
-                                "\", which an interrupted run chose, is none for this fit; begin anew by --fresh");
+    throw std::invalid_argument(
+        "the forward model \"" + problem.taken +
+        "\", which an interrupted run chose, does not apply to this fit; start again with --fresh");
   return ladder;
 }
 

@@ -12,13 +12,13 @@ using namespace scene;
 const SectionSpec& forward_section() {
   static const SectionSpec section = [] {
     using F = ForwardSpec;
-    Section<F> s("forward", "How the forces of a fit are computed.");
+    Section<F> s("forward", "Forward model: how the forces of a fit are computed.");
     s.choice<ForwardKind>(
         "kind", &F::kind,
         {{"auto", ForwardKind::automatic, "the cheapest model that stays within `tolerance` of the scene"},
          {"uniaxial", ForwardKind::uniaxial, "a homogeneous specimen between smooth plates"},
-         {"scene", ForwardKind::scene, "the scene as it is written"}},
-        "which model");
+         {"scene", ForwardKind::scene, "the scene as written"}},
+        "forward model");
     s.choice<std::optional<Integrator>>("integrator", &F::integrator,
                                         {{"explicit", Integrator::explicit_, ""},
                                          {"semi_implicit", Integrator::semi_implicit, ""},
@@ -29,12 +29,13 @@ const SectionSpec& forward_section() {
     s.key("tolerance", &F::tolerance, "largest rms difference from the scene, over the noise of a curve")
         .in("-")
         .within(above(0));
-    s.key("points", &F::points, "places within the bounds, beside the start, where models are compared")
+    s.key("points", &F::points, "points within the bounds, besides the start, where models are compared")
         .within(between(0, 100));
     s.key("tool", &F::tool, "name of the tool or instrument that follows the curves").otherwise("the only one");
-    s.key("force", &F::force, "whose force was measured: a tool, an instrument, or `bottom` or `side` of the container")
+    s.key("force", &F::force,
+          "source of the measured force: a tool, an instrument, or `bottom` or `side` of the container")
         .otherwise("that tool's");
-    s.key<Milli>("approach_mm", &F::approach, "way of an instrument in the scene before it touches the tissue")
+    s.key<Milli>("approach_mm", &F::approach, "travel of an instrument in the scene before it touches the tissue")
         .in("mm")
         .within(at_least(0));
     return s.spec();

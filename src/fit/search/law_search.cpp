@@ -38,7 +38,7 @@ void require_fitting(const LawMemory& memory, std::size_t parameters, const std:
     if (s.from.size() == parameters && s.optimum.scaled.size() == parameters) continue;
     throw std::invalid_argument("a start that an interrupted run made of the law " + law + " has " +
                                 std::to_string(s.optimum.scaled.size()) + " parameters, and the law has " +
-                                std::to_string(parameters) + "; begin anew by --fresh");
+                                std::to_string(parameters) + "; start again with --fresh");
   }
 }
 
@@ -229,14 +229,14 @@ std::string LawSearch::forward_words() const {
   const Rung& taken = ladder_.taken();
   std::string words;
   if (forward_.spec.kind != ForwardKind::automatic) {
-    words = taken.name == "specimen" ? "Forward model: a specimen that deforms alike all over."
+    words = taken.name == "specimen" ? "Forward model: a homogeneous specimen."
                                      : "Forward model: " + taken.name + ", as asked for.";
   } else if (ladder_.chosen == 0) {
-    words = "Forward model: the scene itself; nothing cheaper stayed within what the noise of the curves allows.";
+    words = "Forward model: the scene itself; no cheaper model stayed within the noise of the curves.";
   } else {
     words = "Forward model: " + taken.name + ", " + rounded(speedup_) +
             " times as fast as the scene itself, and at most " + rounded(taken.share) +
-            " of what the noise of the curves allows away from it";
+            " of the error that the noise of the curves allows";
     if (share_at_optimum_ && second_look_.empty()) words += " (" + rounded(*share_at_optimum_) + " at the optimum)";
     words += ".";
   }

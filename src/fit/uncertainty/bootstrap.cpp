@@ -105,9 +105,9 @@ class Source {
     for (const Group& g : groups_) {
       const std::string n = std::to_string(g.curves.size());
       out.push_back(g.curves.size() >= kFewestRepetitions
-                        ? g.name + ": " + n + " repetitions drawn with replacement"
+                        ? g.name + ": " + n + " repetitions resampled with replacement"
                         : g.name + ": only " + n + (g.curves.size() == 1 ? " curve" : " curves") +
-                              ", residuals drawn in blocks; how repetitions differ is not in it");
+                              ", residuals resampled in blocks; differences between repetitions are not included");
     }
     return out;
   }

@@ -24,7 +24,7 @@ std::string term(const std::string& name, double coefficient) {
 
 /// One logarithmic scale, one linear: no formula of both, but how the one makes up for the other.
 std::string trade(const Parameter& logarithmic, const Parameter& linear, double slope) {
-  return "1 % more of " + logarithmic.name + " is made up for by " + number(0.01 * std::abs(slope), linear.unit, 2) +
+  return "1 % more of " + logarithmic.name + " is compensated by " + number(0.01 * std::abs(slope), linear.unit, 2) +
          (slope > 0.0 ? " more of " : " less of ") + linear.name;
 }
 

@@ -68,7 +68,7 @@ std::string write(const LawRanking& ranking, std::span<const LawFit> laws, bool 
   std::string s = "the data support " + std::to_string(chosen.parameters) +
                   (chosen.parameters == 1 ? " parameter: " : " parameters: ") + chosen.name;
   if (heldout)
-    std::snprintf(text, sizeof text, " errs by %.3g N on the curves held out", c.heldout);
+    std::snprintf(text, sizeof text, " errs by %.3g N on held-out curves", c.heldout);
   else
     std::snprintf(text, sizeof text, " has an %s %.1f above the least (fewer than two curves are held out%s)",
                   ranking.corrected ? "AICc" : "AIC", c.delta_aicc,

@@ -115,7 +115,7 @@ NoiseEstimate NoiseStudy::choose(const CovarianceOptions& options) {
     set_effective(NoiseKind::by_curve);
     e.why = e.common ? "the curves differ by more than their own noise explains (" + probability_text(*e.common) +
                            "): each curve counts as one sample"
-                     : "the residuals swing so slowly that each curve counts as one sample";
+                     : "the residuals vary so slowly that each curve counts as one sample";
   } else if (e.independence < options.significance) {
     set_effective(NoiseKind::autocorrelated);
     e.why = "the residuals are not independent (" + white +

@@ -24,7 +24,7 @@ struct Ends {
 
 std::string open_reason(const Problem& problem, bool open, double bound, const std::vector<std::size_t>& leans,
                         const std::string& failure, const char* side, const Parameter& x) {
-  if (!failure.empty()) return "the walk to " + std::string(side) + " values ended early (" + failure + ")";
+  if (!failure.empty()) return "the profile to " + std::string(side) + " values ended early (" + failure + ")";
   if (open) return std::string("no ") + side + " limit within its bounds (" + number(bound, x.unit) + ")";
   if (leans.empty()) return "";
   return std::string("its ") + side + " limit is only that of " + problem.parameters()[leans.front()].name + "'s bound";
@@ -152,7 +152,7 @@ void add_entangled(Verdicts& out, const Problem& problem, const Covariance& c) {
       if (c.determined[p] == 0 || c.determined[q] == 0) continue;
       if (std::abs(c.correlation[p * c.parameters() + q]) < kEntangled) continue;
       out.conclusions.push_back(problem.parameters()[p].name + " and " + problem.parameters()[q].name +
-                                " make up for each other (" + correlation_words(c, p, q) +
+                                " compensate each other (" + correlation_words(c, p, q) +
                                 "): " + fixed_combination(problem, c, p, q, common_direction(c, p, q)));
     }
   }
@@ -195,7 +195,7 @@ const char* name_of(Verdict verdict) {
 Verdicts judge(const Problem& problem, const Covariance& covariance, const Profiles* profiled) {
   Verdicts out;
   if (!covariance.failure.empty()) {
-    out.conclusions.push_back("nothing can be said of the parameters: " + covariance.failure);
+    out.conclusions.push_back("no statement about the parameters is possible: " + covariance.failure);
     return out;
   }
   for (std::size_t p = 0; p < covariance.parameters(); ++p) {
@@ -209,8 +209,7 @@ Verdicts judge(const Problem& problem, const Covariance& covariance, const Profi
   add_entangled(out, problem, covariance);
   add_extremes(out, problem, covariance);
   if (profiled != nullptr && !profiled->better.empty())
-    out.conclusions.push_back(
-        "a profile came upon a better optimum than the one that was judged: fit again from there");
+    out.conclusions.push_back("a profile found a better optimum than the reported one: fit again from there");
   return out;
 }
 

@@ -6,34 +6,34 @@ const std::string_view kReferenceIntroduction = R"(# Scenes
 
 <!-- Written by `glisson schema > docs/scene.md` from the description the reader itself uses. Do not edit. -->
 
-A scene is a TOML file that describes an experiment: a body, what it is made of, what holds it, what presses it, and
-what is kept of the run. Every key is checked. A key that does not exist is an error that names the line and the
-nearest key that does; so are a value of the wrong type, a number out of its range, a missing key, and keys that
-contradict each other. `glisson check SCENE` reports all of them without running anything.
+A scene is a TOML file that describes an experiment: a body, its material, its supports, the tools that press it, and
+the output. Every key is checked. An unknown key is an error that names the line and the nearest valid key. A value of
+the wrong type, a number out of range, a missing key and contradictory keys are errors too. `glisson check SCENE`
+reports them all without running the scene.
 
-**Units.** Values are in SI unless their key says otherwise: the unit is the end of the key's name (`density_kg_m3`,
+**Units.** Values are in SI unless their key says otherwise: the unit ends the key's name (`density_kg_m3`,
 `depth_mm`). Ranges and defaults below are in that unit; `-` is a pure number.
 
 **Axes.** Right-handed x, y, z in metres. Generated boxes and cylinders have z upwards, and a tool presses along
-`direction`, downwards unless told otherwise.
+`direction`, by default downwards.
 
 )";
 
 const std::string_view kReferenceVariants = R"(## Variants
 
-Each `[[variant]]` is one complete experiment: the scene with some keys changed. It has a `name`, perhaps a `label`,
-and any section above, laid over that of the scene:
+Each `[[variant]]` is one complete experiment: the scene with some keys changed. It has a `name`, optionally a
+`label`, and any section above, which is merged into that of the scene:
 
-- Tables are joined key by key; what the variant gives wins.
-- A table that has a `kind` is replaced as a whole when the variant's kind is another one, so that no key of the old law
-  or mesh is left behind.
-- A key removes the keys it excludes: a variant's `mu_law` takes the place of the scene's `law`, its `sphere_m` that of
+- Tables are merged key by key; the variant's value wins.
+- A table with a `kind` is replaced as a whole if the variant's kind differs, so that no key of the old law or mesh
+  remains.
+- A key removes the keys it excludes: a variant's `mu_law` replaces the scene's `law`, its `sphere_m` the scene's
   `box_m`.
 - Lists of numbers are replaced.
 - Lists of tables (`tool`, `instrument`, `fixed`, `load`, `region`, `capsule`) are replaced by a list,
   `[[variant.tool]]`. To change some keys of one element, write a table with its name or number instead:
   `tool.press.velocity_mm_s = 2`, `instrument.needle.motion.velocity_mm_s = 2`, or `fixed.0.axes = "z"`. Tools,
-  instruments and regions go by their `name`, loads and fixed sets by their `set`; numbers count from 0.
+  instruments and regions are found by their `name`, loads and fixed sets by their `set`; numbers count from 0.
 
 Without any `[[variant]]` the scene is one experiment called `main`. Regions inherit from the `[tissue]` of their
 variant.
@@ -54,7 +54,7 @@ tissue.law = { kind = "linear", slope_Pa = 20000 }
 const std::string_view kReferenceOverrides = R"(## Overrides
 
 `glisson run SCENE --set KEY=VALUE` changes a scene without editing it. KEY is the dotted path of a key, with names or
-numbers for elements of lists; VALUE is TOML, or plain text where it is not:
+numbers for elements of lists; VALUE is TOML, otherwise plain text:
 
 ```text
 glisson run scene.toml --set tissue.density_kg_m3=1060
@@ -63,27 +63,28 @@ glisson run scene.toml --set 'mesh={kind="file", path="/data/liver.vtu"}'
 glisson run scene.toml --set variant.slow.motion.precision=double
 ```
 
-An override applies to every variant, `variant.NAME.…` to one, and wins over what the variant says. Several are
-applied in their order, by the rules of variants above, and checked like the file; messages about them say
-`--set KEY` in place of a line. A name with a dot in it goes in quotes: `'variant."v1.5".…'`.
+An override applies to every variant, `variant.NAME.…` to one, and takes precedence over the variant. Several are
+applied in order, by the rules of variants above, and checked like the file; messages about them show `--set KEY` in
+place of a line. Put a name that contains a dot in quotes: `'variant."v1.5".…'`.
 
 )";
 
 const std::string_view kReferenceRun = R"(## What a run does
 
-1. The mesh is made or read, vertex sets are picked at rest, and regions are marked by the centroids of their tets.
-2. Fixed sets are held, tools are attached, loads are added. A component of a vertex can be held by one of them only.
+1. The mesh is generated or read, vertex sets are selected at rest, and tets are assigned to regions by their
+   centroids.
+2. Fixed sets are held, tools are attached, loads are added. Only one of them can hold a component of a vertex.
    Capsules, the container and instruments act on the body in this order.
-3. Time runs to `duration_s`, or to the end of the last motion of a tool or instrument; `max_steps` ends it earlier. The last step is the
-   one that ends nearest to that time.
-4. Each line of forces.csv is of the instant at which a step starts, the one nearest to each multiple of
-   1/`sample_rate_hz`; the last line is of the last step. Depth, forces and energies on a line are of the same instant.
-   Without a [[tool]] its first columns are of the first instrument: pressing (`normal_N`), `friction_N` and `cutting_N`
-   add up to `force_N`. Every further tool and instrument has a forces_NAME.csv.
-   So names of variants, tools and instruments are none of the files' own (`scene.toml`, `forces.csv` …), hold no `/`,
-   and differ in more than upper and lower case.
-5. events.csv has a line for what instruments meet: contact, puncture, drop (the end of the sudden fall of the force),
-   inner puncture, withdrawal, release. Both files are whole up to the last sample, however a run ends.
+3. Time runs to `duration_s`, or to the end of the last motion of a tool or instrument; `max_steps` may end it
+   earlier. The last step is the one that ends nearest to that time.
+4. Each line of forces.csv belongs to the start of a step, the one nearest to each multiple of 1/`sample_rate_hz`; the
+   last line belongs to the last step. Depth, forces and energies on a line belong to the same instant. Without a
+   [[tool]] the first columns are those of the first instrument: pressing (`normal_N`), `friction_N` and `cutting_N`
+   add up to `force_N`. Every further tool and instrument has a forces_NAME.csv. Names of variants, tools and
+   instruments must therefore differ from the output files (`scene.toml`, `forces.csv` …), contain no `/`, and differ
+   in more than upper and lower case.
+5. events.csv has a line for each event of an instrument: contact, puncture, drop (the end of the sudden fall of the
+   force), inner puncture, withdrawal, release. Both files are complete up to the last sample, however a run ends.
 6. Frames are evenly spaced, the first at rest and the last at the end.
 
 )";

@@ -16,9 +16,9 @@ using Contact = ContactSpec<Form>;
 template <class Form>
 void add_contact_keys(Section<Contact<Form>>& s) {
   s.key("friction", &Contact<Form>::friction, "Coulomb's μ against the surface").in("-").within(at_least(0));
-  s.key("bonded", &Contact<Form>::bonded, "what has touched stays where it touched, pulled or pressed");
+  s.key("bonded", &Contact<Form>::bonded, "points that touched stay in place, in tension and compression");
   s.template key<Milli>("push_out_speed_mm_s", &Contact<Form>::push_out_speed,
-                        "of tissue that is inside the tool at the start, at most")
+                        "largest speed of tissue that starts inside the tool")
       .in("mm/s")
       .within(above(0));
 }
@@ -49,7 +49,7 @@ SectionSpec checked(Section<Contact<Form>> s) {
 SectionSpec punch_kind() {
   Section<Contact<FlatPunch>> s("punch", "A cylinder with a flat end that presses on the surface.");
   size_key(s, "radius_mm", &FlatPunch::radius, "radius");
-  size_key(s, "edge_radius_mm", &FlatPunch::edge_radius, "of the rounded edge").within(at_least(0));
+  size_key(s, "edge_radius_mm", &FlatPunch::edge_radius, "radius of the rounded edge").within(at_least(0));
   size_key(s, "length_mm", &FlatPunch::length, "length");
   return checked(s);
 }
@@ -67,19 +67,19 @@ SectionSpec probe_kind() {
   s.choice<TipForm>(
       "tip", [](Contact<NeedleShape> & x) -> auto& { return x.form.tip; },
       {{"conical", TipForm::conical, "a cone"},
-       {"bevelled", TipForm::bevelled, "cut off by one plane, its point to the side"},
-       {"blunt", TipForm::blunt, "half a ball"}},
-      "form of the tip");
+       {"bevelled", TipForm::bevelled, "cut by one plane, its point to the side"},
+       {"blunt", TipForm::blunt, "a hemisphere"}},
+      "shape of the tip");
   s.key(
        "tip_angle_rad", [](Contact<NeedleShape> & x) -> auto& { return x.form.tip_angle; },
-       "of the whole cone, or between the bevel and the shaft")
+       "full angle of the cone, or between the bevel and the shaft")
       .in("rad")
       .within(between(0.02, 3.1));
   return checked(s);
 }
 
 SectionSpec plate_kind() {
-  Section<Contact<Plate>> s("plate", "A plane without end that presses on the surface.");
+  Section<Contact<Plate>> s("plate", "An infinite plane that presses on the surface.");
   return checked(s);
 }
 
@@ -89,32 +89,31 @@ SectionSpec block_kind() {
        "size_mm", [](Contact<Block> & x) -> auto& { return x.form.size; }, "edges along its own x, y and z")
       .in("mm")
       .within(above(0));
-  size_key(s, "edge_radius_mm", &Block::edge_radius, "of the rounded edges").within(at_least(0));
+  size_key(s, "edge_radius_mm", &Block::edge_radius, "radius of the rounded edges").within(at_least(0));
   return checked(s);
 }
 
 SectionSpec needle_kind() {
-  Section<NeedleOptions> s("needle",
-                           "A needle that presses, pierces, cuts its way, rubs along its shaft and comes back "
-                           "(docs/needles.md).");
+  Section<NeedleOptions> s(
+      "needle", "A needle that presses, pierces, cuts, rubs along its shaft and withdraws (docs/needles.md).");
   s.key<Milli>("diameter_mm", &NeedleOptions::diameter, "diameter").in("mm").within(above(0));
   s.key<Milli>("length_mm", &NeedleOptions::length, "from the hand to the tip").in("mm").within(above(0));
-  s.key<Milli>("zone_mm", &NeedleOptions::zone, "radius of the tissue around a point of the path that takes its force")
+  s.key<Milli>("zone_mm", &NeedleOptions::zone, "radius of the tissue around a path point that carries its force")
       .in("mm")
       .within(above(0));
-  s.key<Milli>("spacing_mm", &NeedleOptions::spacing, "of points of the path").in("mm").within(above(0));
-  s.table("rupture", rupture_section(), &NeedleOptions::rupture, "when the surface gives way");
-  s.table("tip", tip_section(), &NeedleOptions::tip, "what the tip needs to go on");
-  s.table("friction", shaft_friction_section(), &NeedleOptions::friction, "along the inserted shaft");
-  s.key("youngs_modulus_Pa", &NeedleOptions::youngs_modulus, "of the needle, which bends as a cantilever from the hand")
+  s.key<Milli>("spacing_mm", &NeedleOptions::spacing, "distance of the path points").in("mm").within(above(0));
+  s.table("rupture", rupture_section(), &NeedleOptions::rupture, "when the surface is punctured");
+  s.table("tip", tip_section(), &NeedleOptions::tip, "resistance at the tip");
+  s.table("friction", shaft_friction_section(), &NeedleOptions::friction, "friction along the inserted shaft");
+  s.key("youngs_modulus_Pa", &NeedleOptions::youngs_modulus,
+        "Young's modulus of the needle, a cantilever clamped at the hand")
       .in("Pa")
       .within(above(0))
       .otherwise("rigid");
-  s.key<Milli>("inner_diameter_mm", &NeedleOptions::inner_diameter, "of a tube, for its bending")
+  s.key<Milli>("inner_diameter_mm", &NeedleOptions::inner_diameter, "inner diameter of a tube, for its bending")
       .in("mm")
       .within(at_least(0));
-  s.key("bevel_share", &NeedleOptions::bevel_share,
-        "sideways force of a bevelled tip while it cuts, over that of cutting")
+  s.key("bevel_share", &NeedleOptions::bevel_share, "sideways force of a bevelled tip over its cutting force")
       .in("-")
       .within(at_least(0));
   s.finish([](NeedleOptions& x, const Node& table, const Place& place) {
@@ -128,10 +127,9 @@ SectionSpec needle_kind() {
 }
 
 SectionSpec blade_kind() {
-  Section<BladeSpec> s(
-      "blade",
-      "A cutting edge that parts the tissue along its path (docs/cutting.md); the flat of the blade does not "
-      "touch it.");
+  Section<BladeSpec> s("blade",
+                       "A cutting edge that separates the tissue along its path (docs/cutting.md); the flat of the "
+                       "blade does not touch it.");
   const auto option = [](auto member) {
     return [member](BladeSpec & x) -> auto& { return x.options.*member; };
   };
@@ -139,20 +137,21 @@ SectionSpec blade_kind() {
     return [member](BladeSpec & x) -> auto& { return x.options.cutting.*member; };
   };
   s.key<MilliVector>("edge_from_mm", option(&BladeOptions::edge_from),
-                     "one end of its edge, in its own axes, from its tip")
+                     "one end of its edge, in its own axes, relative to its tip")
       .in("mm");
   s.key<MilliVector>("edge_to_mm", option(&BladeOptions::edge_to), "the other end").in("mm");
-  s.key("toughness_J_m2", option(&BladeOptions::toughness), "fracture toughness of the tissue: work for each area cut")
+  s.key("toughness_J_m2", option(&BladeOptions::toughness), "fracture toughness of the tissue: work per area cut")
       .in("J/m²")
       .within(at_least(0));
-  s.key("cut_every_s", &BladeSpec::cut_every, "how often what the edge has passed is parted").in("s").within(above(0));
-  s.key("snap", cutting(&CutOptions::snap), "moves vertices onto the cut; without it runs along faces as they are");
-  s.key("least_quality", cutting(&CutOptions::least_quality),
-        "least mean ratio of a tet that such a move leaves behind")
+  s.key("cut_every_s", &BladeSpec::cut_every, "interval at which the passed tissue is separated")
+      .in("s")
+      .within(above(0));
+  s.key("snap", cutting(&CutOptions::snap), "moves vertices onto the cut; otherwise it follows existing faces");
+  s.key("least_quality", cutting(&CutOptions::least_quality), "least mean ratio of a tet after such a move")
       .in("-")
       .within(between(0.01, 0.5));
   s.key("least_step", cutting(&CutOptions::least_step),
-        "stable step that such a move may leave, over that of the body before")
+        "least stable step after such a move, relative to the body's before")
       .in("-")
       .within(between(0.05, 1));
   s.finish([](BladeSpec& x, const Node& table, const Place& place) {
@@ -195,14 +194,14 @@ const SectionSpec& rupture_section() {
   static const SectionSpec section = [] {
     Section<Rupture> s(
         "instrument.rupture",
-        "When the surface gives way under a needle's tip. Neither given: at the cutting force of what is below.");
-    s.key("force_N", &Rupture::force, "at this force of the tip").in("N").within(above(0)).otherwise("");
+        "Puncture of the surface under a needle's tip. With neither key: at the cutting force of the tissue below.");
+    s.key("force_N", &Rupture::force, "force of the tip at the puncture").in("N").within(above(0)).otherwise("");
     s.key("toughness_J_m2", &Rupture::toughness,
-          "when springing back sets free this energy for each area of the slit, one diameter long")
+          "puncture when spring-back releases this energy per area of the slit, one diameter long")
         .in("J/m²")
         .within(above(0))
         .otherwise("");
-    s.key<Milli>("membrane_thickness_mm", &Rupture::membrane_thickness, "depth of that slit").in("mm").within(above(0));
+    s.key<Milli>("membrane_thickness_mm", &Rupture::membrane_thickness, "depth of the slit").in("mm").within(above(0));
     s.spec().exclusions = {{{{"force_N"}, {"toughness_J_m2"}}, false}};
     return s.spec();
   }();
@@ -211,12 +210,11 @@ const SectionSpec& rupture_section() {
 
 const SectionSpec& tip_section() {
   static const SectionSpec section = [] {
-    Section<TipResistance> s(
-        "instrument.tip",
-        "What a needle's tip needs. `regions.NAME` says the same of a region, whose boundary may ask "
-        "for more: `regions.vessel = { cutting_N = 0.5, puncture_N = 1.2 }`.");
-    s.key("cutting_N", &TipResistance::cutting, "force while it cuts on").in("N").within(at_least(0));
-    s.key("puncture_N", &TipResistance::puncture, "of a region: force to enter it; 0: that of cutting")
+    Section<TipResistance> s("instrument.tip",
+                             "Resistance at a needle's tip. `regions.NAME` sets it for a region, whose boundary may "
+                             "resist more: `regions.vessel = { cutting_N = 0.5, puncture_N = 1.2 }`.");
+    s.key("cutting_N", &TipResistance::cutting, "cutting force").in("N").within(at_least(0));
+    s.key("puncture_N", &TipResistance::puncture, "of a region: force to enter it; 0: the cutting force")
         .in("N")
         .within(at_least(0));
     return s.spec();
@@ -229,15 +227,14 @@ const SectionSpec& shaft_friction_section() {
     using F = ShaftFriction;
     Section<F> s(
         "instrument.friction",
-        "Stick–slip along a needle's inserted shaft, for each metre of it: `_in` while it goes in, `_out` while it "
-        "comes out.");
-    s.key("static_in_N_m", &F::static_in, "most it holds while it sticks").in("N/m").within(at_least(0));
-    s.key("static_out_N_m", &F::static_out, "the same, coming out").in("N/m").within(at_least(0));
-    s.key("dynamic_in_N_m", &F::dynamic_in, "while it slips").in("N/m").within(at_least(0));
-    s.key("dynamic_out_N_m", &F::dynamic_out, "the same, coming out").in("N/m").within(at_least(0));
-    s.key("viscous_in_N_s_m2", &F::viscous_in, "and for each speed").in("N s/m²").within(at_least(0));
-    s.key("viscous_out_N_s_m2", &F::viscous_out, "the same, coming out").in("N s/m²").within(at_least(0));
-    s.key<Milli>("stick_speed_mm_s", &F::stick_speed, "slower than this it may stick again")
+        "Stick–slip along a needle's inserted shaft, per metre: `_in` during insertion, `_out` during withdrawal.");
+    s.key("static_in_N_m", &F::static_in, "largest force while it sticks").in("N/m").within(at_least(0));
+    s.key("static_out_N_m", &F::static_out, "the same during withdrawal").in("N/m").within(at_least(0));
+    s.key("dynamic_in_N_m", &F::dynamic_in, "force while it slips").in("N/m").within(at_least(0));
+    s.key("dynamic_out_N_m", &F::dynamic_out, "the same during withdrawal").in("N/m").within(at_least(0));
+    s.key("viscous_in_N_s_m2", &F::viscous_in, "additional force per speed of slip").in("N s/m²").within(at_least(0));
+    s.key("viscous_out_N_s_m2", &F::viscous_out, "the same during withdrawal").in("N s/m²").within(at_least(0));
+    s.key<Milli>("stick_speed_mm_s", &F::stick_speed, "below this slip speed it may stick again")
         .in("mm/s")
         .within(above(0));
     s.finish([](F& x, const Node& table, const Place& place) {
@@ -257,17 +254,17 @@ const SectionSpec& shaft_friction_section() {
 
 const SectionSpec& instrument_section() {
   static const SectionSpec section = [] {
-    Section<InstrumentSpec> s(
-        "instrument",
-        "A rigid or bending tool beside the body, of the `kind` given: it meets the surface in "
-        "contact, or pierces it. Needs the integrator explicit, or semi_implicit without viscosity.");
+    Section<InstrumentSpec> s("instrument",
+                              "A rigid or bending tool, selected by `kind`: it touches the surface in contact, or "
+                              "pierces it. Needs the integrator explicit, or semi_implicit without viscosity.");
     s.key("name", &InstrumentSpec::name, "name; no two tools or instruments of an experiment share one");
-    s.key("tip_m", &InstrumentSpec::tip, "where its tip is at the start").in("m").must();
-    s.key("direction", &InstrumentSpec::direction, "in which it points, of any length").in("-");
-    s.key("side", &InstrumentSpec::side, "where its own x axis, and a bevelled tip, points, as far as that is across")
+    s.key("tip_m", &InstrumentSpec::tip, "position of its tip at the start").in("m").must();
+    s.key("direction", &InstrumentSpec::direction, "direction of its tip, of any length").in("-");
+    s.key("side", &InstrumentSpec::side,
+          "direction of its own x axis, and of a bevelled tip; the component across `direction` counts")
         .in("-");
     s.table("motion", instrument_motion_section(), &InstrumentSpec::motion, "how it moves").must();
-    s.named_tables("regions", tip_section(), &InstrumentSpec::regions, "of a needle: what its tip needs in regions");
+    s.named_tables("regions", tip_section(), &InstrumentSpec::regions, "of a needle: resistance at its tip by region");
     s.spec().kinds = {
         instrument_kind<NeedleOptions>(needle_kind()), instrument_kind<Contact<FlatPunch>>(punch_kind()),
         instrument_kind<Contact<Ball>>(ball_kind()),   instrument_kind<Contact<NeedleShape>>(probe_kind()),

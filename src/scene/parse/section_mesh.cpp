@@ -111,7 +111,7 @@ const SectionSpec& mesh_section() {
   static const SectionSpec section = [] {
     SectionSpec s;
     s.name = "mesh";
-    s.help = "The body: a generated mesh or one from a file. `kind` says which.";
+    s.help = "The body: a generated mesh or one from a file, selected by `kind`.";
     s.kinds = {mesh_kind<BoxOptions>(box_kind()), mesh_kind<CylinderOptions>(cylinder_kind()),
                mesh_kind<MeshFile>(file_kind())};
     return s;
@@ -132,9 +132,8 @@ const SectionSpec& sphere_section() {
 const SectionSpec& selection_section() {
   static const SectionSpec nearest = nearest_selection(), side = side_selection();
   static const SectionSpec section = [] {
-    Section<Selection> s(
-        "sets.NAME",
-        "A vertex set, by where vertices are at rest. It takes the place of a set of the mesh with the same name.");
+    Section<Selection> s("sets.NAME",
+                         "A vertex set, selected by rest positions. It replaces a set of the mesh with the same name.");
     const auto where = &Selection::where;
     s.table("box_m", box_section(), where_of<Selection::Box>(where), "vertices in a box");
     s.table("sphere_m", sphere_section(), where_of<Selection::Sphere>(where), "vertices in a ball");
@@ -146,7 +145,7 @@ const SectionSpec& selection_section() {
          "vertex numbers, from 0")
         .within(between(0, 4294967295.0))
         .otherwise("");
-    s.key("surface_only", &Selection::surface_only, "pick among the vertices of the surface only");
+    s.key("surface_only", &Selection::surface_only, "only vertices of the surface");
     s.spec().exclusions = {{{{"box_m"}, {"sphere_m"}, {"nearest_m"}, {"side"}, {"vertices"}}, true}};
     s.finish([](Selection& x, const Node& table, const Place& place) {
       x.origin = place.text();

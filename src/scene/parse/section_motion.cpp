@@ -38,30 +38,30 @@ void check_tool(ToolSpec& tool, const Node& table, const Place& place) {
 const SectionSpec& implicit_section() {
   static const SectionSpec section = [] {
     using Options = ImplicitOptions;
-    Section<Options> s("motion.implicit", "What the integrators implicit and static do.");
+    Section<Options> s("motion.implicit", "Options of the integrators implicit and static.");
     s.choice<TimeScheme>("scheme", &Options::scheme,
                          {{"backward_euler", TimeScheme::backward_euler, "first order; damps what it cannot resolve"},
                           {"newmark", TimeScheme::newmark, "second order, keeps the energy of a linear body"},
                           {"generalised_alpha", TimeScheme::generalised_alpha,
                            "second order, damps what it cannot resolve by `spectral_radius`"}},
-                         "scheme in time, of integrator implicit");
+                         "time scheme of the integrator implicit");
     s.key("spectral_radius", &Options::spectral_radius, "ρ∞ of generalised_alpha").in("-").within(between(0, 1));
-    s.key("largest_step_s", &Options::largest_step, "where an automatic step begins, and above which it never grows")
+    s.key("largest_step_s", &Options::largest_step, "first and largest automatic step")
         .in("s")
         .within(above(0))
         .otherwise("0.01, static 0.05");
-    s.key("tolerance", &Options::tolerance, "forces out of balance over the largest forces")
+    s.key("tolerance", &Options::tolerance, "residual force over the largest force")
         .in("-")
         .within(between(1e-13, 1e-2));
-    s.key("most_iterations", &Options::most_iterations, "of Newton's method, before a step is cut in two")
+    s.key("most_iterations", &Options::most_iterations, "of Newton's method, before a step is halved")
         .within(between(1, 1000));
-    s.key("most_cuts", &Options::most_cuts, "how often a step is cut in two before the run stops")
-        .within(between(0, 40));
-    s.choice<Preconditioner>("preconditioner", &Options::preconditioner,
-                             {{"auto", Preconditioner::automatic, "by the size of the body"},
-                              {"factorised", Preconditioner::factorised, "sparse Cholesky, kept as long as it serves"},
-                              {"block_diagonal", Preconditioner::block_diagonal, "3 × 3 a vertex"}},
-                             "what speeds up the linear solves");
+    s.key("most_cuts", &Options::most_cuts, "how often a step is halved before the run stops").within(between(0, 40));
+    s.choice<Preconditioner>(
+        "preconditioner", &Options::preconditioner,
+        {{"auto", Preconditioner::automatic, "by the size of the body"},
+         {"factorised", Preconditioner::factorised, "sparse Cholesky, kept as long as it converges"},
+         {"block_diagonal", Preconditioner::block_diagonal, "3 × 3 per vertex"}},
+        "preconditioner of the linear solves");
     return s.spec();
   }();
   return section;
@@ -69,7 +69,8 @@ const SectionSpec& implicit_section() {
 
 const SectionSpec& motion_section() {
   static const SectionSpec section = [] {
-    Section<Variant> s("motion", "How time runs: the integrator, its step, damping, gravity, and when the run ends.");
+    Section<Variant> s("motion",
+                       "Time integration: the integrator, its step, damping, gravity, and the end of the run.");
     s.choice<Integrator>(
         "integrator", [](Variant & v) -> auto& { return v.simulation.integrator; },
         {{"explicit", Integrator::explicit_,
@@ -80,8 +81,8 @@ const SectionSpec& motion_section() {
         "how the body is advanced in time");
     s.key(
          "step_s", [](Variant & v) -> auto& { return v.simulation.step; },
-         "time step h; \"auto\" takes 0.9 of the stable step and follows the tissue, implicit and static as much as "
-         "converges")
+         "time step h; \"auto\" takes 0.9 of the stable step and follows the tissue; for implicit and static the "
+         "largest that converges")
         .in("s")
         .within(above(0))
         .otherwise("\"auto\"")
@@ -89,14 +90,14 @@ const SectionSpec& motion_section() {
         .accepts_auto = true;
     s.key(
          "mass_scaling_step_s", [](Variant & v) -> auto& { return v.simulation.mass_scaling_step; },
-         "gives mass to just those tets whose own bound of the step is shorter, until it is that; explicit and "
-         "semi_implicit. `glisson check` says which tets and how much")
+         "adds mass only to tets whose element step bound is shorter, until it equals this step; explicit and "
+         "semi_implicit. `glisson check` reports the tets and the mass")
         .in("s")
         .within(above(0))
         .otherwise("no mass is added");
     s.table(
         "implicit", implicit_section(), [](Variant & v) -> auto& { return v.simulation.implicit; },
-        "what the integrators implicit and static do");
+        "options of the integrators implicit and static");
     s.choice<Precision>(
         "precision", [](Variant & v) -> auto& { return v.simulation.precision; },
         {{"single", Precision::single_precision, "elements in float, state in double"},
@@ -109,7 +110,7 @@ const SectionSpec& motion_section() {
         .within(at_least(0));
     s.key(
          "nodal_damping_kg_per_s", [](Variant & v) -> auto& { return v.simulation.nodal_damping; },
-         "nodal damping γ, equal at all vertices, added to it")
+         "nodal damping γ, equal at all vertices, in addition")
         .in("kg/s")
         .within(at_least(0));
     s.key(
@@ -123,8 +124,8 @@ const SectionSpec& motion_section() {
     s.choice<OnInversion>(
         "on_inversion", &Variant::on_inversion,
         {{"go_on", OnInversion::go_on, "count them and go on"}, {"stop", OnInversion::stop, "end the run there"}},
-        "what to do when a tetrahedron turns inside out");
-    s.key("duration_s", &Variant::duration, "time simulated")
+        "what to do when a tetrahedron inverts");
+    s.key("duration_s", &Variant::duration, "simulated time")
         .in("s")
         .within(above(0))
         .otherwise("until the last tool has ended its motion");
@@ -149,10 +150,10 @@ const SectionSpec& fixed_section() {
 
 const SectionSpec& load_section() {
   static const SectionSpec section = [] {
-    Section<LoadSpec> s("load", "A force on the vertices of a set, spread by equal parts.");
+    Section<LoadSpec> s("load", "A force on the vertices of a set, divided equally.");
     s.key("set", &LoadSpec::set, "name of a vertex set").must();
-    s.key("force_N", &LoadSpec::force, "the whole force").in("N").must();
-    s.key("ramp_s", &LoadSpec::ramp, "time over which it grows from 0, linearly").in("s").within(at_least(0));
+    s.key("force_N", &LoadSpec::force, "total force").in("N").must();
+    s.key("ramp_s", &LoadSpec::ramp, "time of its linear growth from 0").in("s").within(at_least(0));
     s.finish([](LoadSpec& x, const Node&, const Place& place) { x.origin = place.text(); });
     return s.spec();
   }();
@@ -161,9 +162,8 @@ const SectionSpec& load_section() {
 
 const SectionSpec& tool_section() {
   static const SectionSpec section = [] {
-    Section<ToolSpec> s("tool",
-                        "A tool that presses: the vertices of a set are moved along a direction, and the force that "
-                        "this takes is measured.");
+    Section<ToolSpec> s(
+        "tool", "A tool that presses: it moves the vertices of a set along a direction, and the force is measured.");
     const auto motion = [](auto member) {
       return [member](ToolSpec & t) -> auto& { return t.motion.*member; };
     };
@@ -172,22 +172,22 @@ const SectionSpec& tool_section() {
     s.key("direction", motion(&PressMotion::direction), "direction of pressing, of any length").in("-");
     s.key<Milli>("velocity_mm_s", motion(&PressMotion::velocity), "speed").in("mm/s").within(above(0));
     s.key<Milli>("depth_mm", motion(&PressMotion::depth), "how far it presses").in("mm").within(above(0));
-    s.key("start_s", motion(&PressMotion::start),
-          "when the tool takes hold and its motion begins; until then its vertices are free")
+    s.key("start_s", motion(&PressMotion::start), "start of the motion; until then its vertices are free")
         .in("s")
         .within(at_least(0));
-    s.key("ramp_s", motion(&PressMotion::ramp), "time over which the speed rises from 0; 0: at once, as in the paper")
+    s.key("ramp_s", motion(&PressMotion::ramp),
+          "time over which the speed rises from 0; 0: a sudden start, as in the paper")
         .in("s")
         .within(at_least(0));
-    s.key("hold_s", motion(&PressMotion::hold), "how long it rests at depth").in("s").within(at_least(0));
+    s.key("hold_s", motion(&PressMotion::hold), "rest at depth").in("s").within(at_least(0));
     s.key("returns", motion(&PressMotion::returns), "withdraw at the same speed after the hold");
     s.table(
         "record", record_section(), [](ToolSpec & t) -> auto& { return t.record.emplace(); },
-        "a recorded way, in place of speed and depth");
+        "a recorded path, in place of speed and depth");
     s.choice<bool>("sideways", &ToolSpec::sideways_free,
                    {{"blocked", false, "the vertices move with the tool in all components"},
                     {"free", true, "only along the direction, which must be along an axis: no friction"}},
-                   "what holds across the direction");
+                   "motion across the direction");
     s.spec().exclusions = {
         {{{"record"}, {"velocity_mm_s", "depth_mm", "start_s", "ramp_s", "hold_s", "returns"}}, false}};
     s.finish(check_tool);
@@ -198,11 +198,11 @@ const SectionSpec& tool_section() {
 
 const SectionSpec& output_section() {
   static const SectionSpec section = [] {
-    Section<OutputSpec> s("output", "How much of the run is kept.");
-    s.key("sample_rate_hz", &OutputSpec::sample_rate, "lines of forces.csv per second simulated")
+    Section<OutputSpec> s("output", "Output of the run.");
+    s.key("sample_rate_hz", &OutputSpec::sample_rate, "lines of forces.csv per simulated second")
         .in("Hz")
         .within(above(0));
-    s.key("frames", &OutputSpec::frames, "states of the whole body kept over the run; 0: none")
+    s.key("frames", &OutputSpec::frames, "states of the whole body stored over the run; 0: none")
         .within(between(0, 100000));
     return s.spec();
   }();

@@ -9,12 +9,12 @@ const SectionSpec& measured_section() {
   static const SectionSpec section = [] {
     using M = MeasuredSpec;
     Section<M> s("chart.measured",
-                 "Points from a .csv, whose first line names its columns, drawn over the lines of a chart.");
+                 "Points from a .csv, whose first line names the columns, drawn over the lines of a chart.");
     s.key("path", &M::path, "the file, relative to the scene").must();
     s.key("label", &M::label, "text for the legend");
     s.key("x", &M::x, "its column along the x axis").must();
     s.key("y", &M::y, "its column along the y axis").must();
-    s.key("x_offset", &M::x_offset, "taken off x, in its own unit, before it is scaled").in("-");
+    s.key("x_offset", &M::x_offset, "subtracted from x, in its own unit, before scaling").in("-");
     s.key("x_scale", &M::x_scale, "factor on x for display").in("-");
     s.key("y_scale", &M::y_scale, "factor on y for display").in("-");
     return s.spec();
@@ -48,7 +48,7 @@ const SectionSpec& chart_section() {
     s.key(
          "y_label", [](ChartSpec & c) -> auto& { return c.y.label; }, "label of the y axis, with unit")
         .otherwise("the column");
-    s.tables("measured", measured_section(), &ChartSpec::measured, "points that were measured");
+    s.tables("measured", measured_section(), &ChartSpec::measured, "measured points");
     s.key("variants", &ChartSpec::variants, "names of the variants shown").otherwise("all");
     s.finish([](ChartSpec& c, const Node&, const Place&) {
       for (AxisSpec* axis : {&c.x, &c.y}) {
@@ -62,25 +62,25 @@ const SectionSpec& chart_section() {
 
 const SectionSpec& variant_section() {
   static const SectionSpec section = [] {
-    Section<Variant> s("variant", "One experiment beside others in the same scene: its name, and whatever differs.");
-    s.key("name", &Variant::name, "name, unique, and fit for a folder: its results go to `OUT/NAME/`")
+    Section<Variant> s("variant", "One of several experiments in the same scene: its name and the keys that differ.");
+    s.key("name", &Variant::name, "unique name, valid for a folder: its results go to `OUT/NAME/`")
         .otherwise("**required**");
     s.key("label", &Variant::label, "text for legends").otherwise("the name");
     s.table("mesh", mesh_section(), &Variant::mesh, "the body's mesh").must();
     s.named_tables("sets", selection_section(), &Variant::sets, "vertex sets by place");
-    s.table("tissue", tissue_section(), &Variant::tissue, "what the body is made of");
-    s.tables("region", region_section(), &Variant::regions, "parts with a tissue of their own");
+    s.table("tissue", tissue_section(), &Variant::tissue, "the body's material");
+    s.tables("region", region_section(), &Variant::regions, "parts with their own tissue");
     s.table(
         "motion", motion_section(), [](Variant& v) -> Variant& { return v; }, "time, damping, gravity");
     s.tables("fixed", fixed_section(), &Variant::fixed, "sets that are held");
     s.tables("load", load_section(), &Variant::loads, "forces on sets");
-    s.tables("tool", tool_section(), &Variant::tools, "what presses by moving vertices");
-    s.tables("instrument", instrument_section(), &Variant::instruments, "what presses in contact, and pierces");
+    s.tables("tool", tool_section(), &Variant::tools, "tools that press by moving vertices");
+    s.tables("instrument", instrument_section(), &Variant::instruments, "tools that press in contact, or pierce");
     s.table(
         "container", container_section(), [](Variant & v) -> auto& { return v.container.emplace(); },
         "a rigid vessel around the body");
     s.tables("capsule", capsule_section(), &Variant::capsules, "membranes on the surface");
-    s.table("output", output_section(), &Variant::output, "how much is kept");
+    s.table("output", output_section(), &Variant::output, "what is stored");
     for (const KeySpec& key : scene_section().keys) s.spec().other_words.push_back(key.name);
     s.finish([](Variant& v, const Node& table, const Place& place) {
       const Node* name = table.find("name");
@@ -95,10 +95,10 @@ const SectionSpec& variant_section() {
 
 const SectionSpec& scene_section() {
   static const SectionSpec section = [] {
-    Section<Scene> s("", "What a scene says once, before any heading.");
+    Section<Scene> s("", "Keys before any heading.");
     s.key("title", &Scene::title, "heading of the report").otherwise("the file's name");
     s.key("description", &Scene::description, "what the experiment is, in a few sentences");
-    s.key("notes", &Scene::notes, "choices made where the source of the experiment is silent, and why").otherwise("[]");
+    s.key("notes", &Scene::notes, "choices made where the source gives no value, and the reasons").otherwise("[]");
     s.tables("chart", chart_section(), &Scene::charts, "charts of the report");
     s.bare({.name = "variant",
             .help = "experiments that differ in some keys",

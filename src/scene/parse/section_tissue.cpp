@@ -58,9 +58,9 @@ std::vector<Choice<MaxwellPart>> maxwell_parts() {
 }
 
 std::vector<Choice<VolumeChange>> volume_changes() {
-  return {
-      {"own", VolumeChange::own, "each tet resists its own, the paper's; locks from ν = 0.45 on"},
-      {"nodal", VolumeChange::nodal, "mean of the vertices' means over their tets; for nearly incompressible tissue"}};
+  return {{"own", VolumeChange::own, "of each element, the paper's; locks from ν = 0.45 on"},
+          {"nodal", VolumeChange::nodal,
+           "average nodal: mean of the vertices' means over their tets; for nearly incompressible tissue"}};
 }
 
 /// What require_valid would refuse, said at the key that is wrong.
@@ -86,7 +86,7 @@ std::vector<Choice<DeformationMeasure>> measures() {
           {"radius_ratio", DeformationMeasure::radius_ratio,
            "√(5 (1 − ρ) / 4), 0 at rest, ρ three times in- over circumradius"},
           {"solid_angle", DeformationMeasure::solid_angle,
-           "0.831 (1 − σ), 0 at rest, σ the smallest solid angle's sine of half, 1 at rest"}};
+           "0.831 (1 − σ), 0 at rest, σ the sine of half the smallest solid angle, 1 at rest"}};
 }
 
 /// E and ν from `lambda_Pa` and `mu_Pa`, where those are given.
@@ -123,7 +123,7 @@ const SectionSpec& law_section() {
   static const SectionSpec section = [] {
     SectionSpec s;
     s.name = "tissue.law";
-    s.help = "How a modulus M follows the local deformation x, chosen by `kind`. M₀ is the modulus at rest.";
+    s.help = "Modulus M as a function of the local deformation x, selected by `kind`. M₀ is the modulus at rest.";
     s.kinds = law_kinds(std::type_identity<StiffnessLaw>{});
     return s;
   }();
@@ -133,7 +133,7 @@ const SectionSpec& law_section() {
 const SectionSpec& fibres_section() {
   static const SectionSpec section = [] {
     Section<Fibres> s("tissue.fibres", "Fibres along one direction a: W = ½ c (a·E a)².");
-    s.key("direction", &Fibres::direction, "a at rest, any length; a mesh with directions of its own wins");
+    s.key("direction", &Fibres::direction, "a at rest, any length; fibre directions in the mesh override it");
     s.key("stiffness_Pa", &Fibres::stiffness, "c = λ_L − λ_T + 2 (μ_L − μ_T), along L and across T the fibres")
         .in("Pa")
         .within(at_least(0))
@@ -150,7 +150,7 @@ const SectionSpec& maxwell_section() {
   static const SectionSpec section = [] {
     Section<MaxwellBranch> s("tissue.maxwell",
                              "A branch of a generalised Maxwell body: μ(t) = μ₀ (1 − Σ g (1 − exp(−t/τ))).");
-    s.key("share", &MaxwellBranch::share, "g, part of the modulus of an instant that relaxes; all together below 1")
+    s.key("share", &MaxwellBranch::share, "g, share of the instantaneous modulus that relaxes; sum below 1")
         .in("-")
         .within(strictly_between(0.0, 1.0))
         .must();
@@ -165,7 +165,7 @@ const SectionSpec& hyperelastic_section() {
     SectionSpec s;
     s.name = "tissue.hyperelastic";
     s.help =
-        "A law of large deformation, chosen by `kind`: the stress is ∂W/∂F. λ̄ = J^(−⅓) λ are the isochoric principal "
+        "A large-deformation law, selected by `kind`: the stress is ∂W/∂F. λ̄ = J^(−⅓) λ are the isochoric principal "
         "stretches, Ī₁ and Ī₂ their invariants.";
     s.kinds = law_kinds(std::type_identity<HyperelasticLaw>{});
     return s;
@@ -176,20 +176,20 @@ const SectionSpec& hyperelastic_section() {
 const SectionSpec& tissue_section() {
   static const SectionSpec section = [] {
     Section<Tissue> s("tissue",
-                      "What the body is made of: isotropic elasticity whose moduli may follow the local "
-                      "deformation, and Kelvin–Voigt viscosity.");
+                      "The body's material: isotropic elasticity whose moduli may follow the local deformation, and "
+                      "Kelvin–Voigt viscosity.");
     s.bare({.name = "preset",
-            .help = "a tissue with a source (docs/tissues.md) to start from; the keys beside it win",
+            .help = "a preset to start from (docs/tissues.md); other keys of the table override it",
             .type = ValueType::text,
             .words = preset_words(),
             .default_text = "none"});
     s.bare({.name = "file",
-            .help = "a file with a `[tissue]` of its own to start from, such as `glisson fit` writes, relative to the "
-                    "scene; the keys beside it win",
+            .help = "a file with a `[tissue]` to start from, such as `glisson fit` writes, relative to the scene; "
+                    "other keys of the table override it",
             .type = ValueType::text,
             .default_text = "none"});
     s.spec().starts = {"preset", "file"};
-    s.key("name", &Tissue::name, "name, for the report; of a preset, its own");
+    s.key("name", &Tissue::name, "name for the report; default for a preset: its name");
     s.key("youngs_modulus_Pa", &Tissue::youngs_modulus, "Young's modulus E at rest").in("Pa").within(above(0));
     s.key("poisson_ratio", &Tissue::poisson_ratio, "Poisson's ratio ν")
         .in("-")
@@ -202,8 +202,7 @@ const SectionSpec& tissue_section() {
     s.key("density_kg_m3", &Tissue::density, "density ρ").in("kg/m³").within(above(0));
     s.key("viscosity_Pa_s", &Tissue::viscosity, "viscosity η").in("Pa·s").within(at_least(0));
     s.choice<ViscousTensor>("viscous_tensor", &Tissue::viscous_tensor, viscous_tensors(), "tensor that carries η");
-    s.choice<DeformationMeasure>("measure", &Tissue::measure, measures(),
-                                 "measure of deformation that the laws take as x");
+    s.choice<DeformationMeasure>("measure", &Tissue::measure, measures(), "measure of deformation x of the laws");
     s.table("law", law_section(), &Tissue::law, "law of E, ν constant").otherwise("{ kind = \"constant\" }");
     s.table(
          "lambda_law", law_section(), [](Tissue& t) -> StiffnessLaw& { return t.lambda_law.emplace(); },
@@ -214,17 +213,17 @@ const SectionSpec& tissue_section() {
          "law of μ, in place of a law of E")
         .otherwise("μ constant");
     s.choice<Kinematics>("kinematics", &Tissue::kinematics, kinematics(), "strain that E and ν act on");
-    s.choice<LawForm>("law_form", &Tissue::law_form, law_forms(), "force that a law of stiffness gives");
+    s.choice<LawForm>("law_form", &Tissue::law_form, law_forms(), "force of a stiffness law");
     s.table(
          "hyperelastic", hyperelastic_section(), [](Tissue& t) -> HyperelasticLaw& { return t.hyperelastic.emplace(); },
-         "law of large deformation, in place of E, ν and laws of them")
+         "large-deformation law, in place of E, ν and their laws")
         .otherwise("none");
     s.table(
          "fibres", fibres_section(), [](Tissue& t) -> Fibres& { return t.fibres.emplace(); },
          "fibres that stiffen the tissue along one direction")
         .otherwise("none");
     s.tables("maxwell", maxwell_section(), &Tissue::maxwell,
-             "branches that relax, of time constants of their own; the moduli given are then those of an instant");
+             "branches that relax, each with its time constant; the given moduli are then the instantaneous ones");
     s.choice<MaxwellPart>("maxwell_part", &Tissue::maxwell_part, maxwell_parts(), "stress that the branches relax");
     s.choice<VolumeChange>("volume_change", &Tissue::volume_change, volume_changes(),
                            "volume change that the bulk resists");
@@ -243,10 +242,9 @@ const SectionSpec& tissue_section() {
 
 const SectionSpec& region_section() {
   static const SectionSpec section = [] {
-    Section<RegionSpec> s(
-        "region",
-        "A part of the body with a tissue of its own: the tets whose centroid lies in a box or a ball, "
-        "or the mesh's own region of that name or number. Later regions win over earlier ones.");
+    Section<RegionSpec> s("region",
+                          "A part of the body with its own tissue: the tets whose centroid lies in a box or a ball, or "
+                          "the mesh's region of that name or number. Later regions override earlier ones.");
     s.key("name", &RegionSpec::name,
           "name; without `box_m` and `sphere_m`, that of a region of the mesh, or its number")
         .must();
@@ -257,8 +255,8 @@ const SectionSpec& region_section() {
         "sphere_m", sphere_section(),
         [](RegionSpec& r) -> Selection::Sphere& { return r.where.emplace<Selection::Sphere>(); }, "tets in a ball");
     s.table("tissue", tissue_section(), &RegionSpec::tissue,
-            "keys as in `[tissue]`; those not given are the body's, or those of its own `preset`, except `name`, which "
-            "is the region's");
+            "keys as in `[tissue]`; missing keys are taken from the body's tissue, or from the region's `preset`; "
+            "`name` is the region's");
     s.spec().exclusions = {{{{"box_m"}, {"sphere_m"}}, false}};
     s.finish([](RegionSpec& r, const Node& table, const Place& place) {
       r.origin = place.text();

@@ -34,8 +34,8 @@ function interrupted(fit: FitData): HTMLElement {
   const left = fit.starts_planned - fit.starts;
   const words =
     left > 0
-      ? `${fit.starts} of ${fit.starts_planned} starts were run; what follows is the best so far.`
-      : "What follows is the best so far; some of the proof is missing.";
+      ? `${fit.starts} of ${fit.starts_planned} starts were run; the results are the best so far.`
+      : "The results are the best so far; parts of the uncertainty analysis are missing.";
   return h(
     "p",
     { class: "banner", role: "note" },

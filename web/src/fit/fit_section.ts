@@ -49,7 +49,7 @@ function notes(sentences: readonly string[]): HTMLElement | null {
   return h(
     "aside",
     { class: "notes", "aria-label": "Notes" },
-    h("h3", {}, "What was chosen, and why"),
+    h("h3", {}, "Choices and their reasons"),
     h("ul", {}, ...sentences.map((note) => h("li", {}, note))),
   );
 }

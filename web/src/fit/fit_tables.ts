@@ -80,7 +80,7 @@ export function groupTable(fit: FitData): HTMLElement | null {
       { name: "rms over spread" },
     ],
     rows,
-    "An error no larger than the spread means that the simulation is as near to a test as the next repetition of it.",
+    "An error no larger than the spread means that the simulation is as close to a test as a repetition of the test.",
   );
 }
 
@@ -158,7 +158,7 @@ export function designTable(fit: FitData): HTMLElement | null {
       { name: "narrower by", numeric: true },
     ],
     fit.designs.map(row),
-    "Widths as the simulation predicts them for one more curve of the present noise.",
+    "Widths predicted by the simulation for one more curve of the present noise.",
   );
 }
 

@@ -54,5 +54,5 @@ export function strongWords(matrix: Matrix, names: readonly string[]): string {
   const named = strong.slice(0, 3).map(({ a, b }) => `${names[a]!} and ${names[b]!}`);
   const rest = strong.length > 3 ? `, and ${strong.length - 3} more` : "";
   const subject = `${named.join("; ")}${rest}`;
-  return `Correlated by ${STRONG} or more: ${subject}. One can make up for the other, so the curves fix them together better than each alone.`;
+  return `Correlated by ${STRONG} or more: ${subject}. One can compensate the other, so the curves determine their combination better than each alone.`;
 }

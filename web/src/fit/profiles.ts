@@ -21,7 +21,7 @@ export function profileFigures(fit: FitData): HTMLElement | null {
 }
 
 const caption = () =>
-  h("span", { class: "figure-about" }, "Rise of −2 ln L over a parameter, all others optimised anew; dashed: 95 %");
+  h("span", { class: "figure-about" }, "Rise of −2 ln L over a parameter, all others re-optimised; dashed: 95 %");
 
 function profilePlot(profile: FitProfile, parameter: FitParameter, name: ShortName): HTMLElement {
   const { unit, factor } = parameterUnit(parameter);
@@ -69,6 +69,6 @@ export function profileWords(profile: FitProfile): string {
   const left = known.slice(0, least + 1).some((rise) => rise >= profile.threshold);
   const right = known.slice(least).some((rise) => rise >= profile.threshold);
   if (left && right) return "Bounded on both sides.";
-  if (!left && !right) return "Flat: the curves do not fix it.";
+  if (!left && !right) return "Flat: the curves do not determine it.";
   return left ? "Open towards larger values." : "Open towards smaller values.";
 }

@@ -63,7 +63,7 @@ export class Connection {
     this.socket = null;
     this.sent = [];
     if (event.reason === "continued elsewhere")
-      return this.listener.status({ kind: "ended", reason: "This view goes on in another window." });
+      return this.listener.status({ kind: "ended", reason: "This view continues in another window." });
     this.listener.status({ kind: "waiting" });
     setTimeout(() => this.open(), this.wait);
     this.wait = Math.min(LONGEST_WAIT, 1.7 * this.wait);

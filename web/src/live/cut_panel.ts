@@ -6,7 +6,7 @@ import type { Hello, Keyframe, SlowState } from "./protocol.ts";
 import { Slider } from "./slider.ts";
 
 const MODES: readonly { mode: DragMode; label: string; key: string; title: string }[] = [
-  { mode: "pull", label: "Pull", key: "p", title: "A drag on tissue pulls it; beside the body it turns the view (P)" },
+  { mode: "pull", label: "Pull", key: "p", title: "A drag on tissue pulls it; outside the body it turns the view (P)" },
   { mode: "cut", label: "Cut tissue", key: "k", title: "A stroke over the body cuts it (K)" },
   { mode: "turn", label: "Turn", key: "t", title: "A drag turns the view (T)" },
 ];

@@ -74,7 +74,7 @@ export class LivePage {
   );
   private readonly recordButton = button(
     "Save recording",
-    "Save all forces since the last reset, and the motion as a scene that glisson run goes again (zip)",
+    "Save all forces since the last reset, and the motion as a scene that glisson run can replay (zip)",
     () => this.saveRecording(),
   );
 
@@ -122,8 +122,8 @@ export class LivePage {
       this.colours,
       edges,
       this.view.cut.tick,
-      button("Show all", "Bring all of the body into view (0)", () => this.view.fit()),
-      button("Save picture", "Save what is shown as a PNG", () => this.savePicture()),
+      button("Show all", "Show the whole body (0)", () => this.view.fit()),
+      button("Save picture", "Save the view as a PNG", () => this.savePicture()),
       button("Save forces", "Save the forces of this run as CSV", () => this.saveForces()),
       this.recordButton,
     );
@@ -230,7 +230,7 @@ export class LivePage {
     const others = role.viewers === 1 ? "" : ` · ${role.viewers} viewers`;
     const act = role.drives
       ? button("Hand over", "Let another viewer lead", () => this.send({ kind: "give" }))
-      : button("Take the lead", "Steer this simulation", () => this.send({ kind: "take" }));
+      : button("Take the lead", "Control this simulation", () => this.send({ kind: "take" }));
     act.disabled = !role.drives && role.led;
     if (act.disabled) act.title = "Another viewer leads; it can hand over";
     this.lead.replaceChildren(
@@ -269,10 +269,10 @@ export class LivePage {
   // ---- panels
 
   private buildRun(hello: Hello): void {
-    this.pauseButton = button("Pause", "Hold the clock (Space)", () => this.togglePause());
-    const step = button("Step", "One frame of 1 ms while it is held", () => this.send({ kind: "step" }));
-    const reset = button("Reset", "Back to rest, tools out", () => this.send({ kind: "reset" }));
-    const play = button("Play the scene’s motion", "Back to rest, then the tools go as the scene says", () =>
+    this.pauseButton = button("Pause", "Pause (Space)", () => this.togglePause());
+    const step = button("Step", "Advance one frame of 1 ms while paused", () => this.send({ kind: "step" }));
+    const reset = button("Reset", "Back to rest, tools withdrawn", () => this.send({ kind: "reset" }));
+    const play = button("Play the scene’s motion", "Back to rest, then play the scene’s motion of the tools", () =>
       this.send({ kind: "play" }),
     );
     play.hidden = !hello.tools.some((tool) => tool.can_play);

@@ -42,7 +42,7 @@ export class LiveView {
     tabindex: 0,
     "aria-label":
       "The body in three dimensions. Arrow keys turn it, plus and minus zoom, 0 shows all of it, C cuts it open. With the " +
-      "blade in hand (K) arrow keys lead it, Enter puts it down and lifts it.",
+      "cutting tool (K) arrow keys move the blade, Enter puts it down and lifts it.",
   });
   edges: boolean | null = null; // null: as suits the mesh
   onEdges: (on: boolean) => void = () => {};
@@ -82,7 +82,7 @@ export class LiveView {
         h(
           "p",
           { class: "mesh-missing" },
-          "This browser gives no WebGL 2: forces and controls work, the body is not drawn.",
+          "This browser has no WebGL 2: forces and controls work, the body is not drawn.",
         ),
       );
       return;

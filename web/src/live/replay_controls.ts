@@ -33,7 +33,7 @@ export class ReplayControls {
     this.speeds = speedsFor(this.duration).speeds;
     this.playButton.addEventListener("click", () => this.toggle());
     this.slider.addEventListener("input", () => this.moved());
-    const step = button("Next frame", "Go to the next frame that was recorded", () => send({ kind: "step" }));
+    const step = button("Next frame", "Go to the next recorded frame", () => send({ kind: "step" }));
     const first = button("From the start", "Play from the first frame", () => send({ kind: "play" }));
     const factor = (value: number) => ({ value: String(value), label: `${value}×` });
     const speed = select("Speed", this.speeds.map(factor), "1", (value) =>

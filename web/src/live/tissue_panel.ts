@@ -26,7 +26,7 @@ export class TissuePanel {
     choice.hidden = tissues.length < 2;
     this.element.replaceChildren(
       h("fieldset", {}, h("legend", {}, "Tissue"), choice, ...panels),
-      h("p", { class: "muted live-hint" }, "Changes act at once, on the body as it is; Reset takes it back to rest."),
+      h("p", { class: "muted live-hint" }, "Changes act at once on the present body; Reset returns it to rest."),
     );
     this.element.hidden = parameters.length === 0;
   }

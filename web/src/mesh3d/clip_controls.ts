@@ -34,7 +34,7 @@ export class ClipControls {
     this.side = h("label", { class: "check" }, this.other, h("span", {}, "Other side"));
     this.tick = h(
       "label",
-      { class: "check", title: "Take a part away to look inside (C; [ and ] move the cut)" },
+      { class: "check", title: "Remove a part to look inside (C; [ and ] move the cut)" },
       this.open,
       h("span", {}, "Cut open"),
     );

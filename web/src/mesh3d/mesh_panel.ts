@@ -97,7 +97,7 @@ export class MeshPanel {
         { class: "figure-note" },
         h("span", { class: "for-mouse" }, "Drag turns, right drag moves; click the view once and the wheel zooms. "),
         h("span", { class: "for-touch" }, "Tap the view once, then drag turns and two fingers zoom and move. "),
-        "Rings in the charts mark the moment shown.",
+        "Rings in the charts mark the time shown.",
       ),
     );
     this.canvas.addEventListener("keydown", (event) => this.onKey(event));

@@ -102,7 +102,7 @@ function foot(report: ReportData): HTMLElement {
       "p",
       {},
       `Made by Glisson ${report.version}. Drag in a chart zooms, a double click resets. ` +
-        "Numbers are those of the files beside this report.",
+        "The numbers are those of the files next to this report.",
     ),
     h(
       "p",

@@ -82,7 +82,7 @@ function notes(scene: SceneData): HTMLElement | null {
   return h(
     "aside",
     { class: "notes", "aria-label": "Choices" },
-    h("h3", {}, "What was chosen, and why"),
+    h("h3", {}, "Choices and their reasons"),
     h("ul", {}, ...scene.notes.map((note) => h("li", {}, note))),
   );
 }
