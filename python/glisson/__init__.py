@@ -1,4 +1,4 @@
-"""Soft tissue that is non-linear, viscoelastic and touched by instruments.
+"""Simulation of non-linear, viscoelastic soft tissue touched by instruments.
 
 Five lines to a force curve:
 

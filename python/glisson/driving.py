@@ -1,4 +1,4 @@
-"""Drivers of one's own that need no class."""
+"""Drivers without a class of your own."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ Place = Pose | Sequence[float] | npt.NDArray[Any]
 
 
 class FunctionDriver(OwnDriver):
-    """Leads a tool by a function of what it feels.
+    """Moves a tool by a function with force feedback.
 
-    `function(time, h, on_tool)` gives where the tool is at the end of the step from `time` to `time` + h [s], a Pose or its
-    position [m]; `on_tool.force` is what the tissue exerted on it in the last step [N]. Of time alone PathDriver is quicker.
+    `function(time, h, on_tool)` returns the pose, or the position [m], at the end of the step from `time` to `time` + h
+    [s]; `on_tool.force` is the force of the tissue in the last step [N]. PathDriver is faster for a function of time.
 
     >>> import glisson
     >>> def until_half_a_newton(time, h, on_tool, tip=[0.0, 0.0, 0.0201]):
@@ -34,5 +34,5 @@ class FunctionDriver(OwnDriver):
         self._function = function
 
     def advance(self, time: float, h: float, on_tool: Wrench) -> Place:
-        """Asks the function."""
+        """Calls the function."""
         return self._function(time, h, on_tool)

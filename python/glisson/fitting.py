@@ -22,7 +22,7 @@ Interval = tuple[float | None, float | None]
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number that was fitted. Ends of `ci95` that the curves leave open are None."""
+    """A fitted parameter. Ends of `ci95` that the curves do not determine are None."""
 
     name: str
     unit: str
@@ -35,7 +35,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Curve:
-    """A measured curve and the force that the fitted tissue gives at its instants."""
+    """A measured curve and the force of the fitted tissue at its times."""
 
     name: str
     group: str
@@ -49,7 +49,7 @@ class Curve:
 
 
 class FitResult:
-    """What came out of a fit; `to_dict()` is fit.json."""
+    """Result of a fit; `to_dict()` is fit.json."""
 
     def __init__(self, text: str, tissue: str) -> None:
         self.json = text  #: the text of fit.json
@@ -80,12 +80,12 @@ class FitResult:
 
     @property
     def conclusions(self) -> list[str]:
-        """What the curves tell and what they leave open, in sentences."""
+        """What the curves determine and what they do not, in sentences."""
         return list(self._data.get("conclusions", []))
 
     @property
     def tissue(self) -> Tissue:
-        """The tissue that was found."""
+        """The fitted tissue."""
         return tissue_from(self.tissue_toml)
 
     def write(self, folder: str | os.PathLike[str]) -> None:
@@ -110,13 +110,13 @@ def fit(
     progress: Callable[[str, int, int, float], object] | None = None,
     state: str | os.PathLike[str] | None = None,
 ) -> FitResult:
-    """Fits a tissue to measured curves, and says how sure the answer is.
+    """Fits a tissue to measured curves, with uncertainties.
 
-    Ctrl-C, and what `progress` raises, ends it. With `state` the same call goes on from there; fit.state.json in the folder
+    Ctrl-C, or an exception in `progress`, ends it. With `state` the same call resumes from there; fit.state.json in the folder
     of `glisson fit --out` is such a file.
 
     :param description: a FIT.toml, its text (with a line end), or a dict of its keys
-    :param laws: laws to fit beside those of the description (known_laws)
+    :param laws: laws to fit in addition to those of the description (known_laws)
     :param data: folder of the curves' files; none: that of the description
     :param base: folder that a text or dict stands for
     :param starts: largest number of descents, in place of the description's

@@ -32,7 +32,7 @@ def read_mesh(file: str | os.PathLike[str], scale: float = 1.0) -> TetMesh:
 
 def from_meshio(mesh: Any, scale: float = 1.0) -> TetMesh:
     """A mesh of meshio, with its tetrahedra; cell data "region" or those of Gmsh and MEDIT become regions, point sets
-    vertex sets. Inverted tets are turned.
+    vertex sets. Inverted tets are reoriented.
 
     :raises ValueError: for a mesh without tetrahedra
     """
@@ -78,7 +78,7 @@ def to_pyvista(
     vertex_fields: Mapping[str, npt.ArrayLike] | None = None,
     tet_fields: Mapping[str, npt.ArrayLike] | None = None,
 ) -> Any:
-    """The mesh as a PyVista grid, where its vertices are now, with fields on vertices and tets.
+    """The mesh as a PyVista grid at the present positions, with fields on vertices and tets.
 
     :param positions: (n, 3) [m]; none: at rest
     """
@@ -112,7 +112,7 @@ def write_vtu(
 
 
 def format_report(name: str, report: MeshReport, mesh: TetMesh) -> str:
-    """What `glisson info MESH` prints: counts, extent, volume, shape, pieces and warnings.
+    """The output of `glisson info MESH`: counts, extent, volume, shape, pieces and warnings.
 
     >>> import glisson
     >>> mesh = glisson.box_mesh()

@@ -71,7 +71,7 @@ def figures(
 
 
 def _fit_lines(tell: Callable[[str], object], wanted: Sequence[str]) -> Callable[[str, int, int, float], None]:
-    """Lines on how far the fit is, one for each tenth of a stage."""
+    """Progress lines of the fit, one for each tenth of a stage."""
     told: set[tuple[str, int]] = set()
     start = time.monotonic()
 

@@ -1,6 +1,6 @@
 """Figures for papers, with matplotlib: force–displacement with repetitions, laws, energies, profiles.
 
-Each function draws into `ax`, or into a figure of its own, and gives the axes back.
+Each function draws into `ax`, or into a figure of its own, and returns the axes.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def forces(results: Iterable[RunResult] | Mapping[str, RunResult], *, against: s
 
 
 def chart(spec: ChartSpec, results: Mapping[str, RunResult], *, ax: Any = None) -> Any:
-    """A chart of a scene, as its report has it, with the points that someone measured."""
+    """A chart of a scene, as in its report, with the measured points."""
     ax = _axes(ax, spec.x.label or spec.x.column, spec.y.label or spec.y.column)
     for name in spec.variants or list(results):
         if name in results:
@@ -116,7 +116,7 @@ def laws(tissues: Iterable[Tissue] | Tissue, *, until: float = 0.5, ax: Any = No
 
 
 def energies(result: RunResult, *, ax: Any = None) -> Any:
-    """What became of the work of the tools."""
+    """The energies that the work of the tools is converted to."""
     ax = _axes(ax, "time [s]", "energy [mJ]")
     for column, label in (
         ("work_tools_J", "work of tools"),
@@ -130,7 +130,7 @@ def energies(result: RunResult, *, ax: Any = None) -> Any:
 
 
 def profiles(result: FitResult, *, axes: Any = None) -> Any:
-    """How −2 ln L rises about the best value of every parameter; the dashed line bounds the interval of 95 %.
+    """Rise of −2 ln L about the best value of every parameter; the dashed line bounds the interval of 95 %.
 
     :raises ValueError: for a fit without profiles
     """

@@ -28,13 +28,13 @@ def run(
     frames: bool = False,
     out: str | os.PathLike[str] | None = None,
 ) -> dict[str, RunResult]:
-    """Runs the variants of a scene and gives their results by name, in the order of the scene.
+    """Runs the variants of a scene and returns their results by name, in the order of the scene.
 
-    The columns are those of forces.csv, to the last bit. Ctrl-C, and what `on_sample` raises, ends all runs.
+    The columns are those of forces.csv, to the last bit. Ctrl-C, or an exception in `on_sample`, ends all runs.
 
     :param scene: a Scene, a dict, TOML text, or a file
-    :param mesh: taken in place of the scene's
-    :param threads: variants at a time; none: as many as there are cores. Results do not depend on it
+    :param mesh: used in place of the scene's
+    :param threads: variants in parallel; none: as many as there are cores. Results do not depend on it
     :param on_sample: called with the variant's name and a line of forces.csv at each sample
     :param frames: whether to keep the displacement of every frame
     :param out: folder to write <variant>/forces.csv to, with the bytes that `glisson run` writes

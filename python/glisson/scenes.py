@@ -19,7 +19,7 @@ BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def scenes_folder() -> Path:
-    """Where the shipped scenes are.
+    """Folder of the shipped scenes.
 
     >>> (scenes_folder() / "paper" / "figure2.toml").exists()
     True
@@ -31,7 +31,7 @@ def load_scene(file: str | os.PathLike[str], overrides: Overrides | None = None)
     """Reads a scene from its file.
 
     :param overrides: values in place of the scene's, by dotted key, as `--set` takes them
-    :raises SceneError: with a line for each thing that is wrong
+    :raises SceneError: with a line for each error
 
     >>> scene = load_scene(scenes_folder() / "paper" / "figure2.toml", {"tissue.poisson_ratio": 0.45})
     >>> scene["linear"].tissue.poisson_ratio
@@ -46,7 +46,7 @@ def parse_scene(
     base: str | os.PathLike[str] = ".",
     overrides: Overrides | None = None,
 ) -> Scene:
-    """The same from TOML text, or from a dict of the same keys.
+    """Reads a scene from TOML text, or from a dict of the same keys.
 
     :param name: stands for the file in messages
     :param base: folder that files named in the scene are relative to

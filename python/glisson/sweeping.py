@@ -2,8 +2,8 @@
 
     points ──▶ those whose file is not there yet ──▶ workers, a simulation each ──▶ point-<key>.parquet, written whole
 
-A study that was broken off goes on where it stopped, because a point is done when its file is there. A worker that is
-killed takes its point with it; the point is given to another.
+An interrupted study resumes where it stopped, because a point is done when its file exists. The point of a killed
+worker is given to another.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Measure = Callable[[_core.RunResult], Mapping[str, Any]]
 
 
 class SweepError(RuntimeError):
-    """Points of a study that could not be run; the others are written. `failures` has them with the reason."""
+    """Raised for points of a study that could not be run; the others are written. `failures` has them with the reason."""
 
     def __init__(self, failures: list[tuple[Point, str]]) -> None:
         self.failures = failures
@@ -62,7 +62,7 @@ def sweep(
     attempts: int = 3,
     progress: Callable[[int, int], object] | None = None,
 ) -> Any:
-    """Runs a scene at every point, and gives all rows, those of earlier calls too, as a pyarrow Table.
+    """Runs a scene at every point, and returns all rows, including those of earlier calls, as a pyarrow Table.
 
     A row is a variant at a point: the values of the point, `variant`, `end`, `trouble`, `steps`, `peak_force_N`, and the
     columns of forces.csv as lists; with `measure` what that gives in place of the columns. Rows lie in `out` as Parquet,

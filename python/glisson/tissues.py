@@ -25,10 +25,10 @@ def tissue_from(table: Mapping[str, Any] | str) -> Tissue:
 def tabulated(
     law: Callable[[float], float], until: float = 1.0, points: int = 257, arguments: Any | None = None
 ) -> TableLaw:
-    """A law of stiffness written in Python: called once for each point, and straight lines between them.
+    """A stiffness law written in Python: called once for each point, linear in between.
 
     The engine asks for the modulus of every tet in every step; a call into Python each time would take some hundred
-    times as long as the step, so the law is read off a table that costs nothing. Beyond the last point it is constant.
+    times as long as the step, so the law is tabulated. Beyond the last point it is constant.
 
     :param law: modulus [Pa] at the tissue's measure
     :param until: the largest measure of the table
