@@ -29,13 +29,13 @@ std::string newtons_or_stress(double force, const FitResult& result) {
 }
 
 void conclude_on_curves(const Validation& all, const FitResult& result, std::vector<std::string>& sentences) {
-  sentences.push_back("The fitted curves are met to " + newtons_or_stress(result.rms_fit, result) + " rms.");
+  sentences.push_back("The fitted curves are matched to " + newtons_or_stress(result.rms_fit, result) + " rms.");
   for (const GroupError& g : all.groups) {
     if (std::isnan(g.rms_heldout)) continue;
     std::string text = "Held out, " + g.name + " is met to " + newtons_or_stress(g.rms_heldout, result) + " rms";
     if (g.spread.curves >= 2) {
       text += "; its repetitions differ by " + newtons_or_stress(g.spread.deviation, result) +
-              (g.within_spread ? ": as near as the test repeats." : ": further than the test repeats.");
+              (g.within_spread ? ": within the repeatability of the test." : ": beyond the repeatability of the test.");
     } else {
       text += ".";
     }
@@ -50,7 +50,7 @@ std::string limited_errors(const FitCurves& curves, const std::vector<Prediction
   std::vector<const Curve*> all;
   for (const Curve& c : curves.curves) all.push_back(&c);
   const Spread spread = spread_of(all, limit);
-  return "Up to " + rounded(1e3 * limit) + " mm the held-out curves are met to " + rounded(near.rms_heldout) +
+  return "Up to " + rounded(1e3 * limit) + " mm the held-out curves are matched to " + rounded(near.rms_heldout) +
          " N rms; all curves differ there by " + rounded(spread.deviation) + " N.";
 }
 
@@ -82,7 +82,7 @@ void conclude_on_designs(const FitResult& result, std::vector<std::string>& sent
   if (result.designs.empty()) return;
   const DesignResult& best = result.designs.front();
   if (!(best.width_after < best.width_now)) return;
-  sentences.push_back("Next, " + best.what + " would tell most: the interval of " + best.parameter +
+  sentences.push_back("Next, " + best.what + " would be most informative: the interval of " + best.parameter +
                       " would shrink to " + rounded(100.0 * best.width_after / best.width_now, 2) + " % of its width.");
 }
 
@@ -103,7 +103,7 @@ void fill_parameters(const Problem& problem, const Optimum& optimum, const Covar
     if (profiled && p < profiled->of.size() && !profiled->of[p].points.empty())
       out.by_profile = profiled->of[p].interval;
     out.verdict = name_of(judged ? verdicts.of[p].verdict : Verdict::weak);
-    out.words = judged ? verdicts.of[p].words : out.parameter.name + ": how sure it is could not be found";
+    out.words = judged ? verdicts.of[p].words : out.parameter.name + ": its uncertainty could not be computed";
     result.parameters.push_back(std::move(out));
   }
   result.correlation.clear();
@@ -241,7 +241,7 @@ void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves,
   fill_parameters(search.problem(), search.optimum(), covariance, profiled ? &*profiled : nullptr, result);
   if (profiled) fill_profiles(search.problem(), *profiled, covariance, search.optimum().cost, result);
   if (!covariance.failure.empty()) {
-    result.conclusions.push_back("How sure the parameters are could not be found: " + covariance.failure);
+    result.conclusions.push_back("The uncertainty of the parameters could not be computed: " + covariance.failure);
   } else {
     conclude_on_parameters(result, result.conclusions);
     result.conclusions.push_back(covariance.noise.why);

@@ -59,7 +59,7 @@ std::string tissue_of_fit(const LawSearch& search, const FitResult& result, cons
     tissue_values.push_back(values[p]);
   }
   std::string text = "# Fitted by `glisson fit " + spec.file.filename().string() + "`: " + spec.title + "\n";
-  text += "# Law " + result.law + "; fitted curves met to " + brief(result.rms_fit) + " N rms";
+  text += "# Law " + result.law + "; fitted curves matched to " + brief(result.rms_fit) + " N rms";
   if (result.rms_heldout) text += ", held-out ones to " + brief(*result.rms_heldout) + " N";
   text += ".\n";
   for (const ParameterResult& p : result.parameters) {

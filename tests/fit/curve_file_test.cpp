@@ -98,7 +98,7 @@ TEST(CurveFile, SaysWhatIsNoTable) {
   EXPECT_THAT(fault(""), HasSubstr("t.csv:1:1: is empty; expected a line of names and rows of numbers"));
   EXPECT_THAT(fault(" \r\n\n"), HasSubstr("is empty"));
   EXPECT_THAT(fault("only\nwords\n"), HasSubstr("has no rows of numbers"));
-  EXPECT_THAT(fault(std::string("a,b\n1,2\0", 9)), HasSubstr("is no text"));
+  EXPECT_THAT(fault(std::string("a,b\n1,2\0", 9)), HasSubstr("is not text"));
   EXPECT_THAT(fault("\xFF\xFE"
                     "1"),
               HasSubstr("UTF-16; save it as UTF-8"));

@@ -293,7 +293,7 @@ TEST_F(BadFile, RowsWithoutNumbers) {
   EXPECT_THAT(
       text,
       HasSubstr(
-          "t.csv:5:3: \"NaN\" is no finite number in \"Depth (mm)\"; mend the row, or give skip_bad_rows = true"));
+          "t.csv:5:3: \"NaN\" is no finite number in \"Depth (mm)\"; correct the row, or give skip_bad_rows = true"));
   EXPECT_THAT(fault(rows({{5, "2,1e300,0.2"}})), HasSubstr("t.csv:5:3: \"1e300\" is beyond any measurement in"));
   EXPECT_THAT(text, HasSubstr("t.csv:7:"));
   EXPECT_THAT(text, HasSubstr("t.csv:8:1: has 1 fields, none for \"Depth (mm)\""));

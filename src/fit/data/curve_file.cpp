@@ -282,7 +282,8 @@ CurveFile parse_curve_file(std::string text, const std::filesystem::path& file, 
   if (text.compare(0, 2, "\xFF\xFE") == 0 || text.compare(0, 2, "\xFE\xFF") == 0)
     fail(file, 1, "is written in UTF-16; save it as UTF-8 or plain text");
   if (text.compare(0, kMark.size(), kMark) == 0) text.erase(0, kMark.size());
-  if (text.find('\0') != std::string::npos) fail(file, 1, "is no text: it holds bytes of value 0; export it as .csv");
+  if (text.find('\0') != std::string::npos)
+    fail(file, 1, "is not text: it contains bytes of value 0; export it as .csv");
   text = as_utf8(std::move(text));
   const std::vector<Line> lines = lines_of(text);
   if (lines.empty()) fail(file, 1, "is empty; expected a line of names and rows of numbers");

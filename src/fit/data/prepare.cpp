@@ -197,7 +197,7 @@ std::string CurveAccount::text() const {
   if (contact_how != "as recorded") {
     t += "; contact " + contact_how + " at " + brief(contact * 1e3) + " mm";
     if (contact_deviation > 0.0) t += " ± " + brief(contact_deviation * 1e3) + " mm";
-    t += ", " + brief(force_at_rest) + " N taken off the force";
+    t += ", " + brief(force_at_rest) + " N subtracted from the force";
   }
   if (rows_cropped > 0) t += "; " + std::to_string(rows_cropped) + " rows cropped";
   return t + "; " + std::to_string(points) + " points, noise of a row " + brief(row_noise) + " N";

@@ -39,8 +39,8 @@ std::optional<Reading> way_or_force(const CurveFile& file, const ColumnSpec& own
   const std::string relative_key = way ? "columns.strain" : "columns.stress";
   if (!size) {
     problems.add({1, 1, {}}, relative_key,
-                 way ? "needs the height of the specimen to become a way; give height_mm"
-                     : "needs the area of the specimen to become a force; give area_mm2");
+                 way ? "needs the height of the specimen to be converted to a displacement; give height_mm"
+                     : "needs the area of the specimen to be converted to a force; give area_mm2");
     return std::nullopt;
   }
   return reading(choose_column(file, relative, way ? Quantity::strain : Quantity::stress, relative_key, problems),
@@ -98,7 +98,8 @@ struct Rows {
     ++bad;
     if (spec.skip_bad_rows || bad > kBadRowsShown) return;
     const std::uint32_t at = column.index < row.fields.size() ? row.fields[column.index].column : 1;
-    problems.add({row.line, at, {}}, "", fault_of(file, row, column) + "; mend the row, or give skip_bad_rows = true");
+    problems.add({row.line, at, {}}, "",
+                 fault_of(file, row, column) + "; correct the row, or give skip_bad_rows = true");
   }
 
   void finish(std::size_t good) {

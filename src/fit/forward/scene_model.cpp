@@ -131,7 +131,7 @@ const char* end_words(RunSummary::End end) {
     case End::interrupted:
       return "interrupted";
     case End::stopped_inverted:
-      return "a tetrahedron turned inside out";
+      return "a tetrahedron inverted";
     case End::stopped_unstable:
       return "the step has become too large; leave out step_s";
     case End::stopped_not_finite:
