@@ -70,7 +70,7 @@ class BodyChanger {
   /// @param elements  as living_elements gives them
   BodyChange remove(std::span<const std::uint32_t> elements);
 
-  /// Opens the body along inner faces (mesh/split_faces.h).
+  /// Opens the body along inner faces (mesh/cut/split_faces.h).
   /// @param faces  three vertices each
   /// @throws std::invalid_argument as plan_split; nothing is changed then
   BodyChange split(std::span<const Triangle> faces) { return cut(faces, {}, {}); }

@@ -9,7 +9,7 @@ namespace glisson {
 /// Σ l lᵀ over the six rest edges [m²].
 EdgeMetric<double> edge_metric(const Body& body, std::size_t element);
 
-/// The rotation of a regular tetrahedron (tissue/edge_measure.h) that brings it closest to an element at rest: R of the
+/// The rotation of a regular tetrahedron (material/edge_measure.h) that brings it closest to an element at rest: R of the
 /// polar decomposition of the map between the two.
 Mat3d regular_turn(const Body& body, std::size_t element);
 

@@ -1,6 +1,6 @@
 // tissue_operator.h — forces, tangents and energy of a body of any tissue, in double, one element at a time.
 //
-//   f_a = −V P s_a                       P of tissue/response.h, at H and Ḣ of the element
+//   f_a = −V P s_a                       P of material/response.h, at H and Ḣ of the element
 //   K = Σ V s_a ∂(P·s_b)/∂u, C likewise  exact, by numbers that carry their derivative
 //
 // What the implicit schemes and statics run on, what runs in double precision, and what the submesh engine is compared

@@ -1,7 +1,7 @@
 // element_body.h — a body that moves in double precision, element by element: the scene option, and a check.
 //
-// No submeshes, lanes or threads: on arrays in the mesh's order the loop of mechanics/force_operator.h, or where a tissue
-// is more than the paper's that of mechanics/tissue_operator.h.
+// No submeshes, lanes or threads: on arrays in the mesh's order the loop of element/force_operator.h, or where a tissue
+// is more than the paper's that of element/tissue_operator.h.
 #pragma once
 
 #include <memory>

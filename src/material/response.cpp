@@ -243,7 +243,7 @@ double Response::volume_modulus(const Mat3d& H, const ElementShape& shape) const
   return tissue_.hyperelastic ? bulk_modulus(*tissue_.hyperelastic) : moduli(measure(H, shape)).lambda;
 }
 
-/// Tensor-mass tissues: r C₀ bounds the tangent of σ(ε) as in mechanics/local_stiffness.h. With the Green strain it is
+/// Tensor-mass tissues: r C₀ bounds the tangent of σ(ε) as in element/local_stiffness.h. With the Green strain it is
 /// carried by F on both sides, and the stress adds its own size.
 Stiffening Response::elastic_stiffening(const Mat3d& H, const ElementShape& shape) const {
   const double rest = std::max(3.0 * lame_.lambda + 2.0 * lame_.mu, 2.0 * lame_.mu);
@@ -283,7 +283,7 @@ Stiffening Response::stiffening(const Mat3d& H, const ElementShape& shape) const
   return s;
 }
 
-/// f + |f'| g ½ (e + √(e² + (K/2μ) t²)) of mechanics/local_stiffness.h, with the larger of the two laws' ratios.
+/// f + |f'| g ½ (e + √(e² + (K/2μ) t²)) of element/local_stiffness.h, with the larger of the two laws' ratios.
 double Response::tensor_mass_stiffening(const Mat3d& H, const ElementShape& shape) const {
   const double x = measure(H, shape), bulk = lame_.lambda + 2.0 / 3.0 * lame_.mu;
   const Moduli<double> m = moduli(x);

@@ -19,7 +19,7 @@ struct ElementShape {
   Mat3d turn;                 ///< rotation of the regular tet to this one, for radius_ratio and solid_angle
 };
 
-/// How stiff a tet has become: a bound of its tangent C over that at rest, C₀ (tissue/stiffness_bound.h).
+/// How stiff a tet has become: a bound of its tangent C over that at rest, C₀ (material/stiffness_bound.h).
 struct Stiffening {
   double ratio = 1.0;  ///< C ≤ r C₀: scales what is known of the whole body
   double norm = 1.0;   ///< λ_max(C)/λ_max(C₀): says more of a tet that is stiff in one direction

@@ -1,4 +1,4 @@
-// The measure in lanes is that of tissue/shape_measure.h: exact near rest, blind to rotation, 1 when inverted.
+// The measure in lanes is that of material/shape_measure.h: exact near rest, blind to rotation, 1 when inverted.
 #include <gtest/gtest.h>
 
 #include <memory>

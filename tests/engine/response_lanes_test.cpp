@@ -1,4 +1,4 @@
-// Tissues of large deformation in lanes are those of tissue/response.h, in every instruction set: forces, what the stable
+// Tissues of large deformation in lanes are those of material/response.h, in every instruction set: forces, what the stable
 // step is told, tets that are flat or inverted, and the memory of Maxwell branches over many steps.
 #include <gtest/gtest.h>
 

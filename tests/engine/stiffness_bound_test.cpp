@@ -11,7 +11,7 @@ namespace {
 
 using test::Sample;
 
-/// The bound of mechanics/local_stiffness.h per tissue block: the largest over its tets, in double.
+/// The bound of element/local_stiffness.h per tissue block: the largest over its tets, in double.
 std::vector<double> exact_stiffening(const Body& body, const Sample& s) {
   std::vector<Vec3d> elastic(body.vertex_count), viscous(body.vertex_count);
   ElementWatch watch;

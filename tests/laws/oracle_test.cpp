@@ -1,6 +1,6 @@
 // The response equals the textbook's formulas, for every law, from strains of 1e-9 to stretches of 0.3 to 3.
 //
-// The oracle (mechanics/reference_stress.h) is naive and runs in long double.
+// The oracle (material/reference/reference_stress.h) is naive and runs in long double.
 #include <gtest/gtest.h>
 
 #include "laws/every_tissue.h"

@@ -1,6 +1,6 @@
 // tangent_system.h — the linear system of a Newton iteration, on the components that are free to move.
 //
-//   A = k K(u, rate) + diag(d)        K of mechanics/tissue_operator.h, applied without being assembled
+//   A = k K(u, rate) + diag(d)        K of element/tissue_operator.h, applied without being assembled
 //
 // Only the preconditioner is assembled: a sparse Cholesky factor of A's symmetric part at some earlier state, kept
 // over iterations and steps until the iterations say that it has become bad; or the 3 × 3 blocks of A's diagonal.

@@ -207,7 +207,7 @@ HWY_INLINE Symmetric isotropic_function(const Symmetric& E, const Eigenvalues& a
   return plus_identity(plus(times(upper, first), bend, commuting_product(first, second)), s[0].g);
 }
 
-/// λ_max of ∂P/∂F of P = F S in the principal frame (tissue/stiffness_bound.h), from t = ∂W/∂ln λ and the sums of
+/// λ_max of ∂P/∂F of P = F S in the principal frame (material/stiffness_bound.h), from t = ∂W/∂ln λ and the sums of
 /// ∂²W/∂(ln λ̄)² of the terms, which make ∂t_i/∂ln λ_j = slope_i δ_ij − ⅓ (slope_i + slope_j) + ⅑ Σ slope.
 HWY_INLINE F stiffest_direction(const Eigenvalues& at, const PrincipalStress (&s)[3], const F (&t)[3],
                                 const F (&slope)[3], const F (&c)[3]) {

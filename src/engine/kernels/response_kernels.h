@@ -2,7 +2,7 @@
 //
 //   gather H, Ḣ ──▶ [measure, law] ──▶ respond: P ──▶ fibres ──▶ Maxwell ──▶ viscous ──▶ push
 //
-// A tet whose J has fallen below kSmallestVolume is answered by tissue/response.h instead, in double, one at a time: lanes
+// A tet whose J has fallen below kSmallestVolume is answered by material/response.h instead, in double, one at a time: lanes
 // hold the formulas for tissue, that one those for tets that are flat or inverted.
 #pragma once
 
@@ -21,7 +21,7 @@ namespace glisson::engine {
 struct ResponseBlock {
   alignas(64) float piola[kBlockTets * 9];    ///< P, elastic; with Maxwell branches what is left after long times
   alignas(64) float viscous[kBlockTets * 9];  ///< P, viscous, and what the branches have not relaxed yet
-  alignas(64) float ratio[kBlockTets];        ///< tissue/response.h, Stiffening, [item][lane]; 0 where no tet is
+  alignas(64) float ratio[kBlockTets];        ///< material/response.h, Stiffening, [item][lane]; 0 where no tet is
   alignas(64) float norm[kBlockTets];
 };
 
@@ -46,7 +46,7 @@ struct LaneResponse {
   VolumeKind volume = VolumeKind::small;
 };
 
-/// A branch's weights over one step: q goes on from its past by them (mechanics/tissue_operator.cpp).
+/// A branch's weights over one step: q goes on from its past by them (element/tissue_operator.cpp).
 struct LaneWeights {
   float decay = 1.0F;
   float from = 0.0F, to = 0.0F;

@@ -1,7 +1,7 @@
 // viscous_response-inl.h — fibres, Maxwell branches and Kelvin–Voigt viscosity of large deformation in lanes.
 //
 // A branch's memory is r = decay q(t) + from S(t): all of q(t + h) but what S(t + h) adds, so that S itself need not be
-// kept (weights: mechanics/tissue_operator.cpp).
+// kept (weights: element/tissue_operator.cpp).
 //
 // Included once per instruction set, never from outside response_kernels.cpp.
 #if defined(GLISSON_VISCOUS_RESPONSE_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -8,7 +8,7 @@
 //
 // The parsers that Debian 12 and Ubuntu 24.04 package split lines at a separator that is known beforehand (libcsv3; libfccp
 // at compile time); finding it, the decimal mark, the names and the units is what takes the work here, so that they
-// would save one short function. scene/word_table.h reads strict files and is left so: a scene should say what it means.
+// would save one short function. scene/parse/word_table.h reads strict files and is left so: a scene should say what it means.
 #pragma once
 
 #include <cstdint>

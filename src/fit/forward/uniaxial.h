@@ -1,6 +1,6 @@
 // uniaxial.h — the cheapest forward model: a specimen between smooth plates, which deforms alike all over.
 //
-// No mesh and no inertia: the force is that of the tissue's own response (tissue/uniaxial_path.h), times the area.
+// No mesh and no inertia: the force is that of the tissue's own response (material/uniaxial_path.h), times the area.
 #pragma once
 
 #include <functional>

@@ -79,7 +79,7 @@ ElementTensors viscous_tensors(const Gradients& g, const Tissue& tissue) {
     case ViscousTensor::deviatoric:
       return stiffness_tensors(g, {-2.0 * eta / 3.0, eta});
     case ViscousTensor::pioletti:
-      return stiffness_tensors(g, {0.0, 0.0});  // none at rest; of large strain, mechanics/reference_stress.h
+      return stiffness_tensors(g, {0.0, 0.0});  // none at rest; of large strain, material/reference/reference_stress.h
     case ViscousTensor::proportional:
       break;
   }

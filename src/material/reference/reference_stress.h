@@ -5,7 +5,7 @@
 //   laws            W of each law's own paper, written out anew
 //
 // Nothing is rearranged against cancellation; long double pays for that (19 digits on x86). It shares no code with
-// src/tissue, which is tested against it.
+// src/material, which is tested against it.
 #pragma once
 
 #include <Eigen/Dense>
