@@ -1,4 +1,5 @@
-// body.h — a body at rest: what is computed once from mesh and tissues and never changes while it moves.
+// body.h — a body at rest: what is computed from mesh and tissues. A step never changes it; a change of the mesh or of a
+// tissue between two steps does (body_change.h).
 //
 // Tetrahedra are sorted by tissue into blocks, so that moduli and law are constants of a block and the
 // element loop carries none of them per tet. Element e of the body is tet `mesh_tet[e]` of the mesh.

@@ -72,10 +72,10 @@ T run_block(const BlockContext<T>& c, std::size_t begin, std::size_t end, LamePa
     if (const auto r = static_cast<double>(k.stiffening); r > c.list_above) {
       c.watch->stiff.push_back({static_cast<std::uint32_t>(e), r, r});
     }
-    scatter(t, rest, isotropic_stress(H, k.lambda, k.mu), c.elastic);
+    scatter(t, rest, isotropic_stress(H, k.lambda, k.mu), c.elastic);  // [Schwartz2002, eq. 6]
     if constexpr (kViscous) {
       const Mat3<T> rate = displacement_gradient(rest.s, differences<T>(t, c.v));
-      scatter(t, rest, isotropic_stress(rate, a, b), c.viscous);
+      scatter(t, rest, isotropic_stress(rate, a, b), c.viscous);  // [Schwartz2002, eq. 7]
     }
   }
   return stiffening;

@@ -70,7 +70,8 @@ void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
   ledger_.reset(kinetic, secant_energy(body_, displacement));
 }
 
-/// v₊ of the watched vertices as if they were free; massless ones (in no tet) stay.
+/// v₊ = (m v₋ + h F)/(m + γh) of the watched vertices as if they were free [Schwartz2002, eq. 3 and 4]; massless ones
+/// (in no tet) stay.
 void ExplicitScheme::kick_watched(double h) {
   const std::span<WatchedVertex> watched = moving_->watched();
   const std::span<const Vec3d> loads = loads_.at(time_);

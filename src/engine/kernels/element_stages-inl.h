@@ -295,7 +295,8 @@ HWY_INLINE void push_run(const Elements& e, std::size_t batch, float* forces, co
   around.finish(index);
 }
 
-/// Pushes n batches; `stress_of(item, w)` is the stress of an item times kForceScale.
+/// f_a = −V σ s_a onto the vertices of n batches: [Schwartz2002, eq. 1] without its tensors.
+/// `stress_of(item, w)` is the stress of an item times kForceScale.
 template <class StressOf>
 HWY_INLINE void push_batches(const Elements& e, std::size_t begin, std::size_t n, float* forces,
                              const StressOf& stress_of) {
@@ -311,7 +312,8 @@ HWY_INLINE void push_batches(const Elements& e, std::size_t begin, std::size_t n
 /// Whose stress a push carries.
 enum class Push { elastic, viscous, merged };
 
-/// σ of one tet of a batch times kForceScale; 0 where there is none, since its gradients are 0.
+/// σ = λ(x) tr(ε) I + 2 μ(x) ε of one tet of a batch times kForceScale [Schwartz2002, eq. 6], plus the viscous stress
+/// [Schwartz2002, eq. 7]; 0 where there is none, since its gradients are 0.
 template <Push P>
 struct ScaledStress {
   const Elements& e;

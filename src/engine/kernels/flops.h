@@ -1,4 +1,5 @@
-// flops.h — the useful floating-point operations of a step, counted, not estimated.
+// flops.h — the useful floating-point operations of a step: those of elements and responses counted by running their
+// arithmetic, those of the vertices and of exponentials by hand (docs/engine.md).
 #pragma once
 
 #include <array>
@@ -8,12 +9,12 @@
 
 namespace glisson::engine {
 
-/// Operations of the element's parts, from running its arithmetic on counted numbers.
+/// Operations of the element's parts, from running its arithmetic on numbers that count.
 struct ElementFlops {
   std::size_t gradient = 0, stress = 0, force = 0;
   std::array<std::size_t, 3> measure{};  ///< by DeformationMeasure, for volume changes below 30 %
 };
-/// In kernels.cpp, beside the arithmetic.
+/// In kernels.cpp, next to the arithmetic.
 ElementFlops count_element_flops();
 
 /// Operations between a tet's gradients and its stress, where tissues deform much.

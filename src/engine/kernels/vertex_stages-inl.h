@@ -123,6 +123,7 @@ struct WorkLanes {
   }
 };
 
+/// v₊ = v₋ + c f − d v₋ + h (1 − d) g, u₊ = u + h v₊, one vertex  [Schwartz2002, eq. 4].
 template <bool kAccounted>
 HWY_INLINE void advance(double* state, const float* elastic, const float* viscous, const Kick& kick, WorkLanes& work) {
   const Doubles d;
@@ -149,7 +150,7 @@ HWY_INLINE void advance(double* state, const float* elastic, const float* viscou
 
 #if HWY_TARGET != HWY_SCALAR && HWY_MAX_BYTES == 64
 
-/// A whole record at a time: both halves take the velocity's change, the lower one adds h times it to u.
+/// The same [Schwartz2002, eq. 4], a whole record at a time: both halves take the velocity's change, the lower one adds h times it to u.
 ///   [u c | v d]  →  v₊ in both halves  →  [h h h 0 | 1 1 1 1] [v₊ d | v₊ d] + [u c | 0]
 inline void integrate(double* state, const float* force, std::size_t n, const Kick& kick) {
   const Record d;

@@ -15,7 +15,8 @@ struct Edge {
   Mat3d tensor;
 };
 
-/// −V s_i ⊗ s_j where the tissue is viscous, else −K_ij = −V [λ s_i ⊗ s_j + μ (s_j ⊗ s_i + (s_i·s_j) I)].
+/// −V s_i ⊗ s_j where the tissue is viscous, else −K_ij = −V [λ s_i ⊗ s_j + μ (s_j ⊗ s_i + (s_i·s_j) I)]
+/// [Schwartz2002, eq. 5].
 Mat3d edge_tensor(const TissueBlock& block, double volume, const Vec3d& si, const Vec3d& sj) {
   const bool viscous = block.tissue.viscosity > 0.0;
   const double lambda = block.elastic.lambda, mu = block.elastic.mu, inner = dot(si, sj);

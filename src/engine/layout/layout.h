@@ -52,7 +52,7 @@
 //
 // Lane l of a batch takes chains far from those of the other lanes (of C chains in B batches, batch b takes b,
 // b + B, b + 2B, …), so that lanes seldom add to the same force record in one go.
-// Submeshes of a linear tissue hold edges instead (edges-inl.h).
+// Submeshes of a linear tissue hold edges instead (edge_batches.h).
 #pragma once
 
 #include <array>
