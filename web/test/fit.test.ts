@@ -110,7 +110,7 @@ describe("correlations", () => {
       { a: 1, b: 2, r: -0.95 },
       { a: 0, b: 1, r: 0.2 },
     ]);
-    expect(strongWords(matrix, ["μ", "α", "ν"])).toMatch(/α and ν\. One can make up/);
+    expect(strongWords(matrix, ["μ", "α", "ν"])).toMatch(/α and ν\. One can compensate/);
     expect(
       strongWords(
         [
