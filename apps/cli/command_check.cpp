@@ -20,7 +20,7 @@
 namespace glisson::app {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kCheckFooter =
     "Reads the scene, builds every variant, steps it for a tenth of a second and prints mesh, vertex\n"
     "sets, tissue, stable step, and the steps and the time a run will take. Writes nothing. Exit status 2 if the\n"
     "scene cannot be run.\n"

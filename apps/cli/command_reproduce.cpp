@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFooter =
+constexpr const char* kReproduceFooter =
     "Runs the scenes of scenes/paper/, which are built into the program, checks the results and writes\n"
     "DIR/<scene>/<variant>/ and one DIR/report.html. Takes a minute or two; with --quick some seconds: figure 3 ends\n"
     "after 0.1 s of motion.\n"

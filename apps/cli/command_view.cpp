@@ -20,7 +20,7 @@
 namespace glisson::app {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kViewFooter =
     "Runs one variant in real time and serves a page to watch and control it; prints the address to open.\n"
     "Only this machine can connect, and only with the token in the address. Ctrl-C ends it.\n"
     "SCENE may be the folder that `glisson run` wrote: the same page plays the recording.\n"
