@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "element/body.h"
-#include "glisson/material/tissue.h"
+#include "material/modulus_laws.h"
 #include "material/shape_measure.h"
 
 namespace glisson {
@@ -51,18 +51,19 @@ template <class T, class Law>
 class YoungStiffness {
  public:
   YoungStiffness(const TissueBlock& block, const Law& law)
-      : law_(law), E_(T(block.tissue.youngs_modulus)), inverse_E_(T(1) / E_), lambda_(T(block.elastic.lambda)),
-        mu_(T(block.elastic.mu)), bulk_over_two_mu_((lambda_ + T(2.0 / 3.0) * mu_) / (T(2) * mu_)) {}
+      : numbers_(law.numbers(block.tissue.youngs_modulus)), inverse_E_(T(1) / T(block.tissue.youngs_modulus)),
+        lambda_(T(block.elastic.lambda)), mu_(T(block.elastic.mu)),
+        bulk_over_two_mu_((lambda_ + T(2.0 / 3.0) * mu_) / (T(2) * mu_)) {}
 
   LocalStiffness<T> operator()(const Mat3<T>& H, MeasureValue<T> m) const {
-    const T f = law_.value(E_, m.x) * inverse_E_;
-    const T slope = std::abs(law_.derivative(E_, m.x)) * inverse_E_ * m.slope;
+    const ValueSlope<T> E = Law::at(numbers_, m.x);
+    const T f = E.value * inverse_E_, slope = std::abs(E.slope) * inverse_E_ * m.slope;
     return {f * lambda_, f * mu_, f + slope * strain_bound(H, bulk_over_two_mu_)};
   }
 
  private:
-  const Law& law_;
-  T E_, inverse_E_, lambda_, mu_, bulk_over_two_mu_;
+  decltype(std::declval<Law>().numbers(0.0)) numbers_;
+  T inverse_E_, lambda_, mu_, bulk_over_two_mu_;
 };
 
 /// Laws on λ and μ apart.
@@ -70,23 +71,20 @@ template <class T>
 class LameStiffness {
  public:
   explicit LameStiffness(const TissueBlock& block)
-      : lambda_law_(block.tissue.lambda_law.value_or(ConstantLaw{})),
-        mu_law_(block.tissue.mu_law.value_or(ConstantLaw{})), lambda_(block.elastic.lambda), mu_(block.elastic.mu),
+      : laws_(block.tissue), lambda_(block.elastic.lambda), mu_(block.elastic.mu),
         bulk_over_two_mu_(T((lambda_ + 2.0 / 3.0 * mu_) / (2.0 * mu_))) {}
 
   LocalStiffness<T> operator()(const Mat3<T>& H, MeasureValue<T> m) const {
-    const double x = static_cast<double>(m.x);
-    const double lambda = law_value(lambda_law_, lambda_, x), mu = law_value(mu_law_, mu_, x);
-    const double bulk = lambda + 2.0 / 3.0 * mu, rest_bulk = lambda_ + 2.0 / 3.0 * mu_;
-    const double slope_mu = std::abs(law_derivative(mu_law_, mu_, x)) / mu_;
-    const double slope_bulk =
-        (std::abs(law_derivative(lambda_law_, lambda_, x)) + 2.0 / 3.0 * mu_ * slope_mu) / rest_bulk;
-    const T f = T(std::max(mu / mu_, bulk / rest_bulk)), slope = T(std::max(slope_mu, slope_bulk)) * m.slope;
-    return {T(lambda), T(mu), f + slope * strain_bound(H, bulk_over_two_mu_)};
+    const Moduli<double> k = laws_.at(static_cast<double>(m.x));
+    const double bulk = k.lambda + 2.0 / 3.0 * k.mu, rest_bulk = lambda_ + 2.0 / 3.0 * mu_;
+    const double slope_mu = std::abs(k.mu_slope) / mu_;
+    const double slope_bulk = (std::abs(k.lambda_slope) + 2.0 / 3.0 * mu_ * slope_mu) / rest_bulk;
+    const T f = T(std::max(k.mu / mu_, bulk / rest_bulk)), slope = T(std::max(slope_mu, slope_bulk)) * m.slope;
+    return {T(k.lambda), T(k.mu), f + slope * strain_bound(H, bulk_over_two_mu_)};
   }
 
  private:
-  StiffnessLaw lambda_law_, mu_law_;
+  ModulusLaws laws_;
   double lambda_, mu_;
   T bulk_over_two_mu_;
 };

@@ -6,26 +6,6 @@
 #include "material/stiffness_bound.h"
 
 namespace glisson::engine {
-namespace {
-
-using Numbers = std::array<float, 7>;
-
-Numbers numbers(const NeoHookean& l) { return {float(0.5 * l.mu)}; }
-Numbers numbers(const MooneyRivlin& l) { return {float(l.c10), float(l.c01)}; }
-Numbers numbers(const Yeoh& l) { return {float(l.c1), float(l.c2), float(l.c3)}; }
-Numbers numbers(const Fung& l) { return {float(0.5 * l.mu), float(l.b)}; }
-Numbers numbers(const VerondaWestmann& l) { return {float(l.c * l.b), float(l.b)}; }
-Numbers numbers(const Ogden& l) {
-  Numbers n{};
-  for (std::size_t k = 0; k < l.mu.size(); ++k) {
-    n[2 * k] = float(l.alpha[k]);
-    n[2 * k + 1] = float(2.0 * l.mu[k] / l.alpha[k]);
-  }
-  return n;
-}
-
-}  // namespace
-
 bool has_lanes(const Tissue& t) {
   if (t.is_tensor_mass()) return true;
   const bool known_measure =
@@ -57,12 +37,11 @@ LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::
   r.bulk = float(bulk_modulus(*tissue.hyperelastic));
   const HyperelasticBound rest = hyperelastic_bound(*tissue.hyperelastic, Mat3d{});
   r.rest_isochoric = float(1.0 / rest.isochoric), r.rest_volume = float(1.0 / rest.volume);
-  r.law = std::visit([](const auto& l) { return numbers(l); }, *tissue.hyperelastic);
-  if (const auto* ogden = std::get_if<Ogden>(&*tissue.hyperelastic)) r.terms = ogden->mu.size();
+  r.law = tissue.hyperelastic;
   return r;
 }
 
-ResponseKernels::Respond respond_stage(const ResponseKernels& kernels, const Tissue& tissue) {
+RespondStage respond_stage(const ResponseKernels& kernels, const Tissue& tissue) {
   if (tissue.hyperelastic) return kernels.hyperelastic[tissue.hyperelastic->index()];
   if (tissue.kinematics == Kinematics::corotational) return kernels.corotational;
   return tissue.kinematics == Kinematics::green ? kernels.green : kernels.small;

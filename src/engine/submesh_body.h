@@ -86,7 +86,7 @@ class SubmeshBody final : public MovingBody {
   struct LargePlan {
     Response response;
     LaneResponse lanes;
-    ResponseKernels::Respond respond;
+    RespondStage respond;
     MaxwellStep maxwell;
   };
   /// Of a submesh whose tets share their volume change: one over the volume around each local vertex, and ϑ_a.

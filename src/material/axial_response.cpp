@@ -6,20 +6,15 @@
 namespace glisson {
 namespace {
 
-/// Ī₁ − 3, Ī₂ − 3 and k of them.
+/// Ī₁ − 3.
 template <class T>
-struct Isochoric {
-  T k, i1, i2;
-
-  explicit Isochoric(Axial<T> h) {
-    using std::cbrt;
-    const T e = (h.along - h.side) / (h.side + T(1.0));  // c/a − 1
-    k = cbrt((T(1.0) + e) * (T(1.0) + e));
-    const T less = e * (T(2.0) + e) / (k * k + k + T(1.0));  // k − 1
-    i1 = less * less * (k + T(2.0)) / k;
-    i2 = less * less * (T(2.0) * k + T(1.0)) / (k * k);
-  }
-};
+T first_excess(Axial<T> h) {
+  using std::cbrt;
+  const T e = (h.along - h.side) / (h.side + T(1.0));  // c/a − 1
+  const T k = cbrt((T(1.0) + e) * (T(1.0) + e));
+  const T less = e * (T(2.0) + e) / (k * k + k + T(1.0));  // k − 1
+  return less * less * (k + T(2.0)) / k;
+}
 
 /// a² − c².
 template <class T>
@@ -53,8 +48,8 @@ bool is_constant(const Tissue& tissue) {
 }  // namespace
 
 AxialResponse::AxialResponse(const Tissue& tissue)
-    : response_(tissue), lame_(tissue.lame()), viscosity_(viscous_coefficients(tissue)), small_(response_.small()),
-      constant_(is_constant(tissue)) {
+    : response_(tissue), laws_(tissue), lame_(tissue.lame()), viscosity_(viscous_coefficients(tissue)),
+      small_(response_.small()), constant_(is_constant(tissue)) {
   if (tissue.fibres && tissue.fibres->stiffness > 0.0)
     throw std::invalid_argument("tissue \"" + tissue.name +
                                 "\" has fibres, across which a specimen does not stay round; "
@@ -84,10 +79,9 @@ Axial<T> AxialResponse::hyperelastic(Axial<T> h) const {
                         const std::array<T, 3> t = l.slopes(std::array<T, 3>{-third, -third, third + third});
                         return {t[0] / a, t[2] / c};
                       } else {
-                        const Isochoric<T> x(h);
-                        const std::array<T, 2> w = l.slopes(x.i1, x.i2);
+                        const InvariantSlopes<T> w = l.slopes(first_excess(h));
                         const T root = cbrt(a * a * c), first = T(1.0) / (root * root);
-                        return first_slopes(h, first) * w[0] + second_slopes(h, first * first) * w[1];
+                        return first_slopes(h, first) * w.first + second_slopes(h, first * first) * w.second;
                       }
                     },
                     law);
@@ -100,33 +94,22 @@ Axial<T> AxialResponse::tensor_mass(Axial<T> h) const {
   const bool green = x.kinematics == Kinematics::green;
   const T half(0.5);
   const Axial<T> e = green ? Axial<T>{h.side + half * h.side * h.side, h.along + half * h.along * h.along} : h;
-  T lambda(lame_.lambda), mu(lame_.mu), lambda_slope(0.0), mu_slope(0.0), measure(0.0), less_q(0.0), i1(0.0);
+  Moduli<T> m{T(lame_.lambda), T(lame_.mu), T(0.0), T(0.0)};
+  T measure(0.0), i1(0.0);
   if (!constant_) {
-    i1 = Isochoric<T>(h).i1;
-    less_q = i1 / (i1 + T(3.0));  // 1 − q
+    i1 = first_excess(h);
+    const T less_q = i1 / (i1 + T(3.0));  // 1 − q
     measure = x.measure == DeformationMeasure::intensity ? intensity_of(less_q) : less_q;
-    const auto at = [&](const StiffnessLaw& law, double base, T& value, T& slope) {
-      std::visit([&](const auto& l) { value = l.value(T(base), measure), slope = l.derivative(T(base), measure); },
-                 law);
-    };
-    if (x.lambda_law || x.mu_law) {
-      at(x.lambda_law.value_or(ConstantLaw{}), lame_.lambda, lambda, lambda_slope);
-      at(x.mu_law.value_or(ConstantLaw{}), lame_.mu, mu, mu_slope);
-    } else {
-      T E, slope;
-      at(x.law, x.youngs_modulus, E, slope);
-      const T l(lame_.lambda / x.youngs_modulus), m(lame_.mu / x.youngs_modulus);
-      lambda = l * E, mu = m * E, lambda_slope = l * slope, mu_slope = m * slope;
-    }
+    m = laws_.at(measure);
   }
-  const T dilation = e.side + e.side + e.along, p = lambda * dilation;
-  Axial<T> P{p + T(2.0) * mu * e.side, p + T(2.0) * mu * e.along};
+  const T dilation = e.side + e.side + e.along, p = m.lambda * dilation;
+  Axial<T> P{p + T(2.0) * m.mu * e.side, p + T(2.0) * m.mu * e.along};
   if (green) P = {P.side * (h.side + T(1.0)), P.along * (h.along + T(1.0))};
   if (constant_ || x.law_form == LawForm::secant) return P;
   // ∂W/∂x ∂x/∂λ of W = ½ λ(x) tr(ε)² + μ(x) ε:ε, with ∂(1 − q)/∂λ = 3/Ī₁² ∂Ī₁/∂λ
   using std::cbrt;
   const T squares = T(2.0) * e.side * e.side + e.along * e.along;
-  T rise = half * lambda_slope * dilation * dilation + mu_slope * squares;
+  T rise = half * m.lambda_slope * dilation * dilation + m.mu_slope * squares;
   if (x.measure == DeformationMeasure::intensity) {
     if (!(measure > T(1e-12))) return P;
     rise = rise * T(0.75) / measure;

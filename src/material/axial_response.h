@@ -1,8 +1,7 @@
 // axial_response.h — the stress of a homogeneous specimen that is stretched along z and alike across: F = diag(a, a, c).
 //
 // The same answers as Response, by the formulas that are left of it when F is diagonal: no polar decomposition, no
-// tensors. With k = (c/a)^⅔ the isochoric invariants lose no digits near rest:
-//   Ī₁ − 3 = (k − 1)² (k + 2) / k,   Ī₂ − 3 = (k − 1)² (2k + 1) / k²
+// tensors. With k = (c/a)^⅔ the isochoric invariant loses no digits near rest: Ī₁ − 3 = (k − 1)² (k + 2) / k.
 // A fit asks for millions of points; this is a tenth of the general way's cost.
 #pragma once
 
@@ -54,6 +53,7 @@ class AxialResponse {
   Axial<T> tensor_mass(Axial<T> h) const;
 
   Response response_;  ///< for what is squashed beyond the reach of the short formulas
+  ModulusLaws laws_;
   LameParameters lame_, viscosity_;
   bool small_ = true, constant_ = true;
 };

@@ -41,23 +41,23 @@ Mat3<T> invariant_piola(const Law& law, const Mat3<T>& H) {
   const T j = trace(H) + second_invariant(H) + determinant(H), J = T(1.0) + j;
   const Mat3<T> K = cofactor_change(H), F = deformation_gradient(H);
   const Sym3<T> E = green_strain(H);
-  const ValueSlopeOf<T> a = volume_power<2>(J), b = volume_power<4>(J);
+  const ValueSlope<T> a = volume_power<2>(J), b = volume_power<4>(J);
   const Mat3<T> second = sum(scaled(F, trace(E)), scaled(product(F, full(E)), T(-1.0)));  // tr(E) F − F E
   if (J >= T(kSmallestVolume)) {
-    const auto [w1, w2] = law.slopes(isochoric_excess(H), isochoric_excess(K));
+    const InvariantSlopes<T> w = law.slopes(isochoric_excess(H));
     const Mat3<T> first = deviatoric_direction(H, K, j);
     const T I2 = T(3.0) + T(2.0) * trace(K) + squared_norm(K), rho = I2 / (T(3.0) * J);
     const T left = (T(3.0) * j - T(2.0) * trace(K) - squared_norm(K)) / (T(3.0) * J);  // 1 − ρ
     Mat3<T> D = sum(sum(H, scaled(K, -rho)), second);
     for (std::size_t i = 0; i < 3; ++i) D(i, i) = D(i, i) + left;
-    return sum(scaled(first, T(2.0) * w1 * a.value), scaled(D, T(4.0) * w2 * b.value));
+    return sum(scaled(first, T(2.0) * w.first * a.value), scaled(D, T(4.0) * w.second * b.value));
   }
   const Mat3<T> cof = deformation_gradient(K);
   const T I1 = squared_norm(F), I2 = squared_norm(cof);
-  const auto [w1, w2] = law.slopes(a.value * I1 - T(3.0), b.value * I2 - T(3.0));
-  const Mat3<T> shear =
-      sum(scaled(F, T(2.0) * (w1 * a.value + T(2.0) * w2 * b.value)), scaled(second, T(4.0) * w2 * b.value));
-  return sum(shear, scaled(cof, w1 * a.slope * I1 + w2 * b.slope * I2));
+  const InvariantSlopes<T> w = law.slopes(a.value * I1 - T(3.0));
+  const Mat3<T> shear = sum(scaled(F, T(2.0) * (w.first * a.value + T(2.0) * w.second * b.value)),
+                            scaled(second, T(4.0) * w.second * b.value));
+  return sum(shear, scaled(cof, w.first * a.slope * I1 + w.second * b.slope * I2));
 }
 
 template <class Law>
@@ -75,7 +75,7 @@ struct IsochoricLogarithms {
 };
 template <class T>
 IsochoricLogarithms<T> isochoric_logarithms(const std::array<T, 3>& b) {
-  const std::array<ValueSlopeOf<T>, 3> ln{stretch_logarithm(b[0]), stretch_logarithm(b[1]), stretch_logarithm(b[2])};
+  const std::array<ValueSlope<T>, 3> ln{stretch_logarithm(b[0]), stretch_logarithm(b[1]), stretch_logarithm(b[2])};
   const T mean = (ln[0].value + ln[1].value + ln[2].value) * T(1.0 / 3.0);
   return {{ln[0].value - mean, ln[1].value - mean, ln[2].value - mean}, {ln[0].slope, ln[1].slope, ln[2].slope}};
 }

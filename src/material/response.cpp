@@ -33,7 +33,7 @@ StrainNumbers<T> strain_numbers(Kinematics kinematics, const Mat3<T>& H) {
 }  // namespace
 
 Response::Response(const Tissue& tissue)
-    : tissue_(tissue), lame_(tissue.lame()), viscosity_(viscous_coefficients(tissue)) {
+    : tissue_(tissue), laws_(tissue), lame_(tissue.lame()), viscosity_(viscous_coefficients(tissue)) {
   for (const MaxwellBranch& b : tissue_.maxwell) relaxing_share_ += b.share;
 }
 
@@ -53,25 +53,6 @@ T Response::measure(const Mat3<T>& H, const ElementShape& shape) const {
   }
   const EdgeMetric<double>& g = shape.metric;
   return regular_mean_ratio(H, T(shape.volume), EdgeMetric<T>{T(g.xx), T(g.yy), T(g.zz), T(g.xy), T(g.yz), T(g.zx)});
-}
-
-template <class T>
-Response::Moduli<T> Response::moduli(T x) const {
-  const auto at = [&](const StiffnessLaw& law, double base) {
-    return std::visit(
-        [&](const auto& l) {
-          return std::pair<T, T>{l.value(T(base), x), l.derivative(T(base), x)};
-        },
-        law);
-  };
-  if (tissue_.lambda_law || tissue_.mu_law) {
-    const auto l = at(tissue_.lambda_law.value_or(ConstantLaw{}), lame_.lambda);
-    const auto m = at(tissue_.mu_law.value_or(ConstantLaw{}), lame_.mu);
-    return {l.first, m.first, l.second, m.second};
-  }
-  const auto [E, slope] = at(tissue_.law, tissue_.youngs_modulus);
-  const T l(lame_.lambda / tissue_.youngs_modulus), m(lame_.mu / tissue_.youngs_modulus);
-  return {l * E, m * E, l * slope, m * slope};
 }
 
 /// λ tr(ε) I + 2 μ ε in the tissue's kinematics, as P.
@@ -144,7 +125,7 @@ Mat3<T> Response::elastic(const Mat3<T>& H, const ElementShape& shape, const T* 
     P = sum(isochoric_piola(*tissue_.hyperelastic, H), scaled(cof, T(bulk_modulus(*tissue_.hyperelastic)) * theta));
   } else {
     const T x = measure(H, shape);
-    const Moduli<T> m = moduli(x);
+    const Moduli<T> m = laws_.at(x);
     P = tensor_mass(H, m, mean);
     if (tissue_.law_form == LawForm::energy) {
       P = sum(P, scaled(measure_gradient(H, x, shape), mean_slope_energy(H, m)));
@@ -161,7 +142,7 @@ double Response::energy(const Mat3d& H, const ElementShape& shape, const double*
     W = isochoric_energy(*tissue_.hyperelastic, H) +
         0.5 * bulk_modulus(*tissue_.hyperelastic) * (theta * theta + kOwnShare * lost * lost);
   } else {
-    const Moduli<double> m = moduli(measure(H, shape));
+    const Moduli<double> m = laws_.at(measure(H, shape));
     const StrainNumbers<double> e = strain_numbers(tissue_.kinematics, H);
     const double theta = mean != nullptr ? *mean : e.trace;
     W = 0.5 * m.lambda * theta * theta + m.mu * e.squares;
@@ -177,7 +158,7 @@ double Response::relaxed_energy(const Mat3d& H, const ElementShape& shape, const
   if (relaxing_share_ == 0.0 || tissue_.maxwell_part == MaxwellPart::all) return (1.0 - relaxing_share_) * W;
   if (tissue_.hyperelastic) return W - relaxing_share_ * isochoric_energy(*tissue_.hyperelastic, H);
   const StrainNumbers<double> e = strain_numbers(tissue_.kinematics, H);
-  return W - relaxing_share_ * moduli(measure(H, shape)).mu * (e.squares - e.trace * e.trace / 3.0);
+  return W - relaxing_share_ * laws_.at(measure(H, shape)).mu * (e.squares - e.trace * e.trace / 3.0);
 }
 
 template <class T>
@@ -240,7 +221,7 @@ Mat3d Response::volume_direction(const Mat3d& H) const {
 }
 
 double Response::volume_modulus(const Mat3d& H, const ElementShape& shape) const {
-  return tissue_.hyperelastic ? bulk_modulus(*tissue_.hyperelastic) : moduli(measure(H, shape)).lambda;
+  return tissue_.hyperelastic ? bulk_modulus(*tissue_.hyperelastic) : laws_.at(measure(H, shape)).lambda;
 }
 
 /// Tensor-mass tissues: r C₀ bounds the tangent of σ(ε) as in element/local_stiffness.h. With the Green strain it is
@@ -257,7 +238,7 @@ Stiffening Response::elastic_stiffening(const Mat3d& H, const ElementShape& shap
   double r = tensor_mass_stiffening(H, shape);
   if (tissue_.kinematics == Kinematics::green) {
     const Sym3<double> E = green_strain(H);
-    const Moduli<double> m = moduli(measure(H, shape));
+    const Moduli<double> m = laws_.at(measure(H, shape));
     const Sym3<double> S = isotropic_stress(E, m.lambda, m.mu);
     r = r * (1.0 + 2.0 * std::sqrt(contract(E, E))) + std::sqrt(contract(S, S)) / rest;
   }
@@ -286,7 +267,7 @@ Stiffening Response::stiffening(const Mat3d& H, const ElementShape& shape) const
 /// f + |f'| g ½ (e + √(e² + (K/2μ) t²)) of element/local_stiffness.h, with the larger of the two laws' ratios.
 double Response::tensor_mass_stiffening(const Mat3d& H, const ElementShape& shape) const {
   const double x = measure(H, shape), bulk = lame_.lambda + 2.0 / 3.0 * lame_.mu;
-  const Moduli<double> m = moduli(x);
+  const Moduli<double> m = laws_.at(x);
   const double f = std::max(m.mu / lame_.mu, (m.lambda + 2.0 / 3.0 * m.mu) / bulk);
   const double mu_slope = std::abs(m.mu_slope), bulk_slope = std::abs(m.lambda_slope) + 2.0 / 3.0 * mu_slope;
   double g = 1.0;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "material/hyperelastic_response.h"
+#include "material/modulus_laws.h"
 #include "material/viscosity.h"
 
 namespace glisson {
@@ -73,13 +74,7 @@ class Response {
  private:
   double tensor_mass_stiffening(const Mat3d& H, const ElementShape& shape) const;
   template <class T>
-  struct Moduli {
-    T lambda, mu, lambda_slope, mu_slope;
-  };
-  template <class T>
   T measure(const Mat3<T>& H, const ElementShape& shape) const;
-  template <class T>
-  Moduli<T> moduli(T x) const;
   template <class T>
   Mat3<T> tensor_mass(const Mat3<T>& H, const Moduli<T>& m, const T* mean) const;
   template <class T>
@@ -90,6 +85,7 @@ class Response {
   Mat3<T> fibre_piola(const Mat3<T>& H, const Vec3d& a) const;
 
   Tissue tissue_;
+  ModulusLaws laws_;
   LameParameters lame_, viscosity_;
   double relaxing_share_ = 0.0;
 };

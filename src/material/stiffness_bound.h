@@ -68,23 +68,20 @@ inline double first_invariant_slope_squared(const BoundInvariants& i) {
 template <class Law>
 double invariant_bound(const Law& law, const BoundInvariants& i) {
   const BoundInvariants c{i.I2, i.I1 * i.J * i.J, i.J * i.J};  // those of cof F
-  const double i1 = std::max(0.0, i.I1 / std::cbrt(i.J * i.J) - 3.0),
-               i2 = std::max(0.0, c.I1 / std::cbrt(c.J * c.J) - 3.0);
-  const auto slopes = law.slopes(Dual{i1, 1.0}, Dual{i2});
+  const InvariantSlopes<double> w = law.slopes(std::max(0.0, i.I1 / std::cbrt(i.J * i.J) - 3.0));
   const double A = largest_stretch_squared(i);
   const double first =
-      std::abs(slopes[0].v) * first_invariant_bend(i) + std::abs(slopes[0].d) * first_invariant_slope_squared(i);
+      std::abs(w.first) * first_invariant_bend(i) + std::abs(w.bend) * first_invariant_slope_squared(i);
   const double second =
-      std::abs(slopes[1].v) * (first_invariant_bend(c) * A + std::sqrt(first_invariant_slope_squared(c)) * 2.0);
+      std::abs(w.second) * (first_invariant_bend(c) * A + std::sqrt(first_invariant_slope_squared(c)) * 2.0);
   return first + second;
 }
 
 /// The same where powers of J go on below their limit.
 template <class Law>
 double collapsed_bound(const Law& law, const BoundInvariants& i) {
-  const ValueSlopeOf<Dual> a = volume_power<2>(Dual{i.J, 1.0}), b = volume_power<4>(Dual{i.J, 1.0});
-  const auto slopes =
-      law.slopes(Dual{std::max(0.0, a.value.v * i.I1 - 3.0), 1.0}, Dual{std::max(0.0, b.value.v * i.I2 - 3.0)});
+  const ValueSlope<Dual> a = volume_power<2>(Dual{i.J, 1.0}), b = volume_power<4>(Dual{i.J, 1.0});
+  const InvariantSlopes<double> w = law.slopes(std::max(0.0, a.value.v * i.I1 - 3.0));
   const double product = std::sqrt(i.I1 * i.I2), stretch = cofactor_bend(i, false);
   const double a1 = std::abs(a.slope.v), b1 = std::abs(b.slope.v);
   const double bend =
@@ -93,7 +90,7 @@ double collapsed_bound(const Law& law, const BoundInvariants& i) {
       i.I1 * (4.0 * a.value.v * (a.value.v + 3.0 * a.slope.v * i.J) + a1 * a1 * product * product);
   const double second = 4.0 * b.value.v * (i.I1 + std::sqrt(i.I2)) +
                         b1 * i.I2 * (4.0 * std::sqrt(2.0 * i.I1) + stretch) + std::abs(b.slope.d) * i.I2 * i.I2;
-  return std::abs(slopes[0].v) * bend + std::abs(slopes[0].d) * slope_squared + std::abs(slopes[1].v) * second;
+  return std::abs(w.first) * bend + std::abs(w.bend) * slope_squared + std::abs(w.second) * second;
 }
 
 /// λ_max of ∂P/∂F of P = Σ p_i u_i ⊗ n_i, from the entries of ∂p_i/∂λ_j and of each pair (p_i ∓ p_j)/(λ_i ∓ λ_j)

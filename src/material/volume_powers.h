@@ -15,6 +15,7 @@
 
 #include <cmath>
 
+#include "glisson/material/scalar.h"
 #include "material/dual.h"
 
 namespace glisson {
@@ -26,15 +27,9 @@ inline constexpr double kLinger = 0.2;
 /// β: the share of κ with which a tet that shares its volume change pushes back by itself.
 inline constexpr double kOwnShare = 0.1;
 
-/// A function and its derivative.
-template <class T>
-struct ValueSlopeOf {
-  T value, slope;
-};
-
 /// Goes on from a value and a slope at `limit`; most of the slope is gone at limit/2, the share `linger` of it at 0.
 template <class T>
-ValueSlopeOf<T> fading(double value, double slope, double limit, double linger, T at) {
+ValueSlope<T> fading(double value, double slope, double limit, double linger, T at) {
   const T y = at * T(1.0 / limit), early = y > T(0.5) ? T(2.0) * y - T(1.0) : T(0.0), late = y > T(0.0) ? y : T(0.0);
   const T left = T(0.25 * (1.0 - linger)) * (T(1.0) - early * early) + T(0.5 * linger) * (T(1.0) - late * late);
   return {T(value) - T(slope * limit) * left, T(slope) * (T(1.0 - linger) * early + T(linger) * late)};
@@ -42,7 +37,7 @@ ValueSlopeOf<T> fading(double value, double slope, double limit, double linger, 
 
 /// J^(−n/3), n = 2 or 4.
 template <int n, class T>
-ValueSlopeOf<T> volume_power(T J) {
+ValueSlope<T> volume_power(T J) {
   using std::cbrt;
   constexpr double e = -n / 3.0;
   if (J >= T(kSmallestVolume)) {
@@ -63,7 +58,7 @@ T lost_volume(T J) {
 
 /// ln λ of λ = 1 + b.
 template <class T>
-ValueSlopeOf<T> stretch_logarithm(T b) {
+ValueSlope<T> stretch_logarithm(T b) {
   using std::log1p;
   const double l0 = kSmallestStretch;
   const T stretch = T(1.0) + b;

@@ -26,6 +26,18 @@ TEST(ResponseFlops, OfFibresComeOnTop) {
   EXPECT_EQ(count_response_flops(tissue).tet, 21u + 15u + 5u + 9u * (1u + 1u + 2u));
 }
 
+// Laws by hand: a smooth step has x − x₀, t t, t + t, 3 − 2t, their product and two multiply-adds; a polynomial one
+// multiply-add a coefficient; an exponential its argument, Highway's 25 and one. Comparing and choosing are none.
+TEST(LawFlops, AreThoseOfTheFormulaCountedByHand) {
+  EXPECT_EQ(count_law_flops(ConstantLaw{}), 0u);
+  EXPECT_EQ(count_law_flops(StepLaw{.threshold = 0.1, .above = 2.0, .width = 0.0}), 0u);
+  EXPECT_EQ(count_law_flops(StepLaw{.threshold = 0.1, .above = 2.0, .width = 0.2}), 9u);
+  EXPECT_EQ(count_law_flops(LinearLaw{1.0}), 2u);
+  EXPECT_EQ(count_law_flops(PolynomialLaw{{1.0, 2.0, 3.0}}), 6u);
+  EXPECT_EQ(count_law_flops(ExponentialLaw{1.0, 2.0}), 1u + 25u + 2u);
+  EXPECT_EQ(count_law_flops(TableLaw{{0.0, 0.1, 1.0}, {1.0, 2.0, 3.0}}), 3u);
+}
+
 // Each branch of Maxwell does the same: two cost the same more than one as three more than two.
 TEST(ResponseFlops, GrowWithEachBranchAlike) {
   Tissue tissue = with(NeoHookean{.mu = 1000.0, .bulk_modulus = 1e4});

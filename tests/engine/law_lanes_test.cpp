@@ -38,6 +38,27 @@ struct Bound {
   double value, slope;
 };
 
+/// What it does to any law that each of its numbers is off by e of itself, up or down.
+template <class Law>
+Bound bound_by_numbers(const Law& law, double base, double x, double e) {
+  auto numbers = law.numbers(base);
+  const ValueSlope<double> exact = law.at(numbers, x);
+  Bound bound{0.0, 0.0};
+  for (double& number : numbers) {
+    const double kept = number;
+    Bound largest{0.0, 0.0};
+    for (const double factor : {1.0 - e, 1.0 + e}) {
+      number = kept * factor;
+      const ValueSlope<double> moved = law.at(numbers, x);
+      largest.value = std::max(largest.value, std::abs(moved.value - exact.value));
+      largest.slope = std::max(largest.slope, std::abs(moved.slope - exact.slope));
+    }
+    number = kept;
+    bound.value += largest.value, bound.slope += largest.slope;
+  }
+  return bound;
+}
+
 /// `roundings` ulps of the largest term of the law's sum near x, and what the parameters and x, rounded to
 /// float themselves, move its value by.
 Bound bound_of(const StiffnessLaw& law, double base, double x, double roundings) {
@@ -47,14 +68,6 @@ Bound bound_of(const StiffnessLaw& law, double base, double x, double roundings)
     const double rise = std::abs(step->above - base), size = std::max(base, step->above);
     const double t = step->width > 0.0 ? e * std::max(x, step->threshold) / step->width : 0.0;
     return {e * size + 1.5 * rise * t, step->width > 0.0 ? rise / step->width * (6.0 * t + 1.5 * e) : 0.0};
-  }
-  if (const auto* polynomial = std::get_if<PolynomialLaw>(&law)) {
-    double value = std::abs(base), slope = 0.0, power = 1.0;
-    for (std::size_t i = 0; i < polynomial->coefficients.size(); ++i, power *= x) {
-      const double c = std::abs(polynomial->coefficients[i]);
-      value += c * power * x, slope += double(i + 1) * c * power;
-    }
-    return {e * value, e * slope};
   }
   if (const auto* exponential = std::get_if<ExponentialLaw>(&law)) {
     // the exponent b x is off by e b x, the exponential by that relative to itself
@@ -67,8 +80,7 @@ Bound bound_of(const StiffnessLaw& law, double base, double x, double roundings)
     const double slope = std::abs(law_derivative(law, base, x));
     return {e * (largest + slope * std::max(x, 1.0)), e * slope};
   }
-  const double slope = std::abs(law_derivative(law, base, x));
-  return {e * (std::abs(base) + slope * x), e * slope};
+  return std::visit([&](const auto& l) { return bound_by_numbers(l, base, x, e); }, law);
 }
 
 /// Whether the law's slope jumps within rounding of x: there either slope is right.

@@ -1,7 +1,6 @@
 // every_tissue.h — one tissue for each law, kinematics, form, measure, viscosity and branch there is.
 //
-// every_tissue_test.cpp fails where an alternative of a variant is missing here; where an enumerator is, the compiler warns
-// of the switches below.
+// Laws come from support/law_examples.h; where an enumerator is missing, the compiler warns of the switches below.
 #pragma once
 
 #include <Eigen/Dense>
@@ -12,6 +11,7 @@
 #include "glisson/material/tissue.h"
 #include "material/reference/reference_stress.h"
 #include "material/response.h"
+#include "support/law_examples.h"
 
 namespace glisson::test {
 
@@ -75,29 +75,6 @@ std::vector<Enum> all_of() {
 
 inline bool is_small(const Tissue& t) { return !t.hyperelastic && t.kinematics == Kinematics::small; }
 
-/// A law of each kind, for a modulus of some kPa.
-inline std::vector<StiffnessLaw> every_stiffness_law() {
-  return {ConstantLaw{},
-          StepLaw{.threshold = 0.3, .above = 9000.0, .width = 0.5},
-          LinearLaw{4000.0},
-          PolynomialLaw{{2000.0, 3000.0}},
-          ExponentialLaw{.amplitude = 800.0, .rate = 3.0},
-          TableLaw{{0.0, 0.2, 0.7, 1.1}, {3000.0, 4000.0, 9000.0, 9500.0}}};
-}
-
-/// A law of each kind, of about 1.3 kPa shear and 6 kPa bulk modulus.
-inline std::vector<HyperelasticLaw> every_hyperelastic_law() {
-  constexpr double kBulk = 6000.0;
-  return {NeoHookean{.mu = 1300.0, .bulk_modulus = kBulk},
-          MooneyRivlin{.c10 = 400.0, .c01 = 250.0, .bulk_modulus = kBulk},
-          Yeoh{.c1 = 650.0, .c2 = 120.0, .c3 = 15.0, .bulk_modulus = kBulk},
-          Fung{.mu = 1300.0, .b = 0.8, .bulk_modulus = kBulk},
-          VerondaWestmann{.c = 1600.0, .b = 0.8, .bulk_modulus = kBulk},
-          Ogden{{1300.0}, {-4.7}, kBulk},
-          Ogden{{900.0, 400.0}, {2.0, -2.0}, kBulk},
-          Ogden{{700.0, 500.0, 100.0}, {1.3, 5.0, -2.0}, kBulk}};
-}
-
 /// A law that stiffens as the tetrahedron deforms; the raw mean ratio falls then.
 inline StiffnessLaw stiffening_law(DeformationMeasure m) {
   if (m == DeformationMeasure::regular_mean_ratio) return LinearLaw{-2500.0};
@@ -108,7 +85,7 @@ inline std::vector<Tissue> tensor_mass_tissues() {
   std::vector<Tissue> all;
   const auto add = [&](Kinematics k, LawForm f, DeformationMeasure m, const StiffnessLaw& law) {
     Tissue t;
-    t.youngs_modulus = 3000.0, t.poisson_ratio = 0.4;
+    t.youngs_modulus = kExampleModulus, t.poisson_ratio = 0.4;
     t.kinematics = k, t.law_form = f, t.measure = m, t.law = law;
     t.name = name_of(k) + " " + name_of(f) + " " + name_of(m) + " " + std::string(law_name(law));
     all.push_back(t);

@@ -8,19 +8,6 @@
 namespace glisson {
 namespace {
 
-template <class Variant>
-std::set<std::size_t> kinds(const std::vector<Variant>& laws) {
-  std::set<std::size_t> found;
-  for (const Variant& law : laws) found.insert(law.index());
-  return found;
-}
-
-// Each alternative of both variants is tested.
-TEST(EveryTissue, HoldsEachLaw) {
-  EXPECT_EQ(kinds(test::every_stiffness_law()).size(), std::variant_size_v<StiffnessLaw>);
-  EXPECT_EQ(kinds(test::every_hyperelastic_law()).size(), std::variant_size_v<HyperelasticLaw>);
-}
-
 // Each law is used, with each kinematics and form, and none would be refused at the door.
 TEST(EveryTissue, UsesEachLawWithEachKinematics) {
   std::set<std::tuple<Kinematics, LawForm, std::size_t>> stiffness;

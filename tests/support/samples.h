@@ -7,27 +7,9 @@
 
 #include "glisson/material/tissue.h"
 #include "support/bodies.h"
-#include "support/random.h"
+#include "support/law_examples.h"
 
 namespace glisson::test {
-
-/// Any of the laws, for a modulus `base` at rest; steps are no steeper than rounding in x allows.
-inline StiffnessLaw random_law(double base) {
-  switch (integer(0, 6)) {
-    case 0:
-      return ConstantLaw{};
-    case 1:
-      return StepLaw{.threshold = number(0.01, 0.2), .above = base * number(0.5, 3.0), .width = number(0.01, 0.1)};
-    case 2:
-      return LinearLaw{base * number(-2.0, 10.0)};
-    case 3:
-      return PolynomialLaw{{base * number(-1.0, 4.0), base * number(0.0, 20.0)}};
-    case 4:
-      return ExponentialLaw{base * number(0.1, 1.0), number(1.0, 12.0)};
-    default:
-      return TableLaw{{0.0, 0.05, 0.3, 1.0}, {base, base * number(1.0, 2.0), base * number(2.0, 4.0), base * 5.0}};
-  }
-}
 
 /// Laws on E or on λ and μ, every measure and viscous tensor.
 inline Tissue random_tissue() {

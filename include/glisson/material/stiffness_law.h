@@ -1,9 +1,11 @@
 // stiffness_law.h — the one list of laws that a modulus can follow.
 //
-// A law is one file under laws/ with `kName`, `kHelp`, `kFields` (its parameters: the scene's schema, its
-// documentation and its error messages come from there), `value`, `derivative` and, where the parameters
-// can contradict each other, `check`. Adding a law: write that file, add the type to the list below
-// (docs/adding_a_law.md).
+// A law is one file under stiffness/ with `kName`, `kHelp`, `kFields` (its parameters: the scene's schema, its
+// documentation, its error messages and its class in Python come from there), `check` for parameters that contradict
+// each other, and its formula, written once in the words of scalar.h:
+//   numbers(base)   what the formula reads, worked out in double for the modulus `base` at rest
+//   at(numbers, x)  M and dM/dx at measure x: a double, a number with a derivative, or a vector of lanes
+// Adding a law: write that file, add the type to the list below (docs/adding_a_law.md).
 #pragma once
 
 #include <string_view>
@@ -20,15 +22,17 @@ namespace glisson {
 
 using StiffnessLaw = std::variant<ConstantLaw, StepLaw, LinearLaw, PolynomialLaw, ExponentialLaw, TableLaw>;
 
-/// The modulus at measure `x` for the modulus `base` at rest [Pa].
-inline double law_value(const StiffnessLaw& law, double base, double x) {
-  return std::visit([&](const auto& l) { return static_cast<double>(l.value(base, x)); }, law);
+/// The modulus and its slope at measure `x` for the modulus `base` at rest [Pa].
+template <class T>
+ValueSlope<T> law_at(const StiffnessLaw& law, double base, T x) {
+  return std::visit([&](const auto& l) { return l.at(l.numbers(base), x); }, law);
 }
 
+/// The modulus at measure `x` for the modulus `base` at rest [Pa].
+inline double law_value(const StiffnessLaw& law, double base, double x) { return law_at(law, base, x).value; }
+
 /// d(modulus)/dx [Pa].
-inline double law_derivative(const StiffnessLaw& law, double base, double x) {
-  return std::visit([&](const auto& l) { return static_cast<double>(l.derivative(base, x)); }, law);
-}
+inline double law_derivative(const StiffnessLaw& law, double base, double x) { return law_at(law, base, x).slope; }
 
 inline std::string_view law_name(const StiffnessLaw& law) {
   return std::visit([](const auto& l) { return l.kName; }, law);

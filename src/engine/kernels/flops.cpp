@@ -9,22 +9,10 @@ constexpr double kDifference = 3.0;
 constexpr double kNarrow = 6.0;      ///< u and v against the origin, a local vertex
 constexpr double kIntegrate = 27.0;  ///< three components of advance() in vertex_stages-inl.h
 
-/// Value of one law at one argument, as in law_stages-inl.h; slopes serve the stable step only.
-double law_flops(const StiffnessLaw& law) {
-  struct Count {
-    double operator()(const ConstantLaw&) const { return 0.0; }
-    double operator()(const StepLaw& l) const { return l.width > 0.0 ? 9.0 : 0.0; }
-    double operator()(const LinearLaw&) const { return 2.0; }
-    double operator()(const PolynomialLaw& l) const { return 2.0 * static_cast<double>(l.coefficients.size()); }
-    double operator()(const ExponentialLaw&) const { return 28.0; }  // 25 of Highway's expm1 (response_flops.cpp)
-    double operator()(const TableLaw&) const { return 3.0; }
-  };
-  return std::visit(Count{}, law);
-}
-
 double laws_flops(const Tissue& tissue) {
-  if (!tissue.lambda_law && !tissue.mu_law) return law_flops(tissue.law);
-  return law_flops(tissue.lambda_law.value_or(ConstantLaw{})) + law_flops(tissue.mu_law.value_or(ConstantLaw{}));
+  const auto of = [](const StiffnessLaw& law) { return static_cast<double>(count_law_flops(law)); };
+  if (!tissue.lambda_law && !tissue.mu_law) return of(tissue.law);
+  return of(tissue.lambda_law.value_or(ConstantLaw{})) + of(tissue.mu_law.value_or(ConstantLaw{}));
 }
 
 /// The three tets of a chain, divided by three: five differences and six forces between them.

@@ -24,6 +24,8 @@ struct ResponseFlops {
 };
 /// In response_flops.cpp, from running the stages on numbers that are traced.
 ResponseFlops count_response_flops(const Tissue& tissue);
+/// The same of the value of one law at one argument; slopes serve the stable step only.
+std::size_t count_law_flops(const StiffnessLaw& law);
 
 /// Per tet and step: elements or edges as each submesh has them, and its share of the vertices. Lanes that are
 /// padding, w components, moving data and the bounds of the stable step are not counted.

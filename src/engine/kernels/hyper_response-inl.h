@@ -1,7 +1,7 @@
 // hyper_response-inl.h — hyperelastic laws in lanes: src/material/hyperelastic_response.h, and the bounds of
 // src/material/stiffness_bound.h.
 //
-// Ogden's powers need principal stretches, but not their directions: S is the polynomial in E that takes the right values
+// The slopes of a law of the invariants are its own (include/glisson/material/hyperelastic) on LaneScalar. Ogden's powers need principal stretches, but not their directions: S is the polynomial in E that takes the right values
 // at its eigenvalues.
 //
 // Included once per instruction set, never from outside response_kernels.cpp.
@@ -12,58 +12,14 @@
 #define GLISSON_HYPER_RESPONSE_INL_H_
 #endif
 
-#include <hwy/contrib/math/math-inl.h>
+#include <type_traits>
+#include <variant>
 
 #include "engine/kernels/elastic_response-inl.h"
+#include "engine/kernels/lane_scalar-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace glisson::engine::HWY_NAMESPACE {
-
-/// ∂W/∂Ī₁, ∂W/∂Ī₂ and ∂²W/∂Ī₁².
-struct InvariantSlopes {
-  F first, second, bend;
-};
-
-HWY_INLINE F exponential(F e, double largest) { return hn::Exp(Lanes(), hn::Min(e, number(float(largest)))); }
-
-/// law: μ/2
-struct NeoHookeanLanes {
-  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F) {
-    return {number(r.law[0]), hn::Zero(Lanes()), hn::Zero(Lanes())};
-  }
-  static constexpr bool kSecond = false;
-};
-/// law: c₁₀, c₀₁
-struct MooneyRivlinLanes {
-  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F) {
-    return {number(r.law[0]), number(r.law[1]), hn::Zero(Lanes())};
-  }
-  static constexpr bool kSecond = true;
-};
-/// law: c₁, c₂, c₃
-struct YeohLanes {
-  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F i1) {
-    const F c2 = number(2.0F * r.law[1]), c3 = number(3.0F * r.law[2]);
-    return {hn::MulAdd(i1, hn::MulAdd(i1, c3, c2), number(r.law[0])), hn::Zero(Lanes()), hn::MulAdd(i1, c3 + c3, c2)};
-  }
-  static constexpr bool kSecond = false;
-};
-/// law: μ/2, b
-struct FungLanes {
-  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F i1) {
-    const F w = number(r.law[0]) * exponential(number(r.law[1]) * i1, Fung::kLargestExponent);
-    return {w, hn::Zero(Lanes()), w * number(r.law[1])};
-  }
-  static constexpr bool kSecond = false;
-};
-/// law: c b, b
-struct VerondaWestmannLanes {
-  static HWY_INLINE InvariantSlopes slopes(const LaneResponse& r, F i1) {
-    const F w = number(r.law[0]) * exponential(number(r.law[1]) * i1, VerondaWestmann::kLargestExponent);
-    return {w, number(-0.5F * r.law[0]), w * number(r.law[1])};
-  }
-  static constexpr bool kSecond = true;
-};
 
 /// I₁, I₂ and J for the bounds, and λ_max² of them.
 struct LaneInvariants {
@@ -124,15 +80,17 @@ HWY_INLINE F excess(const Invariants<F>& inv) {
 
 template <class Law>
 void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&, ResponseBlock& out) {
+  const Law law = std::get<Law>(*r.law);  // a copy, which stores cannot change
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState s = hyper_state(in.gradient + item * 9 * kLanes);
     const F j = s.inv.volume_change, one = number(1.0F), pressure = pressure_of(in, r, item, j);
-    const InvariantSlopes w = Law::slopes(r, excess(s.inv));
-    Tensor P = times(number(2.0F) * w.first * s.power, deviatoric_direction(s.H, s.K, j, squares_of(s.H)));
+    const InvariantSlopes<LaneScalar> slopes = law.slopes(LaneScalar(excess(s.inv)));
+    const F first = slopes.first.v, second = slopes.second.v, bend = slopes.bend.v;
+    Tensor P = times(number(2.0F) * first * s.power, deviatoric_direction(s.H, s.K, j, squares_of(s.H)));
     P = plus(plus_identity(P, pressure), pressure, s.K);
     const LaneInvariants i{s.I1, s.I2, s.J};
-    F bound = hn::MulAdd(hn::Abs(w.first), first_invariant_bend(i, s.power),
-                         hn::Abs(w.bend) * first_invariant_slope_squared(i, s.power));
+    F bound = hn::MulAdd(hn::Abs(first), first_invariant_bend(i, s.power),
+                         hn::Abs(bend) * first_invariant_slope_squared(i, s.power));
     if constexpr (Law::kSecond) {
       const Symmetric E = green_strain(s.H);
       const Tensor F1 = plus_identity(s.H, one);
@@ -140,12 +98,12 @@ void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue&
       const F left = hn::NegMulAdd(number(2.0F), trace(s.K), hn::MulSub(number(3.0F), j, squares_of(s.K))) / three_J;
       Tensor D = plus_identity(plus(s.H, left - one, s.K), left);
       D = plus(plus(D, t, F1), number(-1.0F), tensor_product(F1, E));
-      P = plus(P, number(4.0F) * w.second * s.power * s.power, D);
+      P = plus(P, number(4.0F) * second * s.power * s.power, D);
       const LaneInvariants c{s.I2, s.I1 * s.J * s.J, s.J * s.J};
       const F power = s.power * s.power;
-      const F second = hn::MulAdd(first_invariant_bend(c, power), i.stretch_squared(),
-                                  number(2.0F) * hn::Sqrt(first_invariant_slope_squared(c, power)));
-      bound = hn::MulAdd(hn::Abs(w.second), second, bound);
+      const F most = hn::MulAdd(first_invariant_bend(c, power), i.stretch_squared(),
+                                number(2.0F) * hn::Sqrt(first_invariant_slope_squared(c, power)));
+      bound = hn::MulAdd(hn::Abs(second), most, bound);
     }
     see_parts(r, item, bound, volume_bound(i, number(r.bulk)), out);
     store_tensor(P, out.piola + item * 9 * kLanes);
@@ -233,10 +191,15 @@ HWY_INLINE F stiffest_direction(const Eigenvalues& at, const PrincipalStress (&s
   return most;
 }
 
-/// law: α₁, 2μ₁/α₁, α₂, …
 inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&,
                       ResponseBlock& out) {
   const Lanes d;
+  const Ogden& law = std::get<Ogden>(*r.law);
+  const std::size_t terms = law.mu.size();
+  float exponents[Ogden::kMostTerms], factors[Ogden::kMostTerms];
+  for (std::size_t k = 0; k < terms; ++k) {
+    exponents[k] = float(law.alpha[k]), factors[k] = float(2.0 * law.mu[k] / law.alpha[k]);
+  }
   const F one = number(1.0F), two = number(2.0F), third = number(1.0F / 3.0F), zero = hn::Zero(d);
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState state = hyper_state(in.gradient + item * 9 * kLanes);
@@ -250,8 +213,8 @@ inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Resc
       l[i] = number(0.5F) * hn::Log1p(d, twice);
     }
     const F mean = (l[0] + l[1] + l[2]) * third;
-    for (std::size_t k = 0; k < r.terms; ++k) {
-      const F alpha = number(r.law[2 * k]), factor = number(r.law[2 * k + 1]);
+    for (std::size_t k = 0; k < terms; ++k) {
+      const F alpha = number(exponents[k]), factor = number(factors[k]);
       F g[3];
       for (std::size_t i = 0; i < 3; ++i) g[i] = hn::Expm1(d, hn::Min(alpha * (l[i] - mean), number(60.0F)));
       const F average = (g[0] + g[1] + g[2]) * third;
@@ -280,6 +243,20 @@ inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Resc
     const F thinnest = number(float(kSmallestStretch * kSmallestStretch));
     rescue_if_small(in, to, item, hn::IfThenElse(hn::Lt(c[2], thinnest), zero, j + one), out);
   }
+}
+
+template <class Law>
+constexpr RespondStage hyperelastic_stage() {
+  if constexpr (std::is_same_v<Law, Ogden>) {
+    return ogden_law;
+  } else {
+    return invariant_law<Law>;
+  }
+}
+/// The stages of all laws, in the order of their list.
+template <class... Laws>
+constexpr HyperelasticStages hyperelastic_stages(std::type_identity<std::variant<Laws...>>) {
+  return {hyperelastic_stage<Laws>()...};
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

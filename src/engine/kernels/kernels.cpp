@@ -5,10 +5,6 @@
 #define HWY_TARGET_INCLUDE "engine/kernels/kernels.cpp"
 #include <hwy/foreach_target.h>
 
-#include <array>
-#include <utility>
-#include <variant>
-
 #include "engine/kernels/edge_stages-inl.h"
 #include "engine/kernels/element_stages-inl.h"
 #include "engine/kernels/flops.h"
@@ -18,16 +14,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace glisson::engine::HWY_NAMESPACE {
-
-template <std::size_t... K>
-constexpr auto store_laws(std::index_sequence<K...>) {
-  return std::array<LawStage, sizeof...(K)>{store_law<K>...};
-}
-template <std::size_t... K>
-constexpr auto watch_laws(std::index_sequence<K...>) {
-  return std::array<Kernels::WatchLaw, sizeof...(K)>{watch_law<K>...};
-}
-using LawNumbers = std::make_index_sequence<std::variant_size_v<StiffnessLaw>>;
 
 /// The stages of large deformation (response_kernels.cpp).
 const ResponseKernels* response_table();
@@ -44,8 +30,8 @@ const Kernels* kernels() {
       .gather_rates = gather_rates,
       .measure = {measure<DeformationMeasure::intensity>, measure<DeformationMeasure::one_minus_q>,
                   measure<DeformationMeasure::regular_mean_ratio>},
-      .law = store_laws(LawNumbers()),
-      .watch_law = watch_laws(LawNumbers()),
+      .law = store_laws(std::type_identity<StiffnessLaw>()),
+      .watch_law = watch_laws(std::type_identity<StiffnessLaw>()),
       .watch_lame = watch_lame,
       .push_elastic = push<Push::elastic>,
       .push_viscous = push<Push::viscous>,

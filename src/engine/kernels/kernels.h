@@ -49,13 +49,13 @@ struct Elements {
   std::size_t mu_law = 0;  ///< which of the block's two laws scales μ: 0 for a law on E
 };
 
-/// A law's parameters in float. A law on E is taken relative to E at rest (base 1), one on λ or μ is in Pa.
+/// A law ready for lanes. One on E is taken relative to E at rest, one on λ or μ is in Pa.
 struct LaneLaw {
   std::size_t kind = 0;        ///< index in StiffnessLaw
-  float base = 1.0F;           ///< modulus at rest
-  std::vector<float> numbers;  ///< law_stages-inl.h says which
+  std::vector<float> numbers;  ///< of the law's formula
 };
-LaneLaw lane_law(const StiffnessLaw& law, double base, double unit);
+/// @param base  modulus at rest [Pa], @param unit  in which moduli are taken [Pa]
+LaneLaw lane_law(StiffnessLaw law, double base, double unit);
 
 /// What the laws of a submesh have come to, lane by lane: stiffness + √slope_squared bounds tangent over rest stiffness.
 struct StiffnessSeen {

@@ -90,14 +90,16 @@ inline F Min(F a, F b) { return after(0, std::min(a.value, b.value), a, b); }
 inline F Max(F a, F b) { return after(0, std::max(a.value, b.value), a, b); }
 inline bool Lt(F a, F b) { return a.value < b.value; }
 inline bool Gt(F a, F b) { return a.value > b.value; }
+inline bool Ge(F a, F b) { return a.value >= b.value; }
 inline bool AllTrue(Lanes, bool all) { return all; }
 /// Both are worked out in lanes.
 inline F IfThenElse(bool choice, F yes, F no) { return after(0, choice ? yes.value : no.value, yes, no); }
 inline F guess_inverse_cube_root(Lanes, F a) { return after(0, 1.0F / std::cbrt(a.value), a); }
 
 namespace hn {
-using N_TRACED::Abs, N_TRACED::AllTrue, N_TRACED::Gt, N_TRACED::IfThenElse, N_TRACED::Lt, N_TRACED::Max, N_TRACED::Min,
-    N_TRACED::MulAdd, N_TRACED::MulSub, N_TRACED::Neg, N_TRACED::NegMulAdd, N_TRACED::Set, N_TRACED::Sqrt;
+using N_TRACED::Abs, N_TRACED::AllTrue, N_TRACED::Ge, N_TRACED::Gt, N_TRACED::IfThenElse, N_TRACED::Lt, N_TRACED::Max,
+    N_TRACED::Min, N_TRACED::MulAdd, N_TRACED::MulSub, N_TRACED::Neg, N_TRACED::NegMulAdd, N_TRACED::Set,
+    N_TRACED::Sqrt;
 inline F Zero(Lanes) { return {}; }
 inline F IfThenElseZero(bool choice, F yes) { return choice ? yes : F{}; }
 inline F IfThenZeroElse(bool choice, F no) { return choice ? F{} : no; }
@@ -124,6 +126,7 @@ inline F Log1p(Lanes, F a) { return after(23, std::log1p(a.value), a); }
 }  // namespace glisson::engine::HWY_NAMESPACE
 
 #include "engine/kernels/hyper_response-inl.h"
+#include "engine/kernels/lane_scalar-inl.h"
 #include "engine/kernels/shared_volume-inl.h"
 #include "engine/kernels/viscous_response-inl.h"
 
@@ -134,16 +137,11 @@ namespace traced = HWY_NAMESPACE;
 
 void respond(const Tissue& tissue, const ResponseItems& in, const LaneResponse& r, const Block& block,
              ResponseBlock& out) {
-  using Respond = ResponseKernels::Respond;
-  constexpr std::array<Respond, std::variant_size_v<HyperelasticLaw>> kLaws{
-      traced::invariant_law<traced::NeoHookeanLanes>,
-      traced::invariant_law<traced::MooneyRivlinLanes>,
-      traced::invariant_law<traced::YeohLanes>,
-      traced::invariant_law<traced::FungLanes>,
-      traced::invariant_law<traced::VerondaWestmannLanes>,
-      traced::ogden_law};
   const Rescue none;
-  if (tissue.hyperelastic) return kLaws[tissue.hyperelastic->index()](in, r, none, block, out);
+  if (tissue.hyperelastic) {
+    constexpr HyperelasticStages kLaws = traced::hyperelastic_stages(std::type_identity<HyperelasticLaw>());
+    return kLaws[tissue.hyperelastic->index()](in, r, none, block, out);
+  }
   switch (tissue.kinematics) {
     case Kinematics::small:
       return traced::tensor_mass<Kinematics::small>(in, r, none, block, out);
@@ -155,6 +153,16 @@ void respond(const Tissue& tissue, const ResponseItems& in, const LaneResponse& 
 }
 
 }  // namespace
+
+std::size_t count_law_flops(const StiffnessLaw& law) {
+  traced::Tape tape;
+  traced::tape = &tape;
+  const traced::LaneScalar x(traced::F{0.02F, tape.input()});
+  float value = 0.0F;
+  traced::hn::Store(std::visit([&](const auto& l) { return l.at(l.numbers(1.0), x).value.v; }, law), {}, &value);
+  traced::tape = nullptr;
+  return tape.reaching({{&value, 1}});
+}
 
 ResponseFlops count_response_flops(const Tissue& tissue) {
   traced::Tape tape;

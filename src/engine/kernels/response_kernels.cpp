@@ -16,21 +16,18 @@ namespace glisson::engine::HWY_NAMESPACE {
 
 const ResponseKernels* response_table();
 const ResponseKernels* response_table() {
-  static const ResponseKernels table{
-      .small = tensor_mass<Kinematics::small>,
-      .corotational = tensor_mass<Kinematics::corotational>,
-      .green = tensor_mass<Kinematics::green>,
-      // in the order of HyperelasticLaw
-      .hyperelastic = {invariant_law<NeoHookeanLanes>, invariant_law<MooneyRivlinLanes>, invariant_law<YeohLanes>,
-                       invariant_law<FungLanes>, invariant_law<VerondaWestmannLanes>, ogden_law},
-      .fibres = fibres,
-      .maxwell = maxwell,
-      .viscous = viscous,
-      .stiffest = stiffest,
-      .volume_changes = volume_changes,
-      .spread_to_vertices = spread_to_vertices,
-      .mean_of_vertices = mean_of_vertices,
-      .merge = merge};
+  static const ResponseKernels table{.small = tensor_mass<Kinematics::small>,
+                                     .corotational = tensor_mass<Kinematics::corotational>,
+                                     .green = tensor_mass<Kinematics::green>,
+                                     .hyperelastic = hyperelastic_stages(std::type_identity<HyperelasticLaw>()),
+                                     .fibres = fibres,
+                                     .maxwell = maxwell,
+                                     .viscous = viscous,
+                                     .stiffest = stiffest,
+                                     .volume_changes = volume_changes,
+                                     .spread_to_vertices = spread_to_vertices,
+                                     .mean_of_vertices = mean_of_vertices,
+                                     .merge = merge};
   return &table;
 }
 

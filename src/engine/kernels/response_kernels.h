@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "element/body.h"
@@ -36,10 +37,9 @@ struct LaneResponse {
   float bulk = 0.0F;                                ///< κ of a hyperelastic law [Pa]
   float fibre = 0.0F;                               ///< c [Pa]
   float relaxing = 0.0F;                            ///< Σ g
-  std::array<float, 7> law{};  ///< numbers of the hyperelastic law: response_kernels.cpp says which
-  std::size_t terms = 0;       ///< of an Ogden law
-  std::size_t mu_law = 0;      ///< which of the block's two laws scales μ
-  std::size_t branches = 0;    ///< of Maxwell
+  std::optional<HyperelasticLaw> law;
+  std::size_t mu_law = 0;    ///< which of the block's two laws scales μ
+  std::size_t branches = 0;  ///< of Maxwell
   std::array<float, 8> share{};
   bool small = false, deviator = true, viscous = false, pioletti = false, energy = false;
   DeformationMeasure measure{};
@@ -85,13 +85,16 @@ struct MaxwellStep {
   bool moves = false;    ///< whether the memory goes on
 };
 
+/// P of the elastic part into `out.piola`; what the tangent has come to into `out.ratio` and `out.norm`.
+using RespondStage = void (*)(const ResponseItems&, const LaneResponse&, const Rescue&, const Block&,
+                              ResponseBlock& out);
+/// By index in HyperelasticLaw.
+using HyperelasticStages = std::array<RespondStage, std::variant_size_v<HyperelasticLaw>>;
+
 /// The functions of one instruction set.
 struct ResponseKernels {
-  /// P of the elastic part into `out.piola`; what the tangent has come to into `out.ratio` and `out.norm`. By kind of
-  /// elasticity.
-  using Respond = void (*)(const ResponseItems&, const LaneResponse&, const Rescue&, const Block&, ResponseBlock& out);
-  Respond small = nullptr, corotational = nullptr, green = nullptr;
-  std::array<Respond, std::variant_size_v<HyperelasticLaw>> hyperelastic{};
+  RespondStage small = nullptr, corotational = nullptr, green = nullptr;
+  HyperelasticStages hyperelastic{};
   /// Adds to `out.piola`; writes and adds to `out.viscous`.
   void (*fibres)(const ResponseItems&, const LaneResponse&, ResponseBlock& out) = nullptr;
   void (*maxwell)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, ResponseBlock& out) = nullptr;
@@ -114,6 +117,6 @@ bool has_lanes(const Tissue& tissue);
 LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::size_t mu_law);
 LaneWeights lane_weights(double step, double time);
 /// The elastic stage of a tissue.
-ResponseKernels::Respond respond_stage(const ResponseKernels& kernels, const Tissue& tissue);
+RespondStage respond_stage(const ResponseKernels& kernels, const Tissue& tissue);
 
 }  // namespace glisson::engine

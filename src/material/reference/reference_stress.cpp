@@ -141,18 +141,12 @@ struct Moduli {
 Moduli moduli(const Tissue& t, Real x) {
   const Real E = t.youngs_modulus, nu = t.poisson_ratio;
   const Real l = nu / ((1 + nu) * (1 - 2 * nu)), m = 1 / (2 * (1 + nu));
-  const auto at = [&](const StiffnessLaw& law, Real base) {
-    return std::visit(
-        [&](const auto& f) {
-          return std::pair<Real, Real>{f.value(base, x), f.derivative(base, x)};
-        },
-        law);
-  };
   if (t.lambda_law || t.mu_law) {
-    const auto a = at(t.lambda_law.value_or(ConstantLaw{}), l * E), b = at(t.mu_law.value_or(ConstantLaw{}), m * E);
-    return {a.first, b.first, a.second, b.second};
+    const auto a = law_at(t.lambda_law.value_or(ConstantLaw{}), double(l * E), x);
+    const auto b = law_at(t.mu_law.value_or(ConstantLaw{}), double(m * E), x);
+    return {a.value, b.value, a.slope, b.slope};
   }
-  const auto [value, slope] = at(t.law, E);
+  const auto [value, slope] = law_at(t.law, t.youngs_modulus, x);
   return {l * value, m * value, l * slope, m * slope};
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "glisson/material/scalar.h"
 #include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
@@ -20,6 +21,7 @@ struct Fung {
   static constexpr std::string_view kName = "fung";
   static constexpr std::string_view kHelp = "W = μ/(2b) (exp(b (Ī₁ − 3)) − 1) + κ/2 (J − 1)² (exponent at most 12)";
   static constexpr double kLargestExponent = 12.0;
+  static constexpr bool kSecond = false;
   static constexpr std::array<LawField<Fung>, 3> kFields{
       {{.key = "mu_Pa", .member = &Fung::mu, .unit = "Pa", .min = kSmallestModulus, .help = "μ, shear modulus at rest"},
        {.key = "b", .member = &Fung::b, .unit = "-", .min = 1e-6, .max = 1000.0, .help = "b, rate of stiffening"},
@@ -34,12 +36,11 @@ struct Fung {
     const T growth = e < T(kLargestExponent) ? expm1(e) : T(top - 1.0) + T(top) * (e - T(kLargestExponent));
     return T(0.5 * mu / b) * growth;
   }
-  /// ∂W/∂Ī₁, ∂W/∂Ī₂ [Pa].
   template <class T>
-  std::array<T, 2> slopes(T i1, T /*i2*/) const {
-    using std::exp;
-    const T e = T(b) * i1;
-    return {T(0.5 * mu) * exp(e < T(kLargestExponent) ? e : T(kLargestExponent)), T(0.0)};
+  GLISSON_FORMULA InvariantSlopes<T> slopes(T i1) const {
+    using namespace scalar;
+    const T most(kLargestExponent), e = T(b) * i1, w = T(0.5 * mu) * exp(min(e, most));
+    return {w, T(0), select(e < most, w * T(b), T(0))};
   }
   std::string check() const { return {}; }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "glisson/material/scalar.h"
 #include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
@@ -16,6 +17,7 @@ struct MooneyRivlin {
 
   static constexpr std::string_view kName = "mooney_rivlin";
   static constexpr std::string_view kHelp = "W = c₁₀ (Ī₁ − 3) + c₀₁ (Ī₂ − 3) + κ/2 (J − 1)², μ = 2 (c₁₀ + c₀₁)";
+  static constexpr bool kSecond = true;
   static constexpr std::array<LawField<MooneyRivlin>, 3> kFields{
       {{.key = "c10_Pa", .member = &MooneyRivlin::c10, .unit = "Pa", .help = "c₁₀"},
        {.key = "c01_Pa", .member = &MooneyRivlin::c01, .unit = "Pa", .help = "c₀₁"},
@@ -26,10 +28,9 @@ struct MooneyRivlin {
   T energy(T i1, T i2) const {
     return T(c10) * i1 + T(c01) * i2;
   }
-  /// ∂W/∂Ī₁, ∂W/∂Ī₂ [Pa].
   template <class T>
-  std::array<T, 2> slopes(T /*i1*/, T /*i2*/) const {
-    return {T(c10), T(c01)};
+  GLISSON_FORMULA InvariantSlopes<T> slopes(T /*i1*/) const {
+    return {T(c10), T(c01), T(0)};
   }
   std::string check() const {
     return c10 + c01 > 0.0 ? "" : "c10 + c01 must be above 0, it is half the shear modulus at rest";

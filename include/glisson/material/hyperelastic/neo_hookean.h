@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "glisson/material/scalar.h"
 #include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
@@ -17,6 +18,7 @@ struct NeoHookean {
 
   static constexpr std::string_view kName = "neo_hookean";
   static constexpr std::string_view kHelp = "W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)²";
+  static constexpr bool kSecond = false;
   static constexpr std::array<LawField<NeoHookean>, 2> kFields{{{.key = "mu_Pa",
                                                                  .member = &NeoHookean::mu,
                                                                  .unit = "Pa",
@@ -29,10 +31,9 @@ struct NeoHookean {
   T energy(T i1, T /*i2*/) const {
     return T(0.5 * mu) * i1;
   }
-  /// ∂W/∂Ī₁, ∂W/∂Ī₂ [Pa].
   template <class T>
-  std::array<T, 2> slopes(T /*i1*/, T /*i2*/) const {
-    return {T(0.5 * mu), T(0.0)};
+  GLISSON_FORMULA InvariantSlopes<T> slopes(T /*i1*/) const {
+    return {T(0.5 * mu), T(0), T(0)};
   }
   std::string check() const { return {}; }
 

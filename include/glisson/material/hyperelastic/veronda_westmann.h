@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "glisson/material/scalar.h"
 #include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
@@ -21,6 +22,7 @@ struct VerondaWestmann {
   static constexpr std::string_view kHelp =
       "W = c (exp(b (Ī₁ − 3)) − 1) − ½ c b (Ī₂ − 3) + κ/2 (J − 1)², μ = c b (exponent at most 12)";
   static constexpr double kLargestExponent = 12.0;
+  static constexpr bool kSecond = true;
   static constexpr std::array<LawField<VerondaWestmann>, 3> kFields{
       {{.key = "c_Pa", .member = &VerondaWestmann::c, .unit = "Pa", .min = kSmallestModulus, .help = "c"},
        {.key = "b",
@@ -34,18 +36,17 @@ struct VerondaWestmann {
   double shear_modulus() const { return c * b; }
   template <class T>
   T energy(T i1, T i2) const {
-    using std::exp, std::expm1;
+    using std::expm1;
     const T e = T(b) * i1;
     const double top = std::exp(kLargestExponent);
     const T growth = e < T(kLargestExponent) ? expm1(e) : T(top - 1.0) + T(top) * (e - T(kLargestExponent));
     return T(c) * growth - T(0.5 * c * b) * i2;
   }
-  /// ∂W/∂Ī₁, ∂W/∂Ī₂ [Pa].
   template <class T>
-  std::array<T, 2> slopes(T i1, T /*i2*/) const {
-    using std::exp;
-    const T e = T(b) * i1;
-    return {T(c * b) * exp(e < T(kLargestExponent) ? e : T(kLargestExponent)), T(-0.5 * c * b)};
+  GLISSON_FORMULA InvariantSlopes<T> slopes(T i1) const {
+    using namespace scalar;
+    const T most(kLargestExponent), e = T(b) * i1, w = T(c * b) * exp(min(e, most));
+    return {w, T(-0.5 * c * b), select(e < most, w * T(b), T(0))};
   }
   std::string check() const { return {}; }
 

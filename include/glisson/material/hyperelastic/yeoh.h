@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "glisson/material/scalar.h"
 #include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
@@ -16,6 +17,7 @@ struct Yeoh {
 
   static constexpr std::string_view kName = "yeoh";
   static constexpr std::string_view kHelp = "W = c₁ (Ī₁ − 3) + c₂ (Ī₁ − 3)² + c₃ (Ī₁ − 3)³ + κ/2 (J − 1)², μ = 2 c₁";
+  static constexpr bool kSecond = false;
   static constexpr std::array<LawField<Yeoh>, 4> kFields{
       {{.key = "c1_Pa",
         .member = &Yeoh::c1,
@@ -31,10 +33,11 @@ struct Yeoh {
   T energy(T i1, T /*i2*/) const {
     return i1 * (T(c1) + i1 * (T(c2) + i1 * T(c3)));
   }
-  /// ∂W/∂Ī₁, ∂W/∂Ī₂ [Pa].
   template <class T>
-  std::array<T, 2> slopes(T i1, T /*i2*/) const {
-    return {T(c1) + i1 * (T(2.0 * c2) + i1 * T(3.0 * c3)), T(0.0)};
+  GLISSON_FORMULA InvariantSlopes<T> slopes(T i1) const {
+    using namespace scalar;
+    const T two_c2(2.0 * c2), three_c3 = T(3) * T(c3);
+    return {mul_add(i1, mul_add(i1, three_c3, two_c2), T(c1)), T(0), mul_add(i1, three_c3 + three_c3, two_c2)};
   }
   std::string check() const { return {}; }
 

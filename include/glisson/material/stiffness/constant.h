@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "glisson/material/scalar.h"
 #include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
@@ -15,13 +16,11 @@ struct ConstantLaw {
   static constexpr std::string_view kHelp = "M(x) = M₀: a linear tissue";
   static constexpr std::array<LawField<ConstantLaw>, 0> kFields{};
 
-  template <class T>
-  T value(T base, T /*x*/) const {
-    return base;
-  }
-  template <class T>
-  T derivative(T /*base*/, T /*x*/) const {
-    return T(0);
+  /// M₀
+  std::array<double, 1> numbers(double base) const { return {base}; }
+  template <class C, class T>
+  GLISSON_FORMULA static ValueSlope<T> at(const C& c, T /*x*/) {
+    return {T(c[0]), T(0)};
   }
   /// Empty, or what is wrong with the parameters taken together.
   std::string check() const { return {}; }

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <array>
-#include <cmath>
-#include <limits>
 #include <string>
 #include <string_view>
 
+#include "glisson/material/scalar.h"
 #include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
@@ -29,28 +28,18 @@ struct ExponentialLaw {
         .max = 1000.0,
         .help = "b, growth per unit of the argument"}}};
 
-  template <class T>
-  T value(T base, T x) const {
-    using std::expm1;
-    const T m = base + T(amplitude) * expm1(exponent(x));
-    return m > T(0) ? m : T(0);
-  }
-  template <class T>
-  T derivative(T base, T x) const {
-    if (T(rate) * x > T(kLargestExponent) || !(value(base, x) > T(0))) return T(0);
-    using std::exp;
-    return T(amplitude) * T(rate) * exp(exponent(x));
+  /// M₀, A, b
+  std::array<double, 3> numbers(double base) const { return {base, amplitude, rate}; }
+  template <class C, class T>
+  GLISSON_FORMULA static ValueSlope<T> at(const C& c, T x) {
+    using namespace scalar;
+    const T A(c[1]), b(c[2]), most(kLargestExponent), e = b * x;
+    const T growth = expm1(min(e, most));
+    return not_below_zero(mul_add(A, growth, T(c[0])), select(e > most, T(0), A * b * (growth + T(1))));
   }
   std::string check() const { return {}; }
 
   bool operator==(const ExponentialLaw&) const = default;
-
- private:
-  template <class T>
-  T exponent(T x) const {
-    const T e = T(rate) * x;
-    return e < T(kLargestExponent) ? e : T(kLargestExponent);
-  }
 };
 
 }  // namespace glisson

@@ -13,7 +13,7 @@ template <class Law>
 struct LawField {
   std::string_view key;  ///< with its unit, e.g. "slope_Pa"
   std::variant<double Law::*, std::vector<double> Law::*> member;
-  std::string_view unit;
+  std::string_view unit;                                  ///< "Pa" makes it a modulus, which scales with the law
   double min = -std::numeric_limits<double>::infinity();  ///< inclusive
   double max = std::numeric_limits<double>::infinity();   ///< inclusive
   bool required = true;

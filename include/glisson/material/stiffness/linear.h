@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "glisson/material/scalar.h"
 #include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
@@ -22,14 +23,13 @@ struct LinearLaw {
         .unit = "Pa",
         .help = "growth of the modulus per unit of the argument"}}};
 
-  template <class T>
-  T value(T base, T x) const {
-    const T m = base + T(slope) * x;
-    return m > T(0) ? m : T(0);
-  }
-  template <class T>
-  T derivative(T base, T x) const {
-    return base + T(slope) * x > T(0) ? T(slope) : T(0);
+  /// M₀, slope
+  std::array<double, 2> numbers(double base) const { return {base, slope}; }
+  template <class C, class T>
+  GLISSON_FORMULA static ValueSlope<T> at(const C& c, T x) {
+    using namespace scalar;
+    const T k(c[1]);
+    return not_below_zero(mul_add(k, x, T(c[0])), k);
   }
   std::string check() const { return {}; }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "glisson/material/scalar.h"
 #include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
@@ -19,31 +20,27 @@ struct PolynomialLaw {
   static constexpr std::array<LawField<PolynomialLaw>, 1> kFields{
       {{.key = "coefficients_Pa", .member = &PolynomialLaw::coefficients, .unit = "Pa", .help = "c₁, c₂, …"}}};
 
-  template <class T>
-  T value(T base, T x) const {
-    const T m = raw(base, x);
-    return m > T(0) ? m : T(0);
+  /// M₀, c₁, c₂, …
+  std::vector<double> numbers(double base) const {
+    std::vector<double> c{base};
+    c.insert(c.end(), coefficients.begin(), coefficients.end());
+    return c;
   }
-  template <class T>
-  T derivative(T base, T x) const {
-    if (!(raw(base, x) > T(0))) return T(0);
-    T d(0);
-    for (std::size_t i = coefficients.size(); i-- > 0;) d = d * x + T(i + 1) * T(coefficients[i]);
-    return d;
+  template <class C, class T>
+  GLISSON_FORMULA static ValueSlope<T> at(const C& c, T x) {
+    using namespace scalar;
+    T m(c[c.size() - 1]), slope(0);
+    for (std::size_t i = c.size() - 1; i-- > 0;) {
+      slope = mul_add(slope, x, m);
+      m = mul_add(m, x, T(c[i]));
+    }
+    return not_below_zero(m, slope);
   }
   std::string check() const {
     return coefficients.empty() ? "`coefficients_Pa` needs at least one number" : std::string{};
   }
 
   bool operator==(const PolynomialLaw&) const = default;
-
- private:
-  template <class T>
-  T raw(T base, T x) const {
-    T sum(0);
-    for (std::size_t i = coefficients.size(); i-- > 0;) sum = (sum + T(coefficients[i])) * x;
-    return base + sum;
-  }
 };
 
 }  // namespace glisson

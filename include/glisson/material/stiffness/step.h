@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "glisson/material/scalar.h"
 #include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
@@ -42,29 +43,19 @@ struct StepLaw {
         .required = false,
         .help = "length of the smooth passage; 0 is a sharp step"}}};
 
-  template <class T>
-  T value(T base, T x) const {
-    const T t = passage(x);
-    return base + (T(above) - base) * t * t * (T(3) - T(2) * t);
-  }
-  template <class T>
-  T derivative(T base, T x) const {
-    if (width <= 0.0) return T(0);
-    const T t = passage(x);
-    return (T(above) - base) * T(6) * t * (T(1) - t) / T(width);
+  /// M₀, M₁ − M₀, threshold, width
+  std::array<double, 4> numbers(double base) const { return {base, above - base, threshold, width}; }
+  template <class C, class T>
+  GLISSON_FORMULA static ValueSlope<T> at(const C& c, T x) {
+    using namespace scalar;
+    const T base(c[0]), rise(c[1]), middle(c[2]), zero(0), one(1);
+    if (!(c[3] > 0)) return {select(x < middle, base, base + rise), zero};
+    const T w(c[3]), t = min(max(mul_add(x - middle, one / w, T(0.5)), zero), one);
+    return {mul_add(rise, t * t * (T(3) - (t + t)), base), T(6) / w * rise * t * (one - t)};
   }
   std::string check() const { return {}; }
 
   bool operator==(const StepLaw&) const = default;
-
- private:
-  /// 0 before the passage, 1 after it.
-  template <class T>
-  T passage(T x) const {
-    if (width <= 0.0) return x < T(threshold) ? T(0) : T(1);
-    const T t = (x - T(threshold)) / T(width) + T(0.5);
-    return t < T(0) ? T(0) : (t > T(1) ? T(1) : t);
-  }
 };
 
 }  // namespace glisson

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "glisson/material/scalar.h"
 #include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
@@ -30,17 +31,27 @@ struct TableLaw {
         .max = std::numeric_limits<double>::infinity(),
         .help = "modulus at each x_i"}}};
 
-  template <class T>
-  T value(T /*base*/, T x) const {
-    const std::size_t i = segment(x);
-    if (i == 0) return T(moduli.front());
-    if (i == arguments.size()) return T(moduli.back());
-    return T(moduli[i - 1]) + slope<T>(i) * (x - T(arguments[i - 1]));
+  /// x_i, M_i and the slope to the right of x_i, point by point
+  std::vector<double> numbers(double /*base*/) const {
+    std::vector<double> c;
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      const bool last = i + 1 == arguments.size();
+      c.push_back(arguments[i]), c.push_back(moduli[i]);
+      c.push_back(last ? 0.0 : (moduli[i + 1] - moduli[i]) / (arguments[i + 1] - arguments[i]));
+    }
+    return c;
   }
-  template <class T>
-  T derivative(T /*base*/, T x) const {
-    const std::size_t i = segment(x);
-    return i == 0 || i == arguments.size() ? T(0) : slope<T>(i);
+  template <class C, class T>
+  GLISSON_FORMULA static ValueSlope<T> at(const C& c, T x) {
+    using namespace scalar;
+    T from(c[0]), m(c[1]), slope(0);
+    for (std::size_t i = 0; i < c.size(); i += 3) {
+      const auto right = x >= T(c[i]);
+      from = select(right, T(c[i]), from);
+      m = select(right, T(c[i + 1]), m);
+      slope = select(right, T(c[i + 2]), slope);
+    }
+    return {mul_add(slope, x - from, m), slope};
   }
   std::string check() const {
     if (arguments.size() < 2) return "`arguments` needs at least two numbers";
@@ -51,18 +62,6 @@ struct TableLaw {
   }
 
   bool operator==(const TableLaw&) const = default;
-
- private:
-  /// Number of points at or left of x: 0 before the first, size() after the last.
-  template <class T>
-  std::size_t segment(T x) const {
-    return static_cast<std::size_t>(std::upper_bound(arguments.begin(), arguments.end(), static_cast<double>(x)) -
-                                    arguments.begin());
-  }
-  template <class T>
-  T slope(std::size_t i) const {
-    return T((moduli[i] - moduli[i - 1]) / (arguments[i] - arguments[i - 1]));
-  }
 };
 
 }  // namespace glisson

@@ -1,0 +1,66 @@
+// scalar.h — the words in which the formula of a law is written, so that one text serves a number, a number that carries
+// a derivative (src/material/dual.h) and a vector of lanes (src/engine/kernels/lane_scalar-inl.h).
+//
+//   + − * /   <  >  >=   select(choice, yes, no)   min  max   mul_add(a, b, c) = a b + c   exp  expm1   T(constant)
+//
+// A formula does not branch on its argument: lanes work out both sides and select. mul_add says where a vector rounds once.
+#pragma once
+
+#include <cmath>
+#include <concepts>
+
+/// Before each formula. The compiler would otherwise make a function of it for the oldest processor, which cannot take
+/// the vectors of a newer one.
+#define GLISSON_FORMULA [[gnu::always_inline]]
+
+namespace glisson {
+
+/// A function and its derivative.
+template <class T>
+struct ValueSlope {
+  T value, slope;
+};
+
+/// ∂W/∂Ī₁, ∂W/∂Ī₂ and ∂²W/∂Ī₁² of an energy w(Ī₁ − 3) + c (Ī₂ − 3) [Pa]. A law with c = 0 says `kSecond = false`, which
+/// spares lanes everything about Ī₂.
+template <class T>
+struct InvariantSlopes {
+  T first, second, bend;
+};
+
+namespace scalar {
+
+using std::exp, std::expm1;
+
+/// What compares to true or false; lanes have words of their own.
+template <class T>
+concept Single = requires(T a) {
+  { a < a } -> std::same_as<bool>;
+};
+
+template <Single T>
+constexpr T mul_add(T a, T b, T c) {
+  return a * b + c;
+}
+template <Single T>
+constexpr T select(bool choice, T yes, T no) {
+  return choice ? yes : no;
+}
+template <Single T>
+constexpr T min(T a, T b) {
+  return a < b ? a : b;
+}
+template <Single T>
+constexpr T max(T a, T b) {
+  return a > b ? a : b;
+}
+
+/// A modulus below 0 is 0, and stays there.
+template <class T>
+GLISSON_FORMULA constexpr ValueSlope<T> not_below_zero(T value, T slope) {
+  const auto positive = value > T(0);
+  return {select(positive, value, T(0)), select(positive, slope, T(0))};
+}
+
+}  // namespace scalar
+}  // namespace glisson
