@@ -14,7 +14,6 @@
 
 #include "element/body.h"
 #include "element/stiff_element.h"
-#include "glisson/simulation/precision.h"
 
 namespace glisson {
 
@@ -52,7 +51,7 @@ class ForceOperator {
 
 /// The deformation-gradient form of [Schwartz2002, eq. 6 and 7]: f_a = −V σ s_a, no tensors stored.
 /// @param body  must outlive the operator
-std::unique_ptr<ForceOperator> make_element_operator(const Body& body, Precision precision);
+std::unique_ptr<ForceOperator> make_element_operator(const Body& body);
 
 /// y = Σ_e of the linear element with moduli `lame` (one pair per tissue block) applied to x: K x, not −K x.
 void apply_linear(const Body& body, std::span<const LameParameters> lame, std::span<const Vec3d> x, std::span<Vec3d> y);

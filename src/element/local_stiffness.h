@@ -16,77 +16,76 @@
 namespace glisson {
 
 /// Moduli of an element in its present shape [Pa], and the bound r of tangent over rest stiffness [-].
-template <class T>
 struct LocalStiffness {
-  T lambda, mu, stiffening;
+  double lambda, mu, stiffening;
 };
 
 /// The measure x of an element and the bound g of ‖∂x/∂ε‖.
-template <class T>
 struct MeasureValue {
-  T x, slope;
+  double x, slope;
 };
 
-template <DeformationMeasure M, class T>
-MeasureValue<T> measure_value(const Mat3<T>& H, T rest_volume, const EdgeMetric<T>& metric) {
+template <DeformationMeasure M>
+MeasureValue measure_value(const Mat3d& H, double rest_volume, const EdgeMetric<double>& metric) {
   if constexpr (M == DeformationMeasure::regular_mean_ratio) {
-    const T x = regular_mean_ratio(H, rest_volume, metric);
-    return {x, T(1.64) * x};
+    const double x = regular_mean_ratio(H, rest_volume, metric);
+    return {x, 1.64 * x};
   } else {
-    const T p = one_minus_q(H), s = intensity_of(p);
-    if constexpr (M == DeformationMeasure::one_minus_q) return {p, T(4.0 / 3.0) * s};
-    return {s, T(1)};
+    const double p = one_minus_q(H), s = intensity_of(p);
+    if constexpr (M == DeformationMeasure::one_minus_q) return {p, 4.0 / 3.0 * s};
+    return {s, 1.0};
   }
 }
 
 /// ½ (e + √(e² + (K/2μ) t²)).
-template <class T>
-T strain_bound(const Mat3<T>& H, T bulk_over_two_mu) {
-  const T e2 = deviator_squared(H), t = trace(H);
-  return T(0.5) * (std::sqrt(e2) + std::sqrt(e2 + bulk_over_two_mu * t * t));
+inline double strain_bound(const Mat3d& H, double bulk_over_two_mu) {
+  const double e2 = deviator_squared(H), t = trace(H);
+  return 0.5 * (std::sqrt(e2) + std::sqrt(e2 + bulk_over_two_mu * t * t));
+}
+inline double bulk_over_two_mu(const LameParameters& lame) {
+  return (lame.lambda + 2.0 / 3.0 * lame.mu) / (2.0 * lame.mu);
 }
 
 /// A law on E: λ and μ scale alike.
-template <class T, class Law>
+template <class Law>
 class YoungStiffness {
  public:
   YoungStiffness(const TissueBlock& block, const Law& law)
-      : numbers_(law.numbers(block.tissue.youngs_modulus)), inverse_E_(T(1) / T(block.tissue.youngs_modulus)),
-        lambda_(T(block.elastic.lambda)), mu_(T(block.elastic.mu)),
-        bulk_over_two_mu_((lambda_ + T(2.0 / 3.0) * mu_) / (T(2) * mu_)) {}
+      : numbers_(law.numbers(block.tissue.youngs_modulus)), inverse_E_(1.0 / block.tissue.youngs_modulus),
+        rest_(block.elastic), bulk_over_two_mu_(bulk_over_two_mu(rest_)) {}
 
-  LocalStiffness<T> operator()(const Mat3<T>& H, MeasureValue<T> m) const {
-    const ValueSlope<T> E = Law::at(numbers_, m.x);
-    const T f = E.value * inverse_E_, slope = std::abs(E.slope) * inverse_E_ * m.slope;
-    return {f * lambda_, f * mu_, f + slope * strain_bound(H, bulk_over_two_mu_)};
+  LocalStiffness operator()(const Mat3d& H, MeasureValue m) const {
+    const ValueSlope<double> E = Law::at(numbers_, m.x);
+    const double f = E.value * inverse_E_, slope = std::abs(E.slope) * inverse_E_ * m.slope;
+    return {f * rest_.lambda, f * rest_.mu, f + slope * strain_bound(H, bulk_over_two_mu_)};
   }
 
  private:
   decltype(std::declval<Law>().numbers(0.0)) numbers_;
-  T inverse_E_, lambda_, mu_, bulk_over_two_mu_;
+  double inverse_E_;
+  LameParameters rest_;
+  double bulk_over_two_mu_;
 };
 
 /// Laws on λ and μ apart.
-template <class T>
 class LameStiffness {
  public:
   explicit LameStiffness(const TissueBlock& block)
-      : laws_(block.tissue), lambda_(block.elastic.lambda), mu_(block.elastic.mu),
-        bulk_over_two_mu_(T((lambda_ + 2.0 / 3.0 * mu_) / (2.0 * mu_))) {}
+      : laws_(block.tissue), rest_(block.elastic), bulk_over_two_mu_(bulk_over_two_mu(rest_)) {}
 
-  LocalStiffness<T> operator()(const Mat3<T>& H, MeasureValue<T> m) const {
-    const Moduli<double> k = laws_.at(static_cast<double>(m.x));
-    const double bulk = k.lambda + 2.0 / 3.0 * k.mu, rest_bulk = lambda_ + 2.0 / 3.0 * mu_;
-    const double slope_mu = std::abs(k.mu_slope) / mu_;
-    const double slope_bulk = (std::abs(k.lambda_slope) + 2.0 / 3.0 * mu_ * slope_mu) / rest_bulk;
-    const T f = T(std::max(k.mu / mu_, bulk / rest_bulk)), slope = T(std::max(slope_mu, slope_bulk)) * m.slope;
-    return {T(k.lambda), T(k.mu), f + slope * strain_bound(H, bulk_over_two_mu_)};
+  LocalStiffness operator()(const Mat3d& H, MeasureValue m) const {
+    const Moduli<double> k = laws_.at(m.x);
+    const double bulk = k.lambda + 2.0 / 3.0 * k.mu, rest_bulk = rest_.lambda + 2.0 / 3.0 * rest_.mu;
+    const double slope_mu = std::abs(k.mu_slope) / rest_.mu;
+    const double slope_bulk = (std::abs(k.lambda_slope) + 2.0 / 3.0 * rest_.mu * slope_mu) / rest_bulk;
+    const double f = std::max(k.mu / rest_.mu, bulk / rest_bulk), slope = std::max(slope_mu, slope_bulk) * m.slope;
+    return {k.lambda, k.mu, f + slope * strain_bound(H, bulk_over_two_mu_)};
   }
 
  private:
   ModulusLaws laws_;
-  double lambda_, mu_;
-  T bulk_over_two_mu_;
+  LameParameters rest_;
+  double bulk_over_two_mu_;
 };
 
 }  // namespace glisson

@@ -22,7 +22,7 @@ ElementBody::ElementBody(const Body& body, std::span<const double> nodal_damping
       is_watched_(body.vertex_count, 0) {
   for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->assign(body.vertex_count, Vec3d{});
   if (all_tensor_masses(body)) {
-    tissue_ = make_element_operator(body, precision);
+    tissue_ = make_element_operator(body);
   } else {
     any_ = std::make_unique<TissueOperator>(body);
   }
@@ -91,7 +91,7 @@ void ElementBody::apply(const BodyChange& change, const detail::VertexStars&, st
   viscous_.resize(u_.size());
   is_watched_.resize(u_.size(), 0);
   damping_.assign(nodal_damping.begin(), nodal_damping.end());
-  if (tissue_ != nullptr) tissue_ = make_element_operator(body_, precision_);
+  if (tissue_ != nullptr) tissue_ = make_element_operator(body_);
   if (any_ != nullptr) any_->body_changed();
 }
 
@@ -105,7 +105,7 @@ void ElementBody::tissues_changed(std::span<const std::size_t> blocks, std::span
   damping_.assign(nodal_damping.begin(), nodal_damping.end());
   if (all_tensor_masses(body_)) {
     any_.reset();
-    tissue_ = make_element_operator(body_, precision_);
+    tissue_ = make_element_operator(body_);
     return;
   }
   tissue_.reset();

@@ -9,6 +9,7 @@
 #include "element/force_operator.h"
 #include "element/tissue_operator.h"
 #include "engine/moving_body.h"
+#include "glisson/simulation/precision.h"
 
 namespace glisson::engine {
 

@@ -15,7 +15,7 @@ using test::Sample;
 std::vector<double> exact_stiffening(const Body& body, const Sample& s) {
   std::vector<Vec3d> elastic(body.vertex_count), viscous(body.vertex_count);
   ElementWatch watch;
-  make_element_operator(body, Precision::double_precision)->evaluate(s.u, s.v, elastic, viscous, watch);
+  make_element_operator(body)->evaluate(s.u, s.v, elastic, viscous, watch);
   return watch.stiffening;
 }
 
