@@ -13,8 +13,8 @@ namespace {
 
 /// "SlopedLaw::slope" has the docstring; where it has none, the law's own help serves.
 template <class Law>
-void bind_law(nb::module_& m, const char* name) {
-  Options<Law> law(m, name, name);
+void bind_law(nb::module_& m, const std::string& name) {
+  Options<Law> law(m, name.c_str(), name.c_str());
   law.attr("name") = std::string(Law::kName);
   for (const LawField<Law>& field : Law::kFields) {
     std::string key(field.key);
@@ -23,6 +23,21 @@ void bind_law(nb::module_& m, const char* name) {
     }
     std::visit([&](auto member) { law.field(key.c_str(), member); }, field.member);
   }
+}
+
+/// "neo_hookean" → "NeoHookean": the struct's own name, but for a suffix.
+std::string class_name(std::string_view kind) {
+  std::string name;
+  bool first = true;
+  for (const char c : kind) {
+    if (c != '_') name += first ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    first = c == '_';
+  }
+  return name;
+}
+template <class... Laws>
+void bind_each(nb::module_& m, const char* suffix, std::type_identity<std::variant<Laws...>>) {
+  (bind_law<Laws>(m, class_name(Laws::kName) + suffix), ...);
 }
 
 /// A stiffness law at one value, or at all of an array, of the measure.
@@ -36,18 +51,8 @@ nb::object at_each(const nb::object& x, const std::function<double(double)>& f) 
 }
 
 void bind_laws(nb::module_& m) {
-  bind_law<ConstantLaw>(m, "ConstantLaw");
-  bind_law<StepLaw>(m, "StepLaw");
-  bind_law<LinearLaw>(m, "LinearLaw");
-  bind_law<PolynomialLaw>(m, "PolynomialLaw");
-  bind_law<ExponentialLaw>(m, "ExponentialLaw");
-  bind_law<TableLaw>(m, "TableLaw");
-  bind_law<NeoHookean>(m, "NeoHookean");
-  bind_law<MooneyRivlin>(m, "MooneyRivlin");
-  bind_law<Yeoh>(m, "Yeoh");
-  bind_law<Fung>(m, "Fung");
-  bind_law<VerondaWestmann>(m, "VerondaWestmann");
-  bind_law<Ogden>(m, "Ogden");
+  bind_each(m, "Law", std::type_identity<StiffnessLaw>());
+  bind_each(m, "", std::type_identity<HyperelasticLaw>());
   m.def(
       "law_value",
       [](const StiffnessLaw& law, double base, const nb::object& x) {
