@@ -1,4 +1,4 @@
-// response_plan.cpp — what the stages of large deformation need of a tissue, worked out once.
+// response_plan.cpp — what the stages need of a tissue and its laws, worked out once: in double, and rounded to float.
 #include <cmath>
 
 #include "element/element_shape.h"
@@ -6,6 +6,34 @@
 #include "material/stiffness_bound.h"
 
 namespace glisson::engine {
+namespace {
+
+/// Divides the moduli of a law; its fields say which they are.
+template <class Law>
+void divide_moduli(Law& law, double unit) {
+  for (const LawField<Law>& field : Law::kFields) {
+    if (field.unit != "Pa") continue;
+    if (const auto* number = std::get_if<double Law::*>(&field.member)) law.*(*number) /= unit;
+    if (const auto* list = std::get_if<std::vector<double> Law::*>(&field.member)) {
+      for (double& x : law.*(*list)) x /= unit;
+    }
+  }
+}
+
+}  // namespace
+
+LaneLaw lane_law(StiffnessLaw law, double base, double unit) {
+  LaneLaw lanes{law.index(), {}};
+  std::visit(
+      [&](auto& l) {
+        divide_moduli(l, unit);
+        const auto numbers = l.numbers(base / unit);
+        for (const double x : numbers) lanes.numbers.push_back(static_cast<float>(x));
+      },
+      law);
+  return lanes;
+}
+
 bool has_lanes(const Tissue& t) {
   if (t.is_tensor_mass()) return true;
   const bool known_measure =
