@@ -15,14 +15,9 @@ using test::Specimen;
 struct Slopes {
   double first, second;
 };
-Slopes slopes(const NeoHookean& l, double, double) { return {0.5 * l.mu, 0.0}; }
-Slopes slopes(const MooneyRivlin& l, double, double) { return {l.c10, l.c01}; }
-Slopes slopes(const Yeoh& l, double I1, double) {
-  return {l.c1 + 2.0 * l.c2 * (I1 - 3.0) + 3.0 * l.c3 * (I1 - 3.0) * (I1 - 3.0), 0.0};
-}
-Slopes slopes(const Fung& l, double I1, double) { return {0.5 * l.mu * std::exp(l.b * (I1 - 3.0)), 0.0}; }
-Slopes slopes(const VerondaWestmann& l, double I1, double) {
-  return {l.c * l.b * std::exp(l.b * (I1 - 3.0)), -0.5 * l.c * l.b};
+Slopes slopes(const HyperelasticLaw& law, double I1, double I2) {
+  const reference::InvariantEnergy w = reference::invariant_energy(law, I1 - 3.0, I2 - 3.0);
+  return {static_cast<double>(w.first), static_cast<double>(w.second)};
 }
 
 /// Engineering stress of an incompressible bar stretched by l: 2 (l − l⁻²) (W₁ + W₂/l).
@@ -118,16 +113,8 @@ TEST(UniformStretch, SimpleShear) {
     for (const double gamma : {1e-3, 0.2, 0.8}) {
       Mat3d H;
       H(0, 1) = gamma;
-      const double stress = std::visit(
-          [&]<class Law>(const Law& law) {
-            if constexpr (std::is_same_v<Law, Ogden>) {
-              return 0.0;
-            } else {
-              const Slopes w = slopes(law, 3.0 + gamma * gamma, 3.0 + gamma * gamma);
-              return 2.0 * (w.first + w.second) * gamma;
-            }
-          },
-          *t.hyperelastic);
+      const Slopes w = slopes(*t.hyperelastic, 3.0 + gamma * gamma, 3.0 + gamma * gamma);
+      const double stress = 2.0 * (w.first + w.second) * gamma;
       EXPECT_NEAR(s.P(H)(0, 1), stress, 1e-10 * t.lame().mu * gamma);
     }
   }

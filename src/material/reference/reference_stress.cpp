@@ -163,9 +163,6 @@ RealTensor tensor_mass_piola(const MaterialPoint& point, const RealTensor& F) {
 }
 
 /// W(Ī₁, Ī₂) and its slopes.
-struct InvariantEnergy {
-  Real W, first, second;
-};
 InvariantEnergy energy_of(const NeoHookean& l, Real a, Real) { return {Real(l.mu) / 2 * a, Real(l.mu) / 2, 0}; }
 InvariantEnergy energy_of(const MooneyRivlin& l, Real a, Real b) {
   return {l.c10 * a + l.c01 * b, Real(l.c10), Real(l.c01)};
@@ -239,6 +236,18 @@ Real along_fibre(const MaterialPoint& point, const RealTensor& F) {
 }
 
 }  // namespace
+
+InvariantEnergy invariant_energy(const HyperelasticLaw& law, Real first_excess, Real second_excess) {
+  return std::visit(
+      [&]<class Law>(const Law& l) -> InvariantEnergy {
+        if constexpr (std::is_same_v<Law, Ogden>) {
+          return {};
+        } else {
+          return energy_of(l, first_excess, second_excess);
+        }
+      },
+      law);
+}
 
 RealTensor regular_turn(const MaterialPoint& point) {
   return rebuilt(singular(edges_from_first(point.rest) * edges_from_first(regular_corners()).inverse()), {1, 1, 1});

@@ -25,6 +25,12 @@ struct MaterialPoint {
   RealVector fibre = RealVector::Zero();  ///< a, |a| = 1
 };
 
+/// W of a law of the invariants at Ī₁ − 3 and Ī₂ − 3, and its slopes by them [J/m³]; 0 for one of stretches.
+struct InvariantEnergy {
+  Real W = 0, first = 0, second = 0;
+};
+InvariantEnergy invariant_energy(const HyperelasticLaw& law, Real first_excess, Real second_excess);
+
 /// W of the elastic part [J/m³]; of a secant law ½ σ:ε.
 Real stored_energy(const MaterialPoint& point, const RealTensor& F);
 /// P of the elastic part [Pa].
