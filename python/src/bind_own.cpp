@@ -5,6 +5,7 @@
 // A step never throws: what a method raises is kept, the tool stays where it is and the interaction does nothing until the
 // step is done, and then it comes out of step() or advance() as it is. A call into Python takes some microseconds, as long
 // as a step of a small body.
+#include "glisson/archive.h"
 #include "glisson/instruments/instrument.h"
 #include "live_simulation.h"
 
@@ -25,7 +26,13 @@ nb::object call_kept(nb::handle self, const char* method, const auto&... argumen
   }
 }
 
-std::vector<double> numbers_of(const nb::object& given) { return nb::cast<std::vector<double>>(given); }
+/// What past() of a Python object gives, or restore() takes.
+void archive_own(Archive& ar, nb::handle self) {
+  std::vector<double> numbers;
+  if (!ar.reads()) numbers = nb::cast<std::vector<double>>(self.attr("past")());
+  ar(numbers);
+  ar.check(!ar.reads() || nb::cast<bool>(self.attr("restore")(numbers)));
+}
 
 /// Leads a tool by a method of a subclass, or by a function.
 class OwnDriver : public ToolDriver {
@@ -45,20 +52,10 @@ class OwnDriver : public ToolDriver {
     }
     return last_;
   }
-  std::vector<double> past() const override {
+  void archive(Archive& ar) override {
     const nb::gil_scoped_acquire gil;
-    std::vector<double> past{last_.position.x, last_.position.y, last_.position.z};
-    for (const auto& row : last_.axes.m) past.insert(past.end(), row.begin(), row.end());
-    const std::vector<double> own = numbers_of(nb::find(*this).attr("past")());
-    past.insert(past.end(), own.begin(), own.end());
-    return past;
-  }
-  bool restore(std::span<const double> past) override {
-    if (past.size() < 12) return false;
-    last_.position = {past[0], past[1], past[2]};
-    for (std::size_t k = 0; k < 9; ++k) last_.axes(k / 3, k % 3) = past[3 + k];
-    const nb::gil_scoped_acquire gil;
-    return nb::cast<bool>(nb::find(*this).attr("restore")(std::vector<double>(past.begin() + 12, past.end())));
+    ar(last_);
+    archive_own(ar, nb::find(*this));
   }
 
  private:
@@ -175,13 +172,9 @@ class OwnInteraction : public Interaction {
     squared_frequency_ = nb::cast<double>(nb::find(*this).attr("squared_frequency")());
     return *squared_frequency_;
   }
-  std::vector<double> past() const override {
+  void archive(Archive& ar) override {
     const nb::gil_scoped_acquire gil;
-    return numbers_of(nb::find(*this).attr("past")());
-  }
-  bool restore(std::span<const double> past) override {
-    const nb::gil_scoped_acquire gil;
-    return nb::cast<bool>(nb::find(*this).attr("restore")(std::vector<double>(past.begin(), past.end())));
+    archive_own(ar, nb::find(*this));
   }
 
  private:
@@ -318,11 +311,12 @@ void bind_own_interaction(nb::module_& m) {
       .def(
           "squared_frequency", [](const OwnInteraction&) { return 0.0; }, of("squared_frequency"))
       .def(
-          "past", [](const OwnInteraction&) { return std::vector<double>{}; }, of("past"),
+          "past", [](const OwnInteraction&) { return std::vector<double>{}; },
+          "What it knows of its past, as numbers for a checkpoint; to be overridden with restore()",
           nb::sig("def past(self) -> collections.abc.Sequence[float]"))
       .def(
           "restore", [](OwnInteraction&, const std::vector<double>& past) { return past.empty(); }, "past"_a,
-          of("restore"));
+          "Takes them back to the last bit. :return: False where they are not those of such an interaction");
 }
 
 }  // namespace glisson::python

@@ -59,18 +59,12 @@ double Interactions::squared_frequency() const {
   return sum;
 }
 
-void Interactions::save(CheckpointWriter& out) const {
-  for (const std::shared_ptr<Interaction>& x : all_) out.put(x->past());
-  out.put(impulses_);
-}
-
-void Interactions::load(CheckpointReader& in) {
-  for (const std::shared_ptr<Interaction>& x : all_) {
-    std::vector<double> past;
-    in.get(past);
-    if (!x->restore(past)) CheckpointReader::fail();
-  }
-  in.get_same_size(impulses_);
+void Interactions::archive(Archive& ar) {
+  auto count = static_cast<std::uint32_t>(all_.size());
+  ar(count);
+  ar.check(count == all_.size());
+  for (const std::shared_ptr<Interaction>& x : all_) x->archive(ar);
+  ar.same_size(impulses_);
 }
 
 }  // namespace glisson

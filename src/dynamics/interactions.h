@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/state/checkpoint.h"
 #include "dynamics/state/constraints.h"
+#include "glisson/archive.h"
 #include "glisson/simulation/interaction.h"
 
 namespace glisson {
@@ -33,8 +33,7 @@ class Interactions {
   std::span<const Vec3d> impulses() const { return impulses_; }
   double squared_frequency() const;
 
-  void save(CheckpointWriter& out) const;
-  void load(CheckpointReader& in);
+  void archive(Archive& ar);
 
  private:
   std::vector<std::shared_ptr<Interaction>> all_;

@@ -7,9 +7,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "dynamics/schemes/changer.h"
 #include "dynamics/schemes/make_scheme.h"
 #include "dynamics/simulation_parts.h"
-#include "dynamics/state/tissue_numbers.h"
+#include "dynamics/state/checkpoint.h"
 #include "dynamics/step/mass_scaling.h"
 #include "element/tet_fields.h"
 
@@ -42,39 +43,9 @@ void require_options(const SimulationOptions& o) {
   require_implicit(o.implicit, check);
   const double reached = o.mass_scaling_step.value_or(1.0);
   check(reached > 0.0 && std::isfinite(reached), "mass_scaling_step [s]", reached, "> 0 and finite");
-  const bool steps_freely = o.integrator == Integrator::implicit || o.integrator == Integrator::static_;
-  check(!(o.mass_scaling_step && steps_freely), "mass_scaling_step [s]", reached,
+  check(!(o.mass_scaling_step && capabilities(o.integrator).any_step_is_stable), "mass_scaling_step [s]", reached,
         "none with the integrators implicit and static, which need no mass for their step");
   check(std::isfinite(norm(o.gravity)), "|gravity| [m/s^2]", norm(o.gravity), "finite");
-}
-
-/// Tets that were removed, or faces that were split and vertices moved, or tissues that were changed.
-struct Change {
-  std::vector<std::uint32_t> removed, corners, moved{};
-  std::vector<Vec3d> places{};
-  std::map<int, Tissue> tissues{};
-  bool operator==(const Change&) const = default;
-};
-
-void put(CheckpointWriter& file, const Change& change) {
-  file.put(change.removed), file.put(change.corners), file.put(change.moved), file.put(change.places);
-  file.put(static_cast<std::uint32_t>(change.tissues.size()));
-  for (const auto& [region, tissue] : change.tissues) {
-    file.put(static_cast<std::int32_t>(region));
-    put(file, tissue);
-  }
-}
-
-Change get_change(CheckpointReader& file) {
-  Change change;
-  file.get(change.removed), file.get(change.corners), file.get(change.moved), file.get(change.places);
-  if (change.moved.size() != change.places.size()) CheckpointReader::fail();
-  const auto tissues = file.get<std::uint32_t>();
-  for (std::uint32_t k = 0; k < tissues; ++k) {
-    const auto region = file.get<std::int32_t>();
-    change.tissues.emplace(region, get_tissue(file));
-  }
-  return change;
 }
 
 std::uint64_t fingerprint_of(const TetMesh& mesh, const Body& body) {
@@ -88,23 +59,6 @@ std::uint64_t fingerprint_of(const TetMesh& mesh, const Body& body) {
   return hash;
 }
 
-/// Makes a change that another simulation went through.
-void replay(const Change& change, Simulation& simulation) {
-  std::vector<Triangle> faces;
-  for (std::size_t c = 0; c + 2 < change.corners.size(); c += 3) {
-    faces.push_back({change.corners[c], change.corners[c + 1], change.corners[c + 2]});
-  }
-  std::vector<VertexMove> moves;
-  for (std::size_t m = 0; m < change.moved.size(); ++m) moves.push_back({change.moved[m], change.places[m]});
-  if (!change.tissues.empty()) {
-    simulation.set_tissues(change.tissues);
-  } else if (faces.empty() && moves.empty()) {
-    simulation.remove_tets(change.removed);
-  } else {
-    simulation.split_faces(faces, moves);
-  }
-}
-
 std::uint32_t kind_of(const SimulationOptions& o) {
   return static_cast<std::uint32_t>(o.integrator) + 16U * static_cast<std::uint32_t>(o.implicit.scheme) +
          256U * static_cast<std::uint32_t>(o.precision);
@@ -115,18 +69,72 @@ std::uint32_t kind_of(const SimulationOptions& o) {
 struct Simulation::Impl {
   TetMesh mesh;
   std::unique_ptr<Scheme> scheme;
-  std::uint32_t kind;         ///< integrator, time scheme and precision
-  std::uint64_t fingerprint;  ///< of mesh and tissues at the start
-  std::vector<Change> changes;
+  std::uint32_t kind;           ///< integrator, time scheme and precision
+  std::uint64_t fingerprint;    ///< of mesh and tissues at the start
   std::vector<char> removed{};  ///< per tet; empty: none
 
   /// Block of a region. @throws std::invalid_argument where it has none
   std::size_t block_of(int region) const;
   BodyView view() const { return {mesh, removed, scheme->body().masses, scheme->displacement()}; }
+  std::uint64_t told = 0;  ///< changes that interactions have been told of, or would have been
+
   void tell_change(std::span<const std::uint32_t> origins) {
+    ++told;
     if (scheme->has_interactions()) scheme->tell_change(view(), origins);
   }
+  void add_copies(std::span<const std::uint32_t> origins);
+  std::span<const std::uint32_t> follow_body();
+  void archive(Archive& ar);
 };
+
+/// Lets the last vertices of the mesh be copies of these.
+void Simulation::Impl::add_copies(std::span<const std::uint32_t> origins) {
+  for (const std::uint32_t origin : origins) {
+    const auto copy = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(scheme->body().rest_positions[copy]);
+    for (auto& [name, set] : mesh.vertex_sets) {
+      if (std::binary_search(set.begin(), set.end(), origin)) set.push_back(copy);
+    }
+  }
+}
+
+/// Takes over a body that was read. @return of which vertices the last ones are copies
+std::span<const std::uint32_t> Simulation::Impl::follow_body() {
+  const Body& body = scheme->body();
+  const std::vector<std::uint32_t>& copies = scheme->state().copies;
+  const std::size_t known = mesh.vertices.size() - (body.vertex_count - copies.size());
+  const std::span<const std::uint32_t> origins = std::span(copies).subspan(known);
+  add_copies(origins);
+  mesh.vertices = body.rest_positions;
+  for (std::size_t e = 0; e < body.elements.size(); ++e) {
+    mesh.tets[body.mesh_tet[e]] = body.elements[e];
+    if (body.rest[e].volume != 0.0) continue;
+    removed.resize(mesh.tets.size(), 0);
+    removed[body.mesh_tet[e]] = 1;
+  }
+  return origins;
+}
+
+void Simulation::Impl::archive(Archive& ar) {
+  std::uint32_t its_kind = kind;
+  std::uint64_t its_fingerprint = fingerprint;
+  ar(its_kind, its_fingerprint);
+  if (its_kind != kind) {
+    throw std::runtime_error("checkpoint: it was written with another integrator, time scheme or precision");
+  }
+  if (its_fingerprint != fingerprint) {
+    throw std::runtime_error("checkpoint: it was written with another mesh or other tissues");
+  }
+  std::uint64_t to_tell = told;
+  ar(to_tell);
+  scheme->archive_body(ar);
+  if (ar.reads()) {
+    const std::span<const std::uint32_t> origins = follow_body();
+    if (to_tell != told) tell_change(origins);
+    told = to_tell;
+  }
+  scheme->archive_motion(ar);
+}
 
 std::size_t Simulation::Impl::block_of(int region) const {
   const Body& body = scheme->body();
@@ -147,13 +155,13 @@ Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const Simula
   require_options(options);
   Body body = build_body(mesh, tissues);
   const std::uint64_t fingerprint = fingerprint_of(mesh, body);
-  impl_.reset(new Impl{std::move(mesh), make_scheme(std::move(body), options), kind_of(options), fingerprint, {}});
+  impl_.reset(new Impl{std::move(mesh), make_scheme(std::move(body), options), kind_of(options), fingerprint});
 }
 
 Scheme& SimulationParts::scheme(Simulation& simulation) { return *simulation.impl_->scheme; }
 
 bool SimulationParts::viscosity_counts(const Simulation& simulation) {
-  return simulation.impl_->kind % 16 == static_cast<std::uint32_t>(Integrator::explicit_);
+  return simulation.impl_->scheme->capabilities().viscosity_limits_step;
 }
 
 Simulation::~Simulation() = default;
@@ -182,8 +190,7 @@ void Simulation::attach(std::shared_ptr<Interaction> interaction) {
 }
 
 RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) {
-  RemovalReport report = impl_->scheme->remove(tets);
-  impl_->changes.push_back({{tets.begin(), tets.end()}, {}});
+  RemovalReport report = Changer(*impl_->scheme).remove(tets);
   impl_->removed.resize(impl_->mesh.tets.size(), 0);
   for (const std::uint32_t t : tets) impl_->removed[t] = 1;
   impl_->tell_change({});
@@ -191,25 +198,11 @@ RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) {
 }
 
 SplitReport Simulation::split_faces(std::span<const Triangle> faces, std::span<const VertexMove> moves) {
-  SplitReport report = impl_->scheme->split(faces, moves);
-  impl_->changes.emplace_back();
-  for (const Triangle& face : faces) {
-    impl_->changes.back().corners.insert(impl_->changes.back().corners.end(), face.begin(), face.end());
-  }
-  TetMesh& mesh = impl_->mesh;
-  for (const VertexMove& m : moves) {
-    impl_->changes.back().moved.push_back(m.vertex);
-    impl_->changes.back().places.push_back(m.rest);
-    mesh.vertices[m.vertex] = m.rest;
-  }
+  auto [report, changed] = Changer(*impl_->scheme).split(faces, moves);
   const Body& body = impl_->scheme->body();
-  for (std::uint32_t i = 0; i < report.origins.size(); ++i) {
-    mesh.vertices.push_back(Vec3d(mesh.vertices[report.origins[i]]));
-    for (auto& [name, set] : mesh.vertex_sets) {
-      if (std::binary_search(set.begin(), set.end(), report.origins[i])) set.push_back(report.first_new + i);
-    }
-  }
-  for (const std::uint32_t e : impl_->scheme->last_changed()) mesh.tets[body.mesh_tet[e]] = body.elements[e];
+  for (const VertexMove& m : moves) impl_->mesh.vertices[m.vertex] = m.rest;
+  impl_->add_copies(report.origins);
+  for (const std::uint32_t e : changed) impl_->mesh.tets[body.mesh_tet[e]] = body.elements[e];
   impl_->tell_change(report.origins);
   return report;
 }
@@ -218,24 +211,13 @@ void Simulation::set_tissue(int region, const Tissue& tissue) { set_tissues({{re
 
 void Simulation::set_tissues(const std::map<int, Tissue>& tissues) {
   BlockTissues others;
-  std::map<int, Tissue> changed;
-  bool values = true;
   for (const auto& [region, tissue] : tissues) {
     const std::size_t b = impl_->block_of(region);
-    const Tissue& now = impl_->scheme->body().blocks[b].tissue;
-    if (tissue == now) continue;
-    values = values && differ_by_values(tissue, now);
+    if (tissue == impl_->scheme->body().blocks[b].tissue) continue;
     others.emplace_back(b, tissue);
-    changed.emplace(region, tissue);
   }
   if (others.empty()) return;
-  const bool masses = impl_->scheme->set_tissues(others);
-  // what a slider does fits in one entry: changes of values leave no trace but the last
-  if (values && !impl_->changes.empty() && !impl_->changes.back().tissues.empty()) {
-    for (auto& [region, tissue] : changed) impl_->changes.back().tissues.insert_or_assign(region, std::move(tissue));
-  } else {
-    impl_->changes.emplace_back().tissues = std::move(changed);
-  }
+  const bool masses = Changer(*impl_->scheme).set_tissues(others);
   if (masses) impl_->tell_change({});
 }
 
@@ -245,7 +227,7 @@ const Tissue& Simulation::tissue(int region) const {
 
 bool Simulation::is_removed(std::uint32_t tet) const {
   const std::size_t tets = impl_->mesh.tets.size();
-  if (tet < tets) return impl_->scheme->is_removed(tet);
+  if (tet < tets) return impl_->scheme->state().is_removed(tet);
   throw std::invalid_argument("is_removed: tet " + std::to_string(tet) + " is outside the mesh, 0 to " +
                               std::to_string(tets - 1));
 }
@@ -272,10 +254,10 @@ StepResult Simulation::advance_to(double time) {
   return last;
 }
 
-double Simulation::time() const { return impl_->scheme->time(); }
+double Simulation::time() const { return impl_->scheme->state().time; }
 double Simulation::step_size() const { return impl_->scheme->step_size(); }
 double Simulation::stable_step() const { return impl_->scheme->stable_step(); }
-std::uint64_t Simulation::steps() const { return impl_->scheme->steps(); }
+std::uint64_t Simulation::steps() const { return impl_->scheme->state().steps; }
 const TetMesh& Simulation::mesh() const { return impl_->mesh; }
 std::span<const double> Simulation::masses() const { return impl_->scheme->body().masses; }
 std::span<const Vec3d> Simulation::displacement() const { return impl_->scheme->displacement(); }
@@ -293,11 +275,11 @@ void Simulation::set_state(std::span<const Vec3d> displacement, std::span<const 
 
 ForceParts Simulation::force(ConstraintId constraint) const { return impl_->scheme->force(constraint); }
 
-const MassScaling& Simulation::mass_scaling() const { return impl_->scheme->mass_scaling(); }
+const MassScaling& Simulation::mass_scaling() const { return impl_->scheme->state().mass_scaling; }
 
 std::vector<LimitingTet> Simulation::limiting_tets(std::size_t most) const {
-  const bool lags = impl_->kind % 16 == static_cast<std::uint32_t>(Integrator::explicit_);
-  return glisson::limiting_tets(impl_->scheme->body(), most, lags ? 1.0 : 0.0);
+  const bool counts = impl_->scheme->capabilities().viscosity_limits_step;
+  return glisson::limiting_tets(impl_->scheme->body(), most, counts ? 1.0 : 0.0);
 }
 
 double Simulation::force_time() const { return impl_->scheme->force_time(); }
@@ -314,40 +296,15 @@ TetFields Simulation::tet_fields() const {
 }
 
 void Simulation::save(std::ostream& out) const {
-  CheckpointWriter file;
-  file.put(impl_->kind);
-  file.put(impl_->fingerprint);
-  file.put(static_cast<std::uint64_t>(impl_->changes.size()));
-  for (const Change& change : impl_->changes) put(file, change);
-  impl_->scheme->save(file);
-  file.write(out);
+  Archive contents;
+  impl_->archive(contents);
+  write_checkpoint(contents, out);
 }
 
 void Simulation::load(std::istream& in) {
-  CheckpointReader file(in);
-  if (file.get<std::uint32_t>() != impl_->kind) {
-    throw std::runtime_error("checkpoint: it was written with another integrator, time scheme or precision");
-  }
-  if (file.get<std::uint64_t>() != impl_->fingerprint) {
-    throw std::runtime_error("checkpoint: it was written with another mesh or other tissues");
-  }
-  const auto count = file.get<std::uint64_t>();
-  for (std::uint64_t k = 0; k < count; ++k) {
-    const Change change = get_change(file);
-    if (k >= impl_->changes.size()) {
-      try {
-        replay(change, *this);
-      } catch (const std::invalid_argument&) {  // of a tet, face or tissue that this body does not have
-        CheckpointReader::fail();
-      }
-      impl_->changes.resize(k + 1);
-      impl_->changes[k] = change;
-    } else if (!(change == impl_->changes[k])) {
-      CheckpointReader::fail();
-    }
-  }
-  if (count < impl_->changes.size()) CheckpointReader::fail();
-  impl_->scheme->load(file);
+  Archive contents = read_checkpoint(in);
+  impl_->archive(contents);
+  contents.check(contents.left() == 0);
 }
 
 std::uint64_t Simulation::state_hash() const { return hash_numbers(velocity(), hash_numbers(displacement())); }

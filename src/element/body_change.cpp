@@ -43,6 +43,9 @@ BodyChanger::BodyChanger(Body& body)
   for (std::uint32_t e = 0; e < element_of_.size(); ++e) element_of_[body.mesh_tet[e]] = e;
   quarter_masses_.resize(body.elements.size());
   masses_changed();
+  for (std::uint32_t e = 0; e < element_of_.size(); ++e) {
+    if (body.rest[e].volume == 0.0) stars_.remove(e, body.elements[e]);
+  }
 }
 
 void BodyChanger::masses_changed() {
@@ -136,7 +139,10 @@ void BodyChanger::move(std::span<const VertexMove> moves, const StateOf& state, 
   std::map<std::uint32_t, std::pair<Vec3d, Vec3d>> now;
   for (const VertexMove& m : moves) {
     const auto star = stars_.tets_at(m.vertex);
-    if (star.empty()) continue;
+    if (star.empty()) {
+      place(m);
+      continue;
+    }
     const Located at = locate(body_, star, m.rest);
     std::pair<Vec3d, Vec3d> here;
     for (std::size_t a = 0; a < 4; ++a) {
@@ -160,6 +166,11 @@ void BodyChanger::move(std::span<const VertexMove> moves, const StateOf& state, 
   for (const std::uint32_t e : change.reshaped) {
     change.touched.insert(change.touched.end(), body_.elements[e].begin(), body_.elements[e].end());
   }
+}
+
+void BodyChanger::archive(Archive& ar) {
+  ar(closed_);
+  for (const Triangle& t : closed_) ar.check(std::max({t[0], t[1], t[2]}) < body_.vertex_count);
 }
 
 BodyChange BodyChanger::cut(std::span<const Triangle> faces, std::span<const VertexMove> moves, const StateOf& state) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "element/body.h"
+#include "glisson/archive.h"
 #include "mesh/cut/split_faces.h"
 #include "mesh/topology/vertex_stars.h"
 
@@ -53,7 +54,7 @@ using StateOf = std::function<std::pair<Vec3d, Vec3d>(std::uint32_t)>;
 /// Changes a body and keeps the tets around each vertex at hand for it.
 class BodyChanger {
  public:
-  /// @param body  must outlive this; changed by nobody else
+  /// @param body  must outlive this; changed by nobody else; elements without volume have been removed
   /// Cost: O(tets), 30 bytes a tet.
   explicit BodyChanger(Body& body);
 
@@ -82,6 +83,8 @@ class BodyChanger {
   BodyChange cut(std::span<const Triangle> faces, std::span<const VertexMove> moves, const StateOf& state);
   /// What elements weigh has changed in the body.
   void masses_changed();
+  /// What the body does not show: split faces that are closed. @throws std::runtime_error where they are none of its vertices
+  void archive(Archive& ar);
   /// Elements around vertices that are to be moved, ascending.
   std::vector<std::uint32_t> elements_around(std::span<const VertexMove> moves) const;
 

@@ -35,21 +35,6 @@ void make_semidefinite(ElementTangent& C) {
 
 }  // namespace
 
-void append_memory(const TissueMemory& memory, std::vector<double>& numbers) {
-  for (const auto* list : {&memory.relaxed, &memory.stress}) {
-    for (const Sym3<double>& s : *list) numbers.insert(numbers.end(), {s.xx, s.yy, s.zz, s.xy, s.yz, s.zx});
-  }
-}
-
-bool take_memory(std::span<const double> numbers, TissueMemory& memory) {
-  if (numbers.size() != 6 * (memory.relaxed.size() + memory.stress.size())) return false;
-  const double* n = numbers.data();
-  for (auto* list : {&memory.relaxed, &memory.stress}) {
-    for (Sym3<double>& s : *list) s = {n[0], n[1], n[2], n[3], n[4], n[5]}, n += 6;
-  }
-  return true;
-}
-
 TissueOperator::TissueOperator(const Body& body) : body_(body) { body_changed(); }
 
 void TissueOperator::body_changed() {

@@ -24,14 +24,8 @@ struct TissueMemory {
   std::vector<Sym3<double>> relaxed;  ///< q of branch k of element e at first_branch(e) + k [Pa]
   std::vector<Sym3<double>> stress;   ///< S of each element of a tissue with branches, else empty [Pa]
   bool operator==(const TissueMemory&) const = default;
+  void archive(auto& ar) { ar.same_size(relaxed), ar.same_size(stress); }
 };
-
-/// Appends the numbers of a memory.
-void append_memory(const TissueMemory& memory, std::vector<double>& numbers);
-/// Takes them back, all that are there.
-/// @param memory  of the same size
-/// @return false, with the memory as it was, where there are more or fewer
-bool take_memory(std::span<const double> numbers, TissueMemory& memory);
 
 /// The state a body is asked about.
 struct TissueState {
@@ -72,6 +66,7 @@ class TissueOperator {
   void advance_memory(const TissueState& state);
   const TissueMemory& memory() const { return memory_; }
   void set_memory(TissueMemory memory) { memory_ = std::move(memory); }
+  void archive(auto& ar) { ar(memory_); }
   bool has_memory() const { return has_memory_; }
 
   /// Follows elements and vertices that have changed in the body; memory of an element stays.

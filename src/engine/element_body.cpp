@@ -21,11 +21,13 @@ ElementBody::ElementBody(const Body& body, std::span<const double> nodal_damping
     : body_(body), precision_(precision), damping_(nodal_damping.begin(), nodal_damping.end()),
       is_watched_(body.vertex_count, 0) {
   for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->assign(body.vertex_count, Vec3d{});
-  if (all_tensor_masses(body)) {
-    tissue_ = make_element_operator(body);
-  } else {
-    any_ = std::make_unique<TissueOperator>(body);
-  }
+  make_operator();
+}
+
+void ElementBody::make_operator() {
+  const bool tensor_masses = all_tensor_masses(body_);
+  tissue_ = tensor_masses ? make_element_operator(body_) : nullptr;
+  any_ = tensor_masses ? nullptr : std::make_unique<TissueOperator>(body_);
 }
 
 void ElementBody::bring_memory_up_to_date(double since) {
@@ -59,20 +61,16 @@ void ElementBody::read_state(std::span<Vec3d> displacement, std::span<Vec3d> vel
   std::copy(v_.begin(), v_.end(), velocity.begin());
 }
 
-std::vector<double> ElementBody::past() const {
-  if (any_ == nullptr) return {};
-  std::vector<double> past{since_memory_};
-  append_memory(any_->memory(), past);
-  return past;
+void ElementBody::archive_past(Archive& ar) {
+  if (any_ != nullptr) ar(since_memory_, *any_);
 }
 
-bool ElementBody::set_past(std::span<const double> past) {
-  if (any_ == nullptr) return past.empty();
-  TissueMemory memory = any_->memory();
-  if (past.empty() || !take_memory(past.subspan(1), memory)) return false;
-  since_memory_ = past[0];
-  any_->set_memory(std::move(memory));
-  return true;
+void ElementBody::archive_layout(Archive& ar, std::span<const double> nodal_damping) {
+  if (!ar.reads()) return;
+  for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->resize(body_.vertex_count);
+  is_watched_.resize(body_.vertex_count, 0);
+  damping_.assign(nodal_damping.begin(), nodal_damping.end());
+  make_operator();
 }
 
 void ElementBody::apply(const BodyChange& change, const detail::VertexStars&, std::span<const double> nodal_damping) {

@@ -21,8 +21,8 @@ class ElementBody final : public MovingBody {
 
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
   void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const override;
-  std::vector<double> past() const override;
-  bool set_past(std::span<const double> past) override;
+  void archive_past(Archive& ar) override;
+  void archive_layout(Archive& ar, std::span<const double> nodal_damping) override;
   Vec3d displacement_of(std::uint32_t vertex) const override { return u_[vertex]; }
   Vec3d velocity_of(std::uint32_t vertex) const override { return v_[vertex]; }
   /// Cost: one pass over the elements.
@@ -41,6 +41,7 @@ class ElementBody final : public MovingBody {
   const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;
 
  private:
+  void make_operator();
   void evaluate(bool moves);
   void bring_memory_up_to_date(double since);
   void book(std::size_t vertex, const Vec3d& before, const Vec3d& weight);

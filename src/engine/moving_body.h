@@ -15,6 +15,7 @@
 #include "element/body_change.h"
 #include "element/branch_memory.h"
 #include "element/stiff_element.h"
+#include "glisson/archive.h"
 #include "glisson/math.h"
 #include "glisson/simulation/interaction.h"
 #include "material/strain.h"
@@ -24,6 +25,7 @@ namespace glisson {
 /// Energies per unit time at a kick, with v₋ (before) and v₊ (after) [W]; kinetic is ½ Σ m v₋·v₊ [J].
 struct KickPower {
   double elastic = 0.0, viscous = 0.0, damping = 0.0, tools = 0.0, loads = 0.0;
+  void archive(auto& ar) { ar(elastic, viscous, damping, tools, loads); }
 };
 struct KickWork {
   KickPower before, after;
@@ -49,10 +51,14 @@ class MovingBody {
   virtual Vec3d displacement_of(std::uint32_t vertex) const = 0;
   virtual Vec3d velocity_of(std::uint32_t vertex) const = 0;
 
-  /// What the body knows of its past beside the state, as numbers that set_past takes back to the last bit.
-  virtual std::vector<double> past() const = 0;
-  /// After set_state. @return false where `past` is not that of such a body; nothing is changed then
-  virtual bool set_past(std::span<const double> past) = 0;
+  /// What the body knows of its past beside the state.
+  virtual void archive_past(Archive& ar) = 0;
+  /// How it lies in memory where that has come from changes, and room for the vertices that its Body has. Read after the
+  /// Body has changed; archive_state comes next. @throws std::runtime_error with the body as it was
+  /// @param nodal_damping  γ_i of every vertex [kg/s]
+  virtual void archive_layout(Archive& ar, std::span<const double> nodal_damping) = 0;
+  /// Displacement and velocity, and the past.
+  void archive_state(Archive& ar, std::size_t vertices);
 
   /// Takes over what has changed in the body (BodyChanger has changed it already). New vertices begin in the
   /// state of those they are copies of, and are not watched.

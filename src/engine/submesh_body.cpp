@@ -36,19 +36,33 @@ SubmeshBody::Plan SubmeshBody::plan_of(const TissueBlock& block) {
 SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping, const SubmeshOptions& options)
     : body_(body), kernels_(options.kernels != nullptr ? *options.kernels : best_kernels()),
       submeshes_(build_submeshes(body, kernels_.lanes, options.submesh_tets)),
-      pool_(options.threads > 0 ? options.threads : threads_for(body.elements.size())),
-      state_(body.vertex_count * kStateDoubles, 0.0), masses_(body.vertex_count), damping_(body.vertex_count),
-      watches_(submeshes_.parts.size()), holds_watched_(submeshes_.parts.size(), 0),
-      looked_(submeshes_.parts.size(), Looked::small), found_(submeshes_.parts.size()) {
-  for (const TissueBlock& block : body.blocks) {
+      pool_(options.threads > 0 ? options.threads : threads_for(body.elements.size())) {
+  follow_layout(nodal_damping);
+}
+
+/// Room, plans and masses for the submeshes there are.
+void SubmeshBody::follow_layout(std::span<const double> nodal_damping) {
+  state_.assign(body_.vertex_count * kStateDoubles, 0.0);
+  masses_.assign(body_.vertex_count, 0.0), damping_.assign(body_.vertex_count, 0.0);
+  watches_.resize(submeshes_.parts.size()), holds_watched_.assign(submeshes_.parts.size(), 0);
+  looked_.assign(submeshes_.parts.size(), Looked::small), found_.resize(submeshes_.parts.size());
+  plans_.clear(), large_plans_.clear();
+  for (const TissueBlock& block : body_.blocks) {
     plans_.push_back(plan_of(block));
     large_plans_.push_back(large_plan_of(block, plans_.back()));
   }
-  for (std::size_t v = 0; v < body.vertex_count; ++v) {
-    masses_[submeshes_.record_of_vertex[v]] = body.masses[v];
+  make_room();
+  find_watches();
+  take_masses(nodal_damping);
+}
+
+/// Masses and damping of all vertices, and what follows from them and the tissues.
+void SubmeshBody::take_masses(std::span<const double> nodal_damping) {
+  for (std::size_t v = 0; v < body_.vertex_count; ++v) {
+    masses_[submeshes_.record_of_vertex[v]] = body_.masses[v];
     damping_[submeshes_.record_of_vertex[v]] = nodal_damping[v];
   }
-  make_room();
+  step_ = -1.0;  // coefficients of the records are made anew
   any_shared_ = std::any_of(submeshes_.parts.begin(), submeshes_.parts.end(),
                             [&](const Submesh& part) { return shares_volume(part); });
   if (any_shared_) weigh_vertices();
@@ -96,56 +110,6 @@ Vec3d SubmeshBody::displacement_of(std::uint32_t vertex) const {
 }
 Vec3d SubmeshBody::velocity_of(std::uint32_t vertex) const {
   return vector_of(state_.data() + submeshes_.record_of_vertex[vertex] * kStateDoubles + 4);
-}
-
-/// Per tissue block, where the numbers of its first element's memory begin; one more than blocks.
-std::vector<std::size_t> SubmeshBody::first_memory_numbers() const {
-  std::vector<std::size_t> first{0};
-  for (const TissueBlock& block : body_.blocks) {
-    first.push_back(first.back() + (block.end - block.begin) * memory_numbers(block.tissue));
-  }
-  return first;
-}
-
-/// Steps made, when the branches were kept last, where to look for inverted tets, and the branches in element order.
-std::vector<double> SubmeshBody::past() const {
-  const std::vector<std::size_t> first = first_memory_numbers();
-  std::vector<double> past{static_cast<double>(steps_), since_memory_};
-  for (const Looked looked : looked_) past.push_back(static_cast<double>(looked));
-  const std::size_t begin = past.size();
-  past.resize(begin + first.back(), 0.0);
-  for (const Submesh& part : submeshes_.parts) {
-    const TissueBlock& block = body_.blocks[part.block];
-    const std::size_t n = memory_numbers(block.tissue);
-    for_memory(part, block.tissue, kernels_.lanes, [&](std::uint32_t e, const auto& number) {
-      for (std::size_t i = 0; i < n; ++i) past[begin + first[part.block] + (e - block.begin) * n + i] = *number(i);
-    });
-  }
-  return past;
-}
-
-bool SubmeshBody::set_past(std::span<const double> past) {
-  const std::vector<std::size_t> first = first_memory_numbers();
-  const std::size_t begin = 2 + looked_.size();
-  if (past.size() != begin + first.back()) return false;
-  const auto whole_below = [](double n, double end) { return n >= 0.0 && n < end && n == std::floor(n); };
-  constexpr double kMostSteps = 9e15;  // above, a double skips whole numbers
-  const std::span<const double> looked = past.subspan(2, looked_.size());
-  const auto is_look = [&](double n) { return whole_below(n, 1.0 + static_cast<double>(Looked::inverted)); };
-  if (!whole_below(past[0], kMostSteps) || !std::all_of(looked.begin(), looked.end(), is_look)) return false;
-  steps_ = static_cast<std::uint64_t>(past[0]);
-  since_memory_ = past[1];
-  for (std::size_t p = 0; p < looked_.size(); ++p) looked_[p] = static_cast<Looked>(static_cast<int>(past[2 + p]));
-  for (Submesh& part : submeshes_.parts) {
-    const TissueBlock& block = body_.blocks[part.block];
-    const std::size_t n = memory_numbers(block.tissue);
-    for_memory(part, block.tissue, kernels_.lanes, [&](std::uint32_t e, const auto& number) {
-      for (std::size_t i = 0; i < n; ++i) {
-        *number(i) = static_cast<float>(past[begin + first[part.block] + (e - block.begin) * n + i]);
-      }
-    });
-  }
-  return true;
 }
 
 void SubmeshBody::watch(std::span<const std::uint32_t> vertices) {

@@ -34,8 +34,8 @@ class SubmeshBody final : public MovingBody {
 
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
   void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const override;
-  std::vector<double> past() const override;
-  bool set_past(std::span<const double> past) override;
+  void archive_past(Archive& ar) override;
+  void archive_layout(Archive& ar, std::span<const double> nodal_damping) override;
   Vec3d displacement_of(std::uint32_t vertex) const override;
   Vec3d velocity_of(std::uint32_t vertex) const override;
   void apply(const BodyChange& change, const detail::VertexStars& stars,
@@ -99,7 +99,8 @@ class SubmeshBody final : public MovingBody {
     bool accounted;
   };
 
-  std::vector<std::size_t> first_memory_numbers() const;
+  void follow_layout(std::span<const double> nodal_damping);
+  void take_masses(std::span<const double> nodal_damping);
   static Plan plan_of(const TissueBlock& block);
   std::unique_ptr<LargePlan> large_plan_of(const TissueBlock& block, const Plan& plan) const;
   void set_maxwell_step(double h);
@@ -172,6 +173,7 @@ class SubmeshBody final : public MovingBody {
   Advance advance_;
   std::vector<double> list_above_;              ///< per tissue block: stiffening; empty: no element is listed
   std::vector<std::uint32_t> part_of_element_;  ///< submesh of each element; empty until something changes
+  bool as_built_ = true;                        ///< whether build_submeshes would lay the body out as it is
 };
 
 }  // namespace glisson::engine

@@ -8,7 +8,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "base/past.h"
 #include "instruments/contact/contact_books.h"
 #include "instruments/contact/contact_reach.h"
 
@@ -61,6 +60,7 @@ struct Container::State {
   struct Bond {
     std::uint32_t solid = 0;
     Vec3d place;
+    void archive(Archive& ar) { ar(solid, place); }
   };
 
   ContainerOptions options;
@@ -233,32 +233,10 @@ void Container::constrain(const InteractionStep& step) {
 
 void Container::moved(const InteractionStep& step) { state_->reach.look(step); }
 
-std::vector<double> Container::past() const {
-  const State& s = *state_;
-  std::vector<double> past{s.begun ? 1.0 : 0.0, s.books.taken(), static_cast<double>(s.bonds.size())};
-  for (const auto& [v, b] : s.bonds) {
-    past.insert(past.end(), {static_cast<double>(v), static_cast<double>(b.solid), b.place.x, b.place.y, b.place.z});
-  }
-  s.found_inside.save(past);
-  s.reach.save(past);
-  return past;
-}
-
-bool Container::restore(std::span<const double> past) {
+void Container::archive(Archive& ar) {
   State& s = *state_;
-  PastReader get(past);
-  s.begun = get.flag();
-  s.books.set_taken(get.number());
-  s.bonds.clear();
-  for (std::size_t left = get.count(5); left > 0; --left) {
-    const auto vertex = static_cast<std::uint32_t>(get.index(s.reach.surface().body_vertices()));
-    const auto solid = static_cast<std::uint32_t>(get.index(s.solids.size()));
-    const Vec3d place = get.vector();
-    if (get.ok()) s.bonds[vertex] = {solid, place};
-  }
-  s.found_inside.restore(get);
-  s.reach.restore(get);
-  return get.done();
+  ar(s.begun, s.books, s.bonds, s.found_inside, s.reach);
+  for (const auto& [v, bond] : s.bonds) ar.check(v < s.reach.surface().body_vertices() && bond.solid < s.solids.size());
 }
 
 }  // namespace glisson

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "base/past.h"
+#include "glisson/archive.h"
 
 namespace glisson {
 
@@ -23,44 +23,12 @@ void Instrument::drive(const InteractionStep& step) {
   pose_ = driver_->advance(step.time, step.h, {-forces_.total(), -forces_.torque});
 }
 
-void Instrument::save_motion(std::vector<double>& past) const {
-  PastWriter put(past);
-  for (const Pose* pose : {&pose_, &before_}) {
-    put(pose->position);
-    for (const auto& row : pose->axes.m) past.insert(past.end(), row.begin(), row.end());
-  }
-  for (const Vec3d* f : {&forces_.normal, &forces_.friction, &forces_.cutting, &forces_.torque}) put(*f);
-  put(force_depth_);
-  put(static_cast<double>(events_.size()));
-  for (const InstrumentEvent& e : events_) {
-    put(e.time), put(e.depth), put(static_cast<double>(e.event.size()));
-    past.insert(past.end(), e.event.begin(), e.event.end());
-  }
-  const std::vector<double> driver = driver_->past();
-  put(static_cast<double>(driver.size()));
-  past.insert(past.end(), driver.begin(), driver.end());
-}
+void archive(Archive& ar, Pose& pose) { ar(pose.position, pose.axes); }
+void archive(Archive& ar, InstrumentEvent& event) { ar(event.time, event.depth, event.event); }
 
-bool Instrument::restore_motion(std::span<const double>& past) {
-  PastReader get(past);
-  for (Pose* pose : {&pose_, &before_}) {
-    pose->position = get.vector();
-    for (auto& row : pose->axes.m) {
-      for (double& a : row) a = get.number();
-    }
-  }
-  for (Vec3d* f : {&forces_.normal, &forces_.friction, &forces_.cutting, &forces_.torque}) *f = get.vector();
-  force_depth_ = get.number();
-  constexpr std::size_t kEventNumbers = 3;  // or more
-  events_.assign(get.count(kEventNumbers), {});
-  for (InstrumentEvent& e : events_) {
-    e.time = get.number(), e.depth = get.number();
-    e.event.resize(get.count());
-    for (char& letter : e.event) letter = static_cast<char>(get.whole());
-  }
-  const std::span<const double> driver = get.take(get.count());
-  past = get.left();
-  return get.ok() && driver_->restore(driver);
+void Instrument::archive_motion(Archive& ar) {
+  ar(pose_, before_, forces_.normal, forces_.friction, forces_.cutting, forces_.torque, force_depth_, events_);
+  driver_->archive(ar);
 }
 
 }  // namespace glisson

@@ -24,6 +24,7 @@ struct Sym3 {
   friend Sym3 operator*(const Sym3& a, T s) { return {a.xx * s, a.yy * s, a.zz * s, a.xy * s, a.yz * s, a.zx * s}; }
   Sym3& operator+=(const Sym3& b) { return *this = *this + b; }
   friend bool operator==(const Sym3&, const Sym3&) = default;
+  void archive(auto& ar) { ar(xx, yy, zz, xy, yz, zx); }
 };
 
 template <class T>

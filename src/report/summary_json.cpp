@@ -7,24 +7,6 @@
 
 namespace glisson {
 
-namespace {
-
-std::string_view integrator_word(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::explicit_:
-      return "explicit";
-    case Integrator::semi_implicit:
-      return "semi_implicit";
-    case Integrator::implicit:
-      return "implicit";
-    case Integrator::static_:
-      return "static";
-  }
-  return "unknown";
-}
-
-}  // namespace
-
 std::string_view end_text(RunSummary::End end) {
   switch (end) {
     case RunSummary::End::finished:
@@ -82,7 +64,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
     json["first_inversion_s"] = s.first_inversion_s;
   else
     json["first_inversion_s"] = nullptr;
-  json["integrator"] = integrator_word(variant.simulation.integrator);
+  json["integrator"] = integrator_info(variant.simulation.integrator).word;
   json["precision"] = variant.simulation.precision == Precision::single_precision ? "single" : "double";
   json["threads"] = threads;
   json["state_hash"] = fmt::format("{:016x}", s.state_hash);

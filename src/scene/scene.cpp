@@ -81,18 +81,16 @@ bool is_viscous(const Variant& variant) {
 
 /// Complains where what acts on the body beside supports and tools meets an integrator that does not bear it.
 void check_integrator(const Variant& variant, const Node& experiment, Problems& problems) {
-  const Integrator integrator = variant.simulation.integrator;
-  const bool borne =
-      integrator == Integrator::explicit_ || (integrator == Integrator::semi_implicit && !is_viscous(variant));
+  const Capabilities can = capabilities(variant.simulation.integrator);
   const bool acts = !variant.instruments.empty() || !variant.capsules.empty() || variant.container;
-  if (borne || !acts) return;
+  if (can.bears(is_viscous(variant)) || !acts) return;
   const std::string what = !variant.instruments.empty() ? "[[instrument]]"
                            : variant.container          ? "[container]"
                                                         : "[[capsule]]";
   const Node& key = *experiment.find("motion")->find("integrator");
   problems.add(key.where, "motion.integrator",
-               "\"" + *key.text() + "\"" + (integrator == Integrator::semi_implicit ? " with viscous tissue" : "") +
-                   " bears no " + what +
+               "\"" + *key.text() + "\"" + (can.bears_interactions ? " with viscous tissue" : "") + " bears no " +
+                   what +
                    "; take \"explicit\", or \"semi_implicit\" with tissue that has no `viscosity_Pa_s` (Maxwell "
                    "branches may stay)");
 }

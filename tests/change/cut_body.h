@@ -16,8 +16,6 @@ struct CutPlane {
   Vec3d normal() const { return cross(across, along); }
 };
 
-inline Vec3d unit(const Vec3d& v) { return v * (1.0 / norm(v)); }
-
 inline CutPlane plane_at(const Vec3d& point, const Vec3d& normal) {
   const Vec3d n = unit(normal);
   const Vec3d along = unit(cross(n, std::abs(n.x) < 0.7 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}));

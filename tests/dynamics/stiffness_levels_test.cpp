@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "dynamics/step/stable_step.h"
+#include "glisson/archive.h"
 #include "support/bodies.h"
 
 namespace glisson {
@@ -176,12 +177,7 @@ TEST(StiffnessLevels, ForgetWhatIsRemovedAndSurviveACheckpoint) {
   StiffnessLevels levels(body), read(body);
   levels.meet(std::vector<StiffElement>{{30, 8.0, 5.0}, {7, 10.0, 10.0}, {2, 3.0, 3.0}}, base, base);
   levels.raise(1.0);
-  CheckpointWriter out;
-  levels.save(out);
-  std::stringstream file;
-  out.write(file);
-  CheckpointReader in(file);
-  read.load(in);
+  restore(read, archived(levels));
   EXPECT_EQ(read.beside(base, {0, 0}).k, levels.beside(base, {0, 0}).k);
   const std::vector<std::uint32_t> gone{7, 30};
   levels.remove(gone);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "forged_file.h"
+#include "glisson/archive.h"
 #include "glisson/scene/scene.h"
 #include "support.h"
 
@@ -68,7 +69,7 @@ void go_on(BuiltVariant& built) {
     }
     for (const ConstraintId c : built.tools) built.simulation.force(c);
     for (const ConstraintId c : built.supports) built.simulation.force(c);
-    for (const auto& x : built.instruments) x->past();
+    for (const auto& x : built.instruments) archived(*x);
     built.simulation.tet_fields();
     built.simulation.energies();
     static_cast<void>(built.step());

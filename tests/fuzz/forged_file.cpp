@@ -11,7 +11,7 @@
 namespace glisson::fuzz {
 namespace {
 
-constexpr std::size_t kHead = 20, kTail = 8;  // checkpoint.h
+constexpr std::size_t kHead = 16, kTail = 8;  // checkpoint.h
 constexpr std::size_t kMostEdits = 64;
 
 /// Numbers that an edit can name: of counts, places, times and forces those that break a careless reader.
@@ -65,10 +65,8 @@ std::string forged_content(const std::string& sound, std::uint8_t mode, std::str
 }
 
 std::string file_of(std::string_view content) {
-  CheckpointWriter writer;
-  for (const char c : content) writer.put(c);
   std::ostringstream file;
-  writer.write(file);
+  write_checkpoint(Archive(std::string(content)), file);
   return file.str();
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "glisson/archive.h"
 #include "glisson/instruments/tool_motion.h"
 
 namespace glisson {
@@ -168,10 +169,10 @@ TEST(HandDriver, ContinuesFromItsPast) {
   HandDriver a({}), b({});
   a.set_target({{0.01, 0.002, -0.03}, identity<double>()});
   for (int i = 0; i < 100; ++i) a.advance(0, kStep, {{0.1, 0, 0}, {}});
-  ASSERT_TRUE(b.restore(a.past()));
+  ASSERT_NO_THROW(restore(b, archived(a)));
   EXPECT_EQ(a.advance(0, kStep, {}).position, b.advance(0, kStep, {}).position);
   EXPECT_EQ(a.device_force(), b.device_force());
-  EXPECT_FALSE(b.restore(std::vector<double>(2, 0.0)));
+  EXPECT_THROW(restore(b, std::string(16, 0)), std::runtime_error);
 }
 
 }  // namespace

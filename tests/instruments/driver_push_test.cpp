@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "glisson/archive.h"
 #include "glisson/instruments/tool_motion.h"
 
 namespace glisson::driver_push_test {
@@ -137,10 +138,10 @@ TEST(PushDriver, ContinuesFromItsPast) {
   Bench a{.driver = PushDriver({}, push_of(1.0)), .stiffness = 1e7};
   for (int i = 0; i < 777; ++i) a.step();
   PushDriver b({}, push_of(1.0));
-  ASSERT_TRUE(b.restore(a.driver.past()));
+  ASSERT_NO_THROW(restore(b, archived(a.driver)));
   const Wrench answer{{0, 0, a.answer}, {}};
   EXPECT_EQ(a.driver.advance(a.time, kStep, answer).position, b.advance(a.time, kStep, answer).position);
-  EXPECT_FALSE(b.restore(std::vector<double>(3, 0.0)));
+  EXPECT_THROW(restore(b, std::string(24, 0)), std::runtime_error);
 }
 
 // Options that make no tool are refused.

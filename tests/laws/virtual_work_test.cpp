@@ -108,7 +108,9 @@ TEST(VirtualWork, IsAskedForWithoutATrace) {
     for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
       Driven asked(tissue, precision), left(tissue, precision);
       asked.fields();
-      EXPECT_EQ(asked.moving->past(), left.moving->past()) << tissue.name;
+      Archive a, b;
+      asked.moving->archive_past(a), left.moving->archive_past(b);
+      EXPECT_EQ(a.bytes(), b.bytes()) << tissue.name;
     }
   }
 }

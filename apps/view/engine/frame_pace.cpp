@@ -11,25 +11,6 @@ namespace {
 
 constexpr auto kSpin = std::chrono::microseconds(150);
 
-RunSummary::End end_of(StepStatus status, OnInversion on_inversion) {
-  using End = RunSummary::End;
-  switch (status) {
-    case StepStatus::ok:
-      return End::finished;
-    case StepStatus::inverted:
-      return on_inversion == OnInversion::stop ? End::stopped_inverted : End::finished;
-    case StepStatus::step_too_large:
-      return End::stopped_unstable;
-    case StepStatus::not_finite:
-      return End::stopped_not_finite;
-    case StepStatus::not_converged:
-      return End::stopped_not_converged;
-    case StepStatus::not_held:
-      return End::stopped_not_held;
-  }
-  return End::finished;
-}
-
 }  // namespace
 
 double seconds_between(WallClock::time_point a, WallClock::time_point b) {

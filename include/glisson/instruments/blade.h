@@ -38,14 +38,14 @@ class Blade final : public Instrument {
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;
   void constrain(const InteractionStep& step) override;
-  std::vector<double> past() const override;
-  bool restore(std::span<const double> past) override;
+  void archive(Archive& ar) override;
 
  private:
   /// A piece of the edge and the vertices of its tet.
   struct Piece {
     EdgePiece at;
     Tet vertices{};
+    void archive(Archive& ar);
   };
   void find_pieces();
   void resist(const InteractionStep& step, const Piece& piece, const Vec3d& velocity, const Vec3d& along);

@@ -50,6 +50,8 @@ struct CapsuleEvent {
   double area = 0.0;       ///< opened area of the surface at rest [m²]
 };
 
+void archive(Archive& ar, CapsuleEvent& event);
+
 /// A membrane on the surface of a body. Triangles keep their numbers.
 class Capsule final : public Interaction {
  public:
@@ -91,8 +93,7 @@ class Capsule final : public Interaction {
   std::span<const std::uint32_t> reach(double time, double h) override;
   void add_forces(const InteractionStep& step) override;
   double squared_frequency() const override;
-  std::vector<double> past() const override;
-  bool restore(std::span<const double> past) override;
+  void archive(Archive& ar) override;
 
  private:
   struct State;

@@ -64,8 +64,7 @@ class Container final : public Interaction {
   void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;
-  std::vector<double> past() const override;
-  bool restore(std::span<const double> past) override;
+  void archive(Archive& ar) override;
 
  private:
   struct State;

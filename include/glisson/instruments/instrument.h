@@ -21,6 +21,8 @@ struct Pose {
   Mat3d axes = identity<double>();  ///< columns: the tool's own x, y, z in space; a rotation
 };
 
+void archive(Archive& ar, Pose& pose);
+
 /// A force and a torque about the tool's origin.
 struct Wrench {
   Vec3d force{};   ///< [N]
@@ -43,6 +45,8 @@ struct InstrumentEvent {
   std::string event;   ///< contact, puncture, drop, inner puncture, withdrawal, release …
 };
 
+void archive(Archive& ar, InstrumentEvent& event);
+
 /// Moves a tool: along a path, by a push, or from another program.
 class ToolDriver {
  public:
@@ -54,9 +58,8 @@ class ToolDriver {
   virtual Pose advance(double time, double h, const Wrench& on_tool) = 0;
   /// Time at which the motion has ended [s]; none: it does not end by itself.
   virtual std::optional<double> end() const { return {}; }
-  /// For checkpoints, as Interaction's.
-  virtual std::vector<double> past() const { return {}; }
-  virtual bool restore(std::span<const double> past) { return past.empty(); }
+  /// Writes or reads its state, as Interaction's.
+  virtual void archive(Archive&) {}
 };
 
 /// A tool in contact with, or inside, the body.
@@ -81,9 +84,8 @@ class Instrument : public Interaction {
   /// first in constrain().
   void drive(const InteractionStep& step);
   void add_event(double time, double depth, std::string event) { events_.push_back({time, depth, std::move(event)}); }
-  void save_motion(std::vector<double>& past) const;
-  /// @param past  from which what was taken is cut off
-  bool restore_motion(std::span<const double>& past);
+  /// The state that all instruments have and that of the driver; those of each kind call it first.
+  void archive_motion(Archive& ar);
 
   Pose pose_, before_;
   ToolForces forces_;

@@ -93,8 +93,7 @@ class Needle final : public Instrument {
   std::span<const std::uint32_t> reach(double time, double h) override;
   void constrain(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;
-  std::vector<double> past() const override;
-  bool restore(std::span<const double> past) override;
+  void archive(Archive& ar) override;
 
  private:
   struct State;

@@ -102,8 +102,7 @@ class PushDriver final : public ToolDriver {
   Pose start() const override { return start_; }
   Pose advance(double time, double h, const Wrench& on_tool) override;
   std::optional<double> end() const override { return motion_.end; }
-  std::vector<double> past() const override;
-  bool restore(std::span<const double> past) override;
+  void archive(Archive& ar) override;
 
   Vec3d velocity() const { return velocity_; }  ///< [m/s]
 
@@ -149,8 +148,7 @@ class HandDriver final : public ToolDriver {
 
   Pose start() const override { return start_; }
   Pose advance(double time, double h, const Wrench& on_tool) override;
-  std::vector<double> past() const override;
-  bool restore(std::span<const double> past) override;
+  void archive(Archive& ar) override;
 
  private:
   Pose start_, target_;

@@ -306,6 +306,9 @@ struct RunSummary {
   std::string trouble;  ///< why the last step was not made and what to do; empty if all were
 };
 
+/// The end of a run whose step had this status; `finished` if the run continues.
+RunSummary::End end_of(StepStatus status, OnInversion on_inversion);
+
 /// Observes a run; called from the run's own thread, never on the hot path of a step.
 class RunObserver {
  public:

@@ -21,6 +21,8 @@
 
 namespace glisson {
 
+class Archive;
+
 /// An active vertex: one that a support, motion or interaction acts on.
 struct WatchedVertex {
   std::uint32_t vertex = 0;
@@ -99,10 +101,10 @@ class Interaction {
   /// Constraints add no stiffness.
   virtual double squared_frequency() const { return 0.0; }
 
-  /// What it knows of its past, for a checkpoint. restore() takes such numbers back to the last bit.
-  virtual std::vector<double> past() const { return {}; }
-  /// @return false where the numbers are not those of such an interaction
-  virtual bool restore(std::span<const double> past) { return past.empty(); }
+  /// Writes or reads its state for a checkpoint, to the last bit (glisson/archive.h), without what follows from the body and
+  /// its options. Reading comes after body_changed() has reported all changes that preceded the writing.
+  /// @throws std::runtime_error if the data are not the state of such an interaction
+  virtual void archive(Archive&) {}
 
  private:
   friend class Simulation;

@@ -22,6 +22,7 @@
 #include "glisson/material/tissue.h"
 #include "glisson/math.h"
 #include "glisson/mesh.h"
+#include "glisson/simulation/integrator.h"
 #include "glisson/simulation/interaction.h"
 #include "glisson/simulation/precision.h"
 #include "glisson/simulation/tet_fields.h"
@@ -30,14 +31,6 @@ namespace glisson {
 
 /// What happens to a run that meets an inverted tetrahedron (J ≤ 0).
 enum class OnInversion { go_on, stop };
-
-/// How a body is advanced in time: M a + γ v + f(u, v) = external (docs/integrators.md says when to take which).
-enum class Integrator {
-  explicit_,      ///< the paper's scheme; h* is set by stiffness and viscosity
-  semi_implicit,  ///< the same with viscosity taken at the end of the step: h* as if there were none, or more
-  implicit,       ///< Newton's method each step, stable at any step; in double
-  static_  ///< equilibrium under loads and motions, without inertia and viscosity; time is a parameter; in double
-};
 
 /// Time scheme of `implicit`.
 enum class TimeScheme {
@@ -141,6 +134,11 @@ struct Axes {
 struct ForceParts {
   Vec3d elastic, viscous, damping, inertial, gravity, load;
   Vec3d total() const { return elastic + viscous + damping + inertial + gravity + load; }
+  ForceParts& operator+=(const ForceParts& f) {
+    elastic += f.elastic, viscous += f.viscous, damping += f.damping;
+    inertial += f.inertial, gravity += f.gravity, load += f.load;
+    return *this;
+  }
 };
 
 /// Energies at force_time() [J]. Exact identity of the schemes, up to rounding and the tolerance of Newton's method:
@@ -316,7 +314,9 @@ class Simulation {
   /// Restores the state of a saved simulation; this one must have been built in the same way (mesh, tissues, options,
   /// constraints, loads, in their order). Changes of tissue and topology are restored; where constraints or loads were
   /// added after a split, make the same split before them here. The run continues with the same bytes.
-  /// @throws std::runtime_error for a file that is truncated, modified, or of another version, mesh or setup
+  /// @throws std::runtime_error for a file that is truncated, modified, of another mesh or setup, or of a body with fewer
+  ///         changes than this one has had. After a refusal time and motions may be those of the file, but mesh and body
+  ///         still belong together
   void load(std::istream& in);
 
   /// Shape measure q, equivalent shear strain and stress of every tet in the present state.

@@ -17,7 +17,7 @@
 
 #include "dynamics/interactions.h"
 #include "dynamics/schemes/scheme.h"
-#include "dynamics/state/energy_ledger.h"
+#include "dynamics/schemes/watched_kick.h"
 #include "dynamics/step/step_control.h"
 #include "engine/moving_body.h"
 
@@ -25,60 +25,51 @@ namespace glisson {
 
 class ExplicitScheme : public Scheme {
  public:
+  static constexpr IntegratorInfo kInfo{Integrator::explicit_,
+                                        "explicit",
+                                        "the paper's equation 4: displacements from forces at the start of the step",
+                                        {.bears_interactions = true, .viscosity_limits_step = true}};
+
   /// @throws std::invalid_argument as Simulation's constructor
   ExplicitScheme(Body body, const SimulationOptions& options) : ExplicitScheme(std::move(body), options, Drag::lags) {}
 
   StepResult step() override;
   double step_size() const override { return control_->step(); }
   double stable_step() const override { return control_->stable_step(); }
-  double force_time() const override { return kick_time_; }
+  double force_time() const override { return kick_.time(); }
   std::span<const Vec3d> displacement() const override { return read_state().displacement; }
   std::span<const Vec3d> velocity() const override { return read_state().velocity; }
-  const Energies& energies() const override { return ledger_.now(); }
   BranchMemory branch_memory(std::size_t block) const override { return moving_->branch_memory(block); }
-  void save(CheckpointWriter& out) const override;
-  void load(CheckpointReader& in) override;
   /// What the constraint exerted on the tissue at the last kick.
   ForceParts force(ConstraintId constraint) const override;
   void attach(std::shared_ptr<Interaction> interaction, const BodyView& body) override;
   bool has_interactions() const override { return !interactions_.empty(); }
   void tell_change(const BodyView& body, std::span<const std::uint32_t> origins) override;
+  Vec3d displacement_of(std::uint32_t vertex) const override { return moving_->displacement_of(vertex); }
+  Vec3d velocity_of(std::uint32_t vertex) const override { return moving_->velocity_of(vertex); }
+  void archive_motion(Archive& ar) override;
 
  protected:
   ExplicitScheme(Body body, const SimulationOptions& options, Drag drag);
 
-  /// What a watched vertex had at the last kick; all 0 for one that was not watched then.
-  struct Kicked {
-    double mass = 0.0, damping = 0.0;
-    Vec3d velocity_before, load, contact;  ///< contact: force of the interactions
-  };
-
   /// v₊ of the watched vertices: as if they were free, then what motions ask for.
   virtual void kick(double h);
-  void kick_watched(double h);
-  void impose_motions(double h);
 
-  Vec3d displacement_of(std::uint32_t vertex) const override { return moving_->displacement_of(vertex); }
-  Vec3d velocity_of(std::uint32_t vertex) const override { return moving_->velocity_of(vertex); }
   void acts_on(std::span<const std::uint32_t> vertices) override { watch(vertices); }
   void take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
   void take_over(const BodyChange& change) override;
   void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) override;
-  void take_out(double kinetic, double elastic) override { ledger_.take_out(kinetic, elastic); }
+  void take_body(Archive& ar) override;
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override { return moving_->branch_stresses(block); }
-  std::vector<double> past() const override { return moving_->past(); }
+  std::string past() override;
   void take_tissues(const TissueChange& change) override;
   void take_back_tissues(const TissueChange& change) override { follow_tissues(change); }
-  double booked_behind() const override { return ledger_.pending_step(); }
-  void bring_in(double kinetic, double elastic) override { ledger_.bring_in(kinetic, elastic); }
   void watch(std::span<const std::uint32_t> vertices);
   void begin_interactions(double h);
-  void constrain_interactions(double h);
+  void constrain_interactions();
 
   std::unique_ptr<MovingBody> moving_;
-  std::vector<Kicked> kicked_;                      ///< per watched vertex
-  std::vector<std::vector<std::uint32_t>> places_;  ///< per constraint: where its vertices are among those watched
-  Vec3d gravity_{};                                 ///< at the last kick
+  WatchedKick kick_{state_};
   Interactions interactions_;
 
  private:
@@ -93,21 +84,15 @@ class ExplicitScheme : public Scheme {
   void build_anew(const TissueChange& change);
   std::span<const ShapeRate> shape_rates();
   void take_stiffness(const Advance& seen);
-  void load_stiff(CheckpointReader& in);
-  void find_places();
-  ForceParts watched_force(std::size_t place, const Axes& axes) const;
-  KickWork watched_work() const;
+  std::vector<std::uint32_t> watched_vertices() const;
   void book(double h, const KickWork& free);
 
   std::vector<double> stiffening_;   ///< per tissue block, at the last evaluation
   std::vector<StiffElement> stiff_;  ///< what was listed then
   std::vector<ShapeRate> shape_rates_;
   std::unique_ptr<StepControl> control_;
-  std::vector<Vec3d> mobility_;  ///< per watched vertex [1/kg]
   mutable StateCopy copy_;
-  double kick_step_ = 0.0, kick_time_ = 0.0;  ///< of the last kick
-  std::string message_;                       ///< why the last step was not made
-  EnergyLedger ledger_;
+  std::string message_;  ///< why the last step was not made
 };
 
 }  // namespace glisson

@@ -1,22 +1,45 @@
 #include "dynamics/schemes/make_scheme.h"
 
+#include <algorithm>
+#include <array>
+
 #include "dynamics/schemes/explicit_scheme.h"
 #include "dynamics/schemes/implicit_scheme.h"
 #include "dynamics/schemes/semi_implicit_scheme.h"
 
 namespace glisson {
+namespace {
+
+using Make = std::unique_ptr<Scheme> (*)(Body, const SimulationOptions&);
+
+/// The integrators, in the order of their words.
+template <class... Schemes>
+struct List {
+  static constexpr std::array kInfos{Schemes::kInfo...};
+  static constexpr std::array<Make, sizeof...(Schemes)> kMakes{
+      [](Body body, const SimulationOptions& options) -> std::unique_ptr<Scheme> {
+        return std::make_unique<Schemes>(std::move(body), options);
+      }...};
+};
+
+using All = List<ExplicitScheme,      //
+                 SemiImplicitScheme,  //
+                 ImplicitScheme,      //
+                 StaticScheme>;
+
+std::size_t place_of(Integrator integrator) {
+  const auto is_it = [=](const IntegratorInfo& info) { return info.integrator == integrator; };
+  return static_cast<std::size_t>(std::find_if(All::kInfos.begin(), All::kInfos.end(), is_it) - All::kInfos.begin());
+}
+
+}  // namespace
+
+std::span<const IntegratorInfo> integrators() { return All::kInfos; }
+
+const IntegratorInfo& integrator_info(Integrator integrator) { return All::kInfos.at(place_of(integrator)); }
 
 std::unique_ptr<Scheme> make_scheme(Body body, const SimulationOptions& options) {
-  switch (options.integrator) {
-    case Integrator::semi_implicit:
-      return std::make_unique<SemiImplicitScheme>(std::move(body), options);
-    case Integrator::explicit_:
-      return std::make_unique<ExplicitScheme>(std::move(body), options);
-    case Integrator::implicit:
-    case Integrator::static_:
-      return std::make_unique<ImplicitScheme>(std::move(body), options);
-  }
-  return nullptr;
+  return All::kMakes.at(place_of(options.integrator))(std::move(body), options);
 }
 
 }  // namespace glisson

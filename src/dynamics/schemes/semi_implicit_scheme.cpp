@@ -8,13 +8,13 @@
 namespace glisson {
 
 SemiImplicitScheme::SemiImplicitScheme(Body body, const SimulationOptions& options)
-    : ExplicitScheme(std::move(body), options, Drag::at_once), viscous_(ViscousSystem::needed(body_)) {
+    : ExplicitScheme(std::move(body), options, Drag::at_once), viscous_(ViscousSystem::needed(state_.body)) {
   watch_all_if_viscous();
 }
 
 void SemiImplicitScheme::watch_all_if_viscous() {
   if (!viscous_) return;
-  std::vector<std::uint32_t> all(body_.vertex_count);
+  std::vector<std::uint32_t> all(state_.body.vertex_count);
   std::iota(all.begin(), all.end(), 0U);
   watch(all);
 }
@@ -42,46 +42,35 @@ void SemiImplicitScheme::require_tissues(const BlockTissues& tissues) const {
 
 void SemiImplicitScheme::take_tissues(const TissueChange& change) {
   ExplicitScheme::take_tissues(change);
-  viscous_ = ViscousSystem::needed(body_);
+  viscous_ = ViscousSystem::needed(state_.body);
   watch_all_if_viscous();
   built_for_ = 0.0;
 }
 
+std::size_t SemiImplicitScheme::holding() const {
+  const auto holds = [](const auto& base) { return !base.empty(); };
+  return static_cast<std::size_t>(std::count_if(state_.base.begin(), state_.base.end(), holds));
+}
+
 void SemiImplicitScheme::build(double h) {
-  std::vector<char> held(3 * body_.vertex_count, 0);
-  for (std::size_t i = 0; i < body_.vertex_count; ++i) {
-    if (!(body_.masses[i] > 0.0)) held[3 * i] = held[3 * i + 1] = held[3 * i + 2] = 1;
-  }
-  built_holding_ = 0;
-  for (std::size_t c = 0; c < base_.size(); ++c) {
-    if (!holds(c)) continue;
-    ++built_holding_;
-    for (const std::uint32_t v : constraints_.all()[c].vertices) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (has_axis(constraints_.all()[c].axes, axis)) held[3 * v + axis] = 1;
-      }
-    }
-  }
-  for (auto* field : {&impulse_, &change_, &drag_}) field->assign(body_.vertex_count, Vec3d{});
-  system_.build(body_, gamma_, h, std::move(held));
+  built_holding_ = holding();
+  for (auto* field : {&impulse_, &change_, &drag_}) field->assign(state_.body.vertex_count, Vec3d{});
+  system_.build(state_.body, state_.gamma, h, state_.held_components());
   built_for_ = h;
 }
 
-void SemiImplicitScheme::save(CheckpointWriter& out) const {
-  ExplicitScheme::save(out);
-  out.put(built_for_);
-  out.put(system_.last());
-}
-
-void SemiImplicitScheme::load(CheckpointReader& in) {
-  ExplicitScheme::load(in);
-  const auto h = in.get<double>();
-  std::vector<double> last;
-  in.get(last);
+void SemiImplicitScheme::archive_motion(Archive& ar) {
+  ExplicitScheme::archive_motion(ar);
+  double h = built_for_;
+  std::vector<double> last = system_.last();
+  ar(h, last);
+  if (!ar.reads()) return;
+  viscous_ = ViscousSystem::needed(state_.body);
+  ar.check(!viscous_ || moving_->watched().size() == state_.body.vertex_count);
   built_for_ = 0.0;
   if (!(h > 0.0)) return;
   build(h);
-  if (!system_.set_last(last)) CheckpointReader::fail();
+  ar.check(system_.set_last(last));
 }
 
 void SemiImplicitScheme::kick(double h) {
@@ -89,31 +78,28 @@ void SemiImplicitScheme::kick(double h) {
     ExplicitScheme::kick(h);
     return;
   }
-  const std::size_t holding = static_cast<std::size_t>(
-      std::count_if(base_.begin(), base_.end(), [](const auto& base) { return !base.empty(); }));
-  if (h != built_for_ || holding != built_holding_) build(h);
+  if (h != built_for_ || holding() != built_holding_) build(h);
   const std::span<WatchedVertex> watched = moving_->watched();  // all vertices, in their order
-  const std::span<const Vec3d> loads = loads_.at(time_);
+  const std::span<const Vec3d> loads = state_.loads.at(state_.time);
   for (std::size_t i = 0; i < watched.size(); ++i) {
     WatchedVertex& w = watched[i];
-    const double m = body_.masses[i], gamma = gamma_[i];
-    const Vec3d load = m > 0.0 ? loads[i] : Vec3d{};
-    kicked_[i] = {m, gamma, w.velocity, load, {}};
-    impulse_[i] = (w.elastic + w.viscous + gravity_ * m + load + w.velocity * -gamma) * h;
+    const Vec3d load = kick_.keep(i, w, loads);
+    const auto& [m, gamma, before, applied, contact] = kick_.all()[i];
+    impulse_[i] = (w.elastic + w.viscous + kick_.gravity() * m + load + w.velocity * -gamma) * h;
   }
-  impose_motions(h);
+  kick_.impose_motions(watched);
   for (std::size_t i = 0; i < watched.size(); ++i) {  // held components of the change are known now, others 0
-    if (!(body_.masses[i] > 0.0)) watched[i].velocity = {};
-    change_[i] = watched[i].velocity - kicked_[i].velocity_before;
+    if (!(state_.body.masses[i] > 0.0)) watched[i].velocity = {};
+    change_[i] = watched[i].velocity - kick_.all()[i].velocity_before;
   }
   system_.solve(impulse_, change_);
   system_.held_drag(change_, drag_);
   for (std::size_t i = 0; i < watched.size(); ++i) {
     WatchedVertex& w = watched[i];
-    const double inertia = kicked_[i].mass + h * kicked_[i].damping;
+    const double inertia = kick_.all()[i].mass + h * kick_.all()[i].damping;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const bool free = system_.is_free(3 * i + axis);
-      if (free) w.velocity[axis] = kicked_[i].velocity_before[axis] + change_[i][axis];
+      if (free) w.velocity[axis] = kick_.all()[i].velocity_before[axis] + change_[i][axis];
       // C (v₊ − v₋): of free components from the equation itself, so that the books are exact
       w.viscous[axis] -= free ? (impulse_[i][axis] - inertia * change_[i][axis]) / h : drag_[i][axis];
     }

@@ -16,11 +16,15 @@ namespace glisson {
 
 class SemiImplicitScheme final : public ExplicitScheme {
  public:
+  static constexpr IntegratorInfo kInfo{Integrator::semi_implicit,
+                                        "semi_implicit",
+                                        "the same, viscosity taken at the end of the step",
+                                        {.bears_interactions = true, .bears_them_in_viscous_tissue = false}};
+
   /// @throws std::invalid_argument as Simulation's constructor
   SemiImplicitScheme(Body body, const SimulationOptions& options);
 
-  void save(CheckpointWriter& out) const override;
-  void load(CheckpointReader& in) override;
+  void archive_motion(Archive& ar) override;
   void attach(std::shared_ptr<Interaction> interaction, const BodyView& body) override;
 
  private:
@@ -29,6 +33,7 @@ class SemiImplicitScheme final : public ExplicitScheme {
   void require_tissues(const BlockTissues& tissues) const override;
   void take_tissues(const TissueChange& change) override;
   void watch_all_if_viscous();
+  std::size_t holding() const;
   void build(double h);
 
   bool viscous_;  ///< whether C is not 0; the kick is the explicit one where it is

@@ -231,20 +231,14 @@ void TangentSystem::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) c
 }
 
 /// The matrix that was factorised, and for which terms: iterations go on with it to the last bit.
-void TangentSystem::save(CheckpointWriter& out) const {
-  out.put(has_factor_), out.put(current_), out.put(terms_.rate), out.put(terms_.weight), out.put(state_.since);
-  out.put(diagonal_);
-  if (has_factor_) out.put(std::vector<double>(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros()));
-}
-
-void TangentSystem::load(CheckpointReader& in) {
-  in.get(has_factor_), in.get(current_), in.get(terms_.rate), in.get(terms_.weight), in.get(state_.since);
-  in.get(diagonal_);
-  if (!diagonal_.empty() && 3 * diagonal_.size() != free_.size()) CheckpointReader::fail();
+void TangentSystem::archive(Archive& ar) {
+  ar(has_factor_, current_, terms_.rate, terms_.weight, state_.since, diagonal_);
+  ar.check(diagonal_.empty() || 3 * diagonal_.size() == free_.size());
   if (!has_factor_) return;
-  find_pattern();
-  std::vector<double> values(static_cast<std::size_t>(matrix_.nonZeros()));
-  in.get_same_size(values);
+  if (ar.reads()) find_pattern();
+  std::vector<double> values(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros());
+  ar.same_size(values);
+  if (!ar.reads()) return;
   std::copy(values.begin(), values.end(), matrix_.valuePtr());
   factor_.factorize(matrix_);
   has_factor_ = factor_.info() == Eigen::Success;

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "dynamics/solvers/krylov.h"
-#include "dynamics/state/checkpoint.h"
 #include "element/tissue_operator.h"
+#include "glisson/archive.h"
 #include "glisson/simulation/simulation.h"
 
 namespace glisson {
@@ -48,9 +48,8 @@ class TangentSystem {
   /// Takes A at a state.
   /// @param semidefinite  as TissueOperator::linearise
   void linearise(const TissueState& state, const Terms& terms, bool semidefinite);
-  void save(CheckpointWriter& out) const;
-  /// After set_free, with the same components as when it was saved.
-  void load(CheckpointReader& in);
+  /// Read after set_free, with the same components as when it was written.
+  void archive(Archive& ar);
   /// Whether A may be kept while its terms do not change: every tissue is linear.
   bool is_linear() const { return linear_; }
 

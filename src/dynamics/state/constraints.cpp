@@ -53,6 +53,31 @@ std::vector<std::vector<std::size_t>> Constraints::add_copies(std::span<const st
   return copied;
 }
 
+void Constraints::archive(Archive& ar, std::size_t vertices) {
+  auto count = static_cast<std::uint64_t>(all_.size());
+  ar(count);
+  ar.check(count == all_.size());
+  std::vector<char> held(3 * vertices, 0);
+  for (Constraint& c : all_) {
+    const Constraint here = c;
+    ar(c.vertices, c.axes.x, c.axes.y, c.axes.z, c.from);
+    if (!ar.reads()) continue;
+    const std::size_t known = here.vertices.size();
+    ar.check(here.axes.x == c.axes.x && here.axes.y == c.axes.y && here.axes.z == c.axes.z && here.from == c.from &&
+             known <= c.vertices.size());
+    ar.check(std::equal(here.vertices.begin(), here.vertices.end(), c.vertices.begin()));
+    for (const std::uint32_t v : c.vertices) {
+      ar.check(v < vertices);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!has_axis(c.axes, axis)) continue;
+        ar.check(held[3 * v + axis] == 0);
+        held[3 * v + axis] = 1;
+      }
+    }
+  }
+  if (ar.reads()) held_ = std::move(held);
+}
+
 const Constraint& Constraints::at(ConstraintId id) const {
   if (id.index < all_.size()) return all_[id.index];
   throw std::invalid_argument("constraint id " + std::to_string(id.index) + " does not exist; the simulation has " +

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "glisson/archive.h"
 #include "glisson/simulation/simulation.h"
 
 namespace glisson {
@@ -29,6 +30,10 @@ class Constraints {
   /// Lets new vertices, numbered on from the last, follow what holds the vertices they are copies of.
   /// @return per constraint: which of its vertices have copies, as positions in its list; the copies come last in it
   std::vector<std::vector<std::size_t>> add_copies(std::span<const std::uint32_t> origins);
+
+  /// What came with splits. @throws std::runtime_error where what is read held or drove other vertices before
+  /// @param vertices  of the body
+  void archive(Archive& ar, std::size_t vertices);
 
   std::span<const Constraint> all() const { return all_; }
   const Constraint& at(ConstraintId id) const;

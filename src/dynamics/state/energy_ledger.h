@@ -9,9 +9,14 @@
 #pragma once
 
 #include "engine/moving_body.h"
+#include "glisson/archive.h"
 #include "glisson/simulation/simulation.h"
 
 namespace glisson {
+
+inline void archive(Archive& ar, Energies& e) {
+  ar(e.elastic, e.kinetic, e.dissipated, e.numerical, e.work_tools, e.work_loads, e.initial, e.removed, e.changed);
+}
 
 class EnergyLedger {
  public:
@@ -50,6 +55,9 @@ class EnergyLedger {
   double pending_step() const { return pending_step_; }
 
   const Energies& now() const { return now_; }
+  /// What a step of another scheme has booked by itself.
+  Energies& books() { return now_; }
+  void archive(Archive& ar) { ar(now_, pending_, pending_step_); }
 
  private:
   void add(double weight, const KickPower& p) {

@@ -36,6 +36,20 @@ void Loads::add_copies(std::span<const std::uint32_t> origins) {
   }
 }
 
+void Loads::archive(Archive& ar, std::size_t vertices) {
+  auto count = static_cast<std::uint64_t>(loads_.size());
+  ar(count);
+  ar.check(count == loads_.size());
+  for (Load& load : loads_) {
+    const std::vector<std::uint32_t> here = load.vertices;
+    ar.all_below(load.vertices, vertices);
+    ar(load.share);
+    ar.check(load.share.size() == load.vertices.size() && here.size() <= load.vertices.size());
+    ar.check(std::equal(here.begin(), here.end(), load.vertices.begin()));
+  }
+  force_.resize(vertices);
+}
+
 std::span<const Vec3d> Loads::at(double time) {
   if (loads_.empty()) return force_;
   std::fill(force_.begin(), force_.end(), Vec3d{});

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "glisson/archive.h"
 #include "glisson/simulation/simulation.h"
 
 namespace glisson {
@@ -19,6 +20,10 @@ class Loads {
 
   /// New vertices, numbered on from the last, share the loads of those they are copies of by equal parts.
   void add_copies(std::span<const std::uint32_t> origins);
+
+  /// What came with splits. @throws std::runtime_error where what is read loaded other vertices before
+  /// @param vertices  of the body
+  void archive(Archive& ar, std::size_t vertices);
 
   /// Forces at time t [N], one per vertex.
   std::span<const Vec3d> at(double time);

@@ -43,7 +43,7 @@ MassScaling scale_masses(Body& body, double step, double viscosity) {
 
 MassScaling scaled_masses(Body& body, const SimulationOptions& o) {
   if (!o.mass_scaling_step) return {};
-  return scale_masses(body, *o.mass_scaling_step, o.integrator == Integrator::explicit_ ? 1.0 : 0.0);
+  return scale_masses(body, *o.mass_scaling_step, capabilities(o.integrator).viscosity_limits_step ? 1.0 : 0.0);
 }
 
 std::vector<LimitingTet> limiting_tets(const Body& body, std::size_t most, double viscosity) {

@@ -31,6 +31,10 @@ PartBound::PartBound(const Body& body, const detail::VertexStars& stars, std::ve
   }
   for (std::uint32_t e = 0; e < asks_.size(); ++e) ask(e);
   for (std::uint32_t v = 0; v < asked_.size(); ++v) weigh(v);
+  bound_all();
+}
+
+void PartBound::bound_all() {
   for (std::uint32_t e = 0; e < own_.size(); ++e) bound(e);
   std::vector<std::uint32_t> all(own_.size());
   std::iota(all.begin(), all.end(), 0U);
@@ -128,6 +132,11 @@ void PartBound::change(const BodyChange& change) {
   around.erase(std::unique(around.begin(), around.end()), around.end());
   for (const std::uint32_t e : around) bound(e);
   find_least(around);
+}
+
+void PartBound::archive(Archive& ar) {
+  ar.same_size(asked_), ar.same_size(allowed_);
+  if (ar.reads()) bound_all();
 }
 
 double PartBound::step() const {

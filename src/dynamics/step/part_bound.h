@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "element/body_change.h"
+#include "glisson/archive.h"
 
 namespace glisson {
 
@@ -29,10 +30,14 @@ class PartBound {
   /// where asked/mass has left what was allowed for.
   void change(const BodyChange& change);
 
+  /// What its changes have left. @throws std::runtime_error where it is that of another body
+  void archive(Archive& ar);
+
   /// h* of the body at rest stiffness, from below, nodal damping left out [s].
   double step() const;
 
  private:
+  void bound_all();
   void ask(std::uint32_t element);
   void weigh(std::uint32_t vertex);
   void take_out(const BodyChange& change, std::vector<std::uint32_t>& around);

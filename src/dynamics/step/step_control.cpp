@@ -17,7 +17,7 @@ constexpr std::size_t kSearchesKept = 4;  ///< since steps were chosen anew
 
 }  // namespace
 
-StepControl::StepControl(const Body& body, std::span<const double> nodal_damping, Drag drag,
+StepControl::StepControl(const Body& body, const std::vector<double>& nodal_damping, Drag drag,
                          const SimulationOptions& options, std::span<const double> stiffening)
     : body_(body), nodal_damping_(nodal_damping), drag_(drag), automatic_(!options.step),
       enforce_(options.enforce_stability), exact_asked_(options.exact_steps),
@@ -135,13 +135,11 @@ void StepControl::prepare_changes(const detail::VertexStars& stars) {
   part_bound_ = std::make_unique<PartBound>(body_, stars, viscosity_at(one));
 }
 
-void StepControl::mesh_changed(std::span<const double> nodal_damping, const BodyChange& change,
-                               const detail::VertexStars& stars) {
-  if (nodal_damping.size() != nodal_damping_.size()) {
+void StepControl::mesh_changed(const BodyChange& change, const detail::VertexStars& stars) {
+  if (!change.origins.empty()) {
     guess_ = pace_guess_ = {};
     keep_guess();
   }
-  nodal_damping_ = nodal_damping;
   if (damping_rate_ > 0.0) damping_rate_ = largest_damping_rate();  // a body without damping gets none by a cut
   forget_searches();
   if (part_bound_ == nullptr) prepare_changes(stars);
@@ -252,34 +250,27 @@ void StepControl::tissues_changed(std::span<const double> stiffening, bool undef
   start_anew();
 }
 
-void StepControl::save(CheckpointWriter& out) const {
-  out.put(step_), out.put(window_), out.put(in_window_), out.put(unchecked_), out.put(caution_);
-  out.put(shape_step_), out.put(held_);
-  for (const Limits& l : {limits_, rest_limits_, searched_.limits}) out.put_doubles(l);
-  for (const auto* list : {&validated_, &rest_level_, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
-    out.put(*list);
-  }
-  for (const StabilityGuess* g : {&guess_, &pace_guess_, &rest_guess_, &rest_pace_guess_}) {
-    out.put(g->mode), out.put(g->step);
-  }
-  out.put(probe_), out.put(since_probe_), out.put(probes_);
-  levels_.save(out);
+void StepControl::body_read(const detail::VertexStars* stars) {
+  damping_rate_ = largest_damping_rate();
+  exact_ = search_is_needed();
+  forget_searches();
+  part_bound_.reset();
+  if (stars != nullptr) prepare_changes(*stars);
 }
 
-void StepControl::load(CheckpointReader& in) {
-  in.get(step_), in.get(window_), in.get(in_window_), in.get(unchecked_), in.get(caution_);
-  in.get(shape_step_), in.get(held_);
-  for (Limits* l : {&limits_, &rest_limits_, &searched_.limits}) in.get_doubles(*l);
+void StepControl::archive(Archive& ar) {
+  ar(step_, window_, in_window_, unchecked_, caution_, shape_step_, held_, limits_, rest_limits_, searched_.limits);
   for (auto* list : {&validated_, &rest_level_, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
-    in.get_same_size(*list);
+    ar.same_size(*list);
   }
   for (StabilityGuess* g : {&guess_, &pace_guess_, &rest_guess_, &rest_pace_guess_}) {
-    in.get(g->mode), in.get(g->step);
-    if (!g->mode.empty() && g->mode.size() != 3 * body_.vertex_count) CheckpointReader::fail();
+    ar(g->mode, g->step);
+    ar.check(g->mode.empty() || g->mode.size() == 3 * body_.vertex_count);
   }
-  in.get(probe_), in.get(since_probe_), in.get(probes_);
-  searches_.clear(), searches_made_ = kSearchesKept;
-  levels_.load(in);
+  ar(probe_, since_probe_, probes_, levels_);
+  if (part_bound_ != nullptr) ar(*part_bound_);
+  if (!ar.reads()) return;
+  searches_made_ = kSearchesKept;
   take_stiff();
 }
 

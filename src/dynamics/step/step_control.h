@@ -26,11 +26,11 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/state/checkpoint.h"
 #include "dynamics/step/part_bound.h"
 #include "dynamics/step/stable_step.h"
 #include "dynamics/step/stiffness_levels.h"
 #include "element/body_change.h"
+#include "glisson/archive.h"
 #include "glisson/simulation/simulation.h"
 
 namespace glisson {
@@ -49,10 +49,10 @@ struct ShapeRate {
 
 class StepControl {
  public:
-  /// @param nodal_damping  γ_i per vertex [kg/s]; not copied: must last until mesh_changed names another
+  /// @param nodal_damping  γ_i per vertex [kg/s]; not copied: must outlive this, and follow the body
   /// @param options  step, enforce_stability and exact_steps of them
   /// @throws std::invalid_argument where the step given is not positive or above h*, unless stability is not enforced
-  StepControl(const Body& body, std::span<const double> nodal_damping, Drag drag, const SimulationOptions& options,
+  StepControl(const Body& body, const std::vector<double>& nodal_damping, Drag drag, const SimulationOptions& options,
               std::span<const double> stiffening);
 
   /// Takes in the present stiffness; lowers an automatic step where needed.
@@ -67,7 +67,7 @@ class StepControl {
 
   /// After elements were removed, split from each other or reshaped: h* falls to a bound from single elements
   /// (part_bound.h). A given step above that is checked against h* itself by the next accept(), which is slow.
-  void mesh_changed(std::span<const double> nodal_damping, const BodyChange& change, const detail::VertexStars& stars);
+  void mesh_changed(const BodyChange& change, const detail::VertexStars& stars);
 
   /// After tissues of the body have changed: an automatic step is found anew. Where a search takes too long it comes from
   /// the last one: with moduli at most r, viscosity at most c and densities at least d times those it was made for,
@@ -76,8 +76,10 @@ class StepControl {
   /// @throws std::invalid_argument where a given step is above h*; nothing has changed then
   void tissues_changed(std::span<const double> stiffening, bool undeformed);
 
-  void save(CheckpointWriter& out) const;
-  void load(CheckpointReader& in);
+  bool follows_changes() const { return part_bound_ != nullptr; }
+  /// The body has been read; archive comes next. @param stars  where follows_changes() was true when it was written
+  void body_read(const detail::VertexStars* stars);
+  void archive(Archive& ar);
 
   /// A state is set from outside: steps are chosen as if the body had been made in it.
   void state_set();
@@ -111,6 +113,7 @@ class StepControl {
   /// viscosity hides what a longer step gets wrong.
   struct Limits {
     double stable = 0.0, pace = 0.0;  ///< [s]
+    void archive(Archive& ar) { ar(stable, pace); }
   };
   /// What a search was made for.
   struct Searched {
@@ -176,7 +179,7 @@ class StepControl {
   void come_back();
 
   const Body& body_;
-  std::span<const double> nodal_damping_;
+  const std::vector<double>& nodal_damping_;
   Drag drag_;
   bool automatic_, enforce_, exact_asked_, exact_;
   bool scales_masses_;

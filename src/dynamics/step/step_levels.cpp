@@ -105,7 +105,7 @@ bool StepControl::is_violent(const StiffElement& element) const {
 /// How many times as stiff an element could be before it alone asked for a shorter step.
 double StepControl::slack(const StiffElement& stiff, double step) const {
   const ElementRest& rest = body_.rest[stiff.element];
-  const std::array<Vec3d, 4> s{-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
+  const std::array<Vec3d, 4> s = shape_gradients(rest);
   double per_mass = 0.0;
   for (std::size_t a = 0; a < 4; ++a) per_mass += dot(s[a], s[a]) / body_.masses[body_.elements[stiff.element][a]];
   const double modulus = stiff.norm * modulus_bound(body_.block_of(stiff.element).elastic);

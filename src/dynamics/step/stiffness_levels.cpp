@@ -179,27 +179,18 @@ void StiffnessLevels::clear() {
   meetings_ = 0;
 }
 
-void StiffnessLevels::save(CheckpointWriter& out) const {
-  out.put(static_cast<std::uint64_t>(members_.size()));
-  for (const Member& m : members_) {
-    out.put(m.element), out.put(m.met);
-    for (const double d : {m.ratio, m.norm, m.seen_ratio, m.seen_norm, m.last, m.before, m.part}) out.put(d);
+void StiffnessLevels::archive(Archive& ar) {
+  std::vector<Member> members = members_;
+  ar(members);
+  if (ar.reads()) {
+    clear();
+    for (const Member& m : members) {
+      ar.check(m.element < body_.elements.size() && (place_.empty() || place_[m.element] == 0));
+      const std::uint32_t block = member(m.element).block;
+      members_.back() = m, members_.back().block = block;
+    }
   }
-  out.put(meetings_);
-}
-
-void StiffnessLevels::load(CheckpointReader& in) {
-  clear();
-  const auto n = in.get<std::uint64_t>();
-  if (n > body_.elements.size()) CheckpointReader::fail();
-  for (std::uint64_t i = 0; i < n; ++i) {
-    const auto element = in.get<std::uint32_t>();
-    if (element >= body_.elements.size()) CheckpointReader::fail();
-    Member& m = member(element);
-    in.get(m.met);
-    for (double* d : {&m.ratio, &m.norm, &m.seen_ratio, &m.seen_norm, &m.last, &m.before, &m.part}) in.get(*d);
-  }
-  in.get(meetings_);
+  ar(meetings_);
 }
 
 }  // namespace glisson

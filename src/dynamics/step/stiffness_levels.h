@@ -17,9 +17,9 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/state/checkpoint.h"
 #include "element/body.h"
 #include "element/stiff_element.h"
+#include "glisson/archive.h"
 
 namespace glisson {
 
@@ -63,8 +63,7 @@ class StiffnessLevels {
   /// Forgets elements that are gone.
   void remove(std::span<const std::uint32_t> elements);
   void clear();
-  void save(CheckpointWriter& out) const;
-  void load(CheckpointReader& in);
+  void archive(Archive& ar);
 
  private:
   struct Member {
@@ -74,6 +73,7 @@ class StiffnessLevels {
     double last = 0.0, before = 0.0;           ///< ratio at the last two meetings
     double part = 1.0;                         ///< of what all took, at most; 1 until it is known
     std::uint64_t met = 0;                     ///< number of the last
+    void archive(Archive& ar) { ar(element, met, ratio, norm, seen_ratio, seen_norm, last, before, part); }
   };
   Member& member(std::uint32_t element);
   static bool is_above(const Member& m, double base);

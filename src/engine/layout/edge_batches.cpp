@@ -63,7 +63,7 @@ std::vector<Edge> assembled(const Body& body, const TissueBlock& block, std::spa
     const std::size_t from = share >> kCornerBits & 3U, to = share & 3U;
     const std::uint32_t i = local[place][from], j = local[place][to];
     const ElementRest& rest = body.rest[elements[place]];
-    const std::array<Vec3d, 4> s{-(rest.s[0] + rest.s[1] + rest.s[2]), rest.s[0], rest.s[1], rest.s[2]};
+    const std::array<Vec3d, 4> s = shape_gradients(rest);
     const Mat3d tensor = edge_tensor(block, rest.volume, s[from], s[to]);
     if (edges.empty() || edges.back().i != i || edges.back().j != j) {
       edges.push_back({i, j, tensor});

@@ -80,6 +80,7 @@ void SubmeshBody::lay_out_touched(const BodyChange& change) {
 void SubmeshBody::apply(const BodyChange& change, const detail::VertexStars& stars,
                         std::span<const double> nodal_damping) {
   if (part_of_element_.empty()) find_parts();
+  as_built_ = as_built_ && change.touched.empty();
   take_states(change.moved);
   add_records(change.origins);
   for (const std::uint32_t v : change.touched) {

@@ -58,14 +58,8 @@ void SubmeshBody::tissues_changed(std::span<const std::size_t> blocks, std::span
     make_room();
     find_watches();
   }
-  for (std::size_t v = 0; v < body_.vertex_count; ++v) {
-    masses_[submeshes_.record_of_vertex[v]] = body_.masses[v];
-    damping_[submeshes_.record_of_vertex[v]] = nodal_damping[v];
-  }
-  step_ = -1.0;  // coefficients of the records are made anew
-  any_shared_ = std::any_of(submeshes_.parts.begin(), submeshes_.parts.end(),
-                            [&](const Submesh& part) { return shares_volume(part); });
-  if (any_shared_) weigh_vertices();
+  as_built_ = false;
+  take_masses(nodal_damping);
 }
 
 std::vector<Sym3<double>> SubmeshBody::relaxing_stresses(std::size_t block) const {

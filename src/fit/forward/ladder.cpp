@@ -70,7 +70,7 @@ Adjust heavier(double factor, double step) {
 Adjust reference(const ForwardSpec& spec) {
   return [asked = spec.integrator](Variant& v, double duration) {
     const Integrator integrator = asked.value_or(v.simulation.integrator);
-    const bool long_steps = integrator == Integrator::implicit || integrator == Integrator::static_;
+    const bool long_steps = capabilities(integrator).any_step_is_stable;
     const bool own = !asked && (v.simulation.step || v.simulation.implicit.largest_step);
     if (long_steps && !own) stepping(integrator, any_tissue(v, has_past) ? 2000 : 400)(v, duration);
     if (!long_steps && asked) own_step(integrator)(v, duration);
@@ -95,7 +95,7 @@ std::vector<Candidate> candidates(const Variant& v, const ForwardSpec& spec) {
   }
   if (viscous && bears_all(v)) list.push_back({.name = "semi-implicit", .adjust = own_step(Integrator::semi_implicit)});
   const Integrator own = spec.integrator.value_or(v.simulation.integrator);
-  const bool explicit_like = own == Integrator::explicit_ || (own == Integrator::semi_implicit && !viscous);
+  const bool explicit_like = capabilities(own).bears(viscous);
   if (!explicit_like) list.push_back({.name = "explicit", .adjust = own_step(Integrator::explicit_)});
   if (explicit_like && !viscous) {
     for (const double factor : {100.0, 10.0, 1.0}) {

@@ -119,9 +119,7 @@ class ForceMeans {
   std::vector<double> sums_;
 };
 
-bool rings(const Variant& v) {
-  return v.simulation.integrator == Integrator::explicit_ || v.simulation.integrator == Integrator::semi_implicit;
-}
+bool rings(const Variant& v) { return !capabilities(v.simulation.integrator).any_step_is_stable; }
 
 const char* end_words(RunSummary::End end) {
   using End = RunSummary::End;

@@ -12,6 +12,8 @@ using namespace scene;
 const SectionSpec& forward_section() {
   static const SectionSpec section = [] {
     using F = ForwardSpec;
+    std::vector<Choice<std::optional<Integrator>>> choices;
+    for (const IntegratorInfo& i : integrators()) choices.push_back({i.word, i.integrator, ""});
     Section<F> s("forward", "Forward model: how the forces of a fit are computed.");
     s.choice<ForwardKind>(
         "kind", &F::kind,
@@ -19,11 +21,7 @@ const SectionSpec& forward_section() {
          {"uniaxial", ForwardKind::uniaxial, "a homogeneous specimen between smooth plates"},
          {"scene", ForwardKind::scene, "the scene as written"}},
         "forward model");
-    s.choice<std::optional<Integrator>>("integrator", &F::integrator,
-                                        {{"explicit", Integrator::explicit_, ""},
-                                         {"semi_implicit", Integrator::semi_implicit, ""},
-                                         {"implicit", Integrator::implicit, ""},
-                                         {"static", Integrator::static_, ""}},
+    s.choice<std::optional<Integrator>>("integrator", &F::integrator, choices,
                                         "integrator of the scene that the others are compared with")
         .otherwise("the scene's");
     s.key("tolerance", &F::tolerance, "largest rms difference from the scene, over the noise of a curve")

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "glisson/archive.h"
 #include "instruments/capsule/capsule_state.h"
 
 namespace glisson {
@@ -164,6 +165,23 @@ double Capsule::squared_frequency() const {
   if (!(s.frequency > s.frequency_before && s.frequency_before > 0.0)) return s.frequency;
   const double rise = std::min(s.frequency / s.frequency_before, kMostRise);
   return s.frequency * rise * rise;
+}
+
+void archive(Archive& ar, CapsuleEvent& event) {
+  ar(event.time, event.place, event.area);
+  ar.word(event.what, CapsuleEvent::What::opening);
+}
+
+void Capsule::archive(Archive& ar) {
+  State& s = *state_;
+  std::vector<char> gone = s.is_gone;
+  ar(gone);
+  ar.check(gone == s.is_gone);
+  ar.same_size(s.open);
+  ar.check(std::all_of(s.open.begin(), s.open.end(), [](double share) { return share >= 0.0 && share <= 1.0; }));
+  ar.same_size(s.now);
+  if (ar.reads()) s.show_openings(), s.evaluate();
+  ar(s.frequency, s.frequency_before, s.released, s.time, s.events);
 }
 
 }  // namespace glisson

@@ -60,15 +60,20 @@ void Capsule::State::lay_out(const BodyView& body, bool sharply) {
   membrane = Membrane(local, rest, {o.youngs_modulus * o.thickness, o.poisson_ratio, o.stiffening, o.prestretch});
   membrane.set_masses(masses);
   if (sharply) membrane.sharpen(rest);
+  show_openings();
+  near = {};
+  is_named = false;
+  evaluate();
+  frequency_before = frequency;
+}
+
+/// Lets the sheet have what is open of it.
+void Capsule::State::show_openings() {
   counts.assign(triangles.size(), 0);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     membrane.keep(t, kept_share(open[t]));
     counts[t] = is_gone[t] == 0 && open[t] < 1.0 && membrane.rest_area(t) > 0.0;
   }
-  near = {};
-  is_named = false;
-  evaluate();
-  frequency_before = frequency;
 }
 
 /// Forces and the frequency at the present positions.

@@ -41,6 +41,7 @@ struct Capsule::State {
 
   /// @param sharply  finds the frequency of the sheet at rest, which takes some ms; else a bound from single triangles
   void lay_out(const BodyView& body, bool sharply);
+  void show_openings();
   void evaluate();
   const std::vector<double>& tensions();
   PointOnTriangle nearest_to(const Vec3d& place);

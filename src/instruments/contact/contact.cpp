@@ -10,7 +10,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "base/past.h"
 #include "instruments/contact/contact_state.h"
 
 namespace glisson {
@@ -120,52 +119,14 @@ void ContactTool::moved(const InteractionStep& step) {
   state_->weigh(step);
 }
 
-std::vector<double> ContactTool::past() const {
-  const State& s = *state_;
-  std::vector<double> past;
-  save_motion(past);
-  past.insert(past.end(), {s.lost ? 1.0 : 0.0, s.in_contact ? 1.0 : 0.0, s.begun ? 1.0 : 0.0, s.last_touch,
-                           s.last_depth, s.books.taken(), s.last_h});
-  const Pose& p = s.solid.before;
-  past.insert(past.end(), {p.position.x, p.position.y, p.position.z});
-  for (const auto& row : p.axes.m) past.insert(past.end(), row.begin(), row.end());
-  s.found_inside.save(past);
-  past.push_back(static_cast<double>(s.bonds.size()));
-  for (const auto& [vertex, y] : s.bonds) past.insert(past.end(), {static_cast<double>(vertex), y.x, y.y, y.z});
-  past.push_back(static_cast<double>(s.last_pressing.size()));
-  for (const auto& [t, force] : s.last_pressing) {
-    past.insert(past.end(), {static_cast<double>(t[0]), static_cast<double>(t[1]), static_cast<double>(t[2]), force});
-  }
-  s.reach.save(past);
-  return past;
-}
-
-bool ContactTool::restore(std::span<const double> past) {
+void ContactTool::archive(Archive& ar) {
   State& s = *state_;
-  if (!restore_motion(past)) return false;
-  PastReader get(past);
-  s.lost = get.flag(), s.in_contact = get.flag(), s.begun = get.flag();
-  s.last_touch = get.number(), s.last_depth = get.number();
-  s.books.set_taken(get.number());
-  s.last_h = get.number();
-  s.solid.before.position = get.vector();
-  for (auto& row : s.solid.before.axes.m) {
-    for (double& a : row) a = get.number();
-  }
-  s.found_inside.restore(get);
-  const auto vertex = [&] { return static_cast<std::uint32_t>(get.index(s.reach.surface().body_vertices())); };
-  s.bonds.clear();
-  for (std::size_t left = get.count(4); left > 0; --left) {
-    const std::uint32_t v = vertex();
-    s.bonds[v] = get.vector();
-  }
-  s.last_pressing.clear();
-  for (std::size_t left = get.count(4); left > 0; --left) {
-    const std::uint32_t a = vertex(), b = vertex(), c = vertex();
-    s.last_pressing[{a, b, c}] = get.number();
-  }
-  s.reach.restore(get);
-  return get.done();
+  archive_motion(ar);
+  ar(s.lost, s.in_contact, s.begun, s.last_touch, s.last_depth, s.books, s.last_h, s.solid.before, s.found_inside);
+  ar(s.bonds, s.last_pressing, s.reach);
+  const std::size_t vertices = s.reach.surface().body_vertices();
+  for (const auto& [v, place] : s.bonds) ar.check(v < vertices);
+  for (const auto& [t, force] : s.last_pressing) ar.check(std::max({t[0], t[1], t[2]}) < vertices);
 }
 
 }  // namespace glisson

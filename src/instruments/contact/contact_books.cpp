@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/past.h"
-
 namespace glisson {
 namespace {
 
@@ -94,20 +92,6 @@ void FoundInside::mark(ContactRow& row, std::uint32_t vertex, std::uint32_t soli
 
 void FoundInside::settle(const ContactRow& row, std::uint32_t vertex, std::uint32_t solid) {
   if (row.comes_out && row.inside == 0.0) inside_.erase({vertex, solid});
-}
-
-void FoundInside::save(std::vector<double>& past) const {
-  past.push_back(static_cast<double>(inside_.size()));
-  for (const auto& [vertex, solid] : inside_) past.push_back(vertex), past.push_back(solid);
-}
-
-void FoundInside::restore(PastReader& past) {
-  constexpr std::size_t kAny = std::numeric_limits<std::uint32_t>::max();  // looked up, never gone to
-  inside_.clear();
-  for (std::size_t left = past.count(2); left > 0; --left) {
-    const std::size_t vertex = past.index(kAny), solid = past.index(kAny);
-    inside_.insert({static_cast<std::uint32_t>(vertex), static_cast<std::uint32_t>(solid)});
-  }
 }
 
 }  // namespace glisson

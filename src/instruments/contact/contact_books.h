@@ -11,11 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "glisson/archive.h"
 #include "instruments/contact/contact_rows.h"
 
 namespace glisson {
-
-class PastReader;
 
 class ContactBooks {
  public:
@@ -29,7 +28,7 @@ class ContactBooks {
   /// Whether solve() had to solve anew in this step.
   bool corrected() const { return corrected_; }
   double taken() const { return taken_; }
-  void set_taken(double taken) { taken_ = taken; }
+  void archive(Archive& ar) { ar(taken_); }
 
  private:
   /// Of the impulses of a step [J].
@@ -54,8 +53,7 @@ class FoundInside {
   void mark(ContactRow& row, std::uint32_t vertex, std::uint32_t solid, const Vec3d& start, bool begun);
   /// After prepare().
   void settle(const ContactRow& row, std::uint32_t vertex, std::uint32_t solid);
-  void save(std::vector<double>& past) const;
-  void restore(PastReader& past);
+  void archive(Archive& ar) { ar(inside_); }
 
  private:
   std::set<std::pair<std::uint32_t, std::uint32_t>> inside_;

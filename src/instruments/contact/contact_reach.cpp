@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/past.h"
-
 namespace glisson {
 namespace {
 
@@ -76,23 +74,10 @@ void ContactReach::gather() {
   }
 }
 
-void ContactReach::save(std::vector<double>& past) const {
-  past.push_back(static_cast<double>(sentinels_.size()));
-  past.push_back(sentinels_asked_ ? 1.0 : 0.0);
-  for (const Sentinel& s : sentinels_) {
-    past.insert(past.end(), {s.position.x, s.position.y, s.position.z, s.velocity.x, s.velocity.y, s.velocity.z,
-                             s.asked ? 1.0 : 0.0});
-  }
-}
-
-void ContactReach::restore(PastReader& past) {
-  if (past.number() != static_cast<double>(sentinels_.size())) return past.refuse();
-  sentinels_asked_ = past.flag();
-  for (Sentinel& s : sentinels_) {
-    s.position = past.vector(), s.velocity = past.vector();
-    s.asked = past.flag();
-  }
-  gather();
+void ContactReach::archive(Archive& ar) {
+  ar(sentinels_asked_);
+  ar.same_size(sentinels_);
+  if (ar.reads()) gather();
 }
 
 }  // namespace glisson

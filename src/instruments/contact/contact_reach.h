@@ -4,12 +4,11 @@
 #include <map>
 #include <vector>
 
+#include "glisson/archive.h"
 #include "instruments/contact/contact_rows.h"
 #include "instruments/contact/contact_surface.h"
 
 namespace glisson {
-
-class PastReader;
 
 /// Lets vertices that are copies, the last ones of a body, have what their origins have, by vertex.
 template <class Value>
@@ -36,14 +35,14 @@ class ContactReach {
   /// Triangles with all corners among vertices(), and these as places there.
   std::span<const Triangle> triangles() const { return my_triangles_; }
 
-  void save(std::vector<double>& past) const;
-  void restore(PastReader& past);
+  void archive(Archive& ar);
 
  private:
   /// Of a patch.
   struct Sentinel {
     Vec3d position, velocity;
     bool asked = false;
+    void archive(Archive& ar) { ar(position, velocity, asked); }
   };
 
   bool may_reach(const ContactSolid& solid, const SurfacePatch& patch, const Sentinel& s, double h) const;

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "base/past.h"
+#include "glisson/archive.h"
 
 namespace glisson {
 namespace {
@@ -125,34 +125,16 @@ void Blade::constrain(const InteractionStep& step) {
   }
 }
 
-std::vector<double> Blade::past() const {
-  std::vector<double> past;
-  save_motion(past);
-  past.push_back(area_);
-  for (const Piece& piece : pieces_) {
-    past.insert(past.end(), {static_cast<double>(piece.at.tet), piece.at.length});
-    past.insert(past.end(), piece.at.weights.begin(), piece.at.weights.end());
-    for (const std::uint32_t v : piece.vertices) past.push_back(v);
-  }
-  return past;
-}
+void Blade::Piece::archive(Archive& ar) { ar(at.tet, at.length, at.weights, vertices); }
 
-bool Blade::restore(std::span<const double> past) {
-  if (!restore_motion(past)) return false;
-  PastReader get(past);
+void Blade::archive(Archive& ar) {
+  archive_motion(ar);
+  ar(area_, pieces_);
   const TetMesh& mesh = simulation_.mesh();
-  area_ = get.number();
-  pieces_.clear();
-  while (get.ok() && !get.done()) {
-    Piece piece;
-    piece.at.tet = static_cast<std::uint32_t>(get.index(mesh.tets.size()));
-    piece.at.length = get.number();
-    for (double& w : piece.at.weights) w = get.number();
-    for (std::uint32_t& v : piece.vertices) v = static_cast<std::uint32_t>(get.index(mesh.vertices.size()));
-    if (get.ok() && (simulation_.is_removed(piece.at.tet) || piece.vertices != mesh.tets[piece.at.tet])) get.refuse();
-    pieces_.push_back(piece);
+  for (const Piece& piece : pieces_) {
+    const std::uint32_t t = piece.at.tet;
+    ar.check(t < mesh.tets.size() && !simulation_.is_removed(t) && piece.vertices == mesh.tets[t]);
   }
-  return get.ok();
 }
 
 }  // namespace glisson

@@ -42,7 +42,7 @@ BladeView::BladeView(Scheme& scheme) : scheme_(scheme) {
 
 void BladeView::follow_copies() {
   const Body& body = scheme_.body();
-  const std::span<const std::uint32_t> copies = scheme_.copies();
+  const std::span<const std::uint32_t> copies = scheme_.state().copies;
   const std::size_t originals = body.vertex_count - copies.size();
   for (std::size_t v = root_.size(); v < body.vertex_count; ++v) {
     const bool copy = v >= originals;
@@ -137,14 +137,12 @@ std::vector<detail::EdgeCrossing> BladeView::crossings(const BladeEdge& from, co
   return found;
 }
 
-void BladeView::save(CheckpointWriter& out) const { out.put(root_), out.put(first_), out.put(before_), out.put(now_); }
-
-void BladeView::load(CheckpointReader& in) {
-  in.get(root_), in.get(first_), in.get(before_), in.get(now_);
+void BladeView::archive(Archive& ar) {
   const std::size_t n = scheme_.body().vertex_count;
-  const auto fits = [&](std::size_t size) { return size == 0 || size == n; };
-  if (root_.size() != n || first_.size() != n || !fits(before_.size()) || !fits(now_.size())) CheckpointReader::fail();
-  if (std::any_of(root_.begin(), root_.end(), [n](std::uint32_t v) { return v >= n; })) CheckpointReader::fail();
+  ar.all_below(root_, n);
+  ar(first_, before_, now_);
+  const auto fits = [&](const auto& list) { return list.empty() || list.size() == n; };
+  ar.check(root_.size() == n && first_.size() == n && fits(before_) && fits(now_));
 }
 
 }  // namespace glisson

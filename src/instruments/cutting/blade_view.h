@@ -37,8 +37,7 @@ class BladeView {
   std::span<const std::uint32_t> root() const { return root_; }
   double typical_edge() const { return typical_edge_; }
 
-  void save(CheckpointWriter& out) const;
-  void load(CheckpointReader& in);
+  void archive(Archive& ar);
 
  private:
   Vec3d position(std::uint32_t vertex, const Vec3d& displacement, std::span<const Vec3d> u, bool near) const;

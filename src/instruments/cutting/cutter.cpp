@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "dynamics/simulation_parts.h"
+#include "dynamics/state/checkpoint.h"
 #include "dynamics/step/part_bound.h"
 #include "dynamics/step/stable_step.h"
 #include "glisson/instruments/cutting.h"
@@ -73,6 +74,7 @@ struct Cutter::Impl {
     return x;
   }
 
+  void archive(Archive& ar);
   void limit_spread(double viscosity);
   void follow();
   PathPiece piece_in(std::uint32_t tet) const;
@@ -97,7 +99,7 @@ void Cutter::Impl::limit_spread(double viscosity) {
 
 /// Takes in copies that have come.
 void Cutter::Impl::follow() {
-  const std::span<const std::uint32_t> copies = scheme.copies();
+  const std::span<const std::uint32_t> copies = scheme.state().copies;
   const std::size_t now = scheme.body().vertex_count, known = doubled.size();
   const auto fresh = copies.subspan(copies.size() - (now - known));
   sheet.add_copies(fresh);
@@ -134,7 +136,7 @@ PathPiece Cutter::Impl::piece_in(std::uint32_t tet) const {
 bool Cutter::Impl::may_become(std::uint32_t vertex, const Tet& tet, const std::array<double, 4>& weights) const {
   const Body& body = scheme.body();
   if (!body.mass_factor.empty()) return false;
-  const Constraints& constraints = scheme.constraints();
+  const Constraints& constraints = scheme.state().constraints;
   const auto all_in = [&](double support, const auto& has) {
     for (std::size_t c = 0; c < 4; ++c) {
       if (weights[c] > support && tet[c] != vertex && !has(tet[c])) return false;
@@ -289,30 +291,23 @@ std::vector<EdgePiece> Cutter::contact() const {
 
 const BladeEdge& Cutter::edge() const { return impl_->edge; }
 
+void Cutter::Impl::archive(Archive& ar) {
+  ar(edge.from, edge.to, placed);
+  ar.same_size(spread), ar.same_size(doubled);
+  ar(sheet, view);
+}
+
 void Cutter::save(std::ostream& out) const {
-  const Impl& me = *impl_;
-  CheckpointWriter file;
-  file.put_doubles(me.edge);
-  file.put(me.placed);
-  file.put(me.spread);
-  file.put(me.doubled);
-  file.put(me.sheet.past());
-  me.view.save(file);
-  file.write(out);
+  Archive contents;
+  impl_->archive(contents);
+  write_checkpoint(contents, out);
 }
 
 void Cutter::load(std::istream& in) {
-  Impl& me = *impl_;
-  CheckpointReader file(in);
-  me.follow();
-  file.get_doubles(me.edge);
-  file.get(me.placed);
-  file.get_same_size(me.spread);
-  file.get_same_size(me.doubled);
-  std::vector<double> past;
-  file.get(past);
-  if (!me.sheet.restore(past)) CheckpointReader::fail();
-  me.view.load(file);
+  Archive contents = read_checkpoint(in);
+  impl_->follow();
+  impl_->archive(contents);
+  contents.check(contents.left() == 0);
 }
 
 }  // namespace glisson

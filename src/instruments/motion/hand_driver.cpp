@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "glisson/archive.h"
 #include "glisson/instruments/tool_motion.h"
 #include "instruments/motion/motion_check.h"
 
@@ -41,25 +42,6 @@ Pose HandDriver::advance(double, double h, const Wrench& on_tool) {
   return {position_, target_.axes};
 }
 
-std::vector<double> HandDriver::past() const {
-  std::vector<double> numbers;
-  for (const Vec3d* v : {&position_, &velocity_, &target_.position}) {
-    numbers.insert(numbers.end(), {v->x, v->y, v->z});
-  }
-  for (const auto& row : target_.axes.m) numbers.insert(numbers.end(), row.begin(), row.end());
-  return numbers;
-}
-
-bool HandDriver::restore(std::span<const double> past) {
-  if (past.size() != 18) return false;
-  std::size_t at = 0;
-  for (Vec3d* v : {&position_, &velocity_, &target_.position}) {
-    for (std::size_t i = 0; i < 3; ++i) (*v)[i] = past[at++];
-  }
-  for (auto& row : target_.axes.m) {
-    for (double& a : row) a = past[at++];
-  }
-  return true;
-}
+void HandDriver::archive(Archive& ar) { ar(position_, velocity_, target_); }
 
 }  // namespace glisson

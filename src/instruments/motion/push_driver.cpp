@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "glisson/archive.h"
 #include "glisson/instruments/tool_motion.h"
 #include "instruments/motion/motion_check.h"
 
@@ -53,23 +54,6 @@ Pose PushDriver::advance(double time, double h, const Wrench& on_tool) {
   return {start_.position + way_, start_.axes};
 }
 
-std::vector<double> PushDriver::past() const {
-  std::vector<double> numbers;
-  for (const Vec3d* v : {&way_, &velocity_, &last_way_, &last_force_}) {
-    numbers.insert(numbers.end(), {v->x, v->y, v->z});
-  }
-  numbers.push_back(stiffness_);
-  return numbers;
-}
-
-bool PushDriver::restore(std::span<const double> past) {
-  if (past.size() != 13) return false;
-  std::size_t at = 0;
-  for (Vec3d* v : {&way_, &velocity_, &last_way_, &last_force_}) {
-    for (std::size_t i = 0; i < 3; ++i) (*v)[i] = past[at++];
-  }
-  stiffness_ = past[at];
-  return true;
-}
+void PushDriver::archive(Archive& ar) { ar(way_, velocity_, last_way_, last_force_, stiffness_); }
 
 }  // namespace glisson

@@ -129,4 +129,24 @@ std::span<const std::uint32_t> Needle::reach(double, double) {
   return s.wanted;
 }
 
+void Needle::archive(Archive& ar) {
+  State& s = *state_;
+  archive_motion(ar);
+  ar.word(s.stage, NeedleStage::inside);
+  ar(s.look, s.named_around, s.tip.rest, s.tip_along, s.bend_tip, s.tip_cuts, s.tip_out, s.withdraws);
+  ar(s.region, s.next_region, s.step_h, s.pressing, s.drop);
+  std::vector<Vec3d> path;
+  for (const shaft::Row& node : s.nodes) path.push_back(node.rest);
+  ar(path, s.slips, s.along, s.bend);
+  ar.all_below(s.entry_triangles, s.surface.size());
+  if (!ar.reads()) return;
+  ar.check(s.slips.size() == path.size() && s.along.size() == path.size() && s.bend.size() <= path.size());
+  s.mobility.forget();
+  s.nodes.assign(path.size(), {});
+  for (std::size_t j = 0; j < path.size(); ++j) {
+    if (!s.place(s.nodes[j], path[j])) s.nodes[j].rest = path[j];
+  }
+  if (s.stage != NeedleStage::outside) s.place(s.tip, Vec3d(s.tip.rest));
+}
+
 }  // namespace glisson

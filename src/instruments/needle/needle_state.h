@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "glisson/archive.h"
 #include "glisson/instruments/needle.h"
 #include "instruments/needle/shaft.h"
 
@@ -29,6 +30,7 @@ struct PressingWork {
   double work_at_cutting = 0.0, depth_at_cutting = 0.0;  ///< where the force rose through that of cutting
 
   void add(double new_depth, double new_force, double cutting);
+  void archive(Archive& ar) { ar(work, depth, force, work_at_cutting, depth_at_cutting); }
   /// Energy that is free when the tissue springs back until the tip only cuts [J].
   double free_energy(double cutting) const;
 };
@@ -38,6 +40,7 @@ struct PressingWork {
 struct DropWatch {
   bool armed = false;
   double puncture_force = 0.0, force = 0.0, least = 0.0, time = 0.0, depth = 0.0;
+  void archive(Archive& ar) { ar(armed, puncture_force, force, least, time, depth); }
 };
 
 struct Needle::State {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "base/past.h"
 #include "mesh/topology/faces.h"
 
 namespace glisson::detail {
@@ -13,7 +12,6 @@ namespace {
 constexpr double kSameCut = 0.25;  ///< of an edge: a crossing nearer than that to one of an earlier cut is at its place
 constexpr std::size_t kCrumb =
     4;  ///< tets gone through that hang together without any other are no piece, up to so many
-constexpr std::size_t kPastNumbers = 9;
 constexpr std::size_t kAllCorners = 15;  ///< of a tet, a bit each
 
 /// The corners connected with corner 0 by edges that are not crossed, as bits; 0 unless the others are connected, too.
@@ -273,38 +271,20 @@ void CutSheet::begin_another() {
   std::fill(on_cut_.begin(), on_cut_.end(), char{0});
 }
 
-std::vector<double> CutSheet::past() const {
-  std::vector<double> past{static_cast<double>(cut_.size()), static_cast<double>(before_.size())};
-  for (const auto* list : {&cut_, &before_}) {
-    for (const CutTet& cut : *list) {
-      past.push_back(cut.tet);
-      past.insert(past.end(), cut.at.begin(), cut.at.end());
-      past.push_back(cut.through ? 1.0 : 0.0);
-      past.push_back(cut.stays);
-    }
-  }
-  past.insert(past.end(), on_cut_.begin(), on_cut_.end());
-  return past;
+void CutTet::archive(Archive& ar) {
+  ar(tet, at, through, stays);
+  ar.check(stays <= kAllCorners);
 }
 
-bool CutSheet::restore(std::span<const double> past) {
-  PastReader get(past);
-  const std::size_t count = get.count(kPastNumbers), earlier = get.count(kPastNumbers);
-  if (!get.ok() || get.left().size() != (count + earlier) * kPastNumbers + on_cut_.size()) return false;
-  std::vector<CutTet> all(count + earlier);
-  for (CutTet& cut : all) {
-    cut.tet = static_cast<std::uint32_t>(get.index(place_of_.size()));
-    for (double& at : cut.at) at = get.number();
-    cut.through = get.flag();
-    cut.stays = static_cast<std::uint8_t>(get.index(kAllCorners + 1));
+void CutSheet::archive(Archive& ar) {
+  ar(cut_, before_);
+  ar.same_size(on_cut_);
+  if (!ar.reads()) return;
+  for (const auto* list : {&cut_, &before_}) {
+    for (const CutTet& cut : *list) ar.check(cut.tet < place_of_.size());
   }
-  if (!get.ok()) return false;
-  cut_.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
-  before_.assign(all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
   std::fill(place_of_.begin(), place_of_.end(), kNone);
   for (std::uint32_t i = 0; i < cut_.size(); ++i) place_of_[cut_[i].tet] = i;
-  for (char& on : on_cut_) on = get.flag() ? 1 : 0;
-  return true;
 }
 
 }  // namespace glisson::detail

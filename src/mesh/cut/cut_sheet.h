@@ -22,6 +22,7 @@
 #include <span>
 #include <vector>
 
+#include "glisson/archive.h"
 #include "glisson/mesh.h"
 #include "mesh/topology/vertex_stars.h"
 
@@ -46,6 +47,7 @@ struct CutTet {
   bool through = false;    ///< the blade has gone through
   std::uint8_t stays = 0;  ///< the corners, a bit each, that it stays with
   bool crossed(std::size_t edge) const { return at[edge] != kNotCrossed; }
+  void archive(Archive& ar);
 };
 
 /// What crossings have led to.
@@ -74,10 +76,8 @@ class CutSheet {
   const CutTet* find(std::uint32_t tet) const { return place_of_[tet] == kNone ? nullptr : &cut_[place_of_[tet]]; }
   bool on_cut(std::uint32_t vertex) const { return on_cut_[vertex] != 0; }
 
-  /// All that is kept, as numbers that restore() takes back.
-  std::vector<double> past() const;
-  /// @return false where they are not those of such a mesh; nothing is changed then
-  bool restore(std::span<const double> past);
+  /// All that is kept. @throws std::runtime_error where what is read is not that of such a mesh
+  void archive(Archive& ar);
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();

@@ -69,15 +69,12 @@ const SectionSpec& implicit_section() {
 
 const SectionSpec& motion_section() {
   static const SectionSpec section = [] {
+    std::vector<Choice<Integrator>> choices;
+    for (const IntegratorInfo& i : integrators()) choices.push_back({i.word, i.integrator, i.help});
     Section<Variant> s("motion",
                        "Time integration: the integrator, its step, damping, gravity, and the end of the run.");
     s.choice<Integrator>(
-        "integrator", [](Variant & v) -> auto& { return v.simulation.integrator; },
-        {{"explicit", Integrator::explicit_,
-          "the paper's equation 4: displacements from forces at the start of the step"},
-         {"semi_implicit", Integrator::semi_implicit, "the same, viscosity taken at the end of the step"},
-         {"implicit", Integrator::implicit, "Newton's method each step, stable at any step"},
-         {"static", Integrator::static_, "equilibrium without inertia and viscosity; time orders motions and loads"}},
+        "integrator", [](Variant & v) -> auto& { return v.simulation.integrator; }, choices,
         "how the body is advanced in time");
     s.key(
          "step_s", [](Variant & v) -> auto& { return v.simulation.step; },

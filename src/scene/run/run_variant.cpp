@@ -63,8 +63,7 @@ class Run {
 Run::Run(const Variant& variant, BuiltVariant& built, RunObserver& observer, const std::atomic<bool>& stop)
     : variant_(variant), simulation_(built.simulation), built_(built), observer_(observer), stop_(stop),
       duration_(run_duration(variant)), most_steps_(variant.max_steps.value_or(std::uint64_t(-1))),
-      forces_at_end_(variant.simulation.integrator == Integrator::implicit ||
-                     variant.simulation.integrator == Integrator::static_) {
+      forces_at_end_(capabilities(variant.simulation.integrator).forces_at_step_end) {
   sample_.depths.resize(built.tools.size());
   sample_.tools.resize(built.tools.size());
   sample_.supports.resize(built.supports.size());
@@ -101,16 +100,10 @@ bool Run::step() {
     if (summary_.first_inversion_s < 0.0) summary_.first_inversion_s = start;
     summary_.inverted_tets_most = std::max(summary_.inverted_tets_most, result.inverted_tets.size());
   }
-  using End = RunSummary::End;
   const bool made = result.made();
-  if (result.status == StepStatus::step_too_large) summary_.end = End::stopped_unstable;
-  if (result.status == StepStatus::not_finite) summary_.end = End::stopped_not_finite;
-  if (result.status == StepStatus::not_converged) summary_.end = End::stopped_not_converged;
-  if (result.status == StepStatus::not_held) summary_.end = End::stopped_not_held;
   if (!made) summary_.trouble = result.message;
-  const bool stops = result.status == StepStatus::inverted && variant_.on_inversion == OnInversion::stop;
-  if (stops) summary_.end = End::stopped_inverted;
-  ended_ = !made || stops;
+  summary_.end = end_of(result.status, variant_.on_inversion);
+  ended_ = summary_.end != RunSummary::End::finished;
   forces_current_ = made;
   if (!made) return false;
   force_time_ = simulation_.force_time();
@@ -223,6 +216,25 @@ RunSummary Run::to_end() {
 }
 
 }  // namespace
+
+RunSummary::End end_of(StepStatus status, OnInversion on_inversion) {
+  using End = RunSummary::End;
+  switch (status) {
+    case StepStatus::ok:
+      return End::finished;
+    case StepStatus::inverted:
+      return on_inversion == OnInversion::stop ? End::stopped_inverted : End::finished;
+    case StepStatus::step_too_large:
+      return End::stopped_unstable;
+    case StepStatus::not_finite:
+      return End::stopped_not_finite;
+    case StepStatus::not_converged:
+      return End::stopped_not_converged;
+    case StepStatus::not_held:
+      return End::stopped_not_held;
+  }
+  return End::finished;
+}
 
 RunSummary run_variant(const Variant& variant, const MeshLoader& load, RunObserver& observer,
                        const std::atomic<bool>& stop) {

@@ -1,0 +1,205 @@
+// archive.h — one function writes and reads a state: it names the parts, the archive knows which way they go.
+//
+//   void archive(Archive& ar) { ar(position, velocity, events); }
+//
+// Parts are numbers, flags, strings, vectors, lists of them, and whatever has such a function, as a member or beside it. What is
+// read may have been forged: where bytes are missing, a list is longer than what is left, a flag is neither 0 nor 1 or keys do
+// not ascend, it is refused by an exception. What else a number may be is known to its class, which checks it as it reads.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "glisson/math.h"
+
+namespace glisson {
+
+class Archive {
+ public:
+  /// Writes.
+  Archive() = default;
+  /// Reads what another one has written.
+  explicit Archive(std::string bytes) : bytes_(std::move(bytes)), reads_(true) {}
+
+  bool reads() const { return reads_; }
+  const std::string& bytes() const { return bytes_; }
+  std::size_t left() const { return bytes_.size() - at_; }
+
+  /// Writes the parts, or replaces them by what is read. @throws std::runtime_error where they do not fit
+  template <class... Parts>
+  void operator()(Parts&... parts) {
+    (part(parts), ...);
+  }
+  /// A list that is as long as it is here.
+  template <class T, class Memory>
+  void same_size(std::vector<T, Memory>& list) {
+    const std::size_t size = list.size();
+    part(list);
+    check(list.size() == size);
+  }
+  /// A number below `end`.
+  template <class T>
+  void below(T& number, std::size_t end) {
+    part(number);
+    check(number < end);
+  }
+  /// Numbers below `end`.
+  template <class T, class Memory>
+  void all_below(std::vector<T, Memory>& numbers, std::size_t end) {
+    part(numbers);
+    check(std::all_of(numbers.begin(), numbers.end(), [end](const T& n) { return n < end; }));
+  }
+  /// An enumerator; the first is 0.
+  template <class Enum>
+  void word(Enum& word, Enum last) {
+    auto number = static_cast<std::uint8_t>(word);
+    part(number);
+    check(number <= static_cast<std::uint8_t>(last));
+    word = static_cast<Enum>(number);
+  }
+  /// Refuses what has been read where it is not sound.
+  void check(bool sound) const {
+    if (reads_ && !sound) refuse();
+  }
+  /// @throws std::runtime_error saying that the contents do not fit
+  [[noreturn]] static void refuse() {
+    throw std::runtime_error(
+        "checkpoint: its contents do not fit this simulation; make it with the same mesh, tissues, options, "
+        "constraints "
+        "and loads as the one that was saved");
+  }
+
+ private:
+  /// Whether the bytes of a list of such parts are those in memory.
+  template <class T>
+  struct Plain : std::bool_constant<std::is_arithmetic_v<T> && !std::is_same_v<T, bool>> {};
+  template <class T>
+  struct Plain<Vec3<T>> : Plain<T> {};
+  template <class T, std::size_t N>
+  struct Plain<std::array<T, N>> : Plain<T> {};
+
+  template <class T>
+  void part(T& value) {
+    if constexpr (std::is_same_v<T, bool>) {
+      auto number = static_cast<std::uint8_t>(value);
+      part(number);
+      check(number < 2);
+      value = number != 0;
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
+      if (!reads_) order(bytes);
+      raw(bytes.data(), bytes.size());
+      if (reads_) order(bytes), value = std::bit_cast<T>(bytes);
+    } else if constexpr (requires { value.archive(*this); }) {
+      value.archive(*this);
+    } else {
+      archive(*this, value);
+    }
+  }
+  template <class T>
+  void part(Vec3<T>& v) {
+    (*this)(v.x, v.y, v.z);
+  }
+  template <class T>
+  void part(Mat3<T>& matrix) {
+    part(matrix.m);
+  }
+  template <class T, std::size_t N>
+  void part(std::array<T, N>& list) {
+    for (T& value : list) part(value);
+  }
+  template <class A, class B>
+  void part(std::pair<A, B>& pair) {
+    (*this)(pair.first, pair.second);
+  }
+  template <class T>
+  void part(std::optional<T>& value) {
+    bool there = value.has_value();
+    part(there);
+    if (reads_) there ? static_cast<void>(value.emplace()) : value.reset();
+    if (value) part(*value);
+  }
+  void part(std::string& text) {
+    text.resize(count(text.size(), 1));
+    raw(text.data(), text.size());
+  }
+  template <class T, class Memory>
+  void part(std::vector<T, Memory>& list) {
+    constexpr bool kPlain = Plain<T>::value && std::endian::native == std::endian::little;
+    const std::size_t size = count(list.size(), kPlain ? sizeof(T) : 1);
+    if constexpr (kPlain) {
+      list.resize(size);
+      raw(reinterpret_cast<char*>(list.data()), size * sizeof(T));
+    } else {
+      if (reads_) list.clear();
+      for (std::size_t i = 0; i < size; ++i) part(reads_ ? list.emplace_back() : list[i]);
+    }
+  }
+  template <class T>
+  void part(std::set<T>& set) {
+    std::vector<T> list(set.begin(), set.end());
+    part(list);
+    check(std::adjacent_find(list.begin(), list.end(), std::not_fn(std::less<>())) == list.end());
+    if (reads_) set = {list.begin(), list.end()};
+  }
+  template <class Key, class Value>
+  void part(std::map<Key, Value>& map) {
+    std::vector<std::pair<Key, Value>> list(map.begin(), map.end());
+    part(list);
+    const auto unordered = [](const auto& a, const auto& b) { return !(a.first < b.first); };
+    check(std::adjacent_find(list.begin(), list.end(), unordered) == list.end());
+    if (reads_) map = {list.begin(), list.end()};
+  }
+
+  template <std::size_t N>
+  static void order(std::array<char, N>& bytes) {
+    if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
+  }
+  /// How many parts follow, of so many bytes at least.
+  std::size_t count(std::size_t size, std::size_t least_bytes) {
+    auto number = static_cast<std::uint64_t>(size);
+    part(number);
+    check(number <= left() / least_bytes);
+    return static_cast<std::size_t>(number);
+  }
+  void raw(char* data, std::size_t size) {
+    if (!reads_) return static_cast<void>(bytes_.append(data, size));
+    check(size <= left());
+    if (size > 0) std::memcpy(data, bytes_.data() + at_, size);
+    at_ += size;
+  }
+
+  std::string bytes_;
+  std::size_t at_ = 0;
+  bool reads_ = false;
+};
+
+/// What an object writes.
+template <class T>
+std::string archived(T& object) {
+  Archive out;
+  object.archive(out);
+  return out.bytes();
+}
+/// Lets an object read what archived() gave, all of it. @throws std::runtime_error where it does not fit
+template <class T>
+void restore(T& object, std::string bytes) {
+  Archive in(std::move(bytes));
+  object.archive(in);
+  in.check(in.left() == 0);
+}
+
+}  // namespace glisson

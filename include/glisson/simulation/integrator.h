@@ -1,0 +1,42 @@
+// integrator.h — how a body may be advanced in time, and what each way can do.
+#pragma once
+
+#include <span>
+
+namespace glisson {
+
+/// M a + γ v + f(u, v) = external (docs/integrators.md says when to take which).
+enum class Integrator {
+  explicit_,      ///< the paper's scheme; h* is set by stiffness and viscosity
+  semi_implicit,  ///< the same with viscosity taken at the end of the step: h* as if there were none, or more
+  implicit,       ///< Newton's method each step, stable at any step; in double
+  static_         ///< equilibrium, without inertia and viscosity: time orders motions and loads; in double
+};
+
+/// What an integrator can do. Who has to choose or to refuse one asks for these, not for its name.
+struct Capabilities {
+  bool bears_interactions = false;           ///< instruments, capsules and containers: its steps are explicit
+  bool bears_them_in_viscous_tissue = true;  ///< the same where some tissue has a Kelvin–Voigt viscosity
+  bool any_step_is_stable = false;           ///< it has no h*, needs no mass scaling and does not ring
+  bool viscosity_limits_step = false;        ///< h* falls with viscosity
+  bool forces_at_step_end = false;           ///< Simulation::force_time() is the end of a step, not its start
+
+  /// Whether interactions may act on such tissue.
+  constexpr bool bears(bool viscous_tissue) const {
+    return bears_interactions && (bears_them_in_viscous_tissue || !viscous_tissue);
+  }
+};
+
+struct IntegratorInfo {
+  Integrator integrator{};
+  const char* word = "";  ///< in files, reports and Python
+  const char* help = "";  ///< for `glisson schema`
+  Capabilities can{};
+};
+
+/// All there are, each once.
+std::span<const IntegratorInfo> integrators();
+const IntegratorInfo& integrator_info(Integrator integrator);
+inline Capabilities capabilities(Integrator integrator) { return integrator_info(integrator).can; }
+
+}  // namespace glisson

@@ -1,0 +1,218 @@
+#include "dynamics/solvers/balance_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace glisson {
+namespace {
+
+constexpr double kSmallStrain = 1e-6;  ///< forces at this strain are the least that a residual is measured by
+constexpr double kForcing = 1e-3;      ///< accuracy of a linear solve within Newton's method
+constexpr int kMostPatience = 7;       ///< iterations with definite tangents before an exact one is tried again
+constexpr double kRounding = 1e-15;    ///< of u⁺ − u over u, which very short steps cannot do better than
+constexpr int kMostHalvings = 12;      ///< of a line search
+constexpr double kDifference = 1e-3;   ///< of h, for the velocity of a motion
+
+std::span<const Vec3d> view(const std::vector<Vec3d>& field) { return field; }
+
+/// Norm of the forces that a strain of 1 would give.
+double unit_force(const Body& body) {
+  double sum = 0.0;
+  for (const TissueBlock& block : body.blocks) {
+    const double modulus = block.elastic.lambda + 2.0 * block.elastic.mu;
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      for (const Vec3d& s : body.rest[e].s) sum += std::pow(modulus * body.rest[e].volume * norm(s), 2);
+    }
+  }
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+BalanceSolver::BalanceSolver(BodyState& state, const TissueOperator& tissue, const Moment& now, bool statics)
+    : state_(state), tissue_(tissue), now_(now), statics_(statics),
+      system_(tissue_, state.options.implicit.preconditioner) {}
+
+void BalanceSolver::begin() {
+  const std::size_t vertices = state_.body.vertex_count;
+  for (auto* field : {&change_, &held_velocity_, &at_u_, &at_v_, &out_of_balance_}) field->resize(vertices);
+  diagonal_.assign(vertices, 0.0);
+  next_ = now_;
+  unit_force_ = unit_force(state_.body);
+  held_ = state_.held_components();
+  std::vector<char> free(held_.size());
+  for (std::size_t i = 0; i < free.size(); ++i) free[i] = held_[i] == 0 ? 1 : 0;
+  system_.set_free(std::move(free));
+}
+
+bool BalanceSolver::solve(const TimeStep& s, std::span<const Vec3d> last_change, double last_h) {
+  const std::span<const Vec3d> loads = state_.loads.at(state_.time + (1.0 - s.alpha_f) * s.h);
+  next_.external.assign(loads.begin(), loads.end());
+  const ElementWatch before = watch_;
+  prescribe(s);
+  if (start(s, last_change, last_h) && newton(s)) return true;
+  watch_ = before;
+  return false;
+}
+
+/// Where held components are to be at t + h, and how fast.
+void BalanceSolver::prescribe(const TimeStep& s) {
+  std::fill(change_.begin(), change_.end(), Vec3d{});
+  std::fill(held_velocity_.begin(), held_velocity_.end(), Vec3d{});
+  const bool of_change = state_.options.implicit.scheme == TimeScheme::backward_euler;
+  for (std::size_t c = 0; c < state_.base.size(); ++c) {
+    const Constraint& constraint = state_.constraints.all()[c];
+    if (!state_.holds(c) || !constraint.motion) continue;
+    const double d = kDifference * s.h;
+    const Vec3d target = constraint.motion(state_.time + s.h);
+    const Vec3d speed =
+        statics_ || of_change
+            ? Vec3d{}
+            : (constraint.motion(state_.time + s.h + d) - constraint.motion(state_.time + s.h - d)) * (0.5 / d);
+    for (std::size_t k = 0; k < constraint.vertices.size(); ++k) {
+      const std::uint32_t v = constraint.vertices[k];
+      const Vec3d change = state_.base[c][k] + target - now_.u[v];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!has_axis(constraint.axes, axis)) continue;
+        change_[v][axis] = change[axis];
+        held_velocity_[v][axis] = of_change && !statics_ ? change[axis] / s.h : speed[axis];
+      }
+    }
+  }
+}
+
+/// v⁺, a⁺ and the state that forces are asked at, for the trial u⁺.
+void BalanceSolver::try_at(const TimeStep& s) {
+  for (std::size_t i = 0; i < next_.u.size(); ++i) {
+    const Vec3d du = next_.u[i] - now_.u[i];
+    next_.v[i] = s.velocity(du, now_.v[i], now_.a[i]);
+    next_.a[i] = s.acceleration(du, now_.v[i], now_.a[i]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (held_[3 * i + axis] == 0) continue;
+      next_.v[i][axis] = held_velocity_[i][axis];
+      next_.a[i][axis] = statics_ ? 0.0 : (held_velocity_[i][axis] - now_.v[i][axis]) / s.h;
+    }
+    at_u_[i] = next_.u[i] * (1.0 - s.alpha_f) + now_.u[i] * s.alpha_f;
+    at_v_[i] = next_.v[i] * (1.0 - s.alpha_f) + now_.v[i] * s.alpha_f;
+  }
+}
+
+/// Forces out of balance at the trial u⁺.
+BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
+  try_at(s);
+  const double ahead = (1.0 - s.alpha_f) * s.h;
+  tissue_.forces({at_u_, at_v_, statics_ ? std::numeric_limits<double>::infinity() : ahead}, next_.elastic,
+                 next_.viscous, watch_);
+  const Vec3d gravity = state_.gravity_at(state_.time + ahead);
+  Balance b;
+  double inertial = 0.0, external = 0.0, rounding = 0.0;
+  for (std::size_t i = 0; i < next_.u.size(); ++i) {
+    const double m = state_.body.masses[i];
+    Vec3d pull = next_.external[i] + gravity * m, drag{};
+    if (!statics_) {
+      const Vec3d inertia = (next_.a[i] * (1.0 - s.alpha_m) + now_.a[i] * s.alpha_m) * m;
+      inertial += dot(inertia, inertia);
+      rounding += m * m * dot(next_.u[i], next_.u[i]);
+      drag = inertia + at_v_[i] * state_.gamma[i];
+    }
+    external += dot(pull, pull);
+    out_of_balance_[i] = drag - next_.elastic[i] - next_.viscous[i] - pull;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (held_[3 * i + axis] != 0) out_of_balance_[i][axis] = 0.0;
+    }
+  }
+  b.residual = flat(view(out_of_balance_)).norm();
+  b.rounding = kRounding * s.a_rate * std::sqrt(rounding);
+  b.scale = std::max({flat(view(next_.elastic)).norm(), flat(view(next_.viscous)).norm(), std::sqrt(inertial),
+                      std::sqrt(external), kSmallStrain * unit_force_});
+  return b;
+}
+
+void BalanceSolver::linearise(const TimeStep& s, bool semidefinite) {
+  for (std::size_t i = 0; i < diagonal_.size(); ++i) {
+    diagonal_[i] =
+        (1.0 - s.alpha_m) * s.a_rate * state_.body.masses[i] + (1.0 - s.alpha_f) * s.v_rate * state_.gamma[i];
+  }
+  const double since = statics_ ? std::numeric_limits<double>::infinity() : (1.0 - s.alpha_f) * s.h;
+  system_.linearise({at_u_, at_v_, since}, {s.v_rate, 1.0 - s.alpha_f, diagonal_}, semidefinite);
+}
+
+/// A first u⁺: the motion goes on as it was. Where that turns tets inside out, from where the body is, with the change
+/// of what is driven spread over the body by the tangent there.
+bool BalanceSolver::start(const TimeStep& s, std::span<const Vec3d> last_change, double last_h) {
+  const std::size_t inverted = watch_.inverted.size();
+  const double scale = last_h > 0.0 ? s.h / last_h : 0.0;
+  for (std::size_t i = 0; i < next_.u.size(); ++i) {
+    const Vec3d on = statics_ ? last_change[i] * scale : now_.v[i] * s.h;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      next_.u[i][axis] = now_.u[i][axis] + (held_[3 * i + axis] != 0 ? change_[i][axis] : on[axis]);
+    }
+  }
+  const Balance there = evaluate(s);
+  if (std::isfinite(there.residual) && watch_.inverted.size() <= inverted) return true;
+  next_.u = now_.u;
+  if (!std::isfinite(evaluate(s).residual)) return false;
+  linearise(s, false);
+  std::vector<Vec3d> spread(change_.size());
+  system_.apply(change_, spread);
+  Eigen::VectorXd load = -(flat(view(out_of_balance_)) + flat(view(spread))), d;
+  for (std::size_t c = 0; c < held_.size(); ++c) {
+    if (held_[c] != 0) load[static_cast<Eigen::Index>(c)] = 0.0;
+  }
+  system_.solve(load, kForcing, d);
+  flat(std::span<Vec3d>(next_.u)) += d + flat(view(change_));
+  return d.allFinite();
+}
+
+/// Goes along the direction as far as it leads towards balance.
+/// @return false, with u⁺ as before, where it does not
+bool BalanceSolver::search_line(const TimeStep& s, const Eigen::VectorXd& direction, Balance& balance) {
+  const std::vector<Vec3d> from = next_.u;
+  const double before = flat(view(out_of_balance_)).dot(direction), residual = balance.residual;
+  double a = 1.0;
+  for (int i = 0; i < kMostHalvings; ++i) {
+    flat(std::span<Vec3d>(next_.u)) = flat(view(from)) + a * direction;
+    const Balance there = evaluate(s);
+    const double slope = flat(view(out_of_balance_)).dot(direction);
+    const bool finite = std::isfinite(there.residual);
+    // descent that has not gone past the valley, or not far; or simply less out of balance
+    const bool along = before < 0.0 && slope <= 0.8 * std::abs(before);
+    if (finite && (along || there.residual <= (1.0 - 1e-4 * a) * residual)) {
+      balance = there;
+      return true;
+    }
+    a *= finite && before < 0.0 && slope > 0.0 ? std::clamp(before / (before - slope), 0.1, 0.5) : 0.25;
+  }
+  next_.u = from;
+  balance = evaluate(s);
+  return false;
+}
+
+bool BalanceSolver::newton(const TimeStep& s) {
+  const ImplicitOptions& options = state_.options.implicit;
+  Balance balance = evaluate(s);
+  bool semidefinite = false;
+  int patience = 0, wait = 0;      // iterations with definite tangents before the exact one is tried again
+  double mark = balance.residual;  // to be halved within so many iterations
+  int deadline = options.most_iterations;
+  Eigen::VectorXd direction;
+  for (iterations_ = 0; iterations_ < deadline; ++iterations_) {
+    if (!std::isfinite(balance.residual)) return false;
+    if (balance.met(options.tolerance)) return true;
+    linearise(s, semidefinite);
+    const double exact = std::max(1e-12, 0.1 * options.tolerance * balance.scale / balance.residual);
+    const double accuracy = system_.is_linear() ? exact : std::max(exact, kForcing);
+    const KrylovResult solved = system_.solve(-flat(view(out_of_balance_)), std::min(accuracy, 0.1), direction);
+    const bool usable = direction.allFinite() && direction.squaredNorm() > 0.0;
+    const bool nearer = usable && search_line(s, direction, balance);
+    if (!nearer && semidefinite) return false;
+    if (!semidefinite) patience = nearer && !solved.curved ? 0 : std::min(2 * patience + 1, kMostPatience);
+    wait = semidefinite ? wait - 1 : patience;
+    semidefinite = wait > 0;
+    if (balance.residual < 0.5 * mark) mark = balance.residual, deadline = iterations_ + 1 + options.most_iterations;
+  }
+  return balance.met(options.tolerance);
+}
+
+}  // namespace glisson

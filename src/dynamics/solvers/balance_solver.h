@@ -1,0 +1,90 @@
+// balance_solver.h — the end of a step at which all forces are in balance, by Newton's method.
+//
+//   M a_α + γ v_α + f(u_α, v_α) = external(t_α)       on the free components, u⁺ unknown (time_steps.h)
+//
+//   ┌ start: u + h v or u, motions lifted through the tangent ┐
+//   │ tangent ─▶ Krylov ─▶ line search … until balance        │
+//   └ no balance: nothing has changed                         ┘
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dynamics/solvers/tangent_system.h"
+#include "dynamics/state/body_state.h"
+#include "dynamics/step/time_steps.h"
+
+namespace glisson {
+
+/// Motion and forces at one time.
+struct Moment {
+  std::vector<Vec3d> u, v, a;
+  std::vector<Vec3d> elastic, viscous;  ///< [N]
+  std::vector<Vec3d> external;          ///< loads, without gravity [N]
+  Vec3d gravity{};
+
+  void resize(std::size_t vertices) {
+    for (auto* field : {&u, &v, &a, &elastic, &viscous, &external}) field->resize(vertices);
+  }
+  void archive(Archive& ar) {
+    for (auto* field : {&u, &v, &a, &elastic, &viscous, &external}) ar.same_size(*field);
+    ar(gravity);
+  }
+};
+
+class BalanceSolver {
+ public:
+  /// All must outlive this. @param now  where steps start from  @param statics  without M, γ and viscosity
+  BalanceSolver(BodyState& state, const TissueOperator& tissue, const Moment& now, bool statics);
+
+  /// What is held, or the body, or its tissues have changed.
+  void begin();
+  void tissues_changed() { system_.tissues_changed(); }
+
+  /// Finds the moment after a step. @param last_change  of u in the last step, of last_h [s], which statics goes on with
+  /// @return false where there is no balance
+  bool solve(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
+  Moment& next() { return next_; }
+
+  int iterations() const { return iterations_; }  ///< of the last solve
+  ElementWatch& watch() { return watch_; }
+  /// Per component: held by a constraint, or of a vertex in no tet.
+  const std::vector<char>& held() const { return held_; }
+  /// After begin(), with what is held as it was when it was written.
+  void archive(Archive& ar) { ar(system_); }
+
+ private:
+  /// How far from balance a trial is.
+  struct Balance {
+    double residual = 0.0;  ///< norm of the forces out of balance on the free components [N]
+    double scale = 0.0;     ///< norm of the largest kind of force [N]
+    double rounding = 0.0;  ///< what rounding leaves of the residual [N]
+    bool met(double tolerance) const { return residual <= tolerance * scale + rounding; }
+  };
+
+  void prescribe(const TimeStep& s);
+  Balance evaluate(const TimeStep& s);
+  void try_at(const TimeStep& s);
+  bool start(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
+  bool newton(const TimeStep& s);
+  void linearise(const TimeStep& s, bool semidefinite);
+  bool search_line(const TimeStep& s, const Eigen::VectorXd& direction, Balance& balance);
+
+  BodyState& state_;
+  const TissueOperator& tissue_;
+  const Moment& now_;
+  bool statics_;
+  TangentSystem system_;
+  Moment next_;
+  ElementWatch watch_;
+  std::vector<char> held_;
+  std::vector<Vec3d> change_;         ///< u⁺ − u of held components [m]
+  std::vector<Vec3d> held_velocity_;  ///< of held components at t + h [m/s]
+  std::vector<Vec3d> at_u_, at_v_;    ///< state that forces are asked at
+  std::vector<Vec3d> out_of_balance_;
+  std::vector<double> diagonal_;
+  double unit_force_ = 0.0;  ///< norm of the forces at a strain of 1 [N]
+  int iterations_ = 0;
+};
+
+}  // namespace glisson
