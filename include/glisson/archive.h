@@ -77,7 +77,8 @@ class Archive {
   /// @throws std::runtime_error saying that the contents do not fit
   [[noreturn]] static void refuse() {
     throw std::runtime_error(
-        "checkpoint: its contents do not fit this simulation; make it with the same mesh, tissues, options, constraints "
+        "checkpoint: its contents do not fit this simulation; make it with the same mesh, tissues, options, "
+        "constraints "
         "and loads as the one that was saved");
   }
 

@@ -79,17 +79,17 @@ bool is_viscous(const Variant& variant) {
   return variant.tissue.viscosity > 0.0 || std::any_of(variant.regions.begin(), variant.regions.end(), viscous);
 }
 
-/// Complains where what acts on the body beside supports and tools meets an integrator that does not bear it.
+/// Complains where what acts on the body beside supports and tools meets an integrator that does not support it.
 void check_integrator(const Variant& variant, const Node& experiment, Problems& problems) {
   const Capabilities can = capabilities(variant.simulation.integrator);
   const bool acts = !variant.instruments.empty() || !variant.capsules.empty() || variant.container;
-  if (can.bears(is_viscous(variant)) || !acts) return;
+  if (can.supports(is_viscous(variant)) || !acts) return;
   const std::string what = !variant.instruments.empty() ? "[[instrument]]"
                            : variant.container          ? "[container]"
                                                         : "[[capsule]]";
   const Node& key = *experiment.find("motion")->find("integrator");
   problems.add(key.where, "motion.integrator",
-               "\"" + *key.text() + "\"" + (can.bears_interactions ? " with viscous tissue" : "") + " bears no " +
+               "\"" + *key.text() + "\"" + (can.supports_interactions ? " with viscous tissue" : "") + " supports no " +
                    what +
                    "; take \"explicit\", or \"semi_implicit\" with tissue that has no `viscosity_Pa_s` (Maxwell "
                    "branches may stay)");

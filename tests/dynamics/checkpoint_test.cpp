@@ -255,8 +255,8 @@ TEST(CheckpointFile, IsRefusedWhereItDoesNotFit) {
   const TetMesh mesh = test::paper_mesh();
   Simulation s(mesh, {{0, Tissue{}}});
   s.fix(mesh.vertex_sets.at("z_min"));
-  expect_refusal(s, "", "this is none");
-  expect_refusal(s, "hello, I am no checkpoint at all", "this is none");
+  expect_refusal(s, "", "this is not a checkpoint");
+  expect_refusal(s, "hello, I am no checkpoint at all", "this is not a checkpoint");
   for (const std::size_t n : {std::size_t(21), good.size() / 2, good.size() - 1}) {
     expect_refusal(s, good.substr(0, n), "it is cut");
   }
@@ -266,7 +266,7 @@ TEST(CheckpointFile, IsRefusedWhereItDoesNotFit) {
   expect_refusal(s, changed, "checksum is wrong");
   std::string later = good;
   later[7] = '9';
-  expect_refusal(s, later, "this is none that this program reads");
+  expect_refusal(s, later, "this is not a checkpoint that this program reads");
   SimulationOptions o;
   o.integrator = Integrator::semi_implicit;
   expect_refusal(s, saved_press(o), "another integrator");

@@ -228,17 +228,17 @@ TEST(Instruments, AskForAnIntegratorThatBearsThem) {
   for (const std::string word : {"implicit", "static"}) {
     EXPECT_EQ(complaint(kNeedle + "[motion]\nintegrator = \"" + word + "\"\n"),
               "s.toml:14:14: motion.integrator: \"" + word +
-                  "\" bears no [[instrument]]; take \"explicit\", or \"semi_implicit\" with tissue that has no "
+                  "\" supports no [[instrument]]; take \"explicit\", or \"semi_implicit\" with tissue that has no "
                   "`viscosity_Pa_s` (Maxwell branches may stay)");
   }
   const std::string semi = kNeedle + "[motion]\nintegrator = \"semi_implicit\"\n";
   EXPECT_EQ(complaint(semi), "");
   EXPECT_THAT(
       complaint(semi + "[tissue]\nviscosity_Pa_s = 1\n"),
-      HasSubstr("s.toml:14:14: motion.integrator: \"semi_implicit\" with viscous tissue bears no [[instrument]]"));
+      HasSubstr("s.toml:14:14: motion.integrator: \"semi_implicit\" with viscous tissue supports no [[instrument]]"));
   EXPECT_THAT(complaint(changed(semi, kNeedle.substr(kNeedle.find("[[instrument]]")), "[[capsule]]\n") +
                         "duration_s = 1\n[tissue]\nviscosity_Pa_s = 1\n"),
-              HasSubstr("bears no [[capsule]]"));
+              HasSubstr("supports no [[capsule]]"));
 }
 
 struct Recorder : RunObserver {

@@ -24,7 +24,7 @@ class LiveBody {
   const std::vector<ToolInfo>& tools() const { return tools_; }
   LiveWay& way(std::size_t tool) { return *ways_[tool]; }
   std::size_t ways() const { return ways_.size(); }
-  /// Null where the integrator bears no interactions.
+  /// Null where the integrator supports no interactions.
   GrabSpring* grab() { return grab_.get(); }
   /// Null where the body cannot be cut; why says so.
   HandCut* cut() { return cut_.get(); }

@@ -110,7 +110,7 @@ void Replay::apply(const Command& command) {
       rate_ = static_cast<double>(command.values[0]);
       return;
     default:
-      return;  // a recording bears no hand
+      return;  // a recording supports no hand
   }
 }
 

@@ -1,4 +1,4 @@
-// integrator.h — how a body may be advanced in time, and what each way can do.
+// integrator.h — the integrators, and what each of them supports.
 #pragma once
 
 #include <span>
@@ -13,17 +13,17 @@ enum class Integrator {
   static_         ///< equilibrium, without inertia and viscosity: time orders motions and loads; in double
 };
 
-/// What an integrator can do. Who has to choose or to refuse one asks for these, not for its name.
+/// What an integrator supports. Code that chooses or refuses an integrator uses these flags, not its name.
 struct Capabilities {
-  bool bears_interactions = false;           ///< instruments, capsules and containers: its steps are explicit
-  bool bears_them_in_viscous_tissue = true;  ///< the same where some tissue has a Kelvin–Voigt viscosity
-  bool any_step_is_stable = false;           ///< it has no h*, needs no mass scaling and does not ring
-  bool viscosity_limits_step = false;        ///< h* falls with viscosity
-  bool forces_at_step_end = false;           ///< Simulation::force_time() is the end of a step, not its start
+  bool supports_interactions = false;           ///< instruments, capsules and containers: its steps are explicit
+  bool supports_them_in_viscous_tissue = true;  ///< the same where some tissue has a Kelvin–Voigt viscosity
+  bool any_step_is_stable = false;              ///< it has no h*, needs no mass scaling and does not ring
+  bool viscosity_limits_step = false;           ///< h* falls with viscosity
+  bool forces_at_step_end = false;              ///< Simulation::force_time() is the end of a step, not its start
 
   /// Whether interactions may act on such tissue.
-  constexpr bool bears(bool viscous_tissue) const {
-    return bears_interactions && (bears_them_in_viscous_tissue || !viscous_tissue);
+  constexpr bool supports(bool viscous_tissue) const {
+    return supports_interactions && (supports_them_in_viscous_tissue || !viscous_tissue);
   }
 };
 
@@ -34,7 +34,7 @@ struct IntegratorInfo {
   Capabilities can{};
 };
 
-/// All there are, each once.
+/// All integrators, each once.
 std::span<const IntegratorInfo> integrators();
 const IntegratorInfo& integrator_info(Integrator integrator);
 inline Capabilities capabilities(Integrator integrator) { return integrator_info(integrator).can; }

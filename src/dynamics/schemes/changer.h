@@ -24,7 +24,7 @@ class Changer {
   RemovalReport remove(std::span<const std::uint32_t> tets);
   Split split(std::span<const Triangle> faces, std::span<const VertexMove> moves);
   /// Gives blocks of the body other tissues. @return whether masses have changed
-  /// @throws std::invalid_argument for what the scheme or its step does not bear; nothing has changed then
+  /// @throws std::invalid_argument for what the scheme or its step does not support; nothing has changed then
   bool set_tissues(const BlockTissues& tissues);
 
  private:

@@ -28,7 +28,7 @@ class ExplicitScheme : public Scheme {
   static constexpr IntegratorInfo kInfo{Integrator::explicit_,
                                         "explicit",
                                         "the paper's equation 4: displacements from forces at the start of the step",
-                                        {.bears_interactions = true, .viscosity_limits_step = true}};
+                                        {.supports_interactions = true, .viscosity_limits_step = true}};
 
   /// @throws std::invalid_argument as Simulation's constructor
   ExplicitScheme(Body body, const SimulationOptions& options) : ExplicitScheme(std::move(body), options, Drag::lags) {}

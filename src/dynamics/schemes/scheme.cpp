@@ -30,7 +30,7 @@ void Scheme::attach(std::shared_ptr<Interaction>, const BodyView&) { refuse_inte
 
 std::string Scheme::not_finite_at(double time) {
   return "a force is not finite at " + std::to_string(time) +
-         " s: the tissue has been deformed beyond what its law or its precision can carry, or a motion, load or "
+         " s: the tissue has been deformed beyond the range of its law or its precision, or a motion, load or "
          "interaction gave a number that is not finite. Ways out: look at the last frame, press less deep or more "
          "slowly, soften the law, precision = \"double\", or integrator = \"implicit\"";
 }
@@ -38,8 +38,8 @@ std::string Scheme::not_finite_at(double time) {
 void Scheme::refuse_interactions() {
   throw std::invalid_argument(
       "attach: instruments, needles and membranes need integrator = explicit, or semi_implicit for tissue without "
-      "viscosity; this simulation has another. Relaxation can be modelled by maxwell branches, which explicit steps "
-      "bear");
+      "viscosity; this simulation has another. Relaxation can be modelled by maxwell branches, which work with "
+      "explicit steps");
 }
 
 bool Scheme::take_hold(double h) {

@@ -90,20 +90,20 @@ class Scheme {
   /// Follows a body that has been read, by what the archive has of its place in memory. @throws std::runtime_error as before
   virtual void take_body(Archive& ar) = 0;
 
-  /// @throws std::invalid_argument for tissues that are not valid, or that the scheme does not bear
+  /// @throws std::invalid_argument for tissues that are not valid, or that the scheme does not support
   virtual void require_tissues(const BlockTissues& tissues) const;
   /// Stress of each element and Maxwell branch of a block at present [Pa]; asked before a change of its tissue.
   virtual std::vector<Sym3<double>> branch_stresses(std::size_t block) = 0;
   /// What the body knows of its past, for take_back_tissues.
   virtual std::string past() { return {}; }
-  /// Follows a change of the body's tissues and masses. @throws std::invalid_argument where the step does not bear it
+  /// Follows a change of the body's tissues and masses. @throws std::invalid_argument where the step does not support it
   virtual void take_tissues(const TissueChange& change) = 0;
   /// Follows one that take_tissues refused, which is taken back.
   virtual void take_back_tissues(const TissueChange& change) = 0;
 
   /// Why a step from `time` is not made where a force is not finite, and what to do.
   static std::string not_finite_at(double time);
-  /// @throws std::invalid_argument saying which integrators bear interactions
+  /// @throws std::invalid_argument saying which integrators support interactions
   [[noreturn]] static void refuse_interactions();
   /// Lets those constraints take hold whose time has come by the middle of a step of h.
   /// @return whether one did

@@ -33,10 +33,10 @@ void SemiImplicitScheme::require_tissues(const BlockTissues& tissues) const {
   ExplicitScheme::require_tissues(tissues);
   for (const auto& [block, tissue] : tissues) {
     if (!(tissue.viscosity > 0.0) || !has_interactions()) continue;
-    throw std::invalid_argument(
-        "tissue \"" + tissue.name + "\": viscosity = " + std::to_string(tissue.viscosity) +
-        " Pa s, but the integrator semi_implicit does not bear viscosity beside instruments, needles and membranes; " +
-        "take integrator = explicit, or model relaxation by maxwell branches");
+    throw std::invalid_argument("tissue \"" + tissue.name + "\": viscosity = " + std::to_string(tissue.viscosity) +
+                                " Pa s, but the integrator semi_implicit does not support viscosity beside "
+                                "instruments, needles and membranes; " +
+                                "take integrator = explicit, or model relaxation by maxwell branches");
   }
 }
 

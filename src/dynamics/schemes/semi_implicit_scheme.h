@@ -19,7 +19,7 @@ class SemiImplicitScheme final : public ExplicitScheme {
   static constexpr IntegratorInfo kInfo{Integrator::semi_implicit,
                                         "semi_implicit",
                                         "the same, viscosity taken at the end of the step",
-                                        {.bears_interactions = true, .bears_them_in_viscous_tissue = false}};
+                                        {.supports_interactions = true, .supports_them_in_viscous_tissue = false}};
 
   /// @throws std::invalid_argument as Simulation's constructor
   SemiImplicitScheme(Body body, const SimulationOptions& options);

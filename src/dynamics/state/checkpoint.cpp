@@ -49,7 +49,7 @@ Archive read_checkpoint(std::istream& in) {
   file << in.rdbuf();
   const std::string all = std::move(file).str();
   if (all.size() < kHead || all.compare(0, kMagic.size(), kMagic) != 0) {
-    throw std::runtime_error("checkpoint: this is none that this program reads; it does not begin with " +
+    throw std::runtime_error("checkpoint: this is not a checkpoint that this program reads; it does not begin with " +
                              std::string(kMagic));
   }
   std::uint64_t size = 0, sum = 0;

@@ -59,7 +59,8 @@ double StepControl::with_beside(double step, const Beside& beside) const {
 std::string StepControl::too_large(double stable) const {
   std::ostringstream text;
   text << "step = " << step_ << " s is above the stable step h* = " << stable
-       << " s of this mesh and tissue, and the run would blow up. Ways out: a smaller step, or \"auto\", which takes "
+       << " s of this mesh and tissue, and the run would be unstable. Ways out: a smaller step, or \"auto\", which "
+          "takes "
        << kSafety << " h*; the integrator ";
   if (drag_ == Drag::lags) text << "\"semi_implicit\" where viscosity is what limits h*, or ";
   text << "\"implicit\", which is stable at any step; less viscosity or more nodal damping, which raise h*; a larger "

@@ -158,7 +158,7 @@ class StepControl {
   [[noreturn]] void refuse_above(double stable) const { throw std::invalid_argument(too_large(stable)); }
   std::string too_large(double stable) const;
   bool rises(std::span<const double> stiffening, double rise);
-  bool bears(std::span<const double> stiffening);
+  bool holds_at(std::span<const double> stiffening);
   void take_base(std::vector<double> level, const Limits& limits);
   std::size_t most_levels() const;
   bool is_crowd(std::size_t tets) const;

@@ -180,13 +180,13 @@ bool StepControl::is_crowded() const {
   return false;
 }
 
-/// Takes in tets above their levels, by levels of their own or by that of the blocks; false where a given step does not bear it.
+/// Takes in tets above their levels, by levels of their own or by that of the blocks; false where a given step does not support it.
 bool StepControl::rises(std::span<const double> stiffening, double rise) {
   const double before = with_beside(limits_.pace, stiff_);
   levels_.raise(kMostAhead);
   if (!automatic_) {
     take_stiff();
-    return bears(stiffening);
+    return holds_at(stiffening);
   }
   unchecked_ = false;
   std::vector<double> level = level_of(stiffening, std::min(rise, kMostAhead));
@@ -212,7 +212,7 @@ bool StepControl::rises(std::span<const double> stiffening, double rise) {
 }
 
 /// Whether a given step bears the stiffness there is: by levels of single tets, by that of the blocks, by that without room.
-bool StepControl::bears(std::span<const double> stiffening) {
+bool StepControl::holds_at(std::span<const double> stiffening) {
   unchecked_ = false;
   if (!is_crowded() && step_ <= stable_step()) return true;
   std::vector<double> level = level_of(stiffening, 1.0);

@@ -95,7 +95,7 @@ std::vector<Candidate> candidates(const Variant& v, const ForwardSpec& spec) {
   }
   if (viscous && bears_all(v)) list.push_back({.name = "semi-implicit", .adjust = own_step(Integrator::semi_implicit)});
   const Integrator own = spec.integrator.value_or(v.simulation.integrator);
-  const bool explicit_like = capabilities(own).bears(viscous);
+  const bool explicit_like = capabilities(own).supports(viscous);
   if (!explicit_like) list.push_back({.name = "explicit", .adjust = own_step(Integrator::explicit_)});
   if (explicit_like && !viscous) {
     for (const double factor : {100.0, 10.0, 1.0}) {
