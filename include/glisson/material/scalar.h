@@ -35,7 +35,7 @@ using std::exp, std::expm1;
 /// What compares to true or false; lanes have words of their own.
 template <class T>
 concept Single = requires(T a) {
-  { a < a } -> std::same_as<bool>;
+  { a < a } -> std::same_as<bool>;  // NOLINT(misc-redundant-expression)
 };
 
 template <Single T>
