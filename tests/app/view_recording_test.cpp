@@ -180,7 +180,7 @@ TEST_F(ViewRecording, BeginsWithEachBodyAndIsBounded) {
   recording.add({.epoch = 2, .frame_time = 0.005});
   recording.add({.epoch = 2, .frame_time = 0.006});
   EXPECT_EQ(recording.frames(), 1u) << "after a gap the motion is not known";
-  EXPECT_NE(recording.unsaid().find("keep up"), std::string::npos);
+  EXPECT_NE(recording.unsaid().find("fast enough"), std::string::npos);
 }
 
 // What goes out while the body moves on is what was there when it was asked for, in pieces of a bounded size.
