@@ -115,7 +115,7 @@ void LiveBody::attach_grab() {
   try {
     built_->simulation.attach(grab);
     grab_ = grab;
-  } catch (const std::invalid_argument&) {  // the integrator bears none
+  } catch (const std::invalid_argument&) {  // the integrator supports none
   }
 }
 

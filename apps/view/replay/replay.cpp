@@ -110,7 +110,7 @@ void Replay::apply(const Command& command) {
       rate_ = static_cast<double>(command.values[0]);
       return;
     default:
-      return;  // a recording supports no hand
+      return;  // a recording cannot be pulled or pushed
   }
 }
 
