@@ -160,7 +160,8 @@ TEST(HandDriver, RefusesWhatIsNotPassive) {
   c.stiffness *= 0.98;
   EXPECT_NO_THROW(HandDriver({}, c));
   c.device_damping = 0.0;
-  EXPECT_THROW(HandDriver({}, c), std::invalid_argument) << "a sampled spring is unstable with a device without damping";
+  EXPECT_THROW(HandDriver({}, c), std::invalid_argument)
+      << "a sampled spring is unstable with a device without damping";
   EXPECT_THROW(HandDriver({}, {.stiffness = -1.0}), std::invalid_argument);
 }
 
