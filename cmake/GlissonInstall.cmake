@@ -3,7 +3,7 @@
 #   bin/glisson   include/glisson/   lib/libglisson*.a   share/glisson/scenes/
 #   lib/cmake/Glisson/: GlissonConfig, GlissonConfigVersion, one Glisson<component>Targets a component
 #
-# The core looks for Highway; the components `scene` and `io` look for toml++ and VTK.
+# The core looks for Highway; the components `scene`, `io` and `fit` look for toml++, VTK and Ceres.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(glisson_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/Glisson")
@@ -24,6 +24,7 @@ endfunction()
 glisson_install_component(core glisson)
 glisson_install_component(scene glisson_scene)
 glisson_install_component(io glisson_io)
+glisson_install_component(fit glisson_fit)
 
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/glisson" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/scenes" DESTINATION "${CMAKE_INSTALL_DATADIR}/glisson")

@@ -8,7 +8,7 @@
 #
 # A folder that is absent, half made, of another compiler, version, flags or libraries, or that cannot be built, is left alone
 # and everything is compiled here.
-set(glisson_offered glisson_options glisson glisson_scene glisson_io glisson_fit glisson_report)
+set(glisson_offered glisson_options glisson glisson_scene glisson_io glisson_fit glisson_report glisson_fit_files)
 
 function(glisson_describe_build out)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
@@ -65,7 +65,7 @@ macro(glisson_reuse_libraries folder)
   glisson_same_build("${folder}" same)
   if(same)
     message(STATUS "libraries: those of ${folder}, brought up to date there")
-    execute_process(COMMAND "${CMAKE_COMMAND}" --build "${folder}" --target glisson_report RESULT_VARIABLE result
+    execute_process(COMMAND "${CMAKE_COMMAND}" --build "${folder}" --target glisson_fit_files RESULT_VARIABLE result
       OUTPUT_VARIABLE output ERROR_VARIABLE output)
     glisson_same_build("${folder}" same)  # that build may have configured itself anew
     if(result EQUAL 0 AND same)

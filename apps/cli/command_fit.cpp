@@ -16,10 +16,10 @@
 #include "cli/mesh_cache.h"
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
+#include "fit/files/fit_json.h"
+#include "fit/files/fit_state.h"
 #include "fit/run_fit.h"
 #include "fit/search/law_candidates.h"
-#include "report/fit_json.h"
-#include "report/fit_state.h"
 #include "report/json_text.h"
 #include "report/output_file.h"
 #include "report/output_folder.h"
@@ -136,7 +136,7 @@ int run(const FitCommand& command) {
   const fs::path folder = command.out.empty() ? fs::path("out") / fs::path(command.file).stem() : fs::path(command.out);
   const fs::path state = folder / "fit.state.json";
   MeshCache meshes(command.quiet);
-  fit::FitOptions options;
+  fit::FitRun options;
   options.laws = command.laws;
   options.data_folder = command.data;
   options.load = meshes.loader();

@@ -1,6 +1,7 @@
 // glisson.h — everything that the library `Glisson::glisson` offers.
 //
-// Scenes (glisson/scene/scene.h, Glisson::scene) and mesh files (glisson/io.h, Glisson::io) are libraries of their own.
+// Scenes (glisson/scene/scene.h, Glisson::scene), mesh files (glisson/io.h, Glisson::io) and fits (glisson/fit.h,
+// Glisson::fit) are libraries of their own.
 #pragma once
 
 #include "glisson/instruments/blade.h"

@@ -27,6 +27,8 @@ struct TetMesh {
   std::map<std::string, std::vector<std::uint32_t>> vertex_sets;  ///< sorted vertex indices
   std::vector<Vec3d> fibres{};  ///< direction of each tet's fibres, any length, 0 for none; empty: the tissue's
 
+  /// A set by its name. @throws std::invalid_argument naming the sets there are
+  const std::vector<std::uint32_t>& vertex_set(const std::string& name) const;
   int region_of(std::size_t tet) const { return regions.empty() ? 0 : regions[tet]; }
   bool operator==(const TetMesh&) const = default;
 };

@@ -24,13 +24,7 @@ std::vector<std::uint32_t> chosen(const Live& live, const VertexChoice& choice) 
     }
     return to_indices(choice, 1, "vertices");
   }
-  const auto name = nb::cast<std::string>(choice);
-  const auto& sets = live.get().mesh().vertex_sets;
-  const auto found = sets.find(name);
-  if (found != sets.end()) return found->second;
-  std::string known;
-  for (const auto& [set, vertices] : sets) known += (known.empty() ? "" : ", ") + set;
-  throw nb::value_error(("the mesh has no vertex set \"" + name + "\"; it has: " + known).c_str());
+  return live.get().mesh().vertex_set(nb::cast<std::string>(choice));
 }
 
 /// "xz": the components that are held or driven.

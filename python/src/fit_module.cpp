@@ -3,11 +3,11 @@
 #include <atomic>
 
 #include "bind.h"
+#include "fit/files/fit_json.h"
+#include "fit/files/fit_state.h"
 #include "fit/run_fit.h"
 #include "fit/search/law_candidates.h"
 #include "live_simulation.h"
-#include "report/fit_json.h"
-#include "report/fit_state.h"
 #include "report/json_text.h"
 
 namespace {
@@ -16,7 +16,7 @@ namespace nb = nanobind;
 using namespace glisson;
 
 /// Goes on from what an interrupted run of the same fit left in a file, and keeps the file up to date.
-void remember_in(const std::filesystem::path& state, const fit::FitSpec& spec, fit::FitOptions& options) {
+void remember_in(const std::filesystem::path& state, const fit::FitSpec& spec, fit::FitRun& options) {
   const std::string fingerprint = fit_fingerprint(spec, options);
   if (auto known = read_fit_state(state, fingerprint)) options.memory = std::move(*known);
   options.remember = [state, fingerprint](const fit::FitMemory& memory) {
@@ -33,7 +33,7 @@ std::pair<std::string, std::string> run(fit::FitSpec spec, const std::vector<std
   if (bootstrap) spec.proof.bootstrap = *bootstrap;
   std::atomic<bool> stop{false};
   std::exception_ptr raised;
-  fit::FitOptions options;
+  fit::FitRun options;
   options.laws = laws;
   options.data_folder = data;
   options.load = python::mesh_loader();

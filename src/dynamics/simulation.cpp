@@ -169,9 +169,18 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 ConstraintId Simulation::fix(std::span<const std::uint32_t> vertices, Axes axes) { return drive(vertices, {}, axes); }
+ConstraintId Simulation::fix(std::string_view set, Axes axes) { return drive(set, {}, axes); }
 
 ConstraintId Simulation::drive(std::span<const std::uint32_t> vertices, Motion motion, Axes axes, double from) {
   return impl_->scheme->add_constraint({{vertices.begin(), vertices.end()}, axes, std::move(motion), from});
+}
+
+ConstraintId Simulation::drive(std::string_view set, Motion motion, Axes axes, double from) {
+  return drive(mesh().vertex_set(std::string(set)), std::move(motion), axes, from);
+}
+
+void Simulation::add_load(std::string_view set, Vec3d force, std::function<double(double)> scale) {
+  add_load(mesh().vertex_set(std::string(set)), force, std::move(scale));
 }
 
 void Simulation::add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale) {

@@ -17,7 +17,7 @@
 namespace glisson::fit {
 namespace {
 
-bool stopped(const FitOptions& options) { return options.stop != nullptr && options.stop->load(); }
+bool stopped(const FitRun& options) { return options.stop != nullptr && options.stop->load(); }
 
 std::string rounded(double x, int digits = 3) { return brief(x, digits); }
 
@@ -133,7 +133,7 @@ void fill_profiles(const Problem& problem, const Profiles& profiled, const Covar
 }
 
 /// Profiles by runs of the model, or by a cubic in its place where that holds; the cubic is dropped where it does not.
-Profiles profiles_of(const LawSearch& search, const Covariance& covariance, const FitOptions& options,
+Profiles profiles_of(const LawSearch& search, const Covariance& covariance, const FitRun& options,
                      std::unique_ptr<LocalProblem>& local) {
   ProfileOptions how;
   how.stop = options.stop;
@@ -148,7 +148,7 @@ Profiles profiles_of(const LawSearch& search, const Covariance& covariance, cons
 }
 
 void fill_bootstrap(const Problem& problem, const Optimum& optimum, const Covariance& covariance, const FitSpec& spec,
-                    const FitOptions& options, FitResult& result) {
+                    const FitRun& options, FitResult& result) {
   BootstrapOptions how;
   how.replicates = spec.proof.bootstrap;
   how.seed = spec.search.seed;
@@ -213,7 +213,7 @@ void fill_search(const LawSearch& search, const FitSpec& spec, FitResult& result
   conclude_on_search(search, result.conclusions);
 }
 
-void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves, const FitOptions& options,
+void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves, const FitRun& options,
                 FitResult& result) {
   constexpr int kRounds = 3;
   const auto told = [&](const char* stage, std::size_t done, std::size_t planned) {

@@ -1,8 +1,8 @@
 // fill_result.h — what a law's optimum means: curves, intervals, profiles, verdicts, next experiments, in one result.
 #pragma once
 
-#include "fit/fit_result.h"
 #include "fit/search/law_search.h"
+#include "glisson/fit.h"
 
 namespace glisson::fit {
 
@@ -14,7 +14,7 @@ void fill_search(const LawSearch& search, const FitSpec& spec, FitResult& result
 
 /// Intervals by curvature, profile and bootstrap, correlations, verdicts, designs, and sentences on all of it. A lower cost
 /// found on the way becomes the optimum and all begins again, three times at most.
-void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves, const FitOptions& options,
+void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves, const FitRun& options,
                 FitResult& result);
 
 }  // namespace glisson::fit

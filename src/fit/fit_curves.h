@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fit/curve.h"
 #include "fit/fit_spec.h"
+#include "glisson/fit.h"
 
 namespace glisson::fit {
 

@@ -6,18 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "glisson/fit.h"
+
 namespace glisson::fit {
-
-enum class Scale { linear, logarithmic };
-
-/// A number that the fit is free to choose, in the unit of its key.
-struct Parameter {
-  std::string name;              ///< what it is called in tables, unique, e.g. "tissue.law.slope_Pa"
-  std::string unit;              ///< for tables; may be empty
-  double low = 0.0, high = 1.0;  ///< bounds, low < high; both > 0 where the scale is logarithmic
-  Scale scale = Scale::linear;
-  double start = 0.0;  ///< of the first start, within the bounds
-};
 
 /// The simulated force at the instants of a curve.
 struct Prediction {

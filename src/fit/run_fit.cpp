@@ -30,7 +30,7 @@ SpecimenSize size_of(const FitSpec& spec) {
 }
 
 /// A description alone may name no parameter: those of laws that are asked for come with them.
-void require_something_free(const FitSpec& spec, const FitOptions& options) {
+void require_something_free(const FitSpec& spec, const FitRun& options) {
   if (!spec.parameters.empty() || !spec.laws.empty() || !options.laws.empty()) return;
   throw SceneError(
       spec.file.string() +
@@ -39,7 +39,7 @@ void require_something_free(const FitSpec& spec, const FitOptions& options) {
 }
 
 /// The law of [[parameter]], those of [[law]], those asked for by name.
-std::vector<LawSpec> laws_of(const FitSpec& spec, const FitOptions& options, const FitCurves& curves) {
+std::vector<LawSpec> laws_of(const FitSpec& spec, const FitRun& options, const FitCurves& curves) {
   std::vector<LawSpec> laws;
   if (!spec.parameters.empty() && options.laws.empty()) laws.push_back({own_law_name(spec), {}, spec.parameters});
   laws.insert(laws.end(), spec.laws.begin(), spec.laws.end());
@@ -68,7 +68,7 @@ std::string as_sentence(std::string text) {
 
 class Run {
  public:
-  Run(const FitSpec& spec, const FitOptions& options) : spec_(spec), options_(options), memory_(options.memory) {}
+  Run(const FitSpec& spec, const FitRun& options) : spec_(spec), options_(options), memory_(options.memory) {}
   FitResult to_end();
 
  private:
@@ -79,7 +79,7 @@ class Run {
   void count_runs(FitResult& result) const;
 
   const FitSpec& spec_;
-  const FitOptions& options_;
+  const FitRun& options_;
   FitMemory memory_;
   FitCurves curves_;
   Searches searches_;
@@ -212,6 +212,14 @@ FitResult Run::to_end() {
 
 }  // namespace
 
-FitResult run_fit(const FitSpec& spec, const FitOptions& options) { return Run(spec, options).to_end(); }
+FitResult run_fit(const FitSpec& spec, const FitRun& options) { return Run(spec, options).to_end(); }
+
+FitResult run_fit(const std::filesystem::path& file, const FitOptions& options) {
+  return run_fit(load_fit(file), {options, {}, {}});
+}
+
+FitResult run_fit_text(std::string_view text, const std::string& name, const FitOptions& options) {
+  return run_fit(parse_fit(text, name), {options, {}, {}});
+}
 
 }  // namespace glisson::fit

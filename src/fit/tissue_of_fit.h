@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "fit/fit_result.h"
 #include "fit/search/law_search.h"
+#include "glisson/fit.h"
 
 namespace glisson::fit {
 

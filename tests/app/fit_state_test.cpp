@@ -1,6 +1,6 @@
 // fit.state.json is believed only as far as it is what was written: any change of a byte is refused with the way out, forged
 // lists are too, and a resumed fit ends with the result of one that was never stopped.
-#include "report/fit_state.h"
+#include "fit/files/fit_state.h"
 
 #include <csignal>
 #include <fstream>

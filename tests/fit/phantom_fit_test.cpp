@@ -53,7 +53,7 @@ class Phantom : public ::testing::TestWithParam<Mix> {
     spec_.proof.bootstrap = 0;
   }
   FitSpec spec_;
-  FitOptions options_;
+  FitRun options_;
 };
 
 TEST_P(Phantom, MeetsHeldOutCurvesAsNearAsTheTestRepeats) {

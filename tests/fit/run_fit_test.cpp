@@ -168,7 +168,7 @@ TEST_F(RunFit, GoesOnWhereItWasStopped) {
   fit.search.starts = 12;
   const FitResult whole = run_fit(fit, {});
   std::atomic<bool> stop{false};
-  FitOptions options;
+  FitRun options;
   options.stop = &stop;
   FitMemory memory;
   options.remember = [&](const FitMemory& known) {
@@ -178,7 +178,7 @@ TEST_F(RunFit, GoesOnWhereItWasStopped) {
   const FitResult cut = run_fit(fit, options);
   EXPECT_FALSE(cut.complete);
   EXPECT_LT(cut.starts.size(), 12u);
-  FitOptions again;
+  FitRun again;
   again.memory = memory;
   const FitResult resumed = run_fit(fit, again);
   EXPECT_TRUE(resumed.complete);
@@ -232,7 +232,7 @@ TEST_F(RunFit, SaysTheSameOfItsForwardModelWhenItGoesOn) {
   write("a.csv", text);
   write("s.toml", kPressedBlock);
   FitSpec fit = spec(kSceneFit);
-  FitOptions options;
+  FitRun options;
   std::atomic<bool> stop{false};
   options.stop = &stop;
   FitMemory memory;
@@ -245,7 +245,7 @@ TEST_F(RunFit, SaysTheSameOfItsForwardModelWhenItGoesOn) {
   LawMemory& law = memory.begin()->second;
   ASSERT_NE(law.forward, "the scene") << "one of the cheaper models serves";
   law.speedup = 1234.0;  // no clock of this machine says that by itself
-  FitOptions again;
+  FitRun again;
   again.memory = memory;
   const FitResult resumed = run_fit(fit, again);
   EXPECT_THAT(resumed.forward, HasSubstr("Forward model: " + law.forward + ", 1234 times as fast"));
@@ -259,7 +259,7 @@ TEST_F(RunFit, RefusesStartsOfAnotherLaw) {
   std::mt19937_64 random(2);
   write("a.csv", ogden_csv(2500.0, -6.0, 0.01, random));
   write("b.csv", ogden_csv(2500.0, -6.0, 0.01, random));
-  FitOptions options;
+  FitRun options;
   options.remember = [&](const FitMemory& known) { options.memory = known; };
   const FitSpec fit = spec(kOgdenFit);
   run_fit(fit, options);
@@ -279,7 +279,7 @@ TEST_F(RunFit, LawsByNameNeedNoParameters) {
   FitSpec fit = spec(kSpecimen +
                      "[[data]]\nfiles = [\"a.csv\"]\nresample.over = \"none\"\n[search]\nstarts = 2\n"
                      "[proof]\nbootstrap = 0\nprofiles = false\nnext = false\n");
-  FitOptions options;
+  FitRun options;
   options.laws = {"constant", "neo_hookean"};
   EXPECT_EQ(run_fit(fit, options).laws.size(), 2u);
   try {
@@ -300,7 +300,7 @@ TEST_F(RunFit, ChoosesTheLawTheCurvesSupport) {
   FitSpec fit =
       spec(kOgdenFit + "[[data]]\nname = \"held\"\nfiles = [\"c.csv\", \"d.csv\", \"e.csv\"]\nuse = \"test\"\n");
   fit.search.starts = 8;
-  FitOptions options;
+  FitRun options;
   options.laws = {"constant", "neo_hookean", "ogden", "ogden2"};
   const FitResult result = run_fit(fit, options);
   EXPECT_EQ(result.law, "ogden");

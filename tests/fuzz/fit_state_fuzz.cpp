@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "dynamics/state/checkpoint.h"
+#include "fit/files/fit_state.h"
 #include "fit/run_fit.h"
 #include "glisson/scene/scene.h"
-#include "report/fit_state.h"
 #include "support.h"
 
 namespace {
@@ -103,7 +103,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const auto memory = read_fit_state(file, kFingerprint);
     if (!memory) return 0;
-    fit::FitOptions options;
+    fit::FitRun options;
     options.memory = *memory;
     const fit::FitResult result = fit::run_fit(spec, options);
     require(result.parameters.size() == 2, "a fit tells of its parameters");

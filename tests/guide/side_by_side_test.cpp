@@ -84,7 +84,7 @@ TEST_F(SideBySideRuns, BuildsAndSteps) {
   EXPECT_NE(tissue_preset("paper_liver").tissue, tissue);
 
   Simulation simulation(mesh, {{0, tissue}});
-  simulation.fix(mesh.vertex_sets.at("z_min"));
+  simulation.fix("z_min");
   const std::vector<std::uint32_t> set{207, 211, 212};
   const ConstraintId tool = simulation.drive(set, press({.depth = 0.008}));
   const NeedleOptions options;
@@ -113,7 +113,7 @@ TEST_F(SideBySideRuns, RunsAScene) {
 }
 
 TEST_F(SideBySideRuns, Fits) {
-  const fit::FitResult result = fit::run_fit(fit::load_fit("fit.toml"), {});
+  const fit::FitResult result = fit::run_fit("fit.toml");
   EXPECT_NEAR(result.parameters.at(0).value, 1800.0, 1200.0);
 }
 

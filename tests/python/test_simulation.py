@@ -258,7 +258,7 @@ def test_choices_of_vertices():
         body.step(20)
         hashes.add(body.state_hash)
     assert len(hashes) == 1
-    with pytest.raises(ValueError, match='no vertex set "zmin"; it has: x_max'):
+    with pytest.raises(ValueError, match='no vertex set "zmin"; did you mean "z_min"\\? the sets are: x_max'):
         body.fix("zmin")
     with pytest.raises(ValueError, match="axes"):
         body.fix("z_max", axes="w")

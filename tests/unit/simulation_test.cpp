@@ -48,7 +48,7 @@ TEST(Simulation, RefusesBadOptions) {
 TEST(Simulation, RefusesBadSets) {
   Simulation simulation = small_simulation();
   const test::VertexSet outside{0, 27}, overlapping{5, 0}, twice{3, 3};
-  expect_refusal([&] { simulation.fix({}); }, "empty");
+  expect_refusal([&] { simulation.fix(std::span<const std::uint32_t>{}); }, "empty");
   expect_refusal([&] { simulation.fix(outside); }, "vertex 27 is outside the mesh, 0 to 26");
   const test::VertexSet first{0};
   simulation.fix(first);
@@ -60,6 +60,25 @@ TEST(Simulation, RefusesBadSets) {
   expect_refusal([&] { simulation.add_load(first, {NAN, 0, 0}); }, "finite");
   expect_refusal([&] { simulation.force({7}); }, "constraint id 7 does not exist");
   expect_refusal([&] { simulation.set_state({}, {}); }, "the mesh has 27 vertices");
+}
+
+// A set by name holds, drives and loads the vertices of that set; a name that the mesh has not is refused with those it has.
+TEST(Simulation, SetsByName) {
+  const TetMesh mesh = small_box();
+  Simulation by_name = small_simulation(), by_number = small_simulation();
+  const Motion up = [](double t) { return Vec3d{0.0, 0.0, 1e-4 * t}; };
+  by_name.fix("z_min");
+  by_name.drive("z_max", up);
+  by_name.add_load("x_max", {1e-3, 0, 0});
+  by_number.fix(mesh.vertex_sets.at("z_min"));
+  by_number.drive(mesh.vertex_sets.at("z_max"), up);
+  const std::vector<std::uint32_t>& side = mesh.vertex_sets.at("x_max");
+  by_number.add_load(side, {1e-3, 0, 0});
+  for (int n = 0; n < 20; ++n) ASSERT_TRUE(by_name.step().made() && by_number.step().made());
+  EXPECT_EQ(by_name.state_hash(), by_number.state_hash());
+  EXPECT_NE(by_name.state_hash(), small_simulation().state_hash());
+  expect_refusal([&] { by_name.fix("zmin"); }, "no vertex set \"zmin\"; did you mean \"z_min\"? the sets are: x_max");
+  expect_refusal([&] { TetMesh{}.vertex_set("top"); }, "no vertex set \"top\"; the mesh has none");
 }
 
 // A region without a tissue is named.

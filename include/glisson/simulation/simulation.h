@@ -215,11 +215,16 @@ class Simulation {
 
   /// Holds vertices at their present positions. A component that is already held is an error.
   ConstraintId fix(std::span<const std::uint32_t> vertices, Axes axes = {});
+  /// The same for a vertex set of the mesh by name, as in drive and add_load. @throws std::invalid_argument naming the
+  /// sets there are
+  ConstraintId fix(std::string_view set, Axes axes = {});
   /// Moves vertices along a prescribed path, in the given components, from their positions at its start.
   /// @param from  start time [s]; until then the vertices are free and its force is 0
   ConstraintId drive(std::span<const std::uint32_t> vertices, Motion motion, Axes axes = {}, double from = 0.0);
+  ConstraintId drive(std::string_view set, Motion motion, Axes axes = {}, double from = 0.0);
   /// Adds a force [N], divided equally among the vertices; `scale(t)` multiplies it (none: 1).
   void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale = {});
+  void add_load(std::string_view set, Vec3d force, std::function<double(double)> scale = {});
 
   /// Attaches an instrument, needle, membrane or other interaction; it acts after those attached before. Keep the
   /// pointer to read and control it between steps.

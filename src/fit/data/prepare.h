@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "fit/curve.h"
 #include "fit/data/raw_test.h"
+#include "glisson/fit.h"
 
 namespace glisson::fit {
 

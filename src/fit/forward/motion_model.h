@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "fit/curve.h"
 #include "fit/model.h"
+#include "glisson/fit.h"
 #include "instruments/motion/monotone_cubic.h"
 
 namespace glisson::fit {

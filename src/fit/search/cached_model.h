@@ -9,8 +9,8 @@
 #include <mutex>
 #include <vector>
 
-#include "fit/curve.h"
 #include "fit/model.h"
+#include "glisson/fit.h"
 
 namespace glisson::fit {
 

@@ -75,7 +75,7 @@ double rms_at(const Problem& problem, std::span<const double> scaled) {
   return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
 }
 
-LawSearch::LawSearch(const FitSpec& spec, LawSpec law, const FitCurves& curves, const FitOptions& options)
+LawSearch::LawSearch(const FitSpec& spec, LawSpec law, const FitCurves& curves, const FitRun& options)
     : spec_(spec), law_(std::move(law)), curves_(curves), options_(options) {
   forward_.scene = scene_of(spec, law_);
   forward_.spec = spec.forward;

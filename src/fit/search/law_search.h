@@ -23,7 +23,7 @@ class LawSearch {
  public:
   /// @param law  what it sets over the fit's own keys, and its free numbers
   /// @throws SceneError, std::invalid_argument, std::runtime_error where scene, keys or curves cannot be used
-  LawSearch(const FitSpec& spec, LawSpec law, const FitCurves& curves, const FitOptions& options);
+  LawSearch(const FitSpec& spec, LawSpec law, const FitCurves& curves, const FitRun& options);
 
   /// Looks for the optimum, from what `memory` knows on; `told` hears after each batch of starts.
   void search(LawMemory& memory, const std::function<void(const MultiStart&)>& told);
@@ -61,7 +61,7 @@ class LawSearch {
   const FitSpec& spec_;
   LawSpec law_;
   const FitCurves& curves_;
-  FitOptions options_;
+  FitRun options_;
   ForwardProblem forward_;
   Ladder ladder_;
   std::shared_ptr<CachedModel> model_;

@@ -9,7 +9,7 @@
 
 #include "fit/search/problem.h"
 #include "fit/uncertainty/covariance.h"
-#include "fit/uncertainty/interval.h"
+#include "glisson/fit.h"
 
 namespace glisson::fit {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "fit/search/problem.h"
-#include "fit/uncertainty/interval.h"
+#include "glisson/fit.h"
 
 namespace glisson::fit {
 

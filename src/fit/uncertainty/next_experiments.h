@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "fit/fit_result.h"
 #include "fit/search/law_search.h"
 #include "fit/uncertainty/covariance.h"
+#include "glisson/fit.h"
 
 namespace glisson::fit {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "fit/curve.h"
 #include "fit/model.h"
+#include "glisson/fit.h"
 
 namespace glisson::fit {
 

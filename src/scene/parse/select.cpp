@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/nearest.h"
+#include "mesh/inspect/vertex_set.h"
 #include "scene/parse/section.h"
 
 namespace glisson::scene {
@@ -153,11 +153,7 @@ std::string extent_text(const TetMesh& mesh) {
 }
 
 std::string no_such_set(const std::string& name, std::span<const std::string> known) {
-  const std::string meant = nearest(name, known);
-  const std::string hint = meant.empty() ? "" : "did you mean \"" + meant + "\"? ";
-  return "no vertex set \"" + name + "\"; " + hint +
-         (known.empty() ? "the mesh has none: pick vertices with [sets." + name + "]"
-                        : "the sets are: " + listed(known));
+  return no_vertex_set(name, known) + (known.empty() ? ": pick vertices with [sets." + name + "]" : "");
 }
 
 int region_number(const TetMesh& mesh, const std::string& name) {

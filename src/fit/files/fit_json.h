@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fit/fit_result.h"
+#include "glisson/fit.h"
 
 namespace glisson {
 

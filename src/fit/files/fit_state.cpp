@@ -1,4 +1,4 @@
-#include "report/fit_state.h"
+#include "fit/files/fit_state.h"
 
 #include <fmt/format.h>
 
@@ -126,7 +126,7 @@ std::optional<fit::FitMemory> memory_of(const std::string& bytes, const std::str
 
 }  // namespace
 
-std::string fit_fingerprint(const fit::FitSpec& spec, const fit::FitOptions& options) {
+std::string fit_fingerprint(const fit::FitSpec& spec, const fit::FitRun& options) {
   Fingerprint print;
   print.add(GLISSON_VERSION);
   print.add(spec.source);

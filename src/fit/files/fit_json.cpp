@@ -1,5 +1,5 @@
 // fit_json.cpp — see fit_json.h.
-#include "report/fit_json.h"
+#include "fit/files/fit_json.h"
 
 #include <algorithm>
 #include <cmath>

@@ -14,7 +14,7 @@
 namespace glisson {
 
 /// A number for everything a fit's steps depend on: description, scene, curves, laws, version.
-std::string fit_fingerprint(const fit::FitSpec& spec, const fit::FitOptions& options);
+std::string fit_fingerprint(const fit::FitSpec& spec, const fit::FitRun& options);
 
 /// Replaces the file in one move. @throws OutputError
 void write_fit_state(const std::filesystem::path& file, const std::string& fingerprint, const fit::FitMemory& memory);

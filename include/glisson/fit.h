@@ -1,0 +1,187 @@
+// fit.h — fits the numbers of a scene or specimen to measured curves, with intervals and a verdict for each
+// (Glisson::fit; docs/fit.md).
+//
+//   FIT.toml ──▶ run_fit ──▶ FitResult: values, intervals, curves, laws compared, what to measure next
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "glisson/scene/scene.h"
+
+namespace glisson::fit {
+
+/// How a parameter is searched between its bounds.
+enum class Scale { linear, logarithmic };
+
+/// A number that the fit is free to choose, in the unit of its key.
+struct Parameter {
+  std::string name;              ///< what it is called in tables, unique, e.g. "tissue.law.slope_Pa"
+  std::string unit;              ///< for tables; may be empty
+  double low = 0.0, high = 1.0;  ///< bounds, low < high; both > 0 where the scale is logarithmic
+  Scale scale = Scale::linear;
+  double start = 0.0;  ///< of the first start, within the bounds
+};
+
+/// A test: how far the tool went and how hard it was pushed, at the same instants. Compression and insertion count positive.
+struct Curve {
+  std::string name;                  ///< unique among the curves of a fit, e.g. the file's stem
+  std::string group;                 ///< repetitions of one test share it, e.g. "2 mm/s"
+  std::vector<double> time;          ///< ascending, from 0 [s]
+  std::vector<double> displacement;  ///< of the tool from the point of contact [m]
+  std::vector<double> force;         ///< on the tool, along its motion [N]
+  double velocity = 0.0;             ///< mean speed while loading [m/s]
+  double noise = 0.0;                ///< standard deviation of the force about a smooth curve [N]; 0: not known
+  double weight = 1.0;               ///< factor on the residuals, ≥ 0
+  bool held_out = false;             ///< kept from the fit, to test it
+
+  std::size_t size() const { return time.size(); }
+};
+
+/// In the parameter's own unit. An open end lies at the parameter's bound: the curves do not limit it before.
+struct Interval {
+  double low = 0.0, high = 0.0;
+  bool low_open = false, high_open = false;
+
+  bool open() const { return low_open && high_open; }
+  bool holds(double value) const { return low <= value && value <= high; }
+};
+
+/// A fitted number and how sure it is.
+struct ParameterResult {
+  Parameter parameter;
+  double value = 0.0;                                              ///< in the parameter's unit
+  std::optional<double> sd;                                        ///< in the parameter's unit, by curvature
+  std::optional<Interval> by_curvature, by_profile, by_bootstrap;  ///< of 95 %
+  std::string verdict;                                             ///< identified, weak, not identifiable, at bound
+  std::string words;                                               ///< the verdict in a sentence
+
+  /// The interval to trust most: by profile, else by bootstrap, else by curvature.
+  std::optional<Interval> ci95() const {
+    return by_profile ? by_profile : (by_bootstrap ? by_bootstrap : by_curvature);
+  }
+};
+
+/// A curve beside its fit.
+struct CurveResult {
+  Curve curve;
+  std::vector<double> fitted;  ///< force at its instants [N]; empty where the simulation failed
+  double rms = 0.0;            ///< of fitted − measured [N]
+};
+
+/// Repetitions of one test.
+struct GroupResult {
+  std::string name;
+  bool held_out = false;
+  double rms = 0.0;              ///< [N]
+  std::optional<double> spread;  ///< rms of the repetitions about their mean [N]
+};
+
+/// Profile likelihood of a parameter.
+struct ProfileResult {
+  std::string parameter;
+  std::vector<double> values, rise;  ///< values of the parameter and the rise of −2 ln L at each
+  double threshold = 0.0;            ///< of the rise, at 95 %
+  std::string words;
+};
+
+/// An optimum that was found.
+struct BasinResult {
+  double cost = 0.0;           ///< ½ Σ ρ(r²) [-]
+  int found = 0;               ///< by how many descents
+  std::vector<double> values;  ///< of the parameters
+};
+
+/// Where one descent ended.
+struct StartResult {
+  double cost = 0.0;  ///< ½ Σ ρ(r²) [-]
+  int basin = -1;     ///< in FitResult::basins; −1: failed
+};
+
+/// A law that was compared.
+struct LawResult {
+  std::string name;
+  int parameters = 0;                 ///< free ones
+  double rms_fit = 0.0;               ///< [N]
+  std::optional<double> rms_heldout;  ///< [N]
+  double aic = 0.0, bic = 0.0;        ///< information criteria
+  bool best = false;                  ///< the law that the result is of
+  std::string words;
+};
+
+/// What a further test would narrow.
+struct DesignResult {
+  std::string what, parameter;                ///< the test, and the parameter it narrows most
+  double width_now = 0.0, width_after = 0.0;  ///< of its interval, in its unit
+};
+
+/// All that a fit found: fit.json and the page are made from it.
+struct FitResult {
+  std::string law;  ///< its name
+  std::vector<ParameterResult> parameters;
+  std::vector<std::vector<double>> correlation;  ///< NaN where it could not be found
+  std::vector<CurveResult> curves;
+  std::vector<std::string> accounts;  ///< what was done to each curve, in a sentence
+  std::vector<GroupResult> groups;
+  double rms_fit = 0.0;                       ///< [N]
+  std::optional<double> rms_heldout, spread;  ///< of held-out curves; of repetitions about their mean [N]
+  std::vector<ProfileResult> profiles;
+  std::vector<BasinResult> basins;  ///< best first
+  std::vector<StartResult> starts;
+  int starts_planned = 0;
+  std::uint64_t forward_runs = 0;              ///< a run of one curve each
+  double forward_run_s = 0.0;                  ///< mean time of one [s]
+  std::string forward;                         ///< which forward model, and why
+  std::optional<double> forward_error;         ///< against the finest [N]
+  double wall_s = 0.0;                         ///< time of the fit by the clock [s]
+  bool complete = true;                        ///< false: interrupted
+  std::vector<std::vector<double>> bootstrap;  ///< replicates, a row of parameters each
+  std::vector<LawResult> laws;
+  std::vector<DesignResult> designs;
+  std::vector<std::string> conclusions;  ///< sentences
+  std::string tissue;                    ///< text of tissue.toml, which a scene reads with `tissue.file`
+  std::optional<double> area, height;    ///< of the specimen [m²], [m]
+};
+
+/// How far a fit is.
+struct FitProgress {
+  std::string law;    ///< being fitted
+  std::string stage;  ///< "forward models", "starts", "profiles", "bootstrap"
+  std::size_t done = 0, planned = 1;
+  double best_rms = 0.0;  ///< [N]; of all fitted curves
+  int found = 0;          ///< how often the best optimum was found so far
+  std::uint64_t forward_runs = 0;
+};
+
+/// What the fit of a law will cost; known once its forward model is chosen.
+struct FitForecast {
+  std::string law, forward;  ///< the forward model's name
+  std::uint64_t least_runs = 0,
+                most_runs = 0;  ///< forward runs: where every descent goes well, where starts have to go on
+  double run_s = 0.0;           ///< of one run, one core
+};
+
+/// Options of run_fit. Callbacks are called one at a time.
+struct FitOptions {
+  std::vector<std::string> laws;  ///< further laws to compare, besides those of the file: names of `glisson fit --laws`
+  std::filesystem::path data_folder;  ///< that files of curves are relative to; empty: the folder of FIT.toml
+  MeshLoader load;                    ///< reads mesh files of the scene; none: a scene with a mesh file is an error
+  const std::atomic<bool>* stop = nullptr;  ///< set it to end the fit with what is known
+  std::function<void(const FitProgress&)> progress;
+  std::function<void(const FitForecast&)> forecast;  ///< called once per law
+};
+
+/// Runs the fit that a FIT.toml describes (docs/fit_file.md). A fit that is stopped returns what is known, marked as not
+/// complete.
+/// @throws SceneError, std::invalid_argument, std::runtime_error for descriptions, scenes and files that cannot be used
+FitResult run_fit(const std::filesystem::path& file, const FitOptions& options = {});
+/// The same from text; `name` stands for the file in messages, and its folder is that of the scene and the curves.
+FitResult run_fit_text(std::string_view text, const std::string& name, const FitOptions& options = {});
+
+}  // namespace glisson::fit
