@@ -403,8 +403,31 @@ TEST_F(BadFile, SignsAreFoundOrSaid) {
   };
   EXPECT_DOUBLE_EQ(load("").displacement.back(), 4.5e-3);
   EXPECT_DOUBLE_EQ(load("").force.back(), 0.85);
-  const Curve told = load("columns.force = { name = \"Load\", sign = \"positive\" }\n");
-  EXPECT_DOUBLE_EQ(told.force.back(), -0.85);
+  const std::string said = "columns.force = { name = \"Load\", sign = \"positive\" }\n";
+  EXPECT_DOUBLE_EQ(load("unlikely = true\n" + said).force.back(), -0.85);
+  EXPECT_THAT(fault(text, said),
+              HasSubstr("t.csv:2:1: \"Load (N)\" falls as \"Depth (mm)\" rises, force against its own "
+                        "displacement; give sign = \"positive\" or \"negative\" in columns.displacement or "
+                        "columns.force, or leave both to be found, or unlikely = true"));
+}
+
+// A ramp of six rows that is held after the third and let go a little: its sign is that of the first row's way, not of a middle.
+TEST_F(BadFile, SparseCurvesKeepTheirSign) {
+  const auto turned = [&](double sign) {
+    std::string text = kHead;
+    const std::array<double, 6> depth{0.0, 2.0, 4.0, 4.0, 4.0, 3.2}, load{0.0, 0.5, 1.4, 1.0, 0.8, 0.5};
+    for (std::size_t i = 0; i < depth.size(); ++i)
+      text += shown(static_cast<double>(i)) + "," + shown(sign * depth[i]) + "," + shown(sign * load[i]) + "\n";
+    folder_.write("t.csv", text);
+    return load_curves(section("files = [\"t.csv\"]\nresample.over = \"none\"\n"), {}, folder_.path()).front();
+  };
+  for (const double sign : {1.0, -1.0}) {
+    const PreparedCurve found = turned(sign);
+    EXPECT_DOUBLE_EQ(found.curve.displacement.back(), 3.2e-3) << sign;
+    EXPECT_DOUBLE_EQ(found.curve.force[2], 1.4) << sign;
+    EXPECT_EQ(found.account.turned.size(), sign < 0.0 ? 2u : 0u);
+    EXPECT_EQ(found.account.text().find("sign of \"Depth (mm)\" turned") != std::string::npos, sign < 0.0);
+  }
 }
 
 // Any bytes put into a phantom's lines, any cut, any line twice: a curve in order, or a message that names the file.

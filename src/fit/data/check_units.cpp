@@ -15,6 +15,7 @@ constexpr double kShallowest = 5e-4;  // of a test of soft tissue, in heights
 constexpr double kSoftest = 10.0, kStiffest = 2e7;   // secant moduli of soft tissues and their phantoms [Pa]
 constexpr double kSlowest = 1e-8, kFastest = 100.0;  // tools [m/s]
 constexpr double kRepetitions = 100.0;
+constexpr double kAgainst = 0.5;  // correlation of force and displacement below minus this: a sign is wrong
 constexpr const char* kWayOut = ", or unlikely = true to take it as it is";
 
 double largest(const std::vector<double>& values) {
@@ -51,14 +52,18 @@ const Unit* better_unit(const Source& source, double ratio) {
   return best;
 }
 
+/// `columns.force`.
+std::string as_key_name(const Source& source) {
+  constexpr std::array kKeys{"time", "displacement", "force", "stress", "strain"};
+  return std::string("columns.") + kKeys[static_cast<std::size_t>(source.quantity)];
+}
+
 /// `columns.force = { name = "Load (N)", unit = "N" }`.
 std::string as_key(const Source& source, const Unit& unit) {
-  constexpr std::array kKeys{"time", "displacement", "force", "stress", "strain"};
   const std::string choice = source.title.front() == '"'
                                  ? "name = " + source.title
                                  : "number = " + source.title.substr(source.title.find(' ') + 1);
-  return std::string("columns.") + kKeys[static_cast<std::size_t>(source.quantity)] + " = { " + choice + ", unit = \"" +
-         std::string(unit.name) + "\" }";
+  return as_key_name(source) + " = { " + choice + ", unit = \"" + std::string(unit.name) + "\" }";
 }
 
 /// `; in N it would be 84.1 N: give columns.force = …`.
@@ -78,6 +83,7 @@ class UnitCheck {
 
   void run() {
     const std::size_t before = problems_.count();
+    check_signs();
     check_depth();
     check_columns();
     check_speed();
@@ -97,6 +103,20 @@ class UnitCheck {
     if (source.quantity == Quantity::strain) return si / size_.height.value_or(1.0);
     if (source.quantity == Quantity::stress) return si / size_.area.value_or(1.0);
     return si;
+  }
+
+  /// Force and displacement of a test change together; relaxation and noise leave that as it is.
+  void check_signs() {
+    double together = 0.0, d2 = 0.0, f2 = 0.0;
+    for (std::size_t i = 0; i < test_.size(); ++i) {
+      const double d = test_.displacement[i] - test_.displacement.front(), f = test_.force[i] - test_.force.front();
+      together += d * f, d2 += d * d, f2 += f * f;
+    }
+    if (!(together < -kAgainst * std::sqrt(d2 * f2))) return;
+    complain(test_.force_source.title + " falls as " + test_.displacement_source.title +
+             " rises, force against its own displacement; give sign = \"positive\" or \"negative\" in " +
+             as_key_name(test_.displacement_source) + " or " + as_key_name(test_.force_source) +
+             ", or leave both to be found" + kWayOut);
   }
 
   void check_depth() {

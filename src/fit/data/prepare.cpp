@@ -22,6 +22,7 @@ class Preparation {
     account_.rows_read = test.size() + test.rows_skipped + test.rows_merged;
     account_.rows_skipped = test.rows_skipped;
     account_.rows_merged = test.rows_merged;
+    account_.turned = test.turned;
   }
 
   std::optional<PreparedCurve> run() {
@@ -194,6 +195,7 @@ std::string CurveAccount::text() const {
   if (rows_skipped > 0) t += ", " + std::to_string(rows_skipped) + " bad ones skipped";
   if (rows_merged > 0) t += ", " + std::to_string(rows_merged) + " of equal time averaged";
   if (cycles > 1) t += ", " + std::to_string(cycles) + " cycles";
+  for (const std::string& column : turned) t += "; sign of " + column + " turned";
   if (contact_how != "as recorded") {
     t += "; contact " + contact_how + " at " + brief(contact * 1e3) + " mm";
     if (contact_deviation > 0.0) t += " ± " + brief(contact_deviation * 1e3) + " mm";

@@ -16,10 +16,11 @@ namespace glisson::fit {
 struct CurveAccount {
   std::string name;
   std::filesystem::path file;
-  std::size_t rows_read = 0;     ///< rows of the file with numbers, bad ones too
-  std::size_t rows_skipped = 0;  ///< bad ones
-  std::size_t rows_merged = 0;   ///< averaged with the row before, of the same time
-  std::size_t cycles = 0;        ///< found
+  std::size_t rows_read = 0;        ///< rows of the file with numbers, bad ones too
+  std::size_t rows_skipped = 0;     ///< bad ones
+  std::size_t rows_merged = 0;      ///< averaged with the row before, of the same time
+  std::vector<std::string> turned;  ///< columns whose sign was turned
+  std::size_t cycles = 0;           ///< found
   std::size_t rows_in_cycle = 0;
   std::size_t rows_before_contact = 0;
   std::size_t rows_cropped = 0;

@@ -114,21 +114,24 @@ struct Rows {
   }
 };
 
-/// −1 where the numbers go down from the first ones on.
+/// −1 where the number farthest from the start lies below it. The start is the median of the first percent of the rows, of
+/// one row at least and five at most: a bad first row of many decides nothing, and a sparse curve has gone nowhere yet.
 double direction_of(const std::vector<double>& values, Sign sign) {
   if (sign != Sign::found) return sign == Sign::positive ? 1.0 : -1.0;
-  std::vector<double> first(values.begin(),
-                            values.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, values.size())));
-  if (first.empty()) return 1.0;
+  if (values.empty()) return 1.0;
+  const std::size_t rows = std::clamp<std::size_t>(values.size() / 100, 1, 5);
+  std::vector<double> first(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rows));
   std::nth_element(first.begin(), first.begin() + static_cast<std::ptrdiff_t>(first.size() / 2), first.end());
   const double start = first[first.size() / 2];
   const auto farther = [&](double a, double b) { return std::abs(a - start) < std::abs(b - start); };
   return *std::max_element(values.begin(), values.end(), farther) < start ? -1.0 : 1.0;
 }
 
-void turn(std::vector<double>& values, Sign sign) {
-  if (direction_of(values, sign) > 0.0) return;
+/// @return whether the numbers were turned
+bool turn(std::vector<double>& values, Sign sign) {
+  if (direction_of(values, sign) > 0.0) return false;
   for (double& v : values) v = -v;
+  return true;
 }
 
 /// The way so far over the speed.
@@ -215,8 +218,10 @@ RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize
   }
   rows.finish(test.lines.size());
   test.rows_skipped = rows.bad;
-  turn(test.displacement, from.displacement->sign);
-  turn(test.force, from.force->sign);
+  for (const auto& [values, reading] :
+       {std::pair{&test.displacement, &*from.displacement}, {&test.force, &*from.force}}) {
+    if (turn(*values, reading->sign)) test.turned.push_back(reading->column.source.title);
+  }
   if (!from.time) test.time = time_of(test.displacement, *spec.speed);
   test.displacement_source = from.displacement->column.source;
   test.force_source = from.force->column.source;

@@ -31,6 +31,7 @@ struct RawTest {
   std::vector<double> time, displacement, force;
   Source time_source, displacement_source, force_source;
   std::vector<CheckColumn> checks;  ///< stresses and strains beside force and way
+  std::vector<std::string> turned;  ///< titles of the columns whose sign was turned
   std::size_t rows_skipped = 0;     ///< without a number in a column that is needed
   std::size_t rows_merged = 0;      ///< of the same time as the row before, averaged with it
   char separator = ',', decimal = '.';
@@ -43,7 +44,7 @@ struct RawTest {
 RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems);
 
 /// Complains about numbers that look like another unit: a way beyond the specimen, stress and force that disagree, time and
-/// speed that do not give the way, stiffness that no soft tissue has.
+/// speed that do not give the way, stiffness that no soft tissue has; about a force against its own displacement.
 void check_units(const RawTest& test, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems);
 
 /// Complaints, `file:line:column: …`, about tests of one group of which one is a hundred times the usual or more.

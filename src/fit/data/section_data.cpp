@@ -123,7 +123,9 @@ const SectionSpec& column_section() {
     s.key("number", &ColumnSpec::number, "column number, from 1").within(between(1, 100000));
     s.key("unit", &ColumnSpec::unit, "unit of its numbers").otherwise("unit given in the file");
     s.choice<Sign>("sign", &ColumnSpec::sign,
-                   {{"auto", Sign::found, "the direction of the largest deviation from the first row"},
+                   {{"auto", Sign::found,
+                     "the direction of the largest deviation from the start of the test; the report names the columns "
+                     "that were turned"},
                     {"positive", Sign::positive, "compression and insertion are positive"},
                     {"negative", Sign::negative, "they are negative"}},
                    "sign of compression and insertion");
