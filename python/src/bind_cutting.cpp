@@ -1,4 +1,4 @@
-// bind_cutting.cpp — a blade's edge led through a body by hand. Blades that are instruments: Simulation.attach_blade.
+// bind_cutting.cpp — a blade's edge led through a body by hand. Blades that are instruments: bind_instruments.cpp.
 #include <sstream>
 
 #include "glisson/instruments/cutting.h"

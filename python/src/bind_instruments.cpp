@@ -304,11 +304,15 @@ void bind_blade(nb::module_& m) {
       .field("least_quality", &CutOptions::least_quality)
       .field("least_step", &CutOptions::least_step);
   Options<BladeOptions>(m, "BladeOptions", "BladeOptions")
+      .field("name", &BladeOptions::name)
+      .field("direction", &BladeOptions::direction)
       .field("edge_from", &BladeOptions::edge_from)
       .field("edge_to", &BladeOptions::edge_to)
       .field("toughness", &BladeOptions::toughness)
+      .field("cut_every", &BladeOptions::cut_every)
       .field("cutting", &BladeOptions::cutting);
-  nb::class_<Blade, Instrument>(m, "Blade", doc("BladeOptions"))
+  nb::class_<Blade, Instrument>(m, "Blade", doc("Blade"))
+      .def(nb::init<const BladeOptions&, std::shared_ptr<ToolDriver>>(), "options"_a, "driver"_a, doc("Blade::Blade"))
       .def_prop_ro("area", &Blade::area, doc("Blade::area"))
       .def_prop_ro("work_of_cut", &Blade::work_of_cut, doc("Blade::work_of_cut"))
       .def_prop_ro("length_in_tissue", &Blade::length_in_tissue, doc("Blade::length_in_tissue"));

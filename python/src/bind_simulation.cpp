@@ -261,18 +261,7 @@ void bind_setting_up(nb::class_<Live>& c) {
           nb::sig("def add_load(self, vertices: str | numpy.typing.ArrayLike, force: collections.abc.Sequence[float] | "
                   "numpy.typing.NDArray[typing.Any], scale: collections.abc.Callable[[float], float] | None = None) -> "
                   "None"))
-      .def(
-          "attach", [](Live& live, std::shared_ptr<Interaction> x) { live.get().attach(std::move(x)); },
-          "interaction"_a, nb::keep_alive<1, 2>(), doc(of("attach")))
-      .def("attach_blade", &Live::attach_blade, "name"_a, "driver"_a, "direction"_a = Vec3d{0, 0, -1},
-           "options"_a = BladeOptions{}, "cut_every"_a = 0.0, nb::keep_alive<0, 1>(),
-           "Attaches a blade that cuts as the body is stepped; the arrays of the state are copies from then on.\n"
-           ":param direction: along which depth is measured\n"
-           ":param cut_every: how often it cuts [s]; 0: after every step\n"
-           ":raises ValueError: naming the option, its value and the allowed range",
-           nb::sig("def attach_blade(self, name: str, driver: ToolDriver, direction: collections.abc.Sequence[float] | "
-                   "numpy.typing.NDArray[typing.Any] = (0.0, 0.0, -1.0), options: BladeOptions = ..., cut_every: float "
-                   "= 0.0) -> Blade"))
+      .def("attach", &Live::attach, "interaction"_a, nb::keep_alive<1, 2>(), doc(of("attach")))
       .def(
           "remove_tets",
           [](Live& live, const ArrayLike& tets) { return live.get().remove_tets(to_indices(tets, 1, "tets")); },

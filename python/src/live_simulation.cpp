@@ -1,6 +1,7 @@
 // live_simulation.cpp — see live_simulation.h.
 #include "live_simulation.h"
 
+#include <algorithm>
 #include <chrono>
 
 namespace glisson::python {
@@ -8,11 +9,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-bool has_blade(const Variant& variant) {
-  for (const InstrumentSpec& x : variant.instruments) {
-    if (std::holds_alternative<BladeSpec>(x.what)) return true;
-  }
-  return false;
+bool cuts(const BuiltVariant& built) {
+  return std::any_of(built.instruments.begin(), built.instruments.end(),
+                     [](const auto& x) { return x->changes_body(); });
 }
 
 }  // namespace
@@ -22,7 +21,7 @@ LiveSimulation::LiveSimulation(TetMesh mesh, std::map<int, Tissue> tissues, cons
 
 LiveSimulation::LiveSimulation(const Variant& variant, const MeshLoader& load)
     : variant_(variant), built_(std::make_unique<BuiltVariant>(*variant_, load)),
-      may_change_(variant.simulation.mesh_changes || has_blade(variant)) {}
+      may_change_(variant.simulation.mesh_changes || cuts(*built_)) {}
 
 Simulation& LiveSimulation::get() {
   const std::thread::id busy = stepping_;
@@ -39,40 +38,18 @@ void LiveSimulation::refuse_views() const {
       "simulation with SimulationOptions(mesh_changes=True), which returns copies");
 }
 
-std::shared_ptr<Blade> LiveSimulation::attach_blade(const std::string& name, std::shared_ptr<ToolDriver> driver,
-                                                    const Vec3d& direction, const BladeOptions& options, double every) {
-  if (!(every >= 0.0)) {
-    throw std::invalid_argument("attach_blade: cut_every = " + std::to_string(every) +
-                                " s is outside the allowed range, >= 0");
-  }
-  refuse_views();
+void LiveSimulation::attach(const std::shared_ptr<Interaction>& interaction) {
   Simulation& simulation = get();
-  auto blade = std::make_shared<Blade>(simulation, name, std::move(driver), direction, options);
-  simulation.attach(blade);
-  may_change_ = true;
-  blades_.push_back({blade, every, 0.0});
-  return blade;
-}
-
-/// What blades of one's own have passed; those of scenes cut by themselves.
-void LiveSimulation::cut() {
-  try {
-    for (Cutting& x : blades_) {
-      const double time = (own_ ? *own_ : built_->simulation).time();
-      if (time < x.next) continue;
-      x.blade->cut();
-      x.next = time + x.every;
-    }
-  } catch (...) {
-    if (!fault_.raised) fault_.raised = std::current_exception();
-  }
+  const bool changes = interaction && interaction->changes_body();
+  if (changes) refuse_views();
+  simulation.attach(interaction);
+  may_change_ = may_change_ || changes;
 }
 
 /// @return false where the step was not made or a callback has raised
 bool LiveSimulation::one_step(StepStatus& worst) {
-  const StepResult result = own_ ? own_->step() : built_->step();
+  const StepResult result = (own_ ? *own_ : built_->simulation).step();
   inverted_.assign(result.inverted_tets.begin(), result.inverted_tets.end());
-  if (result.made()) cut();
   if (!result.made()) trouble_ = result.message;
   if (result.status != StepStatus::ok) worst = result.status;
   return result.made() && !fault_.raised;

@@ -12,7 +12,6 @@
 #include <thread>
 
 #include "bind.h"
-#include "glisson/instruments/blade.h"
 #include "glisson/scene/scene.h"
 
 namespace glisson::python {
@@ -93,9 +92,8 @@ class LiveSimulation {
 
   /// @throws nb::buffer_error where views are held on a body that is about to move in memory
   void refuse_views() const;
-  /// A blade that cuts as the simulation steps, every so many seconds. The arrays are copies from then on.
-  std::shared_ptr<Blade> attach_blade(const std::string& name, std::shared_ptr<ToolDriver> driver,
-                                      const Vec3d& direction, const BladeOptions& options, double every);
+  /// The arrays of the state are copies from then on where it changes the body.
+  void attach(const std::shared_ptr<Interaction>& interaction);
 
   /// Functions that it calls.
   std::vector<nb::object> functions;
@@ -103,12 +101,6 @@ class LiveSimulation {
   std::atomic<int> views{0};
 
  private:
-  /// A blade and when it cuts next.
-  struct Cutting {
-    std::shared_ptr<Blade> blade;
-    double every, next;
-  };
-  void cut();
   template <class Going>
   StepStatus loop(Going going);
   bool one_step(StepStatus& worst);
@@ -116,7 +108,6 @@ class LiveSimulation {
   std::optional<Simulation> own_;
   std::optional<Variant> variant_;
   std::unique_ptr<BuiltVariant> built_;
-  std::vector<Cutting> blades_;
   Fault fault_;
   std::vector<std::uint32_t> inverted_;
   std::string trouble_;

@@ -15,6 +15,7 @@ class Interactions {
  public:
   void add(std::shared_ptr<Interaction> interaction) { all_.push_back(std::move(interaction)); }
   bool empty() const { return all_.empty(); }
+  std::span<const std::shared_ptr<Interaction>> all() const { return all_; }
 
   /// Vertices that some interaction wants at hand in the coming step and that are not yet; ascending.
   std::span<const std::uint32_t> newcomers(double time, double h, std::size_t vertex_count);

@@ -80,8 +80,9 @@ struct Simulation::Impl {
 
   void tell_change(std::span<const std::uint32_t> origins) {
     ++told;
-    if (scheme->has_interactions()) scheme->tell_change(view(), origins);
+    if (!scheme->interactions().empty()) scheme->tell_change(view(), origins);
   }
+  SplitReport split_faces(std::span<const Triangle> faces, std::span<const VertexMove> moves);
   void add_copies(std::span<const std::uint32_t> origins);
   std::span<const std::uint32_t> follow_body();
   void archive(Archive& ar);
@@ -158,10 +159,11 @@ Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const Simula
   impl_.reset(new Impl{std::move(mesh), make_scheme(std::move(body), options), kind_of(options), fingerprint});
 }
 
-Scheme& SimulationParts::scheme(Simulation& simulation) { return *simulation.impl_->scheme; }
-
-bool SimulationParts::viscosity_counts(const Simulation& simulation) {
-  return simulation.impl_->scheme->capabilities().viscosity_limits_step;
+Scheme& SimulationParts::scheme(Inside& inside) { return *inside.scheme; }
+const TetMesh& SimulationParts::mesh(const Inside& inside) { return inside.mesh; }
+SplitReport SimulationParts::split_faces(Inside& inside, std::span<const Triangle> faces,
+                                         std::span<const VertexMove> moves) {
+  return inside.split_faces(faces, moves);
 }
 
 Simulation::~Simulation() = default;
@@ -196,6 +198,7 @@ void Simulation::attach(std::shared_ptr<Interaction> interaction) {
   }
   impl_->scheme->attach(interaction, impl_->view());
   interaction->is_attached_ = true;
+  interaction->between_steps(*this);
 }
 
 RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) {
@@ -206,14 +209,18 @@ RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) {
   return report;
 }
 
-SplitReport Simulation::split_faces(std::span<const Triangle> faces, std::span<const VertexMove> moves) {
-  auto [report, changed] = Changer(*impl_->scheme).split(faces, moves);
-  const Body& body = impl_->scheme->body();
-  for (const VertexMove& m : moves) impl_->mesh.vertices[m.vertex] = m.rest;
-  impl_->add_copies(report.origins);
-  for (const std::uint32_t e : changed) impl_->mesh.tets[body.mesh_tet[e]] = body.elements[e];
-  impl_->tell_change(report.origins);
+SplitReport Simulation::Impl::split_faces(std::span<const Triangle> faces, std::span<const VertexMove> moves) {
+  auto [report, changed] = Changer(*scheme).split(faces, moves);
+  const Body& body = scheme->body();
+  for (const VertexMove& m : moves) mesh.vertices[m.vertex] = m.rest;
+  add_copies(report.origins);
+  for (const std::uint32_t e : changed) mesh.tets[body.mesh_tet[e]] = body.elements[e];
+  tell_change(report.origins);
   return report;
+}
+
+SplitReport Simulation::split_faces(std::span<const Triangle> faces, std::span<const VertexMove> moves) {
+  return impl_->split_faces(faces, moves);
 }
 
 void Simulation::set_tissue(int region, const Tissue& tissue) { set_tissues({{region, tissue}}); }
@@ -255,7 +262,13 @@ TetMesh Simulation::present_mesh() const {
   return present;
 }
 
-StepResult Simulation::step() { return impl_->scheme->step(); }
+StepResult Simulation::step() {
+  const StepResult result = impl_->scheme->step();
+  for (std::size_t i = 0; result.made() && i < impl_->scheme->interactions().size(); ++i) {
+    impl_->scheme->interactions()[i]->between_steps(*this);
+  }
+  return result;
+}
 
 StepResult Simulation::advance_to(double time) {
   StepResult last;

@@ -7,9 +7,12 @@
 namespace glisson {
 
 struct SimulationParts {
-  static Scheme& scheme(Simulation& simulation);
-  /// Whether the integrator's stable step falls with viscosity.
-  static bool viscosity_counts(const Simulation& simulation);
+  using Inside = Simulation::Impl;  ///< stays where it is while the Simulation is moved
+  static Inside& inside(Simulation& simulation) { return *simulation.impl_; }
+  static Scheme& scheme(Inside& inside);
+  static Scheme& scheme(Simulation& simulation) { return scheme(inside(simulation)); }
+  static const TetMesh& mesh(const Inside& inside);
+  static SplitReport split_faces(Inside& inside, std::span<const Triangle> faces, std::span<const VertexMove> moves);
 };
 
 }  // namespace glisson

@@ -22,8 +22,8 @@ struct Downstroke {
     const Pose start{{0.0213, 0.5 * kWidth, 0.0405}, identity<double>()};
     auto driver = std::make_shared<PathDriver>(start, steady_path({.velocity = velocity}));
     blade = std::make_shared<Blade>(
-        body, "blade", driver, Vec3d{0, 0, -1},
-        BladeOptions{.edge_from = {0, -0.03, 0}, .edge_to = {0, 0.03, 0}, .toughness = toughness});
+        BladeOptions{.edge_from = {0, -0.03, 0}, .edge_to = {0, 0.03, 0}, .toughness = toughness, .cut_every = 0.0},
+        driver);
     body.attach(blade);
   }
   static TetMesh made() {
@@ -41,7 +41,6 @@ struct Downstroke {
     double time = 0.0;
     while (blade->depth() < to) {
       EXPECT_LE(body.step().status, StepStatus::inverted);
-      blade->cut();
       if (blade->depth() < from) continue;
       sum += blade->forces().cutting * body.step_size();
       time += body.step_size();
@@ -105,11 +104,9 @@ TEST(BladeForce, GoesOnFromACheckpoint) {
   const Kind kind{"viscous", viscous_tissue(), Precision::single_precision};
   Downstroke whole(1.0, 0.2, kind), continued(1.0, 0.2, kind);
   whole.mean_force(0.0, 0.012);
-  std::stringstream body, blade;
-  whole.body.save(body);
-  whole.blade->cutter().save(blade);
-  continued.body.load(body);
-  continued.blade->cutter().load(blade);
+  std::stringstream file;
+  whole.body.save(file);
+  continued.body.load(file);
   whole.mean_force(0.0, 0.02);
   continued.mean_force(0.0, 0.02);
   EXPECT_EQ(continued.body.state_hash(), whole.body.state_hash());
@@ -123,14 +120,16 @@ TEST(BladeOptionsRefused, NameTheOption) {
   Simulation body(mesh, {{0, linear_tissue()}}, {});
   const auto refusal = [&](const BladeOptions& o) -> std::string {
     try {
-      const Blade blade(body, "knife", std::make_shared<PathDriver>(Pose{}, steady_path({})), {0, 0, -1}, o);
+      const Blade blade(o, std::make_shared<PathDriver>(Pose{}, steady_path({})));
     } catch (const std::invalid_argument& error) {
       return error.what();
     }
     return "accepted";
   };
-  EXPECT_NE(refusal({.toughness = -1.0}).find("blade knife: toughness [J/m^2] = -1"), std::string::npos);
+  EXPECT_NE(refusal({.name = "knife", .toughness = -1.0}).find("blade knife: toughness [J/m^2] = -1"),
+            std::string::npos);
   EXPECT_NE(refusal({.edge_from = {}, .edge_to = {}}).find("length of the edge [m] = 0"), std::string::npos);
+  EXPECT_NE(refusal({.cut_every = -1.0}).find("cut_every [s] = -1"), std::string::npos);
   EXPECT_NE(refusal({.cutting = {.least_quality = 0.9}}).find("least_quality = 0.9"), std::string::npos);
   EXPECT_NE(refusal({.cutting = {.least_step = 0.0}}).find("least_step = 0"), std::string::npos);
   Cutter cutter(body);

@@ -31,7 +31,7 @@ Variant variant_of(std::size_t body) {
 std::string saved(const Variant& variant) {
   const auto built = std::make_unique<BuiltVariant>(variant, MeshLoader{});
   for (int i = 0; i < kSteps; ++i) {
-    const StepStatus status = built->step().status;
+    const StepStatus status = built->simulation.step().status;
     require(status == StepStatus::ok || status == StepStatus::inverted, "the bodies that are saved can be stepped");
     if (i != kSteps / 2) continue;
     built->simulation.remove_tets(std::array<std::uint32_t, 1>{2});
@@ -72,7 +72,7 @@ void go_on(BuiltVariant& built) {
     for (const auto& x : built.instruments) archived(*x);
     built.simulation.tet_fields();
     built.simulation.energies();
-    static_cast<void>(built.step());
+    static_cast<void>(built.simulation.step());
   }
 }
 

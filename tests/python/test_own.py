@@ -265,20 +265,18 @@ def test_a_blade_of_ones_own_cuts_as_it_goes():
     body = glisson.Simulation(mesh, glisson.Tissue(youngs_modulus=2e4), glisson.SimulationOptions(damping_rate=50))
     body.fix("z_min")
     start = glisson.Pose(position=[0.0201, 0.01, 0.041])
-    blade = body.attach_blade(
-        "scalpel",
-        glisson.PathDriver(start, glisson.SteadyMotion(velocity=0.2)),
-        options=glisson.BladeOptions(edge_from=[0, -0.02, 0], edge_to=[0, 0.02, 0], toughness=5.0),
-    )
+    edge = glisson.BladeOptions(name="scalpel", edge_from=[0, -0.02, 0], edge_to=[0, 0.02, 0], toughness=5.0, cut_every=0)
+    blade = glisson.Blade(edge, glisson.PathDriver(start, glisson.SteadyMotion(velocity=0.2)))
+    body.attach(blade)
     assert blade.name == "scalpel" and blade.area == 0
     body.advance(0.1)
     assert blade.area > 1e-4 and blade.work_of_cut == pytest.approx(5.0 * blade.area)
     assert len(body.mesh.vertices) > len(mesh.vertices) and body.displacement.shape == body.mesh.vertices.shape
     with pytest.raises(ValueError, match="toughness"):
-        body.attach_blade("x", glisson.PathDriver(start, glisson.SteadyMotion()), options=glisson.BladeOptions(toughness=-1))
+        glisson.Blade(glisson.BladeOptions(toughness=-1), glisson.PathDriver(start, glisson.SteadyMotion()))
     held = glisson.Simulation(mesh, glisson.Tissue())
     view = held.velocity
     with pytest.raises(BufferError, match="views"):
-        held.attach_blade("x", glisson.PathDriver(start, glisson.SteadyMotion()))
+        held.attach(glisson.Blade(glisson.BladeOptions(), glisson.PathDriver(start, glisson.SteadyMotion())))
     del view, body
-    assert blade.area > 0  # it keeps its body
+    assert blade.area > 0  # what it has cut, without the body

@@ -138,14 +138,14 @@ TEST(Instruments, CapsuleIsRead) {
 // A blade keeps its edge, the toughness it meets and how it cuts.
 TEST(Instruments, BladeIsRead) {
   const Variant v = parse(kEveryInstrument).variants.at(0);
-  const auto& blade = std::get<BladeSpec>(instrument(v, "scalpel").what);
-  expect_near(blade.options.edge_from, {0, -0.003, 0.001});
-  expect_near(blade.options.edge_to, {0, 0.004, 0.002});
-  EXPECT_EQ(blade.options.toughness, 150.0);
+  const auto& blade = std::get<BladeOptions>(instrument(v, "scalpel").what);
+  expect_near(blade.edge_from, {0, -0.003, 0.001});
+  expect_near(blade.edge_to, {0, 0.004, 0.002});
+  EXPECT_EQ(blade.toughness, 150.0);
   EXPECT_EQ(blade.cut_every, 0.004);
-  EXPECT_FALSE(blade.options.cutting.snap);
-  EXPECT_EQ(blade.options.cutting.least_quality, 0.2);
-  EXPECT_EQ(blade.options.cutting.least_step, 0.5);
+  EXPECT_FALSE(blade.cutting.snap);
+  EXPECT_EQ(blade.cutting.least_quality, 0.2);
+  EXPECT_EQ(blade.cutting.least_step, 0.5);
 }
 
 // A container keeps its vessel and how it holds the tissue.
@@ -293,7 +293,7 @@ TEST(Instruments, ABladeCutsFromAScene) {
   const Scene scene = parse(changed(deep, "kind = \"needle\"\n", blade) + "[output]\nframes = 0\n");
   BuiltVariant built(scene.variants.at(0), {});
   const std::size_t before = built.simulation.mesh().vertices.size();
-  while (built.simulation.time() < 0.42) ASSERT_LE(built.step().status, StepStatus::inverted);
+  while (built.simulation.time() < 0.42) ASSERT_LE(built.simulation.step().status, StepStatus::inverted);
   EXPECT_GT(built.simulation.mesh().vertices.size(), before);
   EXPECT_GT(dynamic_cast<const Blade&>(*built.instruments.at(0)).area(), 0.3 * 0.04 * 0.02);
 }

@@ -48,7 +48,7 @@ std::string trouble_text(const AdvanceEnd& end, const Simulation& simulation) {
 
 AdvanceEnd advance_to(BuiltVariant& body, OnInversion on_inversion, double until, const std::atomic<bool>& stop) {
   while (body.simulation.time() + 0.5 * body.simulation.step_size() < until) {
-    const StepResult step = body.step();
+    const StepResult step = body.simulation.step();
     const RunSummary::End end = end_of(step.status, on_inversion);
     if (end != RunSummary::End::finished) return {end, std::string(step.message), step.inverted_tets.size()};
     if (stop.load(std::memory_order_relaxed)) return {.end = RunSummary::End::interrupted};

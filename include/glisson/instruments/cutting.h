@@ -50,12 +50,16 @@ struct EdgePiece {
   std::uint32_t tet = 0;
   double length = 0.0;              ///< [m]
   std::array<double, 4> weights{};  ///< barycentric weights of its midpoint [-]
+  void archive(Archive& ar);
 };
+
+/// @throws std::invalid_argument naming the option, its value and the allowed range
+void require_valid(const CutOptions& options);
 
 /// Moves one blade through a body. Several may cut the same body; each tracks its own cuts.
 class Cutter {
  public:
-  /// @param simulation  must outlive this, and stay where it is
+  /// @param simulation  its body must outlive this; the Simulation may be moved
   /// @throws std::invalid_argument naming an option out of range
   /// Cost: O(tets) in time, 4 bytes a tet and 60 a vertex.
   explicit Cutter(Simulation& simulation, const CutOptions& options = {});
@@ -86,6 +90,8 @@ class Cutter {
   /// Restores the state of a saved Cutter, after the simulation has loaded its checkpoint.
   /// @throws std::runtime_error for a file that is truncated, modified or of another body
   void load(std::istream& in);
+  /// The same within the checkpoint of an interaction.
+  void archive(Archive& ar);
 
  private:
   struct Impl;

@@ -44,7 +44,10 @@ struct Rupture {
   double membrane_thickness = 1e-4;  ///< … of this thickness, one needle diameter long [m], > 0
 };
 
+class Needle;
+
 struct NeedleOptions {
+  using Instrument = Needle;  ///< that is made of it
   std::string name = "needle";
   double diameter = 1.27e-3;  ///< [m], > 0; 18 G
   double length = 0.1;        ///< from the hand to the tip [m], > 0

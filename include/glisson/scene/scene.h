@@ -142,11 +142,6 @@ struct ContactSpec {
   bool bonded = false;
   double push_out_speed = ContactOptions{}.push_out_speed;
 };
-/// A blade, and the interval of its cuts.
-struct BladeSpec {
-  BladeOptions options;
-  double cut_every = 1e-3;  ///< [s], > 0
-};
 /// An instrument that presses, pierces or cuts, and its motion.
 struct InstrumentSpec {
   std::string name = "instrument";
@@ -155,7 +150,7 @@ struct InstrumentSpec {
   Vec3d side{1.0, 0.0, 0.0};        ///< direction of its own x axis; the component across `direction` counts
   InstrumentMotion motion;
   std::variant<NeedleOptions, ContactSpec<FlatPunch>, ContactSpec<Ball>, ContactSpec<NeedleShape>, ContactSpec<Plate>,
-               ContactSpec<Block>, BladeSpec>
+               ContactSpec<Block>, BladeOptions>
       what;
   std::map<std::string, TipResistance> regions;  ///< of a needle, by region name
   std::string origin;
@@ -330,29 +325,20 @@ TetMesh build_mesh(const Variant& variant, const MeshLoader& load);
 /// Tissue of each region number that occurs in a mesh made by build_mesh.
 std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh);
 
-/// The body of a variant with its supports, loads and tools, at rest. It cannot be moved: blades refer to it.
+/// The body of a variant with its supports, loads and tools, at rest.
 struct BuiltVariant {
   /// @throws SceneError if mesh, sets, tissues, step or constraints cannot be used
   BuiltVariant(const Variant& variant, const MeshLoader& load);
-  BuiltVariant(const BuiltVariant&) = delete;
-  BuiltVariant& operator=(const BuiltVariant&) = delete;
 
-  Simulation simulation;
   std::vector<ConstraintId> supports;                    ///< per variant.fixed
   std::vector<ConstraintId> tools;                       ///< per variant.tools
   std::vector<std::shared_ptr<Instrument>> instruments;  ///< per variant.instruments
-  std::vector<std::shared_ptr<Capsule>> capsules;        ///< per variant.capsules
-  std::shared_ptr<Container> container;                  ///< null: none
-
-  /// A step of the body, followed by the cuts of blades that are due.
-  StepResult step();
+  Simulation simulation;
+  std::vector<std::shared_ptr<Capsule>> capsules;  ///< per variant.capsules
+  std::shared_ptr<Container> container;            ///< null: none
 
  private:
-  struct Cutting {
-    std::shared_ptr<Blade> blade;
-    double every = 0.0, next = 0.0;  ///< [s]
-  };
-  std::vector<Cutting> blades_;
+  BuiltVariant(TetMesh mesh, const Variant& variant);
 };
 /// @throws SceneError, as BuiltVariant
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load);

@@ -3,11 +3,12 @@
 //
 //   a step from t to t + h, with v₋ and v₊ the velocities before and after t:
 //     reach ─▶ tissue forces at u(t) ─▶ add_forces ─▶ v₊ as if free, then with motions ─▶ constrain ─▶ u(t+h) ─▶ moved
+//                                                                                          between_steps ◀─ step made ◀┘
 //
 // An interaction names the vertices it may act on, its active vertices; they are held in double. Forces that follow
 // from the state alone (membranes, springs) are added to the tissue's own; conditions at the end of the step (no
 // penetration, friction, a path through the tissue) are enforced on velocities, by impulses. Interactions act one after
-// the other, in the order in which they were attached.
+// the other, in the order in which they were attached. Between steps they may change the body: cut it, remove tets.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,7 @@
 namespace glisson {
 
 class Archive;
+class Simulation;
 
 /// An active vertex: one that a support, motion or interaction acts on.
 struct WatchedVertex {
@@ -95,6 +97,12 @@ class Interaction {
   virtual void constrain(const InteractionStep&) {}
   /// The step has been made: displacements are those at t + h.
   virtual void moved(const InteractionStep&) {}
+
+  /// Called when it has been attached, and after every step that was made: the only member that may change the body, by
+  /// remove_tets, split_faces or set_tissues. body_changed() reports what it changes to all interactions, this one too.
+  virtual void between_steps(Simulation&) {}
+  /// Whether between_steps may add vertices: the arrays of the state may then move in memory at any step.
+  virtual bool changes_body() const { return false; }
 
   /// Upper bound of the squared frequency of the added stiffness (add_forces) on the masses of the body [1/s²]; it
   /// shortens the stable step. Called after every step: a value that follows the state has to cover the next step.

@@ -43,7 +43,7 @@ class ExplicitScheme : public Scheme {
   /// What the constraint exerted on the tissue at the last kick.
   ForceParts force(ConstraintId constraint) const override;
   void attach(std::shared_ptr<Interaction> interaction, const BodyView& body) override;
-  bool has_interactions() const override { return !interactions_.empty(); }
+  std::span<const std::shared_ptr<Interaction>> interactions() const override { return interactions_.all(); }
   void tell_change(const BodyView& body, std::span<const std::uint32_t> origins) override;
   Vec3d displacement_of(std::uint32_t vertex) const override { return moving_->displacement_of(vertex); }
   Vec3d velocity_of(std::uint32_t vertex) const override { return moving_->velocity_of(vertex); }

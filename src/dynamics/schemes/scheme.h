@@ -53,7 +53,7 @@ class Scheme {
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity);
   /// As Simulation::attach. @throws std::invalid_argument, here for every scheme that cannot
   virtual void attach(std::shared_ptr<Interaction> interaction, const BodyView& body);
-  virtual bool has_interactions() const { return false; }
+  virtual std::span<const std::shared_ptr<Interaction>> interactions() const { return {}; }
   /// Hands a change of the mesh on to the interactions, after everything else has followed it.
   virtual void tell_change(const BodyView&, std::span<const std::uint32_t> /*origins*/) {}
 

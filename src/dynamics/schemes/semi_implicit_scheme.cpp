@@ -32,7 +32,7 @@ void SemiImplicitScheme::take_over(const BodyChange& change) {
 void SemiImplicitScheme::require_tissues(const BlockTissues& tissues) const {
   ExplicitScheme::require_tissues(tissues);
   for (const auto& [block, tissue] : tissues) {
-    if (!(tissue.viscosity > 0.0) || !has_interactions()) continue;
+    if (!(tissue.viscosity > 0.0) || interactions_.empty()) continue;
     throw std::invalid_argument("tissue \"" + tissue.name + "\": viscosity = " + std::to_string(tissue.viscosity) +
                                 " Pa s, but the integrator semi_implicit does not support viscosity beside "
                                 "instruments, needles and membranes; " +

@@ -24,81 +24,75 @@ Vec3d across(const Vec3d& v, const Vec3d& line) { return v - line * (dot(line, v
 
 }  // namespace
 
-Blade::Blade(Simulation& simulation, std::string name, std::shared_ptr<ToolDriver> driver, const Vec3d& direction,
-             const BladeOptions& options)
-    : Instrument(std::move(name), std::move(driver), direction), simulation_(simulation),
-      cutter_(simulation, options.cutting), from_(options.edge_from), to_(options.edge_to),
-      toughness_(options.toughness) {
-  require(toughness_ >= 0.0 && std::isfinite(toughness_), this->name(), "toughness [J/m^2]", toughness_,
+Blade::Blade(const BladeOptions& options, std::shared_ptr<ToolDriver> driver)
+    : Instrument(options.name, std::move(driver), options.direction), options_(options) {
+  require(options.toughness >= 0.0 && std::isfinite(options.toughness), name(), "toughness [J/m^2]", options.toughness,
           ">= 0 and finite");
-  const double length = norm(to_ - from_);
-  require(length > 0.0 && std::isfinite(length), this->name(), "length of the edge [m]", length, "> 0 and finite");
-  cutter_.place(edge());
+  require(options.cut_every >= 0.0, name(), "cut_every [s]", options.cut_every, ">= 0");
+  const double length = norm(options.edge_to - options.edge_from);
+  require(length > 0.0 && std::isfinite(length), name(), "length of the edge [m]", length, "> 0 and finite");
+  require_valid(options.cutting);
 }
 
 BladeEdge Blade::edge() const {
   const Pose& p = pose();
-  return {p.position + p.axes * from_, p.position + p.axes * to_};
+  return {p.position + p.axes * options_.edge_from, p.position + p.axes * options_.edge_to};
 }
 
-void Blade::attached(const BodyView& body, double) {
-  if (&body.mesh != &simulation_.mesh()) {
-    throw std::invalid_argument("attach: " + label() + " was made for another simulation, which it cuts");
-  }
-  find_pieces();
-}
+void Blade::attached(const BodyView& body, double) { mesh_ = &body.mesh, removed_ = body.removed; }
 
 void Blade::body_changed(const BodyView& body, std::span<const std::uint32_t>) {
-  std::erase_if(pieces_, [&](const Piece& piece) { return body.is_removed(piece.at.tet); });
-  for (Piece& piece : pieces_) piece.vertices = body.mesh.tets[piece.at.tet];
+  removed_ = body.removed;
+  std::erase_if(pieces_, [&](const EdgePiece& piece) { return body.is_removed(piece.tet); });
 }
 
-void Blade::find_pieces() {
-  pieces_.clear();
-  for (const EdgePiece& piece : cutter_.contact()) {
-    pieces_.push_back({piece, simulation_.mesh().tets[piece.tet]});
+void Blade::between_steps(Simulation& simulation) {
+  const BladeEdge now = edge();
+  if (!std::isfinite(norm(now.from)) || !std::isfinite(norm(now.to))) return;  // nor does it push then
+  if (!cutter_) {
+    cutter_.emplace(simulation, options_.cutting).place(now);
+  } else {
+    if (simulation.time() < next_cut_) return;
+    area_ += cutter_->advance(now).area;
+    next_cut_ = simulation.time() + options_.cut_every;
   }
-}
-
-CutReport Blade::cut() {
-  const CutReport report = cutter_.advance(edge());
-  area_ += report.area;
-  find_pieces();
-  return report;
+  pieces_ = cutter_->contact();
 }
 
 double Blade::length_in_tissue() const {
   double sum = 0.0;
-  for (const Piece& piece : pieces_) sum += piece.at.length;
+  for (const EdgePiece& piece : pieces_) sum += piece.length;
   return sum;
 }
 
 std::span<const std::uint32_t> Blade::reach(double, double) {
   reached_.clear();
-  for (const Piece& piece : pieces_) reached_.insert(reached_.end(), piece.vertices.begin(), piece.vertices.end());
+  for (const EdgePiece& piece : pieces_) {
+    reached_.insert(reached_.end(), vertices_of(piece).begin(), vertices_of(piece).end());
+  }
   return reached_;
 }
 
 /// Gives the tissue at a piece G l h along the edge's way through it, or as much less as takes it along.
 /// @param velocity  of the edge there
-void Blade::resist(const InteractionStep& step, const Piece& piece, const Vec3d& velocity, const Vec3d& along) {
+void Blade::resist(const InteractionStep& step, const EdgePiece& piece, const Vec3d& velocity, const Vec3d& along) {
   std::array<std::uint32_t, 4> places;
   Vec3d tissue{};
   double mobility = 0.0;
   for (std::size_t c = 0; c < 4; ++c) {
-    places[c] = step.place_of[piece.vertices[c]];
+    places[c] = step.place_of[vertices_of(piece)[c]];
     if (places[c] == InteractionStep::kNowhere) return;
-    const double w = piece.at.weights[c];
+    const double w = piece.weights[c];
     tissue += step.vertices[places[c]].velocity * w;
     const Vec3d& a = step.mobility[places[c]];
     mobility += w * w * std::max({a.x, a.y, a.z});
   }
   const Vec3d through = across(velocity - tissue, along);
-  const double speed = norm(through), most = toughness_ * piece.at.length * step.h / kSweeps;
+  const double speed = norm(through), most = options_.toughness * piece.length * step.h / kSweeps;
   if (!(speed > 0.0)) return;
   const double impulse = mobility > 0.0 ? std::min(most, speed / mobility) : most;
   for (std::size_t c = 0; c < 4; ++c) {
-    const Vec3d push = through * (impulse * piece.at.weights[c] / speed);
+    const Vec3d push = through * (impulse * piece.weights[c] / speed);
     step.push(places[c], push);
     forces_.cutting += push * (1.0 / step.h);
     forces_.torque += cross(step.position(places[c]) - pose_.position, push) * (1.0 / step.h);
@@ -113,11 +107,11 @@ void Blade::constrain(const InteractionStep& step) {
   const Vec3d along = after.to - after.from;
   const Vec3d from = (after.from - before.from) * (1.0 / step.h), to = (after.to - before.to) * (1.0 / step.h);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (const Piece& piece : pieces_) {
+    for (const EdgePiece& piece : pieces_) {
       Vec3d at{};
       for (std::size_t c = 0; c < 4; ++c) {
-        const std::uint32_t place = step.place_of[piece.vertices[c]];
-        if (place != InteractionStep::kNowhere) at += step.position(place) * piece.at.weights[c];
+        const std::uint32_t place = step.place_of[vertices_of(piece)[c]];
+        if (place != InteractionStep::kNowhere) at += step.position(place) * piece.weights[c];
       }
       const double share = std::clamp(dot(at - before.from, along) / dot(along, along), 0.0, 1.0);
       resist(step, piece, from * (1.0 - share) + to * share, along);
@@ -125,15 +119,14 @@ void Blade::constrain(const InteractionStep& step) {
   }
 }
 
-void Blade::Piece::archive(Archive& ar) { ar(at.tet, at.length, at.weights, vertices); }
+void EdgePiece::archive(Archive& ar) { ar(tet, length, weights); }
 
 void Blade::archive(Archive& ar) {
   archive_motion(ar);
-  ar(area_, pieces_);
-  const TetMesh& mesh = simulation_.mesh();
-  for (const Piece& piece : pieces_) {
-    const std::uint32_t t = piece.at.tet;
-    ar.check(t < mesh.tets.size() && !simulation_.is_removed(t) && piece.vertices == mesh.tets[t]);
+  ar(area_, next_cut_, pieces_);
+  if (cutter_) cutter_->archive(ar);
+  for (const EdgePiece& piece : pieces_) {
+    ar.check(mesh_ != nullptr && piece.tet < mesh_->tets.size() && (removed_.empty() || removed_[piece.tet] == 0));
   }
 }
 

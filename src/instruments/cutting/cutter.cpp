@@ -51,8 +51,8 @@ void clip(double a, double b, double& low, double& high) {
 }  // namespace
 
 struct Cutter::Impl {
+  SimulationParts::Inside& simulation;
   Scheme& scheme;
-  Simulation& simulation;
   CutOptions options;
   BladeView view;
   detail::CutSheet sheet;
@@ -62,9 +62,9 @@ struct Cutter::Impl {
   bool placed = false;
 
   Impl(Simulation& s, const CutOptions& o)
-      : scheme(SimulationParts::scheme(s)), simulation(s), options(o), view(scheme),
+      : simulation(SimulationParts::inside(s)), scheme(SimulationParts::scheme(s)), options(o), view(scheme),
         sheet(scheme.body().elements.size(), scheme.body().vertex_count), doubled(scheme.body().vertex_count, 0) {
-    limit_spread(SimulationParts::viscosity_counts(s) ? 1.0 : 0.0);
+    limit_spread(scheme.capabilities().viscosity_limits_step ? 1.0 : 0.0);
   }
 
   std::array<Vec3d, 4> corners_at_rest(std::size_t e) const {
@@ -149,7 +149,7 @@ bool Cutter::Impl::may_become(std::uint32_t vertex, const Tet& tet, const std::a
     const auto has = [&](std::uint32_t v) { return std::find(list.begin(), list.end(), v) != list.end(); };
     if (has(vertex) && !all_in(kSupport, has)) return false;
   }
-  for (const auto& named : simulation.mesh().vertex_sets) {
+  for (const auto& named : SimulationParts::mesh(simulation).vertex_sets) {
     const std::vector<std::uint32_t>& set = named.second;
     const auto has = [&](std::uint32_t v) { return std::binary_search(set.begin(), set.end(), v); };
     if (has(vertex) && !all_in(kSetSupport, has)) return false;
@@ -215,18 +215,22 @@ void Cutter::Impl::open(const detail::CutFaces& cut, CutReport& report) {
   }
   const std::vector<VertexMove> moves = snap({vertices.begin(), vertices.end()}, report);
   const std::vector<Triangle> parted(faces.begin(), faces.end());
-  report.new_vertices = simulation.split_faces(parted, moves).origins.size();
+  report.new_vertices = SimulationParts::split_faces(simulation, parted, moves).origins.size();
   report.faces = parted.size();
-  const std::vector<Vec3d>& x = simulation.mesh().vertices;
+  const std::vector<Vec3d>& x = SimulationParts::mesh(simulation).vertices;
   for (const Triangle& f : parted) report.faces_area += norm(area_vector(x[f[0]], x[f[1]], x[f[2]]));
   follow();
 }
 
-Cutter::Cutter(Simulation& simulation, const CutOptions& options) {
+void require_valid(const CutOptions& options) {
   require_option(options.least_quality >= 0.01 && options.least_quality <= 0.5, "least_quality", options.least_quality,
                  "0.01 to 0.5");
   require_option(options.least_step >= 0.05 && options.least_step <= 1.0, "least_step", options.least_step,
                  "0.05 to 1");
+}
+
+Cutter::Cutter(Simulation& simulation, const CutOptions& options) {
+  require_valid(options);
   impl_ = std::make_unique<Impl>(simulation, options);
 }
 
@@ -297,6 +301,11 @@ void Cutter::Impl::archive(Archive& ar) {
   ar(sheet, view);
 }
 
+void Cutter::archive(Archive& ar) {
+  if (ar.reads()) impl_->follow();
+  impl_->archive(ar);
+}
+
 void Cutter::save(std::ostream& out) const {
   Archive contents;
   impl_->archive(contents);
@@ -305,8 +314,7 @@ void Cutter::save(std::ostream& out) const {
 
 void Cutter::load(std::istream& in) {
   Archive contents = read_checkpoint(in);
-  impl_->follow();
-  impl_->archive(contents);
+  archive(contents);
   contents.check(contents.left() == 0);
 }
 

@@ -73,17 +73,17 @@ std::map<int, TipResistance> by_number(const InstrumentSpec& x, const TetMesh& m
 
 struct InstrumentMaker {
   const InstrumentSpec& spec;
-  Simulation& simulation;
+  const TetMesh& mesh;
 
-  std::shared_ptr<Instrument> operator()(NeedleOptions options) const {
+  template <class Options>
+  std::shared_ptr<Instrument> operator()(Options options) const {
     options.name = spec.name;
     options.direction = spec.direction;
-    options.bevel_side = spec.side;
-    options.regions = by_number(spec, simulation.mesh());
-    return std::make_shared<Needle>(options, make_driver(spec));
-  }
-  std::shared_ptr<Instrument> operator()(const BladeSpec& x) const {
-    return std::make_shared<Blade>(simulation, spec.name, make_driver(spec), spec.direction, x.options);
+    if constexpr (std::is_same_v<Options, NeedleOptions>) {
+      options.bevel_side = spec.side;
+      options.regions = by_number(spec, mesh);
+    }
+    return std::make_shared<typename Options::Instrument>(options, make_driver(spec));
   }
   template <class Form>
   std::shared_ptr<Instrument> operator()(const ContactSpec<Form>& x) const {
@@ -119,8 +119,8 @@ std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& x) {
 
 namespace scene {
 
-std::shared_ptr<Instrument> make_instrument(const InstrumentSpec& spec, Simulation& simulation) {
-  return std::visit(InstrumentMaker{spec, simulation}, spec.what);
+std::shared_ptr<Instrument> make_instrument(const InstrumentSpec& spec, const TetMesh& mesh) {
+  return std::visit(InstrumentMaker{spec, mesh}, spec.what);
 }
 
 std::shared_ptr<Capsule> make_capsule(const CapsuleSpec& spec, std::span<const std::uint32_t> set) {

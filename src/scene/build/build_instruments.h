@@ -10,8 +10,8 @@
 
 namespace glisson::scene {
 
-/// @param simulation  that it will be attached to @throws std::invalid_argument for options or regions that do not fit
-std::shared_ptr<Instrument> make_instrument(const InstrumentSpec& spec, Simulation& simulation);
+/// @param mesh  of the body @throws std::invalid_argument for options or regions that do not fit
+std::shared_ptr<Instrument> make_instrument(const InstrumentSpec& spec, const TetMesh& mesh);
 
 /// @param set  vertices it covers; empty: all of the surface @throws std::invalid_argument
 std::shared_ptr<Capsule> make_capsule(const CapsuleSpec& spec, std::span<const std::uint32_t> set);

@@ -94,16 +94,30 @@ const std::vector<std::uint32_t>& set_called(const Variant& variant, const TetMe
   return it->second;
 }
 
-bool has_blade(const Variant& variant) {
-  const auto is_blade = [](const InstrumentSpec& x) { return std::holds_alternative<BladeSpec>(x.what); };
-  return std::any_of(variant.instruments.begin(), variant.instruments.end(), is_blade);
+/// Runs `make`, saying of what it throws where the scene asked for it.
+template <class Make>
+auto located(const Variant& variant, const std::string& origin, Make make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& error) {
+    fail(variant, origin, error.what());
+  }
 }
 
-Simulation simulation_of(const Variant& variant, TetMesh mesh) {
+std::vector<std::shared_ptr<Instrument>> make_instruments(const Variant& variant, const TetMesh& mesh) {
+  std::vector<std::shared_ptr<Instrument>> made;
+  for (const InstrumentSpec& x : variant.instruments) {
+    made.push_back(located(variant, x.origin, [&] { return scene::make_instrument(x, mesh); }));
+  }
+  return made;
+}
+
+Simulation simulation_of(const Variant& variant, TetMesh mesh,
+                         std::span<const std::shared_ptr<Instrument>> instruments) {
   try {
     std::map<int, Tissue> tissues = region_tissues(variant, mesh);
     SimulationOptions options = variant.simulation;
-    options.mesh_changes = options.mesh_changes || has_blade(variant);
+    for (const auto& x : instruments) options.mesh_changes = options.mesh_changes || x->changes_body();
     return Simulation(std::move(mesh), std::move(tissues), options);
   } catch (const std::bad_alloc&) {
     throw;                                 // no fault of the scene
@@ -120,16 +134,6 @@ Axes driven_axes(const ToolSpec& tool) {
 std::function<double(double)> ramp_over(double seconds) {
   if (seconds <= 0.0) return {};
   return [seconds](double t) { return std::min(1.0, t / seconds); };
-}
-
-/// Runs `make`, saying of what it throws where the scene asked for it.
-template <class Make>
-auto located(const Variant& variant, const std::string& origin, Make make) {
-  try {
-    return make();
-  } catch (const std::invalid_argument& error) {
-    fail(variant, origin, error.what());
-  }
 }
 
 /// Capsules first: what they pull is known when instruments solve for what holds at the end of the step.
@@ -151,12 +155,8 @@ void attach_interactions(const Variant& variant, BuiltVariant& built) {
       return container;
     });
   }
-  for (const InstrumentSpec& x : variant.instruments) {
-    built.instruments.push_back(located(variant, x.origin, [&] {
-      auto instrument = scene::make_instrument(x, simulation);
-      simulation.attach(instrument);
-      return instrument;
-    }));
+  for (std::size_t i = 0; i < built.instruments.size(); ++i) {
+    located(variant, variant.instruments[i].origin, [&] { simulation.attach(built.instruments[i]); });
   }
   scene::join(built.instruments, built.capsules);
 }
@@ -189,7 +189,10 @@ std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh
 }
 
 BuiltVariant::BuiltVariant(const Variant& variant, const MeshLoader& load)
-    : simulation(simulation_of(variant, build_mesh(variant, load))) {
+    : BuiltVariant(build_mesh(variant, load), variant) {}
+
+BuiltVariant::BuiltVariant(TetMesh whole, const Variant& variant)
+    : instruments(make_instruments(variant, whole)), simulation(simulation_of(variant, std::move(whole), instruments)) {
   const TetMesh& mesh = simulation.mesh();
   for (const FixedSpec& x : variant.fixed) {
     const auto& set = set_called(variant, mesh, x.set, x.origin);
@@ -205,20 +208,6 @@ BuiltVariant::BuiltVariant(const Variant& variant, const MeshLoader& load)
     located(variant, x.origin, [&] { return simulation.add_load(set, x.force, ramp_over(x.ramp)); });
   }
   attach_interactions(variant, *this);
-  for (std::size_t i = 0; i < instruments.size(); ++i) {
-    const auto* spec = std::get_if<BladeSpec>(&variant.instruments[i].what);
-    if (spec) blades_.push_back({std::dynamic_pointer_cast<Blade>(instruments[i]), spec->cut_every, 0.0});
-  }
-}
-
-StepResult BuiltVariant::step() {
-  const StepResult result = simulation.step();
-  for (Cutting& x : blades_) {
-    if (simulation.time() < x.next) continue;
-    x.blade->cut();
-    x.next = simulation.time() + x.every;
-  }
-  return result;
 }
 
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load) { return {variant, load}; }

@@ -127,23 +127,20 @@ SectionSpec needle_kind() {
 }
 
 SectionSpec blade_kind() {
-  Section<BladeSpec> s("blade",
-                       "A cutting edge that separates the tissue along its path (docs/cutting.md); the flat of the "
-                       "blade does not touch it.");
-  const auto option = [](auto member) {
-    return [member](BladeSpec & x) -> auto& { return x.options.*member; };
-  };
+  Section<BladeOptions> s("blade",
+                          "A cutting edge that separates the tissue along its path (docs/cutting.md); the flat of the "
+                          "blade does not touch it.");
   const auto cutting = [](auto member) {
-    return [member](BladeSpec & x) -> auto& { return x.options.cutting.*member; };
+    return [member](BladeOptions & x) -> auto& { return x.cutting.*member; };
   };
-  s.key<MilliVector>("edge_from_mm", option(&BladeOptions::edge_from),
+  s.key<MilliVector>("edge_from_mm", &BladeOptions::edge_from,
                      "one end of its edge, in its own axes, relative to its tip")
       .in("mm");
-  s.key<MilliVector>("edge_to_mm", option(&BladeOptions::edge_to), "the other end").in("mm");
-  s.key("toughness_J_m2", option(&BladeOptions::toughness), "fracture toughness of the tissue: work per area cut")
+  s.key<MilliVector>("edge_to_mm", &BladeOptions::edge_to, "the other end").in("mm");
+  s.key("toughness_J_m2", &BladeOptions::toughness, "fracture toughness of the tissue: work per area cut")
       .in("J/m²")
       .within(at_least(0));
-  s.key("cut_every_s", &BladeSpec::cut_every, "interval at which the passed tissue is separated")
+  s.key("cut_every_s", &BladeOptions::cut_every, "interval at which the passed tissue is separated")
       .in("s")
       .within(above(0));
   s.key("snap", cutting(&CutOptions::snap), "moves vertices onto the cut; otherwise it follows existing faces");
@@ -154,8 +151,8 @@ SectionSpec blade_kind() {
         "least stable step after such a move, relative to the body's before")
       .in("-")
       .within(between(0.05, 1));
-  s.finish([](BladeSpec& x, const Node& table, const Place& place) {
-    if (norm(x.options.edge_to - x.options.edge_from) > 0.0) return;
+  s.finish([](BladeOptions& x, const Node& table, const Place& place) {
+    if (norm(x.edge_to - x.edge_from) > 0.0) return;
     const char* key = table.find("edge_to_mm") ? "edge_to_mm" : "edge_from_mm";
     place.complain(*table.find(key), key, "is the other end, too: the edge has no length; give two ends");
   });
@@ -269,7 +266,7 @@ const SectionSpec& instrument_section() {
         instrument_kind<NeedleOptions>(needle_kind()), instrument_kind<Contact<FlatPunch>>(punch_kind()),
         instrument_kind<Contact<Ball>>(ball_kind()),   instrument_kind<Contact<NeedleShape>>(probe_kind()),
         instrument_kind<Contact<Plate>>(plate_kind()), instrument_kind<Contact<Block>>(block_kind()),
-        instrument_kind<BladeSpec>(blade_kind())};
+        instrument_kind<BladeOptions>(blade_kind())};
     s.finish(check_instrument);
     return s.spec();
   }();

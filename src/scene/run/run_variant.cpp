@@ -95,7 +95,7 @@ bool Run::frame_due() const {
 /// One step; false where it was not made.
 bool Run::step() {
   const double start = simulation_.time();
-  const StepResult result = built_.step();
+  const StepResult result = simulation_.step();
   if (!result.inverted_tets.empty()) {
     if (summary_.first_inversion_s < 0.0) summary_.first_inversion_s = start;
     summary_.inverted_tets_most = std::max(summary_.inverted_tets_most, result.inverted_tets.size());
