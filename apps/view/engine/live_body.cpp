@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "dynamics/simulation_parts.h"
-#include "glisson/instruments/needle.h"
 
 namespace glisson::view {
 namespace {
@@ -163,8 +162,7 @@ ToolState LiveBody::tool_state(std::size_t tool) const {
   const std::size_t sets = built_->tools.size();
   if (tool < sets) return state;
   const Instrument& x = *built_->instruments[tool - sets];
-  const auto* needle = dynamic_cast<const Needle*>(&x);
-  state.line = needle != nullptr ? needle->centre_line() : std::vector<Vec3d>{x.pose().position};
+  state.line = x.centre_line();
   state.axes = x.pose().axes;
   return state;
 }

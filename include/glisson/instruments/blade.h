@@ -38,6 +38,10 @@ class Blade final : public Instrument {
   double length_in_tissue() const;                                   ///< length of edge in uncut tissue [m]
   const BladeOptions& options() const { return options_; }
 
+  InstrumentForm form() const override {
+    return {.kind = InstrumentForm::Kind::blade, .from = options_.edge_from, .to = options_.edge_to};
+  }
+
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;

@@ -110,6 +110,7 @@ class ContactTool final : public Instrument {
   Effort effort() const;
   const ContactOptions& options() const;
 
+  InstrumentForm form() const override;
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;

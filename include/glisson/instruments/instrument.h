@@ -5,11 +5,13 @@
 //        └────── force of the tissue ────┘          (used by pushes and hands, not by recorded paths)
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "glisson/instruments/form.h"
 #include "glisson/math.h"
 #include "glisson/simulation/interaction.h"
 
@@ -78,11 +80,21 @@ class Instrument : public Interaction {
   const ToolDriver& driver() const { return *driver_; }
   /// All events so far, in order.
   const std::vector<InstrumentEvent>& events() const { return events_; }
+  /// What a picture shows of it.
+  virtual InstrumentForm form() const { return {}; }
+  /// From the hand to the tip, as bent [m]; of a rigid one its tip alone.
+  virtual std::vector<Vec3d> centre_line() const { return {pose_.position}; }
+  /// Sets the callback for a puncture (position [m], radius [m]), for example to open a capsule.
+  void on_puncture(std::function<void(const Vec3d& place, double radius)> told) { on_puncture_ = std::move(told); }
 
  protected:
   /// Moves the pose to the end of the step; the previous one is in `before_`. To be called once a step, in reach() or
   /// first in constrain().
   void drive(const InteractionStep& step);
+  /// Tells of a puncture of the surface.
+  void tell_puncture(const Vec3d& place, double radius) const {
+    if (on_puncture_) on_puncture_(place, radius);
+  }
   void add_event(double time, double depth, std::string event) { events_.push_back({time, depth, std::move(event)}); }
   /// The state that all instruments have and that of the driver; those of each kind call it first.
   void archive_motion(Archive& ar);
@@ -96,6 +108,7 @@ class Instrument : public Interaction {
   Vec3d direction_, start_;
   double force_depth_ = 0.0;
   std::vector<InstrumentEvent> events_;
+  std::function<void(const Vec3d&, double)> on_puncture_;
 };
 
 }  // namespace glisson

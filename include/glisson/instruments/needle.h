@@ -12,7 +12,6 @@
 // forces do not depend on the mesh as long as it resolves the zone (docs/needles.md).
 #pragma once
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -83,14 +82,13 @@ class Needle final : public Instrument {
   ~Needle() override;
 
   NeedleStage stage() const;
-  double inserted_length() const;          ///< of the shaft in tissue [m]
-  double tip_force() const;                ///< force of the tip along the needle [N]
-  std::vector<Vec3d> path() const;         ///< material points from the surface to the deepest, present positions [m]
-  std::vector<Vec3d> centre_line() const;  ///< of the needle from the hand to the tip, as bent [m]
+  double inserted_length() const;   ///< of the shaft in tissue [m]
+  double tip_force() const;         ///< force of the tip along the needle [N]
+  std::vector<Vec3d> path() const;  ///< material points from the surface to the deepest, present positions [m]
   const NeedleOptions& options() const;
-  /// Sets the callback for a puncture (position [m], radius [m]), for example to open a capsule.
-  void on_puncture(std::function<void(const Vec3d& place, double radius)> told);
 
+  InstrumentForm form() const override;
+  std::vector<Vec3d> centre_line() const override;
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;

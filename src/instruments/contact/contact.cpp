@@ -36,6 +36,24 @@ const ContactOptions& checked(const ContactOptions& options) {
   return options;
 }
 
+/// How a shape is drawn.
+struct FormOf {
+  using Kind = InstrumentForm::Kind;
+  InstrumentForm operator()(const FlatPunch& x) const {
+    return {.kind = Kind::punch, .radius = x.radius, .length = x.length};
+  }
+  InstrumentForm operator()(const Ball& x) const { return {.kind = Kind::ball, .radius = x.radius}; }
+  InstrumentForm operator()(const NeedleShape& x) const {
+    const double tip = x.tip == TipForm::conical    ? 0.5 * x.diameter / std::tan(0.5 * x.tip_angle)
+                       : x.tip == TipForm::bevelled ? x.diameter / std::tan(x.tip_angle)
+                                                    : 0.5 * x.diameter;
+    return {.kind = Kind::probe, .radius = 0.5 * x.diameter, .length = x.length, .tip = tip};
+  }
+  InstrumentForm operator()(const Plate&) const { return {.kind = Kind::plate}; }
+  InstrumentForm operator()(const CylinderWall& x) const { return {.kind = Kind::wall, .radius = x.radius}; }
+  InstrumentForm operator()(const Block& x) const { return {.kind = Kind::block, .size = x.size}; }
+};
+
 }  // namespace
 
 ContactTool::ContactTool(const ContactOptions& options, std::shared_ptr<ToolDriver> driver)
@@ -54,6 +72,7 @@ ContactTool::ContactTool(const ContactOptions& options, std::shared_ptr<ToolDriv
 ContactTool::~ContactTool() = default;
 
 const ContactOptions& ContactTool::options() const { return state_->options; }
+InstrumentForm ContactTool::form() const { return std::visit(FormOf{}, state_->options.shape); }
 bool ContactTool::touches() const {
   const auto bears = [](double impulse) { return impulse != 0.0; };
   return std::any_of(state_->pressed.begin(), state_->pressed.end(), bears);

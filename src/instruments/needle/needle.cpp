@@ -30,7 +30,9 @@ Needle::~Needle() = default;
 
 NeedleStage Needle::stage() const { return state_->stage; }
 const NeedleOptions& Needle::options() const { return state_->options; }
-void Needle::on_puncture(std::function<void(const Vec3d&, double)> told) { state_->told = std::move(told); }
+InstrumentForm Needle::form() const {
+  return {.kind = InstrumentForm::Kind::needle, .radius = 0.5 * state_->options.diameter};
+}
 
 double Needle::tip_force() const { return state_->step_h > 0.0 ? state_->tip_along / state_->step_h : 0.0; }
 

@@ -46,7 +46,6 @@ struct DropWatch {
 struct Needle::State {
   NeedleOptions options;
   NeedleStage stage = NeedleStage::outside;
-  std::function<void(const Vec3d&, double)> told;
 
   // the body
   const TetMesh* mesh = nullptr;

@@ -119,7 +119,7 @@ void Needle::pierce(const InteractionStep& step) {
   const double force = tip_force();
   s.drop = {true, force, force, force, step.time, depth()};
   add_event(step.time + step.h, depth(), "puncture");
-  if (s.told) s.told(pose_.position, 0.5 * s.options.diameter);
+  tell_puncture(pose_.position, 0.5 * s.options.diameter);
 }
 
 /// The tip in the tissue: where it cut, the path ends where it is now.

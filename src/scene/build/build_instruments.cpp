@@ -133,9 +133,7 @@ void join(std::span<const std::shared_ptr<Instrument>> instruments,
           const std::vector<std::shared_ptr<Capsule>>& capsules) {
   if (capsules.empty()) return;
   for (const auto& instrument : instruments) {
-    auto* needle = dynamic_cast<Needle*>(instrument.get());
-    if (needle == nullptr) continue;
-    needle->on_puncture([capsules](const Vec3d& place, double radius) {
+    instrument->on_puncture([capsules](const Vec3d& place, double radius) {
       for (const auto& capsule : capsules) capsule->open_at(place, radius);
     });
   }
