@@ -29,10 +29,8 @@ bool Pace::frame(RealtimeResult& result) {
   due_s_ += frame_s_;
   result.end = advance_to(body_, on_inversion_, due_s_, stop_);
   if (result.end.end != RunSummary::End::finished) return false;
-  if (!body_.tools.empty() && body_.simulation.steps() > 0) {
-    result.peak_force_N = std::max(result.peak_force_N, norm(body_.simulation.force(body_.tools.front()).total()));
-  } else if (!body_.instruments.empty()) {
-    result.peak_force_N = std::max(result.peak_force_N, norm(body_.instruments.front()->forces().total()));
+  if (!body_.instruments.empty()) {
+    result.peak_force_N = std::max(result.peak_force_N, norm(body_.instruments.front()->force()));
   }
   return true;
 }

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <memory>
@@ -16,6 +15,7 @@
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "cli/tissue_text.h"
+#include "scene/parse/sections.h"
 
 namespace glisson::app {
 namespace {
@@ -82,11 +82,10 @@ std::string axes_text(const Axes& axes) {
   return std::string(axes.x ? "x" : "") + (axes.y ? "y" : "") + (axes.z ? "z" : "");
 }
 
-/// In the order of InstrumentSpec::what and InstrumentMotion::how.
-constexpr std::array<const char*, 7> kInstrumentWords{"needle", "punch", "ball", "probe", "plate", "block", "blade"};
-constexpr std::array<const char*, 6> kMotionWords{"press", "strokes", "sine", "push", "record", "path"};
-static_assert(std::variant_size_v<decltype(InstrumentSpec::what)> == kInstrumentWords.size());
-static_assert(std::variant_size_v<decltype(InstrumentMotion::how)> == kMotionWords.size());
+/// The word of `kind` for the alternative of a variant; those that no scene file gives come after all others.
+std::string kind_word(const scene::SectionSpec& section, std::size_t alternative) {
+  return alternative < section.kinds.size() ? section.kinds[alternative].section.name : "program's own";
+}
 
 void print_interactions(const Variant& v, const Taste& taste) {
   for (const CapsuleSpec& x : v.capsules) {
@@ -101,7 +100,8 @@ void print_interactions(const Variant& v, const Taste& taste) {
   }
   for (const InstrumentSpec& x : v.instruments) {
     const std::optional<double> end = make_driver(x)->end();
-    say("  tool     \"{}\", a {}: {}{}\n", x.name, kInstrumentWords[x.what.index()], kMotionWords[x.motion.how.index()],
+    say("  tool     \"{}\", a {}: {}{}\n", x.name, kind_word(scene::instrument_section(), x.what.index()),
+        kind_word(scene::instrument_motion_section(), x.motion.how.index()),
         end ? fmt::format(", until {:.4g} s", *end) : "");
   }
 }

@@ -9,6 +9,7 @@
 #include "glisson/instruments/contact.h"
 #include "glisson/instruments/container.h"
 #include "glisson/instruments/cutting.h"
+#include "glisson/instruments/driven_set.h"
 #include "glisson/instruments/motion.h"
 #include "glisson/instruments/needle.h"
 #include "glisson/instruments/tool_motion.h"

@@ -39,6 +39,7 @@ from ._core import (
     CylinderOptions,
     CylinderVessel,
     CylinderWall,
+    DrivenSet,
     EdgePiece,
     Energies,
     EngineInfo,

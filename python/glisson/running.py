@@ -69,8 +69,8 @@ def simulation(
 
     >>> import glisson
     >>> body = glisson.simulation(glisson.scenes_folder() / "paper" / "figure2.toml", "tissue2")
-    >>> sorted(body.constraints)
-    ['tool', 'z_min']
+    >>> sorted(body.constraints), sorted(body.instruments)
+    (['z_min'], ['tool'])
     """
     read = as_scene(scene, overrides)
     return Simulation.of_variant(read.variants[0] if variant is None else read[variant], mesh)

@@ -3,9 +3,12 @@
 #include "glisson/instruments/capsule.h"
 #include "glisson/instruments/contact.h"
 #include "glisson/instruments/container.h"
+#include "glisson/instruments/driven_set.h"
 #include "glisson/instruments/needle.h"
 #include "glisson/instruments/tool_motion.h"
 #include "live_simulation.h"
+#include "report/instrument_json.h"
+#include "report/json_text.h"
 #include "words.h"
 
 namespace glisson::python {
@@ -160,11 +163,34 @@ void bind_common(nb::module_& m) {
           "pose", [](const Instrument& x) { return x.pose(); }, doc("Instrument::pose"))
       .def_prop_ro(
           "forces", [](const Instrument& x) { return x.forces(); }, doc("Instrument::forces"))
+      .def_prop_ro("force", &Instrument::force, doc("Instrument::force"))
+      .def_prop_ro("sensor_force", &Instrument::sensor_force, doc("Instrument::sensor_force"))
+      .def_prop_ro(
+          "columns",
+          [](const Instrument& x) {
+            nb::dict out;
+            for (const InstrumentColumn& c : x.columns()) out[nb::str(c.name.data(), c.name.size())] = c.read(x);
+            return out;
+          },
+          "What forces.csv has of it, by column", nb::sig("def columns(self) -> dict[str, float]"))
+      .def_prop_ro(
+          "form",
+          [](const Instrument& x) {
+            return nb::cast<nb::dict>(nb::module_::import_("json").attr("loads")(json_text(instrument_form_json(x))));
+          },
+          "What a picture shows of it: its kind, and its sizes [m]", nb::sig("def form(self) -> dict[str, typing.Any]"))
+      .def_prop_ro(
+          "centre_line", [](const Instrument& x) { return vectors(x.centre_line()); }, doc("Instrument::centre_line"))
       .def_prop_ro("depth", &Instrument::depth, doc("Instrument::depth"))
       .def_prop_ro("force_depth", &Instrument::force_depth, doc("Instrument::force_depth"))
       .def_prop_ro("direction", [](const Instrument& x) { return x.direction(); })
       .def_prop_ro(
           "events", [](const Instrument& x) { return x.events(); }, doc("Instrument::events"));
+}
+
+void bind_driven_set(nb::module_& m) {
+  nb::class_<DrivenSet, Instrument>(m, "DrivenSet", doc("DrivenSet"))
+      .def_prop_ro("parts", &DrivenSet::parts, doc("DrivenSet::parts"));
 }
 
 void bind_needle(nb::module_& m) {
@@ -206,8 +232,6 @@ void bind_needle(nb::module_& m) {
       .def_prop_ro("tip_force", &Needle::tip_force, doc("Needle::tip_force"))
       .def_prop_ro(
           "path", [](const Needle& n) { return vectors(n.path()); }, doc("Needle::path"))
-      .def_prop_ro(
-          "centre_line", [](const Needle& n) { return vectors(n.centre_line()); }, doc("Needle::centre_line"))
       .def_prop_ro("options", [](const Needle& n) { return n.options(); })
       .def(
           "tears",
@@ -258,7 +282,7 @@ void bind_vessels(nb::module_& m) {
   nb::class_<Container, Interaction>(m, "Container", doc("Container"))
       .def(nb::init<const ContainerOptions&>(), "options"_a, doc("Container::Container"))
       .def_prop_ro(
-          "loads", [](const Container& c) { return c.loads(); }, doc("ContainerLoads"))
+          "sensor_loads", [](const Container& c) { return c.sensor_loads(); }, doc("ContainerLoads"))
       .def_prop_ro("up", &Container::up, doc("Container::up"));
 }
 
@@ -325,6 +349,7 @@ void bind_instruments(nb::module_& m) {
   bind_motions(m);
   bind_drivers(m);
   bind_common(m);
+  bind_driven_set(m);
   bind_contact(m);
   bind_vessels(m);
   bind_capsule(m);

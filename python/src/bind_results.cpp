@@ -51,11 +51,6 @@ struct Table {
   }
 };
 
-struct Event {
-  std::string instrument;
-  InstrumentEvent what;
-};
-
 struct Frame {
   double time = 0.0;
   std::vector<Vec3d> displacement;
@@ -65,7 +60,7 @@ struct RunResult {
   Variant variant;
   std::shared_ptr<Table> forces = std::make_shared<Table>();
   std::map<std::string, std::shared_ptr<Table>> further;
-  std::vector<Event> events;
+  std::vector<RunEvent> events;
   std::vector<Frame> frames;
   RunSummary summary;
 };
@@ -78,17 +73,18 @@ struct StopFlag {
 class Recorder : public RunObserver {
  public:
   Recorder(RunResult& result, nb::object on_sample, bool frames, std::shared_ptr<StopFlag> stop)
-      : result_(result), table_(result.variant), on_sample_(std::move(on_sample)), frames_(frames),
-        stop_(std::move(stop)) {
-    result_.forces->columns = table_.columns();
-    for (const auto& file : table_.further()) {
-      result_.further[file.name] = std::make_shared<Table>(Table{ForceTable::columns_of(file), {}});
+      : result_(result), on_sample_(std::move(on_sample)), frames_(frames), stop_(std::move(stop)) {}
+
+  void on_built(const BuiltVariant& built) override {
+    table_.emplace(result_.variant, built);
+    result_.forces->columns = table_->columns();
+    for (const auto& file : table_->further()) {
+      result_.further[file.name] = std::make_shared<Table>(Table{file.columns, {}});
     }
   }
-
   void on_sample(const Sample& sample) override {
-    append(*result_.forces, table_.row(sample));
-    for (const auto& file : table_.further()) append(*result_.further[file.name], table_.row_of(file, sample));
+    append(*result_.forces, table_->row(sample));
+    for (const auto& file : table_->further()) append(*result_.further[file.name], ForceTable::row_of(file, sample));
     if (on_sample_.is_none()) return;
     const nb::gil_scoped_acquire gil;
     look_for_interrupt();
@@ -99,9 +95,7 @@ class Recorder : public RunObserver {
     }
     on_sample_(row);
   }
-  void on_event(const RunEvent& event) override {
-    result_.events.push_back({result_.variant.instruments[event.instrument].name, event.what});
-  }
+  void on_event(const RunEvent& event) override { result_.events.push_back(event); }
   void on_frame(const Simulation& simulation) override {
     if (!frames_) return;
     const auto u = simulation.displacement();
@@ -122,7 +116,7 @@ class Recorder : public RunObserver {
   }
 
   RunResult& result_;
-  ForceTable table_;
+  std::optional<ForceTable> table_;
   nb::object on_sample_;
   bool frames_;
   std::shared_ptr<StopFlag> stop_;
@@ -200,7 +194,7 @@ void bind_results(nb::module_& m) {
           "events",
           [](const RunResult& r) {
             nb::list out;
-            for (const Event& e : r.events) {
+            for (const RunEvent& e : r.events) {
               nb::dict event;
               event["time_s"] = e.what.time, event["depth_m"] = e.what.depth;
               event["event"] = e.what.event, event["instrument"] = e.instrument;

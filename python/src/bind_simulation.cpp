@@ -147,9 +147,6 @@ SplitReport split(Live& live, const ArrayLike& faces) {
 nb::dict constraints_of(const Live& live) {
   nb::dict out;
   if (!live.built()) return out;
-  for (std::size_t i = 0; i < live.built()->tools.size(); ++i) {
-    out[live.variant()->tools[i].name.c_str()] = live.built()->tools[i];
-  }
   for (std::size_t i = 0; i < live.built()->supports.size(); ++i) {
     out[live.variant()->fixed[i].set.c_str()] = live.built()->supports[i];
   }
@@ -338,7 +335,7 @@ void bind_reading(nb::class_<Live>& c) {
            nb::sig("def tet_fields(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]"))
       .def(
           "force", [](const Live& l, ConstraintId id) { return l.get().force(id); }, "constraint"_a, doc(of("force")))
-      .def_prop_ro("constraints", constraints_of, "Of a scene's variant: its tools and supports by name",
+      .def_prop_ro("constraints", constraints_of, "Of a scene's variant: its supports by name",
                    nb::sig("def constraints(self) -> dict[str, Constraint]"))
       .def_prop_ro(
           "instruments",
@@ -349,7 +346,8 @@ void bind_reading(nb::class_<Live>& c) {
             }
             return out;
           },
-          "Of a scene's variant: its instruments by name", nb::sig("def instruments(self) -> dict[str, typing.Any]"))
+          "Of a scene's variant: its tools and instruments by name",
+          nb::sig("def instruments(self) -> dict[str, typing.Any]"))
       .def_prop_ro(
           "container", [](const Live& l) { return l.built() ? l.built()->container : nullptr; },
           "Of a scene's variant, where it has one")

@@ -68,10 +68,10 @@ std::uint32_t kind_of(const SimulationOptions& o) {
 
 struct Simulation::Impl {
   TetMesh mesh;
-  std::unique_ptr<Scheme> scheme;
-  std::uint32_t kind;           ///< integrator, time scheme and precision
-  std::uint64_t fingerprint;    ///< of mesh and tissues at the start
-  std::vector<char> removed{};  ///< per tet; empty: none
+  std::shared_ptr<Scheme> scheme;  ///< driven sets read it while it lives
+  std::uint32_t kind;              ///< integrator, time scheme and precision
+  std::uint64_t fingerprint;       ///< of mesh and tissues at the start
+  std::vector<char> removed{};     ///< per tet; empty: none
 
   /// Block of a region. @throws std::invalid_argument where it has none
   std::size_t block_of(int region) const;
@@ -160,6 +160,7 @@ Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const Simula
 }
 
 Scheme& SimulationParts::scheme(Inside& inside) { return *inside.scheme; }
+std::weak_ptr<const Scheme> SimulationParts::watched(Simulation& simulation) { return simulation.impl_->scheme; }
 const TetMesh& SimulationParts::mesh(const Inside& inside) { return inside.mesh; }
 SplitReport SimulationParts::split_faces(Inside& inside, std::span<const Triangle> faces,
                                          std::span<const VertexMove> moves) {
@@ -196,9 +197,9 @@ void Simulation::attach(std::shared_ptr<Interaction> interaction) {
                                 " acts on a simulation already, and on no other one after it: make a new one of the "
                                 "same options");
   }
-  impl_->scheme->attach(interaction, impl_->view());
-  interaction->is_attached_ = true;
+  if (interaction->acts_in_steps()) impl_->scheme->attach(interaction, impl_->view());
   interaction->between_steps(*this);
+  interaction->is_attached_ = true;
 }
 
 RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) {

@@ -196,7 +196,7 @@ Container::Container(const ContainerOptions& options) : state_(std::make_unique<
 
 Container::~Container() = default;
 
-const ContainerLoads& Container::loads() const { return state_->loads; }
+const ContainerLoads& Container::sensor_loads() const { return state_->loads; }
 const ContainerOptions& Container::options() const { return state_->options; }
 Vec3d Container::up() const { return state_->options.pose.axes * Vec3d{0.0, 0.0, 1.0}; }
 

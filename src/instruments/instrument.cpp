@@ -1,10 +1,33 @@
 #include "glisson/instruments/instrument.h"
 
+#include <array>
 #include <stdexcept>
 
 #include "glisson/archive.h"
 
 namespace glisson {
+namespace {
+
+/// A component of the forces along the direction.
+template <Vec3d ToolForces::*part>
+double along(const Instrument& x) {
+  return dot(x.forces().*part, x.direction());
+}
+
+constexpr std::array<InstrumentColumn, 5> kCommonColumns{{
+    {"depth_m", [](const Instrument& x) { return x.force_depth(); }},
+    {"force_x_N", [](const Instrument& x) { return x.force().x; }},
+    {"force_y_N", [](const Instrument& x) { return x.force().y; }},
+    {"force_z_N", [](const Instrument& x) { return x.force().z; }},
+    {"force_N", [](const Instrument& x) { return dot(x.force(), x.direction()); }},
+}};
+constexpr std::array<InstrumentColumn, 3> kContactColumns{{
+    {"normal_N", along<&ToolForces::normal>},
+    {"friction_N", along<&ToolForces::friction>},
+    {"cutting_N", along<&ToolForces::cutting>},
+}};
+
+}  // namespace
 
 Instrument::Instrument(std::string name, std::shared_ptr<ToolDriver> driver, const Vec3d& direction)
     : name_(std::move(name)), driver_(std::move(driver)), direction_(direction) {
@@ -15,7 +38,23 @@ Instrument::Instrument(std::string name, std::shared_ptr<ToolDriver> driver, con
   start_ = pose_.position;
 }
 
-double Instrument::depth() const { return dot(pose_.position - start_, direction_); }
+double Instrument::depth() const { return dot(pose().position - start_, direction_); }
+
+std::span<const InstrumentColumn> Instrument::common_columns() { return kCommonColumns; }
+std::span<const InstrumentColumn> Instrument::own_columns() const { return kContactColumns; }
+
+std::vector<InstrumentColumn> Instrument::columns() const {
+  std::vector<InstrumentColumn> all(kCommonColumns.begin(), kCommonColumns.end());
+  all.insert(all.end(), own_columns().begin(), own_columns().end());
+  return all;
+}
+
+double Instrument::read(std::string_view column) const {
+  for (const InstrumentColumn& x : columns()) {
+    if (x.name == column) return x.read(*this);
+  }
+  throw std::out_of_range(label() + " has no column \"" + std::string(column) + "\"");
+}
 
 void Instrument::drive(const InteractionStep& step) {
   force_depth_ = depth();

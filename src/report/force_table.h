@@ -1,10 +1,10 @@
 // force_table.h — the columns of forces.csv and how a sample fills them.
 //
-//   forces.csv         time, depth and forces of the first tool, or of the first instrument where there is no tool ·
+//   forces.csv         time and columns of the first instrument (tools come first) ·
 //                      container · energies · what each support carries
-//   forces_<name>.csv  time, depth and forces of every further tool and instrument
+//   forces_<name>.csv  time and columns of every further instrument
 //
-// Vectors are in the scene's axes. Scalars are along the tool's direction, positive when it presses.
+// Vectors are in the scene's axes. Scalars are along the instrument's direction, positive when it presses.
 #pragma once
 
 #include <cstddef>
@@ -18,30 +18,26 @@ namespace glisson {
 /// Turns the samples of one variant into rows of numbers.
 class ForceTable {
  public:
-  explicit ForceTable(const Variant& variant);
+  ForceTable(const Variant& variant, const BuiltVariant& built);
 
   /// Columns of forces.csv, each with its unit.
   const std::vector<std::string>& columns() const { return columns_; }
-  /// A row of forces.csv. A scene without tool and instrument has 0 in the tool's columns.
+  /// A row of forces.csv. A scene without instruments has 0 in the columns of a tool.
   std::vector<double> row(const Sample& sample) const;
 
   /// A file beside forces.csv.
   struct Further {
-    std::string name;  ///< of the tool or instrument
-    bool instrument = false;
-    std::size_t index = 0;  ///< among the tools or instruments of the variant
+    std::string name;
+    std::vector<std::string> columns;
+    std::size_t instrument = 0;  ///< of the sample
   };
   const std::vector<Further>& further() const { return further_; }
-  static const std::vector<std::string>& columns_of(const Further& file);
-  std::vector<double> row_of(const Further& file, const Sample& sample) const;
+  static std::vector<double> row_of(const Further& file, const Sample& sample);
 
  private:
-  std::vector<double> tool_row(const Sample& sample, std::size_t tool) const;
-  std::vector<double> instrument_row(const Sample& sample, std::size_t instrument) const;
-
-  std::vector<Vec3d> tools_, instruments_;  // directions, unit vectors
   std::vector<Further> further_;
   std::vector<std::string> columns_;
+  std::size_t lead_ = 0;  ///< columns of the first instrument, and what stands in for such of a tool in a container
   bool contained_;
 };
 

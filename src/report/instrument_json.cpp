@@ -14,6 +14,14 @@ json numbers(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<floa
 constexpr std::array<const char*, 10> kKinds{"none",  "point", "needle", "punch", "ball",
                                              "probe", "plate", "wall",   "block", "blade"};
 
+json list_of(const InstrumentList& instruments, json (*make)(const Instrument&)) {
+  json list = json::array();
+  for (const auto& x : instruments) {
+    if (x->form().kind != InstrumentForm::Kind::none) list.push_back(make(*x));
+  }
+  return list;
+}
+
 }  // namespace
 
 json instrument_form_json(const Instrument& instrument) {
@@ -43,5 +51,8 @@ json instrument_place_json(const Instrument& instrument) {
   }
   return {{"points", std::move(line)}, {"axes", std::move(axes)}};
 }
+
+json instrument_forms_json(const InstrumentList& instruments) { return list_of(instruments, instrument_form_json); }
+json instrument_places_json(const InstrumentList& instruments) { return list_of(instruments, instrument_place_json); }
 
 }  // namespace glisson

@@ -10,6 +10,12 @@ namespace glisson {
 /// InstrumentForm of web/src/report_data.ts.
 nlohmann::json instrument_form_json(const Instrument& instrument);
 
+using InstrumentList = std::vector<std::shared_ptr<Instrument>>;
+
+/// Forms of all that are drawn, and their places in the same order.
+nlohmann::json instrument_forms_json(const InstrumentList& instruments);
+nlohmann::json instrument_places_json(const InstrumentList& instruments);
+
 /// InstrumentPlace of web/src/report_data.ts: the centre line of a needle as it is bent, the pose of a shape.
 nlohmann::json instrument_place_json(const Instrument& instrument);
 

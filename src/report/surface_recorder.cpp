@@ -117,22 +117,19 @@ nlohmann::json SurfaceRecorder::frame(const Simulation& simulation, const TetFie
     for (std::size_t k = 0; k < 3; ++k) moved.push_back(fraction16(displacement[i][k], reach));
     colour.push_back(strongest > 0.0 ? fraction8(intensity[i], strongest) : std::uint8_t{0});
   }
-  nlohmann::json places = nlohmann::json::array();
-  for (const auto& instrument : instruments_) places.push_back(instrument_place_json(*instrument));
   nlohmann::json json{{"time_s", simulation.time()},
                       {"displacement_scale_m", reach},
                       {"displacement", base64_of(std::span<const std::int16_t>(moved))},
                       {"intensity_max", strongest},
                       {"intensity", base64_of(std::span<const std::uint8_t>(colour))},
-                      {"instruments", std::move(places)}};
+                      {"instruments", instrument_places_json(instruments_)}};
   if (changed_) json["triangles"] = base64_of(std::span<const std::uint32_t>(triangles_));
   return json;
 }
 
 void SurfaceRecorder::set_instruments(std::vector<std::shared_ptr<Instrument>> instruments) {
   instruments_ = std::move(instruments);
-  head_["instruments"] = nlohmann::json::array();
-  for (const auto& instrument : instruments_) head_["instruments"].push_back(instrument_form_json(*instrument));
+  head_["instruments"] = instrument_forms_json(instruments_);
 }
 
 void SurfaceRecorder::add(const Simulation& simulation, const TetFields& fields) {

@@ -57,8 +57,7 @@ std::vector<std::size_t> page_rows(std::size_t rows) {
 }  // namespace
 
 VariantRecorder::VariantRecorder(Variant variant, RecorderOptions options, std::atomic<bool>& stop)
-    : variant_(std::move(variant)), options_(std::move(options)), stop_(stop), table_(variant_),
-      data_(table_.columns().size()) {}
+    : variant_(std::move(variant)), options_(std::move(options)), stop_(stop) {}
 
 void VariantRecorder::guarded(const std::function<void()>& write) {
   if (!error_.empty()) return;
@@ -74,12 +73,6 @@ void VariantRecorder::on_start(const Variant&, const Simulation& simulation) {
   surface_ = std::make_unique<SurfaceRecorder>(variant_, simulation, options_.surface_bytes);
   guarded([&] {
     make_folder(options_.folder);
-    files_.emplace_back(options_.folder / "forces.csv");
-    files_.back().write(csv_head(table_.columns()));
-    for (const ForceTable::Further& file : table_.further()) {
-      files_.emplace_back(options_.folder / ("forces_" + file.name + ".csv"));
-      files_.back().write(csv_head(ForceTable::columns_of(file)));
-    }
     if (!variant_.instruments.empty()) {
       event_file_ = std::make_unique<LineFile>(options_.folder / "events.csv");
       event_file_->write("time_s,depth_m,event,instrument");
@@ -90,7 +83,15 @@ void VariantRecorder::on_start(const Variant&, const Simulation& simulation) {
 
 void VariantRecorder::on_built(const BuiltVariant& built) {
   surface_->set_instruments(built.instruments);
+  table_.emplace(variant_, built);
+  data_.resize(table_->columns().size());
   guarded([&] {
+    files_.emplace_back(options_.folder / "forces.csv");
+    files_.back().write(csv_head(table_->columns()));
+    for (const ForceTable::Further& file : table_->further()) {
+      files_.emplace_back(options_.folder / ("forces_" + file.name + ".csv"));
+      files_.back().write(csv_head(file.columns));
+    }
     if (frames_) view_ = std::make_unique<ViewFile>(options_.folder, options_.scene, variant_, built.instruments);
   });
 }
@@ -99,18 +100,17 @@ void VariantRecorder::on_event(const RunEvent& event) {
   events_.push_back(event);
   guarded([&] {
     const auto& [time, depth, what] = event.what;
-    event_file_->write(number_text(time) + "," + number_text(depth) + "," + what + "," +
-                       variant_.instruments[event.instrument].name);
+    event_file_->write(number_text(time) + "," + number_text(depth) + "," + what + "," + event.instrument);
   });
 }
 
 void VariantRecorder::on_sample(const Sample& sample) {
-  const std::vector<double> row = table_.row(sample);
+  const std::vector<double> row = table_->row(sample);
   for (std::size_t i = 0; i < row.size(); ++i) data_[i].push_back(row[i]);
   guarded([&] {
     files_.front().write(joined(row, number_text));
-    for (std::size_t i = 0; i < table_.further().size(); ++i) {
-      files_[i + 1].write(joined(table_.row_of(table_.further()[i], sample), number_text));
+    for (std::size_t i = 0; i < table_->further().size(); ++i) {
+      files_[i + 1].write(joined(ForceTable::row_of(table_->further()[i], sample), number_text));
     }
   });
 }
@@ -133,7 +133,7 @@ void VariantRecorder::on_end(const RunSummary& summary) {
 }
 
 const std::vector<double>& VariantRecorder::column(const std::string& name) const {
-  const auto& names = table_.columns();
+  const auto& names = table_->columns();
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) throw std::out_of_range("forces.csv has no column \"" + name + "\"");
   return data_[static_cast<std::size_t>(found - names.begin())];
@@ -148,16 +148,14 @@ nlohmann::json VariantRecorder::forces_json() const {
     for (const std::size_t row : rows) kept.push_back(short_number(column[row]));
     data.push_back(std::move(kept));
   }
-  return {{"columns", table_.columns()}, {"data", std::move(data)}};
+  return {{"columns", table_->columns()}, {"data", std::move(data)}};
 }
 
 nlohmann::json VariantRecorder::events_json() const {
   nlohmann::json list = nlohmann::json::array();
   for (const RunEvent& e : events_) {
-    list.push_back({{"time_s", e.what.time},
-                    {"depth_m", e.what.depth},
-                    {"event", e.what.event},
-                    {"instrument", variant_.instruments[e.instrument].name}});
+    list.push_back(
+        {{"time_s", e.what.time}, {"depth_m", e.what.depth}, {"event", e.what.event}, {"instrument", e.instrument}});
   }
   return list;
 }

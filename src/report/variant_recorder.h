@@ -12,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,7 +52,7 @@ class VariantRecorder : public RunObserver {
   const std::string& scene() const { return options_.scene; }
   const RunSummary& summary() const { return summary_; }
   /// Columns of forces.csv and their values, column by column.
-  const std::vector<std::string>& columns() const { return table_.columns(); }
+  const std::vector<std::string>& columns() const { return table_->columns(); }
   const std::vector<std::vector<double>>& data() const { return data_; }
   /// One column of forces.csv by name. @throws std::out_of_range naming it
   const std::vector<double>& column(const std::string& name) const;
@@ -67,8 +68,8 @@ class VariantRecorder : public RunObserver {
   Variant variant_;
   RecorderOptions options_;
   std::atomic<bool>& stop_;
-  ForceTable table_;
-  std::vector<LineFile> files_;  // forces.csv, then forces_<name>.csv
+  std::optional<ForceTable> table_;  // from on_built on
+  std::vector<LineFile> files_;      // forces.csv, then forces_<name>.csv
   std::unique_ptr<LineFile> event_file_;
   std::vector<RunEvent> events_;
   std::unique_ptr<FrameSeries> frames_;

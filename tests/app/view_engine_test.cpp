@@ -157,7 +157,7 @@ TEST(LiveEngine, PushByHandGivesTheScenesForce) {
     Sample last;
   } run;
   run_variant(variant, no_files(), run, std::atomic<bool>{false});
-  const double expected = -run.last.tools.front().total().z;
+  const double expected = -run.last.instruments.front().force.z;
   ASSERT_GT(std::abs(expected), 0.01);
 
   Engine engine(variant, no_files());

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "fit/data/curve_file.h"
+#include "glisson/instruments/driven_set.h"
 #include "support/places.h"
 #include "support/scene_runs.h"
 
@@ -65,12 +66,13 @@ double largest(const std::vector<double>& x) {
 /// Samples of a run as it is written: time and the force that a model shows.
 struct OwnRun final : RunObserver {
   std::vector<double> time, force;
+  std::shared_ptr<Instrument> tool;
+  void on_built(const BuiltVariant& built) override { tool = built.instruments.at(0); }
   void on_sample(const Sample& s) override {
     time.push_back(s.time);
-    if (!s.tools.empty())
-      force.push_back(-(s.tools[0].total() - s.tools[0].inertial).z);
-    else
-      force.push_back(-s.instruments.at(0).forces.total().z);
+    const auto* set = dynamic_cast<const DrivenSet*>(tool.get());
+    const Vec3d inertial = set != nullptr ? set->parts().inertial : Vec3d{};
+    force.push_back(-(s.instruments.at(0).force - inertial).z);
   }
   double at(double t) const {
     for (std::size_t i = 1; i < time.size(); ++i) {

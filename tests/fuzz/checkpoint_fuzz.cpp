@@ -67,9 +67,11 @@ void go_on(BuiltVariant& built) {
     for (const Tet& tet : mesh.tets) {
       for (const std::uint32_t v : tet) require(v < mesh.vertices.size(), "tets refer to vertices");
     }
-    for (const ConstraintId c : built.tools) built.simulation.force(c);
     for (const ConstraintId c : built.supports) built.simulation.force(c);
-    for (const auto& x : built.instruments) archived(*x);
+    for (const auto& x : built.instruments) {
+      archived(*x);
+      for (const InstrumentColumn& column : x->columns()) column.read(*x);
+    }
     built.simulation.tet_fields();
     built.simulation.energies();
     static_cast<void>(built.simulation.step());

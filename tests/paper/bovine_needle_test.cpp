@@ -36,7 +36,7 @@ class Curve final : public RunObserver {
  public:
   void on_sample(const Sample& s) override {
     position.push_back(kStart + 1e3 * s.instruments.front().depth);
-    force.push_back(-s.instruments.front().forces.total().z);
+    force.push_back(-s.instruments.front().force.z);
     support.push_back(0.0);
     for (const ForceParts& f : s.supports) support.back() += f.total().z;
   }

@@ -111,8 +111,8 @@ def test_a_container_weighs_what_lies_in_it():
     body.attach(container)
     body.advance(1.0)
     weight = 9.81 * body.masses.sum()
-    assert container.loads.bottom[2] == pytest.approx(-weight, rel=0.02) and container.up.tolist() == [0, 0, 1]
-    assert np.allclose(container.loads.total, container.loads.bottom + container.loads.side)
+    assert container.sensor_loads.bottom[2] == pytest.approx(-weight, rel=0.02) and container.up.tolist() == [0, 0, 1]
+    assert np.allclose(container.sensor_loads.total, container.sensor_loads.bottom + container.sensor_loads.side)
 
 
 def test_a_capsule_tears_where_it_is_told():

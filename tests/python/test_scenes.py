@@ -129,8 +129,8 @@ def test_a_variant_is_stepped_by_hand():
     run = glisson.run(SMALL, variants=["hard"])["hard"]
     nearest = np.argmin(np.abs(run["time_s"] - body.force_time))
     # neighbouring samples differ by 2 ms of a steady press: 1 % of the force at 0.1 s
-    assert -body.force(body.constraints["tool"]).total[2] == pytest.approx(run["force_N"][nearest], rel=0.03)
-    assert body.container is None and body.capsules == [] and body.instruments == {}
+    assert -body.instruments["tool"].force[2] == pytest.approx(run["force_N"][nearest], rel=0.03)
+    assert body.container is None and body.capsules == [] and list(body.instruments) == ["tool"]
 
 
 def test_watchers_are_called_and_end_runs():

@@ -279,7 +279,7 @@ TEST(Instruments, ANeedleRunsFromAScene) {
   double peak = 0.0;
   for (const Sample& s : seen.samples) {
     EXPECT_NEAR(s.instruments.at(0).depth, 0.1 * s.time, 0.1 * summary.step_s + 1e-9);
-    peak = std::max(peak, -s.instruments[0].forces.total().z);
+    peak = std::max(peak, -s.instruments[0].force.z);
   }
   EXPECT_GT(peak, 0.045);
   EXPECT_NEAR(summary.peak_force_N, peak, 1e-12);

@@ -134,10 +134,10 @@ struct PressRecorder : RunObserver {
   std::vector<Sample> samples;
   void on_sample(const Sample& s) override { samples.push_back(s); }
   double stress_kPa(double strain) const {
-    const auto away = [&](const Sample& s) { return std::abs(s.depths[0] / 0.03 - strain); };
+    const auto away = [&](const Sample& s) { return std::abs(s.instruments[0].depth / 0.03 - strain); };
     const auto nearest = std::min_element(samples.begin(), samples.end(),
                                           [&](const Sample& a, const Sample& b) { return away(a) < away(b); });
-    return 1e-3 * nearest->tools[0].total().z / -(0.03 * 0.03);
+    return 1e-3 * nearest->instruments[0].force.z / -(0.03 * 0.03);
   }
 };
 

@@ -80,6 +80,8 @@ TEST(RunVariant, NeverSamplesAStepTwice) {
   for (std::size_t i = 1; i < seen.samples.size(); ++i) EXPECT_GT(seen.samples[i].time, seen.samples[i - 1].time);
 }
 
+constexpr std::size_t kElastic = 5;  // of a tool's columns: elastic_N
+
 // Depth, force and energies of a sample are of one instant: the elastic force of an elastic press starts at zero with
 // the depth, and the tool's force along its direction pushes.
 TEST(RunVariant, SamplesOneInstant) {
@@ -87,14 +89,14 @@ TEST(RunVariant, SamplesOneInstant) {
   const RunSummary s = run("[output]\nsample_rate_hz = 1000\n", seen);
   const Sample& first = seen.samples.front();
   EXPECT_EQ(first.time, 0.0);
-  EXPECT_EQ(first.depths.at(0), 0.0);
-  EXPECT_EQ(first.tools.at(0).elastic.z, 0.0);
+  EXPECT_EQ(first.instruments.at(0).depth, 0.0);
+  EXPECT_EQ(first.instruments.at(0).values.at(kElastic), 0.0);
   double peak = 0.0;
   for (const Sample& x : seen.samples) {
-    EXPECT_NEAR(x.depths.at(0), 0.01 * x.time, 1e-15);
-    peak = std::max(peak, std::abs(x.tools[0].total().z));
+    EXPECT_NEAR(x.instruments.at(0).depth, 0.01 * x.time, 1e-15);
+    peak = std::max(peak, std::abs(x.instruments[0].force.z));
   }
-  EXPECT_LT(seen.samples.back().tools[0].elastic.z, 0.0) << "downwards, into the tissue";
+  EXPECT_GT(seen.samples.back().instruments[0].values.at(kElastic), 0.0) << "downwards, into the tissue";
   EXPECT_GT(seen.samples.back().supports.at(0).elastic.z, 0.0) << "the support pushes back";
   EXPECT_EQ(s.peak_force_N, peak);
   EXPECT_GT(peak, 0.0);
@@ -138,7 +140,7 @@ TEST(RunVariant, StopsAfterMaxSteps) {
 TEST(RunVariant, LastsAsLongAsAsked) {
   Recorder longer, shorter;
   EXPECT_NEAR(run("[motion]\nduration_s = 0.15\n", longer).time_s, 0.15, 1e-3);
-  EXPECT_EQ(longer.samples.back().depths.at(0), 0.001);
+  EXPECT_EQ(longer.samples.back().instruments.at(0).depth, 0.001);
   EXPECT_NEAR(run("[motion]\nduration_s = 0.05\n", shorter).time_s, 0.05, 1e-3);
 }
 
@@ -197,7 +199,7 @@ TEST(RunVariant, StopsWhenTheTissueOutgrowsTheStep) {
   EXPECT_GT(s.steps, 0u);
   EXPECT_LT(s.time_s, 0.1);
   EXPECT_FALSE(seen.samples.empty());
-  for (const Sample& x : seen.samples) EXPECT_TRUE(std::isfinite(x.tools.at(0).total().z)) << x.time;
+  for (const Sample& x : seen.samples) EXPECT_TRUE(std::isfinite(x.instruments.at(0).force.z)) << x.time;
 }
 
 // A load ramps up and the body comes to carry it: in the end the support pushes back with the load.

@@ -33,22 +33,19 @@ struct RunRecord {
 class Recorder final : public RunObserver {
  public:
   explicit Recorder(RunRecord& record) : record_(record) {}
-  void on_start(const Variant& variant, const Simulation&) override {
-    const Vec3d d = variant.tools.front().motion.direction;
-    direction_ = d * (1.0 / norm(d));
-  }
+  void on_built(const BuiltVariant& built) override { tool_ = built.instruments.front(); }
   void on_sample(const Sample& s) override {
     record_.time.push_back(s.time);
-    record_.depth.push_back(s.depths.front());
-    record_.force.push_back(dot(s.tools.front().total(), direction_));
-    record_.elastic.push_back(dot(s.tools.front().elastic, direction_));
-    record_.viscous.push_back(dot(s.tools.front().viscous, direction_));
+    record_.depth.push_back(s.instruments.front().depth);
+    record_.force.push_back(tool_->read("force_N"));
+    record_.elastic.push_back(tool_->read("elastic_N"));
+    record_.viscous.push_back(tool_->read("viscous_N"));
     record_.energies.push_back(s.energies);
   }
 
  private:
   RunRecord& record_;
-  Vec3d direction_;
+  std::shared_ptr<Instrument> tool_;
 };
 
 inline Scene shipped_scene(const std::string& path, std::vector<Override> overrides = {}) {

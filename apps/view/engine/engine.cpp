@@ -43,9 +43,7 @@ Engine::Engine(const Variant& variant, MeshLoader load) : load_(std::move(load))
   for (const ParameterInfo& x : parameters_) values_.push_back(x.value);
   for (const ToolInfo& x : tools_) speeds_.push_back(x.speed);
   targets_.resize(tools_.size());
-  nlohmann::json forms = nlohmann::json::array();
-  for (const auto& instrument : body_->built().instruments) forms.push_back(instrument_form_json(*instrument));
-  forms_ = json_text(forms);
+  forms_ = json_text(instrument_forms_json(body_->built().instruments));
   can_grab_ = body_->grab() != nullptr;
   why_no_cut_ = body_->why_no_cut();
   const TetMesh& mesh = body_->built().simulation.mesh();
@@ -297,8 +295,8 @@ void Engine::take_sample() {
     sample.force_time = simulation.force_time();
     sample.time = static_cast<float>(sample.force_time);
     for (std::size_t i = 0; i < tools_.size(); ++i) {
-      sample.depth[i] = static_cast<float>(body_->depth(i));
-      sample.force[i] = static_cast<float>(dot(body_->force(i), tools_[i].direction));
+      sample.depth[i] = static_cast<float>(body_->instrument(i).force_depth());
+      sample.force[i] = static_cast<float>(dot(body_->instrument(i).force(), tools_[i].direction));
     }
   }
   samples_.push(sample);

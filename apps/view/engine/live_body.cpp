@@ -139,32 +139,18 @@ void LiveBody::set_tissues(const Variant& changed) {
   variant_.regions = changed.regions;
 }
 
-double LiveBody::depth(std::size_t tool) const {
-  const std::size_t sets = built_->tools.size();
-  if (tool >= sets) return built_->instruments[tool - sets]->force_depth();
-  return dot(ways_[tool]->at(built_->simulation.force_time()), tools_[tool].direction);
-}
-
 std::array<double, 2> LiveBody::aside(std::size_t tool) const {
   const Vec3d way = ways_[tool]->at(built_->simulation.force_time());
   return {dot(way, tools_[tool].side), dot(way, tools_[tool].third)};
 }
 
-Vec3d LiveBody::force(std::size_t tool) const {
-  const std::size_t sets = built_->tools.size();
-  if (tool >= sets) return built_->instruments[tool - sets]->forces().total();
-  return built_->simulation.steps() > 0 ? built_->simulation.force(built_->tools[tool]).total() : Vec3d{};
-}
-
 ToolState LiveBody::tool_state(std::size_t tool) const {
-  ToolState state{
-      .depth = depth(tool), .aside = aside(tool), .force = force(tool), .line = {}, .axes = identity<double>()};
-  const std::size_t sets = built_->tools.size();
-  if (tool < sets) return state;
-  const Instrument& x = *built_->instruments[tool - sets];
-  state.line = x.centre_line();
-  state.axes = x.pose().axes;
-  return state;
+  const Instrument& x = instrument(tool);
+  return {.depth = x.force_depth(),
+          .aside = aside(tool),
+          .force = x.force(),
+          .line = x.centre_line(),
+          .axes = x.pose().axes};
 }
 
 std::shared_ptr<const BodyShape> LiveBody::shape() const {

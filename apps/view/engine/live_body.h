@@ -36,11 +36,9 @@ class LiveBody {
   /// Lets the hand's blade go on where that is due. @throws std::invalid_argument
   void work_on_cut(HandCut::Clock::time_point now);
 
-  /// Depth and force of a tool at force_time() [m], [N].
-  double depth(std::size_t tool) const;
-  /// Of its way then, along its x and y [m].
+  const Instrument& instrument(std::size_t tool) const { return *built_->instruments[tool]; }
+  /// Of its way at force_time(), along its x and y [m].
   std::array<double, 2> aside(std::size_t tool) const;
-  Vec3d force(std::size_t tool) const;
   ToolState tool_state(std::size_t tool) const;
   std::shared_ptr<const BodyShape> shape() const;
   /// What the Maxwell branches of each tissue block hold now.

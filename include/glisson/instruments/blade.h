@@ -51,6 +51,7 @@ class Blade final : public Instrument {
   void archive(Archive& ar) override;
 
  private:
+  void cut(double time, const BladeEdge& to);
   const Tet& vertices_of(const EdgePiece& piece) const { return mesh_->tets[piece.tet]; }
   void resist(const InteractionStep& step, const EdgePiece& piece, const Vec3d& velocity, const Vec3d& along);
 

@@ -39,7 +39,7 @@ struct ContainerOptions {
   double push_out_speed = 0.05;  ///< largest speed of tissue that is outside the vessel when it is attached [m/s], > 0
 };
 
-/// Forces of the tissue on the container [N], at Simulation::force_time().
+/// What the container's sensors carry: forces of the tissue on it [N], at Simulation::force_time().
 struct ContainerLoads {
   Vec3d bottom{};            ///< on the floor
   Vec3d side{};              ///< on the whole wall
@@ -53,8 +53,8 @@ class Container final : public Interaction {
   explicit Container(const ContainerOptions& options);
   ~Container() override;
 
-  const ContainerLoads& loads() const;  ///< of the last step
-  Vec3d up() const;                     ///< the z of its pose; axial loads are along it
+  const ContainerLoads& sensor_loads() const;  ///< of the last step
+  Vec3d up() const;                            ///< the z of its pose; axial loads are along it
   const ContainerOptions& options() const;
 
   std::string label() const override { return "the container"; }

@@ -90,7 +90,7 @@ class Cutter {
   /// Restores the state of a saved Cutter, after the simulation has loaded its checkpoint.
   /// @throws std::runtime_error for a file that is truncated, modified or of another body
   void load(std::istream& in);
-  /// The same within the checkpoint of an interaction.
+  /// The same within the checkpoint of an interaction. What is refused changes nothing.
   void archive(Archive& ar);
 
  private:

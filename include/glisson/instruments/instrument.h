@@ -1,4 +1,4 @@
-// instrument.h — base of all instruments: a driven pose, forces to read, events.
+// instrument.h — base of all instruments: a driven pose, forces to read, columns of forces.csv, events.
 //
 //   ToolDriver ── pose at t + h ──▶ Instrument ── impulses ──▶ tissue
 //        ▲                               │
@@ -8,7 +8,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "glisson/instruments/form.h"
@@ -64,7 +66,16 @@ class ToolDriver {
   virtual void archive(Archive&) {}
 };
 
-/// A tool in contact with, or inside, the body.
+class Instrument;
+
+/// A number that is read off an instrument with every sample: a column of forces.csv.
+struct InstrumentColumn {
+  std::string_view name;  ///< with its unit: "depth_m"; of static storage
+  double (*read)(const Instrument&);
+};
+
+/// What is moved and acts on the body: in contact with it, inside it, or fixed to vertices of it. Its force is that on the
+/// tissue, at Simulation::force_time(), and 0 before the first step.
 class Instrument : public Interaction {
  public:
   /// @param driver  not none @param direction  along which depth is measured, a unit vector
@@ -72,22 +83,35 @@ class Instrument : public Interaction {
 
   const std::string& name() const { return name_; }
   std::string label() const override { return "instrument \"" + name_ + "\""; }
-  const Pose& pose() const { return pose_; }            ///< at the end of the last step
-  const ToolForces& forces() const { return forces_; }  ///< of the last step, at Simulation::force_time()
-  double depth() const;                                 ///< displacement along the direction since the start [m]
-  double force_depth() const { return force_depth_; }   ///< the same at the time of the forces [m]
+  virtual Pose pose() const { return pose_; }  ///< at the end of the last step
   const Vec3d& direction() const { return direction_; }
+  double depth() const;                                        ///< displacement along the direction since the start [m]
+  virtual double force_depth() const { return force_depth_; }  ///< the same at the time of the force [m]
+  virtual Vec3d force() const { return forces_.total(); }      ///< on the tissue [N]
+  /// What a sensor between the hand and the instrument carries, without inertia and weight of what it moves [N].
+  virtual Vec3d sensor_force() const { return -force(); }
+  /// The force by component where the instrument touches the tissue.
+  const ToolForces& forces() const { return forces_; }
+  /// depth_m, force_x_N, force_y_N, force_z_N, and force_N along the direction.
+  static std::span<const InstrumentColumn> common_columns();
+  /// common_columns() and own_columns().
+  std::vector<InstrumentColumn> columns() const;
+  /// The value of a column. @throws std::out_of_range naming it
+  double read(std::string_view column) const;
   const ToolDriver& driver() const { return *driver_; }
   /// All events so far, in order.
   const std::vector<InstrumentEvent>& events() const { return events_; }
   /// What a picture shows of it.
   virtual InstrumentForm form() const { return {}; }
   /// From the hand to the tip, as bent [m]; of a rigid one its tip alone.
-  virtual std::vector<Vec3d> centre_line() const { return {pose_.position}; }
+  virtual std::vector<Vec3d> centre_line() const { return {pose().position}; }
   /// Sets the callback for a puncture (position [m], radius [m]), for example to open a capsule.
   void on_puncture(std::function<void(const Vec3d& place, double radius)> told) { on_puncture_ = std::move(told); }
 
  protected:
+  /// What is read off instruments of this kind besides depth and force: here normal_N, friction_N and cutting_N, along the
+  /// direction. The list is of static storage.
+  virtual std::span<const InstrumentColumn> own_columns() const;
   /// Moves the pose to the end of the step; the previous one is in `before_`. To be called once a step, in reach() or
   /// first in constrain().
   void drive(const InteractionStep& step);

@@ -142,6 +142,10 @@ struct ContactSpec {
   bool bonded = false;
   double push_out_speed = ContactOptions{}.push_out_speed;
 };
+struct InstrumentSpec;
+/// Makes a program's own instrument.
+using OwnInstrument = std::function<std::shared_ptr<Instrument>(const InstrumentSpec&, std::shared_ptr<ToolDriver>)>;
+
 /// An instrument that presses, pierces or cuts, and its motion.
 struct InstrumentSpec {
   std::string name = "instrument";
@@ -149,8 +153,9 @@ struct InstrumentSpec {
   Vec3d direction{0.0, 0.0, -1.0};  ///< direction of its tip, of any length
   Vec3d side{1.0, 0.0, 0.0};        ///< direction of its own x axis; the component across `direction` counts
   InstrumentMotion motion;
+  /// The last is a program's own; no scene file gives it.
   std::variant<NeedleOptions, ContactSpec<FlatPunch>, ContactSpec<Ball>, ContactSpec<NeedleShape>, ContactSpec<Plate>,
-               ContactSpec<Block>, BladeOptions>
+               ContactSpec<Block>, BladeOptions, OwnInstrument>
       what;
   std::map<std::string, TipResistance> regions;  ///< of a needle, by region name
   std::string origin;
@@ -255,26 +260,25 @@ std::string scene_reference_markdown();
 /// Reads a mesh file; the io library's read_mesh, passed in so that scenes do not link VTK.
 using MeshLoader = std::function<TetMesh(const MeshFile&)>;
 
-/// State of an instrument at the time of a sample.
+/// What was read off an instrument at the time of a sample.
 struct InstrumentSample {
-  double depth = 0.0;  ///< along its direction, from its start [m]
-  ToolForces forces;   ///< on the tissue
+  double depth = 0.0;          ///< along its direction, from its start [m]
+  Vec3d force{};               ///< on the tissue [N]
+  std::vector<double> values;  ///< per Instrument::columns()
 };
 
-/// One line of forces.csv. Scalars of the tool are along its direction, positive when it presses.
+/// One line of forces.csv. Scalars of an instrument are along its direction, positive when it presses.
 struct Sample {
   double time = 0.0;                          ///< [s]
-  std::vector<double> depths;                 ///< per tool [m]
-  std::vector<ForceParts> tools;              ///< per tool: its force on the tissue
+  std::vector<InstrumentSample> instruments;  ///< per BuiltVariant::instruments
   std::vector<ForceParts> supports;           ///< per fixed set: its force on the tissue
-  std::vector<InstrumentSample> instruments;  ///< per instrument
-  std::optional<ContainerLoads> container;    ///< forces of the tissue on it
+  std::optional<ContainerLoads> container;    ///< what its sensors carry
   Energies energies;
 };
 
 /// One line of events.csv.
 struct RunEvent {
-  std::size_t instrument = 0;  ///< of the variant
+  std::string instrument;
   InstrumentEvent what;
 };
 
@@ -325,14 +329,13 @@ TetMesh build_mesh(const Variant& variant, const MeshLoader& load);
 /// Tissue of each region number that occurs in a mesh made by build_mesh.
 std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh);
 
-/// The body of a variant with its supports, loads and tools, at rest.
+/// The body of a variant with its supports, loads and instruments, at rest.
 struct BuiltVariant {
   /// @throws SceneError if mesh, sets, tissues, step or constraints cannot be used
   BuiltVariant(const Variant& variant, const MeshLoader& load);
 
   std::vector<ConstraintId> supports;                    ///< per variant.fixed
-  std::vector<ConstraintId> tools;                       ///< per variant.tools
-  std::vector<std::shared_ptr<Instrument>> instruments;  ///< per variant.instruments
+  std::vector<std::shared_ptr<Instrument>> instruments;  ///< per variant.tools, then per variant.instruments
   Simulation simulation;
   std::vector<std::shared_ptr<Capsule>> capsules;  ///< per variant.capsules
   std::shared_ptr<Container> container;            ///< null: none

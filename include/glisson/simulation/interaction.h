@@ -3,7 +3,7 @@
 //
 //   a step from t to t + h, with v₋ and v₊ the velocities before and after t:
 //     reach ─▶ tissue forces at u(t) ─▶ add_forces ─▶ v₊ as if free, then with motions ─▶ constrain ─▶ u(t+h) ─▶ moved
-//                                                                                          between_steps ◀─ step made ◀┘
+//     ─▶ the step is made ─▶ between_steps
 //
 // An interaction names the vertices it may act on, its active vertices; they are held in double. Forces that follow
 // from the state alone (membranes, springs) are added to the tissue's own; conditions at the end of the step (no
@@ -101,6 +101,9 @@ class Interaction {
   /// Called when it has been attached, and after every step that was made: the only member that may change the body, by
   /// remove_tets, split_faces or set_tissues. body_changed() reports what it changes to all interactions, this one too.
   virtual void between_steps(Simulation&) {}
+  /// Whether it takes part in steps. Otherwise between_steps is called just once, when it is attached, to set up supports,
+  /// motions and loads; then every integrator supports it, and it has no state for a checkpoint.
+  virtual bool acts_in_steps() const { return true; }
   /// Whether between_steps may add vertices: the arrays of the state may then move in memory at any step.
   virtual bool changes_body() const { return false; }
 

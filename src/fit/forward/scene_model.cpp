@@ -14,10 +14,10 @@
 namespace glisson::fit {
 namespace {
 
-/// What of an experiment moves or measures: a tool, an instrument, or the container's floor or wall.
+/// What of an experiment moves or measures: an instrument, or the container's floor or wall.
 struct Part {
-  enum class What { tool, instrument, bottom, side } what = What::tool;
-  std::size_t index = 0;
+  enum class What { instrument, bottom, side } what = What::instrument;
+  std::size_t index = 0;  ///< among the tools, then the instruments
 };
 
 std::vector<std::string> part_names(const Variant& variant) {
@@ -38,9 +38,7 @@ Part moving_part(const Variant& variant, const std::string& name) {
   const auto it = name.empty() ? names.begin() : std::find(names.begin(), names.end(), name);
   if (it == names.end())
     throw std::invalid_argument("no tool or instrument \"" + name + "\"; the scene has: " + scene::listed(names));
-  const auto i = static_cast<std::size_t>(it - names.begin());
-  const std::size_t tools = variant.tools.size();
-  return i < tools ? Part{Part::What::tool, i} : Part{Part::What::instrument, i - tools};
+  return {Part::What::instrument, static_cast<std::size_t>(it - names.begin())};
 }
 
 Part measured_part(const Variant& variant, const SceneModelOptions& options) {
@@ -54,11 +52,9 @@ Part measured_part(const Variant& variant, const SceneModelOptions& options) {
 /// The force of the measured part at each sample; halts a run that is not wanted any more.
 class ForceRecorder final : public RunObserver {
  public:
-  ForceRecorder(const Variant& variant, const Part& part, const SceneModelOptions& options)
-      : part_(part), stop_(options.stop), longest_(options.longest) {
-    if (part.what == Part::What::tool) direction_ = unit(variant.tools[part.index].motion.direction);
-    if (part.what == Part::What::instrument) direction_ = unit(variant.instruments[part.index].direction);
-  }
+  ForceRecorder(const Part& part, const SceneModelOptions& options)
+      : part_(part), stop_(options.stop), longest_(options.longest) {}
+  void on_built(const BuiltVariant& built) override { built_ = &built; }
   void on_start(const Variant&, const Simulation&) override { times.clear(), forces.clear(); }
   void on_sample(const Sample& s) override {
     if (!times.empty() && !(s.time > times.back())) return;
@@ -76,12 +72,11 @@ class ForceRecorder final : public RunObserver {
   double force_of(const Sample& s) const {
     if (part_.what == Part::What::bottom) return -s.container->bottom.z;
     if (part_.what == Part::What::side) return -s.container->side.z;
-    if (part_.what == Part::What::instrument) return dot(s.instruments[part_.index].forces.total(), direction_);
-    const ForceParts& f = s.tools[part_.index];
-    return dot(f.total() - f.inertial - f.gravity, direction_);
+    const Instrument& x = *built_->instruments[part_.index];
+    return -dot(x.sensor_force(), x.direction());
   }
   Part part_;
-  Vec3d direction_{0, 0, -1};
+  const BuiltVariant* built_ = nullptr;
   const std::atomic<bool>* stop_;
   double longest_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
@@ -218,11 +213,11 @@ Variant SceneModel::variant(std::size_t index, std::span<const double> values, d
   const History history(c, contact);
   const double before = approach_time(c), duration = history.end() - history.begin() + before;
   const Part part = moving_part(v, options_.tool);
-  if (part.what == Part::What::tool) {
+  if (part.index < v.tools.size()) {
     ToolSpec& tool = v.tools[part.index];
     tool.record = record_of(history, unit(tool.motion.direction), 0.0, before);
   } else {
-    InstrumentSpec& x = v.instruments[part.index];
+    InstrumentSpec& x = v.instruments[part.index - v.tools.size()];
     x.motion.how = record_of(history, unit(x.motion.direction.value_or(x.direction)), options_.approach, before);
   }
   v.duration = duration;
@@ -267,7 +262,7 @@ Prediction SceneModel::predict_from(std::size_t index, std::span<const double> v
   try {
     Variant v = variant(index, values, contact);
     const Curve& c = curve(index);
-    ForceRecorder recorder(v, measured_part(v, options_), options_);
+    ForceRecorder recorder(measured_part(v, options_), options_);
     recorder.halt = options_.stop != nullptr && options_.stop->load();
     const RunSummary summary = run(v, recorder, recorder.halt);
     if (summary.end != RunSummary::End::finished || recorder.times.empty()) {

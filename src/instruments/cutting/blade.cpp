@@ -53,10 +53,20 @@ void Blade::between_steps(Simulation& simulation) {
     cutter_.emplace(simulation, options_.cutting).place(now);
   } else {
     if (simulation.time() < next_cut_) return;
-    area_ += cutter_->advance(now).area;
     next_cut_ = simulation.time() + options_.cut_every;
+    cut(simulation.time(), now);
   }
   pieces_ = cutter_->contact();
+}
+
+/// A step never throws: where the body refuses to be split, another cut begins here.
+void Blade::cut(double time, const BladeEdge& to) {
+  try {
+    area_ += cutter_->advance(to).area;
+  } catch (const std::invalid_argument&) {
+    cutter_->place(to);
+    add_event(time, depth(), "cut refused");
+  }
 }
 
 double Blade::length_in_tissue() const {
@@ -123,11 +133,13 @@ void EdgePiece::archive(Archive& ar) { ar(tet, length, weights); }
 
 void Blade::archive(Archive& ar) {
   archive_motion(ar);
-  ar(area_, next_cut_, pieces_);
-  if (cutter_) cutter_->archive(ar);
-  for (const EdgePiece& piece : pieces_) {
+  std::vector<EdgePiece> pieces = pieces_;
+  ar(area_, next_cut_, pieces);
+  for (const EdgePiece& piece : pieces) {
     ar.check(mesh_ != nullptr && piece.tet < mesh_->tets.size() && (removed_.empty() || removed_[piece.tet] == 0));
   }
+  pieces_ = std::move(pieces);
+  if (cutter_) cutter_->archive(ar);
 }
 
 }  // namespace glisson

@@ -302,8 +302,11 @@ void Cutter::Impl::archive(Archive& ar) {
 }
 
 void Cutter::archive(Archive& ar) {
-  if (ar.reads()) impl_->follow();
-  impl_->archive(ar);
+  if (!ar.reads()) return impl_->archive(ar);
+  auto read = std::make_unique<Impl>(*impl_);
+  read->follow();
+  read->archive(ar);
+  impl_ = std::move(read);
 }
 
 void Cutter::save(std::ostream& out) const {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/nearest.h"
+#include "glisson/instruments/driven_set.h"
 #include "glisson/mesh.h"
 #include "scene/parse/select.h"
 
@@ -85,6 +86,7 @@ struct InstrumentMaker {
     }
     return std::make_shared<typename Options::Instrument>(options, make_driver(spec));
   }
+  std::shared_ptr<Instrument> operator()(const OwnInstrument& make) const { return make(spec, make_driver(spec)); }
   template <class Form>
   std::shared_ptr<Instrument> operator()(const ContactSpec<Form>& x) const {
     const ContactOptions options{.name = spec.name,
@@ -121,6 +123,16 @@ namespace scene {
 
 std::shared_ptr<Instrument> make_instrument(const InstrumentSpec& spec, const TetMesh& mesh) {
   return std::visit(InstrumentMaker{spec, mesh}, spec.what);
+}
+
+std::shared_ptr<Instrument> make_tool(const ToolSpec& spec, std::vector<std::uint32_t> vertices) {
+  const Vec3d& d = spec.motion.direction;
+  const DrivenSetOptions options{.name = spec.name,
+                                 .vertices = std::move(vertices),
+                                 .direction = d,
+                                 .axes = spec.sideways_free ? Axes{d.x != 0.0, d.y != 0.0, d.z != 0.0} : Axes{},
+                                 .from = tool_start(spec)};
+  return std::make_shared<DrivenSet>(options, tool_path(spec));
 }
 
 std::shared_ptr<Capsule> make_capsule(const CapsuleSpec& spec, std::span<const std::uint32_t> set) {

@@ -13,6 +13,9 @@ namespace glisson::scene {
 /// @param mesh  of the body @throws std::invalid_argument for options or regions that do not fit
 std::shared_ptr<Instrument> make_instrument(const InstrumentSpec& spec, const TetMesh& mesh);
 
+/// The driven set of a tool. @throws std::invalid_argument
+std::shared_ptr<Instrument> make_tool(const ToolSpec& spec, std::vector<std::uint32_t> vertices);
+
 /// @param set  vertices it covers; empty: all of the surface @throws std::invalid_argument
 std::shared_ptr<Capsule> make_capsule(const CapsuleSpec& spec, std::span<const std::uint32_t> set);
 

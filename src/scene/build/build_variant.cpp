@@ -106,6 +106,10 @@ auto located(const Variant& variant, const std::string& origin, Make make) {
 
 std::vector<std::shared_ptr<Instrument>> make_instruments(const Variant& variant, const TetMesh& mesh) {
   std::vector<std::shared_ptr<Instrument>> made;
+  for (const ToolSpec& x : variant.tools) {
+    const auto& set = set_called(variant, mesh, x.set, x.origin);
+    made.push_back(located(variant, x.origin, [&] { return scene::make_tool(x, set); }));
+  }
   for (const InstrumentSpec& x : variant.instruments) {
     made.push_back(located(variant, x.origin, [&] { return scene::make_instrument(x, mesh); }));
   }
@@ -124,11 +128,6 @@ Simulation simulation_of(const Variant& variant, TetMesh mesh,
   } catch (const std::exception& error) {  // also an eigenvalue search that fails on an odd body
     fail(variant, "", error.what());
   }
-}
-
-Axes driven_axes(const ToolSpec& tool) {
-  const Vec3d& d = tool.motion.direction;
-  return tool.sideways_free ? Axes{d.x != 0.0, d.y != 0.0, d.z != 0.0} : Axes{};
 }
 
 std::function<double(double)> ramp_over(double seconds) {
@@ -155,8 +154,9 @@ void attach_interactions(const Variant& variant, BuiltVariant& built) {
       return container;
     });
   }
-  for (std::size_t i = 0; i < built.instruments.size(); ++i) {
-    located(variant, variant.instruments[i].origin, [&] { simulation.attach(built.instruments[i]); });
+  for (std::size_t i = 0; i < variant.instruments.size(); ++i) {
+    const auto& instrument = built.instruments[variant.tools.size() + i];
+    located(variant, variant.instruments[i].origin, [&] { simulation.attach(instrument); });
   }
   scene::join(built.instruments, built.capsules);
 }
@@ -198,10 +198,8 @@ BuiltVariant::BuiltVariant(TetMesh whole, const Variant& variant)
     const auto& set = set_called(variant, mesh, x.set, x.origin);
     supports.push_back(located(variant, x.origin, [&] { return simulation.fix(set, x.axes); }));
   }
-  for (const ToolSpec& x : variant.tools) {
-    const auto& set = set_called(variant, mesh, x.set, x.origin);
-    tools.push_back(located(variant, x.origin,
-                            [&] { return simulation.drive(set, tool_path(x).way, driven_axes(x), tool_start(x)); }));
+  for (std::size_t i = 0; i < variant.tools.size(); ++i) {
+    located(variant, variant.tools[i].origin, [&] { simulation.attach(instruments[i]); });
   }
   for (const LoadSpec& x : variant.loads) {
     const auto& set = set_called(variant, mesh, x.set, x.origin);

@@ -52,8 +52,8 @@ class Run {
   std::uint64_t samples_due_ = 0;
   double next_sample_ = 0.0;  ///< [s]
   int frames_taken_ = 0;
-  std::vector<std::size_t> events_told_;  ///< per instrument
-  std::vector<Motion> records_;           ///< per tool; none where it does not follow a record
+  std::vector<std::size_t> events_told_;                ///< per instrument
+  std::vector<std::vector<InstrumentColumn>> columns_;  ///< per instrument
   bool ended_ = false, sampled_ = true, framed_ = false, forces_current_ = false;
   double stepping_s_ = 0.0;
   std::uint64_t stretch_steps_ = 1;
@@ -64,14 +64,10 @@ Run::Run(const Variant& variant, BuiltVariant& built, RunObserver& observer, con
     : variant_(variant), simulation_(built.simulation), built_(built), observer_(observer), stop_(stop),
       duration_(run_duration(variant)), most_steps_(variant.max_steps.value_or(std::uint64_t(-1))),
       forces_at_end_(capabilities(variant.simulation.integrator).forces_at_step_end) {
-  sample_.depths.resize(built.tools.size());
-  sample_.tools.resize(built.tools.size());
   sample_.supports.resize(built.supports.size());
   sample_.instruments.resize(built.instruments.size());
   events_told_.resize(built.instruments.size(), 0);
-  for (const ToolSpec& tool : variant.tools) {
-    records_.push_back(tool.record || tool.path ? tool_path(tool).way : Motion{});
-  }
+  for (const auto& x : built.instruments) columns_.push_back(x->columns());
 }
 
 /// The last step is the one that ends nearest to the duration.
@@ -136,20 +132,14 @@ void Run::stretch() {
 /// Forces, depths and energies of the instant that the forces are of.
 void Run::take_sample() {
   sample_.time = force_time_;
-  for (std::size_t i = 0; i < built_.tools.size(); ++i) {
-    const ToolSpec& tool = variant_.tools[i];
-    const Vec3d direction = tool.motion.direction * (1.0 / norm(tool.motion.direction));
-    sample_.depths[i] = records_[i] ? dot(records_[i](force_time_), direction) : press_depth(tool.motion, force_time_);
-    sample_.tools[i] = simulation_.force(built_.tools[i]);
-    summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(sample_.tools[i].total(), direction)));
-  }
   for (std::size_t i = 0; i < built_.supports.size(); ++i) sample_.supports[i] = simulation_.force(built_.supports[i]);
   for (std::size_t i = 0; i < built_.instruments.size(); ++i) {
     const Instrument& x = *built_.instruments[i];
-    sample_.instruments[i] = {x.force_depth(), x.forces()};
-    summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(x.forces().total(), x.direction())));
+    sample_.instruments[i] = {x.force_depth(), x.force(), {}};
+    for (const InstrumentColumn& column : columns_[i]) sample_.instruments[i].values.push_back(column.read(x));
+    summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(x.force(), x.direction())));
   }
-  if (built_.container) sample_.container = built_.container->loads();
+  if (built_.container) sample_.container = built_.container->sensor_loads();
   sample_.energies = simulation_.energies();
   tell_events();
   observer_.on_sample(sample_);
@@ -162,7 +152,8 @@ void Run::take_sample() {
 void Run::tell_events() {
   for (std::size_t i = 0; i < built_.instruments.size(); ++i) {
     const std::vector<InstrumentEvent>& events = built_.instruments[i]->events();
-    for (std::size_t& told = events_told_[i]; told < events.size(); ++told) observer_.on_event({i, events[told]});
+    for (std::size_t& told = events_told_[i]; told < events.size(); ++told)
+      observer_.on_event({built_.instruments[i]->name(), events[told]});
   }
 }
 

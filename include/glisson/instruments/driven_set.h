@@ -1,0 +1,54 @@
+// driven_set.h — a set of vertices that follows a path: an instrument that is fixed to the tissue.
+//
+// It is a constraint of the simulation (Simulation::drive) with the name, the depth, the force and the columns of an
+// instrument. Every integrator supports it.
+#pragma once
+
+#include "glisson/instruments/tool_motion.h"
+
+namespace glisson {
+
+class Scheme;
+
+struct DrivenSetOptions {
+  std::string name = "tool";
+  std::vector<std::uint32_t> vertices;  ///< one or more
+  Vec3d direction{0, 0, -1};            ///< of the depth; any length
+  Axes axes{};                          ///< the driven components; the others are free
+  double from = 0.0;                    ///< start [s]: until then the vertices are free, and the force is 0
+};
+
+class DrivenSet final : public Instrument {
+ public:
+  /// @param path  of the vertices, 0 at the start
+  DrivenSet(DrivenSetOptions options, ToolPath path);
+
+  ConstraintId constraint() const { return constraint_; }
+  /// The force on the tissue by component; 0 where the simulation is no more.
+  ForceParts parts() const;
+  /// Columns of its kind: elastic_N, viscous_N, damping_N, inertial_N, gravity_N, load_N, along the direction.
+  static std::span<const InstrumentColumn> part_columns();
+
+  Pose pose() const override;  ///< its position is the displacement
+  double force_depth() const override;
+  Vec3d force() const override { return parts().total(); }
+  Vec3d sensor_force() const override;
+  InstrumentForm form() const override { return {.kind = InstrumentForm::Kind::none}; }
+  std::vector<Vec3d> centre_line() const override { return {}; }
+
+  bool acts_in_steps() const override { return false; }
+  void between_steps(Simulation& simulation) override;
+  void attached(const BodyView&, double) override {}
+  void body_changed(const BodyView&, std::span<const std::uint32_t>) override {}
+  std::span<const std::uint32_t> reach(double, double) override { return {}; }
+
+ private:
+  std::span<const InstrumentColumn> own_columns() const override { return part_columns(); }
+
+  DrivenSetOptions options_;
+  Motion way_;
+  std::weak_ptr<const Scheme> scheme_;  ///< of the simulation it is attached to
+  ConstraintId constraint_;
+};
+
+}  // namespace glisson
