@@ -167,6 +167,7 @@ def test_a_blade_of_a_scene_cuts(scenes):
     """A scene's blade is read like other instruments; the body's arrays are copies then."""
     body = glisson.simulation(scenes / "needle" / "cut.toml")
     blade = next(x for x in body.instruments.values() if isinstance(x, glisson.Blade))
+    assert blade.form["kind"] == "blade" and len(blade.form["size_m"]) == 6 and blade.centre_line.shape == (1, 3)
     before = body.displacement
     body.step(5)
     assert blade.area >= 0 and blade.work_of_cut >= 0 and blade.length_in_tissue >= 0

@@ -130,6 +130,9 @@ def test_a_variant_is_stepped_by_hand():
     nearest = np.argmin(np.abs(run["time_s"] - body.force_time))
     # neighbouring samples differ by 2 ms of a steady press: 1 % of the force at 0.1 s
     assert -body.instruments["tool"].force[2] == pytest.approx(run["force_N"][nearest], rel=0.03)
+    tool = body.instruments["tool"]
+    assert list(tool.columns) == run.columns[1:12]
+    assert tool.columns["force_N"] == -tool.force[2] and tool.form["kind"] == "none"
     assert body.container is None and body.capsules == [] and list(body.instruments) == ["tool"]
 
 
