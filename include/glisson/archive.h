@@ -2,9 +2,10 @@
 //
 //   void archive(Archive& ar) { ar(position, velocity, events); }
 //
-// Parts are numbers, flags, strings, vectors, lists of them, and whatever has such a function, as a member or beside it. What is
-// read may have been forged: where bytes are missing, a list is longer than what is left, a flag is neither 0 nor 1 or keys do
-// not ascend, it is refused by an exception. What else a number may be is known to its class, which checks it as it reads.
+// Parts are numbers, flags, enumerators that have words, strings, vectors, lists of them, and whatever has such a function, as a
+// member or beside it. What is read may have been forged: where bytes are missing, a list is longer than what is left, a flag is
+// neither 0 nor 1, an enumerator has no word or keys do not ascend, it is refused by an exception. What else a number may be is
+// known to its class, which checks it as it reads.
 #pragma once
 
 #include <algorithm>
@@ -24,6 +25,7 @@
 #include <vector>
 
 #include "glisson/math.h"
+#include "glisson/words.h"
 
 namespace glisson {
 
@@ -62,14 +64,6 @@ class Archive {
     part(numbers);
     check(std::all_of(numbers.begin(), numbers.end(), [end](const T& n) { return n < end; }));
   }
-  /// An enumerator; the first is 0.
-  template <class Enum>
-  void word(Enum& word, Enum last) {
-    auto number = static_cast<std::uint8_t>(word);
-    part(number);
-    check(number <= static_cast<std::uint8_t>(last));
-    word = static_cast<Enum>(number);
-  }
   /// Refuses what has been read where it is not sound.
   void check(bool sound) const {
     if (reads_ && !sound) refuse();
@@ -98,6 +92,11 @@ class Archive {
       part(number);
       check(number < 2);
       value = number != 0;
+    } else if constexpr (HasWords<T>) {
+      auto number = static_cast<std::uint8_t>(value);
+      part(number);
+      value = static_cast<T>(number);
+      check(!word_of(value).empty());
     } else if constexpr (std::is_arithmetic_v<T>) {
       auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
       if (!reads_) order(bytes);

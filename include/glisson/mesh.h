@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "glisson/math.h"
+#include "glisson/words.h"
 
 namespace glisson {
 
@@ -50,10 +51,11 @@ double volume(const TetMesh& mesh);
 double regular_mean_ratio(const TetMesh& mesh, std::size_t tet);
 
 /// How a cube is split into six tetrahedra.
-enum class BoxSplit {
-  kuhn,        ///< every cube along its (0,0,0)–(1,1,1) diagonal; conforming, all cubes alike
-  alternating  ///< mirrored in every second cube along each axis; conforming, without a preferred diagonal
-};
+enum class BoxSplit { kuhn, alternating };
+template <>
+inline constexpr Word<BoxSplit> kWords<BoxSplit>[] = {
+    {"kuhn", BoxSplit::kuhn, "every cube along its (0,0,0)–(1,1,1) diagonal"},
+    {"alternating", BoxSplit::alternating, "mirrored in every second cube, no preferred diagonal"}};
 
 struct BoxOptions {
   std::array<int, 3> cells{4, 4, 8};  ///< cubes along x, y, z; 1 or more each

@@ -1,6 +1,6 @@
 // bind.h — what the rooms of the Python module share: docstrings, words for enumerators, vectors, option structs.
 //
-//   enumerators  ⇄  words, as a scene has them: "implicit", "corotational"
+//   enumerators  ⇄  their words (glisson/words.h), as a scene has them: "implicit", "corotational"
 //   Vec3d, Mat3d ⇄  any three numbers in, a NumPy array out
 //   structs      ⇄  classes whose constructor takes every field by name
 #pragma once
@@ -19,14 +19,17 @@
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "glisson/math.h"
+#include "glisson/words.h"
 
 namespace glisson::python {
 
@@ -132,54 +135,48 @@ class Options : public nb::class_<T> {
   std::string of_;
 };
 
-/// The words of an enumeration, in its order, as `'one', 'two'`; see GLISSON_WORDS.
+/// "typing.Literal['kuhn', 'alternating']" of an enumeration with words.
 template <class E>
-struct Words;
-
-template <class E>
-std::vector<std::string> words_of() {
-  std::vector<std::string> words;
-  const std::string text = Words<E>::kText;
-  for (std::size_t at = text.find('\''); at != std::string::npos; at = text.find('\'', at + 1)) {
-    const std::size_t end = text.find('\'', at + 1);
-    words.push_back(text.substr(at + 1, end - at - 1));
-    at = end;
+constexpr auto literal_of_words() {
+  constexpr std::string_view kHead = "typing.Literal[";
+  constexpr std::size_t kSize = [](std::size_t size) {
+    for (const Word<E>& w : kWords<E>) size += w.word.size() + std::string_view("'', ").size();
+    return size - 1;  // the last has "]" in place of ", "
+  }(kHead.size());
+  nb::detail::descr<kSize> literal;
+  char* at = std::copy(kHead.begin(), kHead.end(), literal.text);
+  for (const Word<E>& w : kWords<E>) {
+    if (&w != kWords<E>) *at++ = ',', *at++ = ' ';
+    *at++ = '\'';
+    at = std::copy(w.word.begin(), w.word.end(), at);
+    *at++ = '\'';
   }
-  return words;
+  *at = ']';
+  return literal;
 }
 
 }  // namespace glisson::python
 
-/// An enumeration that Python knows by words.
-#define GLISSON_WORDS(Enum, text)                                                                                \
-  namespace glisson::python {                                                                                    \
-  template <>                                                                                                    \
-  struct Words<Enum> {                                                                                           \
-    static constexpr const char* kText = text;                                                                   \
-  };                                                                                                             \
-  }                                                                                                              \
-  namespace nanobind::detail {                                                                                   \
-  template <>                                                                                                    \
-  struct type_caster<Enum> {                                                                                     \
-    NB_TYPE_CASTER(Enum, const_name("typing.Literal[" text "]"))                                                 \
-    bool from_python(handle src, std::uint8_t, cleanup_list*) noexcept {                                         \
-      if (!PyUnicode_Check(src.ptr())) return false;                                                             \
-      const auto words = glisson::python::words_of<Enum>();                                                      \
-      for (std::size_t i = 0; i < words.size(); ++i) {                                                           \
-        if (PyUnicode_CompareWithASCIIString(src.ptr(), words[i].c_str()) == 0) {                                \
-          value = static_cast<Enum>(i);                                                                          \
-          return true;                                                                                           \
-        }                                                                                                        \
-      }                                                                                                          \
-      return false;                                                                                              \
-    }                                                                                                            \
-    static handle from_cpp(Enum word, rv_policy, cleanup_list*) noexcept {                                       \
-      return nanobind::str(glisson::python::words_of<Enum>()[static_cast<std::size_t>(word)].c_str()).release(); \
-    }                                                                                                            \
-  };                                                                                                             \
-  }
-
 namespace nanobind::detail {
+
+/// An enumeration is known by its words (glisson/words.h); the constraint prefers this to nanobind's caster of enumerations.
+template <glisson::HasWords E>
+struct type_caster<E, enable_if_t<std::is_enum_v<E>>> {
+  NB_TYPE_CASTER(E, glisson::python::literal_of_words<E>())
+  bool from_python(handle src, std::uint8_t, cleanup_list*) noexcept {
+    if (!PyUnicode_Check(src.ptr())) return false;
+    for (const glisson::Word<E>& w : glisson::kWords<E>) {
+      if (PyUnicode_CompareWithASCIIString(src.ptr(), w.word.data()) != 0) continue;
+      value = w.value;
+      return true;
+    }
+    return false;
+  }
+  static handle from_cpp(E value, rv_policy, cleanup_list*) noexcept {
+    const std::string_view word = glisson::word_of(value);
+    return nanobind::str(word.data(), word.size()).release();
+  }
+};
 
 template <>
 struct type_caster<glisson::Vec3d> {

@@ -9,7 +9,6 @@
 #include "live_simulation.h"
 #include "report/instrument_json.h"
 #include "report/json_text.h"
-#include "words.h"
 
 namespace glisson::python {
 namespace {

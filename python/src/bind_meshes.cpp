@@ -1,9 +1,9 @@
 // bind_meshes.cpp — meshes from arrays and generators, and what is wrong with them.
 #include <algorithm>
 
+#include "bind.h"
 #include "glisson/io.h"
 #include "glisson/mesh.h"
-#include "words.h"
 
 namespace glisson::python {
 namespace {

@@ -10,7 +10,6 @@
 #include "report/json_text.h"
 #include "report/output_file.h"
 #include "report/summary_json.h"
-#include "words.h"
 
 namespace glisson::python {
 namespace {

@@ -2,7 +2,6 @@
 #include "glisson/scene/scene.h"
 #include "live_simulation.h"
 #include "scene_object.h"
-#include "words.h"
 
 namespace glisson::python {
 namespace {

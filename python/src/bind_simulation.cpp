@@ -4,7 +4,6 @@
 #include "glisson/instruments/motion.h"
 #include "glisson/instruments/tool_motion.h"
 #include "live_simulation.h"
-#include "words.h"
 
 namespace glisson::python {
 namespace {

@@ -4,9 +4,9 @@
 // name in Python.
 #include <cctype>
 
+#include "bind.h"
 #include "glisson/material/tissue.h"
 #include "glisson/scene/tissue_presets.h"
-#include "words.h"
 
 namespace glisson::python {
 namespace {

@@ -64,7 +64,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
     json["first_inversion_s"] = s.first_inversion_s;
   else
     json["first_inversion_s"] = nullptr;
-  json["integrator"] = integrator_info(variant.simulation.integrator).word;
+  json["integrator"] = word_of(variant.simulation.integrator);
   json["precision"] = variant.simulation.precision == Precision::single_precision ? "single" : "double";
   json["threads"] = threads;
   json["state_hash"] = fmt::format("{:016x}", s.state_hash);

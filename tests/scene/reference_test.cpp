@@ -28,7 +28,7 @@ void expect_documented(const scene::SectionSpec& section, const std::string& tex
   for (const scene::KeySpec& key : section.keys) {
     EXPECT_NE(text.find("| `" + key.name + "` |"), std::string::npos) << section.name << "." << key.name;
     EXPECT_FALSE(key.help.empty()) << section.name << "." << key.name;
-    for (const scene::Word& w : key.words)
+    for (const scene::AllowedWord& w : key.words)
       EXPECT_NE(text.find("`\"" + w.word + "\"`"), std::string::npos) << key.name << " " << w.word;
     if (key.section) expect_documented(*key.section, text);
   }

@@ -49,6 +49,9 @@ struct CapsuleEvent {
   Vec3d place{};           ///< its position in space [m]
   double area = 0.0;       ///< opened area of the surface at rest [m²]
 };
+template <>
+inline constexpr Word<CapsuleEvent::What> kWords<CapsuleEvent::What>[] = {{"tear", CapsuleEvent::What::tear},
+                                                                          {"opening", CapsuleEvent::What::opening}};
 
 void archive(Archive& ar, CapsuleEvent& event);
 

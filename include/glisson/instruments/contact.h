@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "glisson/instruments/instrument.h"
+#include "glisson/words.h"
 
 namespace glisson {
 
@@ -34,9 +35,14 @@ struct Ball {
 
 enum class TipForm {
   conical,
-  bevelled,  ///< cut by one plane; the point is at x = +radius
-  blunt      ///< a hemisphere
+  bevelled,  ///< the point is at x = +radius
+  blunt
 };
+template <>
+inline constexpr Word<TipForm> kWords<TipForm>[] = {
+    {"conical", TipForm::conical, "a cone"},
+    {"bevelled", TipForm::bevelled, "cut by one plane, its point to the side"},
+    {"blunt", TipForm::blunt, "a hemisphere"}};
 
 /// A needle as a solid, for palpation and coarse contact; Needle pierces.
 struct NeedleShape {

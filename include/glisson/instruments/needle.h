@@ -18,6 +18,7 @@
 #include <string>
 
 #include "glisson/instruments/instrument.h"
+#include "glisson/words.h"
 
 namespace glisson {
 
@@ -72,6 +73,9 @@ enum class NeedleStage {
   pressing,  ///< the tip presses on the intact surface
   inside     ///< the surface is pierced
 };
+template <>
+inline constexpr Word<NeedleStage> kWords<NeedleStage>[] = {
+    {"outside", NeedleStage::outside}, {"pressing", NeedleStage::pressing}, {"inside", NeedleStage::inside}};
 
 class Needle final : public Instrument {
  public:

@@ -8,38 +8,57 @@
 #include "glisson/material/hyperelastic_law.h"
 #include "glisson/material/stiffness_law.h"
 #include "glisson/math.h"
+#include "glisson/words.h"
 
 namespace glisson {
 
 /// The measure of deformation of a tetrahedron: the argument of a stiffness law.
 enum class DeformationMeasure {
-  intensity,           ///< s = √(3 (1 − q) / 2), 0 at rest, ≈ ‖dev ε‖
-  one_minus_q,         ///< 1 − q(F), 0 at rest, ≈ ⅔ ‖dev ε‖²
-  regular_mean_ratio,  ///< 12 (3V)^⅔ / Σ l² of the deformed tet; the paper's raw measure, mesh-dependent at rest
-  radius_ratio,  ///< √(5 (1 − ρ) / 4), ρ three times in- over circumradius against the rest tet   [LiuJoe1994]
-  solid_angle    ///< 0.831 (1 − σ), σ the sine of half the smallest solid angle, against the rest tet [LiuJoe1994]
+  intensity,
+  one_minus_q,
+  regular_mean_ratio,  ///< 12 (3V)^⅔ / Σ l², mesh-dependent at rest
+  radius_ratio,        ///< against the rest tet  [LiuJoe1994]
+  solid_angle          ///< against the rest tet  [LiuJoe1994]
 };
+template <>
+inline constexpr Word<DeformationMeasure> kWords<DeformationMeasure>[] = {
+    {"intensity", DeformationMeasure::intensity, "s = √(3 (1 − q) / 2), 0 at rest, ≈ ‖dev ε‖"},
+    {"one_minus_q", DeformationMeasure::one_minus_q, "1 − q, 0 at rest, ≈ ⅔ ‖dev ε‖²"},
+    {"regular_mean_ratio", DeformationMeasure::regular_mean_ratio,
+     "mean ratio of the deformed tetrahedron against a regular one, the paper's raw measure"},
+    {"radius_ratio", DeformationMeasure::radius_ratio,
+     "√(5 (1 − ρ) / 4), 0 at rest, ρ three times in- over circumradius"},
+    {"solid_angle", DeformationMeasure::solid_angle,
+     "0.831 (1 − σ), 0 at rest, σ the sine of half the smallest solid angle, 1 at rest"}};
 
 /// The constant tensor of the viscosity η, [Schwartz2002, eq. 7] (the paper does not define it).
-enum class ViscousTensor {
-  shear,         ///< σ_v = 2 η ε̇
-  deviatoric,    ///< σ_v = 2 η dev ε̇
-  proportional,  ///< (η/E) × the elastic tensor at rest
-  pioletti       ///< S_v = 2 η (I₁ − 3) Ė: 0 at rest, grows with stretch         [Pioletti1998]
-};
+/// `pioletti` is 0 at rest and grows with stretch [Pioletti1998].
+enum class ViscousTensor { shear, deviatoric, proportional, pioletti };
+template <>
+inline constexpr Word<ViscousTensor> kWords<ViscousTensor>[] = {
+    {"shear", ViscousTensor::shear, "σ_v = 2 η ε̇"},
+    {"deviatoric", ViscousTensor::deviatoric, "σ_v = 2 η dev ε̇"},
+    {"proportional", ViscousTensor::proportional, "(η/E) × the elastic tensor at rest"},
+    {"pioletti", ViscousTensor::pioletti, "S_v = 2 η (I₁ − 3) Ė, for large strain"}};
 
 /// Strain ε of a tensor-mass tissue as a function of H = F − I; the stress is λ tr(ε) I + 2 μ ε in all three.
 enum class Kinematics {
-  small,         ///< ε = sym H, the paper's: a rotation by θ is taken for the strain cos θ − 1
-  corotational,  ///< ε = U − I of the polar decomposition F = R U, P = R σ; for large rotations, safe when inverted
-  green          ///< E = ½ (FᵀF − I), P = F S: St Venant–Kirchhoff                       [Picinbono2003]
+  small,
+  corotational,  ///< P = R σ; safe when inverted
+  green          ///< P = F S  [Picinbono2003]
 };
+template <>
+inline constexpr Word<Kinematics> kWords<Kinematics>[] = {
+    {"small", Kinematics::small, "ε = sym H, the paper's; takes a rotation by θ for the strain cos θ − 1"},
+    {"corotational", Kinematics::corotational, "ε = U − I of F = R U, for large rotations"},
+    {"green", Kinematics::green, "E = ½ (FᵀF − I), St Venant–Kirchhoff"}};
 
 /// The force of a stiffness law.
-enum class LawForm {
-  secant,  ///< σ = λ(x) tr(ε) I + 2 μ(x) ε, the paper's: not the gradient of an energy
-  energy   ///< P = ∂W/∂F, W = ½ λ(x) tr(ε)² + μ(x) ε:ε
-};
+enum class LawForm { secant, energy };
+template <>
+inline constexpr Word<LawForm> kWords<LawForm>[] = {
+    {"secant", LawForm::secant, "σ = λ(x) tr(ε) I + 2 μ(x) ε, the paper's; stores no energy"},
+    {"energy", LawForm::energy, "∂W/∂F of W = ½ λ(x) tr(ε)² + μ(x) ε:ε"}};
 
 /// Fibres that stiffen the tissue along one direction a: W_f = ½ c (a·E a)², E = ½ (FᵀF − I) (of kinematics small: sym
 /// H).
@@ -58,16 +77,22 @@ struct MaxwellBranch {
 };
 
 /// The stress that the Maxwell branches relax.
-enum class MaxwellPart {
-  deviator,  ///< its deviator: bulk stays elastic
-  all
-};
+enum class MaxwellPart { deviator, all };
+template <>
+inline constexpr Word<MaxwellPart> kWords<MaxwellPart>[] = {
+    {"deviator", MaxwellPart::deviator, "the deviator of the stress relaxes, bulk stays elastic"},
+    {"all", MaxwellPart::all, "all of it"}};
 
 /// Treatment of the volume change; linear tets lock from ν = 0.45 on.
 enum class VolumeChange {
-  own,   ///< of each element, as in the paper
-  nodal  ///< average nodal: mean of the vertices' means over their tets, weighted by volume [BonetBurton1998]
+  own,
+  nodal  ///< means weighted by volume [BonetBurton1998]
 };
+template <>
+inline constexpr Word<VolumeChange> kWords<VolumeChange>[] = {
+    {"own", VolumeChange::own, "of each element, the paper's; locks from ν = 0.45 on"},
+    {"nodal", VolumeChange::nodal,
+     "average nodal: mean of the vertices' means over their tets; for nearly incompressible tissue"}};
 
 /// λ and μ of linear elasticity [Pa].
 struct LameParameters {

@@ -177,6 +177,11 @@ struct ContainerSpec {
   ContainerOptions options;
   std::string origin;
 };
+template <>
+inline constexpr Word<ContainerSpec::Hold> kWords<ContainerSpec::Hold>[] = {
+    {"free", ContainerSpec::Hold::free, "slides, with `friction`, and lifts off"},
+    {"wet", ContainerSpec::Hold::wet, "slides, with `friction`, and does not come off"},
+    {"bonded", ContainerSpec::Hold::bonded, "sticks at the point of contact"}};
 
 /// A membrane on a part of the surface.
 struct CapsuleSpec {

@@ -1,7 +1,7 @@
 // integrator.h — the integrators, and what each of them supports.
 #pragma once
 
-#include <span>
+#include "glisson/words.h"
 
 namespace glisson {
 
@@ -12,6 +12,13 @@ enum class Integrator {
   implicit,       ///< Newton's method each step, stable at any step; in double
   static_         ///< equilibrium, without inertia and viscosity: time orders motions and loads; in double
 };
+
+template <>
+inline constexpr Word<Integrator> kWords<Integrator>[] = {
+    {"explicit", Integrator::explicit_, "the paper's equation 4: displacements from forces at the start of the step"},
+    {"semi_implicit", Integrator::semi_implicit, "the same, viscosity taken at the end of the step"},
+    {"implicit", Integrator::implicit, "Newton's method each step, stable at any step"},
+    {"static", Integrator::static_, "equilibrium without inertia and viscosity; time orders motions and loads"}};
 
 /// What an integrator supports. Code that chooses or refuses an integrator uses these flags, not its name.
 struct Capabilities {
@@ -27,16 +34,6 @@ struct Capabilities {
   }
 };
 
-struct IntegratorInfo {
-  Integrator integrator{};
-  const char* word = "";  ///< in files, reports and Python
-  const char* help = "";  ///< for `glisson schema`
-  Capabilities can{};
-};
-
-/// All integrators, each once.
-std::span<const IntegratorInfo> integrators();
-const IntegratorInfo& integrator_info(Integrator integrator);
-inline Capabilities capabilities(Integrator integrator) { return integrator_info(integrator).can; }
+Capabilities capabilities(Integrator integrator);
 
 }  // namespace glisson

@@ -31,20 +31,34 @@ namespace glisson {
 
 /// What happens to a run that meets an inverted tetrahedron (J ≤ 0).
 enum class OnInversion { go_on, stop };
+template <>
+inline constexpr Word<OnInversion> kWords<OnInversion>[] = {{"go_on", OnInversion::go_on, "count them and go on"},
+                                                            {"stop", OnInversion::stop, "end the run there"}};
 
 /// Time scheme of `implicit`.
 enum class TimeScheme {
-  backward_euler,    ///< first order; damps what it cannot resolve
-  newmark,           ///< second order, β = ¼, γ = ½ (mean acceleration): conserves the energy of a linear body
-  generalised_alpha  ///< second order, damps what it cannot resolve by ρ∞ [ChungHulbert1993]
+  backward_euler,
+  newmark,           ///< β = ¼, γ = ½ (mean acceleration)
+  generalised_alpha  ///< [ChungHulbert1993]
 };
+template <>
+inline constexpr Word<TimeScheme> kWords<TimeScheme>[] = {
+    {"backward_euler", TimeScheme::backward_euler, "first order; damps what it cannot resolve"},
+    {"newmark", TimeScheme::newmark, "second order, keeps the energy of a linear body"},
+    {"generalised_alpha", TimeScheme::generalised_alpha,
+     "second order, damps what it cannot resolve by `spectral_radius`"}};
 
 /// Preconditioner of the linear solves of `implicit` and `static_`.
 enum class Preconditioner {
-  automatic,      ///< factorised up to some 20 000 tets, block_diagonal above
-  factorised,     ///< sparse Cholesky of the tangent, kept as long as it converges
-  block_diagonal  ///< 3 × 3 per vertex
+  automatic,  ///< factorised up to some 20 000 tets, block_diagonal above
+  factorised,
+  block_diagonal
 };
+template <>
+inline constexpr Word<Preconditioner> kWords<Preconditioner>[] = {
+    {"auto", Preconditioner::automatic, "by the size of the body"},
+    {"factorised", Preconditioner::factorised, "sparse Cholesky, kept as long as it converges"},
+    {"block_diagonal", Preconditioner::block_diagonal, "3 × 3 per vertex"}};
 
 /// Options of the integrators `implicit` and `static_`.
 struct ImplicitOptions {
@@ -110,6 +124,13 @@ enum class StepStatus {
   not_converged,  ///< implicit, static: no equilibrium was found with any step size; the step was not made
   not_held        ///< static: supports and tools leave a rigid motion free; the step was not made
 };
+template <>
+inline constexpr Word<StepStatus> kWords<StepStatus>[] = {{"ok", StepStatus::ok},
+                                                          {"inverted", StepStatus::inverted},
+                                                          {"step_too_large", StepStatus::step_too_large},
+                                                          {"not_finite", StepStatus::not_finite},
+                                                          {"not_converged", StepStatus::not_converged},
+                                                          {"not_held", StepStatus::not_held}};
 
 struct StepResult {
   StepStatus status = StepStatus::ok;

@@ -26,8 +26,6 @@ namespace glisson {
 class ExplicitScheme : public Scheme {
  public:
   static constexpr IntegratorInfo kInfo{Integrator::explicit_,
-                                        "explicit",
-                                        "the paper's equation 4: displacements from forces at the start of the step",
                                         {.supports_interactions = true, .viscosity_limits_step = true}};
 
   /// @throws std::invalid_argument as Simulation's constructor

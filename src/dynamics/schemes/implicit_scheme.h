@@ -17,10 +17,7 @@ namespace glisson {
 
 class ImplicitScheme : public Scheme {
  public:
-  static constexpr IntegratorInfo kInfo{Integrator::implicit,
-                                        "implicit",
-                                        "Newton's method each step, stable at any step",
-                                        {.any_step_is_stable = true, .forces_at_step_end = true}};
+  static constexpr IntegratorInfo kInfo{Integrator::implicit, {.any_step_is_stable = true, .forces_at_step_end = true}};
 
   /// @throws std::invalid_argument as Simulation's constructor
   ImplicitScheme(Body body, const SimulationOptions& options, bool statics = false);
@@ -82,9 +79,7 @@ class ImplicitScheme : public Scheme {
 /// Equilibrium: time orders motions and loads.
 class StaticScheme final : public ImplicitScheme {
  public:
-  static constexpr IntegratorInfo kInfo{Integrator::static_, "static",
-                                        "equilibrium without inertia and viscosity; time orders motions and loads",
-                                        ImplicitScheme::kInfo.can};
+  static constexpr IntegratorInfo kInfo{Integrator::static_, ImplicitScheme::kInfo.can};
 
   StaticScheme(Body body, const SimulationOptions& options) : ImplicitScheme(std::move(body), options, true) {}
 };

@@ -12,7 +12,7 @@ namespace {
 
 using Make = std::unique_ptr<Scheme> (*)(Body, const SimulationOptions&);
 
-/// The integrators, in the order of their words.
+/// The integrators, each once.
 template <class... Schemes>
 struct List {
   static constexpr std::array kInfos{Schemes::kInfo...};
@@ -34,9 +34,7 @@ std::size_t place_of(Integrator integrator) {
 
 }  // namespace
 
-std::span<const IntegratorInfo> integrators() { return All::kInfos; }
-
-const IntegratorInfo& integrator_info(Integrator integrator) { return All::kInfos.at(place_of(integrator)); }
+Capabilities capabilities(Integrator integrator) { return All::kInfos.at(place_of(integrator)).can; }
 
 std::unique_ptr<Scheme> make_scheme(Body body, const SimulationOptions& options) {
   return All::kMakes.at(place_of(options.integrator))(std::move(body), options);

@@ -33,6 +33,12 @@ struct TissueChange {
   std::string past;  ///< where a change is taken back: Scheme::past before it
 };
 
+/// What a scheme says of itself.
+struct IntegratorInfo {
+  Integrator integrator{};
+  Capabilities can{};
+};
+
 class Scheme {
  public:
   /// @throws std::invalid_argument as Simulation's constructor

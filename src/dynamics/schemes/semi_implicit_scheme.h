@@ -17,8 +17,6 @@ namespace glisson {
 class SemiImplicitScheme final : public ExplicitScheme {
  public:
   static constexpr IntegratorInfo kInfo{Integrator::semi_implicit,
-                                        "semi_implicit",
-                                        "the same, viscosity taken at the end of the step",
                                         {.supports_interactions = true, .supports_them_in_viscous_tissue = false}};
 
   /// @throws std::invalid_argument as Simulation's constructor

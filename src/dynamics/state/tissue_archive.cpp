@@ -42,12 +42,7 @@ void archive(Archive& ar, MaxwellBranch& branch) { ar(branch.share, branch.time)
 
 void archive(Archive& ar, Tissue& t) {
   ar(t.name, t.youngs_modulus, t.poisson_ratio, t.density, t.viscosity, t.fibres, t.maxwell);
-  ar.word(t.viscous_tensor, ViscousTensor::pioletti);
-  ar.word(t.measure, DeformationMeasure::solid_angle);
-  ar.word(t.kinematics, Kinematics::green);
-  ar.word(t.law_form, LawForm::energy);
-  ar.word(t.maxwell_part, MaxwellPart::all);
-  ar.word(t.volume_change, VolumeChange::nodal);
+  ar(t.viscous_tensor, t.measure, t.kinematics, t.law_form, t.maxwell_part, t.volume_change);
   archive_law(ar, t.law), archive_law(ar, t.lambda_law), archive_law(ar, t.mu_law);
   archive_law(ar, t.hyperelastic);
 }

@@ -13,7 +13,7 @@ const SectionSpec& forward_section() {
   static const SectionSpec section = [] {
     using F = ForwardSpec;
     std::vector<Choice<std::optional<Integrator>>> choices;
-    for (const IntegratorInfo& i : integrators()) choices.push_back({i.word, i.integrator, ""});
+    for (const Word<Integrator>& w : kWords<Integrator>) choices.push_back({std::string(w.word), w.value, ""});
     Section<F> s("forward", "Forward model: how the forces of a fit are computed.");
     s.choice<ForwardKind>(
         "kind", &F::kind,

@@ -167,10 +167,7 @@ double Capsule::squared_frequency() const {
   return s.frequency * rise * rise;
 }
 
-void archive(Archive& ar, CapsuleEvent& event) {
-  ar(event.time, event.place, event.area);
-  ar.word(event.what, CapsuleEvent::What::opening);
-}
+void archive(Archive& ar, CapsuleEvent& event) { ar(event.time, event.place, event.area, event.what); }
 
 void Capsule::archive(Archive& ar) {
   State& s = *state_;

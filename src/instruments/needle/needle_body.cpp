@@ -132,8 +132,7 @@ std::span<const std::uint32_t> Needle::reach(double, double) {
 void Needle::archive(Archive& ar) {
   State& s = *state_;
   archive_motion(ar);
-  ar.word(s.stage, NeedleStage::inside);
-  ar(s.look, s.named_around, s.tip.rest, s.tip_along, s.bend_tip, s.tip_cuts, s.tip_out, s.withdraws);
+  ar(s.stage, s.look, s.named_around, s.tip.rest, s.tip_along, s.bend_tip, s.tip_cuts, s.tip_out, s.withdraws);
   ar(s.region, s.next_region, s.step_h, s.pressing, s.drop);
   std::vector<Vec3d> path;
   for (const shaft::Row& node : s.nodes) path.push_back(node.rest);

@@ -103,9 +103,9 @@ std::vector<TissuePreset> read_presets() {
 
 namespace scene {
 
-const std::vector<Word>& preset_words() {
-  static const std::vector<Word> words = [] {
-    std::vector<Word> list;
+const std::vector<AllowedWord>& preset_words() {
+  static const std::vector<AllowedWord> words = [] {
+    std::vector<AllowedWord> list;
     for (const Node& node : preset_nodes()) list.push_back({*node.find("name")->text(), *node.find("what")->text()});
     return list;
   }();

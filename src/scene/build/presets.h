@@ -16,7 +16,7 @@ namespace glisson::scene {
 extern const std::string_view kPresetList;
 
 /// What `tissue.preset` may be, each with what it is.
-const std::vector<Word>& preset_words();
+const std::vector<AllowedWord>& preset_words();
 
 /// The tissue that a table means which names a preset: the preset's keys, and over them its own. The preset's name is
 /// the tissue's where `named` and none is given. A table without a preset, or with one that does not exist, is left

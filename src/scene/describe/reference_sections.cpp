@@ -69,7 +69,7 @@ std::string word_list(const SectionSpec& section) {
   for (const KeySpec& key : section.keys) {
     std::string words;
     bool explained = false;
-    for (const Word& w : key.words) {
+    for (const AllowedWord& w : key.words) {
       words.append(words.empty() ? "" : "; ").append(code("\"" + w.word + "\""));
       if (!w.help.empty()) words.append(" ").append(w.help);
       explained = explained || !w.help.empty();

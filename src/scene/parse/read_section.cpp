@@ -87,10 +87,10 @@ bool check_single(const KeySpec& key, const Node& node, const Place& place) {
   if (key.type == ValueType::boolean) return std::holds_alternative<bool>(node.value) || wrong_type();
   if (key.type == ValueType::text) {
     if (!node.text()) return wrong_type();
-    const auto allowed = [&](const Word& w) { return w.word == *node.text(); };
+    const auto allowed = [&](const AllowedWord& w) { return w.word == *node.text(); };
     if (key.words.empty() || std::any_of(key.words.begin(), key.words.end(), allowed)) return true;
     std::vector<std::string> words;
-    for (const Word& w : key.words) words.push_back(w.word);
+    for (const AllowedWord& w : key.words) words.push_back(w.word);
     const std::string meant = nearest(*node.text(), words);
     place.complain("expected " + expected(key) + ", got \"" + *node.text() + "\"" +
                    (meant.empty() ? "" : "; did you mean \"" + meant + "\"?"));

@@ -41,7 +41,7 @@ enum class Shape {
   named   ///< tables only: one table for each name the user gives
 };
 
-struct Word {
+struct AllowedWord {
   std::string word, help;
 };
 
@@ -55,7 +55,7 @@ struct KeySpec {
   Range range{};       ///< of the number or of each number
   bool required = false;
   bool accepts_auto = false;                                           ///< the word "auto" instead of a number
-  std::vector<Word> words{};                                           ///< not empty: the only texts allowed
+  std::vector<AllowedWord> words{};                                    ///< not empty: the only texts allowed
   std::string default_text{};                                          ///< in TOML, or a few words; empty: none
   std::string advice{};                                                ///< the way out of a value that is not allowed
   std::function<void(void* target, const Node& value)> store{};        ///< of a checked value

@@ -143,6 +143,17 @@ struct Codec<std::vector<T>> : ListCodec<std::vector<T>, T> {
   static std::string show(const std::vector<T>& v) { return Codec::show_all(v); }
 };
 
+template <HasWords E>
+struct Codec<E> {
+  static constexpr ValueType kType = ValueType::text;
+  static constexpr Shape kShape = Shape::one;
+  static E read(const Node& n) {
+    const auto is_it = [&](const Word<E>& w) { return w.word == *n.text(); };
+    return std::find_if(std::begin(kWords<E>), std::end(kWords<E>), is_it)->value;
+  }
+  static std::string show(E value) { return "\"" + std::string(word_of(value)) + "\""; }
+};
+
 /// One word of a choice and the value it stands for.
 template <class T>
 struct Choice {
@@ -167,7 +178,7 @@ class Section {
     return add_value<T, unwrapped<Code>>(std::move(name), access, std::move(help));
   }
 
-  /// A value that is one of some words.
+  /// A value that is one of some words: of types that have none of their own (glisson/words.h).
   template <class T, class Access>
   KeySpec& choice(std::string name, Access access, std::vector<Choice<T>> choices, std::string help) {
     KeySpec key{.name = std::move(name), .help = std::move(help), .type = ValueType::text};
@@ -242,6 +253,9 @@ class Section {
   KeySpec& add_value(std::string name, Access access, std::string help) {
     KeySpec key{.name = std::move(name), .help = std::move(help), .type = Code::kType, .shape = Code::kShape};
     if constexpr (requires { Code::kLargest; }) key.range = between(0.0, Code::kLargest);
+    if constexpr (HasWords<T>) {
+      for (const Word<T>& w : kWords<T>) key.words.push_back({std::string(w.word), std::string(w.help)});
+    }
     if constexpr (std::is_default_constructible_v<S>) {
       const auto initial = std::make_unique<S>();
       key.default_text = Code::show(std::invoke(access, *initial));

@@ -45,11 +45,7 @@ const SectionSpec& container_section() {
     s.key(
          "floor_m", [](ContainerSpec & x) -> auto& { return x.options.pose.position; }, "centre of its floor")
         .in("m");
-    s.choice<Hold>("hold", &ContainerSpec::hold,
-                   {{"free", Hold::free, "slides, with `friction`, and lifts off"},
-                    {"wet", Hold::wet, "slides, with `friction`, and does not come off"},
-                    {"bonded", Hold::bonded, "sticks at the point of contact"}},
-                   "how tissue is held in contact");
+    s.key("hold", &ContainerSpec::hold, "how tissue is held in contact");
     s.key("friction", option(&O::friction), "Coulomb's μ").in("-").within(at_least(0));
     s.key<Milli>("push_out_speed_mm_s", option(&O::push_out_speed),
                  "largest speed of tissue that starts outside the vessel")

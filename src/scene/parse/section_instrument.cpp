@@ -64,12 +64,8 @@ SectionSpec probe_kind() {
   Section<Contact<NeedleShape>> s("probe", "The outside of a needle, which presses and does not pierce.");
   size_key(s, "diameter_mm", &NeedleShape::diameter, "diameter");
   size_key(s, "length_mm", &NeedleShape::length, "length with the tip");
-  s.choice<TipForm>(
-      "tip", [](Contact<NeedleShape> & x) -> auto& { return x.form.tip; },
-      {{"conical", TipForm::conical, "a cone"},
-       {"bevelled", TipForm::bevelled, "cut by one plane, its point to the side"},
-       {"blunt", TipForm::blunt, "a hemisphere"}},
-      "shape of the tip");
+  s.key(
+      "tip", [](Contact<NeedleShape> & x) -> auto& { return x.form.tip; }, "shape of the tip");
   s.key(
        "tip_angle_rad", [](Contact<NeedleShape> & x) -> auto& { return x.form.tip_angle; },
        "full angle of the cone, or between the bevel and the shaft")

@@ -15,10 +15,7 @@ SectionSpec box_kind() {
   s.key("cells", &BoxOptions::cells, "cubes along x, y and z").within(between(1, kMostCells));
   s.key("size_m", &BoxOptions::size, "edge lengths of the box").in("m").within(above(0));
   s.key("origin_m", &BoxOptions::origin, "lowest corner").in("m");
-  s.choice<BoxSplit>("split", &BoxOptions::split,
-                     {{"kuhn", BoxSplit::kuhn, "every cube along its (0,0,0)–(1,1,1) diagonal"},
-                      {"alternating", BoxSplit::alternating, "mirrored in every second cube, no preferred diagonal"}},
-                     "how a cube is split in six");
+  s.key("split", &BoxOptions::split, "how a cube is split in six");
   return s.spec();
 }
 

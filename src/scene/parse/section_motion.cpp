@@ -39,12 +39,7 @@ const SectionSpec& implicit_section() {
   static const SectionSpec section = [] {
     using Options = ImplicitOptions;
     Section<Options> s("motion.implicit", "Options of the integrators implicit and static.");
-    s.choice<TimeScheme>("scheme", &Options::scheme,
-                         {{"backward_euler", TimeScheme::backward_euler, "first order; damps what it cannot resolve"},
-                          {"newmark", TimeScheme::newmark, "second order, keeps the energy of a linear body"},
-                          {"generalised_alpha", TimeScheme::generalised_alpha,
-                           "second order, damps what it cannot resolve by `spectral_radius`"}},
-                         "time scheme of the integrator implicit");
+    s.key("scheme", &Options::scheme, "time scheme of the integrator implicit");
     s.key("spectral_radius", &Options::spectral_radius, "ρ∞ of generalised_alpha").in("-").within(between(0, 1));
     s.key("largest_step_s", &Options::largest_step, "first and largest automatic step")
         .in("s")
@@ -56,12 +51,7 @@ const SectionSpec& implicit_section() {
     s.key("most_iterations", &Options::most_iterations, "of Newton's method, before a step is halved")
         .within(between(1, 1000));
     s.key("most_cuts", &Options::most_cuts, "how often a step is halved before the run stops").within(between(0, 40));
-    s.choice<Preconditioner>(
-        "preconditioner", &Options::preconditioner,
-        {{"auto", Preconditioner::automatic, "by the size of the body"},
-         {"factorised", Preconditioner::factorised, "sparse Cholesky, kept as long as it converges"},
-         {"block_diagonal", Preconditioner::block_diagonal, "3 × 3 per vertex"}},
-        "preconditioner of the linear solves");
+    s.key("preconditioner", &Options::preconditioner, "preconditioner of the linear solves");
     return s.spec();
   }();
   return section;
@@ -69,13 +59,10 @@ const SectionSpec& implicit_section() {
 
 const SectionSpec& motion_section() {
   static const SectionSpec section = [] {
-    std::vector<Choice<Integrator>> choices;
-    for (const IntegratorInfo& i : integrators()) choices.push_back({i.word, i.integrator, i.help});
     Section<Variant> s("motion",
                        "Time integration: the integrator, its step, damping, gravity, and the end of the run.");
-    s.choice<Integrator>(
-        "integrator", [](Variant & v) -> auto& { return v.simulation.integrator; }, choices,
-        "how the body is advanced in time");
+    s.key(
+        "integrator", [](Variant & v) -> auto& { return v.simulation.integrator; }, "how the body is advanced in time");
     s.key(
          "step_s", [](Variant & v) -> auto& { return v.simulation.step; },
          "time step h; \"auto\" takes 0.9 of the stable step and follows the tissue; for implicit and static the "
@@ -95,10 +82,8 @@ const SectionSpec& motion_section() {
     s.table(
         "implicit", implicit_section(), [](Variant & v) -> auto& { return v.simulation.implicit; },
         "options of the integrators implicit and static");
-    s.choice<Precision>(
+    s.key(
         "precision", [](Variant & v) -> auto& { return v.simulation.precision; },
-        {{"single", Precision::single_precision, "elements in float, state in double"},
-         {"double", Precision::double_precision, "everything in double"}},
         "precision of the element arithmetic");
     s.key(
          "damping_rate_per_s", [](Variant & v) -> auto& { return v.simulation.damping_rate; },
@@ -118,10 +103,7 @@ const SectionSpec& motion_section() {
          "time over which gravity grows from 0")
         .in("s")
         .within(at_least(0));
-    s.choice<OnInversion>(
-        "on_inversion", &Variant::on_inversion,
-        {{"go_on", OnInversion::go_on, "count them and go on"}, {"stop", OnInversion::stop, "end the run there"}},
-        "what to do when a tetrahedron inverts");
+    s.key("on_inversion", &Variant::on_inversion, "what to do when a tetrahedron inverts");
     s.key("duration_s", &Variant::duration, "simulated time")
         .in("s")
         .within(above(0))

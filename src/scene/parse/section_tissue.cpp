@@ -34,35 +34,6 @@ std::vector<KindSpec> law_kinds(std::type_identity<std::variant<Laws...>>) {
   return {law_kind<Laws, std::variant<Laws...>>()...};
 }
 
-std::vector<Choice<ViscousTensor>> viscous_tensors() {
-  return {{"shear", ViscousTensor::shear, "σ_v = 2 η ε̇"},
-          {"deviatoric", ViscousTensor::deviatoric, "σ_v = 2 η dev ε̇"},
-          {"proportional", ViscousTensor::proportional, "(η/E) × the elastic tensor at rest"},
-          {"pioletti", ViscousTensor::pioletti, "S_v = 2 η (I₁ − 3) Ė, for large strain"}};
-}
-
-std::vector<Choice<Kinematics>> kinematics() {
-  return {{"small", Kinematics::small, "ε = sym H, the paper's; takes a rotation by θ for the strain cos θ − 1"},
-          {"corotational", Kinematics::corotational, "ε = U − I of F = R U, for large rotations"},
-          {"green", Kinematics::green, "E = ½ (FᵀF − I), St Venant–Kirchhoff"}};
-}
-
-std::vector<Choice<LawForm>> law_forms() {
-  return {{"secant", LawForm::secant, "σ = λ(x) tr(ε) I + 2 μ(x) ε, the paper's; stores no energy"},
-          {"energy", LawForm::energy, "∂W/∂F of W = ½ λ(x) tr(ε)² + μ(x) ε:ε"}};
-}
-
-std::vector<Choice<MaxwellPart>> maxwell_parts() {
-  return {{"deviator", MaxwellPart::deviator, "the deviator of the stress relaxes, bulk stays elastic"},
-          {"all", MaxwellPart::all, "all of it"}};
-}
-
-std::vector<Choice<VolumeChange>> volume_changes() {
-  return {{"own", VolumeChange::own, "of each element, the paper's; locks from ν = 0.45 on"},
-          {"nodal", VolumeChange::nodal,
-           "average nodal: mean of the vertices' means over their tets; for nearly incompressible tissue"}};
-}
-
 /// What require_valid would refuse, said at the key that is wrong.
 void check_together(const Tissue& t, const Node& table, const Place& place) {
   double sum = 0.0;
@@ -76,17 +47,6 @@ void check_together(const Tissue& t, const Node& table, const Place& place) {
   place.complain(*table.find("viscous_tensor"), "viscous_tensor",
                  "\"pioletti\" is a law of large strain; set `kinematics` to \"green\" or \"corotational\" or give a "
                  "`hyperelastic` law");
-}
-
-std::vector<Choice<DeformationMeasure>> measures() {
-  return {{"intensity", DeformationMeasure::intensity, "s = √(3 (1 − q) / 2), 0 at rest, ≈ ‖dev ε‖"},
-          {"one_minus_q", DeformationMeasure::one_minus_q, "1 − q, 0 at rest, ≈ ⅔ ‖dev ε‖²"},
-          {"regular_mean_ratio", DeformationMeasure::regular_mean_ratio,
-           "mean ratio of the deformed tetrahedron against a regular one, the paper's raw measure"},
-          {"radius_ratio", DeformationMeasure::radius_ratio,
-           "√(5 (1 − ρ) / 4), 0 at rest, ρ three times in- over circumradius"},
-          {"solid_angle", DeformationMeasure::solid_angle,
-           "0.831 (1 − σ), 0 at rest, σ the sine of half the smallest solid angle, 1 at rest"}};
 }
 
 /// E and ν from `lambda_Pa` and `mu_Pa`, where those are given.
@@ -201,8 +161,8 @@ const SectionSpec& tissue_section() {
     s.bare({.name = "mu_Pa", .help = "shear modulus μ at rest", .unit = "Pa", .range = above(0)});
     s.key("density_kg_m3", &Tissue::density, "density ρ").in("kg/m³").within(above(0));
     s.key("viscosity_Pa_s", &Tissue::viscosity, "viscosity η").in("Pa·s").within(at_least(0));
-    s.choice<ViscousTensor>("viscous_tensor", &Tissue::viscous_tensor, viscous_tensors(), "tensor that carries η");
-    s.choice<DeformationMeasure>("measure", &Tissue::measure, measures(), "measure of deformation x of the laws");
+    s.key("viscous_tensor", &Tissue::viscous_tensor, "tensor that carries η");
+    s.key("measure", &Tissue::measure, "measure of deformation x of the laws");
     s.table("law", law_section(), &Tissue::law, "law of E, ν constant").otherwise("{ kind = \"constant\" }");
     s.table(
          "lambda_law", law_section(), [](Tissue& t) -> StiffnessLaw& { return t.lambda_law.emplace(); },
@@ -212,8 +172,8 @@ const SectionSpec& tissue_section() {
          "mu_law", law_section(), [](Tissue& t) -> StiffnessLaw& { return t.mu_law.emplace(); },
          "law of μ, in place of a law of E")
         .otherwise("μ constant");
-    s.choice<Kinematics>("kinematics", &Tissue::kinematics, kinematics(), "strain that E and ν act on");
-    s.choice<LawForm>("law_form", &Tissue::law_form, law_forms(), "force of a stiffness law");
+    s.key("kinematics", &Tissue::kinematics, "strain that E and ν act on");
+    s.key("law_form", &Tissue::law_form, "force of a stiffness law");
     s.table(
          "hyperelastic", hyperelastic_section(), [](Tissue& t) -> HyperelasticLaw& { return t.hyperelastic.emplace(); },
          "large-deformation law, in place of E, ν and their laws")
@@ -224,9 +184,8 @@ const SectionSpec& tissue_section() {
         .otherwise("none");
     s.tables("maxwell", maxwell_section(), &Tissue::maxwell,
              "branches that relax, each with its time constant; the given moduli are then the instantaneous ones");
-    s.choice<MaxwellPart>("maxwell_part", &Tissue::maxwell_part, maxwell_parts(), "stress that the branches relax");
-    s.choice<VolumeChange>("volume_change", &Tissue::volume_change, volume_changes(),
-                           "volume change that the bulk resists");
+    s.key("maxwell_part", &Tissue::maxwell_part, "stress that the branches relax");
+    s.key("volume_change", &Tissue::volume_change, "volume change that the bulk resists");
     s.spec().exclusions = {{{{"preset"}, {"file"}}, false},
                            {{{"youngs_modulus_Pa", "poisson_ratio"}, {"lambda_Pa", "mu_Pa"}, {"hyperelastic"}}, false},
                            {{{"law"}, {"lambda_law", "mu_law"}, {"hyperelastic"}}, false},

@@ -1,0 +1,33 @@
+// words.h — the words that stand for enumerators in scenes, in Python and in messages: one table beside each enumeration.
+#pragma once
+
+#include <string_view>
+#include <type_traits>
+
+namespace glisson {
+
+/// A word, the enumerator it stands for, and what that means.
+template <class E>
+struct Word {
+  std::string_view word;
+  E value;
+  std::string_view help{};
+};
+
+/// The table of an enumeration, an array; of others there is none.
+template <class E>
+inline constexpr const Word<E>* kWords = nullptr;
+
+template <class E>
+concept HasWords = std::is_array_v<decltype(kWords<E>)>;
+
+/// The word of an enumerator; empty for a number that is none.
+template <HasWords E>
+constexpr std::string_view word_of(E value) {
+  for (const Word<E>& w : kWords<E>) {
+    if (w.value == value) return w.word;
+  }
+  return {};
+}
+
+}  // namespace glisson
