@@ -15,19 +15,13 @@
 namespace glisson::app {
 namespace {
 
-std::string range_text(double min, double max) {
-  if (std::isinf(min) && std::isinf(max)) return "any";
-  if (std::isinf(max)) return fmt::format("{:g} or more", min);
-  return std::isinf(min) ? fmt::format("up to {:g}", max) : fmt::format("{:g} to {:g}", min, max);
-}
-
 template <class Law>
 void print_law() {
   say("{}\n  {}\n", Law::kName, Law::kHelp);
-  for (const auto& field : Law::kFields) {
-    say("    {:<18} [{}], {}{}: {}\n", field.key, field.unit, range_text(field.min, field.max),
+  each_field<Law>([](const auto& field) {
+    say("    {:<18} [{}], {}{}: {}\n", field.key(), field.unit, field.range.bounded() ? field.range.text() : "any",
         field.required ? "" : ", optional", field.help);
-  }
+  });
 }
 
 template <class... Laws>

@@ -16,10 +16,9 @@ std::string hyperelastic_text(const HyperelasticLaw& law) {
   return std::visit(
       []<class Law>(const Law& l) {
         std::string text;
-        for (const LawField<Law>& field : Law::kFields) {
-          const std::string value = std::visit([&](auto member) { return value_text(l.*member); }, field.member);
-          text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", field.key, value);
-        }
+        each_field<Law>([&](const auto& field) {
+          text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", field.key(), value_text(l.*field.member));
+        });
         return fmt::format("{}: {}", Law::kName, text);
       },
       law);

@@ -2,8 +2,8 @@
 //
 //   void archive(Archive& ar) { ar(position, velocity, events); }
 //
-// Parts are numbers, flags, enumerators that have words, strings, vectors, lists of them, and whatever has such a function, as a
-// member or beside it. What is read may have been forged: where bytes are missing, a list is longer than what is left, a flag is
+// Parts are numbers, flags, enumerators that have words, strings, vectors, described structs (field.h), lists and variants of
+// them, and whatever has such a function, as a member or beside it. What is read may have been forged: where bytes are missing, a list is longer than what is left, a flag is
 // neither 0 nor 1, an enumerator has no word or keys do not ascend, it is refused by an exception. What else a number may be is
 // known to its class, which checks it as it reads.
 #pragma once
@@ -22,8 +22,10 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "glisson/field.h"
 #include "glisson/math.h"
 #include "glisson/words.h"
 
@@ -104,6 +106,8 @@ class Archive {
       if (reads_) order(bytes), value = std::bit_cast<T>(bytes);
     } else if constexpr (requires { value.archive(*this); }) {
       value.archive(*this);
+    } else if constexpr (Described<T>) {
+      each_field<T>([&](const auto& field) { part(value.*field.member); });
     } else {
       archive(*this, value);
     }
@@ -130,6 +134,19 @@ class Archive {
     part(there);
     if (reads_) there ? static_cast<void>(value.emplace()) : value.reset();
     if (value) part(*value);
+  }
+  /// By its place in the list of types.
+  template <class... T>
+  void part(std::variant<T...>& value) {
+    auto index = static_cast<std::uint8_t>(value.index());
+    part(index);
+    check(index < sizeof...(T));
+    const auto becomes = [&]<class One>(std::type_identity<One>, std::size_t i) {
+      if (i == index && i != value.index()) value.template emplace<One>();
+    };
+    std::size_t i = 0;
+    (becomes(std::type_identity<T>(), i++), ...);
+    std::visit([this](auto& one) { part(one); }, value);
   }
   void part(std::string& text) {
     text.resize(count(text.size(), 1));

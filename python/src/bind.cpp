@@ -14,6 +14,15 @@ const char* doc(const std::string& name) {
   return found == std::end(kDocstrings) ? "" : found->second;
 }
 
+std::string description(const FieldText& field) {
+  std::string text(field.help);
+  const std::string unit = field.si_unit();
+  if (!unit.empty()) text += " [" + unit + "]";
+  Range range = field.range;
+  range.min *= field.scale(), range.max *= field.scale();
+  return range.bounded() ? text + ", " + range.text() : text;
+}
+
 void set_field(nb::handle self, const std::string& field, nb::handle value) {
   try {
     nb::setattr(self, field.c_str(), value);

@@ -28,6 +28,7 @@
 #include <utility>
 #include <vector>
 
+#include "glisson/field.h"
 #include "glisson/math.h"
 #include "glisson/words.h"
 
@@ -84,11 +85,15 @@ void set_field(nb::handle self, const std::string& field, nb::handle value);
 /// Refuses a field that a class of options has not, naming the nearest that it has. @throws nb::type_error
 [[noreturn]] void no_such_field(nb::handle type, const std::string& field);
 
-/// A class of options: every field by name in its constructor, readable and writable, shown by repr().
+/// Of a field without a comment of its own: meaning, unit and range from its description.
+std::string description(const FieldText& field);
+
+/// A class of options: every field by name in its constructor, readable and writable, shown by repr(). Those of a
+/// described struct (glisson/field.h) are all there.
 template <class T>
 class Options : public nb::class_<T> {
  public:
-  Options(nb::handle scope, const char* name, const char* of) : nb::class_<T>(scope, name, doc(of)), of_(of) {
+  Options(nb::handle scope, const char* name) : nb::class_<T>(scope, name, doc(name)), of_(name) {
     this->def("__init__", [](nb::pointer_and_handle<T> self, const nb::kwargs& fields) {
       new (self.p) T();
       nb::inst_mark_ready(self.h);
@@ -123,15 +128,22 @@ class Options : public nb::class_<T> {
       }
     });
     this->attr("_fields") = nb::tuple();
+    if constexpr (Described<T>) each_field<T>([&](const auto& f) { add(f.name.data(), f.member, description(f)); });
   }
   template <class M>
   Options& field(const char* name, M member) {
-    this->def_rw(name, member, doc(of_ + "::" + name));
-    this->attr("_fields") = nb::object(this->attr("_fields")) + nb::make_tuple(name);
+    add(name, member, "");
     return *this;
   }
 
  private:
+  template <class M>
+  void add(const char* name, M member, const std::string& description) {
+    const std::string comment = doc(of_ + "::" + name);
+    this->def_rw(name, member, (comment.empty() ? description : comment).c_str());
+    this->attr("_fields") = nb::object(this->attr("_fields")) + nb::make_tuple(name);
+  }
+
   std::string of_;
 };
 

@@ -14,19 +14,19 @@ namespace glisson::python {
 namespace {
 
 void bind_shapes(nb::module_& m) {
-  Options<FlatPunch>(m, "FlatPunch", "FlatPunch")
+  Options<FlatPunch>(m, "FlatPunch")
       .field("radius", &FlatPunch::radius)
       .field("edge_radius", &FlatPunch::edge_radius)
       .field("length", &FlatPunch::length);
-  Options<Ball>(m, "Ball", "Ball").field("radius", &Ball::radius);
-  Options<NeedleShape>(m, "NeedleShape", "NeedleShape")
+  Options<Ball>(m, "Ball").field("radius", &Ball::radius);
+  Options<NeedleShape>(m, "NeedleShape")
       .field("diameter", &NeedleShape::diameter)
       .field("length", &NeedleShape::length)
       .field("tip", &NeedleShape::tip)
       .field("tip_angle", &NeedleShape::tip_angle);
-  Options<Plate>(m, "Plate", "Plate");
-  Options<CylinderWall>(m, "CylinderWall", "CylinderWall").field("radius", &CylinderWall::radius);
-  Options<Block>(m, "Block", "Block").field("size", &Block::size).field("edge_radius", &Block::edge_radius);
+  Options<Plate>(m, "Plate");
+  Options<CylinderWall>(m, "CylinderWall").field("radius", &CylinderWall::radius);
+  Options<Block>(m, "Block").field("size", &Block::size).field("edge_radius", &Block::edge_radius);
   m.def(
       "distance_to",
       [](const Shape& shape, const Vec3d& x) {
@@ -34,47 +34,22 @@ void bind_shapes(nb::module_& m) {
         return std::pair(d.distance, d.normal);
       },
       "shape"_a, "x"_a, doc("distance_to"));
-  Options<CylinderVessel>(m, "CylinderVessel", "CylinderVessel")
+  Options<CylinderVessel>(m, "CylinderVessel")
       .field("radius", &CylinderVessel::radius)
       .field("height", &CylinderVessel::height);
-  Options<BoxVessel>(m, "BoxVessel", "BoxVessel")
+  Options<BoxVessel>(m, "BoxVessel")
       .field("width", &BoxVessel::width)
       .field("length", &BoxVessel::length)
       .field("height", &BoxVessel::height);
 }
 
 void bind_motions(nb::module_& m) {
-  Options<SteadyMotion>(m, "SteadyMotion", "SteadyMotion")
-      .field("direction", &SteadyMotion::direction)
-      .field("velocity", &SteadyMotion::velocity)
-      .field("start", &SteadyMotion::start)
-      .field("ramp", &SteadyMotion::ramp);
-  Options<Stroke>(m, "Stroke", "Stroke")
-      .field("to", &Stroke::to)
-      .field("velocity", &Stroke::velocity)
-      .field("ramp", &Stroke::ramp)
-      .field("rest", &Stroke::rest);
-  Options<StrokeMotion>(m, "StrokeMotion", "StrokeMotion")
-      .field("start", &StrokeMotion::start)
-      .field("strokes", &StrokeMotion::strokes);
-  Options<SineMotion>(m, "SineMotion", "SineMotion")
-      .field("direction", &SineMotion::direction)
-      .field("amplitude", &SineMotion::amplitude)
-      .field("frequency", &SineMotion::frequency)
-      .field("mean", &SineMotion::mean)
-      .field("start", &SineMotion::start)
-      .field("ramp", &SineMotion::ramp)
-      .field("duration", &SineMotion::duration);
-  Options<RecordedMotion>(m, "RecordedMotion", "RecordedMotion")
-      .field("times", &RecordedMotion::times)
-      .field("positions", &RecordedMotion::positions)
-      .field("start", &RecordedMotion::start);
-  Options<HandCoupling>(m, "HandCoupling", "HandCoupling")
-      .field("stiffness", &HandCoupling::stiffness)
-      .field("damping", &HandCoupling::damping)
-      .field("mass", &HandCoupling::mass)
-      .field("period", &HandCoupling::period)
-      .field("device_damping", &HandCoupling::device_damping);
+  Options<SteadyMotion>(m, "SteadyMotion");
+  Options<Stroke>(m, "Stroke");
+  Options<StrokeMotion>(m, "StrokeMotion");
+  Options<SineMotion>(m, "SineMotion");
+  Options<RecordedMotion>(m, "RecordedMotion");
+  Options<HandCoupling>(m, "HandCoupling");
   m.def("largest_passive_stiffness", &largest_passive_stiffness, "coupling"_a, doc("largest_passive_stiffness"));
 }
 
@@ -94,7 +69,7 @@ ToolPath path_of(const Way& way, std::optional<double> end) {
 }
 
 void bind_drivers(nb::module_& m) {
-  Options<Pose>(m, "Pose", "Pose").field("position", &Pose::position).field("axes", &Pose::axes);
+  Options<Pose>(m, "Pose").field("position", &Pose::position).field("axes", &Pose::axes);
   nb::class_<ToolDriver>(m, "ToolDriver", doc("ToolDriver"))
       .def_prop_ro("start", &ToolDriver::start, doc("ToolDriver::start"))
       .def_prop_ro("end", &ToolDriver::end, doc("ToolDriver::end"));
@@ -193,7 +168,7 @@ void bind_driven_set(nb::module_& m) {
 }
 
 void bind_needle(nb::module_& m) {
-  Options<ShaftFriction>(m, "ShaftFriction", "ShaftFriction")
+  Options<ShaftFriction>(m, "ShaftFriction")
       .field("static_in", &ShaftFriction::static_in)
       .field("static_out", &ShaftFriction::static_out)
       .field("dynamic_in", &ShaftFriction::dynamic_in)
@@ -201,14 +176,14 @@ void bind_needle(nb::module_& m) {
       .field("viscous_in", &ShaftFriction::viscous_in)
       .field("viscous_out", &ShaftFriction::viscous_out)
       .field("stick_speed", &ShaftFriction::stick_speed);
-  Options<TipResistance>(m, "TipResistance", "TipResistance")
+  Options<TipResistance>(m, "TipResistance")
       .field("cutting", &TipResistance::cutting)
       .field("puncture", &TipResistance::puncture);
-  Options<Rupture>(m, "Rupture", "Rupture")
+  Options<Rupture>(m, "Rupture")
       .field("force", &Rupture::force)
       .field("toughness", &Rupture::toughness)
       .field("membrane_thickness", &Rupture::membrane_thickness);
-  Options<NeedleOptions>(m, "NeedleOptions", "NeedleOptions")
+  Options<NeedleOptions>(m, "NeedleOptions")
       .field("name", &NeedleOptions::name)
       .field("diameter", &NeedleOptions::diameter)
       .field("length", &NeedleOptions::length)
@@ -241,7 +216,7 @@ void bind_needle(nb::module_& m) {
 }
 
 void bind_contact(nb::module_& m) {
-  Options<ContactOptions>(m, "ContactOptions", "ContactOptions")
+  Options<ContactOptions>(m, "ContactOptions")
       .field("name", &ContactOptions::name)
       .field("shape", &ContactOptions::shape)
       .field("friction", &ContactOptions::friction)
@@ -264,7 +239,7 @@ void bind_contact(nb::module_& m) {
 }
 
 void bind_vessels(nb::module_& m) {
-  Options<ContainerOptions>(m, "ContainerOptions", "ContainerOptions")
+  Options<ContainerOptions>(m, "ContainerOptions")
       .field("name", &ContainerOptions::name)
       .field("vessel", &ContainerOptions::vessel)
       .field("pose", &ContainerOptions::pose)
@@ -286,7 +261,7 @@ void bind_vessels(nb::module_& m) {
 }
 
 void bind_capsule(nb::module_& m) {
-  Options<CapsuleOptions>(m, "CapsuleOptions", "CapsuleOptions")
+  Options<CapsuleOptions>(m, "CapsuleOptions")
       .field("name", &CapsuleOptions::name)
       .field("thickness", &CapsuleOptions::thickness)
       .field("youngs_modulus", &CapsuleOptions::youngs_modulus)
@@ -322,11 +297,11 @@ void bind_capsule(nb::module_& m) {
 }
 
 void bind_blade(nb::module_& m) {
-  Options<CutOptions>(m, "CutOptions", "CutOptions")
+  Options<CutOptions>(m, "CutOptions")
       .field("snap", &CutOptions::snap)
       .field("least_quality", &CutOptions::least_quality)
       .field("least_step", &CutOptions::least_step);
-  Options<BladeOptions>(m, "BladeOptions", "BladeOptions")
+  Options<BladeOptions>(m, "BladeOptions")
       .field("name", &BladeOptions::name)
       .field("direction", &BladeOptions::direction)
       .field("edge_from", &BladeOptions::edge_from)

@@ -142,17 +142,8 @@ void bind_meshes(nb::module_& m) {
         return "<TetMesh of " + std::to_string(mesh.vertices.size()) + " vertices and " +
                std::to_string(mesh.tets.size()) + " tets>";
       });
-  Options<BoxOptions>(m, "BoxOptions", "BoxOptions")
-      .field("cells", &BoxOptions::cells)
-      .field("size", &BoxOptions::size)
-      .field("origin", &BoxOptions::origin)
-      .field("split", &BoxOptions::split);
-  Options<CylinderOptions>(m, "CylinderOptions", "CylinderOptions")
-      .field("radius", &CylinderOptions::radius)
-      .field("height", &CylinderOptions::height)
-      .field("radial_cells", &CylinderOptions::radial_cells)
-      .field("axial_cells", &CylinderOptions::axial_cells)
-      .field("grading", &CylinderOptions::grading);
+  Options<BoxOptions>(m, "BoxOptions");
+  Options<CylinderOptions>(m, "CylinderOptions");
   m.def(
       "box_mesh", [](const nb::kwargs& o) { return box_mesh(options_from<BoxOptions>(o)); }, doc("box_mesh"));
   m.def(

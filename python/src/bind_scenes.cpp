@@ -17,9 +17,7 @@ std::vector<Override> overrides_of(const Overrides& pairs) {
 std::string of(const char* member) { return std::string("Variant::") + member; }
 
 void bind_variant(nb::module_& m) {
-  Options<OutputSpec>(m, "OutputSpec", "OutputSpec")
-      .field("sample_rate", &OutputSpec::sample_rate)
-      .field("frames", &OutputSpec::frames);
+  Options<OutputSpec>(m, "OutputSpec");
   nb::class_<Variant>(m, "Variant", doc("Variant"))
       .def_rw("name", &Variant::name)
       .def_rw("label", &Variant::label)

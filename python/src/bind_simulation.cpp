@@ -153,29 +153,8 @@ nb::dict constraints_of(const Live& live) {
 }
 
 void bind_options(nb::module_& m) {
-  Options<ImplicitOptions>(m, "ImplicitOptions", "ImplicitOptions")
-      .field("scheme", &ImplicitOptions::scheme)
-      .field("spectral_radius", &ImplicitOptions::spectral_radius)
-      .field("largest_step", &ImplicitOptions::largest_step)
-      .field("tolerance", &ImplicitOptions::tolerance)
-      .field("most_iterations", &ImplicitOptions::most_iterations)
-      .field("most_cuts", &ImplicitOptions::most_cuts)
-      .field("preconditioner", &ImplicitOptions::preconditioner);
-  Options<SimulationOptions>(m, "SimulationOptions", "SimulationOptions")
-      .field("integrator", &SimulationOptions::integrator)
-      .field("step", &SimulationOptions::step)
-      .field("implicit", &SimulationOptions::implicit)
-      .field("precision", &SimulationOptions::precision)
-      .field("damping_rate", &SimulationOptions::damping_rate)
-      .field("nodal_damping", &SimulationOptions::nodal_damping)
-      .field("mass_scaling_step", &SimulationOptions::mass_scaling_step)
-      .field("gravity", &SimulationOptions::gravity)
-      .field("gravity_ramp", &SimulationOptions::gravity_ramp)
-      .field("enforce_stability", &SimulationOptions::enforce_stability)
-      .field("threads", &SimulationOptions::threads)
-      .field("track_energies", &SimulationOptions::track_energies)
-      .field("exact_steps", &SimulationOptions::exact_steps)
-      .field("mesh_changes", &SimulationOptions::mesh_changes);
+  Options<ImplicitOptions>(m, "ImplicitOptions");
+  Options<SimulationOptions>(m, "SimulationOptions");
 }
 
 void bind_readings(nb::module_& m) {
@@ -404,14 +383,7 @@ void bind_simulation(nb::module_& m) {
   bind_options(m);
   bind_readings(m);
   nb::exception<StepError>(m, "StepError", PyExc_RuntimeError);
-  Options<PressMotion>(m, "PressMotion", "PressMotion")
-      .field("direction", &PressMotion::direction)
-      .field("velocity", &PressMotion::velocity)
-      .field("depth", &PressMotion::depth)
-      .field("start", &PressMotion::start)
-      .field("ramp", &PressMotion::ramp)
-      .field("hold", &PressMotion::hold)
-      .field("returns", &PressMotion::returns);
+  Options<PressMotion>(m, "PressMotion");
   m.def("press_depth", &press_depth, "motion"_a, "time"_a, doc("press_depth"));
   m.def("press_end", &press_end, "motion"_a, doc("press_end"));
   static PyType_Slot slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(visit_functions)},

@@ -11,20 +11,6 @@
 namespace glisson::python {
 namespace {
 
-/// "SlopedLaw::slope" has the docstring; where it has none, the law's own help serves.
-template <class Law>
-void bind_law(nb::module_& m, const std::string& name) {
-  Options<Law> law(m, name.c_str(), name.c_str());
-  law.attr("name") = std::string(Law::kName);
-  for (const LawField<Law>& field : Law::kFields) {
-    std::string key(field.key);
-    for (const char* unit : {"_Pa", "_s"}) {
-      if (key.ends_with(unit)) key.resize(key.size() - std::string_view(unit).size());
-    }
-    std::visit([&](auto member) { law.field(key.c_str(), member); }, field.member);
-  }
-}
-
 /// "neo_hookean" → "NeoHookean": the struct's own name, but for a suffix.
 std::string class_name(std::string_view kind) {
   std::string name;
@@ -37,7 +23,7 @@ std::string class_name(std::string_view kind) {
 }
 template <class... Laws>
 void bind_each(nb::module_& m, const char* suffix, std::type_identity<std::variant<Laws...>>) {
-  (bind_law<Laws>(m, class_name(Laws::kName) + suffix), ...);
+  ((Options<Laws>(m, (class_name(Laws::kName) + suffix).c_str()).attr("name") = std::string(Laws::kName)), ...);
 }
 
 /// A stiffness law at one value, or at all of an array, of the measure.
@@ -77,28 +63,9 @@ std::pair<double, double> pair_of(const LameParameters& lame) { return {lame.lam
 
 void bind_tissues(nb::module_& m) {
   bind_laws(m);
-  Options<Fibres>(m, "Fibres", "Fibres").field("direction", &Fibres::direction).field("stiffness", &Fibres::stiffness);
-  Options<MaxwellBranch>(m, "MaxwellBranch", "MaxwellBranch")
-      .field("share", &MaxwellBranch::share)
-      .field("time", &MaxwellBranch::time);
-  Options<Tissue> tissue(m, "Tissue", "Tissue");
-  tissue.field("name", &Tissue::name)
-      .field("youngs_modulus", &Tissue::youngs_modulus)
-      .field("poisson_ratio", &Tissue::poisson_ratio)
-      .field("density", &Tissue::density)
-      .field("viscosity", &Tissue::viscosity)
-      .field("viscous_tensor", &Tissue::viscous_tensor)
-      .field("measure", &Tissue::measure)
-      .field("law", &Tissue::law)
-      .field("lambda_law", &Tissue::lambda_law)
-      .field("mu_law", &Tissue::mu_law)
-      .field("kinematics", &Tissue::kinematics)
-      .field("law_form", &Tissue::law_form)
-      .field("hyperelastic", &Tissue::hyperelastic)
-      .field("fibres", &Tissue::fibres)
-      .field("maxwell", &Tissue::maxwell)
-      .field("maxwell_part", &Tissue::maxwell_part)
-      .field("volume_change", &Tissue::volume_change);
+  Options<Fibres>(m, "Fibres");
+  Options<MaxwellBranch>(m, "MaxwellBranch");
+  Options<Tissue> tissue(m, "Tissue");
   tissue.def(
       "lame", [](const Tissue& t) { return pair_of(t.lame()); }, doc("Tissue::lame"));
   tissue.def(

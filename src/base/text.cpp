@@ -1,6 +1,8 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 
 namespace glisson::detail {
@@ -9,6 +11,13 @@ std::string number_text(double value, int digits) {
   char buffer[40];
   std::snprintf(buffer, sizeof buffer, "%.*g", digits, value);
   return buffer;
+}
+
+std::string show(double value) {
+  constexpr double kPlainWholeNumbers = 1e7;  // shorter forms such as 1e+05 are harder to read
+  if (value == std::trunc(value) && std::abs(value) < kPlainWholeNumbers) return std::to_string(std::int64_t(value));
+  char buffer[64];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
 }
 
 std::string count_text(std::size_t count, const std::string& singular, const std::string& plural) {

@@ -12,6 +12,9 @@ namespace glisson::detail {
 /// A number in at most `digits` significant digits, without trailing zeros: "0.04", "1e-12".
 std::string number_text(double value, int digits = 6);
 
+/// The shortest text that reads back as this number: "0.04", "1e-12", "nan".
+std::string show(double value);
+
 /// "1 tet", "3 tets": a count with its noun.
 std::string count_text(std::size_t count, const std::string& singular, const std::string& plural);
 

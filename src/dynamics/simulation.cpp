@@ -7,6 +7,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/require_fields.h"
+#include "base/text.h"
 #include "dynamics/schemes/changer.h"
 #include "dynamics/schemes/make_scheme.h"
 #include "dynamics/simulation_parts.h"
@@ -17,35 +19,13 @@
 namespace glisson {
 namespace {
 
-constexpr int kMostThreads = 1024;
-
-void require_implicit(const ImplicitOptions& o, const auto& check) {
-  const double longest = o.largest_step.value_or(1.0);
-  check(o.spectral_radius >= 0.0 && o.spectral_radius <= 1.0, "spectral_radius", o.spectral_radius, "0 to 1");
-  check(longest > 0.0 && std::isfinite(longest), "largest_step [s]", longest, "> 0 and finite");
-  check(o.tolerance >= 1e-13 && o.tolerance <= 1e-2, "tolerance", o.tolerance, "1e-13 to 1e-2");
-  check(o.most_iterations >= 1 && o.most_iterations <= 1000, "most_iterations", o.most_iterations, "1 to 1000");
-  check(o.most_cuts >= 0 && o.most_cuts <= 40, "most_cuts", o.most_cuts, "0 to 40");
-}
-
 void require_options(const SimulationOptions& o) {
-  const auto check = [](bool ok, const char* name, double value, const char* range) {
-    if (ok) return;
-    std::ostringstream text;
-    text << "simulation: " << name << " = " << value << " is outside the allowed range, " << range;
-    throw std::invalid_argument(text.str());
-  };
-  const auto not_negative = [](double v) { return v >= 0.0 && std::isfinite(v); };
-  check(not_negative(o.damping_rate), "damping_rate [1/s]", o.damping_rate, ">= 0 and finite");
-  check(not_negative(o.nodal_damping), "nodal_damping [kg/s]", o.nodal_damping, ">= 0 and finite");
-  check(not_negative(o.gravity_ramp), "gravity_ramp [s]", o.gravity_ramp, ">= 0 and finite");
-  check(o.threads >= 0 && o.threads <= kMostThreads, "threads", o.threads, "0 (automatic) to 1024");
-  require_implicit(o.implicit, check);
-  const double reached = o.mass_scaling_step.value_or(1.0);
-  check(reached > 0.0 && std::isfinite(reached), "mass_scaling_step [s]", reached, "> 0 and finite");
-  check(!(o.mass_scaling_step && capabilities(o.integrator).any_step_is_stable), "mass_scaling_step [s]", reached,
-        "none with the integrators implicit and static, which need no mass for their step");
-  check(std::isfinite(norm(o.gravity)), "|gravity| [m/s^2]", norm(o.gravity), "finite");
+  detail::require_fields("simulation", o);
+  if (!o.mass_scaling_step || !capabilities(o.integrator).any_step_is_stable) return;
+  throw std::invalid_argument(
+      "simulation: mass_scaling_step [s] = " + detail::show(*o.mass_scaling_step) +
+      " is outside the allowed range, none with the integrators implicit and static, which need "
+      "no mass for their step");
 }
 
 std::uint64_t fingerprint_of(const TetMesh& mesh, const Body& body) {

@@ -11,13 +11,16 @@ namespace {
 /// Divides the moduli of a law; its fields say which they are.
 template <class Law>
 void divide_moduli(Law& law, double unit) {
-  for (const LawField<Law>& field : Law::kFields) {
-    if (field.unit != "Pa") continue;
-    if (const auto* number = std::get_if<double Law::*>(&field.member)) law.*(*number) /= unit;
-    if (const auto* list = std::get_if<std::vector<double> Law::*>(&field.member)) {
-      for (double& x : law.*(*list)) x /= unit;
+  const auto divide = [unit]<class T>(T& value) {
+    if constexpr (std::is_same_v<T, double>) {
+      value /= unit;
+    } else {
+      for (double& x : value) x /= unit;
     }
-  }
+  };
+  each_field<Law>([&](const auto& field) {
+    if (field.unit == "Pa") divide(law.*field.member);
+  });
 }
 
 }  // namespace

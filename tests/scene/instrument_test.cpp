@@ -104,10 +104,10 @@ TEST(Instruments, MoveAsTheyAreTold) {
   EXPECT_EQ(push.swing, 0.5);
   EXPECT_EQ(push.frequency, 4.0);
   EXPECT_EQ(push.ramp, 0.2);
-  EXPECT_EQ(push.mass, 0.1);
-  EXPECT_EQ(push.damping, 6.0);
-  EXPECT_FALSE(push.guided);
-  EXPECT_DOUBLE_EQ(*push.stop, 0.008);
+  EXPECT_EQ(push.tool.mass, 0.1);
+  EXPECT_EQ(push.tool.damping, 6.0);
+  EXPECT_FALSE(push.tool.guided);
+  EXPECT_DOUBLE_EQ(*push.tool.stop, 0.008);
   EXPECT_DOUBLE_EQ(run_duration(v), *make_driver(instrument(v, "18 G"))->end()) << "the run ends with the last of them";
 }
 

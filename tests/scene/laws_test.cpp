@@ -13,60 +13,60 @@ using test::complaint;
 using test::parse;
 
 /// A value for a field that lies in its range: the i-th of an increasing list.
-template <class Law>
-double sample_value(const LawField<Law>& field, int i) {
-  const double low = std::isfinite(field.min) ? field.min : -3.0;
-  const double high = std::isfinite(field.max) ? field.max : low + 8.0;
+double sample_value(const FieldText& field, int i) {
+  const double low = std::isfinite(field.range.min) ? field.range.min : -3.0;
+  const double high = std::isfinite(field.range.max) ? field.range.max : low + 8.0;
   return low + (high - low) * (0.25 + 0.125 * i);
 }
 
 template <class Law>
-std::string field_text(const LawField<Law>& field) {
-  const std::string one = scene::show(sample_value(field, 0));
-  const bool list = std::holds_alternative<std::vector<double> Law::*>(field.member);
-  return std::string(field.key) + " = " + (list ? "[" + one + ", " + scene::show(sample_value(field, 1)) + "]" : one) +
-         "\n";
+std::string field_text(const FieldOf<Law, double>& field) {
+  return field.key() + " = " + scene::show(sample_value(field, 0)) + "\n";
+}
+template <class Law>
+std::string field_text(const FieldOf<Law, std::vector<double>>& field) {
+  return field.key() + " = [" + scene::show(sample_value(field, 0)) + ", " + scene::show(sample_value(field, 1)) +
+         "]\n";
 }
 
 template <class Law>
-void expect_field(const Law& law, const LawField<Law>& field) {
-  if (const auto* member = std::get_if<double Law::*>(&field.member)) {
-    EXPECT_EQ(law.**member, sample_value(field, 0)) << Law::kName << "." << field.key;
-  } else {
-    const auto& list = law.*std::get<std::vector<double> Law::*>(field.member);
-    EXPECT_EQ(list, (std::vector{sample_value(field, 0), sample_value(field, 1)})) << Law::kName << "." << field.key;
-  }
+void expect_field(const Law& law, const FieldOf<Law, double>& field) {
+  EXPECT_EQ(law.*field.member, sample_value(field, 0)) << Law::kName << "." << field.name;
+}
+template <class Law>
+void expect_field(const Law& law, const FieldOf<Law, std::vector<double>>& field) {
+  EXPECT_EQ(law.*field.member, (std::vector{sample_value(field, 0), sample_value(field, 1)}))
+      << Law::kName << "." << field.name;
 }
 
 template <class Law>
 void read_back() {
   std::string text = test::kSmallScene + "[tissue.law]\nkind = \"" + std::string(Law::kName) + "\"\n";
-  for (const auto& field : Law::kFields) text += field_text(field);
+  each_field<Law>([&](const auto& field) { text += field_text(field); });
   const Scene scene = parse(text);
   const auto* law = std::get_if<Law>(&scene.variants.at(0).tissue.law);
   ASSERT_TRUE(law) << text;
-  for (const auto& field : Law::kFields) expect_field(*law, field);
+  each_field<Law>([&](const auto& field) { expect_field(*law, field); });
 }
 
 template <class Law>
 void refuse_bad_fields() {
-  for (const auto& field : Law::kFields) {
+  each_field<Law>([]<class T>(const FieldOf<Law, T>& field) {
     std::string text = test::kSmallScene + "[tissue.law]\nkind = \"" + std::string(Law::kName) + "\"\n";
     if (field.required) {
       const std::string missing = complaint(text);
-      EXPECT_NE(missing.find("missing key `" + std::string(field.key) + "`"), std::string::npos) << missing;
+      EXPECT_NE(missing.find("missing key `" + field.key() + "`"), std::string::npos) << missing;
     }
-    const std::string wrong = complaint(text + std::string(field.key) + " = \"much\"\n");
-    EXPECT_NE(wrong.find("tissue.law." + std::string(field.key) + ": expected a "), std::string::npos) << wrong;
-    if (std::isfinite(field.min)) {
-      const bool list = std::holds_alternative<std::vector<double> Law::*>(field.member);
-      const std::string below = scene::show(field.min - 1.0);
-      const std::string low =
-          complaint(text + std::string(field.key) + " = " + (list ? "[" + below + "]" : below) + "\n");
+    const std::string wrong = complaint(text + field.key() + " = \"much\"\n");
+    EXPECT_NE(wrong.find("tissue.law." + field.key() + ": expected a "), std::string::npos) << wrong;
+    if (std::isfinite(field.range.min)) {
+      const std::string below = scene::show(field.range.min - 1.0);
+      const bool list = !std::is_same_v<T, double>;
+      const std::string low = complaint(text + field.key() + " = " + (list ? "[" + below + "]" : below) + "\n");
       EXPECT_NE(low.find(below), std::string::npos) << low;
       EXPECT_NE(low.find("is out of range; allowed: "), std::string::npos) << low;
     }
-  }
+  });
 }
 
 template <class... Laws>

@@ -66,7 +66,7 @@ const std::vector<Mistake> kMistakes{
     {"PoissonRatioOfRubber", "", "[tissue]\npoisson_ratio = 0.5\n",
      "s.toml:17:17: tissue.poisson_ratio: 0.5 is out of range; allowed: > -1 and < 0.5; 0.45 to 0.49 is nearly "
      "incompressible"},
-    {"NoCells", "[2, 2, 2]", "[2, 0, 2]", "s.toml:3:13: mesh.cells.1: 0 is out of range; allowed: 1 to 2000"},
+    {"NoCells", "[2, 2, 2]", "[2, 0, 2]", "s.toml:3:13: mesh.cells.1: 0 is out of range; allowed: 1 to 10000"},
     {"StepZero", "", "[motion]\nstep_s = 0\n",
      "s.toml:17:10: motion.step_s: 0 s is out of range; allowed: > 0 s; \"auto\" chooses the largest safe step"},
     {"StepInAnotherWord", "", "[motion]\nstep_s = \"automatic\"\n",

@@ -14,17 +14,13 @@ Tissue changed(Tissue t) {
     std::visit(
         [](auto& law) {
           using Law = std::decay_t<decltype(law)>;
-          for (const LawField<Law>& x : Law::kFields) {
-            std::visit(
-                [&](auto member) {
-                  if constexpr (std::is_same_v<std::decay_t<decltype(law.*member)>, double>) {
-                    law.*member *= 1.1;
-                  } else {
-                    for (double& value : law.*member) value *= 1.1;
-                  }
-                },
-                x.member);
-          }
+          each_field<Law>([&]<class T>(const FieldOf<Law, T>& x) {
+            if constexpr (std::is_same_v<T, double>) {
+              law.*x.member *= 1.1;
+            } else {
+              for (double& value : law.*x.member) value *= 1.1;
+            }
+          });
         },
         laws);
   };

@@ -35,13 +35,13 @@ TEST(Simulation, RefusesBadOptions) {
       small_simulation(options);
     };
   };
-  expect_refusal(with([](auto& o) { o.step = 0.0; }), "step = 0");
-  expect_refusal(with([](auto& o) { o.step = NAN; }), "step = nan");
+  expect_refusal(with([](auto& o) { o.step = 0.0; }), "step [s] = 0");
+  expect_refusal(with([](auto& o) { o.step = NAN; }), "step [s] = nan");
   expect_refusal(with([](auto& o) { o.step = 1.0; }), "above the stable step");
   expect_refusal(with([](auto& o) { o.damping_rate = -1.0; }), "damping_rate [1/s] = -1");
   expect_refusal(with([](auto& o) { o.nodal_damping = -1.0; }), "nodal_damping [kg/s] = -1");
   expect_refusal(with([](auto& o) { o.gravity_ramp = INFINITY; }), "gravity_ramp [s] = inf");
-  expect_refusal(with([](auto& o) { o.gravity = {0.0, NAN, 0.0}; }), "|gravity|");
+  expect_refusal(with([](auto& o) { o.gravity = {0.0, NAN, 0.0}; }), "gravity.y [m/s²] = nan");
 }
 
 // Sets that overlap, are empty or leave the mesh are refused, and a refused set leaves nothing held.

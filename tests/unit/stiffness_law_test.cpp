@@ -114,8 +114,8 @@ TEST(Tissue, RefusesWhatMeansNothing) {
       {"youngs_modulus [Pa] = inf", [](Tissue& t) { t.youngs_modulus = INFINITY; }},
       {"poisson_ratio = 0.5", [](Tissue& t) { t.poisson_ratio = 0.5; }},
       {"poisson_ratio = nan", [](Tissue& t) { t.poisson_ratio = NAN; }},
-      {"density [kg/m^3] = 0", [](Tissue& t) { t.density = 0.0; }},
-      {"viscosity [Pa s] = -2", [](Tissue& t) { t.viscosity = -2.0; }},
+      {"density [kg/m³] = 0", [](Tissue& t) { t.density = 0.0; }},
+      {"viscosity [Pa·s] = -2", [](Tissue& t) { t.viscosity = -2.0; }},
       {"law (polynomial): `coefficients_Pa` needs", [](Tissue& t) { t.law = PolynomialLaw{}; }},
       {"mu_law (table): `arguments` must be strictly",
        [](Tissue& t) {

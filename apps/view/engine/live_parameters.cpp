@@ -26,21 +26,16 @@ Range about(double value, double min, double max, double scale, bool keeps_sign)
   return {std::max(min, -span), std::min(max, span)};
 }
 
-/// `bulk_modulus_Pa` → `Bulk modulus`; letters that formulas have in Greek are so here.
-std::string label_of(std::string key) {
-  for (const std::string unit : {"_Pa_s", "_Pa", "_s"}) {
-    if (key.size() > unit.size() && key.compare(key.size() - unit.size(), unit.size(), unit) == 0) {
-      key.resize(key.size() - unit.size());
-      break;
-    }
-  }
-  if (key == "mu") return "μ";
-  if (key == "alpha") return "α";
-  if (key == "moduli") return "Modulus M";
-  if (key == "bulk_modulus") return "Bulk modulus κ";
-  std::replace(key.begin(), key.end(), '_', ' ');
-  if (key.size() > 2) key.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(key.front())));
-  return key;
+/// `above` → `Above`; letters that formulas have in Greek are so here.
+std::string label_of(std::string_view name) {
+  if (name == "mu") return "μ";
+  if (name == "alpha") return "α";
+  if (name == "moduli") return "Modulus M";
+  if (name == "bulk_modulus") return "Bulk modulus κ";
+  std::string label(name);
+  std::replace(label.begin(), label.end(), '_', ' ');
+  if (label.size() > 2) label.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(label.front())));
+  return label;
 }
 
 std::string subscript(std::size_t number) {
@@ -125,31 +120,26 @@ class Collector {
     std::string name(Law::kName);
     std::replace(name.begin(), name.end(), '_', ' ');
     begin(of + ": " + name, std::string(Law::kHelp));
-    for (const LawField<Law>& x : Law::kFields) {
-      if (x.key == "arguments") continue;  // where a table's moduli stand is its shape
-      std::visit([&](auto member) { field(x, law.*member, member, place); }, x.member);
-    }
+    each_field<Law>([&](const auto& x) {
+      if (x.name != "arguments") parameter<Law>(x, law.*x.member, place);  // where a table's moduli stand is its shape
+    });
   }
-  template <class Law, class Member, class Place>
-  void field(const LawField<Law>& x, double value, Member member, Place place) {
-    add(label_of(std::string(x.key)), std::string(x.help), unit_of(x), range_of(x, value),
-        [place, member](Tissue& t) { return &(std::get<Law>(*place(t)).*member); });
+  template <class Law, class Place>
+  void parameter(const FieldOf<Law, double>& x, double value, Place place) {
+    add(label_of(x.name), std::string(x.help), unit_of(x), range_of(x, value),
+        [place, member = x.member](Tissue& t) { return &(std::get<Law>(*place(t)).*member); });
   }
-  template <class Law, class Member, class Place>
-  void field(const LawField<Law>& x, const std::vector<double>& values, Member member, Place place) {
+  template <class Law, class Place>
+  void parameter(const FieldOf<Law, std::vector<double>>& x, const std::vector<double>& values, Place place) {
     for (std::size_t i = 0; i < std::min(values.size(), kMostOfAList); ++i) {
-      add(label_of(std::string(x.key)) + subscript(i + 1), std::string(x.help), unit_of(x), range_of(x, values[i]),
-          [place, member, i](Tissue& t) { return &(std::get<Law>(*place(t)).*member)[i]; });
+      add(label_of(x.name) + subscript(i + 1), std::string(x.help), unit_of(x), range_of(x, values[i]),
+          [place, member = x.member, i](Tissue& t) { return &(std::get<Law>(*place(t)).*member)[i]; });
     }
   }
-  template <class Law>
-  static std::string unit_of(const LawField<Law>& x) {
-    return x.unit == "-" ? "–" : std::string(x.unit);
-  }
-  template <class Law>
-  Range range_of(const LawField<Law>& x, double value) const {
+  static std::string unit_of(const FieldText& x) { return x.unit == "-" ? "–" : std::string(x.unit); }
+  Range range_of(const FieldText& x, double value) const {
     const bool plain = x.unit == "-";
-    return about(value, x.min, x.max, plain ? 1.0 : modulus_, plain);
+    return about(value, x.range.min, x.range.max, plain ? 1.0 : modulus_, plain);
   }
 
   void maxwell() {

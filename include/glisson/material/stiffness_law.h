@@ -1,8 +1,8 @@
 // stiffness_law.h — the one list of laws that a modulus can follow.
 //
 // A law is one file under stiffness/ with `kName`, `kHelp`, `kFields` (its parameters: the scene's schema, its
-// documentation, its error messages and its class in Python come from there), `check` for parameters that contradict
-// each other, and its formula, written once in the words of scalar.h:
+// documentation, its error messages and its class in Python come from there), where parameters may contradict each other a
+// `check`, and its formula, written once in the words of scalar.h:
 //   numbers(base)   what the formula reads, worked out in double for the modulus `base` at rest
 //   at(numbers, x)  M and dM/dx at measure x: a double, a number with a derivative, or a vector of lanes
 // Adding a law: write that file, add the type to the list below (docs/adding_a_law.md).

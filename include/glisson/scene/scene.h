@@ -117,6 +117,13 @@ struct StrokesSpec {
     Vec3d aside{};       ///< end point across the direction [m]
     std::optional<double> velocity;
     double ramp = 0.0, rest = 0.0;
+
+    static constexpr auto kFields =
+        std::tuple{field("depth", &One::depth, "mm", "end point along the direction, from the start").must(),
+                   field("aside", &One::aside, "mm", "end point across the direction"),
+                   field("velocity", &One::velocity, "mm/s", above(0), "speed").otherwise("the common speed"),
+                   field("ramp", &One::ramp, "s", at_least(0), "time over which the speed rises, and falls"),
+                   field("rest", &One::rest, "s", at_least(0), "rest at the end")};
   };
   double velocity = 0.01, start = 0.0;
   std::vector<One> strokes;
@@ -124,9 +131,8 @@ struct StrokesSpec {
 /// A push that rises over `ramp` and may oscillate:  F = w(t/ramp) (force + swing sin 2π f t).
 struct PushSpec {
   double force = 1.0, swing = 0.0, frequency = 1.0, start = 0.0, ramp = 0.0;
-  std::optional<double> duration, stop;
-  double mass = 0.05, damping = 5.0;
-  bool guided = true;
+  std::optional<double> duration;
+  PushMotion tool;  ///< its force and end are these, its direction is that of the motion
 };
 struct InstrumentMotion {
   /// The last is a program's own path; no scene file gives it.
@@ -193,6 +199,11 @@ struct CapsuleSpec {
 struct OutputSpec {
   double sample_rate = 500.0;  ///< [Hz], > 0
   int frames = 60;             ///< frames of the whole run, 0 or more
+
+  static constexpr auto kFields = std::tuple{
+      field("sample_rate", &OutputSpec::sample_rate, "Hz", above(0), "lines of forces.csv per simulated second"),
+      field("frames", &OutputSpec::frames, between(0, 100000),
+            "states of the whole body stored over the run; 0: none")};
 };
 
 /// One complete experiment: a variant of a scene after expansion.

@@ -23,10 +23,6 @@ ImplicitScheme::ImplicitScheme(Body body, const SimulationOptions& options, bool
     : Scheme(std::move(body), options), statics_(statics), tissue_(state_.body),
       solver_(state_, tissue_, now_, statics),
       largest_(options.implicit.largest_step.value_or(statics ? kDefaultStaticStep : kDefaultStep)) {
-  if (options.step && !(*options.step > 0.0 && std::isfinite(*options.step))) {
-    throw std::invalid_argument("step = " + std::to_string(*options.step) +
-                                " s is outside the allowed range, > 0 and finite, or \"auto\"");
-  }
   step_ = options.step.value_or(largest_);
   info_ = {.instruction_set = "double, element by element", .threads = 1};
   now_.resize(state_.body.vertex_count);

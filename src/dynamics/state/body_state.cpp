@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "dynamics/state/tissue_archive.h"
 #include "dynamics/step/mass_scaling.h"
 #include "glisson/archive.h"
 
@@ -69,7 +68,7 @@ std::vector<char> BodyState::held_components() const {
 void BodyState::archive_tissues(Archive& ar) {
   for (TissueBlock& block : body.blocks) {
     Tissue tissue = block.tissue;
-    glisson::archive(ar, tissue);
+    ar(tissue);
     if (!ar.reads() || tissue == block.tissue) continue;
     try {
       require_fibres(body, block, tissue);

@@ -22,10 +22,6 @@ StepControl::StepControl(const Body& body, const std::vector<double>& nodal_damp
     : body_(body), nodal_damping_(nodal_damping), drag_(drag), automatic_(!options.step),
       enforce_(options.enforce_stability), exact_asked_(options.exact_steps),
       scales_masses_(options.mass_scaling_step.has_value()), levels_(body) {
-  if (!automatic_ && !(*options.step > 0.0 && std::isfinite(*options.step))) {
-    throw std::invalid_argument("step = " + std::to_string(*options.step) +
-                                " s is outside the allowed range, > 0 and finite, or \"auto\"");
-  }
   damping_rate_ = largest_damping_rate();
   exact_ = search_is_needed();
   validated_ = rest_level_ = at_least_one(stiffening);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/require_fields.h"
 #include "glisson/archive.h"
 #include "glisson/instruments/tool_motion.h"
-#include "instruments/motion/motion_check.h"
 
 namespace glisson {
 
@@ -17,19 +17,18 @@ double largest_passive_stiffness(const HandCoupling& x) {
 
 HandDriver::HandDriver(const Pose& start, const HandCoupling& coupling)
     : start_(start), target_(start), coupling_(coupling), position_(start.position) {
-  require_number("hand: stiffness [N/m]", coupling.stiffness, Sign::positive);
-  require_number("hand: damping [N s/m]", coupling.damping, Sign::positive);
-  require_number("hand: mass [kg]", coupling.mass, Sign::positive);
-  require_number("hand: period [s]", coupling.period, Sign::positive);
-  require_number("hand: device_damping [N s/m]", coupling.device_damping, Sign::not_negative);
-  const double most = largest_passive_stiffness(coupling);
-  if (coupling.stiffness <= most) return;
+  detail::require_fields("hand", coupling);
+}
+
+Fault HandCoupling::check() const {
+  const double most = largest_passive_stiffness(*this);
+  if (stiffness <= most) return {};
   std::ostringstream text;
-  text << "hand: stiffness = " << coupling.stiffness << " N/m is not passive: with damping = " << coupling.damping
-       << " N s/m, device_damping = " << coupling.device_damping << " N s/m and period = " << coupling.period
-       << " s it may be at most " << most
+  text << stiffness << " N/m is not passive: with damping = " << damping
+       << " N s/m, device_damping = " << device_damping << " N s/m and period = " << period << " s it may be at most "
+       << most
        << " N/m, or the device could swing up; give less stiffness, a shorter period or a device with more damping";
-  throw std::invalid_argument(text.str());
+  return {text.str(), "stiffness"};
 }
 
 Vec3d HandDriver::device_force() const { return (position_ - target_.position) * coupling_.stiffness; }

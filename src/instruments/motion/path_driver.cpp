@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/require_fields.h"
 #include "glisson/instruments/tool_motion.h"
-#include "instruments/motion/motion_check.h"
 
 namespace glisson {
 namespace {
@@ -31,13 +31,6 @@ struct Move {
   }
 };
 
-void require_stroke(const Stroke& stroke) {
-  require_number("stroke: velocity [m/s]", stroke.velocity, Sign::positive);
-  require_number("stroke: ramp [s]", stroke.ramp, Sign::not_negative);
-  require_number("stroke: rest [s]", stroke.rest, Sign::not_negative);
-  require_number("stroke: distance of `to` from the start [m]", norm(stroke.to), Sign::not_negative);
-}
-
 }  // namespace
 
 PathDriver::PathDriver(const Pose& start, ToolPath path) : start_(start), path_(std::move(path)) {
@@ -51,10 +44,8 @@ Pose PathDriver::advance(double time, double h, const Wrench&) {
 ToolPath press_path(const PressMotion& motion) { return {press(motion), press_end(motion)}; }
 
 ToolPath steady_path(const SteadyMotion& m) {
-  require_number("steady motion: velocity [m/s]", m.velocity, Sign::positive);
-  require_number("steady motion: start [s]", m.start, Sign::not_negative);
-  require_number("steady motion: ramp [s]", m.ramp, Sign::not_negative);
-  const Vec3d velocity = unit_of("steady motion", m.direction) * m.velocity;
+  detail::require_fields("steady motion", m);
+  const Vec3d velocity = m.direction * (m.velocity / norm(m.direction));
   const auto way = [m, velocity](double time) {
     const double t = std::max(0.0, time - m.start);
     return velocity * (t < m.ramp ? 0.5 * t * t / m.ramp : t - 0.5 * m.ramp);
@@ -62,13 +53,13 @@ ToolPath steady_path(const SteadyMotion& m) {
   return {way, {}};
 }
 
+Fault StrokeMotion::check() const { return {strokes.empty() ? "none were given; give one or more" : ""}; }
+
 ToolPath stroke_path(const StrokeMotion& motion) {
-  require_number("strokes: start [s]", motion.start, Sign::not_negative);
-  if (motion.strokes.empty()) throw std::invalid_argument("strokes: none were given; give one or more");
+  detail::require_fields("strokes", motion);
   double end = motion.start;
   Vec3d at{};
   for (const Stroke& stroke : motion.strokes) {
-    require_stroke(stroke);
     end += Move(norm(stroke.to - at), stroke).time() + stroke.rest;
     at = stroke.to;
   }
@@ -88,13 +79,8 @@ ToolPath stroke_path(const StrokeMotion& motion) {
 }
 
 ToolPath sine_path(const SineMotion& m) {
-  require_number("sine motion: amplitude [m]", m.amplitude, Sign::positive);
-  require_number("sine motion: frequency [Hz]", m.frequency, Sign::positive);
-  require_number("sine motion: start [s]", m.start, Sign::not_negative);
-  require_number("sine motion: ramp [s]", m.ramp, Sign::not_negative);
-  require_number("sine motion: duration [s]", m.duration, Sign::positive);
-  require_number("sine motion: size of mean [m]", std::abs(m.mean), Sign::not_negative);
-  const Vec3d unit = unit_of("sine motion", m.direction);
+  detail::require_fields("sine motion", m);
+  const Vec3d unit = m.direction * (1.0 / norm(m.direction));
   const auto way = [m, unit](double time) {
     const double t = std::clamp(time - m.start, 0.0, m.duration);
     const double x = m.ramp > 0.0 ? std::min(1.0, t / m.ramp) : (t > 0.0 ? 1.0 : 0.0);

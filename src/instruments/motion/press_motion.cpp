@@ -1,9 +1,8 @@
 // press_motion.cpp — ramp, press, hold and return as depth against time.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 
+#include "base/require_fields.h"
 #include "glisson/instruments/motion.h"
 
 namespace glisson {
@@ -23,13 +22,6 @@ double press_time(const PressMotion& m) {
   return m.depth / m.velocity + 0.5 * m.ramp;
 }
 
-void require(bool ok, const char* field, double value, const char* range) {
-  if (ok) return;
-  std::ostringstream text;
-  text << "press motion: " << field << " = " << value << " is outside the allowed range, " << range;
-  throw std::invalid_argument(text.str());
-}
-
 }  // namespace
 
 double press_depth(const PressMotion& m, double time) {
@@ -45,14 +37,8 @@ double press_end(const PressMotion& m) {
 }
 
 Motion press(const PressMotion& m) {
-  require(m.velocity > 0.0 && std::isfinite(m.velocity), "velocity [m/s]", m.velocity, "> 0");
-  require(m.depth > 0.0 && std::isfinite(m.depth), "depth [m]", m.depth, "> 0");
-  require(m.start >= 0.0 && std::isfinite(m.start), "start [s]", m.start, ">= 0");
-  require(m.ramp >= 0.0 && std::isfinite(m.ramp), "ramp [s]", m.ramp, ">= 0");
-  require(m.hold >= 0.0 && std::isfinite(m.hold), "hold [s]", m.hold, ">= 0");
-  const double length = norm(m.direction);
-  require(length > 0.0 && std::isfinite(length), "length of direction", length, "> 0 (the direction must not be zero)");
-  const Vec3d unit = m.direction * (1.0 / length);
+  detail::require_fields("press motion", m);
+  const Vec3d unit = m.direction * (1.0 / norm(m.direction));
   return [m, unit](double time) { return unit * press_depth(m, time); };
 }
 

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/require_fields.h"
 #include "glisson/archive.h"
 #include "glisson/instruments/tool_motion.h"
-#include "instruments/motion/motion_check.h"
 
 namespace glisson {
 namespace {
@@ -21,10 +21,8 @@ constexpr double kLeastWay = 1e-10;  // over which a change of force says someth
 
 PushDriver::PushDriver(const Pose& start, PushMotion motion) : start_(start), motion_(std::move(motion)) {
   if (!motion_.force) throw std::invalid_argument("push: no force was given");
-  motion_.direction = unit_of("push", motion_.direction);
-  require_number("push: mass [kg]", motion_.mass, Sign::positive);
-  require_number("push: damping [N s/m]", motion_.damping, Sign::not_negative);
-  if (motion_.stop) require_number("push: stop [m]", *motion_.stop, Sign::positive);
+  detail::require_fields("push", motion_);
+  motion_.direction *= 1.0 / norm(motion_.direction);
 }
 
 void PushDriver::learn_stiffness(const Vec3d& force) {

@@ -15,30 +15,17 @@
 // mirror images in their common face, so they fit too, and the diagonals point to all four directions.
 #include <algorithm>
 
-#include "base/option_check.h"
+#include "base/require_fields.h"
+#include "base/text.h"
 #include "glisson/mesh.h"
 
 namespace glisson {
 namespace {
 
-constexpr int kMaxCellsPerAxis = 10000;
 constexpr double kMaxCells = 1e8;
 
 /// Axis orders of the six paths; the first three are even permutations (positive orientation).
 constexpr std::array<std::array<int, 3>, 6> kPaths{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
-
-void check(const BoxOptions& options) {
-  const char* axis[] = {"x", "y", "z"};
-  for (std::size_t a = 0; a < 3; ++a) {
-    detail::require_count(std::string("box cells along ") + axis[a], options.cells[a], 1, kMaxCellsPerAxis);
-    detail::require_positive(std::string("box size along ") + axis[a], options.size[a], "[m]");
-    if (!std::isfinite(options.origin[a])) {
-      detail::refuse_option(std::string("box origin ") + axis[a], detail::number_text(options.origin[a]), "finite [m]");
-    }
-  }
-  const double cells = 1.0 * options.cells[0] * options.cells[1] * options.cells[2];
-  if (cells > kMaxCells) detail::refuse_option("number of box cells", detail::number_text(cells), "at most 1e8");
-}
 
 /// Vertex numbers of a grid of cells: x runs fastest, then y, then z.
 struct Grid {
@@ -112,8 +99,14 @@ void add_sides(const Grid& grid, TetMesh& mesh) {
 
 }  // namespace
 
+Fault BoxOptions::check() const {
+  const double all = 1.0 * cells[0] * cells[1] * cells[2];
+  if (all <= kMaxCells) return {};
+  return {detail::show(all) + " cubes in all are too many; allowed: at most 1e8", "cells"};
+}
+
 TetMesh box_mesh(const BoxOptions& options) {
-  check(options);
+  detail::require_fields("box", options);
   const Grid grid{options.cells};
   const auto n = [&](std::size_t a) { return static_cast<std::size_t>(options.cells[a]); };
   TetMesh mesh;

@@ -12,36 +12,20 @@
 #include <algorithm>
 #include <numbers>
 
-#include "base/option_check.h"
+#include "base/require_fields.h"
+#include "base/text.h"
 #include "glisson/mesh.h"
 
 namespace glisson {
 namespace {
 
-constexpr int kMaxRings = 2000, kMaxLayers = 10000;
 constexpr double kMaxPrisms = 2e8;
-constexpr double kMaxGrading = 1e4;
 
 struct Disc {
   std::vector<double> x, y;         // [m]
   std::vector<Triangle> triangles;  // anticlockwise seen from +z
   std::uint32_t wall_begin = 0;     // points from here on lie on the outermost ring
 };
-
-void check(const CylinderOptions& options) {
-  detail::require_positive("cylinder radius", options.radius, "[m]");
-  detail::require_positive("cylinder height", options.height, "[m]");
-  detail::require_count("cylinder radial_cells", options.radial_cells, 1, kMaxRings);
-  detail::require_count("cylinder axial_cells", options.axial_cells, 1, kMaxLayers);
-  if (!(options.grading >= 1.0 && options.grading <= kMaxGrading)) {
-    detail::refuse_option("cylinder grading", detail::number_text(options.grading),
-                          "from 1 (equal rings) to " + detail::number_text(kMaxGrading));
-  }
-  const double prisms = 6.0 * options.radial_cells * options.radial_cells * options.axial_cells;
-  if (prisms > kMaxPrisms) {
-    detail::refuse_option("6 radial_cells² axial_cells", detail::number_text(prisms), "at most 2e8");
-  }
-}
 
 /// Radii of the rings 0 (the axis) to n [m]; widths w, w g, w g² … with g^(n−1) = grading.
 std::vector<double> ring_radii(const CylinderOptions& options) {
@@ -114,8 +98,15 @@ void add_sets(const Disc& disc, std::uint32_t layers, TetMesh& mesh) {
 
 }  // namespace
 
+Fault CylinderOptions::check() const {
+  const double prisms = 6.0 * radial_cells * radial_cells * axial_cells;
+  if (prisms <= kMaxPrisms) return {};
+  return {"6 radial_cells² axial_cells = " + detail::show(prisms) + " prisms are too many; allowed: at most 2e8",
+          "radial_cells"};
+}
+
 TetMesh cylinder_mesh(const CylinderOptions& options) {
-  check(options);
+  detail::require_fields("cylinder", options);
   const Disc disc = make_disc(options);
   const auto points = static_cast<std::uint32_t>(disc.x.size());
   const auto layers = static_cast<std::uint32_t>(options.axial_cells);

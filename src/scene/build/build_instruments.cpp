@@ -47,14 +47,14 @@ struct DriverMaker {
     return path(recorded_path(motion));
   }
   std::shared_ptr<ToolDriver> operator()(const PushSpec& m) const {
-    PushMotion push{.direction = direction, .force = {}, .mass = m.mass, .damping = m.damping, .guided = m.guided};
+    PushMotion push = m.tool;
+    push.direction = direction;
     push.force = [m](double time) {
       const double t = time - m.start;
       if (t < 0.0) return 0.0;
       const double x = m.ramp > 0.0 ? std::min(1.0, t / m.ramp) : 1.0;
       return x * x * (3.0 - 2.0 * x) * (m.force + m.swing * std::sin(2.0 * std::numbers::pi * m.frequency * t));
     };
-    push.stop = m.stop;
     if (m.duration) push.end = m.start + *m.duration;
     return std::make_shared<PushDriver>(start, push);
   }

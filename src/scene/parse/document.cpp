@@ -120,14 +120,6 @@ double number_of(const Node& node) {
   return std::get<double>(node.value);
 }
 
-std::string show(double value) {
-  constexpr double kPlainWholeNumbers = 1e7;  // shorter forms such as 1e+05 are harder to read
-  if (value == std::trunc(value) && std::abs(value) < kPlainWholeNumbers) return std::to_string(std::int64_t(value));
-  char buffer[64];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-  return {buffer, end};
-}
-
 std::string describe(const Node& node) {
   struct {
     std::string operator()(bool b) const { return b ? "true" : "false"; }

@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "base/text.h"
+
 namespace glisson::scene {
 
 /// Where something was written: line and column of the file (from 1), or the key given to --set.
@@ -55,7 +57,7 @@ double number_of(const Node& node);
 /// What a node holds, for messages: `text "abc"`, `5`, `a list of 3`.
 std::string describe(const Node& node);
 /// The shortest text that reads back as the same number.
-std::string show(double value);
+using detail::show;
 
 /// The value as TOML on one line, as --set takes it: `{ kind = "linear", slope_Pa = 20000 }`. A date is written as an empty text.
 std::string toml_text(const Node& node);

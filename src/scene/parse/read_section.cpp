@@ -122,6 +122,11 @@ bool check_value(const KeySpec& key, const Node& node, const Place& place) {
     const Node& element = (*elements)[i];
     right = check_single(single, element, place.inside(std::to_string(i), element.where)) && right;
   }
+  const auto is_zero = [](const Node& element) { return number_of(element) == 0.0; };
+  if (right && key.is_direction && std::all_of(elements->begin(), elements->end(), is_zero)) {
+    place.complain("[0, 0, 0] has no direction; give a vector that is not zero, such as [0, 0, -1]");
+    return false;
+  }
   return right;
 }
 

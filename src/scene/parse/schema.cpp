@@ -48,22 +48,6 @@ std::string plural(const KeySpec& key) {
 
 }  // namespace
 
-bool Range::contains(double x) const { return (min_open ? x > min : x >= min) && (max_open ? x < max : x <= max); }
-
-bool Range::bounded() const {
-  return min > -std::numeric_limits<double>::infinity() || max < std::numeric_limits<double>::infinity();
-}
-
-std::string Range::text() const {
-  const bool low = min > -std::numeric_limits<double>::infinity();
-  const bool high = max < std::numeric_limits<double>::infinity();
-  if (low && high && !min_open && !max_open) return show(min) + " to " + show(max);
-  std::string text = low ? (min_open ? "> " : "≥ ") + show(min) : "";
-  if (low && high) text += " and ";
-  if (high) text += (max_open ? "< " : "≤ ") + show(max);
-  return text;
-}
-
 const KeySpec* SectionSpec::find(std::string_view key) const {
   const auto it = std::find_if(keys.begin(), keys.end(), [&](const KeySpec& k) { return k.name == key; });
   return it == keys.end() ? nullptr : &*it;

@@ -13,25 +13,11 @@
 #include <string>
 #include <vector>
 
+#include "glisson/field.h"
 #include "scene/parse/document.h"
 #include "scene/parse/problems.h"
 
 namespace glisson::scene {
-
-struct Range {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool min_open = false, max_open = false;  ///< the bound itself is not allowed
-
-  bool contains(double x) const;
-  bool bounded() const;
-  /// `> 0`, `≥ 0`, `1 to 1000`, `> -1 and < 0.5`; empty where everything is allowed.
-  std::string text() const;
-};
-inline Range above(double min) { return {.min = min, .min_open = true}; }
-inline Range at_least(double min) { return {.min = min}; }
-inline Range between(double min, double max) { return {.min = min, .max = max}; }
-inline Range strictly_between(double min, double max) { return {min, max, true, true}; }
 
 enum class ValueType { boolean, integer, number, text, table };
 enum class Shape {
@@ -55,6 +41,7 @@ struct KeySpec {
   Range range{};       ///< of the number or of each number
   bool required = false;
   bool accepts_auto = false;                                           ///< the word "auto" instead of a number
+  bool is_direction = false;                                           ///< three numbers, not all zero
   std::vector<AllowedWord> words{};                                    ///< not empty: the only texts allowed
   std::string default_text{};                                          ///< in TOML, or a few words; empty: none
   std::string advice{};                                                ///< the way out of a value that is not allowed
@@ -77,6 +64,10 @@ struct KeySpec {
   }
   KeySpec& otherwise(std::string text) {
     default_text = std::move(text);
+    return *this;
+  }
+  KeySpec& direction() {
+    is_direction = true;
     return *this;
   }
   KeySpec& advise(std::string text) {

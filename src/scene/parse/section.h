@@ -1,10 +1,11 @@
 // section.h — describing a section by the struct it fills.
 //
 //   Section<Tissue> s("tissue", "What the body is made of.");
-//   s.key("density_kg_m3", &Tissue::density, "density ρ").in("kg/m³").within(above(0));
+//   s.fields();                                                                  // all that Tissue::kFields describes
+//   s.key("youngs_modulus_Pa", &Tissue::youngs_modulus, "E").in("Pa").within(above(0));       // of structs without it
 //
-// One line names the key, its type (that of the member), its default (the member's initial value), unit, range
-// and meaning. An accessor is a pointer to a member or a callable S& → T&.
+// The type of a key is that of the member, its default the member's initial value. An accessor is a pointer to a member or
+// a callable S& → T&.
 #pragma once
 
 #include <algorithm>
@@ -12,15 +13,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
 #include "glisson/math.h"
-#include "scene/parse/schema.h"
+#include "scene/parse/sections.h"
 
 namespace glisson::scene {
 
@@ -143,6 +147,13 @@ struct Codec<std::vector<T>> : ListCodec<std::vector<T>, T> {
   static std::string show(const std::vector<T>& v) { return Codec::show_all(v); }
 };
 
+/// A type in SI whose key is in thousandths.
+template <class T>
+using Thousandth = std::conditional_t<
+    std::is_same_v<T, double>, Milli,
+    std::conditional_t<std::is_same_v<T, Vec3d>, MilliVector,
+                       std::conditional_t<std::is_same_v<T, std::optional<double>>, OptionalMilli, Codec<T>>>>;
+
 template <HasWords E>
 struct Codec<E> {
   static constexpr ValueType kType = ValueType::text;
@@ -153,6 +164,14 @@ struct Codec<E> {
   }
   static std::string show(E value) { return "\"" + std::string(word_of(value)) + "\""; }
 };
+
+/// A type that is a table in a scene; one that holds such a type: an optional, a list.
+template <class T>
+concept HasSection = requires {
+  section_of(std::type_identity<T>());
+};
+template <class T>
+concept HoldsSection = HasSection<typename T::value_type>;
 
 /// One word of a choice and the value it stands for.
 template <class T>
@@ -168,6 +187,34 @@ class Section {
   explicit Section(std::string name, std::string help = {}) {
     spec_.name = std::move(name);
     spec_.help = std::move(help);
+  }
+
+  /// The keys of a described struct (glisson/field.h), in its order: of S, or of the part of it that `access` returns.
+  template <class Access = std::identity>
+  void fields(Access access = {}, std::initializer_list<std::string_view> without = {}) {
+    using Part = std::remove_cvref_t<std::invoke_result_t<Access, S&>>;
+    each_field<Part>([&](const auto& f) {
+      const auto at = f.member;
+      const auto member = [=](S & s) -> auto& { return std::invoke(at, std::invoke(access, s)); };
+      const bool left_out = std::find(without.begin(), without.end(), f.name) != without.end();
+      if (f.in_scenes && !left_out) add_field<std::remove_cvref_t<decltype(member(std::declval<S&>()))>>(f, member);
+    });
+    if constexpr (requires(const Part& part) { part.check(); }) {
+      finish([access](S& s, const Node& table, const Place& place) {
+        const Fault fault{std::invoke(access, s).check()};
+        if (!fault.what.empty()) complain<Part>(fault, table, place);
+      });
+    }
+  }
+
+  /// A key that is there.
+  KeySpec& at(std::string_view name) { return const_cast<KeySpec&>(*spec_.find(name)); }
+
+  /// Puts keys that are only checked here behind another one; the section's finish() reads them.
+  void bare_after(std::string_view other, std::vector<KeySpec> keys) {
+    const auto is_it = [&](const KeySpec& key) { return key.name == other; };
+    const auto at = std::find_if(spec_.keys.begin(), spec_.keys.end(), is_it) + 1;
+    spec_.keys.insert(at, std::move_iterator(keys.begin()), std::move_iterator(keys.end()));
   }
 
   /// A value; `C` is the codec where it is not that of the member's type.
@@ -228,16 +275,58 @@ class Section {
   /// A key that is only checked here; the section's finish() reads it.
   KeySpec& bare(KeySpec key) { return push(std::move(key)); }
 
-  /// What must hold between keys; called once all keys of the table are right.
+  /// What must hold between keys; called once all keys of the table are right, the last that was given first.
   void finish(std::function<void(S&, const Node&, const Place&)> check) {
-    spec_.finish = [check = std::move(check)](void* target, const Node& node, const Place& place) {
+    const auto then = std::move(spec_.finish);
+    spec_.finish = [check, then](void* target, const Node& node, const Place& place) {
+      const std::size_t before = place.problems.count();
       check(*static_cast<S*>(target), node, place);
+      if (then && place.problems.count() == before) then(target, node, place);
     };
   }
 
   SectionSpec& spec() { return spec_; }
 
  private:
+  /// A described member, as a table where its type is one.
+  template <class T, class Access>
+  void add_field(const FieldText& f, Access access) {
+    KeySpec* key = nullptr;
+    if constexpr (HasSection<T>) {
+      key = &table(f.key(), section_of(std::type_identity<T>()), access, std::string(f.help));
+    } else if constexpr (HoldsSection<T>) {
+      const SectionSpec& section = section_of(std::type_identity<typename T::value_type>());
+      if constexpr (std::is_same_v<T, std::vector<typename T::value_type>>) {
+        key = &tables(f.key(), section, access, std::string(f.help));
+      } else {
+        const auto made = [access](S & s) -> auto& { return std::invoke(access, s).emplace(); };
+        key = &table(f.key(), section, made, std::string(f.help));
+      }
+    } else if constexpr (requires { Codec<T>::kType; }) {
+      key = &(f.scale() == 1.0 ? add_value<T, Codec<T>>(f.key(), access, std::string(f.help))
+                               : add_value<T, Thousandth<T>>(f.key(), access, std::string(f.help)));
+    } else {
+      throw std::logic_error(f.key() + ": no scene can hold a value of its type; it is no_key()");
+    }
+    key->unit = f.unit;
+    if (f.range.bounded()) key->range = f.range;
+    key->advice = f.advice;
+    key->accepts_auto = f.accepts_auto;
+    key->is_direction = f.is_direction;
+    if (!f.default_text.empty()) key->default_text = f.default_text;
+    if (f.required) key->must();
+  }
+
+  /// A fault between members, at the key of the one that it names.
+  template <class Part>
+  static void complain(const Fault& fault, const Node& table, const Place& place) {
+    std::string key;
+    each_field<Part>([&](const FieldText& f) { key = f.name == fault.field ? f.key() : key; });
+    if (key.empty()) return place.complain(fault.what);
+    const Node* given = table.find(key);
+    place.complain(given ? *given : table, key, fault.what);
+  }
+
   template <class Code>
   struct Unwrap {
     using type = Code;
@@ -286,5 +375,13 @@ class Section {
 
   SectionSpec spec_;
 };
+
+/// The section of a described struct.
+template <Described S>
+SectionSpec described(std::string name, std::string help) {
+  Section<S> s(std::move(name), std::move(help));
+  s.fields();
+  return std::move(s.spec());
+}
 
 }  // namespace glisson::scene

@@ -166,7 +166,6 @@ void check_instrument(InstrumentSpec& x, const Node& table, const Place& place) 
   x.origin = place.text();
   const std::string unfit = unfit_as_table(x.name);
   if (const Node* name = table.find("name"); name && !unfit.empty()) place.complain(*name, "name", unfit);
-  require_direction(x.direction, table, "direction", place);
   if (norm(cross(x.side, x.direction)) > 1e-6 * norm(x.side) * norm(x.direction)) return;
   place.complain(table.find("side") ? *table.find("side") : *table.find("direction"),
                  table.find("side") ? "side" : "direction",
@@ -175,13 +174,6 @@ void check_instrument(InstrumentSpec& x, const Node& table, const Place& place) 
 }
 
 }  // namespace
-
-void require_direction(const Vec3d& direction, const Node& table, const std::string& key, const Place& place) {
-  if (norm(direction) > 0.0 && std::isfinite(norm(direction))) return;
-  place.complain(
-      *table.find(key), key,
-      Codec<Vec3d>::show(direction) + " has no direction; give a vector that is not zero, such as [0, 0, -1]");
-}
 
 const SectionSpec& rupture_section() {
   static const SectionSpec section = [] {
@@ -252,7 +244,7 @@ const SectionSpec& instrument_section() {
                               "pierces it. Needs the integrator explicit, or semi_implicit without viscosity.");
     s.key("name", &InstrumentSpec::name, "name; no two tools or instruments of an experiment share one");
     s.key("tip_m", &InstrumentSpec::tip, "position of its tip at the start").in("m").must();
-    s.key("direction", &InstrumentSpec::direction, "direction of its tip, of any length").in("-");
+    s.key("direction", &InstrumentSpec::direction, "direction of its tip, of any length").in("-").direction();
     s.key("side", &InstrumentSpec::side,
           "direction of its own x axis, and of a bevelled tip; the component across `direction` counts")
         .in("-");

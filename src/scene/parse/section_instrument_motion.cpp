@@ -6,16 +6,9 @@
 namespace glisson::scene {
 namespace {
 
-using Stroke = StrokesSpec::One;
-
 SectionSpec press_kind() {
   Section<PressMotion> s("press", "To a depth, and back with `returns`.");
-  s.key<Milli>("velocity_mm_s", &PressMotion::velocity, "speed").in("mm/s").within(above(0));
-  s.key<Milli>("depth_mm", &PressMotion::depth, "how far it goes").in("mm").within(above(0));
-  s.key("start_s", &PressMotion::start, "start of the motion").in("s").within(at_least(0));
-  s.key("ramp_s", &PressMotion::ramp, "time over which the speed rises from 0").in("s").within(at_least(0));
-  s.key("hold_s", &PressMotion::hold, "rest at depth").in("s").within(at_least(0));
-  s.key("returns", &PressMotion::returns, "withdraw at the same speed after the hold");
+  s.fields({}, {"direction"});
   return s.spec();
 }
 
@@ -34,12 +27,7 @@ SectionSpec strokes_kind() {
 
 SectionSpec sine_kind() {
   Section<SineMotion> s("sine", "Oscillation about a mean depth, rising smoothly over `ramp_s`.");
-  s.key<Milli>("amplitude_mm", &SineMotion::amplitude, "amplitude").in("mm").within(above(0));
-  s.key("frequency_hz", &SineMotion::frequency, "frequency").in("Hz").within(above(0));
-  s.key<Milli>("mean_mm", &SineMotion::mean, "mean depth").in("mm");
-  s.key("start_s", &SineMotion::start, "start of the motion").in("s").within(at_least(0));
-  s.key("ramp_s", &SineMotion::ramp, "time over which it rises").in("s").within(at_least(0));
-  s.key("duration_s", &SineMotion::duration, "duration").in("s").within(above(0));
+  s.fields({}, {"direction"});
   return s.spec();
 }
 
@@ -54,10 +42,7 @@ SectionSpec push_kind() {
       .in("s")
       .within(above(0))
       .otherwise("unlimited");
-  s.key("mass_kg", &PushSpec::mass, "mass of the tool and the hand behind it").in("kg").within(above(0));
-  s.key("damping_N_s_m", &PushSpec::damping, "damping of the hand").in("N s/m").within(at_least(0));
-  s.key("guided", &PushSpec::guided, "moves along the direction only; otherwise also sideways");
-  s.key<OptionalMilli>("stop_mm", &PushSpec::stop, "largest travel").in("mm").within(above(0)).otherwise("no stop");
+  s.fields(&PushSpec::tool);
   return s.spec();
 }
 
@@ -83,18 +68,8 @@ const SectionSpec& record_section() {
 }
 
 const SectionSpec& stroke_section() {
-  static const SectionSpec section = [] {
-    Section<Stroke> s("instrument.motion.strokes", "A straight move at one speed, and a rest after it.");
-    s.key<Milli>("depth_mm", &Stroke::depth, "end point along the direction, from the start").in("mm").must();
-    s.key<MilliVector>("aside_mm", &Stroke::aside, "end point across the direction").in("mm");
-    s.key<OptionalMilli>("velocity_mm_s", &Stroke::velocity, "speed")
-        .in("mm/s")
-        .within(above(0))
-        .otherwise("the common speed");
-    s.key("ramp_s", &Stroke::ramp, "time over which the speed rises, and falls").in("s").within(at_least(0));
-    s.key("rest_s", &Stroke::rest, "rest at the end").in("s").within(at_least(0));
-    return s.spec();
-  }();
+  static const SectionSpec section =
+      described<StrokesSpec::One>("instrument.motion.strokes", "A straight move at one speed, and a rest after it.");
   return section;
 }
 
@@ -103,13 +78,11 @@ const SectionSpec& instrument_motion_section() {
     Section<InstrumentMotion> s("instrument.motion", "Motion of an instrument, selected by `kind`.");
     s.key("direction", &InstrumentMotion::direction, "direction of motion, of any length")
         .in("-")
+        .direction()
         .otherwise("the instrument's");
     s.spec().kinds = {motion_kind<PressMotion>(press_kind()), motion_kind<StrokesSpec>(strokes_kind()),
                       motion_kind<SineMotion>(sine_kind()), motion_kind<PushSpec>(push_kind()),
                       motion_kind<RecordSpec>(record_section())};
-    s.finish([](InstrumentMotion& m, const Node& table, const Place& place) {
-      if (m.direction) require_direction(*m.direction, table, "direction", place);
-    });
     return s.spec();
   }();
   return section;

@@ -6,32 +6,16 @@
 namespace glisson::scene {
 namespace {
 
-constexpr double kMostCells = 2000;  // along one axis; 2000³ cubes do not fit a machine, 2000 × 1 × 1 does
-
 SectionSpec box_kind() {
-  Section<BoxOptions> s("box",
-                        "A box of cubes, six tetrahedra each, with the vertex sets `x_min`, `x_max`, `y_min`, "
-                        "`y_max`, `z_min`, `z_max`.");
-  s.key("cells", &BoxOptions::cells, "cubes along x, y and z").within(between(1, kMostCells));
-  s.key("size_m", &BoxOptions::size, "edge lengths of the box").in("m").within(above(0));
-  s.key("origin_m", &BoxOptions::origin, "lowest corner").in("m");
-  s.key("split", &BoxOptions::split, "how a cube is split in six");
-  return s.spec();
+  return described<BoxOptions>("box",
+                               "A box of cubes, six tetrahedra each, with the vertex sets `x_min`, `x_max`, `y_min`, "
+                               "`y_max`, `z_min`, `z_max`.");
 }
 
 SectionSpec cylinder_kind() {
-  Section<CylinderOptions> s("cylinder",
-                             "A cylinder about the z axis from z = 0, its rings graded toward the axis, with "
-                             "the vertex sets `bottom`, `top`, `wall`, `axis`.");
-  s.key("radius_m", &CylinderOptions::radius, "radius").in("m").within(above(0));
-  s.key("height_m", &CylinderOptions::height, "height").in("m").within(above(0));
-  s.key("radial_cells", &CylinderOptions::radial_cells, "rings from the axis to the wall").within(between(1, 1000));
-  s.key("axial_cells", &CylinderOptions::axial_cells, "layers along the axis").within(between(1, kMostCells));
-  s.key("grading", &CylinderOptions::grading, "width of the outermost ring over that of the innermost")
-      .in("-")
-      .within(between(1, 1000))
-      .advise("1 makes all rings equally wide");
-  return s.spec();
+  return described<CylinderOptions>("cylinder",
+                                    "A cylinder about the z axis from z = 0, its rings graded toward the axis, with "
+                                    "the vertex sets `bottom`, `top`, `wall`, `axis`.");
 }
 
 SectionSpec file_kind() {

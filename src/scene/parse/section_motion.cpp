@@ -22,10 +22,7 @@ void check_tool(ToolSpec& tool, const Node& table, const Place& place) {
   if (const Node* name = table.find("name"); name && !unfit.empty()) place.complain(*name, "name", unfit);
   const Vec3d& d = tool.motion.direction;
   const Node* given = table.find("direction");
-  if (!(norm(d) > 0.0) || !std::isfinite(norm(d))) {
-    place.complain(*given, "direction",
-                   Codec<Vec3d>::show(d) + " has no direction; give a vector that is not zero, such as [0, 0, -1]");
-  } else if (tool.sideways_free && !along_an_axis(d)) {
+  if (tool.sideways_free && !along_an_axis(d)) {
     place.complain(
         *given, "direction",
         Codec<Vec3d>::show(d) +
@@ -36,24 +33,8 @@ void check_tool(ToolSpec& tool, const Node& table, const Place& place) {
 }  // namespace
 
 const SectionSpec& implicit_section() {
-  static const SectionSpec section = [] {
-    using Options = ImplicitOptions;
-    Section<Options> s("motion.implicit", "Options of the integrators implicit and static.");
-    s.key("scheme", &Options::scheme, "time scheme of the integrator implicit");
-    s.key("spectral_radius", &Options::spectral_radius, "ρ∞ of generalised_alpha").in("-").within(between(0, 1));
-    s.key("largest_step_s", &Options::largest_step, "first and largest automatic step")
-        .in("s")
-        .within(above(0))
-        .otherwise("0.01, static 0.05");
-    s.key("tolerance", &Options::tolerance, "residual force over the largest force")
-        .in("-")
-        .within(between(1e-13, 1e-2));
-    s.key("most_iterations", &Options::most_iterations, "of Newton's method, before a step is halved")
-        .within(between(1, 1000));
-    s.key("most_cuts", &Options::most_cuts, "how often a step is halved before the run stops").within(between(0, 40));
-    s.key("preconditioner", &Options::preconditioner, "preconditioner of the linear solves");
-    return s.spec();
-  }();
+  static const SectionSpec section =
+      described<ImplicitOptions>("motion.implicit", "Options of the integrators implicit and static.");
   return section;
 }
 
@@ -61,48 +42,7 @@ const SectionSpec& motion_section() {
   static const SectionSpec section = [] {
     Section<Variant> s("motion",
                        "Time integration: the integrator, its step, damping, gravity, and the end of the run.");
-    s.key(
-        "integrator", [](Variant & v) -> auto& { return v.simulation.integrator; }, "how the body is advanced in time");
-    s.key(
-         "step_s", [](Variant & v) -> auto& { return v.simulation.step; },
-         "time step h; \"auto\" takes 0.9 of the stable step and follows the tissue; for implicit and static the "
-         "largest that converges")
-        .in("s")
-        .within(above(0))
-        .otherwise("\"auto\"")
-        .advise("\"auto\" chooses the largest safe step")
-        .accepts_auto = true;
-    s.key(
-         "mass_scaling_step_s", [](Variant & v) -> auto& { return v.simulation.mass_scaling_step; },
-         "adds mass only to tets whose element step bound is shorter, until it equals this step; explicit and "
-         "semi_implicit. `glisson check` reports the tets and the mass")
-        .in("s")
-        .within(above(0))
-        .otherwise("no mass is added");
-    s.table(
-        "implicit", implicit_section(), [](Variant & v) -> auto& { return v.simulation.implicit; },
-        "options of the integrators implicit and static");
-    s.key(
-        "precision", [](Variant & v) -> auto& { return v.simulation.precision; },
-        "precision of the element arithmetic");
-    s.key(
-         "damping_rate_per_s", [](Variant & v) -> auto& { return v.simulation.damping_rate; },
-         "nodal damping in proportion to mass, γ/m")
-        .in("1/s")
-        .within(at_least(0));
-    s.key(
-         "nodal_damping_kg_per_s", [](Variant & v) -> auto& { return v.simulation.nodal_damping; },
-         "nodal damping γ, equal at all vertices, in addition")
-        .in("kg/s")
-        .within(at_least(0));
-    s.key(
-         "gravity_m_s2", [](Variant & v) -> auto& { return v.simulation.gravity; }, "gravity")
-        .in("m/s²");
-    s.key(
-         "gravity_ramp_s", [](Variant & v) -> auto& { return v.simulation.gravity_ramp; },
-         "time over which gravity grows from 0")
-        .in("s")
-        .within(at_least(0));
+    s.fields(&Variant::simulation);
     s.key("on_inversion", &Variant::on_inversion, "what to do when a tetrahedron inverts");
     s.key("duration_s", &Variant::duration, "simulated time")
         .in("s")
@@ -143,23 +83,10 @@ const SectionSpec& tool_section() {
   static const SectionSpec section = [] {
     Section<ToolSpec> s(
         "tool", "A tool that presses: it moves the vertices of a set along a direction, and the force is measured.");
-    const auto motion = [](auto member) {
-      return [member](ToolSpec & t) -> auto& { return t.motion.*member; };
-    };
     s.key("name", &ToolSpec::name, "name; no two tools of an experiment share one");
     s.key("set", &ToolSpec::set, "name of the vertex set it moves").must();
-    s.key("direction", motion(&PressMotion::direction), "direction of pressing, of any length").in("-");
-    s.key<Milli>("velocity_mm_s", motion(&PressMotion::velocity), "speed").in("mm/s").within(above(0));
-    s.key<Milli>("depth_mm", motion(&PressMotion::depth), "how far it presses").in("mm").within(above(0));
-    s.key("start_s", motion(&PressMotion::start), "start of the motion; until then its vertices are free")
-        .in("s")
-        .within(at_least(0));
-    s.key("ramp_s", motion(&PressMotion::ramp),
-          "time over which the speed rises from 0; 0: a sudden start, as in the paper")
-        .in("s")
-        .within(at_least(0));
-    s.key("hold_s", motion(&PressMotion::hold), "rest at depth").in("s").within(at_least(0));
-    s.key("returns", motion(&PressMotion::returns), "withdraw at the same speed after the hold");
+    s.fields(&ToolSpec::motion);
+    s.at("start_s").help += "; until then its vertices are free";
     s.table(
         "record", record_section(), [](ToolSpec & t) -> auto& { return t.record.emplace(); },
         "a recorded path, in place of speed and depth");
@@ -176,15 +103,7 @@ const SectionSpec& tool_section() {
 }
 
 const SectionSpec& output_section() {
-  static const SectionSpec section = [] {
-    Section<OutputSpec> s("output", "Output of the run.");
-    s.key("sample_rate_hz", &OutputSpec::sample_rate, "lines of forces.csv per simulated second")
-        .in("Hz")
-        .within(above(0));
-    s.key("frames", &OutputSpec::frames, "states of the whole body stored over the run; 0: none")
-        .within(between(0, 100000));
-    return s.spec();
-  }();
+  static const SectionSpec section = described<OutputSpec>("output", "Output of the run.");
   return section;
 }
 

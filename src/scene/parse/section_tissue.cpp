@@ -10,43 +10,15 @@
 namespace glisson::scene {
 namespace {
 
-/// The keys of a law, from the law's own description.
 template <class Law, class Laws>
 KindSpec law_kind() {
-  Section<Law> s{std::string(Law::kName), std::string(Law::kHelp) + "."};
-  for (const LawField<Law>& field : Law::kFields) {
-    std::visit(
-        [&](auto member) {
-          KeySpec& key = s.key(std::string(field.key), member, std::string(field.help));
-          key.in(std::string(field.unit)).within(between(field.min, field.max));
-          if (field.required) key.must();
-        },
-        field.member);
-  }
-  s.finish([](Law& law, const Node&, const Place& place) {
-    if (const std::string wrong = law.check(); !wrong.empty()) place.complain(wrong);
-  });
-  return {s.spec(), [](void* law) -> void* { return &static_cast<Laws*>(law)->template emplace<Law>(); }};
+  return {described<Law>(std::string(Law::kName), std::string(Law::kHelp) + "."),
+          [](void* law) -> void* { return &static_cast<Laws*>(law)->template emplace<Law>(); }};
 }
 
 template <class... Laws>
 std::vector<KindSpec> law_kinds(std::type_identity<std::variant<Laws...>>) {
   return {law_kind<Laws, std::variant<Laws...>>()...};
-}
-
-/// What require_valid would refuse, said at the key that is wrong.
-void check_together(const Tissue& t, const Node& table, const Place& place) {
-  double sum = 0.0;
-  for (const MaxwellBranch& b : t.maxwell) sum += b.share;
-  if (!(sum < 1.0)) {
-    place.complain(
-        *table.find("maxwell"), "maxwell",
-        "the shares sum up to " + show(sum) + "; allowed: below 1, the rest is the modulus after long times");
-  }
-  if (t.hyperelastic || t.kinematics != Kinematics::small || t.viscous_tensor != ViscousTensor::pioletti) return;
-  place.complain(*table.find("viscous_tensor"), "viscous_tensor",
-                 "\"pioletti\" is a law of large strain; set `kinematics` to \"green\" or \"corotational\" or give a "
-                 "`hyperelastic` law");
 }
 
 /// E and ν from `lambda_Pa` and `mu_Pa`, where those are given.
@@ -91,32 +63,14 @@ const SectionSpec& law_section() {
 }
 
 const SectionSpec& fibres_section() {
-  static const SectionSpec section = [] {
-    Section<Fibres> s("tissue.fibres", "Fibres along one direction a: W = ½ c (a·E a)².");
-    s.key("direction", &Fibres::direction, "a at rest, any length; fibre directions in the mesh override it");
-    s.key("stiffness_Pa", &Fibres::stiffness, "c = λ_L − λ_T + 2 (μ_L − μ_T), along L and across T the fibres")
-        .in("Pa")
-        .within(at_least(0))
-        .must();
-    s.finish([](Fibres& f, const Node& table, const Place& place) {
-      if (!(norm(f.direction) > 0.0)) place.complain(*table.find("direction"), "direction", "has no length");
-    });
-    return s.spec();
-  }();
+  static const SectionSpec section =
+      described<Fibres>("tissue.fibres", "Fibres along one direction a: W = ½ c (a·E a)².");
   return section;
 }
 
 const SectionSpec& maxwell_section() {
-  static const SectionSpec section = [] {
-    Section<MaxwellBranch> s("tissue.maxwell",
-                             "A branch of a generalised Maxwell body: μ(t) = μ₀ (1 − Σ g (1 − exp(−t/τ))).");
-    s.key("share", &MaxwellBranch::share, "g, share of the instantaneous modulus that relaxes; sum below 1")
-        .in("-")
-        .within(strictly_between(0.0, 1.0))
-        .must();
-    s.key("time_s", &MaxwellBranch::time, "τ, time constant").in("s").within(above(0)).must();
-    return s.spec();
-  }();
+  static const SectionSpec section = described<MaxwellBranch>(
+      "tissue.maxwell", "A branch of a generalised Maxwell body: μ(t) = μ₀ (1 − Σ g (1 − exp(−t/τ))).");
   return section;
 }
 
@@ -149,51 +103,17 @@ const SectionSpec& tissue_section() {
             .type = ValueType::text,
             .default_text = "none"});
     s.spec().starts = {"preset", "file"};
-    s.key("name", &Tissue::name, "name for the report; default for a preset: its name");
-    s.key("youngs_modulus_Pa", &Tissue::youngs_modulus, "Young's modulus E at rest").in("Pa").within(above(0));
-    s.key("poisson_ratio", &Tissue::poisson_ratio, "Poisson's ratio ν")
-        .in("-")
-        .within(strictly_between(-1.0, 0.5))
-        .advise("0.45 to 0.49 is nearly incompressible");
-    s.bare({.name = "lambda_Pa",
-            .help = "Lamé's first parameter λ at rest, with `mu_Pa` in place of E and ν",
-            .unit = "Pa"});
-    s.bare({.name = "mu_Pa", .help = "shear modulus μ at rest", .unit = "Pa", .range = above(0)});
-    s.key("density_kg_m3", &Tissue::density, "density ρ").in("kg/m³").within(above(0));
-    s.key("viscosity_Pa_s", &Tissue::viscosity, "viscosity η").in("Pa·s").within(at_least(0));
-    s.key("viscous_tensor", &Tissue::viscous_tensor, "tensor that carries η");
-    s.key("measure", &Tissue::measure, "measure of deformation x of the laws");
-    s.table("law", law_section(), &Tissue::law, "law of E, ν constant").otherwise("{ kind = \"constant\" }");
-    s.table(
-         "lambda_law", law_section(), [](Tissue& t) -> StiffnessLaw& { return t.lambda_law.emplace(); },
-         "law of λ, in place of a law of E")
-        .otherwise("λ constant");
-    s.table(
-         "mu_law", law_section(), [](Tissue& t) -> StiffnessLaw& { return t.mu_law.emplace(); },
-         "law of μ, in place of a law of E")
-        .otherwise("μ constant");
-    s.key("kinematics", &Tissue::kinematics, "strain that E and ν act on");
-    s.key("law_form", &Tissue::law_form, "force of a stiffness law");
-    s.table(
-         "hyperelastic", hyperelastic_section(), [](Tissue& t) -> HyperelasticLaw& { return t.hyperelastic.emplace(); },
-         "large-deformation law, in place of E, ν and their laws")
-        .otherwise("none");
-    s.table(
-         "fibres", fibres_section(), [](Tissue& t) -> Fibres& { return t.fibres.emplace(); },
-         "fibres that stiffen the tissue along one direction")
-        .otherwise("none");
-    s.tables("maxwell", maxwell_section(), &Tissue::maxwell,
-             "branches that relax, each with its time constant; the given moduli are then the instantaneous ones");
-    s.key("maxwell_part", &Tissue::maxwell_part, "stress that the branches relax");
-    s.key("volume_change", &Tissue::volume_change, "volume change that the bulk resists");
+    s.fields();
+    s.bare_after("poisson_ratio",
+                 {{.name = "lambda_Pa",
+                   .help = "Lamé's first parameter λ at rest, with `mu_Pa` in place of E and ν",
+                   .unit = "Pa"},
+                  {.name = "mu_Pa", .help = "shear modulus μ at rest", .unit = "Pa", .range = above(0)}});
     s.spec().exclusions = {{{{"preset"}, {"file"}}, false},
                            {{{"youngs_modulus_Pa", "poisson_ratio"}, {"lambda_Pa", "mu_Pa"}, {"hyperelastic"}}, false},
                            {{{"law"}, {"lambda_law", "mu_law"}, {"hyperelastic"}}, false},
                            {{{"kinematics", "law_form", "measure"}, {"hyperelastic"}}, false}};
-    s.finish([](Tissue& tissue, const Node& table, const Place& place) {
-      convert_lame(tissue, table, place);
-      check_together(tissue, table, place);
-    });
+    s.finish(convert_lame);
     return s.spec();
   }();
   return section;

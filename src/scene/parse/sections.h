@@ -1,9 +1,9 @@
 // sections.h — the sections of a scene.
 #pragma once
 
-#include <string>
+#include <type_traits>
 
-#include "glisson/math.h"
+#include "glisson/scene/scene.h"
 #include "scene/parse/schema.h"
 
 namespace glisson::scene {
@@ -38,7 +38,11 @@ const SectionSpec& chart_section();              ///< fills ChartSpec
 const SectionSpec& variant_section();            ///< one experiment, complete; fills Variant
 const SectionSpec& scene_section();              ///< what a scene says once; fills Scene
 
-/// Complains about a direction that has no length.
-void require_direction(const Vec3d& direction, const Node& table, const std::string& key, const Place& place);
+/// The section of a type that fields have (glisson/field.h): what is a table in a scene.
+inline const SectionSpec& section_of(std::type_identity<StiffnessLaw>) { return law_section(); }
+inline const SectionSpec& section_of(std::type_identity<HyperelasticLaw>) { return hyperelastic_section(); }
+inline const SectionSpec& section_of(std::type_identity<Fibres>) { return fibres_section(); }
+inline const SectionSpec& section_of(std::type_identity<MaxwellBranch>) { return maxwell_section(); }
+inline const SectionSpec& section_of(std::type_identity<ImplicitOptions>) { return implicit_section(); }
 
 }  // namespace glisson::scene

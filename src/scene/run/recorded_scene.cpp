@@ -60,9 +60,7 @@ Node law_node(const Laws& laws) {
       [&](const auto& law) {
         using Law = std::decay_t<decltype(law)>;
         set(node, "kind", text_node(std::string(Law::kName)));
-        for (const LawField<Law>& x : Law::kFields) {
-          std::visit([&](auto member) { put(std::string(x.key), law.*member); }, x.member);
-        }
+        each_field<Law>([&](const auto& x) { put(x.key(), law.*x.member); });
       },
       laws);
   return node;

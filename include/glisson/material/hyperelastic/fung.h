@@ -1,13 +1,11 @@
 // fung.h — Fung's exponential in its isotropic form, as Demiray wrote it.
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <string>
 #include <string_view>
 
+#include "glisson/material/hyperelastic/bulk_modulus.h"
 #include "glisson/material/scalar.h"
-#include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
 
@@ -22,10 +20,9 @@ struct Fung {
   static constexpr std::string_view kHelp = "W = μ/(2b) (exp(b (Ī₁ − 3)) − 1) + κ/2 (J − 1)² (exponent at most 12)";
   static constexpr double kLargestExponent = 12.0;
   static constexpr bool kSecond = false;
-  static constexpr std::array<LawField<Fung>, 3> kFields{
-      {{.key = "mu_Pa", .member = &Fung::mu, .unit = "Pa", .min = kSmallestModulus, .help = "μ, shear modulus at rest"},
-       {.key = "b", .member = &Fung::b, .unit = "-", .min = 1e-6, .max = 1000.0, .help = "b, rate of stiffening"},
-       bulk_modulus_field<Fung>()}};
+  static constexpr auto kFields = std::tuple{
+      field("mu", &Fung::mu, "Pa", at_least(kSmallestModulus), "μ, shear modulus at rest").must(),
+      field("b", &Fung::b, "-", between(1e-6, 1000), "b, rate of stiffening").must(), bulk_modulus_field<Fung>()};
 
   double shear_modulus() const { return mu; }
   template <class T>
@@ -42,7 +39,6 @@ struct Fung {
     const T most(kLargestExponent), e = T(b) * i1, w = T(0.5 * mu) * exp(min(e, most));
     return {w, T(0), select(e < most, w * T(b), T(0))};
   }
-  std::string check() const { return {}; }
 
   bool operator==(const Fung&) const = default;
 };

@@ -1,12 +1,11 @@
 // mooney_rivlin.h — rubber whose stress depends on both invariants.
 #pragma once
 
-#include <array>
 #include <string>
 #include <string_view>
 
+#include "glisson/material/hyperelastic/bulk_modulus.h"
 #include "glisson/material/scalar.h"
-#include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
 
@@ -18,10 +17,9 @@ struct MooneyRivlin {
   static constexpr std::string_view kName = "mooney_rivlin";
   static constexpr std::string_view kHelp = "W = c₁₀ (Ī₁ − 3) + c₀₁ (Ī₂ − 3) + κ/2 (J − 1)², μ = 2 (c₁₀ + c₀₁)";
   static constexpr bool kSecond = true;
-  static constexpr std::array<LawField<MooneyRivlin>, 3> kFields{
-      {{.key = "c10_Pa", .member = &MooneyRivlin::c10, .unit = "Pa", .help = "c₁₀"},
-       {.key = "c01_Pa", .member = &MooneyRivlin::c01, .unit = "Pa", .help = "c₀₁"},
-       bulk_modulus_field<MooneyRivlin>()}};
+  static constexpr auto kFields =
+      std::tuple{field("c10", &MooneyRivlin::c10, "Pa", "c₁₀").must(),
+                 field("c01", &MooneyRivlin::c01, "Pa", "c₀₁").must(), bulk_modulus_field<MooneyRivlin>()};
 
   double shear_modulus() const { return 2.0 * (c10 + c01); }
   template <class T>

@@ -1,13 +1,10 @@
 // neo_hookean.h — rubber at its simplest: one modulus, stresses linear in stretch squared.
 #pragma once
 
-#include <array>
-#include <limits>
-#include <string>
 #include <string_view>
 
+#include "glisson/material/hyperelastic/bulk_modulus.h"
 #include "glisson/material/scalar.h"
-#include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
 
@@ -19,12 +16,9 @@ struct NeoHookean {
   static constexpr std::string_view kName = "neo_hookean";
   static constexpr std::string_view kHelp = "W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)²";
   static constexpr bool kSecond = false;
-  static constexpr std::array<LawField<NeoHookean>, 2> kFields{{{.key = "mu_Pa",
-                                                                 .member = &NeoHookean::mu,
-                                                                 .unit = "Pa",
-                                                                 .min = kSmallestModulus,
-                                                                 .help = "μ, shear modulus at rest"},
-                                                                bulk_modulus_field<NeoHookean>()}};
+  static constexpr auto kFields =
+      std::tuple{field("mu", &NeoHookean::mu, "Pa", at_least(kSmallestModulus), "μ, shear modulus at rest").must(),
+                 bulk_modulus_field<NeoHookean>()};
 
   double shear_modulus() const { return mu; }
   template <class T>
@@ -35,7 +29,6 @@ struct NeoHookean {
   GLISSON_FORMULA InvariantSlopes<T> slopes(T /*i1*/) const {
     return {T(0.5 * mu), T(0), T(0)};
   }
-  std::string check() const { return {}; }
 
   bool operator==(const NeoHookean&) const = default;
 };

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "glisson/material/stiffness/law_field.h"
+#include "glisson/material/hyperelastic/bulk_modulus.h"
 
 namespace glisson {
 
@@ -22,15 +22,10 @@ struct Ogden {
   static constexpr double kLargestExponent = 60.0;
   static constexpr std::string_view kName = "ogden";
   static constexpr std::string_view kHelp = "W = Σ 2 μₖ/αₖ² (λ̄₁^αₖ + λ̄₂^αₖ + λ̄₃^αₖ − 3) + κ/2 (J − 1)², μ = Σ μₖ";
-  static constexpr std::array<LawField<Ogden>, 3> kFields{
-      {{.key = "mu_Pa", .member = &Ogden::mu, .unit = "Pa", .help = "μₖ, one to three"},
-       {.key = "alpha",
-        .member = &Ogden::alpha,
-        .unit = "-",
-        .min = -100.0,
-        .max = 100.0,
-        .help = "αₖ, as many, none 0"},
-       bulk_modulus_field<Ogden>()}};
+  static constexpr auto kFields =
+      std::tuple{field("mu", &Ogden::mu, "Pa", "μₖ, one to three").must(),
+                 field("alpha", &Ogden::alpha, "-", between(-100, 100), "αₖ, as many, none 0").must(),
+                 bulk_modulus_field<Ogden>()};
 
   double shear_modulus() const {
     double sum = 0.0;

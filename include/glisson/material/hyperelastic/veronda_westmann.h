@@ -1,13 +1,11 @@
 // veronda_westmann.h — the exponential law of skin, much used for abdominal organs and breast.
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <string>
 #include <string_view>
 
+#include "glisson/material/hyperelastic/bulk_modulus.h"
 #include "glisson/material/scalar.h"
-#include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
 
@@ -23,15 +21,10 @@ struct VerondaWestmann {
       "W = c (exp(b (Ī₁ − 3)) − 1) − ½ c b (Ī₂ − 3) + κ/2 (J − 1)², μ = c b (exponent at most 12)";
   static constexpr double kLargestExponent = 12.0;
   static constexpr bool kSecond = true;
-  static constexpr std::array<LawField<VerondaWestmann>, 3> kFields{
-      {{.key = "c_Pa", .member = &VerondaWestmann::c, .unit = "Pa", .min = kSmallestModulus, .help = "c"},
-       {.key = "b",
-        .member = &VerondaWestmann::b,
-        .unit = "-",
-        .min = 1e-6,
-        .max = 1000.0,
-        .help = "b, rate of stiffening"},
-       bulk_modulus_field<VerondaWestmann>()}};
+  static constexpr auto kFields =
+      std::tuple{field("c", &VerondaWestmann::c, "Pa", at_least(kSmallestModulus), "c").must(),
+                 field("b", &VerondaWestmann::b, "-", between(1e-6, 1000), "b, rate of stiffening").must(),
+                 bulk_modulus_field<VerondaWestmann>()};
 
   double shear_modulus() const { return c * b; }
   template <class T>
@@ -48,7 +41,6 @@ struct VerondaWestmann {
     const T most(kLargestExponent), e = T(b) * i1, w = T(c * b) * exp(min(e, most));
     return {w, T(-0.5 * c * b), select(e < most, w * T(b), T(0))};
   }
-  std::string check() const { return {}; }
 
   bool operator==(const VerondaWestmann&) const = default;
 };

@@ -1,12 +1,10 @@
 // yeoh.h — a cubic in the first invariant: soft, then stiffening.
 #pragma once
 
-#include <array>
-#include <string>
 #include <string_view>
 
+#include "glisson/material/hyperelastic/bulk_modulus.h"
 #include "glisson/material/scalar.h"
-#include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
 
@@ -18,15 +16,9 @@ struct Yeoh {
   static constexpr std::string_view kName = "yeoh";
   static constexpr std::string_view kHelp = "W = c₁ (Ī₁ − 3) + c₂ (Ī₁ − 3)² + c₃ (Ī₁ − 3)³ + κ/2 (J − 1)², μ = 2 c₁";
   static constexpr bool kSecond = false;
-  static constexpr std::array<LawField<Yeoh>, 4> kFields{
-      {{.key = "c1_Pa",
-        .member = &Yeoh::c1,
-        .unit = "Pa",
-        .min = kSmallestModulus,
-        .help = "c₁, half the shear modulus at rest"},
-       {.key = "c2_Pa", .member = &Yeoh::c2, .unit = "Pa", .required = false, .help = "c₂"},
-       {.key = "c3_Pa", .member = &Yeoh::c3, .unit = "Pa", .required = false, .help = "c₃"},
-       bulk_modulus_field<Yeoh>()}};
+  static constexpr auto kFields =
+      std::tuple{field("c1", &Yeoh::c1, "Pa", at_least(kSmallestModulus), "c₁, half the shear modulus at rest").must(),
+                 field("c2", &Yeoh::c2, "Pa", "c₂"), field("c3", &Yeoh::c3, "Pa", "c₃"), bulk_modulus_field<Yeoh>()};
 
   double shear_modulus() const { return 2.0 * c1; }
   template <class T>
@@ -39,7 +31,6 @@ struct Yeoh {
     const T two_c2(2.0 * c2), three_c3 = T(3) * T(c3);
     return {mul_add(i1, mul_add(i1, three_c3, two_c2), T(c1)), T(0), mul_add(i1, three_c3 + three_c3, two_c2)};
   }
-  std::string check() const { return {}; }
 
   bool operator==(const Yeoh&) const = default;
 };

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <string_view>
 
+#include "glisson/field.h"
 #include "glisson/material/scalar.h"
-#include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
 
@@ -14,7 +13,7 @@ namespace glisson {
 struct ConstantLaw {
   static constexpr std::string_view kName = "constant";
   static constexpr std::string_view kHelp = "M(x) = M₀: a linear tissue";
-  static constexpr std::array<LawField<ConstantLaw>, 0> kFields{};
+  static constexpr auto kFields = std::tuple{};
 
   /// M₀
   std::array<double, 1> numbers(double base) const { return {base}; }
@@ -23,7 +22,6 @@ struct ConstantLaw {
     return {T(c[0]), T(0)};
   }
   /// Empty, or what is wrong with the parameters taken together.
-  std::string check() const { return {}; }
 
   bool operator==(const ConstantLaw&) const = default;
 };

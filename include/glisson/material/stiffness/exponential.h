@@ -2,11 +2,10 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <string_view>
 
+#include "glisson/field.h"
 #include "glisson/material/scalar.h"
-#include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
 
@@ -19,14 +18,9 @@ struct ExponentialLaw {
   static constexpr std::string_view kName = "exponential";
   static constexpr std::string_view kHelp = "M(x) = M₀ + A (exp(b x) − 1) (not below 0, exponent at most 60)";
   static constexpr double kLargestExponent = 60.0;
-  static constexpr std::array<LawField<ExponentialLaw>, 2> kFields{
-      {{.key = "amplitude_Pa", .member = &ExponentialLaw::amplitude, .unit = "Pa", .help = "A"},
-       {.key = "rate",
-        .member = &ExponentialLaw::rate,
-        .unit = "-",
-        .min = 0.0,
-        .max = 1000.0,
-        .help = "b, growth per unit of the argument"}}};
+  static constexpr auto kFields = std::tuple{
+      field("amplitude", &ExponentialLaw::amplitude, "Pa", "A").must(),
+      field("rate", &ExponentialLaw::rate, "-", between(0, 1000), "b, growth per unit of the argument").must()};
 
   /// M₀, A, b
   std::array<double, 3> numbers(double base) const { return {base, amplitude, rate}; }
@@ -37,7 +31,6 @@ struct ExponentialLaw {
     const T growth = expm1(min(e, most));
     return not_below_zero(mul_add(A, growth, T(c[0])), select(e > most, T(0), A * b * (growth + T(1))));
   }
-  std::string check() const { return {}; }
 
   bool operator==(const ExponentialLaw&) const = default;
 };

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <string_view>
 
+#include "glisson/field.h"
 #include "glisson/material/scalar.h"
-#include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
 
@@ -17,11 +16,8 @@ struct LinearLaw {
 
   static constexpr std::string_view kName = "linear";
   static constexpr std::string_view kHelp = "M(x) = M₀ + slope · x (not below 0): tissue 2 of the paper";
-  static constexpr std::array<LawField<LinearLaw>, 1> kFields{
-      {{.key = "slope_Pa",
-        .member = &LinearLaw::slope,
-        .unit = "Pa",
-        .help = "growth of the modulus per unit of the argument"}}};
+  static constexpr auto kFields =
+      std::tuple{field("slope", &LinearLaw::slope, "Pa", "growth of the modulus per unit of the argument").must()};
 
   /// M₀, slope
   std::array<double, 2> numbers(double base) const { return {base, slope}; }
@@ -31,7 +27,6 @@ struct LinearLaw {
     const T k(c[1]);
     return not_below_zero(mul_add(k, x, T(c[0])), k);
   }
-  std::string check() const { return {}; }
 
   bool operator==(const LinearLaw&) const = default;
 };

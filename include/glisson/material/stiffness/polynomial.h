@@ -1,13 +1,12 @@
 // polynomial.h — the modulus as a polynomial of the measure.
 #pragma once
 
-#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "glisson/field.h"
 #include "glisson/material/scalar.h"
-#include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
 
@@ -17,8 +16,8 @@ struct PolynomialLaw {
 
   static constexpr std::string_view kName = "polynomial";
   static constexpr std::string_view kHelp = "M(x) = M₀ + c₁ x + c₂ x² + … (not below 0)";
-  static constexpr std::array<LawField<PolynomialLaw>, 1> kFields{
-      {{.key = "coefficients_Pa", .member = &PolynomialLaw::coefficients, .unit = "Pa", .help = "c₁, c₂, …"}}};
+  static constexpr auto kFields =
+      std::tuple{field("coefficients", &PolynomialLaw::coefficients, "Pa", "c₁, c₂, …").must()};
 
   /// M₀, c₁, c₂, …
   std::vector<double> numbers(double base) const {

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <array>
-#include <limits>
-#include <string>
 #include <string_view>
 
+#include "glisson/field.h"
 #include "glisson/material/scalar.h"
-#include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
 
@@ -21,27 +19,10 @@ struct StepLaw {
   static constexpr std::string_view kName = "step";
   static constexpr std::string_view kHelp =
       "M(x) = M₀ below the threshold, `above_Pa` above it, joined smoothly over `width`: tissue 1 of the paper";
-  static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-  static constexpr std::array<LawField<StepLaw>, 3> kFields{
-      {{.key = "threshold",
-        .member = &StepLaw::threshold,
-        .unit = "-",
-        .min = 0.0,
-        .max = kUnbounded,
-        .help = "argument at the middle of the step"},
-       {.key = "above_Pa",
-        .member = &StepLaw::above,
-        .unit = "Pa",
-        .min = 0.0,
-        .max = kUnbounded,
-        .help = "modulus above the threshold"},
-       {.key = "width",
-        .member = &StepLaw::width,
-        .unit = "-",
-        .min = 0.0,
-        .max = kUnbounded,
-        .required = false,
-        .help = "length of the smooth passage; 0 is a sharp step"}}};
+  static constexpr auto kFields =
+      std::tuple{field("threshold", &StepLaw::threshold, "-", at_least(0), "argument at the middle of the step").must(),
+                 field("above", &StepLaw::above, "Pa", at_least(0), "modulus above the threshold").must(),
+                 field("width", &StepLaw::width, "-", at_least(0), "length of the smooth passage; 0 is a sharp step")};
 
   /// M₀, M₁ − M₀, threshold, width
   std::array<double, 4> numbers(double base) const { return {base, above - base, threshold, width}; }
@@ -53,7 +34,6 @@ struct StepLaw {
     const T w(c[3]), t = min(max(mul_add(x - middle, one / w, T(0.5)), zero), one);
     return {mul_add(rise, t * t * (T(3) - (t + t)), base), T(6) / w * rise * t * (one - t)};
   }
-  std::string check() const { return {}; }
 
   bool operator==(const StepLaw&) const = default;
 };

@@ -2,15 +2,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <functional>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "glisson/field.h"
 #include "glisson/material/scalar.h"
-#include "glisson/material/stiffness/law_field.h"
 
 namespace glisson {
 
@@ -22,14 +20,9 @@ struct TableLaw {
 
   static constexpr std::string_view kName = "table";
   static constexpr std::string_view kHelp = "M(x) by straight lines between points, constant outside them";
-  static constexpr std::array<LawField<TableLaw>, 2> kFields{
-      {{.key = "arguments", .member = &TableLaw::arguments, .unit = "-", .help = "x_i, strictly increasing"},
-       {.key = "moduli_Pa",
-        .member = &TableLaw::moduli,
-        .unit = "Pa",
-        .min = 0.0,
-        .max = std::numeric_limits<double>::infinity(),
-        .help = "modulus at each x_i"}}};
+  static constexpr auto kFields =
+      std::tuple{field("arguments", &TableLaw::arguments, "-", "x_i, strictly increasing").must(),
+                 field("moduli", &TableLaw::moduli, "Pa", at_least(0), "modulus at each x_i").must()};
 
   /// x_i, M_i and the slope to the right of x_i, point by point
   std::vector<double> numbers(double /*base*/) const {
