@@ -2,9 +2,13 @@
 //
 //   struct Sine {
 //     double amplitude = 0.001;  ///< [m]
-//     static constexpr auto kFields = std::tuple{field("amplitude", &Sine::amplitude, "mm", above(0), "amplitude")};
+//     template <class Take>
+//     static constexpr auto fields(Take take) {
+//       return take(field("amplitude", &Sine::amplitude, "mm", above(0), "amplitude"));
+//     }
 //   };
 //
+// fields() hands all descriptions to a function; as a template it costs nothing where nobody asks.
 // A scene's key is name and unit, `amplitude_mm`; C++ and Python know the name. A member is in SI; where its key's unit
 // begins with mm, so is the range, and the key is a thousand times the member. What must hold between members is said by
 //   Fault check() const;   // or std::string
@@ -14,7 +18,6 @@
 #include <limits>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -117,25 +120,33 @@ struct Fault {
   std::string_view field{};
 };
 
+/// Takes fields and does nothing.
+struct TakeAny {
+  template <class... Fields>
+  constexpr void operator()(const Fields&...) const {}
+};
 template <class S>
 concept Described = requires {
-  S::kFields;
+  S::fields(TakeAny());
 };
 
-/// Whether fields are all members of an aggregate, in their order.
-template <class S, class Fields>
-inline constexpr bool kDescribesAll = false;
+/// Whether the members of an aggregate are of these types, in this order, and no others.
 template <class S, class... T>
-inline constexpr bool kDescribesAll<S, const std::tuple<FieldOf<S, T>...>> = requires {
+inline constexpr bool kHasMembers = requires {
   S{std::declval<T>()...};
 }
 &&!requires { S{std::declval<T>()..., {}}; };
+/// Whether its fields are all members of S, in their order.
+template <Described S>
+inline constexpr bool kDescribesAll = S::fields([]<class... T>(const FieldOf<S, T>&...) {
+  return kHasMembers<S, T...>;
+});
 
 /// Calls `visit` with each field of S.
 template <Described S, class Visit>
 constexpr void each_field(Visit&& visit) {
-  static_assert(kDescribesAll<S, decltype(S::kFields)>, "S::kFields does not describe every member of S, in its order");
-  std::apply([&](const auto&... fields) { (visit(fields), ...); }, S::kFields);
+  static_assert(kDescribesAll<S>, "S::fields does not describe every member of S, in its order");
+  S::fields([&](const auto&... fields) { (visit(fields), ...); });
 }
 
 }  // namespace glisson

@@ -64,11 +64,13 @@ struct BoxOptions {
   Vec3d origin{0.0, 0.0, 0.0};        ///< lowest corner [m]
   BoxSplit split = BoxSplit::kuhn;
 
-  static constexpr auto kFields =
-      std::tuple{field("cells", &BoxOptions::cells, between(1, 10000), "cubes along x, y and z"),
-                 field("size", &BoxOptions::size, "m", above(0), "edge lengths of the box"),
-                 field("origin", &BoxOptions::origin, "m", "lowest corner"),
-                 field("split", &BoxOptions::split, "how a cube is split in six")};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("cells", &BoxOptions::cells, between(1, 10000), "cubes along x, y and z"),
+                field("size", &BoxOptions::size, "m", above(0), "edge lengths of the box"),
+                field("origin", &BoxOptions::origin, "m", "lowest corner"),
+                field("split", &BoxOptions::split, "how a cube is split in six"));
+  }
   Fault check() const;
 };
 
@@ -84,14 +86,17 @@ struct CylinderOptions {
   int axial_cells = 8;   ///< layers, 1 or more
   double grading = 1.0;  ///< width of the outermost ring over that of the innermost, ≥ 1
 
-  static constexpr auto kFields = std::tuple{
-      field("radius", &CylinderOptions::radius, "m", above(0), "radius"),
-      field("height", &CylinderOptions::height, "m", above(0), "height"),
-      field("radial_cells", &CylinderOptions::radial_cells, between(1, 2000), "rings from the axis to the wall"),
-      field("axial_cells", &CylinderOptions::axial_cells, between(1, 10000), "layers along the axis"),
-      field("grading", &CylinderOptions::grading, "-", between(1, 10000),
-            "width of the outermost ring over that of the innermost")
-          .advise("1 makes all rings equally wide")};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(
+        field("radius", &CylinderOptions::radius, "m", above(0), "radius"),
+        field("height", &CylinderOptions::height, "m", above(0), "height"),
+        field("radial_cells", &CylinderOptions::radial_cells, between(1, 2000), "rings from the axis to the wall"),
+        field("axial_cells", &CylinderOptions::axial_cells, between(1, 10000), "layers along the axis"),
+        field("grading", &CylinderOptions::grading, "-", between(1, 10000),
+              "width of the outermost ring over that of the innermost")
+            .advise("1 makes all rings equally wide"));
+  }
   Fault check() const;
 };
 

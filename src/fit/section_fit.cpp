@@ -103,14 +103,14 @@ const SectionSpec& parameter_section() {
 const SectionSpec& search_section() {
   static const SectionSpec section = [] {
     Section<SearchSpec> s("search", "Search for the optimum.");
-    s.key("starts", &SearchSpec::starts, "largest number of descents").within(scene::between(1, 10000));
+    s.key("starts", &SearchSpec::starts, "largest number of descents").within(between(1, 10000));
     s.key("found_again", &SearchSpec::found_again,
           "ends when the best optimum has been found this many times; 0: all starts are made")
-        .within(scene::between(0, 10000));
+        .within(between(0, 10000));
     s.key("screen", &SearchSpec::screen, "points screened for each start; the best becomes the start")
-        .within(scene::between(1, 1000));
+        .within(between(1, 1000));
     s.key("most_iterations", &SearchSpec::most_iterations, "largest number of steps of a descent")
-        .within(scene::between(1, 10000));
+        .within(between(1, 10000));
     s.key("seed", &SearchSpec::seed, "seed of the quasi-random starts");
     s.choice<Weighing>("weighing", &SearchSpec::weighing,
                        {{"common", Weighing::common, "all points have equal weight, in newtons"},
@@ -128,7 +128,7 @@ const SectionSpec& search_section() {
          "loss_scale", [](SearchSpec & x) -> auto& { return x.loss.scale; },
          "residual beyond which the weight falls, in standard deviations of the noise")
         .in("-")
-        .within(scene::above(0));
+        .within(above(0));
     return s.spec();
   }();
   return section;
@@ -138,12 +138,12 @@ const SectionSpec& proof_section() {
   static const SectionSpec section = [] {
     Section<ProofSpec> s("proof", "Uncertainty of the fit.");
     s.key("profiles", &ProofSpec::profiles, "profile likelihood of every parameter");
-    s.key("bootstrap", &ProofSpec::bootstrap, "fits to resampled curves; 0: none").within(scene::between(0, 100000));
+    s.key("bootstrap", &ProofSpec::bootstrap, "fits to resampled curves; 0: none").within(between(0, 100000));
     s.key("next", &ProofSpec::next, "searches for the most informative next test");
     s.key<scene::OptionalMilli>("displacement_mm", &ProofSpec::displacement,
                                 "errors of held-out curves are also reported up to here")
         .in("mm")
-        .within(scene::above(0))
+        .within(above(0))
         .otherwise("all");
     return s.spec();
   }();
@@ -169,11 +169,11 @@ const SectionSpec& experiment_section() {
   static const SectionSpec section = [] {
     Section<ExperimentSpec> s("experiment", "A candidate for the next test; the fit reports how much it would tell.");
     s.key("name", &ExperimentSpec::name, "name in tables").otherwise("its velocity and depth");
-    s.key<scene::Milli>("velocity_mm_s", &ExperimentSpec::velocity, "speed").in("mm/s").within(scene::above(0)).must();
-    s.key<scene::Milli>("depth_mm", &ExperimentSpec::depth, "depth").in("mm").within(scene::above(0)).must();
+    s.key<scene::Milli>("velocity_mm_s", &ExperimentSpec::velocity, "speed").in("mm/s").within(above(0)).must();
+    s.key<scene::Milli>("depth_mm", &ExperimentSpec::depth, "depth").in("mm").within(above(0)).must();
     s.key("hold_s", &ExperimentSpec::hold, "rest at depth, the force recorded")
         .in("s")
-        .within(scene::above(0))
+        .within(above(0))
         .otherwise("none");
     s.finish([](ExperimentSpec& e, const Node&, const Place&) {
       if (!e.name.empty()) return;

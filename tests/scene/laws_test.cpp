@@ -75,7 +75,7 @@ void for_each_law(std::type_identity<std::variant<Laws...>>) {
   (refuse_bad_fields<Laws>(), ...);
 }
 
-// Every law in the list can be written in a scene by its kFields, and its fields are checked, without code of its own.
+// Every law in the list can be written in a scene by its fields, and its fields are checked, without code of its own.
 TEST(Laws, AreReadAndCheckedFromTheirOwnDescription) { for_each_law(std::type_identity<StiffnessLaw>{}); }
 
 // Parameters that contradict each other are refused with the law's own words, at the table's line.

@@ -12,7 +12,10 @@ namespace {
 
 struct Part {
   double share = 0.5;
-  static constexpr auto kFields = std::tuple{field("share", &Part::share, "-", strictly_between(0, 1), "share")};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("share", &Part::share, "-", strictly_between(0, 1), "share"));
+  }
 };
 struct Options {
   double depth = 0.01;
@@ -20,22 +23,29 @@ struct Options {
   Vec3d way{0, 0, 1};
   std::vector<Part> parts{};
   double friction = 0.0;
-  static constexpr auto kFields =
-      std::tuple{field("depth", &Options::depth, "mm", between(1, 20), "depth").advise("press less deep"),
-                 field("end", &Options::end, "s", above(0), "end"), field("way", &Options::way, "-", "way").direction(),
-                 field("parts", &Options::parts, "parts"),
-                 field("friction", &Options::friction, "-", at_least(0), "μ").or_infinite("it never slips")};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("depth", &Options::depth, "mm", between(1, 20), "depth").advise("press less deep"),
+                field("end", &Options::end, "s", above(0), "end"), field("way", &Options::way, "-", "way").direction(),
+                field("parts", &Options::parts, "parts"),
+                field("friction", &Options::friction, "-", at_least(0), "μ").or_infinite("it never slips"));
+  }
   Fault check() const { return {depth < 0.015 || parts.empty() ? "" : "is too deep for parts", "depth"}; }
 };
 struct Forgetful {
   double first = 0.0, second = 0.0;
-  static constexpr auto kFields = std::tuple{field("first", &Forgetful::first, "first")};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("first", &Forgetful::first, "first"));
+  }
 };
 struct Shuffled {
   double number = 0.0;
   bool flag = false;
-  static constexpr auto kFields =
-      std::tuple{field("flag", &Shuffled::flag, "flag"), field("number", &Shuffled::number, "number")};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("flag", &Shuffled::flag, "flag"), field("number", &Shuffled::number, "number"));
+  }
 };
 
 std::string refusal(const Options& options) {
@@ -49,9 +59,9 @@ std::string refusal(const Options& options) {
 
 // A member without a description, or out of the struct's order, does not compile where the fields are used.
 TEST(Field, DescribesEveryMember) {
-  static_assert(kDescribesAll<Options, decltype(Options::kFields)>);
-  static_assert(!kDescribesAll<Forgetful, decltype(Forgetful::kFields)>);
-  static_assert(!kDescribesAll<Shuffled, decltype(Shuffled::kFields)>);
+  static_assert(kDescribesAll<Options>);
+  static_assert(!kDescribesAll<Forgetful>);
+  static_assert(!kDescribesAll<Shuffled>);
 }
 
 // The unit ends the key as it is written in scenes, or a field gives its own.

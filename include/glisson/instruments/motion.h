@@ -16,15 +16,17 @@ struct PressMotion {
   double hold = 0.0;     ///< rest at depth [s], ≥ 0
   bool returns = false;  ///< withdraw at the same speed after the hold
 
-  static constexpr auto kFields =
-      std::tuple{field("direction", &PressMotion::direction, "-", "direction of pressing, of any length").direction(),
-                 field("velocity", &PressMotion::velocity, "mm/s", above(0), "speed"),
-                 field("depth", &PressMotion::depth, "mm", above(0), "how far it presses"),
-                 field("start", &PressMotion::start, "s", at_least(0), "start of the motion"),
-                 field("ramp", &PressMotion::ramp, "s", at_least(0),
-                       "time over which the speed rises from 0; 0: a sudden start, as in the paper"),
-                 field("hold", &PressMotion::hold, "s", at_least(0), "rest at depth"),
-                 field("returns", &PressMotion::returns, "withdraw at the same speed after the hold")};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("direction", &PressMotion::direction, "-", "direction of pressing, of any length").direction(),
+                field("velocity", &PressMotion::velocity, "mm/s", above(0), "speed"),
+                field("depth", &PressMotion::depth, "mm", above(0), "how far it presses"),
+                field("start", &PressMotion::start, "s", at_least(0), "start of the motion"),
+                field("ramp", &PressMotion::ramp, "s", at_least(0),
+                      "time over which the speed rises from 0; 0: a sudden start, as in the paper"),
+                field("hold", &PressMotion::hold, "s", at_least(0), "rest at depth"),
+                field("returns", &PressMotion::returns, "withdraw at the same speed after the hold"));
+  }
 };
 
 /// Depth along the direction at time t [m].

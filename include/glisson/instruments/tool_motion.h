@@ -46,10 +46,13 @@ struct SteadyMotion {
   double start = 0.0;               ///< [s], ≥ 0
   double ramp = 0.0;                ///< time over which the speed rises from 0 [s], ≥ 0
 
-  static constexpr auto kFields = std::tuple{no_key("direction", &SteadyMotion::direction).direction(),
-                                             no_key("velocity", &SteadyMotion::velocity, "m/s", above(0)),
-                                             no_key("start", &SteadyMotion::start, "s", at_least(0)),
-                                             no_key("ramp", &SteadyMotion::ramp, "s", at_least(0))};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(no_key("direction", &SteadyMotion::direction).direction(),
+                no_key("velocity", &SteadyMotion::velocity, "m/s", above(0)),
+                no_key("start", &SteadyMotion::start, "s", at_least(0)),
+                no_key("ramp", &SteadyMotion::ramp, "s", at_least(0)));
+  }
 };
 ToolPath steady_path(const SteadyMotion& motion);
 
@@ -60,16 +63,20 @@ struct Stroke {
   double ramp = 0.0;       ///< time over which the speed rises, and falls, linearly [s], ≥ 0
   double rest = 0.0;       ///< after the move [s], ≥ 0
 
-  static constexpr auto kFields =
-      std::tuple{no_key("to", &Stroke::to), no_key("velocity", &Stroke::velocity, "m/s", above(0)),
-                 no_key("ramp", &Stroke::ramp, "s", at_least(0)), no_key("rest", &Stroke::rest, "s", at_least(0))};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(no_key("to", &Stroke::to), no_key("velocity", &Stroke::velocity, "m/s", above(0)),
+                no_key("ramp", &Stroke::ramp, "s", at_least(0)), no_key("rest", &Stroke::rest, "s", at_least(0)));
+  }
 };
 struct StrokeMotion {
   double start = 0.0;           ///< [s], ≥ 0
   std::vector<Stroke> strokes;  ///< one or more
 
-  static constexpr auto kFields =
-      std::tuple{no_key("start", &StrokeMotion::start, "s", at_least(0)), no_key("strokes", &StrokeMotion::strokes)};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(no_key("start", &StrokeMotion::start, "s", at_least(0)), no_key("strokes", &StrokeMotion::strokes));
+  }
   Fault check() const;
 };
 ToolPath stroke_path(const StrokeMotion& motion);
@@ -84,14 +91,16 @@ struct SineMotion {
   double ramp = 0.0;                ///< time over which it rises [s], ≥ 0
   double duration = 1.0;            ///< from the start on [s], > 0; then the tool stays in place
 
-  static constexpr auto kFields =
-      std::tuple{field("direction", &SineMotion::direction, "-", "direction of motion, of any length").direction(),
-                 field("amplitude", &SineMotion::amplitude, "mm", above(0), "amplitude"),
-                 field("frequency", &SineMotion::frequency, "Hz", above(0), "frequency"),
-                 field("mean", &SineMotion::mean, "mm", "mean depth"),
-                 field("start", &SineMotion::start, "s", at_least(0), "start of the motion"),
-                 field("ramp", &SineMotion::ramp, "s", at_least(0), "time over which it rises"),
-                 field("duration", &SineMotion::duration, "s", above(0), "duration")};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("direction", &SineMotion::direction, "-", "direction of motion, of any length").direction(),
+                field("amplitude", &SineMotion::amplitude, "mm", above(0), "amplitude"),
+                field("frequency", &SineMotion::frequency, "Hz", above(0), "frequency"),
+                field("mean", &SineMotion::mean, "mm", "mean depth"),
+                field("start", &SineMotion::start, "s", at_least(0), "start of the motion"),
+                field("ramp", &SineMotion::ramp, "s", at_least(0), "time over which it rises"),
+                field("duration", &SineMotion::duration, "s", above(0), "duration"));
+  }
 };
 ToolPath sine_path(const SineMotion& motion);
 
@@ -101,9 +110,11 @@ struct RecordedMotion {
   std::vector<Vec3d> positions;  ///< at these times [m]; the tool moves relative to the first of them
   double start = 0.0;            ///< time of the run at which the record begins [s], ≥ 0
 
-  static constexpr auto kFields =
-      std::tuple{no_key("times", &RecordedMotion::times), no_key("positions", &RecordedMotion::positions),
-                 no_key("start", &RecordedMotion::start, "s", at_least(0))};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(no_key("times", &RecordedMotion::times), no_key("positions", &RecordedMotion::positions),
+                no_key("start", &RecordedMotion::start, "s", at_least(0)));
+  }
   Fault check() const;
 };
 ToolPath recorded_path(const RecordedMotion& motion);
@@ -122,14 +133,15 @@ struct PushMotion {
   std::optional<double> stop{};         ///< largest travel along the direction [m], > 0
   std::optional<double> end{};          ///< end of the push, for the end of the run [s]
 
-  static constexpr auto kFields =
-      std::tuple{no_key("direction", &PushMotion::direction).direction(),
-                 no_key("force", &PushMotion::force),
-                 field("mass", &PushMotion::mass, "kg", above(0), "mass of the tool and the hand behind it"),
-                 field("damping", &PushMotion::damping, "N s/m", at_least(0), "damping of the hand"),
-                 field("guided", &PushMotion::guided, "moves along the direction only; otherwise also sideways"),
-                 field("stop", &PushMotion::stop, "mm", above(0), "largest travel").otherwise("no stop"),
-                 no_key("end", &PushMotion::end)};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(no_key("direction", &PushMotion::direction).direction(), no_key("force", &PushMotion::force),
+                field("mass", &PushMotion::mass, "kg", above(0), "mass of the tool and the hand behind it"),
+                field("damping", &PushMotion::damping, "N s/m", at_least(0), "damping of the hand"),
+                field("guided", &PushMotion::guided, "moves along the direction only; otherwise also sideways"),
+                field("stop", &PushMotion::stop, "mm", above(0), "largest travel").otherwise("no stop"),
+                no_key("end", &PushMotion::end));
+  }
 };
 class PushDriver final : public ToolDriver {
  public:
@@ -166,11 +178,14 @@ struct HandCoupling {
   double period = 0.001;         ///< T: time from one set_target to the next [s], > 0
   double device_damping = 0.25;  ///< b: damping of the device's own bearings and motors [N s/m], ≥ 0
 
-  static constexpr auto kFields = std::tuple{
-      no_key("stiffness", &HandCoupling::stiffness, "N/m", above(0)),
-      no_key("damping", &HandCoupling::damping, "N s/m", above(0)), no_key("mass", &HandCoupling::mass, "kg", above(0)),
-      no_key("period", &HandCoupling::period, "s", above(0)),
-      no_key("device_damping", &HandCoupling::device_damping, "N s/m", at_least(0))};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(no_key("stiffness", &HandCoupling::stiffness, "N/m", above(0)),
+                no_key("damping", &HandCoupling::damping, "N s/m", above(0)),
+                no_key("mass", &HandCoupling::mass, "kg", above(0)),
+                no_key("period", &HandCoupling::period, "s", above(0)),
+                no_key("device_damping", &HandCoupling::device_damping, "N s/m", at_least(0)));
+  }
   Fault check() const;
 };
 /// The largest k that is passive with the c, T and b of a coupling:  k = (√(c² + 4 b c) − c) / T [N/m].

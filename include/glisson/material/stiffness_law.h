@@ -1,6 +1,6 @@
 // stiffness_law.h — the one list of laws that a modulus can follow.
 //
-// A law is one file under stiffness/ with `kName`, `kHelp`, `kFields` (its parameters: the scene's schema, its
+// A law is one file under stiffness/ with `kName`, `kHelp`, `fields` (its parameters: the scene's schema, its
 // documentation, its error messages and its class in Python come from there), where parameters may contradict each other a
 // `check`, and its formula, written once in the words of scalar.h:
 //   numbers(base)   what the formula reads, worked out in double for the modulus `base` at rest

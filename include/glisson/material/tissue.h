@@ -68,12 +68,15 @@ struct Fibres {
   Vec3d direction{0.0, 0.0, 1.0};  ///< a at rest, any length but 0; TetMesh::fibres override it
   double stiffness = 0.0;          ///< c [Pa], ≥ 0
 
-  static constexpr auto kFields = std::tuple{
-      field("direction", &Fibres::direction, "a at rest, any length; fibre directions in the mesh override it")
-          .direction(),
-      field("stiffness", &Fibres::stiffness, "Pa", at_least(0),
-            "c = λ_L − λ_T + 2 (μ_L − μ_T), along L and across T the fibres")
-          .must()};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(
+        field("direction", &Fibres::direction, "a at rest, any length; fibre directions in the mesh override it")
+            .direction(),
+        field("stiffness", &Fibres::stiffness, "Pa", at_least(0),
+              "c = λ_L − λ_T + 2 (μ_L − μ_T), along L and across T the fibres")
+            .must());
+  }
   bool operator==(const Fibres&) const = default;
 };
 
@@ -82,11 +85,13 @@ struct MaxwellBranch {
   double share = 0.0;  ///< g, share of the instantaneous modulus that relaxes [-], > 0; sum < 1
   double time = 1.0;   ///< τ [s], > 0
 
-  static constexpr auto kFields =
-      std::tuple{field("share", &MaxwellBranch::share, "-", strictly_between(0, 1),
-                       "g, share of the instantaneous modulus that relaxes; sum below 1")
-                     .must(),
-                 field("time", &MaxwellBranch::time, "s", above(0), "τ, time constant").must()};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("share", &MaxwellBranch::share, "-", strictly_between(0, 1),
+                      "g, share of the instantaneous modulus that relaxes; sum below 1")
+                    .must(),
+                field("time", &MaxwellBranch::time, "s", above(0), "τ, time constant").must());
+  }
   bool operator==(const MaxwellBranch&) const = default;
 };
 
@@ -142,27 +147,30 @@ struct Tissue {
   MaxwellPart maxwell_part = MaxwellPart::deviator;
   VolumeChange volume_change = VolumeChange::own;
 
-  static constexpr auto kFields = std::tuple{
-      field("name", &Tissue::name, "name for the report; default for a preset: its name"),
-      field("youngs_modulus", &Tissue::youngs_modulus, "Pa", above(0), "Young's modulus E at rest"),
-      field("poisson_ratio", &Tissue::poisson_ratio, "-", strictly_between(-1, 0.5), "Poisson's ratio ν")
-          .advise("0.45 to 0.49 is nearly incompressible"),
-      field("density", &Tissue::density, "kg/m³", above(0), "density ρ"),
-      field("viscosity", &Tissue::viscosity, "Pa·s", at_least(0), "viscosity η"),
-      field("viscous_tensor", &Tissue::viscous_tensor, "tensor that carries η"),
-      field("measure", &Tissue::measure, "measure of deformation x of the laws"),
-      field("law", &Tissue::law, "law of E, ν constant").otherwise("{ kind = \"constant\" }"),
-      field("lambda_law", &Tissue::lambda_law, "law of λ, in place of a law of E").otherwise("λ constant"),
-      field("mu_law", &Tissue::mu_law, "law of μ, in place of a law of E").otherwise("μ constant"),
-      field("kinematics", &Tissue::kinematics, "strain that E and ν act on"),
-      field("law_form", &Tissue::law_form, "force of a stiffness law"),
-      field("hyperelastic", &Tissue::hyperelastic, "large-deformation law, in place of E, ν and their laws")
-          .otherwise("none"),
-      field("fibres", &Tissue::fibres, "fibres that stiffen the tissue along one direction").otherwise("none"),
-      field("maxwell", &Tissue::maxwell,
-            "branches that relax, each with its time constant; the given moduli are then the instantaneous ones"),
-      field("maxwell_part", &Tissue::maxwell_part, "stress that the branches relax"),
-      field("volume_change", &Tissue::volume_change, "volume change that the bulk resists")};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(
+        field("name", &Tissue::name, "name for the report; default for a preset: its name"),
+        field("youngs_modulus", &Tissue::youngs_modulus, "Pa", above(0), "Young's modulus E at rest"),
+        field("poisson_ratio", &Tissue::poisson_ratio, "-", strictly_between(-1, 0.5), "Poisson's ratio ν")
+            .advise("0.45 to 0.49 is nearly incompressible"),
+        field("density", &Tissue::density, "kg/m³", above(0), "density ρ"),
+        field("viscosity", &Tissue::viscosity, "Pa·s", at_least(0), "viscosity η"),
+        field("viscous_tensor", &Tissue::viscous_tensor, "tensor that carries η"),
+        field("measure", &Tissue::measure, "measure of deformation x of the laws"),
+        field("law", &Tissue::law, "law of E, ν constant").otherwise("{ kind = \"constant\" }"),
+        field("lambda_law", &Tissue::lambda_law, "law of λ, in place of a law of E").otherwise("λ constant"),
+        field("mu_law", &Tissue::mu_law, "law of μ, in place of a law of E").otherwise("μ constant"),
+        field("kinematics", &Tissue::kinematics, "strain that E and ν act on"),
+        field("law_form", &Tissue::law_form, "force of a stiffness law"),
+        field("hyperelastic", &Tissue::hyperelastic, "large-deformation law, in place of E, ν and their laws")
+            .otherwise("none"),
+        field("fibres", &Tissue::fibres, "fibres that stiffen the tissue along one direction").otherwise("none"),
+        field("maxwell", &Tissue::maxwell,
+              "branches that relax, each with its time constant; the given moduli are then the instantaneous ones"),
+        field("maxwell_part", &Tissue::maxwell_part, "stress that the branches relax"),
+        field("volume_change", &Tissue::volume_change, "volume change that the bulk resists"));
+  }
   /// What its fields contradict in each other.
   Fault check() const;
 

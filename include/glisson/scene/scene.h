@@ -118,12 +118,14 @@ struct StrokesSpec {
     std::optional<double> velocity;
     double ramp = 0.0, rest = 0.0;
 
-    static constexpr auto kFields =
-        std::tuple{field("depth", &One::depth, "mm", "end point along the direction, from the start").must(),
-                   field("aside", &One::aside, "mm", "end point across the direction"),
-                   field("velocity", &One::velocity, "mm/s", above(0), "speed").otherwise("the common speed"),
-                   field("ramp", &One::ramp, "s", at_least(0), "time over which the speed rises, and falls"),
-                   field("rest", &One::rest, "s", at_least(0), "rest at the end")};
+    template <class Take>
+    static constexpr auto fields(Take take) {
+      return take(field("depth", &One::depth, "mm", "end point along the direction, from the start").must(),
+                  field("aside", &One::aside, "mm", "end point across the direction"),
+                  field("velocity", &One::velocity, "mm/s", above(0), "speed").otherwise("the common speed"),
+                  field("ramp", &One::ramp, "s", at_least(0), "time over which the speed rises, and falls"),
+                  field("rest", &One::rest, "s", at_least(0), "rest at the end"));
+    }
   };
   double velocity = 0.01, start = 0.0;
   std::vector<One> strokes;
@@ -200,10 +202,13 @@ struct OutputSpec {
   double sample_rate = 500.0;  ///< [Hz], > 0
   int frames = 60;             ///< frames of the whole run, 0 or more
 
-  static constexpr auto kFields = std::tuple{
-      field("sample_rate", &OutputSpec::sample_rate, "Hz", above(0), "lines of forces.csv per simulated second"),
-      field("frames", &OutputSpec::frames, between(0, 100000),
-            "states of the whole body stored over the run; 0: none")};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(
+        field("sample_rate", &OutputSpec::sample_rate, "Hz", above(0), "lines of forces.csv per simulated second"),
+        field("frames", &OutputSpec::frames, between(0, 100000),
+              "states of the whole body stored over the run; 0: none"));
+  }
 };
 
 /// One complete experiment: a variant of a scene after expansion.

@@ -71,18 +71,21 @@ struct ImplicitOptions {
   int most_cuts = 20;        ///< how often a step is halved before it fails, 0 … 40
   Preconditioner preconditioner = Preconditioner::automatic;
 
-  static constexpr auto kFields = std::tuple{
-      field("scheme", &ImplicitOptions::scheme, "time scheme of the integrator implicit"),
-      field("spectral_radius", &ImplicitOptions::spectral_radius, "-", between(0, 1), "ρ∞ of generalised_alpha"),
-      field("largest_step", &ImplicitOptions::largest_step, "s", above(0), "first and largest automatic step")
-          .otherwise("0.01, static 0.05"),
-      field("tolerance", &ImplicitOptions::tolerance, "-", between(1e-13, 1e-2),
-            "residual force over the largest force"),
-      field("most_iterations", &ImplicitOptions::most_iterations, between(1, 1000),
-            "of Newton's method, before a step is halved"),
-      field("most_cuts", &ImplicitOptions::most_cuts, between(0, 40),
-            "how often a step is halved before the run stops"),
-      field("preconditioner", &ImplicitOptions::preconditioner, "preconditioner of the linear solves")};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(
+        field("scheme", &ImplicitOptions::scheme, "time scheme of the integrator implicit"),
+        field("spectral_radius", &ImplicitOptions::spectral_radius, "-", between(0, 1), "ρ∞ of generalised_alpha"),
+        field("largest_step", &ImplicitOptions::largest_step, "s", above(0), "first and largest automatic step")
+            .otherwise("0.01, static 0.05"),
+        field("tolerance", &ImplicitOptions::tolerance, "-", between(1e-13, 1e-2),
+              "residual force over the largest force"),
+        field("most_iterations", &ImplicitOptions::most_iterations, between(1, 1000),
+              "of Newton's method, before a step is halved"),
+        field("most_cuts", &ImplicitOptions::most_cuts, between(0, 40),
+              "how often a step is halved before the run stops"),
+        field("preconditioner", &ImplicitOptions::preconditioner, "preconditioner of the linear solves"));
+  }
 };
 
 struct SimulationOptions {
@@ -117,32 +120,36 @@ struct SimulationOptions {
   /// take up to a third longer.
   bool mesh_changes = false;
 
-  static constexpr auto kFields = std::tuple{
-      field("integrator", &SimulationOptions::integrator, "how the body is advanced in time"),
-      field("step", &SimulationOptions::step, "s", above(0),
-            "time step h; \"auto\" takes 0.9 of the stable step and follows the tissue; for implicit and static the "
-            "largest that converges")
-          .or_auto()
-          .otherwise("\"auto\"")
-          .advise("\"auto\" chooses the largest safe step"),
-      field("mass_scaling_step", &SimulationOptions::mass_scaling_step, "s", above(0),
-            "adds mass only to tets whose element step bound is shorter, until it equals this step; explicit and "
-            "semi_implicit. `glisson check` reports the tets and the mass")
-          .otherwise("no mass is added"),
-      field("implicit", &SimulationOptions::implicit, "options of the integrators implicit and static"),
-      field("precision", &SimulationOptions::precision, "precision of the element arithmetic"),
-      field("damping_rate", &SimulationOptions::damping_rate, "1/s", at_least(0),
-            "nodal damping in proportion to mass, γ/m"),
-      field("nodal_damping", &SimulationOptions::nodal_damping, "kg/s", at_least(0),
-            "nodal damping γ, equal at all vertices, in addition")
-          .keyed("nodal_damping_kg_per_s"),
-      field("gravity", &SimulationOptions::gravity, "m/s²", "gravity"),
-      field("gravity_ramp", &SimulationOptions::gravity_ramp, "s", at_least(0), "time over which gravity grows from 0"),
-      no_key("enforce_stability", &SimulationOptions::enforce_stability),
-      no_key("threads", &SimulationOptions::threads, between(0, 1024)),
-      no_key("track_energies", &SimulationOptions::track_energies),
-      no_key("exact_steps", &SimulationOptions::exact_steps),
-      no_key("mesh_changes", &SimulationOptions::mesh_changes)};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(
+        field("integrator", &SimulationOptions::integrator, "how the body is advanced in time"),
+        field("step", &SimulationOptions::step, "s", above(0),
+              "time step h; \"auto\" takes 0.9 of the stable step and follows the tissue; for implicit and static the "
+              "largest that converges")
+            .or_auto()
+            .otherwise("\"auto\"")
+            .advise("\"auto\" chooses the largest safe step"),
+        field("mass_scaling_step", &SimulationOptions::mass_scaling_step, "s", above(0),
+              "adds mass only to tets whose element step bound is shorter, until it equals this step; explicit and "
+              "semi_implicit. `glisson check` reports the tets and the mass")
+            .otherwise("no mass is added"),
+        field("implicit", &SimulationOptions::implicit, "options of the integrators implicit and static"),
+        field("precision", &SimulationOptions::precision, "precision of the element arithmetic"),
+        field("damping_rate", &SimulationOptions::damping_rate, "1/s", at_least(0),
+              "nodal damping in proportion to mass, γ/m"),
+        field("nodal_damping", &SimulationOptions::nodal_damping, "kg/s", at_least(0),
+              "nodal damping γ, equal at all vertices, in addition")
+            .keyed("nodal_damping_kg_per_s"),
+        field("gravity", &SimulationOptions::gravity, "m/s²", "gravity"),
+        field("gravity_ramp", &SimulationOptions::gravity_ramp, "s", at_least(0),
+              "time over which gravity grows from 0"),
+        no_key("enforce_stability", &SimulationOptions::enforce_stability),
+        no_key("threads", &SimulationOptions::threads, between(0, 1024)),
+        no_key("track_energies", &SimulationOptions::track_energies),
+        no_key("exact_steps", &SimulationOptions::exact_steps),
+        no_key("mesh_changes", &SimulationOptions::mesh_changes));
+  }
 };
 
 /// How a simulation is evaluated: for reports and benchmarks.

@@ -6,9 +6,6 @@
 namespace glisson::fit {
 namespace {
 
-using scene::above;
-using scene::at_least;
-using scene::between;
 using scene::KindSpec;
 using scene::Milli;
 using scene::Node;
@@ -16,7 +13,6 @@ using scene::OptionalMilli;
 using scene::Place;
 using scene::Section;
 using scene::SectionSpec;
-using scene::strictly_between;
 
 /// mm² of the file, m² of the struct.
 struct OptionalSquareMilli {

@@ -1,7 +1,7 @@
 // section.h — describing a section by the struct it fills.
 //
 //   Section<Tissue> s("tissue", "What the body is made of.");
-//   s.fields();                                                                  // all that Tissue::kFields describes
+//   s.fields();                                                                  // all that Tissue::fields describes
 //   s.key("youngs_modulus_Pa", &Tissue::youngs_modulus, "E").in("Pa").within(above(0));       // of structs without it
 //
 // The type of a key is that of the member, its default the member's initial value. An accessor is a pointer to a member or

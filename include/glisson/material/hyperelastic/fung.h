@@ -20,9 +20,12 @@ struct Fung {
   static constexpr std::string_view kHelp = "W = μ/(2b) (exp(b (Ī₁ − 3)) − 1) + κ/2 (J − 1)² (exponent at most 12)";
   static constexpr double kLargestExponent = 12.0;
   static constexpr bool kSecond = false;
-  static constexpr auto kFields = std::tuple{
-      field("mu", &Fung::mu, "Pa", at_least(kSmallestModulus), "μ, shear modulus at rest").must(),
-      field("b", &Fung::b, "-", between(1e-6, 1000), "b, rate of stiffening").must(), bulk_modulus_field<Fung>()};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("mu", &Fung::mu, "Pa", at_least(kSmallestModulus), "μ, shear modulus at rest").must(),
+                field("b", &Fung::b, "-", between(1e-6, 1000), "b, rate of stiffening").must(),
+                bulk_modulus_field<Fung>());
+  }
 
   double shear_modulus() const { return mu; }
   template <class T>

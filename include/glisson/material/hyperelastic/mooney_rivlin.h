@@ -17,9 +17,11 @@ struct MooneyRivlin {
   static constexpr std::string_view kName = "mooney_rivlin";
   static constexpr std::string_view kHelp = "W = c₁₀ (Ī₁ − 3) + c₀₁ (Ī₂ − 3) + κ/2 (J − 1)², μ = 2 (c₁₀ + c₀₁)";
   static constexpr bool kSecond = true;
-  static constexpr auto kFields =
-      std::tuple{field("c10", &MooneyRivlin::c10, "Pa", "c₁₀").must(),
-                 field("c01", &MooneyRivlin::c01, "Pa", "c₀₁").must(), bulk_modulus_field<MooneyRivlin>()};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("c10", &MooneyRivlin::c10, "Pa", "c₁₀").must(),
+                field("c01", &MooneyRivlin::c01, "Pa", "c₀₁").must(), bulk_modulus_field<MooneyRivlin>());
+  }
 
   double shear_modulus() const { return 2.0 * (c10 + c01); }
   template <class T>

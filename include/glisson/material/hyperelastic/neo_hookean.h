@@ -16,9 +16,11 @@ struct NeoHookean {
   static constexpr std::string_view kName = "neo_hookean";
   static constexpr std::string_view kHelp = "W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)²";
   static constexpr bool kSecond = false;
-  static constexpr auto kFields =
-      std::tuple{field("mu", &NeoHookean::mu, "Pa", at_least(kSmallestModulus), "μ, shear modulus at rest").must(),
-                 bulk_modulus_field<NeoHookean>()};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("mu", &NeoHookean::mu, "Pa", at_least(kSmallestModulus), "μ, shear modulus at rest").must(),
+                bulk_modulus_field<NeoHookean>());
+  }
 
   double shear_modulus() const { return mu; }
   template <class T>

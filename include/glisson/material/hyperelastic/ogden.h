@@ -22,10 +22,12 @@ struct Ogden {
   static constexpr double kLargestExponent = 60.0;
   static constexpr std::string_view kName = "ogden";
   static constexpr std::string_view kHelp = "W = Σ 2 μₖ/αₖ² (λ̄₁^αₖ + λ̄₂^αₖ + λ̄₃^αₖ − 3) + κ/2 (J − 1)², μ = Σ μₖ";
-  static constexpr auto kFields =
-      std::tuple{field("mu", &Ogden::mu, "Pa", "μₖ, one to three").must(),
-                 field("alpha", &Ogden::alpha, "-", between(-100, 100), "αₖ, as many, none 0").must(),
-                 bulk_modulus_field<Ogden>()};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("mu", &Ogden::mu, "Pa", "μₖ, one to three").must(),
+                field("alpha", &Ogden::alpha, "-", between(-100, 100), "αₖ, as many, none 0").must(),
+                bulk_modulus_field<Ogden>());
+  }
 
   double shear_modulus() const {
     double sum = 0.0;

@@ -21,10 +21,12 @@ struct VerondaWestmann {
       "W = c (exp(b (Ī₁ − 3)) − 1) − ½ c b (Ī₂ − 3) + κ/2 (J − 1)², μ = c b (exponent at most 12)";
   static constexpr double kLargestExponent = 12.0;
   static constexpr bool kSecond = true;
-  static constexpr auto kFields =
-      std::tuple{field("c", &VerondaWestmann::c, "Pa", at_least(kSmallestModulus), "c").must(),
-                 field("b", &VerondaWestmann::b, "-", between(1e-6, 1000), "b, rate of stiffening").must(),
-                 bulk_modulus_field<VerondaWestmann>()};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("c", &VerondaWestmann::c, "Pa", at_least(kSmallestModulus), "c").must(),
+                field("b", &VerondaWestmann::b, "-", between(1e-6, 1000), "b, rate of stiffening").must(),
+                bulk_modulus_field<VerondaWestmann>());
+  }
 
   double shear_modulus() const { return c * b; }
   template <class T>

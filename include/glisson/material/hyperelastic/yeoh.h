@@ -16,9 +16,11 @@ struct Yeoh {
   static constexpr std::string_view kName = "yeoh";
   static constexpr std::string_view kHelp = "W = c₁ (Ī₁ − 3) + c₂ (Ī₁ − 3)² + c₃ (Ī₁ − 3)³ + κ/2 (J − 1)², μ = 2 c₁";
   static constexpr bool kSecond = false;
-  static constexpr auto kFields =
-      std::tuple{field("c1", &Yeoh::c1, "Pa", at_least(kSmallestModulus), "c₁, half the shear modulus at rest").must(),
-                 field("c2", &Yeoh::c2, "Pa", "c₂"), field("c3", &Yeoh::c3, "Pa", "c₃"), bulk_modulus_field<Yeoh>()};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("c1", &Yeoh::c1, "Pa", at_least(kSmallestModulus), "c₁, half the shear modulus at rest").must(),
+                field("c2", &Yeoh::c2, "Pa", "c₂"), field("c3", &Yeoh::c3, "Pa", "c₃"), bulk_modulus_field<Yeoh>());
+  }
 
   double shear_modulus() const { return 2.0 * c1; }
   template <class T>

@@ -13,7 +13,10 @@ namespace glisson {
 struct ConstantLaw {
   static constexpr std::string_view kName = "constant";
   static constexpr std::string_view kHelp = "M(x) = M₀: a linear tissue";
-  static constexpr auto kFields = std::tuple{};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take();
+  }
 
   /// M₀
   std::array<double, 1> numbers(double base) const { return {base}; }

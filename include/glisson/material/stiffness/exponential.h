@@ -18,9 +18,12 @@ struct ExponentialLaw {
   static constexpr std::string_view kName = "exponential";
   static constexpr std::string_view kHelp = "M(x) = M₀ + A (exp(b x) − 1) (not below 0, exponent at most 60)";
   static constexpr double kLargestExponent = 60.0;
-  static constexpr auto kFields = std::tuple{
-      field("amplitude", &ExponentialLaw::amplitude, "Pa", "A").must(),
-      field("rate", &ExponentialLaw::rate, "-", between(0, 1000), "b, growth per unit of the argument").must()};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(
+        field("amplitude", &ExponentialLaw::amplitude, "Pa", "A").must(),
+        field("rate", &ExponentialLaw::rate, "-", between(0, 1000), "b, growth per unit of the argument").must());
+  }
 
   /// M₀, A, b
   std::array<double, 3> numbers(double base) const { return {base, amplitude, rate}; }

@@ -16,8 +16,10 @@ struct LinearLaw {
 
   static constexpr std::string_view kName = "linear";
   static constexpr std::string_view kHelp = "M(x) = M₀ + slope · x (not below 0): tissue 2 of the paper";
-  static constexpr auto kFields =
-      std::tuple{field("slope", &LinearLaw::slope, "Pa", "growth of the modulus per unit of the argument").must()};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("slope", &LinearLaw::slope, "Pa", "growth of the modulus per unit of the argument").must());
+  }
 
   /// M₀, slope
   std::array<double, 2> numbers(double base) const { return {base, slope}; }

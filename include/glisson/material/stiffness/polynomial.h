@@ -16,8 +16,10 @@ struct PolynomialLaw {
 
   static constexpr std::string_view kName = "polynomial";
   static constexpr std::string_view kHelp = "M(x) = M₀ + c₁ x + c₂ x² + … (not below 0)";
-  static constexpr auto kFields =
-      std::tuple{field("coefficients", &PolynomialLaw::coefficients, "Pa", "c₁, c₂, …").must()};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("coefficients", &PolynomialLaw::coefficients, "Pa", "c₁, c₂, …").must());
+  }
 
   /// M₀, c₁, c₂, …
   std::vector<double> numbers(double base) const {

@@ -19,10 +19,12 @@ struct StepLaw {
   static constexpr std::string_view kName = "step";
   static constexpr std::string_view kHelp =
       "M(x) = M₀ below the threshold, `above_Pa` above it, joined smoothly over `width`: tissue 1 of the paper";
-  static constexpr auto kFields =
-      std::tuple{field("threshold", &StepLaw::threshold, "-", at_least(0), "argument at the middle of the step").must(),
-                 field("above", &StepLaw::above, "Pa", at_least(0), "modulus above the threshold").must(),
-                 field("width", &StepLaw::width, "-", at_least(0), "length of the smooth passage; 0 is a sharp step")};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("threshold", &StepLaw::threshold, "-", at_least(0), "argument at the middle of the step").must(),
+                field("above", &StepLaw::above, "Pa", at_least(0), "modulus above the threshold").must(),
+                field("width", &StepLaw::width, "-", at_least(0), "length of the smooth passage; 0 is a sharp step"));
+  }
 
   /// M₀, M₁ − M₀, threshold, width
   std::array<double, 4> numbers(double base) const { return {base, above - base, threshold, width}; }

@@ -20,9 +20,11 @@ struct TableLaw {
 
   static constexpr std::string_view kName = "table";
   static constexpr std::string_view kHelp = "M(x) by straight lines between points, constant outside them";
-  static constexpr auto kFields =
-      std::tuple{field("arguments", &TableLaw::arguments, "-", "x_i, strictly increasing").must(),
-                 field("moduli", &TableLaw::moduli, "Pa", at_least(0), "modulus at each x_i").must()};
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("arguments", &TableLaw::arguments, "-", "x_i, strictly increasing").must(),
+                field("moduli", &TableLaw::moduli, "Pa", at_least(0), "modulus at each x_i").must());
+  }
 
   /// x_i, M_i and the slope to the right of x_i, point by point
   std::vector<double> numbers(double /*base*/) const {
