@@ -10,25 +10,25 @@
 namespace glisson {
 namespace {
 
-struct Part {
+struct Bit {
   double share = 0.5;
   template <class Take>
   static constexpr auto fields(Take take) {
-    return take(field("share", &Part::share, "-", strictly_between(0, 1), "share"));
+    return take(field("share", &Bit::share, "-", strictly_between(0, 1), "share"));
   }
 };
-struct Options {
+struct Drilling {
   double depth = 0.01;
   std::optional<double> end{};
   Vec3d way{0, 0, 1};
-  std::vector<Part> parts{};
+  std::vector<Bit> parts{};
   double friction = 0.0;
   template <class Take>
   static constexpr auto fields(Take take) {
-    return take(field("depth", &Options::depth, "mm", between(1, 20), "depth").advise("press less deep"),
-                field("end", &Options::end, "s", above(0), "end"), field("way", &Options::way, "-", "way").direction(),
-                field("parts", &Options::parts, "parts"),
-                field("friction", &Options::friction, "-", at_least(0), "μ").or_infinite("it never slips"));
+    return take(field("depth", &Drilling::depth, "mm", between(1, 20), "depth").advise("press less deep"),
+                field("end", &Drilling::end, "s", above(0), "end"),
+                field("way", &Drilling::way, "-", "way").direction(), field("parts", &Drilling::parts, "parts"),
+                field("friction", &Drilling::friction, "-", at_least(0), "μ").or_infinite("it never slips"));
   }
   Fault check() const { return {depth < 0.015 || parts.empty() ? "" : "is too deep for parts", "depth"}; }
 };
@@ -48,7 +48,7 @@ struct Shuffled {
   }
 };
 
-std::string refusal(const Options& options) {
+std::string refusal_of(const Drilling& options) {
   try {
     detail::require_fields("tool", options);
   } catch (const std::invalid_argument& error) {
@@ -59,7 +59,7 @@ std::string refusal(const Options& options) {
 
 // A member without a description, or out of the struct's order, does not compile where the fields are used.
 TEST(Field, DescribesEveryMember) {
-  static_assert(kDescribesAll<Options>);
+  static_assert(kDescribesAll<Drilling>);
   static_assert(!kDescribesAll<Forgetful>);
   static_assert(!kDescribesAll<Shuffled>);
 }
@@ -77,17 +77,17 @@ TEST(Field, KeyIsNameAndUnit) {
 
 // What is not allowed is refused with its place, its value in SI, the range and the way out.
 TEST(Field, RefusalsNameValueAndRange) {
-  EXPECT_EQ(refusal({}), "accepted");
-  EXPECT_EQ(refusal({.depth = 0.03}),
+  EXPECT_EQ(refusal_of({}), "accepted");
+  EXPECT_EQ(refusal_of({.depth = 0.03}),
             "tool: depth [m] = 0.03 is outside the allowed range, 0.001 to 0.02; press less deep");
-  EXPECT_EQ(refusal({.end = 0.0}), "tool: end [s] = 0 is outside the allowed range, > 0 and finite");
-  EXPECT_EQ(refusal({.way = {}}),
+  EXPECT_EQ(refusal_of({.end = 0.0}), "tool: end [s] = 0 is outside the allowed range, > 0 and finite");
+  EXPECT_EQ(refusal_of({.way = {}}),
             "tool: way: (0, 0, 0) has no length; give a vector that is not zero, such as (0, 0, -1)");
-  EXPECT_EQ(refusal({.way = {0, NAN, 0}}), "tool: way.y = nan is outside the allowed range, any finite number");
-  EXPECT_EQ(refusal({.parts = {{}, {1.0}}}), "tool: parts[1].share = 1 is outside the allowed range, > 0 and < 1");
-  EXPECT_EQ(refusal({.depth = 0.018, .parts = {{}}}), "tool: depth: is too deep for parts");
-  EXPECT_EQ(refusal({.friction = INFINITY}), "accepted");
-  EXPECT_EQ(refusal({.friction = NAN}),
+  EXPECT_EQ(refusal_of({.way = {0, NAN, 0}}), "tool: way.y = nan is outside the allowed range, any finite number");
+  EXPECT_EQ(refusal_of({.parts = {{}, {1.0}}}), "tool: parts[1].share = 1 is outside the allowed range, > 0 and < 1");
+  EXPECT_EQ(refusal_of({.depth = 0.018, .parts = {{}}}), "tool: depth: is too deep for parts");
+  EXPECT_EQ(refusal_of({.friction = INFINITY}), "accepted");
+  EXPECT_EQ(refusal_of({.friction = NAN}),
             "tool: friction = nan is outside the allowed range, ≥ 0; infinite: it never slips");
 }
 
