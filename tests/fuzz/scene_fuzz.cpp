@@ -45,7 +45,6 @@ void require_sound(const glisson::Variant& v) {
   } catch (const std::invalid_argument& error) {
     require(false, error.what());
   }
-  require(std::visit([](const auto& law) { return law.check().empty(); }, v.tissue.law), "a law passes its own check");
   require(v.output.sample_rate > 0.0 && std::isfinite(v.output.sample_rate), "the sample rate is a rate");
   require(!v.simulation.step || *v.simulation.step > 0.0, "a step is longer than nothing");
   require(v.max_steps || std::isfinite(glisson::run_duration(v)), "a run ends");
