@@ -303,6 +303,7 @@ class Section {
         key = &table(f.key(), section, made, std::string(f.help));
       }
     } else if constexpr (requires { Codec<T>::kType; }) {
+      // NOLINTNEXTLINE(bugprone-branch-clone): the codecs differ
       key = &(f.scale() == 1.0 ? add_value<T, Codec<T>>(f.key(), access, std::string(f.help))
                                : add_value<T, Thousandth<T>>(f.key(), access, std::string(f.help)));
     } else {
