@@ -250,7 +250,7 @@ TEST(Implicit, RefusesBadOptions) {
       EXPECT_NE(std::string(error.what()).find(fragment), std::string::npos) << error.what();
     }
   };
-  refused([](auto& o) { o.step = 0.0; }, "step = 0");
+  refused([](auto& o) { o.step = 0.0; }, "step [s] = 0");
   refused([](auto& o) { o.implicit.spectral_radius = 1.5; }, "spectral_radius = 1.5");
   refused([](auto& o) { o.implicit.tolerance = 0.0; }, "tolerance = 0");
   refused([](auto& o) { o.implicit.largest_step = -1.0; }, "largest_step [s] = -1");
