@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-LIBRARIES = ("glisson", "glisson_scene", "glisson_io", "glisson_fit", "glisson_report")
+LIBRARIES = ("glisson", "glisson_scene", "glisson_io", "glisson_fit", "glisson_report", "glisson_fit_files")
 PROJECT = """
 cmake_minimum_required(VERSION 3.25)
 project(Small LANGUAGES CXX)
@@ -26,7 +26,7 @@ if(NOT GLISSON_REUSED)
   glisson_offer_libraries()
 endif()
 add_executable(answer main.cpp)
-target_link_libraries(answer PRIVATE glisson_report)
+target_link_libraries(answer PRIVATE glisson_fit_files)
 """ % (ROOT, " ".join(LIBRARIES))
 
 
