@@ -52,7 +52,7 @@ describe("live view", { skip: program() === null ? "the program is not built" : 
 
   test("the slider shows where the needle is led to, its mark and the number below where it is", async () => {
     await page.getByRole("button", { name: "Reset" }).click();
-    await until(page, (s) => Number(s.time) < 0.2, "at rest");
+    await until(page, (s) => Number(s.depth) === 0, "at rest");
     await type(page, "Speed [mm/s]", 2);
     await type(page, "Depth [mm]", 8);
     await until(page, (s) => Number(s.depth) > 0.0005, "on its way");
