@@ -3,9 +3,9 @@
 //   void archive(Archive& ar) { ar(position, velocity, events); }
 //
 // Parts are numbers, flags, enumerators that have words, strings, vectors, described structs (field.h), lists and variants of
-// them, and whatever has such a function, as a member or beside it. What is read may have been forged: where bytes are missing, a list is longer than what is left, a flag is
-// neither 0 nor 1, an enumerator has no word or keys do not ascend, it is refused by an exception. What else a number may be is
-// known to its class, which checks it as it reads.
+// them, and whatever has such a function, as a member or beside it. What is read may have been forged: it is refused by an
+// exception where bytes are missing, a list is longer than what is left, a flag is neither 0 nor 1, an enumerator has no word
+// or keys do not ascend. What else a number may be is known to its class, which checks it as it reads.
 #pragma once
 
 #include <algorithm>

@@ -56,9 +56,8 @@ struct FieldText {
 
   /// Of a scene: "density_kg_m3".
   std::string key() const;
-  constexpr double scale() const {
-    return unit.starts_with("mm") ? 1e-3 : 1.0;
-  }  ///< of the member's number to the key's
+  /// The member's number over the key's.
+  constexpr double scale() const { return unit.starts_with("mm") ? 1e-3 : 1.0; }
   std::string si_unit() const;
 };
 
