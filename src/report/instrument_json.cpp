@@ -1,18 +1,12 @@
 // instrument_json.cpp — see instrument_json.h.
 #include "report/instrument_json.h"
 
-#include <array>
-
 namespace glisson {
 namespace {
 
 using nlohmann::json;
 
 json numbers(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
-/// As web/src/report_data.ts has them, in the order of InstrumentForm::Kind.
-constexpr std::array<const char*, 10> kKinds{"none",  "point", "needle", "punch", "ball",
-                                             "probe", "plate", "wall",   "block", "blade"};
 
 json list_of(const InstrumentList& instruments, json (*make)(const Instrument&)) {
   json list = json::array();
@@ -26,7 +20,7 @@ json list_of(const InstrumentList& instruments, json (*make)(const Instrument&))
 
 json instrument_form_json(const Instrument& instrument) {
   const InstrumentForm form = instrument.form();
-  json out{{"kind", kKinds.at(static_cast<std::size_t>(form.kind))}, {"name", instrument.name()}};
+  json out{{"kind", word_of(form.kind)}, {"name", instrument.name()}};
   const auto length = [&](const char* key, double value) {
     if (value > 0.0) out[key] = value;
   };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "glisson/math.h"
+#include "glisson/words.h"
 
 namespace glisson {
 
@@ -22,5 +23,12 @@ struct InstrumentForm {
   double radius = 0.0, length = 0.0, tip = 0.0;
   Vec3d size{}, from{}, to{};
 };
+template <>
+inline constexpr Word<InstrumentForm::Kind> kWords<InstrumentForm::Kind>[] = {
+    {"none", InstrumentForm::Kind::none},     {"point", InstrumentForm::Kind::point},
+    {"needle", InstrumentForm::Kind::needle}, {"punch", InstrumentForm::Kind::punch},
+    {"ball", InstrumentForm::Kind::ball},     {"probe", InstrumentForm::Kind::probe},
+    {"plate", InstrumentForm::Kind::plate},   {"wall", InstrumentForm::Kind::wall},
+    {"block", InstrumentForm::Kind::block},   {"blade", InstrumentForm::Kind::blade}};
 
 }  // namespace glisson

@@ -18,7 +18,7 @@ const std::vector<std::uint32_t>& TetMesh::vertex_set(const std::string& name) c
   const auto found = vertex_sets.find(name);
   if (found != vertex_sets.end()) return found->second;
   std::vector<std::string> known;
-  for (const auto& [set, vertices] : vertex_sets) known.push_back(set);
+  for (const auto& set : vertex_sets) known.push_back(set.first);
   throw std::invalid_argument(no_vertex_set(name, known));
 }
 
