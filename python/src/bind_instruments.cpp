@@ -14,19 +14,12 @@ namespace glisson::python {
 namespace {
 
 void bind_shapes(nb::module_& m) {
-  Options<FlatPunch>(m, "FlatPunch")
-      .field("radius", &FlatPunch::radius)
-      .field("edge_radius", &FlatPunch::edge_radius)
-      .field("length", &FlatPunch::length);
-  Options<Ball>(m, "Ball").field("radius", &Ball::radius);
-  Options<NeedleShape>(m, "NeedleShape")
-      .field("diameter", &NeedleShape::diameter)
-      .field("length", &NeedleShape::length)
-      .field("tip", &NeedleShape::tip)
-      .field("tip_angle", &NeedleShape::tip_angle);
+  Options<FlatPunch>(m, "FlatPunch");
+  Options<Ball>(m, "Ball");
+  Options<NeedleShape>(m, "NeedleShape");
   Options<Plate>(m, "Plate");
-  Options<CylinderWall>(m, "CylinderWall").field("radius", &CylinderWall::radius);
-  Options<Block>(m, "Block").field("size", &Block::size).field("edge_radius", &Block::edge_radius);
+  Options<CylinderWall>(m, "CylinderWall");
+  Options<Block>(m, "Block");
   m.def(
       "distance_to",
       [](const Shape& shape, const Vec3d& x) {
@@ -34,13 +27,8 @@ void bind_shapes(nb::module_& m) {
         return std::pair(d.distance, d.normal);
       },
       "shape"_a, "x"_a, doc("distance_to"));
-  Options<CylinderVessel>(m, "CylinderVessel")
-      .field("radius", &CylinderVessel::radius)
-      .field("height", &CylinderVessel::height);
-  Options<BoxVessel>(m, "BoxVessel")
-      .field("width", &BoxVessel::width)
-      .field("length", &BoxVessel::length)
-      .field("height", &BoxVessel::height);
+  Options<CylinderVessel>(m, "CylinderVessel");
+  Options<BoxVessel>(m, "BoxVessel");
 }
 
 void bind_motions(nb::module_& m) {
@@ -69,7 +57,7 @@ ToolPath path_of(const Way& way, std::optional<double> end) {
 }
 
 void bind_drivers(nb::module_& m) {
-  Options<Pose>(m, "Pose").field("position", &Pose::position).field("axes", &Pose::axes);
+  Options<Pose>(m, "Pose");
   nb::class_<ToolDriver>(m, "ToolDriver", doc("ToolDriver"))
       .def_prop_ro("start", &ToolDriver::start, doc("ToolDriver::start"))
       .def_prop_ro("end", &ToolDriver::end, doc("ToolDriver::end"));
@@ -168,36 +156,10 @@ void bind_driven_set(nb::module_& m) {
 }
 
 void bind_needle(nb::module_& m) {
-  Options<ShaftFriction>(m, "ShaftFriction")
-      .field("static_in", &ShaftFriction::static_in)
-      .field("static_out", &ShaftFriction::static_out)
-      .field("dynamic_in", &ShaftFriction::dynamic_in)
-      .field("dynamic_out", &ShaftFriction::dynamic_out)
-      .field("viscous_in", &ShaftFriction::viscous_in)
-      .field("viscous_out", &ShaftFriction::viscous_out)
-      .field("stick_speed", &ShaftFriction::stick_speed);
-  Options<TipResistance>(m, "TipResistance")
-      .field("cutting", &TipResistance::cutting)
-      .field("puncture", &TipResistance::puncture);
-  Options<Rupture>(m, "Rupture")
-      .field("force", &Rupture::force)
-      .field("toughness", &Rupture::toughness)
-      .field("membrane_thickness", &Rupture::membrane_thickness);
-  Options<NeedleOptions>(m, "NeedleOptions")
-      .field("name", &NeedleOptions::name)
-      .field("diameter", &NeedleOptions::diameter)
-      .field("length", &NeedleOptions::length)
-      .field("direction", &NeedleOptions::direction)
-      .field("zone", &NeedleOptions::zone)
-      .field("spacing", &NeedleOptions::spacing)
-      .field("rupture", &NeedleOptions::rupture)
-      .field("tip", &NeedleOptions::tip)
-      .field("regions", &NeedleOptions::regions)
-      .field("friction", &NeedleOptions::friction)
-      .field("youngs_modulus", &NeedleOptions::youngs_modulus)
-      .field("inner_diameter", &NeedleOptions::inner_diameter)
-      .field("bevel_share", &NeedleOptions::bevel_share)
-      .field("bevel_side", &NeedleOptions::bevel_side);
+  Options<ShaftFriction>(m, "ShaftFriction");
+  Options<TipResistance>(m, "TipResistance");
+  Options<Rupture>(m, "Rupture");
+  Options<NeedleOptions>(m, "NeedleOptions");
   nb::class_<Needle, Instrument>(m, "Needle", doc("Needle"))
       .def(nb::init<const NeedleOptions&, std::shared_ptr<ToolDriver>>(), "options"_a, "driver"_a,
            doc("Needle::Needle"))
@@ -216,13 +178,7 @@ void bind_needle(nb::module_& m) {
 }
 
 void bind_contact(nb::module_& m) {
-  Options<ContactOptions>(m, "ContactOptions")
-      .field("name", &ContactOptions::name)
-      .field("shape", &ContactOptions::shape)
-      .field("friction", &ContactOptions::friction)
-      .field("bonded", &ContactOptions::bonded)
-      .field("direction", &ContactOptions::direction)
-      .field("push_out_speed", &ContactOptions::push_out_speed);
+  Options<ContactOptions>(m, "ContactOptions");
   nb::class_<ContactTool, Instrument>(m, "ContactTool", doc("ContactTool"))
       .def(nb::init<const ContactOptions&, std::shared_ptr<ToolDriver>>(), "options"_a, "driver"_a,
            doc("ContactTool::ContactTool"))
@@ -239,15 +195,7 @@ void bind_contact(nb::module_& m) {
 }
 
 void bind_vessels(nb::module_& m) {
-  Options<ContainerOptions>(m, "ContainerOptions")
-      .field("name", &ContainerOptions::name)
-      .field("vessel", &ContainerOptions::vessel)
-      .field("pose", &ContainerOptions::pose)
-      .field("friction", &ContainerOptions::friction)
-      .field("holds_floor", &ContainerOptions::holds_floor)
-      .field("holds_wall", &ContainerOptions::holds_wall)
-      .field("bonded", &ContainerOptions::bonded)
-      .field("push_out_speed", &ContainerOptions::push_out_speed);
+  Options<ContainerOptions>(m, "ContainerOptions");
   nb::class_<ContainerLoads>(m, "ContainerLoads", doc("ContainerLoads"))
       .def_ro("bottom", &ContainerLoads::bottom, doc("ContainerLoads::bottom"))
       .def_ro("side", &ContainerLoads::side, doc("ContainerLoads::side"))
@@ -261,17 +209,7 @@ void bind_vessels(nb::module_& m) {
 }
 
 void bind_capsule(nb::module_& m) {
-  Options<CapsuleOptions>(m, "CapsuleOptions")
-      .field("name", &CapsuleOptions::name)
-      .field("thickness", &CapsuleOptions::thickness)
-      .field("youngs_modulus", &CapsuleOptions::youngs_modulus)
-      .field("poisson_ratio", &CapsuleOptions::poisson_ratio)
-      .field("prestretch", &CapsuleOptions::prestretch)
-      .field("stiffening", &CapsuleOptions::stiffening)
-      .field("strength", &CapsuleOptions::strength)
-      .field("averaging_length", &CapsuleOptions::averaging_length)
-      .field("vertices", &CapsuleOptions::vertices)
-      .field("triangles", &CapsuleOptions::triangles);
+  Options<CapsuleOptions>(m, "CapsuleOptions");
   nb::class_<Capsule, Interaction>(m, "Capsule", doc("Capsule"))
       .def(nb::init<const CapsuleOptions&>(), "options"_a, doc("Capsule::Capsule"))
       .def_prop_ro(
@@ -297,18 +235,8 @@ void bind_capsule(nb::module_& m) {
 }
 
 void bind_blade(nb::module_& m) {
-  Options<CutOptions>(m, "CutOptions")
-      .field("snap", &CutOptions::snap)
-      .field("least_quality", &CutOptions::least_quality)
-      .field("least_step", &CutOptions::least_step);
-  Options<BladeOptions>(m, "BladeOptions")
-      .field("name", &BladeOptions::name)
-      .field("direction", &BladeOptions::direction)
-      .field("edge_from", &BladeOptions::edge_from)
-      .field("edge_to", &BladeOptions::edge_to)
-      .field("toughness", &BladeOptions::toughness)
-      .field("cut_every", &BladeOptions::cut_every)
-      .field("cutting", &BladeOptions::cutting);
+  Options<CutOptions>(m, "CutOptions");
+  Options<BladeOptions>(m, "BladeOptions");
   nb::class_<Blade, Instrument>(m, "Blade", doc("Blade"))
       .def(nb::init<const BladeOptions&, std::shared_ptr<ToolDriver>>(), "options"_a, "driver"_a, doc("Blade::Blade"))
       .def_prop_ro("area", &Blade::area, doc("Blade::area"))

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/require_fields.h"
 #include "instruments/contact/contact_books.h"
 #include "instruments/contact/contact_reach.h"
 
@@ -17,30 +18,6 @@ namespace {
 constexpr double kMostOut = 0.02;  ///< of the container's size: how far a body may stand out of it at the start
 constexpr double kTouch = 1e-6;    ///< of the vessel's size: tissue so near to a wall that holds it touches
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-void refuse(const ContainerOptions& o, const char* what, double value, const char* range) {
-  std::ostringstream text;
-  text << "container " << o.name << ": " << what << " = " << value << " is outside the allowed range, " << range;
-  throw std::invalid_argument(text.str());
-}
-
-void require(const ContainerOptions& o) {
-  const auto size = [&](const char* what, double v) {
-    if (!(v > 0.0 && std::isfinite(v))) refuse(o, what, v, "> 0 and finite");
-  };
-  const auto height = [&](double v) {
-    if (!(v > 0.0)) refuse(o, "height [m]", v, "> 0; infinite: the wall has no end");
-  };
-  if (const auto* c = std::get_if<CylinderVessel>(&o.vessel)) size("radius [m]", c->radius), height(c->height);
-  if (const auto* b = std::get_if<BoxVessel>(&o.vessel)) {
-    size("width [m]", b->width), size("length [m]", b->length), height(b->height);
-  }
-  if (!(o.friction >= 0.0)) refuse(o, "friction [-]", o.friction, ">= 0; infinite: it never slips");
-  size("push_out_speed [m/s]", o.push_out_speed);
-  if (!is_sound(o.pose)) {
-    throw std::invalid_argument("container " + o.name + ": its pose is not finite, or its axes are no rotation");
-  }
-}
 
 /// A plate whose outward normal is n, through a point; all in the frame of the vessel.
 Pose plate(const Pose& vessel, const Vec3d& point, const Vec3d& n) {
@@ -189,7 +166,7 @@ void Container::State::hold_bonds(const InteractionStep& step) {
 }
 
 Container::Container(const ContainerOptions& options) : state_(std::make_unique<State>()) {
-  require(options);
+  detail::require_fields("container \"" + options.name + "\"", options);
   state_->options = options;
   state_->build();
 }

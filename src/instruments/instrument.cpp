@@ -1,6 +1,7 @@
 #include "glisson/instruments/instrument.h"
 
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include "glisson/archive.h"
@@ -28,6 +29,23 @@ constexpr std::array<InstrumentColumn, 3> kContactColumns{{
 }};
 
 }  // namespace
+
+bool Pose::is_sound() const {
+  double off = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const auto& m = axes.m;
+      const double product = m[0][i] * m[0][j] + m[1][i] * m[1][j] + m[2][i] * m[2][j];
+      off += std::abs(product - (i == j ? 1.0 : 0.0));
+    }
+  }
+  return std::isfinite(norm(position)) && off < 1e-6 && determinant(axes) > 0.0;
+}
+
+Fault Pose::check() const {
+  if (is_sound()) return {};
+  return {"are no rotation; give three perpendicular unit vectors, right-handed, as its columns", "axes"};
+}
 
 Instrument::Instrument(std::string name, std::shared_ptr<ToolDriver> driver, const Vec3d& direction)
     : name_(std::move(name)), driver_(std::move(driver)), direction_(direction) {

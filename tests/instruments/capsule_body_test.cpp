@@ -112,9 +112,9 @@ TEST(CapsuleBody, RefusesOptionsOutOfRange) {
   try {
     make([](CapsuleOptions& o) { o.poisson_ratio = 0.7; });
   } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(
-        e.what(),
-        "capsule.poisson_ratio = 0.7 is outside the allowed range, 0 … 0.5; 0.5 keeps the volume of the sheet");
+    EXPECT_STREQ(e.what(),
+                 "capsule \"capsule\": poisson_ratio = 0.7 is outside the allowed range, 0 to 0.5; 0.5 keeps the "
+                 "volume of the sheet");
   }
 }
 

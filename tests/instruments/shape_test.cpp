@@ -91,7 +91,11 @@ TEST_P(ShapeDistances, TipIsAtTheOrigin) {
 INSTANTIATE_TEST_SUITE_P(All, ShapeDistances, testing::ValuesIn(kCases),
                          [](const auto& c) { return std::string(c.param.name); });
 
+// A tool refuses a shape of sizes that cannot be, naming shape, size, value and what is allowed.
 TEST(Shape, RefusesBadSizes) {
+  const auto make = [](const Shape& shape) {
+    return ContactTool({.shape = shape}, std::make_shared<PathDriver>(Pose{}, press_path({})));
+  };
   const double nan = std::nan("");
   for (const Shape& s : std::initializer_list<Shape>{
            FlatPunch{.radius = 0.0}, FlatPunch{.radius = 0.01, .edge_radius = 0.02},
@@ -100,12 +104,16 @@ TEST(Shape, RefusesBadSizes) {
            NeedleShape{.diameter = 0.01, .length = 0.01, .tip_angle = 0.1}, NeedleShape{.tip_angle = 0.0},
            NeedleShape{.tip = TipForm::bevelled, .tip_angle = 2.0}, Block{.size = {0.01, 0.0, 0.01}},
            Block{.size = {0.01, 0.01, 0.01}, .edge_radius = 0.006}}) {
-    EXPECT_THROW(require_valid(s), std::invalid_argument);
+    EXPECT_THROW(make(s), std::invalid_argument);
   }
   try {
-    require_valid(Shape{FlatPunch{.radius = 0.01, .edge_radius = 0.02}});
+    make(FlatPunch{.radius = 0.01, .edge_radius = 0.02});
+    FAIL() << "an edge rounder than its punch was taken";
   } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(e.what(), "shape: punch edge_radius [m] = 0.02 is outside the allowed range, 0 to 0.01 (its radius)");
+    EXPECT_STREQ(
+        e.what(),
+        "contact tool \"tool\": shape (punch).edge_radius: 20 mm is above 10 mm, the radius or half the length; "
+        "give a smaller one");
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include <optional>
 
+#include "glisson/field.h"
 #include "glisson/instruments/cutting.h"
 #include "glisson/instruments/instrument.h"
 
@@ -21,9 +22,23 @@ struct BladeOptions {
   std::string name = "blade";
   Vec3d direction{0, 0, -1};                                  ///< direction of the depth; any length
   Vec3d edge_from{0.0, -0.01, 0.0}, edge_to{0.0, 0.01, 0.0};  ///< ends of the cutting edge in the tool's own axes [m]
-  double toughness = 100.0;                                   ///< G of the tissue [J/m²], ≥ 0
-  double cut_every = 1e-3;  ///< interval at which the passed tissue is separated [s], ≥ 0; 0: after every step
+  double toughness = 100.0;                                   ///< G of the tissue [J/m²]
+  double cut_every = 1e-3;  ///< interval at which the passed tissue is separated [s]; 0: after every step
   CutOptions cutting{};
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using B = BladeOptions;
+    return take(
+        no_key("name", &B::name), no_key("direction", &B::direction).direction(),
+        field("edge_from", &B::edge_from, "mm", "one end of its edge, in its own axes, relative to its tip"),
+        field("edge_to", &B::edge_to, "mm", "the other end"),
+        field("toughness", &B::toughness, "J/m²", at_least(0), "fracture toughness of the tissue: work per area cut"),
+        field("cut_every", &B::cut_every, "s", at_least(0),
+              "interval at which the passed tissue is separated; 0: after every step"),
+        no_key("cutting", &B::cutting));
+  }
+  Fault check() const;
 };
 
 /// A driven edge that cuts the tissue that it passes, as the body is stepped.

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "glisson/field.h"
 #include "glisson/math.h"
 #include "glisson/mesh.h"
 #include "glisson/simulation/interaction.h"
@@ -24,21 +25,47 @@ namespace glisson {
 
 struct CapsuleOptions {
   std::string name = "capsule";
-  double thickness = 1e-4;         ///< t [m], > 0
-  double youngs_modulus = 8.22e6;  ///< E, of porcine capsule at small strain [Umale2011] [Pa], > 0
-  double poisson_ratio = 0.4;      ///< ν [-], 0 … 0.5
-  double prestretch = 1.0;         ///< stretch at rest relative to the stress-free shape, both ways [-], 1 … 2
-  /// α [-], 0 … 1000: stress rises by e^{αQ}, Q the square of Green strain in one direction (docs/capsule.md).
+  double thickness = 1e-4;         ///< t [m]
+  double youngs_modulus = 8.22e6;  ///< E, of porcine capsule at small strain [Umale2011] [Pa]
+  double poisson_ratio = 0.4;      ///< ν [-]
+  double prestretch = 1.0;         ///< stretch at rest relative to the stress-free shape, both ways [-]
+  /// α [-]: stress rises by e^{αQ}, Q the square of Green strain in one direction (docs/capsule.md).
   double stiffening = 0.0;
-  /// Force per length of a line at rest across which the capsule tears [N/m], > 0; none: it never tears by itself.
+  /// Force per length of a line at rest across which the capsule tears [N/m]; none: it never tears by itself.
   std::optional<double> strength{};
   /// Tension is averaged over a disc of this diameter before it is compared with the strength, so that tearing does not
-  /// depend on the mesh as long as it resolves the disc [m], > 0.
+  /// depend on the mesh as long as it resolves the disc [m].
   double averaging_length = 5e-3;
   /// The covered part of the surface; neither given: all. Triangles whose vertices are all among these …
   std::vector<std::uint32_t> vertices{};
   /// … or just these, in any orientation.
   std::vector<Triangle> triangles{};
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using C = CapsuleOptions;
+    return take(field("name", &C::name, "name"),
+                field("thickness", &C::thickness, "mm", above(0), "thickness")
+                    .advise("an organ's capsule is 0.02 to 0.2 mm thick"),
+                field("youngs_modulus", &C::youngs_modulus, "Pa", above(0), "Young's modulus E at small strain")
+                    .advise("porcine Glisson's capsule has 8.2e6 Pa at small strain"),
+                field("poisson_ratio", &C::poisson_ratio, "-", between(0, 0.5), "Poisson's ratio ν")
+                    .advise("0.5 keeps the volume of the sheet"),
+                field("prestretch", &C::prestretch, "-", between(1, 2),
+                      "stretch of the surface at rest relative to its stress-free shape")
+                    .advise("1 is a sheet without tension"),
+                field("stiffening", &C::stiffening, "-", between(0, 1000),
+                      "α: stress rises by exp(α Q), Q the square of strain")
+                    .advise("0 is a linear sheet"),
+                field("strength", &C::strength, "N/m", above(0), "force per length of a line across which it tears")
+                    .otherwise("never tears")
+                    .advise("leave it out for a capsule that does not tear"),
+                field("averaging_length", &C::averaging_length, "mm", above(0),
+                      "length over which tension is averaged for tearing")
+                    .advise("take two edges of the surface triangles or more"),
+                no_key("vertices", &C::vertices), no_key("triangles", &C::triangles));
+  }
+  Fault check() const;
 };
 
 /// A tear or opening of a capsule.

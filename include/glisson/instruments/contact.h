@@ -17,6 +17,7 @@
 #include <variant>
 #include <vector>
 
+#include "glisson/field.h"
 #include "glisson/instruments/instrument.h"
 #include "glisson/words.h"
 
@@ -24,13 +25,28 @@ namespace glisson {
 
 /// Flat-ended cylinder.
 struct FlatPunch {
-  double radius = 5e-3;      ///< [m], > 0
-  double edge_radius = 0.0;  ///< radius of the rounded edge [m], 0 … radius
-  double length = 0.1;       ///< [m], ≥ 2 edge_radius
+  static constexpr std::string_view kName = "punch";
+  double radius = 5e-3;      ///< [m]
+  double edge_radius = 0.0;  ///< radius of the rounded edge [m], at most the radius and half the length
+  double length = 0.1;       ///< [m]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("radius", &FlatPunch::radius, "mm", above(0), "radius"),
+                field("edge_radius", &FlatPunch::edge_radius, "mm", at_least(0), "radius of the rounded edge"),
+                field("length", &FlatPunch::length, "mm", above(0), "length"));
+  }
+  Fault check() const;
 };
 
 struct Ball {
-  double radius = 5e-3;  ///< [m], > 0; its centre is at z = radius
+  static constexpr std::string_view kName = "ball";
+  double radius = 5e-3;  ///< [m]; its centre is at z = radius
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("radius", &Ball::radius, "mm", above(0), "radius"));
+  }
 };
 
 enum class TipForm {
@@ -46,25 +62,57 @@ inline constexpr Word<TipForm> kWords<TipForm>[] = {
 
 /// A needle as a solid, for palpation and coarse contact; Needle pierces.
 struct NeedleShape {
-  double diameter = 1.27e-3;  ///< [m], > 0
+  static constexpr std::string_view kName = "probe";
+  double diameter = 1.27e-3;  ///< [m]
   double length = 0.1;        ///< with the tip [m]
   TipForm tip = TipForm::conical;
-  double tip_angle =
-      0.35;  ///< conical: full angle of the cone; bevelled: between its plane and the shaft [rad], 0.02 … 3.1 or 1.55
+  /// Conical: full angle of the cone; bevelled: between its plane and the shaft, at most 1.55 [rad].
+  double tip_angle = 0.35;
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("diameter", &NeedleShape::diameter, "mm", above(0), "diameter"),
+                field("length", &NeedleShape::length, "mm", above(0), "length with the tip"),
+                field("tip", &NeedleShape::tip, "shape of the tip"),
+                field("tip_angle", &NeedleShape::tip_angle, "rad", between(0.02, 3.1),
+                      "full angle of the cone, or between the bevel and the shaft"));
+  }
+  double tip_length() const;  ///< [m]
+  Fault check() const;
 };
 
 /// All of z ≥ 0.
-struct Plate {};
+struct Plate {
+  static constexpr std::string_view kName = "plate";
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take();
+  }
+};
 
 /// Everything outside an infinite cylinder about z: its wall seen from inside.
 struct CylinderWall {
-  double radius = 0.05;  ///< [m], > 0
+  static constexpr std::string_view kName = "wall";
+  double radius = 0.05;  ///< [m]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(no_key("radius", &CylinderWall::radius, "m", above(0)));
+  }
 };
 
 /// A box that stands on the middle of its lower face.
 struct Block {
-  Vec3d size{0.01, 0.01, 0.01};  ///< [m], > 0
-  double edge_radius = 0.0;      ///< [m], 0 … half the smallest size
+  static constexpr std::string_view kName = "block";
+  Vec3d size{0.01, 0.01, 0.01};  ///< along its own x, y and z [m]
+  double edge_radius = 0.0;      ///< [m], at most half the smallest size
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("size", &Block::size, "mm", above(0), "edges along its own x, y and z"),
+                field("edge_radius", &Block::edge_radius, "mm", at_least(0), "radius of the rounded edges"));
+  }
+  Fault check() const;
 };
 
 using Shape = std::variant<FlatPunch, Ball, NeedleShape, Plate, CylinderWall, Block>;
@@ -78,16 +126,28 @@ struct ShapeDistance {
 /// @param x  in the frame of the shape [m]. Cost: 5 to 20 ns
 ShapeDistance distance_to(const Shape& shape, const Vec3d& x);
 
-/// @throws std::invalid_argument naming the shape, the size, its value and the allowed range
-void require_valid(const Shape& shape);
+class ContactTool;
 
 struct ContactOptions {
+  using Instrument = ContactTool;  ///< that is made of it
   std::string name = "tool";
   Shape shape = FlatPunch{};
-  double friction = 0.0;         ///< Coulomb's μ [-], ≥ 0; ∞: never slips while it presses
+  double friction = 0.0;         ///< Coulomb's μ [-]; ∞: never slips while it presses
   bool bonded = false;           ///< points that touched stay in place, pulled or pressed; friction is not used
   Vec3d direction{0, 0, -1};     ///< direction of the depth; any length
-  double push_out_speed = 0.05;  ///< largest speed of tissue that is inside the tool when it is attached [m/s], > 0
+  double push_out_speed = 0.05;  ///< largest speed of tissue that is inside the tool when it is attached [m/s]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using C = ContactOptions;
+    return take(no_key("name", &C::name), no_key("shape", &C::shape),
+                field("friction", &C::friction, "-", at_least(0), "Coulomb's μ against the surface")
+                    .or_infinite("it never slips"),
+                field("bonded", &C::bonded, "points that touched stay in place, in tension and compression"),
+                no_key("direction", &C::direction).direction(),
+                field("push_out_speed", &C::push_out_speed, "mm/s", above(0),
+                      "largest speed of tissue that starts inside the tool"));
+  }
 };
 
 /// Pressure on the tool, per vertex of the surface.

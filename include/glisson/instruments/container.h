@@ -14,29 +14,60 @@
 #include <string>
 #include <variant>
 
+#include "glisson/field.h"
 #include "glisson/instruments/instrument.h"
 
 namespace glisson {
 
 struct CylinderVessel {
-  double radius = 0.05;                                     ///< inner radius [m], > 0
-  double height = std::numeric_limits<double>::infinity();  ///< of the wall [m], > 0
+  static constexpr std::string_view kName = "cylinder";
+  double radius = 0.05;                                     ///< inner radius [m]
+  double height = std::numeric_limits<double>::infinity();  ///< of the wall [m]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("radius", &CylinderVessel::radius, "mm", above(0), "inner radius").must(),
+                field("height", &CylinderVessel::height, "mm", above(0), "height of the wall")
+                    .otherwise("unlimited")
+                    .or_infinite("the wall has no end"));
+  }
 };
 
 struct BoxVessel {
-  double width = 0.04, length = 0.04;                       ///< inner size along x and y [m], > 0
-  double height = std::numeric_limits<double>::infinity();  ///< of the walls [m], > 0
+  static constexpr std::string_view kName = "box";
+  double width = 0.04, length = 0.04;                       ///< inner size along x and y [m]
+  double height = std::numeric_limits<double>::infinity();  ///< of the walls [m]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("width", &BoxVessel::width, "mm", above(0), "inner width, along x").must(),
+                field("length", &BoxVessel::length, "mm", above(0), "inner length, along y").must(),
+                field("height", &BoxVessel::height, "mm", above(0), "height of the walls")
+                    .otherwise("unlimited")
+                    .or_infinite("the walls have no end"));
+  }
 };
 
 struct ContainerOptions {
   std::string name = "container";
   std::variant<CylinderVessel, BoxVessel> vessel = CylinderVessel{};
   Pose pose{};                   ///< centre of the floor; its z is up
-  double friction = 0.0;         ///< Coulomb's μ [-], ≥ 0, may be infinite
+  double friction = 0.0;         ///< Coulomb's μ [-], may be infinite
   bool holds_floor = false;      ///< tissue on the floor does not lift off
   bool holds_wall = false;       ///< tissue at the wall does not lift off
   bool bonded = false;           ///< points that touched stay in place; friction is not used
-  double push_out_speed = 0.05;  ///< largest speed of tissue that is outside the vessel when it is attached [m/s], > 0
+  double push_out_speed = 0.05;  ///< largest speed of tissue that is outside the vessel when it is attached [m/s]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using C = ContainerOptions;
+    return take(no_key("name", &C::name), no_key("vessel", &C::vessel), no_key("pose", &C::pose),
+                field("friction", &C::friction, "-", at_least(0), "Coulomb's μ").or_infinite("tissue never slips"),
+                no_key("holds_floor", &C::holds_floor), no_key("holds_wall", &C::holds_wall),
+                no_key("bonded", &C::bonded),
+                field("push_out_speed", &C::push_out_speed, "mm/s", above(0),
+                      "largest speed of tissue that starts outside the vessel"));
+  }
 };
 
 /// What the container's sensors carry: forces of the tissue on it [N], at Simulation::force_time().

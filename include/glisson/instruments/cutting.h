@@ -14,6 +14,7 @@
 #include <memory>
 #include <vector>
 
+#include "glisson/field.h"
 #include "glisson/math.h"
 #include "glisson/simulation/simulation.h"
 
@@ -26,12 +27,21 @@ struct BladeEdge {
 
 struct CutOptions {
   bool snap = true;  ///< whether vertices are moved onto the cut; false: it follows existing faces
-  /// Least mean ratio of a tet after a move (regular_mean_ratio; 1 is best), 0.01 … 0.5.
+  /// Least mean ratio of a tet after a move (regular_mean_ratio; 1 is best).
   double least_quality = 0.15;
   /// Least element step bound after a move, relative to the body's bound when the Cutter is made (to which an automatic
-  /// step falls with the first change of a mesh), 0.05 … 1. In very viscous tissue the explicit scheme's bound scales
+  /// step falls with the first change of a mesh). In very viscous tissue the explicit scheme's bound scales
   /// with the square of a tet's size, and the same value allows smaller moves.
   double least_step = 0.4;
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("snap", &CutOptions::snap, "moves vertices onto the cut; otherwise it follows existing faces"),
+                field("least_quality", &CutOptions::least_quality, "-", between(0.01, 0.5),
+                      "least mean ratio of a tet after such a move"),
+                field("least_step", &CutOptions::least_step, "-", between(0.05, 1),
+                      "least stable step after such a move, relative to the body's before"));
+  }
 };
 
 /// Result of an advance of the blade.
@@ -52,9 +62,6 @@ struct EdgePiece {
   std::array<double, 4> weights{};  ///< barycentric weights of its midpoint [-]
   void archive(Archive& ar);
 };
-
-/// @throws std::invalid_argument naming the option, its value and the allowed range
-void require_valid(const CutOptions& options);
 
 /// Moves one blade through a body. Several may cut the same body; each tracks its own cuts.
 class Cutter {

@@ -17,6 +17,7 @@
 #include <optional>
 #include <string>
 
+#include "glisson/field.h"
 #include "glisson/instruments/instrument.h"
 #include "glisson/words.h"
 
@@ -25,23 +26,52 @@ namespace glisson {
 /// Stick–slip along the inserted shaft, per metre, for a needle that goes in or comes out (modified Karnopp)
 /// [Okamura2004].
 struct ShaftFriction {
-  double static_in = 0.0, static_out = 0.0;    ///< largest force while it sticks, D [N/m], ≥ 0
-  double dynamic_in = 0.0, dynamic_out = 0.0;  ///< force while it slips, C [N/m], 0 … D
-  double viscous_in = 0.0, viscous_out = 0.0;  ///< b [N s/m²], ≥ 0
-  double stick_speed = 1e-4;                   ///< below this slip speed it may stick again [m/s], > 0
+  double static_in = 0.0, static_out = 0.0;    ///< largest force while it sticks, D [N/m]
+  double dynamic_in = 0.0, dynamic_out = 0.0;  ///< force while it slips, C [N/m], at most D
+  double viscous_in = 0.0, viscous_out = 0.0;  ///< b [N s/m²]
+  double stick_speed = 1e-4;                   ///< below this slip speed it may stick again [m/s]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using F = ShaftFriction;
+    return take(field("static_in", &F::static_in, "N/m", at_least(0), "largest force while it sticks"),
+                field("static_out", &F::static_out, "N/m", at_least(0), "the same during withdrawal"),
+                field("dynamic_in", &F::dynamic_in, "N/m", at_least(0), "force while it slips"),
+                field("dynamic_out", &F::dynamic_out, "N/m", at_least(0), "the same during withdrawal"),
+                field("viscous_in", &F::viscous_in, "N s/m²", at_least(0), "additional force per speed of slip"),
+                field("viscous_out", &F::viscous_out, "N s/m²", at_least(0), "the same during withdrawal"),
+                field("stick_speed", &F::stick_speed, "mm/s", above(0), "below this slip speed it may stick again"));
+  }
+  Fault check() const;
 };
 
 /// Resistance at the tip in a region, or at its boundary.
 struct TipResistance {
-  double cutting = 0.0;   ///< cutting force in the region [N], ≥ 0
-  double puncture = 0.0;  ///< force to enter the region through its boundary [N], ≥ 0; 0: the cutting force
+  double cutting = 0.0;   ///< cutting force in the region [N]
+  double puncture = 0.0;  ///< force to enter the region through its boundary [N]; 0: the cutting force
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("cutting", &TipResistance::cutting, "N", at_least(0), "cutting force"),
+                field("puncture", &TipResistance::puncture, "N", at_least(0),
+                      "of a region: force to enter it; 0: the cutting force"));
+  }
 };
 
 /// Puncture criterion of the surface under the tip.
 struct Rupture {
-  std::optional<double> force;       ///< puncture at this force of the tip [N], > 0; or
-  std::optional<double> toughness;   ///< when spring-back releases this energy per area of the slit [J/m²], > 0 …
-  double membrane_thickness = 1e-4;  ///< … of this thickness, one needle diameter long [m], > 0
+  std::optional<double> force{};      ///< puncture at this force of the tip [N]; or
+  std::optional<double> toughness{};  ///< when spring-back releases this energy per area of the slit [J/m²] …
+  double membrane_thickness = 1e-4;   ///< … of this thickness, one needle diameter long [m]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("force", &Rupture::force, "N", above(0), "force of the tip at the puncture"),
+                field("toughness", &Rupture::toughness, "J/m²", above(0),
+                      "puncture when spring-back releases this energy per area of the slit, one diameter long"),
+                field("membrane_thickness", &Rupture::membrane_thickness, "mm", above(0), "depth of the slit"));
+  }
+  Fault check() const;
 };
 
 class Needle;
@@ -49,22 +79,42 @@ class Needle;
 struct NeedleOptions {
   using Instrument = Needle;  ///< that is made of it
   std::string name = "needle";
-  double diameter = 1.27e-3;  ///< [m], > 0; 18 G
-  double length = 0.1;        ///< from the hand to the tip [m], > 0
+  double diameter = 1.27e-3;  ///< [m]; 18 G
+  double length = 0.1;        ///< from the hand to the tip [m]
   Vec3d direction{0, 0, -1};  ///< initial direction, from the hand to the tip; any length
-  double zone = 3e-3;         ///< radius of the tissue around a path point that carries its force [m], > 0
-  double spacing = 2e-3;      ///< distance of path points [m], > 0; less than a third of the zone only costs time
+  double zone = 3e-3;         ///< radius of the tissue around a path point that carries its force [m]
+  double spacing = 2e-3;      ///< distance of path points [m]; less than a third of the zone only costs time
   Rupture rupture{};          ///< neither given: puncture at the cutting force of the tissue below
   TipResistance tip{};        ///< of regions that `regions` does not name; its puncture is not used
   std::map<int, TipResistance> regions{};  ///< by region number
   ShaftFriction friction{};
-  /// Young's modulus [Pa], > 0: the needle bends as a cantilever from the hand; none: it is rigid.
+  /// Young's modulus [Pa]: the needle bends as a cantilever from the hand; none: it is rigid.
   std::optional<double> youngs_modulus{};
-  double inner_diameter = 0.0;  ///< inner diameter of a tube, for its bending [m], 0 … diameter
-  /// Sideways force on a bevelled tip relative to its cutting force [-], ≥ 0, and its direction. It steers needles that
-  /// bend.
+  double inner_diameter = 0.0;  ///< inner diameter of a tube, for its bending [m], below the diameter
+  /// Sideways force on a bevelled tip relative to its cutting force [-], and its direction. It steers needles that bend.
   double bevel_share = 0.0;
   Vec3d bevel_side{1, 0, 0};  ///< across the direction; any length
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using N = NeedleOptions;
+    return take(
+        no_key("name", &N::name), field("diameter", &N::diameter, "mm", above(0), "diameter"),
+        field("length", &N::length, "mm", above(0), "from the hand to the tip"),
+        no_key("direction", &N::direction).direction(),
+        field("zone", &N::zone, "mm", above(0), "radius of the tissue around a path point that carries its force"),
+        field("spacing", &N::spacing, "mm", above(0), "distance of the path points"),
+        field("rupture", &N::rupture, "when the surface is punctured"), field("tip", &N::tip, "resistance at the tip"),
+        no_key("regions", &N::regions), field("friction", &N::friction, "friction along the inserted shaft"),
+        field("youngs_modulus", &N::youngs_modulus, "Pa", above(0),
+              "Young's modulus of the needle, a cantilever clamped at the hand")
+            .otherwise("rigid"),
+        field("inner_diameter", &N::inner_diameter, "mm", at_least(0), "inner diameter of a tube, for its bending"),
+        field("bevel_share", &N::bevel_share, "-", at_least(0),
+              "sideways force of a bevelled tip over its cutting force"),
+        no_key("bevel_side", &N::bevel_side));
+  }
+  Fault check() const;
 };
 
 /// Stage of an insertion.

@@ -129,12 +129,33 @@ struct StrokesSpec {
   };
   double velocity = 0.01, start = 0.0;
   std::vector<One> strokes;
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("velocity", &StrokesSpec::velocity, "mm/s", above(0), "speed of strokes without their own"),
+                field("start", &StrokesSpec::start, "s", at_least(0), "start of the first"),
+                field("strokes", &StrokesSpec::strokes, "the moves, one or more").must());
+  }
+  Fault check() const;
 };
 /// A push that rises over `ramp` and may oscillate:  F = w(t/ramp) (force + swing sin 2π f t).
 struct PushSpec {
   double force = 1.0, swing = 0.0, frequency = 1.0, start = 0.0, ramp = 0.0;
   std::optional<double> duration;
   PushMotion tool;  ///< its force and end are these, its direction is that of the motion
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using P = PushSpec;
+    return take(
+        field("force", &P::force, "N", "mean force"),
+        field("swing", &P::swing, "N", at_least(0), "amplitude of an oscillation about it"),
+        field("frequency", &P::frequency, "Hz", above(0), "frequency of the oscillation"),
+        field("start", &P::start, "s", at_least(0), "start of the motion"),
+        field("ramp", &P::ramp, "s", at_least(0), "time over which it rises"),
+        field("duration", &P::duration, "s", above(0), "duration, for the end of the run").otherwise("unlimited"),
+        no_key("tool", &P::tool));
+  }
 };
 struct InstrumentMotion {
   /// The last is a program's own path; no scene file gives it.
@@ -142,14 +163,6 @@ struct InstrumentMotion {
   std::optional<Vec3d> direction;  ///< of any length; none: the instrument's
 };
 
-/// A rigid tool of some shape that presses on the surface.
-template <class Form>
-struct ContactSpec {
-  Form form;
-  double friction = 0.0;
-  bool bonded = false;
-  double push_out_speed = ContactOptions{}.push_out_speed;
-};
 struct InstrumentSpec;
 /// Makes a program's own instrument.
 using OwnInstrument = std::function<std::shared_ptr<Instrument>(const InstrumentSpec&, std::shared_ptr<ToolDriver>)>;
@@ -162,9 +175,7 @@ struct InstrumentSpec {
   Vec3d side{1.0, 0.0, 0.0};        ///< direction of its own x axis; the component across `direction` counts
   InstrumentMotion motion;
   /// The last is a program's own; no scene file gives it.
-  std::variant<NeedleOptions, ContactSpec<FlatPunch>, ContactSpec<Ball>, ContactSpec<NeedleShape>, ContactSpec<Plate>,
-               ContactSpec<Block>, BladeOptions, OwnInstrument>
-      what;
+  std::variant<NeedleOptions, ContactOptions, BladeOptions, OwnInstrument> what;
   std::map<std::string, TipResistance> regions;  ///< of a needle, by region name
   std::string origin;
 };

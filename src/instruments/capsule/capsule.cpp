@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/require_fields.h"
 #include "glisson/archive.h"
 #include "instruments/capsule/capsule_state.h"
 
@@ -46,7 +47,7 @@ struct Hole {
 }  // namespace
 
 Capsule::Capsule(const CapsuleOptions& options) {
-  require_options(options);
+  detail::require_fields("capsule \"" + options.name + "\"", options);
   state_ = std::make_unique<State>(options);
 }
 

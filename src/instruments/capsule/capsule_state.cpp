@@ -2,36 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 
 namespace glisson {
 
-void require_options(const CapsuleOptions& o) {
-  const auto check = [&](bool ok, const char* option, double value, const char* range, const char* way_out) {
-    if (ok) return;
-    std::ostringstream text;
-    text << o.name << '.' << option << " = " << value << " is outside the allowed range, " << range << "; " << way_out;
-    throw std::invalid_argument(text.str());
-  };
-  const auto is_positive = [](double x) { return x > 0.0 && std::isfinite(x); };
-  check(is_positive(o.thickness), "thickness [m]", o.thickness, "> 0", "an organ's capsule has 2e-5 to 2e-4 m");
-  check(is_positive(o.youngs_modulus), "youngs_modulus [Pa]", o.youngs_modulus, "> 0",
-        "porcine Glisson's capsule has 8.2e6 Pa at small strain");
-  check(o.poisson_ratio >= 0.0 && o.poisson_ratio <= 0.5, "poisson_ratio", o.poisson_ratio, "0 … 0.5",
-        "0.5 keeps the volume of the sheet");
-  check(o.prestretch >= 1.0 && o.prestretch <= 2.0, "prestretch", o.prestretch, "1 … 2",
-        "1 is a sheet without tension");
-  check(o.stiffening >= 0.0 && o.stiffening <= 1000.0, "stiffening", o.stiffening, "0 … 1000", "0 is a linear sheet");
-  if (o.strength) {
-    check(is_positive(*o.strength), "strength [N/m]", *o.strength, "> 0",
-          "leave it out for a capsule that does not tear");
-  }
-  check(is_positive(o.averaging_length), "averaging_length [m]", o.averaging_length, "> 0",
-        "take two edges of the surface triangles or more");
-  if (!o.vertices.empty() && !o.triangles.empty()) {
-    throw std::invalid_argument(o.name + ": both vertices and triangles are given; choose the surface by one of them");
-  }
+Fault CapsuleOptions::check() const {
+  return {vertices.empty() || triangles.empty() ? ""
+                                                : "both vertices and triangles are given; choose the surface by one"};
 }
 
 /// Numbers the vertices, makes the sheet anew over them and looks at the present state.

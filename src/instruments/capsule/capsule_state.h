@@ -10,9 +10,6 @@
 
 namespace glisson {
 
-/// @throws std::invalid_argument naming the option, its value and the allowed range
-void require_options(const CapsuleOptions& options);
-
 /// Share of its stiffness that a sheet keeps with the share φ of it taken by round holes, (1 − φ)/(1 + 2φ): 1 − 3φ for
 /// few, 0 for φ = 1 [MoriTanaka1973].
 inline double kept_share(double open) { return (1.0 - open) / (1.0 + 2.0 * open); }

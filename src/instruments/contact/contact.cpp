@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
+#include "base/require_fields.h"
 #include "instruments/contact/contact_state.h"
 
 namespace glisson {
@@ -17,22 +17,8 @@ namespace {
 
 constexpr double kQuiet = 5e-3;  // without contact for so long, a tool has let go [s]
 
-void require(const ContactOptions& o) {
-  const auto refuse = [&](const char* what, double value, const char* range) {
-    std::ostringstream text;
-    text << "contact tool " << o.name << ": " << what << " = " << value << " is outside the allowed range, " << range;
-    throw std::invalid_argument(text.str());
-  };
-  if (!(o.friction >= 0.0)) refuse("friction [-]", o.friction, ">= 0; infinite: it never slips");
-  if (!(o.push_out_speed > 0.0) || !std::isfinite(o.push_out_speed)) {
-    refuse("push_out_speed [m/s]", o.push_out_speed, "> 0 and finite");
-  }
-  if (!std::isfinite(norm(o.direction))) refuse("length of direction", norm(o.direction), "finite and not 0");
-  require_valid(o.shape);
-}
-
 const ContactOptions& checked(const ContactOptions& options) {
-  require(options);
+  detail::require_fields("contact tool \"" + options.name + "\"", options);
   return options;
 }
 
@@ -44,10 +30,7 @@ struct FormOf {
   }
   InstrumentForm operator()(const Ball& x) const { return {.kind = Kind::ball, .radius = x.radius}; }
   InstrumentForm operator()(const NeedleShape& x) const {
-    const double tip = x.tip == TipForm::conical    ? 0.5 * x.diameter / std::tan(0.5 * x.tip_angle)
-                       : x.tip == TipForm::bevelled ? x.diameter / std::tan(x.tip_angle)
-                                                    : 0.5 * x.diameter;
-    return {.kind = Kind::probe, .radius = 0.5 * x.diameter, .length = x.length, .tip = tip};
+    return {.kind = Kind::probe, .radius = 0.5 * x.diameter, .length = x.length, .tip = x.tip_length()};
   }
   InstrumentForm operator()(const Plate&) const { return {.kind = Kind::plate}; }
   InstrumentForm operator()(const CylinderWall& x) const { return {.kind = Kind::wall, .radius = x.radius}; }
@@ -59,7 +42,7 @@ struct FormOf {
 ContactTool::ContactTool(const ContactOptions& options, std::shared_ptr<ToolDriver> driver)
     : Instrument(checked(options).name, std::move(driver), options.direction), state_(std::make_unique<State>()) {
   state_->options = options;
-  if (!is_sound(pose_)) {
+  if (!pose_.is_sound()) {
     throw std::invalid_argument("contact tool " + options.name +
                                 ": its driver starts at a pose that is not finite, or whose axes are no rotation");
   }
@@ -94,7 +77,7 @@ std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
   InteractionStep step;
   step.time = time, step.h = h;
   drive(step);
-  if (!is_sound(pose_)) {
+  if (!pose_.is_sound()) {
     pose_ = before_, s.lost = true;
     add_event(time, force_depth(), "lost");
     return {};

@@ -9,9 +9,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
 
+#include "base/text.h"
 #include "instruments/contact/shape.h"
 
 namespace glisson {
@@ -129,52 +128,6 @@ ShapeDistance distance(const Block& s, const Vec3d& x) {
   return {away - s.edge_radius, {sign.x * out.x / away, sign.y * out.y / away, sign.z * out.z / away}};
 }
 
-void require(bool ok, const char* what, double value, const std::string& range) {
-  if (ok) return;
-  std::ostringstream text;
-  text << "shape: " << what << " = " << value << " is outside the allowed range, " << range;
-  throw std::invalid_argument(text.str());
-}
-
-std::string upto(const char* from, double to) {
-  std::ostringstream text;
-  text << from << " to " << to;
-  return text.str();
-}
-
-bool is_size(double v) { return v > 0.0 && std::isfinite(v); }
-
-void check(const FlatPunch& s) {
-  require(is_size(s.radius), "punch radius [m]", s.radius, "> 0 and finite");
-  require(s.edge_radius >= 0.0 && s.edge_radius <= s.radius, "punch edge_radius [m]", s.edge_radius,
-          upto("0", s.radius) + " (its radius)");
-  require(is_size(s.length) && s.length >= 2.0 * s.edge_radius, "punch length [m]", s.length,
-          "> 0, at least twice the edge radius, and finite");
-}
-void check(const Ball& s) { require(is_size(s.radius), "ball radius [m]", s.radius, "> 0 and finite"); }
-void check(const NeedleShape& s) {
-  require(is_size(s.diameter), "needle diameter [m]", s.diameter, "> 0 and finite");
-  const double most = s.tip == TipForm::bevelled ? 1.55 : 3.1;
-  const bool pointed = s.tip != TipForm::blunt;
-  require(!pointed || (s.tip_angle >= 0.02 && s.tip_angle <= most), "needle tip_angle [rad]", s.tip_angle,
-          upto("0.02", most));
-  const double radius = 0.5 * s.diameter;
-  const double tip = s.tip == TipForm::conical    ? radius / std::tan(0.5 * s.tip_angle)
-                     : s.tip == TipForm::bevelled ? s.diameter / std::tan(s.tip_angle)
-                                                  : s.diameter;
-  std::ostringstream range;
-  range << "more than the " << tip << " m of its tip, and finite; make it longer or the tip blunter";
-  require(is_size(s.length) && s.length > tip, "needle length [m]", s.length, range.str());
-}
-void check(const Plate&) {}
-void check(const CylinderWall& s) { require(is_size(s.radius), "wall radius [m]", s.radius, "> 0 and finite"); }
-void check(const Block& s) {
-  for (std::size_t i = 0; i < 3; ++i) require(is_size(s.size[i]), "block size [m]", s.size[i], "> 0 and finite");
-  const double most = 0.5 * std::min({s.size.x, s.size.y, s.size.z});
-  require(s.edge_radius >= 0.0 && s.edge_radius <= most, "block edge_radius [m]", s.edge_radius,
-          upto("0", most) + " (half its smallest size)");
-}
-
 ShapeTraits traits(const FlatPunch& s) { return {.thickness = std::min(2.0 * s.radius, s.length)}; }
 ShapeTraits traits(const Ball& s) { return {.thickness = 2.0 * s.radius}; }
 ShapeTraits traits(const NeedleShape& s) { return {.thickness = s.diameter}; }
@@ -188,24 +141,44 @@ ShapeDistance distance_to(const Shape& shape, const Vec3d& x) {
   return std::visit([&](const auto& s) { return distance(s, x); }, shape);
 }
 
-void require_valid(const Shape& shape) {
-  std::visit([](const auto& s) { check(s); }, shape);
+Fault FlatPunch::check() const {
+  const double most = std::min(radius, 0.5 * length);
+  if (edge_radius <= most) return {};
+  return {detail::number_text(1e3 * edge_radius) + " mm is above " + detail::number_text(1e3 * most) +
+              " mm, the radius or half the length; give a smaller one",
+          "edge_radius"};
+}
+
+double NeedleShape::tip_length() const {
+  return tip == TipForm::conical    ? 0.5 * diameter / std::tan(0.5 * tip_angle)
+         : tip == TipForm::bevelled ? diameter / std::tan(tip_angle)
+                                    : 0.5 * diameter;
+}
+
+Fault NeedleShape::check() const {
+  constexpr double kMostBevel = 1.55;
+  if (tip == TipForm::bevelled && tip_angle > kMostBevel) {
+    return {detail::number_text(tip_angle) + " rad is above " + detail::number_text(kMostBevel) +
+                " rad, the most of a bevelled tip",
+            "tip_angle"};
+  }
+  const double least = tip == TipForm::blunt ? diameter : tip_length();  // a blunt one has its hemisphere and a shaft
+  if (length > least) return {};
+  return {detail::number_text(1e3 * length) + " mm is not more than the " + detail::number_text(1e3 * least) +
+              " mm of its tip; make it longer or the tip blunter",
+          "length"};
+}
+
+Fault Block::check() const {
+  const double most = 0.5 * std::min({size.x, size.y, size.z});
+  if (edge_radius <= most) return {};
+  return {detail::number_text(1e3 * edge_radius) + " mm is above " + detail::number_text(1e3 * most) +
+              " mm, half its smallest size; give a smaller one",
+          "edge_radius"};
 }
 
 ShapeTraits traits_of(const Shape& shape) {
   return std::visit([](const auto& s) { return traits(s); }, shape);
-}
-
-bool is_sound(const Pose& pose) {
-  double off = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const auto& m = pose.axes.m;
-      const double product = m[0][i] * m[0][j] + m[1][i] * m[1][j] + m[2][i] * m[2][j];
-      off += std::abs(product - (i == j ? 1.0 : 0.0));
-    }
-  }
-  return std::isfinite(norm(pose.position)) && off < 1e-6 && determinant(pose.axes) > 0.0;
 }
 
 }  // namespace glisson

@@ -26,7 +26,4 @@ inline Vec3d to_frame(const Pose& pose, const Vec3d& x) {
 inline Vec3d direction_to_frame(const Pose& pose, const Vec3d& d) { return to_frame({{}, pose.axes}, d); }
 inline Vec3d to_space(const Pose& pose, const Vec3d& y) { return pose.position + pose.axes * y; }
 
-/// Whether all numbers are finite and the axes a rotation, to 1e-6.
-bool is_sound(const Pose& pose);
-
 }  // namespace glisson

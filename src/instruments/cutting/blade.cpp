@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
+#include "base/require_fields.h"
 #include "glisson/archive.h"
 
 namespace glisson {
@@ -12,26 +12,19 @@ namespace {
 
 constexpr int kSweeps = 3;  ///< over the pieces of the edge, which share vertices
 
-void require(bool ok, const std::string& name, const char* option, double value, const char* range) {
-  if (ok) return;
-  std::ostringstream text;
-  text << "blade " << name << ": " << option << " = " << value << " is outside the allowed range, " << range;
-  throw std::invalid_argument(text.str());
-}
-
 /// The part of a vector across a line.
 Vec3d across(const Vec3d& v, const Vec3d& line) { return v - line * (dot(line, v) / dot(line, line)); }
 
 }  // namespace
 
+Fault BladeOptions::check() const {
+  if (norm(edge_to - edge_from) > 0.0) return {};
+  return {"is the other end, too: the edge has no length; give two ends", "edge_to"};
+}
+
 Blade::Blade(const BladeOptions& options, std::shared_ptr<ToolDriver> driver)
     : Instrument(options.name, std::move(driver), options.direction), options_(options) {
-  require(options.toughness >= 0.0 && std::isfinite(options.toughness), name(), "toughness [J/m^2]", options.toughness,
-          ">= 0 and finite");
-  require(options.cut_every >= 0.0, name(), "cut_every [s]", options.cut_every, ">= 0");
-  const double length = norm(options.edge_to - options.edge_from);
-  require(length > 0.0 && std::isfinite(length), name(), "length of the edge [m]", length, "> 0 and finite");
-  require_valid(options.cutting);
+  detail::require_fields("blade \"" + name() + "\"", options);
 }
 
 BladeEdge Blade::edge() const {

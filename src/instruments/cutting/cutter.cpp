@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
+#include "base/require_fields.h"
 #include "dynamics/simulation_parts.h"
 #include "dynamics/state/checkpoint.h"
 #include "dynamics/step/part_bound.h"
@@ -21,13 +21,6 @@ constexpr double kNearest = 1e-5;     ///< of a typical edge: ways shorter than 
 constexpr double kSupport = 1e-6;     ///< weight from which a corner bears what a vertex becomes
 constexpr double kSetSupport = 0.25;  ///< the same for named sets, on faces that are not flat
 constexpr int kPasses = 2;            ///< over the vertices: what one gives way to may be another
-
-void require_option(bool ok, const char* name, double value, const char* range) {
-  if (ok) return;
-  std::ostringstream text;
-  text << "cutter: " << name << " = " << value << " is outside the allowed range, " << range;
-  throw std::invalid_argument(text.str());
-}
 
 void require_finite(const BladeEdge& edge) {
   if (std::isfinite(norm(edge.from)) && std::isfinite(norm(edge.to))) return;
@@ -222,15 +215,8 @@ void Cutter::Impl::open(const detail::CutFaces& cut, CutReport& report) {
   follow();
 }
 
-void require_valid(const CutOptions& options) {
-  require_option(options.least_quality >= 0.01 && options.least_quality <= 0.5, "least_quality", options.least_quality,
-                 "0.01 to 0.5");
-  require_option(options.least_step >= 0.05 && options.least_step <= 1.0, "least_step", options.least_step,
-                 "0.05 to 1");
-}
-
 Cutter::Cutter(Simulation& simulation, const CutOptions& options) {
-  require_valid(options);
+  detail::require_fields("cutter", options);
   impl_ = std::make_unique<Impl>(simulation, options);
 }
 

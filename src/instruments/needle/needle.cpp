@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "instruments/needle/needle_options.h"
+#include "base/require_fields.h"
 #include "instruments/needle/needle_state.h"
 
 namespace glisson {
@@ -22,7 +22,7 @@ Vec3d across(const Vec3d& a, const Vec3d& direction) { return a - direction * do
 
 Needle::Needle(const NeedleOptions& options, std::shared_ptr<ToolDriver> driver)
     : Instrument(options.name, std::move(driver), options.direction), state_(std::make_unique<State>()) {
-  require_needle(options);
+  detail::require_fields("needle \"" + options.name + "\"", options);
   state_->options = options;
 }
 

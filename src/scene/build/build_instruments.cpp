@@ -87,19 +87,11 @@ struct InstrumentMaker {
     return std::make_shared<typename Options::Instrument>(options, make_driver(spec));
   }
   std::shared_ptr<Instrument> operator()(const OwnInstrument& make) const { return make(spec, make_driver(spec)); }
-  template <class Form>
-  std::shared_ptr<Instrument> operator()(const ContactSpec<Form>& x) const {
-    const ContactOptions options{.name = spec.name,
-                                 .shape = x.form,
-                                 .friction = x.friction,
-                                 .bonded = x.bonded,
-                                 .direction = spec.direction,
-                                 .push_out_speed = x.push_out_speed};
-    return std::make_shared<ContactTool>(options, make_driver(spec));
-  }
 };
 
 }  // namespace
+
+Fault StrokesSpec::check() const { return {strokes.empty() ? "is empty; give at least one stroke" : "", "strokes"}; }
 
 Pose start_pose(const InstrumentSpec& x) {
   const Vec3d back = -unit(x.direction);

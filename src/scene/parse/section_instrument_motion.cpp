@@ -12,19 +12,6 @@ SectionSpec press_kind() {
   return s.spec();
 }
 
-SectionSpec strokes_kind() {
-  Section<StrokesSpec> s("strokes", "Straight moves in sequence: insert, rest, sideways, withdraw.");
-  s.key<Milli>("velocity_mm_s", &StrokesSpec::velocity, "speed of strokes without their own")
-      .in("mm/s")
-      .within(above(0));
-  s.key("start_s", &StrokesSpec::start, "start of the first").in("s").within(at_least(0));
-  s.tables("strokes", stroke_section(), &StrokesSpec::strokes, "the moves, one or more").must();
-  s.finish([](StrokesSpec& x, const Node& table, const Place& place) {
-    if (x.strokes.empty()) place.complain(*table.find("strokes"), "strokes", "is empty; give at least one stroke");
-  });
-  return s.spec();
-}
-
 SectionSpec sine_kind() {
   Section<SineMotion> s("sine", "Oscillation about a mean depth, rising smoothly over `ramp_s`.");
   s.fields({}, {"direction"});
@@ -33,15 +20,7 @@ SectionSpec sine_kind() {
 
 SectionSpec push_kind() {
   Section<PushSpec> s("push", "A mass pushed by a given force; its path follows from the resistance of the tissue.");
-  s.key("force_N", &PushSpec::force, "mean force").in("N");
-  s.key("swing_N", &PushSpec::swing, "amplitude of an oscillation about it").in("N").within(at_least(0));
-  s.key("frequency_hz", &PushSpec::frequency, "frequency of the oscillation").in("Hz").within(above(0));
-  s.key("start_s", &PushSpec::start, "start of the motion").in("s").within(at_least(0));
-  s.key("ramp_s", &PushSpec::ramp, "time over which it rises").in("s").within(at_least(0));
-  s.key("duration_s", &PushSpec::duration, "duration, for the end of the run")
-      .in("s")
-      .within(above(0))
-      .otherwise("unlimited");
+  s.fields();
   s.fields(&PushSpec::tool);
   return s.spec();
 }
@@ -80,7 +59,9 @@ const SectionSpec& instrument_motion_section() {
         .in("-")
         .direction()
         .otherwise("the instrument's");
-    s.spec().kinds = {motion_kind<PressMotion>(press_kind()), motion_kind<StrokesSpec>(strokes_kind()),
+    s.spec().kinds = {motion_kind<PressMotion>(press_kind()),
+                      motion_kind<StrokesSpec>(described<StrokesSpec>(
+                          "strokes", "Straight moves in sequence: insert, rest, sideways, withdraw.")),
                       motion_kind<SineMotion>(sine_kind()), motion_kind<PushSpec>(push_kind()),
                       motion_kind<RecordSpec>(record_section())};
     return s.spec();

@@ -44,5 +44,9 @@ inline const SectionSpec& section_of(std::type_identity<HyperelasticLaw>) { retu
 inline const SectionSpec& section_of(std::type_identity<Fibres>) { return fibres_section(); }
 inline const SectionSpec& section_of(std::type_identity<MaxwellBranch>) { return maxwell_section(); }
 inline const SectionSpec& section_of(std::type_identity<ImplicitOptions>) { return implicit_section(); }
+inline const SectionSpec& section_of(std::type_identity<Rupture>) { return rupture_section(); }
+inline const SectionSpec& section_of(std::type_identity<TipResistance>) { return tip_section(); }
+inline const SectionSpec& section_of(std::type_identity<ShaftFriction>) { return shaft_friction_section(); }
+inline const SectionSpec& section_of(std::type_identity<StrokesSpec::One>) { return stroke_section(); }
 
 }  // namespace glisson::scene
