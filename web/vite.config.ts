@@ -58,6 +58,7 @@ export default defineConfig(({ mode }) => {
       chunkSizeWarningLimit: 2000,
       reportCompressedSize: false,
     },
+    server: { host: "127.0.0.1" }, // a container without a file of hosts does not know "localhost"
     test: { include: ["test/**/*.test.ts"] },
   } as UserConfig;
 });
