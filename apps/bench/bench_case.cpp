@@ -77,7 +77,7 @@ Tissue model_tissue(Model model) {
   if (model == Model::green_energy) tissue.law_form = LawForm::energy;
   if (model == Model::fibres) tissue.fibres = Fibres{.direction = {1.0, 1.0, 0.0}, .stiffness = 3600.0};
   if (model >= Model::neo_hookean) tissue.hyperelastic = hyperelastic(model);
-  if (model == Model::nodal) tissue.volume_change = VolumeChange::nodal;
+  if (model == Model::nodal) tissue.volume_change = VolumeChange::average_nodal;
   if (model == Model::maxwell) tissue.maxwell = {{.share = 0.4, .time = 0.5}, {.share = 0.3, .time = 50.0}};
   return tissue;
 }

@@ -45,7 +45,7 @@ std::string kinematics_text(const Tissue& t) {
 
 std::string law_text(const Tissue& t) {
   std::string text = t.hyperelastic ? hyperelastic_text(*t.hyperelastic) : linear_text(t) + kinematics_text(t);
-  if (t.volume_change == VolumeChange::nodal) text += ", nodal volume changes";
+  if (t.volume_change == VolumeChange::average_nodal) text += ", average nodal volume changes";
   if (t.viscosity > 0.0) text += fmt::format(", η = {:.6g} Pa·s", t.viscosity);
   if (t.fibres) text += fmt::format(", fibres of {:.6g} Pa", t.fibres->stiffness);
   const char* part = t.maxwell_part == MaxwellPart::all ? "all" : "the deviator";

@@ -21,13 +21,19 @@ inline constexpr const Word<E>* kWords = nullptr;
 template <class E>
 concept HasWords = std::is_array_v<decltype(kWords<E>)>;
 
-/// The word of an enumerator; empty for a number that is none.
+/// The word of an enumerator, the first of its entries; empty for a number that is none.
 template <HasWords E>
 constexpr std::string_view word_of(E value) {
   for (const Word<E>& w : kWords<E>) {
     if (w.value == value) return w.word;
   }
   return {};
+}
+
+/// Whether it is another word of the same enumerator: read, but never written.
+template <HasWords E>
+constexpr bool is_alias(const Word<E>& w) {
+  return word_of(w.value) != w.word;
 }
 
 }  // namespace glisson

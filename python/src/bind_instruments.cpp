@@ -41,9 +41,9 @@ void bind_motions(nb::module_& m) {
   m.def("largest_passive_stiffness", &largest_passive_stiffness, "coupling"_a, doc("largest_passive_stiffness"));
 }
 
-using Way = std::variant<PressMotion, SteadyMotion, StrokeMotion, SineMotion, RecordedMotion, nb::object>;
+using MotionArgument = std::variant<PressMotion, SteadyMotion, StrokeMotion, SineMotion, RecordedMotion, nb::object>;
 
-ToolPath path_of(const Way& way, std::optional<double> end) {
+ToolPath path_of(const MotionArgument& motion, std::optional<double> end) {
   struct {
     std::optional<double> end;
     ToolPath operator()(const PressMotion& x) const { return press_path(x); }
@@ -53,7 +53,7 @@ ToolPath path_of(const Way& way, std::optional<double> end) {
     ToolPath operator()(const RecordedMotion& x) const { return recorded_path(x); }
     ToolPath operator()(const nb::object& x) const { return {Callback<Vec3d>(x), end}; }
   } read{end};
-  return std::visit(read, way);
+  return std::visit(read, motion);
 }
 
 void bind_drivers(nb::module_& m) {
@@ -64,12 +64,12 @@ void bind_drivers(nb::module_& m) {
   nb::class_<PathDriver, ToolDriver>(m, "PathDriver", doc("PathDriver"))
       .def(
           "__init__",
-          [](PathDriver* self, const Pose& start, const Way& way, std::optional<double> end) {
-            new (self) PathDriver(start, path_of(way, end));
+          [](PathDriver* self, const Pose& start, const MotionArgument& motion, std::optional<double> end) {
+            new (self) PathDriver(start, path_of(motion, end));
           },
-          "start"_a, "way"_a, "end"_a = nb::none(),
-          "`way` is a motion, or a function of time [s] that returns the displacement from the start [m].",
-          nb::sig("def __init__(self, start: Pose, way: PressMotion | SteadyMotion | StrokeMotion | SineMotion | "
+          "start"_a, "motion"_a, "end"_a = nb::none(),
+          "`motion` is one of the motions, or a function of time [s] that returns the displacement from the start [m].",
+          nb::sig("def __init__(self, start: Pose, motion: PressMotion | SteadyMotion | StrokeMotion | SineMotion | "
                   "RecordedMotion | collections.abc.Callable[[float], collections.abc.Sequence[float] | "
                   "numpy.typing.NDArray[typing.Any]], end: float | None = None) -> None"));
   nb::class_<PushDriver, ToolDriver>(m, "PushDriver", doc("PushMotion"))

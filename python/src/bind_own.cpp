@@ -90,7 +90,7 @@ class OwnStep {
   }
   Numbers numbers() const {
     std::vector<std::uint32_t> numbers;
-    for (const WatchedVertex& w : get().vertices) numbers.push_back(w.vertex);
+    for (const ActiveVertex& w : get().vertices) numbers.push_back(w.vertex);
     return indices(std::move(numbers));
   }
   /// Places of vertices, and as many vectors.
@@ -114,7 +114,7 @@ class OwnStep {
   void add_force(nb::handle which, const ArrayLike& forces, bool viscous) const {
     const auto [places, values] = placed(which, forces, "forces");
     for (std::size_t k = 0; k < places.size(); ++k) {
-      WatchedVertex& w = get().vertices[places[k]];
+      ActiveVertex& w = get().vertices[places[k]];
       (viscous ? w.viscous : w.elastic) += values[k];
     }
   }
@@ -203,7 +203,7 @@ class OwnInteraction : public Interaction {
 
 void bind_step(nb::module_& m) {
   const auto of = [](const char* member) { return doc(std::string("InteractionStep::") + member); };
-  const auto watched = [](const char* member) { return doc(std::string("WatchedVertex::") + member); };
+  const auto watched = [](const char* member) { return doc(std::string("ActiveVertex::") + member); };
   nb::class_<OwnStep>(m, "InteractionStep",
                       "The active vertices in a step, for an Interaction: arrays in the order of `vertices`, copies. "
                       "Valid only in the call that receives it.")

@@ -18,18 +18,18 @@ std::span<const std::uint32_t> Interactions::newcomers(double time, double h, st
   return newcomers_;
 }
 
-void Interactions::find_places(std::span<const WatchedVertex> watched, std::size_t vertex_count) {
+void Interactions::find_places(std::span<const ActiveVertex> active, std::size_t vertex_count) {
   if (all_.empty()) return;
   place_of_.assign(vertex_count, InteractionStep::kNowhere);
-  for (std::uint32_t k = 0; k < watched.size(); ++k) place_of_[watched[k].vertex] = k;
-  impulses_.assign(watched.size(), Vec3d{});
+  for (std::uint32_t k = 0; k < active.size(); ++k) place_of_[active[k].vertex] = k;
+  impulses_.assign(active.size(), Vec3d{});
 }
 
-void Interactions::begin(double time, double h, std::span<WatchedVertex> watched, std::span<const Vec3d> rest) {
+void Interactions::begin(double time, double h, std::span<ActiveVertex> active, std::span<const Vec3d> rest) {
   std::fill(impulses_.begin(), impulses_.end(), Vec3d{});
   step_.time = time;
   step_.h = h;
-  step_.vertices = watched;
+  step_.vertices = active;
   step_.place_of = place_of_;
   step_.rest = rest;
   step_.mobility = {};

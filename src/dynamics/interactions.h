@@ -20,10 +20,10 @@ class Interactions {
   /// Vertices that some interaction wants at hand in the coming step and that are not yet; ascending.
   std::span<const std::uint32_t> newcomers(double time, double h, std::size_t vertex_count);
   /// The vertices at hand have become others.
-  void find_places(std::span<const WatchedVertex> watched, std::size_t vertex_count);
+  void find_places(std::span<const ActiveVertex> active, std::size_t vertex_count);
 
-  /// Begins a step. @param mobility  of each watched vertex as if nothing held it, 1/(m + γh) [1/kg]
-  void begin(double time, double h, std::span<WatchedVertex> watched, std::span<const Vec3d> rest);
+  /// Begins a step. @param mobility  of each active vertex as if nothing held it, 1/(m + γh) [1/kg]
+  void begin(double time, double h, std::span<ActiveVertex> active, std::span<const Vec3d> rest);
   void add_forces();
   /// @param held  per place and component: whether a support or motion holds it
   void constrain(std::span<const Vec3d> mobility);

@@ -24,7 +24,7 @@ void require_options(const SimulationOptions& o) {
   if (!o.mass_scaling_step || !capabilities(o.integrator).any_step_is_stable) return;
   throw std::invalid_argument(
       "simulation: mass_scaling_step [s] = " + detail::show(*o.mass_scaling_step) +
-      " is outside the allowed range, none with the integrators implicit and static, which need "
+      " is outside the allowed range, none with the integrators implicit and quasi_static, which need "
       "no mass for their step");
 }
 
@@ -140,7 +140,7 @@ Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const Simula
 }
 
 Scheme& SimulationParts::scheme(Inside& inside) { return *inside.scheme; }
-std::weak_ptr<const Scheme> SimulationParts::watched(Simulation& simulation) { return simulation.impl_->scheme; }
+std::weak_ptr<const Scheme> SimulationParts::weak_scheme(Simulation& simulation) { return simulation.impl_->scheme; }
 const TetMesh& SimulationParts::mesh(const Inside& inside) { return inside.mesh; }
 SplitReport SimulationParts::split_faces(Inside& inside, std::span<const Triangle> faces,
                                          std::span<const VertexMove> moves) {

@@ -12,7 +12,7 @@ struct SimulationParts {
   static Scheme& scheme(Inside& inside);
   static Scheme& scheme(Simulation& simulation) { return scheme(inside(simulation)); }
   /// For reading it as long as the simulation lives.
-  static std::weak_ptr<const Scheme> watched(Simulation& simulation);
+  static std::weak_ptr<const Scheme> weak_scheme(Simulation& simulation);
   static const TetMesh& mesh(const Inside& inside);
   static SplitReport split_faces(Inside& inside, std::span<const Triangle> faces, std::span<const VertexMove> moves);
 };

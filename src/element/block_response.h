@@ -35,7 +35,7 @@ class BlockResponse {
   std::vector<Sym3<double>> relaxing(std::span<const Vec3d> u) const;
 
  private:
-  bool shared() const { return block_.tissue.volume_change == VolumeChange::nodal; }
+  bool shared() const { return block_.tissue.volume_change == VolumeChange::average_nodal; }
   std::vector<double> volume_changes(std::span<const Vec3d> u) const;
   template <class Visit>
   void for_elastic(std::span<const Vec3d> u, const Visit& visit) const;

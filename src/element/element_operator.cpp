@@ -75,8 +75,8 @@ double run_with_measure(const BlockContext& c, const TissueBlock& block, const L
 template <bool kViscous, class Laws>
 double run_with_laws(const BlockContext& c, const TissueBlock& block, const Laws& laws) {
   switch (block.tissue.measure) {
-    case DeformationMeasure::intensity:
-      return run_with_measure<DeformationMeasure::intensity, kViscous>(c, block, laws);
+    case DeformationMeasure::equivalent_shear_strain:
+      return run_with_measure<DeformationMeasure::equivalent_shear_strain, kViscous>(c, block, laws);
     case DeformationMeasure::one_minus_q:
       return run_with_measure<DeformationMeasure::one_minus_q, kViscous>(c, block, laws);
     case DeformationMeasure::regular_mean_ratio:

@@ -9,7 +9,7 @@ namespace {
 LameParameters moduli(const Body& body, const Tissue& tissue, std::size_t e, const Mat3d& H) {
   double x = 0.0;
   switch (tissue.measure) {
-    case DeformationMeasure::intensity:
+    case DeformationMeasure::equivalent_shear_strain:
       x = intensity_of(one_minus_q(H));
       break;
     case DeformationMeasure::one_minus_q:

@@ -48,7 +48,7 @@ void TissueOperator::body_changed() {
     first_branch_.push_back(branches), first_stress_.push_back(stresses);
     const std::size_t n = block.end - block.begin, k = block.tissue.maxwell.size();
     branches += n * k, stresses += k > 0 ? n : 0;
-    shares_volume_ = shares_volume_ || block.tissue.volume_change == VolumeChange::nodal;
+    shares_volume_ = shares_volume_ || block.tissue.volume_change == VolumeChange::average_nodal;
     for (std::size_t e = block.begin; e < block.end; ++e) shapes_[e] = element_shape(body_, block.tissue, e);
   }
   memory_.relaxed.resize(branches);
@@ -63,7 +63,7 @@ std::vector<double> TissueOperator::mean_volume_change(std::span<const Vec3d> u)
   mean.assign(body_.elements.size(), 0.0);
   for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
     const TissueBlock& block = body_.blocks[b];
-    if (block.tissue.volume_change != VolumeChange::nodal) continue;
+    if (block.tissue.volume_change != VolumeChange::average_nodal) continue;
     for (std::size_t e = block.begin; e < block.end; ++e) {
       mean[e] = responses_[b].volume_change(element_gradient(body_, e, u));
     }
@@ -99,7 +99,7 @@ void TissueOperator::forces(const TissueState& state, std::span<Vec3d> elastic, 
     const TissueBlock& block = body_.blocks[b];
     const Response& response = responses_[b];
     const bool dashpot = block.tissue.viscosity > 0.0, branches = !block.tissue.maxwell.empty();
-    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    const bool shared = block.tissue.volume_change == VolumeChange::average_nodal;
     for (std::size_t e = block.begin; e < block.end; ++e) {
       const Mat3d H = element_gradient(body_, e, state.u);
       if (!(jacobian(H) > 0.0)) watch.inverted.push_back(body_.mesh_tet[e]);
@@ -134,7 +134,7 @@ void TissueOperator::linearise(const TissueState& state, double rate, bool semid
     const TissueBlock& block = body_.blocks[b];
     const Response& response = responses_[b];
     const bool dashpot = block.tissue.viscosity > 0.0, branches = !block.tissue.maxwell.empty();
-    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    const bool shared = block.tissue.volume_change == VolumeChange::average_nodal;
     for (std::size_t e = block.begin; e < block.end; ++e) {
       const Mat3d H0 = element_gradient(body_, e, state.u), R0 = element_gradient(body_, e, state.v);
       Mat3<Dual> H = with_scalar<Dual>(H0), R = with_scalar<Dual>(R0);
@@ -170,7 +170,7 @@ void TissueOperator::apply(const TissueTangent& tangent, std::span<const Vec3d> 
   std::vector<double> mean(shares_volume_ ? body_.elements.size() : 0, 0.0);
   for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
     const TissueBlock& block = body_.blocks[b];
-    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    const bool shared = block.tissue.volume_change == VolumeChange::average_nodal;
     const auto gradient = [&](std::size_t e) { return element_gradient(body_, e, x); };
     const auto inner = [](const Mat3d& a, const Mat3d& c) { return trace(transposed_product(a, c)); };
     if (shared) {
@@ -194,7 +194,7 @@ void TissueOperator::advance_memory(const TissueState& state) {
     const TissueBlock& block = body_.blocks[b];
     const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
     if (branches.empty()) continue;
-    const bool shared = block.tissue.volume_change == VolumeChange::nodal;
+    const bool shared = block.tissue.volume_change == VolumeChange::average_nodal;
     std::vector<BranchWeights> weights;
     for (const MaxwellBranch& m : branches) weights.push_back(branch_weights(state.since, m.time));
     for (std::size_t e = block.begin; e < block.end; ++e) {

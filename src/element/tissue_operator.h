@@ -4,7 +4,7 @@
 //   K = Σ V s_a ∂(P·s_b)/∂u, C likewise  exact, by numbers that carry their derivative
 //
 // What the implicit schemes and statics run on, what runs in double precision, and what the submesh engine is compared
-// with. Tissues whose volume change is shared (VolumeChange::nodal) take a pass over the elements before.
+// with. Tissues whose volume change is shared (VolumeChange::average_nodal) take a pass over the elements before.
 #pragma once
 
 #include <Eigen/Core>

@@ -19,7 +19,7 @@ bool all_tensor_masses(const Body& body) {
 
 ElementBody::ElementBody(const Body& body, std::span<const double> nodal_damping, Precision precision)
     : body_(body), precision_(precision), damping_(nodal_damping.begin(), nodal_damping.end()),
-      is_watched_(body.vertex_count, 0) {
+      is_active_(body.vertex_count, 0) {
   for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->assign(body.vertex_count, Vec3d{});
   make_operator();
 }
@@ -52,7 +52,7 @@ void ElementBody::evaluate(bool moves) {
 void ElementBody::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
   u_.assign(displacement.begin(), displacement.end());
   v_.assign(velocity.begin(), velocity.end());
-  for (WatchedVertex& w : watched_) w.displacement = u_[w.vertex], w.velocity = v_[w.vertex];
+  for (ActiveVertex& w : active_) w.displacement = u_[w.vertex], w.velocity = v_[w.vertex];
   bring_memory_up_to_date(std::numeric_limits<double>::infinity());  // a state that is set has relaxed
 }
 
@@ -68,7 +68,7 @@ void ElementBody::archive_past(Archive& ar) {
 void ElementBody::archive_layout(Archive& ar, std::span<const double> nodal_damping) {
   if (!ar.reads()) return;
   for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->resize(body_.vertex_count);
-  is_watched_.resize(body_.vertex_count, 0);
+  is_active_.resize(body_.vertex_count, 0);
   damping_.assign(nodal_damping.begin(), nodal_damping.end());
   make_operator();
 }
@@ -77,7 +77,7 @@ void ElementBody::apply(const BodyChange& change, const detail::VertexStars&, st
   for (const MovedVertex& m : change.moved) {
     u_[m.vertex] = m.displacement;
     v_[m.vertex] = m.velocity;
-    for (WatchedVertex& w : watched_) {
+    for (ActiveVertex& w : active_) {
       if (w.vertex == m.vertex) w.displacement = m.displacement, w.velocity = m.velocity;
     }
   }
@@ -87,14 +87,14 @@ void ElementBody::apply(const BodyChange& change, const detail::VertexStars&, st
   }
   elastic_.resize(u_.size());
   viscous_.resize(u_.size());
-  is_watched_.resize(u_.size(), 0);
+  is_active_.resize(u_.size(), 0);
   damping_.assign(nodal_damping.begin(), nodal_damping.end());
   if (tissue_ != nullptr) tissue_ = make_element_operator(body_);
   if (any_ != nullptr) any_->body_changed();
 }
 
 /// In single precision it is for tissues that lanes do not have.
-bool ElementBody::bears_tissues() const {
+bool ElementBody::supports_tissues() const {
   const auto in_lanes = [](const TissueBlock& block) { return has_lanes(block.tissue); };
   return precision_ == Precision::double_precision || !std::all_of(body_.blocks.begin(), body_.blocks.end(), in_lanes);
 }
@@ -129,19 +129,19 @@ void ElementBody::set_branch_stresses(std::size_t block, std::span<const Sym3<do
 }
 
 void ElementBody::watch(std::span<const std::uint32_t> vertices) {
-  for (const std::uint32_t v : vertices) is_watched_[v] = 1;
-  std::vector<WatchedVertex> now;
+  for (const std::uint32_t v : vertices) is_active_[v] = 1;
+  std::vector<ActiveVertex> now;
   std::size_t known = 0;
-  for (std::uint32_t v = 0; v < is_watched_.size(); ++v) {
-    if (is_watched_[v] == 0) continue;
-    const bool was = known < watched_.size() && watched_[known].vertex == v;
-    now.push_back(was ? watched_[known++] : WatchedVertex{v, elastic_[v], viscous_[v], u_[v], v_[v]});
+  for (std::uint32_t v = 0; v < is_active_.size(); ++v) {
+    if (is_active_[v] == 0) continue;
+    const bool was = known < active_.size() && active_[known].vertex == v;
+    now.push_back(was ? active_[known++] : ActiveVertex{v, elastic_[v], viscous_[v], u_[v], v_[v]});
   }
-  watched_ = std::move(now);
+  active_ = std::move(now);
 }
 
-void ElementBody::place_watched() {
-  for (const WatchedVertex& w : watched_) u_[w.vertex] = w.displacement, v_[w.vertex] = w.velocity;
+void ElementBody::place_active() {
+  for (const ActiveVertex& w : active_) u_[w.vertex] = w.displacement, v_[w.vertex] = w.velocity;
 }
 
 void ElementBody::book(std::size_t i, const Vec3d& before, const Vec3d& weight) {
@@ -168,12 +168,12 @@ const Advance& ElementBody::advance(double h, const Vec3d& gravity, bool account
   double sum = 0.0;
   for (std::size_t i = 0; i < u_.size(); ++i) sum += norm(elastic_[i]) + norm(viscous_[i]);
   advance_.finite = std::isfinite(sum);
-  for (WatchedVertex& w : watched_) {
+  for (ActiveVertex& w : active_) {
     w = {w.vertex, elastic_[w.vertex], viscous_[w.vertex], u_[w.vertex], v_[w.vertex]};
   }
   if (!advance_.finite || h == 0.0) return advance_;
   for (std::size_t i = 0; i < u_.size(); ++i) {
-    if (is_watched_[i] != 0) continue;
+    if (is_active_[i] != 0) continue;
     const double m = body_.masses[i];
     const Vec3d before = v_[i], weight = gravity * m;
     const Vec3d force = elastic_[i] + viscous_[i] + weight;

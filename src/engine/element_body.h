@@ -28,15 +28,15 @@ class ElementBody final : public MovingBody {
   /// Cost: one pass over the elements.
   void apply(const BodyChange& change, const detail::VertexStars& stars,
              std::span<const double> nodal_damping) override;
-  bool bears_tissues() const override;
+  bool supports_tissues() const override;
   /// Cost: one pass over the elements.
   void tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) override;
   BranchMemory branch_memory(std::size_t block) const override;
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override;
   void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) override;
   void watch(std::span<const std::uint32_t> vertices) override;
-  std::span<WatchedVertex> watched() override { return watched_; }
-  void place_watched() override;
+  std::span<ActiveVertex> active() override { return active_; }
+  void place_active() override;
   void list_above(std::span<const double> stiffening) override;
   const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;
 
@@ -53,8 +53,8 @@ class ElementBody final : public MovingBody {
   double since_memory_ = 0.0;              ///< time since the tissue's memory was brought up to date [s]
   std::vector<double> damping_;
   std::vector<Vec3d> u_, v_, elastic_, viscous_;
-  std::vector<char> is_watched_;
-  std::vector<WatchedVertex> watched_;
+  std::vector<char> is_active_;
+  std::vector<ActiveVertex> active_;
   ElementWatch watch_;
   Advance advance_;
 };

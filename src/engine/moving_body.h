@@ -3,7 +3,7 @@
 //   advance(h):  forces at u, v₋ ─▶ v₊ = (m v₋ + h F)/(m + γh) ─▶ u + h v₊        [Schwartz2002, eq. 4]
 //
 // All vertices move as if they were free. Those that something else moves too (supports, tools, loads) are
-// *watched*: the body leaves them where they are and hands out their forces; whoever drives them decides
+// *active*: the body leaves them where they are and hands out their forces; whoever drives them decides
 // their motion and places them. So the many vertices stay inside, in whatever layout and precision is fast,
 // and the few that others care for are told in double.
 #pragma once
@@ -38,7 +38,7 @@ struct Advance {
   std::vector<double> stiffening;       ///< per tissue block: bound of tangent over rest stiffness [-]
   std::vector<StiffElement> stiff;      ///< elements above what list_above() was told, in no order but always the same
   std::vector<std::uint32_t> inverted;  ///< tets of the mesh with J ≤ 0, ascending
-  KickWork work;                        ///< of the vertices that are not watched; only where accounted
+  KickWork work;                        ///< of the vertices that are not active; only where accounted
 };
 
 class MovingBody {
@@ -61,14 +61,14 @@ class MovingBody {
   void archive_state(Archive& ar, std::size_t vertices);
 
   /// Takes over what has changed in the body (BodyChanger has changed it already). New vertices begin in the
-  /// state of those they are copies of, and are not watched.
+  /// state of those they are copies of, and are not active.
   /// @param nodal_damping  γ_i of every vertex, new ones included [kg/s]
   virtual void apply(const BodyChange& change, const detail::VertexStars& stars,
                      std::span<const double> nodal_damping) = 0;
 
   /// Whether the body can go on with the tissues that its Body has; where not it is to be built anew.
-  virtual bool bears_tissues() const = 0;
-  /// Takes over tissues, and masses, that have changed in its Body. State and watched vertices stay; Maxwell branches of
+  virtual bool supports_tissues() const = 0;
+  /// Takes over tissues, and masses, that have changed in its Body. State and active vertices stay; Maxwell branches of
   /// the blocks that have changed carry no stress. Before the Body changes, branch_stresses has to be asked for them.
   /// @param blocks  that have changed
   /// @param nodal_damping  γ_i of every vertex [kg/s]
@@ -79,12 +79,12 @@ class MovingBody {
   virtual std::vector<Sym3<double>> branch_stresses(std::size_t block) = 0;
   virtual void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) = 0;
 
-  /// Adds vertices to those watched; one that is watched already stays so.
+  /// Adds vertices to those active; one that is active already stays so.
   virtual void watch(std::span<const std::uint32_t> vertices) = 0;
   /// In ascending order of vertex.
-  virtual std::span<WatchedVertex> watched() = 0;
-  /// Takes displacement and velocity of every watched vertex over from watched().
-  virtual void place_watched() = 0;
+  virtual std::span<ActiveVertex> active() = 0;
+  /// Takes displacement and velocity of every active vertex over from active().
+  virtual void place_active() = 0;
 
   /// Lets advance() list elements that are stiffer than this.
   /// @param stiffening  per tissue block [-]

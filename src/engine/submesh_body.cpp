@@ -44,7 +44,7 @@ SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping
 void SubmeshBody::follow_layout(std::span<const double> nodal_damping) {
   state_.assign(body_.vertex_count * kStateDoubles, 0.0);
   masses_.assign(body_.vertex_count, 0.0), damping_.assign(body_.vertex_count, 0.0);
-  watches_.resize(submeshes_.parts.size()), holds_watched_.assign(submeshes_.parts.size(), 0);
+  watches_.resize(submeshes_.parts.size()), holds_active_.assign(submeshes_.parts.size(), 0);
   looked_.assign(submeshes_.parts.size(), Looked::small), found_.resize(submeshes_.parts.size());
   plans_.clear(), large_plans_.clear();
   for (const TissueBlock& block : body_.blocks) {
@@ -92,7 +92,7 @@ void SubmeshBody::set_state(std::span<const Vec3d> displacement, std::span<const
     put(displacement[v], record);
     put(velocity[v], record + 4);
   }
-  for (WatchedVertex& w : watched_) w.displacement = displacement[w.vertex], w.velocity = velocity[w.vertex];
+  for (ActiveVertex& w : active_) w.displacement = displacement[w.vertex], w.velocity = velocity[w.vertex];
   std::fill(looked_.begin(), looked_.end(), Looked::small);
   since_memory_ = std::numeric_limits<double>::infinity();  // a state that is set has relaxed
 }
@@ -114,27 +114,27 @@ Vec3d SubmeshBody::velocity_of(std::uint32_t vertex) const {
 
 void SubmeshBody::watch(std::span<const std::uint32_t> vertices) {
   std::vector<std::uint32_t> all(vertices.begin(), vertices.end());
-  for (const WatchedVertex& w : watched_) all.push_back(w.vertex);
+  for (const ActiveVertex& w : active_) all.push_back(w.vertex);
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  std::vector<WatchedVertex> now;
+  std::vector<ActiveVertex> now;
   for (const std::uint32_t v : all) {
-    const auto known = std::lower_bound(watched_.begin(), watched_.end(), v,
-                                        [](const WatchedVertex& w, std::uint32_t vertex) { return w.vertex < vertex; });
-    const bool was = known != watched_.end() && known->vertex == v;
-    now.push_back(was ? *known : WatchedVertex{v, {}, {}, displacement_of(v), velocity_of(v)});
+    const auto known = std::lower_bound(active_.begin(), active_.end(), v,
+                                        [](const ActiveVertex& w, std::uint32_t vertex) { return w.vertex < vertex; });
+    const bool was = known != active_.end() && known->vertex == v;
+    now.push_back(was ? *known : ActiveVertex{v, {}, {}, displacement_of(v), velocity_of(v)});
   }
-  watched_ = std::move(now);
+  active_ = std::move(now);
   find_watches();
 }
 
-/// Sorts the watched vertices to the submesh or the run of the interface that has them.
+/// Sorts the active vertices to the submesh or the run of the interface that has them.
 void SubmeshBody::find_watches() {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> records;  // record, place
-  std::vector<char> is_watched(masses_.size(), 0);
-  for (std::uint32_t place = 0; place < watched_.size(); ++place) {
-    records.emplace_back(submeshes_.record_of_vertex[watched_[place].vertex], place);
-    is_watched[records.back().first] = 1;
+  std::vector<char> is_active(masses_.size(), 0);
+  for (std::uint32_t place = 0; place < active_.size(); ++place) {
+    records.emplace_back(submeshes_.record_of_vertex[active_[place].vertex], place);
+    is_active[records.back().first] = 1;
   }
   std::sort(records.begin(), records.end());
   for (auto& list : watches_) list.clear();
@@ -151,13 +151,13 @@ void SubmeshBody::find_watches() {
   }
   for (std::size_t p = 0; p < watches_.size(); ++p) {
     const auto& shared = submeshes_.parts[p].shared;
-    holds_watched_[p] = !watches_[p].empty() ||
-                        std::any_of(shared.begin(), shared.end(), [&](std::uint32_t r) { return is_watched[r] != 0; });
+    holds_active_[p] = !watches_[p].empty() ||
+                       std::any_of(shared.begin(), shared.end(), [&](std::uint32_t r) { return is_active[r] != 0; });
   }
 }
 
-void SubmeshBody::place_watched() {
-  for (const WatchedVertex& w : watched_) {
+void SubmeshBody::place_active() {
+  for (const ActiveVertex& w : active_) {
     double* record = state_.data() + submeshes_.record_of_vertex[w.vertex] * kStateDoubles;
     put(w.displacement, record);
     put(w.velocity, record + 4);

@@ -40,14 +40,14 @@ class SubmeshBody final : public MovingBody {
   Vec3d velocity_of(std::uint32_t vertex) const override;
   void apply(const BodyChange& change, const detail::VertexStars& stars,
              std::span<const double> nodal_damping) override;
-  bool bears_tissues() const override;
+  bool supports_tissues() const override;
   void tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) override;
   BranchMemory branch_memory(std::size_t block) const override;
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override;
   void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) override;
   void watch(std::span<const std::uint32_t> vertices) override;
-  std::span<WatchedVertex> watched() override { return watched_; }
-  void place_watched() override;
+  std::span<ActiveVertex> active() override { return active_; }
+  void place_active() override;
   void list_above(std::span<const double> stiffening) override {
     list_above_.assign(stiffening.begin(), stiffening.end());
   }
@@ -66,7 +66,7 @@ class SubmeshBody final : public MovingBody {
     std::size_t measure = 0;
     bool viscous = false;
   };
-  /// A watched vertex as its submesh or the interface sees it: position in their range, place in watched_.
+  /// A active vertex as its submesh or the interface sees it: position in their range, place in active_.
   struct Watch {
     std::uint32_t local, place;
   };
@@ -136,8 +136,8 @@ class SubmeshBody final : public MovingBody {
   bool must_look(std::size_t s, float longest_edge_squared, bool moves);
   void list_inverted(const Submesh& part, Findings& found) const;
   void fill_slots(const Submesh& part, bool split, const Scratch& scratch);
-  void take_watched(std::span<const Watch> watches, std::size_t first_record, const float* elastic,
-                    const float* viscous);
+  void take_active(std::span<const Watch> watches, std::size_t first_record, const float* elastic,
+                   const float* viscous);
   void integrate(std::size_t first_record, std::size_t n, std::span<const Watch> watches, float* elastic,
                  float* viscous, const Step& step, VertexWork& work);
   void run_interface(std::size_t chunk, const Step& step, Scratch& scratch);
@@ -164,10 +164,10 @@ class SubmeshBody final : public MovingBody {
   std::uint64_t steps_ = 0;
 
   LaneVector<float> slots_elastic_, slots_viscous_;  ///< force records
-  std::vector<WatchedVertex> watched_;
+  std::vector<ActiveVertex> active_;
   std::vector<std::vector<Watch>> watches_;            ///< per submesh, of its interior
   std::vector<std::vector<Watch>> interface_watches_;  ///< per chunk of the interface
-  std::vector<char> holds_watched_;                    ///< per submesh: one of its vertices is watched
+  std::vector<char> holds_active_;                     ///< per submesh: one of its vertices is active
   std::vector<Looked> looked_;                         ///< per submesh
   std::vector<Findings> found_, interface_found_;
   Advance advance_;

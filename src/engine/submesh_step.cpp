@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kPrefetchTets = 16384;  ///< rest data of more do not fit a second-level cache of 1 MiB
 /// A linear submesh with large gradients is looked over for inverted tets once in so many steps.
 constexpr std::uint64_t kInversionPeriod = 16;
-constexpr double kFloatRoom = 1e-5;  ///< of a limit in float, below that in double
+constexpr double kFloatMargin = 1e-5;  ///< of a limit in float, below that in double
 
 double largest(std::array<float, kMaxLanes> lanes) {
   for (std::size_t half = kMaxLanes / 2; half > 0; half /= 2) {
@@ -34,7 +34,7 @@ double SubmeshBody::list_limit(std::size_t block) const {
 
 /// Whether elastic and viscous forces of a submesh are kept apart.
 bool SubmeshBody::splits(std::size_t s, bool accounted) const {
-  return plans_[submeshes_.parts[s].block].viscous && (accounted || holds_watched_[s] != 0);
+  return plans_[submeshes_.parts[s].block].viscous && (accounted || holds_active_[s] != 0);
 }
 
 void SubmeshBody::narrow(const Submesh& part, Scratch& scratch) const {
@@ -100,7 +100,7 @@ void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratc
   const auto gather = plan.viscous ? kernels_.gather_viscous : kernels_.gather_elastic;
   const auto push = plan.viscous && !split ? kernels_.push_merged : kernels_.push_elastic;
   const auto measure = kernels_.measure[plan.measure];
-  const auto limit = static_cast<float>(list_limit(part.block) * (1.0 - kFloatRoom));
+  const auto limit = static_cast<float>(list_limit(part.block) * (1.0 - kFloatMargin));
   Block& block = scratch.block;
   for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
     const std::size_t n = std::min(kBlockBatches, part.chains.count - b), values = kChainTets * n * kernels_.lanes;
@@ -161,10 +161,10 @@ void SubmeshBody::fill_slots(const Submesh& part, bool split, const Scratch& scr
   }
 }
 
-void SubmeshBody::take_watched(std::span<const Watch> watches, std::size_t first_record, const float* elastic,
-                               const float* viscous) {
+void SubmeshBody::take_active(std::span<const Watch> watches, std::size_t first_record, const float* elastic,
+                              const float* viscous) {
   for (const Watch& watch : watches) {
-    WatchedVertex& w = watched_[watch.place];
+    ActiveVertex& w = active_[watch.place];
     const double* record = state_.data() + (first_record + watch.local) * kStateDoubles;
     w.elastic = vector_of(elastic + watch.local * kForceFloats);
     w.viscous = viscous != nullptr ? vector_of(viscous + watch.local * kForceFloats) : Vec3d{};
@@ -173,7 +173,7 @@ void SubmeshBody::take_watched(std::span<const Watch> watches, std::size_t first
   }
 }
 
-/// Kick and drift of the vertices between those watched. Without `viscous`, `elastic` is the whole force.
+/// Kick and drift of the vertices between those active. Without `viscous`, `elastic` is the whole force.
 void SubmeshBody::integrate(std::size_t first_record, std::size_t n, std::span<const Watch> watches, float* elastic,
                             float* viscous, const Step& step, VertexWork& work) {
   std::size_t from = 0;
@@ -219,7 +219,7 @@ void SubmeshBody::run_submesh(std::size_t s, const Step& step, Scratch& scratch)
                  (!split || kernels_.all_finite(scratch.viscous.data(), floats));
   if (!found.finite) return;
   fill_slots(part, split, scratch);
-  take_watched(watches_[s], part.first_interior, scratch.elastic.data(), split ? scratch.viscous.data() : nullptr);
+  take_active(watches_[s], part.first_interior, scratch.elastic.data(), split ? scratch.viscous.data() : nullptr);
   if (split && !step.accounted) kernels_.add(scratch.elastic.data(), scratch.viscous.data(), floats);
   integrate(part.first_interior, part.interior_count, watches_[s], scratch.elastic.data(), scratch.viscous.data(), step,
             found.work);
@@ -239,7 +239,7 @@ void SubmeshBody::run_interface(std::size_t chunk, const Step& step, Scratch& sc
   }
   interface_found_[chunk] = {};
   const std::size_t first = shared.first_record + begin;
-  take_watched(interface_watches_[chunk], first, elastic, viscous);
+  take_active(interface_watches_[chunk], first, elastic, viscous);
   if (!step.accounted && any_split_) kernels_.add(elastic, viscous, force_floats(n));
   integrate(first, n, interface_watches_[chunk], elastic, viscous, step, interface_found_[chunk].work);
 }

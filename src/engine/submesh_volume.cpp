@@ -12,14 +12,14 @@
 namespace glisson::engine {
 
 bool SubmeshBody::shares_volume(const Submesh& part) const {
-  return body_.blocks[part.block].tissue.volume_change == VolumeChange::nodal;
+  return body_.blocks[part.block].tissue.volume_change == VolumeChange::average_nodal;
 }
 
 /// Volumes around the vertices of each submesh, of its tissue. O(tets).
 void SubmeshBody::weigh_vertices() {
   shared_volumes_.assign(submeshes_.parts.size(), {});
   for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
-    if (body_.blocks[b].tissue.volume_change != VolumeChange::nodal) continue;
+    if (body_.blocks[b].tissue.volume_change != VolumeChange::average_nodal) continue;
     std::vector<double> volume(body_.vertex_count, 0.0);
     for (std::size_t e = body_.blocks[b].begin; e < body_.blocks[b].end; ++e) {
       for (const std::uint32_t v : body_.elements[e]) volume[submeshes_.record_of_vertex[v]] += body_.rest[e].volume;

@@ -54,8 +54,8 @@ AxialResponse::AxialResponse(const Tissue& tissue)
     throw std::invalid_argument("tissue \"" + tissue.name +
                                 "\" has fibres, across which a specimen does not stay round; "
                                 "take a scene in place of the homogeneous specimen");
-  const bool of_shape =
-      tissue.measure == DeformationMeasure::intensity || tissue.measure == DeformationMeasure::one_minus_q;
+  const bool of_shape = tissue.measure == DeformationMeasure::equivalent_shear_strain ||
+                        tissue.measure == DeformationMeasure::one_minus_q;
   if (!tissue.hyperelastic && !constant_ && !of_shape)
     throw std::invalid_argument(
         "tissue \"" + tissue.name +
@@ -99,7 +99,7 @@ Axial<T> AxialResponse::tensor_mass(Axial<T> h) const {
   if (!constant_) {
     i1 = first_excess(h);
     const T less_q = i1 / (i1 + T(3.0));  // 1 − q
-    measure = x.measure == DeformationMeasure::intensity ? intensity_of(less_q) : less_q;
+    measure = x.measure == DeformationMeasure::equivalent_shear_strain ? intensity_of(less_q) : less_q;
     m = laws_.at(measure);
   }
   const T dilation = e.side + e.side + e.along, p = m.lambda * dilation;
@@ -110,7 +110,7 @@ Axial<T> AxialResponse::tensor_mass(Axial<T> h) const {
   using std::cbrt;
   const T squares = T(2.0) * e.side * e.side + e.along * e.along;
   T rise = half * m.lambda_slope * dilation * dilation + m.mu_slope * squares;
-  if (x.measure == DeformationMeasure::intensity) {
+  if (x.measure == DeformationMeasure::equivalent_shear_strain) {
     if (!(measure > T(1e-12))) return P;
     rise = rise * T(0.75) / measure;
   }

@@ -40,7 +40,7 @@ Response::Response(const Tissue& tissue)
 template <class T>
 T Response::measure(const Mat3<T>& H, const ElementShape& shape) const {
   switch (tissue_.measure) {
-    case DeformationMeasure::intensity:
+    case DeformationMeasure::equivalent_shear_strain:
       return intensity_of(one_minus_q(H));
     case DeformationMeasure::one_minus_q:
       return one_minus_q(H);
@@ -231,7 +231,7 @@ Stiffening Response::elastic_stiffening(const Mat3d& H, const ElementShape& shap
   if (tissue_.hyperelastic) {
     const HyperelasticBound now = hyperelastic_bound(*tissue_.hyperelastic, H),
                             at_rest = hyperelastic_bound(*tissue_.hyperelastic, Mat3d{});
-    const bool pushes = tissue_.volume_change == VolumeChange::nodal && jacobian(H) < kSmallestVolume;
+    const bool pushes = tissue_.volume_change == VolumeChange::average_nodal && jacobian(H) < kSmallestVolume;
     const double volume = (pushes ? 1.0 + kOwnShare : 1.0) * now.volume;
     return {std::max(now.isochoric / at_rest.isochoric, volume / at_rest.volume), (now.isochoric + volume) / rest};
   }
@@ -283,7 +283,7 @@ double Response::tensor_mass_stiffening(const Mat3d& H, const ElementShape& shap
   const double reach = 0.5 * (std::sqrt(e2) + std::sqrt(e2 + bulk / (2.0 * lame_.mu) * e.trace * e.trace));
   const double secant = f + std::max(mu_slope / lame_.mu, bulk_slope / bulk) * g * reach;
   // the energy form adds ½ f' ε:C₀ε ∂x/∂ε: its derivative doubles σ₀ ⊗ ∂x/∂ε and bends with ∂²x/∂ε² ≈ 1/x, where the
-  // bulk counts too. Six is what tests/laws/stiffness_test.cpp needs; a law's own bend f'' is left out
+  // bulk counts too. Six is what tests/material/stiffness_test.cpp needs; a law's own bend f'' is left out
   return tissue_.law_form == LawForm::energy ? f + 6.0 * (secant - f) : secant;
 }
 

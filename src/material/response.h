@@ -31,7 +31,7 @@ class Response {
   explicit Response(const Tissue& tissue);
 
   /// P of the elastic part [Pa], with the moduli of an instant.
-  /// @param mean  volume change that takes the place of the tet's own (VolumeChange::nodal); null: its own
+  /// @param mean  volume change that takes the place of the tet's own (VolumeChange::average_nodal); null: its own
   template <class T>
   Mat3<T> elastic(const Mat3<T>& H, const ElementShape& shape, const T* mean = nullptr) const;
   /// W of it [J/m³]; of a secant law ½ σ:ε, which is not stored energy.

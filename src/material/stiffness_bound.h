@@ -4,7 +4,7 @@
 // bound at rest. Constants that both share drop out; what counts is that the bound grows whenever the tangent does.
 // Isochoric and volumetric part each have their own ratio and the larger one counts: one bound is loose and the other
 // tight, so that in their sum the growth of the tight one would be lost. In ±30 % of stretch the tangent's largest
-// eigenvalue then stays below 1.2 r times that at rest (tests/laws/stiffness_test.cpp); a step of 0.9 h* has 1.23.
+// eigenvalue then stays below 1.2 r times that at rest (tests/material/stiffness_test.cpp); a step of 0.9 h* has 1.23.
 //
 //   λ_max² ≤ I₁ − 2 J/√I₁ = A                          (two stretches have the product J/λ_max; J ≥ 0)
 //   κ/2 (J − 1)²          κ I₂ + κ |J − 1| √A          for J < 0 and J > 1 √(2 I₁) in the place of √A

@@ -18,10 +18,11 @@ Fault check_laws(const Tissue& t) {
   }
   if ((t.lambda_law || t.mu_law) && !with_constant)
     return {"a law of E and one of λ or μ contradict each other; give one or the other", "law"};
-  if (t.volume_change == VolumeChange::nodal && t.law_form == LawForm::energy) {
+  if (t.volume_change == VolumeChange::average_nodal && t.law_form == LawForm::energy) {
     return {
-        "\"nodal\" and law_form \"energy\" exclude each other: a law of the element has no energy in averaged volumes; "
-        "set law_form to \"secant\" or volume_change to \"own\"",
+        "\"average_nodal\" and law_form \"energy\" exclude each other: a law of the element has no energy in averaged "
+        "volumes; "
+        "set law_form to \"secant\" or volume_change to \"element\"",
         "volume_change"};
   }
   if (t.viscous_tensor == ViscousTensor::pioletti && t.kinematics == Kinematics::small) {
@@ -50,7 +51,7 @@ bool Tissue::is_tensor_mass() const {
   if (measure == DeformationMeasure::radius_ratio || measure == DeformationMeasure::solid_angle) return false;
   const bool paper = kinematics == Kinematics::small && law_form == LawForm::secant && !hyperelastic &&
                      viscous_tensor != ViscousTensor::pioletti;
-  return paper && !fibres && maxwell.empty() && volume_change == VolumeChange::own;
+  return paper && !fibres && maxwell.empty() && volume_change == VolumeChange::element;
 }
 
 Fault Tissue::check() const {

@@ -14,7 +14,7 @@ constexpr int kPoints = 241;
 
 const char* measure_label(DeformationMeasure measure) {
   switch (measure) {
-    case DeformationMeasure::intensity:
+    case DeformationMeasure::equivalent_shear_strain:
       return "intensity s [-]";
     case DeformationMeasure::one_minus_q:
       return "1 − q [-]";

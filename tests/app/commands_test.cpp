@@ -54,7 +54,7 @@ TEST_F(Commands, CheckSaysWhatTheTissueIs) {
   const Outcome outcome = run({"check", scene, "--set", "tissue.kinematics=corotational", "--set",
                                "tissue.volume_change=nodal", "--set", "tissue.maxwell=[{share=0.4,time_s=2}]"});
   ASSERT_THAT(outcome, Exits(0));
-  EXPECT_NE(outcome.out.find(", corotational, nodal volume changes"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(", corotational, average nodal volume changes"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("0.4 of the deviator relaxes in 2 s"), std::string::npos) << outcome.out;
   EXPECT_EQ(run({"check", scene}).out.find("corotational"), std::string::npos);
 }

@@ -126,9 +126,9 @@ TEST(LiveCommand, BytesAreReadBackOrRefused) {
 }
 
 // A tool led by hand gathers speed, keeps within it, and stops where it is told without going past.
-TEST(LiveWay, GoesThereWithinItsSpeed) {
+TEST(LivePath, GoesThereWithinItsSpeed) {
   constexpr double kSpeed = 0.02, kRamp = 0.004, kFrameS = 0.001;
-  LiveWay way(kSpeed, kRamp, {});
+  LivePath way(kSpeed, kRamp, {});
   way.set_target({0.0, 0.0, -0.01});
   Vec3d before = way.at(0.0);
   double fastest = 0.0, deepest = 0.0;

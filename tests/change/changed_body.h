@@ -52,7 +52,7 @@ inline Tissue fibrous_tissue() {
   Tissue tissue = viscous_tissue();
   tissue.kinematics = Kinematics::corotational;
   tissue.fibres = Fibres{.direction = {1.0, 0.5, -0.2}, .stiffness = 2000.0};
-  tissue.volume_change = VolumeChange::nodal;
+  tissue.volume_change = VolumeChange::average_nodal;
   return tissue;
 }
 

@@ -41,7 +41,7 @@ inline std::vector<Tissue> kinds() {
   all[3].kinematics = Kinematics::green, all[3].viscosity = 3.0;
   all[4].hyperelastic = NeoHookean{.mu = 1500.0, .bulk_modulus = 8000.0};
   all[5].kinematics = Kinematics::corotational, all[5].maxwell = {{0.3, 0.02}, {0.2, 0.5}};
-  all[6].volume_change = VolumeChange::nodal, all[6].density = 1300.0;
+  all[6].volume_change = VolumeChange::average_nodal, all[6].density = 1300.0;
   all[7].fibres = Fibres{{1.0, 0.0, 1.0}, 4000.0};
   all[8].measure = DeformationMeasure::solid_angle, all[8].law = LinearLaw{40000.0};  // no lanes: in double
   return all;

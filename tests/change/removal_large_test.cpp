@@ -18,7 +18,7 @@ Forces forces_of(engine::SubmeshBody& moving, const State& state) {
   moving.set_state(state.u, state.v);
   moving.advance(0.0, {}, false);
   Forces f;
-  for (const WatchedVertex& w : moving.watched()) f.elastic.push_back(w.elastic), f.viscous.push_back(w.viscous);
+  for (const ActiveVertex& w : moving.active()) f.elastic.push_back(w.elastic), f.viscous.push_back(w.viscous);
   return f;
 }
 

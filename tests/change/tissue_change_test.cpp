@@ -13,7 +13,7 @@ using enum Integrator;
 
 struct Way {
   const char* name;
-  Integrator integrator = explicit_;
+  Integrator integrator = central_difference;
   Precision precision = Precision::single_precision;
   TimeScheme scheme = TimeScheme::backward_euler;
 };
@@ -27,7 +27,7 @@ SimulationOptions options_of(const Way& way) {
   return o;
 }
 
-bool newton(const Way& w) { return w.integrator == implicit || w.integrator == static_; }
+bool newton(const Way& w) { return w.integrator == implicit || w.integrator == quasi_static; }
 
 const std::vector<Way>& ways() {
   static const std::vector<Way> all{
@@ -37,7 +37,7 @@ const std::vector<Way>& ways() {
       {.name = "semi_implicit_double", .integrator = semi_implicit, .precision = Precision::double_precision},
       {.name = "implicit", .integrator = implicit},
       {.name = "newmark", .integrator = implicit, .scheme = TimeScheme::newmark},
-      {.name = "static", .integrator = static_}};
+      {.name = "static", .integrator = quasi_static}};
   return all;
 }
 

@@ -73,7 +73,8 @@ class Checkpoint : public testing::TestWithParam<Case> {
     return all;
   }
   static int length() {
-    const bool newton = GetParam().integrator == Integrator::implicit || GetParam().integrator == Integrator::static_;
+    const bool newton =
+        GetParam().integrator == Integrator::implicit || GetParam().integrator == Integrator::quasi_static;
     return newton ? 6 : 150;
   }
 };
@@ -158,14 +159,14 @@ using enum Integrator;
 INSTANTIATE_TEST_SUITE_P(
     Integrators, Checkpoint,
     testing::Values(
-        Case{"explicit_single", explicit_},
-        Case{.name = "explicit_double", .integrator = explicit_, .precision = Precision::double_precision},
-        Case{.name = "explicit_maxwell", .integrator = explicit_, .large = true},
+        Case{"explicit_single", central_difference},
+        Case{.name = "explicit_double", .integrator = central_difference, .precision = Precision::double_precision},
+        Case{.name = "explicit_maxwell", .integrator = central_difference, .large = true},
         Case{.name = "explicit_maxwell_double",
-             .integrator = explicit_,
+             .integrator = central_difference,
              .precision = Precision::double_precision,
              .large = true},
-        Case{.name = "explicit_linear", .integrator = explicit_, .linear = true},
+        Case{.name = "explicit_linear", .integrator = central_difference, .linear = true},
         Case{"semi_implicit_single", semi_implicit},
         Case{.name = "semi_implicit_double", .integrator = semi_implicit, .precision = Precision::double_precision},
         Case{.name = "semi_implicit_maxwell", .integrator = semi_implicit, .large = true}, Case{"implicit", implicit},
@@ -178,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(
              .integrator = implicit,
              .large = true,
              .preconditioner = Preconditioner::block_diagonal},
-        Case{"static_law", static_}, Case{.name = "static_maxwell", .integrator = static_, .large = true}),
+        Case{"static_law", quasi_static}, Case{.name = "static_maxwell", .integrator = quasi_static, .large = true}),
     case_name);
 
 /// A cut body under a tool, and what it writes.

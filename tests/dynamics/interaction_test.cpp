@@ -25,7 +25,7 @@ struct Probe final : Interaction {
   void body_changed(const BodyView&, std::span<const std::uint32_t>) override { ++changes; }
   std::span<const std::uint32_t> reach(double, double) override { return {&vertex, 1}; }
   void add_forces(const InteractionStep& step) override {
-    WatchedVertex& w = step.vertices[step.place_of[vertex]];
+    ActiveVertex& w = step.vertices[step.place_of[vertex]];
     w.elastic += force - w.displacement * spring;
   }
   void constrain(const InteractionStep& step) override {
@@ -197,7 +197,7 @@ TEST(Interaction, CheckpointKeepsTheVerticesAtHand) {
 }
 
 TEST(Interaction, ImplicitIntegratorsRefuse) {
-  for (const Integrator i : {Integrator::implicit, Integrator::static_}) {
+  for (const Integrator i : {Integrator::implicit, Integrator::quasi_static}) {
     SimulationOptions options;
     options.integrator = i;
     Simulation s = body(options);
@@ -210,7 +210,7 @@ TEST(Interaction, ImplicitIntegratorsRefuse) {
 // refused, or is a copy, is free.
 TEST(Interaction, ActsOnOneSimulation) {
   const auto p = probe();
-  Simulation a = body(), b = body(), still = body({.integrator = Integrator::static_});
+  Simulation a = body(), b = body(), still = body({.integrator = Integrator::quasi_static});
   EXPECT_THROW(still.attach(p), std::invalid_argument);
   a.attach(p);
   for (Simulation* s : {&a, &b}) {

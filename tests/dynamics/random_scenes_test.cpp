@@ -6,7 +6,7 @@
 
 #include "glisson/instruments/motion.h"
 #include "glisson/simulation/simulation.h"
-#include "laws/every_tissue.h"
+#include "material/every_tissue.h"
 #include "support/bodies.h"
 
 namespace glisson {
@@ -32,7 +32,7 @@ struct RandomScene {
     const std::vector<Tissue> all = test::every_tissue();
     tissue = all[random() % all.size()];
     const bool secant = tissue.law_form == LawForm::secant || tissue.hyperelastic;
-    if (secant && random() % 3 == 0) tissue.volume_change = VolumeChange::nodal;
+    if (secant && random() % 3 == 0) tissue.volume_change = VolumeChange::average_nodal;
     if (random() % 3 == 0) tissue.viscosity = std::pow(10.0, number(-2.0, 3.0));
     options.integrator = static_cast<Integrator>(random() % 4);
     options.precision = random() % 2 == 0 ? Precision::single_precision : Precision::double_precision;
@@ -54,7 +54,7 @@ struct RandomScene {
     const ConstraintId tool =
         s.drive(mesh.vertex_sets.at("z_max"), [=](double t) { return to * std::min(t / duration, 1.0); });
     if (wild) shake(s);
-    const bool newton = options.integrator == Integrator::implicit || options.integrator == Integrator::static_;
+    const bool newton = options.integrator == Integrator::implicit || options.integrator == Integrator::quasi_static;
     for (int i = 0; i < (newton ? 6 : 300); ++i) {
       const double before = s.time();
       const StepResult step = s.step();

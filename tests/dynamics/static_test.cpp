@@ -12,7 +12,7 @@ namespace {
 
 SimulationOptions in_equilibrium() {
   SimulationOptions options;
-  options.integrator = Integrator::static_;
+  options.integrator = Integrator::quasi_static;
   return options;
 }
 

@@ -78,7 +78,7 @@ TEST(StiffnessLevels, BoundTheDenseSpectrum) {
     StiffnessLevels levels(body);
     levels.meet(stiff, base, base);
     levels.raise(1.0);
-    const Beside beside = levels.beside(base, {0, 0});
+    const AddedStiffness added = levels.added(base, {0, 0});
     const Eigen::Index n = static_cast<Eigen::Index>(3 * body.vertex_count);
     Eigen::MatrixXd level = Eigen::MatrixXd::Zero(n, n), more = level;
     for (std::uint32_t e = 0; e < body.elements.size(); ++e) {
@@ -93,11 +93,11 @@ TEST(StiffnessLevels, BoundTheDenseSpectrum) {
     }
     const std::vector<double> none(body.vertex_count, 0.0);
     const double h_level = stable_step(body, base, none).step;
-    const double h = 1.0 / std::sqrt(1.0 / (h_level * h_level) + 0.25 * beside.k);
+    const double h = 1.0 / std::sqrt(1.0 / (h_level * h_level) + 0.25 * added.k);
     const double exact = 2.0 / std::sqrt(top_eigenvalue(body, level + more));
     EXPECT_LE(h, exact) << seed;
     EXPECT_GE(h, 0.4 * exact) << "a bound from single tets is within a few times, seed " << seed;
-    EXPECT_GE(beside.k, top_eigenvalue(body, more)) << seed;
+    EXPECT_GE(added.k, top_eigenvalue(body, more)) << seed;
   }
 }
 
@@ -118,9 +118,9 @@ TEST(StiffnessLevels, BoundTheViscositysSpectrum) {
         add_element(body, s.element, body.blocks[0].viscous, s.ratio - base[0], false, more);
       }
     }
-    const double c = levels.beside(base, {1, 0}).c;
+    const double c = levels.added(base, {1, 0}).c;
     EXPECT_GE(c, top_eigenvalue(body, more)) << seed;
-    EXPECT_EQ(levels.beside(base, {0, 0}).c, 0.0);
+    EXPECT_EQ(levels.added(base, {0, 0}).c, 0.0);
   }
 }
 
@@ -137,7 +137,7 @@ TEST(StiffnessLevels, OneStiffTetCostsLessThanABodyAsStiff) {
     StiffnessLevels levels(body);
     levels.meet(std::vector<StiffElement>{{e, 1000.0, 1000.0}}, one, one);
     levels.raise(1.0);
-    gain.push_back(std::sqrt(1000.0 / (1.0 + 0.25 * h * h * levels.beside(one, {0}).k)));
+    gain.push_back(std::sqrt(1000.0 / (1.0 + 0.25 * h * h * levels.added(one, {0}).k)));
   }
   std::sort(gain.begin(), gain.end());
   EXPECT_GE(gain[gain.size() / 2], 2.0);
@@ -159,14 +159,14 @@ TEST(StiffnessLevels, FollowATetUpAndDown) {
   EXPECT_TRUE(met.above);
   EXPECT_NEAR(met.rise, 1.25, 1e-12);
   levels.raise(4.0);
-  const double at_peak = levels.beside(base, {0, 0}).k;
+  const double at_peak = levels.added(base, {0, 0}).k;
   levels.settle();
   levels.meet(told(2.0), base, base);
   levels.settle();
-  EXPECT_LT(levels.beside(base, {0, 0}).k, 0.15 * at_peak);
+  EXPECT_LT(levels.added(base, {0, 0}).k, 0.15 * at_peak);
   levels.settle();
   EXPECT_TRUE(levels.empty());
-  EXPECT_EQ(levels.beside(base, {0, 0}).k, 0.0);
+  EXPECT_EQ(levels.added(base, {0, 0}).k, 0.0);
 }
 
 // Elements that are gone take nothing; and what is saved is read back.
@@ -178,11 +178,11 @@ TEST(StiffnessLevels, ForgetWhatIsRemovedAndSurviveACheckpoint) {
   levels.meet(std::vector<StiffElement>{{30, 8.0, 5.0}, {7, 10.0, 10.0}, {2, 3.0, 3.0}}, base, base);
   levels.raise(1.0);
   restore(read, archived(levels));
-  EXPECT_EQ(read.beside(base, {0, 0}).k, levels.beside(base, {0, 0}).k);
+  EXPECT_EQ(read.added(base, {0, 0}).k, levels.added(base, {0, 0}).k);
   const std::vector<std::uint32_t> gone{7, 30};
   levels.remove(gone);
   EXPECT_EQ(levels.count_above(base), 1U);
-  EXPECT_LT(levels.beside(base, {0, 0}).k, read.beside(base, {0, 0}).k);
+  EXPECT_LT(levels.added(base, {0, 0}).k, read.added(base, {0, 0}).k);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct EngineForces {
   Advance advance;
 };
 
-/// Evaluates the forces without a step. All vertices are watched, so that every submesh keeps the two parts apart.
+/// Evaluates the forces without a step. All vertices are active, so that every submesh keeps the two parts apart.
 inline EngineForces engine_forces(const Body& body, std::span<const Vec3d> u, std::span<const Vec3d> v,
                                   const engine::SubmeshOptions& options) {
   engine::SubmeshBody moving(body, std::vector<double>(body.vertex_count, 0.0), options);
@@ -33,7 +33,7 @@ inline EngineForces engine_forces(const Body& body, std::span<const Vec3d> u, st
   moving.set_state(u, v);
   EngineForces f;
   f.advance = moving.advance(0.0, {}, false);
-  for (const WatchedVertex& w : moving.watched()) f.elastic.push_back(w.elastic), f.viscous.push_back(w.viscous);
+  for (const ActiveVertex& w : moving.active()) f.elastic.push_back(w.elastic), f.viscous.push_back(w.viscous);
   return f;
 }
 

@@ -115,7 +115,7 @@ double size_of(const Mat3d& H) {
 TEST_P(MeasureLanes, SmallStrain) {
   for (const double size : {1e-4, 1e-3, 1e-2}) {
     const Tets t = tets([&] { return random_gradient(size); });
-    const std::vector<double> s = measured(*GetParam(), DeformationMeasure::intensity, t);
+    const std::vector<double> s = measured(*GetParam(), DeformationMeasure::equivalent_shear_strain, t);
     const std::vector<double> p = measured(*GetParam(), DeformationMeasure::one_minus_q, t);
     for (std::size_t i = 0; i < s.size(); ++i) {
       const double exact = one_minus_q(in_double(t.H[i]));
@@ -154,7 +154,7 @@ TEST_P(MeasureLanes, Dilation) {
   for (std::size_t i = 0; i < p.size(); ++i) ASSERT_LE(p[i], bound_of(in_double(t.H[i])));
   // what a body under water sees: 3 % of volume leave s within 2e-5
   const Tets small = tets([&] { return dilation(number(-0.01, 0.01)); });
-  for (const double s : measured(*GetParam(), DeformationMeasure::intensity, small)) ASSERT_LE(s, 2e-5);
+  for (const double s : measured(*GetParam(), DeformationMeasure::equivalent_shear_strain, small)) ASSERT_LE(s, 2e-5);
 }
 
 // A rotation is no change of shape either; terms of order ten cancel to 0 at half a turn.
@@ -167,7 +167,7 @@ TEST_P(MeasureLanes, Rotation) {
 TEST_P(MeasureLanes, Inverted) {
   const Tets upright = tets([&] { return random_gradient(0.2); });
   bool inverted = true;
-  measured(*GetParam(), DeformationMeasure::intensity, upright, &inverted);
+  measured(*GetParam(), DeformationMeasure::equivalent_shear_strain, upright, &inverted);
   EXPECT_FALSE(inverted);
   for (const Mat3d& H :
        {dilation(-1.0), dilation(-2.5), Mat3d{{{{-2.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}}}}) {
@@ -177,7 +177,7 @@ TEST_P(MeasureLanes, Inverted) {
     for (const double q : measured(*GetParam(), DeformationMeasure::regular_mean_ratio, t)) EXPECT_EQ(q, 0.0);
     Tets one = upright;
     one.H[one.H.size() / 2] = t.H[0];
-    measured(*GetParam(), DeformationMeasure::intensity, one, &inverted);
+    measured(*GetParam(), DeformationMeasure::equivalent_shear_strain, one, &inverted);
     EXPECT_TRUE(inverted) << "one among many";
   }
 }
@@ -206,8 +206,8 @@ TEST_P(MeasureLanes, RegularMeanRatio) {
 TEST_P(MeasureLanes, Padding) {
   Tets t = tets([&] { return Mat3d{}; });
   for (ElementRest& rest : t.rest) rest = {};
-  for (const auto m :
-       {DeformationMeasure::intensity, DeformationMeasure::one_minus_q, DeformationMeasure::regular_mean_ratio}) {
+  for (const auto m : {DeformationMeasure::equivalent_shear_strain, DeformationMeasure::one_minus_q,
+                       DeformationMeasure::regular_mean_ratio}) {
     bool inverted = true;
     for (const double x : measured(*GetParam(), m, t, &inverted)) EXPECT_EQ(x, 0.0);
     EXPECT_FALSE(inverted);

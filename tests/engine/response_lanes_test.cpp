@@ -5,7 +5,7 @@
 #include "element/tissue_operator.h"
 #include "engine/element_body.h"
 #include "engine/engine_run.h"
-#include "laws/every_tissue.h"
+#include "material/every_tissue.h"
 
 namespace glisson {
 namespace {
@@ -16,7 +16,7 @@ std::vector<Tissue> large_tissues() {
   for (std::size_t i = 0, n = all.size(); i < n; ++i) {
     if (all[i].law_form == LawForm::energy && !all[i].hyperelastic) continue;
     all.push_back(all[i]);
-    all.back().volume_change = VolumeChange::nodal;
+    all.back().volume_change = VolumeChange::average_nodal;
     all.back().name += " nodal";
   }
   std::erase_if(all, [](const Tissue& t) { return t.is_tensor_mass() || !engine::has_lanes(t); });

@@ -6,7 +6,7 @@
 
 #include "engine/element_body.h"
 #include "engine/engine_run.h"
-#include "laws/every_tissue.h"
+#include "material/every_tissue.h"
 
 namespace glisson {
 namespace {

@@ -44,7 +44,8 @@ RC_GTEST_PROP(StiffnessBound, HoldsOverABody, ()) {
 RC_GTEST_PROP(StiffnessBound, IsWithinTwiceForATet, ()) {
   Sample s;
   for (auto& [region, tissue] : s.tissues) {
-    if (tissue.measure == DeformationMeasure::regular_mean_ratio) tissue.measure = DeformationMeasure::intensity;
+    if (tissue.measure == DeformationMeasure::regular_mean_ratio)
+      tissue.measure = DeformationMeasure::equivalent_shear_strain;
   }
   Mat3d H;
   for (auto& row : H.m) {

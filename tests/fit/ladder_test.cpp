@@ -102,10 +102,11 @@ TEST(Ladder, ReadsItsSections) {
   ForwardSpec f;
   EXPECT_EQ(
       read(forward_section(),
-           "kind = \"scene\"\nintegrator = \"static\"\ntolerance = 0.5\napproach_mm = 1.5\nforce = \"bottom\"\n", &f),
+           "kind = \"scene\"\nintegrator = \"quasi_static\"\ntolerance = 0.5\napproach_mm = 1.5\nforce = \"bottom\"\n",
+           &f),
       "");
   EXPECT_EQ(f.kind, ForwardKind::scene);
-  EXPECT_EQ(f.integrator, Integrator::static_);
+  EXPECT_EQ(f.integrator, Integrator::quasi_static);
   EXPECT_DOUBLE_EQ(f.approach, 0.0015);
   EXPECT_EQ(f.force, "bottom");
   EXPECT_THAT(read(forward_section(), "tolerance = 0\n", &f), HasSubstr("FIT.toml:1:13: x.tolerance: 0"));

@@ -328,7 +328,7 @@ size_m = [0.02, 0.02, 0.02]
 [tissue]
 hyperelastic = { kind = "neo_hookean", mu_Pa = 1000, bulk_modulus_Pa = 1e5 }
 [motion]
-integrator = "static"
+integrator = "quasi_static"
 [[fixed]]
 set = "z_min"
 [[tool]]

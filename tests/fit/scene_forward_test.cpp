@@ -108,8 +108,9 @@ TEST(SceneModel, FollowsTheCurveAsTheSceneItsPress) {
 // Parameters reach the run, an element of a list alone; a contact that lies deeper is a shorter way.
 TEST(SceneModel, TakesParametersAndContact) {
   const std::vector<std::string> keys{"tissue.youngs_modulus_Pa", "tissue.law.coefficients_Pa[1]"};
-  const std::string quiet = kBlock.substr(0, kBlock.find("damping")) + "integrator = \"static\"\nstep_s = 0.02\n" +
-                            kBlock.substr(kBlock.find("[[fixed]]")) + kTool;
+  const std::string quiet = kBlock.substr(0, kBlock.find("damping")) +
+                            "integrator = \"quasi_static\"\nstep_s = 0.02\n" + kBlock.substr(kBlock.find("[[fixed]]")) +
+                            kTool;
   const SceneModel rest(made(quiet), keys, {press(0.01, 0.004, 41)});
   const std::vector<double> base = force(rest, {3600, 0}), twice = force(rest, {7200, 0}),
                             bent = force(rest, {3600, 1e5});

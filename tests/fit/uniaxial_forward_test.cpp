@@ -163,7 +163,7 @@ Pair both(const std::string& tissue, const std::string& motion, const Curve& cur
 // a cubic in time.
 TEST(UniaxialForward, IsTheStaticBody) {
   const Curve curve = ramp(0.01, 0.5, 41);
-  const std::string motion = "integrator = \"static\"\nimplicit.largest_step_s = 0.02\n";
+  const std::string motion = "integrator = \"quasi_static\"\nimplicit.largest_step_s = 0.02\n";
   for (const char* tissue :
        {"hyperelastic = { kind = \"ogden\", mu_Pa = [1000], alpha = [-4.7], bulk_modulus_Pa = 6000 }\n",
         "hyperelastic = { kind = \"yeoh\", c1_Pa = 500, c2_Pa = 100, bulk_modulus_Pa = 9000 }\n",

@@ -63,7 +63,8 @@ void require_sound(const Variant& v) {
   }
   const ToolPath path = tool_path(v.tools.at(0));
   require(path.end.has_value() && std::isfinite(*path.end), "a path ends");
-  for (const double share : {0.0, 0.4, 1.0, 2.0}) require(finite(path.way(share * *path.end)), "a tool is somewhere");
+  for (const double share : {0.0, 0.4, 1.0, 2.0})
+    require(finite(path.displacement(share * *path.end)), "a tool is somewhere");
   const auto driver = make_driver(v.instruments.at(0));
   for (const double time : {0.0, 0.07, 1e3}) require(finite(driver->advance(time, 1e-3, {}).position), "so is a ball");
   require_valid(v.tissue);

@@ -56,7 +56,7 @@ class CapsuleOnBlock {
     step.rest = mesh.vertices;
     capsule->add_forces(step);
     std::vector<Vec3d> f;
-    for (const WatchedVertex& w : watched_) f.push_back(w.elastic);
+    for (const ActiveVertex& w : watched_) f.push_back(w.elastic);
     return f;
   }
 
@@ -80,7 +80,7 @@ class CapsuleOnBlock {
   double width_;
   std::vector<double> masses_;
   std::vector<Vec3d> displacement_;
-  std::vector<WatchedVertex> watched_;
+  std::vector<ActiveVertex> watched_;
   std::vector<std::uint32_t> place_of_;
 };
 

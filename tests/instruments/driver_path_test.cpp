@@ -30,7 +30,8 @@ double velocity_jump(const ToolPath& path, double end, double acceleration) {
   constexpr double kStep = 1e-4;
   double worst = 0.0;
   for (double t = kStep; t < end; t += kStep) {
-    const Vec3d a = (path.way(t + kStep) - path.way(t) * 2.0 + path.way(t - kStep)) * (1.0 / (kStep * kStep));
+    const Vec3d a = (path.displacement(t + kStep) - path.displacement(t) * 2.0 + path.displacement(t - kStep)) *
+                    (1.0 / (kStep * kStep));
     worst = std::max(worst, norm(a) / acceleration);
   }
   return worst;
@@ -51,9 +52,9 @@ TEST(PathDriver, GoesTheWayFromItsStart) {
 // A steady motion with a ramp lags half the ramp behind one without.
 TEST(SteadyMotion, RampsUp) {
   const ToolPath path = steady_path({.velocity = 0.01, .start = 1.0, .ramp = 0.5});
-  EXPECT_EQ(path.way(1.0), (Vec3d{0, 0, 0}));
-  EXPECT_NEAR(path.way(1.5).z, -0.0025, 1e-15);
-  EXPECT_NEAR(path.way(2.0).z, -0.0075, 1e-15);
+  EXPECT_EQ(path.displacement(1.0), (Vec3d{0, 0, 0}));
+  EXPECT_NEAR(path.displacement(1.5).z, -0.0025, 1e-15);
+  EXPECT_NEAR(path.displacement(2.0).z, -0.0075, 1e-15);
 }
 
 // Insert, rest, aside, withdraw: each corner is met exactly at its time, speed never jumps, and the motion ends when it
@@ -64,13 +65,13 @@ TEST(StrokeMotion, MeetsItsCorners) {
   motion.strokes.push_back({.to = {0.004, 0, -0.03}, .velocity = 0.002, .ramp = 0.1});
   motion.strokes.push_back({.to = {}, .velocity = 0.02, .ramp = 0.05});
   const ToolPath path = stroke_path(motion);
-  EXPECT_EQ(path.way(0.5), (Vec3d{}));
-  EXPECT_NEAR(norm(path.way(3.6) - kDown * 0.03), 0.0, 1e-15);
-  EXPECT_NEAR(norm(path.way(5.6) - kDown * 0.03), 0.0, 1e-15);
-  EXPECT_NEAR(norm(path.way(7.7) - Vec3d{0.004, 0, -0.03}), 0.0, 1e-15);
+  EXPECT_EQ(path.displacement(0.5), (Vec3d{}));
+  EXPECT_NEAR(norm(path.displacement(3.6) - kDown * 0.03), 0.0, 1e-15);
+  EXPECT_NEAR(norm(path.displacement(5.6) - kDown * 0.03), 0.0, 1e-15);
+  EXPECT_NEAR(norm(path.displacement(7.7) - Vec3d{0.004, 0, -0.03}), 0.0, 1e-15);
   EXPECT_NEAR(*path.end, 7.7 + std::hypot(0.03, 0.004) / 0.02 + 0.05, 1e-12);
-  EXPECT_NEAR(norm(path.way(*path.end)), 0.0, 1e-15);
-  EXPECT_NEAR(norm(path.way(*path.end - 1e-3)), 0.0, 0.02 * 1e-3) << "and not earlier at rest by a jump";
+  EXPECT_NEAR(norm(path.displacement(*path.end)), 0.0, 1e-15);
+  EXPECT_NEAR(norm(path.displacement(*path.end - 1e-3)), 0.0, 0.02 * 1e-3) << "and not earlier at rest by a jump";
   // 0.02/0.05 m/s² is the steepest ramp; differences of second order see twice that where a ramp begins within a sample.
   EXPECT_LT(velocity_jump(path, *path.end + 0.1, 0.02 / 0.05), 1.01);
 }
@@ -80,8 +81,8 @@ TEST(StrokeMotion, ShortMovesArrive) {
   StrokeMotion motion{.start = 0.0, .strokes = {{.to = kDown * 1e-4, .velocity = 0.01, .ramp = 1.0}}};
   const ToolPath path = stroke_path(motion);
   EXPECT_NEAR(*path.end, 0.2, 1e-12);
-  EXPECT_NEAR(path.way(0.1).z, -0.5e-4, 1e-15);
-  EXPECT_NEAR(path.way(0.2).z, -1e-4, 1e-15);
+  EXPECT_NEAR(path.displacement(0.1).z, -0.5e-4, 1e-15);
+  EXPECT_NEAR(path.displacement(0.2).z, -1e-4, 1e-15);
 }
 
 // Without a ramp the first stroke is the press of the same speed and depth.
@@ -90,18 +91,19 @@ TEST(StrokeMotion, OneStrokeIsAPress) {
   const ToolPath stroke = stroke_path(motion);
   const ToolPath pressed = press_path({.velocity = 0.01, .depth = 0.02, .start = 0.2, .hold = 1.0});
   EXPECT_DOUBLE_EQ(*stroke.end, *pressed.end);
-  for (double t = 0.0; t < 4.0; t += 0.037) EXPECT_NEAR(stroke.way(t).z, pressed.way(t).z, 1e-15) << t;
+  for (double t = 0.0; t < 4.0; t += 0.037)
+    EXPECT_NEAR(stroke.displacement(t).z, pressed.displacement(t).z, 1e-15) << t;
 }
 
 // A sine comes up smoothly about its mean, has its amplitude and frequency then, and rests at its end.
 TEST(SineMotion, SwingsAboutItsMean) {
   const SineMotion m{.amplitude = 0.002, .frequency = 2.0, .mean = 0.003, .start = 0.1, .ramp = 0.5, .duration = 3.0};
   const ToolPath path = sine_path(m);
-  EXPECT_EQ(path.way(0.1), (Vec3d{}));
+  EXPECT_EQ(path.displacement(0.1), (Vec3d{}));
   for (double t = 0.7; t < 3.1; t += 0.01) {
-    EXPECT_NEAR(path.way(t).z, -0.003 - 0.002 * std::sin(4.0 * std::numbers::pi * (t - 0.1)), 1e-15);
+    EXPECT_NEAR(path.displacement(t).z, -0.003 - 0.002 * std::sin(4.0 * std::numbers::pi * (t - 0.1)), 1e-15);
   }
-  EXPECT_EQ(path.way(3.1), path.way(9.0));
+  EXPECT_EQ(path.displacement(3.1), path.displacement(9.0));
   EXPECT_DOUBLE_EQ(*path.end, 3.1);
   EXPECT_LT(velocity_jump(path, 3.0, 0.002 * 16 * std::pow(std::numbers::pi, 2)), 3.0) << "of the order of A ω²";
 }
@@ -122,11 +124,11 @@ TEST(RecordedMotion, PassesThroughItsPoints) {
   m.start = 0.75;
   const ToolPath path = recorded_path(m);
   for (std::size_t i = 0; i < m.times.size(); ++i) {
-    EXPECT_NEAR(norm(path.way(m.times[i] + 0.75) - (m.positions[i] - m.positions[0])), 0.0, 1e-15) << i;
+    EXPECT_NEAR(norm(path.displacement(m.times[i] + 0.75) - (m.positions[i] - m.positions[0])), 0.0, 1e-15) << i;
   }
   EXPECT_DOUBLE_EQ(*path.end, 3.75);
-  EXPECT_EQ(path.way(0.0), (Vec3d{}));
-  EXPECT_EQ(path.way(99.0), path.way(3.75));
+  EXPECT_EQ(path.displacement(0.0), (Vec3d{}));
+  EXPECT_EQ(path.displacement(99.0), path.displacement(3.75));
 }
 
 // Where the way is smooth and monotone the error falls as h³ or better with the distance of its points: halving takes it
@@ -136,7 +138,7 @@ TEST(RecordedMotion, ConvergesFasterThanStraightLines) {
     const ToolPath path = recorded_path(record(points, 1.2));
     double worst = 0.0;
     for (double t = 0.2; t < 1.0; t += 0.0013) {
-      worst = std::max(worst, norm(path.way(t) - Vec3d{std::sin(t), 1.0 - std::cos(2.0 * t), t * t}));
+      worst = std::max(worst, norm(path.displacement(t) - Vec3d{std::sin(t), 1.0 - std::cos(2.0 * t), t * t}));
     }
     return worst;
   };
@@ -150,7 +152,7 @@ TEST(RecordedMotion, NeverOvershoots) {
   const RecordedMotion m{.times = {0, 1, 1.2, 2, 3}, .positions = {{}, {}, kDown * 0.01, kDown * 0.01, kDown * 0.02}};
   const ToolPath path = recorded_path(m);
   for (double t = 0.0; t < 3.0; t += 1e-3) {
-    const double depth = -path.way(t).z, low = t < 1.0 ? 0.0 : (t < 1.2 ? 0.0 : 0.01);
+    const double depth = -path.displacement(t).z, low = t < 1.0 ? 0.0 : (t < 1.2 ? 0.0 : 0.01);
     const double high = t < 1.0 ? 0.0 : (t < 2.0 ? 0.01 : 0.02);
     EXPECT_GE(depth, low - 1e-15) << t;
     EXPECT_LE(depth, high + 1e-15) << t;

@@ -28,7 +28,7 @@ double measured(const HertzMesh& m) {
   o.edge = o.top = 0.8 * a / m.inside;
   o.outside = cells(o.R - a, o.edge, m.growth), o.layers = cells(o.h, o.top, m.growth);
   Tissue t;
-  t.poisson_ratio = 0.3, t.volume_change = VolumeChange::nodal;
+  t.poisson_ratio = 0.3, t.volume_change = VolumeChange::average_nodal;
   test::PressedLayer p(o, t, Ball{R}, 0.0, d, 0.06, 120.0, 1e-4);
   test::advance_to(p.body, 0.14);
   const double G = t.lame().mu, nu = t.poisson_ratio, F = p.force();

@@ -32,7 +32,7 @@ test::LayerOptions layer(const Punch& p, int mesh) {
 
 Tissue tissue(double nu) {
   Tissue t;
-  t.poisson_ratio = nu, t.volume_change = VolumeChange::nodal;
+  t.poisson_ratio = nu, t.volume_change = VolumeChange::average_nodal;
   return t;
 }
 

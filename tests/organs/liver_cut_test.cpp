@@ -1,7 +1,7 @@
 // A real organ mesh, cut through by planes: the parts that the plane makes, with the volume and mass of the whole.
 #include <filesystem>
 
-#include "change/cut_body.h"
+#include "cutting/cut_body.h"
 #include "glisson/io.h"
 #include "support/places.h"
 

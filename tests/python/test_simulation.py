@@ -22,7 +22,7 @@ def pressed(options=None, motion=None, tissue=None):
 
 def test_slow_press_has_the_static_stiffness():
     """The linear box of figure 2 has 51.19 N/m under its triangle (docs/paper.md)."""
-    body, _, tool = pressed(glisson.SimulationOptions(integrator="static", precision="double"))
+    body, _, tool = pressed(glisson.SimulationOptions(integrator="quasi_static", precision="double"))
     body.advance(0.5)
     depth = glisson.press_depth(glisson.PressMotion(depth=0.008), body.force_time)
     assert -body.force(tool).total[2] / depth == pytest.approx(51.19, rel=1e-3)
@@ -30,7 +30,7 @@ def test_slow_press_has_the_static_stiffness():
 
 def test_forces_add_up():
     """The parts of a force are its total, and tool and support balance at rest."""
-    body, held, tool = pressed(glisson.SimulationOptions(integrator="static"))
+    body, held, tool = pressed(glisson.SimulationOptions(integrator="quasi_static"))
     body.advance(1.0)
     force = body.force(tool)
     parts = force.elastic + force.viscous + force.damping + force.inertial + force.gravity + force.load
@@ -133,7 +133,7 @@ def test_state_is_set():
 
 def test_loads_and_gravity():
     """At rest the support carries the weight and the load."""
-    options = glisson.SimulationOptions(integrator="static", gravity=[0, 0, -9.81])
+    options = glisson.SimulationOptions(integrator="quasi_static", gravity=[0, 0, -9.81])
     body = glisson.Simulation(glisson.box_mesh(), glisson.Tissue(youngs_modulus=2e4), options)
     held = body.fix("z_min", axes="xyz")
     body.add_load("z_max", (0.1, 0, 0), lambda t: min(1.0, t))
@@ -205,7 +205,7 @@ def test_steps_that_cannot_be_made():
     """A step above h* is refused with the ways out; a body that nothing holds has no static equilibrium."""
     with pytest.raises(ValueError, match="step"):
         glisson.Simulation(glisson.box_mesh(), glisson.Tissue(), glisson.SimulationOptions(step=0.1))
-    body = glisson.Simulation(glisson.box_mesh(), glisson.Tissue(), glisson.SimulationOptions(integrator="static"))
+    body = glisson.Simulation(glisson.box_mesh(), glisson.Tissue(), glisson.SimulationOptions(integrator="quasi_static"))
     body.add_load("z_max", (0, 0, 1))
     with pytest.raises(glisson.StepError):
         body.step()
@@ -283,7 +283,7 @@ def test_a_motion_may_refer_to_its_simulation():
 
 def test_a_tissue_changes_while_the_body_moves():
     """A static press has twice the force with twice the modulus; the state stays, and the energies balance."""
-    body, _, tool = pressed(glisson.SimulationOptions(integrator="static"))
+    body, _, tool = pressed(glisson.SimulationOptions(integrator="quasi_static"))
     body.advance(1.0)
     before, force = body.displacement.copy(), body.force(tool).total[2]
     tissue = body.tissue()

@@ -31,20 +31,22 @@ def test_words_are_those_of_scenes():
     """A word that the binding knows, a scene knows too, and it means the same."""
     words = {
         "kinematics": ("small", "corotational", "green"),
-        "measure": ("intensity", "one_minus_q", "regular_mean_ratio", "radius_ratio", "solid_angle"),
+        "measure": ("equivalent_shear_strain", "one_minus_q", "regular_mean_ratio", "radius_ratio", "solid_angle"),
         "viscous_tensor": ("shear", "deviatoric", "proportional"),
         "law_form": ("secant", "energy"),
         "maxwell_part": ("deviator", "all"),
-        "volume_change": ("own", "nodal"),
+        "volume_change": ("element", "average_nodal"),
     }
     for field, known in words.items():
         for word in known:
             assert getattr(glisson.tissue_from({field: word}), field) == word
         with pytest.raises(TypeError, match="Literal"):
             setattr(glisson.Tissue(), field, "no such word")
-    for word in ("explicit", "semi_implicit", "implicit", "static"):
+    for word in ("central_difference", "semi_implicit", "implicit", "quasi_static"):
         scene = glisson.parse_scene({"mesh": {"kind": "box"}, "motion": {"integrator": word, "max_steps": 1}})
         assert scene.variants[0].simulation.integrator == word
+    assert glisson.Tissue(volume_change="nodal").volume_change == "average_nodal"
+    assert glisson.SimulationOptions(integrator="static").integrator == "quasi_static"
 
 
 def test_lame():

@@ -66,7 +66,7 @@ box_m = { min = [0, 0, 0], max = [1, 1, 1] }
 tissue.hyperelastic = { kind = "neo_hookean", mu_Pa = 800, bulk_modulus_Pa = 9000 }
 tissue.maxwell = [{ share = 0.5, time_s = 2 }, { share = 0.25, time_s = 30 }]
 tissue.maxwell_part = "all"
-tissue.volume_change = "nodal"
+tissue.volume_change = "average_nodal"
 
 [motion]
 integrator = "implicit"
@@ -223,7 +223,7 @@ TEST(EveryKey, OfLargeDeformationIsRead) {
   EXPECT_EQ(std::get<NeoHookean>(brain.hyperelastic.value()), (NeoHookean{800, 9000}));
   EXPECT_EQ(brain.maxwell, (std::vector<MaxwellBranch>{{0.5, 2.0}, {0.25, 30.0}}));
   EXPECT_EQ(brain.maxwell_part, MaxwellPart::all);
-  EXPECT_EQ(brain.volume_change, VolumeChange::nodal);
+  EXPECT_EQ(brain.volume_change, VolumeChange::average_nodal);
 }
 
 // Time, supports, loads, tools and output keep their numbers, in SI.

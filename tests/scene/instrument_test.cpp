@@ -231,11 +231,12 @@ TEST(Instruments, MistakesAreTold) {
 
 // Instruments bear explicit steps only; another integrator is refused at its own line, viscosity with semi_implicit, too.
 TEST(Instruments, AskForAnIntegratorThatBearsThem) {
-  for (const std::string word : {"implicit", "static"}) {
-    EXPECT_EQ(complaint(kNeedle + "[motion]\nintegrator = \"" + word + "\"\n"),
-              "s.toml:14:14: motion.integrator: \"" + word +
-                  "\" supports no [[instrument]]; take \"explicit\", or \"semi_implicit\" with tissue that has no "
-                  "`viscosity_Pa_s` (Maxwell branches may stay)");
+  for (const std::string word : {"implicit", "quasi_static"}) {
+    EXPECT_EQ(
+        complaint(kNeedle + "[motion]\nintegrator = \"" + word + "\"\n"),
+        "s.toml:14:14: motion.integrator: \"" + word +
+            "\" supports no [[instrument]]; take \"central_difference\", or \"semi_implicit\" with tissue that has no "
+            "`viscosity_Pa_s` (Maxwell branches may stay)");
   }
   const std::string semi = kNeedle + "[motion]\nintegrator = \"semi_implicit\"\n";
   EXPECT_EQ(complaint(semi), "");
@@ -374,7 +375,7 @@ TEST(Record, DrivesATool) {
   const std::string text = changed(test::kSmallScene, "depth_mm = 1", record);
   const Variant v = parse(text).variants.at(0);
   EXPECT_DOUBLE_EQ(run_duration(v), 3.5);
-  expect_near(tool_path(v.tools.at(0)).way(1.5), {0, 0, -0.001});
+  expect_near(tool_path(v.tools.at(0)).displacement(1.5), {0, 0, -0.001});
   EXPECT_EQ(tool_start(v.tools[0]), 0.5);
   EXPECT_THAT(complaint(text + "velocity_mm_s = 5\n"), HasSubstr("tool.0.velocity_mm_s: contradicts `record`"));
   EXPECT_THAT(complaint(changed(text, file.path.string(), "none.csv")),

@@ -207,7 +207,7 @@ TEST(PresetInScene, IsOverriddenKeyByKey) {
   const auto& law = std::get<Ogden>(t.hyperelastic.value());
   EXPECT_EQ(law.bulk_modulus, 9e4);
   EXPECT_EQ(law.mu, std::vector<double>{842.0});
-  EXPECT_EQ(t.volume_change, VolumeChange::nodal);
+  EXPECT_EQ(t.volume_change, VolumeChange::average_nodal);
   const Tissue liver = parse(kSmallScene + "[tissue]\npreset = \"liver_mre\"\npoisson_ratio = 0.45\nname = \"mine\"\n")
                            .variants.at(0)
                            .tissue;

@@ -33,7 +33,7 @@ struct BusyBody {
     Tissue law, linear, relaxing, fibrous;
     relaxing.hyperelastic = NeoHookean{.mu = 900.0, .bulk_modulus = 6000.0};
     relaxing.maxwell = {{.share = 0.3, .time = 0.02}, {.share = 0.2, .time = 0.5}};
-    relaxing.volume_change = VolumeChange::nodal;
+    relaxing.volume_change = VolumeChange::average_nodal;
     fibrous.kinematics = Kinematics::corotational, fibrous.viscosity = 0.5;
     fibrous.fibres = Fibres{.direction = {1.0, 2.0, 0.5}, .stiffness = 2000.0};
     law.viscosity = 1.0, law.law = ExponentialLaw{.amplitude = 1000.0, .rate = 5.0};
@@ -59,12 +59,12 @@ struct BusyBody {
   const Advance& step(MovingBody& moving, bool accounted) const {
     const Advance& advance = moving.advance(h, {0.0, 0.0, -9.81}, accounted);
     const double middle = 0.03;
-    for (WatchedVertex& w : moving.watched()) {
+    for (ActiveVertex& w : moving.active()) {
       if (mesh.vertices[w.vertex].z < middle) continue;
       w.velocity = {0.0, 0.0, -0.1};
       w.displacement += w.velocity * h;
     }
-    moving.place_watched();
+    moving.place_active();
     return advance;
   }
 };

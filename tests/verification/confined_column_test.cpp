@@ -21,7 +21,7 @@ double confined_viscosity(const Tissue& t) {
     case ViscousTensor::deviatoric:
       return 4.0 / 3.0 * t.viscosity;
     case ViscousTensor::proportional:
-    case ViscousTensor::pioletti:  // of large strain: tests/laws
+    case ViscousTensor::pioletti:  // of large strain: tests/material
       break;
   }
   const double nu = t.poisson_ratio;
@@ -87,7 +87,7 @@ std::string tensor_name(const testing::TestParamInfo<ViscousTensor>& tensor) {
     case ViscousTensor::deviatoric:
       return "deviatoric";
     case ViscousTensor::proportional:
-    case ViscousTensor::pioletti:  // of large strain: tests/laws
+    case ViscousTensor::pioletti:  // of large strain: tests/material
       break;
   }
   return "proportional";

@@ -110,7 +110,7 @@ struct Choice {
 class MeasureChoice : public testing::TestWithParam<Choice> {};
 
 double difference_from_intensity(const Choice& c) {
-  const std::vector<double> reference = press(tissue(DeformationMeasure::intensity, 36000.0), c.split);
+  const std::vector<double> reference = press(tissue(DeformationMeasure::equivalent_shear_strain, 36000.0), c.split);
   const std::vector<double> curve = fitted(c.measure, reference.back(), c.split);
   for (std::size_t i = 0; i < curve.size(); ++i) {
     testing::Test::RecordProperty("mm_" + std::to_string(2 * (i + 1)),

@@ -9,7 +9,7 @@
 #include <algorithm>
 
 #include "element/tissue_operator.h"
-#include "laws/every_tissue.h"
+#include "material/every_tissue.h"
 #include "support/bodies.h"
 
 namespace glisson {
@@ -22,7 +22,7 @@ std::vector<Tissue> conservative_tissues() {
   }
   for (const Tissue& t : test::fibre_tissues()) all.push_back(t);
   for (Tissue t : test::carriers()) {
-    t.volume_change = VolumeChange::nodal, t.law = ConstantLaw{}, t.law_form = LawForm::secant;
+    t.volume_change = VolumeChange::average_nodal, t.law = ConstantLaw{}, t.law_form = LawForm::secant;
     t.name += " nodal";
     all.push_back(t);
   }

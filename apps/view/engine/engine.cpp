@@ -158,7 +158,7 @@ void Engine::apply(const Command& command) {
 void Engine::apply_tool(const Command& command) {
   if (command.tool >= tools_.size()) return;
   const ToolInfo& tool = tools_[command.tool];
-  LiveWay& way = body_->way(command.tool);
+  LivePath& way = body_->way(command.tool);
   if (command.kind == CommandKind::speed) {
     speeds_[command.tool] = static_cast<double>(command.values[0]);
     way.set_speed(speeds_[command.tool]);

@@ -67,7 +67,7 @@ void GrabSpring::add_forces(const InteractionStep& step) {
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const std::uint32_t place = step.place_of[vertices_[i]];
     if (place == InteractionStep::kNowhere) continue;
-    WatchedVertex& v = step.vertices[place];
+    ActiveVertex& v = step.vertices[place];
     const Vec3d spring = (held_at_[i] + way_ - v.displacement) * (share_[i] * stiffness_);
     const Vec3d damper = v.velocity * (-share_[i] * damping_);
     v.elastic += spring;

@@ -85,7 +85,7 @@ void LiveBody::lead_tools() {
     info.side = any_across(info.direction);
     info.third = cross(info.direction, info.side);
     info.most_depth = 1.25 * habit.depth.value_or(0.0);
-    ways_.push_back(std::make_shared<LiveWay>(habit.speed, habit.ramp, tool_path(x)));
+    ways_.push_back(std::make_shared<LivePath>(habit.speed, habit.ramp, tool_path(x)));
     x.path = ToolPath{[way = ways_.back()](double t) { return way->at(t); }, {}};
     tools_.push_back(info);
   }
@@ -102,7 +102,7 @@ void LiveBody::lead_instruments() {
       info.third[i] = start.axes(i, 1);
     }
     info.most_depth = 1.25 * habit.depth.value_or(0.0);
-    ways_.push_back(std::make_shared<LiveWay>(habit.speed, habit.ramp, scene_way(x)));
+    ways_.push_back(std::make_shared<LivePath>(habit.speed, habit.ramp, scene_way(x)));
     info.can_play = ways_.back()->can_play();
     x.motion.how = ToolPath{[way = ways_.back()](double t) { return way->at(t); }, {}};
     tools_.push_back(info);

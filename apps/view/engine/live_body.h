@@ -8,7 +8,7 @@
 #include "glisson/scene/scene.h"
 #include "view/engine/grab_spring.h"
 #include "view/engine/hand_cut.h"
-#include "view/engine/live_way.h"
+#include "view/engine/live_path.h"
 #include "view/engine/snapshot.h"
 
 namespace glisson::view {
@@ -22,7 +22,7 @@ class LiveBody {
   const BuiltVariant& built() const { return *built_; }
   const Variant& variant() const { return variant_; }
   const std::vector<ToolInfo>& tools() const { return tools_; }
-  LiveWay& way(std::size_t tool) { return *ways_[tool]; }
+  LivePath& way(std::size_t tool) { return *ways_[tool]; }
   std::size_t ways() const { return ways_.size(); }
   /// Null where the integrator supports no interactions.
   GrabSpring* grab() { return grab_.get(); }
@@ -55,7 +55,7 @@ class LiveBody {
 
   Variant variant_;
   std::vector<ToolInfo> tools_;
-  std::vector<std::shared_ptr<LiveWay>> ways_;
+  std::vector<std::shared_ptr<LivePath>> ways_;
   std::unique_ptr<BuiltVariant> built_;
   std::shared_ptr<const std::map<int, Tissue>> tissues_;
   std::shared_ptr<GrabSpring> grab_;

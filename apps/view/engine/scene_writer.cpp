@@ -28,10 +28,10 @@ std::vector<ZipFile> recording_files(const Scene& given, const Variant& variant,
   Variant now = variant;
   const std::vector<TissueParameter> handles = tissue_parameters(variant);
   for (std::size_t i = 0; i < parameters.size(); ++i) set_parameter(now, handles.at(i), parameters[i]);
-  scene::RecordedWays ways{.head = head_of(given, variant, *recording),
-                           .files = {},
-                           .duration = recording->duration(),
-                           .sample_rate = 1000.0};
+  scene::RecordedPaths ways{.head = head_of(given, variant, *recording),
+                            .files = {},
+                            .duration = recording->duration(),
+                            .sample_rate = 1000.0};
   std::vector<ZipFile> files;
   for (std::size_t i = 0; i < tools.size(); ++i) {
     ways.files.push_back(way_file(tools, i));

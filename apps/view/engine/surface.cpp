@@ -115,7 +115,7 @@ void Surface::build_near_body(const std::map<int, Tissue>& tissues) {
     for (const std::uint32_t v : x.tet) touched[v] = 1;
   }
   const bool shares = std::any_of(tissues.begin(), tissues.end(), [](const auto& of_region) {
-    return of_region.second.volume_change == VolumeChange::nodal;
+    return of_region.second.volume_change == VolumeChange::average_nodal;
   });
   for (std::uint32_t t = 0; shares && t < mesh.tets.size(); ++t) {
     const Tet& tet = mesh.tets[t];

@@ -19,7 +19,7 @@ namespace glisson {
 
 /// Displacement from the start as a function of time, and its end [s]; none: it does not end.
 struct ToolPath {
-  Motion way;
+  Motion displacement;
   std::optional<double> end;
 };
 
@@ -159,7 +159,7 @@ class PushDriver final : public ToolDriver {
 
   Pose start_;
   PushMotion motion_;
-  Vec3d way_{}, velocity_{}, last_way_{}, last_force_{};
+  Vec3d travel_{}, velocity_{}, last_travel_{}, last_force_{};
   double stiffness_ = 0.0;
 };
 

@@ -15,7 +15,7 @@ namespace glisson {
 
 /// The measure of deformation of a tetrahedron: the argument of a stiffness law.
 enum class DeformationMeasure {
-  intensity,
+  equivalent_shear_strain,
   one_minus_q,
   regular_mean_ratio,  ///< 12 (3V)^⅔ / Σ l², mesh-dependent at rest
   radius_ratio,        ///< against the rest tet  [LiuJoe1994]
@@ -23,7 +23,9 @@ enum class DeformationMeasure {
 };
 template <>
 inline constexpr Word<DeformationMeasure> kWords<DeformationMeasure>[] = {
-    {"intensity", DeformationMeasure::intensity, "s = √(3 (1 − q) / 2), 0 at rest, ≈ ‖dev ε‖"},
+    {"equivalent_shear_strain", DeformationMeasure::equivalent_shear_strain,
+     "s = √(3 (1 − q) / 2), 0 at rest, ≈ ‖dev ε‖"},
+    {"intensity", DeformationMeasure::equivalent_shear_strain},
     {"one_minus_q", DeformationMeasure::one_minus_q, "1 − q, 0 at rest, ≈ ⅔ ‖dev ε‖²"},
     {"regular_mean_ratio", DeformationMeasure::regular_mean_ratio,
      "mean ratio of the deformed tetrahedron against a regular one, the paper's raw measure"},
@@ -104,14 +106,16 @@ inline constexpr Word<MaxwellPart> kWords<MaxwellPart>[] = {
 
 /// Treatment of the volume change; linear tets lock from ν = 0.45 on.
 enum class VolumeChange {
-  own,
-  nodal  ///< means weighted by volume [BonetBurton1998]
+  element,
+  average_nodal  ///< means weighted by volume [BonetBurton1998]
 };
 template <>
 inline constexpr Word<VolumeChange> kWords<VolumeChange>[] = {
-    {"own", VolumeChange::own, "of each element, the paper's; locks from ν = 0.45 on"},
-    {"nodal", VolumeChange::nodal,
-     "average nodal: mean of the vertices' means over their tets; for nearly incompressible tissue"}};
+    {"element", VolumeChange::element, "of each element, the paper's; locks from ν = 0.45 on"},
+    {"own", VolumeChange::element},
+    {"average_nodal", VolumeChange::average_nodal,
+     "mean of the vertices' means over their tets; for nearly incompressible tissue"},
+    {"nodal", VolumeChange::average_nodal}};
 
 /// λ and μ of linear elasticity [Pa].
 struct LameParameters {
@@ -134,7 +138,7 @@ struct Tissue {
   double density = 1000.0;         ///< ρ [kg/m³], > 0
   double viscosity = 0.0;          ///< η [Pa·s], ≥ 0
   ViscousTensor viscous_tensor = ViscousTensor::shear;
-  DeformationMeasure measure = DeformationMeasure::intensity;
+  DeformationMeasure measure = DeformationMeasure::equivalent_shear_strain;
   StiffnessLaw law = ConstantLaw{};          ///< E(x)
   std::optional<StiffnessLaw> lambda_law{};  ///< λ(x); with it or mu_law set, `law` must be constant
   std::optional<StiffnessLaw> mu_law{};      ///< μ(x)
@@ -145,7 +149,7 @@ struct Tissue {
   std::optional<Fibres> fibres{};
   std::vector<MaxwellBranch> maxwell{};  ///< the given moduli are then the instantaneous ones; at most 8 branches
   MaxwellPart maxwell_part = MaxwellPart::deviator;
-  VolumeChange volume_change = VolumeChange::own;
+  VolumeChange volume_change = VolumeChange::element;
 
   template <class Take>
   static constexpr auto fields(Take take) {

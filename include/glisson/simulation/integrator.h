@@ -7,18 +7,22 @@ namespace glisson {
 
 /// M a + γ v + f(u, v) = external (docs/integrators.md says when to take which).
 enum class Integrator {
-  explicit_,      ///< the paper's scheme; h* is set by stiffness and viscosity
-  semi_implicit,  ///< the same with viscosity taken at the end of the step: h* as if there were none, or more
-  implicit,       ///< Newton's method each step, stable at any step; in double
-  static_         ///< equilibrium, without inertia and viscosity: time orders motions and loads; in double
+  central_difference,  ///< the paper's scheme; h* is set by stiffness and viscosity
+  semi_implicit,       ///< the same with viscosity taken at the end of the step: h* as if there were none, or more
+  implicit,            ///< Newton's method each step, stable at any step; in double
+  quasi_static         ///< equilibrium, without inertia and viscosity: time orders motions and loads; in double
 };
 
 template <>
 inline constexpr Word<Integrator> kWords<Integrator>[] = {
-    {"explicit", Integrator::explicit_, "the paper's equation 4: displacements from forces at the start of the step"},
+    {"central_difference", Integrator::central_difference,
+     "the paper's equation 4: displacements from forces at the start of the step"},
+    {"explicit", Integrator::central_difference},
     {"semi_implicit", Integrator::semi_implicit, "the same, viscosity taken at the end of the step"},
     {"implicit", Integrator::implicit, "Newton's method each step, stable at any step"},
-    {"static", Integrator::static_, "equilibrium without inertia and viscosity; time orders motions and loads"}};
+    {"quasi_static", Integrator::quasi_static,
+     "equilibrium without inertia and viscosity; time orders motions and loads"},
+    {"static", Integrator::quasi_static}};
 
 /// What an integrator supports. Code that chooses or refuses an integrator uses these flags, not its name.
 struct Capabilities {

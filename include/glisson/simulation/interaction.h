@@ -26,7 +26,7 @@ class Archive;
 class Simulation;
 
 /// An active vertex: one that a support, motion or interaction acts on.
-struct WatchedVertex {
+struct ActiveVertex {
   std::uint32_t vertex = 0;
   Vec3d elastic, viscous;  ///< forces of the tissue at time t [N]
   Vec3d displacement;      ///< [m]
@@ -47,9 +47,9 @@ class InteractionStep {
  public:
   static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
-  double time = 0.0;                  ///< t: the step goes from t to t + h [s]
-  double h = 0.0;                     ///< [s]
-  std::span<WatchedVertex> vertices;  ///< ascending by vertex; `velocity` is v₋ in add_forces, v₊ in constrain
+  double time = 0.0;                 ///< t: the step goes from t to t + h [s]
+  double h = 0.0;                    ///< [s]
+  std::span<ActiveVertex> vertices;  ///< ascending by vertex; `velocity` is v₋ in add_forces, v₊ in constrain
   std::span<const std::uint32_t> place_of;  ///< per vertex of the mesh: its place in `vertices`, or kNowhere
   std::span<const Vec3d> rest;              ///< per vertex of the mesh: rest position [m]
   /// Per place: velocity per impulse, 1/(m + γh), in each component; 0 where a support or motion holds it [1/kg].

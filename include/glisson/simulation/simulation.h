@@ -48,7 +48,7 @@ inline constexpr Word<TimeScheme> kWords<TimeScheme>[] = {
     {"generalised_alpha", TimeScheme::generalised_alpha,
      "second order, damps what it cannot resolve by `spectral_radius`"}};
 
-/// Preconditioner of the linear solves of `implicit` and `static_`.
+/// Preconditioner of the linear solves of `implicit` and `quasi_static`.
 enum class Preconditioner {
   automatic,  ///< factorised up to some 20 000 tets, block_diagonal above
   factorised,
@@ -60,11 +60,11 @@ inline constexpr Word<Preconditioner> kWords<Preconditioner>[] = {
     {"factorised", Preconditioner::factorised, "sparse Cholesky, kept as long as it converges"},
     {"block_diagonal", Preconditioner::block_diagonal, "3 × 3 per vertex"}};
 
-/// Options of the integrators `implicit` and `static_`.
+/// Options of the integrators `implicit` and `quasi_static`.
 struct ImplicitOptions {
   TimeScheme scheme = TimeScheme::backward_euler;  ///< of `implicit`
   double spectral_radius = 0.8;                    ///< ρ∞ of generalised_alpha [-], 0 … 1
-  /// First and largest automatic step [s], > 0; none: 10 ms, `static_` 50 ms.
+  /// First and largest automatic step [s], > 0; none: 10 ms, `quasi_static` 50 ms.
   std::optional<double> largest_step{};
   double tolerance = 1e-8;   ///< of Newton's method: residual force over the largest force [-], 1e-13 … 1e-2
   int most_iterations = 25;  ///< of Newton's method, before a step is halved, 1 … 1000
@@ -77,7 +77,7 @@ struct ImplicitOptions {
         field("scheme", &ImplicitOptions::scheme, "time scheme of the integrator implicit"),
         field("spectral_radius", &ImplicitOptions::spectral_radius, "-", between(0, 1), "ρ∞ of generalised_alpha"),
         field("largest_step", &ImplicitOptions::largest_step, "s", above(0), "first and largest automatic step")
-            .otherwise("0.01, static 0.05"),
+            .otherwise("0.01, quasi_static 0.05"),
         field("tolerance", &ImplicitOptions::tolerance, "-", between(1e-13, 1e-2),
               "residual force over the largest force"),
         field("most_iterations", &ImplicitOptions::most_iterations, between(1, 1000),
@@ -89,7 +89,7 @@ struct ImplicitOptions {
 };
 
 struct SimulationOptions {
-  Integrator integrator = Integrator::explicit_;
+  Integrator integrator = Integrator::central_difference;
   /// h [s], > 0. Explicit and semi-implicit: ≤ h*; none: 0.9 h*, reduced as tissue stiffens and increased again as it
   /// softens; semi-implicit 0.9 h* of the elastic body. Implicit and static: none: the longest that converges, up to
   /// ImplicitOptions::largest_step; a given one is subdivided internally where it does not converge.
@@ -122,33 +122,34 @@ struct SimulationOptions {
 
   template <class Take>
   static constexpr auto fields(Take take) {
-    return take(
-        field("integrator", &SimulationOptions::integrator, "how the body is advanced in time"),
-        field("step", &SimulationOptions::step, "s", above(0),
-              "time step h; \"auto\" takes 0.9 of the stable step and follows the tissue; for implicit and static the "
-              "largest that converges")
-            .or_auto()
-            .otherwise("\"auto\"")
-            .advise("\"auto\" chooses the largest safe step"),
-        field("mass_scaling_step", &SimulationOptions::mass_scaling_step, "s", above(0),
-              "adds mass only to tets whose element step bound is shorter, until it equals this step; explicit and "
-              "semi_implicit. `glisson check` reports the tets and the mass")
-            .otherwise("no mass is added"),
-        field("implicit", &SimulationOptions::implicit, "options of the integrators implicit and static"),
-        field("precision", &SimulationOptions::precision, "precision of the element arithmetic"),
-        field("damping_rate", &SimulationOptions::damping_rate, "1/s", at_least(0),
-              "nodal damping in proportion to mass, γ/m"),
-        field("nodal_damping", &SimulationOptions::nodal_damping, "kg/s", at_least(0),
-              "nodal damping γ, equal at all vertices, in addition")
-            .keyed("nodal_damping_kg_per_s"),
-        field("gravity", &SimulationOptions::gravity, "m/s²", "gravity"),
-        field("gravity_ramp", &SimulationOptions::gravity_ramp, "s", at_least(0),
-              "time over which gravity grows from 0"),
-        no_key("enforce_stability", &SimulationOptions::enforce_stability),
-        no_key("threads", &SimulationOptions::threads, between(0, 1024)),
-        no_key("track_energies", &SimulationOptions::track_energies),
-        no_key("exact_steps", &SimulationOptions::exact_steps),
-        no_key("mesh_changes", &SimulationOptions::mesh_changes));
+    return take(field("integrator", &SimulationOptions::integrator, "how the body is advanced in time"),
+                field("step", &SimulationOptions::step, "s", above(0),
+                      "time step h; \"auto\" takes 0.9 of the stable step and follows the tissue; for implicit and "
+                      "quasi_static the "
+                      "largest that converges")
+                    .or_auto()
+                    .otherwise("\"auto\"")
+                    .advise("\"auto\" chooses the largest safe step"),
+                field("mass_scaling_step", &SimulationOptions::mass_scaling_step, "s", above(0),
+                      "adds mass only to tets whose element step bound is shorter, until it equals this step; "
+                      "central_difference and "
+                      "semi_implicit. `glisson check` reports the tets and the mass")
+                    .otherwise("no mass is added"),
+                field("implicit", &SimulationOptions::implicit, "options of the integrators implicit and quasi_static"),
+                field("precision", &SimulationOptions::precision, "precision of the element arithmetic"),
+                field("damping_rate", &SimulationOptions::damping_rate, "1/s", at_least(0),
+                      "nodal damping in proportion to mass, γ/m"),
+                field("nodal_damping", &SimulationOptions::nodal_damping, "kg/s", at_least(0),
+                      "nodal damping γ, equal at all vertices, in addition")
+                    .keyed("nodal_damping_kg_per_s"),
+                field("gravity", &SimulationOptions::gravity, "m/s²", "gravity"),
+                field("gravity_ramp", &SimulationOptions::gravity_ramp, "s", at_least(0),
+                      "time over which gravity grows from 0"),
+                no_key("enforce_stability", &SimulationOptions::enforce_stability),
+                no_key("threads", &SimulationOptions::threads, between(0, 1024)),
+                no_key("track_energies", &SimulationOptions::track_energies),
+                no_key("exact_steps", &SimulationOptions::exact_steps),
+                no_key("mesh_changes", &SimulationOptions::mesh_changes));
   }
 };
 
@@ -296,7 +297,7 @@ class Simulation {
 
   /// Attaches an instrument, needle, membrane or other interaction; it acts after those attached before. Keep the
   /// pointer to read and control it between steps.
-  /// @throws std::invalid_argument if it is already attached to a simulation; for the integrators implicit and static,
+  /// @throws std::invalid_argument if it is already attached to a simulation; for the integrators implicit and quasi_static,
   ///         and semi_implicit with viscous tissue; or if the interaction does not support this body
   void attach(std::shared_ptr<Interaction> interaction);
 
@@ -352,7 +353,7 @@ class Simulation {
   double time() const;       ///< [s]
   double step_size() const;  ///< h of the next step [s]
   /// h* [s]: the largest step for which the scheme is stable, from a safe upper bound of the spectrum of the
-  /// free body at its present stiffness [Schwartz2002, eq. 4; docs/theory.md §4]; infinite for implicit and static
+  /// free body at its present stiffness [Schwartz2002, eq. 4; docs/theory.md §4]; infinite for implicit and quasi_static
   double stable_step() const;
   std::uint64_t steps() const;
 

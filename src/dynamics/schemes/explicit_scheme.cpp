@@ -28,15 +28,15 @@ const ExplicitScheme::StateCopy& ExplicitScheme::read_state() const {
 }
 
 void ExplicitScheme::watch(std::span<const std::uint32_t> vertices) {
-  const std::vector<std::uint32_t> before = watched_vertices();
+  const std::vector<std::uint32_t> before = active_vertices();
   moving_->watch(vertices);
-  kick_.follow(before, moving_->watched());
-  interactions_.find_places(moving_->watched(), state_.body.vertex_count);
+  kick_.follow(before, moving_->active());
+  interactions_.find_places(moving_->active(), state_.body.vertex_count);
 }
 
-std::vector<std::uint32_t> ExplicitScheme::watched_vertices() const {
+std::vector<std::uint32_t> ExplicitScheme::active_vertices() const {
   std::vector<std::uint32_t> vertices;
-  for (const WatchedVertex& w : moving_->watched()) vertices.push_back(w.vertex);
+  for (const ActiveVertex& w : moving_->active()) vertices.push_back(w.vertex);
   return vertices;
 }
 
@@ -70,19 +70,19 @@ void ExplicitScheme::constrain_interactions() {
 void ExplicitScheme::attach(std::shared_ptr<Interaction> interaction, const BodyView& body) {
   interaction->attached(body, state_.time);
   interactions_.add(std::move(interaction));
-  interactions_.find_places(moving_->watched(), state_.body.vertex_count);
-  control_->set_beside(interactions_.squared_frequency());
+  interactions_.find_places(moving_->active(), state_.body.vertex_count);
+  control_->set_added(interactions_.squared_frequency());
 }
 
 void ExplicitScheme::tell_change(const BodyView& body, std::span<const std::uint32_t> origins) {
   if (interactions_.empty()) return;
-  interactions_.find_places(moving_->watched(), state_.body.vertex_count);
+  interactions_.find_places(moving_->active(), state_.body.vertex_count);
   interactions_.body_changed(body, origins);
-  control_->set_beside(interactions_.squared_frequency());
+  control_->set_added(interactions_.squared_frequency());
 }
 
 void ExplicitScheme::book(double h, const KickWork& free) {
-  KickWork work = kick_.work(moving_->watched());
+  KickWork work = kick_.work(moving_->active());
   add(work.before, free.before);
   add(work.after, free.after);
   ledger_.book(h, work.before, work.after, work.kinetic + free.kinetic);
@@ -109,8 +109,8 @@ std::span<const ShapeRate> ExplicitScheme::shape_rates() {
 }
 
 void ExplicitScheme::kick(double) {
-  kick_.kick(moving_->watched());
-  kick_.impose_motions(moving_->watched());
+  kick_.kick(moving_->active());
+  kick_.impose_motions(moving_->active());
 }
 
 StepResult ExplicitScheme::step() {
@@ -138,36 +138,36 @@ StepResult ExplicitScheme::step() {
   }
 
   kick_.begin(h);
-  interactions_.begin(state_.time, h, moving_->watched(), state_.body.rest_positions);
+  interactions_.begin(state_.time, h, moving_->active(), state_.body.rest_positions);
   interactions_.add_forces();
   kick(h);
   constrain_interactions();
   if (state_.options.track_energies) book(h, seen.work);
-  for (WatchedVertex& w : moving_->watched()) w.displacement += w.velocity * h;
-  moving_->place_watched();
+  for (ActiveVertex& w : moving_->active()) w.displacement += w.velocity * h;
+  moving_->place_active();
   state_.time += h;
   ++state_.steps;
   if (!interactions_.empty()) {
     interactions_.moved();
-    control_->follow_beside(interactions_.squared_frequency());
+    control_->follow_added(interactions_.squared_frequency());
   }
   return {seen.inverted.empty() ? StepStatus::ok : StepStatus::inverted, seen.inverted, {}};
 }
 
 ForceParts ExplicitScheme::force(ConstraintId constraint) const {
   static_cast<void>(state_.constraints.at(constraint));
-  return kick_.force(moving_->watched(), constraint.index);
+  return kick_.force(moving_->active(), constraint.index);
 }
 
 void ExplicitScheme::take_body(Archive& ar) {
   bool bounded = control_->follows_changes();
   ar(bounded);
-  if (!ar.reads() || moving_->bears_tissues()) {
+  if (!ar.reads() || moving_->supports_tissues()) {
     moving_->archive_layout(ar, state_.gamma);
   } else {
     std::unique_ptr<MovingBody> fresh = make_moving_body(state_.body, state_.gamma, state_.options, info_);
     fresh->archive_layout(ar, state_.gamma);
-    fresh->watch(watched_vertices());
+    fresh->watch(active_vertices());
     moving_ = std::move(fresh);
   }
   if (!ar.reads()) return;
@@ -177,20 +177,20 @@ void ExplicitScheme::take_body(Archive& ar) {
 }
 
 void ExplicitScheme::archive_motion(Archive& ar) {
-  std::vector<std::uint32_t> watched = watched_vertices();
-  ar.all_below(watched, state_.body.vertex_count);
-  if (ar.reads()) watch(watched);
-  ar.check(moving_->watched().size() == watched.size());
+  std::vector<std::uint32_t> active = active_vertices();
+  ar.all_below(active, state_.body.vertex_count);
+  if (ar.reads()) watch(active);
+  ar.check(moving_->active().size() == active.size());
   moving_->archive_state(ar, state_.body.vertex_count);
   copy_.current = false;
-  for (WatchedVertex& w : moving_->watched()) ar(w.elastic, w.viscous);
+  for (ActiveVertex& w : moving_->active()) ar(w.elastic, w.viscous);
   ar.same_size(stiffening_);
   ar(kick_, stiff_, ledger_);
   for (const StiffElement& s : stiff_) ar.check(s.element < state_.body.elements.size());
   ar(*control_, interactions_);
   if (!ar.reads()) return;
   moving_->list_above(control_->list_above());
-  control_->set_beside(interactions_.squared_frequency());
+  control_->set_added(interactions_.squared_frequency());
 }
 
 void ExplicitScheme::take_over(const BodyChange& change) {
@@ -207,17 +207,17 @@ void ExplicitScheme::build_anew(const TissueChange& change) {
     if (!changes && !state_.body.blocks[b].tissue.maxwell.empty()) kept.emplace_back(b, moving_->branch_stresses(b));
   }
   const StateCopy state = read_state();
-  const std::vector<std::uint32_t> watched = watched_vertices();
+  const std::vector<std::uint32_t> active = active_vertices();
   moving_ = make_moving_body(state_.body, state_.gamma, state_.options, info_);
   moving_->set_state(state.displacement, state.velocity);
-  moving_->watch(watched);
+  moving_->watch(active);
   for (const auto& [b, stresses] : kept) moving_->set_branch_stresses(b, stresses);
 }
 
 /// Brings other tissues into the body; what is told of the last kick stays.
 void ExplicitScheme::follow_tissues(const TissueChange& change) {
-  const std::vector<WatchedVertex> told(moving_->watched().begin(), moving_->watched().end());
-  if (moving_->bears_tissues()) {
+  const std::vector<ActiveVertex> told(moving_->active().begin(), moving_->active().end());
+  if (moving_->supports_tissues()) {
     moving_->tissues_changed(change.blocks, state_.gamma);
     info_ = info_of(*moving_, state_.body);
   } else {
@@ -232,7 +232,7 @@ void ExplicitScheme::follow_tissues(const TissueChange& change) {
   }
   moving_->list_above(control_->list_above());
   take_stiffness(moving_->advance(0.0, {}, false));
-  std::copy(told.begin(), told.end(), moving_->watched().begin());
+  std::copy(told.begin(), told.end(), moving_->active().begin());
   copy_.current = false;
 }
 
@@ -254,9 +254,9 @@ void ExplicitScheme::take_tissues(const TissueChange& change) {
 void ExplicitScheme::follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) {
   std::vector<std::uint32_t> followers;
   for (std::uint32_t i = 0; i < origins.size(); ++i) {
-    const auto is_origin = [&](const WatchedVertex& w) { return w.vertex == origins[i]; };
-    const std::span<const WatchedVertex> watched = moving_->watched();
-    if (std::any_of(watched.begin(), watched.end(), is_origin)) followers.push_back(first_new + i);
+    const auto is_origin = [&](const ActiveVertex& w) { return w.vertex == origins[i]; };
+    const std::span<const ActiveVertex> active = moving_->active();
+    if (std::any_of(active.begin(), active.end(), is_origin)) followers.push_back(first_new + i);
   }
   if (!followers.empty()) watch(followers);
 }

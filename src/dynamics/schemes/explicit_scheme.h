@@ -6,7 +6,7 @@
 //   v₊ = (m v₋ + h F) / (m + γ h),   u(t+h) = u(t) + h v₊.
 // The viscous force is taken at v₋: it lags by half a step, which the stable step accounts for.
 //
-//   h below h* of the stiffness last seen ─▶ the body advances its free vertices ─▶ here the watched ones:
+//   h below h* of the stiffness last seen ─▶ the body advances its free vertices ─▶ here the active ones:
 //   add forces ─▶ kick v₋ → v₊ ─▶ impose motions ─▶ interactions constrain v₊ ─▶ book work ─▶ drift u
 #pragma once
 
@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "dynamics/interactions.h"
+#include "dynamics/schemes/active_kick.h"
 #include "dynamics/schemes/scheme.h"
-#include "dynamics/schemes/watched_kick.h"
 #include "dynamics/step/step_control.h"
 #include "engine/moving_body.h"
 
@@ -25,7 +25,7 @@ namespace glisson {
 
 class ExplicitScheme : public Scheme {
  public:
-  static constexpr IntegratorInfo kInfo{Integrator::explicit_,
+  static constexpr IntegratorInfo kInfo{Integrator::central_difference,
                                         {.supports_interactions = true, .viscosity_limits_step = true}};
 
   /// @throws std::invalid_argument as Simulation's constructor
@@ -50,7 +50,7 @@ class ExplicitScheme : public Scheme {
  protected:
   ExplicitScheme(Body body, const SimulationOptions& options, Drag drag);
 
-  /// v₊ of the watched vertices: as if they were free, then what motions ask for.
+  /// v₊ of the active vertices: as if they were free, then what motions ask for.
   virtual void kick(double h);
 
   void acts_on(std::span<const std::uint32_t> vertices) override { watch(vertices); }
@@ -67,7 +67,7 @@ class ExplicitScheme : public Scheme {
   void constrain_interactions();
 
   std::unique_ptr<MovingBody> moving_;
-  WatchedKick kick_{state_};
+  ActiveKick kick_{state_};
   Interactions interactions_;
 
  private:
@@ -82,7 +82,7 @@ class ExplicitScheme : public Scheme {
   void build_anew(const TissueChange& change);
   std::span<const ShapeRate> shape_rates();
   void take_stiffness(const Advance& seen);
-  std::vector<std::uint32_t> watched_vertices() const;
+  std::vector<std::uint32_t> active_vertices() const;
   void book(double h, const KickWork& free);
 
   std::vector<double> stiffening_;   ///< per tissue block, at the last evaluation

@@ -1,4 +1,4 @@
-// implicit_scheme.h — a body in motion, or in equilibrium, by Newton's method: the integrators `implicit` and `static_`.
+// implicit_scheme.h — a body in motion, or in equilibrium, by Newton's method: the integrators `implicit` and `quasi_static`.
 //
 //   step ─▶ hold what takes hold ─▶ balance at the end (balance_solver.h) ─▶ book ─▶ next part
 //                 ▲                                   │
@@ -79,7 +79,7 @@ class ImplicitScheme : public Scheme {
 /// Equilibrium: time orders motions and loads.
 class StaticScheme final : public ImplicitScheme {
  public:
-  static constexpr IntegratorInfo kInfo{Integrator::static_, ImplicitScheme::kInfo.can};
+  static constexpr IntegratorInfo kInfo{Integrator::quasi_static, ImplicitScheme::kInfo.can};
 
   StaticScheme(Body body, const SimulationOptions& options) : ImplicitScheme(std::move(body), options, true) {}
 };

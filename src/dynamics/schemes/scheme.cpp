@@ -37,7 +37,8 @@ std::string Scheme::not_finite_at(double time) {
 
 void Scheme::refuse_interactions() {
   throw std::invalid_argument(
-      "attach: instruments, needles and membranes need integrator = explicit, or semi_implicit for tissue without "
+      "attach: instruments, needles and membranes need integrator = central_difference, or semi_implicit for tissue "
+      "without "
       "viscosity; this simulation has another. Relaxation can be modelled by maxwell branches, which work with "
       "explicit steps");
 }

@@ -36,7 +36,7 @@ void SemiImplicitScheme::require_tissues(const BlockTissues& tissues) const {
     throw std::invalid_argument("tissue \"" + tissue.name + "\": viscosity = " + std::to_string(tissue.viscosity) +
                                 " Pa s, but the integrator semi_implicit does not support viscosity beside "
                                 "instruments, needles and membranes; " +
-                                "take integrator = explicit, or model relaxation by maxwell branches");
+                                "take integrator = central_difference, or model relaxation by maxwell branches");
   }
 }
 
@@ -66,7 +66,7 @@ void SemiImplicitScheme::archive_motion(Archive& ar) {
   ar(h, last);
   if (!ar.reads()) return;
   viscous_ = ViscousSystem::needed(state_.body);
-  ar.check(!viscous_ || moving_->watched().size() == state_.body.vertex_count);
+  ar.check(!viscous_ || moving_->active().size() == state_.body.vertex_count);
   built_for_ = 0.0;
   if (!(h > 0.0)) return;
   build(h);
@@ -79,23 +79,23 @@ void SemiImplicitScheme::kick(double h) {
     return;
   }
   if (h != built_for_ || holding() != built_holding_) build(h);
-  const std::span<WatchedVertex> watched = moving_->watched();  // all vertices, in their order
+  const std::span<ActiveVertex> active = moving_->active();  // all vertices, in their order
   const std::span<const Vec3d> loads = state_.loads.at(state_.time);
-  for (std::size_t i = 0; i < watched.size(); ++i) {
-    WatchedVertex& w = watched[i];
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    ActiveVertex& w = active[i];
     const Vec3d load = kick_.keep(i, w, loads);
     const auto& [m, gamma, before, applied, contact] = kick_.all()[i];
     impulse_[i] = (w.elastic + w.viscous + kick_.gravity() * m + load + w.velocity * -gamma) * h;
   }
-  kick_.impose_motions(watched);
-  for (std::size_t i = 0; i < watched.size(); ++i) {  // held components of the change are known now, others 0
-    if (!(state_.body.masses[i] > 0.0)) watched[i].velocity = {};
-    change_[i] = watched[i].velocity - kick_.all()[i].velocity_before;
+  kick_.impose_motions(active);
+  for (std::size_t i = 0; i < active.size(); ++i) {  // held components of the change are known now, others 0
+    if (!(state_.body.masses[i] > 0.0)) active[i].velocity = {};
+    change_[i] = active[i].velocity - kick_.all()[i].velocity_before;
   }
   system_.solve(impulse_, change_);
   system_.held_drag(change_, drag_);
-  for (std::size_t i = 0; i < watched.size(); ++i) {
-    WatchedVertex& w = watched[i];
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    ActiveVertex& w = active[i];
     const double inertia = kick_.all()[i].mass + h * kick_.all()[i].damping;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const bool free = system_.is_free(3 * i + axis);

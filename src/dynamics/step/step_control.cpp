@@ -42,14 +42,14 @@ bool StepControl::search_is_needed() const {
 
 /// What is left of a step h of the tissue alone when stiffness k and viscosity c act beside it. φ(h) of the tissue is at most
 /// 4 h/h₁ below a step h₁ it bears, 4 (h/h₁)² where nothing drags, and φ(h) + k h² + 2 c h ≤ 4 must hold.
-double StepControl::with_beside(double step, const Beside& beside) const {
-  if (!(beside.k > 0.0) && !(beside.c > 0.0)) return step;
+double StepControl::with_added(double step, const AddedStiffness& added) const {
+  if (!(added.k > 0.0) && !(added.c > 0.0)) return step;
   const bool drags = std::any_of(body_.blocks.begin(), body_.blocks.end(), [](const TissueBlock& b) {
     return b.viscous.mu != 0.0 || b.viscous.lambda != 0.0 || !b.tissue.maxwell.empty();
   });
-  if (!drags) return 1.0 / std::sqrt(1.0 / (step * step) + 0.25 * beside.k);
-  const double c = beside.c + 2.0 / step;  // of k h² + 2 c h = 4
-  return 4.0 / (c + std::sqrt(c * c + 4.0 * beside.k));
+  if (!drags) return 1.0 / std::sqrt(1.0 / (step * step) + 0.25 * added.k);
+  const double c = added.c + 2.0 / step;  // of k h² + 2 c h = 4
+  return 4.0 / (c + std::sqrt(c * c + 4.0 * added.k));
 }
 
 std::string StepControl::too_large(double stable) const {
@@ -129,7 +129,7 @@ StepControl::Limits StepControl::bound_at(std::span<const double> stiffening) co
 
 void StepControl::prepare_changes(const detail::VertexStars& stars) {
   const std::vector<double> one(body_.blocks.size(), 1.0);
-  part_bound_ = std::make_unique<PartBound>(body_, stars, viscosity_at(one));
+  element_bound_ = std::make_unique<ElementStepBound>(body_, stars, viscosity_at(one));
 }
 
 void StepControl::mesh_changed(const BodyChange& change, const detail::VertexStars& stars) {
@@ -139,9 +139,9 @@ void StepControl::mesh_changed(const BodyChange& change, const detail::VertexSta
   }
   if (damping_rate_ > 0.0) damping_rate_ = largest_damping_rate();  // a body without damping gets none by a cut
   forget_searches();
-  if (part_bound_ == nullptr) prepare_changes(stars);
-  part_bound_->change(change);
-  const double part = part_bound_->step();
+  if (element_bound_ == nullptr) prepare_changes(stars);
+  element_bound_->change(change);
+  const double part = element_bound_->step();
   // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C, and h/r where C is r times as large, too
   const auto bound = [&](Limits& limits, const std::vector<double>& level) {
     const double r = *std::max_element(level.begin(), level.end());
@@ -220,13 +220,13 @@ void StepControl::restore(Chosen c) {
   validated_ = std::move(c.validated), rest_level_ = std::move(c.rest_level);
   searched_ = std::move(c.searched), exact_ = c.exact;
   stiff_ = c.stiff;
-  join_beside();
+  join_added();
 }
 
 void StepControl::tissues_changed(std::span<const double> stiffening, bool undeformed) {
   Chosen before = chosen();
   stiff_ = {};  // the level of the blocks is chosen for all tets
-  join_beside();
+  join_added();
   exact_ = search_is_needed();
   damping_rate_ = largest_damping_rate();
   forget_searches();
@@ -241,7 +241,7 @@ void StepControl::tissues_changed(std::span<const double> stiffening, bool undef
     }
   }
   if (automatic_) step_ = kSafety * limits_.pace;
-  part_bound_.reset();
+  element_bound_.reset();
   unchecked_ = false;
   forget_searches();
   start_anew();
@@ -251,7 +251,7 @@ void StepControl::body_read(const detail::VertexStars* stars) {
   damping_rate_ = largest_damping_rate();
   exact_ = search_is_needed();
   forget_searches();
-  part_bound_.reset();
+  element_bound_.reset();
   if (stars != nullptr) prepare_changes(*stars);
 }
 
@@ -265,7 +265,7 @@ void StepControl::archive(Archive& ar) {
     ar.check(g->mode.empty() || g->mode.size() == 3 * body_.vertex_count);
   }
   ar(probe_, since_probe_, probes_, levels_);
-  if (part_bound_ != nullptr) ar(*part_bound_);
+  if (element_bound_ != nullptr) ar(*element_bound_);
   if (!ar.reads()) return;
   searches_made_ = kSearchesKept;
   take_stiff();

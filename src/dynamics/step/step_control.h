@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/step/part_bound.h"
+#include "dynamics/step/element_step_bound.h"
 #include "dynamics/step/stable_step.h"
 #include "dynamics/step/stiffness_levels.h"
 #include "element/body_change.h"
@@ -66,7 +66,7 @@ class StepControl {
   void prepare_changes(const detail::VertexStars& stars);
 
   /// After elements were removed, split from each other or reshaped: h* falls to a bound from single elements
-  /// (part_bound.h). A given step above that is checked against h* itself by the next accept(), which is slow.
+  /// (element_step_bound.h). A given step above that is checked against h* itself by the next accept(), which is slow.
   void mesh_changed(const BodyChange& change, const detail::VertexStars& stars);
 
   /// After tissues of the body have changed: an automatic step is found anew. Where a search takes too long it comes from
@@ -76,7 +76,7 @@ class StepControl {
   /// @throws std::invalid_argument where a given step is above h*; nothing has changed then
   void tissues_changed(std::span<const double> stiffening, bool undeformed);
 
-  bool follows_changes() const { return part_bound_ != nullptr; }
+  bool follows_changes() const { return element_bound_ != nullptr; }
   /// The body has been read; archive comes next. @param stars  where follows_changes() was true when it was written
   void body_read(const detail::VertexStars* stars);
   void archive(Archive& ar);
@@ -90,17 +90,17 @@ class StepControl {
   void limit_shape_change(std::span<const ShapeRate> changes);
 
   /// Stiffness that acts beside the tissue. @param squared_frequency  ω² on the body's masses, from above [1/s²]
-  void set_beside(double squared_frequency);
+  void set_added(double squared_frequency);
   /// The same after a step. An automatic step grows again by no more than kRegrowth a step where this falls: a torn membrane
   /// that whips back is slack at one step and a hundred times as stiff at the next.
-  void follow_beside(double squared_frequency);
+  void follow_added(double squared_frequency);
 
   double step() const {
     if (!automatic_) return step_;
     const double room = 1.0 / (kSafety * kSafety);
-    return std::min(caution_ * with_beside(step_, {room * (stiff_.k + held_), stiff_.c / kSafety}), shape_step_);
+    return std::min(caution_ * with_added(step_, {room * (stiff_.k + held_), stiff_.c / kSafety}), shape_step_);
   }
-  double stable_step() const { return with_beside(limits_.stable, beside_); }
+  double stable_step() const { return with_added(limits_.stable, added_); }
   /// What is wrong with a given step that accept() has refused, and the ways out.
   std::string too_large() const { return too_large(stable_step()); }
 
@@ -134,7 +134,7 @@ class StepControl {
     std::vector<double> validated, rest_level;
     Searched searched;
     bool exact;
-    Beside stiff;
+    AddedStiffness stiff;
   };
   Chosen chosen() const;
   void restore(Chosen chosen);
@@ -142,13 +142,13 @@ class StepControl {
   Limits scaled_from_search(std::span<const double> level) const;
   void choose_limits(std::span<const double> stiffening, bool undeformed);
   bool search_is_needed() const;
-  void join_beside() { beside_ = {tools_ + stiff_.k, stiff_.c}; }
-  Beside beside_at(std::span<const double> level);
-  double pace_of(const Limits& limits, const Beside& beside, std::size_t above) const;
+  void join_added() { added_ = {tools_ + stiff_.k, stiff_.c}; }
+  AddedStiffness added_at(std::span<const double> level);
+  double pace_of(const Limits& limits, const AddedStiffness& added, std::size_t above) const;
   double pace_above(std::span<const double> level, double enough);
   bool may_gain() const;
   void take_stiff();
-  double with_beside(double step, const Beside& beside) const;
+  double with_added(double step, const AddedStiffness& added) const;
   std::vector<double> viscosity_at(std::span<const double> stiffening) const;
   Limits limits_at(std::span<const double> stiffening);
   Limits search(std::span<const double> stiffening);
@@ -189,9 +189,9 @@ class StepControl {
   std::size_t searches_made_ = 0;
   double step_ = 0.0;
   Limits limits_;
-  std::unique_ptr<PartBound> part_bound_;  ///< none until the mesh changes
-  bool unchecked_ = false;                 ///< a given step is above the bound of a mesh that has changed
-  std::vector<double> validated_;          ///< stiffening per block up to which step_ is known to be stable
+  std::unique_ptr<ElementStepBound> element_bound_;  ///< none until the mesh changes
+  bool unchecked_ = false;                           ///< a given step is above the bound of a mesh that has changed
+  std::vector<double> validated_;                    ///< stiffening per block up to which step_ is known to be stable
   std::vector<double> rest_level_;
   Limits rest_limits_;  ///< for rest_level_, the stiffness at rest
   Searched searched_;
@@ -203,13 +203,13 @@ class StepControl {
   std::vector<double> usual_, list_above_;  ///< stiffening per block from which elements are listed, and are now
   std::uint64_t probe_ = kFirstProbe, since_probe_ = 0;  ///< [steps]
   std::vector<StiffElement> few_;                        ///< the stiffest of a crowd
-  std::vector<double> crowd_;  ///< per block, the stiffest of those left out; empty: none were
-  bool probes_ = false;        ///< whether more than usual is listed, to choose the level of the blocks anew
-  double damping_rate_ = 0.0;  ///< largest γ/m [1/s]
-  double tools_ = 0.0;         ///< ω² of what acts beside the tissue [1/s²]
-  double held_ = 0.0;          ///< the same that an automatic step is chosen for: at least as much
-  Beside stiff_, beside_;      ///< of single tets; of both
-  double caution_ = 1.0;       ///< factor on an automatic step while stiffness rises fast
+  std::vector<double> crowd_;     ///< per block, the stiffest of those left out; empty: none were
+  bool probes_ = false;           ///< whether more than usual is listed, to choose the level of the blocks anew
+  double damping_rate_ = 0.0;     ///< largest γ/m [1/s]
+  double tools_ = 0.0;            ///< ω² of what acts beside the tissue [1/s²]
+  double held_ = 0.0;             ///< the same that an automatic step is chosen for: at least as much
+  AddedStiffness stiff_, added_;  ///< of single tets; of both
+  double caution_ = 1.0;          ///< factor on an automatic step while stiffness rises fast
 };
 
 }  // namespace glisson

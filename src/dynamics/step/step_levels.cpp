@@ -66,29 +66,29 @@ void StepControl::list_from() {
 }
 
 /// What single tets take off the step, which depends on the level of their blocks.
-Beside StepControl::beside_at(std::span<const double> level) {
+AddedStiffness StepControl::added_at(std::span<const double> level) {
   if (levels_.empty()) return {};
   std::vector<char> viscous(body_.blocks.size(), 0);
   for (std::size_t b = 0; b < viscous.size(); ++b) {
     viscous[b] = thickens(body_.blocks[b]) ? 1 : 0;
   }
-  return levels_.beside(level, viscous);
+  return levels_.added(level, viscous);
 }
 
-void StepControl::set_beside(double squared_frequency) {
+void StepControl::set_added(double squared_frequency) {
   tools_ = squared_frequency;
   held_ = std::max(held_, tools_);
-  join_beside();
+  join_added();
 }
 
-void StepControl::follow_beside(double squared_frequency) {
+void StepControl::follow_added(double squared_frequency) {
   held_ /= kRegrowth * kRegrowth;
-  set_beside(squared_frequency);
+  set_added(squared_frequency);
 }
 
 void StepControl::take_stiff() {
-  stiff_ = beside_at(validated_);
-  join_beside();
+  stiff_ = added_at(validated_);
+  join_added();
   list_from();
 }
 
@@ -182,7 +182,7 @@ bool StepControl::is_crowded() const {
 
 /// Takes in tets above their levels, by levels of their own or by that of the blocks; false where a given step does not support it.
 bool StepControl::rises(std::span<const double> stiffening, double rise) {
-  const double before = with_beside(limits_.pace, stiff_);
+  const double before = with_added(limits_.pace, stiff_);
   levels_.raise(kMostAhead);
   if (!automatic_) {
     take_stiff();
@@ -206,7 +206,7 @@ bool StepControl::rises(std::span<const double> stiffening, double rise) {
   } else {
     take_stiff();
   }
-  const double shorter = before / with_beside(limits_.pace, stiff_);
+  const double shorter = before / with_added(limits_.pace, stiff_);
   be_cautious(std::min(rise, shorter * shorter));
   return true;
 }
@@ -228,9 +228,9 @@ bool StepControl::holds_at(std::span<const double> stiffening) {
 }
 
 /// How fast time goes on at a level of the blocks, with what looking after the tets above it costs.
-double StepControl::pace_of(const Limits& limits, const Beside& beside, std::size_t above) const {
+double StepControl::pace_of(const Limits& limits, const AddedStiffness& added, std::size_t above) const {
   const double share = static_cast<double>(above) / static_cast<double>(body_.elements.size());
-  return with_beside(limits.pace, beside) / (1.0 + kCostOfLevels * share);
+  return with_added(limits.pace, added) / (1.0 + kCostOfLevels * share);
 }
 
 /// The same with the blocks at a level and the stiffer tets beside it, whose part is reckoned only where it matters: 0 where
@@ -238,7 +238,7 @@ double StepControl::pace_of(const Limits& limits, const Beside& beside, std::siz
 double StepControl::pace_above(std::span<const double> level, double enough) {
   const Limits limits = bound_at(level);
   const std::size_t above = levels_.count_above(level);
-  return pace_of(limits, {}, above) > enough ? pace_of(limits, beside_at(level), above) : 0.0;
+  return pace_of(limits, {}, above) > enough ? pace_of(limits, added_at(level), above) : 0.0;
 }
 
 /// Chooses the level of the blocks at which time goes on fastest, from the tets that have levels of their own.
@@ -248,7 +248,7 @@ void StepControl::choose_base(const std::vector<double>& least, bool forced) {
   const std::vector<double> most = levels_.largest(least);
   std::vector<double> best;
   double fastest = 0.0;
-  if (!forced) fastest = kWorthAChange * pace_of(limits_, beside_at(validated_), levels_.count_above(validated_));
+  if (!forced) fastest = kWorthAChange * pace_of(limits_, added_at(validated_), levels_.count_above(validated_));
   int in_vain = 0;
   for (double share = 1.0; in_vain < kMostInVain; share *= kLadder) {
     std::vector<double> level = least;
@@ -267,7 +267,7 @@ void StepControl::choose_base(const std::vector<double>& least, bool forced) {
 
 /// Whether another level of the blocks could make steps longer: at most those of tissue at rest.
 bool StepControl::may_gain() const {
-  return is_bounded() && rest_limits_.pace > kWorthAChange * with_beside(limits_.pace, stiff_);
+  return is_bounded() && rest_limits_.pace > kWorthAChange * with_added(limits_.pace, stiff_);
 }
 
 /// Asks for all that is stiff, or chooses by what was told.

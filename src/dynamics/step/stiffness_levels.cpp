@@ -129,7 +129,7 @@ std::size_t StiffnessLevels::count_above(std::span<const double> base) const {
       std::count_if(members_.begin(), members_.end(), [&](const Member& m) { return m.ratio > base[m.block]; }));
 }
 
-Beside StiffnessLevels::beside(std::span<const double> base, const std::vector<char>& viscous) {
+AddedStiffness StiffnessLevels::added(std::span<const double> base, const std::vector<char>& viscous) {
   std::vector<Asking> all;
   std::vector<Member*> whose;
   for (Member& m : members_) {
@@ -149,7 +149,7 @@ Beside StiffnessLevels::beside(std::span<const double> base, const std::vector<c
   }
   std::vector<double> upper;  // the trace is above λ_max
   for (const Asking& a : all) upper.push_back(trace(over_shares(body_, a, asked_)));
-  Beside most;
+  AddedStiffness most;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].k * upper[i] <= most.k && all[i].c * upper[i] <= most.c) continue;
     const double per_mass = largest_eigenvalue(over_shares(body_, all[i], asked_));

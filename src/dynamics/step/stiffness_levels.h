@@ -4,7 +4,7 @@
 // its norm (element/stiff_element.h). With K_e what it adds to the stiffness at rest, m = λ_max of its tangent there,
 //   tangent ≤ L K_e + x V m ‖Σ x_a ⊗ s_a‖²,   x = min(ℓ − L, n),
 // and the second part is held against the masses of its vertices alone. Tets that share a vertex divide its mass by what each
-// asks for, as in part_bound.h but among the few that are stiff: one that is alone has all of it,
+// asks for, as in element_step_bound.h but among the few that are stiff: one that is alone has all of it,
 //   ω² = max_e V x m λ_max(Σ_a s_a s_aᵀ/W_a),   W_a = m_a x V m |s_a|² / Σ of it over the stiff tets at a.
 // With φ of the level, φ + h² ω² bounds that of the body (stable_step.h). The viscosity of such a tet may have grown as much as
 // its stiffness and makes a ω_c of the same kind.
@@ -24,7 +24,7 @@
 namespace glisson {
 
 /// Stiffness and viscosity that act beside those that h* is known for: λ_max on the body's masses, from above.
-struct Beside {
+struct AddedStiffness {
   double k = 0.0;  ///< [1/s²]
   double c = 0.0;  ///< [1/s]
 };
@@ -55,7 +55,7 @@ class StiffnessLevels {
   void forget_below(std::span<const double> base);
   /// What the tets above `base` take. @param viscous  per block, whether viscosity grows with them
   /// Cost: 0.1 µs a tet above the base.
-  Beside beside(std::span<const double> base, const std::vector<char>& viscous);
+  AddedStiffness added(std::span<const double> base, const std::vector<char>& viscous);
   /// Tets above a base.
   std::size_t count_above(std::span<const double> base) const;
   bool empty() const { return members_.empty(); }

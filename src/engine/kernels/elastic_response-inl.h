@@ -54,7 +54,7 @@ HWY_INLINE Tensor deviatoric_direction(const Tensor& H, const Tensor& K, F volum
 HWY_INLINE Tensor measure_gradient(const LaneResponse& r, const Tensor& H, const Invariants<F>& inv, F x, F factor) {
   const F squares = squares_of(H), I1 = hn::MulAdd(number(2.0F), inv.trace, squares) + number(3.0F);
   const Tensor D = deviatoric_direction(H, cofactor_change(H), inv.volume_change, squares);
-  const bool intensity = r.measure == DeformationMeasure::intensity;
+  const bool intensity = r.measure == DeformationMeasure::equivalent_shear_strain;
   const F p = intensity ? x * x * number(2.0F / 3.0F) : x;  // 1 − q
   F scale = number(2.0F) * (number(1.0F) - p) / I1;         // −∂q = 2 q/I₁ D
   if (intensity) scale = scale * number(0.75F) / hn::Max(x, number(1e-12F));
@@ -156,7 +156,7 @@ void tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& t
     const F t = trace_of(strain), squares = contraction(strain, strain);
     const F deviator = hn::Max(hn::MulAdd(t * t, number(-1.0F / 3.0F), squares), hn::Zero(d));
     const F x = hn::Load(d, block.x + item * kLanes);
-    const F g = r.measure == DeformationMeasure::intensity
+    const F g = r.measure == DeformationMeasure::equivalent_shear_strain
                     ? one
                     : (r.measure == DeformationMeasure::one_minus_q ? number(4.0F / 3.0F) * hn::Sqrt(x * number(1.5F))
                                                                     : x * number(1.64F));

@@ -88,7 +88,7 @@ HWY_INLINE Point force(const Stress<V>& t, const V (&s)[3]) {
 
 /// The same, added to what another tet exerts on the vertex.
 template <class V, class Point>
-HWY_INLINE Point force_beside(const Stress<V>& t, const V (&s)[3], const Point& f) {
+HWY_INLINE Point add_force(const Stress<V>& t, const V (&s)[3], const Point& f) {
   return {MulAdd(t.zx, s[2], MulAdd(t.xy, s[1], MulAdd(t.xx, s[0], f.x))),
           MulAdd(t.yz, s[2], MulAdd(t.yy, s[1], MulAdd(t.xy, s[0], f.y))),
           MulAdd(t.zz, s[2], MulAdd(t.yz, s[1], MulAdd(t.zx, s[0], f.z)))};
@@ -109,7 +109,7 @@ HWY_INLINE Point force(const Piola<V>& t, const V (&s)[3]) {
   return {row(t.p[0]), row(t.p[1]), row(t.p[2])};
 }
 template <class V, class Point>
-HWY_INLINE Point force_beside(const Piola<V>& t, const V (&s)[3], const Point& f) {
+HWY_INLINE Point add_force(const Piola<V>& t, const V (&s)[3], const Point& f) {
   const auto row = [&](const V(&p)[3], V beside)
                        GLISSON_INLINED { return MulAdd(p[2], s[2], MulAdd(p[1], s[1], MulAdd(p[0], s[0], beside))); };
   return {row(t.p[0], f.x), row(t.p[1], f.y), row(t.p[2], f.z)};

@@ -201,7 +201,7 @@ inline bool measure(const Elements& e, std::size_t begin, std::size_t n, Block& 
     const Gradient<F> g = load_gradient(block.gradient + item * 9 * kLanes);
     const Invariants<F> inv = invariants(d, g);
     Measured<F> m;
-    if constexpr (M == DeformationMeasure::intensity) {
+    if constexpr (M == DeformationMeasure::equivalent_shear_strain) {
       m = measure_intensity(d, inv, e.tissue.bulk_over_two_mu);
     } else if constexpr (M == DeformationMeasure::one_minus_q) {
       m = measure_one_minus_q(d, inv, e.tissue.bulk_over_two_mu);
@@ -236,7 +236,7 @@ class Pushing {
     load_product(ahead, 0, s);
     on_behind = force_against(stress, s, on_behind);
     load_product(rest, kRestAcross + 3 * which, s);
-    on_1_ = force_beside(stress, s, on_1_);
+    on_1_ = add_force(stress, s, on_1_);
     load_product(behind, 0, s);
     return force<F, Xyz>(stress, s);
   }

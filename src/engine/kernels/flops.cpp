@@ -43,7 +43,8 @@ double response_flops_per_tet(const ElementFlops& f, const Tissue& tissue) {
   if (follows_shape(tissue))
     sum += static_cast<double>(f.measure[static_cast<std::size_t>(tissue.measure)]) + laws_flops(tissue);
   // a pass of its own: gradients again, V times the change, added up at vertices (10 a chain), the mean of four (10 a chain)
-  if (tissue.volume_change == VolumeChange::nodal) sum += once + static_cast<double>(response.volume) + 20.0 / 3.0;
+  if (tissue.volume_change == VolumeChange::average_nodal)
+    sum += once + static_cast<double>(response.volume) + 20.0 / 3.0;
   return sum;
 }
 
@@ -78,7 +79,7 @@ double flops_per_tet(const Body& body, const Submeshes& submeshes) {
   for (const Submesh& part : submeshes.parts) {
     const Tissue& tissue = body.blocks[part.block].tissue;
     // shared volumes narrow twice, and divide by the volume around a vertex
-    const double narrows = tissue.volume_change == VolumeChange::nodal ? 2.0 * kNarrow + 1.0 : kNarrow;
+    const double narrows = tissue.volume_change == VolumeChange::average_nodal ? 2.0 * kNarrow + 1.0 : kNarrow;
     sum += narrows * static_cast<double>(part.local_vertices());
     sum += part.edges.count > 0 ? edge_flops(tissue) * static_cast<double>(edge_count(part))
                                 : per_tet[part.block] * static_cast<double>(part.elements.size());

@@ -28,7 +28,7 @@ const Kernels* kernels() {
       .gather_elastic = gather<false>,
       .gather_viscous = gather<true>,
       .gather_rates = gather_rates,
-      .measure = {measure<DeformationMeasure::intensity>, measure<DeformationMeasure::one_minus_q>,
+      .measure = {measure<DeformationMeasure::equivalent_shear_strain>, measure<DeformationMeasure::one_minus_q>,
                   measure<DeformationMeasure::regular_mean_ratio>},
       .law = store_laws(std::type_identity<StiffnessLaw>()),
       .watch_law = watch_laws(std::type_identity<StiffnessLaw>()),

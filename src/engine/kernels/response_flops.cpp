@@ -125,9 +125,9 @@ inline F Log1p(Lanes, F a) { return after(23, std::log1p(a.value), a); }
 
 }  // namespace glisson::engine::HWY_NAMESPACE
 
+#include "engine/kernels/average_nodal-inl.h"
 #include "engine/kernels/hyper_response-inl.h"
 #include "engine/kernels/lane_scalar-inl.h"
-#include "engine/kernels/shared_volume-inl.h"
 #include "engine/kernels/viscous_response-inl.h"
 
 namespace glisson::engine {
@@ -181,7 +181,7 @@ ResponseFlops count_response_flops(const Tissue& tissue) {
   std::vector<float> memory(6 * std::max<std::size_t>(1, r.branches), 0.0F), mean{0.001F};
   const ResponseItems in{.gradient = gradient.data(),
                          .rate = rate.data(),
-                         .mean = tissue.volume_change == VolumeChange::nodal ? mean.data() : nullptr,
+                         .mean = tissue.volume_change == VolumeChange::average_nodal ? mean.data() : nullptr,
                          .fibre = fibre.data(),
                          .memory = memory.data(),
                          .element = nullptr,
@@ -195,7 +195,7 @@ ResponseFlops count_response_flops(const Tissue& tissue) {
   if (r.viscous || r.branches > 0) traced::merge(1, *out);
   ResponseFlops flops;
   flops.tet = tape.reaching({{out->piola, 9}, {memory.data(), memory.size()}});
-  if (tissue.volume_change == VolumeChange::nodal) {
+  if (tissue.volume_change == VolumeChange::average_nodal) {
     traced::Tape second;
     traced::tape = &second;
     std::array<float, kChainRest> rest;

@@ -6,9 +6,9 @@
 #define HWY_TARGET_INCLUDE "engine/kernels/response_kernels.cpp"
 #include <hwy/foreach_target.h>
 
+#include "engine/kernels/average_nodal-inl.h"
 #include "engine/kernels/hyper_response-inl.h"
 #include "engine/kernels/response_kernels.h"
-#include "engine/kernels/shared_volume-inl.h"
 #include "engine/kernels/viscous_response-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -101,7 +101,7 @@ struct ResponseKernels {
   void (*viscous)(const ResponseItems&, const LaneResponse&, bool add, ResponseBlock& out) = nullptr;
   /// The largest of out.ratio.
   float (*stiffest)(std::size_t items, const ResponseBlock& out) = nullptr;
-  /// For volume changes that are shared (shared_volume-inl.h).
+  /// For volume changes that are shared (average_nodal-inl.h).
   void (*volume_changes)(const float* gradient, const float* rest, std::size_t items, VolumeKind kind,
                          float* out) = nullptr;
   void (*spread_to_vertices)(const std::uint16_t* index, std::size_t batches, const float* values,

@@ -66,7 +66,7 @@ Chain placed(std::span<const Tet> local, const detail::TetChain& chain) {
 }
 
 /// The corner of `t` that is none of these.
-std::uint32_t vertex_beside(const Tet& t, std::uint32_t p, std::uint32_t q, std::uint32_t r) {
+std::uint32_t remaining_vertex(const Tet& t, std::uint32_t p, std::uint32_t q, std::uint32_t r) {
   return *std::find_if(t.begin(), t.end(), [&](std::uint32_t v) { return v != p && v != q && v != r; });
 }
 
@@ -79,11 +79,11 @@ std::array<Chain, 2> placed(std::span<const Tet> local, const detail::TetFan& fa
     if (holds(local[fan.tets[1]], v) && holds(local[fan.tets[2]], v)) edge[on_edge++] = v;
   }
   const std::uint32_t behind = first[corner_beyond(first, local[fan.tets[1]])];
-  const std::uint32_t ahead = vertex_beside(first, edge[0], edge[1], behind);
+  const std::uint32_t ahead = remaining_vertex(first, edge[0], edge[1], behind);
   if (!is_right_handed(first, {edge[0], edge[1], behind, ahead})) std::swap(edge[0], edge[1]);
   std::array<std::uint32_t, detail::kFanTets + 1> ring{behind};
   for (std::size_t k = 0; k < detail::kFanTets; ++k) {
-    ring[k + 1] = vertex_beside(local[fan.tets[k]], edge[0], edge[1], ring[k]);
+    ring[k + 1] = remaining_vertex(local[fan.tets[k]], edge[0], edge[1], ring[k]);
   }
   const auto chain = [&](std::size_t k) {
     return Chain{{edge[0], edge[1], ring[k + 1], ring[k + 2], ring[k], ring[k + 3]},

@@ -54,9 +54,9 @@ void SubmeshBody::take_states(std::span<const MovedVertex> moved) {
     double* record = state_.data() + submeshes_.record_of_vertex[m.vertex] * kStateDoubles;
     put(m.displacement, record);
     put(m.velocity, record + 4);
-    const auto w = std::lower_bound(watched_.begin(), watched_.end(), m.vertex,
-                                    [](const WatchedVertex& a, std::uint32_t vertex) { return a.vertex < vertex; });
-    if (w != watched_.end() && w->vertex == m.vertex) w->displacement = m.displacement, w->velocity = m.velocity;
+    const auto w = std::lower_bound(active_.begin(), active_.end(), m.vertex,
+                                    [](const ActiveVertex& a, std::uint32_t vertex) { return a.vertex < vertex; });
+    if (w != active_.end() && w->vertex == m.vertex) w->displacement = m.displacement, w->velocity = m.velocity;
   }
 }
 

@@ -16,7 +16,7 @@
 
 namespace glisson::engine {
 
-bool SubmeshBody::bears_tissues() const {
+bool SubmeshBody::supports_tissues() const {
   return std::all_of(body_.blocks.begin(), body_.blocks.end(),
                      [](const TissueBlock& block) { return has_lanes(block.tissue); });
 }

@@ -36,7 +36,7 @@ bool any_tissue(const Variant& v, Test test) {
   return test(v.tissue) ||
          std::any_of(v.regions.begin(), v.regions.end(), [&](const RegionSpec& r) { return test(r.tissue); });
 }
-bool bears_all(const Variant& v) { return v.instruments.empty() && v.capsules.empty() && !v.container; }
+bool supports_every_integrator(const Variant& v) { return v.instruments.empty() && v.capsules.empty() && !v.container; }
 
 Adjust stepping(Integrator integrator, int steps) {
   return [=](Variant& v, double duration) {
@@ -87,16 +87,17 @@ Candidate equal_steps(const char* name, Integrator integrator, int steps) {
 std::vector<Candidate> candidates(const Variant& v, const ForwardSpec& spec) {
   std::vector<Candidate> list;
   const bool viscous = any_tissue(v, is_viscous), past = any_tissue(v, has_past);
-  if (bears_all(v)) {
+  if (supports_every_integrator(v)) {
     if (!past) {
-      for (const int steps : {10, 40}) list.push_back(equal_steps("static", Integrator::static_, steps));
+      for (const int steps : {10, 40}) list.push_back(equal_steps("static", Integrator::quasi_static, steps));
     }
     for (const int steps : {25, 100, 400}) list.push_back(equal_steps("implicit", Integrator::implicit, steps));
   }
-  if (viscous && bears_all(v)) list.push_back({.name = "semi-implicit", .adjust = own_step(Integrator::semi_implicit)});
+  if (viscous && supports_every_integrator(v))
+    list.push_back({.name = "semi-implicit", .adjust = own_step(Integrator::semi_implicit)});
   const Integrator own = spec.integrator.value_or(v.simulation.integrator);
   const bool explicit_like = capabilities(own).supports(viscous);
-  if (!explicit_like) list.push_back({.name = "explicit", .adjust = own_step(Integrator::explicit_)});
+  if (!explicit_like) list.push_back({.name = "explicit", .adjust = own_step(Integrator::central_difference)});
   if (explicit_like && !viscous) {
     for (const double factor : {100.0, 10.0, 1.0}) {
       char name[64];

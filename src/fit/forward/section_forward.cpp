@@ -13,7 +13,8 @@ const SectionSpec& forward_section() {
   static const SectionSpec section = [] {
     using F = ForwardSpec;
     std::vector<Choice<std::optional<Integrator>>> choices;
-    for (const Word<Integrator>& w : kWords<Integrator>) choices.push_back({std::string(w.word), w.value, ""});
+    for (const Word<Integrator>& w : kWords<Integrator>)
+      choices.push_back({std::string(w.word), w.value, "", is_alias(w)});
     Section<F> s("forward", "Forward model: how the forces of a fit are computed.");
     s.choice<ForwardKind>(
         "kind", &F::kind,

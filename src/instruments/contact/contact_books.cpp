@@ -13,7 +13,7 @@ constexpr double kToolShare = 0.01;  // of the tool's work: errors of a moving c
 
 void ContactBooks::begin(const InteractionStep& step) {
   before_.clear();
-  for (const WatchedVertex& w : step.vertices) before_.push_back(w.velocity);
+  for (const ActiveVertex& w : step.vertices) before_.push_back(w.velocity);
   corrected_ = false;
 }
 

@@ -8,7 +8,7 @@
 #include "base/require_fields.h"
 #include "dynamics/simulation_parts.h"
 #include "dynamics/state/checkpoint.h"
-#include "dynamics/step/part_bound.h"
+#include "dynamics/step/element_step_bound.h"
 #include "dynamics/step/stable_step.h"
 #include "glisson/instruments/cutting.h"
 #include "instruments/cutting/blade_view.h"
@@ -81,7 +81,7 @@ struct Cutter::Impl {
 void Cutter::Impl::limit_spread(double viscosity) {
   const Body& body = scheme.body();
   const std::vector<double> factors(body.blocks.size(), viscosity);
-  const double step = options.least_step * PartBound(body, scheme.stars(), factors).step();
+  const double step = options.least_step * ElementStepBound(body, scheme.stars(), factors).step();
   for (const TissueBlock& block : body.blocks) {
     std::size_t e = block.begin;
     while (e + 1 < block.end && !(body.rest[e].volume > 0.0)) ++e;

@@ -27,11 +27,11 @@ constexpr std::array<InstrumentColumn, 6> kPartColumns{{
 
 DrivenSet::DrivenSet(DrivenSetOptions options, ToolPath path)
     : Instrument(options.name, std::make_shared<PathDriver>(Pose{}, path), options.direction),
-      options_(std::move(options)), way_(std::move(path.way)) {}
+      options_(std::move(options)), way_(std::move(path.displacement)) {}
 
 void DrivenSet::between_steps(Simulation& simulation) {
   constraint_ = simulation.drive(options_.vertices, way_, options_.axes, options_.from);
-  scheme_ = SimulationParts::watched(simulation);
+  scheme_ = SimulationParts::weak_scheme(simulation);
 }
 
 std::span<const InstrumentColumn> DrivenSet::part_columns() { return kPartColumns; }

@@ -34,11 +34,11 @@ struct Move {
 }  // namespace
 
 PathDriver::PathDriver(const Pose& start, ToolPath path) : start_(start), path_(std::move(path)) {
-  if (!path_.way) throw std::invalid_argument("path of a tool: no way was given");
+  if (!path_.displacement) throw std::invalid_argument("path of a tool: no displacement was given");
 }
 
 Pose PathDriver::advance(double time, double h, const Wrench&) {
-  return {start_.position + path_.way(time + h), start_.axes};
+  return {start_.position + path_.displacement(time + h), start_.axes};
 }
 
 ToolPath press_path(const PressMotion& motion) { return {press(motion), press_end(motion)}; }

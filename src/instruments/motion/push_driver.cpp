@@ -14,8 +14,8 @@
 namespace glisson {
 namespace {
 
-constexpr double kForgets = 0.98;    // of k̂, each step
-constexpr double kLeastWay = 1e-10;  // over which a change of force says something [m]
+constexpr double kForgets = 0.98;       // of k̂, each step
+constexpr double kLeastTravel = 1e-10;  // over which a change of force says something [m]
 
 }  // namespace
 
@@ -26,13 +26,13 @@ PushDriver::PushDriver(const Pose& start, PushMotion motion) : start_(start), mo
 }
 
 void PushDriver::learn_stiffness(const Vec3d& force) {
-  const Vec3d way = way_ - last_way_;
+  const Vec3d way = travel_ - last_travel_;
   const double squared = dot(way, way);
   stiffness_ *= kForgets;
-  if (squared > kLeastWay * kLeastWay) {
+  if (squared > kLeastTravel * kLeastTravel) {
     stiffness_ = std::max(stiffness_, -dot(force - last_force_, way) / squared);
   }
-  last_way_ = way_;
+  last_travel_ = travel_;
   last_force_ = force;
 }
 
@@ -43,15 +43,15 @@ Pose PushDriver::advance(double time, double h, const Wrench& on_tool) {
   const double stiff = h * h * stiffness_ > motion_.mass ? h * h * stiffness_ : 0.0;
   const Vec3d impulse = (d * motion_.force(time) + answer) * h;
   velocity_ = (velocity_ * motion_.mass + impulse) * (1.0 / (motion_.mass + h * motion_.damping + stiff));
-  way_ += velocity_ * h;
-  const double beyond = motion_.stop ? dot(way_, d) - *motion_.stop : 0.0;
+  travel_ += velocity_ * h;
+  const double beyond = motion_.stop ? dot(travel_, d) - *motion_.stop : 0.0;
   if (beyond > 0.0) {
-    way_ = way_ - d * beyond;
+    travel_ = travel_ - d * beyond;
     velocity_ = velocity_ - d * std::max(0.0, dot(velocity_, d));
   }
-  return {start_.position + way_, start_.axes};
+  return {start_.position + travel_, start_.axes};
 }
 
-void PushDriver::archive(Archive& ar) { ar(way_, velocity_, last_way_, last_force_, stiffness_); }
+void PushDriver::archive(Archive& ar) { ar(travel_, velocity_, last_travel_, last_force_, stiffness_); }
 
 }  // namespace glisson

@@ -83,8 +83,8 @@ class Cover {
   void start_chain(std::uint32_t t) {
     const std::uint32_t a = loosest_neighbour(t, kNoTet, kNoTet);
     if (a == kNoTet) return add(alone(t));
-    const std::uint32_t beside_t = loosest_neighbour(t, a, kNoTet), b = loosest_neighbour(a, t, beside_t);
-    if (b == beside_t) {
+    const std::uint32_t neighbour_of_t = loosest_neighbour(t, a, kNoTet), b = loosest_neighbour(a, t, neighbour_of_t);
+    if (b == neighbour_of_t) {
       add({t, {a, b}});
     } else {
       add({a, {t, b}});

@@ -70,7 +70,8 @@ std::string word_list(const SectionSpec& section) {
     std::string words;
     bool explained = false;
     for (const AllowedWord& w : key.words) {
-      words.append(words.empty() ? "" : "; ").append(code("\"" + w.word + "\""));
+      words.append(words.empty() ? "" : (w.alias ? " (also " : "; ")).append(code("\"" + w.word + "\""));
+      if (w.alias) words.append(")");
       if (!w.help.empty()) words.append(" ").append(w.help);
       explained = explained || !w.help.empty();
     }

@@ -8,8 +8,10 @@ namespace {
 std::string with_unit(const KeySpec& key) { return key.unit.empty() || key.unit == "-" ? "" : " [" + key.unit + "]"; }
 
 std::string expected_words(const KeySpec& key) {
-  std::string text = "one of ";
-  for (std::size_t i = 0; i < key.words.size(); ++i) text += (i ? ", \"" : "\"") + key.words[i].word + "\"";
+  std::string text;
+  for (const AllowedWord& w : key.words) {
+    if (!w.alias) text += (text.empty() ? "one of \"" : ", \"") + w.word + "\"";
+  }
   return text;
 }
 

@@ -179,6 +179,7 @@ struct Choice {
   std::string word;
   T value;
   std::string help;
+  bool alias = false;  ///< as AllowedWord's
 };
 
 template <class S>
@@ -231,8 +232,8 @@ class Section {
     KeySpec key{.name = std::move(name), .help = std::move(help), .type = ValueType::text};
     S initial{};
     for (const Choice<T>& c : choices) {
-      key.words.push_back({c.word, c.help});
-      if (same(c.value, std::invoke(access, initial))) key.default_text = "\"" + c.word + "\"";
+      key.words.push_back({c.word, c.help, c.alias});
+      if (!c.alias && same(c.value, std::invoke(access, initial))) key.default_text = "\"" + c.word + "\"";
     }
     key.store = [access, choices](void* target, const Node& node) {
       for (const Choice<T>& c : choices) {
@@ -344,7 +345,7 @@ class Section {
     KeySpec key{.name = std::move(name), .help = std::move(help), .type = Code::kType, .shape = Code::kShape};
     if constexpr (requires { Code::kLargest; }) key.range = between(0.0, Code::kLargest);
     if constexpr (HasWords<T>) {
-      for (const Word<T>& w : kWords<T>) key.words.push_back({std::string(w.word), std::string(w.help)});
+      for (const Word<T>& w : kWords<T>) key.words.push_back({std::string(w.word), std::string(w.help), is_alias(w)});
     }
     if constexpr (std::is_default_constructible_v<S>) {
       const auto initial = std::make_unique<S>();

@@ -34,7 +34,7 @@ void check_tool(ToolSpec& tool, const Node& table, const Place& place) {
 
 const SectionSpec& implicit_section() {
   static const SectionSpec section =
-      described<ImplicitOptions>("motion.implicit", "Options of the integrators implicit and static.");
+      described<ImplicitOptions>("motion.implicit", "Options of the integrators implicit and quasi_static.");
   return section;
 }
 

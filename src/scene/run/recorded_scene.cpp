@@ -99,7 +99,7 @@ void put_tissues(Node& experiment, const Variant& variant) {
     put_tissue(section((*regions->array())[i], "tissue"), variant.regions[i].tissue);
 }
 
-void put_ways(Node& experiment, const RecordedWays& ways) {
+void put_paths(Node& experiment, const RecordedPaths& ways) {
   std::size_t way = 0;
   const auto each = [&](const char* key, auto put) {
     Node* list = experiment.find(key);
@@ -156,7 +156,7 @@ std::string comment(const std::string& head) {
 }  // namespace
 
 std::string recorded_scene(std::string_view text, const std::string& name, const std::filesystem::path& base,
-                           std::span<const Override> overrides, const Variant& variant, const RecordedWays& ways) {
+                           std::span<const Override> overrides, const Variant& variant, const RecordedPaths& ways) {
   Problems problems(name);
   Expanded expanded = expand(parse_document(text, name), overrides, base, problems);
   problems.throw_if_any();
@@ -164,7 +164,7 @@ std::string recorded_scene(std::string_view text, const std::string& name, const
   drop(experiment, {"name", "label"});
   drop(expanded.scene, {"chart", "variant"});
   put_tissues(experiment, variant);
-  put_ways(experiment, ways);
+  put_paths(experiment, ways);
   Node& motion = section(experiment, "motion");
   drop(motion, {"max_steps"});
   set(motion, "duration_s", number_node(ways.duration));

@@ -11,7 +11,7 @@
 
 namespace glisson::scene {
 
-struct RecordedWays {
+struct RecordedPaths {
   std::string head;                ///< comment lines for the top, without their #
   std::vector<std::string> files;  ///< of each tool, then of each instrument: a .csv as load_record reads it
   double duration = 0.0;           ///< [s]
@@ -23,6 +23,6 @@ struct RecordedWays {
 /// @param variant  the experiment as it stands; its name tells which, its tissues what they are now
 /// @throws SceneError for a scene that cannot be read
 std::string recorded_scene(std::string_view text, const std::string& name, const std::filesystem::path& base,
-                           std::span<const Override> overrides, const Variant& variant, const RecordedWays& ways);
+                           std::span<const Override> overrides, const Variant& variant, const RecordedPaths& ways);
 
 }  // namespace glisson::scene

@@ -1,0 +1,137 @@
+#include "dynamics/schemes/active_kick.h"
+
+#include <algorithm>
+
+namespace glisson {
+
+void add(KickPower& sum, const KickPower& p) {
+  sum.elastic += p.elastic, sum.viscous += p.viscous, sum.damping += p.damping;
+  sum.tools += p.tools, sum.loads += p.loads;
+}
+
+void ActiveKick::follow(std::span<const std::uint32_t> before, std::span<const ActiveVertex> active) {
+  std::vector<Kicked> of_vertex(state_.body.vertex_count);
+  for (std::size_t k = 0; k < before.size(); ++k) of_vertex[before[k]] = kicked_[k];
+  kicked_.clear();
+  for (const ActiveVertex& w : active) kicked_.push_back(of_vertex[w.vertex]);
+  const std::span<const Constraint> constraints = state_.constraints.all();
+  places_.assign(constraints.size(), {});
+  for (std::size_t c = 0; c < places_.size(); ++c) {
+    for (const std::uint32_t v : constraints[c].vertices) {
+      const auto at = std::lower_bound(active.begin(), active.end(), v,
+                                       [](const ActiveVertex& w, std::uint32_t vertex) { return w.vertex < vertex; });
+      places_[c].push_back(static_cast<std::uint32_t>(at - active.begin()));
+    }
+  }
+}
+
+void ActiveKick::begin(double h) {
+  step_ = h;
+  time_ = state_.time;
+  gravity_ = state_.gravity_at(state_.time);
+}
+
+Vec3d ActiveKick::keep(std::size_t k, const ActiveVertex& w, std::span<const Vec3d> loads) {
+  const double m = state_.body.masses[w.vertex];
+  const Vec3d load = m > 0.0 ? loads[w.vertex] : Vec3d{};
+  kicked_[k] = {m, state_.gamma[w.vertex], w.velocity, load, {}};
+  return load;
+}
+
+void ActiveKick::kick(std::span<ActiveVertex> active) {
+  const std::span<const Vec3d> loads = state_.loads.at(state_.time);
+  for (std::size_t k = 0; k < active.size(); ++k) {
+    ActiveVertex& w = active[k];
+    const Vec3d load = keep(k, w, loads);
+    const double m = kicked_[k].mass, gamma = kicked_[k].damping;
+    const Vec3d force = w.elastic + w.viscous + gravity_ * m + load;
+    w.velocity = m > 0.0 ? (w.velocity * m + force * step_) * (1.0 / (m + gamma * step_)) : Vec3d{};
+  }
+}
+
+void ActiveKick::impose_motions(std::span<ActiveVertex> active) const {
+  for (std::size_t c = 0; c < places_.size(); ++c) {
+    if (!state_.holds(c)) continue;
+    const Constraint& constraint = state_.constraints.all()[c];
+    const Vec3d target = constraint.motion ? constraint.motion(state_.time + step_) : Vec3d{};
+    for (std::size_t k = 0; k < places_[c].size(); ++k) {
+      ActiveVertex& w = active[places_[c][k]];
+      const Vec3d wanted = constraint.motion ? (state_.base[c][k] + target - w.displacement) * (1.0 / step_) : Vec3d{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (has_axis(constraint.axes, axis)) w.velocity[axis] = wanted[axis];
+      }
+    }
+  }
+}
+
+std::span<const Vec3d> ActiveKick::mobility() {
+  mobility_.clear();
+  for (const Kicked& k : kicked_) {
+    const double a = k.mass > 0.0 ? 1.0 / (k.mass + k.damping * step_) : 0.0;
+    mobility_.push_back({a, a, a});
+  }
+  for (std::size_t c = 0; c < places_.size(); ++c) {
+    if (!state_.holds(c)) continue;
+    for (const std::uint32_t place : places_[c]) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (has_axis(state_.constraints.all()[c].axes, axis)) mobility_[place][axis] = 0.0;
+      }
+    }
+  }
+  return mobility_;
+}
+
+void ActiveKick::push(std::span<const Vec3d> impulses) {
+  for (std::size_t k = 0; k < kicked_.size(); ++k) kicked_[k].contact = impulses[k] * (1.0 / step_);
+}
+
+/// What holds or drives a vertex, in the components it holds.
+ForceParts ActiveKick::force_at(const ActiveVertex& w, std::size_t place, const Axes& axes) const {
+  const Kicked& k = kicked_[place];
+  const Vec3d inertial = step_ > 0.0 ? (w.velocity - k.velocity_before) * (k.mass / step_) : Vec3d{};
+  return {masked(-w.elastic, axes), masked(-w.viscous, axes),         masked(w.velocity * k.damping, axes),
+          masked(inertial, axes),   masked(gravity_ * -k.mass, axes), masked(-k.load - k.contact, axes)};
+}
+
+ForceParts ActiveKick::force(std::span<const ActiveVertex> active, std::size_t constraint) const {
+  ForceParts sum;
+  if (!state_.holds(constraint)) return sum;
+  for (const std::uint32_t place : places_[constraint]) {
+    sum += force_at(active[place], place, state_.constraints.all()[constraint].axes);
+  }
+  return sum;
+}
+
+KickWork ActiveKick::work(std::span<const ActiveVertex> active) const {
+  KickWork work;
+  for (std::size_t k = 0; k < active.size(); ++k) {
+    const ActiveVertex& w = active[k];
+    const Kicked& at = kicked_[k];
+    const auto power = [&](const Vec3d& v) {
+      return KickPower{.elastic = dot(w.elastic, v),
+                       .viscous = dot(w.viscous, v),
+                       .damping = -at.damping * dot(w.velocity, v),
+                       .tools = dot(at.contact, v),
+                       .loads = dot(gravity_ * at.mass + at.load, v)};
+    };
+    add(work.before, power(at.velocity_before));
+    add(work.after, power(w.velocity));
+    work.kinetic += 0.5 * at.mass * dot(at.velocity_before, w.velocity);
+  }
+  for (std::size_t c = 0; c < places_.size(); ++c) {
+    if (!state_.holds(c)) continue;
+    for (const std::uint32_t place : places_[c]) {
+      const Vec3d f = force_at(active[place], place, state_.constraints.all()[c].axes).total();
+      work.before.tools += dot(f, kicked_[place].velocity_before);
+      work.after.tools += dot(f, active[place].velocity);
+    }
+  }
+  return work;
+}
+
+void ActiveKick::archive(Archive& ar) {
+  ar.same_size(kicked_);
+  ar(step_, time_, gravity_);
+}
+
+}  // namespace glisson

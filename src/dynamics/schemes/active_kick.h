@@ -1,0 +1,67 @@
+// active_kick.h — the kick of the vertices that supports, tools and loads act on: v₋ → v₊, and the forces and work of it.
+//
+//   as if free:  v₊ = (m v₋ + h F)/(m + γ h)  ─▶  motions replace what they hold  ─▶  interactions correct it  ─▶  books
+//
+// The body moves all other vertices (engine/moving_body.h).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dynamics/state/body_state.h"
+#include "engine/moving_body.h"
+
+namespace glisson {
+
+class ActiveKick {
+ public:
+  /// What an active vertex had at the last kick; all 0 for one that was not active then.
+  struct Kicked {
+    double mass = 0.0, damping = 0.0;
+    Vec3d velocity_before, load, contact;  ///< contact: force of the interactions
+    void archive(Archive& ar) { ar(mass, damping, velocity_before, load, contact); }
+  };
+
+  /// @param state  must outlive this
+  explicit ActiveKick(BodyState& state) : state_(state) {}
+
+  /// The active vertices have become others. @param before  those it knew
+  void follow(std::span<const std::uint32_t> before, std::span<const ActiveVertex> active);
+  /// Begins a kick of h at the present time.
+  void begin(double h);
+  /// v₊ as if they were free; massless ones (in no tet) stay.
+  void kick(std::span<ActiveVertex> active);
+  /// Keeps what they had before. @return force of loads on the k-th [N]
+  Vec3d keep(std::size_t k, const ActiveVertex& active, std::span<const Vec3d> loads);
+  /// Replaces v₊ of held and driven components by what their motion asks for.
+  void impose_motions(std::span<ActiveVertex> active) const;
+  /// 1/(m + γ h) of what is not held [1/kg].
+  std::span<const Vec3d> mobility();
+  /// What interactions exerted [N s].
+  void push(std::span<const Vec3d> impulses);
+
+  /// What a constraint exerted at the last kick.
+  ForceParts force(std::span<const ActiveVertex> active, std::size_t constraint) const;
+  /// Work of the forces, that of the constraints included.
+  KickWork work(std::span<const ActiveVertex> active) const;
+
+  double time() const { return time_; }  ///< of the last kick [s]
+  const Vec3d& gravity() const { return gravity_; }
+  std::span<const Kicked> all() const { return kicked_; }
+  void archive(Archive& ar);
+
+ private:
+  ForceParts force_at(const ActiveVertex& active, std::size_t place, const Axes& axes) const;
+
+  BodyState& state_;
+  std::vector<Kicked> kicked_;                      ///< per active vertex
+  std::vector<std::vector<std::uint32_t>> places_;  ///< per constraint: where its vertices are among those active
+  std::vector<Vec3d> mobility_;
+  Vec3d gravity_{};
+  double step_ = 0.0, time_ = 0.0;
+};
+
+/// Adds the second to the first.
+void add(KickPower& sum, const KickPower& power);
+
+}  // namespace glisson

@@ -1,0 +1,43 @@
+// Hyperelastic laws of the invariants know the slopes of their own energy.
+#include "glisson/material/hyperelastic_law.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "material/dual.h"
+#include "support/law_examples.h"
+
+namespace glisson {
+namespace {
+
+/// `law.energy` on dual numbers gives what `law.slopes` says; i1 up to where exponents have ended.
+template <class Law>
+void expect_slopes(const Law& law) {
+  for (const double i1 : {0.0, 1e-3, 0.4, 5.0, 14.9, 15.1, 40.0}) {
+    const double i2 = 0.7 * i1;
+    const InvariantSlopes<Dual> w = law.slopes(Dual{i1, 1.0});
+    const auto expect = [&](double slope, double derivative) {
+      EXPECT_NEAR(slope, derivative, 1e-13 * std::abs(derivative)) << Law::kName << " at " << i1;
+    };
+    expect(w.first.v, law.energy(Dual{i1, 1.0}, Dual{i2}).d);
+    expect(w.second.v, law.energy(Dual{i1}, Dual{i2, 1.0}).d);
+    expect(w.bend.v, w.first.d);
+    EXPECT_EQ(Law::kSecond, w.second.v != 0.0) << Law::kName;
+  }
+}
+
+// ∂W/∂Ī₁, ∂W/∂Ī₂ and ∂²W/∂Ī₁² of every law are the derivatives of its energy, to rounding.
+TEST(HyperelasticLaw, SlopesAreThoseOfTheEnergy) {
+  for (const HyperelasticLaw& law : test::every_hyperelastic_law()) {
+    std::visit(
+        []<class Law>(const Law& l) {
+          if constexpr (!std::is_same_v<Law, Ogden>)
+            expect_slopes(l);  // a law of stretches: tests/material/energy_test.cpp
+        },
+        law);
+  }
+}
+
+}  // namespace
+}  // namespace glisson

@@ -1,0 +1,39 @@
+// Another word for the same enumerator is read like the first, and messages name the first alone.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scene/scene_text.h"
+
+namespace glisson::words_test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Variant with(const std::string& motion, const std::string& tissue) {
+  return test::parse("[mesh]\nkind = \"box\"\n[motion]\nmax_steps = 1\n" + motion + "[tissue]\n" + tissue)
+      .variants.at(0);
+}
+
+TEST(Words, AliasesAreRead) {
+  EXPECT_EQ(with("integrator = \"static\"\n", "").simulation.integrator, Integrator::quasi_static);
+  EXPECT_EQ(with("integrator = \"explicit\"\n", "").simulation.integrator, Integrator::central_difference);
+  EXPECT_EQ(with("", "volume_change = \"nodal\"\n").tissue.volume_change, VolumeChange::average_nodal);
+  EXPECT_EQ(with("", "volume_change = \"own\"\n").tissue.volume_change, VolumeChange::element);
+  EXPECT_EQ(with("", "measure = \"intensity\"\n").tissue.measure, DeformationMeasure::equivalent_shear_strain);
+}
+
+TEST(Words, AliasesAreNotNamedInMessages) {
+  const std::string message = test::complaint("[mesh]\nkind = \"box\"\n[motion]\nintegrator = \"statics\"\n");
+  EXPECT_THAT(message, HasSubstr("\"central_difference\", \"semi_implicit\", \"implicit\", \"quasi_static\""));
+  EXPECT_THAT(message, Not(HasSubstr("\"explicit\"")));
+}
+
+TEST(Words, ReferenceNamesAliases) {
+  EXPECT_THAT(scene_reference_markdown(),
+              HasSubstr("`\"quasi_static\"` equilibrium without inertia and viscosity; time "
+                        "orders motions and loads (also `\"static\"`)"));
+}
+
+}  // namespace
+}  // namespace glisson::words_test
