@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <variant>
 
 #include "cli/commands.h"
@@ -15,7 +16,6 @@
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "cli/tissue_text.h"
-#include "scene/parse/sections.h"
 
 namespace glisson::app {
 namespace {
@@ -82,9 +82,18 @@ std::string axes_text(const Axes& axes) {
   return std::string(axes.x ? "x" : "") + (axes.y ? "y" : "") + (axes.z ? "z" : "");
 }
 
-/// The word of `kind` for the alternative of a variant; those that no scene file gives come after all others.
-std::string kind_word(const scene::SectionSpec& section, std::size_t alternative) {
-  return alternative < section.kinds.size() ? section.kinds[alternative].section.name : "program's own";
+/// The word of `kind` for what a variant holds; what no scene file gives has none.
+template <class... T>
+std::string kind_word(const std::variant<T...>& what) {
+  const auto word = []<class What>(const What& x) -> std::string {
+    if constexpr (std::is_same_v<What, ContactOptions>)
+      return kind_word(x.shape);
+    else if constexpr (requires { What::kName; })
+      return std::string(What::kName);
+    else
+      return "program's own";
+  };
+  return std::visit(word, what);
 }
 
 void print_interactions(const Variant& v, const Taste& taste) {
@@ -94,14 +103,11 @@ void print_interactions(const Variant& v, const Taste& taste) {
         x.options.youngs_modulus);
   }
   if (v.container) {
-    using Hold = ContainerSpec::Hold;
-    const Hold hold = v.container->hold;
-    say("  vessel   {}\n", hold == Hold::free ? "free" : hold == Hold::wet ? "wet" : "bonded");
+    say("  vessel   {}, {}\n", kind_word(v.container->options.vessel), word_of(v.container->hold));
   }
   for (const InstrumentSpec& x : v.instruments) {
     const std::optional<double> end = make_driver(x)->end();
-    say("  tool     \"{}\", a {}: {}{}\n", x.name, kind_word(scene::instrument_section(), x.what.index()),
-        kind_word(scene::instrument_motion_section(), x.motion.how.index()),
+    say("  tool     \"{}\", a {}: {}{}\n", x.name, kind_word(x.what), kind_word(x.motion.how),
         end ? fmt::format(", until {:.4g} s", *end) : "");
   }
 }

@@ -3,11 +3,28 @@
 #include <regex>
 
 #include "app/program.h"
+#include "scene/every_instrument.h"
 
 namespace glisson::test {
 namespace {
 
 using Commands = ProgramTest;
+
+// `check` names every instrument, its motion and the vessel by the words that the scene has for them.
+TEST_F(Commands, CheckNamesInstrumentsByTheirKind) {
+  const Outcome outcome = run({"check", write("s.toml", kEveryInstrument)});
+  ASSERT_THAT(outcome, Exits(0));
+  const std::regex kind(R"re(kind = "(\w+)")re");
+  std::vector<std::string> kinds;  // of the mesh, of each instrument and its motion, of the vessel
+  for (std::sregex_iterator k(kEveryInstrument.begin(), kEveryInstrument.end(), kind), end; k != end; ++k) {
+    kinds.push_back((*k)[1]);
+  }
+  ASSERT_EQ(kinds.size(), 16U);
+  for (std::size_t i = 1; i + 1 < kinds.size(); i += 2) {
+    EXPECT_NE(outcome.out.find("a " + kinds[i] + ": " + kinds[i + 1]), std::string::npos) << kinds[i] << outcome.out;
+  }
+  EXPECT_NE(outcome.out.find("vessel   " + kinds.back() + ", "), std::string::npos) << outcome.out;
+}
 
 // Every subcommand explains itself with examples.
 TEST_F(Commands, HelpHasExamples) {

@@ -175,7 +175,7 @@ TEST(ToolPath, RefusesWhatIsNone) {
               recorded_path({.times = {0, 0}, .positions = {{}, {}}});
             }).find("point 1"),
             std::string::npos);
-  EXPECT_NE(refusal([] { PathDriver({}, {}); }).find("no way"), std::string::npos);
+  EXPECT_NE(refusal([] { PathDriver({}, {}); }).find("no displacement"), std::string::npos);
 }
 
 }  // namespace

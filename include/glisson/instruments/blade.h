@@ -19,6 +19,7 @@ class Blade;
 
 struct BladeOptions {
   using Instrument = Blade;  ///< that is made of it
+  static constexpr std::string_view kName = "blade";
   std::string name = "blade";
   Vec3d direction{0, 0, -1};                                  ///< direction of the depth; any length
   Vec3d edge_from{0.0, -0.01, 0.0}, edge_to{0.0, 0.01, 0.0};  ///< ends of the cutting edge in the tool's own axes [m]

@@ -8,6 +8,7 @@ namespace glisson {
 
 /// Press along a direction to a depth, optionally hold, optionally return.
 struct PressMotion {
+  static constexpr std::string_view kName = "press";
   Vec3d direction{0.0, 0.0, -1.0};  ///< need not be a unit vector; not zero
   double velocity = 0.01;           ///< speed [m/s], > 0
   double depth = 0.01;              ///< [m], > 0

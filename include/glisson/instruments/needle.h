@@ -78,6 +78,7 @@ class Needle;
 
 struct NeedleOptions {
   using Instrument = Needle;  ///< that is made of it
+  static constexpr std::string_view kName = "needle";
   std::string name = "needle";
   double diameter = 1.27e-3;  ///< [m]; 18 G
   double length = 0.1;        ///< from the hand to the tip [m]

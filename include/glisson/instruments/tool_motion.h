@@ -83,6 +83,7 @@ ToolPath stroke_path(const StrokeMotion& motion);
 
 /// Oscillation about a mean depth:  d(τ) = w(τ/ramp) (mean + amplitude sin 2π f τ),  w = x² (3 − 2x).
 struct SineMotion {
+  static constexpr std::string_view kName = "sine";
   Vec3d direction{0.0, 0.0, -1.0};  ///< of any length, not zero
   double amplitude = 0.001;         ///< [m], > 0
   double frequency = 1.0;           ///< f [Hz], > 0

@@ -91,6 +91,7 @@ struct LoadSpec {
 };
 /// A recorded path from a file (load_record).
 struct RecordSpec {
+  static constexpr std::string_view kName = "record";
   std::filesystem::path path;  ///< absolute, or relative to the current directory; empty for a path made in memory
   double start = 0.0;
   RecordedMotion motion;  ///< what the file holds
@@ -112,6 +113,7 @@ double tool_start(const ToolSpec& tool);
 
 /// Strokes along the instrument's direction and across it; one without its own speed uses the common one.
 struct StrokesSpec {
+  static constexpr std::string_view kName = "strokes";
   struct One {
     double depth = 0.0;  ///< end point along the direction, from the start [m]
     Vec3d aside{};       ///< end point across the direction [m]
@@ -140,6 +142,7 @@ struct StrokesSpec {
 };
 /// A push that rises over `ramp` and may oscillate:  F = w(t/ramp) (force + swing sin 2π f t).
 struct PushSpec {
+  static constexpr std::string_view kName = "push";
   double force = 1.0, swing = 0.0, frequency = 1.0, start = 0.0, ramp = 0.0;
   std::optional<double> duration;
   PushMotion tool;  ///< its force and end are these, its direction is that of the motion

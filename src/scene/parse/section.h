@@ -386,4 +386,11 @@ SectionSpec described(std::string name, std::string help) {
   return std::move(s.spec());
 }
 
+/// The same of one that has the word of its `kind`.
+template <Described S>
+SectionSpec described(std::string help) requires requires {
+  S::kName;
+}
+{ return described<S>(std::string(S::kName), std::move(help)); }
+
 }  // namespace glisson::scene

@@ -8,7 +8,7 @@ namespace {
 
 template <class Vessel>
 KindSpec vessel_kind(const std::string& help) {
-  return {described<Vessel>(std::string(Vessel::kName), help),
+  return {described<Vessel>(help),
           [](void* spec) -> void* { return &static_cast<ContainerSpec*>(spec)->options.vessel.emplace<Vessel>(); }};
 }
 

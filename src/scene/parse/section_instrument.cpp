@@ -31,7 +31,7 @@ KindSpec contact_kind(const std::string& help) {
 }
 
 SectionSpec blade_kind() {
-  Section<BladeOptions> s("blade",
+  Section<BladeOptions> s(std::string(BladeOptions::kName),
                           "A cutting edge that separates the tissue along its path (docs/cutting.md); the flat of the "
                           "blade does not touch it.");
   s.fields();
@@ -101,7 +101,7 @@ const SectionSpec& instrument_section() {
     s.named_tables("regions", tip_section(), &InstrumentSpec::regions, "of a needle: resistance at its tip by region");
     s.spec().kinds = {
         instrument_kind<NeedleOptions>(described<NeedleOptions>(
-            "needle", "A needle that presses, pierces, cuts, rubs along its shaft and withdraws (docs/needles.md).")),
+            "A needle that presses, pierces, cuts, rubs along its shaft and withdraws (docs/needles.md).")),
         contact_kind<FlatPunch>("A cylinder with a flat end that presses on the surface."),
         contact_kind<Ball>("A ball that presses on the surface; its tip is its lowest point."),
         contact_kind<NeedleShape>("The outside of a needle, which presses and does not pierce."),

@@ -6,20 +6,17 @@
 namespace glisson::scene {
 namespace {
 
-SectionSpec press_kind() {
-  Section<PressMotion> s("press", "To a depth, and back with `returns`.");
-  s.fields({}, {"direction"});
-  return s.spec();
-}
-
-SectionSpec sine_kind() {
-  Section<SineMotion> s("sine", "Oscillation about a mean depth, rising smoothly over `ramp_s`.");
+/// Its direction is that of the table it is in.
+template <class How>
+SectionSpec directed(const std::string& help) {
+  Section<How> s(std::string(How::kName), help);
   s.fields({}, {"direction"});
   return s.spec();
 }
 
 SectionSpec push_kind() {
-  Section<PushSpec> s("push", "A mass pushed by a given force; its path follows from the resistance of the tissue.");
+  Section<PushSpec> s(std::string(PushSpec::kName),
+                      "A mass pushed by a given force; its path follows from the resistance of the tissue.");
   s.fields();
   s.fields(&PushSpec::tool);
   return s.spec();
@@ -36,7 +33,7 @@ KindSpec motion_kind(SectionSpec section) {
 const SectionSpec& record_section() {
   static const SectionSpec section = [] {
     Section<RecordSpec> s(
-        "record",
+        std::string(RecordSpec::kName),
         "A recorded path: a .csv with a line of names, `time_s` and `depth_m`, or `time_s`, `x_m`, `y_m` and `z_m` (or "
         "_mm). It is followed from its first line on, smoothly between its points.");
     s.key("path", &RecordSpec::path, "the file, relative to the scene").must();
@@ -59,11 +56,12 @@ const SectionSpec& instrument_motion_section() {
         .in("-")
         .direction()
         .otherwise("the instrument's");
-    s.spec().kinds = {motion_kind<PressMotion>(press_kind()),
-                      motion_kind<StrokesSpec>(described<StrokesSpec>(
-                          "strokes", "Straight moves in sequence: insert, rest, sideways, withdraw.")),
-                      motion_kind<SineMotion>(sine_kind()), motion_kind<PushSpec>(push_kind()),
-                      motion_kind<RecordSpec>(record_section())};
+    s.spec().kinds = {
+        motion_kind<PressMotion>(directed<PressMotion>("To a depth, and back with `returns`.")),
+        motion_kind<StrokesSpec>(
+            described<StrokesSpec>("Straight moves in sequence: insert, rest, sideways, withdraw.")),
+        motion_kind<SineMotion>(directed<SineMotion>("Oscillation about a mean depth, rising smoothly over `ramp_s`.")),
+        motion_kind<PushSpec>(push_kind()), motion_kind<RecordSpec>(record_section())};
     return s.spec();
   }();
   return section;
