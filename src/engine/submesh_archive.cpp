@@ -116,7 +116,9 @@ void SubmeshBody::archive_layout(Archive& ar, std::span<const double> nodal_damp
   bool as_built = as_built_;
   auto lanes = static_cast<std::uint32_t>(kernels_.lanes);
   ar(as_built, lanes);
-  if (as_built) return ar.check(as_built_);  // else what has changed here would have to go back
+  if (as_built) {  // else what has changed here would have to go back; copies of vertices come from changes alone
+    return ar.check(as_built_ && submeshes_.record_of_vertex.size() == body_.vertex_count);
+  }
   ar.check(lanes > 0 && lanes <= kMaxLanes);
   if (!ar.reads()) return Layout{submeshes_, body_, lanes}.archive(ar);
   Submeshes read;
