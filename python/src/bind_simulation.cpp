@@ -297,6 +297,10 @@ void bind_reading(nb::class_<Live>& c) {
       .def_prop_ro(
           "energies", [](const Live& l) { return l.get().energies(); }, doc(of("energies")))
       .def_prop_ro(
+          "stored_energy", [](const Live& l) { return l.get().stored_energy(); }, doc(of("stored_energy")))
+      .def_prop_ro(
+          "energy_drift", [](const Live& l) { return l.get().energy_drift(); }, doc(of("energy_drift")))
+      .def_prop_ro(
           "engine_info", [](const Live& l) { return l.get().engine_info(); }, "How it is evaluated")
       .def_prop_ro(
           "mass_scaling", [](const Live& l) { return l.get().mass_scaling(); }, doc("MassScaling"))

@@ -14,6 +14,7 @@
 #include "dynamics/simulation_parts.h"
 #include "dynamics/state/checkpoint.h"
 #include "dynamics/step/mass_scaling.h"
+#include "element/block_response.h"
 #include "element/tet_fields.h"
 
 namespace glisson {
@@ -290,6 +291,28 @@ double Simulation::force_time() const { return impl_->scheme->force_time(); }
 const EngineInfo& Simulation::engine_info() const { return impl_->scheme->info(); }
 
 Energies Simulation::energies() const { return impl_->scheme->energies(); }
+
+std::optional<double> Simulation::stored_energy() const {
+  const Scheme& scheme = *impl_->scheme;
+  const double ahead = time() - force_time();
+  std::vector<Vec3d> u(displacement().begin(), displacement().end());
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] -= velocity()[i] * ahead;
+  double sum = 0.0;
+  for (const TissueBlock& block : scheme.body().blocks) {
+    const BlockResponse response(scheme.body(), block);
+    if (!response.stores_energy()) return {};
+    sum += response.energy(u);
+  }
+  for (const auto& interaction : scheme.interactions()) sum += interaction->energy();
+  return sum;
+}
+
+std::optional<double> Simulation::energy_drift() const {
+  std::optional<double> stored = stored_energy();
+  if (!stored) return stored;
+  for (const auto& x : impl_->scheme->interactions()) *stored += x->booked_energy() - x->energy();
+  return energies().elastic - *stored;
+}
 
 TetFields Simulation::tet_fields() const {
   const Scheme& scheme = *impl_->scheme;

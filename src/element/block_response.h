@@ -31,6 +31,7 @@ class BlockResponse {
   std::vector<Mat3d> piola(std::span<const Vec3d> u, std::span<const Vec3d> v, const BranchMemory& memory) const;
   /// Energy of the elastic forces [J], Response::relaxed_energy over the block.
   double energy(std::span<const Vec3d> u) const;
+  bool stores_energy() const { return response_.stores_energy(); }
   /// S, of which each branch relaxes its share, of every element of the block [Pa].
   std::vector<Sym3<double>> relaxing(std::span<const Vec3d> u) const;
 

@@ -161,6 +161,13 @@ double Response::relaxed_energy(const Mat3d& H, const ElementShape& shape, const
   return W - relaxing_share_ * laws_.at(measure(H, shape)).mu * (e.squares - e.trace * e.trace / 3.0);
 }
 
+bool Response::stores_energy() const {
+  if (tissue_.hyperelastic) return true;
+  const bool constant = std::holds_alternative<ConstantLaw>(tissue_.law);
+  const bool deviator_relaxes = relaxing_share_ > 0.0 && tissue_.maxwell_part == MaxwellPart::deviator;
+  return deviator_relaxes ? constant && small() : constant || tissue_.law_form == LawForm::energy;
+}
+
 template <class T>
 Mat3<T> Response::viscous(const Mat3<T>& H, const Mat3<T>& rate) const {
   const Sym3<T> e = small() ? symmetric(rate) : green_rate(H, rate);

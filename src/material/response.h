@@ -39,6 +39,8 @@ class Response {
   /// The part of it that is left when all Maxwell branches have relaxed; where those relax the deviator of a tissue
   /// without a hyperelastic law, exact for small strain.
   double relaxed_energy(const Mat3d& H, const ElementShape& shape, const double* mean = nullptr) const;
+  /// Whether the elastic forces that are left after long times are the gradient of relaxed_energy.
+  bool stores_energy() const;
 
   /// Kelvin–Voigt's P at the rate Ḣ [Pa].
   template <class T>

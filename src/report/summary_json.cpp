@@ -54,6 +54,10 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
   json["ns_per_tet_step"] = s.ns_per_tet_step;
   json["peak_force_N"] = s.peak_force_N;
   json["energy_elastic_J"] = s.energies.elastic;
+  if (s.stored_energy_J) {
+    json["energy_stored_J"] = *s.stored_energy_J;
+    json["energy_drift_most_J"] = s.energy_drift_most_J;
+  }
   json["energy_kinetic_J"] = s.energies.kinetic;
   json["energy_dissipated_J"] = s.energies.dissipated;
   json["work_tools_J"] = s.energies.work_tools;

@@ -44,6 +44,8 @@ def test_energy_identity():
     body.advance(0.1)
     energies = body.energies
     assert energies.work_tools > 0 and abs(energies.imbalance) < 1e-5 * energies.work_tools
+    assert body.stored_energy == pytest.approx(energies.elastic, rel=1e-5)
+    assert body.energy_drift == pytest.approx(energies.elastic - body.stored_energy, abs=1e-15)
 
 
 def test_a_motion_in_python_is_the_motion():

@@ -103,9 +103,10 @@ class Capsule final : public Interaction {
   std::span<const double> open_share() const;
   bool is_torn(std::size_t triangle) const;  ///< carries no tension any more, or its tet was removed
   double open_area() const;                  ///< of the surface at rest [m²]
-  double energy() const;                     ///< stored, at force_time() [J]
+  double energy() const override;            ///< stored, at force_time() [J]
   /// Energy released by openings and removed tets so far; Energies::elastic still counts it [J].
   double released_energy() const;
+  double booked_energy() const override;
   const std::vector<CapsuleEvent>& events() const;
 
   /// Opens a whole triangle. @throws std::invalid_argument for an invalid triangle number

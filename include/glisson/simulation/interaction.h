@@ -112,6 +112,12 @@ class Interaction {
   /// Constraints add no stiffness.
   virtual double squared_frequency() const { return 0.0; }
 
+  /// Stored by its elastic forces (add_forces), at force_time() [J].
+  virtual double energy() const { return 0.0; }
+  /// What Energies::elastic counts of it: its energy, with what it released without work as by a tear, without what it stored when
+  /// it was attached [J].
+  virtual double booked_energy() const { return energy(); }
+
   /// Writes or reads its state for a checkpoint, to the last bit (glisson/archive.h), without what follows from the body and
   /// its options. Reading comes after body_changed() has reported all changes that preceded the writing.
   /// @throws std::runtime_error if the data are not the state of such an interaction

@@ -213,7 +213,7 @@ struct ForceParts {
 /// Energies at force_time() [J]. Exact identity of the schemes, up to rounding and the tolerance of Newton's method:
 ///   kinetic + elastic + dissipated + numerical + removed = initial + work_tools + work_loads + changed.
 struct Energies {
-  double elastic = 0.0;  ///< − work of the elastic forces; for a linear tissue the stored energy
+  double elastic = 0.0;  ///< − work of the elastic forces; the stored energy but for Simulation::energy_drift()
   double kinetic = 0.0;  ///< explicit, semi-implicit: ½ Σ m v(t−h/2)·v(t+h/2), the scheme's own; implicit: ½ Σ m v²
   double dissipated = 0.0;  ///< by viscosity and nodal damping
   /// By the time scheme of `implicit` itself. Backward Euler: ½ Σ m |Δv|² − ½ ΔF·Δu a step, F the elastic forces.
@@ -379,6 +379,13 @@ class Simulation {
   double force_time() const;
   /// All zero unless SimulationOptions::track_energies.
   Energies energies() const;
+  /// W(u) of tissue and capsules at force_time() [J]; none where some tissue's forces have no energy: a law that is neither
+  /// constant nor in energy form, or Maxwell branches that relax its deviator in large strain.
+  /// Cost: a pass over the elements in double.
+  std::optional<double> stored_energy() const;
+  /// Energies::elastic, which is work summed over the steps, less the stored energy that it stands for [J]: the drift of the time
+  /// integration, and half a step's work of tets that were removed. None without stored_energy(). Needs track_energies.
+  std::optional<double> energy_drift() const;
   const EngineInfo& engine_info() const;
 
   /// Writes the state that a continued run needs besides the initial mesh, tissues, options, constraints and loads,

@@ -33,6 +33,7 @@ class Run {
   bool step();
   void take_sample();
   void tell_events();
+  void see_drift();
   void take_frame();
   void show_progress();
   void summarise();
@@ -157,8 +158,14 @@ void Run::tell_events() {
   }
 }
 
+void Run::see_drift() {
+  const double drift = simulation_.energy_drift().value_or(0.0);
+  summary_.energy_drift_most_J = std::max(summary_.energy_drift_most_J, std::abs(drift));
+}
+
 void Run::take_frame() {
   observer_.on_frame(simulation_);
+  if (variant_.simulation.track_energies) see_drift();
   framed_ = true;
   ++frames_taken_;
   while (frame_due()) ++frames_taken_;
@@ -181,6 +188,8 @@ void Run::summarise() {
   const double tet_steps = static_cast<double>(summary_.tets) * static_cast<double>(summary_.steps);
   summary_.ns_per_tet_step = tet_steps > 0.0 ? 1e9 * stepping_s_ / tet_steps : 0.0;
   summary_.energies = simulation_.energies();
+  summary_.stored_energy_J = simulation_.stored_energy();
+  if (variant_.simulation.track_energies) see_drift();
   summary_.mass_added_kg = simulation_.mass_scaling().added;
   summary_.state_hash = simulation_.state_hash();
 }

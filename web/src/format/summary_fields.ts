@@ -20,7 +20,9 @@ const GROUPS: readonly [string, readonly [string, string, string][]][] = [
   [
     "Energies at the end",
     [
-      ["energy_elastic_J", "Elastic", "J"],
+      ["energy_elastic_J", "Elastic, by work", "J"],
+      ["energy_stored_J", "Elastic, stored W(u)", "J"],
+      ["energy_drift_most_J", "Largest difference of the two", "J"],
       ["energy_kinetic_J", "Kinetic", "J"],
       ["energy_dissipated_J", "Dissipated", "J"],
       ["work_tools_J", "Work of tools", "J"],
