@@ -1,4 +1,4 @@
-// Watched vertices stand still, are told the forces on them, and go where they are placed; all others move as ever.
+// Active vertices stand still, are told the forces on them, and go where they are placed; all others move as ever.
 #include <gtest/gtest.h>
 
 #include <algorithm>
