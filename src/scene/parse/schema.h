@@ -29,7 +29,7 @@ enum class Shape {
 
 struct AllowedWord {
   std::string word, help;
-  bool alias = false;  ///< of the word before it: read, and not named in messages
+  bool alias = false;  ///< of the word before it: read, and not among those that messages list
 };
 
 struct SectionSpec;
