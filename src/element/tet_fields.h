@@ -1,4 +1,4 @@
-// tet_fields.h — what a tetrahedron looks like from outside: shape, intensity, stress, stored energy.
+// tet_fields.h — what a tetrahedron looks like from outside: shape, equivalent shear strain, stress, stored energy.
 #pragma once
 
 #include <span>

@@ -73,7 +73,7 @@ T mean_ratio(const Mat3<T>& H) {
   return T(1) - one_minus_q(H);
 }
 
-/// Strain-like intensity s = √(3 (1 − q) / 2) [-]; equals ‖dev ε‖ to first order, at most √1.5.
+/// Equivalent shear strain s = √(3 (1 − q) / 2) [-]; equals ‖dev ε‖ to first order, at most √1.5.
 template <class T>
 T intensity_of(T one_minus_q_value) {
   using std::sqrt;

@@ -15,7 +15,7 @@ constexpr int kPoints = 241;
 const char* measure_label(DeformationMeasure measure) {
   switch (measure) {
     case DeformationMeasure::equivalent_shear_strain:
-      return "intensity s [-]";
+      return "equivalent shear strain s [-]";
     case DeformationMeasure::one_minus_q:
       return "1 − q [-]";
     case DeformationMeasure::regular_mean_ratio:

@@ -26,7 +26,7 @@ class SurfaceRecorder {
   void set_instruments(std::vector<std::shared_ptr<Instrument>> instruments);
   /// Takes a frame. @param fields  of the same state
   void add(const Simulation& simulation, const TetFields& fields);
-  /// Largest intensity s of the surface so far [-].
+  /// Largest equivalent shear strain s of the surface so far [-].
   double intensity_max() const { return intensity_max_; }
   /// The SurfaceData, the last frame always with it.
   nlohmann::json json() const;

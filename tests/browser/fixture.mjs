@@ -217,7 +217,7 @@ const laws = {
   step: x.map((s) => 3600 * (1 + 0.9 / (1 + Math.exp(-(s - 0.12) / 0.004)))),
   rising: x.map((s) => 3600 * (1 + 6 * s)),
 };
-const lawOf = (y) => ({ measure: "intensity s [-]", x, curves: [{ label: "E", y }] });
+const lawOf = (y) => ({ measure: "equivalent shear strain s [-]", x, curves: [{ label: "E", y }] });
 const stepForce = (d) => 51.2 * d * (1 + 0.35 * Math.floor(d / 0.0021) * 0.28);
 
 export const SOURCE = `# Figure 2: three tissues under the same press.

@@ -53,7 +53,7 @@ describe("a hand on the body", { skip: program() === null ? "the program is not 
     await pull();
     const pictures = new Set();
     for (const [name, title] of [
-      ["Intensity s", "Intensity s [–]"],
+      ["Equivalent shear strain s", "Equivalent shear strain s [–]"],
       ["Shape measure q", "Shape q [–]"],
       ["Pressure p", "Pressure p [Pa]"],
       ["Displacement |u|", "|u| [mm]"],

@@ -54,7 +54,7 @@ export interface Columns {
 }
 
 export interface LawData {
-  measure: string; // e.g. "intensity s [-]"
+  measure: string; // e.g. "equivalent shear strain s [-]"
   quantity: "modulus" | "nominal stress"; // of the curves
   x: number[];
   curves: { label: string; y: number[] }[]; // [Pa]
@@ -89,7 +89,7 @@ export interface FrameData {
   time_s: number;
   displacement_scale_m: number; // displacement = i16 / 32767 × this
   displacement: Base64; // i16, xyz per vertex
-  intensity_max: number; // intensity s = u8 / 255 × this
+  intensity_max: number; // equivalent shear strain s = u8 / 255 × this
   intensity: Base64; // u8 per vertex (mean of the adjacent tets)
   instruments: InstrumentPlace[]; // one for each of the surface's
   triangles?: Base64; // where the surface has become another, from this frame on; vertices that come later are not in

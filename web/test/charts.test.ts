@@ -25,7 +25,7 @@ const variant = (name: string, y = [3600, 3600]): VariantData => ({
   summary: {},
   events: [],
   surface: null,
-  law: { measure: "intensity s [-]", quantity: "modulus", x: [0, 1], curves: [{ label: "E", y }] },
+  law: { measure: "equivalent shear strain s [-]", quantity: "modulus", x: [0, 1], curves: [{ label: "E", y }] },
   forces: {
     columns: ["time_s", "depth_m", "force_N", "elastic_N", "viscous_N", "energy_elastic_J"],
     data: [
@@ -102,7 +102,7 @@ describe("default charts", () => {
   it("show laws only where one is not constant, the constant ones with it", () => {
     expect(lawCharts([variant("a"), variant("b")])).toEqual([]);
     const [model] = lawCharts([variant("a"), variant("b", [3600, 7200])]);
-    expect(model).toMatchObject({ xLabel: "Intensity s [–]", yLabel: "Modulus E [kPa]" });
+    expect(model).toMatchObject({ xLabel: "Equivalent shear strain s [–]", yLabel: "Modulus E [kPa]" });
     expect(model!.lines.map((one) => one.label)).toEqual(["a", "b"]);
     const [merged] = lawCharts([variant("a"), variant("b", [3600, 7200]), variant("c", [3600, 7200])]);
     expect(merged!.lines.map((one) => one.label)).toEqual(["a", "b / c"]);

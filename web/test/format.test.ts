@@ -71,7 +71,7 @@ describe("units", () => {
 
   it("are read off labels", () => {
     expect(unitOfLabel("depth [mm]")).toBe("mm");
-    expect(unitOfLabel("intensity s [-]")).toBe("");
+    expect(unitOfLabel("equivalent shear strain s [-]")).toBe("");
     expect(nameOfLabel("Force [N]")).toBe("Force");
     expect([axisLabel("depth [mm]"), axisLabel("s [-]")]).toEqual(["Depth [mm]", "s [–]"]);
   });

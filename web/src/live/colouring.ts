@@ -16,7 +16,15 @@ export interface Colouring {
 const plain = [{ unit: "–", perUnit: 1, upTo: Infinity }];
 
 export const COLOURINGS: readonly Colouring[] = [
-  { name: "intensity", label: "Intensity s", symbol: "Intensity s", field: 1, units: plain, rest: 0, least: 0.02 },
+  {
+    name: "intensity",
+    label: "Equivalent shear strain s",
+    symbol: "Equivalent shear strain s",
+    field: 1,
+    units: plain,
+    rest: 0,
+    least: 0.02,
+  },
   { name: "shape", label: "Shape measure q", symbol: "Shape q", field: 2, units: plain, rest: 1, least: 0.002 },
   {
     name: "pressure",

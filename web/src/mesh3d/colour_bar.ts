@@ -18,8 +18,8 @@ export function barTicks(high: number, low = 0): { values: number[]; increment: 
 export class ColourBar {
   readonly element: HTMLElement;
   private readonly ticks: HTMLElement;
-  private readonly title = h("div", { class: "bar-title" }, "Intensity s [–]");
-  private name = "intensity";
+  private readonly title = h("div", { class: "bar-title" }, "Equivalent shear strain s [–]");
+  private name = "equivalent shear strain";
 
   constructor() {
     const bar = h("div", { class: "bar-colours" });
@@ -27,7 +27,7 @@ export class ColourBar {
     this.ticks = h("div", { class: "bar-ticks" });
     this.element = h(
       "div",
-      { class: "colour-bar", role: "img", "aria-label": "Colour scale of intensity" },
+      { class: "colour-bar", role: "img", "aria-label": "Colour scale of equivalent shear strain" },
       this.title,
       h("div", { class: "bar-body" }, bar, this.ticks),
     );

@@ -177,7 +177,7 @@ export class MeshPanel {
     this.readout.textContent = this.describeTime();
     this.slider.setAttribute("aria-valuetext", this.readout.textContent);
     const label =
-      `Surface of ${this.current().label}, coloured by intensity, at ${this.readout.textContent}. ` +
+      `Surface of ${this.current().label}, coloured by equivalent shear strain, at ${this.readout.textContent}. ` +
       "Arrow keys turn it, + and − zoom, C cuts it open.";
     this.canvas.setAttribute("aria-label", label);
     this.state.setPlayhead(end > start ? { variant: this.settings.variant, time } : null);

@@ -43,6 +43,6 @@ function drawBar(context: CanvasRenderingContext2D, range: number, unit: number,
     context.fillText(formatTick(value, increment), left + 17 * unit, y);
   }
   context.textAlign = "right";
-  context.fillText("Intensity s [–]", width - 14 * unit, 20 * unit);
+  context.fillText("Equivalent shear strain s [–]", width - 14 * unit, 20 * unit);
   context.textAlign = "left";
 }

@@ -1,6 +1,6 @@
 // surface_model.ts — the three.js objects of one surface: skin, edges, rest ghost, marked vertices.
 //
-//   positions (one buffer) ─┬─ skin: triangles, coloured by intensity through a 1D texture
+//   positions (one buffer) ─┬─ skin: triangles, coloured by equivalent shear strain through a 1D texture
 //                           ├─ edges
 //                           └─ held and driven vertices
 //                           ├─ cap: closes the skin where it is cut open

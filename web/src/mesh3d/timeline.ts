@@ -1,4 +1,4 @@
-// timeline.ts — the recorded frames of a surface as one motion: shape and intensity at any time between them.
+// timeline.ts — the recorded frames of a surface as one motion: shape and equivalent shear strain at any time between them.
 import { decodeF32, decodeI16Scaled, decodeU32, decodeU8, decodeU8Scaled } from "../data/decode.ts";
 import type { InstrumentForm, InstrumentPlace, SurfaceData } from "../report_data.ts";
 
