@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <type_traits>
 
 #include "scene/scene_text.h"
 
@@ -26,6 +27,15 @@ std::string with(const Mistake& m) {
   const std::size_t at = text.find(m.find);
   if (at == std::string::npos) throw std::logic_error(m.name + ": nothing to replace");
   return text.replace(at, m.find.size(), m.replace);
+}
+
+/// The words for the laws of stiffness, as a message lists them.
+template <class... Laws>
+std::string words_of(std::type_identity<std::variant<Laws...>>) {
+  std::string words;
+  for (const std::string_view name : {Laws::kName...})
+    words += (words.empty() ? "\"" : ", \"") + std::string(name) + "\"";
+  return words;
 }
 
 // kSmallScene has 14 lines: [mesh] is 1, [sets.top] 6, [[fixed]] 9, [[tool]] 12.
@@ -77,9 +87,8 @@ const std::vector<Mistake> kMistakes{
     {"UnknownKind", "\"box\"", "\"ball\"",
      "s.toml:2:8: mesh.kind: expected one of \"box\", \"cylinder\", \"file\", got \"ball\""},
     {"UnknownLaw", "", "[tissue.law]\nkind = \"stepp\"\n",
-     "s.toml:17:8: tissue.law.kind: expected one of \"constant\", \"step\", \"linear\", \"polynomial\", "
-     "\"exponential\", "
-     "\"table\", got \"stepp\"; did you mean \"step\"?"},
+     "s.toml:17:8: tissue.law.kind: expected one of " + words_of(std::type_identity<StiffnessLaw>()) +
+         ", got \"stepp\"; did you mean \"step\"?"},
     {"NoKind", "kind = \"box\"\n", "", "s.toml:1:1: mesh: missing key `kind`: one of \"box\", \"cylinder\", \"file\""},
     {"NoMesh", "[mesh]\nkind = \"box\"\ncells = [2, 2, 2]\nsize_m = [0.02, 0.02, 0.02]\n", "",
      "s.toml:1:1: missing key `mesh`: a table; the body's mesh"},
