@@ -8,7 +8,6 @@
 #include "base/input_file.h"
 #include "base/nearest.h"
 #include "scene/parse/expand.h"
-#include "scene/parse/read_variant.h"
 #include "scene/parse/sections.h"
 #include "scene/parse/select.h"
 #include "scene/parse/word_table.h"

@@ -7,7 +7,6 @@
 
 #include "base/nearest.h"
 #include "scene/parse/expand.h"
-#include "scene/parse/read_variant.h"
 #include "scene/parse/schema.h"
 #include "scene/parse/sections.h"
 

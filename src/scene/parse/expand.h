@@ -1,4 +1,4 @@
-// expand.h — from one scene to its complete experiments, still as trees.
+// expand.h — from one scene to its complete experiments as trees, and from such a tree to a Variant.
 #pragma once
 
 #include <filesystem>
@@ -22,5 +22,9 @@ struct Expanded {
 /// @param base  folder that files of tissues are relative to
 Expanded expand(const Node& root, std::span<const Override> overrides, const std::filesystem::path& base,
                 Problems& problems);
+
+/// Checks and reads one of these experiments; what is wrong goes to `problems`. In src/scene/scene.cpp.
+/// @param base  where relative paths start
+Variant read_variant(const Node& experiment, const std::filesystem::path& base, Problems& problems);
 
 }  // namespace glisson::scene
