@@ -1,6 +1,7 @@
 #include "element/element_shape.h"
 
 #include "material/edge_measure.h"
+#include "material/principal.h"
 
 namespace glisson {
 

@@ -12,6 +12,7 @@
 #include "element/body.h"
 #include "material/modulus_laws.h"
 #include "material/shape_measure.h"
+#include "material/stiffness_formulas.h"
 
 namespace glisson {
 

@@ -2,6 +2,7 @@
 
 #include "element/block_response.h"
 #include "element/element_shape.h"
+#include "material/volume_powers.h"
 
 namespace glisson {
 namespace {

@@ -7,6 +7,7 @@
 #include "element/block_response.h"
 #include "element/element_shape.h"
 #include "material/branch_weights.h"
+#include "material/principal.h"
 
 namespace glisson {
 namespace {

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "material/hyperelastic_response.h"
+#include "material/stiffness_formulas.h"
+
 namespace glisson {
 namespace {
 

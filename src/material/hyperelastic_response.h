@@ -11,7 +11,7 @@
 
 #include <variant>
 
-#include "glisson/material/hyperelastic_law.h"
+#include "material/hyperelastic_formulas.h"
 #include "material/principal.h"
 #include "material/shape_measure.h"
 #include "material/volume_powers.h"

@@ -2,6 +2,7 @@
 
 #include "material/edge_measure.h"
 #include "material/stiffness_bound.h"
+#include "material/stiffness_formulas.h"
 
 namespace glisson {
 namespace {

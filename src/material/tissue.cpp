@@ -3,6 +3,7 @@
 
 #include "base/require_fields.h"
 #include "base/text.h"
+#include "material/stiffness_formulas.h"
 
 namespace glisson {
 namespace {
@@ -68,6 +69,9 @@ Fault Tissue::check() const {
 }
 
 void require_valid(const Tissue& t) { detail::require_fields("tissue \"" + t.name + "\"", t); }
+
+double law_value(const StiffnessLaw& law, double base, double x) { return law_at(law, base, x).value; }
+double law_derivative(const StiffnessLaw& law, double base, double x) { return law_at(law, base, x).slope; }
 
 LameParameters lame_at(const Tissue& tissue, double x) {
   const LameParameters rest = tissue.lame();

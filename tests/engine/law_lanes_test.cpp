@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/engine_run.h"
+#include "material/stiffness_formulas.h"
 #include "support/samples.h"
 
 namespace glisson {

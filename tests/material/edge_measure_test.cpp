@@ -7,6 +7,7 @@
 
 #include "element/element_shape.h"
 #include "material/every_tissue.h"
+#include "material/principal.h"
 #include "support/bodies.h"
 
 namespace glisson {

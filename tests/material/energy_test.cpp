@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "material/every_tissue.h"
+#include "material/principal.h"
 
 namespace glisson::energy_test {
 namespace {

@@ -1,5 +1,5 @@
 // Hyperelastic laws of the invariants know the slopes of their own energy.
-#include "glisson/material/hyperelastic_law.h"
+#include "material/hyperelastic_formulas.h"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "material/every_tissue.h"
+#include "material/principal.h"
 
 namespace glisson {
 namespace {

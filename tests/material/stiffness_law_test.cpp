@@ -1,5 +1,5 @@
 // Laws of stiffness: each does what its formula says, in float and double, and knows its own derivative.
-#include "glisson/material/stiffness_law.h"
+#include "material/stiffness_formulas.h"
 
 #include <gtest/gtest.h>
 

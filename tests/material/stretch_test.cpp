@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "material/every_tissue.h"
+#include "material/principal.h"
+#include "material/volume_powers.h"
 
 namespace glisson {
 namespace {

@@ -11,7 +11,7 @@
 
 /// Before each formula. The compiler would otherwise make a function of it for the oldest processor, which cannot take
 /// the vectors of a newer one.
-#define GLISSON_FORMULA [[gnu::always_inline]]
+#define GLISSON_FORMULA [[gnu::always_inline]] inline
 
 namespace glisson {
 

@@ -1,8 +1,9 @@
 // hyper_response-inl.h — hyperelastic laws in lanes: src/material/hyperelastic_response.h, and the bounds of
 // src/material/stiffness_bound.h.
 //
-// The slopes of a law of the invariants are its own (include/glisson/material/hyperelastic) on LaneScalar. Ogden's powers need principal stretches, but not their directions: S is the polynomial in E that takes the right values
-// at its eigenvalues.
+// The slopes of a law of the invariants are its own (src/material/hyperelastic_formulas.h) on LaneScalar. Ogden's powers
+// need principal stretches, but not their directions: S is the polynomial in E that takes the right values at its
+// eigenvalues.
 //
 // Included once per instruction set, never from outside response_kernels.cpp.
 #if defined(GLISSON_HYPER_RESPONSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -17,6 +18,7 @@
 
 #include "engine/kernels/elastic_response-inl.h"
 #include "engine/kernels/lane_scalar-inl.h"
+#include "material/hyperelastic_formulas.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace glisson::engine::HWY_NAMESPACE {

@@ -1,6 +1,6 @@
 // law_stages-inl.h — the laws of stiffness run over an array of lanes: the modulus and its slope.
 //
-// A law is its own formula (include/glisson/material/stiffness) on LaneScalar; lane_law() has made its numbers ready.
+// A law is its own formula (src/material/stiffness_formulas.h) on LaneScalar; lane_law() has made its numbers ready.
 //
 // Included once per instruction set, never from outside kernels.cpp.
 #if defined(GLISSON_LAW_STAGES_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -18,6 +18,7 @@
 
 #include "engine/kernels/kernels.h"
 #include "engine/kernels/lane_scalar-inl.h"
+#include "material/stiffness_formulas.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace glisson::engine::HWY_NAMESPACE {

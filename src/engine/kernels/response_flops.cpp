@@ -18,6 +18,8 @@
 #include "engine/kernels/flops.h"
 #include "engine/kernels/inlined.h"
 #include "engine/kernels/response_kernels.h"
+#include "material/hyperelastic_formulas.h"
+#include "material/stiffness_formulas.h"
 
 #undef HWY_NAMESPACE
 #define HWY_NAMESPACE N_TRACED

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "material/stiffness_formulas.h"
+
 namespace glisson::reference {
 namespace {
 

@@ -29,19 +29,9 @@ struct Fung {
 
   double shear_modulus() const { return mu; }
   template <class T>
-  T energy(T i1, T /*i2*/) const {
-    using std::expm1;
-    const T e = T(b) * i1;
-    const double top = std::exp(kLargestExponent);
-    const T growth = e < T(kLargestExponent) ? expm1(e) : T(top - 1.0) + T(top) * (e - T(kLargestExponent));
-    return T(0.5 * mu / b) * growth;
-  }
+  T energy(T i1, T i2) const;
   template <class T>
-  GLISSON_FORMULA InvariantSlopes<T> slopes(T i1) const {
-    using namespace scalar;
-    const T most(kLargestExponent), e = T(b) * i1, w = T(0.5 * mu) * exp(min(e, most));
-    return {w, T(0), select(e < most, w * T(b), T(0))};
-  }
+  InvariantSlopes<T> slopes(T i1) const;
 
   bool operator==(const Fung&) const = default;
 };

@@ -25,13 +25,9 @@ struct MooneyRivlin {
 
   double shear_modulus() const { return 2.0 * (c10 + c01); }
   template <class T>
-  T energy(T i1, T i2) const {
-    return T(c10) * i1 + T(c01) * i2;
-  }
+  T energy(T i1, T i2) const;
   template <class T>
-  GLISSON_FORMULA InvariantSlopes<T> slopes(T /*i1*/) const {
-    return {T(c10), T(c01), T(0)};
-  }
+  InvariantSlopes<T> slopes(T i1) const;
   std::string check() const {
     return c10 + c01 > 0.0 ? "" : "c10 + c01 must be above 0, it is half the shear modulus at rest";
   }

@@ -24,13 +24,9 @@ struct NeoHookean {
 
   double shear_modulus() const { return mu; }
   template <class T>
-  T energy(T i1, T /*i2*/) const {
-    return T(0.5 * mu) * i1;
-  }
+  T energy(T i1, T i2) const;
   template <class T>
-  GLISSON_FORMULA InvariantSlopes<T> slopes(T /*i1*/) const {
-    return {T(0.5 * mu), T(0), T(0)};
-  }
+  InvariantSlopes<T> slopes(T i1) const;
 
   bool operator==(const NeoHookean&) const = default;
 };

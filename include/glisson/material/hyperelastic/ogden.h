@@ -36,25 +36,10 @@ struct Ogden {
   }
   /// @param l  ln λ̄_i, of sum 0
   template <class T>
-  T energy(const std::array<T, 3>& l) const {
-    T sum(0.0);
-    for (std::size_t k = 0; k < mu.size(); ++k) {
-      const T powers = growth(alpha[k], l[0]) + growth(alpha[k], l[1]) + growth(alpha[k], l[2]);
-      sum += T(2.0 * mu[k] / (alpha[k] * alpha[k])) * powers;
-    }
-    return sum;
-  }
+  T energy(const std::array<T, 3>& l) const;
   /// ∂W/∂ln λ_i [Pa], of sum 0.
   template <class T>
-  std::array<T, 3> slopes(const std::array<T, 3>& l) const {
-    std::array<T, 3> out{T(0.0), T(0.0), T(0.0)};
-    for (std::size_t k = 0; k < mu.size(); ++k) {
-      const std::array<T, 3> g{growth(alpha[k], l[0]), growth(alpha[k], l[1]), growth(alpha[k], l[2])};
-      const T mean = (g[0] + g[1] + g[2]) * T(1.0 / 3.0);
-      for (std::size_t i = 0; i < 3; ++i) out[i] += T(2.0 * mu[k] / alpha[k]) * (g[i] - mean);
-    }
-    return out;
-  }
+  std::array<T, 3> slopes(const std::array<T, 3>& l) const;
   std::string check() const {
     if (mu.empty() || mu.size() > kMostTerms) return "mu has " + std::to_string(mu.size()) + " terms; allowed: 1 to 3";
     if (mu.size() != alpha.size()) {
@@ -72,11 +57,7 @@ struct Ogden {
  private:
   /// λ̄^α − 1, the exponent limited.
   template <class T>
-  static T growth(double a, T l) {
-    using std::expm1;
-    const T e = T(a) * l;
-    return expm1(e < T(kLargestExponent) ? e : T(kLargestExponent));
-  }
+  static T growth(double a, T l);
 };
 
 }  // namespace glisson

@@ -24,15 +24,9 @@ struct Yeoh {
 
   double shear_modulus() const { return 2.0 * c1; }
   template <class T>
-  T energy(T i1, T /*i2*/) const {
-    return i1 * (T(c1) + i1 * (T(c2) + i1 * T(c3)));
-  }
+  T energy(T i1, T i2) const;
   template <class T>
-  GLISSON_FORMULA InvariantSlopes<T> slopes(T i1) const {
-    using namespace scalar;
-    const T two_c2(2.0 * c2), three_c3 = T(3) * T(c3);
-    return {mul_add(i1, mul_add(i1, three_c3, two_c2), T(c1)), T(0), mul_add(i1, three_c3 + three_c3, two_c2)};
-  }
+  InvariantSlopes<T> slopes(T i1) const;
 
   bool operator==(const Yeoh&) const = default;
 };

@@ -21,9 +21,7 @@ struct ConstantLaw {
   /// M₀
   std::array<double, 1> numbers(double base) const { return {base}; }
   template <class C, class T>
-  GLISSON_FORMULA static ValueSlope<T> at(const C& c, T /*x*/) {
-    return {T(c[0]), T(0)};
-  }
+  static ValueSlope<T> at(const C& numbers, T x);
   /// Empty, or what is wrong with the parameters taken together.
 
   bool operator==(const ConstantLaw&) const = default;

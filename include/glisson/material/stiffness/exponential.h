@@ -28,12 +28,7 @@ struct ExponentialLaw {
   /// M₀, A, b
   std::array<double, 3> numbers(double base) const { return {base, amplitude, rate}; }
   template <class C, class T>
-  GLISSON_FORMULA static ValueSlope<T> at(const C& c, T x) {
-    using namespace scalar;
-    const T A(c[1]), b(c[2]), most(kLargestExponent), e = b * x;
-    const T growth = expm1(min(e, most));
-    return not_below_zero(mul_add(A, growth, T(c[0])), select(e > most, T(0), A * b * (growth + T(1))));
-  }
+  static ValueSlope<T> at(const C& numbers, T x);
 
   bool operator==(const ExponentialLaw&) const = default;
 };

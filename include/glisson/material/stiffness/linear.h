@@ -24,11 +24,7 @@ struct LinearLaw {
   /// M₀, slope
   std::array<double, 2> numbers(double base) const { return {base, slope}; }
   template <class C, class T>
-  GLISSON_FORMULA static ValueSlope<T> at(const C& c, T x) {
-    using namespace scalar;
-    const T k(c[1]);
-    return not_below_zero(mul_add(k, x, T(c[0])), k);
-  }
+  static ValueSlope<T> at(const C& numbers, T x);
 
   bool operator==(const LinearLaw&) const = default;
 };

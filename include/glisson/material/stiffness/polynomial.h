@@ -28,15 +28,7 @@ struct PolynomialLaw {
     return c;
   }
   template <class C, class T>
-  GLISSON_FORMULA static ValueSlope<T> at(const C& c, T x) {
-    using namespace scalar;
-    T m(c[c.size() - 1]), slope(0);
-    for (std::size_t i = c.size() - 1; i-- > 0;) {
-      slope = mul_add(slope, x, m);
-      m = mul_add(m, x, T(c[i]));
-    }
-    return not_below_zero(m, slope);
-  }
+  static ValueSlope<T> at(const C& numbers, T x);
   std::string check() const {
     return coefficients.empty() ? "`coefficients_Pa` needs at least one number" : std::string{};
   }

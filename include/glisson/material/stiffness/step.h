@@ -29,13 +29,7 @@ struct StepLaw {
   /// M₀, M₁ − M₀, threshold, width
   std::array<double, 4> numbers(double base) const { return {base, above - base, threshold, width}; }
   template <class C, class T>
-  GLISSON_FORMULA static ValueSlope<T> at(const C& c, T x) {
-    using namespace scalar;
-    const T base(c[0]), rise(c[1]), middle(c[2]), zero(0), one(1);
-    if (!(c[3] > 0)) return {select(x < middle, base, base + rise), zero};
-    const T w(c[3]), t = min(max(mul_add(x - middle, one / w, T(0.5)), zero), one);
-    return {mul_add(rise, t * t * (T(3) - (t + t)), base), T(6) / w * rise * t * (one - t)};
-  }
+  static ValueSlope<T> at(const C& numbers, T x);
 
   bool operator==(const StepLaw&) const = default;
 };

@@ -37,17 +37,7 @@ struct TableLaw {
     return c;
   }
   template <class C, class T>
-  GLISSON_FORMULA static ValueSlope<T> at(const C& c, T x) {
-    using namespace scalar;
-    T from(c[0]), m(c[1]), slope(0);
-    for (std::size_t i = 0; i < c.size(); i += 3) {
-      const auto right = x >= T(c[i]);
-      from = select(right, T(c[i]), from);
-      m = select(right, T(c[i + 1]), m);
-      slope = select(right, T(c[i + 2]), slope);
-    }
-    return {mul_add(slope, x - from, m), slope};
-  }
+  static ValueSlope<T> at(const C& numbers, T x);
   std::string check() const {
     if (arguments.size() < 2) return "`arguments` needs at least two numbers";
     if (arguments.size() != moduli.size()) return "`arguments` and `moduli_Pa` must be equally long";
