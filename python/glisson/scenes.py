@@ -37,7 +37,7 @@ def load_scene(file: str | os.PathLike[str], overrides: Overrides | None = None)
     >>> scene["linear"].tissue.poisson_ratio
     0.45
     """
-    return _core.load_scene(Path(file), _pairs(overrides))
+    return _core.read_scene(Path(file), _pairs(overrides))
 
 
 def parse_scene(
@@ -57,7 +57,7 @@ def parse_scene(
     glisson._core.SceneError: ...
     """
     source = text if isinstance(text, str) else to_toml(text)
-    return _core.parse_scene(source, name, Path(base), _pairs(overrides))
+    return _core.read_scene_text(source, name, Path(base), _pairs(overrides))
 
 
 def to_toml(table: Mapping[str, Any]) -> str:

@@ -1,10 +1,19 @@
 // bind_scenes.cpp — scenes from files and text, and their variants.
 #include "glisson/scene/scene.h"
+
 #include "live_simulation.h"
-#include "scene_object.h"
 
 namespace glisson::python {
 namespace {
+
+/// A scene as Python holds it: its variants are objects of their own, to be changed before a run.
+struct SceneObject {
+  explicit SceneObject(Scene read) : scene(std::move(read)) {
+    for (const Variant& v : scene.variants) variants.push_back(std::make_shared<Variant>(v));
+  }
+  Scene scene;
+  std::vector<std::shared_ptr<Variant>> variants;  ///< in place of scene.variants
+};
 
 using Overrides = std::vector<std::pair<std::string, std::string>>;
 
@@ -104,13 +113,13 @@ void bind_scenes(nb::module_& m) {
         return "<Scene " + s.scene.file.string() + " with " + std::to_string(s.variants.size()) + " variants>";
       });
   m.def(
-      "load_scene",
+      "read_scene",
       [](const std::filesystem::path& file, const Overrides& overrides) {
         return SceneObject(load_scene(file, overrides_of(overrides)));
       },
       "file"_a, "overrides"_a = Overrides{}, doc("load_scene"));
   m.def(
-      "parse_scene",
+      "read_scene_text",
       [](std::string_view text, const std::string& name, const std::filesystem::path& base,
          const Overrides& overrides) { return SceneObject(parse_scene(text, name, base, overrides_of(overrides))); },
       "text"_a, "name"_a = "scene", "base"_a = std::filesystem::path("."), "overrides"_a = Overrides{},
