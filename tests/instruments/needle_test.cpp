@@ -256,8 +256,10 @@ TEST(Needle, BevelSteers) {
     run_to(run, run.end);
     return run.needle->centre_line().back().y;
   };
-  EXPECT_GT(aside(0.3, 200e9), 2e-4);
-  EXPECT_NEAR(aside(0.0, 200e9), 0.0, 2e-5);  // the mesh is not quite symmetric
+  const double plain = aside(0.0, 200e9);
+  EXPECT_GT(aside(0.3, 200e9), plain + 2e-4);
+  EXPECT_NEAR(plain, 0.0,
+              6e-5);  // the mesh is not quite symmetric: 0.03 to 0.06 mm over steps of 20 µs to the automatic one
   EXPECT_EQ(aside(0.3, {}), 0.0);
 }
 

@@ -1,6 +1,7 @@
 // A shape's distance is that to its surface, negative inside, with its gradient as normal; what is no shape is refused.
 #include <random>
 
+#include "glisson/instruments/tool_motion.h"
 #include "instruments/contact/shape.h"
 #include "instruments/contact_scenes.h"
 

@@ -138,7 +138,7 @@ class Needle final : public Instrument {
 
   NeedleStage stage() const;
   double inserted_length() const;   ///< of the shaft in tissue [m]
-  double tip_force() const;         ///< force of the tip along the needle [N]
+  double tip_force() const;         ///< force of the tip along the needle [N]; no step shows in it (docs/needles.md)
   std::vector<Vec3d> path() const;  ///< material points from the surface to the deepest, present positions [m]
   const NeedleOptions& options() const;
 
@@ -147,8 +147,10 @@ class Needle final : public Instrument {
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;
+  void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;
+  void between_steps(Simulation& simulation) override;
   void archive(Archive& ar) override;
 
  private:

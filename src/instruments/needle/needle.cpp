@@ -77,6 +77,7 @@ struct Needle::Solver {
   std::vector<double> along_it(const Eigen::MatrixXd& W);
 
  private:
+  double tip_slip() const;
   Eigen::MatrixXd wanted_across(std::size_t held, const Vec3d& bevel, const Eigen::MatrixXd& W,
                                 const Eigen::MatrixXd& C) const;
   void bend(std::span<const Vec3d> impulse, const Eigen::MatrixXd& C);
@@ -167,6 +168,16 @@ shaft::AxialLimit Needle::Solver::limit_of(std::size_t row) const {
           .tip_limit = 0.0};
 }
 
+/// Speed of the tip into the path's end after this step: with g = that overlap, g̈ = −2 ġ/τ − g/τ² [Baumgarte1972], ġ and g
+/// taken at the end of the step. A tip that is still before it may go up to it.
+double Needle::Solver::tip_slip() const {
+  const double speed = dot(needle_velocity() - s.tip_velocity, d), tau = s.wave_time;
+  const auto slowed = [&](double v, double time) { return v / ((1.0 + time / tau) * (1.0 + time / tau)); };
+  if (tip_gap <= 0.0) return slowed(speed + h * tip_gap / (tau * tau), h);
+  const double touching = speed > 0.0 ? std::max(0.0, h - tip_gap / speed) : 0.0;
+  return std::max(tip_gap / h, slowed(speed, touching));
+}
+
 /// Impulses along the needle, per row.
 std::vector<double> Needle::Solver::along_it(const Eigen::MatrixXd& W) {
   std::vector<double> speed, p;
@@ -175,7 +186,7 @@ std::vector<double> Needle::Solver::along_it(const Eigen::MatrixXd& W) {
   for (std::size_t j = 0; j < all.size(); ++j) {
     const bool is_tip = j >= node.size();
     speed.push_back(dot(needle_velocity() - all[j]->velocity, d));
-    if (is_tip) speed.back() -= tip_gap * (tip_gap > 0.0 ? 1.0 : kPullBack) / h;
+    if (is_tip) speed.back() -= tip_slip();
     limits.push_back(limit_of(j));
     p.push_back(again * (is_tip ? s.tip_along : s.along[node[j]]));
   }
@@ -188,6 +199,11 @@ std::vector<double> Needle::Solver::along_it(const Eigen::MatrixXd& W) {
   s.tip_along = has_tip ? p.back() : 0.0;
   s.tip_cuts = has_tip && s.stage == NeedleStage::inside && slips.back() != 0;
   return p;
+}
+
+void Needle::add_forces(const InteractionStep& step) {
+  State& s = *state_;
+  if (s.stage != NeedleStage::outside && shaft::read(step, s.tip)) s.tip_velocity = s.tip.velocity;
 }
 
 void Needle::constrain(const InteractionStep& step) {

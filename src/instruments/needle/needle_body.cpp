@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "glisson/simulation/simulation.h"
 #include "instruments/needle/needle_state.h"
 
 namespace glisson {
@@ -129,16 +130,28 @@ std::span<const std::uint32_t> Needle::reach(double, double) {
   return s.wanted;
 }
 
+/// The tissue that the tip meets may change at any time, and with it how fast it takes up a motion.
+void Needle::between_steps(Simulation& simulation) {
+  State& s = *state_;
+  if (s.stage == NeedleStage::outside) return;
+  const Tissue& tissue = simulation.tissue(s.region);
+  s.wave_time = s.options.zone * std::sqrt(tissue.density / tissue.lame().mu);
+}
+
 void Needle::archive(Archive& ar) {
   State& s = *state_;
   archive_motion(ar);
   ar(s.stage, s.look, s.named_around, s.tip.rest, s.tip_along, s.bend_tip, s.tip_cuts, s.tip_out, s.withdraws);
-  ar(s.region, s.next_region, s.step_h, s.pressing, s.drop);
+  ar(s.region, s.next_region, s.step_h, s.wave_time, s.pressing, s.drop);
   std::vector<Vec3d> path;
   for (const shaft::Row& node : s.nodes) path.push_back(node.rest);
   ar(path, s.slips, s.along, s.bend);
   ar.all_below(s.entry_triangles, s.surface.size());
   if (!ar.reads()) return;
+  const std::vector<int>& regions = s.mesh->regions;
+  const bool known =
+      regions.empty() ? s.region == 0 : std::find(regions.begin(), regions.end(), s.region) != regions.end();
+  ar.check(s.stage == NeedleStage::outside || (known && s.wave_time > 0.0));
   ar.check(s.slips.size() == path.size() && s.along.size() == path.size() && s.bend.size() <= path.size());
   s.mobility.forget();
   s.nodes.assign(path.size(), {});

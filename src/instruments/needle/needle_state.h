@@ -65,6 +65,8 @@ struct Needle::State {
   std::vector<double> along;      ///< per node: impulse along the needle in the last step [N s]
   shaft::MobilityMatrix mobility;
   double tip_along = 0.0;          ///< the same of the tip
+  Vec3d tip_velocity{};            ///< of the tissue at the tip before the step [m/s]
+  double wave_time = 0.0;          ///< that a shear wave needs across the zone there [s]
   bool tip_cuts = false;           ///< in the last step
   bool tip_out = false;            ///< on the far side of the body
   int region = 0;                  ///< that the tip is in

@@ -11,9 +11,10 @@
 namespace glisson {
 namespace {
 
-constexpr int kSearches = 4;          ///< of the rest position of the tip, a step
-constexpr int kBisections = 12;       ///< of a region's boundary
-constexpr double kClose = 1e-7;       ///< of the rest position of the tip [m]
+constexpr int kSearches = 4;     ///< of the rest position of the tip, a step
+constexpr int kBisections = 12;  ///< of a region's boundary
+constexpr double kClose = 1e-7;  ///< of the rest position of the tip [m]
+1e-6;  ///< of the zone: nearer it touches, so that rounding does not choose the step of contact
 constexpr double kLetGo = 0.05;       ///< of the zone: a tip that far off the surface has let go of it
 constexpr double kRise = 0.02;        ///< of the force of puncture: a rise by this ends the drop
 constexpr double kSmoothing = 0.01;   ///< of the force for that [s]
@@ -83,7 +84,7 @@ void Needle::look_for_contact(const InteractionStep& step) {
   s.next_region.reset();
   s.pressing = {};
   const auto below = s.locator->locate(first->rest + direction() * (1e-3 * s.options.zone));
-  s.region = below ? s.mesh->region_of(below->tet) : 0;
+  s.region = s.mesh->region_of(below ? below->tet : 0);
 }
 
 /// The tip on the unbroken surface: it may break it, or let go.
