@@ -19,6 +19,7 @@ struct Insertion {
   Vec3d start{0.0, 0.0, 0.0405};
   double inner_boundary = -1.0;  ///< height below which the tissue is of region 1 [m]; −1: none
   SimulationOptions options{};
+  Pose frame{};  ///< by which all of it is turned and moved
 
   Insertion() {
     needle.rupture.force = 0.3;
@@ -53,20 +54,28 @@ inline TetMesh mesh_of(const Insertion& o) {
 }
 
 inline Inserted insert(const Insertion& o) {
-  const TetMesh mesh = mesh_of(o);
+  TetMesh mesh = mesh_of(o);
   Tissue tissue;
   tissue.youngs_modulus = o.youngs_modulus;
   tissue.poisson_ratio = 0.45;
   tissue.maxwell = o.maxwell;
   tissue.maxwell_part = MaxwellPart::all;
-  Simulation simulation(mesh, {{0, tissue}, {1, tissue}}, o.options);
   std::vector<std::uint32_t> held = mesh.vertex_sets.at("bottom");
   for (const std::uint32_t v : mesh.vertex_sets.at("wall")) {
     if (mesh.vertices[v].z > 1e-9) held.push_back(v);
   }
+  const auto turned = [&o](const Vec3d& x) { return o.frame.axes * x; };
+  for (Vec3d& x : mesh.vertices) x = turned(x) + o.frame.position;
+  std::vector<Stroke> strokes = o.strokes;
+  for (Stroke& stroke : strokes) stroke.to = turned(stroke.to);
+  NeedleOptions options = o.needle;
+  options.direction = turned(options.direction);
+  options.bevel_side = turned(options.bevel_side);
+  Simulation simulation(mesh, {{0, tissue}, {1, tissue}}, o.options);
   const ConstraintId support = simulation.fix(held);
-  const ToolPath path = stroke_path({.start = 0.0, .strokes = o.strokes});
-  auto needle = std::make_shared<Needle>(o.needle, std::make_shared<PathDriver>(Pose{o.start}, path));
+  const ToolPath path = stroke_path({.start = 0.0, .strokes = strokes});
+  const Pose start{turned(o.start) + o.frame.position};
+  auto needle = std::make_shared<Needle>(options, std::make_shared<PathDriver>(start, path));
   simulation.attach(needle);
   return {std::move(simulation), std::move(needle), support, *path.end};
 }

@@ -48,7 +48,7 @@ double Needle::State::tip_limit() const {
 }
 
 bool Needle::State::place(shaft::Row& row, const Vec3d& rest) const {
-  std::vector<VertexWeight> weights = zone_weights(*locator, *mesh, rest, options.zone);
+  std::vector<VertexWeight> weights = zone_weights(*locator, *mesh, rest, options.zone, zone_axes);
   if (weights.empty()) return false;
   row.rest = rest;
   row.weights = std::move(weights);
@@ -64,6 +64,7 @@ void Needle::State::forget_forces(double h) {
 
 /// The needle comes from outside: between the hand and the tip there is no tissue yet.
 void Needle::attached(const BodyView& body, double) {
+  state_->zone_axes = zone_axes(body.mesh, direction());
   body_changed(body, {});
   const Vec3d& tip = pose_.position;
   const double length = state_->options.length;

@@ -51,6 +51,7 @@ struct Needle::State {
   const TetMesh* mesh = nullptr;
   std::unique_ptr<detail::TetLocator> locator;
   std::vector<Triangle> surface;
+  Mat3d zone_axes = identity<double>();
 
   // vertices at hand
   std::vector<std::uint32_t> wanted;         ///< named by reach

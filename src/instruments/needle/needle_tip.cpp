@@ -14,7 +14,8 @@ namespace {
 constexpr int kSearches = 4;     ///< of the rest position of the tip, a step
 constexpr int kBisections = 12;  ///< of a region's boundary
 constexpr double kClose = 1e-7;  ///< of the rest position of the tip [m]
-1e-6;  ///< of the zone: nearer it touches, so that rounding does not choose the step of contact
+constexpr double kTouch =
+    1e-6;  ///< of the zone: nearer it touches, so that rounding does not choose the step of contact
 constexpr double kLetGo = 0.05;       ///< of the zone: a tip that far off the surface has let go of it
 constexpr double kRise = 0.02;        ///< of the force of puncture: a rise by this ends the drop
 constexpr double kSmoothing = 0.01;   ///< of the force for that [s]
@@ -65,7 +66,7 @@ void Needle::look_for_contact(const InteractionStep& step) {
     if (hit && hit->way >= 0.0 && (!first || hit->way < first->way)) first = hit;
   }
   shaft::Row met;
-  if (!first || first->way > s.options.length || !s.place(met, first->rest)) return;
+  if (!first || first->way > s.options.length + kTouch * s.options.zone || !s.place(met, first->rest)) return;
   s.look = true;
   const bool hole = !s.nodes.empty() && norm(s.nodes.front().rest - first->rest) < s.options.diameter;
   add_event(step.time + step.h, depth(), "contact");

@@ -40,12 +40,12 @@ std::array<RulePoint, 28> ball_rule() {
 }  // namespace
 
 std::vector<VertexWeight> zone_weights(const detail::TetLocator& locator, const TetMesh& mesh, const Vec3d& x,
-                                       double radius) {
+                                       double radius, const Mat3d& axes) {
   static const std::array<RulePoint, 28> rule = ball_rule();
   std::vector<VertexWeight> weights;
   double sum = 0.0;
   for (const RulePoint& point : rule) {
-    const auto found = locator.locate(x + point.at * radius);
+    const auto found = locator.locate(x + axes * point.at * radius);
     if (!found) continue;
     for (std::size_t a = 0; a < 4; ++a) {
       weights.push_back({mesh.tets[found->tet][a], point.weight * found->weights[a]});
@@ -61,6 +61,28 @@ std::vector<VertexWeight> zone_weights(const detail::TetLocator& locator, const 
     joined.back().weight += w.weight / sum;
   }
   return joined;
+}
+
+Mat3d zone_axes(const TetMesh& mesh, const Vec3d& direction) {
+  constexpr double kAcross = 0.3;  // of an edge's length: the first edge with more across the needle is taken
+  const Tet& tet = mesh.tets.front();
+  Vec3d side;
+  for (std::size_t a = 1; a < 4; ++a) {
+    const Vec3d edge = mesh.vertices[tet[a]] - mesh.vertices[tet[0]];
+    const Vec3d across = edge - direction * dot(edge, direction);
+    const bool enough = norm(across) > kAcross * norm(edge);
+    if (enough || norm(across) > norm(side)) side = across;
+    if (enough) break;
+  }
+  side = side * (1.0 / norm(side));
+  const Vec3d third = cross(direction, side);
+  Mat3d axes;
+  for (std::size_t i = 0; i < 3; ++i) {
+    axes(i, 0) = side[i];
+    axes(i, 1) = third[i];
+    axes(i, 2) = direction[i];
+  }
+  return axes;
 }
 
 }  // namespace glisson

@@ -4,7 +4,8 @@
 //
 // A force at X acts on vertex i by w_i. Where the mesh is finer than R the mean hardly knows it; where it is coarser, w
 // becomes the barycentric coordinates of X. What of the ball lies outside the body does not count. The integral is a
-// rule of 28 points, exact for polynomials of degree 5 in a body without boundary: two radii, 14 directions each.
+// rule of 28 points, exact for polynomials of degree 5 in a body without boundary: two radii, 14 directions each. The directions
+// follow the needle and the mesh, so that a scene that is turned stays the same.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,11 @@ struct VertexWeight {
 };
 
 /// Weights of the mean around X, ascending by vertex; empty where the ball does not meet the body.
-/// @param x  rest position [m], @param radius  R [m]
+/// @param x  rest position [m], @param radius  R [m], @param axes  of the rule, as columns
 std::vector<VertexWeight> zone_weights(const detail::TetLocator& locator, const TetMesh& mesh, const Vec3d& x,
-                                       double radius);
+                                       double radius, const Mat3d& axes = identity<double>());
+
+/// Axes for a needle along `direction`, a unit vector, which is the third; the first is across it along an edge of the mesh.
+Mat3d zone_axes(const TetMesh& mesh, const Vec3d& direction);
 
 }  // namespace glisson
