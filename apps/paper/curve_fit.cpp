@@ -83,6 +83,22 @@ double interpolate(std::span<const double> x, std::span<const double> y, double 
   return y[i - 1] + (y[i] - y[i - 1]) * (at - x[i - 1]) / (x[i] - x[i - 1]);
 }
 
+std::vector<Riser> risers(std::span<const double> y) {
+  std::vector<double> increments(y.size());
+  std::adjacent_difference(y.begin(), y.end(), increments.begin());
+  increments.erase(increments.begin());
+  const double pace = median(increments);
+  std::vector<Riser> found;
+  for (std::size_t i = 0; i < increments.size(); ++i) {
+    if (increments[i] <= 2.0 * pace) continue;
+    if (found.empty() || i - found.back().last > 3) found.push_back({i, i, 0.0});
+    found.back().last = i;
+  }
+  for (Riser& r : found) r.height = y[r.last + 1] - y[r.first] - static_cast<double>(r.last + 1 - r.first) * pace;
+  std::erase_if(found, [&](const Riser& r) { return r.height < 0.02 * y.back(); });
+  return found;
+}
+
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;

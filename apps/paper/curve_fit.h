@@ -1,4 +1,4 @@
-// curve_fit.h — polynomials through force curves, and how well they fit.
+// curve_fit.h — polynomials through force curves, and how well they fit; the risers of a staircase.
 #pragma once
 
 #include <span>
@@ -19,6 +19,16 @@ PolynomialFit fit_polynomial(std::span<const double> x, std::span<const double> 
 
 /// y at `at` by straight lines between points of increasing x; the first or last y outside them.
 double interpolate(std::span<const double> x, std::span<const double> y, double at);
+
+/// A stretch of a curve of even samples that climbs by more than twice the median increment; stretches with at most two
+/// slower increments between them are one.
+struct Riser {
+  std::size_t first, last;  ///< increments y[i + 1] − y[i]
+  double height;            ///< beyond the median pace, in units of y
+};
+
+/// The risers of at least a fiftieth of the last y: a staircase has several, a smooth curve none.
+std::vector<Riser> risers(std::span<const double> y);
 
 /// The middle value. @param values  one or more
 double median(std::vector<double> values);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "paper/curve_fit.h"
@@ -68,6 +70,23 @@ nlohmann::json staircase_check(const Variant& variant) {
       fmt::format("{} of {} force steps above {:.1f} mN; the other {} time steps grow by {:.1f} mN at most",
                   with_crossing, steps, step / kMilli, calm, largest_calm / kMilli),
       "all of them [Schwartz2002, fig. 2]", steps > 0 && with_crossing == steps);
+}
+
+nlohmann::json risers_check(const VariantRecorder& run) {
+  const auto& time = run.column("time_s");
+  const auto start = std::upper_bound(time.begin(), time.end(), kTransient_s) - time.begin();
+  const std::span<const double> force = std::span(run.column("force_N")).subspan(static_cast<std::size_t>(start));
+  const std::vector<Riser> found = risers(force);
+  const bool falls = std::adjacent_find(force.begin(), force.end(), std::greater<>{}) != force.end();
+  double height = 0.0;
+  for (const Riser& r : found) height += r.height;
+  return check_json(
+      "By the paper's step and raw mean ratio, under a heavy drag, the force of tissue 1 is a staircase (from 1 mm on; "
+      "a "
+      "riser climbs faster than twice the median pace, by 2 % of the last force at least)",
+      fmt::format("{} risers with {:.0f} % of the last force, {}", found.size(), 100.0 * height / force.back(),
+                  falls ? "and it falls between them" : "no fall between them"),
+      "five risers or more, no fall [Schwartz2002, fig. 2]", found.size() >= 5 && !falls);
 }
 
 /// Keeps the last elastic force along the tool's direction, and the depth.
@@ -151,6 +170,8 @@ SceneExtras figure2_extras(const Scene& scene, const Finished& runs) {
     extras.checks.push_back(slow_press_check(variant_named(scene, "linear")));
   }
   if (runs.contains("tissue1_damped")) extras.checks.push_back(staircase_check(variant_named(scene, "tissue1_damped")));
+  if (const auto stairs = runs.find("tissue1_raw"); stairs != runs.end())
+    extras.checks.push_back(risers_check(*stairs->second));
   if (const auto tissue2 = runs.find("tissue2"); tissue2 != runs.end()) add_tissue2(extras, *tissue2->second);
   return extras;
 }

@@ -43,5 +43,23 @@ TEST(CurveFit, InterpolatesByLines) {
   EXPECT_DOUBLE_EQ(median({4, 1, 3, 2}), 2.5);
 }
 
+// A line has no risers; one with two jumps, the second over two samples, has those two, at their places and heights.
+TEST(CurveFit, FindsTheRisersOfAStaircase) {
+  std::vector<double> line, stairs;
+  for (int i = 0; i <= 100; ++i) {
+    line.push_back(0.01 * i);
+    stairs.push_back(0.01 * i + (i > 30 ? 0.2 : 0.0) + (i > 60 ? 0.1 : 0.0) + (i > 62 ? 0.1 : 0.0));
+  }
+  EXPECT_TRUE(risers(line).empty());
+  const std::vector<Riser> found = risers(stairs);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].first, 30U);
+  EXPECT_EQ(found[0].last, 30U);
+  EXPECT_NEAR(found[0].height, 0.2, 1e-12);
+  EXPECT_EQ(found[1].first, 60U);
+  EXPECT_EQ(found[1].last, 62U);
+  EXPECT_NEAR(found[1].height, 0.2, 1e-12);
+}
+
 }  // namespace
 }  // namespace glisson::app

@@ -4,8 +4,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "material/reference/reference.h"
+#include "paper/curve_fit.h"
 #include "support/bodies.h"
 #include "support/must_step.h"
 #include "support/scene_runs.h"
@@ -118,6 +120,71 @@ TEST(Figure2, StepsOfTissue1AreTetsCrossingTheThreshold) {
     EXPECT_LT(std::copysign(1.0, jump) * without_crossing, 0.5 * std::abs(jump)) << "time step " << i;
   }
   EXPECT_GE(steps, 5) << "steps of more than " << large << " N";
+}
+
+/// Forces of a run from a tenth of a second on, after the start at full speed.
+std::vector<double> after_the_start(const test::RunRecord& run) {
+  const auto start = std::upper_bound(run.time.begin(), run.time.end(), 0.1) - run.time.begin();
+  return {run.force.begin() + start, run.force.end()};
+}
+
+// Tissue 1 by the paper's raw mean ratio, in the paper's steps of 0.01 s, under a drag that keeps a tetrahedron from
+// falling back: a staircase of at least five risers that never falls and climbs between them at the pace of a linear
+// tissue under the same drag, which has none. Without the drag the force falls again and again, so that the risers are no
+// staircase.
+TEST(Figure2, Tissue1OfTheRawRatioIsAStaircase) {
+  const Scene scene = test::shipped_scene("paper/figure2.toml");
+  const Variant& shipped = variant(scene, "tissue1_raw");
+  ASSERT_EQ(shipped.simulation.step, 0.01);
+  const std::vector<double> force = after_the_start(test::run_recorded(shipped));
+  const std::vector<app::Riser> found = app::risers(force);
+  EXPECT_GE(found.size(), 5U);
+  double height = 0.0;
+  for (const app::Riser& r : found) height += r.height;
+  EXPECT_GT(height, 0.3 * force.back()) << "the share of the force that risers make";
+  EXPECT_TRUE(std::is_sorted(force.begin(), force.end())) << "a fall";
+
+  Variant smooth = shipped;
+  smooth.tissue.law = ConstantLaw{};
+  smooth.tissue.youngs_modulus = 3600.0;
+  const std::vector<double> line = after_the_start(test::run_recorded(smooth));
+  EXPECT_TRUE(app::risers(line).empty());
+  EXPECT_NEAR(force.back() - height, line.back(), 0.25 * line.back())
+      << "what is left of the staircase without its risers";
+
+  Variant light = shipped;
+  light.simulation.damping_rate = 20.0;
+  light.simulation.step.reset();
+  const std::vector<double> jitter = after_the_start(test::run_recorded(light));
+  EXPECT_FALSE(std::is_sorted(jitter.begin(), jitter.end()));
+}
+
+// With the raw mean ratio, 0.756 at rest on this mesh, a law starts from a modulus that is not the one at rest: E = 30 814
+// Pa is 3600 Pa at rest in every tetrahedron, while the step at rest is that of E. A table through the same line starts
+// from 3600 Pa, and gives the same force.
+TEST(Figure2, RawRatioStartsFromAModulusThatIsNotTheOneAtRest) {
+  const Scene scene = test::shipped_scene("paper/figure2.toml");
+  Variant raw = variant(scene, "tissue2_raw"), linear = variant(scene, "linear");
+  raw.simulation.precision = linear.simulation.precision = Precision::double_precision;
+  BuiltVariant a = build_variant(raw, {}), b = build_variant(linear, {});
+  std::mt19937 random(5);
+  const std::vector<Vec3d> small = test::random_field(a.simulation.mesh().vertices.size(), 1e-8, random);
+  for (BuiltVariant* built : {&a, &b}) built->simulation.set_state(small, std::vector<Vec3d>(small.size()));
+  const std::vector<double> of_raw = a.simulation.tet_fields().stress, of_linear = b.simulation.tet_fields().stress;
+  for (std::size_t i = 0; i < of_raw.size(); ++i)
+    ASSERT_NEAR(of_raw[i], of_linear[i], 1e-3 * std::abs(of_linear[i]) + 1e-6);
+  EXPECT_NEAR(a.simulation.stable_step() / b.simulation.stable_step(), std::sqrt(3600.0 / 30814.3), 0.01);
+
+  Variant table = variant(scene, "tissue2_raw");
+  table.tissue.youngs_modulus = 3600.0;
+  table.tissue.law = TableLaw{{0.0, 30814.3 / 36000.0}, {30814.3, 0.0}};
+  const test::RunRecord line = test::run_recorded(variant(scene, "tissue2_raw")), points = test::run_recorded(table);
+  EXPECT_LT(points.summary.steps, line.summary.steps);
+  for (double t = 0.1; t < 1.5; t += 0.1) {
+    EXPECT_NEAR(points.at(t, points.force), line.at(t, line.force), 0.002 * line.force.back()) << t << " s";
+  }
+  EXPECT_GE(r_squared(line.depth, line.force, 2), 0.999) << "R² of a quadratic";
+  EXPECT_LT(r_squared(line.depth, line.force, 1), 0.995) << "R² of a line";
 }
 
 }  // namespace

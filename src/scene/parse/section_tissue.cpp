@@ -55,7 +55,9 @@ const SectionSpec& law_section() {
   static const SectionSpec section = [] {
     SectionSpec s;
     s.name = "tissue.law";
-    s.help = "Modulus M as a function of the local deformation x, selected by `kind`. M₀ is the modulus at rest.";
+    s.help =
+        "Modulus M as a function of the local deformation x, selected by `kind`. M₀ is the "
+        "tissue's own, M at x = 0: the modulus at rest, but not with `regular_mean_ratio`, which is not 0 at rest.";
     s.kinds = law_kinds(std::type_identity<StiffnessLaw>{});
     return s;
   }();
