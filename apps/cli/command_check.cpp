@@ -1,5 +1,6 @@
 // command_check.cpp — glisson check: what a scene means and what it would cost, from a tenth of a second of each variant.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <atomic>
@@ -8,8 +9,10 @@
 #include <string>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
 #include "cli/commands.h"
+#include "cli/edge_cells.h"
 #include "cli/exit_code.h"
 #include "cli/mesh_cache.h"
 #include "cli/progress.h"
@@ -36,6 +39,8 @@ struct CheckOptions {
 
 constexpr std::size_t kFew = 20;      // one tet in so many is what may keep the step short alone
 constexpr double kWorthSaying = 1.2;  // how many times as long a step would be without them
+
+constexpr double kCoarseEdge = 0.08, kFineEdge = 0.04;  // cells across a sharp edge, of its size (docs/contact.md)
 
 /// Stops a run at its first report of progress, and keeps what the run knew at its start.
 class Taste : public RunObserver {
@@ -96,6 +101,27 @@ std::string kind_word(const std::variant<T...>& what) {
   return std::visit(word, what);
 }
 
+/// That cells are too coarse for a sharp edge, and which would do.
+void print_edge(const Variant& v, const InstrumentSpec& instrument, const TetMesh& mesh) {
+  const std::optional<EdgeCells> cells = cells_under_edge(mesh, instrument);
+  if (!cells || cells->share() <= kCoarseEdge) return;
+  const double finer = cells->share() / kFineEdge;
+  say("  edge     \"{}\": cells of {:.3g} mm across its sharp edge are {:.2g} of its {} of {:.4g} mm, and its force "
+      "may be "
+      "wrong by\n           about that share; cells of {:.2g} mm there, {:.2g} of it, keep it within 2 %: use a mesh "
+      "graded "
+      "at the edge,\n           ",
+      instrument.name, 1e3 * cells->across, cells->share(),
+      kind_word(instrument.what) == Block::kName ? "half width" : "radius", 1e3 * cells->size,
+      1e3 * kFineEdge * cells->size, kFineEdge);
+  if (const auto* cylinder = std::get_if<CylinderOptions>(&v.mesh)) {
+    const double radial = std::ceil(finer * cylinder->radial_cells), axial = std::ceil(finer * cylinder->axial_cells);
+    say("radial_cells = {:.0f} and axial_cells = {:.0f} here ({:.2g} million tets), ", radial, axial,
+        18e-6 * radial * radial * axial);
+  }
+  say("or round the edge by a cell: edge_radius_mm = {:.2g}\n", 1e3 * cells->across);
+}
+
 void print_interactions(const Variant& v, const Taste& taste) {
   for (const CapsuleSpec& x : v.capsules) {
     say("  capsule  \"{}\" on {}: {:.4g} mm, E = {:.6g} Pa\n", x.options.name,
@@ -109,6 +135,7 @@ void print_interactions(const Variant& v, const Taste& taste) {
     const std::optional<double> end = make_driver(x)->end();
     say("  tool     \"{}\", a {}: {}{}\n", x.name, kind_word(x.what), kind_word(x.motion.how),
         end ? fmt::format(", until {:.4g} s", *end) : "");
+    print_edge(v, x, taste.mesh);
   }
 }
 
@@ -148,7 +175,23 @@ Cost cost_of(const Variant& v, const Taste& taste, const RunSummary& summary) {
 
 bool stiffens(const Tissue& t) {
   const bool law = !std::holds_alternative<ConstantLaw>(t.law) || t.lambda_law || t.mu_law;
-  return law || t.hyperelastic || t.kinematics == Kinematics::green;
+  return law || t.hyperelastic || t.fibres || t.kinematics == Kinematics::green;
+}
+
+/// What shortens an automatic step below that at rest; empty: nothing does.
+std::string shortens_step(const Variant& v) {
+  std::vector<std::string> causes;
+  if (stiffens(v.tissue) ||
+      std::any_of(v.regions.begin(), v.regions.end(), [](const auto& r) { return stiffens(r.tissue); }))
+    causes.push_back("tissue stiffens");
+  if (!v.capsules.empty()) causes.push_back("the capsule is stretched");
+  const auto any = [&]<class What>() {
+    return std::any_of(v.instruments.begin(), v.instruments.end(),
+                       [](const InstrumentSpec& x) { return std::holds_alternative<What>(x.what); });
+  };
+  if (any.template operator()<NeedleOptions>()) causes.push_back("the needle presses");
+  if (any.template operator()<BladeOptions>()) causes.push_back("the blade cuts");
+  return fmt::format("{}", fmt::join(causes, " and "));
 }
 
 /// Two digits, not rounded up: a step a little above the others' bound would give all of them mass.
@@ -157,8 +200,16 @@ double two_digits_down(double x) {
   return last * std::floor(x / last);
 }
 
-/// Which few tets keep an explicit step short, and what they cost.
-void print_limits(const Taste& taste) {
+/// How many times as long the stable step at rest is with mass added to the tets below a step.
+double growth_with_mass(const Variant& v, const MeshLoader& load, double step, double before) {
+  Variant scaled = v;
+  scaled.simulation.step.reset();
+  scaled.simulation.mass_scaling_step = step;
+  return build_variant(scaled, load).simulation.stable_step() / before;
+}
+
+/// Which few tets keep an explicit step short, and what mass for them alone gives.
+void print_limits(const Variant& v, const MeshLoader& load, const Taste& taste) {
   const MassScaling& added = taste.scaling;
   if (!added.tets.empty()) {
     say("  mass     {:.4g} g ({:.2g} % of the body's own) added to {} tets\n", 1e3 * added.added, 100.0 * added.share,
@@ -167,11 +218,13 @@ void print_limits(const Taste& taste) {
   if (taste.limits.empty()) return;
   const LimitingTet &first = taste.limits.front(), &others = taste.limits.back();
   if (others.step < kWorthSaying * first.step) return;
+  const double step = two_digits_down(others.step), growth = growth_with_mass(v, load, step, taste.stable_step_s);
+  if (growth < kWorthSaying) return;  // bounds of single tets differ more than the step of the body does
   const auto few = std::count_if(taste.limits.begin(), taste.limits.end(),
                                  [&](const LimitingTet& t) { return t.step < 0.95 * others.step; });
-  say("  limits   {} of the tets, first tet {} with altitude {:.3g} mm, make steps {:.2g} times as short as the others "
-      "need;\n           mass_scaling_step_s = {:.2g} adds mass only to these\n",
-      few, first.tet, 1e3 * first.altitude, others.step / first.step, two_digits_down(others.step));
+  say("  limits   {} of the tets, first tet {} with altitude {:.3g} mm, keep the step short;\n           "
+      "mass_scaling_step_s = {:.2g} adds mass only to these and makes it {:.2g} times as long at rest\n",
+      few, first.tet, 1e3 * first.altitude, step, growth);
 }
 
 /// The implicit integrators compute in double, whatever the scene says.
@@ -179,16 +232,19 @@ bool in_single(const Variant& v, const Taste& taste) {
   return v.simulation.precision == Precision::single_precision && std::isfinite(taste.stable_step_s);
 }
 
-void print_time(const Variant& v, const Taste& taste, const Cost& cost, const RunSummary& summary) {
-  const bool automatic = !v.simulation.step;
+void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, const Cost& cost,
+                const RunSummary& summary) {
+  const bool explicit_steps = std::isfinite(taste.stable_step_s), automatic = !v.simulation.step;
   say("  step     {:.4g} s{}, {}\n", taste.step_s, automatic ? " (auto)" : " (given)",
-      std::isfinite(taste.stable_step_s) ? fmt::format("stable below {:.4g} s at rest", taste.stable_step_s)
-                                         : "stable at any step");
-  print_limits(taste);
+      explicit_steps ? fmt::format("stable below {:.4g} s at rest", taste.stable_step_s) : "stable at any step");
+  print_limits(v, load, taste);
+  const std::string shorter = automatic && explicit_steps ? shortens_step(v) : std::string{};
   say("  run      {:.6g} s simulated, {:.0f} steps{}, about {} ({:.0f} ns per tet and step, {})\n",
       std::min(run_duration(v), cost.steps * taste.step_s), cost.steps,
-      automatic && stiffens(v.tissue) ? " or more as the tissue stiffens" : "", duration_text(cost.wall_s),
-      summary.ns_per_tet_step, in_single(v, taste) ? "single precision" : "double precision");
+      shorter.empty() ? shorter
+                      : fmt::format(" at the step at rest, more as {} (the shipped scenes: up to 3.8 times)", shorter),
+      duration_text(cost.wall_s) + (shorter.empty() ? "" : " or more"), summary.ns_per_tet_step,
+      in_single(v, taste) ? "single precision" : "double precision");
 }
 
 int check(const CheckOptions& options) {
@@ -202,7 +258,7 @@ int check(const CheckOptions& options) {
     const Cost cost = cost_of(variant, taste, summary);
     say("\n{}\n", variant.label == variant.name ? variant.name : variant.name + " — " + variant.label);
     print_body(variant, taste);
-    print_time(variant, taste, cost, summary);
+    print_time(variant, meshes.loader(), taste, cost, summary);
     total += cost.wall_s;
     longest = std::max(longest, cost.wall_s);
   }

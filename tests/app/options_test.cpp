@@ -1,5 +1,8 @@
 // The options of `glisson run` and `glisson check`: what they change and what they must not change.
+#include <regex>
+
 #include "app/program.h"
+#include "support/places.h"
 
 namespace glisson::test {
 namespace {
@@ -105,6 +108,36 @@ TEST_F(Options, CheckForetellsTheSteps) {
   const double foretold = std::stod(text.substr(at + 13));
   ASSERT_THAT(run({"run", scene, "--out", "o", "--quiet"}), Exits(0));
   EXPECT_NEAR(foretold, read_json(folder_ / "o/main/summary.json")["steps"].get<double>(), 1.0);
+  EXPECT_EQ(text.find("at the step at rest"), std::string::npos) << text;
+}
+
+// Where tissue stiffens, in a region too, the number is that at the step at rest; check says so and why, the run makes more, and
+// the paper's tissues no more than check says of shipped scenes.
+TEST_F(Options, CheckSaysThatStepsAreThoseAtRest) {
+  const std::string law = "tissue.law = { kind = \"exponential\", amplitude_Pa = 3600, rate = 12 }\n";
+  write("whole.toml", small_scene("[[variant]]\nname = \"main\"\n" + law));
+  write("region.toml",
+        small_scene("[[region]]\nname = \"low\"\nsphere_m = { center = [0.01, 0.01, 0.01], radius = 1 }\n" + law));
+  const std::regex steps(
+      R"((\d+) steps at the step at rest, more as tissue stiffens \(the shipped scenes: up to ([\d.]+) times\), about .* or more)");
+  for (const std::string scene : {"whole", "region"}) {
+    const std::vector<std::string> deep{"--set", "tool.0.depth_mm=4"};
+    const std::string text = run({"check", scene + ".toml", deep[0], deep[1]}).out;
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(text, found, steps)) << text;
+    ASSERT_THAT(run({"run", scene + ".toml", deep[0], deep[1], "--out", scene, "--quiet"}), Exits(0));
+    EXPECT_GT(read_json(folder_ / scene / "main/summary.json")["steps"].get<double>(), 1.1 * std::stod(found[1]));
+  }
+  const std::string figure2 = shipped("scenes/paper/figure2.toml").string(), text = run({"check", figure2}).out;
+  ASSERT_THAT(run({"run", figure2, "--variant", "tissue1", "tissue2", "--out", "o", "--quiet"}), Exits(0));
+  for (const std::string name : {"tissue1", "tissue2"}) {
+    const std::string rest = text.substr(text.find("\n" + name + " — "));
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(rest, found, steps)) << rest;
+    const double made = read_json(folder_ / "o" / name / "summary.json")["steps"].get<double>();
+    EXPECT_GT(made, 1.1 * std::stod(found[1])) << name;
+    EXPECT_LE(made, std::stod(found[2]) * std::stod(found[1])) << name;
+  }
 }
 
 }  // namespace

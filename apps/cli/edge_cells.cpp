@@ -1,0 +1,112 @@
+// edge_cells.cpp — see edge_cells.h.
+#include "cli/edge_cells.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace glisson::app {
+namespace {
+
+/// A point of the edge and its outward normal, in the plane of the face.
+struct EdgePoint {
+  double x, y, normal_x, normal_y;
+};
+
+struct Edge {
+  std::vector<EdgePoint> points;
+  double size = 0.0, rounding = 0.0;  // [m]
+};
+
+Edge edge_of(const FlatPunch& punch) {
+  constexpr int kPoints = 32;
+  Edge edge{.points = {}, .size = punch.radius, .rounding = punch.edge_radius};
+  for (int i = 0; i < kPoints; ++i) {
+    const double angle = 2.0 * std::numbers::pi * (i + 0.5) / kPoints, c = std::cos(angle), s = std::sin(angle);
+    edge.points.push_back({punch.radius * c, punch.radius * s, c, s});
+  }
+  return edge;
+}
+
+Edge edge_of(const Block& block) {
+  constexpr int kPoints = 8;  // a side
+  const double a = 0.5 * block.size.x, b = 0.5 * block.size.y;
+  Edge edge{.points = {}, .size = std::min(a, b), .rounding = block.edge_radius};
+  for (int i = 0; i < kPoints; ++i) {
+    const double along = 2.0 * (i + 0.5) / kPoints - 1.0;
+    for (const double side : {-1.0, 1.0}) {
+      edge.points.push_back({side * a, along * b, side, 0.0});
+      edge.points.push_back({along * a, side * b, 0.0, side});
+    }
+  }
+  return edge;
+}
+
+template <class Other>
+Edge edge_of(const Other&) {
+  return {};
+}
+
+using Corners = std::array<Vec3d, 3>;  // of a surface triangle, in the instrument's own axes
+
+/// Whether the triangle lies over the point of the edge, seen along the tool.
+bool covers(const Corners& t, const EdgePoint& p) {
+  const auto turn = [&](const Vec3d& a, const Vec3d& b) {
+    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+  };
+  const double ab = turn(t[0], t[1]), bc = turn(t[1], t[2]), ca = turn(t[2], t[0]);
+  return std::min({ab, bc, ca}) >= 0.0 || std::max({ab, bc, ca}) <= 0.0;
+}
+
+/// Extent across the edge of the first triangle that the point would meet; 0: none.
+double extent_at(const EdgePoint& p, const std::vector<Corners>& surface) {
+  double highest = -std::numeric_limits<double>::infinity(), extent = 0.0;
+  for (const Corners& t : surface) {
+    const double height = std::max({t[0].z, t[1].z, t[2].z});
+    if (height <= highest || !covers(t, p)) continue;
+    highest = height;
+    const auto across = [&](const Vec3d& x) { return x.x * p.normal_x + x.y * p.normal_y; };
+    const auto [low, high] = std::minmax({across(t[0]), across(t[1]), across(t[2])});
+    extent = high - low;
+  }
+  return extent;
+}
+
+/// The surface in the axes of the instrument at its start, whose own z axis points back along its direction.
+std::vector<Corners> seen_from(const Pose& pose, const TetMesh& mesh) {
+  std::vector<Corners> surface;
+  for (const Triangle& t : boundary_triangles(mesh)) {
+    Corners corners{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3d from = mesh.vertices[t[i]] - pose.position;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        for (std::size_t k = 0; k < 3; ++k) corners[i][axis] += pose.axes(k, axis) * from[k];
+    }
+    surface.push_back(corners);
+  }
+  return surface;
+}
+
+}  // namespace
+
+std::optional<EdgeCells> cells_under_edge(const TetMesh& mesh, const InstrumentSpec& instrument) {
+  const auto* contact = std::get_if<ContactOptions>(&instrument.what);
+  if (!contact) return {};
+  const Edge edge = std::visit([](const auto& shape) { return edge_of(shape); }, contact->shape);
+  if (edge.points.empty()) return {};
+  const std::vector<Corners> surface = seen_from(start_pose(instrument), mesh);
+  std::vector<double> extents;
+  for (const EdgePoint& p : edge.points) {
+    if (const double extent = extent_at(p, surface); extent > 0.0) extents.push_back(extent);
+  }
+  if (extents.empty()) return {};
+  const auto middle = extents.begin() + static_cast<std::ptrdiff_t>(extents.size() / 2);
+  std::nth_element(extents.begin(), middle, extents.end());
+  if (*middle <= edge.rounding) return {};
+  return EdgeCells{.across = *middle, .size = edge.size};
+}
+
+}  // namespace glisson::app
