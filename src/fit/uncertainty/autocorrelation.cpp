@@ -13,25 +13,6 @@ double product_at(std::span<const double> x, std::size_t lag) {
   return sum;
 }
 
-/// Looks at no more lags than the sequence lasts: a series of n samples would cost n² otherwise.
-double positive_sequence_time(std::span<const double> x, double squares) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k + 1 < x.size(); k += 2) {
-    const double pair = product_at(x, k) + product_at(x, k + 1);
-    if (pair <= 0.0) break;
-    sum += pair / squares;
-  }
-  return 2.0 * sum - 1.0;
-}
-
-double first_order_time(double rho, double n, double parameters) {
-  // ρ̂ = ρ − (2ρ + p (1 + ρ)) / n, solved for ρ
-  const double share = 1.0 - (2.0 + parameters) / n;
-  if (share <= 0.0) return n;
-  const double corrected = (rho + parameters / n) / share;
-  return corrected >= 1.0 ? n : (1.0 + corrected) / (1.0 - corrected);
-}
-
 }  // namespace
 
 std::vector<double> autocorrelation(std::span<const double> series, std::size_t lags) {
@@ -42,14 +23,6 @@ std::vector<double> autocorrelation(std::span<const double> series, std::size_t 
   const double squares = rho[0];
   for (double& r : rho) r /= squares;
   return rho;
-}
-
-double correlation_time(std::span<const double> series, double parameters) {
-  const auto n = static_cast<double>(series.size());
-  const double squares = product_at(series, 0);
-  if (series.size() < 3 || squares == 0.0) return 1.0;
-  const double first = first_order_time(product_at(series, 1) / squares, n, parameters);
-  return std::clamp(std::max(positive_sequence_time(series, squares), first), 1.0, n);
 }
 
 double independence_probability(const std::vector<std::vector<double>>& series) {

@@ -4,8 +4,8 @@
 // and a direction without weight is reported, not divided by. What the noise is decides the rest:
 //
 //   independent      C = σ² (JᵀJ)⁻¹                                     residuals look like white noise
-//   autocorrelated   C = (JᵀJ)⁻¹ (Σ_c σ_c² τ_c J_cᵀJ_c) (JᵀJ)⁻¹         they swing: τ_c samples count as one
-//   by_curve         C = (JᵀJ)⁻¹ (Σ_c u_c u_cᵀ) (JᵀJ)⁻¹ (G − 1) / G     repetitions differ from one another
+//   autocorrelated   C = σ² (JᵀJ)⁻¹ JᵀVJ (JᵀJ)⁻¹                        they swing (residual_correlation.h)
+//   by_curve         C = (JᵀJ)⁻¹ (Σ_c u_c u_cᵀ) (JᵀJ)⁻¹ (G − 1) / G     G specimens, which differ from one another
 #pragma once
 
 #include <cstddef>
@@ -40,10 +40,9 @@ struct NoiseEstimate {
   std::string why;                         ///< a sentence: which of the three is used, on what evidence
   double variance = 0.0;                   ///< σ² of the scaled residuals
   std::size_t samples = 0;                 ///< residuals with weight
-  double effective = 0.0;                  ///< Σ_c n_c / τ_c
+  double effective = 0.0;                  ///< Σ_c n_c / τ_c, τ_c samples of a curve counting as one
   std::vector<double> effective_by_curve;  ///< n_c / τ_c; 0 for curves without weight
   double independence = 1.0;               ///< probability of such autocorrelations from independent samples
-  std::optional<double> common = {};  ///< probability of such differences between curves from one set of parameters
 };
 
 struct Covariance {
@@ -80,13 +79,14 @@ struct CovarianceOptions {
 
 /// Covariance, intervals by Student's t and correlations at an optimum.
 ///
-///   z_p ± t(N_eff − p) √C_pp, mapped to the parameter's unit (on a logarithmic scale the interval is lopsided)  [SeberWild1989]
-///   σ² = Σ ψ² / N · N_eff / (N_eff − p) / mean(ψ')², ψ the influence of the loss; squares: ψ = r, ψ' = 1         [Huber1981]
+///   z_p ± t √C_pp, mapped to the parameter's unit (on a logarithmic scale the interval is lopsided)              [SeberWild1989]
+///   σ² = Σ ψ² / (N − p) / mean(ψ')², ψ the influence of the loss; squares: ψ = r, ψ' = 1                         [Huber1981]
 ///   u_c = (I − J_cᵀJ_c (JᵀJ)⁻¹)⁻¹ J_cᵀr_c: the curves' own pull, freed of their part in the fit; t of G − 1      [BellMcCaffrey2002]
 ///
-/// by_curve is used with four curves or more that differ by more than their own noise explains, by the F test of
-/// [Chow1960] on a refit of each curve to first order; else autocorrelated, where [LjungBox1978] finds that the residuals are.
-/// Where a single set of parameters passes the first test, all curves count fully.
+/// by_curve is used where three curves or more each tell all that is determined: then an interval is that of the mean over
+/// specimens, the exact t-interval of their own estimates for a linear law, and a law's misfit, which they share, is not in
+/// it. Fewer curves say nothing of other specimens: their intervals are of noise and misfit, autocorrelated where
+/// [LjungBox1978] finds that residuals are.
 Covariance covariance(const Problem& problem, std::span<const double> scaled, const CovarianceOptions& options = {});
 
 }  // namespace glisson::fit

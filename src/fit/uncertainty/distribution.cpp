@@ -2,7 +2,6 @@
 #include "fit/uncertainty/distribution.h"
 
 #include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
 namespace glisson::fit {
@@ -17,10 +16,6 @@ double chi_squared_quantile(double probability, double freedom) {
 
 double chi_squared_tail(double x, double freedom) {
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), x));
-}
-
-double fisher_tail(double x, double freedom_above, double freedom_below) {
-  return boost::math::cdf(boost::math::complement(boost::math::fisher_f(freedom_above, freedom_below), x));
 }
 
 }  // namespace glisson::fit

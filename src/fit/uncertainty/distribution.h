@@ -14,7 +14,4 @@ double chi_squared_quantile(double probability, double freedom);
 /// P(X > x), X of the χ² distribution.
 double chi_squared_tail(double x, double freedom);
 
-/// P(X > x), X of Fisher's F distribution.
-double fisher_tail(double x, double freedom_above, double freedom_below);
-
 }  // namespace glisson::fit

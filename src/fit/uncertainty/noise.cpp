@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <ranges>
 
 #include "fit/uncertainty/autocorrelation.h"
 #include "fit/uncertainty/distribution.h"
@@ -13,7 +14,8 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
-constexpr std::size_t kFewestCurves = 4;
+constexpr std::size_t kFewestCurves = 3;
+constexpr double kOwnPart = 0.9;  ///< of what is known of a combination, that may come from one curve
 
 std::string format(const char* pattern, double a, double b) {
   char text[256];
@@ -41,7 +43,8 @@ NoiseStudy::NoiseStudy(const Problem& problem, const std::vector<double>& residu
       if (curve.weight > 0.0) slopes += psi.slope;
     }
     if (!(curve.weight > 0.0) || curve.size() == 0) continue;
-    parts_.push_back({static_cast<Eigen::Index>(problem.offset(c)), static_cast<Eigen::Index>(curve.size()), 1.0, c});
+    curves_.push_back({static_cast<Eigen::Index>(problem.offset(c)), static_cast<Eigen::Index>(curve.size())});
+    numbers_.push_back(c);
     samples_ += static_cast<double>(curve.size());
   }
   // a loss that bends down everywhere has no optimum there: the least is kept above zero
@@ -49,108 +52,73 @@ NoiseStudy::NoiseStudy(const Problem& problem, const std::vector<double>& residu
   scores_ /= mean_slope_;
 }
 
-void NoiseStudy::set_effective(NoiseKind kind) {
-  kind_ = kind;
-  effective_ = 0.0;
-  const double share =
-      static_cast<double>(jacobian_.cols()) / static_cast<double>(std::max<std::size_t>(parts_.size(), 1));
-  for (Part& part : parts_) {
-    part.time = kind == NoiseKind::independent ? 1.0 : correlation_time(series_of(rows(part)), share);
-    effective_ += static_cast<double>(part.size) / part.time;
-  }
-  const double left = std::max(effective_ - static_cast<double>(jacobian_.cols()), 1.0);
-  double squares = 0.0;
-  for (const Part& part : parts_) squares += rows(part).squaredNorm();
-  variance_ = samples_ > 0.0 ? squares / samples_ * std::max(effective_ / left, 1.0) : 0.0;
+/// What the curve's own pull leaves to the others: I − J_cᵀJ_c (JᵀJ)⁻¹.
+Matrix NoiseStudy::rest_of(const Rows& curve) const {
+  const Matrix j = block(curve);
+  return Matrix::Identity(j.cols(), j.cols()) - j.transpose() * j * inverse_;
 }
 
-double NoiseStudy::freedom() const {
-  if (kind_ == NoiseKind::by_curve) return static_cast<double>(parts_.size() - 1);
-  return std::max(effective_ - static_cast<double>(jacobian_.cols()), 1.0);
-}
-
-bool NoiseStudy::clusters_possible() const {
-  const auto n = jacobian_.cols();
-  if (n == 0 || parts_.size() < kFewestCurves || static_cast<Eigen::Index>(parts_.size()) <= n) return false;
-  return std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
-    // without this curve the others still determine everything
-    const Matrix j = block(part), rest = Matrix::Identity(n, n) - j.transpose() * j * inverse_;
-    return rest.partialPivLu().rcond() > 1e-8;
+/// Whether each combination is known from several curves.
+bool NoiseStudy::stand_alone() const {
+  if (jacobian_.cols() == 0 || curves_.size() < kFewestCurves) return false;
+  const Vector root = inverse_.diagonal().array().sqrt();
+  return std::ranges::all_of(curves_, [&](const Rows& curve) {
+    const Matrix j = block(curve) * root.asDiagonal();
+    return Eigen::SelfAdjointEigenSolver<Matrix>(j.transpose() * j, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff() <
+           kOwnPart;
   });
 }
 
-std::optional<double> NoiseStudy::common_probability() const {
-  double explained = 0.0, left = 0.0, ranks = 0.0, effective = 0.0;
-  for (const Part& part : parts_) {
-    Eigen::ColPivHouseholderQR<Matrix> qr(block(part));
-    qr.setThreshold(1e-5);
-    const Vector own = block(part) * qr.solve(rows(part));
-    const Vector rest = rows(part) - own;
-    const auto rank = static_cast<double>(qr.rank());
-    explained += own.squaredNorm();
-    left += rest.squaredNorm();
-    ranks += rank;
-    effective += static_cast<double>(part.size) / correlation_time(series_of(rest), rank);
+NoiseKind NoiseStudy::kind_of(const CovarianceOptions& options, NoiseEstimate& e) const {
+  const bool alone = stand_alone();
+  if (options.force) {
+    const bool refused = *options.force == NoiseKind::by_curve && !alone;
+    e.why = refused
+                ? "by curve was asked for, but some combination is known from fewer than three curves: autocorrelated"
+                : "as asked for";
+    return refused ? NoiseKind::autocorrelated : *options.force;
   }
-  const double above = ranks - static_cast<double>(jacobian_.cols()), below = effective - ranks;
-  if (above < 1.0 || below < 1.0 || left <= 0.0) return std::nullopt;
-  // left / below is σ² τ, the variance along one direction, from what each curve's own parameters leave
-  return fisher_tail((explained / above) / (left / below), above, below);
+  if (alone) {
+    e.why = "each of the " + std::to_string(curves_.size()) +
+            " curves counts as one sample: intervals are of the mean of specimens such as these";
+    return NoiseKind::by_curve;
+  }
+  const bool swings = e.independence < options.significance;
+  e.why = swings ? "the residuals are not independent (" + probability_text(e.independence) +
+                       "): " + format("%.0f samples count as %.1f", samples_, e.effective)
+                 : "the residuals look independent (" + probability_text(e.independence) + ")";
+  return swings ? NoiseKind::autocorrelated : NoiseKind::independent;
 }
 
 NoiseEstimate NoiseStudy::choose(const CovarianceOptions& options) {
   NoiseEstimate e;
   std::vector<std::vector<double>> series;
-  for (const Part& part : parts_) series.push_back(series_of(rows(part)));
+  for (const Rows& curve : curves_) series.push_back(series_of(of(curve)));
   e.independence = independence_probability(series);
-  const bool clusters = clusters_possible();
-  if (clusters) e.common = common_probability();
-  const std::string white = probability_text(e.independence);
-  if (options.force) {
-    const bool refused = *options.force == NoiseKind::by_curve && !clusters;
-    set_effective(refused ? NoiseKind::autocorrelated : *options.force);
-    e.why = refused ? "by curve was asked for, but needs four curves or more, and more than parameters: autocorrelated"
-                    : "as asked for";
-  } else if (clusters && (!e.common || *e.common < options.significance)) {
-    set_effective(NoiseKind::by_curve);
-    e.why = e.common ? "the curves differ by more than their own noise explains (" + probability_text(*e.common) +
-                           "): each curve counts as one sample"
-                     : "the residuals vary so slowly that each curve counts as one sample";
-  } else if (e.independence < options.significance) {
-    set_effective(NoiseKind::autocorrelated);
-    e.why = "the residuals are not independent (" + white +
-            "): " + format("%.0f samples count as %.1f", samples_, effective_);
-  } else {
-    set_effective(NoiseKind::independent);
-    e.why = "the residuals look independent (" + white + ")";
+  e.effective_by_curve.assign(problem_.curves().size(), 0.0);
+  const bool white = options.force ? *options.force == NoiseKind::independent : e.independence >= options.significance;
+  if (!white) correlation_ = ResidualCorrelation(scores_, jacobian_, curves_);
+  for (std::size_t c = 0; c < curves_.size(); ++c) {
+    const double samples = static_cast<double>(curves_[c].size) / correlation_.time(curves_[c].size);
+    e.effective_by_curve[numbers_[c]] = samples;
+    e.effective += samples;
   }
+  kind_ = kind_of(options, e);
+  const double left = samples_ - static_cast<double>(jacobian_.cols());
+  variance_ = white ? scores_.squaredNorm() / std::max(left, 1.0) : correlation_.variance();
   e.kind = kind_;
   e.variance = variance_;
   e.samples = static_cast<std::size_t>(samples_);
-  e.effective = effective_;
-  e.effective_by_curve.assign(problem_.curves().size(), 0.0);
-  for (const Part& part : parts_) e.effective_by_curve[part.curve] = static_cast<double>(part.size) / part.time;
   return e;
 }
 
-Matrix NoiseStudy::autocorrelated() const {
-  const auto n = jacobian_.cols();
-  const double left = std::max(effective_ - static_cast<double>(n), 1.0), factor = std::max(effective_ / left, 1.0);
-  Matrix middle = Matrix::Zero(n, n);
-  for (const Part& part : parts_) {
-    const double variance = rows(part).squaredNorm() / static_cast<double>(part.size) * factor;
-    middle += variance * part.time * block(part).transpose() * block(part);
-  }
-  return inverse_ * middle * inverse_;
-}
-
+/// u_c = (I − J_cᵀJ_c (JᵀJ)⁻¹)⁻¹ J_cᵀr_c over the curves.
 Matrix NoiseStudy::by_curve() const {
   const auto n = jacobian_.cols();
-  const auto curves = static_cast<double>(parts_.size());
+  const auto curves = static_cast<double>(curves_.size());
   Matrix middle = Matrix::Zero(n, n);
-  for (const Part& part : parts_) {
-    const Matrix j = block(part), rest = Matrix::Identity(n, n) - j.transpose() * j * inverse_;
-    const Vector pull = rest.partialPivLu().solve(j.transpose() * rows(part));
+  for (const Rows& curve : curves_) {
+    const Vector pull = rest_of(curve).partialPivLu().solve(block(curve).transpose() * of(curve));
     middle += pull * pull.transpose();
   }
   return inverse_ * middle * inverse_ * ((curves - 1.0) / curves);
@@ -161,11 +129,38 @@ Matrix NoiseStudy::covariance() const {
     case NoiseKind::independent:
       return variance_ * inverse_;
     case NoiseKind::autocorrelated:
-      return autocorrelated();
+      return variance_ * inverse_ * (jacobian_.transpose() * correlation_.times(jacobian_, curves_)) * inverse_;
     case NoiseKind::by_curve:
       return by_curve();
   }
   return inverse_;
+}
+
+/// Of the sandwich's variance of a combination, were residuals independent: G − 1 for curves that are alike
+/// [BellMcCaffrey2002]. With a the combination, v_c = (I − A J_cᵀJ_c)⁻¹ A a and w_c = J_c v_c it is (Σ λ)² / Σ λ² of the
+/// matrix w_cᵀ (δ_cd − J_c A J_dᵀ) w_d.
+double NoiseStudy::freedom_of(const Vector& combination) const {
+  const auto curves = static_cast<Eigen::Index>(curves_.size());
+  Matrix own(jacobian_.cols(), curves), parts = Matrix::Zero(curves, curves);
+  for (Eigen::Index c = 0; c < curves; ++c) {
+    const Matrix j = block(curves_[static_cast<std::size_t>(c)]), square = j.transpose() * j;
+    const Vector v =
+        rest_of(curves_[static_cast<std::size_t>(c)]).transpose().partialPivLu().solve(inverse_ * combination);
+    own.col(c) = square * v;
+    parts(c, c) = v.dot(own.col(c));
+  }
+  parts -= own.transpose() * inverse_ * own;
+  return std::max(parts.trace() * parts.trace() / std::max((parts * parts).trace(), 1e-300), 1.0);
+}
+
+double NoiseStudy::freedom() const {
+  const double left = std::max(samples_ - static_cast<double>(jacobian_.cols()), 1.0);
+  if (kind_ == NoiseKind::independent) return left;
+  if (kind_ == NoiseKind::autocorrelated) return correlation_.freedom(jacobian_, inverse_, curves_);
+  double least = static_cast<double>(curves_.size() - 1);
+  for (Eigen::Index p = 0; p < jacobian_.cols(); ++p)
+    least = std::min(least, freedom_of(Vector::Unit(jacobian_.cols(), p)));
+  return least;
 }
 
 }  // namespace glisson::fit

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fit/uncertainty/covariance.h"
+#include "fit/uncertainty/residual_correlation.h"
 
 namespace glisson::fit {
 
@@ -23,24 +24,21 @@ class NoiseStudy {
   double cost_unit() const { return variance_ * mean_slope_; }
 
  private:
-  struct Part {
-    Eigen::Index first = 0, size = 0;
-    double time = 1.0;  ///< τ
-    std::size_t curve = 0;
-  };
-  Eigen::VectorXd rows(const Part& part) const { return scores_.segment(part.first, part.size); }
-  Eigen::MatrixXd block(const Part& part) const { return jacobian_.middleRows(part.first, part.size); }
-  void set_effective(NoiseKind kind);
-  bool clusters_possible() const;
-  std::optional<double> common_probability() const;
-  Eigen::MatrixXd autocorrelated() const;
+  Eigen::VectorXd of(const Rows& curve) const { return scores_.segment(curve.first, curve.size); }
+  Eigen::MatrixXd block(const Rows& curve) const { return jacobian_.middleRows(curve.first, curve.size); }
+  NoiseKind kind_of(const CovarianceOptions& options, NoiseEstimate& e) const;
+  bool stand_alone() const;
+  Eigen::MatrixXd rest_of(const Rows& curve) const;
   Eigen::MatrixXd by_curve() const;
+  double freedom_of(const Eigen::VectorXd& combination) const;
 
   const Problem& problem_;
   Eigen::MatrixXd jacobian_, inverse_;
-  Eigen::VectorXd scores_;   ///< ψ / mean ψ': for squares the residuals
-  std::vector<Part> parts_;  ///< curves with weight
-  double samples_ = 0.0, effective_ = 0.0, variance_ = 0.0, mean_slope_ = 1.0;
+  Eigen::VectorXd scores_;            ///< ψ / mean ψ': for squares the residuals
+  std::vector<Rows> curves_;          ///< those with weight
+  std::vector<std::size_t> numbers_;  ///< of them in the problem
+  ResidualCorrelation correlation_;
+  double samples_ = 0.0, variance_ = 0.0, mean_slope_ = 1.0;
   NoiseKind kind_ = NoiseKind::independent;
 };
 
