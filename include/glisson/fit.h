@@ -59,8 +59,9 @@ struct ParameterResult {
   double value = 0.0;                                              ///< in the parameter's unit
   std::optional<double> sd;                                        ///< in the parameter's unit, by curvature
   std::optional<Interval> by_curvature, by_profile, by_bootstrap;  ///< of 95 %
-  std::string verdict;                                             ///< identified, weak, not identifiable, at bound
-  std::string words;                                               ///< the verdict in a sentence
+  std::optional<Interval> further;  ///< between which a further specimen's own value lies in 95 %; none: not known
+  std::string verdict;              ///< identified, negligible, weak, not identifiable, at bound
+  std::string words;                ///< the verdict in two sentences
 
   /// The interval to trust most: by profile, else by bootstrap, else by curvature.
   std::optional<Interval> ci95() const {
@@ -73,6 +74,8 @@ struct CurveResult {
   Curve curve;
   std::vector<double> fitted;  ///< force at its instants [N]; empty where the simulation failed
   double rms = 0.0;            ///< of fitted − measured [N]
+  /// Between which a further specimen's force lies in 95 %, at the same instants [N]; empty: not known.
+  std::vector<double> further_low, further_high;
 };
 
 /// Repetitions of one test.
@@ -109,7 +112,7 @@ struct LawResult {
   std::string name;
   int parameters = 0;                 ///< free ones
   double rms_fit = 0.0;               ///< [N]
-  std::optional<double> rms_heldout;  ///< [N]
+  std::optional<double> rms_heldout;  ///< of curves that its fit has not seen: held out, or left out in turn [N]
   double aic = 0.0, bic = 0.0;        ///< information criteria
   bool best = false;                  ///< the law that the result is of
   std::string words;

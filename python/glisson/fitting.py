@@ -22,14 +22,15 @@ Interval = tuple[float | None, float | None]
 
 @dataclass(frozen=True)
 class Parameter:
-    """A fitted parameter. Ends of `ci95` that the curves do not determine are None."""
+    """A fitted parameter. Ends of intervals that the curves do not determine are None."""
 
     name: str
     unit: str
     value: float
     sd: float | None
-    ci95: Interval | None
-    verdict: str  #: identified, weak, not identifiable, at bound
+    ci95: Interval | None  #: of the mean over specimens, with three curves or more
+    further95: Interval | None  #: of a further specimen's own value; None: too few curves
+    verdict: str  #: identified, negligible, weak, not identifiable, at bound
     words: str
 
 
@@ -45,6 +46,8 @@ class Curve:
     displacement: Array  #: [m]
     measured: Array  #: [N]
     fitted: Array  #: [N]; NaN where the simulation failed
+    further_low: Array  #: between these a further specimen's force lies in 95 % [N]; empty: not known
+    further_high: Array
     rms: float | None  #: of fitted − measured [N]
 
 
@@ -66,7 +69,13 @@ class FitResult:
         """By name."""
         rows = self._data["parameters"]
         kept = ("name", "unit", "value", "sd", "verdict", "words")
-        return {r["name"]: Parameter(**{k: r[k] for k in kept}, ci95=tuple(r["ci95"]) if r["ci95"] else None) for r in rows}
+        intervals = ("ci95", "further95")
+        return {
+            r["name"]: Parameter(
+                **{k: r[k] for k in kept}, **{k: tuple(r[k]) if r[k] else None for k in intervals}
+            )
+            for r in rows
+        }
 
     @property
     def values(self) -> dict[str, float]:
@@ -163,5 +172,7 @@ def _curve(row: Mapping[str, Any]) -> Curve:
         displacement=numbers("displacement_m"),
         measured=numbers("measured_N"),
         fitted=numbers("fitted_N"),
+        further_low=numbers("further_low_N"),
+        further_high=numbers("further_high_N"),
         rms=row["rms_N"],
     )

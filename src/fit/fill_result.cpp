@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 
 #include "fit/data/units.h"
 #include "fit/search/local_problem.h"
 #include "fit/uncertainty/bootstrap.h"
 #include "fit/uncertainty/covariance.h"
+#include "fit/uncertainty/further_specimen.h"
 #include "fit/uncertainty/next_experiments.h"
 #include "fit/uncertainty/profile.h"
 #include "fit/uncertainty/validation.h"
@@ -132,6 +134,29 @@ void fill_profiles(const Problem& problem, const Profiles& profiled, const Covar
   }
 }
 
+/// How specimens differ, where enough were fitted to tell.
+void fill_further(const LawSearch& search, const FitCurves& curves, const Covariance& covariance, FitResult& result) {
+  const FurtherSpecimen further(search.problem(), covariance);
+  if (!further.known()) return;
+  const std::vector<Interval> intervals = further.parameters();
+  for (std::size_t p = 0; p < intervals.size(); ++p) result.parameters[p].further = intervals[p];
+  std::vector<Curve> all = curves.curves;
+  std::vector<std::size_t> indices(all.size());
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  for (Curve& c : all) c.weight = 1.0;
+  const std::vector<double> newtons(all.size(), 1.0);
+  Problem problem(search.problem().parameters(), std::move(all), std::move(indices), newtons, search.problem().model());
+  problem.difference_step = search.problem().difference_step;
+  const std::vector<Band> bands = further.bands(problem);
+  for (std::size_t c = 0; c < bands.size(); ++c)
+    result.curves[c].further_low = bands[c].low, result.curves[c].further_high = bands[c].high;
+  const double apart = rms_at(search.problem(), search.optimum().scaled), own = further.left_newtons();
+  result.conclusions.push_back("Of the " + newtons_or_stress(apart, result) + " rms between law and fitted curves " +
+                               newtons_or_stress(own, result) +
+                               " are misfit and noise, which fits to single curves leave too; the rest is how the "
+                               "specimens differ.");
+}
+
 /// Profiles by runs of the model, or by a cubic in its place where that holds; the cubic is dropped where it does not.
 Profiles profiles_of(const LawSearch& search, const Covariance& covariance, const FitRun& options,
                      std::unique_ptr<LocalProblem>& local) {
@@ -173,7 +198,7 @@ void fill_curves(const LawSearch& search, const FitSpec& spec, const FitCurves& 
   result.curves.clear();
   result.groups.clear();
   for (std::size_t c = 0; c < curves.curves.size(); ++c)
-    result.curves.push_back({curves.curves[c], predictions[c].force, all.curves[c].rms});
+    result.curves.push_back({curves.curves[c], predictions[c].force, all.curves[c].rms, {}, {}});
   double squares = 0.0;
   std::size_t repeated = 0;
   for (const GroupError& g : all.groups) {
@@ -243,6 +268,7 @@ void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves,
   if (!covariance.failure.empty()) {
     result.conclusions.push_back("The uncertainty of the parameters could not be computed: " + covariance.failure);
   } else {
+    fill_further(search, curves, covariance, result);
     conclude_on_parameters(result, result.conclusions);
     result.conclusions.push_back(covariance.noise.why);
     if (local) result.conclusions.push_back(local->words());

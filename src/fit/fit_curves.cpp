@@ -5,6 +5,8 @@
 #include <map>
 
 #include "fit/data/load_curves.h"
+#include "fit/data/units.h"
+#include "fit/uncertainty/validation.h"
 
 namespace glisson::fit {
 namespace {
@@ -22,6 +24,31 @@ void make_unique(std::vector<Curve>& curves) {
     const int number = ++seen[c.name];
     if (number > 1) c.name += " (" + std::to_string(number) + ")";
   }
+}
+
+/// How far the mean of the others misses a curve of a set, rms over the displacements that all have [N].
+double error_of_others(const std::vector<PreparedCurve>& set) {
+  std::vector<const Curve*> curves;
+  for (const PreparedCurve& p : set) curves.push_back(&p.curve);
+  const Spread spread = spread_of(curves, std::numeric_limits<double>::infinity());
+  const auto n = static_cast<double>(curves.size());
+  return spread.deviation * std::sqrt(n / (n - 1.0));
+}
+
+/// The curves of a set, with the contact that leaves them nearer to each other where it is to be chosen.
+std::vector<PreparedCurve> loaded(const DataSpec& spec, const SpecimenSize& size, const std::filesystem::path& base) {
+  if (spec.contact.kind != ContactKind::automatic) return load_curves(spec, size, base);
+  DataSpec detect = spec, none = spec;
+  detect.contact.kind = ContactKind::detect, none.contact.kind = ContactKind::none;
+  std::vector<PreparedCurve> detected = load_curves(detect, size, base);
+  if (detected.size() < 2) return detected;
+  std::vector<PreparedCurve> recorded = load_curves(none, size, base);
+  const double by_detection = error_of_others(detected), as_recorded = error_of_others(recorded);
+  std::vector<PreparedCurve>& nearer = by_detection < as_recorded ? detected : recorded;
+  for (PreparedCurve& p : nearer)
+    p.account.contact_how += " (the others' mean errs by " + brief(std::min(by_detection, as_recorded), 3) +
+                             " N, else " + brief(std::max(by_detection, as_recorded), 3) + " N)";
+  return std::move(nearer);
 }
 
 }  // namespace
@@ -45,7 +72,7 @@ FitCurves read_curves(const FitSpec& spec, const SpecimenSize& size, const std::
   for (std::size_t d = 0; d < spec.data.size(); ++d) {
     DataSpec data = spec.data[d];
     if (data.group.empty()) data.group = "test " + std::to_string(d + 1);
-    for (PreparedCurve& p : load_curves(data, size, base)) {
+    for (PreparedCurve& p : loaded(data, size, base)) {
       p.curve.group = data.group;
       p.curve.held_out = data.held_out;
       p.curve.weight = data.weight;

@@ -15,6 +15,7 @@
 #include "fit/uncertainty/covariance.h"
 #include "fit/uncertainty/criteria.h"
 #include "fit/uncertainty/forecast.h"
+#include "fit/uncertainty/left_out.h"
 #include "fit/uncertainty/validation.h"
 
 namespace glisson::fit {
@@ -142,6 +143,8 @@ std::size_t Run::choose(FitResult& result) const {
     for (const CurveError& e : errors.curves) {
       if (e.held_out) fit.heldout_rms.push_back(e.failure.empty() ? e.rms : std::numeric_limits<double>::infinity());
     }
+    const std::vector<double> left_out = left_out_errors(problem, search.optimum(), search.descent());
+    fit.heldout_rms.insert(fit.heldout_rms.end(), left_out.begin(), left_out.end());
     LawResult row{fit.name, static_cast<int>(fit.parameters), errors.rms_fit, {}, 0.0, 0.0, false, ""};
     if (!std::isnan(errors.rms_heldout)) row.rms_heldout = errors.rms_heldout;
     result.laws.push_back(std::move(row));
@@ -156,7 +159,8 @@ std::size_t Run::choose(FitResult& result) const {
     row.aic = rank.criteria.aic;
     row.bic = rank.criteria.bic;
     row.best = rank.law == ranking.chosen;
-    row.words = row.best ? "what the data support" : (rank.as_good ? "as good" : "");
+    if (rank.heldout > 0.0) row.rms_heldout = rank.heldout;
+    row.words = row.best ? "what the data support" : rank.words;
     ordered.push_back(std::move(row));
   }
   result.laws = std::move(ordered);

@@ -104,6 +104,25 @@ TEST(Contact, IsCarriedBackWhereAFileBeginsInContact) {
   EXPECT_EQ(contact->before, 0u);
 }
 
+// Of a set in which one file begins in contact all are carried to zero from the force at which that one begins: a sphere's
+// force has no slope at contact, so that each by itself is placed by what it shows of the toe, and the same tests apart.
+TEST(Contact, IsPlacedAlikeWhereSomeOfASetBeginInContact) {
+  const auto force = [](double u) { return u > 0.0 ? 2e4 * std::pow(u, 1.5) : 0.0; };
+  const auto rested = even(800, 0.0, 10e-3), pressed = even(600, 2.8e-3, 10e-3);
+  const auto all = of(rested, [&](double x) { return kRest + force(x - kTouch); });
+  const auto part = of(pressed, [&](double x) { return force(x - kTouch); });
+  const auto own = find_contact(rested, all, 4.0), other = find_contact(pressed, part, 4.0);
+  ASSERT_TRUE(own && other);
+  ASSERT_TRUE(!own->extrapolated && other->extrapolated);
+  EXPECT_GT(std::abs(own->at - other->at), 0.06e-3);
+  const auto a = contact_from(rested, all, *own, other->first_force);
+  const auto b = contact_from(pressed, part, *other, other->first_force);
+  ASSERT_TRUE(a && b);
+  // the rest is subtracted to 1e-3 N of a slope of 670 N/m at that force
+  EXPECT_NEAR(a->at, b->at, 0.02e-3);
+  EXPECT_DOUBLE_EQ(a->rest_force, own->rest_force);
+}
+
 TEST(Contact, IsNotFoundInNoise) {
   const auto x = even(400, 0.0, 10e-3);
   int found = 0;

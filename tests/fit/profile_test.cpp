@@ -88,7 +88,7 @@ TEST(Profile, IsTheLikelihoodIntervalOfANonLinearParameter) {
 
 // The inflation for residuals that swing widens profiles as it widens ± t sd.
 TEST(Profile, IsInflatedAsTheCovariance) {
-  auto curves = simulate(plan(100, 0.0, 2.0), 3, parabola, {1.0, -2.0, 3.0});
+  auto curves = simulate(plan(100, 0.0, 2.0), 2, parabola, {1.0, -2.0, 3.0});
   Noise noise(8);
   for (Curve& c : curves) {
     const std::vector<double> e = noise.correlated(c.size(), 0.8);

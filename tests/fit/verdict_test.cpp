@@ -100,6 +100,25 @@ TEST(Verdict, CallsAOneSidedLimitWeak) {
   EXPECT_THAT(v.of[0].words, HasSubstr("no upper limit within its bounds (1000 1/m)"));
 }
 
+// Zero within the interval, whatever the bounds: where the force hardly changes over it the parameter can go, and where
+// another makes up for it, it is weak, however small a part of its bounds it takes.
+TEST(Verdict, TellsWhatCanBeLeftOutFromWhatIsCompensated) {
+  const auto wave = [](double x, double, std::span<const double> v) { return v[0] + v[1] * std::sin(40.0 * x); };
+  const auto flat = noisy(simulate(plan(60, 0.0, 1.0), 1, wave, {5.0, 0.0}), 0.1, 5);
+  const Twin apart({{"level", "N", 0.1, 50.0, Scale::logarithmic, 1.0}, {"wave", "N", -1.0, 1.0}}, flat, 0.1, wave);
+  const Verdicts v = verdicts(apart.problem, {4.0, 0.2});
+  EXPECT_EQ(v.of[0].verdict, Verdict::identified);
+  EXPECT_THAT(v.of[0].words, HasSubstr("(± "));
+  EXPECT_EQ(v.of[1].verdict, Verdict::negligible);
+  EXPECT_THAT(v.of[1].words, HasSubstr("it can be left out"));
+  const auto line = [](double x, double, std::span<const double> at) { return at[0] + at[1] * x; };
+  const auto far = noisy(simulate(plan(60, 10.0, 10.5), 1, line, {5.0, 0.0}), 0.1, 5);
+  const Twin close({{"level", "N", -1e4, 1e4}, {"slope", "N/m", -1e3, 1e3}}, far, 0.1, line);
+  const Verdicts w = verdicts(close.problem, {4.0, 0.2});
+  EXPECT_EQ(w.of[1].verdict, Verdict::weak);  // ± 0.2 of 2000, but of either sign, and the level makes up for it
+  EXPECT_THAT(w.of[1].words, AllOf(HasSubstr("of either sign"), HasSubstr("make up for that")));
+}
+
 TEST(Verdict, SaysWhichBoundIsInTheWay) {
   const auto line = [](double x, double, std::span<const double> v) { return v[0] * x; };
   const auto curves = noisy(simulate(plan(30, 0.0, 1.0), 1, line, {5.0}), 0.1, 5);

@@ -173,10 +173,11 @@ export interface FitParameter {
   high: number;
   value: number;
   sd: number | null;
-  ci95: [number, number] | null; // by curvature
+  ci95_curvature: [number, number] | null; // by curvature
   ci95_profile: [number | null, number | null] | null; // by profile; null end: open within the bounds
   ci95_bootstrap: [number, number] | null;
-  verdict: "identified" | "weak" | "not identifiable" | "at bound";
+  further95: [number | null, number | null] | null; // of a further specimen's own value; null: not known
+  verdict: "identified" | "negligible" | "weak" | "not identifiable" | "at bound";
   words: string; // why, in a sentence
 }
 
@@ -190,6 +191,8 @@ export interface FitCurve {
   displacement_m: number[];
   measured_N: number[];
   fitted_N: number[]; // null within: the simulation ended before
+  further_low_N: number[]; // between these a further specimen's force lies in 95 %; empty: not known
+  further_high_N: number[];
   noise_N: number; // standard deviation of the measured force
   rms_N: number; // of fitted − measured
 }

@@ -46,6 +46,8 @@ function curve(name, group, heldOut, velocity, random, factor, points = 260) {
     displacement_m,
     measured_N,
     fitted_N,
+    further_low_N: fitted_N.map((force) => 0.9 * force),
+    further_high_N: fitted_N.map((force) => 1.1 * force),
     noise_N: noise,
     rms_N: rms(measured_N.map((value, at) => value - fitted_N[at])),
   };
@@ -82,7 +84,8 @@ function parameter(name, unit, scale, [low, high], value, sd, verdict, words) {
     high,
     value,
     sd,
-    ci95: within,
+    ci95_curvature: within,
+    further95: [value - 6 * sd, value + 6 * sd],
     ci95_profile: verdict === "not identifiable" ? [null, null] : [value - 1.87 * sd, value + 2.1 * sd],
     ci95_bootstrap: [Math.max(low, value - 1.7 * sd), Math.min(high, value + 2.2 * sd)],
     verdict,
@@ -252,7 +255,8 @@ export function bareFit() {
     parameters: whole.parameters.slice(0, 1).map((given) => ({
       ...given,
       sd: null,
-      ci95: null,
+      ci95_curvature: null,
+      further95: null,
       ci95_profile: null,
       ci95_bootstrap: null,
       verdict: "weak",

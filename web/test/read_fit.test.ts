@@ -49,9 +49,9 @@ describe("reading a fit", () => {
   });
 
   it("puts an interval's ends in order, keeps open ends of a profile, and no half of the others", () => {
-    const parameter = { ci95: [3, 2], ci95_profile: [null, 4], ci95_bootstrap: [1, null], verdict: "certain" };
+    const parameter = { ci95_curvature: [3, 2], ci95_profile: [null, 4], ci95_bootstrap: [1, null], verdict: "certain" };
     expect(read({ parameters: [parameter] }).parameters[0]).toMatchObject({
-      ci95: [2, 3],
+      ci95_curvature: [2, 3],
       ci95_profile: [null, 4],
       ci95_bootstrap: null,
       verdict: "weak",

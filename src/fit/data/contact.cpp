@@ -158,15 +158,28 @@ std::optional<Contact> extrapolated_contact(std::span<const double> x, std::span
 
 }  // namespace
 
+namespace {
+
+/// Rows up to the largest force.
+std::size_t loading_of(std::span<const double> f) {
+  return static_cast<std::size_t>(std::max_element(f.begin(), f.end()) - f.begin()) + 1;
+}
+
+double noise_of(std::span<const double> f) {
+  std::vector<double> rows(f.size());
+  std::iota(rows.begin(), rows.end(), 0.0);
+  return noise_about_curve(rows, f);
+}
+
+}  // namespace
+
 std::optional<Contact> find_contact(std::span<const double> x, std::span<const double> f, double threshold) {
   if (x.size() < kFewestRows) return std::nullopt;
-  const std::size_t loading = static_cast<std::size_t>(std::max_element(f.begin(), f.end()) - f.begin()) + 1;
+  const std::size_t loading = loading_of(f);
   if (loading < kFewestRows) return std::nullopt;
   x = x.first(loading);
   f = f.first(loading);
-  std::vector<double> rows(loading);
-  std::iota(rows.begin(), rows.end(), 0.0);
-  const double noise = noise_about_curve(rows, f);
+  const double noise = noise_of(f);
   const std::size_t head = std::clamp<std::size_t>(loading / 50, kFewestAtRest, 50);
   const double rest = median_of({f.begin(), f.begin() + static_cast<std::ptrdiff_t>(head)});
   const double rise = f.back() - rest;
@@ -175,9 +188,28 @@ std::optional<Contact> find_contact(std::span<const double> x, std::span<const d
   const std::size_t upper = first_above(f, rest + std::max(kPartOfRise * rise, kDeviations * noise));
   const std::size_t end = std::min(loading, std::max({upper, risen + kFewestRows, kFewestRows}));
   if (!(x[end - 1] > x.front())) return std::nullopt;
-  if (risen < 2 * kFewestAtRest) return extrapolated_contact(x.first(end), f.first(end), noise);
-  auto contact = bent_contact(x.first(end), f.first(end));
-  if (contact && contact->before < kFewestAtRest) return extrapolated_contact(x.first(end), f.first(end), noise);
+  std::optional<Contact> contact;
+  if (risen >= 2 * kFewestAtRest) contact = bent_contact(x.first(end), f.first(end));
+  if (!contact || contact->before < kFewestAtRest) contact = extrapolated_contact(x.first(end), f.first(end), noise);
+  if (contact) contact->first_force = rest;
+  return contact;
+}
+
+std::optional<Contact> contact_from(std::span<const double> x, std::span<const double> f, const Contact& own,
+                                    double preload) {
+  const std::size_t loading = loading_of(f);
+  std::vector<double> force(f.begin(), f.begin() + static_cast<std::ptrdiff_t>(loading));
+  for (double& value : force) value -= own.rest_force;
+  const double noise = noise_of(force);
+  const std::size_t from = first_above(force, preload);
+  const std::size_t upper = first_above(force, preload + std::max(kPartOfRise * force.back(), kDeviations * noise));
+  const std::size_t end = std::min(loading, std::max(upper, from + kFewestRows));
+  if (from >= end || end - from < kFewestRows) return std::nullopt;
+  auto contact = extrapolated_contact(x.subspan(from, end - from), std::span(force).subspan(from, end - from), noise);
+  if (!contact) return std::nullopt;
+  contact->rest_force = own.rest_force, contact->first_force = own.first_force;
+  contact->before =
+      static_cast<std::size_t>(std::count_if(x.begin(), x.end(), [&](double v) { return v < contact->at; }));
   return contact;
 }
 

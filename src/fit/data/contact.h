@@ -18,6 +18,7 @@ struct Contact {
   double rest_force = 0.0;    ///< mean before contact [N]
   std::size_t before = 0;     ///< rows before contact
   bool extrapolated = false;  ///< no rest was seen: the force's parabola carried back to zero
+  double first_force = 0.0;   ///< at the first rows [N]
 };
 
 /// Finds the first touch. A force that stays above the rest by `threshold` standard deviations of its noise for five rows
@@ -30,5 +31,11 @@ struct Contact {
 /// @param x  displacement, rising but for noise [m] @param f  force [N]
 /// @return nothing where the force never rises above its noise
 std::optional<Contact> find_contact(std::span<const double> x, std::span<const double> f, double threshold);
+
+/// The same touch for a curve of a set in which some begin in contact: its parabola is carried to zero from the force at which
+/// they do, so that all of the set are placed alike. @param own  as found in the curve itself @param preload  that force [N]
+/// @return nothing where the parabola does not reach zero
+std::optional<Contact> contact_from(std::span<const double> x, std::span<const double> f, const Contact& own,
+                                    double preload);
 
 }  // namespace glisson::fit

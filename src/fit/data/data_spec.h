@@ -27,12 +27,13 @@ struct ColumnsSpec {
   ColumnSpec time, displacement, strain, force, stress;
 };
 
-enum class ContactKind { none, detect, given };
+enum class ContactKind { none, detect, given, automatic };
 
 /// Where the tool touches the specimen: displacement, time and force count from there.
 struct ContactSpec {
   ContactKind kind = ContactKind::none;
   double at = 0.0;         ///< of `given` [m]
+  double preload = 0.0;    ///< of `detect`: force from which all of a set are carried to zero [N]; 0: each by itself
   double threshold = 4.0;  ///< of `detect`: force above the rest before contact [standard deviations of the noise]
   bool zero_force = true;  ///< takes the mean force before contact off the force
 };

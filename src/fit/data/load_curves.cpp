@@ -1,5 +1,7 @@
 #include "fit/data/load_curves.h"
 
+#include <algorithm>
+
 #include "glisson/scene/scene.h"
 
 namespace glisson::fit {
@@ -39,6 +41,31 @@ void make_unique(std::vector<PreparedCurve>& curves, const DataSpec& spec) {
   for (PreparedCurve& c : curves) c.account.name = c.curve.name;
 }
 
+std::vector<PreparedCurve> prepare_all(const std::vector<RawTest>& tests, const DataSpec& spec,
+                                       const SpecimenSize& size, std::string& faults) {
+  std::vector<PreparedCurve> curves;
+  for (const RawTest& test : tests) {
+    collect(faults, [&] {
+      scene::Problems problems(test.file.string());
+      auto prepared = prepare(test, spec, size, problems);
+      problems.throw_if_any();
+      curves.push_back(std::move(*prepared));
+    });
+  }
+  return curves;
+}
+
+/// The largest force at which one of a set begins in contact, where others begin before; 0 where all are alike.
+double common_preload(const std::vector<PreparedCurve>& curves) {
+  double most = 0.0;
+  bool rested = false;
+  for (const PreparedCurve& c : curves) {
+    if (c.account.contact_how == "extrapolated") most = std::max(most, c.account.first_force);
+    rested = rested || c.account.contact_how == "detected";
+  }
+  return rested ? most : 0.0;
+}
+
 }  // namespace
 
 std::vector<PreparedCurve> load_curves(const DataSpec& spec, const SpecimenSize& common,
@@ -52,16 +79,11 @@ std::vector<PreparedCurve> load_curves(const DataSpec& spec, const SpecimenSize&
   if (faults.empty() && !spec.unlikely) {
     for (const std::string& fault : repetition_faults(tests)) faults.append(faults.empty() ? "" : "\n").append(fault);
   }
-  std::vector<PreparedCurve> curves;
-  for (const RawTest& test : tests) {
-    collect(faults, [&] {
-      scene::Problems problems(test.file.string());
-      auto prepared = prepare(test, spec, size, problems);
-      problems.throw_if_any();
-      curves.push_back(std::move(*prepared));
-    });
-  }
+  std::vector<PreparedCurve> curves = prepare_all(tests, spec, size, faults);
   if (!faults.empty()) throw SceneError(faults);
+  DataSpec alike = spec;
+  alike.contact.preload = common_preload(curves);
+  if (alike.contact.preload > 0.0) curves = prepare_all(tests, alike, size, faults);
   make_unique(curves, spec);
   return curves;
 }

@@ -81,6 +81,9 @@ class Preparation {
         return false;
       }
       found = *detected;
+      account_.first_force = found.first_force;
+      if (contact.preload > 0.0)
+        found = contact_from(rows_.displacement, rows_.force, found, contact.preload).value_or(found);
     }
     account_.contact_how = contact.kind == ContactKind::given ? "given"
                            : found.extrapolated               ? "extrapolated"
@@ -196,7 +199,8 @@ std::string CurveAccount::text() const {
   if (rows_merged > 0) t += ", " + std::to_string(rows_merged) + " of equal time averaged";
   if (cycles > 1) t += ", " + std::to_string(cycles) + " cycles";
   for (const std::string& column : turned) t += "; sign of " + column + " turned";
-  if (contact_how != "as recorded") {
+  if (contact_how.starts_with("as recorded (")) t += "; contact " + contact_how;
+  if (!contact_how.starts_with("as recorded")) {
     t += "; contact " + contact_how + " at " + brief(contact * 1e3) + " mm";
     if (contact_deviation > 0.0) t += " ± " + brief(contact_deviation * 1e3) + " mm";
     t += ", " + brief(force_at_rest) + " N subtracted from the force";

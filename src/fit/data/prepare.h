@@ -29,6 +29,7 @@ struct CurveAccount {
   double contact = 0.0;            ///< displacement of the file at which contact was found [m]
   double contact_deviation = 0.0;  ///< its standard deviation [m]; 0: not estimated
   double force_at_rest = 0.0;      ///< taken off the force [N]
+  double first_force = 0.0;        ///< at the first rows, where contact was detected [N]
   double row_noise = 0.0;          ///< standard deviation of the force of single rows [N]
 
   /// One line of words.

@@ -48,12 +48,20 @@ void require_order(const Node& table, const std::optional<double>& low, const st
 SectionSpec detect_kind() {
   Section<ContactSpec> s("detect",
                          "Where the force starts to rise: a flat line and a parabola joined where they fit best. If a "
-                         "file begins in contact, the parabola is extrapolated to zero force.");
+                         "file begins in contact, the parabola is extrapolated to zero force; all files of a table are "
+                         "then extrapolated from the force at which that one begins.");
   s.key("threshold_sd", &ContactSpec::threshold,
         "rise of the force above its mean before contact that counts as contact, in standard deviations of its noise")
       .in("-")
       .within(between(1, 100));
   s.key("zero_force", &ContactSpec::zero_force, "subtracts the mean force before contact");
+  return s.spec();
+}
+
+SectionSpec automatic_kind() {
+  Section<ContactSpec> s("auto",
+                         "`none` or `detect`, whichever leaves the files of the table nearer to each other: each is "
+                         "predicted by the mean of the others. A table of one file is detected.");
   return s.spec();
 }
 
@@ -178,7 +186,8 @@ const SectionSpec& contact_section() {
         kind_of<ContactSpec>(Section<ContactSpec>("none", "Displacement as recorded, nothing removed.").spec(),
                              ContactKind::none),
         kind_of<ContactSpec>(detect_kind(), ContactKind::detect),
-        kind_of<ContactSpec>(given_kind(), ContactKind::given)};
+        kind_of<ContactSpec>(given_kind(), ContactKind::given),
+        kind_of<ContactSpec>(automatic_kind(), ContactKind::automatic)};
     return s.spec();
   }();
   return section;

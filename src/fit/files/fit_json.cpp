@@ -44,6 +44,7 @@ Json parameter_json(const fit::ParameterResult& p) {
           {"ci95_curvature", interval(p.by_curvature)},
           {"ci95_profile", open_interval(p.by_profile)},
           {"ci95_bootstrap", interval(p.by_bootstrap)},
+          {"further95", open_interval(p.further)},
           {"verdict", p.verdict},
           {"words", p.words}};
 }
@@ -58,6 +59,8 @@ Json curve_json(const fit::CurveResult& c, const std::string& account) {
           {"displacement_m", numbers(c.curve.displacement)},
           {"measured_N", numbers(c.curve.force)},
           {"fitted_N", numbers(c.fitted.empty() ? none : c.fitted)},
+          {"further_low_N", numbers(c.further_low)},
+          {"further_high_N", numbers(c.further_high)},
           {"noise_N", number(c.curve.noise)},
           {"rms_N", number(c.rms)},
           {"account", account}};

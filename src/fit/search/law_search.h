@@ -35,6 +35,8 @@ class LawSearch {
   const LawSpec& law() const { return law_; }
   const Problem& problem() const { return *problem_; }
   const Ladder& ladder() const { return ladder_; }
+  /// How descents of this problem go.
+  DescentOptions descent() const;
   const DerivativeCheck& derivatives() const { return derivatives_; }
   const MultiStart& found() const { return found_; }
   /// The best optimum. @throws std::runtime_error where no start ended in one
@@ -54,7 +56,6 @@ class LawSearch {
 
  private:
   void take_model(std::size_t rung);
-  DescentOptions descent() const;
   void look_again_at_forward();
   ForwardProblem problem_at_optimum(std::vector<Curve> curves) const;
 

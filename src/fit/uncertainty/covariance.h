@@ -39,6 +39,7 @@ struct NoiseEstimate {
   NoiseKind kind = NoiseKind::independent;
   std::string why;                         ///< a sentence: which of the three is used, on what evidence
   double variance = 0.0;                   ///< σ² of the scaled residuals
+  double rms = 0.0;                        ///< of the scaled residuals
   std::size_t samples = 0;                 ///< residuals with weight
   double effective = 0.0;                  ///< Σ_c n_c / τ_c, τ_c samples of a curve counting as one
   std::vector<double> effective_by_curve;  ///< n_c / τ_c; 0 for curves without weight

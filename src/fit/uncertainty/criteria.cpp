@@ -10,6 +10,8 @@
 namespace glisson::fit {
 namespace {
 
+constexpr double kNoWorse = 1.05, kWorse = 1.2;  ///< times the best law's error: as good to, worse from
+
 void check(std::span<const LawFit> laws) {
   if (laws.empty()) throw std::invalid_argument("there is no law to rank");
   for (const LawFit& law : laws) {
@@ -27,17 +29,22 @@ double effective_of_best(std::span<const LawFit> laws) {
       ->effective;
 }
 
-void measure_heldout(LawRank& rank, const std::vector<double>& rms) {
-  if (rms.empty()) return;
+double root_mean_square(const std::vector<double>& rms) {
+  double squares = 0.0;
+  for (const double r : rms) squares += r * r;
+  return rms.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(rms.size()));
+}
+
+/// How far behind the best a law is: the mean difference over the curves, and its standard error.
+void measure_behind(LawRank& rank, const std::vector<double>& rms, const std::vector<double>& best) {
   const auto n = static_cast<double>(rms.size());
-  double squares = 0.0, sum = 0.0;
-  for (const double r : rms) {
-    squares += r * r;
-    sum += r;
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t c = 0; c < rms.size(); ++c) {
+    const double more = rms[c] - best[c];
+    sum += more, squares += more * more;
   }
-  rank.heldout = std::sqrt(squares / n);
-  const double scatter = std::max(0.0, squares - sum * sum / n);
-  rank.heldout_error = n > 1.0 ? std::sqrt(scatter / (n - 1.0) / n) : 0.0;
+  rank.behind = sum / n;
+  rank.behind_error = std::sqrt(std::max(0.0, squares - sum * sum / n) / (n - 1.0) / n);
 }
 
 /// What the laws are compared by: AICc where a law has one, else AIC.
@@ -58,17 +65,33 @@ void weigh(std::vector<LawRank>& ranks, bool corrected) {
   for (LawRank& r : ranks) r.akaike_weight /= sum;
 }
 
+bool is_as_good(const LawRank& r, const LawRank& best) {
+  return r.heldout <= kNoWorse * best.heldout || (r.heldout < kWorse * best.heldout && r.behind <= r.behind_error);
+}
+
+std::string words_of(const LawRank& r, bool heldout) {
+  if (!heldout) return r.as_good ? "as good" : "";
+  char text[96];
+  std::snprintf(text, sizeof text, "errs by %.2g ± %.1g N more than the best%s", r.behind, r.behind_error,
+                r.as_good ? ": as good" : "");
+  return text;
+}
+
+std::size_t place_of(const LawRanking& ranking, std::size_t law) {
+  std::size_t place = 0;
+  while (ranking.order[place].law != law) ++place;
+  return place + 1;
+}
+
 std::string write(const LawRanking& ranking, std::span<const LawFit> laws, bool heldout) {
   const LawFit &chosen = laws[ranking.chosen], &best = laws[ranking.best];
-  const auto rank_of = [&](std::size_t law) {
-    return *std::find_if(ranking.order.begin(), ranking.order.end(), [law](const LawRank& r) { return r.law == law; });
-  };
-  const LawRank c = rank_of(ranking.chosen), b = rank_of(ranking.best);
+  const LawRank& c = ranking.order[place_of(ranking, ranking.chosen) - 1];
+  const LawRank& b = ranking.order.front();
   char text[512];
   std::string s = "the data support " + std::to_string(chosen.parameters) +
                   (chosen.parameters == 1 ? " parameter: " : " parameters: ") + chosen.name;
   if (heldout)
-    std::snprintf(text, sizeof text, " errs by %.3g N on held-out curves", c.heldout);
+    std::snprintf(text, sizeof text, " errs by %.3g N on curves that its fit has not seen", c.heldout);
   else
     std::snprintf(text, sizeof text, " has an %s %.1f above the least (fewer than two curves are held out%s)",
                   ranking.corrected ? "AICc" : "AIC", c.delta_aicc,
@@ -76,8 +99,11 @@ std::string write(const LawRanking& ranking, std::span<const LawFit> laws, bool 
   s += text;
   if (ranking.chosen == ranking.best) return s + ", the least of all; no simpler law is as good";
   if (heldout)
-    std::snprintf(text, sizeof text, ", within one standard error (%.2g N) of the best, %s with %zu at %.3g N",
-                  b.heldout_error, best.name.c_str(), best.parameters, b.heldout);
+    std::snprintf(text, sizeof text,
+                  ", rank %zu of %zu; the best, %s with %zu, errs by %.3g N, and %zu curves do not tell them apart "
+                  "(%.2g ± %.2g N)",
+                  place_of(ranking, ranking.chosen), laws.size(), best.name.c_str(), best.parameters, b.heldout,
+                  chosen.heldout_rms.size(), c.behind, c.behind_error);
   else
     std::snprintf(text, sizeof text, ", too little to prefer %s with %zu", best.name.c_str(), best.parameters);
   return s + text;
@@ -105,7 +131,7 @@ LawRanking rank_laws(std::span<const LawFit> laws) {
     LawRank r;
     r.law = i;
     r.criteria = criteria(laws[i].sum_squares, laws[i].samples, effective, laws[i].parameters);
-    measure_heldout(r, laws[i].heldout_rms);
+    r.heldout = root_mean_square(laws[i].heldout_rms);
     out.order.push_back(r);
   }
   out.corrected =
@@ -115,9 +141,10 @@ LawRanking rank_laws(std::span<const LawFit> laws) {
   std::stable_sort(out.order.begin(), out.order.end(),
                    [&](const LawRank& a, const LawRank& b) { return figure(a) < figure(b); });
   out.best = out.chosen = out.order.front().law;
-  const double limit = figure(out.order.front()) + (heldout ? out.order.front().heldout_error : 2.0);
   for (LawRank& r : out.order) {
-    r.as_good = figure(r) <= limit;
+    if (heldout) measure_behind(r, laws[r.law].heldout_rms, laws[out.best].heldout_rms);
+    r.as_good = heldout ? is_as_good(r, out.order.front()) : r.delta_aicc <= out.order.front().delta_aicc + 2.0;
+    r.words = words_of(r, heldout);
     if (r.as_good && laws[r.law].parameters < laws[out.chosen].parameters) out.chosen = r.law;
   }
   out.sentence = write(out, laws, heldout);

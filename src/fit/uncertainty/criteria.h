@@ -29,8 +29,8 @@ struct LawFit {
   double sum_squares = 0.0;
   std::size_t samples = 0;
   double effective = 0.0;
-  std::vector<double>
-      heldout_rms;  ///< [N] of each held-out curve, the same curves for every law; empty: none is held out
+  /// [N] of each curve held out, and of each left out in turn; the same curves for every law; empty: none.
+  std::vector<double> heldout_rms;
 };
 
 struct LawRank {
@@ -38,9 +38,11 @@ struct LawRank {
   Criteria criteria;
   double delta_aicc = 0.0, delta_bic = 0.0;  ///< above the least of all; of AIC where `corrected` is false
   double akaike_weight = 0.0;                ///< exp(−½ Δ) over the sum of all
-  double heldout = 0.0;                      ///< √ of the mean square over the held-out curves [N]; 0 without any
-  double heldout_error = 0.0;                ///< standard error of it, over curves [N]
-  bool as_good = false;                      ///< within one standard error of the best
+  double heldout = 0.0;                      ///< √ of the mean square over those curves [N]; 0 without any
+  double behind = 0.0;                       ///< by so much more than the best law, curve by curve [N]
+  double behind_error = 0.0;                 ///< standard error of that, over curves [N]
+  bool as_good = false;                      ///< not told apart from the best
+  std::string words;                         ///< where it stands: "errs by 0.12 ± 0.05 N more than the best"
 };
 
 struct LawRanking {
@@ -51,8 +53,9 @@ struct LawRanking {
   std::string sentence;        ///< "the data support 2 parameters: …"
 };
 
-/// Ranks laws and chooses the simplest whose held-out error is within one standard error (over curves) of the best's
-/// [Breiman1984]; without two held-out curves the simplest within 2 of the least AICc [BurnhamAnderson2002].
+/// Ranks laws by their error on curves that a fit has not seen, and chooses the simplest that is as good as the best: it errs
+/// by at most 5 % more, or by less than 20 % more where that is within one standard error of the difference, curve by curve
+/// [Breiman1984]. Without two such curves it is the simplest within 2 of the least AICc [BurnhamAnderson2002].
 /// Likelihoods share the effective samples of the law with the least squares: its residuals are nearest to the noise, and
 /// likelihoods of different sample sizes do not compare (as the variance inflation of [BurnhamAnderson2002], taken from the
 /// most general model).

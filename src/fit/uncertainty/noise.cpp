@@ -87,6 +87,9 @@ NoiseKind NoiseStudy::kind_of(const CovarianceOptions& options, NoiseEstimate& e
   e.why = swings ? "the residuals are not independent (" + probability_text(e.independence) +
                        "): " + format("%.0f samples count as %.1f", samples_, e.effective)
                  : "the residuals look independent (" + probability_text(e.independence) + ")";
+  e.why += std::string(". How specimens differ is not in the intervals: ") +
+           (curves_.size() < kFewestCurves ? "that takes three curves or more"
+                                           : "some parameter is known from one curve alone");
   return swings ? NoiseKind::autocorrelated : NoiseKind::independent;
 }
 
@@ -108,6 +111,7 @@ NoiseEstimate NoiseStudy::choose(const CovarianceOptions& options) {
   variance_ = white ? scores_.squaredNorm() / std::max(left, 1.0) : correlation_.variance();
   e.kind = kind_;
   e.variance = variance_;
+  e.rms = std::sqrt(scores_.squaredNorm() / std::max(samples_, 1.0));
   e.samples = static_cast<std::size_t>(samples_);
   return e;
 }

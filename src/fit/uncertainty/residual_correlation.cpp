@@ -11,7 +11,7 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 constexpr int kPlaces = 12,
-              kLooks = 4;         // places looked at along w and φ, and how often between the neighbours of the best
+              kLooks = 4;          // places looked at along w and φ, and how often between the neighbours of the best
 constexpr double kShortest = 0.3;  // of the lengths −1/ln φ that are tried [samples]
 constexpr double kLeast = std::numeric_limits<double>::min();
 
@@ -33,9 +33,12 @@ ResidualCorrelation::ResidualCorrelation(const Vector& residuals, const Matrix& 
                                          std::span<const Rows> curves) {
   Matrix columns(residuals.size(), jacobian.cols() + 1);
   columns << jacobian, residuals;
-  Eigen::Index longest = 2;
-  for (const Rows& curve : curves) longest = std::max(longest, curve.size);
-  Span white{0.0, 1.0}, length{std::log(kShortest), std::log(static_cast<double>(longest))};
+  double longest = 2.0 * kShortest;
+  for (const Rows& curve : curves) longest = std::max(longest, static_cast<double>(curve.size));
+  // p shapes that the fit takes out of a curve leave swings that change sign p times or more
+  longest /=
+      2.0 * (1.0 + static_cast<double>(jacobian.cols()) / static_cast<double>(std::max<std::size_t>(curves.size(), 1)));
+  Span white{0.0, 1.0}, length{std::log(kShortest), std::log(std::max(longest, 2.0 * kShortest))};
   double most = -std::numeric_limits<double>::infinity();
   ResidualCorrelation best;
   double best_length = length.low;

@@ -6,7 +6,8 @@
 //   r_i = e_i + s_i,   var e = w σ²,   cov(s_i, s_j) = (1 − w) σ² φ^|i − j|,   V = cov(r) / σ²
 //
 // w, φ and σ² are those of the largest restricted likelihood [PattersonThompson1971], which knows that the fit has taken p
-// shapes out of the residuals. Their process is a state of one number, so that V⁻¹ᐟ² is a pass of a Kalman filter.
+// shapes out of the residuals; φ is that of no slower swings than a fit leaves, since what a slower misfit would take into the
+// parameters is theirs: they are those with which the law comes nearest. Their process is a state of one number, so that V⁻¹ᐟ² is a pass of a Kalman filter.
 #pragma once
 
 #include <Eigen/Dense>

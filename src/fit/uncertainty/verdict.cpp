@@ -12,7 +12,6 @@ namespace {
 constexpr double kMember = 0.1;      // of a direction: parameters with less are not named
 constexpr double kEntangled = 0.95;  // correlation from which two parameters are named together
 constexpr double kWideFactor = 4.0;  // end to end
-constexpr double kWidePart = 0.5;    // of the bounds
 constexpr double kFlatPart = 0.05;   // of the bounds: a shorter flat stretch is not worth a word
 
 /// The ends of a parameter's interval, and why one is open.
@@ -47,18 +46,30 @@ Ends ends_of(const Problem& problem, const Covariance& c, const Profiles* profil
   return e;
 }
 
-bool wide(const Parameter& x, const Interval& i) {
-  if (x.low > 0.0) return i.high > kWideFactor * i.low;
-  if (x.high < 0.0) return i.low < kWideFactor * i.high;
-  return i.high - i.low > kWidePart * (x.high - x.low);
+/// Largest over smallest magnitude; infinite where zero lies within.
+double factor_of(const Interval& i) {
+  if (!(i.low * i.high > 0.0)) return kInfinity;
+  return std::max(i.low / i.high, i.high / i.low);
 }
 
-Verdict verdict_of(const Parameter& x, const Covariance& c, const Ends& e, std::size_t p) {
+/// Change of the force over half the interval with the other parameters held, over the residuals' rms.
+double effect_of(const Problem& problem, const Covariance& c, const Interval& i, std::size_t p) {
+  std::vector<double> low = problem.to_values(c.scaled), high = low;
+  low[p] = i.low, high[p] = i.high;
+  const double half = 0.5 * (problem.to_scaled(high)[p] - problem.to_scaled(low)[p]);
+  const double slope = std::sqrt(c.information[p * c.parameters() + p] / static_cast<double>(c.noise.samples));
+  return c.noise.rms > 0.0 ? slope * half / c.noise.rms : kInfinity;
+}
+
+Verdict verdict_of(const Covariance& c, const Ends& e, double effect, std::size_t p) {
   const bool low = !e.low_reason.empty(), high = !e.high_reason.empty();
   // on a flat cost the optimum ends anywhere, at a bound too
   if (c.hold[p] != Hold::free) return e.flat ? Verdict::not_identifiable : Verdict::at_bound;
   if (c.determined[p] == 0 || (low && high)) return Verdict::not_identifiable;
-  return low || high || wide(x, e.interval) ? Verdict::weak : Verdict::identified;
+  if (low || high) return Verdict::weak;
+  if (factor_of(e.interval) <= kWideFactor) return Verdict::identified;
+  const bool zero = e.interval.low <= 0.0 && e.interval.high >= 0.0;
+  return zero && effect < 1.0 ? Verdict::negligible : Verdict::weak;
 }
 
 std::string range(const Interval& i, const std::string& unit) { return number(i.low) + " to " + number(i.high, unit); }
@@ -89,18 +100,31 @@ std::string bound_words(const Parameter& x, Hold hold, const Ends& e) {
          " is nearly as good";
 }
 
+/// How much of its value half an interval is: "± 3 %".
+std::string part_words(const Interval& i) {
+  return " (± " + number(100.0 * std::abs((i.high - i.low) / (i.high + i.low)), "", 2) + " %)";
+}
+
+std::string effect_words(double effect) {
+  return "Changed alone within that, it moves the force by " + number(effect, "", 2) +
+         " times the rms of the residuals";
+}
+
 std::string words_of(const Problem& problem, const Covariance& c, const Profiles* profiled, const Ends& e,
-                     Verdict verdict, std::size_t p) {
+                     Verdict verdict, double effect, std::size_t p) {
   const Parameter& x = problem.parameters()[p];
   std::string s = x.name + ": " + name_of(verdict) + ", ";
   if (verdict == Verdict::at_bound) return x.name + ": " + bound_words(x, c.hold[p], e);
   if (verdict == Verdict::not_identifiable)
     return s + "anywhere from " + range(e.interval, x.unit) + " fits these curves" + flat_words(problem, profiled, p);
   s += range(e.interval, x.unit);
-  if (verdict == Verdict::identified) return s;
+  if (verdict == Verdict::identified) return s + part_words(e.interval) + ". " + effect_words(effect);
+  if (verdict == Verdict::negligible) return s + ": zero is within. " + effect_words(effect) + ": it can be left out";
   const std::string& reason = e.low_reason.empty() ? e.high_reason : e.low_reason;
-  if (reason.empty()) return s + ": the curves hardly limit it";
-  return s + ": " + reason + flat_words(problem, profiled, p);
+  if (!reason.empty()) return s + ": " + reason + flat_words(problem, profiled, p);
+  s += std::isfinite(factor_of(e.interval)) ? ": a factor of " + number(factor_of(e.interval), "", 2)
+                                            : ": of either sign";
+  return s + ". " + effect_words(effect) + (effect < 1.0 ? "" : "; the other parameters make up for that");
 }
 
 std::vector<std::size_t> members(const std::vector<double>& direction, double least) {
@@ -182,6 +206,8 @@ const char* name_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::identified:
       return "identified";
+    case Verdict::negligible:
+      return "negligible";
     case Verdict::weak:
       return "weak";
     case Verdict::not_identifiable:
@@ -200,8 +226,9 @@ Verdicts judge(const Problem& problem, const Covariance& covariance, const Profi
   }
   for (std::size_t p = 0; p < covariance.parameters(); ++p) {
     const Ends e = ends_of(problem, covariance, profiled, p);
-    const Verdict verdict = verdict_of(problem.parameters()[p], covariance, e, p);
-    out.of.push_back({verdict, e.interval, words_of(problem, covariance, profiled, e, verdict, p)});
+    const double effect = effect_of(problem, covariance, e.interval, p);
+    const Verdict verdict = verdict_of(covariance, e, effect, p);
+    out.of.push_back({verdict, e.interval, words_of(problem, covariance, profiled, e, verdict, effect, p)});
   }
   for (const Direction& d : covariance.directions) {
     if (!d.determined) out.conclusions.push_back(unseen_words(problem, covariance, profiled, d));

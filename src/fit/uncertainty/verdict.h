@@ -10,13 +10,13 @@
 
 namespace glisson::fit {
 
-enum class Verdict { identified, weak, not_identifiable, at_bound };
+enum class Verdict { identified, negligible, weak, not_identifiable, at_bound };
 const char* name_of(Verdict verdict);
 
 struct ParameterVerdict {
   Verdict verdict = Verdict::identified;
   Interval interval;  ///< by profile where there is one, else by curvature; own unit
-  std::string words;  ///< one sentence
+  std::string words;  ///< two sentences: what is known, and what that means for the force
 };
 
 struct Verdicts {
@@ -28,9 +28,12 @@ struct Verdicts {
 ///
 ///   not identifiable   part of a direction that the curves do not see, or open at both ends
 ///   at bound           the optimum stands at one of its bounds, and the cost between them is not flat
-///   weak               open at one end, or wide: a factor of 4 from end to end where it is of one sign, else half its bounds
-///   identified         else
+///   identified         the interval is of one sign, and a factor of 4 at most from end to end
+///   negligible         zero lies within, and over all of it the force changes by less than the residuals' rms
+///   weak               else, or open at one end: other parameters make up for it
 ///
+/// Bounds play no part in it: a wide search is no knowledge. The change of force is that of the parameter alone, to first
+/// order, rms over the curves, for half the interval.
 /// An end counts as open too where it leans on another parameter's bound, and where a forward run failed.
 /// @param profiled  of the same optimum; nullptr: by curvature alone
 Verdicts judge(const Problem& problem, const Covariance& covariance, const Profiles* profiled = nullptr);

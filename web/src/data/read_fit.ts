@@ -72,7 +72,7 @@ function readAxis(value: unknown, otherwise: string): FitAxis {
   return { label: text(raw["label"]) || otherwise, scale: finite(raw["scale"], 1) };
 }
 
-const VERDICTS = ["identified", "weak", "not identifiable", "at bound"] as const;
+const VERDICTS = ["identified", "negligible", "weak", "not identifiable", "at bound"] as const;
 
 function readParameter(raw: Raw, index: number): FitParameter {
   return {
@@ -83,9 +83,10 @@ function readParameter(raw: Raw, index: number): FitParameter {
     high: numberOrNaN(raw["high"]),
     value: numberOrNaN(raw["value"]),
     sd: numberOrNull(raw["sd"]),
-    ci95: readInterval(raw["ci95"]),
+    ci95_curvature: readInterval(raw["ci95_curvature"]),
     ci95_profile: readOpenInterval(raw["ci95_profile"]),
     ci95_bootstrap: readInterval(raw["ci95_bootstrap"]),
+    further95: readOpenInterval(raw["further95"]),
     verdict: VERDICTS.find((verdict) => verdict === raw["verdict"]) ?? "weak",
     words: text(raw["words"]),
   };
@@ -129,6 +130,8 @@ function readCurve(raw: Raw, index: number): FitCurve {
     displacement_m: whole(displacement_m),
     measured_N: whole(measured_N),
     fitted_N: whole(fitted_N),
+    further_low_N: numbers(raw["further_low_N"]).slice(0, length),
+    further_high_N: numbers(raw["further_high_N"]).slice(0, length),
     noise_N: finite(raw["noise_N"], 0),
     rms_N: numberOrNaN(raw["rms_N"]),
   };

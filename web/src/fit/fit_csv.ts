@@ -22,7 +22,7 @@ export function csvFiles(fit: FitData): CsvFile[] {
 }
 
 export function curvesCsv(fit: FitData): string {
-  const columns = "curve,group,held_out,velocity_m_s,time_s,displacement_m,measured_N,fitted_N".split(",");
+  const columns = "curve,group,held_out,velocity_m_s,time_s,displacement_m,measured_N,fitted_N,further_low_N,further_high_N".split(",");
   const rows = fit.curves.flatMap((curve) =>
     curve.displacement_m.map((displacement, at) => [
       curve.name,
@@ -33,6 +33,8 @@ export function curvesCsv(fit: FitData): string {
       displacement,
       curve.measured_N[at] ?? null,
       curve.fitted_N[at] ?? null,
+      curve.further_low_N[at] ?? null,
+      curve.further_high_N[at] ?? null,
     ]),
   );
   return rowsToCsv(columns, rows);
@@ -40,7 +42,7 @@ export function curvesCsv(fit: FitData): string {
 
 export function parametersCsv(fit: FitData): string {
   const columns = ["name", "unit", "scale", "low", "high", "value", "sd"];
-  const kinds = ["ci95", "ci95_profile", "ci95_bootstrap"] as const;
+  const kinds = ["ci95_curvature", "ci95_profile", "ci95_bootstrap", "further95"] as const;
   const head = [...columns, ...kinds.flatMap((kind) => [`${kind}_low`, `${kind}_high`]), "verdict"];
   const row = (parameter: FitParameter) => [
     ...[parameter.name, parameter.unit, parameter.scale, parameter.low, parameter.high, parameter.value, parameter.sd],

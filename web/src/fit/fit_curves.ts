@@ -6,7 +6,7 @@ import { figure } from "../page/figure.ts";
 import type { FitData } from "../report_data.ts";
 import { forceText, velocityText } from "./force_unit.ts";
 import { use } from "./verdicts.ts";
-import { MEASURED, type Panel, SIMULATED, curveCharts, panelsOf } from "./panels.ts";
+import { FURTHER, MEASURED, type Panel, SIMULATED, curveCharts, panelsOf } from "./panels.ts";
 
 /** More charts than this stand three in a row. */
 const FEW = 4;
@@ -14,7 +14,7 @@ const FEW = 4;
 export function fitCurves(fit: FitData): HTMLElement | null {
   const panels = panelsOf(fit);
   if (panels.length === 0) return null;
-  const state = new SceneState([MEASURED, SIMULATED]);
+  const state = new SceneState([MEASURED, SIMULATED, FURTHER]);
   const figures = curveCharts(fit, panels).map((model, at) => {
     model.note = panelNote(fit, panels[at]!);
     return figure(model.title, new Chart(model, state).element, use(panels[at]!.group.held_out), "fit-curves");

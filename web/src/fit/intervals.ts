@@ -29,7 +29,7 @@ export function intervalText(interval: Interval | null, factor: number, digits: 
 
 /** The interval to trust first: of the profile, else of the curvature, else of the bootstrap. */
 export function bestInterval(parameter: FitParameter): Interval | null {
-  return parameter.ci95_profile ?? parameter.ci95 ?? parameter.ci95_bootstrap;
+  return parameter.ci95_profile ?? parameter.ci95_curvature ?? parameter.ci95_bootstrap;
 }
 
 export interface BarPart {

@@ -1,12 +1,13 @@
 // panels.ts — curves of a fit put into charts: a chart for each group and use, all on the same axes.
 import type { ChartModel, Extent, Line } from "../charts/model.ts";
 import { extentOf, scaled } from "../charts/model.ts";
-import { MEASURED_STYLE, TOTAL_STYLE } from "../charts/line_style.ts";
+import { FIT_STYLE, MEASURED_STYLE, TOTAL_STYLE } from "../charts/line_style.ts";
 import { axisLabel } from "../format/units.ts";
 import type { FitCurve, FitData, FitGroup } from "../report_data.ts";
 
 export const MEASURED = "measured";
 export const SIMULATED = "simulated";
+export const FURTHER = "further";
 
 export interface Panel {
   group: FitGroup;
@@ -50,6 +51,7 @@ function curveChart(fit: FitData, panel: Panel): ChartModel {
       };
     }),
   );
+  lines.push(...furtherLines(fit, panel));
   return {
     title: panelTitle(panel),
     xLabel: axisLabel(fit.x.label),
@@ -58,6 +60,23 @@ function curveChart(fit: FitData, panel: Panel): ChartModel {
     events: [],
     note: "",
   };
+}
+
+/** Between which forces a further specimen is expected, at the instants of the longest curve. */
+function furtherLines(fit: FitData, panel: Panel): Line[] {
+  const curve = panel.curves.reduce((a, b) => (b.further_low_N.length > a.further_low_N.length ? b : a));
+  return (["further_low_N", "further_high_N"] as const)
+    .filter((column) => curve[column].length > 0)
+    .map((column) => ({
+      id: `${FURTHER} ${column}`,
+      variant: FURTHER,
+      entry: FURTHER,
+      label: "95 % of further specimens",
+      style: FIT_STYLE,
+      x: scaled(curve.displacement_m, fit.x.scale),
+      y: scaled(curve[column], fit.y.scale),
+      times: null,
+    }));
 }
 
 export function panelTitle(panel: Panel): string {

@@ -1,6 +1,6 @@
-// parameter_table.ts — every parameter: value, three kinds of interval, where they lie within the bounds, verdict.
+// parameter_table.ts — every parameter: value, its intervals, where they lie within the bounds, verdict.
 //
-//   name   value [unit]   95 % by profile, curvature, bootstrap   low ──▬▬●▬▬───── high   ✓ Identified: why
+//   name   value [unit]   95 % by profile, curvature, bootstrap, of a further specimen   low ──▬▬●▬▬───── high   ✓ Identified: why
 import { formatSignificant } from "../format/number.ts";
 import { h, svg } from "../page/dom.ts";
 import type { FitData, FitParameter } from "../report_data.ts";
@@ -10,8 +10,9 @@ import { verdictSign, verdictTone } from "./verdicts.ts";
 
 const KINDS = [
   { key: "ci95_profile", name: "profile" },
-  { key: "ci95", name: "curvature" },
+  { key: "ci95_curvature", name: "curvature" },
   { key: "ci95_bootstrap", name: "bootstrap" },
+  { key: "further95", name: "a further specimen" },
 ] as const;
 
 export function parameterTable(fit: FitData): HTMLElement | null {

@@ -87,7 +87,7 @@ function basinTable(fit: FitData): HTMLElement {
       h("td", { class: "number" }, costs[at]),
       h("td", { class: "number" }, `${basin.found} of ${fit.starts}`),
       ...fit.parameters.map((parameter, index) => {
-        const digits = digitsFor(parameter.value, parameter.ci95);
+        const digits = digitsFor(parameter.value, parameter.ci95_curvature);
         return h(
           "td",
           { class: "number" },

@@ -7,6 +7,7 @@ type Verdict = FitParameter["verdict"];
 
 const LOOKS: Record<Verdict, { sign: IconName; tone: "pass" | "warn" | "fail" }> = {
   identified: { sign: "pass", tone: "pass" },
+  negligible: { sign: "pass", tone: "pass" },
   weak: { sign: "weak", tone: "warn" },
   "at bound": { sign: "bound", tone: "warn" },
   "not identifiable": { sign: "fail", tone: "fail" },

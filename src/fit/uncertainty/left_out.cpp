@@ -1,0 +1,50 @@
+#include "fit/uncertainty/left_out.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace glisson::fit {
+namespace {
+
+constexpr std::size_t kFewestToLeaveOne = 3;
+
+/// A problem of some of the curves.
+std::unique_ptr<Problem> with(const Problem& all, const std::vector<std::size_t>& which) {
+  std::vector<Curve> curves;
+  std::vector<std::size_t> indices;
+  std::vector<double> spread;
+  for (const std::size_t c : which) {
+    curves.push_back(all.curves()[c]);
+    indices.push_back(all.model_index(c));
+    spread.push_back(all.spread()[c]);
+  }
+  auto part = std::make_unique<Problem>(all.parameters(), std::move(curves), std::move(indices), std::move(spread),
+                                        all.model(), all.loss());
+  part->difference_step = all.difference_step;
+  return part;
+}
+
+}  // namespace
+
+std::vector<double> left_out_errors(const Problem& problem, const Optimum& optimum, const DescentOptions& options) {
+  std::vector<double> errors;
+  const std::size_t curves = problem.curves().size();
+  for (std::size_t out = 0; curves >= kFewestToLeaveOne && out < curves; ++out) {
+    if (options.stop != nullptr && options.stop->load()) return {};
+    std::vector<std::size_t> others;
+    for (std::size_t c = 0; c < curves; ++c) {
+      if (c != out) others.push_back(c);
+    }
+    const Optimum there = descend(*with(problem, others), optimum.scaled, options);
+    const Prediction seen = problem.model().predict(problem.model_index(out), problem.to_values(there.scaled));
+    const std::vector<double>& measured = problem.curves()[out].force;
+    double squares = seen.force.size() == measured.size() ? 0.0 : std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < measured.size() && std::isfinite(squares); ++i)
+      squares += (seen.force[i] - measured[i]) * (seen.force[i] - measured[i]);
+    errors.push_back(std::sqrt(squares / static_cast<double>(measured.size())));
+  }
+  return errors;
+}
+
+}  // namespace glisson::fit
