@@ -9,6 +9,7 @@
 
 #include "fit/fill_result.h"
 #include "fit/fit_curves.h"
+#include "fit/forward/offset_model.h"
 #include "fit/search/law_candidates.h"
 #include "fit/search/law_search.h"
 #include "fit/tissue_of_fit.h"
@@ -48,7 +49,10 @@ std::vector<LawSpec> laws_of(const FitSpec& spec, const FitRun& options, const F
   for (const std::string& name : options.laws) {
     const double modulus =
         size.area ? initial_modulus(curves.chosen(curves.indices(false)), *size.area, *size.height) : own_modulus(spec);
-    laws.push_back(law_candidate(name, modulus, spec.specimen.has_value()));
+    LawSpec& law = laws.emplace_back(law_candidate(name, modulus, spec.specimen.has_value()));
+    for (const ParameterSpec& p : spec.parameters) {  // those of the measurement belong to every law
+      if (is_curve_key(p.key) || p.key == kFrictionKey) law.parameters.push_back(p);
+    }
   }
   std::set<std::string> names;
   for (const LawSpec& law : laws) {

@@ -56,6 +56,23 @@ void check_parameters(const std::vector<ParameterSpec>& list, const Node& table,
   if (list.empty()) place.complain("nothing is free; give one or more [[parameter]] with key, low and high");
 }
 
+/// Friction is a number of [specimen] and of a parameter, and asks for a forward model of its own.
+void check_faces(const FitSpec& fit, const Node& table, const Place& place) {
+  const bool rubs = fit.specimen && fit.specimen->round && fit.specimen->faces == Faces::friction;
+  const auto frees = [](const ParameterSpec& p) { return p.key == kFrictionKey; };
+  const auto any = [&](const auto& list) { return std::any_of(list.begin(), list.end(), frees); };
+  const bool freed = any(fit.parameters) ||
+                     std::any_of(fit.laws.begin(), fit.laws.end(), [&](const LawSpec& l) { return any(l.parameters); });
+  if (freed && !rubs)
+    place.complain("the parameter specimen.friction asks for a cylinder with faces = \"friction\" in [specimen]");
+  if (!fit.specimen) return;
+  if (rubs && !freed && !table.find("specimen")->find("friction"))
+    place.complain(
+        "[specimen] faces = \"friction\" asks for `friction`, or for a [[parameter]] with key = \"specimen.friction\"");
+  if (plates_of(*fit.specimen) && fit.forward.kind != ForwardKind::automatic)
+    place.complain("[forward] kind applies to smooth faces; remove it, or set faces = \"smooth\" in [specimen]");
+}
+
 void finish_fit(FitSpec& fit, const Node& table, const Place& place) {
   if (const Node* set = table.find("set")) {
     const std::vector<Override> more = overrides_of(*set, "");
@@ -63,6 +80,7 @@ void finish_fit(FitSpec& fit, const Node& table, const Place& place) {
   }
   if (const Node* tissue = table.find("tissue")) fit.set.push_back({"tissue", scene::toml_text(*tissue)});
   if (!fit.parameters.empty()) check_parameters(fit.parameters, table, place);
+  check_faces(fit, table, place);
   if (fit.data.empty()) place.complain("there are no curves; give one or more [[data]] with `files`");
   const bool any_fitted = std::any_of(fit.data.begin(), fit.data.end(), [](const DataSpec& d) { return !d.held_out; });
   if (!fit.data.empty() && !any_fitted)
@@ -195,7 +213,7 @@ const SectionSpec& fit_section() {
     s.key("variant", &FitSpec::variant, "variant of the scene").otherwise("the only one");
     s.table(
          "specimen", specimen_section(), [](FitSpec & f) -> auto& { return f.specimen.emplace(); },
-         "a plain specimen between smooth plates, in place of a scene")
+         "a plain specimen between plates, in place of a scene")
         .otherwise("none");
     s.bare(bare_table("tissue", "of the specimen: keys as in a scene's `[tissue]`", "none"));
     s.bare(bare_table("set", "keys of the scene and their values, as `--set` takes them", "none"));

@@ -54,8 +54,9 @@ std::string tissue_of_fit(const LawSearch& search, const FitResult& result, cons
   std::vector<double> tissue_values;
   const std::vector<double> values = search.values();
   for (std::size_t p = 0; p < values.size(); ++p) {
-    if (is_curve_key(search.law().parameters[p].key)) continue;
-    keys.push_back(search.law().parameters[p].key);
+    const std::string& key = search.law().parameters[p].key;
+    if (is_curve_key(key) || key == kFrictionKey) continue;
+    keys.push_back(key);
     tissue_values.push_back(values[p]);
   }
   std::string text = "# Fitted by `glisson fit " + spec.file.filename().string() + "`: " + spec.title + "\n";

@@ -117,6 +117,14 @@ TEST(Ladder, ReadsItsSections) {
   EXPECT_NEAR(specimen_of(s).area, 1.9635e-3, 1e-7);
   EXPECT_THAT(read(specimen_section(), "kind = \"cylinder\"\ndiameter_mm = 50\n", &s),
               HasSubstr("missing key `height_mm`"));
+  EXPECT_FALSE(plates_of(s));
+  const std::string rubs =
+      "kind = \"cylinder\"\ndiameter_mm = 50\nheight_mm = 30\nfaces = \"friction\"\nfriction = 0.2\n";
+  EXPECT_EQ(read(specimen_section(), rubs, &s), "");
+  ASSERT_TRUE(plates_of(s));
+  EXPECT_EQ(plates_of(s)->faces, Faces::friction);
+  EXPECT_DOUBLE_EQ(plates_of(s)->friction, 0.2);
+  EXPECT_DOUBLE_EQ(plates_of(s)->radius, 0.025);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 
@@ -221,13 +222,32 @@ struct Maker {
     o.halves_step = halves;
     return std::make_shared<SceneModel>(problem.scene, inner, problem.curves, std::move(o));
   }
-  std::shared_ptr<const Model> specimen(const Specimen& size) const {
+  /// Empty where a key is none of the tissue's.
+  TissueAt tissue_at(std::span<const std::string> of_tissue) const {
     const SceneText& s = problem.scene;
     const auto tissue =
-        std::make_shared<scene::ParametricVariant>(s.text, s.name, s.base, s.overrides, s.variant, inner);
-    if (!tissue->only_tissue()) return nullptr;
-    return with_offsets(std::make_shared<UniaxialModel>(
-        problem.curves, size, [tissue](std::span<const double> values) { return tissue->tissue_with(values); }));
+        std::make_shared<scene::ParametricVariant>(s.text, s.name, s.base, s.overrides, s.variant, of_tissue);
+    if (!tissue->only_tissue()) return {};
+    return [tissue](std::span<const double> values) { return tissue->tissue_with(values); };
+  }
+  std::shared_ptr<const Model> specimen(const Specimen& size) const {
+    const TissueAt tissue = tissue_at(inner);
+    return tissue ? with_offsets(std::make_shared<UniaxialModel>(problem.curves, size, tissue)) : nullptr;
+  }
+  std::shared_ptr<const Model> barrel(const BarrelGrid& grid) const {
+    std::vector<std::string> of_tissue = inner;
+    const auto rubs = std::find(of_tissue.begin(), of_tissue.end(), kFrictionKey);
+    std::optional<std::size_t> friction;
+    if (rubs != of_tissue.end()) {
+      friction = static_cast<std::size_t>(rubs - of_tissue.begin());
+      of_tissue.erase(rubs);
+    }
+    const TissueAt tissue = tissue_at(of_tissue);
+    if (!tissue)
+      throw std::invalid_argument(
+          "[specimen] faces that stick or rub ask for parameters of [tissue], `curve.…` and "
+          "`specimen.friction` alone");
+    return with_offsets(std::make_shared<BarrelModel>(problem.curves, *problem.plates, tissue, friction, grid));
   }
   std::vector<double> inner_values(std::span<const double> all) const {
     std::vector<double> values;
@@ -335,6 +355,10 @@ double patience(const Ladder& ladder) { return (ladder.chosen == 0 ? 1.5 : 1.0) 
 Ladder choose_forward(const ForwardProblem& problem) {
   const Maker make(problem);
   Ladder ladder;
+  if (problem.plates) {
+    ladder.rungs.push_back({.name = "specimen that bulges", .failure = {}, .model = make.barrel({})});
+    return ladder;
+  }
   ladder.compared = one_of_each_group(problem.curves);
   ladder.places = places_of(problem.parameters, problem.spec.points);
   const std::shared_ptr<const SceneModel> scene = make.scene(reference(problem.spec));
@@ -418,6 +442,19 @@ double check_forward(const Ladder& ladder, const ForwardProblem& problem, std::s
     share = std::max(share, rms(forces[c], truth[c]) / allowance(curve, truth[c], problem.spec.tolerance));
   }
   return share;
+}
+
+double grid_error(const Ladder& ladder, const ForwardProblem& problem, std::span<const double> values) {
+  std::vector<std::size_t> curves(problem.curves.size());
+  std::iota(curves.begin(), curves.end(), std::size_t{0});
+  const auto finer = Maker(problem).barrel({.radial = 6, .axial = 5, .grading = 0.7});
+  std::string failure;
+  const Forces own = run_side_by_side(*ladder.model(), curves, values, failure);
+  const Forces other = failure.empty() ? run_side_by_side(*finer, curves, values, failure) : Forces{};
+  if (!failure.empty()) throw std::runtime_error(failure);
+  double error = 0.0;
+  for (std::size_t c = 0; c < own.size(); ++c) error = std::max(error, rms(own[c], other[c]));
+  return error;
 }
 
 std::string describe(const Ladder& ladder) {

@@ -1,6 +1,7 @@
 // ladder.h — the cheapest forward model that keeps its error below the noise of the data.
 //
 //   specimen · static · implicit, long steps · semi-implicit · explicit, heavier tissue · …  ◀── compared ──▶  the scene itself
+//   a cylinder between plates with friction, where [specimen] says so: by itself
 //
 // All are compared at the start of the parameters and at some places within their bounds, on one curve of each group (its
 // repetitions go the same way). The cheapest whose error is everywhere below `tolerance` × noise is taken; if none is, the
@@ -45,6 +46,7 @@ struct Ladder {
 struct ForwardProblem {
   SceneText scene;
   ForwardSpec spec;
+  std::optional<Plates> plates{};     ///< of a cylinder that bulges; then there is no other model
   std::vector<Parameter> parameters;  ///< names are keys: of the scene, or of offset_model.h
   std::vector<Curve> curves;          ///< of all, those held out, too
   MeshLoader load{};
@@ -67,6 +69,10 @@ double check_forward(const Ladder& ladder, const ForwardProblem& problem, std::s
 
 /// The ladder in words: a line for each model, and which was taken.
 std::string describe(const Ladder& ladder);
+
+/// The largest rms difference of a cylinder that bulges from one of more and smaller elements [N].
+/// @throws std::runtime_error where one of them does not run
+double grid_error(const Ladder& ladder, const ForwardProblem& problem, std::span<const double> values);
 
 /// The specimen that an experiment is between smooth plates; none where it is something else.
 std::optional<Specimen> homogeneous_specimen(const Variant& variant, const SceneModelOptions& options);

@@ -48,6 +48,15 @@ SectionSpec cylinder_kind() {
   Section<SpecimenSpec> s("cylinder", "Round.");
   s.key<Milli>("diameter_mm", &SpecimenSpec::diameter, "diameter").in("mm").within(above(0)).must();
   s.key<Milli>("height_mm", &SpecimenSpec::height, "height at rest").in("mm").within(above(0)).must();
+  s.choice<Faces>("faces", &SpecimenSpec::faces,
+                  {{"smooth", Faces::smooth, "they slide freely: the specimen deforms alike all over"},
+                   {"friction", Faces::friction, "they slide against Coulomb's friction, and the specimen bulges"},
+                   {"bonded", Faces::bonded, "they do not slide"}},
+                  "how its faces meet the plates");
+  s.key("friction", &SpecimenSpec::friction,
+        "coefficient of friction with faces = \"friction\"; a `[[parameter]]` may have the key `specimen.friction`")
+      .in("-")
+      .within(at_least(0));
   return s.spec();
 }
 
@@ -70,7 +79,7 @@ KindSpec kind_of(SectionSpec section, bool round) {
 
 const SectionSpec& specimen_section() {
   static const SectionSpec section = [] {
-    Section<SpecimenSpec> s("specimen", "A specimen pressed between smooth plates, in place of a scene.");
+    Section<SpecimenSpec> s("specimen", "A specimen pressed between plates, in place of a scene.");
     s.key("cells", &SpecimenSpec::cells,
           "cubes along x, y and z of the body that the homogeneous specimen is compared with")
         .within(between(1, 100));
@@ -83,6 +92,11 @@ const SectionSpec& specimen_section() {
 Specimen specimen_of(const SpecimenSpec& spec) {
   const double area = spec.round ? 0.25 * std::numbers::pi * spec.diameter * spec.diameter : spec.width * spec.depth;
   return {.area = area, .height = spec.height};
+}
+
+std::optional<Plates> plates_of(const SpecimenSpec& spec) {
+  if (!spec.round || spec.faces == Faces::smooth) return {};
+  return Plates{0.5 * spec.diameter, spec.height, spec.faces, spec.friction};
 }
 
 std::string specimen_scene(const SpecimenSpec& spec) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "fit/forward/barrel_model.h"
 #include "fit/forward/uniaxial.h"
 #include "glisson/simulation/simulation.h"
 #include "scene/parse/schema.h"
@@ -28,9 +29,11 @@ struct ForwardSpec {
   double approach = 0.0;   ///< way of an instrument in the scene before it touches the tissue [m], ≥ 0
 };
 
-/// A specimen between smooth plates, in place of a scene.
+/// A specimen between plates, in place of a scene.
 struct SpecimenSpec {
   bool round = true;
+  Faces faces = Faces::smooth;        ///< of a cylinder
+  double friction = 0.0;              ///< of its faces [-], ≥ 0
   double diameter = 0.05;             ///< of a cylinder [m], > 0
   double width = 0.02, depth = 0.02;  ///< of a block [m], > 0
   double height = 0.03;               ///< [m], > 0
@@ -41,6 +44,8 @@ const scene::SectionSpec& forward_section();   ///< fills ForwardSpec
 const scene::SectionSpec& specimen_section();  ///< fills SpecimenSpec
 
 Specimen specimen_of(const SpecimenSpec& spec);
+/// None where the plates are smooth.
+std::optional<Plates> plates_of(const SpecimenSpec& spec);
 
 /// A scene of the specimen without a [tissue]: a block with the area of its face, its floor and two sides held across
 /// themselves, its top pressed by a tool called "plate", sideways free. The state is the same all over, and a cylinder's

@@ -79,6 +79,7 @@ LawSearch::LawSearch(const FitSpec& spec, LawSpec law, const FitCurves& curves, 
     : spec_(spec), law_(std::move(law)), curves_(curves), options_(options) {
   forward_.scene = scene_of(spec, law_);
   forward_.spec = spec.forward;
+  if (spec.specimen) forward_.plates = plates_of(*spec.specimen);
   // A specimen deforms alike all over by what the word means; whether a body of tets does so, too, is looked at in the end.
   if (spec.specimen && forward_.spec.kind == ForwardKind::automatic) forward_.spec.kind = ForwardKind::uniaxial;
   for (const ParameterSpec& p : law_.parameters) {
@@ -151,6 +152,7 @@ void LawSearch::search(LawMemory& memory, const std::function<void(const MultiSt
 /// How far a body of tets between the plates is from the homogeneous state that was fitted.
 void LawSearch::compare_specimen() {
   if (!spec_.specimen || spec_.forward.kind != ForwardKind::automatic || optimum_.scaled.empty()) return;
+  if (forward_.plates) return compare_grids();
   ForwardProblem there = problem_at_optimum(forward_.curves);
   there.spec.kind = ForwardKind::automatic;
   try {
@@ -163,6 +165,16 @@ void LawSearch::compare_specimen() {
         "A body of tets between the plates gives the same force to " + rounded(own->error) + " N at the optimum.";
   } catch (const std::exception& error) {
     second_look_ = std::string("A body of tets between the plates could not be compared: ") + error.what();
+  }
+}
+
+/// How far a cylinder that bulges is from one of more elements.
+void LawSearch::compare_grids() {
+  try {
+    specimen_error_ = grid_error(ladder_, forward_, values());
+    second_look_ = "A finer grid gives the same force to " + rounded(*specimen_error_) + " N at the optimum.";
+  } catch (const std::exception& error) {
+    second_look_ = std::string("A finer grid could not be compared: ") + error.what();
   }
 }
 
@@ -229,8 +241,9 @@ std::string LawSearch::forward_words() const {
   const Rung& taken = ladder_.taken();
   std::string words;
   if (forward_.spec.kind != ForwardKind::automatic) {
-    words = taken.name == "specimen" ? "Forward model: a homogeneous specimen."
-                                     : "Forward model: " + taken.name + ", as asked for.";
+    words = forward_.plates            ? "Forward model: a cylinder that bulges between its plates."
+            : taken.name == "specimen" ? "Forward model: a homogeneous specimen."
+                                       : "Forward model: " + taken.name + ", as asked for.";
   } else if (ladder_.chosen == 0) {
     words = "Forward model: the scene itself; no cheaper model stayed within the noise of the curves.";
   } else {

@@ -57,6 +57,7 @@ class LawSearch {
  private:
   void take_model(std::size_t rung);
   void look_again_at_forward();
+  void compare_grids();
   ForwardProblem problem_at_optimum(std::vector<Curve> curves) const;
 
   const FitSpec& spec_;

@@ -1,0 +1,48 @@
+#include "fit/forward/band_matrix.h"
+
+#include <cmath>
+
+namespace glisson::fit {
+
+void BandMatrix::fix(std::size_t row) {
+  std::fill_n(data_.begin() + static_cast<std::ptrdiff_t>(row * stride_), stride_, 0.0);
+  (*this)(row, row) = 1.0;
+}
+
+void BandMatrix::add_row(std::size_t row, double factor, std::vector<double>& x) const {
+  const std::size_t last = std::min(row + half_, rows_ - 1);
+  for (std::size_t c = row > half_ ? row - half_ : 0; c <= last; ++c)
+    x[c] += factor * data_[row * stride_ + c + half_ - row];
+}
+
+bool BandMatrix::factor() {
+  for (std::size_t k = 0; k < rows_; ++k) {
+    const double* pivot = &data_[k * stride_ + half_];
+    if (pivot[0] == 0.0 || !std::isfinite(pivot[0])) return false;
+    const std::size_t last = std::min(k + half_, rows_ - 1), width = last - k;
+    for (std::size_t i = k + 1; i <= last; ++i) {
+      double* row = &data_[i * stride_ + half_ - (i - k)];
+      if (row[0] == 0.0) continue;
+      row[0] /= pivot[0];
+      for (std::size_t c = 1; c <= width; ++c) row[c] -= row[0] * pivot[c];
+    }
+  }
+  return true;
+}
+
+void BandMatrix::solve(std::vector<double>& x) const {
+  for (std::size_t k = 0; k < rows_; ++k) {
+    const std::size_t first = k > half_ ? k - half_ : 0;
+    const double* row = &data_[k * stride_ + half_ - (k - first)];
+    for (std::size_t c = first; c < k; ++c) x[k] -= row[c - first] * x[c];
+  }
+  for (std::size_t k = rows_; k-- > 0;) {
+    const double* row = &data_[k * stride_ + half_];
+    const std::size_t width = std::min(half_, rows_ - 1 - k);
+    double sum = x[k];
+    for (std::size_t c = 1; c <= width; ++c) sum -= row[c] * x[k + c];
+    x[k] = sum / row[0];
+  }
+}
+
+}  // namespace glisson::fit

@@ -1,0 +1,80 @@
+// barrel.h — a cylinder between plates on which it slides with friction or not at all: it bulges, and resists more than
+// one that deforms alike all over.
+//
+//   face   u_r = s R: it spreads alike all over, by less than it would on smooth plates. With P_rz the traction on it and
+//          F the force on it, Coulomb's friction, made smooth, balances it over the face [docs/fit.md]:
+//             ∫ P_rz R dA + ⅔ f F R₀ g = 0,   g = x/√(1 + x²),   x = s/(0.02 s₀),   s₀ = λ^(−½) − 1
+//   side   where it bulges over the edge it comes to lie on the plate, without friction there
+//
+// Newton's method from rest on, the pressures of the elements beside the displacements; steps are halved where it does not
+// converge. The state is a function of the displacement alone: friction is that of a compression that goes on.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "fit/forward/band_matrix.h"
+#include "fit/forward/barrel_mesh.h"
+
+namespace glisson::fit {
+
+/// How a cylinder's faces meet the plates.
+enum class Faces {
+  smooth,    ///< without friction: it deforms alike all over
+  friction,  ///< they slide against Coulomb's friction
+  bonded     ///< they do not slide
+};
+
+class Barrel {
+ public:
+  /// @param friction  f ≥ 0 [-], with Faces::friction alone
+  Barrel(std::shared_ptr<const BarrelMesh> mesh, const HyperelasticLaw& law, Faces faces, double friction);
+
+  /// Without plates beyond the edge: the side may bulge past them. For comparison with bodies without contact.
+  void free_side() { leans_ = false; }
+  /// Goes on to a displacement above the last [m]. @param pressure  about that of the plate, by which it carries the side [Pa]
+  /// @return the force of the plate [N], > 0 @throws std::runtime_error where no equilibrium is found
+  double press(double displacement, double pressure);
+  /// s of the last state [-].
+  double spread() const { return state_.spread; }
+
+ private:
+  struct State {
+    double displacement = 0.0, spread = 0.0;
+    std::vector<double> u;                         ///< u_r, u_z of each vertex [m]
+    std::vector<BarrelElement::Linear> pressures;  ///< of each element [Pa]
+  };
+  /// What the face's balance lacks, with its derivatives by s and u.
+  struct Balance {
+    double rest = 0.0, by_spread = 0.0;
+    std::vector<double> by_u;
+  };
+
+  State predicted(double displacement) const;
+  bool converge();
+  void put_on_plates();
+  bool assemble();
+  void lean();
+  Balance face_balance() const;
+  void add_friction(Balance& face) const;
+  double solve_step(Balance& face, std::vector<double>& step);
+  void take_step(const std::vector<double>& step);
+  double face_force() const;
+  std::size_t face_vertex(std::size_t column) const { return (column + 1) * mesh_->rows() - 1; }
+
+  std::shared_ptr<const BarrelMesh> mesh_;
+  HyperelasticLaw law_;
+  Faces faces_;
+  double friction_;
+  bool leans_ = true;
+  State state_;
+  std::vector<State> past_;  ///< the last states, the newest at the end
+  double pressure_ = 0.0;    ///< about that of the plate [Pa]
+  // of the last assembly
+  std::vector<BarrelElement::Pressure> pressures_;
+  std::vector<double> force_;  ///< ∂W/∂u [N]
+  double side_force_ = 0.0;    ///< of the plate on the side [N]
+  BandMatrix tangent_;
+};
+
+}  // namespace glisson::fit

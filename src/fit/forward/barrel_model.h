@@ -1,0 +1,55 @@
+// barrel_model.h — the forward model of a cylinder whose faces stick to the plates or slide with friction.
+//
+//   F(d) = φ(d) F₀(d):   F₀ of the homogeneous state (material/uniaxial_path.h) at every instant,
+//                        φ what bulging makes of it, by barrel.h at some strains, a monotone cubic between them
+//
+// φ varies slowly and is the same for all curves: one path of the barrel serves them all. It is that of the elastic tissue:
+// of a viscous one exact where strains are small and κ ≫ μ, else an approximation.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "fit/forward/barrel.h"
+#include "fit/forward/uniaxial.h"
+
+namespace glisson::fit {
+
+/// A round specimen and how its faces meet the plates.
+struct Plates {
+  double radius = 0.0, height = 0.0;  ///< [m], > 0
+  Faces faces = Faces::bonded;
+  double friction = 0.0;  ///< f ≥ 0 [-], where it is no parameter
+};
+
+/// The key of a parameter: the friction of the plates.
+inline constexpr const char* kFrictionKey = "specimen.friction";
+
+class BarrelModel final : public MotionModel {
+ public:
+  /// @param friction  the place of f among the values; none: that of the plates. The others go on to `tissue`
+  BarrelModel(std::vector<Curve> curves, const Plates& plates, TissueAt tissue, std::optional<std::size_t> friction,
+              const BarrelGrid& grid = {});
+  Prediction predict_from(std::size_t curve, std::span<const double> values, double contact) const override;
+
+ private:
+  struct Known;
+  /// φ over the strain.
+  MonotoneCubic<double> factor(std::span<const double> values, double contact) const;
+  std::shared_ptr<Known> known(std::span<const double> values, double contact) const;
+
+  std::vector<double> without_friction(std::span<const double> values) const;
+
+  Plates plates_;
+  TissueAt tissue_;
+  std::optional<std::size_t> friction_;
+  UniaxialModel homogeneous_;
+  double farthest_ = 0.0;  ///< displacement of all curves [m]
+  std::shared_ptr<const BarrelMesh> mesh_;
+  mutable std::mutex mutex_;
+  mutable std::deque<std::shared_ptr<Known>> known_;
+};
+
+}  // namespace glisson::fit

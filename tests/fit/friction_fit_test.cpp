@@ -1,0 +1,186 @@
+// friction_fit_test.cpp — fits of specimens between plates with friction: files to verdict, and the silicone phantoms to
+// 65 % strain, where a homogeneous specimen no longer does.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "fit/forward/barrel_model.h"
+#include "fit/run_fit.h"
+#include "phantom.h"
+
+namespace glisson::fit::friction_fit_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kSpecimen = R"(
+[specimen]
+kind = "cylinder"
+diameter_mm = 50
+height_mm = 30
+)";
+constexpr const char* kTissue = R"(
+[tissue]
+hyperelastic = { kind = "neo_hookean", mu_Pa = 1000, bulk_modulus_Pa = 1e6 }
+[search]
+starts = 2
+[proof]
+profiles = false
+bootstrap = 0
+next = false
+[[parameter]]
+key = "tissue.hyperelastic.mu_Pa"
+low = 100
+high = 1e4
+)";
+constexpr const char* kFriction = R"(
+[[parameter]]
+key = "specimen.friction"
+low = 0
+high = 0.5
+scale = "linear"
+)";
+
+std::string data(const std::string& file) { return "[[data]]\nfiles = [\"" + file + "\"]\n"; }
+
+// A curve made with friction 0.15 and μ = 2000 Pa gives them back, each within 1 %: the shape of the curve tells them apart.
+TEST(FrictionFit, FindsFrictionAndModulus) {
+  Curve curve;
+  curve.name = "made";
+  for (int i = 0; i < 60; ++i) {
+    curve.time.push_back(i);
+    curve.displacement.push_back(3e-4 * i);
+  }
+  curve.force.assign(curve.size(), 0.0);
+  Tissue tissue;
+  tissue.hyperelastic = NeoHookean{2000, 1e6};
+  const BarrelModel model({curve}, {0.025, 0.03, Faces::friction, 0.15},
+                          [&](std::span<const double>) { return tissue; }, {});
+  const Prediction made = model.predict(0, {});
+  ASSERT_EQ(made.failure, "");
+  std::string rows = "Time (s),Compression (mm),Load (N)\n";
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    char row[96];
+    std::snprintf(row, sizeof row, "%.1f,%.6f,%.9f\n", curve.time[i], 1e3 * curve.displacement[i], made.force[i]);
+    rows += row;
+  }
+  const phantom::Folder folder("friction");
+  folder.write("made.csv", rows);
+  FitRun run;
+  run.data_folder = folder.path();
+  const FitResult result = run_fit(
+      parse_fit(std::string(kSpecimen) + "faces = \"friction\"\n" + kTissue + kFriction + data("made.csv"), "made"),
+      run);
+  ASSERT_EQ(result.parameters.size(), 2u);
+  EXPECT_NEAR(result.parameters[0].value, 2000.0, 20.0);
+  EXPECT_NEAR(result.parameters[1].value, 0.15, 0.0015);
+  EXPECT_THAT(result.forward, HasSubstr("a cylinder that bulges"));
+  EXPECT_THAT(result.tissue, HasSubstr("#   specimen.friction = "));  // no key of the tissue
+}
+
+std::string fault(const std::string& text) {
+  try {
+    parse_fit(text, "F");
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// What says friction twice, or not at all, is told when the file is read.
+TEST(FrictionFit, RefusesWhatContradictsItself) {
+  const std::string rubs = std::string(kSpecimen) + "faces = \"friction\"\n";
+  EXPECT_EQ(fault(rubs + "friction = 0.1\n" + kTissue + data("a.csv")), "");
+  EXPECT_EQ(fault(rubs + kTissue + kFriction + data("a.csv")), "");
+  EXPECT_THAT(fault(rubs + kTissue + data("a.csv")), HasSubstr("asks for `friction`"));
+  EXPECT_THAT(fault(kSpecimen + std::string(kTissue) + kFriction + data("a.csv")), HasSubstr("faces = \"friction\""));
+  EXPECT_THAT(fault(rubs + "friction = -1\n" + kTissue + data("a.csv")), HasSubstr("friction: -1"));
+  EXPECT_THAT(fault(rubs + "friction = 0.1\n" + kTissue + "[forward]\nkind = \"uniaxial\"\n" + data("a.csv")),
+              HasSubstr("applies to smooth faces"));
+}
+
+double at(const Curve& c, double displacement) {
+  std::size_t i = 1;
+  while (i + 1 < c.size() && c.displacement[i] < displacement) ++i;
+  const double share = (displacement - c.displacement[i - 1]) / (c.displacement[i] - c.displacement[i - 1]);
+  return c.force[i - 1] + share * (c.force[i] - c.force[i - 1]);
+}
+
+/// The held-out error of a fit, and the best that the repetitions allow: that of the mean of the fitted curves [N].
+struct HeldOut {
+  double error = 0.0, best = 0.0;
+};
+HeldOut held_out(const FitResult& result) {
+  HeldOut h{*result.rms_heldout, 0.0};
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (const CurveResult& test : result.curves) {
+    if (!test.curve.held_out) continue;
+    for (std::size_t i = 0; i < test.curve.size(); ++i) {
+      double mean = 0.0, fitted = 0.0;
+      for (const CurveResult& c : result.curves) {
+        if (c.curve.held_out || c.curve.displacement.back() < test.curve.displacement[i]) continue;
+        mean += at(c.curve, test.curve.displacement[i]), ++fitted;
+      }
+      if (fitted == 0.0) continue;
+      squares += std::pow(test.curve.force[i] - mean / fitted, 2), ++count;
+    }
+  }
+  h.best = std::sqrt(squares / static_cast<double>(count));
+  return h;
+}
+
+/// The shipped fit with friction, or with smooth faces in its place, of a mix and with two of its five curves held out.
+HeldOut fit_phantoms(Faces faces, const std::string& mix, int first, int second) {
+  FitSpec spec = load_fit(test::shipped("scenes/fit/phantom_friction.toml"));
+  spec.specimen->faces = faces;
+  if (faces == Faces::smooth) spec.parameters.pop_back();
+  for (DataSpec& d : spec.data) d.files.clear();
+  for (int i = 1; i <= 5; ++i)
+    spec.data[i == first || i == second ? 1 : 0].files.push_back("EF10_" + mix + "_A" + std::to_string(i) + ".csv");
+  spec.proof = {.profiles = false, .bootstrap = 0, .next = false, .displacement = {}};
+  FitRun run;
+  run.data_folder = phantom::kPhantoms;
+  return held_out(run_fit(spec, run));
+}
+
+// To 65 % strain, held-out curves are met within 1.3 times the best that the repetitions allow.
+TEST(FrictionFit, MeetsHeldOutPhantomsTo65Percent) {
+  if (!phantom::have_phantoms()) GTEST_SKIP() << phantom::kPhantoms << " is not there";
+  for (const char* mix : {"100T", "75T"}) {
+    const HeldOut h = fit_phantoms(Faces::friction, mix, 4, 5);
+    EXPECT_LT(h.error, 1.3 * h.best) << mix;
+  }
+}
+
+// The same over all ten splits of both mixes, together and one by one. Of EF10 75T two splits have curves that by chance lie
+// so close (0.02 and 0.10 kPa) that the law's own misfit, below 0.1 kPa, shows: for these that misfit is the bound.
+TEST(FrictionFitLong, MeetsEveryHeldOutPairOfPhantomsTo65Percent) {
+  if (!phantom::have_phantoms()) GTEST_SKIP() << phantom::kPhantoms << " is not there";
+  const double kPa = 1e3 * std::numbers::pi * 0.025 * 0.025;  // in newtons
+  for (const char* mix : {"100T", "75T"}) {
+    double errors = 0.0, bests = 0.0, smooth_errors = 0.0;
+    for (int a = 1; a <= 5; ++a) {
+      for (int b = a + 1; b <= 5; ++b) {
+        const HeldOut h = fit_phantoms(Faces::friction, mix, a, b), smooth = fit_phantoms(Faces::smooth, mix, a, b);
+        std::printf("%s, A%d and A%d held out: best %.3f kPa, times it: smooth %.2f, friction %.2f\n", mix, a, b,
+                    h.best / kPa, smooth.error / smooth.best, h.error / h.best);
+        errors += h.error * h.error, bests += h.best * h.best, smooth_errors += smooth.error * smooth.error;
+        if (h.best < 0.105 * kPa)
+          EXPECT_LT(std::sqrt(h.error * h.error - h.best * h.best), 0.1 * kPa) << mix << a << b;
+        else
+          EXPECT_LT(h.error, 1.3 * h.best) << mix << a << b;
+      }
+    }
+    std::printf("%s, all: smooth %.2f, friction %.2f\n", mix, std::sqrt(smooth_errors / bests),
+                std::sqrt(errors / bests));
+    EXPECT_LT(errors, 1.3 * 1.3 * bests) << mix;
+    EXPECT_LT(errors, smooth_errors) << mix;
+  }
+}
+
+}  // namespace
+}  // namespace glisson::fit::friction_fit_test
