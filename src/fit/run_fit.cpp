@@ -51,7 +51,7 @@ std::vector<LawSpec> laws_of(const FitSpec& spec, const FitRun& options, const F
         size.area ? initial_modulus(curves.chosen(curves.indices(false)), *size.area, *size.height) : own_modulus(spec);
     LawSpec& law = laws.emplace_back(law_candidate(name, modulus, spec.specimen.has_value()));
     for (const ParameterSpec& p : spec.parameters) {  // those of the measurement belong to every law
-      if (is_curve_key(p.key) || p.key == kFrictionKey) law.parameters.push_back(p);
+      if (is_curve_key(p.key) || is_plate_key(p.key)) law.parameters.push_back(p);
     }
   }
   std::set<std::string> names;

@@ -57,18 +57,19 @@ void check_parameters(const std::vector<ParameterSpec>& list, const Node& table,
 }
 
 /// Friction is a number of [specimen] and of a parameter, and asks for a forward model of its own.
-void check_faces(const FitSpec& fit, const Node& table, const Place& place) {
+void check_faces(const FitSpec& fit, const Place& place) {
   const bool rubs = fit.specimen && fit.specimen->round && fit.specimen->faces == Faces::friction;
-  const auto frees = [](const ParameterSpec& p) { return p.key == kFrictionKey; };
+  const auto frees = [](const ParameterSpec& p) { return is_plate_key(p.key); };
   const auto any = [&](const auto& list) { return std::any_of(list.begin(), list.end(), frees); };
   const bool freed = any(fit.parameters) ||
                      std::any_of(fit.laws.begin(), fit.laws.end(), [&](const LawSpec& l) { return any(l.parameters); });
   if (freed && !rubs)
-    place.complain("the parameter specimen.friction asks for a cylinder with faces = \"friction\" in [specimen]");
+    place.complain("parameters `specimen.…` ask for a cylinder with faces = \"friction\" in [specimen]");
   if (!fit.specimen) return;
-  if (rubs && !freed && !table.find("specimen")->find("friction"))
+  if (rubs && !freed && !(fit.specimen->grip.friction > 0.0 || fit.specimen->grip.adhesion > 0.0))
     place.complain(
-        "[specimen] faces = \"friction\" asks for `friction`, or for a [[parameter]] with key = \"specimen.friction\"");
+        "[specimen] faces = \"friction\" asks for `friction` or `adhesion_Pa` above 0, or for a "
+        "[[parameter]] with the key `specimen.friction` or `specimen.adhesion_Pa`");
   if (plates_of(*fit.specimen) && fit.forward.kind != ForwardKind::automatic)
     place.complain("[forward] kind applies to smooth faces; remove it, or set faces = \"smooth\" in [specimen]");
 }
@@ -80,7 +81,7 @@ void finish_fit(FitSpec& fit, const Node& table, const Place& place) {
   }
   if (const Node* tissue = table.find("tissue")) fit.set.push_back({"tissue", scene::toml_text(*tissue)});
   if (!fit.parameters.empty()) check_parameters(fit.parameters, table, place);
-  check_faces(fit, table, place);
+  check_faces(fit, place);
   if (fit.data.empty()) place.complain("there are no curves; give one or more [[data]] with `files`");
   const bool any_fitted = std::any_of(fit.data.begin(), fit.data.end(), [](const DataSpec& d) { return !d.held_out; });
   if (!fit.data.empty() && !any_fitted)

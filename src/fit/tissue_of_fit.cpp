@@ -55,7 +55,7 @@ std::string tissue_of_fit(const LawSearch& search, const FitResult& result, cons
   const std::vector<double> values = search.values();
   for (std::size_t p = 0; p < values.size(); ++p) {
     const std::string& key = search.law().parameters[p].key;
-    if (is_curve_key(key) || key == kFrictionKey) continue;
+    if (is_curve_key(key) || is_plate_key(key)) continue;
     keys.push_back(key);
     tissue_values.push_back(values[p]);
   }

@@ -25,9 +25,9 @@ double homogeneous_pressure(const HyperelasticLaw& law, double strain) {
 }
 
 /// Force over that of the homogeneous state at each strain.
-std::vector<double> factors(const HyperelasticLaw& law, Faces faces, double friction,
-                            const std::vector<double>& strains, double radius = kRadius, const BarrelGrid& grid = {}) {
-  Barrel barrel(std::make_shared<BarrelMesh>(radius, kHeight, grid), law, faces, friction);
+std::vector<double> factors(const HyperelasticLaw& law, Faces faces, Grip grip, const std::vector<double>& strains,
+                            double radius = kRadius, const BarrelGrid& grid = {}) {
+  Barrel barrel(std::make_shared<BarrelMesh>(radius, kHeight, grid), law, faces, grip);
   std::vector<double> all;
   for (const double strain : strains) {
     const double pressure = homogeneous_pressure(law, strain);
@@ -43,8 +43,8 @@ TEST(Barrel, OnSmoothFacesIsHomogeneous) {
   for (const HyperelasticLaw& law :
        std::initializer_list<HyperelasticLaw>{NeoHookean{1000, 1e6}, kYeoh, Ogden{{1500, 300}, {-3, 5}, 1e5},
                                               VerondaWestmann{.c = 1000, .b = 0.7, .bulk_modulus = 1e6}}) {
-    for (const double f : factors(law, Faces::smooth, 0.0, kStrains)) EXPECT_NEAR(f, 1.0, 1e-8) << law_name(law);
-    for (const double f : factors(law, Faces::friction, 0.0, kStrains)) EXPECT_NEAR(f, 1.0, 1e-8) << law_name(law);
+    for (const double f : factors(law, Faces::smooth, {}, kStrains)) EXPECT_NEAR(f, 1.0, 1e-8) << law_name(law);
+    for (const double f : factors(law, Faces::friction, {}, kStrains)) EXPECT_NEAR(f, 1.0, 1e-8) << law_name(law);
   }
 }
 
@@ -54,8 +54,13 @@ TEST(Barrel, OnSmoothFacesIsHomogeneous) {
 TEST(Barrel, FrictionOfLittleStrainIsTheReciprocalTheorems) {
   for (const double f : {0.02, 0.05, 0.1}) {
     const double exact = 1.0 / (1.0 - 2.0 / 3.0 * f * kRadius / kHeight);
-    EXPECT_NEAR(factors(kYeoh, Faces::friction, f, {1e-3}).front() - 1.0, exact - 1.0, 0.01 * (exact - 1.0)) << f;
+    EXPECT_NEAR(factors(kYeoh, Faces::friction, {.friction = f}, {1e-3}).front() - 1.0, exact - 1.0,
+                0.01 * (exact - 1.0))
+        << f;
   }
+  // adhesion: F d − ⅔ τ A R e = F₀ d
+  const double pressure = homogeneous_pressure(kYeoh, 1e-3), exact = 2.0 / 3.0 * 0.1 * kRadius / kHeight / pressure;
+  EXPECT_NEAR(factors(kYeoh, Faces::friction, {.adhesion = 0.1}, {1e-3}).front() - 1.0, exact, 0.01 * exact);
 }
 
 // Bonded thin disks of incompressible rubber have E_a → 2 E S², S = R/(2H) [GentLindley1959]: the pressure of a film between
@@ -65,7 +70,7 @@ TEST(Barrel, BondedThinDisksAreFilms) {
   const HyperelasticLaw law = NeoHookean{1000, 1e10};
   const auto excess = [&](double shape) {
     const BarrelGrid grid{.radial = 10, .axial = 3, .grading = 0.7};
-    const double factor = factors(law, Faces::bonded, 0.0, {1e-4}, 2.0 * shape * kHeight, grid).front();
+    const double factor = factors(law, Faces::bonded, {}, {1e-4}, 2.0 * shape * kHeight, grid).front();
     return factor / (1.0 + 2.0 * shape * shape) - 1.0;
   };
   const double five = excess(5.0), ten = excess(10.0);
@@ -75,12 +80,12 @@ TEST(Barrel, BondedThinDisksAreFilms) {
 
 // Friction beyond what it takes to stick is a bond, less friction resists less, at every strain.
 TEST(Barrel, FrictionLeadsFromSmoothToBonded) {
-  const std::vector<double> bonded = factors(kYeoh, Faces::bonded, 0.0, kStrains);
-  const std::vector<double> sticking = factors(kYeoh, Faces::friction, 5.0, kStrains);
+  const std::vector<double> bonded = factors(kYeoh, Faces::bonded, {}, kStrains);
+  const std::vector<double> sticking = factors(kYeoh, Faces::friction, {.friction = 5.0}, kStrains);
   for (std::size_t i = 0; i < bonded.size(); ++i) EXPECT_NEAR(sticking[i] / bonded[i], 1.0, 0.005) << kStrains[i];
   std::vector<double> less(kStrains.size(), 1.0);
   for (const double f : {0.05, 0.1, 0.2, 0.4}) {
-    const std::vector<double> more = factors(kYeoh, Faces::friction, f, kStrains);
+    const std::vector<double> more = factors(kYeoh, Faces::friction, {.friction = f}, kStrains);
     for (std::size_t i = 0; i < more.size(); ++i) {
       EXPECT_GT(more[i], less[i]) << f << " " << kStrains[i];
       EXPECT_LT(more[i], bonded[i]) << f << " " << kStrains[i];
@@ -94,8 +99,8 @@ TEST(Barrel, FrictionLeadsFromSmoothToBonded) {
 TEST(Barrel, IsConvergedInItsGrid) {
   const BarrelGrid fine{.radial = 6, .axial = 5, .grading = 0.7};
   for (const auto& [faces, friction] : {std::pair{Faces::bonded, 0.0}, std::pair{Faces::friction, 0.1}}) {
-    const std::vector<double> a = factors(kYeoh, faces, friction, kStrains),
-                              b = factors(kYeoh, faces, friction, kStrains, kRadius, fine);
+    const std::vector<double> a = factors(kYeoh, faces, {.friction = friction}, kStrains),
+                              b = factors(kYeoh, faces, {.friction = friction}, kStrains, kRadius, fine);
     for (std::size_t i = 0; i < a.size(); ++i)
       EXPECT_NEAR(a[i] / b[i], 1.0, kStrains[i] < 0.25 ? 0.005 : 0.02) << kStrains[i] << " " << friction;
   }
@@ -117,11 +122,11 @@ TEST(BarrelModel, LiesOnTheBarrelsCurve) {
   Tissue tissue;
   tissue.hyperelastic = kYeoh;
   const Curve curve = ramp(0.62, 32);
-  const BarrelModel model({curve}, {kRadius, kHeight, Faces::friction, 0.1},
+  const BarrelModel model({curve}, {kRadius, kHeight, Faces::friction, {.friction = 0.1}},
                           [&](std::span<const double>) { return tissue; }, {});
   const Prediction p = model.predict(0, {});
   ASSERT_EQ(p.failure, "");
-  Barrel barrel(std::make_shared<BarrelMesh>(kRadius, kHeight), kYeoh, Faces::friction, 0.1);
+  Barrel barrel(std::make_shared<BarrelMesh>(kRadius, kHeight), kYeoh, Faces::friction, {.friction = 0.1});
   for (std::size_t i = 1; i < curve.size(); ++i) {
     const double d = curve.displacement[i], exact = barrel.press(d, homogeneous_pressure(kYeoh, d / kHeight));
     EXPECT_NEAR(p.force[i] / exact, 1.0, 0.003) << d / kHeight;
@@ -131,7 +136,7 @@ TEST(BarrelModel, LiesOnTheBarrelsCurve) {
 // What it cannot follow is told: a tissue without a hyperelastic law, and a press to nothing.
 TEST(BarrelModel, RefusesWhatItCannotFollow) {
   const auto failure = [](const Tissue& tissue, double strain) {
-    const BarrelModel model({ramp(strain, 10)}, {kRadius, kHeight, Faces::bonded, 0.0},
+    const BarrelModel model({ramp(strain, 10)}, {kRadius, kHeight, Faces::bonded, {}},
                             [&](std::span<const double>) { return tissue; }, {});
     return model.predict(0, {}).failure;
   };

@@ -26,7 +26,7 @@ constexpr const char* kTissue = R"(
 [tissue]
 hyperelastic = { kind = "neo_hookean", mu_Pa = 1000, bulk_modulus_Pa = 1e6 }
 [search]
-starts = 2
+starts = 6
 [proof]
 profiles = false
 bootstrap = 0
@@ -46,8 +46,8 @@ scale = "linear"
 
 std::string data(const std::string& file) { return "[[data]]\nfiles = [\"" + file + "\"]\n"; }
 
-// A curve made with friction 0.15 and μ = 2000 Pa gives them back, each within 1 %: the shape of the curve tells them apart.
-TEST(FrictionFit, FindsFrictionAndModulus) {
+/// μ and the grip that a fit of made.csv finds.
+FitResult fit_of(const std::string& key, double high, Grip grip) {
   Curve curve;
   curve.name = "made";
   for (int i = 0; i < 60; ++i) {
@@ -57,10 +57,10 @@ TEST(FrictionFit, FindsFrictionAndModulus) {
   curve.force.assign(curve.size(), 0.0);
   Tissue tissue;
   tissue.hyperelastic = NeoHookean{2000, 1e6};
-  const BarrelModel model({curve}, {0.025, 0.03, Faces::friction, 0.15},
-                          [&](std::span<const double>) { return tissue; }, {});
+  const BarrelModel model({curve}, {0.025, 0.03, Faces::friction, grip},
+                          [&](std::span<const double>) { return tissue; });
   const Prediction made = model.predict(0, {});
-  ASSERT_EQ(made.failure, "");
+  EXPECT_EQ(made.failure, "");
   std::string rows = "Time (s),Compression (mm),Load (N)\n";
   for (std::size_t i = 0; i < curve.size(); ++i) {
     char row[96];
@@ -71,14 +71,25 @@ TEST(FrictionFit, FindsFrictionAndModulus) {
   folder.write("made.csv", rows);
   FitRun run;
   run.data_folder = folder.path();
-  const FitResult result = run_fit(
-      parse_fit(std::string(kSpecimen) + "faces = \"friction\"\n" + kTissue + kFriction + data("made.csv"), "made"),
-      run);
-  ASSERT_EQ(result.parameters.size(), 2u);
-  EXPECT_NEAR(result.parameters[0].value, 2000.0, 20.0);
-  EXPECT_NEAR(result.parameters[1].value, 0.15, 0.0015);
-  EXPECT_THAT(result.forward, HasSubstr("a cylinder that bulges"));
-  EXPECT_THAT(result.tissue, HasSubstr("#   specimen.friction = "));  // no key of the tissue
+  const std::string parameter =
+      "[[parameter]]\nkey = \"" + key + "\"\nlow = 0\nhigh = " + std::to_string(high) + "\nscale = \"linear\"\n";
+  return run_fit(
+      parse_fit(std::string(kSpecimen) + "faces = \"friction\"\n" + kTissue + parameter + data("made.csv"), "F"), run);
+}
+
+// Curves made with friction 0.15, and with adhesion of 300 Pa, and μ = 2000 Pa give them back, each within 1 %: the shape of
+// the curve tells them apart.
+TEST(FrictionFit, FindsGripAndModulus) {
+  const FitResult rubs = fit_of("specimen.friction", 0.5, {.friction = 0.15});
+  ASSERT_EQ(rubs.parameters.size(), 2u);
+  EXPECT_NEAR(rubs.parameters[0].value, 2000.0, 20.0);
+  EXPECT_NEAR(rubs.parameters[1].value, 0.15, 0.0015);
+  EXPECT_THAT(rubs.forward, HasSubstr("a cylinder that bulges"));
+  EXPECT_THAT(rubs.tissue, HasSubstr("#   specimen.friction = "));  // no key of the tissue
+  const FitResult clings = fit_of("specimen.adhesion_Pa", 2000, {.adhesion = 300});
+  ASSERT_EQ(clings.parameters.size(), 2u);
+  EXPECT_NEAR(clings.parameters[0].value, 2000.0, 20.0);
+  EXPECT_NEAR(clings.parameters[1].value, 300.0, 3.0);
 }
 
 std::string fault(const std::string& text) {
@@ -94,8 +105,9 @@ std::string fault(const std::string& text) {
 TEST(FrictionFit, RefusesWhatContradictsItself) {
   const std::string rubs = std::string(kSpecimen) + "faces = \"friction\"\n";
   EXPECT_EQ(fault(rubs + "friction = 0.1\n" + kTissue + data("a.csv")), "");
+  EXPECT_EQ(fault(rubs + "adhesion_Pa = 100\n" + kTissue + data("a.csv")), "");
   EXPECT_EQ(fault(rubs + kTissue + kFriction + data("a.csv")), "");
-  EXPECT_THAT(fault(rubs + kTissue + data("a.csv")), HasSubstr("asks for `friction`"));
+  EXPECT_THAT(fault(rubs + kTissue + data("a.csv")), HasSubstr("asks for `friction` or `adhesion_Pa`"));
   EXPECT_THAT(fault(kSpecimen + std::string(kTissue) + kFriction + data("a.csv")), HasSubstr("faces = \"friction\""));
   EXPECT_THAT(fault(rubs + "friction = -1\n" + kTissue + data("a.csv")), HasSubstr("friction: -1"));
   EXPECT_THAT(fault(rubs + "friction = 0.1\n" + kTissue + "[forward]\nkind = \"uniaxial\"\n" + data("a.csv")),
@@ -109,28 +121,29 @@ double at(const Curve& c, double displacement) {
   return c.force[i - 1] + share * (c.force[i] - c.force[i - 1]);
 }
 
-/// The held-out error of a fit, and the best that the repetitions allow: that of the mean of the fitted curves [N].
+/// The held-out error of a fit, and the best that the repetitions allow: that of the mean of the fitted curves, as far as
+/// all of them reach [N].
 struct HeldOut {
   double error = 0.0, best = 0.0;
 };
 HeldOut held_out(const FitResult& result) {
-  HeldOut h{*result.rms_heldout, 0.0};
-  double squares = 0.0;
-  std::size_t count = 0;
+  HeldOut squares;
+  double reach = 1.0, fitted = 0.0, count = 0.0;
+  for (const CurveResult& c : result.curves) {
+    if (!c.curve.held_out) reach = std::min(reach, c.curve.displacement.back()), ++fitted;
+  }
   for (const CurveResult& test : result.curves) {
-    if (!test.curve.held_out) continue;
-    for (std::size_t i = 0; i < test.curve.size(); ++i) {
-      double mean = 0.0, fitted = 0.0;
+    for (std::size_t i = 0; test.curve.held_out && i < test.curve.size(); ++i) {
+      if (test.curve.displacement[i] > reach) continue;
+      double mean = 0.0;
       for (const CurveResult& c : result.curves) {
-        if (c.curve.held_out || c.curve.displacement.back() < test.curve.displacement[i]) continue;
-        mean += at(c.curve, test.curve.displacement[i]), ++fitted;
+        if (!c.curve.held_out) mean += at(c.curve, test.curve.displacement[i]) / fitted;
       }
-      if (fitted == 0.0) continue;
-      squares += std::pow(test.curve.force[i] - mean / fitted, 2), ++count;
+      squares.best += std::pow(test.curve.force[i] - mean, 2);
+      squares.error += std::pow(test.curve.force[i] - test.fitted[i], 2), ++count;
     }
   }
-  h.best = std::sqrt(squares / static_cast<double>(count));
-  return h;
+  return {std::sqrt(squares.error / count), std::sqrt(squares.best / count)};
 }
 
 /// The shipped fit with friction, or with smooth faces in its place, of a mix and with two of its five curves held out.
@@ -156,8 +169,8 @@ TEST(FrictionFit, MeetsHeldOutPhantomsTo65Percent) {
   }
 }
 
-// The same over all ten splits of both mixes, together and one by one. Of EF10 75T two splits have curves that by chance lie
-// so close (0.02 and 0.10 kPa) that the law's own misfit, below 0.1 kPa, shows: for these that misfit is the bound.
+// The same over all ten splits of both mixes, together and one by one. In one split of EF10 75T the curves held out by chance
+// lie within 0.02 kPa of the mean of the others, where the law's own misfit shows: 0.06 kPa of a stress of 40.
 TEST(FrictionFitLong, MeetsEveryHeldOutPairOfPhantomsTo65Percent) {
   if (!phantom::have_phantoms()) GTEST_SKIP() << phantom::kPhantoms << " is not there";
   const double kPa = 1e3 * std::numbers::pi * 0.025 * 0.025;  // in newtons
@@ -166,16 +179,16 @@ TEST(FrictionFitLong, MeetsEveryHeldOutPairOfPhantomsTo65Percent) {
     for (int a = 1; a <= 5; ++a) {
       for (int b = a + 1; b <= 5; ++b) {
         const HeldOut h = fit_phantoms(Faces::friction, mix, a, b), smooth = fit_phantoms(Faces::smooth, mix, a, b);
-        std::printf("%s, A%d and A%d held out: best %.3f kPa, times it: smooth %.2f, friction %.2f\n", mix, a, b,
+        std::printf("%s, A%d and A%d held out: best %.3f kPa, times it: smooth %.2f, clinging %.2f\n", mix, a, b,
                     h.best / kPa, smooth.error / smooth.best, h.error / h.best);
         errors += h.error * h.error, bests += h.best * h.best, smooth_errors += smooth.error * smooth.error;
-        if (h.best < 0.105 * kPa)
-          EXPECT_LT(std::sqrt(h.error * h.error - h.best * h.best), 0.1 * kPa) << mix << a << b;
+        if (h.best < 0.02 * kPa)
+          EXPECT_LT(std::sqrt(h.error * h.error - h.best * h.best), 0.07 * kPa) << mix << a << b;
         else
           EXPECT_LT(h.error, 1.3 * h.best) << mix << a << b;
       }
     }
-    std::printf("%s, all: smooth %.2f, friction %.2f\n", mix, std::sqrt(smooth_errors / bests),
+    std::printf("%s, all: smooth %.2f, clinging %.2f\n", mix, std::sqrt(smooth_errors / bests),
                 std::sqrt(errors / bests));
     EXPECT_LT(errors, 1.3 * 1.3 * bests) << mix;
     EXPECT_LT(errors, smooth_errors) << mix;

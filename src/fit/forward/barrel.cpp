@@ -20,8 +20,8 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-Barrel::Barrel(std::shared_ptr<const BarrelMesh> mesh, const HyperelasticLaw& law, Faces faces, double friction)
-    : mesh_(std::move(mesh)), law_(law), faces_(faces), friction_(friction), pressures_(mesh_->elements.size()),
+Barrel::Barrel(std::shared_ptr<const BarrelMesh> mesh, const HyperelasticLaw& law, Faces faces, Grip grip)
+    : mesh_(std::move(mesh)), law_(law), faces_(faces), grip_(grip), pressures_(mesh_->elements.size()),
       force_(2 * mesh_->columns() * mesh_->rows()), tangent_(force_.size(), 4 * mesh_->rows() + 5) {
   state_.u.assign(force_.size(), 0.0);
   state_.pressures.assign(mesh_->elements.size(), {});
@@ -107,11 +107,13 @@ Barrel::Balance Barrel::face_balance() const {
 void Barrel::add_friction(Balance& face) const {
   const double free = 1.0 / std::sqrt(1.0 - state_.displacement / mesh_->height) - 1.0, width = kSlip * free;
   const double x = state_.spread / width, root = std::sqrt(1.0 + x * x);
-  const double arm = 2.0 / 3.0 * friction_ * mesh_->radii.back(), force = face_force();
-  face.rest += arm * force * x / root;
-  face.by_spread += arm * force / (root * root * root * width);
+  const double radius = mesh_->radii.back(), arm = 2.0 / 3.0 * radius;
+  const double most = arm * (grip_.adhesion * std::numbers::pi * radius * radius + grip_.friction * face_force());
+  face.rest += most * x / root;
+  face.by_spread += most / (root * root * root * width);
   std::vector<double> by_u(force_.size(), 0.0);
-  for (std::size_t c = 0; c < mesh_->columns(); ++c) tangent_.add_row(2 * face_vertex(c) + 1, -arm * x / root, by_u);
+  for (std::size_t c = 0; c < mesh_->columns(); ++c)
+    tangent_.add_row(2 * face_vertex(c) + 1, -arm * grip_.friction * x / root, by_u);
   for (std::size_t c = 0; c < mesh_->columns(); ++c) face.by_spread += mesh_->radii[c] * by_u[2 * face_vertex(c)];
   for (std::size_t k = 0; k < by_u.size(); ++k) face.by_u[k] += by_u[k];
 }

@@ -3,7 +3,8 @@
 //
 //   face   u_r = s R: it spreads alike all over, by less than it would on smooth plates. With P_rz the traction on it and
 //          F the force on it, Coulomb's friction, made smooth, balances it over the face [docs/fit.md]:
-//             ∫ P_rz R dA + ⅔ f F R₀ g = 0,   g = x/√(1 + x²),   x = s/(0.02 s₀),   s₀ = λ^(−½) − 1
+//             ∫ P_rz R dA + ⅔ R₀ (τ A + f F) g = 0,   g = x/√(1 + x²),   x = s/(0.02 s₀),   s₀ = λ^(−½) − 1
+//          with A its area at rest and τ what a tacky face bears without pressure
 //   side   where it bulges over the edge it comes to lie on the plate, without friction there
 //
 // Newton's method from rest on, the pressures of the elements beside the displacements; steps are halved where it does not
@@ -21,14 +22,20 @@ namespace glisson::fit {
 /// How a cylinder's faces meet the plates.
 enum class Faces {
   smooth,    ///< without friction: it deforms alike all over
-  friction,  ///< they slide against Coulomb's friction
+  friction,  ///< they slide against adhesion and Coulomb's friction
   bonded     ///< they do not slide
+};
+
+/// What holds a face that slides.
+struct Grip {
+  double friction = 0.0;  ///< f ≥ 0 [-]
+  double adhesion = 0.0;  ///< τ ≥ 0, on the area at rest [Pa]
 };
 
 class Barrel {
  public:
-  /// @param friction  f ≥ 0 [-], with Faces::friction alone
-  Barrel(std::shared_ptr<const BarrelMesh> mesh, const HyperelasticLaw& law, Faces faces, double friction);
+  /// @param grip  with Faces::friction alone
+  Barrel(std::shared_ptr<const BarrelMesh> mesh, const HyperelasticLaw& law, Faces faces, Grip grip = {});
 
   /// Without plates beyond the edge: the side may bulge past them. For comparison with bodies without contact.
   void free_side() { leans_ = false; }
@@ -65,7 +72,7 @@ class Barrel {
   std::shared_ptr<const BarrelMesh> mesh_;
   HyperelasticLaw law_;
   Faces faces_;
-  double friction_;
+  Grip grip_;
   bool leans_ = true;
   State state_;
   std::vector<State> past_;  ///< the last states, the newest at the end

@@ -40,8 +40,8 @@ struct BarrelModel::Known {
 };
 
 BarrelModel::BarrelModel(std::vector<Curve> curves, const Plates& plates, TissueAt tissue,
-                         std::optional<std::size_t> friction, const BarrelGrid& grid)
-    : MotionModel(curves), plates_(plates), tissue_(tissue), friction_(friction),
+                         std::vector<std::string> keys, const BarrelGrid& grid)
+    : MotionModel(curves), plates_(plates), tissue_(tissue), keys_(std::move(keys)),
       homogeneous_(std::move(curves), {area_of(plates), plates.height}, std::move(tissue)),
       mesh_(std::make_shared<BarrelMesh>(plates.radius, plates.height, grid)) {
   for (std::size_t c = 0; c < this->curves(); ++c) {
@@ -49,10 +49,21 @@ BarrelModel::BarrelModel(std::vector<Curve> curves, const Plates& plates, Tissue
   }
 }
 
-std::vector<double> BarrelModel::without_friction(std::span<const double> values) const {
-  std::vector<double> rest(values.begin(), values.end());
-  if (friction_) rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(*friction_));
+std::vector<double> BarrelModel::of_tissue(std::span<const double> values) const {
+  std::vector<double> rest;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!is_plate_key(keys_[i])) rest.push_back(values[i]);
+  }
   return rest;
+}
+
+Grip BarrelModel::grip(std::span<const double> values) const {
+  Grip g = plates_.grip;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (keys_[i] == kFrictionKey) g.friction = values[i];
+    if (keys_[i] == kAdhesionKey) g.adhesion = values[i];
+  }
+  return g;
 }
 
 std::shared_ptr<BarrelModel::Known> BarrelModel::known(std::span<const double> values, double contact) const {
@@ -69,14 +80,13 @@ std::shared_ptr<BarrelModel::Known> BarrelModel::known(std::span<const double> v
 }
 
 MonotoneCubic<double> BarrelModel::factor(std::span<const double> values, double contact) const {
-  Tissue tissue = tissue_(without_friction(values));
+  Tissue tissue = tissue_(of_tissue(values));
   tissue.viscosity = 0.0, tissue.maxwell.clear();
   if (!tissue.hyperelastic)
     throw std::invalid_argument("tissue \"" + tissue.name +
                                 "\" is not hyperelastic; a specimen that sticks to its plates needs "
                                 "tissue.hyperelastic, or take faces = \"smooth\"");
-  const double friction = friction_ ? values[*friction_] : plates_.friction;
-  Barrel barrel(mesh_, *tissue.hyperelastic, plates_.faces, friction);
+  Barrel barrel(mesh_, *tissue.hyperelastic, plates_.faces, grip(values));
   UniaxialPath path(tissue);
   path.start(0.0);
   const double largest = (farthest_ - contact) / plates_.height;
@@ -101,7 +111,7 @@ Prediction BarrelModel::predict_from(std::size_t index, std::span<const double> 
     }
   });
   if (!k->factor) return {{}, k->failure};
-  Prediction result = homogeneous_.predict_from(index, without_friction(values), contact);
+  Prediction result = homogeneous_.predict_from(index, of_tissue(values), contact);
   for (std::size_t i = 0; i < result.force.size(); ++i) {
     const double strain = (curve(index).displacement[i] - contact) / plates_.height;
     result.force[i] *= k->factor->at(strain);

@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "fit/forward/barrel.h"
 #include "fit/forward/uniaxial.h"
@@ -21,16 +22,17 @@ namespace glisson::fit {
 struct Plates {
   double radius = 0.0, height = 0.0;  ///< [m], > 0
   Faces faces = Faces::bonded;
-  double friction = 0.0;  ///< f ≥ 0 [-], where it is no parameter
+  Grip grip;  ///< what of it is no parameter
 };
 
-/// The key of a parameter: the friction of the plates.
-inline constexpr const char* kFrictionKey = "specimen.friction";
+/// Keys of parameters that belong to the plates.
+inline constexpr const char *kFrictionKey = "specimen.friction", *kAdhesionKey = "specimen.adhesion_Pa";
+inline bool is_plate_key(const std::string& key) { return key == kFrictionKey || key == kAdhesionKey; }
 
 class BarrelModel final : public MotionModel {
  public:
-  /// @param friction  the place of f among the values; none: that of the plates. The others go on to `tissue`
-  BarrelModel(std::vector<Curve> curves, const Plates& plates, TissueAt tissue, std::optional<std::size_t> friction,
+  /// @param keys  of the values; those of the plates are taken here, the others go on to `tissue` in their order
+  BarrelModel(std::vector<Curve> curves, const Plates& plates, TissueAt tissue, std::vector<std::string> keys = {},
               const BarrelGrid& grid = {});
   Prediction predict_from(std::size_t curve, std::span<const double> values, double contact) const override;
 
@@ -40,11 +42,12 @@ class BarrelModel final : public MotionModel {
   MonotoneCubic<double> factor(std::span<const double> values, double contact) const;
   std::shared_ptr<Known> known(std::span<const double> values, double contact) const;
 
-  std::vector<double> without_friction(std::span<const double> values) const;
+  std::vector<double> of_tissue(std::span<const double> values) const;
+  Grip grip(std::span<const double> values) const;
 
   Plates plates_;
   TissueAt tissue_;
-  std::optional<std::size_t> friction_;
+  std::vector<std::string> keys_;
   UniaxialModel homogeneous_;
   double farthest_ = 0.0;  ///< displacement of all curves [m]
   std::shared_ptr<const BarrelMesh> mesh_;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -235,19 +236,14 @@ struct Maker {
     return tissue ? with_offsets(std::make_shared<UniaxialModel>(problem.curves, size, tissue)) : nullptr;
   }
   std::shared_ptr<const Model> barrel(const BarrelGrid& grid) const {
-    std::vector<std::string> of_tissue = inner;
-    const auto rubs = std::find(of_tissue.begin(), of_tissue.end(), kFrictionKey);
-    std::optional<std::size_t> friction;
-    if (rubs != of_tissue.end()) {
-      friction = static_cast<std::size_t>(rubs - of_tissue.begin());
-      of_tissue.erase(rubs);
-    }
+    std::vector<std::string> of_tissue;
+    std::copy_if(inner.begin(), inner.end(), std::back_inserter(of_tissue),
+                 [](const std::string& key) { return !is_plate_key(key); });
     const TissueAt tissue = tissue_at(of_tissue);
     if (!tissue)
       throw std::invalid_argument(
-          "[specimen] faces that stick or rub ask for parameters of [tissue], `curve.…` and "
-          "`specimen.friction` alone");
-    return with_offsets(std::make_shared<BarrelModel>(problem.curves, *problem.plates, tissue, friction, grid));
+          "[specimen] faces that stick or rub ask for parameters of [tissue], `specimen.…` and `curve.…` alone");
+    return with_offsets(std::make_shared<BarrelModel>(problem.curves, *problem.plates, tissue, inner, grid));
   }
   std::vector<double> inner_values(std::span<const double> all) const {
     std::vector<double> values;

@@ -48,14 +48,21 @@ SectionSpec cylinder_kind() {
   Section<SpecimenSpec> s("cylinder", "Round.");
   s.key<Milli>("diameter_mm", &SpecimenSpec::diameter, "diameter").in("mm").within(above(0)).must();
   s.key<Milli>("height_mm", &SpecimenSpec::height, "height at rest").in("mm").within(above(0)).must();
-  s.choice<Faces>("faces", &SpecimenSpec::faces,
-                  {{"smooth", Faces::smooth, "they slide freely: the specimen deforms alike all over"},
-                   {"friction", Faces::friction, "they slide against Coulomb's friction, and the specimen bulges"},
-                   {"bonded", Faces::bonded, "they do not slide"}},
-                  "how its faces meet the plates");
-  s.key("friction", &SpecimenSpec::friction,
-        "coefficient of friction with faces = \"friction\"; a `[[parameter]]` may have the key `specimen.friction`")
+  s.choice<Faces>(
+      "faces", &SpecimenSpec::faces,
+      {{"smooth", Faces::smooth, "they slide freely: the specimen deforms alike all over"},
+       {"friction", Faces::friction, "they slide against adhesion and Coulomb's friction, and the specimen bulges"},
+       {"bonded", Faces::bonded, "they do not slide"}},
+      "how its faces meet the plates");
+  s.key(
+       "friction", [](SpecimenSpec & x) -> auto& { return x.grip.friction; },
+       "coefficient of friction of faces = \"friction\"; `specimen.friction` may be a parameter")
       .in("-")
+      .within(at_least(0));
+  s.key(
+       "adhesion_Pa", [](SpecimenSpec & x) -> auto& { return x.grip.adhesion; },
+       "shear stress that they bear without pressure, on the area at rest; `specimen.adhesion_Pa` may be a parameter")
+      .in("Pa")
       .within(at_least(0));
   return s.spec();
 }
@@ -96,7 +103,7 @@ Specimen specimen_of(const SpecimenSpec& spec) {
 
 std::optional<Plates> plates_of(const SpecimenSpec& spec) {
   if (!spec.round || spec.faces == Faces::smooth) return {};
-  return Plates{0.5 * spec.diameter, spec.height, spec.faces, spec.friction};
+  return Plates{0.5 * spec.diameter, spec.height, spec.faces, spec.grip};
 }
 
 std::string specimen_scene(const SpecimenSpec& spec) {

@@ -33,7 +33,7 @@ struct ForwardSpec {
 struct SpecimenSpec {
   bool round = true;
   Faces faces = Faces::smooth;        ///< of a cylinder
-  double friction = 0.0;              ///< of its faces [-], ≥ 0
+  Grip grip;                          ///< of its faces
   double diameter = 0.05;             ///< of a cylinder [m], > 0
   double width = 0.02, depth = 0.02;  ///< of a block [m], > 0
   double height = 0.03;               ///< [m], > 0
