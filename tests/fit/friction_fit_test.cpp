@@ -154,7 +154,8 @@ HeldOut fit_phantoms(Faces faces, const std::string& mix, int first, int second)
   for (DataSpec& d : spec.data) d.files.clear();
   for (int i = 1; i <= 5; ++i)
     spec.data[i == first || i == second ? 1 : 0].files.push_back("EF10_" + mix + "_A" + std::to_string(i) + ".csv");
-  spec.proof = {.profiles = false, .bootstrap = 0, .next = false, .displacement = {}};
+  spec.proof.profiles = spec.proof.next = false;
+  spec.proof.bootstrap = 0;
   FitRun run;
   run.data_folder = phantom::kPhantoms;
   return held_out(run_fit(spec, run));
