@@ -250,6 +250,11 @@ Stiffening Response::elastic_stiffening(const Mat3d& H, const ElementShape& shap
     const Sym3<double> S = isotropic_stress(E, m.lambda, m.mu);
     r = r * (1.0 + 2.0 * std::sqrt(contract(E, E))) + std::sqrt(contract(S, S)) / rest;
   }
+  if (tissue_.kinematics == Kinematics::corotational) {
+    const StrainNumbers<double> b = strain_numbers(tissue_.kinematics, H);
+    const Moduli<double> m = laws_.at(measure(H, shape));
+    r += turning_bound(b.trace, b.squares, m.lambda, m.mu) / rest;
+  }
   return {r, r};
 }
 

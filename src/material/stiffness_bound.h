@@ -28,6 +28,16 @@ namespace glisson {
 /// Stretches whose sum is less count as this far apart: where λ_i = −λ_j the tangent of an inverted tet has no bound.
 inline constexpr double kSmallestFlip = 0.05;
 
+/// How stiff a corotational tet of stretch U = I + B is against turning: at rest not at all, for there the rotation follows at no
+/// cost. Of the tangent 2 μ (I − ∂R/∂F) + λ [ R ⊗ R + tr B ∂R/∂F ], with 2/(s_i + s_j) for eigenvalues of ∂R/∂F, the part
+/// 2 (λ tr B − 2 μ)/(s_i + s_j) where it is above 0; s_i + s_j ≥ tr U − ‖U‖.
+/// @param trace, squares  tr B, B:B
+inline double turning_bound(double trace, double squares, double lambda, double mu) {
+  const double pull = std::max(lambda * trace - 2.0 * mu, 0.0);
+  const double pair = trace + 3.0 - std::sqrt(std::max(squares + 2.0 * trace + 3.0, 0.0));
+  return 2.0 * pull / std::max(pair, kSmallestFlip);
+}
+
 /// I₁, I₂ and J.
 struct BoundInvariants {
   double I1, I2, J;

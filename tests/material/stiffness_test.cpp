@@ -9,19 +9,24 @@
 namespace glisson {
 namespace {
 
-/// Largest eigenvalue of the symmetric part of ∂P/∂F [Pa].
-double stiffest(const test::Specimen& s, const Mat3d& H) {
+/// Largest eigenvalue of the symmetric part of ∂P/∂F − A [Pa]. @param without  A(r, c)
+template <class Without>
+double stiffest(const test::Specimen& s, const Mat3d& H, Without without) {
   Eigen::Matrix<double, 9, 9> K;
   for (std::size_t c = 0; c < 9; ++c) {
     Mat3<Dual> D;
     for (std::size_t i = 0; i < 9; ++i) D(i / 3, i % 3) = {H(i / 3, i % 3), i == c ? 1.0 : 0.0};
     const Mat3<Dual> P = s.response.elastic(D, s.shape);
-    for (std::size_t r = 0; r < 9; ++r) K(static_cast<int>(r), static_cast<int>(c)) = P(r / 3, r % 3).d;
+    for (std::size_t r = 0; r < 9; ++r) K(static_cast<int>(r), static_cast<int>(c)) = P(r / 3, r % 3).d - without(r, c);
   }
   const Eigen::Matrix<double, 9, 9> even = 0.5 * (K + K.transpose());
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>>(even, Eigen::EigenvaluesOnly)
       .eigenvalues()
       .maxCoeff();
+}
+
+double stiffest(const test::Specimen& s, const Mat3d& H) {
+  return stiffest(s, H, [](std::size_t, std::size_t) { return 0.0; });
 }
 
 // At rest r is 1. Stretched by up to 30 %, a hyperelastic tangent is at most 1.2 r times that at rest, soft or nearly
@@ -42,6 +47,33 @@ TEST(Stiffening, FollowsTheHyperelasticTangent) {
         }
       }
     }
+  }
+}
+
+// A corotational tet resists turning as soon as it is drawn out by more than its shear modulus lets go: the tangent without
+// λ R ⊗ R stays below 2 μ and the part that the stiffening tells of, which is needed to a tenth.
+TEST(Stiffening, FollowsTheCorotationalTangentAgainstTurning) {
+  Tissue t;
+  t.name = "corotational", t.youngs_modulus = 1000.0, t.kinematics = Kinematics::corotational;
+  for (const double nu : {0.2, 0.4, 0.49}) {
+    t.poisson_ratio = nu;
+    const test::Specimen s(t);
+    const LameParameters lame = t.lame();
+    const double rest = 3.0 * lame.lambda + 2.0 * lame.mu;
+    EXPECT_EQ(s.response.stiffening({}, s.shape).ratio, 1.0);
+    test::Draw draw(52);
+    double tightest = 0.0;
+    for (int n = 0; n < 2000; ++n) {
+      const Mat3d H = draw.stretched(0.5, 3.0);
+      const PrincipalFrame f = principal_frame(H);
+      const Mat3d R = product(f.u, test::transposed(f.n));
+      const double turning = (s.response.stiffening(H, s.shape).ratio - 1.0) * rest;
+      const double most =
+          stiffest(s, H, [&](std::size_t r, std::size_t c) { return lame.lambda * R(r / 3, r % 3) * R(c / 3, c % 3); });
+      ASSERT_LE(most, (2.0 * lame.mu + turning) * (1.0 + 1e-9)) << nu;
+      if (turning > 0.0) tightest = std::max(tightest, most / (2.0 * lame.mu + turning));
+    }
+    EXPECT_GT(tightest, 0.9) << nu;
   }
 }
 

@@ -16,6 +16,7 @@
 
 #include "engine/kernels/response_kernels.h"
 #include "engine/kernels/tensor_lanes-inl.h"
+#include "material/stiffness_bound.h"
 #include "material/volume_powers.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -165,6 +166,11 @@ void tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& t
     if constexpr (K == Kinematics::green) {
       bound = hn::MulAdd(bound, stretch, hn::Sqrt(contraction(S, S)) * number(r.rest_bound));
     } else if constexpr (K == Kinematics::corotational) {
+      // turning_bound of material/stiffness_bound.h
+      const F pull = hn::Max(hn::MulSub(k.lambda, volume_change(strain), two * k.mu), hn::Zero(d));
+      const F length = hn::Sqrt(hn::Max(squares + hn::MulAdd(two, t, number(3.0F)), hn::Zero(d)));
+      const F pair = hn::Max(t + number(3.0F) - length, number(float(kSmallestFlip)));
+      bound = hn::MulAdd(two * pull / pair, number(r.rest_bound), bound);
       if (r.viscous) bound = hn::Max(bound, stretch);
     }
     bound = hn::IfThenZeroElse(hn::Lt(hn::Load(d, block.y + item * kLanes), hn::Zero(d)), bound);
