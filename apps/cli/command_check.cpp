@@ -185,12 +185,7 @@ std::string shortens_step(const Variant& v) {
       std::any_of(v.regions.begin(), v.regions.end(), [](const auto& r) { return stiffens(r.tissue); }))
     causes.push_back("tissue stiffens");
   if (!v.capsules.empty()) causes.push_back("the capsule is stretched");
-  const auto any = [&]<class What>() {
-    return std::any_of(v.instruments.begin(), v.instruments.end(),
-                       [](const InstrumentSpec& x) { return std::holds_alternative<What>(x.what); });
-  };
-  if (any.template operator()<NeedleOptions>()) causes.push_back("the needle presses");
-  if (any.template operator()<BladeOptions>()) causes.push_back("the blade cuts");
+  if (!v.instruments.empty()) causes.push_back("instruments press or cut");
   return fmt::format("{}", fmt::join(causes, " and "));
 }
 

@@ -28,7 +28,8 @@ Curve press(double height, double strain, double velocity, double noise) {
 
 ForwardProblem specimen_problem(const std::string& tissue, Parameter parameter, const Curve& curve) {
   ForwardProblem p;
-  const SpecimenSpec spec{.diameter = 0.05, .height = 0.03, .cells = {1, 1, 2}};
+  SpecimenSpec spec;
+  spec.diameter = 0.05, spec.height = 0.03, spec.cells = {1, 1, 2};
   p.scene = {.text = specimen_scene(spec) + "\n[tissue]\n" + tissue,
              .name = "specimen",
              .base = {},

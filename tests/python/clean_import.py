@@ -11,7 +11,7 @@ body.fix("z_min")
 tool = body.drive([207, 211, 212], glisson.PressMotion(depth=0.002))
 assert body.advance(0.1) == "ok" and -body.force(tool).total[2] > 0.04
 results = glisson.run(glisson.scenes_folder() / "paper" / "figure2.toml", overrides={"motion.duration_s": 0.02})
-assert len(results) == 5
+assert len(results) == 7
 for call in (glisson.figures, lambda: glisson.plot.forces(results), lambda: glisson.to_pyvista(glisson.box_mesh())):
     try:
         call()

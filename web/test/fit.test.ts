@@ -140,8 +140,8 @@ describe("charts of curves", () => {
   it("draw measured below simulated, in the units of the axes, one entry of the legend for each", () => {
     const fit = fitFixture();
     const [model] = curveCharts(fit, panelsOf(fit));
-    expect([...new Set(model!.lines.map((line) => line.entry))]).toEqual(["measured", "simulated"]);
-    expect(model!.lines).toHaveLength(6);
+    expect([...new Set(model!.lines.map((line) => line.entry))]).toEqual(["measured", "simulated", "further"]);
+    expect(model!.lines).toHaveLength(8);
     const simulated = model!.lines[3]!;
     expect(simulated.x.at(-1)).toBeCloseTo(60, 9);
     const expected = cylinderForce(0.018, { mu: 1192, alpha: 6.38 }) * fit.y.scale * (1 + 0.12 * Math.log10(1 / 0.6));
