@@ -69,10 +69,9 @@ class FitResult:
         """By name."""
         rows = self._data["parameters"]
         kept = ("name", "unit", "value", "sd", "verdict", "words")
-        intervals = ("ci95", "further95")
         return {
             r["name"]: Parameter(
-                **{k: r[k] for k in kept}, **{k: tuple(r[k]) if r[k] else None for k in intervals}
+                **{k: r[k] for k in kept}, ci95=_interval(r["ci95"]), further95=_interval(r["further95"])
             )
             for r in rows
         }
@@ -157,6 +156,10 @@ def known_laws() -> dict[str, str]:
     from . import _fit
 
     return dict(_fit.known_laws())
+
+
+def _interval(ends: Sequence[float | None] | None) -> Interval | None:
+    return (ends[0], ends[1]) if ends else None
 
 
 def _curve(row: Mapping[str, Any]) -> Curve:
