@@ -64,7 +64,7 @@ std::vector<LawSpec> laws_of(const FitSpec& spec, const FitRun& options, const F
 
 /// With a capital letter, unless it begins with the name of a parameter, and a full stop.
 std::string as_sentence(std::string text) {
-  for (const char* word : {"the ", "least "}) {
+  for (const char* word : {"the ", "least ", "each "}) {
     if (text.rfind(word, 0) == 0) text.front() = static_cast<char>(text.front() - 'a' + 'A');
   }
   if (!text.empty() && text.back() != '.') text += '.';
