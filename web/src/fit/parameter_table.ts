@@ -12,7 +12,7 @@ const KINDS = [
   { key: "ci95_profile", name: "profile" },
   { key: "ci95_curvature", name: "curvature" },
   { key: "ci95_bootstrap", name: "bootstrap" },
-  { key: "further95", name: "a further specimen" },
+  { key: "further95", name: "further specimen" },
 ] as const;
 
 export function parameterTable(fit: FitData): HTMLElement | null {
