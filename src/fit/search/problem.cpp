@@ -76,6 +76,19 @@ Problem::Problem(std::vector<Parameter> parameters, std::vector<Curve> curves, s
   }
 }
 
+std::unique_ptr<Problem> Problem::with(std::vector<Curve> curves, std::span<const std::size_t> origin) const {
+  std::vector<std::size_t> indices;
+  std::vector<double> spread;
+  for (const std::size_t c : origin) {
+    indices.push_back(indices_[c]);
+    spread.push_back(spread_[c]);
+  }
+  auto other =
+      std::make_unique<Problem>(parameters_, std::move(curves), std::move(indices), std::move(spread), *model_, loss_);
+  other->difference_step = difference_step;
+  return other;
+}
+
 std::vector<double> Problem::to_scaled(std::span<const double> values) const {
   std::vector<double> z(parameters_.size());
   for (std::size_t p = 0; p < z.size(); ++p) {

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,10 @@ class Problem {
   /// @param curves  those that are fitted @param indices  their numbers in the model @param spread  s_c of each [N], > 0
   Problem(std::vector<Parameter> parameters, std::vector<Curve> curves, std::vector<std::size_t> indices,
           std::vector<double> spread, const Model& model, Loss loss = {});
+
+  /// The same parameters, model, loss and differences with other curves. @param origin  of each: the curve of this problem
+  /// whose number in the model and spread it has
+  std::unique_ptr<Problem> with(std::vector<Curve> curves, std::span<const std::size_t> origin) const;
 
   const std::vector<Parameter>& parameters() const { return parameters_; }
   const std::vector<Curve>& curves() const { return curves_; }

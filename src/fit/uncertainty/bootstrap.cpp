@@ -88,16 +88,7 @@ class Source {
       else
         draw_blocks(g, draw, curves, origin);
     }
-    std::vector<std::size_t> indices;
-    std::vector<double> spread;
-    for (const std::size_t c : origin) {
-      indices.push_back(problem_.model_index(c));
-      spread.push_back(problem_.spread()[c]);
-    }
-    auto p = std::make_unique<Problem>(problem_.parameters(), std::move(curves), std::move(indices), std::move(spread),
-                                       problem_.model(), problem_.loss());
-    p->difference_step = problem_.difference_step;
-    return p;
+    return problem_.with(std::move(curves), origin);
   }
 
   std::vector<std::string> notes() const {

@@ -2,28 +2,11 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
 
 namespace glisson::fit {
 namespace {
 
 constexpr std::size_t kFewestToLeaveOne = 3;
-
-/// A problem of some of the curves.
-std::unique_ptr<Problem> with(const Problem& all, const std::vector<std::size_t>& which) {
-  std::vector<Curve> curves;
-  std::vector<std::size_t> indices;
-  std::vector<double> spread;
-  for (const std::size_t c : which) {
-    curves.push_back(all.curves()[c]);
-    indices.push_back(all.model_index(c));
-    spread.push_back(all.spread()[c]);
-  }
-  auto part = std::make_unique<Problem>(all.parameters(), std::move(curves), std::move(indices), std::move(spread),
-                                        all.model(), all.loss());
-  part->difference_step = all.difference_step;
-  return part;
-}
 
 }  // namespace
 
@@ -33,10 +16,11 @@ std::vector<double> left_out_errors(const Problem& problem, const Optimum& optim
   for (std::size_t out = 0; curves >= kFewestToLeaveOne && out < curves; ++out) {
     if (options.stop != nullptr && options.stop->load()) return {};
     std::vector<std::size_t> others;
+    std::vector<Curve> fitted;
     for (std::size_t c = 0; c < curves; ++c) {
-      if (c != out) others.push_back(c);
+      if (c != out) others.push_back(c), fitted.push_back(problem.curves()[c]);
     }
-    const Optimum there = descend(*with(problem, others), optimum.scaled, options);
+    const Optimum there = descend(*problem.with(std::move(fitted), others), optimum.scaled, options);
     const Prediction seen = problem.model().predict(problem.model_index(out), problem.to_values(there.scaled));
     const std::vector<double>& measured = problem.curves()[out].force;
     double squares = seen.force.size() == measured.size() ? 0.0 : std::numeric_limits<double>::infinity();
