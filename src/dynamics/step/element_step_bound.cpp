@@ -6,25 +6,20 @@
 #include <numeric>
 
 #include "dynamics/step/stable_step.h"
+#include "dynamics/step/step_rules.h"
 
 namespace glisson {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr std::size_t kRun = 32;      ///< elements of which the least step is kept
 constexpr double kMassMargin = 1.05;  ///< of asked over mass that a bound is made for
 constexpr double kSlack = 0.8;        ///< below this share of what was allowed for a better bound is worth a look
-
-std::size_t block_at(const Body& body, std::uint32_t e) {
-  return static_cast<std::size_t>(&body.block_of(e) - body.blocks.data());
-}
 
 }  // namespace
 
 ElementStepBound::ElementStepBound(const Body& body, const detail::VertexStars& stars, std::vector<double> viscosity)
     : body_(body), stars_(stars), asks_(body.elements.size()), asked_(body.vertex_count, 0.0), allowed_(asked_),
-      shared_(body.elements.size(), kNever), own_(shared_), least_shared_((own_.size() + kRun - 1) / kRun, kNever),
-      least_own_(least_shared_) {
+      steps_(body.elements.size()), least_((steps_.size() + kRun - 1) / kRun) {
   for (std::size_t b = 0; b < body.blocks.size(); ++b) {
     elastic_.push_back(modulus_bound(body.blocks[b].elastic));
     viscous_.push_back(std::max(0.0, viscosity[b]) * modulus_bound(body.blocks[b].viscous));
@@ -35,15 +30,15 @@ ElementStepBound::ElementStepBound(const Body& body, const detail::VertexStars& 
 }
 
 void ElementStepBound::bound_all() {
-  for (std::uint32_t e = 0; e < own_.size(); ++e) bound(e);
-  std::vector<std::uint32_t> all(own_.size());
+  for (std::uint32_t e = 0; e < steps_.size(); ++e) bound(e);
+  std::vector<std::uint32_t> all(steps_.size());
   std::iota(all.begin(), all.end(), 0U);
   find_least(all);
 }
 
 void ElementStepBound::ask(std::uint32_t e) {
   const std::array<Vec3d, 4> s = shape_gradients(body_.rest[e]);
-  const double scale = body_.rest[e].volume * elastic_[block_at(body_, e)];
+  const double scale = body_.rest[e].volume * elastic_[block_index(body_, e)];
   for (std::size_t c = 0; c < 4; ++c) asks_[e][c] = static_cast<float>(scale * dot(s[c], s[c]));
 }
 
@@ -59,38 +54,34 @@ void ElementStepBound::weigh(std::uint32_t vertex) {
 }
 
 void ElementStepBound::bound(std::uint32_t e) {
-  shared_[e] = kNever;
+  Steps& steps = steps_[e];
+  steps.shared = kNever;
   const ElementRest& rest = body_.rest[e];
   if (!(rest.volume > 0.0)) return;
-  const std::size_t b = block_at(body_, e);
+  const std::size_t b = block_index(body_, e);
   const std::array<Vec3d, 4> s = shape_gradients(rest);
   Sym3<double> shared, own;  // Σ s sᵀ/W
   for (std::size_t c = 0; c < 4; ++c) {
-    const std::uint32_t v = body_.elements[e][c];
-    const Sym3<double> square{s[c].x * s[c].x, s[c].y * s[c].y, s[c].z * s[c].z,
-                              s[c].x * s[c].y, s[c].y * s[c].z, s[c].z * s[c].x};
-    shared = shared + square * (allowed_[v] / asks_[e][c]);
-    if (own_[e] == kNever) own = own + square * (1.0 / body_.quarter_mass(body_.blocks[b], e));
+    const Sym3<double> square = outer_square(s[c]);
+    shared += square * (allowed_[body_.elements[e][c]] / asks_[e][c]);
+    if (steps.own == kNever) own += square * (1.0 / body_.quarter_mass(body_.blocks[b], e));
   }
   const auto step = [&](const Sym3<double>& sum) {
     const double per_modulus = rest.volume * largest_eigenvalue(sum);
     return damped_step(elastic_[b] * per_modulus, viscous_[b] * per_modulus);
   };
-  shared_[e] = step(shared);
-  if (own_[e] == kNever) own_[e] = step(own);
+  steps.shared = step(shared);
+  if (steps.own == kNever) steps.own = step(own);
 }
 
 /// Least steps of runs of elements that hold some of these, ascending.
 void ElementStepBound::find_least(std::span<const std::uint32_t> elements) {
   std::size_t done = std::numeric_limits<std::size_t>::max();
   for (const std::uint32_t e : elements) {
-    const std::size_t run = e / kRun;
+    const std::size_t run = e / kRun, begin = run * kRun;
     if (run == done) continue;
     done = run;
-    const auto begin = static_cast<std::ptrdiff_t>(run * kRun);
-    const auto end = std::min(begin + static_cast<std::ptrdiff_t>(kRun), std::ssize(own_));
-    least_shared_[run] = *std::min_element(shared_.begin() + begin, shared_.begin() + end);
-    least_own_[run] = *std::min_element(own_.begin() + begin, own_.begin() + end);
+    least_[run] = least(std::span(steps_).subspan(begin, std::min(kRun, steps_.size() - begin)));
   }
 }
 
@@ -117,7 +108,7 @@ void ElementStepBound::change(const BodyChange& change) {
   allowed_.resize(body_.vertex_count, 0.0);
   std::vector<std::uint32_t> around = change.removed;
   for (const auto* list : {&change.removed, &change.reshaped}) {
-    for (const std::uint32_t e : *list) own_[e] = kNever;
+    for (const std::uint32_t e : *list) steps_[e].own = kNever;
   }
   if (change.corners.empty() && change.reshaped.empty()) {
     take_out(change, around);
@@ -139,9 +130,15 @@ void ElementStepBound::archive(Archive& ar) {
   if (ar.reads()) bound_all();
 }
 
+ElementStepBound::Steps ElementStepBound::least(std::span<const Steps> of) {
+  Steps least;
+  for (const Steps& s : of) least = {std::min(least.shared, s.shared), std::min(least.own, s.own)};
+  return least;
+}
+
 double ElementStepBound::step() const {
-  return std::max(*std::min_element(least_shared_.begin(), least_shared_.end()),
-                  *std::min_element(least_own_.begin(), least_own_.end()));
+  const Steps all = least(least_);
+  return std::max(all.shared, all.own);
 }
 
 }  // namespace glisson

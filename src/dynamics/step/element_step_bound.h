@@ -13,6 +13,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -37,22 +38,28 @@ class ElementStepBound {
   double step() const;
 
  private:
+  /// h* that an element allows [s].
+  struct Steps {
+    double shared = kNever, own = kNever;  ///< by shares as asked for, by its own mass
+  };
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
   void bound_all();
   void ask(std::uint32_t element);
   void weigh(std::uint32_t vertex);
-  void take_out(const BodyChange& change, std::vector<std::uint32_t>& around);
   void look_around(std::uint32_t vertex, std::vector<std::uint32_t>& around);
+  void take_out(const BodyChange& change, std::vector<std::uint32_t>& around);
   void bound(std::uint32_t element);
+  static Steps least(std::span<const Steps> of);
   void find_least(std::span<const std::uint32_t> elements);
 
   const Body& body_;
   const detail::VertexStars& stars_;
-  std::vector<double> elastic_, viscous_;         ///< per tissue block: bounds of the moduli [Pa], [Pa s]
-  std::vector<std::array<float, 4>> asks_;        ///< per element and corner: V m |s_a|²
-  std::vector<double> asked_;                     ///< per vertex: Σ of it over the elements around
-  std::vector<double> allowed_;                   ///< per vertex: asked over mass that bounds around it are made for
-  std::vector<double> shared_, own_;              ///< per element: steps by shares as asked for, by own mass [s]
-  std::vector<double> least_shared_, least_own_;  ///< per run of elements
+  std::vector<double> elastic_, viscous_;   ///< per tissue block: bounds of the moduli [Pa], [Pa s]
+  std::vector<std::array<float, 4>> asks_;  ///< per element and corner: V m |s_a|²
+  std::vector<double> asked_;               ///< per vertex: Σ of it over the elements around
+  std::vector<double> allowed_;             ///< per vertex: asked over mass that bounds around it are made for
+  std::vector<Steps> steps_, least_;        ///< per element; the least per run of elements
 };
 
 }  // namespace glisson

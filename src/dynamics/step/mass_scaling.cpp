@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "dynamics/step/stable_step.h"
 
@@ -19,11 +20,7 @@ double smallest_altitude(const ElementRest& rest) {
 
 MassScaling scale_masses(Body& body, double step, double viscosity) {
   MassScaling scaling;
-  const double before = [&] {
-    double sum = 0.0;
-    for (const double m : body.masses) sum += m;
-    return sum;
-  }();
+  const double before = std::accumulate(body.masses.begin(), body.masses.end(), 0.0);
   body.mass_factor.assign(body.elements.size(), 1.0);
   for (const TissueBlock& block : body.blocks) {
     for (std::size_t e = block.begin; e < block.end; ++e) {

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "dynamics/step/step_rules.h"
 #include "element/force_operator.h"
 
 namespace glisson {
@@ -55,10 +56,10 @@ class ScaledOperator {
   std::vector<double> scale_;
 };
 
-/// The largest eigenvalue bounded from above, its vector, and the residual norm that was added.
+/// The largest eigenvalue bounded from above, and its vector.
 struct TopPair {
   bool converged = false;
-  double bound = 0.0, residual = 0.0;
+  double bound = 0.0;
   Eigen::VectorXd vector;
 };
 
@@ -105,8 +106,7 @@ TopPair top_pair(const ScaledOperator& op, const std::vector<double>& mode) {
   Eigen::VectorXd image(op.rows());
   op.perform_op(top.vector.data(), image.data());
   const double value = top.vector.dot(image);
-  top.residual = (image - value * top.vector).norm();
-  top.bound = value + top.residual;
+  top.bound = value + (image - value * top.vector).norm();
   top.converged = std::isfinite(top.bound);
   return top;
 }
@@ -180,13 +180,8 @@ double largest(const Sym3<double>& a) {
 /// Largest eigenvalue of Σ_a s_a s_aᵀ over the four vertices [1/m²].
 double gradient_spread(const ElementRest& rest) {
   Sym3<double> sum;
-  const auto add = [&](const Vec3d& s) {
-    sum.xx += s.x * s.x, sum.yy += s.y * s.y, sum.zz += s.z * s.z;
-    sum.xy += s.x * s.y, sum.yz += s.y * s.z, sum.zx += s.z * s.x;
-  };
-  for (const Vec3d& s : rest.s) add(s);
-  add(-(rest.s[0] + rest.s[1] + rest.s[2]));
-  return largest(sum);
+  for (const Vec3d& s : rest.s) sum += outer_square(s);
+  return largest(sum + outer_square(rest.s[0] + rest.s[1] + rest.s[2]));
 }
 
 }  // namespace
@@ -246,7 +241,7 @@ StableStep stable_step(const Body& body, std::span<const double> stiffening, std
       if (guess != nullptr) *guess = {next, mode};
       // φ is convex and 0 at 0, so shrinking h by a fraction shrinks φ by at least that fraction.
       const double excess = std::max(0.0, (top.bound - 4.0) / top.bound);
-      return {std::max(safe, h * (1.0 - excess)), excess, false};
+      return {std::max(safe, h * (1.0 - excess)), false};
     }
     h = next;
   }
@@ -257,16 +252,7 @@ StableStep stable_step(const Body& body, std::span<const double> stiffening, std
     for (double& w : none_taken_off) w = std::max(0.0, w);
     return stable_step(body, stiffening, nodal_damping, held, guess, none_taken_off);
   }
-  return {safe, 0.0, true};
-}
-
-double largest_squared_frequency(const Body& body) {
-  const std::vector<double> one(body.blocks.size(), 1.0), none(body.vertex_count, 0.0);
-  std::vector<LameParameters> lame;
-  for (const TissueBlock& block : body.blocks) lame.push_back(block.elastic);
-  const TopPair top = top_pair(ScaledOperator(body, lame, none, {}), {});
-  const double h = element_bound_step(body, one);
-  return top.converged ? top.bound : 4.0 / (h * h);
+  return {safe, true};
 }
 
 }  // namespace glisson

@@ -27,7 +27,6 @@ namespace glisson {
 
 struct StableStep {
   double step = 0.0;           ///< h* [s], from below
-  double relative_gap = 0.0;   ///< how far it can lie below the true one, from the residual [-]
   bool from_elements = false;  ///< Lanczos did not converge; the element bound was taken
 };
 
@@ -47,9 +46,6 @@ struct StabilityGuess {
 StableStep stable_step(const Body& body, std::span<const double> stiffening, std::span<const double> nodal_damping,
                        std::span<const char> held = {}, StabilityGuess* guess = nullptr,
                        std::span<const double> viscosity = {});
-
-/// λ_max(M⁻¹K) of the free body at rest [1/s²], from above.
-double largest_squared_frequency(const Body& body);
 
 /// Rigorous lower bound of h* from the single elements, damping left out, and negative factors of viscosity [s].
 double element_bound_step(const Body& body, std::span<const double> stiffening, std::span<const double> viscosity = {});

@@ -22,22 +22,42 @@ StepControl::StepControl(const Body& body, const std::vector<double>& nodal_damp
     : body_(body), nodal_damping_(nodal_damping), drag_(drag), automatic_(!options.step),
       enforce_(options.enforce_stability), exact_asked_(options.exact_steps),
       scales_masses_(options.mass_scaling_step.has_value()), levels_(body) {
-  damping_rate_ = largest_damping_rate();
-  exact_ = search_is_needed();
-  validated_ = rest_level_ = at_least_one(stiffening);
-  limits_ = rest_limits_ = limits_at(validated_);
-  keep_guess();
-  searched_ = {rest_limits_, rest_level_, block_numbers()};
-  step_ = options.step.value_or(kSafety * limits_.pace);
-  if (enforce_ && step_ > limits_.stable) refuse_above(limits_.stable);
+  look_at_body();
+  rest_.level = at_least_one(stiffening);
+  rest_.limits = limits_at(rest_.level);
+  now_ = rest_;
+  remember_search();
+  step_ = options.step.value_or(kSafety * now_.limits.pace);
+  if (enforce_ && step_ > now_.limits.stable) refuse_above(now_.limits.stable);
   forget_searches();
   start_anew();
 }
 
-/// The bound from an earlier h* holds only where C stays what it is.
-bool StepControl::search_is_needed() const {
-  const bool small = std::all_of(body_.blocks.begin(), body_.blocks.end(), is_small);
-  return exact_asked_ || (drag_ == Drag::at_once && !small);
+/// Whether limits at a level follow from those at another: where C stays what it is, or its force lags.
+bool StepControl::is_bounded() const {
+  return drag_ == Drag::lags || std::all_of(body_.blocks.begin(), body_.blocks.end(), is_small);
+}
+
+/// Largest γ/m of a vertex [1/s].
+double StepControl::largest_damping_rate() const {
+  double rate = 0.0;
+  for (std::size_t i = 0; i < nodal_damping_.size(); ++i) {
+    if (body_.masses[i] > 0.0) rate = std::max(rate, nodal_damping_[i] / body_.masses[i]);
+  }
+  return rate;
+}
+
+/// Masses, damping or tissues are new.
+void StepControl::look_at_body() {
+  damping_rate_ = largest_damping_rate();
+  exact_ = exact_asked_ || !is_bounded();
+  forget_searches();
+}
+
+/// The search at rest was the last one.
+void StepControl::remember_search() {
+  rest_guess_ = guess_;
+  searched_ = {rest_, block_numbers()};
 }
 
 /// What is left of a step h of the tissue alone when stiffness k and viscosity c act beside it. φ(h) of the tissue is at most
@@ -85,45 +105,36 @@ bool StepControl::drag_thickens() const {
 StepControl::Limits StepControl::limits_at(std::span<const double> stiffening) {
   const std::size_t i = searches_made_++;
   if (i < searches_.size() && std::ranges::equal(searches_[i].level, stiffening)) {
-    guess_ = searches_[i].guess, pace_guess_ = searches_[i].pace_guess;
+    guess_ = searches_[i].ended;
     return searches_[i].limits;
   }
   const Limits limits = search(stiffening);
   searches_.resize(std::min(i, searches_.size()));
-  if (i < kSearchesKept) {
-    searches_.push_back({{stiffening.begin(), stiffening.end()}, limits, guess_, pace_guess_});
-  }
+  if (i < kSearchesKept) searches_.push_back({{limits, {stiffening.begin(), stiffening.end()}}, guess_});
   return limits;
 }
 
 StepControl::Limits StepControl::search(std::span<const double> stiffening) {
-  const double h = glisson::stable_step(body_, stiffening, nodal_damping_, {}, &guess_, viscosity_at(stiffening)).step;
-  if (drag_ == Drag::lags) return {h, h};
-  const std::vector<double> none(body_.blocks.size(), 0.0);
-  return {h, std::min(h, glisson::stable_step(body_, stiffening, nodal_damping_, {}, &pace_guess_, none).step)};
-}
-
-/// Largest γ/m of a vertex [1/s].
-double StepControl::largest_damping_rate() const {
-  double rate = 0.0;
-  for (std::size_t i = 0; i < nodal_damping_.size(); ++i) {
-    if (body_.masses[i] > 0.0) rate = std::max(rate, nodal_damping_[i] / body_.masses[i]);
-  }
-  return rate;
+  const auto h = [&](StabilityGuess& guess, std::span<const double> viscosity) {
+    return glisson::stable_step(body_, stiffening, nodal_damping_, {}, &guess, viscosity).step;
+  };
+  const double stable = h(guess_.stable, viscosity_at(stiffening));
+  if (drag_ == Drag::lags) return {stable, stable};
+  return {stable, std::min(stable, h(guess_.pace, std::vector<double>(body_.blocks.size(), 0.0)))};
 }
 
 /// h* at this level from that at the validated one or at rest, whichever gives more; from below. With G ≤ g M a step h that
 /// the damped body bears has φ(h) of the undamped one ≤ 4 + 2 h g, which is shortened away; where g is large, h/r says more.
 /// Where C grows as K does, (h/r)² r K + 2 (h/r) r C ≤ h² K + 2 h C of the undamped one.
 StepControl::Limits StepControl::bound_at(std::span<const double> stiffening) const {
-  const auto from = [&](const Limits& limits, const std::vector<double>& level) {
+  const auto from = [&](const Known& known) {
     double r = 1.0;
-    for (std::size_t b = 0; b < level.size(); ++b) r = std::max(r, stiffening[b] / level[b]);
-    const double undamped = 1.0 + 0.5 * limits.pace * damping_rate_;
-    if (drag_thickens()) return r > 1.0 ? limits.pace / (r * undamped) : limits.pace;
-    return limits.pace * std::max(1.0 / r, 1.0 / (std::sqrt(r) * undamped));
+    for (std::size_t b = 0; b < known.level.size(); ++b) r = std::max(r, stiffening[b] / known.level[b]);
+    const double pace = known.limits.pace, undamped = 1.0 + 0.5 * pace * damping_rate_;
+    if (drag_thickens()) return r > 1.0 ? pace / (r * undamped) : pace;
+    return pace * std::max(1.0 / r, 1.0 / (std::sqrt(r) * undamped));
   };
-  const double h = std::max(from(limits_, validated_), from(rest_limits_, rest_level_));
+  const double h = std::max(from(now_), from(rest_));
   return {h, h};
 }
 
@@ -133,28 +144,23 @@ void StepControl::prepare_changes(const detail::VertexStars& stars) {
 }
 
 void StepControl::mesh_changed(const BodyChange& change, const detail::VertexStars& stars) {
-  if (!change.origins.empty()) {
-    guess_ = pace_guess_ = {};
-    keep_guess();
-  }
+  if (!change.origins.empty()) guess_ = rest_guess_ = {};
   if (damping_rate_ > 0.0) damping_rate_ = largest_damping_rate();  // a body without damping gets none by a cut
   forget_searches();
   if (element_bound_ == nullptr) prepare_changes(stars);
   element_bound_->change(change);
   const double part = element_bound_->step();
   // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C, and h/r where C is r times as large, too
-  const auto bound = [&](Limits& limits, const std::vector<double>& level) {
-    const double r = *std::max_element(level.begin(), level.end());
+  for (Known* known : {&now_, &rest_}) {
+    const double r = *std::max_element(known->level.begin(), known->level.end());
     const double h = part / (drag_thickens() ? r : std::sqrt(r));
-    limits = {std::min(limits.stable, h), std::min(limits.pace, h)};
-  };
-  bound(limits_, validated_);
-  bound(rest_limits_, rest_level_);
-  searched_ = {rest_limits_, rest_level_, block_numbers()};
-  if (automatic_) step_ = std::min(step_, kSafety * limits_.pace);
+    known->limits = {std::min(known->limits.stable, h), std::min(known->limits.pace, h)};
+  }
+  searched_ = {rest_, block_numbers()};
+  if (automatic_) step_ = std::min(step_, kSafety * now_.limits.pace);
   levels_.remove(change.removed);
   take_stiff();
-  unchecked_ = enforce_ && step_ > limits_.stable;
+  unchecked_ = enforce_ && step_ > now_.limits.stable;
 }
 
 std::vector<double> StepControl::block_numbers() const {
@@ -187,60 +193,36 @@ StepControl::Limits StepControl::scaled_from_search(std::span<const double> leve
 }
 
 void StepControl::choose_limits(std::span<const double> stiffening, bool undeformed) {
-  const std::vector<double> now = at_least_one(stiffening), one(body_.blocks.size(), 1.0);
-  rest_level_ = undeformed ? now : one;
-  validated_ = now == rest_level_ ? now : level_of(stiffening, 1.0);
-  if (exact_) {
-    guess_ = pace_guess_ = {};
-    rest_limits_ = limits_at(rest_level_);
-    keep_guess();
-    limits_ = validated_ == rest_level_ ? rest_limits_ : limits_at(validated_);
-    searched_ = {rest_limits_, rest_level_, block_numbers()};
-    return;
-  }
+  const std::vector<double> now = at_least_one(stiffening);
+  rest_.level = undeformed ? now : std::vector<double>(body_.blocks.size(), 1.0);
+  now_.level = now == rest_.level ? now : level_of(stiffening, 1.0);
   const auto bound = [&](const std::vector<double>& level) {
     Limits limits = scaled_from_search(level);
     if (limits.pace * kWorthALook > searched_.limits.pace) return limits;
     const double h = std::max(limits.pace, element_bound_step(body_, level, viscosity_at(level)));
     return Limits{h, h};
   };
-  rest_limits_ = bound(rest_level_);
-  limits_ = bound(validated_);
-}
-
-StepControl::Chosen StepControl::chosen() const {
-  return {guess_,     pace_guess_, rest_guess_, rest_pace_guess_, limits_, rest_limits_,
-          validated_, rest_level_, searched_,   exact_,           stiff_};
-}
-
-void StepControl::restore(Chosen c) {
-  guess_ = std::move(c.guess), pace_guess_ = std::move(c.pace_guess);
-  rest_guess_ = std::move(c.rest_guess), rest_pace_guess_ = std::move(c.rest_pace_guess);
-  limits_ = c.limits, rest_limits_ = c.rest_limits;
-  validated_ = std::move(c.validated), rest_level_ = std::move(c.rest_level);
-  searched_ = std::move(c.searched), exact_ = c.exact;
-  stiff_ = c.stiff;
-  join_added();
+  if (exact_) guess_ = {};
+  rest_.limits = exact_ ? limits_at(rest_.level) : bound(rest_.level);
+  if (exact_) remember_search();
+  now_.limits = exact_ ? (now_.level == rest_.level ? rest_.limits : limits_at(now_.level)) : bound(now_.level);
 }
 
 void StepControl::tissues_changed(std::span<const double> stiffening, bool undeformed) {
-  Chosen before = chosen();
+  const StepChoice before = *this;
   stiff_ = {};  // the level of the blocks is chosen for all tets
-  join_added();
-  exact_ = search_is_needed();
-  damping_rate_ = largest_damping_rate();
-  forget_searches();
+  look_at_body();
   choose_limits(stiffening, undeformed);
   if (!automatic_ && enforce_ && step_ > stable_step()) {
-    validated_ = at_least_one(stiffening);  // without room
-    limits_ = limits_at(validated_);
+    now_.level = at_least_one(stiffening);  // without a safety factor
+    now_.limits = limits_at(now_.level);
     const double h = stable_step();
     if (step_ > h) {
-      restore(std::move(before));
+      static_cast<StepChoice&>(*this) = before;
       refuse_above(h);
     }
   }
-  if (automatic_) step_ = kSafety * limits_.pace;
+  if (automatic_) step_ = kSafety * now_.limits.pace;
   element_bound_.reset();
   unchecked_ = false;
   forget_searches();
@@ -248,19 +230,17 @@ void StepControl::tissues_changed(std::span<const double> stiffening, bool undef
 }
 
 void StepControl::body_read(const detail::VertexStars* stars) {
-  damping_rate_ = largest_damping_rate();
-  exact_ = search_is_needed();
-  forget_searches();
+  look_at_body();
   element_bound_.reset();
   if (stars != nullptr) prepare_changes(*stars);
 }
 
 void StepControl::archive(Archive& ar) {
-  ar(step_, window_, in_window_, unchecked_, caution_, shape_step_, held_, limits_, rest_limits_, searched_.limits);
-  for (auto* list : {&validated_, &rest_level_, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
+  ar(step_, window_, in_window_, unchecked_, caution_, shape_step_, held_, now_.limits, rest_.limits, searched_.limits);
+  for (auto* list : {&now_.level, &rest_.level, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
     ar.same_size(*list);
   }
-  for (StabilityGuess* g : {&guess_, &pace_guess_, &rest_guess_, &rest_pace_guess_}) {
+  for (StabilityGuess* g : {&guess_.stable, &guess_.pace, &rest_guess_.stable, &rest_guess_.pace}) {
     ar(g->mode, g->step);
     ar.check(g->mode.empty() || g->mode.size() == 3 * body_.vertex_count);
   }
@@ -277,7 +257,7 @@ bool StepControl::accept(std::span<const double> stiffening, std::span<const Sti
     if (!std::isfinite(r)) return true;  // the state is beyond repair; the step reports that it is not finite
   }
   const std::span<const StiffElement> few = without_crowd(stiff);
-  const StiffnessLevels::Met met = levels_.meet(few, validated_, crowd_.empty() ? usual_ : crowd_);
+  const StiffnessLevels::Met met = levels_.meet(few, now_.level, crowd_.empty() ? usual_ : crowd_);
   if (met.above || is_crowded() || unchecked_) {
     if (!rises(stiffening, met.rise)) return false;
   } else {

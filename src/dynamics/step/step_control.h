@@ -1,20 +1,19 @@
 // step_control.h — chooses the step, and keeps it below h* while the tissue stiffens.
 //
-// h* is computed for a level of stiffness per tissue block. While every element stays below that level the
-// step is known to be stable and nothing is computed; when one rises above it, h* is computed anew with
-// room to grow, so that the spectrum is visited a few times in a run, not each step. Where that takes too long
-// (real time), the last h* gives a bound: for stiffness up to r times as large,
+// h* is computed for a level of stiffness per tissue block. While every element stays below that level the step is stable and
+// nothing is computed; when one rises above it, h* is computed again with a safety factor, so that a run needs few searches.
+// Where a search takes too long (real time), the last h* gives a bound: for stiffness up to r times as large,
 //   φ(h/r) of r K  =  (1/r) φ(h) of K  ≤ 4,   and without nodal damping φ(h/√r) of r K ≤ φ(h) of K ≤ 4.
-// Once in a window of steps an automatic step may grow again: where the window's stiffest moment stayed well below the
-// level, h* is computed for that. Each time the window doubles, so that tissue that swings costs no search a swing. After a
-// short peak the bound brings it back within a few steps.
-// A step is taken with the stiffness of the one before: where that rises by more than the room within a step, steps are
-// shortened until it does not, and the level runs ahead of it. Exponential laws under impact need this.
+// Once in a window of steps an automatic step may grow again: where the stiffest moment of the window stayed well below the
+// level, h* is computed for that moment. The window doubles each time, so that oscillating tissue costs no search a cycle.
+// After a short peak the bound restores the step within a few steps.
+// The stiffness in a step is known one step late: where it rises by more than the safety factor within a step, steps are
+// shortened until it does not, and the level is set ahead of it. Exponential laws under impact need this.
 //
-// A few tets that are squashed would hold the step of a whole body. Those above the level of their block get one of their own
-// (stiffness_levels.h), and what they take off the step is bounded by itself; the level of the block rises where that says
-// more. The body lists which they are, so that a step in which nothing is above its level costs nothing. Once in a while the
-// body is asked for all that is stiffer than at rest, and the level of the block is chosen anew.
+// A few squashed tets would limit the step of a whole body. Those above the level of their block have their own level
+// (stiffness_levels.h), and their effect on the step is bounded separately; the level of the block rises where that gives the
+// longer step. The body lists these tets, so that a step in which nothing is above its level costs nothing. Every few hundred
+// steps the body lists all tets that are stiffer than at rest, and the level of the block is chosen again.
 #pragma once
 
 #include <algorithm>
@@ -47,7 +46,36 @@ struct ShapeRate {
   double rate = 0.0;
 };
 
-class StepControl {
+/// What a refused change of tissues leaves as it was.
+struct StepChoice {
+  /// h* of the scheme, and what an automatic step keeps below: at Drag::at_once also h* without viscosity, since
+  /// viscosity hides what a longer step gets wrong.
+  struct Limits {
+    double stable = 0.0, pace = 0.0;  ///< [s]
+    void archive(Archive& ar) { ar(stable, pace); }
+  };
+  /// Limits for a stiffening per block.
+  struct Known {
+    Limits limits;
+    std::vector<double> level;
+  };
+  /// What the last search was made for.
+  struct Searched : Known {
+    std::vector<double> numbers;  ///< per block: shear and bulk modulus, the same of viscosity, density
+  };
+  /// Where the next search begins.
+  struct Guess {
+    StabilityGuess stable, pace;
+  };
+
+  Known now_, rest_;  ///< the present level, and the stiffness at rest
+  Searched searched_;
+  Guess guess_, rest_guess_;  ///< the second is from the search at rest
+  bool exact_ = true;         ///< whether each level is searched
+  AddedStiffness stiff_;      ///< of single tets
+};
+
+class StepControl : StepChoice {
  public:
   /// @param nodal_damping  γ_i per vertex [kg/s]; not copied: must outlive this, and follow the body
   /// @param options  step, enforce_stability and exact_steps of them
@@ -100,7 +128,7 @@ class StepControl {
     const double room = 1.0 / (kSafety * kSafety);
     return std::min(caution_ * with_added(step_, {room * (stiff_.k + held_), stiff_.c / kSafety}), shape_step_);
   }
-  double stable_step() const { return with_added(limits_.stable, added_); }
+  double stable_step() const { return with_added(now_.limits.stable, {tools_ + stiff_.k, stiff_.c}); }
   /// What is wrong with a given step that accept() has refused, and the ways out.
   std::string too_large() const { return too_large(stable_step()); }
 
@@ -109,107 +137,78 @@ class StepControl {
   static constexpr double kRegrowth = 1.015;                             ///< of a step that tools held short
   static constexpr std::uint64_t kFirstWindow = 1000, kFirstProbe = 64;  ///< [steps]
 
-  /// h* of the scheme, and what an automatic step keeps below: at Drag::at_once also h* without viscosity, since
-  /// viscosity hides what a longer step gets wrong.
-  struct Limits {
-    double stable = 0.0, pace = 0.0;  ///< [s]
-    void archive(Archive& ar) { ar(stable, pace); }
-  };
-  /// What a search was made for.
-  struct Searched {
-    Limits limits;
-    std::vector<double> level;    ///< stiffening per block
-    std::vector<double> numbers;  ///< per block: shear and bulk modulus, the same of viscosity, density
-  };
   /// A search since steps were chosen anew, and where it left the next one to begin.
-  struct Search {
-    std::vector<double> level;
-    Limits limits;
-    StabilityGuess guess, pace_guess;
+  struct Search : Known {
+    Guess ended;
   };
-  /// How steps are chosen, all that a refused change of tissues leaves as it was.
-  struct Chosen {
-    StabilityGuess guess, pace_guess, rest_guess, rest_pace_guess;
-    Limits limits, rest_limits;
-    std::vector<double> validated, rest_level;
-    Searched searched;
-    bool exact;
-    AddedStiffness stiff;
-  };
-  Chosen chosen() const;
-  void restore(Chosen chosen);
-  std::vector<double> block_numbers() const;
-  Limits scaled_from_search(std::span<const double> level) const;
-  void choose_limits(std::span<const double> stiffening, bool undeformed);
-  bool search_is_needed() const;
-  void join_added() { added_ = {tools_ + stiff_.k, stiff_.c}; }
-  AddedStiffness added_at(std::span<const double> level);
-  double pace_of(const Limits& limits, const AddedStiffness& added, std::size_t above) const;
-  double pace_above(std::span<const double> level, double enough);
-  bool may_gain() const;
-  void take_stiff();
-  double with_added(double step, const AddedStiffness& added) const;
+
+  // h* of a level
   std::vector<double> viscosity_at(std::span<const double> stiffening) const;
   Limits limits_at(std::span<const double> stiffening);
   Limits search(std::span<const double> stiffening);
-  void forget_searches() { searches_.clear(), searches_made_ = 0; }
-  bool drag_thickens() const;
   Limits bound_at(std::span<const double> stiffening) const;
+  bool is_bounded() const;
+  bool drag_thickens() const;
+  double with_added(double step, const AddedStiffness& added) const;
   [[noreturn]] void refuse_above(double stable) const { throw std::invalid_argument(too_large(stable)); }
   std::string too_large(double stable) const;
+
+  // changes of the body
+  double largest_damping_rate() const;
+  void look_at_body();
+  void remember_search();
+  std::vector<double> block_numbers() const;
+  Limits scaled_from_search(std::span<const double> level) const;
+  void choose_limits(std::span<const double> stiffening, bool undeformed);
+  void forget_searches() { searches_.clear(), searches_made_ = 0; }
+  void start_anew();
+
+  // levels (step_levels.cpp)
+  void list_from();
+  AddedStiffness added_at(std::span<const double> level);
+  void take_stiff();
+  void take_base(Known base);
+  std::vector<double> level_of(std::span<const double> seen, double ahead) const;
+  std::vector<double> risen(std::span<const double> stiffening, double ahead) const;
+  std::size_t most_levels() const;
+  std::span<const StiffElement> without_crowd(std::span<const StiffElement> stiff);
+  bool is_crowded() const;
   bool rises(std::span<const double> stiffening, double rise);
   bool holds_at(std::span<const double> stiffening);
-  void take_base(std::vector<double> level, const Limits& limits);
-  std::size_t most_levels() const;
-  bool is_crowd(std::size_t tets) const;
-  bool is_crowded() const;
-  void choose_base(const std::vector<double>& least, bool forced);
-  std::span<const StiffElement> without_crowd(std::span<const StiffElement> stiff);
-  bool is_bounded() const;
-  double largest_damping_rate() const;
-  double slack(const StiffElement& stiff, double step) const;
   void be_cautious(double rise);
-  void start_anew();
-  void keep_guess() { rest_guess_ = guess_, rest_pace_guess_ = pace_guess_; }
-  void list_from();
-  void settle();
+  double slack(const StiffElement& stiff, double step) const;
+  double pace_of(const Limits& limits, const AddedStiffness& added, std::size_t above) const;
+  double pace_above(std::span<const double> level, double enough);
+  void choose_base(const std::vector<double>& least, bool forced);
   void probe();
-  std::vector<double> level_of(std::span<const double> seen, double ahead) const;
+  void settle();
   void relax(std::span<const double> stiffening);
-  void come_back();
 
   const Body& body_;
   const std::vector<double>& nodal_damping_;
   Drag drag_;
-  bool automatic_, enforce_, exact_asked_, exact_;
+  bool automatic_, enforce_, exact_asked_;
   bool scales_masses_;
-  StabilityGuess guess_, pace_guess_;
-  StabilityGuess rest_guess_, rest_pace_guess_;  ///< from the search at rest: where those of a new start begin
-  std::vector<Search> searches_;                 ///< the first few, for a state that is set again and again
+  std::vector<Search> searches_;  ///< the first few, for a state that is set again and again
   std::size_t searches_made_ = 0;
   double step_ = 0.0;
-  Limits limits_;
+  double damping_rate_ = 0.0;                        ///< largest γ/m [1/s]
   std::unique_ptr<ElementStepBound> element_bound_;  ///< none until the mesh changes
   bool unchecked_ = false;                           ///< a given step is above the bound of a mesh that has changed
-  std::vector<double> validated_;                    ///< stiffening per block up to which step_ is known to be stable
-  std::vector<double> rest_level_;
-  Limits rest_limits_;  ///< for rest_level_, the stiffness at rest
-  Searched searched_;
-  std::vector<double> seen_;  ///< largest stiffening per block in this window
+
+  std::vector<double> seen_, lately_;  ///< largest stiffening per block in this window, in the last few steps
   std::uint64_t window_ = kFirstWindow, in_window_ = 0;
-  std::vector<double> lately_;                                   ///< the same of the last few steps
-  double shape_step_ = std::numeric_limits<double>::infinity();  ///< [s]
   StiffnessLevels levels_;
   std::vector<double> usual_, list_above_;  ///< stiffening per block from which elements are listed, and are now
   std::uint64_t probe_ = kFirstProbe, since_probe_ = 0;  ///< [steps]
-  std::vector<StiffElement> few_;                        ///< the stiffest of a crowd
-  std::vector<double> crowd_;     ///< per block, the stiffest of those left out; empty: none were
-  bool probes_ = false;           ///< whether more than usual is listed, to choose the level of the blocks anew
-  double damping_rate_ = 0.0;     ///< largest γ/m [1/s]
-  double tools_ = 0.0;            ///< ω² of what acts beside the tissue [1/s²]
-  double held_ = 0.0;             ///< the same that an automatic step is chosen for: at least as much
-  AddedStiffness stiff_, added_;  ///< of single tets; of both
-  double caution_ = 1.0;          ///< factor on an automatic step while stiffness rises fast
+  bool probes_ = false;            ///< whether more than usual is listed, to choose the level of the blocks anew
+  std::vector<StiffElement> few_;  ///< the stiffest of a crowd
+  std::vector<double> crowd_;      ///< per block, the stiffest of those left out; empty: none were
+
+  double tools_ = 0.0;    ///< ω² of what acts beside the tissue [1/s²]
+  double held_ = 0.0;     ///< the same that an automatic step is chosen for: at least as much
+  double caution_ = 1.0;  ///< factor on an automatic step while stiffness rises fast
+  double shape_step_ = std::numeric_limits<double>::infinity();  ///< [s]
 };
 
 }  // namespace glisson

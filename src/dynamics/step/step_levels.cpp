@@ -31,7 +31,7 @@ constexpr std::size_t kFewTets = 64, kFewOf = 4;  ///< tets with levels of their
 
 /// What was seen and guessed on the way is forgotten; the search at rest is not.
 void StepControl::start_anew() {
-  guess_ = rest_guess_, pace_guess_ = rest_pace_guess_;
+  guess_ = rest_guess_;
   searches_made_ = 0;
   seen_.assign(body_.blocks.size(), 0.0);
   lately_ = seen_;
@@ -45,14 +45,14 @@ void StepControl::start_anew() {
 }
 
 void StepControl::state_set() {
-  validated_ = rest_level_, limits_ = rest_limits_;
-  if (automatic_) step_ = kSafety * limits_.pace;
+  now_ = rest_;
+  if (automatic_) step_ = kSafety * now_.limits.pace;
   start_anew();
 }
 
 /// Elements are listed from the level of their block on; where a tet's changes of shape may count, from below.
 void StepControl::list_from() {
-  usual_ = validated_;
+  usual_ = now_.level;
   for (std::size_t b = 0; b < usual_.size(); ++b) {
     if (!enforce_) usual_[b] = std::numeric_limits<double>::infinity();
     if (automatic_ && !is_small(body_.blocks[b])) {
@@ -61,24 +61,21 @@ void StepControl::list_from() {
   }
   list_above_ = usual_;
   for (std::size_t b = 0; probes_ && b < usual_.size(); ++b) {
-    list_above_[b] = std::min(usual_[b], std::max(rest_level_[b], validated_[b] / kProbeDepth));
+    list_above_[b] = std::min(usual_[b], std::max(rest_.level[b], now_.level[b] / kProbeDepth));
   }
 }
 
 /// What single tets take off the step, which depends on the level of their blocks.
 AddedStiffness StepControl::added_at(std::span<const double> level) {
   if (levels_.empty()) return {};
-  std::vector<char> viscous(body_.blocks.size(), 0);
-  for (std::size_t b = 0; b < viscous.size(); ++b) {
-    viscous[b] = thickens(body_.blocks[b]) ? 1 : 0;
-  }
+  std::vector<char> viscous;
+  for (const TissueBlock& block : body_.blocks) viscous.push_back(thickens(block) ? 1 : 0);
   return levels_.added(level, viscous);
 }
 
 void StepControl::set_added(double squared_frequency) {
   tools_ = squared_frequency;
   held_ = std::max(held_, tools_);
-  join_added();
 }
 
 void StepControl::follow_added(double squared_frequency) {
@@ -87,8 +84,7 @@ void StepControl::follow_added(double squared_frequency) {
 }
 
 void StepControl::take_stiff() {
-  stiff_ = added_at(validated_);
-  join_added();
+  stiff_ = added_at(now_.level);
   list_from();
 }
 
@@ -126,48 +122,49 @@ void StepControl::limit_shape_change(std::span<const ShapeRate> changes) {
 std::vector<double> StepControl::level_of(std::span<const double> seen, double ahead) const {
   std::vector<double> level = at_least_one(seen);
   for (std::size_t b = 0; b < level.size(); ++b) {
-    if (!is_linear(body_.blocks[b])) level[b] = std::max(rest_level_[b], kStiffeningMargin * ahead * level[b]);
+    if (!is_linear(body_.blocks[b])) level[b] = std::max(rest_.level[b], kStiffeningMargin * ahead * level[b]);
   }
   return level;
 }
 
-/// Whether limits at a level follow from those at another.
-bool StepControl::is_bounded() const {
-  return drag_ == Drag::lags || std::all_of(body_.blocks.begin(), body_.blocks.end(), is_small);
+/// The same, and nowhere below the present level.
+std::vector<double> StepControl::risen(std::span<const double> stiffening, double ahead) const {
+  std::vector<double> level = level_of(stiffening, ahead);
+  for (std::size_t b = 0; b < level.size(); ++b) {
+    if (!is_linear(body_.blocks[b])) level[b] = std::max(now_.level[b], level[b]);
+  }
+  return level;
 }
 
 std::size_t StepControl::most_levels() const { return kFewTets + body_.elements.size() / kFewOf; }
 
-bool StepControl::is_crowd(std::size_t tets) const { return tets > most_levels(); }
-
-void StepControl::take_base(std::vector<double> level, const Limits& limits) {
-  limits_ = limits;
-  validated_ = std::move(level);
-  if (automatic_) step_ = kSafety * limits_.pace;
-  levels_.forget_below(validated_);
+void StepControl::take_base(Known base) {
+  now_ = std::move(base);
+  if (automatic_) step_ = kSafety * now_.limits.pace;
+  levels_.forget_below(now_.level);
   take_stiff();
 }
 
 /// The stiffest of what is told, where that is too much to look after each; the level of the blocks has to bear the others.
 std::span<const StiffElement> StepControl::without_crowd(std::span<const StiffElement> stiff) {
   crowd_.clear();
-  if (!is_crowd(stiff.size())) return stiff;
   const std::size_t few = most_levels();
-  std::vector<double> ratios;
-  for (const StiffElement& s : stiff) ratios.push_back(s.ratio);
-  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(few), ratios.end(), std::greater<>());
-  const double limit = ratios[few];
+  if (stiff.size() <= few) return stiff;
+  std::vector<StiffElement> ordered(stiff.begin(), stiff.end());
+  const auto last = ordered.begin() + static_cast<std::ptrdiff_t>(few);
+  std::ranges::nth_element(ordered, last, std::greater<>(), &StiffElement::ratio);
+  const double limit = last->ratio;
   few_.clear();
   crowd_.assign(body_.blocks.size(), 0.0);
   for (const StiffElement& s : stiff) {
-    double& left = crowd_[static_cast<std::size_t>(&body_.block_of(s.element) - body_.blocks.data())];
+    double& left = crowd_[block_index(body_, s.element)];
     if (s.ratio > limit) {
       few_.push_back(s);
     } else {
       left = std::max(left, s.ratio);
     }
   }
-  const std::vector<double>& least = probes_ ? list_above_ : validated_;
+  const std::vector<double>& least = probes_ ? list_above_ : now_.level;
   for (std::size_t b = 0; b < crowd_.size(); ++b) crowd_[b] = std::max(crowd_[b], least[b]);
   return few_;
 }
@@ -175,56 +172,48 @@ std::span<const StiffElement> StepControl::without_crowd(std::span<const StiffEl
 /// Whether some of a crowd that is not looked after is above the level of its block.
 bool StepControl::is_crowded() const {
   for (std::size_t b = 0; b < crowd_.size(); ++b) {
-    if (crowd_[b] > validated_[b]) return true;
+    if (crowd_[b] > now_.level[b]) return true;
   }
   return false;
 }
 
 /// Takes in tets above their levels, by levels of their own or by that of the blocks; false where a given step does not support it.
 bool StepControl::rises(std::span<const double> stiffening, double rise) {
-  const double before = with_added(limits_.pace, stiff_);
+  const double before = with_added(now_.limits.pace, stiff_);
   levels_.raise(kMostAhead);
   if (!automatic_) {
     take_stiff();
     return holds_at(stiffening);
   }
   unchecked_ = false;
-  std::vector<double> level = level_of(stiffening, std::min(rise, kMostAhead));
-  for (std::size_t b = 0; b < level.size(); ++b) {
-    if (!is_linear(body_.blocks[b])) level[b] = std::max(validated_[b], level[b]);
-  }
+  const std::vector<double> level = risen(stiffening, std::min(rise, kMostAhead));
   const bool crowded = is_crowded();
-  const std::size_t above = levels_.count_above(validated_);
   const Limits all = bound_at(level);
-  const std::vector<double>& left = crowded ? crowd_ : validated_;
-  if (all.pace >= pace_above(left, all.pace)) {
-    take_base(level, exact_ ? limits_at(level) : all);
+  if (all.pace >= pace_above(crowded ? crowd_ : now_.level, all.pace)) {
+    take_base({exact_ ? limits_at(level) : all, level});
   } else if (crowded) {
     choose_base(crowd_, true);
-  } else if (is_crowd(above)) {
-    choose_base(validated_, false);
+  } else if (levels_.count_above(now_.level) > most_levels()) {
+    choose_base(now_.level, false);
   } else {
     take_stiff();
   }
-  const double shorter = before / with_added(limits_.pace, stiff_);
+  const double shorter = before / with_added(now_.limits.pace, stiff_);
   be_cautious(std::min(rise, shorter * shorter));
   return true;
 }
 
-/// Whether a given step bears the stiffness there is: by levels of single tets, by that of the blocks, by that without room.
+/// Whether a given step bears the stiffness there is: by levels of single tets, by that of the blocks, by that without a safety
+/// factor.
 bool StepControl::holds_at(std::span<const double> stiffening) {
   unchecked_ = false;
   if (!is_crowded() && step_ <= stable_step()) return true;
-  std::vector<double> level = level_of(stiffening, 1.0);
-  for (std::size_t b = 0; b < level.size(); ++b) {
-    if (!is_linear(body_.blocks[b])) level[b] = std::max(validated_[b], level[b]);
-  }
   levels_.clear();
-  take_base(level, limits_at(level));
-  if (step_ <= limits_.stable) return true;
-  level = at_least_one(stiffening);
-  take_base(level, limits_at(level));
-  return step_ <= limits_.stable;
+  for (const std::vector<double>& level : {risen(stiffening, 1.0), at_least_one(stiffening)}) {
+    take_base({limits_at(level), level});
+    if (step_ <= now_.limits.stable) return true;
+  }
+  return false;
 }
 
 /// How fast time goes on at a level of the blocks, with what looking after the tets above it costs.
@@ -248,7 +237,7 @@ void StepControl::choose_base(const std::vector<double>& least, bool forced) {
   const std::vector<double> most = levels_.largest(least);
   std::vector<double> best;
   double fastest = 0.0;
-  if (!forced) fastest = kWorthAChange * pace_of(limits_, added_at(validated_), levels_.count_above(validated_));
+  if (!forced) fastest = kWorthAChange * pace_of(now_.limits, added_at(now_.level), levels_.count_above(now_.level));
   int in_vain = 0;
   for (double share = 1.0; in_vain < kMostInVain; share *= kLadder) {
     std::vector<double> level = least;
@@ -259,31 +248,28 @@ void StepControl::choose_base(const std::vector<double>& least, bool forced) {
     if (level == least) break;
   }
   if (!best.empty()) {
-    take_base(best, bound_at(best));
+    take_base({bound_at(best), best});
   } else {
     take_stiff();
   }
 }
 
-/// Whether another level of the blocks could make steps longer: at most those of tissue at rest.
-bool StepControl::may_gain() const {
-  return is_bounded() && rest_limits_.pace > kWorthAChange * with_added(limits_.pace, stiff_);
-}
-
-/// Asks for all that is stiff, or chooses by what was told.
+/// Lists all that is stiff, or chooses by what was listed. Another level makes steps at most as long as those at rest.
 void StepControl::probe() {
   if (probes_) {
-    const std::vector<double> before = validated_;
+    const std::vector<double> before = now_.level;
     choose_base(crowd_.empty() ? list_above_ : crowd_, false);
-    probe_ = validated_ == before ? std::min(2 * probe_, kLongestProbe) : kFirstProbe;
+    probe_ = now_.level == before ? std::min(2 * probe_, kLongestProbe) : kFirstProbe;
     probes_ = false;
     list_from();
     return;
   }
-  if (++since_probe_ < probe_ || !may_gain()) return;
+  const bool may_gain = is_bounded() && rest_.limits.pace > kWorthAChange * with_added(now_.limits.pace, stiff_);
+  if (++since_probe_ < probe_ || !may_gain) return;
   since_probe_ = 0;
-  for (std::size_t b = 0; b < validated_.size(); ++b)
-    probes_ = probes_ || validated_[b] > kStiffeningMargin * rest_level_[b];
+  for (std::size_t b = 0; b < now_.level.size(); ++b) {
+    probes_ = probes_ || now_.level[b] > kStiffeningMargin * rest_.level[b];
+  }
   list_from();
 }
 
@@ -298,7 +284,7 @@ void StepControl::settle() {
   std::fill(lately_.begin(), lately_.end(), 0.0);
   const Limits bound = bound_at(level);
   if (!is_bounded() || kSafety * bound.pace < 2.0 * step_) return;
-  take_base(std::move(level), bound);
+  take_base({bound, std::move(level)});
 }
 
 /// Lets an automatic step grow at the end of a window in which the tissue was well softer than the validated level.
@@ -313,14 +299,14 @@ void StepControl::relax(std::span<const double> stiffening) {
   std::vector<double> level = level_of(seen_, 1.0);
   bool softer = false;
   for (std::size_t b = 0; b < level.size(); ++b) {
-    level[b] = std::min(validated_[b], level[b]);
-    softer = softer || level[b] * kStiffeningMargin < validated_[b];
+    level[b] = std::min(now_.level[b], level[b]);
+    softer = softer || level[b] * kStiffeningMargin < now_.level[b];
   }
   in_window_ = 0;
   std::fill(seen_.begin(), seen_.end(), 0.0);
   if (!softer) return;
   const Limits limits = exact_ ? limits_at(level) : bound_at(level);
-  take_base(std::move(level), {limits.stable, std::max(limits_.pace, limits.pace)});
+  take_base({{limits.stable, std::max(now_.limits.pace, limits.pace)}, std::move(level)});
   window_ = std::min<std::uint64_t>(2 * window_, kLongestWindow);
 }
 

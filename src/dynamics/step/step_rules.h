@@ -12,6 +12,15 @@ namespace glisson {
 
 inline constexpr double kStiffeningMargin = 1.2;  ///< stiffening that a new h* allows for beyond the present one
 
+inline std::size_t block_index(const Body& body, std::size_t element) {
+  return static_cast<std::size_t>(&body.block_of(element) - body.blocks.data());
+}
+
+/// s sᵀ
+inline Sym3<double> outer_square(const Vec3d& s) {
+  return {s.x * s.x, s.y * s.y, s.z * s.z, s.x * s.y, s.y * s.z, s.z * s.x};
+}
+
 inline bool is_small(const TissueBlock& block) {
   return !block.tissue.hyperelastic && block.tissue.kinematics == Kinematics::small;
 }

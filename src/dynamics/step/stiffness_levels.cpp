@@ -5,15 +5,12 @@
 #include <cmath>
 
 #include "dynamics/step/stable_step.h"
+#include "dynamics/step/step_rules.h"
 
 namespace glisson {
 namespace {
 
 constexpr double kLevelMargin = 1.05, kMostLevelMargin = 3.0;  ///< of a level above the stiffness seen
-
-std::uint32_t block_number_of(const Body& body, std::uint32_t element) {
-  return static_cast<std::uint32_t>(&body.block_of(element) - body.blocks.data());
-}
 
 /// A tet above the base: what it asks of its vertices' masses.
 struct Asking {
@@ -28,10 +25,7 @@ Sym3<double> over_shares(const Body& body, const Asking& a, const std::vector<do
   Sym3<double> sum;
   for (std::size_t i = 0; i < 4; ++i) {
     const std::uint32_t v = body.elements[a.element][i];
-    const double per_share = asked[v] / (body.masses[v] * a.of[i]);
-    sum += Sym3<double>{s[i].x * s[i].x, s[i].y * s[i].y, s[i].z * s[i].z,
-                        s[i].x * s[i].y, s[i].y * s[i].z, s[i].z * s[i].x} *
-           per_share;
+    sum += outer_square(s[i]) * (asked[v] / (body.masses[v] * a.of[i]));
   }
   return sum;
 }
@@ -42,7 +36,7 @@ StiffnessLevels::Member& StiffnessLevels::member(std::uint32_t element) {
   if (place_.empty()) place_.assign(body_.elements.size(), 0);
   std::uint32_t& place = place_[element];
   if (place == 0) {
-    members_.push_back({.element = element, .block = block_number_of(body_, element)});
+    members_.push_back({.element = element, .block = static_cast<std::uint32_t>(block_index(body_, element))});
     place = static_cast<std::uint32_t>(members_.size());
   }
   return members_[place - 1];
