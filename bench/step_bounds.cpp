@@ -7,7 +7,9 @@
 // norm and q_a = Σ_e V κ |s_a|² over the tets around a vertex, shares m_a V κ |s_a|²/q_a of the masses give
 //   ω² ≤ max_e Σ_a q_a/m_a,                    of the whole tangent ("shares"), or
 //   ω² ≤ ω*² + max_e Σ_a q_a/m_a,              of what exceeds the tangent at rest ("rest + excess"), κ exact or from the
-//                                              ratio and norm that the elements have anyway ("rest + ratio and norm").
+//                                              ratio r and norm n that the elements have anyway ("rest + ratio and norm"):
+// with m the norm of the tangent at rest min(r − 1, n) m, or, since only rank-one changes count, min((r − 1)(λ + 2 μ), n m)
+// ("rank-one"). The rows of M⁻¹K bound it by vertices, without a look back at the tets: ω² ≤ max_a Σ_e V κ |s_a| Σ_b |s_b|/m_a.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
@@ -78,6 +80,22 @@ double by_shares(const Body& body, const std::vector<double>& k) {
   return most;
 }
 
+/// max_a Σ_e k_e |s_a| Σ_b |s_b|/m_a.
+double by_rows(const Body& body, const std::vector<double>& k) {
+  std::vector<double> row(body.vertex_count, 0.0);
+  double most = 0.0;
+  for (std::size_t e = 0; e < k.size(); ++e) {
+    double sum = 0.0;
+    for (const Vec3d& s : shape_gradients(body.rest[e])) sum += norm(s);
+    for (std::size_t a = 0; a < 4; ++a) {
+      const std::uint32_t v = body.elements[e][a];
+      row[v] += k[e] * norm(shape_gradients(body.rest[e])[a]) * sum / body.masses[v];
+      most = std::max(most, row[v]);
+    }
+  }
+  return most;
+}
+
 /// λ_max(M⁻¹K) by the power method; `x` is where it begins and ended.
 double squared_frequency(const TissueOperator& tissue, const TissueTangent& tangent, std::vector<Vec3d>& x) {
   const std::vector<double>& m = tissue.body().masses;
@@ -144,9 +162,9 @@ class Trial {
       }
       look(s.displacement(), s.time() - from);
     }
-    std::printf("| %s | %llu | %.2f | %.2f | %.2f | %.2f |\n", body_.blocks[0].tissue.name.c_str(),
+    std::printf("| %s | %llu | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", body_.blocks[0].tissue.name.c_str(),
                 static_cast<unsigned long long>(s.steps()), exact_ / s.steps(), shares_ / s.steps(),
-                excess_ / s.steps(), cheap_ / s.steps());
+                excess_ / s.steps(), cheap_ / s.steps(), rank_one_ / s.steps(), rows_ / s.steps());
     std::fflush(stdout);
   }
 
@@ -164,7 +182,7 @@ class Trial {
     const std::vector<Vec3d> still(u.size());
     TissueTangent tangent;
     operator_.linearise({u, still}, 0.0, true, tangent);
-    std::vector<double> whole, excess, cheap(body_.elements.size(), 0.0);
+    std::vector<double> whole, excess, cheap(body_.elements.size(), 0.0), rank_one = cheap;
     for (std::size_t e = 0; e < body_.elements.size(); ++e) {
       const Tensor A = 0.5 * (tangent.local[e] + tangent.local[e].transpose());
       whole.push_back(body_.rest[e].volume * rank_one_norm(A));
@@ -175,14 +193,18 @@ class Trial {
     std::vector<Vec3d> elastic(u.size()), viscous(u.size());
     operator_.forces({u, still}, elastic, viscous, watch);
     for (const StiffElement& e : watch.stiff) {
-      cheap[e.element] =
-          body_.rest[e.element].volume * modulus_bound(body_.blocks[0].elastic) * std::min(e.ratio - 1.0, e.norm);
+      const LameParameters at_rest = body_.blocks[0].elastic;
+      const double volume = body_.rest[e.element].volume, m = volume * modulus_bound(at_rest), more = e.ratio - 1.0;
+      cheap[e.element] = m * std::min(more, e.norm);
+      rank_one[e.element] = std::min(volume * more * (at_rest.lambda + 2.0 * at_rest.mu), m * e.norm);
     }
     const auto steps = [&](double square) { return time * std::sqrt(square) / (2.0 * kSafety); };
     exact_ += steps(squared_frequency(operator_, tangent, mode_));
     shares_ += steps(by_shares(body_, whole));
     excess_ += steps(rest_ + by_shares(body_, excess));
     cheap_ += steps(rest_ + by_shares(body_, cheap));
+    rank_one_ += steps(rest_ + by_shares(body_, rank_one));
+    rows_ += steps(rest_ + by_rows(body_, rank_one));
   }
 
   const TetMesh& mesh_;
@@ -190,7 +212,7 @@ class Trial {
   TissueOperator operator_;
   std::vector<Tensor, Eigen::aligned_allocator<Tensor>> at_rest_;
   std::vector<Vec3d> mode_;
-  double rest_ = 0.0, exact_ = 0.0, shares_ = 0.0, excess_ = 0.0, cheap_ = 0.0;
+  double rest_ = 0.0, exact_ = 0.0, shares_ = 0.0, excess_ = 0.0, cheap_ = 0.0, rank_one_ = 0.0, rows_ = 0.0;
 };
 
 }  // namespace
@@ -203,7 +225,8 @@ int main(int argc, char** argv) {
     std::vector<std::string> laws(argv + 2, argv + argc);
     if (laws.empty()) laws = {"corotational", "green", "neo_hookean", "yeoh", "veronda_westmann"};
     std::printf(
-        "| law | steps | exact h\\* | shares | rest + excess | rest + ratio and norm |\n|---|---|---|---|---|---|\n");
+        "| law | steps | exact h\\* | shares | rest + excess | rest + ratio and norm | rest + rank-one | by rows |\n"
+        "|---|---|---|---|---|---|---|---|\n");
     for (const std::string& law : laws) Trial(mesh, tissue_of(law)).run();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "step_bounds: %s\n", error.what());
