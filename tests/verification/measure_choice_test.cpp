@@ -130,8 +130,8 @@ INSTANTIATE_TEST_SUITE_P(Figure2, MeasureChoice,
 
 class MeasureOrder : public testing::TestWithParam<Choice> {};
 
-// One of second order gives another: 7.6 % apart. What matters is the order. (The raw mean ratio is 8 to 9 % apart, but
-// rises in some tetrahedra until a law that falls with it leaves them no stiffness, and no equilibrium is found.)
+// One of second order gives another: 7.6 % apart. What matters is the order. (The raw mean ratio rises in
+// some tetrahedra until a law that falls with it leaves them no stiffness, and no equilibrium is found.)
 TEST_P(MeasureOrder, Matters) {
   const double difference = difference_from_intensity(GetParam());
   EXPECT_GT(difference, 0.05);
