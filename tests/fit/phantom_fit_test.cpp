@@ -1,13 +1,18 @@
 // Real curves of silicone phantoms: fitted on A1 to A3, held against A4 and A5. The error on curves that were held out is
 // within what published repetitions differ by, one optimum is found from every start, and linear elasticity shows its misfit.
+// Over the strains of the published fits the errors are those that were published.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <string>
 
+#include "fit/data/load_curves.h"
+#include "fit/phantom.h"
 #include "fit/run_fit.h"
 #include "support/places.h"
 
@@ -43,6 +48,14 @@ double published_spread(const Mix& mix) {
 
 double kPa(double newtons) { return 1e-3 * newtons / (0.25 * std::numbers::pi * 0.05 * 0.05); }
 
+/// Root mean square of the fitted curves about their mean [kPa].
+double spread_of_fitted(const FitResult& result) {
+  for (const GroupResult& group : result.groups) {
+    if (!group.held_out && group.spread) return kPa(*group.spread);
+  }
+  return std::nan("");
+}
+
 class Phantom : public ::testing::TestWithParam<Mix> {
  protected:
   void SetUp() override {
@@ -61,9 +74,8 @@ TEST_P(Phantom, MeetsHeldOutCurvesAsNearAsTheTestRepeats) {
   ASSERT_TRUE(result.complete);
   ASSERT_TRUE(result.rms_heldout);
   EXPECT_LE(kPa(*result.rms_heldout), published_spread(GetParam()));
-  // the published fit of one Ogden term leaves 0.217 kPa, that of three Yeoh terms 0.066 kPa, on the curves fitted
-  EXPECT_LT(kPa(*result.rms_heldout), 0.217);
-  EXPECT_LT(kPa(result.rms_fit), 0.066);
+  // no function of strain is nearer to three curves than their mean, about which they differ by this much
+  EXPECT_LE(kPa(result.rms_fit), 1.2 * spread_of_fitted(result));
   // three parameters, twenty starts: one basin
   ASSERT_EQ(result.starts.size(), 20u);
   ASSERT_EQ(result.basins.size(), 1u);
@@ -90,7 +102,59 @@ TEST_P(Phantom, LinearElasticityShowsItsMisfit) {
   // a straight line through a curve that rises tenfold faster at its end than at its begin
   EXPECT_GT(rms("constant"), 0.5);
   EXPECT_GT(rms("linear"), 0.3);
-  EXPECT_LT(rms("veronda_westmann"), 0.217);
+  EXPECT_LE(rms("veronda_westmann"), published_spread(GetParam()));
+}
+
+/// Engineering stress at strains 0.5 % apart up to 66.5 %, the range of the published fits: the mean of the five tests, as a table.
+std::string mean_table() {
+  DataSpec tests;
+  for (int i = 1; i <= 5; ++i) tests.files.emplace_back("EF10_100T_A" + std::to_string(i) + ".csv");
+  tests.resample.over = ResampleOver::none;
+  const std::vector<PreparedCurve> curves = load_curves(tests, phantom::kPhantomSize, kFolder);
+  std::string table = "strain [-],stress [kPa]\n";
+  for (int i = 1; i <= 133; ++i) {
+    const double strain = 0.005 * i, way = strain * *phantom::kPhantomSize.height;
+    double sum = 0.0;
+    for (const auto& [curve, account] : curves) {
+      const auto& x = curve.displacement;
+      const std::size_t k = std::size_t(std::ranges::find_if(x, [&](double at) { return at > way; }) - x.begin());
+      sum += std::lerp(curve.force[k - 1], curve.force[k], (way - x[k - 1]) / (x[k] - x[k - 1]));
+    }
+    table += std::to_string(strain) + ',' + std::to_string(kPa(sum / double(curves.size()))) + '\n';
+  }
+  return table;
+}
+
+// Published, of ten tests: one Ogden term leaves a standard error of 0.217 kPa, three Yeoh terms 0.066 kPa. These are five of
+// the ten: scripts/fit_phantoms finds 0.209 and 0.072 kPa in them, where the specimen is incompressible.
+TEST(PublishedRange, ErrorsAreThePublishedOnes) {
+  if (!phantom::have_phantoms())
+    GTEST_SKIP() << kFolder << " is not there: the phantoms' curves are not part of this repository";
+  const phantom::Folder folder("phantom_mean");
+  folder.write("mean.csv", mean_table());
+  FitSpec spec = load_fit(test::shipped("scenes/fit/phantom_mean.toml"));
+  DataSpec mean;
+  mean.files = {"mean.csv"};
+  mean.speed = 1e-2 / 60.0;
+  for (ColumnSpec* column : {&mean.columns.strain, &mean.columns.stress}) column->given = true;
+  mean.columns.strain.name = "strain";
+  mean.columns.stress.name = "stress";
+  mean.resample.over = ResampleOver::none;
+  spec.data = {mean};
+  spec.proof.profiles = false;
+  spec.proof.bootstrap = 0;
+  FitRun options;
+  options.data_folder = folder.path();
+  options.laws = {"ogden", "yeoh"};
+  const FitResult result = run_fit(spec, options);
+  const auto error = [&](const std::string& name) {
+    const auto law = std::ranges::find(result.laws, name, &LawResult::name);
+    return law == result.laws.end() ? std::nan("") : kPa(law->rms_fit) * std::sqrt(133.0 / (133.0 - law->parameters));
+  };
+  EXPECT_NEAR(error("ogden"), 0.209, 0.002);
+  EXPECT_NEAR(error("yeoh"), 0.072, 0.002);
+  EXPECT_NEAR(error("ogden"), 0.217, 0.1 * 0.217);
+  EXPECT_NEAR(error("yeoh"), 0.066, 0.1 * 0.066);
 }
 
 INSTANTIATE_TEST_SUITE_P(Mixes, Phantom, ::testing::Values(kSoft, kStiff), [](const auto& mix) {
