@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,7 +31,8 @@ def run(
 ) -> dict[str, RunResult]:
     """Runs the variants of a scene and returns their results by name, in the order of the scene.
 
-    The columns are those of forces.csv, to the last bit. Ctrl-C, or an exception in `on_sample`, ends all runs.
+    The columns are those of forces.csv, to the last bit. Ctrl-C, or an exception in `on_sample`, ends all runs. A run that
+    stops early keeps what it has, and a RuntimeWarning says why it stopped and what to do (`RunResult.trouble`).
 
     :param scene: a Scene, a dict, TOML text, or a file
     :param mesh: used in place of the scene's
@@ -55,6 +57,9 @@ def run(
 
     results = [one(v) for v in chosen] if at_a_time == 1 else _side_by_side(one, chosen, at_a_time, stop)
     by_name = {result.name: result for result in results}
+    for result in results:
+        if result.trouble:
+            warnings.warn(f"{result.name}: {result.trouble}", RuntimeWarning, stacklevel=2)
     if out is not None:
         _write(by_name, Path(out))
     return by_name

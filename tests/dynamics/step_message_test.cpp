@@ -70,6 +70,14 @@ TEST(StepMessage, SaysWhatIsNotFinite) {
   }
 }
 
+// Statics of a body that nothing holds.
+TEST(StepMessage, SaysWhatIsNotHeld) {
+  Simulation loose(cube(), {{0, Tissue{}}}, {.integrator = Integrator::quasi_static});
+  const StepResult step = loose.step();
+  EXPECT_EQ(step.status, StepStatus::not_held);
+  EXPECT_THAT(std::string(step.message), HasSubstr("Hold at least three"));
+}
+
 // Steps that are made have nothing to say, and end where they were asked to.
 TEST(StepMessage, IsEmptyWhereStepsAreMade) {
   for (const Integrator integrator : kIntegrators) {

@@ -21,6 +21,23 @@ def pose(height=0.0201):
     return glisson.Pose(position=[0, 0, height])
 
 
+def test_an_instrument_belongs_to_one_simulation():
+    """Attached a second time, to the same simulation or another, an instrument is refused by name, and the first goes on."""
+    still = glisson.PathDriver(pose(), glisson.SteadyMotion())
+    for interaction, name in [
+        (glisson.Needle(glisson.NeedleOptions(name="trocar"), still), "trocar"),
+        (glisson.ContactTool(glisson.ContactOptions(name="finger"), still), "finger"),
+        (glisson.Container(glisson.ContainerOptions(name="pot")), "pot"),
+        (glisson.Capsule(glisson.CapsuleOptions(name="skin")), "skin"),
+    ]:
+        body, other = body_with(interaction), body_with()
+        for second in (body, other):
+            with pytest.raises(ValueError, match=f'"{name}" acts on a simulation already.*make a new one'):
+                second.attach(interaction)
+        body.step(3)
+        other.step(3)
+
+
 def test_a_needle_pierces_and_goes_on():
     """A needle presses until its rupture force, pierces, cuts on; its events and lengths say so."""
     options = glisson.NeedleOptions(

@@ -75,6 +75,19 @@ def test_results_hold_columns_events_frames_and_summary(scenes):
     assert [event["event"] for event in needle["dry"].events][:2] == ["contact", "puncture"]
 
 
+def test_a_run_that_stops_early_warns():
+    """A run whose step is refused keeps what it has, and a warning names the variant, why it stopped, and what to do."""
+    scene = {
+        "mesh": {"kind": "box", "cells": [2, 2, 2]},
+        "tissue": {"youngs_modulus_Pa": 3600},
+        "load": [{"set": "z_max", "force_N": [0, 0, 1]}],
+        "motion": {"integrator": "static", "duration_s": 0.1},
+    }
+    with pytest.warns(RuntimeWarning, match="main: stopped at 0 s: .*Hold at least three"):
+        runs = glisson.run(scene)
+    assert runs["main"].end == "stopped_not_held"
+
+
 def test_messages_are_those_of_the_program(program, tmp_path):
     """SceneError has every line that `glisson check` prints: place, key, what is wrong, the way out."""
     file = tmp_path / "wrong.toml"
