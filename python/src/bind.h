@@ -88,8 +88,12 @@ void set_field(nb::handle self, const std::string& field, nb::handle value);
 /// Of a field without a comment of its own: meaning, unit and range from its description.
 std::string description(const FieldText& field);
 
+/// Signatures of what pickle calls.
+inline constexpr const char* kGetState = "def __getstate__(self) -> tuple[typing.Any, ...]";
+inline constexpr const char* kSetState = "def __setstate__(self, state: tuple[typing.Any, ...], /) -> None";
+
 /// A class of options: every field by name in its constructor, readable and writable, shown by repr(). Those of a
-/// described struct (glisson/field.h) are all there.
+/// described struct (glisson/field.h) are all there. It pickles.
 template <class T>
 class Options : public nb::class_<T> {
  public:
@@ -112,6 +116,12 @@ class Options : public nb::class_<T> {
       }
       return text + ")";
     });
+    const auto reduce = [](nb::handle self) {  // pickles by the fields, through the constructor
+      nb::dict fields;
+      for (nb::handle field : self.type().attr("_fields")) fields[field] = self.attr(field);
+      return nb::make_tuple(nb::module_::import_("functools").attr("partial")(self.type(), **fields), nb::tuple());
+    };
+    this->def("__reduce__", reduce, nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
     this->def("__copy__", [](const T& self) { return T(self); });
     this->def("__deepcopy__", [](const T& self, nb::handle) { return T(self); });
     this->def("__eq__", [](nb::handle a, nb::handle b) {

@@ -80,6 +80,23 @@ TetMesh with_set(const TetMesh& mesh, const std::string& name, const ArrayLike& 
   return other;
 }
 
+/// Copies of a mesh's arrays, as pickles and processes take them.
+nb::tuple mesh_state(nb::handle self) {
+  const auto& mesh = nb::cast<const TetMesh&>(self);
+  const auto copy = [](const nb::object& array) { return array.attr("copy")(); };
+  return nb::make_tuple(copy(vertices_view(self)), copy(tets_view(self)), copy(regions_view(self)),
+                        copy(fibres_view(self)), mesh.region_names, sets_of(mesh));
+}
+
+void set_mesh_state(TetMesh& self, const nb::tuple& state) {
+  const auto regions = nb::cast<nb::ndarray<const int, nb::c_contig, nb::device::cpu>>(state[2]);
+  new (&self) TetMesh(mesh_of(nb::borrow<ArrayLike>(state[0]), nb::borrow<ArrayLike>(state[1]), nb::none(),
+                              nb::cast<std::map<int, std::string>>(state[4]), nb::cast<Sets>(state[5]),
+                              nb::borrow(state[3]), false));
+  self.regions.assign(regions.data(), regions.data() + regions.size());
+  require_valid(self);
+}
+
 void bind_report(nb::module_& m) {
   const auto of = [](const char* field) { return doc(std::string("MeshReport::") + field); };
   nb::class_<MeshReport>(m, "MeshReport", doc("MeshReport"))
@@ -136,6 +153,8 @@ void bind_meshes(nb::module_& m) {
       .def("boundary_triangles", triangles_of, doc("boundary_triangles"))
       .def(
           "inspect", [](const TetMesh& mesh) { return inspect(mesh); }, doc("inspect"))
+      .def("__getstate__", mesh_state, nb::sig(kGetState))
+      .def("__setstate__", set_mesh_state, nb::sig(kSetState))
       .def("__eq__", [](const TetMesh& a,
                         nb::handle b) { return nb::isinstance<TetMesh>(b) && a == nb::cast<const TetMesh&>(b); })
       .def("__repr__", [](const TetMesh& mesh) {

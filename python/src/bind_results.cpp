@@ -55,13 +55,16 @@ struct Frame {
   std::vector<Vec3d> displacement;
 };
 
+/// Pickles, but for the variant, whose description may hold functions of the program.
 struct RunResult {
-  Variant variant;
+  std::optional<Variant> variant;  ///< none in one that was unpickled
+  std::string name, label;
   std::shared_ptr<Table> forces = std::make_shared<Table>();
   std::map<std::string, std::shared_ptr<Table>> further;
   std::vector<RunEvent> events;
   std::vector<Frame> frames;
-  RunSummary summary;
+  std::string summary;  ///< the text of summary.json
+  std::string end, trouble;
 };
 
 /// Ends runs from another thread.
@@ -75,7 +78,7 @@ class Recorder : public RunObserver {
       : result_(result), on_sample_(std::move(on_sample)), frames_(frames), stop_(std::move(stop)) {}
 
   void on_built(const BuiltVariant& built) override {
-    table_.emplace(result_.variant, built);
+    table_.emplace(*result_.variant, built);
     result_.forces->columns = table_->columns();
     for (const auto& file : table_->further()) {
       result_.further[file.name] = std::make_shared<Table>(Table{file.columns, {}});
@@ -104,7 +107,13 @@ class Recorder : public RunObserver {
     const nb::gil_scoped_acquire gil;
     look_for_interrupt();
   }
-  void on_end(const RunSummary& summary) override { result_.summary = summary; }
+  void on_end(const RunSummary& summary) override {
+    const Variant& variant = *result_.variant;
+    result_.summary =
+        json_text(summary_json(summary, variant, std::filesystem::path(variant.scene_name).stem().string(), 1));
+    result_.end = end_text(summary.end);
+    result_.trouble = trouble_text(summary);
+  }
 
  private:
   static void append(Table& table, const std::vector<double>& row) {
@@ -125,19 +134,69 @@ std::shared_ptr<RunResult> run(const Variant& variant, std::optional<TetMesh> me
                                std::shared_ptr<StopFlag> stop) {
   auto result = std::make_shared<RunResult>();
   result->variant = variant;
-  if (mesh) result->variant.mesh = MeshFile{};
+  result->name = variant.name;
+  result->label = variant.label.empty() ? variant.name : variant.label;
+  if (mesh) result->variant->mesh = MeshFile{};
   if (!stop) stop = std::make_shared<StopFlag>();
   Recorder recorder(*result, std::move(on_sample), frames, stop);
   const MeshLoader load = mesh_loader(std::move(mesh));
   const nb::gil_scoped_release free;
-  run_variant(result->variant, load, recorder, stop->set);
+  run_variant(*result->variant, load, recorder, stop->set);
   return result;
 }
 
 nb::dict summary_dict(const RunResult& r) {
-  const std::string json =
-      json_text(summary_json(r.summary, r.variant, std::filesystem::path(r.variant.scene_name).stem().string(), 1));
-  return nb::cast<nb::dict>(nb::module_::import_("json").attr("loads")(json));
+  return nb::cast<nb::dict>(nb::module_::import_("json").attr("loads")(r.summary));
+}
+
+nb::list event_dicts(const RunResult& r) {
+  nb::list out;
+  for (const RunEvent& e : r.events) {
+    nb::dict event;
+    event["time_s"] = e.what.time, event["depth_m"] = e.what.depth;
+    event["event"] = e.what.event, event["instrument"] = e.instrument;
+    out.append(event);
+  }
+  return out;
+}
+
+nb::list frame_pairs(const RunResult& r) {
+  nb::list out;
+  for (const Frame& f : r.frames) out.append(nb::make_tuple(f.time, vectors(f.displacement)));
+  return out;
+}
+
+nb::tuple result_state(const RunResult& r) {
+  return nb::make_tuple(r.name, r.label, r.forces, r.further, event_dicts(r), frame_pairs(r), r.summary, r.end,
+                        r.trouble);
+}
+
+void set_result_state(RunResult& self, const nb::tuple& state) {
+  RunResult r{.variant = {},
+              .name = nb::cast<std::string>(state[0]),
+              .label = nb::cast<std::string>(state[1]),
+              .forces = nb::cast<std::shared_ptr<Table>>(state[2]),
+              .further = nb::cast<std::map<std::string, std::shared_ptr<Table>>>(state[3]),
+              .events = {},
+              .frames = {},
+              .summary = nb::cast<std::string>(state[6]),
+              .end = nb::cast<std::string>(state[7]),
+              .trouble = nb::cast<std::string>(state[8])};
+  for (nb::handle event : nb::cast<nb::list>(state[4])) {
+    RunEvent& e = r.events.emplace_back();
+    e.instrument = nb::cast<std::string>(event["instrument"]), e.what.event = nb::cast<std::string>(event["event"]);
+    e.what.time = nb::cast<double>(event["time_s"]), e.what.depth = nb::cast<double>(event["depth_m"]);
+  }
+  for (nb::handle frame : nb::cast<nb::list>(state[5])) {
+    r.frames.push_back({nb::cast<double>(frame[0]), to_vectors(nb::borrow<ArrayLike>(frame[1]), "frames")});
+  }
+  new (&self) RunResult(std::move(r));
+}
+
+const Variant& variant_of(const RunResult& r) {
+  if (!r.variant)
+    throw std::runtime_error("a result that was unpickled does not have its variant: read the scene again");
+  return *r.variant;
 }
 
 void bind_tables(nb::module_& m) {
@@ -163,6 +222,20 @@ void bind_tables(nb::module_& m) {
           },
           "Arrays by column, as pandas and polars take them",
           nb::sig("def to_dict(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]"))
+      .def(
+          "__getstate__",
+          [](nb::handle self) {
+            const auto& table = nb::cast<const Table&>(self);
+            return nb::make_tuple(table.columns, table.array(self).attr("copy")());
+          },
+          nb::sig(kGetState))
+      .def(
+          "__setstate__",
+          [](Table& self, const nb::tuple& state) {
+            const auto rows = nb::cast<nb::ndarray<const double, nb::c_contig, nb::device::cpu>>(state[1]);
+            new (&self) Table{nb::cast<std::vector<std::string>>(state[0]), {rows.data(), rows.data() + rows.size()}};
+          },
+          nb::sig(kSetState))
       .def("__repr__", [](const Table& t) {
         return "<Table of " + std::to_string(t.rows()) + " rows, " + std::to_string(t.columns.size()) + " columns>";
       });
@@ -176,51 +249,26 @@ void bind_results(nb::module_& m) {
       .def(nb::init<>())
       .def("stop", [](StopFlag& flag) { flag.set = true; });
   nb::class_<RunResult>(m, "RunResult", "Results of one variant: result[\"force_N\"] is a column of forces.csv.")
-      .def_prop_ro(
-          "name", [](const RunResult& r) { return r.variant.name; }, "Of the variant")
-      .def_prop_ro(
-          "label", [](const RunResult& r) { return r.variant.label.empty() ? r.variant.name : r.variant.label; },
-          "Of the variant, for charts")
-      .def_prop_ro(
-          "variant", [](const RunResult& r) { return r.variant; }, "What was run")
+      .def_ro("name", &RunResult::name, "Of the variant")
+      .def_ro("label", &RunResult::label, "Of the variant, for charts")
+      .def_prop_ro("variant", variant_of, "What was run; a result that was unpickled does not have it")
       .def_ro("forces", &RunResult::forces, "forces.csv")
       .def_ro("further", &RunResult::further, "forces_<name>.csv of every further tool and instrument")
       .def(
           "__getitem__", [](const RunResult& r, const std::string& name) { return r.forces->column(name); }, "name"_a)
       .def_prop_ro(
           "columns", [](const RunResult& r) { return r.forces->columns; }, "Of forces.csv")
-      .def_prop_ro(
-          "events",
-          [](const RunResult& r) {
-            nb::list out;
-            for (const RunEvent& e : r.events) {
-              nb::dict event;
-              event["time_s"] = e.what.time, event["depth_m"] = e.what.depth;
-              event["event"] = e.what.event, event["instrument"] = e.instrument;
-              out.append(event);
-            }
-            return out;
-          },
-          "events.csv: punctures, releases and the like", nb::sig("def events(self) -> list[dict[str, typing.Any]]"))
-      .def_prop_ro(
-          "frames",
-          [](const RunResult& r) {
-            nb::list out;
-            for (const Frame& f : r.frames) out.append(nb::make_tuple(f.time, vectors(f.displacement)));
-            return out;
-          },
-          "Time [s] and displacement [m] of every frame, where they were asked for",
-          nb::sig("def frames(self) -> list[tuple[float, numpy.typing.NDArray[numpy.float64]]]"))
+      .def_prop_ro("events", event_dicts, "events.csv: punctures, releases and the like",
+                   nb::sig("def events(self) -> list[dict[str, typing.Any]]"))
+      .def_prop_ro("frames", frame_pairs, "Time [s] and displacement [m] of every frame, where they were asked for",
+                   nb::sig("def frames(self) -> list[tuple[float, numpy.typing.NDArray[numpy.float64]]]"))
       .def_prop_ro("summary", summary_dict, "summary.json", nb::sig("def summary(self) -> dict[str, typing.Any]"))
-      .def_prop_ro(
-          "end", [](const RunResult& r) { return std::string(end_text(r.summary.end)); },
-          "How it ended: finished, interrupted, stopped_inverted, …")
-      .def_prop_ro(
-          "trouble", [](const RunResult& r) { return trouble_text(r.summary); },
-          "Message about a numerical failure, with a remedy; else empty")
+      .def_ro("end", &RunResult::end, "How it ended: finished, interrupted, stopped_inverted, …")
+      .def_ro("trouble", &RunResult::trouble, "Message about a numerical failure, with a remedy; else empty")
+      .def("__getstate__", result_state, nb::sig(kGetState))
+      .def("__setstate__", set_result_state, nb::sig(kSetState))
       .def("__repr__", [](const RunResult& r) {
-        return "<RunResult " + r.variant.name + ": " + std::to_string(r.forces->rows()) + " samples, " +
-               std::string(end_text(r.summary.end)) + ">";
+        return "<RunResult " + r.name + ": " + std::to_string(r.forces->rows()) + " samples, " + r.end + ">";
       });
   m.def("run_variant", run, "variant"_a, "mesh"_a = nb::none(), "on_sample"_a = nb::none(), "frames"_a = false,
         "stop"_a = nb::none(), doc("run_variant"),
