@@ -288,6 +288,29 @@ TEST(Contact, BondedPullsAndFreeLetsGo) {
   }
 }
 
+// A bonded tool that begins at a gap of exactly zero has touched: lifted off at once, it takes the tissue along. One a hair above
+// the surface has not.
+TEST(Contact, BondedGripsWhatItTouchesAtTheStart) {
+  for (const auto& [shape, gap] :
+       {std::pair<Shape, double>{Plate{}, 0.0}, {FlatPunch{.radius = 8e-3}, 0.0}, {Plate{}, 1e-6}}) {
+    SimulationOptions o;
+    o.damping_rate = 50.0;
+    Simulation s(slab(4), {{0, tissue()}}, o);
+    s.fix(s.mesh().vertex_sets.at("z_min"));
+    ContactOptions c;
+    c.shape = shape, c.bonded = true;
+    const auto t = std::make_shared<ContactTool>(c, std::make_shared<test::GivenPath>([gap = gap](double time) {
+                                                   return Pose{{0.0, 0.0, gap + 0.01 * time}};
+                                                 }));
+    s.attach(t);
+    test::advance_to(s, 0.1);
+    EXPECT_EQ(t->forces().total().z > 0.05, gap == 0.0);
+    EXPECT_EQ(t->touches(), gap == 0.0);
+    const std::uint32_t top = s.mesh().vertex_sets.at("z_max")[12];  // the middle one
+    EXPECT_NEAR(s.displacement()[top].z, gap == 0.0 ? 0.01 * s.time() : 0.0, 1e-9);
+  }
+}
+
 // The same bytes on one thread and two, with contact, friction, and vertices that come to hand as the tool goes.
 TEST(Contact, SameBytesOnTwoThreads) {
   const auto run = [](int threads) {

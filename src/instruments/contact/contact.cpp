@@ -64,7 +64,10 @@ double ContactTool::contact_area() const { return state_->area; }
 ContactTool::Effort ContactTool::effort() const { return state_->effort; }
 ContactPressure ContactTool::contact_pressure() const { return {state_->bearing_vertices, state_->pressures}; }
 
-void ContactTool::attached(const BodyView& body, double) { state_->reach.attach(body); }
+void ContactTool::attached(const BodyView& body, double) {
+  state_->reach.attach(body);
+  if (state_->options.bonded) state_->bond_first(body, pose_);
+}
 
 void ContactTool::body_changed(const BodyView& body, std::span<const std::uint32_t> origins) {
   give_to_copies(state_->bonds, body.mesh.vertices.size(), origins);

@@ -8,6 +8,7 @@
 namespace glisson {
 namespace {
 
+constexpr double kTouch = 1e-6;       // of the body's size: tissue so near to a tool that bonds touches
 constexpr double kAllowance = 0.01;   // of its longest edge: a triangle may be so deep inside between its corners …
 constexpr double kMostAllowed = 0.1;  // … and so much of the thickness
 constexpr double kStride = 0.25;      // of the thickness: a fast triangle is looked at so often on its way
@@ -106,6 +107,16 @@ void ContactTool::State::begin_triangles(const InteractionStep& step) {
 }
 
 /// Keeps vertices that have touched where they touched, and takes in those that touch now.
+/// Bonds what touches at the start: what follows would only find tissue that comes nearer.
+void ContactTool::State::bond_first(const BodyView& body, const Pose& pose) {
+  double size = 0.0;  // of the body, at most twice too large
+  for (const Vec3d& x : body.mesh.vertices) size = std::max(size, norm(x - body.mesh.vertices.front()));
+  for (const std::uint32_t v : reach.surface().vertices()) {
+    const Vec3d place = to_frame(pose, body.mesh.vertices[v] + body.displacement[v]);
+    if (std::abs(distance_to(options.shape, place).distance) <= kTouch * size) bonds[v] = place;
+  }
+}
+
 void ContactTool::State::bond(const InteractionStep& step, ToolForces& forces) {
   for (const auto& [vertex, anchor] : bonds) {
     const std::uint32_t place = step.place_of[vertex];

@@ -42,6 +42,7 @@ struct ContactTool::State {
   void add_triangles(const InteractionStep& step);
   void add_triangle(std::uint32_t strides, const Triangle& corners, double allowance, const InteractionStep& step);
   void begin_triangles(const InteractionStep& step);
+  void bond_first(const BodyView& body, const Pose& pose);
   void bond(const InteractionStep& step, ToolForces& forces);
   void collect(const InteractionStep& step, ToolForces& forces);
   void weigh(const InteractionStep& step);
