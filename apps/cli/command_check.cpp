@@ -122,6 +122,42 @@ void print_edge(const Variant& v, const InstrumentSpec& instrument, const TetMes
   say("or round the edge by a cell: edge_radius_mm = {:.2g}\n", 1e3 * cells->across);
 }
 
+/// The keys that make a generated mesh so many times as fine.
+std::string finer_mesh(const MeshSource& mesh, double factor) {
+  const auto times = [&](int cells) { return std::ceil(factor * cells - 1e-9); };
+  if (const auto* box = std::get_if<BoxOptions>(&mesh)) {
+    return fmt::format("mesh.cells = [{}, {}, {}]", times(box->cells[0]), times(box->cells[1]), times(box->cells[2]));
+  }
+  if (const auto* cylinder = std::get_if<CylinderOptions>(&mesh)) {
+    return fmt::format("mesh.radial_cells = {} and mesh.axial_cells = {}", times(cylinder->radial_cells),
+                       times(cylinder->axial_cells));
+  }
+  return fmt::format("a mesh {:.2g} times as fine there", factor);
+}
+
+/// That a pad or instrument acts on few or large faces, and which mesh would do.
+void print_faces(const Variant& v, const std::string& name, const PressedFaces& faces) {
+  if (!faces.coarse()) return;
+  const std::string few = faces.count < PressedFaces::kFew ? fmt::format("{} ", faces.count) : "";
+  const std::string large = faces.count > 0 ? fmt::format(" with edges of {:.3g} mm, {:.2g} of its {:.3g} mm",
+                                                          1e3 * faces.edge, faces.edge / faces.size, 1e3 * faces.size)
+                                            : "";
+  say("  coarse   \"{}\" acts on {}faces{}: its force may be far off; {} or more with edges\n           of a third of "
+      "that or less take {}\n",
+      name, few, large, PressedFaces::kFew, finer_mesh(v.mesh, faces.finer()));
+}
+
+constexpr double kLocking = 0.45;  // Poisson's ratio from which linear tets lock (docs/laws.md §5)
+
+/// That linear tets lock in a tissue, and the key that mends it.
+void print_locking(const std::string& table, const Tissue& t) {
+  const double nu = t.lame().lambda / (2.0 * (t.lame().lambda + t.lame().mu));
+  if (nu < kLocking - 1e-9 || t.volume_change == VolumeChange::average_nodal) return;
+  say("  locking  ν = {:.3g} with volume_change = \"own\": tets that keep their own volumes are too stiff;\n           "
+      "{}.volume_change = \"nodal\" mends it\n",
+      nu, table);
+}
+
 void print_interactions(const Variant& v, const Taste& taste) {
   for (const CapsuleSpec& x : v.capsules) {
     say("  capsule  \"{}\" on {}: {:.4g} mm, E = {:.6g} Pa\n", x.options.name,
@@ -136,13 +172,18 @@ void print_interactions(const Variant& v, const Taste& taste) {
     say("  tool     \"{}\", a {}: {}{}\n", x.name, kind_word(x.what), kind_word(x.motion.how),
         end ? fmt::format(", until {:.4g} s", *end) : "");
     print_edge(v, x, taste.mesh);
+    if (const std::optional<PressedFaces> faces = faces_under(taste.mesh, x)) print_faces(v, x.name, *faces);
   }
 }
 
 void print_body(const Variant& v, const Taste& taste) {
   print_mesh(taste.mesh, taste.mass_kg);
   say("  tissue   \"{}\": {}\n", v.tissue.name, tissue_text(v.tissue));
-  for (const RegionSpec& region : v.regions) say("  region   \"{}\": {}\n", region.name, tissue_text(region.tissue));
+  print_locking("tissue", v.tissue);
+  for (const RegionSpec& region : v.regions) {
+    say("  region   \"{}\": {}\n", region.name, tissue_text(region.tissue));
+    if (!(region.tissue.volume_change == v.tissue.volume_change)) print_locking("its tissue", region.tissue);
+  }
   for (const FixedSpec& fixed : v.fixed) {
     say("  fixed    {}, in {}\n", set_text(taste.mesh, fixed.set), axes_text(fixed.axes));
   }
@@ -157,10 +198,11 @@ void print_body(const Variant& v, const Taste& taste) {
       say("  tool     \"{}\" on {}: a recorded path of {} points, from {:.4g} s to {:.4g} s\n", tool.name,
           set_text(taste.mesh, tool.set), tool.record->motion.times.size(), tool_start(tool),
           tool_path(tool).end.value_or(0.0));
-      continue;
+    } else {
+      say("  tool     \"{}\" on {}: {:.4g} mm at {:.4g} mm/s, from {:.4g} s to {:.4g} s\n", tool.name,
+          set_text(taste.mesh, tool.set), 1e3 * m.depth, 1e3 * m.velocity, m.start, press_end(m));
     }
-    say("  tool     \"{}\" on {}: {:.4g} mm at {:.4g} mm/s, from {:.4g} s to {:.4g} s\n", tool.name,
-        set_text(taste.mesh, tool.set), 1e3 * m.depth, 1e3 * m.velocity, m.start, press_end(m));
+    print_faces(v, tool.name, faces_of_pad(taste.mesh, tool.set));
   }
   print_interactions(v, taste);
 }

@@ -182,6 +182,42 @@ TEST_F(Commands, CheckTellsOfCellsTooCoarseForAnEdge) {
   }
 }
 
+// What makes a force wrong on linear tets is said before the run, with the keys that mend it; with these, nothing is said.
+TEST_F(Commands, CheckTellsOfLockingAndOfFewOrLargeFaces) {
+  const auto said = [&](const std::string& tool, const std::string& keys) {
+    const Outcome outcome = run({"check", write("s.toml", R"([mesh]
+kind = "box"
+cells = [8, 8, 6]
+size_m = [0.08, 0.08, 0.06]
+[sets.finger]
+sphere_m = { center = [0.04, 0.04, 0.06], radius = 0.012 }
+surface_only = true
+[tissue]
+poisson_ratio = 0.45
+[[fixed]]
+set = "z_min"
+)" + tool),
+                                 "--set", keys});
+    EXPECT_THAT(outcome, Exits(0));
+    return outcome.out;
+  };
+  const std::string pad = "[[tool]]\nname = \"pad\"\nset = \"finger\"\n",
+                    ball =
+                        "[[instrument]]\nname = \"ball\"\nkind = \"ball\"\nradius_mm = 12\ntip_m = [0.04, 0.04, "
+                        "0.0601]\nmotion = { kind = \"press\", depth_mm = 1 }\n";
+  const std::string text = said(pad, "motion.max_steps=9");
+  EXPECT_NE(text.find("ν = 0.45 with volume_change = \"own\""), std::string::npos) << text;
+  EXPECT_NE(text.find("tissue.volume_change = \"nodal\" mends it"), std::string::npos) << text;
+  EXPECT_NE(text.find("\"pad\" acts on 2 faces with edges of 11.4 mm, 1 of its 11.3 mm"), std::string::npos) << text;
+  EXPECT_NE(text.find("take mesh.cells = [25, 25, 19]"), std::string::npos) << text;
+  EXPECT_NE(said(ball, "motion.max_steps=9").find("\"ball\" acts on "), std::string::npos);
+  for (const std::string& tool : {pad, ball}) {
+    EXPECT_EQ(said(tool, "mesh.cells=[25,25,19]").find("  coarse "), std::string::npos) << tool;
+    EXPECT_EQ(said(tool, "tissue.volume_change=\"nodal\"").find("  locking "), std::string::npos);
+  }
+  EXPECT_EQ(said(pad, "tissue.poisson_ratio=0.44").find("  locking "), std::string::npos);
+}
+
 // The paper's figures: all scenes in one report, every check computed and passed. The quick form ends figure 3 after
 // 0.1 s of motion; figure 2 and the checks are the same as in the whole.
 TEST_F(Commands, ReproducePassesItsChecks) {
