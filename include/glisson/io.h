@@ -29,7 +29,7 @@ struct ImportedMesh {
 /// array "region", the point arrays "set:NAME" and the field arrays "region:NAME" that write_vtu writes. A cell array
 /// "fibre" (also "fibres", "fiber", "fibers", "fibre_direction") of three components gives TetMesh::fibres. Cells that
 /// are not linear tetrahedra are skipped and counted in the report; inverted tets are reoriented and reported.
-/// Degenerate or duplicate tets are kept and reported.
+/// Degenerate or duplicate tets are kept and reported. A frame of a run gives the body at rest, and the report says so.
 /// @param scale  factor applied to all coordinates (0.001 for a file in millimetres), > 0
 /// @throws FileError if the file cannot be used as it is
 ImportedMesh read_mesh(const std::filesystem::path& file, double scale = 1.0);
@@ -39,7 +39,7 @@ ImportedMesh read_mesh(const std::filesystem::path& file, double scale = 1.0);
 /// @param mesh  if given, its regions and vertex sets are listed too
 std::string format_report(const std::string& name, const MeshReport& report, const TetMesh* mesh = nullptr);
 
-/// A field on the vertices or tets of a mesh, `components` numbers each (1 or 3).
+/// A field on the vertices or tets of a mesh, `components` numbers each (1, 3 or 9).
 struct Field {
   std::string name;  ///< with its unit, e.g. "displacement_m"
   int components = 1;
@@ -61,7 +61,7 @@ std::vector<std::pair<double, std::filesystem::path>> read_pvd(const std::filesy
 
 /// A frame as write_vtu wrote it.
 struct ReadFrame {
-  TetMesh mesh;  ///< vertex positions of the frame [m]; tets as stored, inverted or not
+  TetMesh mesh;  ///< as stored: in frames of a run at rest [m], with the array displacement_m
   std::vector<Field> vertex_fields, tet_fields;
 };
 /// Reads a .vtu that has only tetrahedra, without changes, and those of the named fields that it has.

@@ -16,6 +16,9 @@ inline constexpr const char* kRegionArrays[] = {"region",       "Region",   "reg
 inline constexpr const char* kFibreArrays[] = {"fibre",  "fibres",          "fiber",
                                                "fibers", "fibre_direction", "fiber_direction"};
 
+/// Frames of runs have this point array, meshes do not.
+inline constexpr std::string_view kDisplacementArray = "displacement_m";
+
 /// Point arrays "set:NAME" hold 1 for the vertices in the set and 0 for the others.
 inline constexpr std::string_view kSetPrefix = "set:";
 

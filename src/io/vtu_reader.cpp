@@ -17,6 +17,11 @@ namespace glisson::detail {
 namespace {
 
 constexpr std::string_view kDataArray = "DataArray";
+constexpr const char* kFrameNote =
+    "This is a frame of a run, not a mesh: its points are those at rest, and the displacement, velocity and stress in "
+    "it are "
+    "left out. Play the run with `glisson view DIR`; for the deformed shape as a body without stress, apply ParaView's "
+    "warp by displacement_m and save that without the array.";
 
 std::string attribute(vtkXMLDataElement& element, const char* key) {
   const char* value = element.GetAttribute(key);
@@ -50,6 +55,7 @@ class VtuReader {
     RawMesh raw = grid_.finish();
     raw.vertex_fields = std::move(vertex_fields_);
     raw.tet_fields = std::move(tet_fields_);
+    if (is_frame_) raw.notes.emplace_back(kFrameNote);
     return raw;
   }
 
@@ -69,6 +75,7 @@ class VtuReader {
   std::int64_t first_vertex_ = 0;  ///< of the piece
   std::map<std::string, std::vector<double>> regions_, sets_, fibres_;
   std::vector<Field> vertex_fields_, tet_fields_;
+  bool is_frame_ = false;
 };
 
 void VtuReader::add_vertices(vtkXMLDataElement& piece) {
@@ -128,8 +135,10 @@ void VtuReader::add_piece(vtkXMLDataElement& piece) {
   for_nested(piece.FindNestedElementWithName("CellData"), kDataArray,
              collect(VtkGrid::is_fibre_array, cells, fibres_, 3));
   for_nested(piece.FindNestedElementWithName("PointData"), kDataArray, collect(VtkGrid::is_set_array, points, sets_));
-  for_nested(piece.FindNestedElementWithName("PointData"), kDataArray,
-             [&](vtkXMLDataElement& array) { take_field(array, points, vertex_fields_); });
+  for_nested(piece.FindNestedElementWithName("PointData"), kDataArray, [&](vtkXMLDataElement& array) {
+    is_frame_ = is_frame_ || attribute(array, "Name") == kDisplacementArray;
+    take_field(array, points, vertex_fields_);
+  });
   for_nested(piece.FindNestedElementWithName("CellData"), kDataArray,
              [&](vtkXMLDataElement& array) { take_field(array, cells, tet_fields_); });
 }
@@ -139,7 +148,7 @@ void VtuReader::take_field(vtkXMLDataElement& array, std::uint64_t count, std::v
   const std::string name = attribute(array, "Name");
   if (std::find(fields_.begin(), fields_.end(), name) == fields_.end()) return;
   const std::uint64_t components = arrays_.count(array, "NumberOfComponents", 1);
-  if (components != 1 && components != 3) return;
+  if (components != 1 && components != 3 && components != 9) return;
   const std::vector<double> values = arrays_.read(array, components * count);
   const auto known = std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; });
   if (known == fields.end()) {

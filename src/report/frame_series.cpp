@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <exception>
 #include <new>
 #include <span>
 
 #include "glisson/io.h"
+#include "material/strain.h"
 #include "report/output_file.h"
 
 namespace glisson {
@@ -28,22 +28,34 @@ double von_mises(std::span<const double, 6> s) {
   return std::sqrt(0.5 * (xy * xy + yz * yz + zx * zx) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
 }
 
+/// @param stress  xx, yy, zz, xy, yz, zx of each tet
 std::vector<Field> stress_fields(const std::vector<double>& stress) {
-  static constexpr std::array<const char*, 6> kNames{"stress_xx_Pa", "stress_yy_Pa", "stress_zz_Pa",
-                                                     "stress_xy_Pa", "stress_yz_Pa", "stress_xz_Pa"};
-  std::vector<Field> fields;
-  for (const char* name : kNames) fields.push_back({.name = name, .components = 1, .values = {}});
+  Field tensor{.name = "stress_Pa", .components = 9, .values = {}};
   Field mises{.name = "von_mises_Pa", .components = 1, .values = {}};
   Field pressure{.name = "pressure_Pa", .components = 1, .values = {}};
   for (std::size_t i = 0; i + 6 <= stress.size(); i += 6) {
     const std::span<const double, 6> s(stress.data() + i, 6);
-    for (std::size_t k = 0; k < 6; ++k) fields[k].values.push_back(s[k]);
+    tensor.values.insert(tensor.values.end(), {s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]});
     mises.values.push_back(von_mises(s));
     pressure.values.push_back(-(s[0] + s[1] + s[2]) / 3.0);
   }
-  fields.push_back(std::move(mises));
-  fields.push_back(std::move(pressure));
-  return fields;
+  return {std::move(tensor), std::move(pressure), std::move(mises)};
+}
+
+/// Green's strain ½ (FᵀF − I) = sym H + ½ HᵀH of each tet, with H = Du Dm⁻¹ of its edges.
+Field strain_field(const TetMesh& mesh, std::span<const Vec3d> u) {
+  Field strain{.name = "strain", .components = 9, .values = {}};
+  strain.values.reserve(9 * mesh.tets.size());
+  for (const Tet& t : mesh.tets) {
+    Mat3d rest, moved;  // edges as columns
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Vec3d edge = mesh.vertices[t[a + 1]] - mesh.vertices[t[0]], way = u[t[a + 1]] - u[t[0]];
+      for (std::size_t i = 0; i < 3; ++i) rest(i, a) = edge[i], moved(i, a) = way[i];
+    }
+    const Sym3<double> e = green_strain(product(moved, inverse(rest)));
+    strain.values.insert(strain.values.end(), {e.xx, e.xy, e.zx, e.xy, e.yy, e.yz, e.zx, e.yz, e.zz});
+  }
+  return strain;
 }
 
 }  // namespace
@@ -55,14 +67,14 @@ void FrameSeries::add(const Simulation& simulation, const TetFields& fields) {
   const std::vector<Field> at_vertices{vector_field("displacement_m", simulation.displacement()),
                                        vector_field("velocity_m_s", simulation.velocity())};
   std::vector<Field> at_tets = stress_fields(fields.stress);
+  at_tets.push_back(strain_field(simulation.mesh(), simulation.displacement()));
   at_tets.push_back({.name = "q", .components = 1, .values = fields.q});
   at_tets.push_back({.name = "s", .components = 1, .values = fields.s});
   at_tets.push_back({.name = "jacobian", .components = 1, .values = fields.jacobian});
-  if (simulation.mesh().regions.empty()) {  // write_vtu has those that are given
-    at_tets.push_back({.name = "region", .components = 1, .values = std::vector<double>(fields.q.size(), 0.0)});
-  }
+  TetMesh mesh = simulation.mesh();
+  mesh.regions.resize(mesh.tets.size(), 0);
   try {
-    write_vtu(folder_ / file, simulation.mesh(), simulation.positions(), at_vertices, at_tets);
+    write_vtu(folder_ / file, mesh, {}, at_vertices, at_tets);
     frames_.emplace_back(simulation.time(), file);
     write_pvd(folder_ / "frames.pvd", frames_);
   } catch (const std::bad_alloc&) {

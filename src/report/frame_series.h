@@ -15,8 +15,8 @@ class FrameSeries {
   /// @param folder  of the variant @throws OutputError where the folder of frames cannot be made
   explicit FrameSeries(std::filesystem::path folder);
 
-  /// Writes displacement and velocity at the vertices; q, s, jacobian, stress (xx, yy, zz, xy, yz, xz, its von Mises
-  /// value and pressure) and region at the tets. @throws OutputError
+  /// Writes the mesh at rest; displacement and velocity at the vertices; stress and strain (nine components), pressure,
+  /// von Mises stress, q, s, jacobian and region at the tets (docs/output.md). @throws OutputError
   void add(const Simulation& simulation, const TetFields& fields);
 
  private:

@@ -1,5 +1,12 @@
 // What `glisson run` leaves behind: the files, their columns and keys, and that they agree with each other.
+#include <algorithm>
+#include <regex>
+#include <sstream>
+
 #include "app/program.h"
+#include "glisson/io.h"
+#include "scene/every_instrument.h"
+#include "support/places.h"
 
 namespace glisson::test {
 namespace {
@@ -87,6 +94,93 @@ TEST_F(Outputs, FramesAreThereAsTheCollectionSays) {
     }
   }
   EXPECT_EQ(pvd.find("frame_0003"), std::string::npos);
+}
+
+// A frame is as ParaView takes it: points at rest, so that its warp by displacement_m shows the shape once; tensors of nine
+// components, xx, xy, xz, yx, …; whole numbers for regions, named or not.
+TEST_F(Outputs, FramesAreAsParaViewTakesThem) {
+  const std::string half =
+      "[[region]]\nname = \"half\"\nbox_m = { min = [0, 0, 0], max = [0.01, 0.02, 0.02] }\n"
+      "tissue = { youngs_modulus_Pa = 9000 }\n";
+  for (const std::string& more : {std::string(), half}) {
+    ASSERT_THAT(run({"run", write("s.toml", small_scene(more)), "--out", "o", "--quiet"}), Exits(0));
+    const std::filesystem::path file = folder_ / "o/main/frames/frame_0002.vtu";
+    EXPECT_NE(read_text(file).find("type=\"Int32\" Name=\"region\""), std::string::npos);
+    const std::vector<std::string> wanted{"displacement_m", "stress_Pa", "strain", "pressure_Pa", "von_mises_Pa"};
+    const ReadFrame frame = read_frame(file, wanted);
+    const TetMesh box = box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}});
+    EXPECT_EQ(frame.mesh.vertices, box.vertices);
+    EXPECT_EQ(frame.mesh.tets, box.tets);
+    ASSERT_EQ(frame.mesh.regions.size(), box.tets.size());
+    EXPECT_EQ(*std::ranges::max_element(frame.mesh.regions), more.empty() ? 0 : 1);
+    std::map<std::string, Field> fields;
+    for (const Field& f : frame.tet_fields) fields[f.name] = f;
+    const std::vector<double>&u = frame.vertex_fields.at(0).values, &stress = fields["stress_Pa"].values,
+          &strain = fields["strain"].values;
+    ASSERT_EQ(stress.size(), 9 * box.tets.size());
+    ASSERT_EQ(strain.size(), 9 * box.tets.size());
+    double sheared = 0.0;
+    for (std::size_t t = 0; t < box.tets.size(); ++t) {
+      const double* s = &stress[9 * t];
+      const double* e = &strain[9 * t];
+      EXPECT_DOUBLE_EQ(fields["pressure_Pa"].values[t], -(s[0] + s[4] + s[8]) / 3.0);
+      for (const auto& [i, j] : {std::pair{1, 3}, {2, 6}, {5, 7}}) {
+        EXPECT_EQ(s[i], s[j]);
+        EXPECT_NEAR(e[i], e[j], 1e-15);
+        sheared = std::max(sheared, std::abs(s[i]));
+      }
+      for (int a = 1; a < 4; ++a) {  // Green's strain is half the change of an edge's square
+        const std::uint32_t v = box.tets[t][0], w = box.tets[t][static_cast<std::size_t>(a)];
+        const Vec3d rest = box.vertices[w] - box.vertices[v];
+        const Vec3d now = rest + Vec3d{u[3 * w] - u[3 * v], u[3 * w + 1] - u[3 * v + 1], u[3 * w + 2] - u[3 * v + 2]};
+        double change = 0.0;
+        for (std::size_t i = 0; i < 9; ++i) change += rest[i / 3] * e[i] * rest[i % 3];
+        EXPECT_NEAR(2.0 * change, dot(now, now) - dot(rest, rest), 1e-12 * dot(rest, rest));
+      }
+    }
+    EXPECT_GT(sheared, 1.0) << "the press shears";
+  }
+}
+
+// docs/output.md names every column, array and key that runs write.
+TEST_F(Outputs, PageNamesAllThatIsWritten) {
+  const std::string page = read_text(test::shipped("docs/output.md"));
+  const auto named = [&](const std::string& name) { return page.find("`" + name + "`") != std::string::npos; };
+  for (const std::string& scene : {small_scene(), std::string(kEveryInstrument)}) {
+    ASSERT_THAT(run({"run", write("s.toml", scene), "--out", "o", "--quiet", "--set", "motion.max_steps=20"}),
+                Exits(0));
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "o/main")) {
+      const std::string file = entry.path().filename().string();
+      if (file != "frames" && file.find("forces_") != 0) EXPECT_NE(page.find(file), std::string::npos) << file;
+      if (entry.path().extension() != ".csv") continue;
+      std::istringstream head(read_text(entry.path()).substr(0, read_text(entry.path()).find('\n')));
+      for (std::string column; std::getline(head, column, ',');) {
+        if (column.find("support_") != 0) EXPECT_TRUE(named(column)) << file << ": " << column;
+      }
+    }
+    const std::string frame = read_text(folder_ / "o/main/frames/frame_0000.vtu");
+    const std::regex array("Name=\"(\\w+)\"");  // set:NAME and region:NAME have a colon
+    for (std::sregex_iterator i(frame.begin(), frame.end(), array), end; i != end; ++i) {
+      const std::string name = (*i)[1];
+      const bool vtk = name == "Points" || name == "connectivity" || name == "offsets" || name == "types";
+      EXPECT_TRUE(vtk || named(name)) << name;
+    }
+    const nlohmann::json summary = nlohmann::json::parse(read_text(folder_ / "o/main/summary.json"));
+    for (const auto& [key, value] : summary.items()) {
+      const bool account = key.find("energy_") == 0 || key.find("work_") == 0;
+      EXPECT_TRUE(account || named(key)) << key;
+    }
+  }
+}
+
+// A frame that is given as a mesh says what it is and what to do.
+TEST_F(Outputs, AFrameReadAsAMeshSaysSo) {
+  ASSERT_THAT(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"}), Exits(0));
+  const Outcome info = run({"info", "o/main/frames/frame_0002.vtu"});
+  ASSERT_THAT(info, Exits(0));
+  EXPECT_NE(info.out.find("This is a frame of a run, not a mesh: its points are those at rest"), std::string::npos)
+      << info.out;
+  EXPECT_NE(info.out.find("glisson view"), std::string::npos) << info.out;
 }
 
 // The report holds the same forces, the surface of the mesh in arrays of the promised lengths, and the scene's text,

@@ -61,6 +61,16 @@ std::vector<Vec3d> places(const view::Snapshot& state) {
   return x;
 }
 
+/// Of the vertices in a frame as it is on disk.
+std::vector<Vec3d> places_in(const fs::path& file) {
+  const std::vector<std::string> wanted{"displacement_m"};
+  const ReadFrame frame = read_frame(file, wanted);
+  std::vector<Vec3d> x = frame.mesh.vertices;
+  const std::vector<double>& u = frame.vertex_fields.at(0).values;
+  for (std::size_t v = 0; v < x.size(); ++v) x[v] += Vec3d{u[3 * v], u[3 * v + 1], u[3 * v + 2]};
+  return x;
+}
+
 double apart(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
   EXPECT_EQ(a.size(), b.size());
   double most = 0.0;
@@ -75,7 +85,7 @@ TEST_F(ViewReplay, ShowsEachFrameAndStraightLinesBetween) {
   const view::RunFolder run = view::open_run(recorded(), "");
   ASSERT_EQ(run.frames.size(), 6u);
   std::vector<std::vector<Vec3d>> frames;
-  for (const view::RunFrame& frame : run.frames) frames.push_back(read_frame(frame.file, {}).mesh.vertices);
+  for (const view::RunFrame& frame : run.frames) frames.push_back(places_in(frame.file));
   Watching watching(run);
   for (const std::size_t i : {5u, 0u, 3u, 1u, 4u, 2u})
     EXPECT_LT(apart(places(watching.at(run.frames[i].time)), frames[i]), kSamePlace) << "frame " << i;
@@ -170,13 +180,26 @@ TEST_F(ViewReplay, OpensWhatBrokeOffAsFarAsItGoes) {
   EXPECT_EQ(watching.at(1e9).time, run.frames[3].time);
 }
 
+// A frame of an older version, whose points were displaced, is refused by name, not drawn twice as far.
+TEST_F(ViewReplay, TellsOfAFrameOfAnOlderVersion) {
+  const fs::path folder = recorded(), old = folder / "main/frames/frame_0003.vtu";
+  const std::vector<std::string> wanted{"displacement_m"};
+  const ReadFrame frame = read_frame(old, wanted);
+  const Field stress{"stress_xx_Pa", 1, std::vector<double>(frame.mesh.tets.size(), 0.0)};
+  write_vtu(old, frame.mesh, places_in(old), frame.vertex_fields, std::span(&stress, 1));
+  const view::RunFolder run = view::open_run(folder, "");
+  Watching watching(run);
+  const std::string notice = watching.at(run.frames[3].time).notice;
+  EXPECT_NE(notice.find("frame_0003.vtu: a frame of an older version"), std::string::npos) << notice;
+}
+
 // A frame that is there by half is told when its turn comes, and the one before it stays.
 TEST_F(ViewReplay, TellsOfAHalfWrittenFrame) {
   const fs::path folder = recorded(), bad = folder / "main/frames/frame_0003.vtu";
   fs::resize_file(bad, fs::file_size(bad) / 2);
   const view::RunFolder run = view::open_run(folder, "");
   Watching watching(run);
-  const std::vector<Vec3d> second = read_frame(run.frames[2].file, {}).mesh.vertices;
+  const std::vector<Vec3d> second = places_in(run.frames[2].file);
   const view::Snapshot state = watching.at(run.frames[3].time);
   EXPECT_NE(state.notice.find("frame_0003.vtu"), std::string::npos) << state.notice;
   EXPECT_LT(apart(places(state), second), kSamePlace);

@@ -10,26 +10,21 @@
 namespace glisson::view {
 namespace {
 
-constexpr double kSameRest = 1e-6;  // of the body's size: rest places are differences, and carry rounding
-
-/// Displacements of a frame; its vertices are moved back to rest.
-std::vector<Vec3d> to_rest(ReadFrame& frame, const std::string& file) {
+/// Displacements of a frame, whose vertices are at rest. Those of older versions were displaced: such a frame has its
+/// stress in six arrays.
+std::vector<Vec3d> displacement_of(const ReadFrame& frame, const std::string& file) {
   if (frame.vertex_fields.empty() || frame.vertex_fields.front().components != 3)
     throw FileError(file + ": no array displacement_m; this is no frame of glisson run");
+  if (!frame.tet_fields.empty())
+    throw FileError(file + ": a frame of an older version, whose points are displaced; run its scene again");
   const std::vector<double>& u = frame.vertex_fields.front().values;
   std::vector<Vec3d> displacement(frame.mesh.vertices.size());
-  for (std::size_t v = 0; v < displacement.size(); ++v) {
-    displacement[v] = {u[3 * v], u[3 * v + 1], u[3 * v + 2]};
-    frame.mesh.vertices[v] -= displacement[v];
-  }
+  for (std::size_t v = 0; v < displacement.size(); ++v) displacement[v] = {u[3 * v], u[3 * v + 1], u[3 * v + 2]};
   return displacement;
 }
 
 bool same_body(const BodyShape& known, const TetMesh& mesh) {
-  if (known.mesh.tets != mesh.tets || known.mesh.vertices.size() != mesh.vertices.size()) return false;
-  const double near = kSameRest * diagonal(mesh);
-  return std::equal(mesh.vertices.begin(), mesh.vertices.end(), known.mesh.vertices.begin(),
-                    [near](const Vec3d& a, const Vec3d& b) { return norm(a - b) <= near; });
+  return known.mesh.tets == mesh.tets && known.mesh.vertices == mesh.vertices;
 }
 
 std::shared_ptr<const BodyShape> shape_of(TetMesh mesh, const RunFolder& run) {
@@ -61,11 +56,11 @@ bool FrameCache::has(std::size_t number) const {
 }
 
 std::shared_ptr<const LoadedFrame> FrameCache::read(std::size_t number) {
-  static const std::array<std::string, 1> kFields{"displacement_m"};
+  static const std::array<std::string, 2> kFields{"displacement_m", "stress_xx_Pa"};
   const std::string file = run_.frames[number].file.string();
   ReadFrame frame = read_frame(file, kFields);
   auto loaded = std::make_shared<LoadedFrame>();
-  loaded->displacement = to_rest(frame, file);
+  loaded->displacement = displacement_of(frame, file);
   if (!shape_ || !same_body(*shape_, frame.mesh)) {
     const auto known =
         std::find_if(kept_.begin(), kept_.end(), [&](const Kept& x) { return same_body(*x.frame->shape, frame.mesh); });
