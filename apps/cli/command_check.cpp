@@ -68,13 +68,15 @@ struct Cost {
 
 std::string tissue_text(const Tissue& t) { return fmt::format("{}, ρ = {:.6g} kg/m³", law_text(t), t.density); }
 
-void print_mesh(const TetMesh& mesh, double mass_kg) {
+/// @param imported  from a file, whose reader has warned already
+void print_mesh(const TetMesh& mesh, double mass_kg, bool imported) {
   const MeshReport report = inspect(mesh);
   const Vec3d size = report.box_max - report.box_min;
   say("  mesh     {} vertices, {} tets, {:.4g} × {:.4g} × {:.4g} mm, {:.4g} ml, {:.4g} g; shape {:.3f} worst, {:.3f} "
       "median\n",
       report.vertices, report.tets, 1e3 * size.x, 1e3 * size.y, 1e3 * size.z, 1e6 * report.volume, 1e3 * mass_kg,
       report.worst_mean_ratio, report.median_mean_ratio);
+  if (imported) return;
   for (const std::string& warning : report.warnings) say("           warning: {}\n", warning);
 }
 
@@ -177,7 +179,7 @@ void print_interactions(const Variant& v, const Taste& taste) {
 }
 
 void print_body(const Variant& v, const Taste& taste) {
-  print_mesh(taste.mesh, taste.mass_kg);
+  print_mesh(taste.mesh, taste.mass_kg, std::holds_alternative<MeshFile>(v.mesh));
   say("  tissue   \"{}\": {}\n", v.tissue.name, tissue_text(v.tissue));
   print_locking("tissue", v.tissue);
   for (const RegionSpec& region : v.regions) {
@@ -286,7 +288,7 @@ void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, co
 
 int check(const CheckOptions& options) {
   const Scene scene = open_scene(options.scene);
-  MeshCache meshes(true);
+  MeshCache meshes(false);
   say("{}: {}\n", scene.file.string(), scene.title);
   double total = 0.0, longest = 0.0;
   for (const Variant& variant : scene.variants) {

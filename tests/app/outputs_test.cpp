@@ -181,6 +181,9 @@ TEST_F(Outputs, AFrameReadAsAMeshSaysSo) {
   EXPECT_NE(info.out.find("This is a frame of a run, not a mesh: its points are those at rest"), std::string::npos)
       << info.out;
   EXPECT_NE(info.out.find("glisson view"), std::string::npos) << info.out;
+  const Outcome check = run({"check", "s.toml", "--mesh", "o/main/frames/frame_0002.vtu"});
+  ASSERT_THAT(check, Exits(0));
+  EXPECT_NE(check.err.find("warning: This is a frame of a run"), std::string::npos) << check.err;
 }
 
 // The report holds the same forces, the surface of the mesh in arrays of the promised lengths, and the scene's text,
