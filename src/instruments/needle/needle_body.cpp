@@ -48,7 +48,7 @@ double Needle::State::tip_limit() const {
 }
 
 bool Needle::State::place(shaft::Row& row, const Vec3d& rest) const {
-  std::vector<VertexWeight> weights = zone_weights(*locator, *mesh, rest, options.zone, zone_axes);
+  std::vector<VertexWeight> weights = zones->weights(rest);
   if (weights.empty()) return false;
   row.rest = rest;
   row.weights = std::move(weights);
@@ -85,7 +85,7 @@ void Needle::attached(const BodyView& body, double) {
 void Needle::body_changed(const BodyView& body, std::span<const std::uint32_t>) {
   State& s = *state_;
   s.mesh = &body.mesh;
-  s.locator = std::make_unique<detail::TetLocator>(body.mesh, body.removed);
+  s.zones = std::make_unique<TissueZones>(body.mesh, body.removed, s.options.zone, s.zone_axes);
   s.surface = body.removed.empty() ? boundary_triangles(body.mesh) : boundary_triangles(living(body));
   s.look = true;
   s.mobility.forget();

@@ -49,7 +49,7 @@ struct Needle::State {
 
   // the body
   const TetMesh* mesh = nullptr;
-  std::unique_ptr<detail::TetLocator> locator;
+  std::unique_ptr<TissueZones> zones;
   std::vector<Triangle> surface;
   Mat3d zone_axes = identity<double>();
 

@@ -84,7 +84,7 @@ void Needle::look_for_contact(const InteractionStep& step) {
   s.tip_out = s.withdraws = false;
   s.next_region.reset();
   s.pressing = {};
-  const auto below = s.locator->locate(first->rest + direction() * (1e-3 * s.options.zone));
+  const auto below = s.zones->locator().locate(first->rest + direction() * (1e-3 * s.options.zone));
   s.region = s.mesh->region_of(below ? below->tet : 0);
 }
 
@@ -165,7 +165,7 @@ void Needle::State::cut_to(const InteractionStep& step, const Vec3d& at, const V
     const Vec3d way = at - tip.position;
     if (norm(way) < kClose || dot(way, direction) <= 0.0) break;
     const Vec3d next = tip.rest + way * std::min(1.0, 0.5 * options.spacing / norm(way));
-    const auto found = locator->locate(next);
+    const auto found = zones->locator().locate(next);
     if (!found) {
       tip_out = true;
       break;
@@ -202,7 +202,7 @@ Vec3d Needle::State::last_before(const Vec3d& next, int there) const {
   double inside = 0.0, beyond = 1.0;
   for (int k = 0; k < kBisections; ++k) {
     const double middle = 0.5 * (inside + beyond);
-    const auto found = locator->locate(tip.rest + (next - tip.rest) * middle);
+    const auto found = zones->locator().locate(tip.rest + (next - tip.rest) * middle);
     (found && mesh->region_of(found->tet) == there ? beyond : inside) = middle;
   }
   return tip.rest + (next - tip.rest) * inside;
