@@ -151,11 +151,15 @@ TEST_F(Outputs, PageNamesAllThatIsWritten) {
                 Exits(0));
     for (const auto& entry : std::filesystem::directory_iterator(folder_ / "o/main")) {
       const std::string file = entry.path().filename().string();
-      if (file != "frames" && file.find("forces_") != 0) EXPECT_NE(page.find(file), std::string::npos) << file;
+      if (file != "frames" && file.find("forces_") != 0) {
+        EXPECT_NE(page.find(file), std::string::npos) << file;
+      }
       if (entry.path().extension() != ".csv") continue;
       std::istringstream head(read_text(entry.path()).substr(0, read_text(entry.path()).find('\n')));
       for (std::string column; std::getline(head, column, ',');) {
-        if (column.find("support_") != 0) EXPECT_TRUE(named(column)) << file << ": " << column;
+        if (column.find("support_") != 0) {
+          EXPECT_TRUE(named(column)) << file << ": " << column;
+        }
       }
     }
     const std::string frame = read_text(folder_ / "o/main/frames/frame_0000.vtu");
