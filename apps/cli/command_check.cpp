@@ -19,6 +19,7 @@
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "cli/tissue_text.h"
+#include "instruments/needle/membranes.h"
 
 namespace glisson::app {
 namespace {
@@ -160,6 +161,18 @@ void print_locking(const std::string& table, const Tissue& t) {
       nu, table);
 }
 
+/// Membranes that a needle has to break on its way.
+void print_membranes(const InstrumentSpec& instrument) {
+  const auto* needle = std::get_if<NeedleOptions>(&instrument.what);
+  const std::vector<InnerMembrane> all = needle ? membranes_of(*needle) : std::vector<InnerMembrane>{};
+  if (all.empty()) return;
+  const auto [weak, strong] =
+      std::minmax_element(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.puncture < b.puncture; });
+  say("           {} membrane{} below the surface, {} of them drawn, from {:.4g} to {:.4g} mm, of {:.4g} to {:.4g} N\n",
+      all.size(), all.size() == 1 ? "" : "s", all.size() - needle->membranes.size(), 1e3 * all.front().depth,
+      1e3 * all.back().depth, weak->puncture, strong->puncture);
+}
+
 void print_interactions(const Variant& v, const Taste& taste) {
   for (const CapsuleSpec& x : v.capsules) {
     say("  capsule  \"{}\" on {}: {:.4g} mm, E = {:.6g} Pa\n", x.options.name,
@@ -173,6 +186,7 @@ void print_interactions(const Variant& v, const Taste& taste) {
     const std::optional<double> end = make_driver(x)->end();
     say("  tool     \"{}\", a {}: {}{}\n", x.name, kind_word(x.what), kind_word(x.motion.how),
         end ? fmt::format(", until {:.4g} s", *end) : "");
+    print_membranes(x);
     print_edge(v, x, taste.mesh);
     if (const std::optional<PressedFaces> faces = faces_under(taste.mesh, x)) print_faces(v, x.name, *faces);
   }

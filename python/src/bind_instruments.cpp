@@ -159,12 +159,15 @@ void bind_needle(nb::module_& m) {
   Options<ShaftFriction>(m, "ShaftFriction");
   Options<TipResistance>(m, "TipResistance");
   Options<Rupture>(m, "Rupture");
+  Options<InnerMembrane>(m, "InnerMembrane");
+  Options<MembraneProcess>(m, "MembraneProcess");
   Options<NeedleOptions>(m, "NeedleOptions");
   nb::class_<Needle, Instrument>(m, "Needle", doc("Needle"))
       .def(nb::init<const NeedleOptions&, std::shared_ptr<ToolDriver>>(), "options"_a, "driver"_a,
            doc("Needle::Needle"))
       .def_prop_ro("stage", &Needle::stage, doc("NeedleStage"))
       .def_prop_ro("inserted_length", &Needle::inserted_length, doc("Needle::inserted_length"))
+      .def_prop_ro("path_length", &Needle::path_length, doc("Needle::path_length"))
       .def_prop_ro("tip_force", &Needle::tip_force, doc("Needle::tip_force"))
       .def_prop_ro(
           "path", [](const Needle& n) { return vectors(n.path()); }, doc("Needle::path"))

@@ -77,6 +77,12 @@ Insertion random_insertion(unsigned seed) {
   }
   o.options.damping_rate = d.between(0.0, 50.0);
   o.options.precision = d.whole(0, 7) == 0 ? Precision::double_precision : Precision::single_precision;
+  if (d.toss()) {
+    n.drawn_membranes = MembraneProcess{.spacing = d.between(5e-4, 5e-3),
+                                        .puncture = d.between(0.01, 0.6),
+                                        .spread = d.between(0.0, 1.0),
+                                        .seed = seed};
+  }
   return o;
 }
 

@@ -59,6 +59,20 @@ def test_a_needle_pierces_and_goes_on():
     assert needle.options.rupture.force == 0.05 and "puncture" in repr(needle.events[1])
 
 
+def test_an_inner_membrane_is_broken():
+    """A membrane below the surface is an option of the needle, and an event when it breaks; drawn ones are options, too."""
+    options = glisson.NeedleOptions(
+        rupture=glisson.Rupture(force=0.05),
+        tip=glisson.TipResistance(cutting=0.02),
+        membranes=[glisson.InnerMembrane(depth=0.004, puncture=0.06, cutting=0.03)],
+    )
+    needle = glisson.Needle(options, glisson.PathDriver(pose(), glisson.SteadyMotion(velocity=0.05)))
+    body_with(needle).advance(0.3)
+    assert [event.event for event in needle.events].count("inner puncture") == 1 and needle.path_length > 0.004
+    drawn = glisson.NeedleOptions(drawn_membranes=glisson.MembraneProcess(spacing=0.002, seed=3))
+    assert drawn.drawn_membranes.seed == 3 and drawn.drawn_membranes.spread == 0.2
+
+
 def test_a_punch_presses_and_its_pressure_adds_up():
     """What a punch exerts along its axis is the sum of its pressures over their areas, which bear at the surface."""
     tool = glisson.ContactTool(

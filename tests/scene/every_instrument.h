@@ -33,6 +33,8 @@ spacing_mm = 1.5
 rupture = { toughness_J_m2 = 120, membrane_thickness_mm = 0.2 }
 tip = { cutting_N = 0.25, puncture_N = 0.5 }
 regions.vessel = { cutting_N = 0.5, puncture_N = 1.25 }
+membranes = [{ depth_mm = 4, puncture_N = 0.75, cutting_N = 0.375 }, { depth_mm = 6.5, puncture_N = 1.5 }]
+drawn_membranes = { spacing_mm = 7, puncture_N = 2, spread = 0.25, seed = 9 }
 friction = { static_in_N_m = 18, static_out_N_m = 17, dynamic_in_N_m = 10, dynamic_out_N_m = 11, viscous_in_N_s_m2 = 212, viscous_out_N_s_m2 = 239, stick_speed_mm_s = 0.25 }
 youngs_modulus_Pa = 2e11
 inner_diameter_mm = 0.8

@@ -59,6 +59,17 @@ TEST(Instruments, NeedleIsRead) {
   EXPECT_EQ(n.youngs_modulus, 2e11);
   EXPECT_DOUBLE_EQ(n.inner_diameter, 8e-4);
   EXPECT_EQ(n.bevel_share, 0.3);
+  ASSERT_EQ(n.membranes.size(), 2U);
+  EXPECT_DOUBLE_EQ(n.membranes[0].depth, 4e-3);
+  EXPECT_EQ(n.membranes[0].puncture, 0.75);
+  EXPECT_EQ(n.membranes[0].cutting, 0.375);
+  EXPECT_DOUBLE_EQ(n.membranes[1].depth, 6.5e-3);
+  EXPECT_FALSE(n.membranes[1].cutting);
+  ASSERT_TRUE(n.drawn_membranes);
+  EXPECT_DOUBLE_EQ(n.drawn_membranes->spacing, 7e-3);
+  EXPECT_EQ(n.drawn_membranes->puncture, 2.0);
+  EXPECT_EQ(n.drawn_membranes->spread, 0.25);
+  EXPECT_EQ(n.drawn_membranes->seed, 9U);
 }
 
 // Shapes keep their sizes and how they touch.
@@ -218,6 +229,11 @@ TEST(Instruments, MistakesAreTold) {
               HasSubstr("contradicts `force_N`"));
   EXPECT_THAT(complaint(kNeedle + "inner_diameter_mm = 2\n"),
               HasSubstr("inner_diameter_mm: 2 mm is not below the diameter, 1.27 mm"));
+  EXPECT_THAT(complaint(kNeedle + "membranes = [{ depth_mm = 3 }, { depth_mm = 2 }]\n"),
+              HasSubstr("membranes: number 2, at 2 mm, is not below the one before it, at 3 mm"));
+  EXPECT_THAT(complaint(kNeedle + "membranes = [{ puncture_N = 1 }]\n"), HasSubstr("missing key `depth_mm`"));
+  EXPECT_THAT(complaint(kNeedle + "drawn_membranes = { spacing_mm = 0.01 }\n"),
+              HasSubstr("drawn_membranes.spacing_mm: 0.01 mm is out of range; allowed: ≥ 0.1 mm"));
   EXPECT_THAT(complaint(kNeedle + "[[instrument]]\nkind = \"ball\"\nname = \"Needle\"\ntip_m = [0, 0, 1]\n"
                                   "motion = { kind = \"press\" }\n"),
               HasSubstr("\"Needle\" is taken"));

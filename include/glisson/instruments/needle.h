@@ -12,10 +12,12 @@
 // forces do not depend on the mesh as long as it resolves the zone (docs/needles.md).
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "glisson/field.h"
 #include "glisson/instruments/instrument.h"
@@ -58,6 +60,39 @@ struct TipResistance {
   }
 };
 
+/// A membrane across the path, below the surface; it holds the tip up to a force, as a region's boundary does.
+struct InnerMembrane {
+  double depth = 0.0;               ///< below the entry, along the needle, in tissue at rest [m]
+  double puncture = 0.0;            ///< force of the tip to break it [N]; 0: the cutting force before it
+  std::optional<double> cutting{};  ///< cutting force beyond it, up to the next that gives one or the next region [N]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using M = InnerMembrane;
+    return take(field("depth", &M::depth, "mm", at_least(0), "depth below the entry, in tissue at rest").must(),
+                field("puncture", &M::puncture, "N", at_least(0), "force to break it; 0: the cutting force"),
+                field("cutting", &M::cutting, "N", at_least(0), "cutting force beyond it").otherwise("as before it"));
+  }
+};
+
+/// Membranes drawn at random from the surface to the needle's length: a Poisson process of exponential distances, and normally
+/// distributed forces, drawn again where not above 0 (src/instruments/needle/membranes.h).
+struct MembraneProcess {
+  double spacing = 5e-3;   ///< mean distance [m]
+  double puncture = 1.0;   ///< mean force to break one [N]
+  double spread = 0.2;     ///< standard deviation of that force over its mean [-]
+  std::uint64_t seed = 1;  ///< the same membranes on every machine
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using M = MembraneProcess;
+    return take(field("spacing", &M::spacing, "mm", at_least(0.1), "mean distance of two"),
+                field("puncture", &M::puncture, "N", above(0), "mean force to break one"),
+                field("spread", &M::spread, "-", between(0, 1), "standard deviation of that force over its mean"),
+                field("seed", &M::seed, "each seed draws other membranes"));
+  }
+};
+
 /// Puncture criterion of the surface under the tip.
 struct Rupture {
   std::optional<double> force{};      ///< puncture at this force of the tip [N]; or
@@ -87,7 +122,9 @@ struct NeedleOptions {
   double spacing = 2e-3;      ///< distance of path points [m]; less than a third of the zone only costs time
   Rupture rupture{};          ///< neither given: puncture at the cutting force of the tissue below
   TipResistance tip{};        ///< of regions that `regions` does not name; its puncture is not used
-  std::map<int, TipResistance> regions{};  ///< by region number
+  std::map<int, TipResistance> regions{};            ///< by region number
+  std::vector<InnerMembrane> membranes{};            ///< by ascending depth
+  std::optional<MembraneProcess> drawn_membranes{};  ///< besides these
   ShaftFriction friction{};
   /// Young's modulus [Pa]: the needle bends as a cantilever from the hand; none: it is rigid.
   std::optional<double> youngs_modulus{};
@@ -106,7 +143,10 @@ struct NeedleOptions {
         field("zone", &N::zone, "mm", above(0), "radius of the tissue around a path point that carries its force"),
         field("spacing", &N::spacing, "mm", above(0), "distance of the path points"),
         field("rupture", &N::rupture, "when the surface is punctured"), field("tip", &N::tip, "resistance at the tip"),
-        no_key("regions", &N::regions), field("friction", &N::friction, "friction along the inserted shaft"),
+        no_key("regions", &N::regions),
+        field("membranes", &N::membranes, "membranes below the surface that the tip has to break"),
+        field("drawn_membranes", &N::drawn_membranes, "membranes at random, besides these"),
+        field("friction", &N::friction, "friction along the inserted shaft"),
         field("youngs_modulus", &N::youngs_modulus, "Pa", above(0),
               "Young's modulus of the needle, a cantilever clamped at the hand")
             .otherwise("rigid"),
@@ -138,6 +178,7 @@ class Needle final : public Instrument {
 
   NeedleStage stage() const;
   double inserted_length() const;   ///< of the shaft in tissue [m]
+  double path_length() const;       ///< depth of the path's end below the entry, in tissue at rest [m]
   double tip_force() const;         ///< force of the tip along the needle [N]; no step shows in it (docs/needles.md)
   std::vector<Vec3d> path() const;  ///< material points from the surface to the deepest, present positions [m]
   const NeedleOptions& options() const;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/require_fields.h"
+#include "instruments/needle/membranes.h"
 #include "instruments/needle/needle_state.h"
 
 namespace glisson {
@@ -24,6 +25,7 @@ Needle::Needle(const NeedleOptions& options, std::shared_ptr<ToolDriver> driver)
     : Instrument(options.name, std::move(driver), options.direction), state_(std::make_unique<State>()) {
   detail::require_fields("needle \"" + options.name + "\"", options);
   state_->options = options;
+  state_->membranes = membranes_of(options);
 }
 
 Needle::~Needle() = default;
@@ -40,6 +42,8 @@ double Needle::inserted_length() const {
   if (state_->stage != NeedleStage::inside || state_->nodes.empty()) return 0.0;
   return std::max(0.0, dot(pose_.position - state_->nodes.front().position, direction()));
 }
+
+double Needle::path_length() const { return state_->nodes.empty() ? 0.0 : state_->rest_depth(direction()); }
 
 std::vector<Vec3d> Needle::path() const {
   std::vector<Vec3d> points;

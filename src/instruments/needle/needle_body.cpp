@@ -43,9 +43,11 @@ TipResistance Needle::State::resistance(int region_number) const {
 
 double Needle::State::tip_limit() const {
   if (stage != NeedleStage::inside) return std::numeric_limits<double>::infinity();
-  if (!next_region) return resistance(region).cutting;
-  return std::max(resistance(*next_region).puncture, resistance(region).cutting);
+  if (at_membrane) return std::max(membranes[broken].puncture, cutting());
+  return next_region ? std::max(resistance(*next_region).puncture, cutting()) : cutting();
 }
+
+double Needle::State::cutting() const { return cutting_beyond.value_or(resistance(region).cutting); }
 
 bool Needle::State::place(shaft::Row& row, const Vec3d& rest) const {
   std::vector<VertexWeight> weights = zones->weights(rest);
@@ -144,6 +146,8 @@ void Needle::archive(Archive& ar) {
   archive_motion(ar);
   ar(s.stage, s.look, s.named_around, s.tip.rest, s.tip_along, s.bend_tip, s.tip_cuts, s.tip_out, s.withdraws);
   ar(s.region, s.next_region, s.step_h, s.wave_time, s.pressing, s.drop);
+  ar(s.broken, s.at_membrane, s.cutting_beyond);
+  ar.check(s.broken + (s.at_membrane ? 1 : 0) <= s.membranes.size());
   std::vector<Vec3d> path;
   for (const shaft::Row& node : s.nodes) path.push_back(node.rest);
   ar(path, s.slips, s.along, s.bend);

@@ -65,13 +65,17 @@ struct Needle::State {
   std::vector<char> slips;        ///< per node
   std::vector<double> along;      ///< per node: impulse along the needle in the last step [N s]
   shaft::MobilityMatrix mobility;
-  double tip_along = 0.0;          ///< the same of the tip
-  Vec3d tip_velocity{};            ///< of the tissue at the tip before the step [m/s]
-  double wave_time = 0.0;          ///< that a shear wave needs across the zone there [s]
-  bool tip_cuts = false;           ///< in the last step
-  bool tip_out = false;            ///< on the far side of the body
-  int region = 0;                  ///< that the tip is in
-  std::optional<int> next_region;  ///< whose boundary holds the tip
+  double tip_along = 0.0;                ///< the same of the tip
+  Vec3d tip_velocity{};                  ///< of the tissue at the tip before the step [m/s]
+  double wave_time = 0.0;                ///< that a shear wave needs across the zone there [s]
+  bool tip_cuts = false;                 ///< in the last step
+  bool tip_out = false;                  ///< on the far side of the body
+  int region = 0;                        ///< that the tip is in
+  std::optional<int> next_region;        ///< whose boundary holds the tip
+  std::vector<InnerMembrane> membranes;  ///< given and drawn, by ascending depth
+  std::size_t broken = 0;                ///< of them on this path
+  bool at_membrane = false;              ///< the first that is not broken holds the tip
+  std::optional<double> cutting_beyond;  ///< of the last broken one that has a cutting force [N]
   bool withdraws = false;
   PressingWork pressing;
   DropWatch drop;
@@ -84,11 +88,16 @@ struct Needle::State {
   void forget_forces(double h);
   double bending_stiffness() const;  ///< E I [N m²]; 0: rigid
   TipResistance resistance(int region_number) const;
+  double cutting() const;    ///< where the tip is [N]
   double tip_limit() const;  ///< [N]
+  double rest_depth(const Vec3d& direction) const { return dot(tip.rest - nodes.front().rest, direction); }
+  void enter(int region_number);
+  void pass_membrane();
   /// Sets a row to a rest position. @return false where no tissue is around it; the row is as it was then
   bool place(shaft::Row& row, const Vec3d& rest) const;
   void cut_to(const InteractionStep& step, const Vec3d& at, const Vec3d& direction);
   Vec3d last_before(const Vec3d& next, int there) const;
+  bool stop_at_membrane(Vec3d& next, const Vec3d& direction) const;
 };
 
 }  // namespace glisson

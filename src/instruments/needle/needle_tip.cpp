@@ -2,7 +2,8 @@
 //
 //   outside ──contact──▶ pressing ──puncture──▶ inside ──withdrawn──▶ outside
 //      ▲                    │ release              │ region boundary: inner puncture
-//      └────────────────────┘                      └ through the far side: exit
+//      └────────────────────┘                      │ membrane: inner puncture
+//                                                  └ through the far side: exit
 #include <algorithm>
 #include <cmath>
 
@@ -81,8 +82,10 @@ void Needle::look_for_contact(const InteractionStep& step) {
   s.slips.clear();
   s.along.clear();
   s.stage = NeedleStage::pressing;
-  s.tip_out = s.withdraws = false;
+  s.tip_out = s.withdraws = s.at_membrane = false;
   s.next_region.reset();
+  s.cutting_beyond.reset();
+  s.broken = 0;
   s.pressing = {};
   const auto below = s.zones->locator().locate(first->rest + direction() * (1e-3 * s.options.zone));
   s.region = s.mesh->region_of(below ? below->tet : 0);
@@ -150,9 +153,8 @@ void Needle::go_on(const InteractionStep& step) {
   }
   if (gap <= 0.0) s.withdraws = false;
   if (!s.tip_cuts) return;
-  if (s.next_region) {
-    s.region = *s.next_region;
-    s.next_region.reset();
+  if (s.next_region || s.at_membrane) {
+    s.at_membrane ? s.pass_membrane() : s.enter(*s.next_region);
     add_event(step.time + step.h, depth(), "inner puncture");
   }
   s.cut_to(step, at, direction());
@@ -164,7 +166,8 @@ void Needle::State::cut_to(const InteractionStep& step, const Vec3d& at, const V
   for (int search = 0; search < kSearches; ++search) {
     const Vec3d way = at - tip.position;
     if (norm(way) < kClose || dot(way, direction) <= 0.0) break;
-    const Vec3d next = tip.rest + way * std::min(1.0, 0.5 * options.spacing / norm(way));
+    Vec3d next = tip.rest + way * std::min(1.0, 0.5 * options.spacing / norm(way));
+    const bool meets = stop_at_membrane(next, direction);
     const auto found = zones->locator().locate(next);
     if (!found) {
       tip_out = true;
@@ -179,12 +182,11 @@ void Needle::State::cut_to(const InteractionStep& step, const Vec3d& at, const V
       break;
     }
     tip = std::move(moved);
-    if (!enters) continue;
-    if (resistance(there).puncture > resistance(region).cutting) {
-      next_region = there;
-      break;
-    }
-    region = there;
+    at_membrane = meets && !enters && membranes[broken].puncture > cutting();
+    if (enters && resistance(there).puncture > cutting()) next_region = there;
+    if (at_membrane || next_region) break;
+    if (enters) enter(there);
+    if (meets && !enters) pass_membrane();
   }
   while (norm(tip.rest - nodes.back().rest) >= options.spacing) {
     const Vec3d way = tip.rest - nodes.back().rest;
@@ -195,6 +197,27 @@ void Needle::State::cut_to(const InteractionStep& step, const Vec3d& at, const V
     along.push_back(0.0);
     bend.push_back(bend_tip);
   }
+}
+
+void Needle::State::enter(int region_number) {
+  region = region_number;
+  next_region.reset();
+  cutting_beyond.reset();
+}
+
+void Needle::State::pass_membrane() {
+  const InnerMembrane& passed = membranes[broken++];
+  at_membrane = false;
+  if (passed.cutting) cutting_beyond = passed.cutting;
+}
+
+/// Takes `next` back to the first membrane that is not broken. @return whether it reaches that
+bool Needle::State::stop_at_membrane(Vec3d& next, const Vec3d& direction) const {
+  if (broken == membranes.size()) return false;
+  const double ahead = dot(next - tip.rest, direction), clear = membranes[broken].depth - rest_depth(direction);
+  if (clear > ahead) return false;
+  next = tip.rest + (next - tip.rest) * std::max(0.0, clear / ahead);
+  return true;
 }
 
 /// The last point on the way from the tip to `next` that is not in the region there yet.

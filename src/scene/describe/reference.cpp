@@ -45,6 +45,8 @@ std::string scene_reference_markdown() {
   text += section_text(stroke_section(), "`[[instrument.motion.strokes]]`");
   text += section_text(rupture_section(), "`[instrument.rupture]`");
   text += section_text(tip_section(), "`[instrument.tip]`, `[instrument.regions.NAME]`");
+  text += section_text(inner_membrane_section(), "`[[instrument.membranes]]`");
+  text += section_text(membrane_process_section(), "`[instrument.drawn_membranes]`");
   text += section_text(shaft_friction_section(), "`[instrument.friction]`");
   text += section_text(container_section(), "`[container]`");
   text += section_text(capsule_section(), "`[[capsule]]`");

@@ -78,6 +78,23 @@ const SectionSpec& tip_section() {
   return section;
 }
 
+const SectionSpec& inner_membrane_section() {
+  static const SectionSpec section = described<InnerMembrane>(
+      "instrument.membranes",
+      "A membrane across a needle's path, which holds the tip until it pushes hard enough: an inner puncture. With "
+      "`puncture_N = 0` only the cutting force changes.");
+  return section;
+}
+
+const SectionSpec& membrane_process_section() {
+  static const SectionSpec section =
+      described<MembraneProcess>("instrument.drawn_membranes",
+                                 "Membranes at random down to the needle's length: exponential distances, normally "
+                                 "distributed forces. A seed gives "
+                                 "the same membranes on every machine.");
+  return section;
+}
+
 const SectionSpec& shaft_friction_section() {
   static const SectionSpec section = described<ShaftFriction>(
       "instrument.friction",

@@ -26,6 +26,8 @@ const SectionSpec& record_section();             ///< fills RecordSpec
 const SectionSpec& tool_section();               ///< fills ToolSpec
 const SectionSpec& rupture_section();            ///< fills Rupture
 const SectionSpec& tip_section();                ///< fills TipResistance
+const SectionSpec& inner_membrane_section();     ///< fills InnerMembrane
+const SectionSpec& membrane_process_section();   ///< fills MembraneProcess
 const SectionSpec& shaft_friction_section();     ///< fills ShaftFriction
 const SectionSpec& stroke_section();             ///< fills StrokesSpec::One
 const SectionSpec& instrument_motion_section();  ///< fills InstrumentMotion
@@ -46,6 +48,8 @@ inline const SectionSpec& section_of(std::type_identity<MaxwellBranch>) { return
 inline const SectionSpec& section_of(std::type_identity<ImplicitOptions>) { return implicit_section(); }
 inline const SectionSpec& section_of(std::type_identity<Rupture>) { return rupture_section(); }
 inline const SectionSpec& section_of(std::type_identity<TipResistance>) { return tip_section(); }
+inline const SectionSpec& section_of(std::type_identity<InnerMembrane>) { return inner_membrane_section(); }
+inline const SectionSpec& section_of(std::type_identity<MembraneProcess>) { return membrane_process_section(); }
 inline const SectionSpec& section_of(std::type_identity<ShaftFriction>) { return shaft_friction_section(); }
 inline const SectionSpec& section_of(std::type_identity<StrokesSpec::One>) { return stroke_section(); }
 
