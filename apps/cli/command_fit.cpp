@@ -113,7 +113,7 @@ void print_result(const FitResult& result) {
 void write_results(const FitResult& result, const FitHeading& heading, const fs::path& folder) {
   const nlohmann::ordered_json json = fit_json(result, heading);
   write_whole(folder / "fit.json", json_text(json, 1) + "\n");
-  if (!result.tissue.empty()) write_whole(folder / "tissue.toml", result.tissue);
+  if (!result.tissue.empty()) write_whole(folder / result.result_file, result.tissue);
   nlohmann::json page = report_json(heading.title, "a fit", nlohmann::json::array());
   page["fits"] = nlohmann::json::array({nlohmann::json(json)});
   write_whole(folder / "report.html", report_page(report_template(), page));

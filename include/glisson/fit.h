@@ -147,9 +147,10 @@ struct FitResult {
   std::vector<std::vector<double>> bootstrap;  ///< replicates, a row of parameters each
   std::vector<LawResult> laws;
   std::vector<DesignResult> designs;
-  std::vector<std::string> conclusions;  ///< sentences
-  std::string tissue;                    ///< text of tissue.toml, which a scene reads with `tissue.file`
-  std::optional<double> area, height;    ///< of the specimen [m²], [m]
+  std::vector<std::string> conclusions;     ///< sentences
+  std::string tissue;                       ///< text of tissue.toml, which a scene reads with `tissue.file`
+  std::string result_file = "tissue.toml";  ///< "membranes.toml" of a fit of [insertion], whose text is part of a scene
+  std::optional<double> area, height;       ///< of the specimen [m²], [m]
 };
 
 /// How far a fit is.

@@ -9,6 +9,7 @@
 
 #include "fit/data/data_spec.h"
 #include "fit/forward/section_forward.h"
+#include "fit/insertion/insertion_spec.h"
 #include "fit/model.h"
 #include "fit/search/problem.h"
 #include "glisson/scene/scene.h"
@@ -82,6 +83,7 @@ struct FitSpec {
   ProofSpec proof;
   std::vector<LawSpec> laws;
   std::vector<ExperimentSpec> experiments;
+  std::optional<InsertionSpec> insertion;  ///< fits membranes in place of parameters
 };
 
 /// Reads FIT.toml. @throws SceneError with every problem of the file

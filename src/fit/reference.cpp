@@ -50,6 +50,7 @@ std::string fit_reference_markdown() {
   text += section_text(forward_section(), "`[forward]`");
   text += section_text(search_section(), "`[search]`");
   text += section_text(proof_section(), "`[proof]`");
+  text += section_text(insertion_section(), "`[insertion]`");
   text += section_text(fit_law_section(), "`[[law]]`");
   text += section_text(experiment_section(), "`[[experiment]]`");
   text.pop_back();  // one end of the last paragraph is enough

@@ -10,6 +10,7 @@
 #include "fit/fill_result.h"
 #include "fit/fit_curves.h"
 #include "fit/forward/offset_model.h"
+#include "fit/insertion/run_insertion_fit.h"
 #include "fit/search/law_candidates.h"
 #include "fit/search/law_search.h"
 #include "fit/tissue_of_fit.h"
@@ -220,7 +221,9 @@ FitResult Run::to_end() {
 
 }  // namespace
 
-FitResult run_fit(const FitSpec& spec, const FitRun& options) { return Run(spec, options).to_end(); }
+FitResult run_fit(const FitSpec& spec, const FitRun& options) {
+  return spec.insertion ? run_insertion_fit(spec, options) : Run(spec, options).to_end();
+}
 
 FitResult run_fit(const std::filesystem::path& file, const FitOptions& options) {
   return run_fit(load_fit(file), {options, {}, {}});

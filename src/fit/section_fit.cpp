@@ -74,6 +74,16 @@ void check_faces(const FitSpec& fit, const Place& place) {
     place.complain("[forward] kind applies to smooth faces; remove it, or set faces = \"smooth\" in [specimen]");
 }
 
+/// One needle, one curve, and nothing else that is free.
+void check_insertion(const FitSpec& fit, const Place& place) {
+  if (!fit.insertion) return;
+  if (fit.scene.empty()) place.complain("[insertion] asks for a `scene` with a needle");
+  if (!fit.parameters.empty() || !fit.laws.empty())
+    place.complain("[insertion] fits membranes alone; remove [[parameter]] and [[law]], or fit these first without it");
+  if (fit.data.size() != 1 || fit.data.front().files.size() != 1)
+    place.complain("[insertion] asks for one curve: one [[data]] with one file");
+}
+
 void finish_fit(FitSpec& fit, const Node& table, const Place& place) {
   if (const Node* set = table.find("set")) {
     const std::vector<Override> more = overrides_of(*set, "");
@@ -82,6 +92,7 @@ void finish_fit(FitSpec& fit, const Node& table, const Place& place) {
   if (const Node* tissue = table.find("tissue")) fit.set.push_back({"tissue", scene::toml_text(*tissue)});
   if (!fit.parameters.empty()) check_parameters(fit.parameters, table, place);
   check_faces(fit, place);
+  check_insertion(fit, place);
   if (fit.data.empty()) place.complain("there are no curves; give one or more [[data]] with `files`");
   const bool any_fitted = std::any_of(fit.data.begin(), fit.data.end(), [](const DataSpec& d) { return !d.held_out; });
   if (!fit.data.empty() && !any_fitted)
@@ -223,6 +234,10 @@ const SectionSpec& fit_section() {
     s.table("forward", forward_section(), &FitSpec::forward, "how the test is simulated").otherwise("auto");
     s.table("search", search_section(), &FitSpec::search, "search for the optimum").otherwise("20 starts");
     s.table("proof", proof_section(), &FitSpec::proof, "uncertainty of the fit").otherwise("profiles and bootstrap");
+    s.table(
+         "insertion", insertion_section(), [](FitSpec & f) -> auto& { return f.insertion.emplace(); },
+         "inner membranes of a needle, in place of parameters")
+        .otherwise("none");
     s.tables("law", fit_law_section(), &FitSpec::laws, "laws to compare");
     s.tables("experiment", experiment_section(), &FitSpec::experiments, "candidates for the next test");
     s.spec().exclusions = {{{{"scene"}, {"specimen"}}, true}};

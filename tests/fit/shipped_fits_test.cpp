@@ -14,12 +14,13 @@ namespace fs = std::filesystem;
 const fs::path kFits = test::shipped("scenes/fit");
 
 TEST(ShippedFits, CanBeRead) {
-  for (const char* name : {"phantom_mean.toml", "phantom_ef10_100t.toml", "phantom_ef10_75t.toml",
-                           "phantom_friction.toml", "liver_velocity.toml", "bovine_needle.toml"}) {
+  for (const char* name :
+       {"phantom_mean.toml", "phantom_ef10_100t.toml", "phantom_ef10_75t.toml", "phantom_friction.toml",
+        "liver_velocity.toml", "bovine_needle.toml", "bovine_membranes.toml"}) {
     const FitSpec fit = load_fit(kFits / name);
     EXPECT_FALSE(fit.title.empty()) << name;
     EXPECT_FALSE(fit.description.empty()) << name;
-    EXPECT_FALSE(fit.parameters.empty()) << name;
+    EXPECT_EQ(fit.parameters.empty(), fit.insertion.has_value()) << name;
     if (fit.scene.empty()) continue;
     EXPECT_NO_THROW(load_scene(fit.scene)) << name;
   }

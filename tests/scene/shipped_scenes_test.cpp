@@ -11,11 +11,11 @@
 namespace glisson {
 namespace {
 
-/// A FIT.toml, which frees parameters of a scene or specimen; tests/fit reads those.
+/// A FIT.toml, which frees parameters of a scene or specimen, or membranes; tests/fit reads those.
 bool is_fit(const std::filesystem::path& file) {
   std::ifstream stream(file);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  return text.find("\n[[parameter]]") != std::string::npos;
+  return text.find("\n[[parameter]]") != std::string::npos || text.find("\n[insertion]") != std::string::npos;
 }
 
 // Every scene under scenes/ is read without complaint and says what it is.

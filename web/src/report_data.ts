@@ -132,7 +132,8 @@ export interface FitData {
   description: string; // plain text
   notes: string[];
   source: string; // FIT.toml
-  tissue: string; // tissue.toml: the result, ready for scenes; "" where there is none
+  tissue: string; // the result, ready for scenes; "" where there is none
+  result_file?: string; // its name; tissue.toml where it is not said
   law: string; // the law of `parameters`, e.g. "ogden, 1 term"
   parameters: FitParameter[];
   correlation: (number | null)[][]; // of the scaled parameters; row i belongs to parameters[i]; empty: unknown

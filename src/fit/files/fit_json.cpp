@@ -177,6 +177,7 @@ Json fit_json(const FitResult& result, const FitHeading& heading) {
             {"y", axis_y(result)},
             {"curves", curves},
             {"tissue", result.tissue},
+            {"result_file", result.result_file},
             {"source", heading.source}};
   return json;
 }

@@ -4,11 +4,13 @@ import { icon } from "../page/icons.ts";
 import type { FitData } from "../report_data.ts";
 import { csvFiles } from "./fit_csv.ts";
 
+export const resultFile = (fit: FitData): string => fit.result_file ?? "tissue.toml";
+
 export function fitDownloads(fit: FitData): HTMLElement | null {
   const buttons = csvFiles(fit).map((file) =>
     saveButton(`${fit.name}-${file.name}.csv`, file.label, "text/csv", file.text),
   );
-  if (fit.tissue) buttons.push(saveButton("tissue.toml", "tissue.toml", "application/toml", () => fit.tissue));
+  if (fit.tissue) buttons.push(saveButton(resultFile(fit), resultFile(fit), "application/toml", () => fit.tissue));
   if (buttons.length === 0) return null;
   return h(
     "div",

@@ -5,7 +5,7 @@ import { sourceBlock } from "../page/source_block.ts";
 import type { FitData } from "../report_data.ts";
 import { correlationFigures } from "./correlations.ts";
 import { fitCurves } from "./fit_curves.ts";
-import { fitDownloads } from "./fit_downloads.ts";
+import { fitDownloads, resultFile } from "./fit_downloads.ts";
 import { fitHead } from "./fit_head.ts";
 import { designTable, groupTable, lawTable } from "./fit_tables.ts";
 import { parameterTable } from "./parameter_table.ts";
@@ -57,7 +57,7 @@ function notes(sentences: readonly string[]): HTMLElement | null {
 function files(fit: FitData): HTMLElement | null {
   const parts = [
     fitDownloads(fit),
-    sourceBlock("tissue.toml", fit.tissue, "Result, for scenes:"),
+    sourceBlock(resultFile(fit), fit.tissue, "Result, for scenes:"),
     sourceBlock(`${fit.name}.toml`, fit.source, "Fit"),
   ];
   return wrap("fit-files", parts);

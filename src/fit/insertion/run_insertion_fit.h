@@ -1,0 +1,10 @@
+// run_insertion_fit.h — a fit of [insertion] from its description to its result.
+#pragma once
+
+#include "fit/run_fit.h"
+
+namespace glisson::fit {
+
+FitResult run_insertion_fit(const FitSpec& spec, const FitRun& options);
+
+}  // namespace glisson::fit
