@@ -150,6 +150,17 @@ void print_faces(const Variant& v, const std::string& name, const PressedFaces& 
       name, few, large, PressedFaces::kFew, finer_mesh(v.mesh, faces.finer()));
 }
 
+/// That the mesh does not resolve a needle's zone, and what would do.
+void print_zone(const Variant& v, const InstrumentSpec& instrument, const TetMesh& mesh) {
+  const std::optional<ZoneEdges> edges = edges_in_zone(mesh, instrument);
+  if (!edges || edges->share() <= ZoneEdges::kResolved) return;
+  say("  zone     \"{}\": edges of {:.3g} mm around it are {:.2g} of its zone of {:.3g} mm: its force and depth belong "
+      "to "
+      "this mesh;\n           half a zone resolves it: zone_mm = {:.2g}, or {}\n",
+      instrument.name, 1e3 * edges->edge, edges->share(), 1e3 * edges->zone, 2e3 * edges->edge,
+      finer_mesh(v.mesh, 2.0 * edges->share()));
+}
+
 constexpr double kLocking = 0.45;  // Poisson's ratio from which linear tets lock (docs/laws.md §5)
 
 /// That linear tets lock in a tissue, and the key that mends it.
@@ -188,6 +199,7 @@ void print_interactions(const Variant& v, const Taste& taste) {
         end ? fmt::format(", until {:.4g} s", *end) : "");
     print_membranes(x);
     print_edge(v, x, taste.mesh);
+    print_zone(v, x, taste.mesh);
     if (const std::optional<PressedFaces> faces = faces_under(taste.mesh, x)) print_faces(v, x.name, *faces);
   }
 }

@@ -186,4 +186,22 @@ std::optional<EdgeCells> cells_under_edge(const TetMesh& mesh, const InstrumentS
   return EdgeCells{.across = *middle, .size = edge.size};
 }
 
+std::optional<ZoneEdges> edges_in_zone(const TetMesh& mesh, const InstrumentSpec& instrument) {
+  const auto* needle = std::get_if<NeedleOptions>(&instrument.what);
+  if (!needle) return {};
+  const Vec3d tip = start_pose(instrument).position, along = needle->direction * (1.0 / norm(needle->direction));
+  double volume = 0.0, count = 0.0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    Vec3d centre;
+    for (const std::uint32_t v : mesh.tets[t]) centre += mesh.vertices[v] * 0.25;
+    const Vec3d from = centre - tip;
+    const double depth = dot(from, along);
+    if (depth < 0.0 || norm(from - along * depth) > needle->zone) continue;
+    volume += six_rest_volume(mesh, t) / 6.0;
+    count += 1.0;
+  }
+  if (count == 0.0) return {};
+  return ZoneEdges{.edge = std::cbrt(6.0 * std::numbers::sqrt2 * volume / count), .zone = needle->zone};
+}
+
 }  // namespace glisson::app

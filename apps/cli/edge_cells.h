@@ -1,4 +1,4 @@
-// edge_cells.h — how coarse a surface is under an instrument or pad, and under the sharp edge of one.
+// edge_cells.h — how coarse a surface is under an instrument or pad, under the sharp edge of one, and around a needle.
 #pragma once
 
 #include <cstddef>
@@ -35,5 +35,16 @@ struct PressedFaces {
 PressedFaces faces_of_pad(const TetMesh& mesh, const std::string& set);
 /// Nothing for instruments that pierce or cut, and for those without a size or off the body.
 std::optional<PressedFaces> faces_under(const TetMesh& mesh, const InstrumentSpec& instrument);
+
+/// Edges of the tets around a needle's line against its zone (docs/needles.md).
+struct ZoneEdges {
+  double edge = 0.0;  ///< of a regular tet of their mean volume [m]
+  double zone = 0.0;  ///< [m]
+  static constexpr double kResolved = 0.6;
+  double share() const { return edge / zone; }
+};
+
+/// Nothing for other instruments, and where the line misses the body.
+std::optional<ZoneEdges> edges_in_zone(const TetMesh& mesh, const InstrumentSpec& instrument);
 
 }  // namespace glisson::app

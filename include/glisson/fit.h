@@ -60,7 +60,7 @@ struct ParameterResult {
   std::optional<double> sd;                                        ///< in the parameter's unit, by curvature
   std::optional<Interval> by_curvature, by_profile, by_bootstrap;  ///< of 95 %
   std::optional<Interval> further;  ///< between which a further specimen's own value lies in 95 %; none: not known
-  std::string verdict;              ///< identified, negligible, weak, not identifiable, at bound
+  std::string verdict;              ///< identified, negligible, weak, not identifiable, at bound, read off
   std::string words;                ///< the verdict in two sentences
 
   /// The interval to trust most: by profile, else by bootstrap, else by curvature.

@@ -30,7 +30,7 @@ class Parameter:
     sd: float | None
     ci95: Interval | None  #: of the mean over specimens, with three curves or more
     further95: Interval | None  #: of a further specimen's own value; None: too few curves
-    verdict: str  #: identified, negligible, weak, not identifiable, at bound
+    verdict: str  #: identified, negligible, weak, not identifiable, at bound, read off
     words: str
 
 

@@ -218,6 +218,32 @@ set = "z_min"
   EXPECT_EQ(said(pad, "tissue.poisson_ratio=0.44").find("  locking "), std::string::npos);
 }
 
+// Cells of 10 mm are as large as regular tets of 11.2 mm: 3.7 zones of 3 mm. What check then proposes passes.
+TEST_F(Commands, CheckTellsOfAMeshThatDoesNotResolveANeedle) {
+  const auto said = [&](const std::string& key) {
+    const Outcome outcome = run({"check", write("s.toml", R"([mesh]
+kind = "box"
+cells = [4, 4, 4]
+size_m = [0.04, 0.04, 0.04]
+[[fixed]]
+set = "z_min"
+[[instrument]]
+name = "needle"
+kind = "needle"
+tip_m = [0.021, 0.022, 0.0401]
+motion = { kind = "press", depth_mm = 1 }
+)"),
+                                 "--set", "motion.max_steps=9", "--set", key});
+    EXPECT_THAT(outcome, Exits(0));
+    return outcome.out;
+  };
+  const std::string text = said("instrument.needle.zone_mm=3");
+  EXPECT_NE(text.find("edges of 11.2 mm around it are 3.7 of its zone of 3 mm"), std::string::npos) << text;
+  EXPECT_NE(text.find("zone_mm = 22, or mesh.cells = [30, 30, 30]"), std::string::npos) << text;
+  EXPECT_EQ(said("instrument.needle.zone_mm=22").find("  zone  "), std::string::npos);
+  EXPECT_EQ(said("mesh.cells=[30,30,30]").find("  zone  "), std::string::npos);
+}
+
 // The paper's figures: all scenes in one report, every check computed and passed. The quick form ends figure 3 after
 // 0.1 s of motion; figure 2 and the checks are the same as in the whole.
 TEST_F(Commands, ReproducePassesItsChecks) {

@@ -21,7 +21,7 @@ ParameterResult found(std::string name, std::string unit, double value, double h
   ParameterResult p;
   p.parameter = {std::move(name), std::move(unit), 0.0, high, Scale::linear, 0.0};
   p.value = value;
-  p.verdict = "identified";
+  p.verdict = "read off";
   p.words = std::move(words);
   return p;
 }

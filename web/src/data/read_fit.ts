@@ -72,7 +72,7 @@ function readAxis(value: unknown, otherwise: string): FitAxis {
   return { label: text(raw["label"]) || otherwise, scale: finite(raw["scale"], 1) };
 }
 
-const VERDICTS = ["identified", "negligible", "weak", "not identifiable", "at bound"] as const;
+const VERDICTS = ["identified", "negligible", "weak", "not identifiable", "at bound", "read off"] as const;
 
 function readParameter(raw: Raw, index: number): FitParameter {
   return {

@@ -10,6 +10,7 @@ const LOOKS: Record<Verdict, { sign: IconName; tone: "pass" | "warn" | "fail" }>
   negligible: { sign: "pass", tone: "pass" },
   weak: { sign: "weak", tone: "warn" },
   "at bound": { sign: "bound", tone: "warn" },
+  "read off": { sign: "weak", tone: "warn" },
   "not identifiable": { sign: "fail", tone: "fail" },
 };
 
