@@ -135,6 +135,9 @@ PressedFaces faces_in(const Footprint& print, const std::vector<Corners>& surfac
   return faces;
 }
 
+/// Of a regular tet of that volume [m].
+double regular_edge(double volume) { return std::cbrt(6.0 * std::numbers::sqrt2 * volume); }
+
 }  // namespace
 
 double PressedFaces::finer() const {
@@ -195,13 +198,13 @@ std::optional<ZoneEdges> edges_in_zone(const TetMesh& mesh, const InstrumentSpec
     Vec3d centre;
     for (const std::uint32_t v : mesh.tets[t]) centre += mesh.vertices[v] * 0.25;
     const Vec3d from = centre - tip;
-    const double depth = dot(from, along);
-    if (depth < 0.0 || norm(from - along * depth) > needle->zone) continue;
-    volume += six_rest_volume(mesh, t) / 6.0;
+    const double depth = dot(from, along), own = six_rest_volume(mesh, t) / 6.0;
+    if (depth < 0.0 || norm(from - along * depth) > std::max(needle->zone, regular_edge(own))) continue;
+    volume += own;
     count += 1.0;
   }
   if (count == 0.0) return {};
-  return ZoneEdges{.edge = std::cbrt(6.0 * std::numbers::sqrt2 * volume / count), .zone = needle->zone};
+  return ZoneEdges{.edge = regular_edge(volume / count), .zone = needle->zone};
 }
 
 }  // namespace glisson::app

@@ -39,7 +39,9 @@ TEST(NeedleMembranes, HoldTheTipUntilTheirForce) {
     const bool there = std::abs(run.needle->path_length() - kDepth) < 1e-9;
     if (passed && at_break == 0.0) at_break = run.needle->tip_force();
     if (!passed && there) most = std::max(most, run.needle->tip_force()), waited = run.needle->depth();
-    if (!passed) EXPECT_LT(run.needle->path_length(), kDepth + 1e-9);
+    if (!passed) {
+      EXPECT_LT(run.needle->path_length(), kDepth + 1e-9);
+    }
     if (run.simulation.time() > run.end - 0.2) cuts += run.needle->tip_force(), ++count;
   });
   const InstrumentEvent* broke = event(*run.needle, "inner puncture");
