@@ -123,7 +123,13 @@ def energies(result: RunResult, *, ax: Any = None) -> Any:
         ("energy_elastic_J", "elastic"),
         ("energy_dissipated_J", "dissipated"),
         ("energy_kinetic_J", "kinetic"),
+        ("dissipated_friction_J", "friction"),
+        ("dissipated_contact_J", "contact"),
+        ("dissipated_fracture_J", "cutting and tearing"),
+        ("energy_instruments_J", "in instruments"),
     ):
+        if column.startswith(("dissipated_", "energy_instruments")) and not np.any(result[column]):
+            continue
         ax.plot(result["time_s"], 1e3 * result[column], label=label)
     _legend(ax)
     return ax

@@ -25,7 +25,8 @@ void Interactions::find_places(std::span<const ActiveVertex> active, std::size_t
   impulses_.assign(active.size(), Vec3d{});
 }
 
-void Interactions::begin(double time, double h, std::span<ActiveVertex> active, std::span<const Vec3d> rest) {
+void Interactions::begin(double time, double h, std::span<ActiveVertex> active, std::span<const Vec3d> rest,
+                         bool accounted) {
   std::fill(impulses_.begin(), impulses_.end(), Vec3d{});
   step_.time = time;
   step_.h = h;
@@ -34,6 +35,10 @@ void Interactions::begin(double time, double h, std::span<ActiveVertex> active, 
   step_.rest = rest;
   step_.mobility = {};
   step_.impulses = impulses_;
+  step_.interface_book = nullptr;
+  if (!accounted || all_.empty()) return;
+  book_.begin(active.size());
+  step_.interface_book = &book_;
 }
 
 void Interactions::add_forces() {
@@ -51,6 +56,12 @@ void Interactions::moved() {
 
 void Interactions::body_changed(const BodyView& body, std::span<const std::uint32_t> origins) {
   for (const std::shared_ptr<Interaction>& x : all_) x->body_changed(body, origins);
+}
+
+double Interactions::tool_energy() const {
+  double sum = 0.0;
+  for (const std::shared_ptr<Interaction>& x : all_) sum += x->tool_energy();
+  return sum;
 }
 
 double Interactions::squared_frequency() const {

@@ -23,7 +23,8 @@ class Interactions {
   void find_places(std::span<const ActiveVertex> active, std::size_t vertex_count);
 
   /// Begins a step. @param mobility  of each active vertex as if nothing held it, 1/(m + γh) [1/kg]
-  void begin(double time, double h, std::span<ActiveVertex> active, std::span<const Vec3d> rest);
+  /// @param accounted  whether they are to book their work
+  void begin(double time, double h, std::span<ActiveVertex> active, std::span<const Vec3d> rest, bool accounted);
   void add_forces();
   /// @param held  per place and component: whether a support or motion holds it
   void constrain(std::span<const Vec3d> mobility);
@@ -32,6 +33,9 @@ class Interactions {
 
   /// Per place, of the last step [N s].
   std::span<const Vec3d> impulses() const { return impulses_; }
+  /// What they booked in the last step that was accounted.
+  const InterfaceBook& book() const { return book_; }
+  double tool_energy() const;
   double squared_frequency() const;
 
   void archive(Archive& ar);
@@ -41,6 +45,7 @@ class Interactions {
   std::vector<std::uint32_t> place_of_, newcomers_;
   std::vector<Vec3d> impulses_;
   InteractionStep step_;
+  InterfaceBook book_;
 };
 
 }  // namespace glisson

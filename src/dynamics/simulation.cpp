@@ -290,7 +290,15 @@ double Simulation::force_time() const { return impl_->scheme->force_time(); }
 
 const EngineInfo& Simulation::engine_info() const { return impl_->scheme->info(); }
 
-Energies Simulation::energies() const { return impl_->scheme->energies(); }
+Energies Simulation::energies() const {
+  Energies energies = impl_->scheme->energies();
+  if (!impl_->scheme->state().options.track_energies) return energies;
+  for (const auto& x : impl_->scheme->interactions()) {
+    energies.elastic -= x->released_energy();
+    energies.fracture += x->released_energy();
+  }
+  return energies;
+}
 
 std::optional<double> Simulation::stored_energy() const {
   const Scheme& scheme = *impl_->scheme;
@@ -308,9 +316,8 @@ std::optional<double> Simulation::stored_energy() const {
 }
 
 std::optional<double> Simulation::energy_drift() const {
-  std::optional<double> stored = stored_energy();
+  const std::optional<double> stored = stored_energy();
   if (!stored) return stored;
-  for (const auto& x : impl_->scheme->interactions()) *stored += x->booked_energy() - x->energy();
   return energies().elastic - *stored;
 }
 

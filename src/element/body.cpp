@@ -57,6 +57,15 @@ void require_fibres(const Body& body, const TissueBlock& block, const Tissue& ti
 }
 
 /// m_i = Σ ρV/4 over the tets around vertex i, the lumped mass of [Schwartz2002, eq. 3].
+bool only_relaxes(const Body& body) {
+  bool any = false;
+  for (const TissueBlock& block : body.blocks) {
+    if (block.tissue.viscosity > 0.0) return false;
+    any = any || !block.tissue.maxwell.empty();
+  }
+  return any;
+}
+
 void lump_masses(Body& body) {
   body.masses.assign(body.vertex_count, 0.0);
   for (const TissueBlock& block : body.blocks) {

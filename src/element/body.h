@@ -60,6 +60,8 @@ struct Body {
 TissueBlock make_block(const Tissue& tissue, std::size_t begin, std::size_t end);
 /// Whether the tissue's fibres, if it has any, have a direction in every tet of a block. @throws std::invalid_argument
 void require_fibres(const Body& body, const TissueBlock& block, const Tissue& tissue);
+/// Whether viscous forces are those of Maxwell branches alone.
+bool only_relaxes(const Body& body);
 /// Sums what elements give to their vertices, in their order.
 void lump_masses(Body& body);
 

@@ -24,8 +24,9 @@ namespace glisson {
 
 /// Energies per unit time at a kick, with v₋ (before) and v₊ (after) [W]; kinetic is ½ Σ m v₋·v₊ [J].
 struct KickPower {
-  double elastic = 0.0, viscous = 0.0, damping = 0.0, tools = 0.0, loads = 0.0;
-  void archive(auto& ar) { ar(elastic, viscous, damping, tools, loads); }
+  double elastic = 0.0, viscous = 0.0, damping = 0.0, tools = 0.0, loads = 0.0;  ///< on the tissue
+  double contact = 0.0, friction = 0.0, fracture = 0.0;  ///< of tools, what the tissue does not take
+  void archive(auto& ar) { ar(elastic, viscous, damping, tools, loads, contact, friction, fracture); }
 };
 struct KickWork {
   KickPower before, after;

@@ -161,6 +161,7 @@ void Container::State::hold_bonds(const InteractionStep& step) {
     const Vec3d wanted = (to_space(solid.after, bond.place) - step.position(place)) * (1.0 / step.h);
     const Vec3d impulse = stopping(step, place, wanted);
     step.push(place, impulse);
+    step.book(WorkSink::contact, place, impulse);
     bear(solid, solid.after.axes * distance_to(*solid.shape, bond.place).normal, impulse * (1.0 / step.h));
   }
 }
@@ -202,6 +203,8 @@ void Container::constrain(const InteractionStep& step) {
   for (const ContactRow& row : s.rows) {
     if (row.impulse() == Vec3d{}) continue;
     s.bear(*row.solid, row.normal, row.impulse() * (1.0 / step.h));
+    step.book(WorkSink::contact, row.places[0], row.normal * row.pressing);
+    step.book(WorkSink::friction, row.places[0], row.rubbing);
     const auto solid = static_cast<std::uint32_t>(row.solid - s.solids.data());
     if (s.options.bonded) s.bonds[step.vertices[row.places[0]].vertex] = {solid, end_of(row, step)};
   }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "glisson/archive.h"
+#include "instruments/contact/shape.h"
 
 namespace glisson {
 namespace {
@@ -76,15 +77,25 @@ double Instrument::read(std::string_view column) const {
 
 void Instrument::drive(const InteractionStep& step) {
   force_depth_ = depth();
-  before_ = pose_;
+  earlier_ = before_, last_step_ = step_;
+  before_ = pose_, step_ = step.h;
   pose_ = driver_->advance(step.time, step.h, {-forces_.total(), -forces_.torque});
+}
+
+ToolVelocity Instrument::velocity_at(const Vec3d& x) const {
+  const Vec3d own = to_frame(before_, x);
+  ToolVelocity velocity;
+  if (last_step_ > 0.0) velocity.before = (x - to_space(earlier_, own)) * (1.0 / last_step_);
+  if (step_ > 0.0) velocity.after = (to_space(pose_, own) - x) * (1.0 / step_);
+  return velocity;
 }
 
 void archive(Archive& ar, Pose& pose) { ar(pose.position, pose.axes); }
 void archive(Archive& ar, InstrumentEvent& event) { ar(event.time, event.depth, event.event); }
 
 void Instrument::archive_motion(Archive& ar) {
-  ar(pose_, before_, forces_.normal, forces_.friction, forces_.cutting, forces_.torque, force_depth_, events_);
+  ar(pose_, before_, earlier_, step_, last_step_, forces_.normal, forces_.friction, forces_.cutting, forces_.torque,
+     force_depth_, events_);
   driver_->archive(ar);
 }
 

@@ -1,6 +1,8 @@
 // force_table.cpp — see force_table.h.
 #include "report/force_table.h"
 
+#include <array>
+#include <limits>
 #include <map>
 
 #include "glisson/instruments/driven_set.h"
@@ -8,8 +10,28 @@
 namespace glisson {
 namespace {
 
-const std::vector<std::string> kEnergyColumns{"energy_elastic_J", "energy_kinetic_J", "energy_dissipated_J",
-                                              "work_tools_J", "work_loads_J"};
+/// An energy by its column.
+struct EnergyColumn {
+  const char* name;
+  double Energies::*value;
+};
+constexpr std::array<EnergyColumn, 5> kEnergyColumns{{
+    {"energy_elastic_J", &Energies::elastic},
+    {"energy_kinetic_J", &Energies::kinetic},
+    {"energy_dissipated_J", &Energies::dissipated},
+    {"work_tools_J", &Energies::work_tools},
+    {"work_loads_J", &Energies::work_loads},
+}};
+constexpr std::array<EnergyColumn, 8> kFurtherEnergyColumns{{
+    {"dissipated_viscous_J", &Energies::viscous},
+    {"dissipated_maxwell_J", &Energies::maxwell},
+    {"dissipated_damping_J", &Energies::damping},
+    {"dissipated_friction_J", &Energies::friction},
+    {"dissipated_contact_J", &Energies::contact},
+    {"dissipated_fracture_J", &Energies::fracture},
+    {"energy_instruments_J", &Energies::instruments},
+    {"energy_numerical_J", &Energies::numerical},
+}};
 
 /// A set held by two entries (x by one, z by the other) has two sets of columns: the second is named <set>_2.
 std::vector<std::string> support_columns(const Variant& variant) {
@@ -31,7 +53,8 @@ std::vector<std::string> timed_columns(std::span<const InstrumentColumn> own) {
 
 }  // namespace
 
-ForceTable::ForceTable(const Variant& variant, const BuiltVariant& built) : contained_(variant.container.has_value()) {
+ForceTable::ForceTable(const Variant& variant, const BuiltVariant& built)
+    : contained_(variant.container.has_value()), stores_(variant.output.stored_energy) {
   const auto& all = built.instruments;
   for (std::size_t i = 1; i < all.size(); ++i)
     further_.push_back({all[i]->name(), timed_columns(all[i]->columns()), i});
@@ -44,8 +67,10 @@ ForceTable::ForceTable(const Variant& variant, const BuiltVariant& built) : cont
   lead_ = columns_.size();
   if (contained_) columns_.insert(columns_.end(), {"bottom_z_N", "side_z_N", "side_radial_N"});
   const std::vector<std::string> supports = support_columns(variant);
-  columns_.insert(columns_.end(), kEnergyColumns.begin(), kEnergyColumns.end());
+  for (const EnergyColumn& column : kEnergyColumns) columns_.emplace_back(column.name);
   columns_.insert(columns_.end(), supports.begin(), supports.end());
+  for (const EnergyColumn& column : kFurtherEnergyColumns) columns_.emplace_back(column.name);
+  if (stores_) columns_.insert(columns_.end(), {"energy_stored_J", "energy_drift_J"});
 }
 
 std::vector<double> ForceTable::row_of(const Further& file, const Sample& sample) {
@@ -63,11 +88,15 @@ std::vector<double> ForceTable::row(const Sample& sample) const {
     const ContainerLoads loads = sample.container.value_or(ContainerLoads{});
     row.insert(row.end(), {loads.bottom.z, loads.side.z, loads.side_radial});
   }
-  const Energies& e = sample.energies;
-  row.insert(row.end(), {e.elastic, e.kinetic, e.dissipated, e.work_tools, e.work_loads});
+  for (const EnergyColumn& column : kEnergyColumns) row.push_back(sample.energies.*column.value);
   for (const ForceParts& support : sample.supports) {
     const Vec3d total = support.total();
     row.insert(row.end(), {total.x, total.y, total.z});
+  }
+  for (const EnergyColumn& column : kFurtherEnergyColumns) row.push_back(sample.energies.*column.value);
+  if (stores_) {
+    const double stored = sample.stored_energy.value_or(std::numeric_limits<double>::quiet_NaN());
+    row.insert(row.end(), {stored, sample.energies.elastic - stored});
   }
   return row;
 }

@@ -38,7 +38,7 @@ class ForceTable {
   std::vector<Further> further_;
   std::vector<std::string> columns_;
   std::size_t lead_ = 0;  ///< columns of the first instrument, and what stands in for such of a tool in a container
-  bool contained_;
+  bool contained_, stores_;
 };
 
 }  // namespace glisson

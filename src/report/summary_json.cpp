@@ -60,6 +60,14 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
   }
   json["energy_kinetic_J"] = s.energies.kinetic;
   json["energy_dissipated_J"] = s.energies.dissipated;
+  json["dissipated_viscous_J"] = s.energies.viscous;
+  json["dissipated_maxwell_J"] = s.energies.maxwell;
+  json["dissipated_damping_J"] = s.energies.damping;
+  json["dissipated_friction_J"] = s.energies.friction;
+  json["dissipated_contact_J"] = s.energies.contact;
+  json["dissipated_fracture_J"] = s.energies.fracture;
+  json["energy_instruments_J"] = s.energies.instruments;
+  json["energy_numerical_J"] = s.energies.numerical;
   json["work_tools_J"] = s.energies.work_tools;
   json["work_loads_J"] = s.energies.work_loads;
   json["energy_imbalance_J"] = s.energies.imbalance();

@@ -18,10 +18,13 @@ TEST_F(Outputs, ForcesHaveTheDocumentedColumns) {
   const Outcome outcome = run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"});
   ASSERT_THAT(outcome, Exits(0));
   const std::string text = read_text(folder_ / "o/main/forces.csv");
-  EXPECT_EQ(text.substr(0, text.find('\n')),
-            "time_s,depth_m,force_x_N,force_y_N,force_z_N,force_N,elastic_N,viscous_N,damping_N,inertial_N,gravity_N,"
-            "load_N,energy_elastic_J,energy_kinetic_J,energy_dissipated_J,work_tools_J,work_loads_J,"
-            "support_z_min_x_N,support_z_min_y_N,support_z_min_z_N");
+  EXPECT_EQ(
+      text.substr(0, text.find('\n')),
+      "time_s,depth_m,force_x_N,force_y_N,force_z_N,force_N,elastic_N,viscous_N,damping_N,inertial_N,gravity_N,"
+      "load_N,energy_elastic_J,energy_kinetic_J,energy_dissipated_J,work_tools_J,work_loads_J,"
+      "support_z_min_x_N,support_z_min_y_N,support_z_min_z_N,dissipated_viscous_J,dissipated_maxwell_J,"
+      "dissipated_damping_J,dissipated_friction_J,dissipated_contact_J,dissipated_fracture_J,energy_instruments_J,"
+      "energy_numerical_J");
 }
 
 // Pressing down costs a positive force, which is the sum of its parts and the reverse of the vector's z component;

@@ -104,9 +104,7 @@ class Capsule final : public Interaction {
   bool is_torn(std::size_t triangle) const;  ///< carries no tension any more, or its tet was removed
   double open_area() const;                  ///< of the surface at rest [m²]
   double energy() const override;            ///< stored, at force_time() [J]
-  /// Energy released by openings and removed tets so far; Energies::elastic still counts it [J].
-  double released_energy() const;
-  double booked_energy() const override;
+  double released_energy() const override;   ///< by tears, openings and removed tets so far [J]
   const std::vector<CapsuleEvent>& events() const;
 
   /// Opens a whole triangle. @throws std::invalid_argument for an invalid triangle number

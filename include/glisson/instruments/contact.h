@@ -187,6 +187,7 @@ class ContactTool final : public Instrument {
 
  private:
   struct State;
+  void book(const InteractionStep& step) const;
   std::unique_ptr<State> state_;
 };
 

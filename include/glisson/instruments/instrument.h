@@ -123,6 +123,8 @@ class Instrument : public Interaction {
   /// Moves the pose to the end of the step; the previous one is in `before_`. To be called once a step, in reach() or
   /// first in constrain().
   void drive(const InteractionStep& step);
+  /// Velocity of the tool's own material at a point of space at the time of the forces; after drive().
+  ToolVelocity velocity_at(const Vec3d& x) const;
   /// Tells of a puncture of the surface.
   void tell_puncture(const Vec3d& place, double radius) const {
     if (on_puncture_) on_puncture_(place, radius);
@@ -131,13 +133,15 @@ class Instrument : public Interaction {
   /// The state that all instruments have and that of the driver; those of each kind call it first.
   void archive_motion(Archive& ar);
 
-  Pose pose_, before_;
+  Pose pose_, before_;  ///< at t + h and at t
   ToolForces forces_;
 
  private:
   std::string name_;
   std::shared_ptr<ToolDriver> driver_;
   Vec3d direction_, start_;
+  Pose earlier_;                         ///< a step before t
+  double step_ = 0.0, last_step_ = 0.0;  ///< h and that of the step before t; 0: there was none [s]
   double force_depth_ = 0.0;
   std::vector<InstrumentEvent> events_;
   std::function<void(const Vec3d&, double)> on_puncture_;

@@ -192,6 +192,7 @@ class Needle final : public Instrument {
   void constrain(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;
   void between_steps(Simulation& simulation) override;
+  double tool_energy() const override;  ///< of its bending [J]
   void archive(Archive& ar) override;
 
  private:

@@ -215,13 +215,18 @@ struct CapsuleSpec {
 struct OutputSpec {
   double sample_rate = 500.0;  ///< [Hz], > 0
   int frames = 60;             ///< frames of the whole run, 0 or more
+  bool stored_energy = false;  ///< W(u) with every sample: a pass over the tets in double each
 
   template <class Take>
   static constexpr auto fields(Take take) {
     return take(
         field("sample_rate", &OutputSpec::sample_rate, "Hz", above(0), "lines of forces.csv per simulated second"),
         field("frames", &OutputSpec::frames, between(0, 100000),
-              "states of the whole body stored over the run; 0: none"));
+              "states of the whole body stored over the run; 0: none"),
+        field(
+            "stored_energy", &OutputSpec::stored_energy,
+            "stored energy W(u) with each line of forces.csv, and what the work of the elastic forces drifts from it; "
+            "each takes some steps' time"));
   }
 };
 
@@ -309,6 +314,7 @@ struct Sample {
   std::vector<ForceParts> supports;           ///< per fixed set: its force on the tissue
   std::optional<ContainerLoads> container;    ///< what its sensors carry
   Energies energies;
+  std::optional<double> stored_energy;  ///< where OutputSpec::stored_energy asks for it and the tissue has one [J]
 };
 
 /// One line of events.csv.

@@ -11,6 +11,8 @@
 // the other, in the order in which they were attached. Between steps they may change the body: cut it, remove tets.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -42,6 +44,33 @@ struct BodyView {
   bool is_removed(std::size_t tet) const { return !removed.empty() && removed[tet] != 0; }
 };
 
+/// What becomes of the work of a tool that the tissue does not take.
+enum class WorkSink {
+  contact,   ///< impulses along the normal: an impact, tissue that is pushed out
+  friction,  ///< slip
+  fracture   ///< cutting
+};
+
+/// Impulses between tools and tissue in a step, by what becomes of their work: InteractionStep::book fills it.
+struct InterfaceBook {
+  struct Page {
+    std::vector<Vec3d> impulses;                   ///< per place, on the tissue [N s]
+    double tools_before = 0.0, tools_after = 0.0;  ///< Σ J·V₋ and Σ J·V₊, V of the tools [J]
+  };
+  std::array<Page, 3> pages;  ///< by WorkSink
+
+  /// Begins a step with so many active vertices.
+  void begin(std::size_t places) {
+    for (Page& p : pages) p.impulses.assign(places, Vec3d{}), p.tools_before = p.tools_after = 0.0;
+  }
+};
+
+/// Velocity of a tool's material at a point, before and after the time of the forces [m/s].
+struct ToolVelocity {
+  Vec3d before{};  ///< V₋, of the last step; 0 in the first
+  Vec3d after{};   ///< V₊, of this step
+};
+
 /// The active vertices in a step.
 class InteractionStep {
  public:
@@ -54,7 +83,8 @@ class InteractionStep {
   std::span<const Vec3d> rest;              ///< per vertex of the mesh: rest position [m]
   /// Per place: velocity per impulse, 1/(m + γh), in each component; 0 where a support or motion holds it [1/kg].
   std::span<const Vec3d> mobility;
-  std::span<Vec3d> impulses;  ///< per place: sum of the impulses of this step [N s]
+  std::span<Vec3d> impulses;                ///< per place: sum of the impulses of this step [N s]
+  InterfaceBook* interface_book = nullptr;  ///< where book() writes; null where energies are not tracked
 
   /// Position of the vertex at a place at time t, or at t + h after moved() [m].
   Vec3d position(std::size_t place) const { return rest[vertices[place].vertex] + vertices[place].displacement; }
@@ -64,6 +94,18 @@ class InteractionStep {
     const Vec3d& a = mobility[place];
     vertices[place].velocity += Vec3d{a.x * impulse.x, a.y * impulse.y, a.z * impulse.z};
     impulses[place] += impulse;
+  }
+
+  /// Tells the ledger of energies what a tool exerted on the vertex at a place: to be called in constrain for impulses that
+  /// were pushed, once each. The work of the tool is J·(V₋ + V₊)/2, the tissue takes J·(v₋ + v₊)/2 of it, and the difference goes
+  /// to the sink. An impulse that is not told counts as a tool's that moves with the tissue. Costs nothing where energies are not
+  /// tracked.
+  void book(WorkSink sink, std::size_t place, const Vec3d& impulse, const ToolVelocity& tool = {}) const {
+    if (interface_book == nullptr) return;
+    InterfaceBook::Page& page = interface_book->pages[static_cast<std::size_t>(sink)];
+    page.impulses[place] += impulse;
+    page.tools_before += dot(impulse, tool.before);
+    page.tools_after += dot(impulse, tool.after);
   }
 };
 
@@ -114,9 +156,10 @@ class Interaction {
 
   /// Stored by its elastic forces (add_forces), at force_time() [J].
   virtual double energy() const { return 0.0; }
-  /// What Energies::elastic counts of it: its energy, with what it released without work as by a tear, without what it stored when
-  /// it was attached [J].
-  virtual double booked_energy() const { return energy(); }
+  /// Energy that its elastic forces have lost without work so far, as by a tear: Energies::fracture [J].
+  virtual double released_energy() const { return 0.0; }
+  /// Stored in the tool itself at force_time(), as in a bent needle: Energies::instruments [J]. Kept where energies are tracked.
+  virtual double tool_energy() const { return 0.0; }
 
   /// Writes or reads its state for a checkpoint, to the last bit (glisson/archive.h), without what follows from the body and
   /// its options. Reading comes after body_changed() has reported all changes that preceded the writing.

@@ -211,24 +211,41 @@ struct ForceParts {
 };
 
 /// Energies at force_time() [J]. Exact identity of the schemes, up to rounding and the tolerance of Newton's method:
-///   kinetic + elastic + dissipated + numerical + removed = initial + work_tools + work_loads + changed.
+///   kinetic + elastic + dissipated + friction + contact + fracture + instruments + numerical + removed
+///     = initial + work_tools + work_loads + changed.
+/// What goes on between a tool and the tissue: J the impulse of a step on the tissue, V and v the velocities of tool and tissue
+/// where it acts, before (−) and after (+); the tool's work is ½ J·(V₋ + V₊), the tissue takes ½ J·(v₋ + v₊), and friction,
+/// contact or fracture the difference.
 struct Energies {
   double elastic = 0.0;  ///< − work of the elastic forces; the stored energy but for Simulation::energy_drift()
   double kinetic = 0.0;  ///< explicit, semi-implicit: ½ Σ m v(t−h/2)·v(t+h/2), the scheme's own; implicit: ½ Σ m v²
-  double dissipated = 0.0;  ///< by viscosity and nodal damping
+  double dissipated = 0.0;  ///< by viscosity, Maxwell branches and nodal damping: viscous + maxwell + damping
+  double viscous = 0.0;     ///< of it by Kelvin–Voigt viscosity; of a body that has Maxwell branches too, both
+  double maxwell = 0.0;     ///< of it by Maxwell branches, with what they still hold
+  double damping = 0.0;     ///< of it by nodal damping
+  double friction = 0.0;    ///< by slip along tools, shafts and containers
+  /// By impulses across a surface: impacts, and what the model of a bent needle leaves. Below 0 where tissue that was inside
+  /// a tool at the start is pushed out.
+  double contact = 0.0;
+  double fracture = 0.0;     ///< work of tips and edges that cut, and what torn or opened capsules released
+  double instruments = 0.0;  ///< stored in instruments: bending of needles
   /// By the time scheme of `implicit` itself. Backward Euler: ½ Σ m |Δv|² − ½ ΔF·Δu a step, F the elastic forces.
   /// Newmark: 0. Static: ½ of the residual at the start, along Δu. Generalised-α: the remainder of the balance, which
   /// then proves nothing.
   double numerical = 0.0;
-  double work_tools = 0.0;  ///< of driven vertices on the tissue
+  /// Of tools, instruments and supports: force on the tissue times the motion of the tool, torques included. An Interaction
+  /// of a program's own counts by the motion of the tissue unless it calls InteractionStep::book.
+  double work_tools = 0.0;
   double work_loads = 0.0;  ///< of gravity and of loads
   double initial = 0.0;     ///< kinetic and elastic energy of the state given by set_state
   /// Kinetic and elastic energy lost with removed tets, or by moves of vertices at rest.
   double removed = 0.0;
-  /// Added by changes of tissues: stored energy at the deformation of that moment, and kinetic energy of mass.
+  /// Added by changes of tissues: stored energy at the deformation of that moment, and kinetic energy of mass. And what
+  /// capsules stored when they were attached.
   double changed = 0.0;
   double imbalance() const {
-    return kinetic + elastic + dissipated + numerical + removed - initial - work_tools - work_loads - changed;
+    return kinetic + elastic + dissipated + friction + contact + fracture + instruments + numerical + removed -
+           initial - work_tools - work_loads - changed;
   }
 };
 

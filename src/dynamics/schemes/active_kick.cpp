@@ -1,12 +1,14 @@
 #include "dynamics/schemes/active_kick.h"
 
 #include <algorithm>
+#include <array>
 
 namespace glisson {
 
 void add(KickPower& sum, const KickPower& p) {
   sum.elastic += p.elastic, sum.viscous += p.viscous, sum.damping += p.damping;
   sum.tools += p.tools, sum.loads += p.loads;
+  sum.contact += p.contact, sum.friction += p.friction, sum.fracture += p.fracture;
 }
 
 void ActiveKick::follow(std::span<const std::uint32_t> before, std::span<const ActiveVertex> active) {
@@ -127,6 +129,21 @@ KickWork ActiveKick::work(std::span<const ActiveVertex> active) const {
     }
   }
   return work;
+}
+
+/// J·(V − v)/h with either velocity: 0 where the tissue goes with the tool.
+void ActiveKick::add_interface(std::span<const ActiveVertex> active, const InterfaceBook& book, KickWork& work) const {
+  constexpr std::array<double KickPower::*, 3> kSinks{&KickPower::contact, &KickPower::friction, &KickPower::fracture};
+  for (std::size_t sink = 0; sink < kSinks.size(); ++sink) {
+    const InterfaceBook::Page& page = book.pages[sink];
+    double before = page.tools_before, after = page.tools_after;
+    for (std::size_t k = 0; k < active.size(); ++k) {
+      before -= dot(page.impulses[k], kicked_[k].velocity_before);
+      after -= dot(page.impulses[k], active[k].velocity);
+    }
+    work.before.*kSinks[sink] += before / step_;
+    work.after.*kSinks[sink] += after / step_;
+  }
 }
 
 void ActiveKick::archive(Archive& ar) {

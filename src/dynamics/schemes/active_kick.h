@@ -44,6 +44,8 @@ class ActiveKick {
   ForceParts force(std::span<const ActiveVertex> active, std::size_t constraint) const;
   /// Work of the forces, that of the constraints included.
   KickWork work(std::span<const ActiveVertex> active) const;
+  /// Adds what of the work of tools the tissue did not take.
+  void add_interface(std::span<const ActiveVertex> active, const InterfaceBook& book, KickWork& work) const;
 
   double time() const { return time_; }  ///< of the last kick [s]
   const Vec3d& gravity() const { return gravity_; }

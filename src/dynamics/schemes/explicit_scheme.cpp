@@ -50,7 +50,9 @@ void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
   double kinetic = 0.0;
   for (std::size_t i = 0; i < velocity.size(); ++i)
     kinetic += 0.5 * state_.body.masses[i] * dot(velocity[i], velocity[i]);
-  ledger_.reset(kinetic, secant_energy(state_.body, displacement));
+  double elastic = secant_energy(state_.body, displacement);
+  for (const auto& x : interactions_.all()) elastic += x->energy() + x->released_energy();
+  ledger_.reset(kinetic, elastic);
 }
 
 /// Brings the vertices that interactions may act on in this step to hand, before the body moves the others.
@@ -69,6 +71,7 @@ void ExplicitScheme::constrain_interactions() {
 
 void ExplicitScheme::attach(std::shared_ptr<Interaction> interaction, const BodyView& body) {
   interaction->attached(body, state_.time);
+  if (state_.options.track_energies) ledger_.bring_in(0.0, interaction->energy());
   interactions_.add(std::move(interaction));
   interactions_.find_places(moving_->active(), state_.body.vertex_count);
   control_->set_added(interactions_.squared_frequency());
@@ -85,7 +88,9 @@ void ExplicitScheme::book(double h, const KickWork& free) {
   KickWork work = kick_.work(moving_->active());
   add(work.before, free.before);
   add(work.after, free.after);
-  ledger_.book(h, work.before, work.after, work.kinetic + free.kinetic);
+  if (!interactions_.empty()) kick_.add_interface(moving_->active(), interactions_.book(), work);
+  ledger_.book(h, work.before, work.after, work.kinetic + free.kinetic, only_relaxes(state_.body));
+  if (!interactions_.empty()) ledger_.store_in_instruments(interactions_.tool_energy());
 }
 
 void ExplicitScheme::take_stiffness(const Advance& seen) {
@@ -138,7 +143,7 @@ StepResult ExplicitScheme::step() {
   }
 
   kick_.begin(h);
-  interactions_.begin(state_.time, h, moving_->active(), state_.body.rest_positions);
+  interactions_.begin(state_.time, h, moving_->active(), state_.body.rest_positions, state_.options.track_energies);
   interactions_.add_forces();
   kick(h);
   constrain_interactions();

@@ -147,6 +147,8 @@ void ImplicitScheme::book(const Moment& before) {
   Energies& energies = ledger_.books();
   energies.elastic -= elastic;
   energies.dissipated -= viscous + damping;
+  (only_relaxes(state_.body) ? energies.maxwell : energies.viscous) -= viscous;
+  energies.damping -= damping;
   energies.work_loads += loads;
   energies.work_tools += tools;
   energies.numerical += change + sudden;

@@ -6,6 +6,9 @@
 // so each force p does the work ½ h p·v₋ before t_n and ½ h p·v₊ after it. Summed over all forces this is an
 // identity, for variable steps too; what a test of the balance proves is that no force was forgotten. For
 // linear tissue the elastic work equals the change of ½ uᵀK u to rounding.
+//
+// A tool's impulse J does the work ½ J·(V₋ + V₊) with the velocities V of the tool: the trapezoidal rule for ∫ F·dX. The tissue
+// takes ½ J·(v₋ + v₊); the rest is what contact, friction and fracture dissipate, or a needle stores in its bending.
 #pragma once
 
 #include "engine/moving_body.h"
@@ -15,7 +18,8 @@
 namespace glisson {
 
 inline void archive(Archive& ar, Energies& e) {
-  ar(e.elastic, e.kinetic, e.dissipated, e.numerical, e.work_tools, e.work_loads, e.initial, e.removed, e.changed);
+  ar(e.elastic, e.kinetic, e.dissipated, e.viscous, e.maxwell, e.damping, e.friction, e.contact, e.fracture,
+     e.instruments, e.numerical, e.work_tools, e.work_loads, e.initial, e.removed, e.changed);
 }
 
 class EnergyLedger {
@@ -29,12 +33,19 @@ class EnergyLedger {
   }
 
   /// Books a kick: `before` with v₋, `after` with v₊; `kinetic` = ½ Σ m v₋·v₊.
-  void book(double h, const KickPower& before, const KickPower& after, double kinetic) {
-    add(0.5 * pending_step_, pending_);
-    add(0.5 * h, before);
+  /// @param relaxes  viscous forces are those of Maxwell branches
+  void book(double h, const KickPower& before, const KickPower& after, double kinetic, bool relaxes) {
+    add(0.5 * pending_step_, pending_, relaxes);
+    add(0.5 * h, before, relaxes);
     pending_ = after;
     pending_step_ = h;
     now_.kinetic = kinetic;
+  }
+
+  /// Books what the instruments store: work that contact did not lose [J].
+  void store_in_instruments(double energy) {
+    now_.contact -= energy - now_.instruments;
+    now_.instruments = energy;
   }
 
   /// Books energy that left with part of the body [J]. Between two kicks the kinetic part is ½ m v² with the velocity
@@ -60,10 +71,15 @@ class EnergyLedger {
   void archive(Archive& ar) { ar(now_, pending_, pending_step_); }
 
  private:
-  void add(double weight, const KickPower& p) {
+  void add(double weight, const KickPower& p, bool relaxes) {
     now_.elastic -= weight * p.elastic;
     now_.dissipated -= weight * (p.viscous + p.damping);
-    now_.work_tools += weight * p.tools;
+    (relaxes ? now_.maxwell : now_.viscous) -= weight * p.viscous;
+    now_.damping -= weight * p.damping;
+    now_.contact += weight * p.contact;
+    now_.friction += weight * p.friction;
+    now_.fracture += weight * p.fracture;
+    now_.work_tools += weight * (p.tools + p.contact + p.friction + p.fracture);
     now_.work_loads += weight * p.loads;
   }
 

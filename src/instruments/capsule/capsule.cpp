@@ -60,7 +60,6 @@ std::span<const double> Capsule::open_share() const { return state_->open; }
 double Capsule::released_energy() const { return state_->released; }
 const std::vector<CapsuleEvent>& Capsule::events() const { return state_->events; }
 double Capsule::energy() const { return state_->membrane.energy(state_->now); }
-double Capsule::booked_energy() const { return energy() + state_->released - state_->at_first; }
 
 double Capsule::largest_tension() const {
   const std::vector<double>& t = state_->tensions();
@@ -128,7 +127,6 @@ void Capsule::attached(const BodyView& body, double time) {
   fresh.open.assign(fresh.faces.size(), 0.0);
   fresh.time = time;
   fresh.lay_out(body, true);
-  fresh.at_first = fresh.membrane.energy(fresh.now);
   *state_ = std::move(fresh);
 }
 
@@ -181,7 +179,7 @@ void Capsule::archive(Archive& ar) {
   ar.check(std::all_of(s.open.begin(), s.open.end(), [](double share) { return share >= 0.0 && share <= 1.0; }));
   ar.same_size(s.now);
   if (ar.reads()) s.show_openings(), s.evaluate();
-  ar(s.frequency, s.frequency_before, s.released, s.at_first, s.time, s.events);
+  ar(s.frequency, s.frequency_before, s.released, s.time, s.events);
 }
 
 }  // namespace glisson

@@ -32,7 +32,7 @@ struct Capsule::State {
   std::size_t nearest = 0;                         ///< triangle that was nearest to the last place someone asked about
   bool is_named = false;                           ///< whether reach() has named the vertices
   double frequency = 0.0, frequency_before = 0.0;  ///< squared, of the last two steps [1/s²]
-  double released = 0.0, at_first = 0.0;           ///< without work; stored when it was attached [J]
+  double released = 0.0;                           ///< without work [J]
   double time = 0.0;                               ///< of the last forces [s]
   std::vector<CapsuleEvent> events;
 

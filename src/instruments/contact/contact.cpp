@@ -96,7 +96,7 @@ void ContactTool::add_forces(const InteractionStep& step) { state_->books.begin(
 void ContactTool::constrain(const InteractionStep& step) {
   State& s = *state_;
   forces_ = {};
-  s.rows.clear(), s.pressed.clear(), s.effort = {};
+  s.rows.clear(), s.bond_impulses.clear(), s.pressed.clear(), s.effort = {};
   if (s.lost) return;
   s.add_vertices(step);
   s.effort.vertices = s.rows.size();
@@ -109,6 +109,7 @@ void ContactTool::constrain(const InteractionStep& step) {
   s.books.close(s.rows, step);
   if (s.options.bonded) s.bond(step, forces_);
   s.collect(step, forces_);
+  if (step.interface_book != nullptr) book(step);
 
   if (touches()) {
     if (!s.in_contact) add_event(step.time, force_depth(), "contact");
@@ -116,6 +117,21 @@ void ContactTool::constrain(const InteractionStep& step) {
   } else if (s.in_contact && step.time > s.last_touch + kQuiet) {
     s.in_contact = false;
     add_event(s.last_touch, s.last_depth, "release");
+  }
+}
+
+/// Tells the ledger of all impulses: what presses is contact's, what rubs friction's.
+void ContactTool::book(const InteractionStep& step) const {
+  for (const ContactRow& row : state_->rows) {
+    if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
+    const ToolVelocity tool = velocity_at(row.origin);
+    for (std::uint32_t i = 0; i < row.count; ++i) {
+      step.book(WorkSink::contact, row.places[i], row.normal * (row.pressing * row.weights[i]), tool);
+      step.book(WorkSink::friction, row.places[i], row.rubbing * row.weights[i], tool);
+    }
+  }
+  for (const auto& [place, impulse] : state_->bond_impulses) {
+    step.book(WorkSink::contact, place, impulse, velocity_at(step.position(place)));
   }
 }
 

@@ -125,6 +125,7 @@ void ContactTool::State::bond(const InteractionStep& step, ToolForces& forces) {
     const Vec3d wanted = (to_space(solid.after, anchor) - x) * (1.0 / step.h);
     const Vec3d impulse = stopping(step, place, wanted);
     step.push(place, impulse);
+    bond_impulses.emplace_back(place, impulse);
     const Vec3d n = solid.after.axes * distance_to(options.shape, anchor).normal;
     const Vec3d across = n * dot(impulse, n);
     forces.normal += across * (1.0 / step.h), forces.friction += (impulse - across) * (1.0 / step.h);

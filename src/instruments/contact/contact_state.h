@@ -21,8 +21,10 @@ struct ContactTool::State {
   std::vector<Vec3d> starts, ends;       ///< per vertex of the reach, in the frame of the tool
   std::vector<double> at_ends;           ///< φ there
   std::map<std::uint32_t, Vec3d> bonds;  ///< vertex → place in the frame of the tool
-  std::vector<double> pressed;           ///< per vertex of the reach: impulse along its normal in this step [N s]
-  std::vector<std::uint32_t> touched;    ///< vertices of the reach that have rows, as places there
+  std::vector<std::pair<std::uint32_t, Vec3d>>
+      bond_impulses;                   ///< place at hand → impulse of its bond in this step [N s]
+  std::vector<double> pressed;         ///< per vertex of the reach: impulse along its normal in this step [N s]
+  std::vector<std::uint32_t> touched;  ///< vertices of the reach that have rows, as places there
   std::vector<std::uint32_t> bearing_vertices;
   std::vector<double> pressures;
   double area = 0.0;

@@ -97,6 +97,7 @@ void Blade::resist(const InteractionStep& step, const EdgePiece& piece, const Ve
   for (std::size_t c = 0; c < 4; ++c) {
     const Vec3d push = through * (impulse * piece.weights[c] / speed);
     step.push(places[c], push);
+    step.book(WorkSink::fracture, places[c], push, velocity_at(step.position(places[c])));
     forces_.cutting += push * (1.0 / step.h);
     forces_.torque += cross(step.position(places[c]) - pose_.position, push) * (1.0 / step.h);
   }

@@ -86,6 +86,10 @@ struct Needle::Solver {
                                 const Eigen::MatrixXd& C) const;
   void bend(std::span<const Vec3d> impulse, const Eigen::MatrixXd& C);
   shaft::AxialLimit limit_of(std::size_t row) const;
+
+ public:
+  void book(const InteractionStep& step, std::span<const Vec3d> sideways, std::span<const Vec3d> lengthways,
+            const ToolVelocity& needle) const;
 };
 
 void Needle::Solver::find_rows(const InteractionStep& step) {
@@ -205,6 +209,24 @@ std::vector<double> Needle::Solver::along_it(const Eigen::MatrixXd& W) {
   return p;
 }
 
+/// Tells the ledger: slip of the shaft is friction, a tip in tissue cuts. Across, what the tissue does not take bends the needle,
+/// ½ Σ f·C f = −½ Σ f·y.
+void Needle::Solver::book(const InteractionStep& step, std::span<const Vec3d> sideways,
+                          std::span<const Vec3d> lengthways, const ToolVelocity& needle) const {
+  s.bending = 0.0;
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    const bool is_tip = j >= node.size();
+    const WorkSink along = !is_tip                          ? WorkSink::friction
+                           : s.stage == NeedleStage::inside ? WorkSink::fracture
+                                                            : WorkSink::contact;
+    shaft::book(step, along, *all[j], lengthways[j], needle);
+    shaft::book(step, WorkSink::contact, *all[j], sideways[j], needle);
+    s.bending -= 0.5 * dot(sideways[j], is_tip ? s.bend_tip : s.bend[node[j]]) / h;
+  }
+}
+
+double Needle::tool_energy() const { return state_->bending; }
+
 void Needle::add_forces(const InteractionStep& step) {
   State& s = *state_;
   if (s.stage != NeedleStage::outside && shaft::read(step, s.tip)) s.tip_velocity = s.tip.velocity;
@@ -224,15 +246,18 @@ void Needle::constrain(const InteractionStep& step) {
   const std::vector<Vec3d> sideways = solver.across_it(W);
   const std::vector<double> along = solver.along_it(W);
   s.step_h = step.h;
+  std::vector<Vec3d> booked;
   for (std::size_t j = 0; j < solver.all.size(); ++j) {
     const Vec3d lengthways = direction() * along[j];
     shaft::push(step, *solver.all[j], sideways[j] + lengthways);
+    if (step.interface_book != nullptr) booked.push_back(lengthways);
     const bool is_tip = j >= solver.node.size();
     forces_.normal += sideways[j] * (1.0 / step.h);
     (is_tip ? (s.stage == NeedleStage::inside ? forces_.cutting : forces_.normal) : forces_.friction) +=
         lengthways * (1.0 / step.h);
     forces_.torque += cross(solver.all[j]->position - before_.position, (sideways[j] + lengthways) * (1.0 / step.h));
   }
+  if (step.interface_book != nullptr) solver.book(step, sideways, booked, velocity_at(before_.position));
 }
 
 }  // namespace glisson

@@ -61,6 +61,7 @@ void Needle::State::forget_forces(double h) {
   std::fill(along.begin(), along.end(), 0.0);
   tip_along = 0.0;
   tip_cuts = false;
+  bending = 0.0;
   step_h = h;
 }
 
@@ -146,7 +147,7 @@ void Needle::archive(Archive& ar) {
   archive_motion(ar);
   ar(s.stage, s.look, s.named_around, s.tip.rest, s.tip_along, s.bend_tip, s.tip_cuts, s.tip_out, s.withdraws);
   ar(s.region, s.next_region, s.step_h, s.wave_time, s.pressing, s.drop);
-  ar(s.broken, s.at_membrane, s.cutting_beyond);
+  ar(s.broken, s.at_membrane, s.cutting_beyond, s.bending);
   ar.check(s.broken + (s.at_membrane ? 1 : 0) <= s.membranes.size());
   std::vector<Vec3d> path;
   for (const shaft::Row& node : s.nodes) path.push_back(node.rest);

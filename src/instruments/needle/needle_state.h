@@ -83,6 +83,7 @@ struct Needle::State {
   // the last step
   Vec3d bend_tip{};         ///< deflection of the tip [m]
   std::vector<Vec3d> bend;  ///< of the needle at each node [m]
+  double bending = 0.0;     ///< energy of that; kept where energies are tracked [J]
   double step_h = 0.0;
 
   void forget_forces(double h);

@@ -71,6 +71,11 @@ void push(const InteractionStep& step, const Row& row, const Vec3d& impulse) {
   for (const VertexWeight& w : row.weights) step.push(step.place_of[w.vertex], impulse * w.weight);
 }
 
+void book(const InteractionStep& step, WorkSink sink, const Row& row, const Vec3d& impulse,
+          const ToolVelocity& needle) {
+  for (const VertexWeight& w : row.weights) step.book(sink, step.place_of[w.vertex], impulse * w.weight, needle);
+}
+
 /// Rows of nodes that are new, or all where a mobility has changed.
 void MobilityMatrix::extend(const InteractionStep& step, std::span<const Row> nodes) {
   const auto n = static_cast<Eigen::Index>(nodes.size());

@@ -31,6 +31,8 @@ struct Row {
 bool read(const InteractionStep& step, Row& row);
 /// Spreads an impulse [N s] over the vertices of a row.
 void push(const InteractionStep& step, const Row& row, const Vec3d& impulse);
+/// Tells the ledger of it.
+void book(const InteractionStep& step, WorkSink sink, const Row& row, const Vec3d& impulse, const ToolVelocity& needle);
 
 /// W of nodes and a tip [1/kg], kept from step to step: a path changes at its end only, and mobilities hardly ever.
 /// Of the mobilities' components the largest counts, so that impulses never overshoot.

@@ -142,6 +142,7 @@ void Run::take_sample() {
   }
   if (built_.container) sample_.container = built_.container->sensor_loads();
   sample_.energies = simulation_.energies();
+  if (variant_.output.stored_energy) sample_.stored_energy = simulation_.stored_energy();
   tell_events();
   observer_.on_sample(sample_);
   sampled_ = true;
