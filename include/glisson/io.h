@@ -51,6 +51,10 @@ struct Field {
 void write_vtu(const std::filesystem::path& file, const TetMesh& mesh, std::span<const Vec3d> positions = {},
                std::span<const Field> vertex_fields = {}, std::span<const Field> tet_fields = {});
 
+/// Writes a .vtp of triangles in space, such as a tool's surface [m].
+/// @throws std::invalid_argument for a triangle of a point that does not exist
+void write_vtp(const std::filesystem::path& file, std::span<const Vec3d> points, std::span<const Triangle> triangles);
+
 /// Writes a .pvd collection of (time [s], file relative to the .pvd). Replaces the file atomically, so an
 /// interrupted run leaves a readable collection of the frames written so far.
 void write_pvd(const std::filesystem::path& file, std::span<const std::pair<double, std::filesystem::path>> frames);

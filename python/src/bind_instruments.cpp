@@ -127,6 +127,9 @@ void bind_common(nb::module_& m) {
           "forces", [](const Instrument& x) { return x.forces(); }, doc("Instrument::forces"))
       .def_prop_ro("force", &Instrument::force, doc("Instrument::force"))
       .def_prop_ro("sensor_force", &Instrument::sensor_force, doc("Instrument::sensor_force"))
+      .def_prop_ro("force_pose", &Instrument::force_pose, doc("Instrument::force_pose"))
+      .def_prop_ro("handle", &Instrument::handle, doc("Instrument::handle"))
+      .def_prop_ro("handle_torque", &Instrument::handle_torque, doc("Instrument::handle_torque"))
       .def_prop_ro(
           "columns",
           [](const Instrument& x) {
@@ -187,6 +190,7 @@ void bind_contact(nb::module_& m) {
            doc("ContactTool::ContactTool"))
       .def_prop_ro("touches", &ContactTool::touches, doc("ContactTool::touches"))
       .def_prop_ro("contact_area", &ContactTool::contact_area, doc("ContactTool::contact_area"))
+      .def_prop_ro("largest_pressure", &ContactTool::largest_pressure, doc("ContactTool::largest_pressure"))
       .def_prop_ro(
           "contact_pressure",
           [](const ContactTool& tool) {

@@ -320,6 +320,16 @@ void bind_reading(nb::class_<Live>& c) {
       .def(
           "limiting_tets", [](const Live& l, std::size_t most) { return l.get().limiting_tets(most); }, "most"_a = 10,
           doc(of("limiting_tets")))
+      .def(
+          "contact_fields",
+          [](const Live& l) {
+            ContactFields fields = l.get().contact_fields();
+            nb::dict out;
+            out["traction"] = vectors(fields.traction);
+            out["pressure"] = scalars(std::move(fields.pressure));
+            return out;
+          },
+          doc("ContactFields"), nb::sig("def contact_fields(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]"))
       .def("tet_fields", tet_fields, doc("TetFields"),
            nb::sig("def tet_fields(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]"))
       .def(

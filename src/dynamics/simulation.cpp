@@ -9,6 +9,7 @@
 
 #include "base/require_fields.h"
 #include "base/text.h"
+#include "dynamics/contact_fields.h"
 #include "dynamics/schemes/changer.h"
 #include "dynamics/schemes/make_scheme.h"
 #include "dynamics/simulation_parts.h"
@@ -326,6 +327,12 @@ TetFields Simulation::tet_fields() const {
   std::vector<BranchMemory> memory;
   for (std::size_t b = 0; b < scheme.body().blocks.size(); ++b) memory.push_back(scheme.branch_memory(b));
   return glisson::tet_fields(scheme.body(), displacement(), velocity(), memory);
+}
+
+ContactFields Simulation::contact_fields() const {
+  const auto interactions = impl_->scheme->interactions();
+  if (interactions.empty()) return {};
+  return glisson::contact_fields(present_mesh(), positions(), interactions);
 }
 
 void Simulation::save(std::ostream& out) const {

@@ -51,6 +51,12 @@ struct Container::State {
   std::vector<ContactRow> rows;
   std::map<std::uint32_t, Bond> bonds;
   ContainerLoads loads;
+  struct Bearing {
+    std::uint32_t vertex;
+    Vec3d force;
+    double normal;
+  };
+  std::vector<Bearing> bearing;  ///< of the last step [N]
 
   void build();
   void add_solid(const Shape& shape, const Pose& pose);
@@ -59,7 +65,7 @@ struct Container::State {
   void bond_first(const BodyView& body);
   void add_rows(const InteractionStep& step);
   void hold_bonds(const InteractionStep& step);
-  void bear(const ContactSolid& solid, const Vec3d& normal, const Vec3d& force);
+  void bear(std::uint32_t vertex, const ContactSolid& solid, const Vec3d& normal, const Vec3d& force);
 };
 
 void Container::State::add_solid(const Shape& shape, const Pose& pose) {
@@ -144,7 +150,8 @@ void Container::State::add_rows(const InteractionStep& step) {
   begun = true;
 }
 
-void Container::State::bear(const ContactSolid& solid, const Vec3d& normal, const Vec3d& force) {
+void Container::State::bear(std::uint32_t vertex, const ContactSolid& solid, const Vec3d& normal, const Vec3d& force) {
+  bearing.push_back({vertex, force, dot(force, normal)});
   if (&solid == solids.data()) {
     loads.bottom -= force;
   } else {
@@ -162,7 +169,7 @@ void Container::State::hold_bonds(const InteractionStep& step) {
     const Vec3d impulse = stopping(step, place, wanted);
     step.push(place, impulse);
     step.book(WorkSink::contact, place, impulse);
-    bear(solid, solid.after.axes * distance_to(*solid.shape, bond.place).normal, impulse * (1.0 / step.h));
+    bear(v, solid, solid.after.axes * distance_to(*solid.shape, bond.place).normal, impulse * (1.0 / step.h));
   }
 }
 
@@ -195,20 +202,25 @@ void Container::add_forces(const InteractionStep& step) { state_->books.begin(st
 
 void Container::constrain(const InteractionStep& step) {
   State& s = *state_;
-  s.loads = {};
+  s.loads = {}, s.bearing.clear();
   s.rows.clear();
   s.add_rows(step);
   if (!s.rows.empty()) s.books.solve(s.rows, step);
   s.books.close(s.rows, step);
   for (const ContactRow& row : s.rows) {
     if (row.impulse() == Vec3d{}) continue;
-    s.bear(*row.solid, row.normal, row.impulse() * (1.0 / step.h));
+    s.bear(step.vertices[row.places[0]].vertex, *row.solid, row.normal, row.impulse() * (1.0 / step.h));
     step.book(WorkSink::contact, row.places[0], row.normal * row.pressing);
     step.book(WorkSink::friction, row.places[0], row.rubbing);
     const auto solid = static_cast<std::uint32_t>(row.solid - s.solids.data());
     if (s.options.bonded) s.bonds[step.vertices[row.places[0]].vertex] = {solid, end_of(row, step)};
   }
   s.hold_bonds(step);
+}
+
+bool Container::add_contact(std::span<Vec3d> force, std::span<double> pressing) const {
+  for (const State::Bearing& b : state_->bearing) force[b.vertex] += b.force, pressing[b.vertex] += b.normal;
+  return true;
 }
 
 void Container::moved(const InteractionStep& step) { state_->reach.look(step); }

@@ -1,5 +1,6 @@
 #include "glisson/instruments/instrument.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -27,6 +28,72 @@ constexpr std::array<InstrumentColumn, 3> kContactColumns{{
     {"normal_N", along<&ToolForces::normal>},
     {"friction_N", along<&ToolForces::friction>},
     {"cutting_N", along<&ToolForces::cutting>},
+}};
+
+/// Components of vectors that are read off an instrument.
+template <Vec3d ToolForces::*part, std::size_t axis>
+double component(const Instrument& x) {
+  return (x.forces().*part)[axis];
+}
+template <std::size_t axis>
+double position(const Instrument& x) {
+  return x.force_pose().position[axis];
+}
+template <std::size_t axis>
+double handle_torque(const Instrument& x) {
+  return x.handle_torque()[axis];
+}
+
+/// Unit quaternion w, x, y, z of a rotation, w ≥ 0.
+std::array<double, 4> quaternion(const Mat3d& R) {
+  std::array<double, 4> squares;  // 4 q_i²
+  for (std::size_t i = 0; i < 4; ++i) {
+    squares[i] = 1.0;
+    for (std::size_t k = 0; k < 3; ++k) squares[i] += i == 0 || i == k + 1 ? R(k, k) : -R(k, k);
+  }
+  const auto most = static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) - squares.begin());
+  const double root = std::sqrt(squares[most]);
+  const std::array<double, 3> odd{R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)};
+  std::array<double, 4> q{};
+  q[most] = 0.5 * root;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (i == most) continue;
+    q[i] = 0.5 / root * (most == 0 ? odd[i - 1] : i == 0 ? odd[most - 1] : R(i - 1, most - 1) + R(most - 1, i - 1));
+  }
+  if (q[0] < 0.0) {
+    for (double& x : q) x = -x;
+  }
+  return q;
+}
+template <std::size_t number>
+double rotation(const Instrument& x) {
+  return quaternion(x.force_pose().axes)[number];
+}
+
+constexpr std::array<InstrumentColumn, 23> kPoseColumns{{
+    {"position_x_m", position<0>},
+    {"position_y_m", position<1>},
+    {"position_z_m", position<2>},
+    {"rotation_w", rotation<0>},
+    {"rotation_x", rotation<1>},
+    {"rotation_y", rotation<2>},
+    {"rotation_z", rotation<3>},
+    {"torque_x_N_m", component<&ToolForces::torque, 0>},
+    {"torque_y_N_m", component<&ToolForces::torque, 1>},
+    {"torque_z_N_m", component<&ToolForces::torque, 2>},
+    {"handle_torque_x_N_m", handle_torque<0>},
+    {"handle_torque_y_N_m", handle_torque<1>},
+    {"handle_torque_z_N_m", handle_torque<2>},
+    {"normal_x_N", component<&ToolForces::normal, 0>},
+    {"normal_y_N", component<&ToolForces::normal, 1>},
+    {"normal_z_N", component<&ToolForces::normal, 2>},
+    {"friction_x_N", component<&ToolForces::friction, 0>},
+    {"friction_y_N", component<&ToolForces::friction, 1>},
+    {"friction_z_N", component<&ToolForces::friction, 2>},
+    {"cutting_x_N", component<&ToolForces::cutting, 0>},
+    {"cutting_y_N", component<&ToolForces::cutting, 1>},
+    {"cutting_z_N", component<&ToolForces::cutting, 2>},
+    {"friction_size_N", [](const Instrument& x) { return norm(x.forces().friction); }},
 }};
 
 }  // namespace
@@ -61,10 +128,12 @@ double Instrument::depth() const { return dot(pose().position - start_, directio
 
 std::span<const InstrumentColumn> Instrument::common_columns() { return kCommonColumns; }
 std::span<const InstrumentColumn> Instrument::own_columns() const { return kContactColumns; }
+std::span<const InstrumentColumn> Instrument::pose_columns() { return kPoseColumns; }
 
 std::vector<InstrumentColumn> Instrument::columns() const {
   std::vector<InstrumentColumn> all(kCommonColumns.begin(), kCommonColumns.end());
   all.insert(all.end(), own_columns().begin(), own_columns().end());
+  all.insert(all.end(), record_columns().begin(), record_columns().end());
   return all;
 }
 

@@ -1,6 +1,7 @@
 // force_table.cpp — see force_table.h.
 #include "report/force_table.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <map>
@@ -59,6 +60,10 @@ ForceTable::ForceTable(const Variant& variant, const BuiltVariant& built)
   for (std::size_t i = 1; i < all.size(); ++i)
     further_.push_back({all[i]->name(), timed_columns(all[i]->columns()), i});
   columns_ = timed_columns(all.empty() ? Instrument::common_columns() : all.front()->columns());
+  const std::size_t records = all.empty() ? 0 : all.front()->record_columns().size();
+  const std::vector<std::string> record(columns_.end() - static_cast<std::ptrdiff_t>(records), columns_.end());
+  columns_.resize(columns_.size() - records);
+  own_ = columns_.size();
   if (all.empty()) {
     for (const InstrumentColumn& x : DrivenSet::part_columns()) columns_.emplace_back(x.name);
   }
@@ -71,6 +76,7 @@ ForceTable::ForceTable(const Variant& variant, const BuiltVariant& built)
   columns_.insert(columns_.end(), supports.begin(), supports.end());
   for (const EnergyColumn& column : kFurtherEnergyColumns) columns_.emplace_back(column.name);
   if (stores_) columns_.insert(columns_.end(), {"energy_stored_J", "energy_drift_J"});
+  columns_.insert(columns_.end(), record.begin(), record.end());
 }
 
 std::vector<double> ForceTable::row_of(const Further& file, const Sample& sample) {
@@ -83,6 +89,8 @@ std::vector<double> ForceTable::row_of(const Further& file, const Sample& sample
 std::vector<double> ForceTable::row(const Sample& sample) const {
   std::vector<double> row{sample.time};
   if (!sample.instruments.empty()) row = row_of({}, sample);
+  const std::vector<double> record(row.begin() + static_cast<std::ptrdiff_t>(std::min(own_, row.size())), row.end());
+  row.resize(std::min(own_, row.size()));
   row.resize(lead_, 0.0);
   if (contained_) {
     const ContainerLoads loads = sample.container.value_or(ContainerLoads{});
@@ -98,6 +106,7 @@ std::vector<double> ForceTable::row(const Sample& sample) const {
     const double stored = sample.stored_energy.value_or(std::numeric_limits<double>::quiet_NaN());
     row.insert(row.end(), {stored, sample.energies.elastic - stored});
   }
+  row.insert(row.end(), record.begin(), record.end());
   return row;
 }
 

@@ -1,7 +1,7 @@
 // force_table.h — the columns of forces.csv and how a sample fills them.
 //
 //   forces.csv         time and columns of the first instrument (tools come first) ·
-//                      container · energies · what each support carries
+//                      container · energies · what each support carries · further energies · its pose and vectors
 //   forces_<name>.csv  time and columns of every further instrument
 //
 // Vectors are in the scene's axes. Scalars are along the instrument's direction, positive when it presses.
@@ -38,6 +38,7 @@ class ForceTable {
   std::vector<Further> further_;
   std::vector<std::string> columns_;
   std::size_t lead_ = 0;  ///< columns of the first instrument, and what stands in for such of a tool in a container
+  std::size_t own_ = 0;   ///< time and columns of the first instrument before its record_columns(), which come last
   bool contained_, stores_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <new>
@@ -11,6 +12,7 @@
 #include "glisson/io.h"
 #include "material/strain.h"
 #include "report/output_file.h"
+#include "report/tool_surface.h"
 
 namespace glisson {
 namespace {
@@ -58,14 +60,43 @@ Field strain_field(const TetMesh& mesh, std::span<const Vec3d> u) {
   return strain;
 }
 
+/// The longest edge of the body's box at rest [m].
+double extent_of(const TetMesh& mesh) {
+  Vec3d low = mesh.vertices.front(), high = low;
+  for (const Vec3d& x : mesh.vertices) {
+    for (std::size_t i = 0; i < 3; ++i) low[i] = std::min(low[i], x[i]), high[i] = std::max(high[i], x[i]);
+  }
+  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+}
+
 }  // namespace
+
+/// The tools where they are at this frame; one without a surface has no file.
+void FrameSeries::add_tools(const Simulation& simulation) {
+  const double extent = instruments_.empty() ? 0.0 : extent_of(simulation.mesh());
+  for (const auto& tool : instruments_) {
+    const SurfaceMesh surface = tool_surface(*tool, extent);
+    if (surface.triangles.empty()) continue;
+    const std::filesystem::path file =
+        std::filesystem::path("frames") / fmt::format("tool_{}_{:04}.vtp", tool->name(), frames_.size());
+    write_vtp(folder_ / file, surface.points, surface.triangles);
+    Files& files = tools_[tool->name()];
+    files.emplace_back(simulation.time(), file);
+    write_pvd(folder_ / fmt::format("tool_{}.pvd", tool->name()), files);
+  }
+}
 
 FrameSeries::FrameSeries(std::filesystem::path folder) : folder_(std::move(folder)) { make_folder(folder_ / "frames"); }
 
 void FrameSeries::add(const Simulation& simulation, const TetFields& fields) {
   const std::filesystem::path file = std::filesystem::path("frames") / fmt::format("frame_{:04}.vtu", frames_.size());
-  const std::vector<Field> at_vertices{vector_field("displacement_m", simulation.displacement()),
-                                       vector_field("velocity_m_s", simulation.velocity())};
+  std::vector<Field> at_vertices{vector_field("displacement_m", simulation.displacement()),
+                                 vector_field("velocity_m_s", simulation.velocity())};
+  ContactFields contact = simulation.contact_fields();
+  if (!contact.pressure.empty()) {
+    at_vertices.push_back({.name = "contact_pressure_Pa", .components = 1, .values = std::move(contact.pressure)});
+    at_vertices.push_back(vector_field("contact_traction_Pa", contact.traction));
+  }
   std::vector<Field> at_tets = stress_fields(fields.stress);
   at_tets.push_back(strain_field(simulation.mesh(), simulation.displacement()));
   at_tets.push_back({.name = "q", .components = 1, .values = fields.q});
@@ -75,6 +106,7 @@ void FrameSeries::add(const Simulation& simulation, const TetFields& fields) {
   mesh.regions.resize(mesh.tets.size(), 0);
   try {
     write_vtu(folder_ / file, mesh, {}, at_vertices, at_tets);
+    add_tools(simulation);
     frames_.emplace_back(simulation.time(), file);
     write_pvd(folder_ / "frames.pvd", frames_);
   } catch (const std::bad_alloc&) {

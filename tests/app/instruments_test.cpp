@@ -56,7 +56,12 @@ TEST_F(Instruments, ForcesAreOfTheInstrumentAndTheContainer) {
   const std::string text = read_text(folder_ / "o/main/forces.csv");
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "time_s,depth_m,force_x_N,force_y_N,force_z_N,force_N,normal_N,friction_N,cutting_N,bottom_z_N,side_z_N,"
-            "side_radial_N,energy_elastic_J,energy_kinetic_J,energy_dissipated_J,work_tools_J,work_loads_J");
+            "side_radial_N,energy_elastic_J,energy_kinetic_J,energy_dissipated_J,work_tools_J,work_loads_J,"
+            "dissipated_viscous_J,dissipated_maxwell_J,dissipated_damping_J,dissipated_friction_J,dissipated_contact_J,"
+            "dissipated_fracture_J,energy_instruments_J,energy_numerical_J,position_x_m,position_y_m,position_z_m,"
+            "rotation_w,rotation_x,rotation_y,rotation_z,torque_x_N_m,torque_y_N_m,torque_z_N_m,handle_torque_x_N_m,"
+            "handle_torque_y_N_m,handle_torque_z_N_m,normal_x_N,normal_y_N,normal_z_N,friction_x_N,friction_y_N,"
+            "friction_z_N,cutting_x_N,cutting_y_N,cutting_z_N,friction_size_N");
   auto f = read_csv(folder_ / "o/main/forces.csv");
   double peak = 0.0, below = 0.0;
   for (std::size_t i = 0; i < f["force_N"].size(); ++i) {
@@ -64,6 +69,10 @@ TEST_F(Instruments, ForcesAreOfTheInstrumentAndTheContainer) {
     EXPECT_NEAR(f["depth_m"][i], 0.1 * f["time_s"][i], 1e-12) << i;
     peak = std::max(peak, f["force_N"][i]);
     below = std::max(below, -f["bottom_z_N"][i] - f["side_z_N"][i]);
+  }
+  for (std::size_t i = 0; i < f["force_z_N"].size(); ++i) {
+    EXPECT_NEAR(f["force_z_N"][i], f["normal_z_N"][i] + f["friction_z_N"][i] + f["cutting_z_N"][i], 1e-12) << i;
+    EXPECT_NEAR(f["position_z_m"][i], 0.041 - f["depth_m"][i], 1e-12) << i;
   }
   EXPECT_NEAR(peak, 0.055, 0.006) << "it gives way in the step after 0.05 N are reached: a tenth of a millimetre on";
   EXPECT_GT(below, 0.02);
@@ -127,6 +136,57 @@ TEST_F(Instruments, BenchTellsWhatThePunctureCosts) {
     EXPECT_GT(e["compute_us"], 0.0);
   }
   EXPECT_TRUE(found);
+}
+
+/// A ball is pressed into a block and dragged, and its energy W(u) is asked for.
+const char* const kBallScene = R"([mesh]
+kind = "box"
+cells = [6, 6, 3]
+size_m = [0.04, 0.04, 0.02]
+[[fixed]]
+set = "z_min"
+[[instrument]]
+kind = "ball"
+name = "ball"
+radius_mm = 8
+friction = 0.4
+tip_m = [0.015, 0.02, 0.0201]
+motion = { kind = "strokes", velocity_mm_s = 50, strokes = [{ depth_mm = 2 }, { depth_mm = 2, aside_mm = [4, 0, 0] }] }
+[output]
+frames = 3
+stored_energy = true
+)";
+
+// Beside each frame lies the tool as it is then, listed in a collection of its own; frames have pressure and traction of contact.
+TEST_F(Instruments, FramesHaveToolsAndContact) {
+  ASSERT_THAT(run({"run", write("s.toml", kBallScene), "--out", "o", "--quiet"}), Exits(0));
+  const std::string pvd = read_text(folder_ / "o/main/tool_ball.pvd");
+  for (const std::string number : {"0000", "0001", "0002"}) {
+    const std::string file = "frames/tool_ball_" + number + ".vtp";
+    EXPECT_NE(pvd.find(file), std::string::npos);
+    EXPECT_NE(read_text(folder_ / "o/main" / file).find("<PolyData>"), std::string::npos);
+    const std::string frame = read_text(folder_ / "o/main/frames" / ("frame_" + number + ".vtu"));
+    EXPECT_NE(frame.find("\"contact_pressure_Pa\""), std::string::npos);
+    EXPECT_NE(frame.find("\"contact_traction_Pa\""), std::string::npos);
+  }
+}
+
+// The ledger of forces.csv closes with W(u), line by line, and friction is told by its vector.
+TEST_F(Instruments, LedgerClosesInTheTable) {
+  ASSERT_THAT(run({"run", write("s.toml", kBallScene), "--out", "o", "--quiet"}), Exits(0));
+  auto f = read_csv(folder_ / "o/main/forces.csv");
+  const double work = f["work_tools_J"].back();
+  ASSERT_GT(work, 0.0);
+  for (std::size_t i = 0; i < f["time_s"].size(); ++i) {
+    const double sum = f["energy_stored_J"][i] + f["energy_kinetic_J"][i] + f["energy_dissipated_J"][i] +
+                       f["dissipated_friction_J"][i] + f["dissipated_contact_J"][i] + f["dissipated_fracture_J"][i] +
+                       f["energy_instruments_J"][i] + f["energy_numerical_J"][i];
+    EXPECT_NEAR(sum, f["work_tools_J"][i] + f["work_loads_J"][i], 1e-3 * work) << i;
+    EXPECT_NEAR(f["energy_drift_J"][i], f["energy_elastic_J"][i] - f["energy_stored_J"][i], 1e-18) << i;
+  }
+  EXPECT_GT(f["dissipated_friction_J"].back(), 0.1 * work);
+  EXPECT_GT(f["friction_size_N"].back(), 3.0 * std::abs(f["friction_N"].back()));
+  EXPECT_GT(f["contact_area_m2"].back(), 0.0);
 }
 
 }  // namespace

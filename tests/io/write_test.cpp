@@ -150,5 +150,20 @@ TEST_F(Write, PvdListsFrames) {
   EXPECT_EQ(files(), 1u);
 }
 
+// A triangle of a point that is not there is refused by its number; a sound surface is a PolyData file.
+TEST(WriteVtp, RefusesWhatHasNoPoint) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "glisson_write_test.vtp";
+  const std::vector<Vec3d> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  try {
+    write_vtp(file, points, std::vector<Triangle>{{0, 1, 3}});
+    ADD_FAILURE() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("a triangle has point 3; there are 3"), std::string::npos);
+  }
+  write_vtp(file, points, std::vector<Triangle>{{0, 1, 2}});
+  EXPECT_GT(std::filesystem::file_size(file), 100u);
+  std::filesystem::remove(file);
+}
+
 }  // namespace
 }  // namespace glisson

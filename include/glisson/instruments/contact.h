@@ -154,6 +154,7 @@ struct ContactOptions {
 struct ContactPressure {
   std::span<const std::uint32_t> vertices;  ///< loaded vertices, ascending
   std::span<const double> pascals;  ///< normal force over a third of the present area of the triangles around it
+  std::span<const Vec3d> forces;    ///< the whole force on the tissue at it, friction included [N]
 };
 
 /// A rigid tool in contact with the surface of the body, including both sides of a cut.
@@ -165,8 +166,9 @@ class ContactTool final : public Instrument {
 
   /// Of the last step; valid until the next.
   ContactPressure contact_pressure() const;
-  bool touches() const;         ///< in the last step
-  double contact_area() const;  ///< of the loaded vertices [m²]
+  bool touches() const;             ///< in the last step
+  double contact_area() const;      ///< of the loaded vertices [m²]
+  double largest_pressure() const;  ///< of the last step [Pa]
   /// Rows solved in the last step, and sweeps over them.
   struct Effort {
     std::size_t vertices = 0, triangles = 0;
@@ -183,9 +185,12 @@ class ContactTool final : public Instrument {
   void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;
+  bool add_contact(std::span<Vec3d> force, std::span<double> pressing) const override;
+  Vec3d handle() const override;
   void archive(Archive& ar) override;
 
  private:
+  std::span<const InstrumentColumn> record_columns() const override;
   struct State;
   void book(const InteractionStep& step) const;
   std::unique_ptr<State> state_;

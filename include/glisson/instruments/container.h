@@ -95,6 +95,7 @@ class Container final : public Interaction {
   void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;
+  bool add_contact(std::span<Vec3d> force, std::span<double> pressing) const override;
   void archive(Archive& ar) override;
 
  private:

@@ -31,6 +31,8 @@ class DrivenSet final : public Instrument {
 
   Pose pose() const override;  ///< its position is the displacement
   double force_depth() const override;
+  /// None: it has no solid; where its vertices are follows from the depth.
+  std::span<const InstrumentColumn> record_columns() const override { return {}; }
   Vec3d force() const override { return parts().total(); }
   Vec3d sensor_force() const override;
   InstrumentForm form() const override { return {.kind = InstrumentForm::Kind::none}; }

@@ -95,15 +95,25 @@ class Instrument : public Interaction {
   const Vec3d& direction() const { return direction_; }
   double depth() const;                                        ///< displacement along the direction since the start [m]
   virtual double force_depth() const { return force_depth_; }  ///< the same at the time of the force [m]
-  virtual Vec3d force() const { return forces_.total(); }      ///< on the tissue [N]
+  virtual Pose force_pose() const { return before_; }          ///< pose at the time of the force
+  /// Where the hand holds it, at the time of the force [m]; its tip where it has no length.
+  virtual Vec3d handle() const { return force_pose().position; }
+  /// Torque of the hand's force about the handle on the tissue's side: that of forces() about the handle [N m].
+  Vec3d handle_torque() const { return forces_.torque + cross(force_pose().position - handle(), forces_.total()); }
+  virtual Vec3d force() const { return forces_.total(); }  ///< on the tissue [N]
   /// What a sensor between the hand and the instrument carries, without inertia and weight of what it moves [N].
   virtual Vec3d sensor_force() const { return -force(); }
   /// The force by component where the instrument touches the tissue.
   const ToolForces& forces() const { return forces_; }
   /// depth_m, force_x_N, force_y_N, force_z_N, and force_N along the direction.
   static std::span<const InstrumentColumn> common_columns();
-  /// common_columns() and own_columns().
+  /// common_columns(), own_columns() and record_columns().
   std::vector<InstrumentColumn> columns() const;
+  /// Where it is and what it exerts, as vectors: position_x_m …, rotation_w …, torque_x_N_m …, handle_torque_x_N_m …, normal_x_N …,
+  /// friction_x_N …, cutting_x_N …, friction_size_N (docs/output.md).
+  static std::span<const InstrumentColumn> pose_columns();
+  /// What forces.csv has of it behind all else: pose_columns(), of a contact tool its area and largest pressure, too.
+  virtual std::span<const InstrumentColumn> record_columns() const { return pose_columns(); }
   /// The value of a column. @throws std::out_of_range naming it
   double read(std::string_view column) const;
   const ToolDriver& driver() const { return *driver_; }

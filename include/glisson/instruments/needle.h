@@ -193,6 +193,7 @@ class Needle final : public Instrument {
   void moved(const InteractionStep& step) override;
   void between_steps(Simulation& simulation) override;
   double tool_energy() const override;  ///< of its bending [J]
+  Vec3d handle() const override;        ///< its length behind the tip, as if nothing bent it
   void archive(Archive& ar) override;
 
  private:

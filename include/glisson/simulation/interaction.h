@@ -161,6 +161,10 @@ class Interaction {
   /// Stored in the tool itself at force_time(), as in a bent needle: Energies::instruments [J]. Kept where energies are tracked.
   virtual double tool_energy() const { return 0.0; }
 
+  /// Adds what it exerted on the surface of the body in the last step, per vertex of the mesh [N]: the force on the tissue, and of it
+  /// what presses, along the inward normals of contact. @return whether it is of a kind that presses on the surface
+  virtual bool add_contact(std::span<Vec3d> /*force*/, std::span<double> /*pressing*/) const { return false; }
+
   /// Writes or reads its state for a checkpoint, to the last bit (glisson/archive.h), without what follows from the body and
   /// its options. Reading comes after body_changed() has reported all changes that preceded the writing.
   /// @throws std::runtime_error if the data are not the state of such an interaction

@@ -62,7 +62,43 @@ bool ContactTool::touches() const {
 }
 double ContactTool::contact_area() const { return state_->area; }
 ContactTool::Effort ContactTool::effort() const { return state_->effort; }
-ContactPressure ContactTool::contact_pressure() const { return {state_->bearing_vertices, state_->pressures}; }
+ContactPressure ContactTool::contact_pressure() const {
+  return {state_->bearing_vertices, state_->pressures, state_->bearing_forces};
+}
+double ContactTool::largest_pressure() const {
+  const std::vector<double>& p = state_->pressures;
+  return p.empty() ? 0.0 : std::max(0.0, *std::max_element(p.begin(), p.end()));
+}
+
+bool ContactTool::add_contact(std::span<Vec3d> force, std::span<double> pressing) const {
+  const State& s = *state_;
+  for (std::size_t i = 0; i < s.bearing_vertices.size(); ++i) {
+    force[s.bearing_vertices[i]] += s.bearing_forces[i];
+    pressing[s.bearing_vertices[i]] += s.bearing_normal[i];
+  }
+  return true;
+}
+
+/// At the end away from the tip: where the solid ends along its z.
+Vec3d ContactTool::handle() const {
+  const InstrumentForm f = form();
+  const double end = f.kind == InstrumentForm::Kind::ball    ? 2.0 * f.radius
+                     : f.kind == InstrumentForm::Kind::block ? f.size.z
+                                                             : f.length;
+  return to_space(before_, {0.0, 0.0, end});
+}
+
+std::span<const InstrumentColumn> ContactTool::record_columns() const {
+  static const std::vector<InstrumentColumn> columns = [] {
+    std::vector<InstrumentColumn> all(pose_columns().begin(), pose_columns().end());
+    all.push_back(
+        {"contact_area_m2", [](const Instrument& x) { return static_cast<const ContactTool&>(x).contact_area(); }});
+    all.push_back({"contact_pressure_most_Pa",
+                   [](const Instrument& x) { return static_cast<const ContactTool&>(x).largest_pressure(); }});
+    return all;
+  }();
+  return columns;
+}
 
 void ContactTool::attached(const BodyView& body, double) {
   state_->reach.attach(body);
@@ -96,7 +132,7 @@ void ContactTool::add_forces(const InteractionStep& step) { state_->books.begin(
 void ContactTool::constrain(const InteractionStep& step) {
   State& s = *state_;
   forces_ = {};
-  s.rows.clear(), s.bond_impulses.clear(), s.pressed.clear(), s.effort = {};
+  s.rows.clear(), s.bond_impulses.clear(), s.pressed.clear(), s.exerted.clear(), s.effort = {};
   if (s.lost) return;
   s.add_vertices(step);
   s.effort.vertices = s.rows.size();

@@ -32,7 +32,7 @@ void ContactTool::State::measure(std::size_t i, const InteractionStep& step) {
 void ContactTool::State::add_vertices(const InteractionStep& step) {
   const std::span<const std::uint32_t> mine = reach.vertices();
   starts.resize(mine.size()), ends.resize(mine.size()), at_ends.resize(mine.size());
-  pressed.assign(mine.size(), 0.0);
+  pressed.assign(mine.size(), 0.0), exerted.assign(mine.size(), Vec3d{});
   touched.clear();
   for (std::uint32_t i = 0; i < mine.size(); ++i) {
     measure(i, step);
@@ -130,17 +130,19 @@ void ContactTool::State::bond(const InteractionStep& step, ToolForces& forces) {
     const Vec3d across = n * dot(impulse, n);
     forces.normal += across * (1.0 / step.h), forces.friction += (impulse - across) * (1.0 / step.h);
     forces.torque += cross(x - solid.before.position, impulse) * (1.0 / step.h);
-    bear(vertex, dot(impulse, n));
+    bear(vertex, dot(impulse, n), impulse);
   }
   for (const ContactRow& row : rows) {
     if (row.count == 1 && row.pressing > 0.0) bonds[step.vertices[row.places[0]].vertex] = end_of(row, step);
   }
 }
 
-void ContactTool::State::bear(std::uint32_t vertex, double impulse) {
+void ContactTool::State::bear(std::uint32_t vertex, double pressing, const Vec3d& impulse) {
   const std::span<const std::uint32_t> mine = reach.vertices();
   const auto at = std::lower_bound(mine.begin(), mine.end(), vertex);
-  if (at != mine.end() && *at == vertex) pressed[static_cast<std::size_t>(at - mine.begin())] += impulse;
+  if (at == mine.end() || *at != vertex) return;
+  const auto place = static_cast<std::size_t>(at - mine.begin());
+  pressed[place] += pressing, exerted[place] += impulse;
 }
 
 void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces) {
@@ -153,21 +155,21 @@ void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces
     forces.friction += row.rubbing * rate;
     forces.torque += cross(row.origin - solid.before.position, row.impulse()) * rate;
     for (std::uint32_t i = 0; i < row.count; ++i) {
-      bear(step.vertices[row.places[i]].vertex, row.pressing * row.weights[i]);
+      bear(step.vertices[row.places[i]].vertex, row.pressing * row.weights[i], row.impulse() * row.weights[i]);
     }
   }
 }
 
 /// Pressures over the present area of the vertices that bear.
 void ContactTool::State::weigh(const InteractionStep& step) {
-  bearing_vertices.clear(), pressures.clear();
+  bearing_vertices.clear(), pressures.clear(), bearing_normal.clear(), bearing_forces.clear();
   area = 0.0;
   const auto position = [&](std::uint32_t v) {
     const std::uint32_t place = step.place_of[v];
     return place == InteractionStep::kNowhere ? step.rest[v] : step.position(place);
   };
   for (std::size_t i = 0; i < pressed.size(); ++i) {
-    if (pressed[i] == 0.0) continue;
+    if (pressed[i] == 0.0 && exerted[i] == Vec3d{}) continue;
     const std::uint32_t vertex = reach.vertices()[i];
     double share = 0.0;
     for (const std::uint32_t k : reach.surface().triangles_at(vertex)) {
@@ -176,6 +178,7 @@ void ContactTool::State::weigh(const InteractionStep& step) {
       share += norm(cross(position(t[1]) - a, position(t[2]) - a)) / 6.0;
     }
     bearing_vertices.push_back(vertex);
+    bearing_normal.push_back(pressed[i] / step.h), bearing_forces.push_back(exerted[i] * (1.0 / step.h));
     pressures.push_back(share > 0.0 ? pressed[i] / (step.h * share) : 0.0);
     area += share;
   }

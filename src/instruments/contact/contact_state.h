@@ -25,8 +25,10 @@ struct ContactTool::State {
       bond_impulses;                   ///< place at hand → impulse of its bond in this step [N s]
   std::vector<double> pressed;         ///< per vertex of the reach: impulse along its normal in this step [N s]
   std::vector<std::uint32_t> touched;  ///< vertices of the reach that have rows, as places there
+  std::vector<Vec3d> exerted;          ///< per vertex of the reach: whole impulse in this step [N s]
   std::vector<std::uint32_t> bearing_vertices;
-  std::vector<double> pressures;
+  std::vector<double> pressures, bearing_normal;  ///< of each [Pa], [N]
+  std::vector<Vec3d> bearing_forces;              ///< of each [N]
   double area = 0.0;
   Effort effort{};
 
@@ -40,7 +42,7 @@ struct ContactTool::State {
   void add_vertices(const InteractionStep& step);
   void measure(std::size_t i, const InteractionStep& step);
   double least_of(const std::array<Vec3d, 3>& corners) const;
-  void bear(std::uint32_t vertex, double impulse);
+  void bear(std::uint32_t vertex, double pressing, const Vec3d& impulse);
   void add_triangles(const InteractionStep& step);
   void add_triangle(std::uint32_t strides, const Triangle& corners, double allowance, const InteractionStep& step);
   void begin_triangles(const InteractionStep& step);

@@ -226,6 +226,7 @@ void Needle::Solver::book(const InteractionStep& step, std::span<const Vec3d> si
 }
 
 double Needle::tool_energy() const { return state_->bending; }
+Vec3d Needle::handle() const { return before_.position - direction() * state_->options.length; }
 
 void Needle::add_forces(const InteractionStep& step) {
   State& s = *state_;
