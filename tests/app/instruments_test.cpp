@@ -119,7 +119,7 @@ motion = { kind = "press", depth_mm = 9, velocity_mm_s = 100 }
     EXPECT_NEAR(frame["instruments"][0]["points"].back(), 0.041 - gone, 1e-7);
     EXPECT_NEAR(frame["instruments"][1]["points"].back(), 0.05 - gone, 1e-7);
   }
-  EXPECT_EQ(read_csv(folder_ / "o/main/forces_finger.csv").size(), 9u);
+  EXPECT_EQ(read_csv(folder_ / "o/main/forces_finger.csv").size(), 34u);
 }
 
 // At wall-clock pace the dearest moment of a run is told: the frame of the puncture.

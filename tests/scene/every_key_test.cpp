@@ -106,6 +106,7 @@ sideways = "free"
 [output]
 sample_rate_hz = 250
 frames = 7
+stored_energy = true
 
 [[chart]]
 title = "Force"
@@ -270,6 +271,7 @@ TEST(EveryKey, OfMotionToolsAndOutputIsRead) {
   EXPECT_TRUE(tool.sideways_free);
   EXPECT_EQ(v.output.sample_rate, 250.0);
   EXPECT_EQ(v.output.frames, 7);
+  EXPECT_TRUE(v.output.stored_energy);
 }
 
 // The two other kinds of mesh keep their numbers; a file is looked for beside the scene.

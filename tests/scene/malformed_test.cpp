@@ -50,7 +50,7 @@ const std::vector<Mistake> kMistakes{
     {"KeyOfAnotherKind", "cells = [2, 2, 2]", "radius_m = 1",
      "s.toml:3:1: mesh.radius_m: unknown key here; it belongs in [mesh] of kind \"cylinder\""},
     {"KeyLikeNoOther", "", "[output]\nwhatever = 1\n",
-     "s.toml:17:1: output.whatever: unknown key; known here: sample_rate_hz, frames"},
+     "s.toml:17:1: output.whatever: unknown key; known here: sample_rate_hz, frames, stored_energy"},
     {"MisspeltKeyAtTheTop", "[mesh]", "titel = \"x\"\n[mesh]", "s.toml:1:1: titel: unknown key; did you mean `title`?"},
     {"TextForNumber", "", "[tissue]\ndensity_kg_m3 = \"heavy\"\n",
      "s.toml:17:17: tissue.density_kg_m3: expected a number [kg/m³], got text \"heavy\""},
