@@ -4,18 +4,64 @@
 
 namespace glisson {
 
+namespace {
+
+void sort_out(std::vector<std::uint32_t>& vertices) {
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+}
+
+bool is_among(std::span<const std::uint32_t> ascending, std::uint32_t vertex) {
+  return std::binary_search(ascending.begin(), ascending.end(), vertex);
+}
+
+}  // namespace
+
 std::span<const std::uint32_t> Interactions::newcomers(double time, double h, std::size_t vertex_count) {
   newcomers_.clear();
-  for (const std::shared_ptr<Interaction>& x : all_) {
-    for (const std::uint32_t v : x->reach(time, h)) {
-      if (v < vertex_count && (v >= place_of_.size() || place_of_[v] == InteractionStep::kNowhere)) {
-        newcomers_.push_back(v);
-      }
+  left_ = false;
+  for (std::size_t k = 0; k < all_.size(); ++k) {
+    name(k, all_[k]->reach(time, h), vertex_count);
+    if (const auto kept = all_[k]->keeps()) keep(k, *kept);
+  }
+  sort_out(newcomers_);
+  return newcomers_;
+}
+
+/// Adds what an interaction has named; those not active yet are newcomers.
+void Interactions::name(std::size_t interaction, std::span<const std::uint32_t> vertices, std::size_t vertex_count) {
+  std::vector<std::uint32_t>& mine = named_[interaction];
+  const std::size_t before = mine.size();
+  for (const std::uint32_t v : vertices) {
+    if (v >= vertex_count || is_among({mine.data(), before}, v)) continue;
+    mine.push_back(v);
+    if (v >= place_of_.size() || place_of_[v] == InteractionStep::kNowhere) newcomers_.push_back(v);
+  }
+  if (mine.size() > before) sort_out(mine);
+}
+
+/// Drops what an interaction does not keep.
+void Interactions::keep(std::size_t interaction, std::span<const std::uint32_t> vertices) {
+  std::vector<std::uint32_t> kept(vertices.begin(), vertices.end());
+  sort_out(kept);
+  const std::size_t dropped = std::erase_if(named_[interaction], [&](std::uint32_t v) { return !is_among(kept, v); });
+  left_ = left_ || dropped > 0;
+}
+
+std::vector<std::uint32_t> Interactions::named() const {
+  std::vector<std::uint32_t> all;
+  for (const std::vector<std::uint32_t>& mine : named_) all.insert(all.end(), mine.begin(), mine.end());
+  sort_out(all);
+  return all;
+}
+
+void Interactions::follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) {
+  for (std::vector<std::uint32_t>& mine : named_) {
+    const std::size_t before = mine.size();
+    for (std::uint32_t i = 0; i < origins.size(); ++i) {
+      if (is_among({mine.data(), before}, origins[i])) mine.push_back(first_new + i);
     }
   }
-  std::sort(newcomers_.begin(), newcomers_.end());
-  newcomers_.erase(std::unique(newcomers_.begin(), newcomers_.end()), newcomers_.end());
-  return newcomers_;
 }
 
 void Interactions::find_places(std::span<const ActiveVertex> active, std::size_t vertex_count) {
@@ -75,6 +121,10 @@ void Interactions::archive(Archive& ar) {
   ar(count);
   ar.check(count == all_.size());
   for (const std::shared_ptr<Interaction>& x : all_) x->archive(ar);
+  for (std::vector<std::uint32_t>& mine : named_) {
+    ar.all_below(mine, place_of_.size());
+    ar.check(std::is_sorted(mine.begin(), mine.end()));
+  }
   ar.same_size(impulses_);
 }
 

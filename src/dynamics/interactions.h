@@ -13,12 +13,18 @@ namespace glisson {
 
 class Interactions {
  public:
-  void add(std::shared_ptr<Interaction> interaction) { all_.push_back(std::move(interaction)); }
+  void add(std::shared_ptr<Interaction> interaction) { all_.push_back(std::move(interaction)), named_.emplace_back(); }
   bool empty() const { return all_.empty(); }
   std::span<const std::shared_ptr<Interaction>> all() const { return all_; }
 
   /// Vertices that some interaction wants at hand in the coming step and that are not yet; ascending.
   std::span<const std::uint32_t> newcomers(double time, double h, std::size_t vertex_count);
+  /// Whether some interaction has let vertices go since newcomers() was asked.
+  bool has_left() const { return left_; }
+  /// All vertices that some interaction may act on; ascending.
+  std::vector<std::uint32_t> named() const;
+  /// New vertices, numbered on from `first_new`, are named by those that named the vertices they are copies of.
+  void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new);
   /// The vertices at hand have become others.
   void find_places(std::span<const ActiveVertex> active, std::size_t vertex_count);
 
@@ -41,7 +47,12 @@ class Interactions {
   void archive(Archive& ar);
 
  private:
+  void name(std::size_t interaction, std::span<const std::uint32_t> vertices, std::size_t vertex_count);
+  void keep(std::size_t interaction, std::span<const std::uint32_t> vertices);
+
   std::vector<std::shared_ptr<Interaction>> all_;
+  std::vector<std::vector<std::uint32_t>> named_;  ///< by each interaction, ascending
+  bool left_ = false;
   std::vector<std::uint32_t> place_of_, newcomers_;
   std::vector<Vec3d> impulses_;
   InteractionStep step_;

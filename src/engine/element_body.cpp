@@ -140,6 +140,12 @@ void ElementBody::watch(std::span<const std::uint32_t> vertices) {
   active_ = std::move(now);
 }
 
+void ElementBody::watch_only(std::span<const std::uint32_t> vertices) {
+  std::fill(is_active_.begin(), is_active_.end(), 0);
+  for (const std::uint32_t v : vertices) is_active_[v] = 1;
+  std::erase_if(active_, [&](const ActiveVertex& w) { return is_active_[w.vertex] == 0; });
+}
+
 void ElementBody::place_active() {
   for (const ActiveVertex& w : active_) u_[w.vertex] = w.displacement, v_[w.vertex] = w.velocity;
 }

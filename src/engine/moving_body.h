@@ -82,6 +82,9 @@ class MovingBody {
 
   /// Adds vertices to those active; one that is active already stays so.
   virtual void watch(std::span<const std::uint32_t> vertices) = 0;
+  /// Takes all others from those active; they go on from where active() last placed them.
+  /// @param vertices  ascending, all of them active
+  virtual void watch_only(std::span<const std::uint32_t> vertices) = 0;
   /// In ascending order of vertex.
   virtual std::span<ActiveVertex> active() = 0;
   /// Takes displacement and velocity of every active vertex over from active().

@@ -128,6 +128,12 @@ void SubmeshBody::watch(std::span<const std::uint32_t> vertices) {
   find_watches();
 }
 
+void SubmeshBody::watch_only(std::span<const std::uint32_t> vertices) {
+  std::erase_if(active_,
+                [&](const ActiveVertex& w) { return !std::binary_search(vertices.begin(), vertices.end(), w.vertex); });
+  find_watches();
+}
+
 /// Sorts the active vertices to the submesh or the run of the interface that has them.
 void SubmeshBody::find_watches() {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> records;  // record, place

@@ -46,6 +46,7 @@ class SubmeshBody final : public MovingBody {
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override;
   void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) override;
   void watch(std::span<const std::uint32_t> vertices) override;
+  void watch_only(std::span<const std::uint32_t> vertices) override;
   std::span<ActiveVertex> active() override { return active_; }
   void place_active() override;
   void list_above(std::span<const double> stiffening) override {

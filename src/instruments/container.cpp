@@ -198,6 +198,8 @@ void Container::body_changed(const BodyView& body, std::span<const std::uint32_t
 
 std::span<const std::uint32_t> Container::reach(double, double h) { return state_->reach.ask(state_->solids, h); }
 
+std::optional<std::span<const std::uint32_t>> Container::keeps() { return state_->reach.keeps(); }
+
 void Container::add_forces(const InteractionStep& step) { state_->books.begin(step); }
 
 void Container::constrain(const InteractionStep& step) {

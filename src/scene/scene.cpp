@@ -87,11 +87,9 @@ void check_integrator(const Variant& variant, const Node& experiment, Problems& 
                            : variant.container          ? "[container]"
                                                         : "[[capsule]]";
   const Node& key = *experiment.find("motion")->find("integrator");
-  problems.add(
-      key.where, "motion.integrator",
-      "\"" + *key.text() + "\"" + (can.supports_interactions ? " with viscous tissue" : "") + " supports no " + what +
-          "; take \"central_difference\", or \"semi_implicit\" with tissue that has no `viscosity_Pa_s` (Maxwell "
-          "branches may stay)");
+  problems.add(key.where, "motion.integrator",
+               "\"" + *key.text() + "\"" + (can.supports_interactions ? " with viscous tissue" : "") + " supports no " +
+                   what + "; take " + supporting_integrators() + " (Maxwell branches may stay)");
 }
 
 /// Reads the file of a recorded motion along a direction.

@@ -110,6 +110,21 @@ TEST_P(Watch, StandStillWhileOthersMove) {
   }
 }
 
+// What is let go goes on from where it was placed, with the same bytes as if it had never been active.
+TEST_P(Watch, LetsVerticesGo) {
+  engine::SubmeshBody letting(body_, undamped_, options_), never(body_, undamped_, options_);
+  const Vertices kept = sets()[0];
+  for (const Vertices& set : sets()) letting.watch(set);
+  letting.watch_only(kept);
+  never.watch(kept);
+  for (engine::SubmeshBody* moving : {&letting, &never}) {
+    moving->set_state(u_, v_);
+    moving->advance(1e-4, {0.0, 0.0, -9.81}, false);
+  }
+  ASSERT_EQ(letting.active().size(), kept.size());
+  EXPECT_EQ(test::state_of(letting, n_), test::state_of(never, n_));
+}
+
 // Placing moves exactly those, to where they were told, and a watch taken later tells the placed state.
 TEST_P(Watch, PlacingMovesExactlyThose) {
   engine::SubmeshBody moving(body_, undamped_, options_);

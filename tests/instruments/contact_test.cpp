@@ -347,6 +347,37 @@ TEST(Contact, NamesOnlyWhatIsNear) {
   EXPECT_LT(named, 1500u);  // of 4226 on the surface
 }
 
+// What a ball has left behind it is let go: dragged along the surface it has no more active vertices at the end than at the
+// start, and lifted off just the sentinels of the patches.
+TEST(Contact, LetsGoWhatItHasLeft) {
+  struct Counter final : Interaction {
+    std::size_t active = 0;
+    void attached(const BodyView&, double) override {}
+    void body_changed(const BodyView&, std::span<const std::uint32_t>) override {}
+    std::span<const std::uint32_t> reach(double, double) override { return {}; }
+    void moved(const InteractionStep& step) override { active = step.vertices.size(); }
+  };
+  Simulation s(slab(32), {{0, tissue()}});
+  s.attach(tool(Ball{.radius = 2e-3}, 0.2, [](double t) {
+    const double along = std::clamp(t - 0.02, 0.0, 0.06), up = std::max(0.0, t - 0.08);
+    return Pose{{-0.015 + 0.5 * along, 0.0, 1e-3 - 0.05 * std::min(t, 0.02) + up}};
+  }));
+  const auto counter = std::make_shared<Counter>();
+  s.attach(counter);
+  test::advance_to(s, 0.02);
+  const std::size_t first = counter->active;
+  test::advance_to(s, 0.08);
+  EXPECT_GT(first, 200u);
+  EXPECT_LT(counter->active, first + first / 4);
+  test::advance_to(s, 0.12);
+  Simulation far_away(slab(32), {{0, tissue()}});
+  far_away.attach(tool(Ball{.radius = 2e-3}, 0.2, down({0.0, 0.0, 0.1}, 0.0)));
+  const auto sentinels = std::make_shared<Counter>();
+  far_away.attach(sentinels);
+  ASSERT_TRUE(far_away.step().made());
+  EXPECT_EQ(counter->active, sentinels->active);
+}
+
 // A run goes on from a checkpoint with the same bytes, forces and events' state included.
 TEST(Contact, CheckpointGoesOn) {
   for (const bool bonded : {false, true}) {

@@ -248,11 +248,10 @@ TEST(Instruments, MistakesAreTold) {
 // Instruments bear explicit steps only; another integrator is refused at its own line, viscosity with semi_implicit, too.
 TEST(Instruments, AskForAnIntegratorThatBearsThem) {
   for (const std::string word : {"implicit", "quasi_static"}) {
-    EXPECT_EQ(
-        complaint(kNeedle + "[motion]\nintegrator = \"" + word + "\"\n"),
-        "s.toml:14:14: motion.integrator: \"" + word +
-            "\" supports no [[instrument]]; take \"central_difference\", or \"semi_implicit\" with tissue that has no "
-            "`viscosity_Pa_s` (Maxwell branches may stay)");
+    EXPECT_EQ(complaint(kNeedle + "[motion]\nintegrator = \"" + word + "\"\n"),
+              "s.toml:14:14: motion.integrator: \"" + word +
+                  "\" supports no [[instrument]]; take central_difference, or semi_implicit for tissue without "
+                  "`viscosity_Pa_s` (Maxwell branches may stay)");
   }
   const std::string semi = kNeedle + "[motion]\nintegrator = \"semi_implicit\"\n";
   EXPECT_EQ(complaint(semi), "");

@@ -61,6 +61,7 @@ class Blade final : public Instrument {
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;
+  std::optional<std::span<const std::uint32_t>> keeps() override { return reached_; }
   void constrain(const InteractionStep& step) override;
   void between_steps(Simulation& simulation) override;
   bool changes_body() const override { return true; }

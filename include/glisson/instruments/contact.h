@@ -182,6 +182,7 @@ class ContactTool final : public Instrument {
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;
+  std::optional<std::span<const std::uint32_t>> keeps() override;
   void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;

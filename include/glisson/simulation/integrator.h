@@ -1,6 +1,8 @@
 // integrator.h — the integrators, and what each of them supports.
 #pragma once
 
+#include <string>
+
 #include "glisson/words.h"
 
 namespace glisson {
@@ -39,5 +41,8 @@ struct Capabilities {
 };
 
 Capabilities capabilities(Integrator integrator);
+
+/// The integrators that support instruments, capsules and containers, with their condition, as words for messages.
+std::string supporting_integrators();
 
 }  // namespace glisson

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -129,9 +130,12 @@ class Interaction {
   /// @param origins  the last vertices are copies of these
   virtual void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) = 0;
 
-  /// Vertices it may act on in the step from `time` to `time` + h, besides those named before, which stay active.
+  /// Vertices it may act on in the step from `time` to `time` + h, besides those named before, which stay active (see keeps()).
   /// Valid until the next call. Cost: naming none is free; naming some takes a pass over the vertices of the body.
   virtual std::span<const std::uint32_t> reach(double time, double h) = 0;
+  /// Called after each reach(): all vertices that it may still act on, where these have become fewer; the rest is let go, unless
+  /// something else acts on it. None: it keeps all that it has named. Valid until the next call.
+  virtual std::optional<std::span<const std::uint32_t>> keeps() { return {}; }
 
   /// Adds forces that follow from the present state to `elastic` or `viscous` of active vertices.
   virtual void add_forces(const InteractionStep&) {}

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "dynamics/make_body.h"
 #include "element/tet_fields.h"
@@ -27,11 +28,32 @@ const ExplicitScheme::StateCopy& ExplicitScheme::read_state() const {
   return copy_;
 }
 
+void ExplicitScheme::acts_on(std::span<const std::uint32_t> vertices) {
+  held_.insert(held_.end(), vertices.begin(), vertices.end());
+  std::sort(held_.begin(), held_.end());
+  held_.erase(std::unique(held_.begin(), held_.end()), held_.end());
+  watch(vertices);
+}
+
 void ExplicitScheme::watch(std::span<const std::uint32_t> vertices) {
   const std::vector<std::uint32_t> before = active_vertices();
   moving_->watch(vertices);
+  active_changed(before);
+}
+
+void ExplicitScheme::active_changed(std::span<const std::uint32_t> before) {
   kick_.follow(before, moving_->active());
   interactions_.find_places(moving_->active(), state_.body.vertex_count);
+}
+
+/// Returns the vertices to the body that nothing acts on any more.
+void ExplicitScheme::let_go() {
+  const std::vector<std::uint32_t> before = active_vertices(), named = interactions_.named();
+  std::vector<std::uint32_t> kept;
+  std::set_union(held_.begin(), held_.end(), named.begin(), named.end(), std::back_inserter(kept));
+  if (kept.size() == before.size()) return;
+  moving_->watch_only(kept);
+  active_changed(before);
 }
 
 std::vector<std::uint32_t> ExplicitScheme::active_vertices() const {
@@ -60,6 +82,7 @@ void ExplicitScheme::begin_interactions(double h) {
   if (interactions_.empty()) return;
   const std::span<const std::uint32_t> newcomers = interactions_.newcomers(state_.time, h, state_.body.vertex_count);
   if (!newcomers.empty()) watch(newcomers);
+  if (interactions_.has_left()) let_go();
 }
 
 /// Lets interactions correct v₊, and keeps what they exerted.
@@ -184,6 +207,8 @@ void ExplicitScheme::take_body(Archive& ar) {
 void ExplicitScheme::archive_motion(Archive& ar) {
   std::vector<std::uint32_t> active = active_vertices();
   ar.all_below(active, state_.body.vertex_count);
+  ar.all_below(held_, state_.body.vertex_count);
+  ar.check(std::is_sorted(held_.begin(), held_.end()));
   if (ar.reads()) watch(active);
   ar.check(moving_->active().size() == active.size());
   moving_->archive_state(ar, state_.body.vertex_count);
@@ -194,6 +219,9 @@ void ExplicitScheme::archive_motion(Archive& ar) {
   for (const StiffElement& s : stiff_) ar.check(s.element < state_.body.elements.size());
   ar(*control_, interactions_);
   if (!ar.reads()) return;
+  const std::vector<std::uint32_t> named = interactions_.named();
+  ar.check(std::includes(active.begin(), active.end(), held_.begin(), held_.end()));
+  ar.check(std::includes(active.begin(), active.end(), named.begin(), named.end()));
   moving_->list_above(control_->list_above());
   control_->set_added(interactions_.squared_frequency());
 }
@@ -258,11 +286,16 @@ void ExplicitScheme::take_tissues(const TissueChange& change) {
 
 void ExplicitScheme::follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) {
   std::vector<std::uint32_t> followers;
+  const std::size_t held = held_.size();
   for (std::uint32_t i = 0; i < origins.size(); ++i) {
     const auto is_origin = [&](const ActiveVertex& w) { return w.vertex == origins[i]; };
     const std::span<const ActiveVertex> active = moving_->active();
     if (std::any_of(active.begin(), active.end(), is_origin)) followers.push_back(first_new + i);
+    if (std::binary_search(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(held), origins[i])) {
+      held_.push_back(first_new + i);
+    }
   }
+  interactions_.follow(origins, first_new);
   if (!followers.empty()) watch(followers);
 }
 

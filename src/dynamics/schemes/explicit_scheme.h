@@ -53,7 +53,7 @@ class ExplicitScheme : public Scheme {
   /// v₊ of the active vertices: as if they were free, then what motions ask for.
   virtual void kick(double h);
 
-  void acts_on(std::span<const std::uint32_t> vertices) override { watch(vertices); }
+  void acts_on(std::span<const std::uint32_t> vertices) override;
   void take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
   void take_over(const BodyChange& change) override;
   void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) override;
@@ -63,6 +63,8 @@ class ExplicitScheme : public Scheme {
   void take_tissues(const TissueChange& change) override;
   void take_back_tissues(const TissueChange& change) override { follow_tissues(change); }
   void watch(std::span<const std::uint32_t> vertices);
+  void active_changed(std::span<const std::uint32_t> before);
+  void let_go();
   void begin_interactions(double h);
   void constrain_interactions();
 
@@ -85,6 +87,7 @@ class ExplicitScheme : public Scheme {
   std::vector<std::uint32_t> active_vertices() const;
   void book(double h, const KickWork& free);
 
+  std::vector<std::uint32_t> held_;  ///< vertices of supports, motions and loads, ascending
   std::vector<double> stiffening_;   ///< per tissue block, at the last evaluation
   std::vector<StiffElement> stiff_;  ///< what was listed then
   std::vector<ShapeRate> shape_rates_;

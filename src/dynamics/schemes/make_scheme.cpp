@@ -36,6 +36,16 @@ std::size_t place_of(Integrator integrator) {
 
 Capabilities capabilities(Integrator integrator) { return All::kInfos.at(place_of(integrator)).can; }
 
+std::string supporting_integrators() {
+  std::string words;
+  for (const IntegratorInfo& info : All::kInfos) {
+    if (!info.can.supports_interactions) continue;
+    words += (words.empty() ? "" : ", or ") + std::string(word_of(info.integrator));
+    if (!info.can.supports_them_in_viscous_tissue) words += " for tissue without `viscosity_Pa_s`";
+  }
+  return words;
+}
+
 std::unique_ptr<Scheme> make_scheme(Body body, const SimulationOptions& options) {
   return All::kMakes.at(place_of(options.integrator))(std::move(body), options);
 }

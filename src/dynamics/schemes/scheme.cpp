@@ -37,10 +37,8 @@ std::string Scheme::not_finite_at(double time) {
 
 void Scheme::refuse_interactions() {
   throw std::invalid_argument(
-      "attach: instruments, needles and membranes need integrator = central_difference, or semi_implicit for tissue "
-      "without "
-      "viscosity; this simulation has another. Relaxation can be modelled by maxwell branches, which work with "
-      "explicit steps");
+      "attach: instruments, needles and membranes need integrator = " + supporting_integrators() +
+      "; this simulation has another. Relaxation can be modelled by maxwell branches, which work with explicit steps");
 }
 
 bool Scheme::take_hold(double h) {

@@ -127,6 +127,11 @@ std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
   return s.reach.ask({&s.solid, 1}, h);
 }
 
+std::optional<std::span<const std::uint32_t>> ContactTool::keeps() {
+  if (state_->lost) return {};
+  return state_->reach.keeps();
+}
+
 void ContactTool::add_forces(const InteractionStep& step) { state_->books.begin(step); }
 
 void ContactTool::constrain(const InteractionStep& step) {

@@ -8,6 +8,7 @@ namespace glisson {
 namespace {
 
 constexpr double kStretch = 2.5;  // of a patch's radius: how far its vertices may be from its sentinel
+constexpr double kFarAway = 5.0;  // of a patch's radius: so far from all solids, its vertices are let go
 constexpr double kHurry = 4.0;    // times the sentinel's way in a step: how far they may go
 constexpr std::uint32_t kAbsent = std::numeric_limits<std::uint32_t>::max();
 
@@ -24,32 +25,45 @@ void ContactReach::attach(const BodyView& body) {
 }
 
 /// φ is never less along the way than half of what its ends have beyond that way.
-bool ContactReach::may_reach(const ContactSolid& solid, const SurfacePatch& patch, const Sentinel& s, double h) const {
+/// @param margin  how far the patch's vertices may be from its sentinel [m]
+bool ContactReach::may_reach(const ContactSolid& solid, double margin, const Sentinel& s, double h) const {
   const Vec3d before = to_frame(solid.before, s.position), after = to_frame(solid.after, s.position);
   const double apart = 0.5 * (distance_to(*solid.shape, before).distance + distance_to(*solid.shape, after).distance -
                               norm(after - before));
-  return !(apart > kStretch * patch.radius + kHurry * h * norm(s.velocity));
+  return !(apart > margin + kHurry * h * norm(s.velocity));
 }
 
 std::span<const std::uint32_t> ContactReach::ask(std::span<const ContactSolid> solids, double h) {
   asking_.clear();
+  gone_ = false;
   for (std::size_t k = 0; k < sentinels_.size(); ++k) {
     const SurfacePatch& patch = surface_.patches()[k];
     if (!sentinels_asked_) asking_.push_back(patch.sentinel);
-    const auto near = [&](const ContactSolid& s) { return may_reach(s, patch, sentinels_[k], h); };
-    if (sentinels_[k].asked || std::none_of(solids.begin(), solids.end(), near)) continue;
-    sentinels_[k].asked = true;
-    asking_.insert(asking_.end(), patch.vertices.begin(), patch.vertices.end());
+    const double margin = (sentinels_[k].asked ? kFarAway : kStretch) * patch.radius;
+    const auto near = [&](const ContactSolid& s) { return may_reach(s, margin, sentinels_[k], h); };
+    if (sentinels_[k].asked == std::any_of(solids.begin(), solids.end(), near)) continue;
+    sentinels_[k].asked = !sentinels_[k].asked;
+    if (sentinels_[k].asked) {
+      asking_.insert(asking_.end(), patch.vertices.begin(), patch.vertices.end());
+    } else {
+      gone_ = true;
+    }
   }
   const bool grown = asking_.size() > (sentinels_asked_ ? 0 : sentinels_.size());
   sentinels_asked_ = true;
-  if (grown) gather();
+  if (grown || gone_) gather();
   return asking_;
+}
+
+std::optional<std::span<const std::uint32_t>> ContactReach::keeps() {
+  if (!gone_) return {};
+  kept_ = mine_;
+  for (const SurfacePatch& p : surface_.patches()) kept_.push_back(p.sentinel);
+  return kept_;
 }
 
 void ContactReach::look(const InteractionStep& step) {
   for (std::size_t k = 0; k < sentinels_.size(); ++k) {
-    if (sentinels_[k].asked) continue;
     const std::uint32_t place = step.place_of[surface_.patches()[k].sentinel];
     if (place == InteractionStep::kNowhere) continue;
     sentinels_[k].position = step.position(place), sentinels_[k].velocity = step.vertices[place].velocity;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "glisson/archive.h"
@@ -21,12 +22,14 @@ void give_to_copies(std::map<std::uint32_t, Value>& of_vertex, std::size_t verti
   }
 }
 
-/// The part of the surface that solids may touch: patches come in as one draws near and stay.
+/// The part of the surface that solids may touch: patches come in as one draws near and go when all are well away.
 class ContactReach {
  public:
   void attach(const BodyView& body);
   /// Vertices to bring to hand, the sentinels of all patches at first. @param solids  their way in the coming step
   std::span<const std::uint32_t> ask(std::span<const ContactSolid> solids, double h);
+  /// What the last ask() left of all vertices, where it let some go.
+  std::optional<std::span<const std::uint32_t>> keeps();
   /// Where the sentinels are after a step.
   void look(const InteractionStep& step);
 
@@ -45,14 +48,14 @@ class ContactReach {
     void archive(Archive& ar) { ar(position, velocity, asked); }
   };
 
-  bool may_reach(const ContactSolid& solid, const SurfacePatch& patch, const Sentinel& s, double h) const;
+  bool may_reach(const ContactSolid& solid, double margin, const Sentinel& s, double h) const;
   void gather();
 
   ContactSurface surface_;
   std::vector<Sentinel> sentinels_;
-  std::vector<std::uint32_t> mine_, asking_;
+  std::vector<std::uint32_t> mine_, asking_, kept_;
   std::vector<Triangle> my_triangles_;
-  bool sentinels_asked_ = false;
+  bool sentinels_asked_ = false, gone_ = false;
 };
 
 }  // namespace glisson

@@ -134,6 +134,12 @@ std::span<const std::uint32_t> Needle::reach(double, double) {
   return s.wanted;
 }
 
+/// Each list is complete: what path and tip have left is not in it.
+std::optional<std::span<const std::uint32_t>> Needle::keeps() {
+  if (state_->wanted.empty()) return {};
+  return state_->wanted;
+}
+
 /// The tissue that the tip meets may change at any time, and with it how fast it takes up a motion.
 void Needle::between_steps(Simulation& simulation) {
   State& s = *state_;

@@ -104,10 +104,10 @@ const SectionSpec& shaft_friction_section() {
 
 const SectionSpec& instrument_section() {
   static const SectionSpec section = [] {
-    Section<InstrumentSpec> s(
-        "instrument",
-        "A rigid or bending tool, selected by `kind`: it touches the surface in contact, or "
-        "pierces it. Needs the integrator central_difference, or semi_implicit without viscosity.");
+    Section<InstrumentSpec> s("instrument",
+                              "A rigid or bending tool, selected by `kind`: it touches the surface in contact, or "
+                              "pierces it. Needs the integrator " +
+                                  supporting_integrators() + ".");
     s.key("name", &InstrumentSpec::name, "name; no two tools or instruments of an experiment share one");
     s.key("tip_m", &InstrumentSpec::tip, "position of its tip at the start").in("m").must();
     s.key("direction", &InstrumentSpec::direction, "direction of its tip, of any length").in("-").direction();
