@@ -1,0 +1,19 @@
+// nearest_point.h — where a body is, for messages about places outside of it.
+#pragma once
+
+#include <utility>
+
+#include "glisson/mesh.h"
+
+namespace glisson::detail {
+
+/// Lowest and highest corner of the box around the tets [m]. The mesh has at least one.
+std::pair<Vec3d, Vec3d> box_of(const TetMesh& mesh);
+
+/// The point of a triangle nearest to x.
+Vec3d nearest_on_triangle(const Vec3d& x, const Vec3d& a, const Vec3d& b, const Vec3d& c);
+
+/// The point of the surface nearest to x. Cost: a pass over the surface.
+Vec3d nearest_point(const TetMesh& mesh, const Vec3d& x);
+
+}  // namespace glisson::detail
