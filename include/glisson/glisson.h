@@ -15,6 +15,8 @@
 #include "glisson/instruments/tool_motion.h"
 #include "glisson/math.h"
 #include "glisson/mesh.h"
+#include "glisson/mesh_refinement.h"
+#include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 #include "glisson/simulation/tet_fields.h"
 #include "glisson/version.h"

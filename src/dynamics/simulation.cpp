@@ -142,6 +142,7 @@ Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const Simula
 }
 
 Scheme& SimulationParts::scheme(Inside& inside) { return *inside.scheme; }
+const Scheme& SimulationParts::scheme(const Simulation& simulation) { return *simulation.impl_->scheme; }
 std::weak_ptr<const Scheme> SimulationParts::weak_scheme(Simulation& simulation) { return simulation.impl_->scheme; }
 const TetMesh& SimulationParts::mesh(const Inside& inside) { return inside.mesh; }
 SplitReport SimulationParts::split_faces(Inside& inside, std::span<const Triangle> faces,

@@ -11,6 +11,7 @@ struct SimulationParts {
   static Inside& inside(Simulation& simulation) { return *simulation.impl_; }
   static Scheme& scheme(Inside& inside);
   static Scheme& scheme(Simulation& simulation) { return scheme(inside(simulation)); }
+  static const Scheme& scheme(const Simulation& simulation);
   /// For reading it as long as the simulation lives.
   static std::weak_ptr<const Scheme> weak_scheme(Simulation& simulation);
   static const TetMesh& mesh(const Inside& inside);

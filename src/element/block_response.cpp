@@ -6,9 +6,11 @@
 
 namespace glisson {
 
-std::vector<double> vertex_means(const Body& body, const TissueBlock& block, const std::vector<double>& per_element) {
+std::vector<double> vertex_means(const Body& body, const ElementList& elements,
+                                 const std::vector<double>& per_element) {
   std::vector<double> sum(body.vertex_count, 0.0), volume(body.vertex_count, 0.0);
-  for (std::size_t e = block.begin; e < block.end; ++e) {
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const std::size_t e = elements[i];
     for (const std::uint32_t v : body.elements[e]) {
       sum[v] += body.rest[e].volume * per_element[e];
       volume[v] += body.rest[e].volume;
@@ -19,17 +21,32 @@ std::vector<double> vertex_means(const Body& body, const TissueBlock& block, con
 }
 
 void average(const Body& body, const TissueBlock& block, std::vector<double>& per_element) {
-  const std::vector<double> at = vertex_means(body, block, per_element);
+  const std::vector<double> at = vertex_means(body, ElementList(block), per_element);
   for (std::size_t e = block.begin; e < block.end; ++e) {
     const Tet& t = body.elements[e];
     per_element[e] = 0.25 * (at[t[0]] + at[t[1]] + at[t[2]] + at[t[3]]);
   }
 }
 
-/// ϑ of each element of the block, 0 of the others.
+BlockResponse::BlockResponse(const Body& body, const TissueBlock& block, const ElementList& wanted)
+    : body_(body), block_(block), response_(block.tissue), wanted_(wanted) {
+  if (!shared() || wanted.size() == block.end - block.begin) return;
+  std::vector<char> near(body.vertex_count, 0);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    for (const std::uint32_t v : body.elements[wanted[i]]) near[v] = 1;
+  }
+  for (std::size_t e = block.begin; e < block.end; ++e) {
+    const Tet& t = body.elements[e];
+    if (near[t[0]] + near[t[1]] + near[t[2]] + near[t[3]] > 0) around_.push_back(static_cast<std::uint32_t>(e));
+  }
+}
+
+/// ϑ of each element around those wanted, 0 of the others.
 std::vector<double> BlockResponse::volume_changes(std::span<const Vec3d> u) const {
   std::vector<double> theta(body_.elements.size(), 0.0);
-  for (std::size_t e = block_.begin; e < block_.end; ++e) {
+  const ElementList elements = around();
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const std::size_t e = elements[i];
     theta[e] = response_.volume_change(element_gradient(body_, e, u));
   }
   return theta;
@@ -37,9 +54,10 @@ std::vector<double> BlockResponse::volume_changes(std::span<const Vec3d> u) cons
 
 double BlockResponse::energy(std::span<const Vec3d> u) const {
   const std::vector<double> at =
-      shared() ? vertex_means(body_, block_, volume_changes(u)) : std::vector<double>{};  // ϑ_a of each vertex
+      shared() ? vertex_means(body_, around(), volume_changes(u)) : std::vector<double>{};  // ϑ_a of each vertex
   double sum = 0.0;
-  for (std::size_t e = block_.begin; e < block_.end; ++e) {
+  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+    const std::size_t e = wanted_[i];
     if (!(body_.rest[e].volume > 0.0)) continue;
     double square = 0.0;
     if (shared()) {
@@ -53,28 +71,32 @@ double BlockResponse::energy(std::span<const Vec3d> u) const {
   return sum;
 }
 
-/// Calls `visit(e, H, P)` with the elastic P of each element that is there.
+/// Calls `visit(i, H, P)` with the elastic P of each wanted element that is there, the i-th of them.
 template <class Visit>
 void BlockResponse::for_elastic(std::span<const Vec3d> u, const Visit& visit) const {
-  std::vector<double> mean;
-  if (shared()) average(body_, block_, mean = volume_changes(u));
-  for (std::size_t e = block_.begin; e < block_.end; ++e) {
+  std::vector<double> at;  // mean ϑ of each vertex
+  if (shared()) at = vertex_means(body_, around(), volume_changes(u));
+  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+    const std::size_t e = wanted_[i];
     if (!(body_.rest[e].volume > 0.0)) continue;
     const Mat3d H = element_gradient(body_, e, u);
-    visit(e, H, response_.elastic(H, element_shape(body_, block_.tissue, e), shared() ? &mean[e] : nullptr));
+    const Tet& t = body_.elements[e];
+    const double mean = shared() ? 0.25 * (at[t[0]] + at[t[1]] + at[t[2]] + at[t[3]]) : 0.0;
+    visit(i, H, response_.elastic(H, element_shape(body_, block_.tissue, e), shared() ? &mean : nullptr));
   }
 }
 
 std::vector<Mat3d> BlockResponse::piola(std::span<const Vec3d> u, std::span<const Vec3d> v,
                                         const BranchMemory& memory) const {
   const std::vector<MaxwellBranch>& branches = block_.tissue.maxwell;
-  std::vector<Mat3d> stress(block_.end - block_.begin);
-  for_elastic(u, [&](std::size_t e, const Mat3d& H, Mat3d P) {
-    const std::size_t i = e - block_.begin;
+  std::vector<Mat3d> stress(wanted_.size());
+  for_elastic(u, [&](std::size_t i, const Mat3d& H, Mat3d P) {
+    const std::size_t e = wanted_[i];
     if (!branches.empty()) {
       const Sym3<double> S = response_.relaxing(H, P);
       Sym3<double> sum = S * -response_.relaxing_share();
-      for (std::size_t k = 0; k < branches.size() && !memory.empty(); ++k) sum += memory.stress(branches[k], i, k, S);
+      for (std::size_t k = 0; k < branches.size() && !memory.empty(); ++k)
+        sum += memory.stress(branches[k], e - block_.begin, k, S);
       P = glisson::sum(P, response_.carry(H, sum));
     }
     if (block_.tissue.viscosity > 0.0) P = sum(P, response_.viscous(H, element_gradient(body_, e, v)));
@@ -84,9 +106,8 @@ std::vector<Mat3d> BlockResponse::piola(std::span<const Vec3d> u, std::span<cons
 }
 
 std::vector<Sym3<double>> BlockResponse::relaxing(std::span<const Vec3d> u) const {
-  std::vector<Sym3<double>> stress(block_.end - block_.begin);
-  for_elastic(
-      u, [&](std::size_t e, const Mat3d& H, const Mat3d& P) { stress[e - block_.begin] = response_.relaxing(H, P); });
+  std::vector<Sym3<double>> stress(wanted_.size());
+  for_elastic(u, [&](std::size_t i, const Mat3d& H, const Mat3d& P) { stress[i] = response_.relaxing(H, P); });
   return stress;
 }
 

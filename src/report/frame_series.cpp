@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <new>
 #include <span>
 
+#include "element/tet_fields.h"
 #include "glisson/io.h"
 #include "material/strain.h"
+#include "mesh/inspect/nearest_point.h"
 #include "report/output_file.h"
 #include "report/tool_surface.h"
 
@@ -22,12 +23,6 @@ Field vector_field(std::string name, std::span<const Vec3d> vectors) {
   field.values.reserve(3 * vectors.size());
   for (const Vec3d& v : vectors) field.values.insert(field.values.end(), {v.x, v.y, v.z});
   return field;
-}
-
-/// √(½ [(σx−σy)² + (σy−σz)² + (σz−σx)²] + 3 (τxy² + τyz² + τxz²)) [Pa].
-double von_mises(std::span<const double, 6> s) {
-  const double xy = s[0] - s[1], yz = s[1] - s[2], zx = s[2] - s[0];
-  return std::sqrt(0.5 * (xy * xy + yz * yz + zx * zx) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
 }
 
 /// @param stress  xx, yy, zz, xy, yz, zx of each tet
@@ -62,10 +57,7 @@ Field strain_field(const TetMesh& mesh, std::span<const Vec3d> u) {
 
 /// The longest edge of the body's box at rest [m].
 double extent_of(const TetMesh& mesh) {
-  Vec3d low = mesh.vertices.front(), high = low;
-  for (const Vec3d& x : mesh.vertices) {
-    for (std::size_t i = 0; i < 3; ++i) low[i] = std::min(low[i], x[i]), high[i] = std::max(high[i], x[i]);
-  }
+  const auto [low, high] = detail::box_of(mesh);
   return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
 }
 

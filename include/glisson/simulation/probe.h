@@ -1,0 +1,92 @@
+// probe.h — what is read at some places of a body while it moves: a point of the material, a vertex set, a region, a plane.
+//
+//   Probes probes(simulation, {{.name = "tip", .where = ProbePoint{{0.02, 0.02, 0.05}}}});
+//   probes.columns()             tip_displacement_x_m, …, tip_stress_xx_Pa, …
+//   probes.read(simulation)      their values at the present state
+//
+// Places are given at rest and stay with the material. Stress is that of the forces (TetFields); it is computed for the tets
+// of the probes alone, and only when read() is called: a probe costs nothing in between, and the simulation does not know
+// of it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "glisson/math.h"
+#include "glisson/simulation/simulation.h"
+
+namespace glisson {
+
+/// A point of the material: displacement, velocity, and stress and strain of the tet around it.
+struct ProbePoint {
+  Vec3d position{};  ///< at rest [m]
+};
+/// A vertex set: mean displacement and velocity, and the resultant of the stress on it,
+///   F = Σ_a Σ_e V P s_a  over the vertices a of the set,
+/// which in equilibrium is the force that a tool, a support or a load exerts there. The mean is over the faces of the surface
+/// that the set spans, by their areas; of a set without such faces, over its vertices by the volumes around them.
+struct ProbeSet {
+  std::string set;
+};
+/// A region: means over the volume at rest, and the present volume.
+struct ProbeRegion {
+  std::string region;  ///< name or number; 0 is the whole body where the mesh has no regions
+};
+/// A section through the whole body: force and moment that the part in front of it, to which the normal points, exerts
+/// on the part behind it, in tension along the normal.
+///
+///   F = Σ_a Σ_e V P s_a,  M = Σ_a Σ_e (x_a − point) × V P s_a    over the vertices a in front, of the tets that are cut
+///
+/// By these numbers the body moves: in equilibrium F is the force of whatever acts on the part in front, to rounding, on any
+/// mesh. Under motion it differs from it by the inertia of that part. The mean traction is the stress over the section itself,
+/// Σ P n A / Σ A; it is exact in uniform stress and otherwise has the error of the mesh. Vertices on the plane count as
+/// behind it.
+struct ProbePlane {
+  Vec3d point{};                ///< at rest [m]; moments are about it, fixed in space
+  Vec3d normal{0.0, 0.0, 1.0};  ///< of any length but 0
+};
+
+struct ProbeOptions {
+  std::string name = "probe";
+  std::variant<ProbePoint, ProbeSet, ProbeRegion, ProbePlane> where;
+};
+
+class ProbeReader;
+
+/// Probes of one simulation.
+///
+/// They follow changes of the body: tets that were removed are left out, and a probe with no tet left reads nan. A point whose
+/// tet was removed is lost unless it lies on the face of another.
+class Probes {
+ public:
+  Probes();
+  /// @throws std::invalid_argument for a point outside of the body (naming the nearest point of it), a plane that does not
+  ///         cut it, or a set or region that it does not have
+  Probes(const Simulation& simulation, std::vector<ProbeOptions> options);
+  ~Probes();
+  Probes(Probes&&) noexcept;
+  Probes& operator=(Probes&&) noexcept;
+
+  std::size_t size() const { return readers_.size(); }
+  bool empty() const { return readers_.empty(); }
+  const std::string& name(std::size_t probe) const { return options_[probe].name; }
+  /// NAME_quantity_unit of each value, probe by probe.
+  const std::vector<std::string>& columns() const { return columns_; }
+  /// The values at the present state of the simulation that they were made for.
+  /// Cost: of their tets, with averaged volume change of the neighbours too; and a look at every tet of the body.
+  std::vector<double> read(const Simulation& simulation);
+  /// Whether no tet of the probe is left; as of the last read().
+  bool lost(std::size_t probe) const;
+
+ private:
+  std::vector<ProbeOptions> options_;
+  std::vector<std::unique_ptr<ProbeReader>> readers_;
+  std::vector<std::string> columns_;
+  std::uint64_t changes_ = 0;  ///< of the body that the readers have followed
+};
+
+}  // namespace glisson
