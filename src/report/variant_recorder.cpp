@@ -54,6 +54,19 @@ std::vector<std::size_t> page_rows(std::size_t rows) {
   return kept;
 }
 
+/// Columns of web/src/report_data.ts.
+nlohmann::json table_json(const std::vector<std::string>& columns, const std::vector<std::vector<double>>& table) {
+  const std::vector<std::size_t> rows = page_rows(table.empty() ? 0 : table.front().size());
+  nlohmann::json data = nlohmann::json::array();
+  for (const std::vector<double>& column : table) {
+    std::vector<double> kept;
+    kept.reserve(rows.size());
+    for (const std::size_t row : rows) kept.push_back(short_number(column[row]));
+    data.push_back(std::move(kept));
+  }
+  return {{"columns", columns}, {"data", std::move(data)}};
+}
+
 }  // namespace
 
 VariantRecorder::VariantRecorder(Variant variant, RecorderOptions options, std::atomic<bool>& stop)
@@ -86,12 +99,21 @@ void VariantRecorder::on_built(const BuiltVariant& built) {
   if (frames_) frames_->set_instruments(built.instruments);
   table_.emplace(variant_, built);
   data_.resize(table_->columns().size());
+  if (!built.probes.empty()) {
+    probe_columns_ = {"time_s"};
+    probe_columns_.insert(probe_columns_.end(), built.probes.columns().begin(), built.probes.columns().end());
+    probe_data_.resize(probe_columns_.size());
+  }
   guarded([&] {
     files_.emplace_back(options_.folder / "forces.csv");
     files_.back().write(csv_head(table_->columns()));
     for (const ForceTable::Further& file : table_->further()) {
       files_.emplace_back(options_.folder / ("forces_" + file.name + ".csv"));
       files_.back().write(csv_head(file.columns));
+    }
+    if (!probe_columns_.empty()) {
+      probe_file_ = std::make_unique<LineFile>(options_.folder / "probes.csv");
+      probe_file_->write(csv_head(probe_columns_));
     }
     if (frames_) view_ = std::make_unique<ViewFile>(options_.folder, options_.scene, variant_, built.instruments);
   });
@@ -100,12 +122,14 @@ void VariantRecorder::on_built(const BuiltVariant& built) {
 void VariantRecorder::on_event(const RunEvent& event) {
   events_.push_back(event);
   guarded([&] {
+    if (!event_file_) return;  // "probe lost", in a scene without instruments
     const auto& [time, depth, what] = event.what;
     event_file_->write(number_text(time) + "," + number_text(depth) + "," + what + "," + event.instrument);
   });
 }
 
 void VariantRecorder::on_sample(const Sample& sample) {
+  record_probes(sample);
   const std::vector<double> row = table_->row(sample);
   for (std::size_t i = 0; i < row.size(); ++i) data_[i].push_back(row[i]);
   guarded([&] {
@@ -114,6 +138,14 @@ void VariantRecorder::on_sample(const Sample& sample) {
       files_[i + 1].write(joined(ForceTable::row_of(table_->further()[i], sample), number_text));
     }
   });
+}
+
+void VariantRecorder::record_probes(const Sample& sample) {
+  if (probe_columns_.empty()) return;
+  std::vector<double> row{sample.probe_time};
+  row.insert(row.end(), sample.probes.begin(), sample.probes.end());
+  for (std::size_t i = 0; i < row.size(); ++i) probe_data_[i].push_back(row[i]);
+  guarded([&] { probe_file_->write(joined(row, number_text)); });
 }
 
 void VariantRecorder::on_frame(const Simulation& simulation) {
@@ -134,22 +166,14 @@ void VariantRecorder::on_end(const RunSummary& summary) {
 }
 
 const std::vector<double>& VariantRecorder::column(const std::string& name) const {
-  const auto& names = table_->columns();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) throw std::out_of_range("forces.csv has no column \"" + name + "\"");
-  return data_[static_cast<std::size_t>(found - names.begin())];
-}
-
-nlohmann::json VariantRecorder::forces_json() const {
-  const std::vector<std::size_t> rows = page_rows(data_.front().size());
-  nlohmann::json data = nlohmann::json::array();
-  for (const std::vector<double>& column : data_) {
-    std::vector<double> kept;
-    kept.reserve(rows.size());
-    for (const std::size_t row : rows) kept.push_back(short_number(column[row]));
-    data.push_back(std::move(kept));
-  }
-  return {{"columns", table_->columns()}, {"data", std::move(data)}};
+  const auto found_in = [&](const std::vector<std::string>& names, const auto& data) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? nullptr : &data[static_cast<std::size_t>(found - names.begin())];
+  };
+  if (const auto* values = found_in(table_->columns(), data_)) return *values;
+  if (const auto* values = found_in(probe_columns_, probe_data_)) return *values;
+  throw std::out_of_range("forces.csv" + std::string(probe_columns_.empty() ? " has" : " and probes.csv have") +
+                          " no column \"" + name + "\"");
 }
 
 nlohmann::json VariantRecorder::events_json() const {
@@ -165,7 +189,8 @@ nlohmann::json VariantRecorder::json(double law_reach) const {
   return {{"name", variant_.name},
           {"label", variant_.label.empty() ? variant_.name : variant_.label},
           {"summary", summary_json(summary_, variant_, options_.scene, options_.threads)},
-          {"forces", forces_json()},
+          {"forces", table_json(table_->columns(), data_)},
+          {"probes", table_json(probe_columns_, probe_data_)},
           {"events", events_json()},
           {"law", law_data(variant_, law_reach)},
           {"surface", surface_ ? surface_->json() : nlohmann::json()}};

@@ -1,6 +1,6 @@
 // variant_recorder.h — writes down one variant as it runs, and keeps what the report page will show of it.
 //
-//   on_sample ─▶ forces.csv, forces_<name>.csv          on_end ─▶ summary.json
+//   on_sample ─▶ forces.csv, forces_<name>.csv, probes.csv          on_end ─▶ summary.json
 //   on_event  ─▶ events.csv, where there are instruments
 //   on_frame  ─▶ frames.pvd, frames/*.vtu, view.jsonl, surface with instruments
 //
@@ -54,15 +54,18 @@ class VariantRecorder : public RunObserver {
   /// Columns of forces.csv and their values, column by column.
   const std::vector<std::string>& columns() const { return table_->columns(); }
   const std::vector<std::vector<double>>& data() const { return data_; }
-  /// One column of forces.csv by name. @throws std::out_of_range naming it
+  /// One column of forces.csv or probes.csv by name. @throws std::out_of_range naming it
   const std::vector<double>& column(const std::string& name) const;
+  /// Columns of probes.csv, time first, and their values, column by column; empty without probes.
+  const std::vector<std::string>& probe_columns() const { return probe_columns_; }
+  const std::vector<std::vector<double>>& probe_data() const { return probe_data_; }
   double intensity_max() const { return surface_ ? surface_->intensity_max() : 0.0; }
   /// VariantData of web/src/report_data.ts. @param law_reach  see law_data()
   nlohmann::json json(double law_reach) const;
 
  private:
   void guarded(const std::function<void()>& write);
-  nlohmann::json forces_json() const;
+  void record_probes(const Sample& sample);
   nlohmann::json events_json() const;
 
   Variant variant_;
@@ -70,12 +73,14 @@ class VariantRecorder : public RunObserver {
   std::atomic<bool>& stop_;
   std::optional<ForceTable> table_;  // from on_built on
   std::vector<LineFile> files_;      // forces.csv, then forces_<name>.csv
-  std::unique_ptr<LineFile> event_file_;
+  std::unique_ptr<LineFile> event_file_, probe_file_;
   std::vector<RunEvent> events_;
   std::unique_ptr<FrameSeries> frames_;
   std::unique_ptr<ViewFile> view_;
   std::unique_ptr<SurfaceRecorder> surface_;
   std::vector<std::vector<double>> data_;
+  std::vector<std::string> probe_columns_;
+  std::vector<std::vector<double>> probe_data_;
   RunSummary summary_;
   std::string error_;
 };

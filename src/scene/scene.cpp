@@ -29,7 +29,7 @@ void check_sets(const Variant& variant, const Node& experiment, Problems& proble
   if (std::holds_alternative<MeshFile>(variant.mesh)) return;
   std::vector<std::string> known = generated_sets(variant.mesh);
   for (const auto& [name, selection] : variant.sets) known.push_back(name);
-  for (const char* user : {"fixed", "load", "tool", "capsule"}) {
+  for (const char* user : {"fixed", "load", "tool", "capsule", "probe"}) {
     const Node* list = experiment.find(user);
     for (std::size_t i = 0; list && i < list->array()->size(); ++i) {
       if (!(*list->array())[i].find("set")) continue;
@@ -184,6 +184,7 @@ Variant scene::read_variant(const Node& experiment, const std::filesystem::path&
   if (const Node* list = experiment.find("instrument")) check_names(*list->array(), "instrument", problems);
   check_shared_names(variant, experiment, problems);
   if (const Node* regions = experiment.find("region")) check_names(*regions->array(), "region", problems);
+  if (const Node* probes = experiment.find("probe")) check_names(*probes->array(), "probe", problems);
   check_sets(variant, experiment, problems);
   check_integrator(variant, experiment, problems);
   check_end(variant, experiment, problems);

@@ -145,11 +145,44 @@ TEST_F(Outputs, FramesAreAsParaViewTakesThem) {
   }
 }
 
+constexpr const char* kEveryProbe = R"([[probe]]
+name = "tip"
+point_m = [0.011, 0.012, 0.013]
+[[probe]]
+name = "top"
+set = "z_max"
+[[probe]]
+name = "body"
+region = "0"
+[[probe]]
+name = "cut"
+plane_m = { point = [0.01, 0.01, 0.007], normal = [0, 0, 1] }
+)";
+
+// probes.csv has a line for each of forces.csv, at the same times; the report has its columns, and a chart of the scene may show them.
+TEST_F(Outputs, ProbesStandBesideTheForces) {
+  const std::string chart = "[[chart]]\ntitle = \"tip\"\nx = \"time_s\"\ny = \"tip_displacement_z_m\"\n";
+  ASSERT_THAT(run({"run", write("s.toml", small_scene(std::string(kEveryProbe) + chart)), "--out", "o", "--quiet"}),
+              Exits(0));
+  auto forces = read_csv(folder_ / "o/main/forces.csv");
+  auto probes = read_csv(folder_ / "o/main/probes.csv");
+  EXPECT_EQ(probes["time_s"], forces["time_s"]);
+  EXPECT_EQ(probes.size(), 1u + 21 + 9 + 21 + 10);
+  for (std::size_t i = 0; i < forces["time_s"].size(); ++i) {
+    EXPECT_NEAR(probes["top_displacement_z_m"][i], -forces["depth_m"][i], 1e-9) << "the driven face, row " << i;
+    const double internal = -(forces["elastic_N"][i] + forces["viscous_N"][i]);
+    EXPECT_NEAR(probes["top_force_z_N"][i], internal, 1e-6) << "row " << i;
+  }
+  const nlohmann::json page = report_data(folder_ / "o/report.html")["scenes"][0];
+  EXPECT_EQ(page["variants"][0]["probes"]["columns"].size(), probes.size());
+  EXPECT_EQ(page["charts"][0]["y"]["column"], "tip_displacement_z_m");
+}
+
 // docs/output.md names every column, array and key that runs write.
 TEST_F(Outputs, PageNamesAllThatIsWritten) {
   const std::string page = read_text(test::shipped("docs/output.md"));
   const auto named = [&](const std::string& name) { return page.find("`" + name + "`") != std::string::npos; };
-  for (const std::string& scene : {small_scene(), std::string(kEveryInstrument)}) {
+  for (const std::string& scene : {small_scene(kEveryProbe), std::string(kEveryInstrument)}) {
     ASSERT_THAT(run({"run", write("s.toml", scene), "--out", "o", "--quiet", "--set", "motion.max_steps=20"}),
                 Exits(0));
     for (const auto& entry : std::filesystem::directory_iterator(folder_ / "o/main")) {
@@ -161,6 +194,7 @@ TEST_F(Outputs, PageNamesAllThatIsWritten) {
       if (entry.path().extension() != ".csv") continue;
       std::istringstream head(read_text(entry.path()).substr(0, read_text(entry.path()).find('\n')));
       for (std::string column; std::getline(head, column, ',');) {
+        if (file == "probes.csv" && column != "time_s") column = "NAME" + column.substr(column.find('_'));
         if (column.find("support_") != 0) {
           EXPECT_TRUE(named(column)) << file << ": " << column;
         }

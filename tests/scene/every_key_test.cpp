@@ -103,6 +103,19 @@ hold_s = 0.3
 returns = true
 sideways = "free"
 
+[[probe]]
+name = "tip"
+point_m = [1, 2, 3]
+[[probe]]
+name = "end"
+set = "x_max"
+[[probe]]
+name = "stone"
+region = "stone"
+[[probe]]
+name = "cut"
+plane_m = { point = [0, 0, 2], normal = [0, 3, 4] }
+
 [output]
 sample_rate_hz = 250
 frames = 7
@@ -269,6 +282,13 @@ TEST(EveryKey, OfMotionToolsAndOutputIsRead) {
   EXPECT_EQ(tool.motion.hold, 0.3);
   EXPECT_TRUE(tool.motion.returns);
   EXPECT_TRUE(tool.sideways_free);
+  ASSERT_EQ(v.probes.size(), 4u);
+  EXPECT_EQ(v.probes[0].options.name, "tip");
+  expect_equal(std::get<ProbePoint>(v.probes[0].options.where).position, {1, 2, 3});
+  EXPECT_EQ(std::get<ProbeSet>(v.probes[1].options.where).set, "x_max");
+  EXPECT_EQ(std::get<ProbeRegion>(v.probes[2].options.where).region, "stone");
+  expect_equal(std::get<ProbePlane>(v.probes[3].options.where).point, {0, 0, 2});
+  expect_equal(std::get<ProbePlane>(v.probes[3].options.where).normal, {0, 3, 4});
   EXPECT_EQ(v.output.sample_rate, 250.0);
   EXPECT_EQ(v.output.frames, 7);
   EXPECT_TRUE(v.output.stored_energy);

@@ -34,6 +34,7 @@ export interface VariantData {
   label: string; // for the legend
   summary: Record<string, number | string>; // summary.json
   forces: Columns; // columns of forces.csv
+  probes: Columns; // columns of probes.csv, row by row those of forces; empty without probes
   events: EventData[]; // events.csv; empty where there is no instrument
   law: LawData | null;
   surface: SurfaceData | null;
@@ -106,7 +107,7 @@ export interface ChartSpec {
 }
 
 export interface AxisSpec {
-  column: string; // of forces
+  column: string; // of forces, else of probes
   label: string; // with unit, e.g. "depth [mm]"
   scale: number; // display = value × scale
 }

@@ -7,6 +7,7 @@ import { type Line, extentOf } from "../src/charts/model.ts";
 import { isRising, nearestInX, nearestOnScreen } from "../src/charts/nearest.ts";
 import { SceneState } from "../src/charts/scene_state.ts";
 import { variantCharts } from "../src/charts/variant_charts.ts";
+import { PROBE_QUANTITIES, probeChart } from "../src/charts/probe_charts.ts";
 import type { ChartSpec, SceneData, VariantData } from "../src/report_data.ts";
 
 const line = (x: number[], y: number[]): Line => ({
@@ -26,6 +27,7 @@ const variant = (name: string, y = [3600, 3600]): VariantData => ({
   events: [],
   surface: null,
   law: { measure: "equivalent shear strain s [-]", quantity: "modulus", x: [0, 1], curves: [{ label: "E", y }] },
+  probes: { columns: [], data: [] },
   forces: {
     columns: ["time_s", "depth_m", "force_N", "elastic_N", "viscous_N", "energy_elastic_J"],
     data: [
@@ -165,5 +167,42 @@ describe("scene state", () => {
     expect(hidden()).toEqual(["a", "c"]);
     state.toggle("b", true);
     expect(hidden()).toEqual([]);
+  });
+});
+
+describe("probes", () => {
+  const probed: VariantData = {
+    ...variant("a"),
+    probes: {
+      columns: ["time_s", "tip_displacement_x_m", "tip_displacement_z_m", "tip_stress_zz_Pa", "cut_force_z_N"],
+      data: [
+        [0, 1],
+        [0, 0],
+        [0, -0.004],
+        [0, -2500],
+        [0, -0.2],
+      ],
+    },
+  };
+  const charts = (of: VariantData) =>
+    PROBE_QUANTITIES.map((quantity) => probeChart(of, quantity)).filter((c) => c !== null);
+
+  it("have a chart for each quantity, in its unit, without what is zero", () => {
+    expect(charts(probed).map((chart) => [chart.title, chart.yLabel, chart.lines.map((line) => line.label)])).toEqual([
+      ["Displacement at probes", "Displacement [mm]", ["tip displacement z"]],
+      ["Force of sections and sets", "Force [N]", ["cut force z"]],
+      ["Stress at probes", "Stress [kPa]", ["tip stress zz"]],
+    ]);
+    expect(charts(variant("b"))).toEqual([]);
+  });
+
+  it("can be the columns of a scene's own chart", () => {
+    const spec: ChartSpec = {
+      title: "creep",
+      x: { column: "time_s", label: "time [s]", scale: 1 },
+      y: { column: "tip_displacement_z_m", label: "z [mm]", scale: 1000 },
+      variants: null,
+    };
+    expect(Array.from(variantCharts(scene([probed], [spec]))[0]!.lines[0]!.y)).toEqual([0, -4]);
   });
 });

@@ -23,6 +23,7 @@
 #include "glisson/instruments/tool_motion.h"
 #include "glisson/material/tissue.h"
 #include "glisson/mesh.h"
+#include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 
 namespace glisson {
@@ -212,6 +213,12 @@ struct CapsuleSpec {
   std::string origin;
 };
 
+/// A place that is read with every sample.
+struct ProbeSpec {
+  ProbeOptions options;
+  std::string origin;
+};
+
 struct OutputSpec {
   double sample_rate = 500.0;  ///< [Hz], > 0
   int frames = 60;             ///< frames of the whole run, 0 or more
@@ -244,6 +251,7 @@ struct Variant {
   std::vector<InstrumentSpec> instruments;
   std::vector<CapsuleSpec> capsules;
   std::optional<ContainerSpec> container;
+  std::vector<ProbeSpec> probes;
   SimulationOptions simulation;
   OnInversion on_inversion = OnInversion::go_on;
   std::optional<double> duration;          ///< [s]; none: until the last motion has ended
@@ -252,7 +260,7 @@ struct Variant {
   std::string scene_name = "scene";  ///< the scene's file, for messages
 };
 
-/// A column of forces.csv on an axis of a chart: display = value × scale.
+/// A column of forces.csv or probes.csv on an axis of a chart: display = value × scale.
 struct AxisSpec {
   std::string column;
   std::string label;  ///< with unit, e.g. "depth [mm]"
@@ -313,6 +321,10 @@ struct Sample {
   std::vector<InstrumentSample> instruments;  ///< per BuiltVariant::instruments
   std::vector<ForceParts> supports;           ///< per fixed set: its force on the tissue
   std::optional<ContainerLoads> container;    ///< what its sensors carry
+  /// Per BuiltVariant::probes.columns(), at probe_time; empty without probes.
+  std::vector<double> probes;
+  /// That of `time`; a step later [s] in the last sample of a run that was interrupted or stopped.
+  double probe_time = 0.0;
   Energies energies;
   std::optional<double> stored_energy;  ///< where OutputSpec::stored_energy asks for it and the tissue has one [J]
 };
@@ -372,7 +384,7 @@ TetMesh build_mesh(const Variant& variant, const MeshLoader& load);
 /// Tissue of each region number that occurs in a mesh made by build_mesh.
 std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh);
 
-/// The body of a variant with its supports, loads and instruments, at rest.
+/// The body of a variant with its supports, loads, instruments and probes, at rest.
 struct BuiltVariant {
   /// @throws SceneError if mesh, sets, tissues, step or constraints cannot be used
   BuiltVariant(const Variant& variant, const MeshLoader& load);
@@ -382,6 +394,7 @@ struct BuiltVariant {
   Simulation simulation;
   std::vector<std::shared_ptr<Capsule>> capsules;  ///< per variant.capsules
   std::shared_ptr<Container> container;            ///< null: none
+  Probes probes;                                   ///< per variant.probes
 
  private:
   BuiltVariant(TetMesh mesh, const Variant& variant);

@@ -161,6 +161,16 @@ void attach_interactions(const Variant& variant, BuiltVariant& built) {
   scene::join(built.instruments, built.capsules);
 }
 
+/// Each probe is tried on its own first, so that the message names its place in the scene.
+Probes probes_of(const Variant& variant, const Simulation& simulation) {
+  std::vector<ProbeOptions> options;
+  for (const ProbeSpec& x : variant.probes) {
+    located(variant, x.origin, [&] { return Probes(simulation, {x.options}); });
+    options.push_back(x.options);
+  }
+  return {simulation, std::move(options)};
+}
+
 }  // namespace
 
 TetMesh build_mesh(const Variant& variant, const MeshLoader& load) {
@@ -206,6 +216,7 @@ BuiltVariant::BuiltVariant(TetMesh whole, const Variant& variant)
     located(variant, x.origin, [&] { return simulation.add_load(set, x.force, ramp_over(x.ramp)); });
   }
   attach_interactions(variant, *this);
+  probes = probes_of(variant, simulation);
 }
 
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load) { return {variant, load}; }

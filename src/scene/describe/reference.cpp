@@ -50,6 +50,8 @@ std::string scene_reference_markdown() {
   text += section_text(shaft_friction_section(), "`[instrument.friction]`");
   text += section_text(container_section(), "`[container]`");
   text += section_text(capsule_section(), "`[[capsule]]`");
+  text += section_text(probe_section(), "`[[probe]]`");
+  text += section_text(probe_plane_section(), "`[probe.plane_m]`");
   text += section_text(output_section(), "`[output]`");
   text += section_text(chart_section(), "`[[chart]]`");
   text += section_text(measured_section(), "`[[chart.measured]]`");

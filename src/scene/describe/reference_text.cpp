@@ -30,10 +30,10 @@ Each `[[variant]]` is one complete experiment: the scene with some keys changed.
 - A key removes the keys it excludes: a variant's `mu_law` replaces the scene's `law`, its `sphere_m` the scene's
   `box_m`.
 - Lists of numbers are replaced.
-- Lists of tables (`tool`, `instrument`, `fixed`, `load`, `region`, `capsule`) are replaced by a list,
+- Lists of tables (`tool`, `instrument`, `fixed`, `load`, `region`, `capsule`, `probe`) are replaced by a list,
   `[[variant.tool]]`. To change some keys of one element, write a table with its name or number instead:
   `tool.press.velocity_mm_s = 2`, `instrument.needle.motion.velocity_mm_s = 2`, or `fixed.0.axes = "z"`. Tools,
-  instruments and regions are found by their `name`, loads and fixed sets by their `set`; numbers count from 0.
+  instruments, regions and probes are found by their `name`, loads and fixed sets by their `set`; numbers count from 0.
 
 Without any `[[variant]]` the scene is one experiment called `main`. Regions inherit from the `[tissue]` of their
 variant.
@@ -85,7 +85,8 @@ const std::string_view kReferenceRun = R"(## What a run does
    in more than upper and lower case.
 5. events.csv has a line for each event of an instrument: contact, puncture, drop (the end of the sudden fall of the
    force), inner puncture, withdrawal, release. Both files are complete up to the last sample, however a run ends.
-6. Frames are evenly spaced, the first at rest and the last at the end.
+6. Probes are read with every sample into probes.csv, whose lines belong to those of forces.csv.
+7. Frames are evenly spaced, the first at rest and the last at the end.
 
 )";
 

@@ -29,11 +29,11 @@ const SectionSpec& chart_section() {
     s.key("title", &ChartSpec::title, "heading").must();
     s.key(
          "x", [](ChartSpec & c) -> auto& { return c.x.column; },
-         "column of forces.csv along the x axis, e.g. `depth_m`")
+         "column of forces.csv or probes.csv along the x axis, e.g. `depth_m`")
         .must();
     s.key(
          "y", [](ChartSpec & c) -> auto& { return c.y.column; },
-         "column of forces.csv along the y axis, e.g. `elastic_N`")
+         "column of forces.csv or probes.csv along the y axis, e.g. `elastic_N`")
         .must();
     s.key(
          "x_scale", [](ChartSpec & c) -> auto& { return c.x.scale; },
@@ -80,6 +80,7 @@ const SectionSpec& variant_section() {
         "container", container_section(), [](Variant & v) -> auto& { return v.container.emplace(); },
         "a rigid vessel around the body");
     s.tables("capsule", capsule_section(), &Variant::capsules, "membranes on the surface");
+    s.tables("probe", probe_section(), &Variant::probes, "places that are read with the forces");
     s.table("output", output_section(), &Variant::output, "what is stored");
     for (const KeySpec& key : scene_section().keys) s.spec().other_words.push_back(key.name);
     s.finish([](Variant& v, const Node& table, const Place& place) {

@@ -34,6 +34,8 @@ const SectionSpec& instrument_motion_section();  ///< fills InstrumentMotion
 const SectionSpec& instrument_section();         ///< fills InstrumentSpec
 const SectionSpec& container_section();          ///< fills ContainerSpec
 const SectionSpec& capsule_section();            ///< fills CapsuleSpec
+const SectionSpec& probe_section();              ///< fills ProbeSpec
+const SectionSpec& probe_plane_section();        ///< fills ProbePlane
 const SectionSpec& output_section();             ///< fills OutputSpec
 const SectionSpec& measured_section();           ///< fills MeasuredSpec
 const SectionSpec& chart_section();              ///< fills ChartSpec

@@ -31,7 +31,10 @@ class Run {
   bool frame_due() const;
   void stretch();
   bool step();
+  bool probe_now() const;
+  void read_probes();
   void take_sample();
+  void tell_lost_probes();
   void tell_events();
   void see_drift();
   void take_frame();
@@ -51,7 +54,9 @@ class Run {
   RunSummary summary_;
   double force_time_ = 0.0;  ///< that the forces of the last step made are of [s]
   std::uint64_t samples_due_ = 0;
-  double next_sample_ = 0.0;  ///< [s]
+  std::optional<double> probed_;  ///< time of the state that the probes were last read at [s]
+  std::vector<char> lost_told_;   ///< per probe
+  double next_sample_ = 0.0;      ///< [s]
   int frames_taken_ = 0;
   std::vector<std::size_t> events_told_;                ///< per instrument
   std::vector<std::vector<InstrumentColumn>> columns_;  ///< per instrument
@@ -68,6 +73,7 @@ Run::Run(const Variant& variant, BuiltVariant& built, RunObserver& observer, con
   sample_.supports.resize(built.supports.size());
   sample_.instruments.resize(built.instruments.size());
   events_told_.resize(built.instruments.size(), 0);
+  lost_told_.resize(built.probes.size(), 0);
   for (const auto& x : built.instruments) columns_.push_back(x->columns());
 }
 
@@ -87,6 +93,19 @@ bool Run::frame_due() const {
   if (frames_taken_ >= variant_.output.frames || variant_.output.frames < 2) return false;
   const double now = fraction(simulation_.time() + 0.5 * simulation_.step_size(), simulation_.steps());
   return now >= static_cast<double>(frames_taken_) / (variant_.output.frames - 1);
+}
+
+/// Whether a sample takes the forces of the coming step, which belong to the state before it. The last step's may be taken too:
+/// asked for with a margin, as the step may change.
+bool Run::probe_now() const {
+  if (built_.probes.empty() || forces_at_end_) return false;
+  const double left = duration_ - simulation_.time();
+  return sample_due() || left <= 2.0 * simulation_.step_size() || simulation_.steps() + 1 >= most_steps_;
+}
+
+void Run::read_probes() {
+  sample_.probes = built_.probes.read(simulation_);
+  probed_ = simulation_.time();
 }
 
 /// One step; false where it was not made.
@@ -121,6 +140,7 @@ void Run::stretch() {
       break;
     }
     due = sample_due();
+    if (probe_now()) read_probes();
     if (!step()) break;
     due = due || frame_due();
   }
@@ -143,7 +163,10 @@ void Run::take_sample() {
   if (built_.container) sample_.container = built_.container->sensor_loads();
   sample_.energies = simulation_.energies();
   if (variant_.output.stored_energy) sample_.stored_energy = simulation_.stored_energy();
+  if (!built_.probes.empty() && probed_ != force_time_) read_probes();
+  sample_.probe_time = probed_.value_or(force_time_);
   tell_events();
+  tell_lost_probes();
   observer_.on_sample(sample_);
   sampled_ = true;
   const double passed = (force_time_ + 0.5 * summary_.step_s) * variant_.output.sample_rate;
@@ -156,6 +179,15 @@ void Run::tell_events() {
     const std::vector<InstrumentEvent>& events = built_.instruments[i]->events();
     for (std::size_t& told = events_told_[i]; told < events.size(); ++told)
       observer_.on_event({built_.instruments[i]->name(), events[told]});
+  }
+}
+
+/// A probe whose last tet is gone reads nan from here on.
+void Run::tell_lost_probes() {
+  for (std::size_t i = 0; i < built_.probes.size(); ++i) {
+    if (lost_told_[i] != 0 || !built_.probes.lost(i)) continue;
+    lost_told_[i] = 1;
+    observer_.on_event({built_.probes.name(i), {sample_.probe_time, 0.0, "probe lost"}});
   }
 }
 

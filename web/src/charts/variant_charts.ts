@@ -16,8 +16,8 @@ function chartOf(spec: ChartSpec, scene: SceneData): ChartModel {
   const lines: Line[] = [];
   scene.variants.forEach((variant, index) => {
     if (spec.variants !== null && !spec.variants.includes(variant.name)) return;
-    const x = column(variant.forces, spec.x.column);
-    const y = column(variant.forces, spec.y.column);
+    const x = column(variant.forces, spec.x.column) ?? column(variant.probes, spec.x.column);
+    const y = column(variant.forces, spec.y.column) ?? column(variant.probes, spec.y.column);
     if (!x || !y) return;
     const time = column(variant.forces, "time_s");
     lines.push({

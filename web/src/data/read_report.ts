@@ -81,6 +81,7 @@ function readVariant(raw: Raw, index: number): VariantData {
     label: text(raw["label"]) || name,
     summary,
     forces: readColumns(record(raw["forces"])),
+    probes: readColumns(record(raw["probes"])),
     events: list(raw["events"]).map((event) => readEvent(record(event))),
     law: isRecord(raw["law"]) ? readLaw(raw["law"]) : null,
     surface: isRecord(raw["surface"]) ? readSurface(raw["surface"]) : null,

@@ -17,10 +17,21 @@ export function downloads(scene: SceneData): HTMLElement | null {
     element.append(icon("download"), variant.label);
     return element;
   });
+  const probes = scene.variants.filter((variant) => rowCount(variant.probes) > 0);
+  const probeButtons = probes.map((variant) => {
+    const name = `${scene.name}-${variant.name}-probes.csv`;
+    const element = button("", `Save ${name}`, () =>
+      download(name, new Blob([toCsv(variant.probes)], { type: "text/csv" })),
+    );
+    element.append(icon("download"), variant.label);
+    return element;
+  });
   return h(
     "div",
     { class: "downloads" },
     h("span", {}, "Forces and energies as CSV"),
     h("div", { class: "button-row" }, ...buttons),
+    probes.length > 0 ? h("span", {}, "Probes as CSV") : null,
+    probes.length > 0 ? h("div", { class: "button-row" }, ...probeButtons) : null,
   );
 }

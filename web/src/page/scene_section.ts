@@ -3,6 +3,7 @@ import { Chart } from "../charts/chart.ts";
 import { containerChart, energyChart, partsChart } from "../charts/column_charts.ts";
 import { lawCharts } from "../charts/law_charts.ts";
 import type { ChartModel } from "../charts/model.ts";
+import { PROBE_QUANTITIES, probeChart } from "../charts/probe_charts.ts";
 import { SceneState } from "../charts/scene_state.ts";
 import { variantCharts } from "../charts/variant_charts.ts";
 import { MeshPanel, meshVariants } from "../mesh3d/mesh_panel.ts";
@@ -106,6 +107,9 @@ function sceneFigures(scene: SceneData): HTMLElement[] {
   const perVariant = [
     variantFigure("Parts of the force", scene.variants, state, first, partsChart),
     variantFigure("Loads on the container", scene.variants, state, first, containerChart),
+    ...PROBE_QUANTITIES.map((quantity) =>
+      variantFigure(quantity.title, scene.variants, state, first, (variant) => probeChart(variant, quantity)),
+    ),
     variantFigure("Energies", scene.variants, state, first, energyChart),
   ].filter((made): made is HTMLElement => made !== null);
   return [...curves.slice(0, 1), ...mesh, ...laws, ...curves.slice(1), ...perVariant];

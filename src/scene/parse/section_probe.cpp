@@ -1,0 +1,64 @@
+// section_probe.cpp — [[probe]]: what is read at some place of the body with every sample.
+#include "scene/parse/section.h"
+#include "scene/parse/sections.h"
+#include "scene/run/result_names.h"
+
+namespace glisson::scene {
+namespace {
+
+/// The place of a probe as one of its kinds, made where it is another.
+template <class Where>
+Where& where_as(ProbeSpec& probe) {
+  return probe.options.where.emplace<Where>();
+}
+
+SectionSpec plane_section() {
+  Section<ProbePlane> s("plane_m", "A section through the whole body at rest.");
+  s.key("point", &ProbePlane::point, "a point of it; moments are about this point, fixed in space").in("m").must();
+  s.key("normal", &ProbePlane::normal, "from the part behind to the part in front, of any length").direction();
+  return s.spec();
+}
+
+}  // namespace
+
+const SectionSpec& probe_plane_section() {
+  static const SectionSpec section = plane_section();
+  return section;
+}
+
+const SectionSpec& probe_section() {
+  static const SectionSpec section = [] {
+    Section<ProbeSpec> s("probe",
+                         "Reads a place of the body with every sample, into probes.csv and curves of the report; the "
+                         "columns are in output.md. The place is given at rest and follows the material.");
+    s.key(
+        "name", [](ProbeSpec & x) -> auto& { return x.options.name; },
+        "name, with which its columns begin; no two probes of an experiment share one");
+    s.key(
+         "point_m", [](ProbeSpec& x) -> Vec3d& { return where_as<ProbePoint>(x).position; },
+         "a point of the material: displacement, velocity, stress, strain")
+        .in("m")
+        .otherwise("");
+    s.key(
+         "set", [](ProbeSpec& x) -> std::string& { return where_as<ProbeSet>(x).set; },
+         "a vertex set: mean displacement and velocity, resultant of the stress")
+        .otherwise("");
+    s.key(
+         "region", [](ProbeSpec& x) -> std::string& { return where_as<ProbeRegion>(x).region; },
+         "a region by name or number, `\"0\"` for a body without regions: means over it, volume")
+        .otherwise("");
+    s.table(
+        "plane_m", probe_plane_section(), [](ProbeSpec & x) -> auto& { return where_as<ProbePlane>(x); },
+        "a section: force, moment and mean traction that the part in front exerts on the part behind");
+    s.spec().exclusions = {{{{"point_m"}, {"set"}, {"region"}, {"plane_m"}}, true}};
+    s.finish([](ProbeSpec& x, const Node& table, const Place& place) {
+      x.origin = place.text();
+      const std::string unfit = unfit_as_table(x.options.name);
+      if (const Node* name = table.find("name"); name && !unfit.empty()) place.complain(*name, "name", unfit);
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+}  // namespace glisson::scene
