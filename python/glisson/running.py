@@ -116,5 +116,7 @@ def _write(results: dict[str, RunResult], folder: Path) -> None:
     for name, result in results.items():
         (folder / name).mkdir(parents=True, exist_ok=True)
         tables = {"forces": result.forces} | {f"forces_{key}": table for key, table in result.further.items()}
+        if result.probes.columns:
+            tables["probes"] = result.probes
         for file, table in tables.items():
             (folder / name / f"{file}.csv").write_text(table.to_csv(), encoding="utf-8")

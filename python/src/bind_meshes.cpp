@@ -4,6 +4,7 @@
 #include "bind.h"
 #include "glisson/io.h"
 #include "glisson/mesh.h"
+#include "glisson/mesh_refinement.h"
 
 namespace glisson::python {
 namespace {
@@ -150,6 +151,8 @@ void bind_meshes(nb::module_& m) {
       .def("with_set", with_set, "name"_a, "vertices"_a, "The mesh with one more vertex set: numbers or a mask.")
       .def_prop_ro(
           "volume", [](const TetMesh& mesh) { return volume(mesh); }, doc("volume"))
+      .def(
+          "refined", [](const TetMesh& mesh) { return refined(mesh); }, doc("refined"))
       .def("boundary_triangles", triangles_of, doc("boundary_triangles"))
       .def(
           "inspect", [](const TetMesh& mesh) { return inspect(mesh); }, doc("inspect"))

@@ -61,6 +61,7 @@ struct RunResult {
   std::string name, label;
   std::shared_ptr<Table> forces = std::make_shared<Table>();
   std::map<std::string, std::shared_ptr<Table>> further;
+  std::shared_ptr<Table> probes = std::make_shared<Table>();
   std::vector<RunEvent> events;
   std::vector<Frame> frames;
   std::string summary;  ///< the text of summary.json
@@ -83,9 +84,16 @@ class Recorder : public RunObserver {
     for (const auto& file : table_->further()) {
       result_.further[file.name] = std::make_shared<Table>(Table{file.columns, {}});
     }
+    if (built.probes.empty()) return;
+    result_.probes->columns = {"time_s"};
+    for (const std::string& column : built.probes.columns()) result_.probes->columns.push_back(column);
   }
   void on_sample(const Sample& sample) override {
     append(*result_.forces, table_->row(sample));
+    if (!sample.probes.empty()) {
+      append(*result_.probes, {sample.probe_time});
+      append(*result_.probes, sample.probes);
+    }
     for (const auto& file : table_->further()) append(*result_.further[file.name], ForceTable::row_of(file, sample));
     if (on_sample_.is_none()) return;
     const nb::gil_scoped_acquire gil;
@@ -168,7 +176,7 @@ nb::list frame_pairs(const RunResult& r) {
 
 nb::tuple result_state(const RunResult& r) {
   return nb::make_tuple(r.name, r.label, r.forces, r.further, event_dicts(r), frame_pairs(r), r.summary, r.end,
-                        r.trouble);
+                        r.trouble, r.probes);
 }
 
 void set_result_state(RunResult& self, const nb::tuple& state) {
@@ -177,6 +185,7 @@ void set_result_state(RunResult& self, const nb::tuple& state) {
               .label = nb::cast<std::string>(state[1]),
               .forces = nb::cast<std::shared_ptr<Table>>(state[2]),
               .further = nb::cast<std::map<std::string, std::shared_ptr<Table>>>(state[3]),
+              .probes = nb::cast<std::shared_ptr<Table>>(state[9]),
               .events = {},
               .frames = {},
               .summary = nb::cast<std::string>(state[6]),
@@ -254,6 +263,7 @@ void bind_results(nb::module_& m) {
       .def_prop_ro("variant", variant_of, "What was run; a result that was unpickled does not have it")
       .def_ro("forces", &RunResult::forces, "forces.csv")
       .def_ro("further", &RunResult::further, "forces_<name>.csv of every further tool and instrument")
+      .def_ro("probes", &RunResult::probes, "probes.csv, whose rows belong to those of forces; empty without probes")
       .def(
           "__getitem__", [](const RunResult& r, const std::string& name) { return r.forces->column(name); }, "name"_a)
       .def_prop_ro(

@@ -53,6 +53,14 @@ void bind_variant(nb::module_& m) {
             return names;
           },
           "Names of the instruments")
+      .def_prop_ro(
+          "probes",
+          [](const Variant& v) {
+            std::vector<std::string> names;
+            for (const ProbeSpec& x : v.probes) names.push_back(x.options.name);
+            return names;
+          },
+          "Names of the probes")
       .def(
           "run_duration", [](const Variant& v) { return run_duration(v); }, doc("run_duration"))
       .def(

@@ -4,6 +4,7 @@
 #include "glisson/instruments/motion.h"
 #include "glisson/instruments/tool_motion.h"
 #include "live_simulation.h"
+#include "rooms.h"
 
 namespace glisson::python {
 namespace {
@@ -350,6 +351,8 @@ void bind_reading(nb::class_<Live>& c) {
       .def_prop_ro(
           "container", [](const Live& l) { return l.built() ? l.built()->container : nullptr; },
           "Of a scene's variant, where it has one")
+      .def_prop_ro("probes", probes_of, "Of a scene's variant: its probes, by the columns of probes.csv",
+                   nb::sig("def probes(self) -> Probes"), nb::keep_alive<0, 1>())
       .def_prop_ro(
           "capsules",
           [](const Live& l) { return l.built() ? l.built()->capsules : std::vector<std::shared_ptr<Capsule>>{}; },

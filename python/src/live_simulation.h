@@ -80,6 +80,7 @@ class LiveSimulation {
   const Simulation& get() const { return const_cast<LiveSimulation*>(this)->get(); }
   /// Of a scene's variant; null: built by hand.
   const BuiltVariant* built() const { return built_.get(); }
+  Probes* probes() { return built_ ? &built_->probes : nullptr; }
   const std::optional<Variant>& variant() const { return variant_; }
   bool may_change() const { return may_change_; }
 

@@ -13,6 +13,7 @@ NB_MODULE(_core, m) {
   py::bind_instruments(m);
   py::bind_own_driver(m);
   py::bind_own_interaction(m);
+  py::bind_probes(m);
   py::bind_simulation(m);
   py::bind_cutting(m);
   py::bind_scenes(m);

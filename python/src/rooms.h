@@ -13,6 +13,10 @@ void bind_simulation(nanobind::module_& m);
 void bind_own_driver(nanobind::module_& m);
 void bind_own_interaction(nanobind::module_& m);
 void bind_cutting(nanobind::module_& m);
+void bind_probes(nanobind::module_& m);
 void bind_results(nanobind::module_& m);
+
+/// Of a scene's variant those of the scene; of another simulation none. The result needs the simulation to be kept.
+nanobind::object probes_of(nanobind::handle simulation);
 
 }  // namespace glisson::python
