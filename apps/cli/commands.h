@@ -12,6 +12,7 @@ using Action = std::function<int()>;
 // Each adds its subcommand to the program; when it is the one chosen it sets `action`.
 void add_run(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
+void add_converge(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
 void add_reproduce(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);

@@ -32,6 +32,7 @@ constexpr const char* kFooter =
     "  glisson reproduce                        the paper's figures, in one report\n"
     "  glisson run scenes/paper/figure2.toml    one scene, all its variants\n"
     "  glisson check my_scene.toml              check a scene and its cost, without running it\n"
+    "  glisson converge my_scene.toml           the error of its mesh, from finer ones\n"
     "  glisson fit my_fit.toml                  a tissue for measured curves, with uncertainties\n"
     "  glisson view my_scene.toml               run it live in the browser: push, pull, read the force\n"
     "  glisson info organ.vtu                   contents and defects of a mesh file\n"
@@ -83,6 +84,7 @@ int run_program(int argc, char** argv) {
   Action action;
   add_run(program, action);
   add_check(program, action);
+  add_converge(program, action);
   add_info(program, action);
   add_reproduce(program, action);
   add_schema(program, action);

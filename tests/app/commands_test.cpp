@@ -28,7 +28,7 @@ TEST_F(Commands, CheckNamesInstrumentsByTheirKind) {
 
 // Every subcommand explains itself with examples.
 TEST_F(Commands, HelpHasExamples) {
-  for (const std::string command : {"run", "check", "info", "reproduce", "schema", "laws", "tissues"}) {
+  for (const std::string command : {"run", "check", "converge", "info", "reproduce", "schema", "laws", "tissues"}) {
     const Outcome outcome = run({command, "--help"});
     EXPECT_THAT(outcome, Exits(0)) << command;
     EXPECT_NE(outcome.out.find("Examples:\n  glisson " + command), std::string::npos) << outcome.out;

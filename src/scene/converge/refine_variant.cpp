@@ -1,0 +1,69 @@
+#include "scene/converge/refine_variant.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "glisson/mesh_refinement.h"
+
+namespace glisson {
+namespace {
+
+bool chosen_by_number(const Variant& variant) {
+  return std::any_of(variant.sets.begin(), variant.sets.end(), [](const auto& named) {
+    const auto& where = named.second.where;
+    return std::holds_alternative<Selection::Nearest>(where) || std::holds_alternative<Selection::Ids>(where);
+  });
+}
+
+void multiply_cells(MeshSource& mesh, int factor) {
+  if (auto* box = std::get_if<BoxOptions>(&mesh)) {
+    for (int& n : box->cells) n *= factor;
+  } else if (auto* cylinder = std::get_if<CylinderOptions>(&mesh)) {
+    cylinder->radial_cells *= factor;
+    cylinder->axial_cells *= factor;
+  }
+}
+
+/// A variant whose mesh, with its sets and regions, is this one.
+RefinedVariant on_mesh(const Variant& variant, TetMesh mesh) {
+  RefinedVariant result{variant, {}, true};
+  result.variant.mesh = MeshFile{};
+  result.variant.sets.clear();
+  for (RegionSpec& region : result.variant.regions) region.where = std::monostate{};
+  result.load = [mesh = std::make_shared<const TetMesh>(std::move(mesh))](const MeshFile&) { return *mesh; };
+  return result;
+}
+
+}  // namespace
+
+RefinedVariant refined_variant(const Variant& variant, int times, const MeshLoader& load) {
+  Variant own = variant;
+  const bool any_step = capabilities(own.simulation.integrator).any_step_is_stable;
+  if (times > 0 && !any_step) own.simulation.step.reset();
+  if (times == 0) return {own, load, false};
+  if (!std::holds_alternative<MeshFile>(own.mesh) && !chosen_by_number(own)) {
+    multiply_cells(own.mesh, 1 << times);
+    return {own, load, false};
+  }
+  TetMesh mesh = build_mesh(own, load);
+  for (int i = 0; i < times; ++i) mesh = refined(mesh);
+  return on_mesh(own, std::move(mesh));
+}
+
+double tool_area(const Variant& variant, const TetMesh& mesh) {
+  std::vector<char> in(mesh.vertices.size(), 0);
+  for (const ToolSpec& tool : variant.tools) {
+    for (const std::uint32_t v : mesh.vertex_set(tool.set)) in[v] = 1;
+  }
+  double area = 0.0;
+  for (const Triangle& t : boundary_triangles(mesh)) {
+    if (in[t[0]] + in[t[1]] + in[t[2]] < 3) continue;
+    const Vec3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    area += 0.5 * norm(cross(b - a, c - a));
+  }
+  return area;
+}
+
+double cell_size(const TetMesh& mesh) { return std::cbrt(6.0 * volume(mesh) / static_cast<double>(mesh.tets.size())); }
+
+}  // namespace glisson

@@ -1,0 +1,30 @@
+// refine_variant.h — a variant on a finer mesh of the same body.
+#pragma once
+
+#include "glisson/scene/scene.h"
+
+namespace glisson {
+
+/// A variant and what reads its mesh.
+struct RefinedVariant {
+  Variant variant;
+  MeshLoader load;
+  bool split = false;  ///< whether tets were split: sets and regions are then those of the given mesh
+};
+
+/// The variant with its mesh `times` times twice as fine.
+///
+/// A generated mesh gets twice the cells along every direction, and sets and regions are chosen anew by their places. A
+/// mesh from a file is split, every tet in eight (refined()), with its sets and regions; so is a generated one with sets chosen
+/// by numbers or as the nearest to a point, which would mean something else on a finer mesh.
+/// An explicit step that the scene gives is left to the program, as a finer mesh needs a shorter one.
+/// @throws SceneError as build_mesh
+RefinedVariant refined_variant(const Variant& variant, int times, const MeshLoader& load);
+
+/// Area of the surface's triangles within the set of each tool, 0 where it has none [m²].
+double tool_area(const Variant& variant, const TetMesh& mesh);
+
+/// Edge of the cubes of six tets each that would fill the body with as many tets [m].
+double cell_size(const TetMesh& mesh);
+
+}  // namespace glisson
