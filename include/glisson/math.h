@@ -65,6 +65,12 @@ Vec3<T> unit(const Vec3<T>& v) {
   return v * (T(1) / norm(v));
 }
 
+/// Product by components.
+template <class T>
+constexpr Vec3<T> component_product(const Vec3<T>& a, const Vec3<T>& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
 template <class T>
 constexpr Mat3<T> identity() {
   return {{{{T(1), T(0), T(0)}, {T(0), T(1), T(0)}, {T(0), T(0), T(1)}}}};
@@ -88,6 +94,34 @@ constexpr T determinant(const Mat3<T>& a) {
          a(0, 2) * (a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0));
 }
 // clang-format on
+
+template <class T>
+constexpr Mat3<T> operator*(const Mat3<T>& a, const Mat3<T>& b) {
+  Mat3<T> m;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) m(i, j) = a(i, 0) * b(0, j) + a(i, 1) * b(1, j) + a(i, 2) * b(2, j);
+  }
+  return m;
+}
+
+template <class T>
+constexpr Mat3<T> transposed(const Mat3<T>& a) {
+  Mat3<T> m;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) m(i, j) = a(j, i);
+  }
+  return m;
+}
+
+/// a bᵀ.
+template <class T>
+constexpr Mat3<T> outer(const Vec3<T>& a, const Vec3<T>& b) {
+  Mat3<T> m;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) m(i, j) = a[i] * b[j];
+  }
+  return m;
+}
 
 /// Inverse by cofactors. The determinant must not be zero.
 template <class T>

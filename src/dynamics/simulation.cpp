@@ -158,11 +158,21 @@ ConstraintId Simulation::fix(std::span<const std::uint32_t> vertices, Axes axes)
 ConstraintId Simulation::fix(std::string_view set, Axes axes) { return drive(set, {}, axes); }
 
 ConstraintId Simulation::drive(std::span<const std::uint32_t> vertices, Motion motion, Axes axes, double from) {
-  return impl_->scheme->add_constraint({{vertices.begin(), vertices.end()}, axes, std::move(motion), from});
+  return impl_->scheme->add_constraint({{vertices.begin(), vertices.end()}, axes, std::move(motion), from, {}});
 }
 
 ConstraintId Simulation::drive(std::string_view set, Motion motion, Axes axes, double from) {
   return drive(mesh().vertex_set(std::string(set)), std::move(motion), axes, from);
+}
+
+ConstraintId Simulation::drive_rigidly(std::span<const std::uint32_t> vertices, PoseMotion motion, Axes axes,
+                                       double from) {
+  if (!motion) throw std::invalid_argument("drive_rigidly: no motion was given; fix() holds vertices where they are");
+  return impl_->scheme->add_constraint({{vertices.begin(), vertices.end()}, axes, {}, from, std::move(motion)});
+}
+
+ConstraintId Simulation::drive_rigidly(std::string_view set, PoseMotion motion, Axes axes, double from) {
+  return drive_rigidly(mesh().vertex_set(std::string(set)), std::move(motion), axes, from);
 }
 
 void Simulation::add_load(std::string_view set, Vec3d force, std::function<double(double)> scale) {
@@ -170,7 +180,16 @@ void Simulation::add_load(std::string_view set, Vec3d force, std::function<doubl
 }
 
 void Simulation::add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale) {
-  impl_->scheme->add_load(vertices, force, std::move(scale));
+  impl_->scheme->add_load(vertices, {.force = force}, std::move(scale));
+}
+
+void Simulation::add_surface_load(std::span<const std::uint32_t> vertices, const SurfaceLoad& load,
+                                  std::function<double(double)> scale) {
+  impl_->scheme->add_load(vertices, load, std::move(scale));
+}
+
+void Simulation::add_surface_load(std::string_view set, const SurfaceLoad& load, std::function<double(double)> scale) {
+  add_surface_load(mesh().vertex_set(std::string(set)), load, std::move(scale));
 }
 
 void Simulation::attach(std::shared_ptr<Interaction> interaction) {
@@ -280,6 +299,10 @@ void Simulation::set_state(std::span<const Vec3d> displacement, std::span<const 
 }
 
 ForceParts Simulation::force(ConstraintId constraint) const { return impl_->scheme->force(constraint); }
+
+Vec3d Simulation::torque(ConstraintId constraint, const Vec3d& about) const {
+  return impl_->scheme->torque(constraint, about);
+}
 
 const MassScaling& Simulation::mass_scaling() const { return impl_->scheme->state().mass_scaling; }
 

@@ -237,7 +237,7 @@ TEST(ViscousSystem, SolvesTheSystem) {
   std::vector<Vec3d> x = test::random_field(n, 1.0, random), b = test::random_field(n, 1e-3, random), drag(n);
   ViscousSystem system, iterated;
   ASSERT_TRUE(system.build(body, gamma, h, held));
-  ASSERT_TRUE(iterated.build(body, gamma, h, held, 0));
+  ASSERT_TRUE(iterated.build(body, gamma, h, held, {}, 0));
   EXPECT_TRUE(system.is_factorised());
   EXPECT_FALSE(iterated.is_factorised());
   std::vector<Vec3d> y = x;

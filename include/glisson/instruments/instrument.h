@@ -16,22 +16,10 @@
 #include "glisson/field.h"
 #include "glisson/instruments/form.h"
 #include "glisson/math.h"
+#include "glisson/pose.h"
 #include "glisson/simulation/interaction.h"
 
 namespace glisson {
-
-/// Position and rotation of a tool.
-struct Pose {
-  Vec3d position{};                 ///< of the tool's origin (its tip) [m]
-  Mat3d axes = identity<double>();  ///< columns: the tool's own x, y, z in space; a rotation
-
-  template <class Take>
-  static constexpr auto fields(Take take) {
-    return take(no_key("position", &Pose::position, "m", Range{}), no_key("axes", &Pose::axes));
-  }
-  bool is_sound() const;  ///< all numbers are finite and the axes a rotation, to 1e-6
-  Fault check() const;
-};
 
 void archive(Archive& ar, Pose& pose);
 

@@ -22,10 +22,12 @@
 #include "glisson/material/tissue.h"
 #include "glisson/math.h"
 #include "glisson/mesh.h"
+#include "glisson/pose.h"
 #include "glisson/simulation/contact_fields.h"
 #include "glisson/simulation/integrator.h"
 #include "glisson/simulation/interaction.h"
 #include "glisson/simulation/precision.h"
+#include "glisson/simulation/surface_load.h"
 #include "glisson/simulation/tet_fields.h"
 
 namespace glisson {
@@ -220,10 +222,10 @@ struct ForceParts {
 struct Energies {
   double elastic = 0.0;  ///< − work of the elastic forces; the stored energy but for Simulation::energy_drift()
   double kinetic = 0.0;  ///< explicit, semi-implicit: ½ Σ m v(t−h/2)·v(t+h/2), the scheme's own; implicit: ½ Σ m v²
-  double dissipated = 0.0;  ///< by viscosity, Maxwell branches and nodal damping: viscous + maxwell + damping
+  double dissipated = 0.0;  ///< by viscosity, Maxwell branches, nodal damping and dashpots: viscous + maxwell + damping
   double viscous = 0.0;     ///< of it by Kelvin–Voigt viscosity; of a body that has Maxwell branches too, both
   double maxwell = 0.0;     ///< of it by Maxwell branches, with what they still hold
-  double damping = 0.0;     ///< of it by nodal damping
+  double damping = 0.0;     ///< of it by nodal damping and dashpots
   double friction = 0.0;    ///< by slip along tools, shafts and containers
   /// By impulses across a surface: impacts, and what the model of a bent needle leaves. Below 0 where tissue that was inside
   /// a tool at the start is pushed out.
@@ -237,8 +239,9 @@ struct Energies {
   /// Of tools, instruments and supports: force on the tissue times the motion of the tool, torques included. An Interaction
   /// of a program's own counts by the motion of the tissue unless it calls InteractionStep::book.
   double work_tools = 0.0;
-  double work_loads = 0.0;  ///< of gravity and of loads
-  double initial = 0.0;     ///< kinetic and elastic energy of the state given by set_state
+  /// Of gravity and of loads, springs to the ground among them: what a spring stores is negative work of loads.
+  double work_loads = 0.0;
+  double initial = 0.0;  ///< kinetic and elastic energy of the state given by set_state
   /// Kinetic and elastic energy lost with removed tets, or by moves of vertices at rest.
   double removed = 0.0;
   /// Added by changes of tissues: stored energy at the deformation of that moment, and kinetic energy of mass. And what
@@ -309,9 +312,23 @@ class Simulation {
   /// @param from  start time [s]; until then the vertices are free and its force is 0
   ConstraintId drive(std::span<const std::uint32_t> vertices, Motion motion, Axes axes = {}, double from = 0.0);
   ConstraintId drive(std::string_view set, Motion motion, Axes axes = {}, double from = 0.0);
-  /// Adds a force [N], divided equally among the vertices; `scale(t)` multiplies it (none: 1).
+  /// Moves vertices as a rigid body, in the given components: where they are at the start goes with the motion from there,
+  ///   x(t) = P(t) P(from)⁻¹ x(from).
+  /// @param motion  P: a pose at time t. Positions and angles as functions of time: glisson/instruments/rigid_motion.h
+  ConstraintId drive_rigidly(std::span<const std::uint32_t> vertices, PoseMotion motion, Axes axes = {},
+                             double from = 0.0);
+  ConstraintId drive_rigidly(std::string_view set, PoseMotion motion, Axes axes = {}, double from = 0.0);
+  /// Adds a force [N], SurfaceLoad::force alone; `scale(t)` multiplies it (none: 1).
   void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale = {});
   void add_load(std::string_view set, Vec3d force, std::function<double(double)> scale = {});
+  /// Adds force, traction, pressure, moment, springs and dashpots on a set and its faces. What tets that are removed had
+  /// of its faces is gone with them; faces that a cut opens bear nothing.
+  /// @param scale  multiplies force, traction, pressure and moment at time t (none: 1)
+  /// @throws std::invalid_argument for a value outside its range, a set that spans no face where faces are needed, or springs too
+  ///         stiff for a given explicit step
+  void add_surface_load(std::span<const std::uint32_t> vertices, const SurfaceLoad& load,
+                        std::function<double(double)> scale = {});
+  void add_surface_load(std::string_view set, const SurfaceLoad& load, std::function<double(double)> scale = {});
 
   /// Attaches an instrument, needle, membrane or other interaction; it acts after those attached before. Keep the
   /// pointer to read and control it between steps.
@@ -393,6 +410,8 @@ class Simulation {
 
   /// Force of the constraint on the tissue, at force_time().
   ForceParts force(ConstraintId constraint) const;
+  /// Torque of the same forces, with where the vertices are then [N m]: Σ (x − about) × f.
+  Vec3d torque(ConstraintId constraint, const Vec3d& about) const;
   /// Time of force() and energies() [s]: explicit, semi-implicit: start of the last step; implicit, static: its end.
   double force_time() const;
   /// All zero unless SimulationOptions::track_energies.

@@ -5,6 +5,16 @@
 
 namespace glisson {
 
+namespace {
+
+/// 1/(m + γ h) of a vertex with mass.
+Vec3d inverse_inertia(const ActiveKick::Kicked& k, double h) {
+  const auto inverse = [&](double dashpot) { return 1.0 / (k.mass + (k.damping + dashpot) * h); };
+  return {inverse(k.dashpot.x), inverse(k.dashpot.y), inverse(k.dashpot.z)};
+}
+
+}  // namespace
+
 void add(KickPower& sum, const KickPower& p) {
   sum.elastic += p.elastic, sum.viscous += p.viscous, sum.damping += p.damping;
   sum.tools += p.tools, sum.loads += p.loads;
@@ -36,18 +46,27 @@ void ActiveKick::begin(double h) {
 Vec3d ActiveKick::keep(std::size_t k, const ActiveVertex& w, std::span<const Vec3d> loads) {
   const double m = state_.body.masses[w.vertex];
   const Vec3d load = m > 0.0 ? loads[w.vertex] : Vec3d{};
-  kicked_[k] = {m, state_.gamma[w.vertex], w.velocity, load, {}};
+  kicked_[k] = {m, state_.gamma[w.vertex], w.velocity, load, {}, state_.loads.dashpot(w.vertex)};
   return load;
 }
 
+std::span<const Vec3d> ActiveKick::loads(std::span<const ActiveVertex> active) {
+  if (state_.loads.depends_on_state()) {
+    displacement_.resize(state_.body.vertex_count);
+    for (const ActiveVertex& w : active) displacement_[w.vertex] = w.displacement;
+  }
+  return state_.loads_at(state_.time, displacement_);
+}
+
 void ActiveKick::kick(std::span<ActiveVertex> active) {
-  const std::span<const Vec3d> loads = state_.loads.at(state_.time);
+  const std::span<const Vec3d> of_loads = loads(active);
   for (std::size_t k = 0; k < active.size(); ++k) {
     ActiveVertex& w = active[k];
-    const Vec3d load = keep(k, w, loads);
-    const double m = kicked_[k].mass, gamma = kicked_[k].damping;
+    const Vec3d load = keep(k, w, of_loads);
+    const double m = kicked_[k].mass;
     const Vec3d force = w.elastic + w.viscous + gravity_ * m + load;
-    w.velocity = m > 0.0 ? (w.velocity * m + force * step_) * (1.0 / (m + gamma * step_)) : Vec3d{};
+    w.velocity =
+        m > 0.0 ? component_product(w.velocity * m + force * step_, inverse_inertia(kicked_[k], step_)) : Vec3d{};
   }
 }
 
@@ -55,10 +74,14 @@ void ActiveKick::impose_motions(std::span<ActiveVertex> active) const {
   for (std::size_t c = 0; c < places_.size(); ++c) {
     if (!state_.holds(c)) continue;
     const Constraint& constraint = state_.constraints.all()[c];
-    const Vec3d target = constraint.motion ? constraint.motion(state_.time + step_) : Vec3d{};
+    const Target target(constraint, state_.time + step_);
     for (std::size_t k = 0; k < places_[c].size(); ++k) {
       ActiveVertex& w = active[places_[c][k]];
-      const Vec3d wanted = constraint.motion ? (state_.base[c][k] + target - w.displacement) * (1.0 / step_) : Vec3d{};
+      Vec3d wanted{};
+      if (constraint.moves()) {
+        const Vec3d there = target.displacement(state_.base[c][k], state_.body.rest_positions[w.vertex]);
+        wanted = (there - w.displacement) * (1.0 / step_);
+      }
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (has_axis(constraint.axes, axis)) w.velocity[axis] = wanted[axis];
       }
@@ -68,10 +91,7 @@ void ActiveKick::impose_motions(std::span<ActiveVertex> active) const {
 
 std::span<const Vec3d> ActiveKick::mobility() {
   mobility_.clear();
-  for (const Kicked& k : kicked_) {
-    const double a = k.mass > 0.0 ? 1.0 / (k.mass + k.damping * step_) : 0.0;
-    mobility_.push_back({a, a, a});
-  }
+  for (const Kicked& k : kicked_) mobility_.push_back(k.mass > 0.0 ? inverse_inertia(k, step_) : Vec3d{});
   for (std::size_t c = 0; c < places_.size(); ++c) {
     if (!state_.holds(c)) continue;
     for (const std::uint32_t place : places_[c]) {
@@ -91,7 +111,7 @@ void ActiveKick::push(std::span<const Vec3d> impulses) {
 ForceParts ActiveKick::force_at(const ActiveVertex& w, std::size_t place, const Axes& axes) const {
   const Kicked& k = kicked_[place];
   const Vec3d inertial = step_ > 0.0 ? (w.velocity - k.velocity_before) * (k.mass / step_) : Vec3d{};
-  return {masked(-w.elastic, axes), masked(-w.viscous, axes),         masked(w.velocity * k.damping, axes),
+  return {masked(-w.elastic, axes), masked(-w.viscous, axes),         masked(k.drag(w.velocity), axes),
           masked(inertial, axes),   masked(gravity_ * -k.mass, axes), masked(-k.load - k.contact, axes)};
 }
 
@@ -104,6 +124,17 @@ ForceParts ActiveKick::force(std::span<const ActiveVertex> active, std::size_t c
   return sum;
 }
 
+Vec3d ActiveKick::torque(std::span<const ActiveVertex> active, std::size_t constraint, const Vec3d& about) const {
+  Vec3d sum{};
+  if (!state_.holds(constraint)) return sum;
+  for (const std::uint32_t place : places_[constraint]) {
+    const ActiveVertex& w = active[place];
+    const Vec3d then = state_.body.rest_positions[w.vertex] + w.displacement - w.velocity * (state_.time - time_);
+    sum += cross(then - about, force_at(w, place, state_.constraints.all()[constraint].axes).total());
+  }
+  return sum;
+}
+
 KickWork ActiveKick::work(std::span<const ActiveVertex> active) const {
   KickWork work;
   for (std::size_t k = 0; k < active.size(); ++k) {
@@ -112,7 +143,7 @@ KickWork ActiveKick::work(std::span<const ActiveVertex> active) const {
     const auto power = [&](const Vec3d& v) {
       return KickPower{.elastic = dot(w.elastic, v),
                        .viscous = dot(w.viscous, v),
-                       .damping = -at.damping * dot(w.velocity, v),
+                       .damping = -at.damping * dot(w.velocity, v) - dot(component_product(w.velocity, at.dashpot), v),
                        .tools = dot(at.contact, v),
                        .loads = dot(gravity_ * at.mass + at.load, v)};
     };

@@ -19,7 +19,10 @@ class ActiveKick {
   struct Kicked {
     double mass = 0.0, damping = 0.0;
     Vec3d velocity_before, load, contact;  ///< contact: force of the interactions
-    void archive(Archive& ar) { ar(mass, damping, velocity_before, load, contact); }
+    Vec3d dashpot{};                       ///< to the ground, along x, y, z [kg/s]
+    void archive(Archive& ar) { ar(mass, damping, velocity_before, load, contact, dashpot); }
+    /// All that drags it [N].
+    Vec3d drag(const Vec3d& v) const { return v * damping + component_product(dashpot, v); }
   };
 
   /// @param state  must outlive this
@@ -29,6 +32,8 @@ class ActiveKick {
   void follow(std::span<const std::uint32_t> before, std::span<const ActiveVertex> active);
   /// Begins a kick of h at the present time.
   void begin(double h);
+  /// Forces of loads at present [N], one per vertex of the mesh.
+  std::span<const Vec3d> loads(std::span<const ActiveVertex> active);
   /// v₊ as if they were free; massless ones (in no tet) stay.
   void kick(std::span<ActiveVertex> active);
   /// Keeps what they had before. @return force of loads on the k-th [N]
@@ -42,6 +47,8 @@ class ActiveKick {
 
   /// What a constraint exerted at the last kick.
   ForceParts force(std::span<const ActiveVertex> active, std::size_t constraint) const;
+  /// Its torque about a place, with where the vertices were.
+  Vec3d torque(std::span<const ActiveVertex> active, std::size_t constraint, const Vec3d& about) const;
   /// Work of the forces, that of the constraints included.
   KickWork work(std::span<const ActiveVertex> active) const;
   /// Adds what of the work of tools the tissue did not take.
@@ -59,6 +66,7 @@ class ActiveKick {
   std::vector<Kicked> kicked_;                      ///< per active vertex
   std::vector<std::vector<std::uint32_t>> places_;  ///< per constraint: where its vertices are among those active
   std::vector<Vec3d> mobility_;
+  std::vector<Vec3d> displacement_;  ///< of active vertices, by vertex, for loads that ask for it [m]
   Vec3d gravity_{};
   double step_ = 0.0, time_ = 0.0;
 };

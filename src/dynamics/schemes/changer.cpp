@@ -69,12 +69,20 @@ void Changer::carry(const BodyChange& change) {
   scheme_.take_over(change);
 }
 
+/// Lets loads act on the body as it is now.
+void Changer::follow_with_loads() {
+  if (state_.loads.empty()) return;
+  state_.loads.body_changed(state_.body);
+  scheme_.loads_changed(false);
+}
+
 RemovalReport Changer::remove(std::span<const std::uint32_t> tets) {
   RemovalReport report;
   const std::vector<std::uint32_t> elements = state_.changer().living_elements(tets);
   weigh(elements, report);
   const BodyChange removal = state_.changer().remove(elements);
   carry(removal);
+  follow_with_loads();
   for (const std::uint32_t v : removal.touched) {
     if (scheme_.stars().tets_at(v).empty()) report.loose_vertices.push_back(v);
   }
@@ -90,7 +98,13 @@ void Changer::move_bases(std::span<const MovedVertex> moved) {
       const std::vector<std::uint32_t>& held = state_.constraints.all()[c].vertices;
       const auto at = std::find(held.begin(), held.end(), m.vertex) - held.begin();
       if (at == std::ssize(held)) continue;
-      state_.base[c][static_cast<std::size_t>(at)] += m.displacement - scheme_.displacement_of(m.vertex);
+      Vec3d& base = state_.base[c][static_cast<std::size_t>(at)];
+      const Constraint& constraint = state_.constraints.all()[c];
+      if (constraint.rigid) {
+        base = Target(constraint, state_.time).base_of(state_.body.rest_positions[m.vertex], m.displacement);
+      } else {
+        base += m.displacement - scheme_.displacement_of(m.vertex);
+      }
     }
   }
 }
@@ -122,6 +136,7 @@ Changer::Split Changer::split(std::span<const Triangle> faces, std::span<const V
   const std::array<double, 2> after = energy_of(around);
   if (booked) ledger_.take_out(before[0] - after[0], before[1] - after[1]);
   hold_copies(opening.origins);
+  follow_with_loads();
   if (!opening.origins.empty()) scheme_.follow(opening.origins, split.report.first_new);
   for (const detail::CornerChange& c : opening.corners) split.changed.push_back(c.tet);
   split.report.closed_faces = state_.changer().closed_faces();
@@ -192,6 +207,7 @@ bool Changer::set_tissues(const BlockTissues& to) {
     throw;
   }
   if (booked) ledger_.bring_in(heavier ? after[0] - before[0] : 0.0, after[1] - before[1]);
+  if (heavier) follow_with_loads();
   ++state_.changes;
   return heavier;
 }

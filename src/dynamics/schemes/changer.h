@@ -30,6 +30,7 @@ class Changer {
  private:
   void weigh(std::span<const std::uint32_t> elements, RemovalReport& report);
   void carry(const BodyChange& change);
+  void follow_with_loads();
   void move_bases(std::span<const MovedVertex> moved);
   void hold_copies(std::span<const std::uint32_t> origins);
   void put_tissues(const BlockTissues& to);

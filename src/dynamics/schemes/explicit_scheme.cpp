@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <stdexcept>
 
 #include "dynamics/make_body.h"
 #include "element/tet_fields.h"
@@ -97,14 +98,27 @@ void ExplicitScheme::attach(std::shared_ptr<Interaction> interaction, const Body
   if (state_.options.track_energies) ledger_.bring_in(0.0, interaction->energy());
   interactions_.add(std::move(interaction));
   interactions_.find_places(moving_->active(), state_.body.vertex_count);
-  control_->set_added(interactions_.squared_frequency());
+  control_->set_added(added_frequency());
+}
+
+/// ω² of what acts beside the tissue: interactions, springs, surfaces that loads follow.
+double ExplicitScheme::added_frequency() const {
+  return interactions_.squared_frequency() + state_.loads.squared_frequency(state_.body);
+}
+
+void ExplicitScheme::loads_changed(bool may_refuse) {
+  if (state_.loads.follows()) static_cast<void>(state_.loads_at(state_.time, displacement()));
+  control_->set_added(added_frequency());
+  const bool given = state_.options.step.has_value() && state_.options.enforce_stability;
+  if (!may_refuse || !given || control_->step() <= control_->stable_step()) return;
+  throw std::invalid_argument("load: with it, " + control_->too_large());
 }
 
 void ExplicitScheme::tell_change(const BodyView& body, std::span<const std::uint32_t> origins) {
   if (interactions_.empty()) return;
   interactions_.find_places(moving_->active(), state_.body.vertex_count);
   interactions_.body_changed(body, origins);
-  control_->set_added(interactions_.squared_frequency());
+  control_->set_added(added_frequency());
 }
 
 void ExplicitScheme::book(double h, const KickWork& free) {
@@ -175,16 +189,19 @@ StepResult ExplicitScheme::step() {
   moving_->place_active();
   state_.time += h;
   ++state_.steps;
-  if (!interactions_.empty()) {
-    interactions_.moved();
-    control_->follow_added(interactions_.squared_frequency());
-  }
+  if (!interactions_.empty()) interactions_.moved();
+  if (!interactions_.empty() || state_.loads.depends_on_state()) control_->follow_added(added_frequency());
   return {seen.inverted.empty() ? StepStatus::ok : StepStatus::inverted, seen.inverted, {}};
 }
 
 ForceParts ExplicitScheme::force(ConstraintId constraint) const {
   static_cast<void>(state_.constraints.at(constraint));
   return kick_.force(moving_->active(), constraint.index);
+}
+
+Vec3d ExplicitScheme::torque(ConstraintId constraint, const Vec3d& about) const {
+  static_cast<void>(state_.constraints.at(constraint));
+  return kick_.torque(moving_->active(), constraint.index, about);
 }
 
 void ExplicitScheme::take_body(Archive& ar) {
@@ -223,7 +240,7 @@ void ExplicitScheme::archive_motion(Archive& ar) {
   ar.check(std::includes(active.begin(), active.end(), held_.begin(), held_.end()));
   ar.check(std::includes(active.begin(), active.end(), named.begin(), named.end()));
   moving_->list_above(control_->list_above());
-  control_->set_added(interactions_.squared_frequency());
+  control_->set_added(added_frequency());
 }
 
 void ExplicitScheme::take_over(const BodyChange& change) {

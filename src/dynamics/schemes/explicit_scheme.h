@@ -40,6 +40,7 @@ class ExplicitScheme : public Scheme {
   BranchMemory branch_memory(std::size_t block) const override { return moving_->branch_memory(block); }
   /// What the constraint exerted on the tissue at the last kick.
   ForceParts force(ConstraintId constraint) const override;
+  Vec3d torque(ConstraintId constraint, const Vec3d& about) const override;
   void attach(std::shared_ptr<Interaction> interaction, const BodyView& body) override;
   std::span<const std::shared_ptr<Interaction>> interactions() const override { return interactions_.all(); }
   void tell_change(const BodyView& body, std::span<const std::uint32_t> origins) override;
@@ -57,6 +58,7 @@ class ExplicitScheme : public Scheme {
   void take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
   void take_over(const BodyChange& change) override;
   void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) override;
+  void loads_changed(bool may_refuse) override;
   void take_body(Archive& ar) override;
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override { return moving_->branch_stresses(block); }
   std::string past() override;
@@ -85,6 +87,7 @@ class ExplicitScheme : public Scheme {
   std::span<const ShapeRate> shape_rates();
   void take_stiffness(const Advance& seen);
   std::vector<std::uint32_t> active_vertices() const;
+  double added_frequency() const;
   void book(double h, const KickWork& free);
 
   std::vector<std::uint32_t> held_;  ///< vertices of supports, motions and loads, ascending

@@ -71,19 +71,27 @@ void ImplicitScheme::start_fresh() {
   if (last_h_ == 0.0) last_change_.assign(state_.body.vertex_count, Vec3d{});
   tissue_.forces({now_.u, now_.v, statics_ ? std::numeric_limits<double>::infinity() : 0.0}, now_.elastic, now_.viscous,
                  watch());
-  const std::span<const Vec3d> loads = state_.loads.at(state_.time);
+  const std::span<const Vec3d> loads = state_.loads_at(state_.time, now_.u);
   now_.external.assign(loads.begin(), loads.end());
   now_.gravity = state_.gravity_at(state_.time);
   for (std::size_t i = 0; i < state_.body.vertex_count; ++i) {
     const double m = state_.body.masses[i];
     now_.a[i] = {};
     if (!(m > 0.0) || statics_) continue;
-    const Vec3d force = now_.elastic[i] + now_.viscous[i] + now_.external[i] + now_.v[i] * -state_.gamma[i];
+    const Vec3d force =
+        now_.elastic[i] + now_.viscous[i] + now_.external[i] - component_product(state_.damping(i), now_.v[i]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (solver_.held()[3 * i + axis] == 0) now_.a[i][axis] = force[axis] / m + now_.gravity[axis];
     }
   }
   fresh_ = false;
+}
+
+/// Per component: held by a constraint, or by a spring to the ground.
+std::vector<char> ImplicitScheme::held_or_sprung() const {
+  std::vector<char> held = solver_.held();
+  for (std::size_t c = 0; c < held.size(); ++c) held[c] = held[c] != 0 || state_.loads.spring(c / 3)[c % 3] > 0.0;
+  return held;
 }
 
 /// One part of a step, of h [s]; false where no balance is found: nothing has changed then.
@@ -98,7 +106,7 @@ void ImplicitScheme::finish(const TimeStep& s) {
   Moment& next = solver_.next();
   const double since = statics_ ? std::numeric_limits<double>::infinity() : s.h;
   if (s.alpha_f != 0.0) tissue_.forces({next.u, next.v, since}, next.elastic, next.viscous, watch());
-  const std::span<const Vec3d> loads = state_.loads.at(state_.time + s.h);
+  const std::span<const Vec3d> loads = state_.loads_at(state_.time + s.h, next.u);
   next.external.assign(loads.begin(), loads.end());
   next.gravity = state_.gravity_at(state_.time + s.h);
   tissue_.advance_memory({next.u, next.v, since});
@@ -116,10 +124,11 @@ void ImplicitScheme::book(const Moment& before) {
          sudden = 0.0;
   for (std::size_t i = 0; i < now_.u.size(); ++i) {
     const Vec3d &du = last_change_[i], dv = now_.v[i] - before.v[i];
-    const double m = state_.body.masses[i], drag = statics_ ? 0.0 : state_.gamma[i];
+    const double m = state_.body.masses[i];
+    const Vec3d drag = statics_ ? Vec3d{} : state_.damping(i);
     const auto mean = [&](const Vec3d& a, const Vec3d& b) { return a * w + b * (1.0 - w); };
     const Vec3d viscous_force = mean(before.viscous[i], now_.viscous[i]),
-                drag_force = mean(before.v[i], now_.v[i]) * -drag;
+                drag_force = -component_product(drag, mean(before.v[i], now_.v[i]));
     const Vec3d pull = mean(before.external[i] + before.gravity * m, now_.external[i] + now_.gravity * m);
     const Vec3d elastic_force = mean(before.elastic[i], now_.elastic[i]);
     elastic += 0.5 * dot(before.elastic[i] + now_.elastic[i], du);
@@ -181,7 +190,7 @@ StepResult ImplicitScheme::step() {
   fresh_ = take_hold(h) || fresh_;
   if (fresh_) {
     start_fresh();
-    if (statics_ && !(message_ = free_rigid_motion(state_.body, solver_.held())).empty()) {
+    if (statics_ && !(message_ = free_rigid_motion(state_.body, held_or_sprung())).empty()) {
       fresh_ = true;
       return {StepStatus::not_held, {}, message_};
     }
@@ -244,7 +253,7 @@ void ImplicitScheme::archive_motion(Archive& ar) {
 /// What holds or drives a vertex, in the components it holds.
 ForceParts ImplicitScheme::vertex_force(std::uint32_t v, const Axes& axes) const {
   const double m = state_.body.masses[v];
-  const Vec3d drag = statics_ ? Vec3d{} : now_.v[v] * state_.gamma[v];
+  const Vec3d drag = statics_ ? Vec3d{} : component_product(state_.damping(v), now_.v[v]);
   return {masked(-now_.elastic[v], axes), masked(-now_.viscous[v], axes),  masked(drag, axes),
           masked(now_.a[v] * m, axes),    masked(now_.gravity * -m, axes), masked(-now_.external[v], axes)};
 }
@@ -254,6 +263,16 @@ ForceParts ImplicitScheme::force(ConstraintId constraint) const {
   ForceParts sum;
   if (!state_.holds(constraint.index) || state_.steps == 0) return sum;
   for (const std::uint32_t v : c.vertices) sum += vertex_force(v, c.axes);
+  return sum;
+}
+
+Vec3d ImplicitScheme::torque(ConstraintId constraint, const Vec3d& about) const {
+  const Constraint& c = state_.constraints.at(constraint);
+  Vec3d sum{};
+  if (!state_.holds(constraint.index) || state_.steps == 0) return sum;
+  for (const std::uint32_t v : c.vertices) {
+    sum += cross(state_.body.rest_positions[v] + now_.u[v] - about, vertex_force(v, c.axes).total());
+  }
   return sum;
 }
 

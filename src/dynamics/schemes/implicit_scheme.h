@@ -31,6 +31,7 @@ class ImplicitScheme : public Scheme {
   Vec3d displacement_of(std::uint32_t vertex) const override { return now_.u[vertex]; }
   Vec3d velocity_of(std::uint32_t vertex) const override { return now_.v[vertex]; }
   ForceParts force(ConstraintId constraint) const override;
+  Vec3d torque(ConstraintId constraint, const Vec3d& about) const override;
   BranchMemory branch_memory(std::size_t block) const override { return tissue_.branch_memory(block, 0.0); }
   void archive_motion(Archive& ar) override;
 
@@ -58,6 +59,7 @@ class ImplicitScheme : public Scheme {
 
   ElementWatch& watch() { return solver_.watch(); }
   void start_fresh();
+  std::vector<char> held_or_sprung() const;
   bool part(double h);
   void finish(const TimeStep& s);
   void book(const Moment& before);

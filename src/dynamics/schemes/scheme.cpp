@@ -14,9 +14,17 @@ ConstraintId Scheme::add_constraint(Constraint constraint) {
   return id;
 }
 
-void Scheme::add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale) {
-  state_.loads.add(vertices, force, std::move(scale));
-  acts_on(vertices);
+void Scheme::add_load(std::span<const std::uint32_t> vertices, const SurfaceLoad& load,
+                      std::function<double(double)> scale) {
+  const std::vector<std::uint32_t> acted = state_.loads.add(state_.body, vertices, load, std::move(scale));
+  try {
+    loads_changed(true);
+  } catch (...) {
+    state_.loads.take_back_last(state_.body);
+    loads_changed(false);
+    throw;
+  }
+  acts_on(acted);
 }
 
 void Scheme::require_tissues(const BlockTissues& tissues) const {
@@ -54,9 +62,11 @@ bool Scheme::take_hold(double h) {
 /// Lets a constraint's motion count from where its vertices are now.
 void Scheme::rebase(std::size_t constraint) {
   const Constraint& c = state_.constraints.all()[constraint];
-  const Vec3d moved = c.motion ? c.motion(state_.time) : Vec3d{};
+  const Target now(c, state_.time);
   state_.base[constraint].clear();
-  for (const std::uint32_t v : c.vertices) state_.base[constraint].push_back(displacement_of(v) - moved);
+  for (const std::uint32_t v : c.vertices) {
+    state_.base[constraint].push_back(now.base_of(state_.body.rest_positions[v], displacement_of(v)));
+  }
 }
 
 void Scheme::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {

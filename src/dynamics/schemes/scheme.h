@@ -55,7 +55,8 @@ class Scheme {
   const detail::VertexStars& stars() { return state_.changer().stars(); }
 
   ConstraintId add_constraint(Constraint constraint);
-  void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale);
+  /// As Simulation::add_surface_load.
+  void add_load(std::span<const std::uint32_t> vertices, const SurfaceLoad& load, std::function<double(double)> scale);
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity);
   /// As Simulation::attach. @throws std::invalid_argument, here for every scheme that cannot
   virtual void attach(std::shared_ptr<Interaction> interaction, const BodyView& body);
@@ -73,6 +74,7 @@ class Scheme {
   virtual Vec3d displacement_of(std::uint32_t vertex) const = 0;
   virtual Vec3d velocity_of(std::uint32_t vertex) const = 0;
   virtual ForceParts force(ConstraintId constraint) const = 0;
+  virtual Vec3d torque(ConstraintId constraint, const Vec3d& about) const = 0;
   /// What the Maxwell branches of a block hold at the present state.
   virtual BranchMemory branch_memory(std::size_t block) const = 0;
 
@@ -85,6 +87,8 @@ class Scheme {
  protected:
   friend class Changer;
 
+  /// Loads are others now. @throws std::invalid_argument where the step does not bear the stiffness of the last one
+  virtual void loads_changed(bool /*may_refuse*/) {}
   /// Vertices that a constraint or load acts on from now on; the constraint is known already.
   virtual void acts_on(std::span<const std::uint32_t> vertices) = 0;
   /// Takes a state as the present one; bases follow after it.

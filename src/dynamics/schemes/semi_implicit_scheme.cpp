@@ -29,6 +29,11 @@ void SemiImplicitScheme::take_over(const BodyChange& change) {
   built_for_ = 0.0;
 }
 
+void SemiImplicitScheme::loads_changed(bool may_refuse) {
+  ExplicitScheme::loads_changed(may_refuse);
+  built_for_ = 0.0;
+}
+
 void SemiImplicitScheme::require_tissues(const BlockTissues& tissues) const {
   ExplicitScheme::require_tissues(tissues);
   for (const auto& [block, tissue] : tissues) {
@@ -55,7 +60,7 @@ std::size_t SemiImplicitScheme::holding() const {
 void SemiImplicitScheme::build(double h) {
   built_holding_ = holding();
   for (auto* field : {&impulse_, &change_, &drag_}) field->assign(state_.body.vertex_count, Vec3d{});
-  system_.build(state_.body, state_.gamma, h, state_.held_components());
+  system_.build(state_.body, state_.gamma, h, state_.held_components(), state_.loads.dashpots());
   built_for_ = h;
 }
 
@@ -80,12 +85,12 @@ void SemiImplicitScheme::kick(double h) {
   }
   if (h != built_for_ || holding() != built_holding_) build(h);
   const std::span<ActiveVertex> active = moving_->active();  // all vertices, in their order
-  const std::span<const Vec3d> loads = state_.loads.at(state_.time);
+  const std::span<const Vec3d> loads = kick_.loads(active);
   for (std::size_t i = 0; i < active.size(); ++i) {
     ActiveVertex& w = active[i];
     const Vec3d load = kick_.keep(i, w, loads);
-    const auto& [m, gamma, before, applied, contact] = kick_.all()[i];
-    impulse_[i] = (w.elastic + w.viscous + kick_.gravity() * m + load + w.velocity * -gamma) * h;
+    const ActiveKick::Kicked& at = kick_.all()[i];
+    impulse_[i] = (w.elastic + w.viscous + kick_.gravity() * at.mass + load - at.drag(w.velocity)) * h;
   }
   kick_.impose_motions(active);
   for (std::size_t i = 0; i < active.size(); ++i) {  // held components of the change are known now, others 0
@@ -96,8 +101,8 @@ void SemiImplicitScheme::kick(double h) {
   system_.held_drag(change_, drag_);
   for (std::size_t i = 0; i < active.size(); ++i) {
     ActiveVertex& w = active[i];
-    const double inertia = kick_.all()[i].mass + h * kick_.all()[i].damping;
     for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double inertia = kick_.all()[i].mass + h * (kick_.all()[i].damping + kick_.all()[i].dashpot[axis]);
       const bool free = system_.is_free(3 * i + axis);
       if (free) w.velocity[axis] = kick_.all()[i].velocity_before[axis] + change_[i][axis];
       // C (v₊ − v₋): of free components from the equation itself, so that the books are exact

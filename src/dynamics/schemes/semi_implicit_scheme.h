@@ -28,6 +28,7 @@ class SemiImplicitScheme final : public ExplicitScheme {
  private:
   void kick(double h) override;
   void take_over(const BodyChange& change) override;
+  void loads_changed(bool may_refuse) override;
   void require_tissues(const BlockTissues& tissues) const override;
   void take_tissues(const TissueChange& change) override;
   void watch_all_if_viscous();

@@ -37,7 +37,7 @@ BalanceSolver::BalanceSolver(BodyState& state, const TissueOperator& tissue, con
 void BalanceSolver::begin() {
   const std::size_t vertices = state_.body.vertex_count;
   for (auto* field : {&change_, &held_velocity_, &at_u_, &at_v_, &out_of_balance_}) field->resize(vertices);
-  diagonal_.assign(vertices, 0.0);
+  diagonal_.assign(vertices, Vec3d{});
   next_ = now_;
   unit_force_ = unit_force(state_.body);
   held_ = state_.held_components();
@@ -47,13 +47,18 @@ void BalanceSolver::begin() {
 }
 
 bool BalanceSolver::solve(const TimeStep& s, std::span<const Vec3d> last_change, double last_h) {
-  const std::span<const Vec3d> loads = state_.loads.at(state_.time + (1.0 - s.alpha_f) * s.h);
-  next_.external.assign(loads.begin(), loads.end());
+  load(s);
   const ElementWatch before = watch_;
   prescribe(s);
   if (start(s, last_change, last_h) && newton(s)) return true;
   watch_ = before;
   return false;
+}
+
+/// What acts from outside, at the state that forces are asked at.
+void BalanceSolver::load(const TimeStep& s) {
+  const std::span<const Vec3d> loads = state_.loads_at(state_.time + (1.0 - s.alpha_f) * s.h, at_u_);
+  next_.external.assign(loads.begin(), loads.end());
 }
 
 /// Where held components are to be at t + h, and how fast.
@@ -63,16 +68,16 @@ void BalanceSolver::prescribe(const TimeStep& s) {
   const bool of_change = state_.options.implicit.scheme == TimeScheme::backward_euler;
   for (std::size_t c = 0; c < state_.base.size(); ++c) {
     const Constraint& constraint = state_.constraints.all()[c];
-    if (!state_.holds(c) || !constraint.motion) continue;
-    const double d = kDifference * s.h;
-    const Vec3d target = constraint.motion(state_.time + s.h);
-    const Vec3d speed =
-        statics_ || of_change
-            ? Vec3d{}
-            : (constraint.motion(state_.time + s.h + d) - constraint.motion(state_.time + s.h - d)) * (0.5 / d);
+    if (!state_.holds(c) || !constraint.moves()) continue;
+    const double d = kDifference * s.h, end = state_.time + s.h;
+    const bool needs_speed = !statics_ && !of_change;
+    const Target target(constraint, end), after(constraint, needs_speed ? end + d : end),
+        earlier(constraint, needs_speed ? end - d : end);
     for (std::size_t k = 0; k < constraint.vertices.size(); ++k) {
       const std::uint32_t v = constraint.vertices[k];
-      const Vec3d change = state_.base[c][k] + target - now_.u[v];
+      const Vec3d &base = state_.base[c][k], &rest = state_.body.rest_positions[v];
+      const Vec3d change = target.displacement(base, rest) - now_.u[v];
+      const Vec3d speed = needs_speed ? after.since(earlier, base) * (0.5 / d) : Vec3d{};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (!has_axis(constraint.axes, axis)) continue;
         change_[v][axis] = change[axis];
@@ -104,6 +109,7 @@ BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
   const double ahead = (1.0 - s.alpha_f) * s.h;
   tissue_.forces({at_u_, at_v_, statics_ ? std::numeric_limits<double>::infinity() : ahead}, next_.elastic,
                  next_.viscous, watch_);
+  if (state_.loads.depends_on_state()) load(s);
   const Vec3d gravity = state_.gravity_at(state_.time + ahead);
   Balance b;
   double inertial = 0.0, external = 0.0, rounding = 0.0;
@@ -114,7 +120,7 @@ BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
       const Vec3d inertia = (next_.a[i] * (1.0 - s.alpha_m) + now_.a[i] * s.alpha_m) * m;
       inertial += dot(inertia, inertia);
       rounding += m * m * dot(next_.u[i], next_.u[i]);
-      drag = inertia + at_v_[i] * state_.gamma[i];
+      drag = inertia + component_product(state_.damping(i), at_v_[i]);
     }
     external += dot(pull, pull);
     out_of_balance_[i] = drag - next_.elastic[i] - next_.viscous[i] - pull;
@@ -131,11 +137,17 @@ BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
 
 void BalanceSolver::linearise(const TimeStep& s, bool semidefinite) {
   for (std::size_t i = 0; i < diagonal_.size(); ++i) {
-    diagonal_[i] =
-        (1.0 - s.alpha_m) * s.a_rate * state_.body.masses[i] + (1.0 - s.alpha_f) * s.v_rate * state_.gamma[i];
+    const Vec3d damping = state_.damping(i), spring = state_.loads.spring(i);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      diagonal_[i][axis] = (1.0 - s.alpha_m) * s.a_rate * state_.body.masses[i] +
+                           (1.0 - s.alpha_f) * s.v_rate * damping[axis] + (1.0 - s.alpha_f) * spring[axis];
+    }
   }
+  const double time = state_.time + (1.0 - s.alpha_f) * s.h;
   const double since = statics_ ? std::numeric_limits<double>::infinity() : (1.0 - s.alpha_f) * s.h;
-  system_.linearise({at_u_, at_v_, since}, {s.v_rate, 1.0 - s.alpha_f, diagonal_}, semidefinite);
+  system_.linearise({at_u_, at_v_, since},
+                    {s.v_rate, 1.0 - s.alpha_f, diagonal_, state_.loads.stiffness(time, state_.body, at_u_)},
+                    semidefinite);
 }
 
 /// A first u⁺: the motion goes on as it was. Where that turns tets inside out, from where the body is, with the change

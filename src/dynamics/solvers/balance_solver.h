@@ -65,6 +65,7 @@ class BalanceSolver {
   void prescribe(const TimeStep& s);
   Balance evaluate(const TimeStep& s);
   void try_at(const TimeStep& s);
+  void load(const TimeStep& s);
   bool start(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
   bool newton(const TimeStep& s);
   void linearise(const TimeStep& s, bool semidefinite);
@@ -82,7 +83,7 @@ class BalanceSolver {
   std::vector<Vec3d> held_velocity_;  ///< of held components at t + h [m/s]
   std::vector<Vec3d> at_u_, at_v_;    ///< state that forces are asked at
   std::vector<Vec3d> out_of_balance_;
-  std::vector<double> diagonal_;
+  std::vector<Vec3d> diagonal_;
   double unit_force_ = 0.0;  ///< norm of the forces at a strain of 1 [N]
   int iterations_ = 0;
 };

@@ -86,6 +86,8 @@ void TangentSystem::linearise(const TissueState& state, const Terms& terms, bool
   diagonal_.assign(terms.diagonal.begin(), terms.diagonal.end());
   terms_ = terms;
   terms_.diagonal = diagonal_;
+  loads_.assign(terms.loads.begin(), terms.loads.end());
+  terms_.loads = loads_;
   state_ = state;
   if (same && known_) return;
   tissue_.linearise(state, terms.rate, semidefinite, tangent_);
@@ -95,7 +97,12 @@ void TangentSystem::linearise(const TissueState& state, const Terms& terms, bool
 
 void TangentSystem::apply(std::span<const Vec3d> x, std::span<Vec3d> y) const {
   tissue_.apply(tangent_, x, y);
-  for (std::size_t i = 0; i < x.size(); ++i) y[i] = y[i] * terms_.weight + x[i] * diagonal_[i];
+  for (const FaceStiffness& face : loads_) {
+    Vec3d force{};
+    for (std::size_t a = 0; a < 3; ++a) force += face.slope[a] * x[face.corners[a]];
+    for (const std::uint32_t v : face.corners) y[v] -= force;
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) y[i] = y[i] * terms_.weight + component_product(diagonal_[i], x[i]);
 }
 
 /// Which entries the lower triangle of A has on the free components, and where each element's go.
@@ -157,7 +164,7 @@ void TangentSystem::assemble(const TissueTangent& tangent) {
     }
   }
   for (std::size_t c = 0; c < number_.size(); ++c) {
-    if (number_[c] >= 0) values[diagonal_position_[static_cast<std::size_t>(number_[c])]] += diagonal_[c / 3];
+    if (number_[c] >= 0) values[diagonal_position_[static_cast<std::size_t>(number_[c])]] += diagonal_[c / 3][c % 3];
   }
 }
 
@@ -192,7 +199,7 @@ void TangentSystem::find_blocks() {
   }
   inverse_blocks_.resize(sum.size());
   for (std::size_t i = 0; i < sum.size(); ++i) {
-    sum[i].diagonal().array() += diagonal_[i];
+    sum[i].diagonal() += Eigen::Vector3d(diagonal_[i].x, diagonal_[i].y, diagonal_[i].z);
     const Eigen::Vector3d diagonal = sum[i].diagonal();
     for (Eigen::Index a = 0; a < 3; ++a) {
       if (free_[3 * i + static_cast<std::size_t>(a)] != 0) continue;
@@ -255,8 +262,8 @@ KrylovResult TangentSystem::solve(const Eigen::VectorXd& b, double tolerance, Ei
   };
   const auto nearly = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { precondition(r, z); };
   const auto run = [&](int most) {
-    return symmetric_ ? conjugate_gradients(product, nearly, b, tolerance, most, x)
-                      : bicgstab(product, nearly, b, tolerance, most, x);
+    return symmetric_ && loads_.empty() ? conjugate_gradients(product, nearly, b, tolerance, most, x)
+                                        : bicgstab(product, nearly, b, tolerance, most, x);
   };
   if (!factorises_) {
     find_blocks();

@@ -1,6 +1,6 @@
 // tangent_system.h — the linear system of a Newton iteration, on the components that are free to move.
 //
-//   A = k K(u, rate) + diag(d)        K of element/tissue_operator.h, applied without being assembled
+//   A = k (K(u, rate) − L(u)) + diag(d)        K of element/tissue_operator.h, applied without being assembled; L of loads that follow
 //
 // Only the preconditioner is assembled: a sparse Cholesky factor of A's symmetric part at some earlier state, kept
 // over iterations and steps until the iterations say that it has become bad; or the 3 × 3 blocks of A's diagonal.
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "dynamics/solvers/krylov.h"
+#include "dynamics/state/loads.h"
 #include "element/tissue_operator.h"
 #include "glisson/archive.h"
 #include "glisson/simulation/simulation.h"
@@ -31,9 +32,10 @@ class TangentSystem {
  public:
   /// What A is made of.
   struct Terms {
-    double rate = 0.0;                 ///< dv/du in K [1/s]
-    double weight = 1.0;               ///< k
-    std::span<const double> diagonal;  ///< d of each vertex [kg/s²]
+    double rate = 0.0;                       ///< dv/du in K [1/s]
+    double weight = 1.0;                     ///< k
+    std::span<const Vec3d> diagonal;         ///< d of each component [kg/s²]
+    std::span<const FaceStiffness> loads{};  ///< L: not in the preconditioner
   };
 
   /// @param tissue  must outlive this
@@ -71,7 +73,8 @@ class TangentSystem {
   bool factorises_, linear_ = true, symmetric_ = true;
   std::vector<char> free_;
   Terms terms_;
-  std::vector<double> diagonal_;
+  std::vector<Vec3d> diagonal_;
+  std::vector<FaceStiffness> loads_;
   TissueState state_;
   TissueTangent tangent_;
   mutable std::vector<Vec3d> x_, y_;

@@ -48,7 +48,7 @@ void ViscousSystem::number(const Body& body) {
 }
 
 bool ViscousSystem::build(const Body& body, std::span<const double> nodal_damping, double h, std::vector<char> held,
-                          std::size_t most_entries) {
+                          std::span<const Vec3d> dashpots, std::size_t most_entries) {
   h_ = h;
   held_ = std::move(held);
   number(body);
@@ -56,7 +56,9 @@ bool ViscousSystem::build(const Body& body, std::span<const double> nodal_dampin
              fixed = static_cast<Eigen::Index>(held_of_row_.size());
   std::vector<Eigen::Triplet<double>> inner, across, outer;
   for (const std::size_t c : free_of_row_)
-    inner.emplace_back(row_[c], row_[c], body.masses[c / 3] + h * nodal_damping[c / 3]);
+    inner.emplace_back(
+        row_[c], row_[c],
+        body.masses[c / 3] + h * (nodal_damping[c / 3] + (dashpots.empty() ? 0.0 : dashpots[c / 3][c % 3])));
   for (const TissueBlock& block : body.blocks) {
     for (std::size_t e = block.begin; e < block.end; ++e) {
       const std::array<Vec3d, 4> s = shape_gradients(body.rest[e]);

@@ -24,10 +24,11 @@ class ViscousSystem {
   /// @param nodal_damping  γ_i per vertex [kg/s]
   /// @param h  step [s]
   /// @param held  per component: 1 where x is given
+  /// @param dashpots  damping beside γ_i, per component [kg/s]; empty: none
   /// @param most_entries  of a factor; a body that needs more iterates
   /// @return false where the matrix is not positive
   bool build(const Body& body, std::span<const double> nodal_damping, double h, std::vector<char> held,
-             std::size_t most_entries = kMostEntries);
+             std::span<const Vec3d> dashpots = {}, std::size_t most_entries = kMostEntries);
 
   /// Fills the free components of x.
   /// @param b  [kg m/s], @param x  [m/s]; its held components are given

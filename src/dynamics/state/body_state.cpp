@@ -142,7 +142,7 @@ void BodyState::archive(Archive& ar) {
   ar.check(changes >= here);
   if (changes > 0) archive_changes(ar, changes == here);
   constraints.archive(ar, body.vertex_count);
-  loads.archive(ar, body.vertex_count);
+  loads.archive(ar, body);
   for (std::size_t c = 0; c < base.size(); ++c) {
     ar(base[c]);
     ar.check(!holds(c) || base[c].size() == constraints.all()[c].vertices.size());

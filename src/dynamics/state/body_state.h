@@ -38,6 +38,13 @@ struct BodyState {
   void masses_changed();
 
   Vec3d gravity_at(double time) const;
+  /// Forces of loads at time t [N], one per vertex. @param u  displacements; only read where Loads::depends_on_state()
+  std::span<const Vec3d> loads_at(double t, std::span<const Vec3d> u) { return loads.at(t, body, u); }
+  /// Damping of a vertex with its dashpots, along x, y, z [kg/s].
+  Vec3d damping(std::size_t vertex) const {
+    const double g = gamma[vertex];
+    return Vec3d{g, g, g} + loads.dashpot(vertex);
+  }
   bool holds(std::size_t constraint) const { return !base[constraint].empty(); }
   /// Per component: 1 where a constraint that holds by now has it, or where the vertex is in no tet.
   std::vector<char> held_components() const;

@@ -7,6 +7,11 @@ namespace glisson {
 
 Vec3d masked(const Vec3d& v, const Axes& axes) { return {axes.x ? v.x : 0.0, axes.y ? v.y : 0.0, axes.z ? v.z : 0.0}; }
 
+Target::Target(const Constraint& c, double time) : turns_(static_cast<bool>(c.rigid)) {
+  if (turns_) pose_ = c.rigid(time);
+  if (c.motion) pose_.position = c.motion(time);
+}
+
 ConstraintId Constraints::add(Constraint constraint) {
   if (constraint.vertices.empty())
     throw std::invalid_argument("constraint: the vertex set is empty; name at least one vertex");

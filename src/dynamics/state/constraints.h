@@ -17,6 +17,31 @@ struct Constraint {
   Axes axes;
   Motion motion;      ///< none: held at rest
   double from = 0.0;  ///< time at which it takes hold [s]; the vertices are free before it
+  PoseMotion rigid;   ///< in place of `motion`: they move as a rigid body
+
+  bool moves() const { return motion || rigid; }
+};
+
+/// Where a constraint wants its vertices at a time. Its base, per vertex, says where from: the displacement that `motion` is added
+/// to, or, of a rigid motion, the place in the coordinates that move [m].
+class Target {
+ public:
+  Target(const Constraint& constraint, double time);
+
+  Vec3d base_of(const Vec3d& rest, const Vec3d& displacement) const {
+    return turns_ ? pose_.to_own(rest + displacement) : displacement - pose_.position;
+  }
+  Vec3d displacement(const Vec3d& base, const Vec3d& rest) const {
+    return turns_ ? pose_.to_space(base) - rest : base + pose_.position;
+  }
+  /// Displacement since an earlier target.
+  Vec3d since(const Target& earlier, const Vec3d& base) const {
+    return turns_ ? pose_.to_space(base) - earlier.pose_.to_space(base) : pose_.position - earlier.pose_.position;
+  }
+
+ private:
+  bool turns_;
+  Pose pose_;
 };
 
 /// All constraints of a body; a component belongs to one of them at most.

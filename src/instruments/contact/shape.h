@@ -17,13 +17,8 @@ struct ShapeTraits {
 ShapeTraits traits_of(const Shape& shape);
 
 /// x in the frame of a pose, and back.
-inline Vec3d to_frame(const Pose& pose, const Vec3d& x) {
-  const Vec3d d = x - pose.position;
-  const auto& m = pose.axes.m;
-  return {m[0][0] * d.x + m[1][0] * d.y + m[2][0] * d.z, m[0][1] * d.x + m[1][1] * d.y + m[2][1] * d.z,
-          m[0][2] * d.x + m[1][2] * d.y + m[2][2] * d.z};
-}
+inline Vec3d to_frame(const Pose& pose, const Vec3d& x) { return pose.to_own(x); }
 inline Vec3d direction_to_frame(const Pose& pose, const Vec3d& d) { return to_frame({{}, pose.axes}, d); }
-inline Vec3d to_space(const Pose& pose, const Vec3d& y) { return pose.position + pose.axes * y; }
+inline Vec3d to_space(const Pose& pose, const Vec3d& y) { return pose.to_space(y); }
 
 }  // namespace glisson
