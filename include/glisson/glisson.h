@@ -12,6 +12,7 @@
 #include "glisson/instruments/driven_set.h"
 #include "glisson/instruments/motion.h"
 #include "glisson/instruments/needle.h"
+#include "glisson/instruments/rigid_motion.h"
 #include "glisson/instruments/tool_motion.h"
 #include "glisson/math.h"
 #include "glisson/mesh.h"

@@ -4,6 +4,7 @@
 // instrument. Every integrator supports it.
 #pragma once
 
+#include "glisson/instruments/rigid_motion.h"
 #include "glisson/instruments/tool_motion.h"
 
 namespace glisson {
@@ -22,6 +23,9 @@ class DrivenSet final : public Instrument {
  public:
   /// @param path  of the vertices, 0 at the start
   DrivenSet(DrivenSetOptions options, ToolPath path);
+  /// @param path  of the set as a rigid body, from where it is at the start
+  /// @param rotation  what the path turns about, if it does: gives it the columns angle_deg and torque_N_m
+  DrivenSet(DrivenSetOptions options, RigidPath path, std::optional<RotationMotion> rotation = {});
 
   ConstraintId constraint() const { return constraint_; }
   /// The force on the tissue by component; 0 where the simulation is no more.
@@ -29,7 +33,14 @@ class DrivenSet final : public Instrument {
   /// Columns of its kind: elastic_N, viscous_N, damping_N, inertial_N, gravity_N, load_N, along the direction.
   static std::span<const InstrumentColumn> part_columns();
 
-  Pose pose() const override;  ///< its position is the displacement
+  /// Torque on the tissue at force_time(), about a place [N m]; 0 where the simulation is no more.
+  Vec3d torque(const Vec3d& about) const;
+  /// Of a set that turns about an axis: the same along that axis [N m], and the angle at force_time() [rad].
+  double axial_torque() const;
+  double angle() const;
+
+  /// Its position is the displacement; of a set that moves as a rigid body, that of the mean of its vertices.
+  Pose pose() const override;
   double force_depth() const override;
   /// None: it has no solid; where its vertices are follows from the depth.
   std::span<const InstrumentColumn> record_columns() const override { return {}; }
@@ -45,11 +56,15 @@ class DrivenSet final : public Instrument {
   std::span<const std::uint32_t> reach(double, double) override { return {}; }
 
  private:
-  std::span<const InstrumentColumn> own_columns() const override { return part_columns(); }
+  std::span<const InstrumentColumn> own_columns() const override;
+  Vec3d way_at(double time) const;
 
   DrivenSetOptions options_;
   Motion way_;
-  std::weak_ptr<const Scheme> scheme_;  ///< of the simulation it is attached to
+  PoseMotion rigid_;                        ///< in place of it
+  std::optional<RotationMotion> rotation_;  ///< what `rigid_` turns about
+  Vec3d middle_{};                          ///< mean of the vertices at rest [m]
+  std::weak_ptr<const Scheme> scheme_;      ///< of the simulation it is attached to
   ConstraintId constraint_;
 };
 

@@ -2,6 +2,7 @@
 #include "glisson/instruments/driven_set.h"
 
 #include <array>
+#include <numbers>
 
 #include "dynamics/simulation_parts.h"
 
@@ -23,18 +24,60 @@ constexpr std::array<InstrumentColumn, 6> kPartColumns{{
     {"load_N", along<&ForceParts::load>},
 }};
 
+double angle_deg(const Instrument& x) { return static_cast<const DrivenSet&>(x).angle() * (180.0 / std::numbers::pi); }
+double torque_about_axis(const Instrument& x) { return static_cast<const DrivenSet&>(x).axial_torque(); }
+
+constexpr std::array<InstrumentColumn, 8> kTurningColumns{{kPartColumns[0],
+                                                           kPartColumns[1],
+                                                           kPartColumns[2],
+                                                           kPartColumns[3],
+                                                           kPartColumns[4],
+                                                           kPartColumns[5],
+                                                           {"angle_deg", angle_deg},
+                                                           {"torque_N_m", torque_about_axis}}};
+
 }  // namespace
+
+DrivenSet::DrivenSet(DrivenSetOptions options, RigidPath path, std::optional<RotationMotion> rotation)
+    : Instrument(options.name, std::make_shared<RigidDriver>(Pose{}, path), options.direction),
+      options_(std::move(options)), rigid_(std::move(path.pose)), rotation_(std::move(rotation)) {}
 
 DrivenSet::DrivenSet(DrivenSetOptions options, ToolPath path)
     : Instrument(options.name, std::make_shared<PathDriver>(Pose{}, path), options.direction),
       options_(std::move(options)), way_(std::move(path.displacement)) {}
 
 void DrivenSet::between_steps(Simulation& simulation) {
-  constraint_ = simulation.drive(options_.vertices, way_, options_.axes, options_.from);
+  constraint_ = rigid_ ? simulation.drive_rigidly(options_.vertices, rigid_, options_.axes, options_.from)
+                       : simulation.drive(options_.vertices, way_, options_.axes, options_.from);
+  middle_ = {};
+  for (const std::uint32_t v : options_.vertices) {
+    middle_ += simulation.mesh().vertices[v] * (1.0 / static_cast<double>(options_.vertices.size()));
+  }
   scheme_ = SimulationParts::weak_scheme(simulation);
 }
 
 std::span<const InstrumentColumn> DrivenSet::part_columns() { return kPartColumns; }
+
+std::span<const InstrumentColumn> DrivenSet::own_columns() const {
+  return rotation_ ? std::span<const InstrumentColumn>(kTurningColumns) : part_columns();
+}
+
+Vec3d DrivenSet::torque(const Vec3d& about) const {
+  const auto scheme = scheme_.lock();
+  return scheme && scheme->state().steps > 0 ? scheme->torque(constraint_, about) : Vec3d{};
+}
+
+double DrivenSet::axial_torque() const {
+  return rotation_ ? dot(torque(rotation_->centre), unit(rotation_->axis)) : 0.0;
+}
+
+double DrivenSet::angle() const {
+  const auto scheme = scheme_.lock();
+  return scheme && rotation_ ? rotation_angle(*rotation_, scheme->force_time()) : 0.0;
+}
+
+/// Displacement at time t of the set, or of its middle.
+Vec3d DrivenSet::way_at(double time) const { return rigid_ ? rigid_(time).to_space(middle_) - middle_ : way_(time); }
 
 ForceParts DrivenSet::parts() const {
   const auto scheme = scheme_.lock();
@@ -48,12 +91,15 @@ Vec3d DrivenSet::sensor_force() const {
 
 double DrivenSet::force_depth() const {
   const auto scheme = scheme_.lock();
-  return scheme ? dot(way_(scheme->force_time()), direction()) : 0.0;
+  return scheme ? dot(way_at(scheme->force_time()), direction()) : 0.0;
 }
 
 Pose DrivenSet::pose() const {
   Pose pose;
-  if (const auto scheme = scheme_.lock()) pose.position = way_(scheme->state().time);
+  const auto scheme = scheme_.lock();
+  if (!scheme) return pose;
+  pose.position = way_at(scheme->state().time);
+  if (rigid_) pose.axes = rigid_(scheme->state().time).axes;
   return pose;
 }
 

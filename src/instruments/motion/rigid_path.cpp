@@ -1,0 +1,149 @@
+// rigid_path.cpp — see rigid_motion.h.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "base/require_fields.h"
+#include "glisson/instruments/motion.h"
+#include "glisson/instruments/rigid_motion.h"
+#include "instruments/motion/monotone_cubic.h"
+
+namespace glisson {
+namespace {
+
+using Quaternion = std::array<double, 4>;  // w, x, y, z
+
+Mat3d matrix_of(const Quaternion& q) {
+  const auto [w, x, y, z] = q;
+  return {{{{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
+            {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
+            {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)}}}};
+}
+
+Quaternion turn_about(const Vec3d& axis, double angle) {
+  const double s = std::sin(0.5 * angle);
+  return {std::cos(0.5 * angle), s * axis.x, s * axis.y, s * axis.z};
+}
+
+double dot4(const Quaternion& a, const Quaternion& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]; }
+
+/// a* b: the turn from a to b, as seen in a.
+Quaternion from_to(const Quaternion& a, const Quaternion& b) {
+  const Vec3d u{-a[1], -a[2], -a[3]}, v{b[1], b[2], b[3]};
+  const Vec3d w = v * a[0] + u * b[0] + cross(u, v);
+  return {a[0] * b[0] - dot(u, v), w.x, w.y, w.z};
+}
+
+/// Rotation by `share` of the shortest turn from a to b, both of length 1 and on the same side.
+Mat3d between(const Quaternion& a, const Quaternion& b, double share) {
+  const Quaternion turn = from_to(a, b);
+  const Vec3d axis{turn[1], turn[2], turn[3]};
+  const double s = norm(axis);
+  if (!(s > 0.0)) return matrix_of(a);
+  const double angle = 2.0 * std::atan2(s, turn[0]);
+  return matrix_of(a) * matrix_of(turn_about(axis * (1.0 / s), share * angle));
+}
+
+/// The press that has this angle for its depth, in degrees.
+PressMotion as_press(const RotationMotion& m) {
+  return {.velocity = m.rate_deg_s,
+          .depth = m.angle_deg,
+          .start = m.start,
+          .ramp = m.ramp,
+          .hold = m.hold,
+          .returns = m.returns};
+}
+
+std::string wrong_times(std::span<const double> times) {
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (!(times[i] > times[i - 1])) return "pose " + std::to_string(i + 1) + " is not later than the one before it";
+  }
+  return {};
+}
+
+void require_poses(const PosesMotion& m) {
+  const auto fail = [](const std::string& what) { throw std::invalid_argument("poses: " + what); };
+  const std::size_t n = m.times.size();
+  if (n < 2 || m.positions.size() != n || m.quaternions.size() != n) {
+    fail(std::to_string(n) + " times, " + std::to_string(m.positions.size()) + " positions and " +
+         std::to_string(m.quaternions.size()) + " quaternions; give as many of each, two or more");
+  }
+  if (const std::string wrong = wrong_times(m.times); !wrong.empty()) fail(wrong);
+  if (!(m.start >= 0.0)) fail("start [s] = " + std::to_string(m.start) + " is outside the allowed range, ≥ 0");
+  for (std::size_t i = 0; i < n; ++i) {
+    const double size = std::sqrt(dot4(m.quaternions[i], m.quaternions[i]));
+    if (std::isfinite(norm(m.positions[i])) && std::isfinite(m.times[i]) && size > 1e-9 && std::isfinite(size))
+      continue;
+    fail("pose " + std::to_string(i + 1) +
+         " has a number that is not finite or a quaternion of length 0; the rotation "
+         "by 0 is qw = 1, qx = qy = qz = 0");
+  }
+}
+
+}  // namespace
+
+Fault RotationMotion::check() const {
+  if (times.empty() && angles_deg.empty()) return {};
+  if (times.size() < 2 || times.size() != angles_deg.size()) {
+    return {std::to_string(times.size()) + " times and " + std::to_string(angles_deg.size()) +
+                " angles; give as many of both, two or more",
+            "times"};
+  }
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] > times[i - 1]) continue;
+    return {"number " + std::to_string(i + 1) + " is not later than the one before it", "times"};
+  }
+  return {};
+}
+
+double rotation_angle(const RotationMotion& m, double time) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  if (m.times.empty()) return kDegree * press_depth(as_press(m), time);
+  return kDegree * MonotoneCubic<double>(m.times, m.angles_deg).at(time);
+}
+
+RigidPath rotation_path(const RotationMotion& m) {
+  detail::require_fields("rotation", m);
+  const auto turned = [m, axis = unit(m.axis)](double time) {
+    Pose pose;
+    pose.axes = matrix_of(turn_about(axis, rotation_angle(m, time)));
+    pose.position = m.centre - pose.axes * m.centre;
+    return pose;
+  };
+  return {turned, m.times.empty() ? press_end(as_press(m)) : m.times.back()};
+}
+
+RigidPath poses_path(const PosesMotion& motion) {
+  require_poses(motion);
+  std::vector<Quaternion> q = motion.quaternions;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const double size = std::sqrt(dot4(q[i], q[i]));
+    const double sign = i > 0 && dot4(q[i - 1], q[i]) < 0.0 ? -1.0 : 1.0;
+    for (double& x : q[i]) x *= sign / size;
+  }
+  const auto places = std::make_shared<const MonotoneCubic<Vec3d>>(motion.times, motion.positions);
+  const auto moved = [places, q, shift = motion.times.front() - motion.start](double time) {
+    const std::vector<double>& t = places->times();
+    const double at = std::clamp(time + shift, t.front(), t.back());
+    const auto after = std::upper_bound(t.begin() + 1, t.end() - 1, at) - t.begin();
+    const auto i = static_cast<std::size_t>(after);
+    Pose pose;
+    pose.axes = between(q[i - 1], q[i], (at - t[i - 1]) / (t[i] - t[i - 1])) * transposed(matrix_of(q.front()));
+    pose.position = places->at(at) - pose.axes * places->points().front();
+    return pose;
+  };
+  return {moved, motion.times.back() - motion.times.front() + motion.start};
+}
+
+RigidDriver::RigidDriver(const Pose& start, RigidPath path) : start_(start), path_(std::move(path)) {
+  if (!path_.pose) throw std::invalid_argument("rigid motion of a tool: no motion was given");
+}
+
+Pose RigidDriver::advance(double time, double h, const Wrench&) {
+  const Pose motion = path_.pose(time + h);
+  return {motion.to_space(start_.position), motion.axes * start_.axes};
+}
+
+}  // namespace glisson
