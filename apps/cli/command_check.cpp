@@ -204,6 +204,23 @@ void print_interactions(const Variant& v, const Taste& taste) {
   }
 }
 
+std::string vector_text(const Vec3d& v) { return fmt::format("{:.4g}, {:.4g}, {:.4g}", v.x, v.y, v.z); }
+
+/// What acts, by its keys: `traction_Pa = [0, 0, 100], follows`.
+std::string load_text(const SurfaceLoad& load) {
+  std::string text;
+  const auto say_of = [&](const auto& f) {
+    const auto& value = load.*f.member;
+    using T = std::remove_cvref_t<decltype(value)>;
+    if (value == T{}) return;
+    text += (text.empty() ? "" : ", ") + f.key();
+    if constexpr (std::is_same_v<T, Vec3d>) text += " = [" + vector_text(value) + "]";
+    if constexpr (std::is_same_v<T, double>) text += fmt::format(" = {:.4g}", value);
+  };
+  each_field<SurfaceLoad>(say_of);
+  return text.empty() ? "nothing, all its values are 0" : text;
+}
+
 void print_body(const Variant& v, const Taste& taste) {
   print_mesh(taste.mesh, taste.mass_kg, std::holds_alternative<MeshFile>(v.mesh));
   say("  tissue   \"{}\": {}\n", v.tissue.name, tissue_text(v.tissue));
@@ -217,12 +234,17 @@ void print_body(const Variant& v, const Taste& taste) {
   }
   if (v.fixed.empty()) say("  fixed    nothing: the body is free to drift\n");
   for (const LoadSpec& load : v.loads) {
-    say("  load     {}: ({:.4g}, {:.4g}, {:.4g}) N\n", set_text(taste.mesh, load.set), load.force.x, load.force.y,
-        load.force.z);
+    say("  load     {}: {}\n", set_text(taste.mesh, load.set), load_text(load.load));
   }
   for (const ToolSpec& tool : v.tools) {
     const PressMotion& m = tool.motion;
-    if (tool.record) {
+    if (tool.rotation || tool.poses) {
+      say("  tool     \"{}\" on {}: {}, from {:.4g} s to {:.4g} s\n", tool.name, set_text(taste.mesh, tool.set),
+          tool.rotation ? "turns about (" + vector_text(tool.rotation->axis) + ") through (" +
+                              vector_text(tool.rotation->centre) + ") m"
+                        : std::to_string(tool.poses->motion.times.size()) + " poses",
+          tool_start(tool), tool_path(tool).end.value_or(0.0));
+    } else if (tool.record) {
       say("  tool     \"{}\" on {}: a recorded path of {} points, from {:.4g} s to {:.4g} s\n", tool.name,
           set_text(taste.mesh, tool.set), tool.record->motion.times.size(), tool_start(tool),
           tool_path(tool).end.value_or(0.0));

@@ -98,16 +98,23 @@ void complete_record(RecordSpec& record, const Vec3d& along, const std::filesyst
   record.motion = load_record(record.path, along * (1.0 / norm(along)));
 }
 
+void complete_poses(PosesSpec& poses, const std::filesystem::path& base) {
+  if (poses.path.is_relative()) poses.path = base / poses.path;
+  poses.motion = load_poses(poses.path);
+}
+
 /// Reads the files of recorded motions, and tries the motions of all tools and instruments.
 void complete_motions(Variant& variant, const Node& experiment, const std::filesystem::path& base, Problems& problems) {
   for (std::size_t i = 0; i < variant.tools.size(); ++i) {
     ToolSpec& x = variant.tools[i];
-    if (!x.record) continue;
+    if (!x.record && !x.rotation && !x.poses) continue;
+    const std::string how = x.record ? "record" : x.rotation ? "rotation" : "poses";
     try {
-      complete_record(*x.record, x.motion.direction, base);
+      if (x.record) complete_record(*x.record, x.motion.direction, base);
+      if (x.poses) complete_poses(*x.poses, base);
       tool_path(x);
     } catch (const std::exception& error) {
-      problems.add((*experiment.find("tool")->array())[i].where, "tool." + std::to_string(i) + ".record", error.what());
+      problems.add((*experiment.find("tool")->array())[i].where, "tool." + std::to_string(i) + "." + how, error.what());
     }
   }
   for (std::size_t i = 0; i < variant.instruments.size(); ++i) {
@@ -117,6 +124,7 @@ void complete_motions(Variant& variant, const Node& experiment, const std::files
     try {
       if (auto* record = std::get_if<RecordSpec>(&x.motion.how))
         complete_record(*record, x.motion.direction.value_or(x.direction), base);
+      if (auto* poses = std::get_if<PosesSpec>(&x.motion.how)) complete_poses(*poses, base);
       make_driver(x);
     } catch (const std::exception& error) {
       problems.add(motion.where, path, error.what());

@@ -90,6 +90,18 @@ axes = "xz"
 set = "x_max"
 force_N = [1, 2, 3]
 ramp_s = 0.75
+[[load]]
+set = "x_min"
+traction_Pa = [4, 5, 6]
+pressure_Pa = 7
+moment_N_m = [8, 9, 10]
+follows = true
+spring_N_m = [11, 12, 13]
+spring_Pa_m = [14, 15, 16]
+dashpot_N_s_m = [17, 18, 19]
+dashpot_Pa_s_m = [20, 21, 22]
+times_s = [0, 1]
+factors = [0.5, 2]
 
 [[tool]]
 name = "punch"
@@ -266,10 +278,21 @@ TEST(EveryKey, OfMotionToolsAndOutputIsRead) {
   ASSERT_EQ(v.fixed.size(), 1u);
   EXPECT_EQ(v.fixed[0].set, "z_min");
   EXPECT_TRUE(v.fixed[0].axes.x && !v.fixed[0].axes.y && v.fixed[0].axes.z);
-  ASSERT_EQ(v.loads.size(), 1u);
+  ASSERT_EQ(v.loads.size(), 2u);
   EXPECT_EQ(v.loads[0].set, "x_max");
-  expect_equal(v.loads[0].force, {1, 2, 3});
+  expect_equal(v.loads[0].load.force, {1, 2, 3});
   EXPECT_EQ(v.loads[0].ramp, 0.75);
+  const SurfaceLoad& load = v.loads[1].load;
+  expect_equal(load.traction, {4, 5, 6});
+  EXPECT_EQ(load.pressure, 7.0);
+  expect_equal(load.moment, {8, 9, 10});
+  EXPECT_TRUE(load.follows);
+  expect_equal(load.spring, {11, 12, 13});
+  expect_equal(load.spring_per_area, {14, 15, 16});
+  expect_equal(load.dashpot, {17, 18, 19});
+  expect_equal(load.dashpot_per_area, {20, 21, 22});
+  EXPECT_THAT(v.loads[1].times, ElementsAre(0, 1));
+  EXPECT_THAT(v.loads[1].factors, ElementsAre(0.5, 2));
   ASSERT_EQ(v.tools.size(), 1u);
   const ToolSpec& tool = v.tools[0];
   EXPECT_EQ(tool.name, "punch");
@@ -292,6 +315,40 @@ TEST(EveryKey, OfMotionToolsAndOutputIsRead) {
   EXPECT_EQ(v.output.sample_rate, 250.0);
   EXPECT_EQ(v.output.frames, 7);
   EXPECT_TRUE(v.output.stored_energy);
+}
+
+const std::string kRotations = R"(
+[mesh]
+kind = "box"
+[[tool]]
+name = "speed"
+set = "z_max"
+axial = "free"
+rotation = { axis = [0, 0, 2], centre_m = [1, 2, 3], angle_deg = 30, rate_deg_s = 60, start_s = 0.1, ramp_s = 0.2, hold_s = 0.3, returns = true }
+[[tool]]
+name = "table"
+set = "z_min"
+rotation = { axis = [1, 1, 0], times_s = [0, 2], angles_deg = [0, 45] }
+)";
+
+// A tool that turns keeps its axis, its angle over time and what is free.
+TEST(EveryKey, OfRotationsIsRead) {
+  const Variant v = parse(kRotations).variants[0];
+  ASSERT_EQ(v.tools.size(), 2u);
+  EXPECT_TRUE(v.tools[0].axial_free);
+  const RotationMotion& turn = v.tools[0].rotation.value();
+  expect_equal(turn.axis, {0, 0, 2});
+  expect_equal(turn.centre, {1, 2, 3});
+  EXPECT_EQ(turn.angle_deg, 30.0);
+  EXPECT_EQ(turn.rate_deg_s, 60.0);
+  EXPECT_EQ(turn.start, 0.1);
+  EXPECT_EQ(turn.ramp, 0.2);
+  EXPECT_EQ(turn.hold, 0.3);
+  EXPECT_TRUE(turn.returns);
+  EXPECT_FALSE(v.tools[1].axial_free);
+  EXPECT_THAT(v.tools[1].rotation->times, ElementsAre(0, 2));
+  EXPECT_THAT(v.tools[1].rotation->angles_deg, ElementsAre(0, 45));
+  EXPECT_EQ(run_duration(v), 2.0);
 }
 
 // The two other kinds of mesh keep their numbers; a file is looked for beside the scene.
@@ -333,8 +390,8 @@ TEST(EveryKey, IsInTheSceneOfThisTest) {
   collect(scene::scene_section(), keys);
   collect(scene::variant_section(), keys);
   EXPECT_GT(keys.size(), 60u);
-  const std::string text = kEveryKey + test::kEveryInstrument;
-  for (const char* key : {"path", "file", "record", "x_offset"})
+  const std::string text = kEveryKey + kRotations + test::kEveryInstrument;
+  for (const char* key : {"path", "file", "record", "poses", "x_offset"})
     keys.erase(key);  // of files, which have tests of their own
   for (const std::string& key : keys) EXPECT_NE(text.find(key), std::string::npos) << key;
 }

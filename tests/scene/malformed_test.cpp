@@ -166,6 +166,48 @@ const std::vector<Mistake> kMistakes{
      "s.toml:18:6: tool.punch: no such tool; known: 0 (press)"},
     {"ChartOfNoVariant", "", "[[chart]]\ntitle = \"a\"\nx = \"time_s\"\ny = \"force_N\"\nvariants = [\"b\"]\n",
      "s.toml:20:13: chart.0.variants: no variant \"b\"; the scene has: main"},
+    {"LoadOfNothing", "", "[[load]]\nset = \"top\"\nramp_s = 1\n",
+     "s.toml:16:1: load.0: nothing acts; give at least one of `force_N`, `traction_Pa`, `pressure_Pa`, `moment_N_m`, "
+     "`spring_N_m`, `spring_Pa_m`, `dashpot_N_s_m`, `dashpot_Pa_s_m`"},
+    {"ForceThatFollows", "", "[[load]]\nset = \"top\"\nforce_N = [0, 0, 1]\nfollows = true\n",
+     "s.toml:19:11: load.0.follows: = true is for traction, pressure and moment, none of which is given; a force keeps "
+     "its direction, springs and dashpots theirs"},
+    {"NegativeSpring", "", "[[load]]\nset = \"top\"\nspring_N_m = [0, 0, -1]\n",
+     "s.toml:18:21: load.0.spring_N_m.2: -1 N/m is out of range; allowed: ≥ 0 N/m"},
+    {"FactorsWithoutTimes", "", "[[load]]\nset = \"top\"\npressure_Pa = 1\nfactors = [1, 2]\n",
+     "s.toml:19:11: load.0.factors: needs `times_s`, as many times as factors"},
+    {"FewerFactorsThanTimes", "", "[[load]]\nset = \"top\"\npressure_Pa = 1\ntimes_s = [0, 1]\nfactors = [1]\n",
+     "s.toml:19:11: load.0.times_s: 2 times and 1 `factors`; give as many of both, one or more"},
+    {"TimesThatTurnBack", "", "[[load]]\nset = \"top\"\npressure_Pa = 1\ntimes_s = [0, 1, 1]\nfactors = [1, 2, 3]\n",
+     "s.toml:19:11: load.0.times_s: number 3 is not later than the one before it"},
+    {"RotationWithoutAxis", "depth_mm = 1\n", "rotation = { angle_deg = 30 }\n",
+     "s.toml:15:12: tool.0.rotation: missing key `axis`: a list of three numbers; direction of the axis, of any "
+     "length; "
+     "positive by the right hand"},
+    {"RotationAboutNothing", "depth_mm = 1\n", "rotation = { axis = [0, 0, 0] }\n",
+     "s.toml:15:21: tool.0.rotation.axis: [0, 0, 0] has no direction; give a vector that is not zero, such as [0, 0, "
+     "-1]"},
+    {"RotationFreeAlongASlantedAxis", "depth_mm = 1\n", "rotation = { axis = [1, 1, 0] }\naxial = \"free\"\n",
+     "s.toml:16:9: tool.0.axial: \"free\" needs an axis along x, y or z, not [1, 1, 0]; use axial = \"held\" or turn "
+     "the mesh"},
+    {"RotationBySpeedAndTable", "depth_mm = 1\n",
+     "rotation = { axis = [0, 0, 1], times_s = [0, 1], angles_deg = [0, 9], rate_deg_s = 3 }\n",
+     "s.toml:15:71: tool.0.rotation.rate_deg_s: contradicts `times_s` (line 15); give one of the two"},
+    {"RotationOfANeedle", "",
+     "[[instrument]]\nkind = \"needle\"\ntip_m = [0, 0, 1]\nmotion = { kind = \"rotation\", axis = [0, 0, 1] }\n",
+     "s.toml:19:10: instrument.0.motion: a needle keeps its direction and cannot turn; use kind = \"strokes\" or "
+     "\"record\", or another kind of instrument"},
+    {"FactorThatIsNoNumber", "", "[[load]]\nset = \"top\"\npressure_Pa = 1\ntimes_s = [0, 1]\nfactors = [0, nan]\n",
+     "s.toml:20:15: load.0.factors.1: nan is out of range; allowed: any finite number"},
+    {"PressureThatIsNoNumber", "", "[[load]]\nset = \"top\"\npressure_Pa = inf\n",
+     "s.toml:18:15: load.0.pressure_Pa: inf Pa is out of range; allowed: any finite number"},
+    {"SetThatIsNot", "", "[[load]]\nset = \"topp\"\npressure_Pa = 1\n",
+     "s.toml:17:7: load.0.set: no vertex set \"topp\"; did you mean \"top\"? the sets are: x_min, x_max, y_min, y_max, "
+     "z_min, z_max, top"},
+    {"PosesAndRotation", "depth_mm = 1\n", "poses = { path = \"none.csv\" }\nrotation = { axis = [0, 0, 1] }\n",
+     "s.toml:16:1: tool.0.rotation: contradicts `poses` (line 15); give one of the two"},
+    {"PosesWithoutAFile", "depth_mm = 1\n", "poses = { path = \"none.csv\" }\n",
+     "s.toml:12:1: tool.0.poses: /scenes/none.csv: cannot be read; check the path and that you may read it"},
     {"NamelessRegion", "", "[[region]]\nsphere_m = { center = [0, 0, 0], radius = 1 }\n",
      "s.toml:16:1: region.0: missing key `name`: text in quotes; name; without `box_m` and `sphere_m`, that of a "
      "region of "

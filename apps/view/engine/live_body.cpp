@@ -103,8 +103,10 @@ void LiveBody::lead_instruments() {
     }
     info.most_depth = 1.25 * habit.depth.value_or(0.0);
     ways_.push_back(std::make_shared<LivePath>(habit.speed, habit.ramp, scene_way(x)));
-    info.can_play = ways_.back()->can_play();
-    x.motion.how = ToolPath{[way = ways_.back()](double t) { return way->at(t); }, {}};
+    const bool turns =
+        std::holds_alternative<RotationMotion>(x.motion.how) || std::holds_alternative<PosesSpec>(x.motion.how);
+    info.can_play = !turns && ways_.back()->can_play();
+    if (!turns) x.motion.how = ToolPath{[way = ways_.back()](double t) { return way->at(t); }, {}};
     tools_.push_back(info);
   }
 }

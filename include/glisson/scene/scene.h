@@ -20,6 +20,7 @@
 #include "glisson/instruments/container.h"
 #include "glisson/instruments/motion.h"
 #include "glisson/instruments/needle.h"
+#include "glisson/instruments/rigid_motion.h"
 #include "glisson/instruments/tool_motion.h"
 #include "glisson/material/tissue.h"
 #include "glisson/mesh.h"
@@ -86,8 +87,10 @@ struct FixedSpec {
 };
 struct LoadSpec {
   std::string set;
-  Vec3d force;        ///< [N], divided equally over the set
+  SurfaceLoad load;
   double ramp = 0.0;  ///< time over which it grows from 0, linearly [s], ≥ 0
+  /// Its course, in place of the ramp: factors at times [s], linear between them, constant before and after.
+  std::vector<double> times, factors;
   std::string origin;
 };
 /// A recorded path from a file (load_record).
@@ -97,18 +100,30 @@ struct RecordSpec {
   double start = 0.0;
   RecordedMotion motion;  ///< what the file holds
 };
+/// Poses from a file (load_poses).
+struct PosesSpec {
+  static constexpr std::string_view kName = "poses";
+  std::filesystem::path path;  ///< as that of a record
+  double start = 0.0;
+  PosesMotion motion;  ///< what the file holds; its start is `start`
+};
 struct ToolSpec {
   std::string name = "tool";
   std::string set;
   PressMotion motion;
   std::optional<RecordSpec> record;  ///< a recorded path in place of the press, of which only `direction` is used then
   std::optional<ToolPath> path;      ///< a program's own path, in place of both; 0 at time 0
-  bool sideways_free = false;        ///< only the component along the direction is driven (direction along an axis)
+  std::optional<RotationMotion> rotation;  ///< in place of the press or record; turns beside a path
+  std::optional<PosesSpec> poses;          ///< the same
+  bool sideways_free = false;  ///< only the component along the direction is driven (direction along an axis)
+  bool axial_free = false;     ///< of a rotation: the component along its axis is free (axis along x, y or z)
   std::string origin;
 };
 
-/// The path of a tool, and its end. @throws std::invalid_argument
+/// The path of a tool, and its end; what turns it left out. @throws std::invalid_argument
 ToolPath tool_path(const ToolSpec& tool);
+/// Path and rotation of a tool that turns; none of one that does not. @throws std::invalid_argument
+std::optional<RigidPath> turning_path(const ToolSpec& tool);
 /// Start of a tool's motion [s].
 double tool_start(const ToolSpec& tool);
 
@@ -163,7 +178,7 @@ struct PushSpec {
 };
 struct InstrumentMotion {
   /// The last is a program's own path; no scene file gives it.
-  std::variant<PressMotion, StrokesSpec, SineMotion, PushSpec, RecordSpec, ToolPath> how;
+  std::variant<PressMotion, StrokesSpec, SineMotion, PushSpec, RecordSpec, RotationMotion, PosesSpec, ToolPath> how;
   std::optional<Vec3d> direction;  ///< of any length; none: the instrument's
 };
 
@@ -183,6 +198,8 @@ struct InstrumentSpec {
   std::map<std::string, TipResistance> regions;  ///< of a needle, by region name
   std::string origin;
 };
+/// The poses of a file, from its start.
+PosesMotion started(const PosesSpec& spec);
 /// Initial pose of an instrument: its own z axis points back along its direction.
 Pose start_pose(const InstrumentSpec& instrument);
 /// Its driver. @throws std::invalid_argument
@@ -192,6 +209,10 @@ std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& instrument);
 /// (or _mm), then a line for each time. @param direction  of depths, a unit vector
 /// @throws std::runtime_error `file:line: what is wrong`
 RecordedMotion load_record(const std::filesystem::path& file, const Vec3d& direction);
+
+/// The same with poses: `time_s`, `x_m`, `y_m`, `z_m` (or _mm) and a quaternion `qw`, `qx`, `qy`, `qz`.
+/// @throws std::runtime_error `file:line: what is wrong`
+PosesMotion load_poses(const std::filesystem::path& file);
 
 /// A rigid vessel around the body, upright.
 struct ContainerSpec {

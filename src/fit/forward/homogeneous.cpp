@@ -43,6 +43,7 @@ std::optional<Specimen> homogeneous_specimen(const Variant& v, const SceneModelO
                      options.force != "bottom" && options.force != "side" && norm(v.simulation.gravity) == 0.0;
   if (!plain || !holds_floor(v, box != nullptr)) return {};
   const ToolSpec& tool = v.tools.front();
+  if (tool.rotation || tool.poses) return {};
   const Vec3d& d = tool.motion.direction;
   const bool pressed =
       tool.set == (box ? "z_max" : "top") && tool.sideways_free && d.x == 0.0 && d.y == 0.0 && d.z < 0.0;

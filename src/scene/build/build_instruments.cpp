@@ -46,6 +46,12 @@ struct DriverMaker {
     motion.start = m.start;
     return path(recorded_path(motion));
   }
+  std::shared_ptr<ToolDriver> operator()(const RotationMotion& m) const {
+    return std::make_shared<RigidDriver>(start, rotation_path(m));
+  }
+  std::shared_ptr<ToolDriver> operator()(const PosesSpec& m) const {
+    return std::make_shared<RigidDriver>(start, poses_path(started(m)));
+  }
   std::shared_ptr<ToolDriver> operator()(const PushSpec& m) const {
     PushMotion push = m.tool;
     push.direction = direction;
@@ -119,11 +125,16 @@ std::shared_ptr<Instrument> make_instrument(const InstrumentSpec& spec, const Te
 
 std::shared_ptr<Instrument> make_tool(const ToolSpec& spec, std::vector<std::uint32_t> vertices) {
   const Vec3d& d = spec.motion.direction;
-  const DrivenSetOptions options{.name = spec.name,
-                                 .vertices = std::move(vertices),
-                                 .direction = d,
-                                 .axes = spec.sideways_free ? Axes{d.x != 0.0, d.y != 0.0, d.z != 0.0} : Axes{},
-                                 .from = tool_start(spec)};
+  DrivenSetOptions options{.name = spec.name,
+                           .vertices = std::move(vertices),
+                           .direction = d,
+                           .axes = spec.sideways_free ? Axes{d.x != 0.0, d.y != 0.0, d.z != 0.0} : Axes{},
+                           .from = tool_start(spec)};
+  if (auto turning = turning_path(spec)) {
+    const Vec3d axis = spec.rotation ? spec.rotation->axis : Vec3d{};
+    if (spec.axial_free) options.axes = {axis.x == 0.0, axis.y == 0.0, axis.z == 0.0};
+    return std::make_shared<DrivenSet>(options, std::move(*turning), spec.rotation);
+  }
   return std::make_shared<DrivenSet>(options, tool_path(spec));
 }
 

@@ -1,5 +1,6 @@
 // build_variant.cpp — from a variant's description to a body with its supports, loads and tools.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <new>
 #include <set>
@@ -130,9 +131,19 @@ Simulation simulation_of(const Variant& variant, TetMesh mesh,
   }
 }
 
-std::function<double(double)> ramp_over(double seconds) {
-  if (seconds <= 0.0) return {};
-  return [seconds](double t) { return std::min(1.0, t / seconds); };
+/// The course of a load in time; none: always 1.
+std::function<double(double)> course_of(const LoadSpec& load) {
+  if (!load.times.empty()) {
+    return [times = load.times, factors = load.factors](double t) {
+      const auto after = std::upper_bound(times.begin(), times.end(), t) - times.begin();
+      if (after == 0) return factors.front();
+      const auto i = static_cast<std::size_t>(after);
+      if (i == times.size()) return factors.back();
+      return std::lerp(factors[i - 1], factors[i], (t - times[i - 1]) / (times[i] - times[i - 1]));
+    };
+  }
+  if (load.ramp <= 0.0) return {};
+  return [seconds = load.ramp](double t) { return std::min(1.0, t / seconds); };
 }
 
 /// Capsules first: what they pull is known when instruments solve for what holds at the end of the step.
@@ -213,25 +224,46 @@ BuiltVariant::BuiltVariant(TetMesh whole, const Variant& variant)
   }
   for (const LoadSpec& x : variant.loads) {
     const auto& set = set_called(variant, mesh, x.set, x.origin);
-    located(variant, x.origin, [&] { return simulation.add_load(set, x.force, ramp_over(x.ramp)); });
+    located(variant, x.origin, [&] { return simulation.add_surface_load(set, x.load, course_of(x)); });
   }
   attach_interactions(variant, *this);
   probes = probes_of(variant, simulation);
+}
+
+PosesMotion started(const PosesSpec& spec) {
+  PosesMotion motion = spec.motion;
+  motion.start = spec.start;
+  return motion;
 }
 
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load) { return {variant, load}; }
 
 double tool_start(const ToolSpec& tool) {
   if (tool.path) return 0.0;
+  if (tool.rotation) return tool.rotation->times.empty() ? tool.rotation->start : tool.rotation->times.front();
+  if (tool.poses) return tool.poses->start;
   return tool.record ? tool.record->start : tool.motion.start;
 }
 
 ToolPath tool_path(const ToolSpec& tool) {
   if (tool.path) return *tool.path;
+  if (tool.rotation || tool.poses) return {[](double) { return Vec3d{}; }, turning_path(tool)->end};
   if (!tool.record) return {press(tool.motion), press_end(tool.motion)};
   RecordedMotion motion = tool.record->motion;
   motion.start = tool.record->start;
   return recorded_path(motion);
+}
+
+std::optional<RigidPath> turning_path(const ToolSpec& tool) {
+  if (!tool.rotation && !tool.poses) return {};
+  RigidPath turning = tool.rotation ? rotation_path(*tool.rotation) : poses_path(started(*tool.poses));
+  if (!tool.path) return turning;
+  return RigidPath{[turn = turning.pose, way = tool.path->displacement](double t) {
+                     Pose pose = turn(t);
+                     pose.position += way(t);
+                     return pose;
+                   },
+                   turning.end};
 }
 
 double run_duration(const Variant& variant) {

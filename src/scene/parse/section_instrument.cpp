@@ -50,6 +50,14 @@ void check_instrument(InstrumentSpec& x, const Node& table, const Place& place) 
   x.origin = place.text();
   const std::string unfit = unfit_as_table(x.name);
   if (const Node* name = table.find("name"); name && !unfit.empty()) place.complain(*name, "name", unfit);
+  const bool turns =
+      std::holds_alternative<RotationMotion>(x.motion.how) || std::holds_alternative<PosesSpec>(x.motion.how);
+  if (turns && std::holds_alternative<NeedleOptions>(x.what)) {
+    place.complain(
+        *table.find("motion"), "motion",
+        "a needle keeps its direction and cannot turn; use kind = \"strokes\" or \"record\", or another kind of "
+        "instrument");
+  }
   if (norm(cross(x.side, x.direction)) > 1e-6 * norm(x.side) * norm(x.direction)) return;
   place.complain(table.find("side") ? *table.find("side") : *table.find("direction"),
                  table.find("side") ? "side" : "direction",

@@ -43,6 +43,33 @@ const SectionSpec& record_section() {
   return section;
 }
 
+const SectionSpec& rotation_section() {
+  static const SectionSpec section = [] {
+    SectionSpec s = described<RotationMotion>(
+        "Rotation about an axis fixed in space, by an angle over time: at a speed to an angle, or through angles of a "
+        "table.");
+    s.exclusions = {
+        {{{"times_s", "angles_deg"}, {"angle_deg", "rate_deg_s", "start_s", "ramp_s", "hold_s", "returns"}}, false}};
+    return s;
+  }();
+  return section;
+}
+
+const SectionSpec& poses_section() {
+  static const SectionSpec section = [] {
+    Section<PosesSpec> s(
+        std::string(PosesSpec::kName),
+        "Poses from a .csv with a line of names, `time_s`, `x_m`, `y_m`, `z_m` (or _mm) and a quaternion `qw`, `qx`, "
+        "`qy`, `qz`. What it moves goes with them from the first line on: positions smoothly, rotations by the "
+        "shortest "
+        "turn at a constant rate between two lines.");
+    s.key("path", &PosesSpec::path, "the file, relative to the scene").must();
+    s.key("start_s", &PosesSpec::start, "start of the poses").in("s").within(at_least(0));
+    return s.spec();
+  }();
+  return section;
+}
+
 const SectionSpec& stroke_section() {
   static const SectionSpec section =
       described<StrokesSpec::One>("instrument.motion.strokes", "A straight move at one speed, and a rest after it.");
@@ -61,7 +88,10 @@ const SectionSpec& instrument_motion_section() {
         motion_kind<StrokesSpec>(
             described<StrokesSpec>("Straight moves in sequence: insert, rest, sideways, withdraw.")),
         motion_kind<SineMotion>(directed<SineMotion>("Oscillation about a mean depth, rising smoothly over `ramp_s`.")),
-        motion_kind<PushSpec>(push_kind()), motion_kind<RecordSpec>(record_section())};
+        motion_kind<PushSpec>(push_kind()),
+        motion_kind<RecordSpec>(record_section()),
+        motion_kind<RotationMotion>(rotation_section()),
+        motion_kind<PosesSpec>(poses_section())};
     return s.spec();
   }();
   return section;

@@ -15,11 +15,48 @@ std::vector<Choice<Axes>> axes_choices() {
 
 bool along_an_axis(const Vec3d& d) { return (d.x != 0.0) + (d.y != 0.0) + (d.z != 0.0) == 1; }
 
+/// What must hold between the keys of a load.
+void check_load(LoadSpec& load, const Node& table, const Place& place) {
+  load.origin = place.text();
+  std::string acting;
+  bool acts = false;
+  each_field<SurfaceLoad>([&](const FieldText& f) {
+    if (f.name == "follows") return;
+    acts = acts || table.find(f.key()) != nullptr;
+    acting += (acting.empty() ? "`" : ", `") + f.key() + "`";
+  });
+  if (!acts) place.complain("nothing acts; give at least one of " + acting);
+  const Node *times = table.find("times_s"), *factors = table.find("factors");
+  if (!times && !factors) return;
+  if (!times) return place.complain(*factors, "factors", "needs `times_s`, as many times as factors");
+  if (load.times.size() != load.factors.size() || load.times.empty()) {
+    return place.complain(*times, "times_s",
+                          std::to_string(load.times.size()) + " times and " + std::to_string(load.factors.size()) +
+                              " `factors`; give as many of both, one or more");
+  }
+  if (table.find("ramp_s")) place.complain(*times, "times_s", "and `ramp_s` exclude each other; give one of them");
+  for (std::size_t i = 1; i < load.times.size(); ++i) {
+    if (load.times[i] > load.times[i - 1]) continue;
+    return place.complain(*times, "times_s",
+                          "number " + std::to_string(i + 1) + " is not later than the one before it");
+  }
+}
+
 /// What must hold of a tool's direction.
 void check_tool(ToolSpec& tool, const Node& table, const Place& place) {
   tool.origin = place.text();
   const std::string unfit = unfit_as_table(tool.name);
   if (const Node* name = table.find("name"); name && !unfit.empty()) place.complain(*name, "name", unfit);
+  if (tool.axial_free && !tool.rotation) place.complain(*table.find("axial"), "axial", "needs `[tool.rotation]`");
+  if (tool.axial_free && tool.rotation && !along_an_axis(tool.rotation->axis)) {
+    place.complain(*table.find("axial"), "axial",
+                   "\"free\" needs an axis along x, y or z, not " + Codec<Vec3d>::show(tool.rotation->axis) +
+                       "; use axial = \"held\" or turn the mesh");
+  }
+  if (tool.sideways_free && (tool.rotation || tool.poses)) {
+    place.complain(*table.find("sideways"), "sideways",
+                   "\"free\" is for tools that move along a direction; leave it out");
+  }
   const Vec3d& d = tool.motion.direction;
   const Node* given = table.find("direction");
   if (tool.sideways_free && !along_an_axis(d)) {
@@ -69,11 +106,21 @@ const SectionSpec& fixed_section() {
 
 const SectionSpec& load_section() {
   static const SectionSpec section = [] {
-    Section<LoadSpec> s("load", "A force on the vertices of a set, divided equally.");
+    Section<LoadSpec> s(
+        "load",
+        "What acts on a set from outside: force, traction, pressure, moment; springs and dashpots to the "
+        "ground. Faces of the set are the faces of the body's surface all corners of which are in it.");
     s.key("set", &LoadSpec::set, "name of a vertex set").must();
-    s.key("force_N", &LoadSpec::force, "total force").in("N").must();
-    s.key("ramp_s", &LoadSpec::ramp, "time of its linear growth from 0").in("s").within(at_least(0));
-    s.finish([](LoadSpec& x, const Node&, const Place& place) { x.origin = place.text(); });
+    s.fields(&LoadSpec::load);
+    s.key("ramp_s", &LoadSpec::ramp, "time of linear growth from 0 of force, traction, pressure and moment")
+        .in("s")
+        .within(at_least(0));
+    s.key("times_s", &LoadSpec::times, "times of `factors`, ascending").in("s").otherwise("none");
+    s.key("factors", &LoadSpec::factors,
+          "what force, traction, pressure and moment are multiplied by at `times_s`: linear between them, constant "
+          "before and after")
+        .otherwise("none");
+    s.finish(check_load);
     return s.spec();
   }();
   return section;
@@ -90,12 +137,23 @@ const SectionSpec& tool_section() {
     s.table(
         "record", record_section(), [](ToolSpec & t) -> auto& { return t.record.emplace(); },
         "a recorded path, in place of speed and depth");
+    s.table(
+        "rotation", rotation_section(), [](ToolSpec & t) -> auto& { return t.rotation.emplace(); },
+        "a rotation about an axis, in place of speed and depth; its torque is recorded");
+    s.table(
+        "poses", poses_section(), [](ToolSpec & t) -> auto& { return t.poses.emplace(); },
+        "poses from a table, in place of speed and depth");
+    s.choice<bool>("axial", &ToolSpec::axial_free,
+                   {{"held", false, "the vertices do not move along the axis of a rotation"},
+                    {"free", true, "they are free along it; it must be along x, y or z"}},
+                   "motion along the axis of `rotation`");
     s.choice<bool>("sideways", &ToolSpec::sideways_free,
                    {{"blocked", false, "the vertices move with the tool in all components"},
                     {"free", true, "only along the direction, which must be along an axis: no friction"}},
                    "motion across the direction");
     s.spec().exclusions = {
-        {{{"record"}, {"velocity_mm_s", "depth_mm", "start_s", "ramp_s", "hold_s", "returns"}}, false}};
+        {{{"record"}, {"velocity_mm_s", "depth_mm", "start_s", "ramp_s", "hold_s", "returns"}, {"rotation"}, {"poses"}},
+         false}};
     s.finish(check_tool);
     return s.spec();
   }();

@@ -73,7 +73,7 @@ const SectionSpec& variant_section() {
     s.table(
         "motion", motion_section(), [](Variant& v) -> Variant& { return v; }, "time, damping, gravity");
     s.tables("fixed", fixed_section(), &Variant::fixed, "sets that are held");
-    s.tables("load", load_section(), &Variant::loads, "forces on sets");
+    s.tables("load", load_section(), &Variant::loads, "what acts on sets from outside");
     s.tables("tool", tool_section(), &Variant::tools, "tools that press by moving vertices");
     s.tables("instrument", instrument_section(), &Variant::instruments, "tools that press in contact, or pierce");
     s.table(

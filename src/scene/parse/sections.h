@@ -23,6 +23,8 @@ const SectionSpec& motion_section();             ///< fills Variant
 const SectionSpec& fixed_section();              ///< fills FixedSpec
 const SectionSpec& load_section();               ///< fills LoadSpec
 const SectionSpec& record_section();             ///< fills RecordSpec
+const SectionSpec& rotation_section();           ///< fills RotationMotion
+const SectionSpec& poses_section();              ///< fills PosesSpec
 const SectionSpec& tool_section();               ///< fills ToolSpec
 const SectionSpec& rupture_section();            ///< fills Rupture
 const SectionSpec& tip_section();                ///< fills TipResistance

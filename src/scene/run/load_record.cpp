@@ -1,4 +1,4 @@
-// load_record.cpp — a recorded way from a .csv: names first, then a line for each time.
+// load_record.cpp — a recorded path, or poses, from a .csv: names first, then a line for each time.
 #include <array>
 #include <optional>
 #include <string>
@@ -71,6 +71,42 @@ RecordedMotion load_record(const std::filesystem::path& file, const Vec3d& direc
   }
   if (!table.names.words.empty()) Layout{table};
   throw std::runtime_error(file.string() + ": holds fewer than two times; a way needs two or more");
+}
+
+PosesMotion load_poses(const std::filesystem::path& file) {
+  const WordTable table = scene::read_word_table(file);
+  constexpr std::array<const char*, 8> kNames{"time_s", "x", "y", "z", "qw", "qx", "qy", "qz"};
+  std::array<Column, 8> columns;
+  for (std::size_t k = 0; k < kNames.size(); ++k) {
+    const std::size_t at = table.column(kNames[k]);
+    const bool length = k >= 1 && k <= 3;
+    const auto found = length                          ? length_column(table, kNames[k])
+                       : at < table.names.words.size() ? std::optional<Column>(Column{at, 1.0})
+                                                       : std::nullopt;
+    if (!found) {
+      throw std::runtime_error(table.names.where + ": no column `" + kNames[k] + (length ? "_m` (or _mm)" : "`") +
+                               "; the first line names the columns: time_s, x_m, y_m, z_m, qw, qx, qy, qz");
+    }
+    columns[k] = *found;
+  }
+  PosesMotion poses;
+  for (const WordTable::Row& row : table.rows) {
+    const auto number = [&](std::size_t k) { return columns[k].scale * WordTable::number(row, columns[k].at); };
+    if (!poses.times.empty() && number(0) <= poses.times.back()) {
+      throw std::runtime_error(row.where + ": time_s = " + row.words[columns[0].at] +
+                               " is not later than on the line before");
+    }
+    poses.times.push_back(number(0));
+    poses.positions.push_back({number(1), number(2), number(3)});
+    poses.quaternions.push_back({number(4), number(5), number(6), number(7)});
+    if (poses.quaternions.back() == std::array<double, 4>{}) {
+      throw std::runtime_error(row.where +
+                               ": the quaternion is 0, which is no rotation; that by 0 is qw = 1, qx = qy = qz = 0");
+    }
+  }
+  if (poses.times.size() < 2)
+    throw std::runtime_error(file.string() + ": holds fewer than two poses; give a line for each of two or more times");
+  return poses;
 }
 
 }  // namespace glisson
