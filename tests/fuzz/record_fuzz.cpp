@@ -1,6 +1,6 @@
-// record_fuzz.cpp — any bytes as a file that a scene names: a recorded path, a measured curve, a tissue.
+// record_fuzz.cpp — any bytes as a file that a scene names: a recorded path, poses, a measured curve, a tissue.
 //
-// An input holds files (support.h, files_in): path.csv, measured.csv, tissue.toml, each in place of a sound one.
+// An input holds files (support.h, files_in): path.csv, poses.csv, measured.csv, tissue.toml, each in place of a sound one.
 #include <array>
 #include <cmath>
 
@@ -30,7 +30,14 @@ name = "ball"
 tip_m = [0, 0, 0.02]
 radius_mm = 2
 motion = { kind = "record", path = "path.csv" }
+[[instrument]]
+kind = "block"
+name = "block"
+tip_m = [0, 0, 0.02]
+size_mm = [2, 2, 2]
+motion = { kind = "poses", path = "poses.csv" }
 [[chart]]
+title = "force"
 x = "depth_m"
 x_label = "depth [m]"
 y = "force_N"
@@ -38,8 +45,9 @@ y_label = "force [N]"
 measured = [{ path = "measured.csv", x = "depth_mm", y = "force_N" }]
 )";
 
-constexpr std::array<std::array<std::string_view, 2>, 3> kSound{
+constexpr std::array<std::array<std::string_view, 2>, 4> kSound{
     {{"path.csv", "time_s,depth_m\n0,0\n0.1,0.001\n0.2,0\n"},
+     {"poses.csv", "time_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0.01,0,0,0,0,0,-1\n"},
      {"measured.csv", "depth_mm,force_N\n0,0\n1,0.5\n"},
      {"tissue.toml", "[tissue]\nyoungs_modulus_Pa = 3600\npoisson_ratio = 0.4\n"}}};
 
@@ -67,12 +75,20 @@ void require_sound(const Variant& v) {
     require(finite(path.displacement(share * *path.end)), "a tool is somewhere");
   const auto driver = make_driver(v.instruments.at(0));
   for (const double time : {0.0, 0.07, 1e3}) require(finite(driver->advance(time, 1e-3, {}).position), "so is a ball");
+  const auto turning = make_driver(v.instruments.at(1));
+  for (const double time : {0.0, 0.4, 1e3}) require(turning->advance(time, 1e-3, {}).is_sound(), "a block has a pose");
   require_valid(v.tissue);
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const bool sound_is_read = [] {
+    lay_out({});
+    parse_scene(kScene, "fuzz.toml", fuzz::scratch());
+    return true;
+  }();
+  require(sound_is_read, "the scene and its sound files are read");
   lay_out({reinterpret_cast<const char*>(data), size});
   try {
     const Scene scene = parse_scene(kScene, "fuzz.toml", fuzz::scratch());
