@@ -37,6 +37,13 @@ void bind_motions(nb::module_& m) {
   Options<StrokeMotion>(m, "StrokeMotion");
   Options<SineMotion>(m, "SineMotion");
   Options<RecordedMotion>(m, "RecordedMotion");
+  Options<RotationMotion>(m, "RotationMotion");
+  Options<PosesMotion>(m, "PosesMotion")
+      .field("times", &PosesMotion::times)
+      .field("positions", &PosesMotion::positions)
+      .field("quaternions", &PosesMotion::quaternions)
+      .field("start", &PosesMotion::start);
+  m.def("rotation_angle", &rotation_angle, "motion"_a, "time"_a, doc("rotation_angle"));
   Options<HandCoupling>(m, "HandCoupling");
   m.def("largest_passive_stiffness", &largest_passive_stiffness, "coupling"_a, doc("largest_passive_stiffness"));
 }
@@ -72,6 +79,14 @@ void bind_drivers(nb::module_& m) {
           nb::sig("def __init__(self, start: Pose, motion: PressMotion | SteadyMotion | StrokeMotion | SineMotion | "
                   "RecordedMotion | collections.abc.Callable[[float], collections.abc.Sequence[float] | "
                   "numpy.typing.NDArray[typing.Any]], end: float | None = None) -> None"));
+  nb::class_<RigidDriver, ToolDriver>(m, "RigidDriver", doc("RigidDriver"))
+      .def(
+          "__init__",
+          [](RigidDriver* self, const Pose& start, const std::variant<RotationMotion, PosesMotion>& motion) {
+            const auto* turn = std::get_if<RotationMotion>(&motion);
+            new (self) RigidDriver(start, turn ? rotation_path(*turn) : poses_path(std::get<PosesMotion>(motion)));
+          },
+          "start"_a, "motion"_a);
   nb::class_<PushDriver, ToolDriver>(m, "PushDriver", doc("PushMotion"))
       .def(
           "__init__",
@@ -155,7 +170,10 @@ void bind_common(nb::module_& m) {
 
 void bind_driven_set(nb::module_& m) {
   nb::class_<DrivenSet, Instrument>(m, "DrivenSet", doc("DrivenSet"))
-      .def_prop_ro("parts", &DrivenSet::parts, doc("DrivenSet::parts"));
+      .def_prop_ro("parts", &DrivenSet::parts, doc("DrivenSet::parts"))
+      .def("torque", &DrivenSet::torque, "about"_a, doc("DrivenSet::torque"))
+      .def_prop_ro("axial_torque", &DrivenSet::axial_torque, doc("DrivenSet::axial_torque"))
+      .def_prop_ro("angle", &DrivenSet::angle, doc("DrivenSet::angle"));
 }
 
 void bind_needle(nb::module_& m) {

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "glisson/instruments/motion.h"
+#include "glisson/instruments/rigid_motion.h"
 #include "glisson/instruments/tool_motion.h"
 #include "live_simulation.h"
 #include "rooms.h"
@@ -77,6 +78,33 @@ ConstraintId drive(Live& live, const VertexChoice& vertices, const std::variant<
   }
   Motion way = Callback<Vec3d>(std::get<nb::object>(motion), live.functions);
   return live.get().drive(set, std::move(way), axes_of(axes), from.value_or(0.0));
+}
+
+ConstraintId drive_rigidly(Live& live, const VertexChoice& vertices,
+                           const std::variant<RotationMotion, PosesMotion, nb::object>& motion, const std::string& axes,
+                           std::optional<double> from) {
+  struct {
+    Live& live;
+    PoseMotion operator()(const RotationMotion& x) const { return rotation_path(x).pose; }
+    PoseMotion operator()(const PosesMotion& x) const { return poses_path(x).pose; }
+    PoseMotion operator()(const nb::object& x) const {
+      if (PyCallable_Check(x.ptr()) == 0) {
+        throw nb::type_error(
+            ("motion = " + nb::cast<std::string>(nb::repr(x)) +
+             " is neither a RotationMotion nor a PosesMotion nor a function of time [s] that gives a Pose")
+                .c_str());
+      }
+      return Callback<Pose>(x, live.functions);
+    }
+  } read{live};
+  const std::vector<std::uint32_t> set = chosen(live, vertices);
+  return live.get().drive_rigidly(set, std::visit(read, motion), axes_of(axes), from.value_or(0.0));
+}
+
+void add_surface_load(Live& live, const VertexChoice& vertices, const SurfaceLoad& load, const nb::object& scale) {
+  std::function<double(double)> grows;
+  if (!scale.is_none()) grows = Callback<double>(scale, live.functions);
+  live.get().add_surface_load(chosen(live, vertices), load, std::move(grows));
 }
 
 void add_load(Live& live, const VertexChoice& vertices, const Vec3d& force, const nb::object& scale) {
@@ -244,6 +272,16 @@ void bind_setting_up(nb::class_<Live>& c) {
           nb::sig("def add_load(self, vertices: str | numpy.typing.ArrayLike, force: collections.abc.Sequence[float] | "
                   "numpy.typing.NDArray[typing.Any], scale: collections.abc.Callable[[float], float] | None = None) -> "
                   "None"))
+      .def("drive_rigidly", drive_rigidly, "vertices"_a, "motion"_a, "axes"_a = "xyz", "from_time"_a = nb::none(),
+           doc(of("drive_rigidly")),
+           nb::sig(
+               "def drive_rigidly(self, vertices: str | numpy.typing.ArrayLike, motion: RotationMotion | PosesMotion | "
+               "collections.abc.Callable[[float], Pose], axes: str = 'xyz', from_time: float | None = None) -> "
+               "Constraint"))
+      .def("add_surface_load", add_surface_load, "vertices"_a, "load"_a, "scale"_a = nb::none(),
+           doc(of("add_surface_load")),
+           nb::sig("def add_surface_load(self, vertices: str | numpy.typing.ArrayLike, load: SurfaceLoad, scale: "
+                   "collections.abc.Callable[[float], float] | None = None) -> None"))
       .def("attach", &Live::attach, "interaction"_a, nb::keep_alive<1, 2>(), doc(of("attach")))
       .def(
           "remove_tets",
@@ -335,6 +373,9 @@ void bind_reading(nb::class_<Live>& c) {
            nb::sig("def tet_fields(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]"))
       .def(
           "force", [](const Live& l, ConstraintId id) { return l.get().force(id); }, "constraint"_a, doc(of("force")))
+      .def(
+          "torque", [](const Live& l, ConstraintId id, const Vec3d& about) { return l.get().torque(id, about); },
+          "constraint"_a, "about"_a, doc(of("torque")))
       .def_prop_ro("constraints", constraints_of, "Of a scene's variant: its supports by name",
                    nb::sig("def constraints(self) -> dict[str, Constraint]"))
       .def_prop_ro(
@@ -408,6 +449,7 @@ void bind_simulation(nb::module_& m) {
   bind_readings(m);
   nb::exception<StepError>(m, "StepError", PyExc_RuntimeError);
   Options<PressMotion>(m, "PressMotion");
+  Options<SurfaceLoad>(m, "SurfaceLoad");
   m.def("press_depth", &press_depth, "motion"_a, "time"_a, doc("press_depth"));
   m.def("press_end", &press_end, "motion"_a, doc("press_end"));
   static PyType_Slot slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(visit_functions)},

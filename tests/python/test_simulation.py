@@ -38,6 +38,40 @@ def test_forces_add_up():
     assert np.allclose(force.total + body.force(held).total, 0, atol=1e-7)
 
 
+def test_loads_on_faces():
+    """A bar under traction has the stress of it; what spans no face is refused."""
+    body = glisson.Simulation(glisson.box_mesh(), glisson.Tissue(), glisson.SimulationOptions(integrator="quasi_static"))
+    body.fix("z_min", axes="z"), body.fix("x_min", axes="x"), body.fix("y_min", axes="y")
+    body.add_surface_load("z_max", glisson.SurfaceLoad(traction=[0, 0, 10]), lambda t: min(1.0, t / 0.01))
+    body.advance(0.1)
+    piola = body.tet_fields()["piola"]
+    assert np.allclose(piola[:, 2, 2], 10, rtol=1e-8) and np.allclose(piola[:, 0, 0], 0, atol=1e-7)
+    with pytest.raises(ValueError, match="spans no face"):
+        body.add_surface_load([212], glisson.SurfaceLoad(pressure=1))
+
+
+def test_turns_a_set():
+    """A rotation turns a set as a rigid body; a function of time that gives poses does the same."""
+    turn = glisson.RotationMotion(axis=[0, 0, 1], angle_deg=20, rate_deg_s=100)
+
+    def pose(time):
+        a = glisson.rotation_angle(turn, time)
+        return glisson.Pose(axes=[[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]])
+
+    torques = []
+    for motion in (turn, pose):
+        tissue = glisson.Tissue(kinematics="corotational")  # small strain does not balance moments about present places
+        body = glisson.Simulation(glisson.box_mesh(), tissue, glisson.SimulationOptions(integrator="quasi_static"))
+        foot = body.fix("z_min")
+        head = body.drive_rigidly("z_max", motion)
+        body.advance(0.2)
+        torques.append(body.torque(head, [0, 0, 0])[2])
+        assert torques[-1] > 0 and body.torque(foot, [0, 0, 0])[2] == pytest.approx(-torques[-1], rel=1e-5)
+    assert torques[0] == pytest.approx(torques[1], rel=1e-9)
+    with pytest.raises(ValueError, match="axis"):
+        body.drive_rigidly([0], glisson.RotationMotion())
+
+
 def test_energy_identity():
     """kinetic + elastic + dissipated = work, to the rounding of a float's element forces."""
     body, _, _ = pressed()
