@@ -12,6 +12,7 @@
 #include "glisson/io.h"
 #include "glisson/scene/scene.h"
 #include "glisson/scene/tissue_presets.h"
+#include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 #include "support/must_step.h"
 #include "support/places.h"
@@ -69,7 +70,7 @@ class Files : public testing::Test {
 TEST(SideBySide, ColumnStandsInThisFile) {
   const std::string here = text_of(test::shipped("tests/guide/side_by_side_test.cpp"));
   const std::vector<std::string> snippets = cpp_column();
-  EXPECT_EQ(snippets.size(), 12U);
+  EXPECT_EQ(snippets.size(), 13U);
   for (const std::string& snippet : snippets) EXPECT_NE(here.find(snippet), std::string::npos) << snippet;
 }
 
@@ -93,6 +94,9 @@ TEST_F(SideBySideRuns, BuildsAndSteps) {
   for (int i = 0; i < 20; ++i) test::must_step(simulation);
   EXPECT_TRUE(simulation.step().made());
   EXPECT_LT(simulation.force(tool).total().z, 0.0);
+  const Vec3d x{0.01, 0.01, 0.05};
+  const std::vector<double> read = Probes(simulation, {{"tip", ProbePoint{x}}}).read(simulation);
+  EXPECT_LT(read.at(2), 0.0);  // tip_displacement_z_m, under a press from above
   tissue.youngs_modulus = 7200;
   simulation.set_tissue(0, tissue);
   EXPECT_EQ(simulation.tissue(0).youngs_modulus, 7200.0);
