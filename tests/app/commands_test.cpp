@@ -206,8 +206,8 @@ set = "z_min"
                         "[[instrument]]\nname = \"ball\"\nkind = \"ball\"\nradius_mm = 12\ntip_m = [0.04, 0.04, "
                         "0.0601]\nmotion = { kind = \"press\", depth_mm = 1 }\n";
   const std::string text = said(pad, "motion.max_steps=9");
-  EXPECT_NE(text.find("ν = 0.45 with volume_change = \"own\""), std::string::npos) << text;
-  EXPECT_NE(text.find("tissue.volume_change = \"nodal\" mends it"), std::string::npos) << text;
+  EXPECT_NE(text.find("ν = 0.45 with volume_change = \"element\""), std::string::npos) << text;
+  EXPECT_NE(text.find("tissue.volume_change = \"average_nodal\" mends it"), std::string::npos) << text;
   EXPECT_NE(text.find("\"pad\" acts on 2 faces with edges of 11.4 mm, 1 of its 11.3 mm"), std::string::npos) << text;
   EXPECT_NE(text.find("take mesh.cells = [25, 25, 19]"), std::string::npos) << text;
   EXPECT_NE(said(ball, "motion.max_steps=9").find("\"ball\" acts on "), std::string::npos);

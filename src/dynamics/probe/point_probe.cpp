@@ -15,11 +15,7 @@ class PointReader : public ProbeReader {
   explicit PointReader(const ProbePoint& point) : point_(point) {}
 
   std::vector<std::string> columns() const override {
-    std::vector<std::string> names;
-    add_vector_columns(names, "displacement", "m");
-    add_vector_columns(names, "velocity", "m_s");
-    const std::vector<std::string> state = state_columns();
-    names.insert(names.end(), state.begin(), state.end());
+    std::vector<std::string> names = material_columns();
     names.emplace_back("volume_ratio");
     return names;
   }

@@ -59,8 +59,10 @@ std::vector<double> mean_state(const Simulation& simulation, const TetFields& fi
   return row;
 }
 
-std::vector<std::string> state_columns() {
+std::vector<std::string> material_columns() {
   std::vector<std::string> columns;
+  add_vector_columns(columns, "displacement", "m");
+  add_vector_columns(columns, "velocity", "m_s");
   for (const char* ij : kSymmetric) columns.push_back(std::string("stress_") + ij + "_Pa");
   for (const char* ij : kSymmetric) columns.push_back(std::string("strain_") + ij);
   columns.insert(columns.end(), {"pressure_Pa", "von_mises_Pa"});
@@ -68,7 +70,7 @@ std::vector<std::string> state_columns() {
 }
 
 void add_vector_columns(std::vector<std::string>& columns, const std::string& what, const std::string& unit) {
-  for (const char* axis : {"_x_", "_y_", "_z_"}) columns.push_back(what + axis + unit);
+  for (const char* axis : {"_x_", "_y_", "_z_"}) columns.push_back(std::string(what).append(axis).append(unit));
 }
 
 void add_vector(std::vector<double>& row, const Vec3d& v) { row.insert(row.end(), {v.x, v.y, v.z}); }

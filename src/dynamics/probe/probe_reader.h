@@ -57,8 +57,8 @@ Vec3d corner_force(const TetMesh& mesh, const TetFields& fields, std::size_t fie
 /// of the mean. @param volumes  weights of the tets, not all 0
 std::vector<double> mean_state(const Simulation& simulation, const TetFields& fields, std::size_t first,
                                std::span<const std::uint32_t> tets, std::span<const double> volumes);
-/// stress_xx_Pa … von_mises_Pa, as mean_state has them.
-std::vector<std::string> state_columns();
+/// Displacement, velocity, and stress_xx_Pa … von_mises_Pa as mean_state has them.
+std::vector<std::string> material_columns();
 /// `what_x_unit`, `what_y_unit`, `what_z_unit`.
 void add_vector_columns(std::vector<std::string>& columns, const std::string& what, const std::string& unit);
 void add_vector(std::vector<double>& row, const Vec3d& v);

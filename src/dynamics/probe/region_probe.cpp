@@ -12,11 +12,7 @@ class RegionReader : public ProbeReader {
   explicit RegionReader(std::vector<std::uint32_t> tets) : all_(std::move(tets)) {}
 
   std::vector<std::string> columns() const override {
-    std::vector<std::string> names;
-    add_vector_columns(names, "displacement", "m");
-    add_vector_columns(names, "velocity", "m_s");
-    const std::vector<std::string> state = state_columns();
-    names.insert(names.end(), state.begin(), state.end());
+    std::vector<std::string> names = material_columns();
     names.emplace_back("volume_m3");
     return names;
   }
