@@ -167,8 +167,8 @@ constexpr double kLocking = 0.45;  // Poisson's ratio from which linear tets loc
 void print_locking(const std::string& table, const Tissue& t) {
   const double nu = t.lame().lambda / (2.0 * (t.lame().lambda + t.lame().mu));
   if (nu < kLocking - 1e-9 || t.volume_change == VolumeChange::average_nodal) return;
-  say("  locking  ν = {:.3g} with volume_change = \"element\": tets that keep their own volumes are too stiff;\n           "
-      "{}.volume_change = \"average_nodal\" mends it\n",
+  say("  locking  ν = {:.3g} with volume_change = \"element\": tets that keep their own volumes are too stiff;\n"
+      "           {}.volume_change = \"average_nodal\" mends it\n",
       nu, table);
 }
 
