@@ -14,6 +14,7 @@
 #include "glisson/instruments/needle.h"
 #include "glisson/instruments/rigid_motion.h"
 #include "glisson/instruments/tool_motion.h"
+#include "glisson/material_point.h"
 #include "glisson/math.h"
 #include "glisson/mesh.h"
 #include "glisson/mesh_refinement.h"
