@@ -157,7 +157,15 @@ int run(const FitCommand& command) {
     prepare();
     write_fit_state(state, fingerprint, memory);
   };
-  const FitResult result = run_fit(spec, options);
+  FitResult result;
+  try {
+    result = run_fit(spec, options);
+  } catch (const std::runtime_error& error) {
+    if (!interrupted()) throw;
+    progress.clear();
+    tell("glisson: {}\n", error.what());
+    return kInterrupted;
+  }
   progress.clear();
   prepare();
   write_whole(folder / "fit.toml", spec.source);
@@ -168,7 +176,10 @@ int run(const FitCommand& command) {
   say("{}{}\n", command.quiet ? "" : "report: ", (folder / "report.html").string());
   if (!result.complete) {
     std::fflush(stdout);
-    tell("glisson: interrupted; the same command resumes\n");
+    const bool resumes = fs::exists(state);
+    tell("glisson: interrupted; {}\n", resumes ? "the same command resumes"
+                                               : "the results are those of the runs that were done; the same command "
+                                                 "starts again");
     return kInterrupted;
   }
   return kDone;

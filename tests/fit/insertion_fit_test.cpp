@@ -87,7 +87,7 @@ TEST(InsertionFit, FindsTheMembranesOfItsOwnCurve) {
   const std::filesystem::path scene = folder.write("scene.toml", kScene);
   const std::atomic<bool> never{false};
   const InsertionScene insertion(load_scene(scene).variants.front(), from_three(), {});
-  folder.write("curve.csv", curve_text(insertion.run(kTruth, never)));
+  folder.write("curve.csv", curve_text(insertion.run(kTruth, never).value()));
   const FitResult result = run_fit(folder.write("fit.toml", kFit));
   EXPECT_LT(result.rms_fit, 0.02);
   const auto value = [&](const std::string& name) {
@@ -108,6 +108,30 @@ TEST(InsertionFit, FindsTheMembranesOfItsOwnCurve) {
   const Scene with = parse_scene(text, "s.toml", {});
   const auto& needle = std::get<NeedleOptions>(with.variants.front().instruments.front().what);
   EXPECT_NEAR(needle.membranes.at(0).depth, 4e-3, 2e-4);
+}
+
+// A search that is stopped keeps the nearest run so far and says that it is not complete; before the second run there is nothing to keep.
+TEST(InsertionFit, KeepsWhatIsKnownWhenItIsStopped) {
+  const Folder folder("insertion_stop");
+  const std::filesystem::path scene = folder.write("scene.toml", kScene);
+  const std::atomic<bool> never{false};
+  const InsertionScene insertion(load_scene(scene).variants.front(), from_three(), {});
+  folder.write("curve.csv", curve_text(insertion.run(kTruth, never).value()));
+  std::atomic<bool> stop{true};
+  FitRun options;
+  options.stop = &stop;
+  const std::filesystem::path fit = folder.write("fit.toml", kFit);
+  EXPECT_THROW(run_fit(fit, options), std::runtime_error);
+  const auto stopped_after = [&](std::size_t runs) {
+    stop = false;
+    options.progress = [&stop, runs](const FitProgress& p) { stop = p.done == runs; };
+    return run_fit(fit, options);
+  };
+  EXPECT_THROW(stopped_after(1), std::runtime_error);  // without membranes
+  const FitResult two = stopped_after(2), four = stopped_after(4);
+  EXPECT_FALSE(two.complete);
+  EXPECT_FALSE(two.parameters.empty());
+  EXPECT_LT(four.rms_fit, 0.5 * two.rms_fit);
 }
 
 // A drop is a fall by the stated force within the stated way; it begins at the highest point, in whatever order the points come.

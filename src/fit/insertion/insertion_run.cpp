@@ -75,7 +75,7 @@ double InsertionScene::speed() const {
   return press->velocity;
 }
 
-InsertionRun InsertionScene::run(const TipProfile& profile, const std::atomic<bool>& stop) const {
+std::optional<InsertionRun> InsertionScene::run(const TipProfile& profile, const std::atomic<bool>& stop) const {
   Variant v = variant_;
   auto& options = std::get<NeedleOptions>(v.instruments[index_].what);
   options.tip.cutting = profile.cutting;
@@ -84,6 +84,7 @@ InsertionRun InsertionScene::run(const TipProfile& profile, const std::atomic<bo
   run.puncture = std::numeric_limits<double>::infinity();
   InsertionRecorder recorder(run, v.tools.size() + index_, v.instruments[index_].name, start_);
   const RunSummary summary = run_variant(v, load_, recorder, stop);
+  if (summary.end == RunSummary::End::interrupted) return std::nullopt;
   if (summary.end != RunSummary::End::finished)
     throw std::runtime_error("a run of the needle stopped at " + std::to_string(summary.time_s) +
                              " s: " + summary.trouble);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <vector>
 
 #include "fit/insertion/measured_insertion.h"
@@ -34,8 +35,8 @@ class InsertionScene {
 
   const NeedleOptions& needle() const { return std::get<NeedleOptions>(variant_.instruments[index_].what); }
   double speed() const;  ///< of the insertion [m/s]
-  /// @throws std::runtime_error where the run does not come to its end
-  InsertionRun run(const TipProfile& profile, const std::atomic<bool>& stop) const;
+  /// None where `stop` ended it. @throws std::runtime_error where the run does not come to its end by itself
+  std::optional<InsertionRun> run(const TipProfile& profile, const std::atomic<bool>& stop) const;
 
  private:
   Variant variant_;

@@ -7,6 +7,8 @@
 namespace glisson::fit {
 namespace {
 
+constexpr const char* kTooEarly =
+    "interrupted before two runs of the needle were done: nothing is known of its membranes";
 constexpr double kNearer = 0.98;  ///< of the least rms so far: a run that comes nearer
 constexpr int kMostInVain = 3;
 constexpr double kShare = 0.8;  ///< of a force that is missing: the next run's rise is not quite this one's, moved
@@ -152,7 +154,9 @@ double rms_between(const MembraneFit& fit, const MeasuredInsertion& measured, do
 
 MembraneFit fit_membranes(const MeasuredInsertion& measured, const InsertionSpec& spec, const InsertionScene& scene,
                           const std::atomic<bool>& stop, const std::function<void(int, double)>& progress) {
-  const InsertionRun bare = scene.run({scene.needle().tip.cutting, {}}, stop);
+  const std::optional<InsertionRun> first = scene.run({scene.needle().tip.cutting, {}}, stop);
+  if (!first) throw std::runtime_error(kTooEarly);
+  const InsertionRun& bare = *first;
   if (!std::isfinite(bare.puncture)) throw std::runtime_error("the needle does not pierce the surface in this scene");
   const std::vector<double> grid = measured.grid(spec, bare.curve.position.back());
   MembraneFit best{{}, {}, bare, grid, std::numeric_limits<double>::infinity(), rms_of(bare, measured.curve, grid), 1};
@@ -162,13 +166,15 @@ MembraneFit fit_membranes(const MeasuredInsertion& measured, const InsertionSpec
   int in_vain = 0;  // runs that did not come nearer
   while (best.runs < spec.runs && in_vain < kMostInVain && !stop) {
     const TipProfile profile = profile_of(search.stations());
-    const InsertionRun run = scene.run(profile, stop);
-    const double rms = rms_of(run, measured.curve, grid);
+    const std::optional<InsertionRun> run = scene.run(profile, stop);
+    if (!run) break;
+    const double rms = rms_of(*run, measured.curve, grid);
     progress(++best.runs, rms);
     in_vain = rms < kNearer * best.rms ? 0 : in_vain + 1;
-    if (rms < best.rms) best = {search.stations(), profile, run, grid, rms, best.rms_before, best.runs};
-    search.correct(run, grid);
+    if (rms < best.rms) best = {search.stations(), profile, *run, grid, rms, best.rms_before, best.runs};
+    search.correct(*run, grid);
   }
+  if (best.stations.empty()) throw std::runtime_error(kTooEarly);
   return best;
 }
 

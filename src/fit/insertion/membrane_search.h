@@ -19,8 +19,8 @@ struct MembraneFit {
 
 /// The first run is without membranes. From it and the drops come first places and strengths: the force before a drop, less
 /// the friction of the shaft. Each further run corrects them by how far its own drops are from their aims, in position and
-/// force; the nearest run is kept.
-/// @throws std::runtime_error where a run does not come to its end, or the surface holds
+/// force; the nearest run is kept, also where `stop` ends the search early.
+/// @throws std::runtime_error where a run does not come to its end, the surface holds, or `stop` ends it before the second run is done
 MembraneFit fit_membranes(const MeasuredInsertion& measured, const InsertionSpec& spec, const InsertionScene& scene,
                           const std::atomic<bool>& stop, const std::function<void(int run, double rms)>& progress);
 

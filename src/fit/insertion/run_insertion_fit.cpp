@@ -34,6 +34,7 @@ FitResult run_insertion_fit(const FitSpec& spec, const FitRun& options) {
   const MembraneFit fit = fit_membranes(measured, insertion, scene, options.stop ? *options.stop : never, progress);
   FitResult result;
   fill_result(fit, measured, insertion, scene.speed(), result);
+  result.complete = options.stop == nullptr || !*options.stop;
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   result.forward_run_s = result.wall_s / fit.runs;
   return result;
