@@ -18,6 +18,7 @@ void add_reproduce(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);
 void add_laws(CLI::App& program, Action& action);
 void add_tissues(CLI::App& program, Action& action);
+void add_material(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
 void add_view(CLI::App& program, Action& action);
 void add_fit(CLI::App& program, Action& action);

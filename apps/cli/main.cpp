@@ -90,6 +90,7 @@ int run_program(int argc, char** argv) {
   add_schema(program, action);
   add_laws(program, action);
   add_tissues(program, action);
+  add_material(program, action);
   add_fit(program, action);
   add_view(program, action);
   add_bench(program, action);

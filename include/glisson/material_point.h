@@ -103,8 +103,8 @@ MaterialTargets test_targets(MaterialTest test, MaterialControl control, double 
 /// @param between  steps from one time to the next, ≥ 1: more of them for a tissue with viscosity or branches
 /// @return one state a time; the last is not converged where the test ends early
 /// @throws std::invalid_argument as MaterialPoint, and for lists of unequal lengths or times that do not ascend
-std::vector<MaterialState> run_test(const Tissue& tissue, MaterialTest test, MaterialControl control,
-                                    std::span<const double> times, std::span<const double> values,
-                                    std::size_t between = 1);
+std::vector<MaterialState> material_test(const Tissue& tissue, MaterialTest test, MaterialControl control,
+                                         std::span<const double> times, std::span<const double> values,
+                                         std::size_t between = 1);
 
 }  // namespace glisson

@@ -26,8 +26,8 @@ from .paper_figures import figures
 from .running import run, simulation
 from .scenes import load_scene, parse_scene, scenes_folder, to_toml
 from .sweeping import SweepError, sweep
-from .tissues import tabulated, tissue_from
+from .tissues import MaterialCurve, material_test, tabulated, tissue_from
 
 __version__ = VERSION
-_INNER = {"annotations", "read_scene", "read_scene_text", "run_variant"}  # what load_scene, parse_scene and run are made of
+_INNER = {"annotations", "read_scene", "read_scene_text", "run_material_test", "run_variant"}  # what the functions above are made of
 __all__ = [name for name in dir() if not name.startswith("_") and name not in _INNER]

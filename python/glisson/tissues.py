@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Literal
 
 import numpy as np
 
-from ._core import TableLaw, Tissue
+from ._core import TableLaw, Tissue, run_material_test
 from .scenes import parse_scene, to_toml
 
 
@@ -41,3 +43,51 @@ def tabulated(
     """
     at = np.linspace(0.0, until, points) if arguments is None else np.asarray(arguments, dtype=float)
     return TableLaw(arguments=at.tolist(), moduli=[float(law(float(x))) for x in at])
+
+
+@dataclass(frozen=True)
+class MaterialCurve:
+    """What a homogeneous test of a tissue measures, a row a time."""
+
+    time: np.ndarray  #: [s], (n,)
+    deformation: np.ndarray  #: F [-], (n, 3, 3)
+    nominal: np.ndarray  #: P, force over area at rest [Pa], (n, 3, 3)
+    cauchy: np.ndarray  #: σ = P Fᵀ/J [Pa], (n, 3, 3)
+
+
+def material_test(
+    tissue: Tissue,
+    test: Literal["uniaxial", "equibiaxial", "planar", "simple_shear", "volumetric"],
+    times: Any,
+    *,
+    stretch: Any = None,
+    stress: Any = None,
+    between: int = 1,
+) -> MaterialCurve:
+    """A homogeneous specimen of a tissue, driven by stretch or by stress; z is its axis.
+
+    uniaxial: z is driven, the sides are free; equibiaxial: x and y, z is free; planar: z, y is held, x is free; simple_shear: x
+    moves with z, by the amount given as `stretch`; volumetric: all three axes alike. Between two times the driven value changes
+    linearly; a first time of 0 applies the first value at once. A test that ends early keeps what it has, and a RuntimeWarning says
+    why.
+
+    :param times: [s], ascending
+    :param stretch: the driven stretch [-], one a time; of simple_shear its amount
+    :param stress: the driven nominal stress [Pa] in its place: a creep test
+    :param between: steps from one time to the next; more of them for a tissue with viscosity or branches
+    :raises ValueError: naming the argument, its value and the allowed range
+
+    >>> curve = material_test(Tissue(youngs_modulus=3600), "uniaxial", [1, 2], stretch=[1.1, 1.2])
+    >>> curve.nominal[:, 2, 2].round(6).tolist()
+    [360.0, 720.0]
+    """
+    driven = {
+        name: np.asarray(values, dtype=float).ravel().tolist()
+        for name, values in (("stretch", stretch), ("stress", stress))
+        if values is not None
+    }
+    states = run_material_test(tissue, test, np.asarray(times, dtype=float).ravel().tolist(), between=between, **driven)
+    if not states[-1].converged:
+        warnings.warn(states.pop().message, RuntimeWarning, stacklevel=2)
+    rows = {name: np.array([getattr(s, name) for s in states]).reshape(-1, 3, 3) for name in ("deformation", "nominal", "cauchy")}
+    return MaterialCurve(time=np.array([s.time for s in states]), **rows)

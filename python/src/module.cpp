@@ -10,6 +10,7 @@ NB_MODULE(_core, m) {
   m.doc() = "The engine of glisson; import glisson instead.";
   py::bind_meshes(m);
   py::bind_tissues(m);
+  py::bind_material_point(m);
   py::bind_instruments(m);
   py::bind_own_driver(m);
   py::bind_own_interaction(m);

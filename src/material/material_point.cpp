@@ -291,9 +291,9 @@ MaterialTargets test_targets(MaterialTest test, MaterialControl control, double 
   return t;
 }
 
-std::vector<MaterialState> run_test(const Tissue& tissue, MaterialTest test, MaterialControl control,
-                                    std::span<const double> times, std::span<const double> values,
-                                    std::size_t between) {
+std::vector<MaterialState> material_test(const Tissue& tissue, MaterialTest test, MaterialControl control,
+                                         std::span<const double> times, std::span<const double> values,
+                                         std::size_t between) {
   const auto fail = [](const std::string& why) { throw std::invalid_argument("material test: " + why); };
   if (times.empty() || times.size() != values.size()) {
     fail(std::to_string(times.size()) + " times and " + std::to_string(values.size()) +

@@ -28,7 +28,8 @@ TEST_F(Commands, CheckNamesInstrumentsByTheirKind) {
 
 // Every subcommand explains itself with examples.
 TEST_F(Commands, HelpHasExamples) {
-  for (const std::string command : {"run", "check", "converge", "info", "reproduce", "schema", "laws", "tissues"}) {
+  for (const std::string command :
+       {"run", "check", "converge", "info", "reproduce", "schema", "laws", "tissues", "material"}) {
     const Outcome outcome = run({command, "--help"});
     EXPECT_THAT(outcome, Exits(0)) << command;
     EXPECT_NE(outcome.out.find("Examples:\n  glisson " + command), std::string::npos) << outcome.out;
@@ -47,6 +48,33 @@ TEST_F(Commands, SchemaAndLawsDescribeScenes) {
   for (const char* law : {"constant", "step", "linear", "polynomial", "exponential", "table", "threshold"}) {
     EXPECT_NE(laws.find(law), std::string::npos) << law;
   }
+}
+
+// material: simple shear of a neo-Hookean tissue is μ γ, in the table, in JSON and in the file; a stress that no stretch carries ends
+// with what was computed.
+TEST_F(Commands, MaterialGivesTheCurveOfATissue) {
+  const std::string tissue = write(
+      "tissue.toml", "[tissue]\nhyperelastic = { kind = \"neo_hookean\", mu_Pa = 1000, bulk_modulus_Pa = 1e5 }\n");
+  const std::vector<std::string> shear{"material", tissue, "--test", "simple_shear", "--to", "0.5", "--points", "2"};
+  const Outcome text = run(shear);
+  EXPECT_THAT(text, Exits(0)) << text.err;
+  EXPECT_NE(text.out.find("nominal_stress [Pa]"), std::string::npos) << text.out;
+  std::vector<std::string> more = shear;
+  more.insert(more.end(), {"--json", "--csv", "curve.csv"});
+  const nlohmann::json json = nlohmann::json::parse(run(more).out);
+  EXPECT_NEAR(json["columns"]["nominal_stress_Pa"][1].get<double>(), 500.0, 1e-7);
+  EXPECT_EQ(read_text(folder_ / "curve.csv").substr(0, 30), "time_s,shear,nominal_stress_Pa");
+
+  const std::string green = write("green.toml", "[tissue]\nyoungs_modulus_Pa = 3600\nkinematics = \"green\"\n");
+  const Outcome stopped = run({"material", green, "--stress", "--to=-1200", "--points", "4"});
+  EXPECT_THAT(stopped, Exits(1));
+  EXPECT_NE(stopped.err.find("no deformation carries the prescribed stress"), std::string::npos) << stopped.err;
+  EXPECT_NE(stopped.out.find("-600"), std::string::npos) << stopped.out;
+
+  EXPECT_THAT(run({"material", "nothing"}), Exits(2));
+  EXPECT_NE(run({"material", green, "--test", "shear"}).err.find("allowed: uniaxial, equibiaxial"), std::string::npos);
+  EXPECT_NE(run({"material", green, "--to=-1"}).err.find("a stretch is above 0"), std::string::npos);
+  EXPECT_NE(run({"material", "nothing.toml"}).err.find("there is no such file"), std::string::npos);
 }
 
 // info prints the same figures as text and as JSON; --scale acts on them.

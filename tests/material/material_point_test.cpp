@@ -81,7 +81,7 @@ Tissue of_law(HyperelasticLaw law, double bulk) {
 
 MaterialState after(const Tissue& tissue, MaterialTest test, MaterialControl control, double value) {
   const double time = 1.0;
-  const MaterialState state = run_test(tissue, test, control, {&time, 1}, {&value, 1}).front();
+  const MaterialState state = material_test(tissue, test, control, {&time, 1}, {&value, 1}).front();
   EXPECT_TRUE(state.converged) << tissue.name << ": " << state.message;
   return state;
 }
@@ -226,7 +226,8 @@ Tissue relaxing(double share, double time) {
 TEST(MaterialPoint, RelaxesAsItsBranches) {
   const double g = 0.6, tau = 2.0, strain = 0.1;
   const std::vector<double> times{0.0, 0.5, 1.0, 4.0, 40.0}, stretch(times.size(), 1.0 + strain);
-  const std::vector<MaterialState> held = run_test(relaxing(g, tau), MaterialTest::uniaxial, kStretch, times, stretch);
+  const std::vector<MaterialState> held =
+      material_test(relaxing(g, tau), MaterialTest::uniaxial, kStretch, times, stretch);
   ASSERT_EQ(held.size(), times.size());
   for (std::size_t k = 0; k < times.size(); ++k) {
     const double exact = 3600.0 * strain * (1.0 - g * -std::expm1(-times[k] / tau));
@@ -241,7 +242,7 @@ TEST(MaterialPoint, CreepIsTheInverseOfRelaxation) {
   const std::vector<double> times{0.0, 1.0, 3.0, 10.0}, values(times.size(), stress);
   const auto worst = [&](std::size_t between) {
     const std::vector<MaterialState> creep =
-        run_test(relaxing(g, tau), MaterialTest::uniaxial, kStress, times, values, between);
+        material_test(relaxing(g, tau), MaterialTest::uniaxial, kStress, times, values, between);
     double most = 0.0;
     for (std::size_t k = 1; k < times.size(); ++k) {
       const double exact = stress / 3600.0 * (1.0 + g / (1.0 - g) * -std::expm1(-times[k] * (1.0 - g) / tau));
@@ -261,7 +262,7 @@ TEST(MaterialPoint, KelvinVoigtCreeps) {
   const std::vector<double> times{0.0, 0.2, 0.6, 2.0}, values(times.size(), stress);
   const auto worst = [&](std::size_t between) {
     const std::vector<MaterialState> creep =
-        run_test(tissue, MaterialTest::simple_shear, kStress, times, values, between);
+        material_test(tissue, MaterialTest::simple_shear, kStress, times, values, between);
     double most = 0.0;
     for (std::size_t k = 1; k < times.size(); ++k) {
       const double exact = stress / mu * -std::expm1(-mu * times[k] / tissue.viscosity);
@@ -348,10 +349,10 @@ TEST(MaterialPoint, RefusesBadInput) {
   gone(1, 1).value = 0.0;
   EXPECT_NE(message([&] { point.advance(1.0, gone); }).find("F_yy = 0"), std::string::npos);
   const std::vector<double> back{1.0, 0.5}, two{1.1, 1.2};
-  EXPECT_NE(message([&] { run_test(Tissue{}, MaterialTest::uniaxial, kStretch, back, two); }).find("time 2"),
+  EXPECT_NE(message([&] { material_test(Tissue{}, MaterialTest::uniaxial, kStretch, back, two); }).find("time 2"),
             std::string::npos);
   EXPECT_NE(message([&] {
-              run_test(Tissue{}, MaterialTest::uniaxial, kStretch, {&two[0], 1}, two);
+              material_test(Tissue{}, MaterialTest::uniaxial, kStretch, {&two[0], 1}, two);
             }).find("1 times and 2"),
             std::string::npos);
 
@@ -359,7 +360,7 @@ TEST(MaterialPoint, RefusesBadInput) {
   Tissue green;
   green.kinematics = Kinematics::green;
   const std::vector<double> times{1.0, 2.0}, load{-500.0, -1200.0};
-  const std::vector<MaterialState> states = run_test(green, MaterialTest::uniaxial, kStress, times, load);
+  const std::vector<MaterialState> states = material_test(green, MaterialTest::uniaxial, kStress, times, load);
   ASSERT_EQ(states.size(), 2U);
   EXPECT_TRUE(states[0].converged);
   EXPECT_FALSE(states[1].converged);

@@ -146,3 +146,39 @@ def test_branches_and_fibres():
     """Lists of branches and fibres are taken as they are given."""
     tissue = glisson.Tissue(maxwell=[glisson.MaxwellBranch(share=0.3, time=2)], fibres=glisson.Fibres(stiffness=1e3))
     assert tissue.maxwell[0].time == 2 and tissue.fibres.direction.tolist() == [0, 0, 1]
+
+
+def test_material_point_is_the_closed_form():
+    """Simple shear of neo-Hooke is μ γ, and its stress leads back to the shear."""
+    law = glisson.NeoHookean(mu=1000, bulk_modulus=1e5)
+    tissue, amount, times = glisson.Tissue(hyperelastic=law), np.linspace(0.1, 1, 10), np.arange(1, 11)
+    curve = glisson.material_test(tissue, "simple_shear", times, stretch=amount)
+    np.testing.assert_allclose(curve.nominal[:, 0, 2], 1000 * amount, rtol=1e-10)
+    np.testing.assert_allclose(curve.time, times)
+    back = glisson.material_test(tissue, "simple_shear", times, stress=curve.nominal[:, 0, 2])
+    np.testing.assert_allclose(back.deformation[:, 0, 2], amount, rtol=1e-10)
+
+
+def test_material_point_step_by_step():
+    """A point keeps its history: held at a stretch, its branches relax."""
+    tissue = glisson.Tissue(maxwell=[glisson.MaxwellBranch(share=0.5, time=1)], maxwell_part="all")
+    point = glisson.MaterialPoint(tissue)
+    free = {"xx": 0, "yy": 0}
+    first = point.advance(1e-6, {"zz": 1.1}, stress=free).nominal[2, 2]
+    last = point.advance(100, {"zz": 1.1}, stress=free)
+    assert first == pytest.approx(360, rel=1e-5) and last.nominal[2, 2] == pytest.approx(180, rel=1e-5)
+    assert last.converged and last.deformation[0, 0] == pytest.approx(0.96)
+
+
+def test_material_point_refuses_bad_input():
+    """Bad input is refused by name; a stress that nothing carries warns and keeps what was computed."""
+    point = glisson.MaterialPoint(glisson.Tissue())
+    with pytest.raises(ValueError, match='"zw" is no component'):
+        point.advance(1.0, {"zw": 1.0})
+    with pytest.raises(ValueError, match="give one of the two"):
+        glisson.material_test(glisson.Tissue(), "uniaxial", [1])
+    with pytest.raises(ValueError, match="time 2"):
+        glisson.material_test(glisson.Tissue(), "uniaxial", [1, 0.5], stretch=[1.1, 1.2])
+    with pytest.warns(RuntimeWarning, match="no deformation carries"):
+        curve = glisson.material_test(glisson.Tissue(kinematics="green"), "uniaxial", [1, 2], stress=[-500, -1200])
+    assert curve.time.tolist() == [1.0]
