@@ -10,6 +10,7 @@
 #include "glisson/instruments/needle.h"
 #include "glisson/instruments/tool_motion.h"
 #include "glisson/io.h"
+#include "glisson/material_point.h"
 #include "glisson/scene/scene.h"
 #include "glisson/scene/tissue_presets.h"
 #include "glisson/simulation/probe.h"
@@ -70,7 +71,7 @@ class Files : public testing::Test {
 TEST(SideBySide, ColumnStandsInThisFile) {
   const std::string here = text_of(test::shipped("tests/guide/side_by_side_test.cpp"));
   const std::vector<std::string> snippets = cpp_column();
-  EXPECT_EQ(snippets.size(), 13U);
+  EXPECT_EQ(snippets.size(), 14U);
   for (const std::string& snippet : snippets) EXPECT_NE(here.find(snippet), std::string::npos) << snippet;
 }
 
@@ -83,6 +84,12 @@ TEST_F(SideBySideRuns, BuildsAndSteps) {
   Tissue tissue = Tissue{.youngs_modulus = 3600, .law = LinearLaw{18000}};
   EXPECT_EQ(lame_at(tissue, 0.1).mu, lame_from_young(5400, 0.4).mu);
   EXPECT_NE(tissue_preset("paper_liver").tissue, tissue);
+
+  const std::vector<double> times{1.0, 2.0}, stretches{1.05, 1.1};
+  EXPECT_GT(material_test(tissue, MaterialTest::uniaxial, MaterialControl::deformation, times, stretches)
+                .back()
+                .nominal(2, 2),
+            0.1 * 3600.0);  // it stiffens
 
   Simulation simulation(mesh, {{0, tissue}});
   simulation.fix("z_min");
