@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -48,8 +49,8 @@ Tissue open_tissue(const std::string& name) {
   std::ifstream in(file);
   if (!in) throw std::invalid_argument(name + ": there is no such file");
   std::string text{std::istreambuf_iterator<char>(in), {}};
-  const bool alone = text.find("\n[mesh") == std::string::npos && !text.starts_with("[mesh");
-  if (alone) text += "\n[mesh]\nkind = \"box\"\n[motion]\nmax_steps = 1\n";
+  const std::regex mesh(R"((^|\n)[ \t]*\[?[ \t]*mesh\b)");
+  if (!std::regex_search(text, mesh)) text += "\n[mesh]\nkind = \"box\"\n[motion]\nmax_steps = 1\n";
   const Scene scene = parse_scene(text, name, file.parent_path());
   return scene.variants.front().tissue;
 }
