@@ -29,6 +29,24 @@ TEST(Variants, KeepWhatTheyDoNotMention) {
   EXPECT_EQ(scene.variants[1].label, "denser");
 }
 
+// So are the tables that only one kind of a table has: friction, rupture and tip of a needle.
+TEST(Variants, KeepWhatTheyDoNotMentionOfAKind) {
+  const std::string needle =
+      "[[instrument]]\nkind = \"needle\"\nname = \"needle\"\ntip_m = [0.005, 0.005, 0.021]\n"
+      "rupture = { force_N = 0.2 }\nfriction = { static_in_N_m = 18, dynamic_in_N_m = 11, viscous_in_N_s_m2 = 212 }\n"
+      "[instrument.motion]\nkind = \"press\"\nvelocity_mm_s = 5\ndepth_mm = 2\n";
+  const auto friction = [](const Variant& v) { return std::get<NeedleOptions>(v.instruments.at(0).what).friction; };
+  const ShaftFriction by_variant = friction(
+      only(kSmallScene + needle + "[[variant]]\nname = \"a\"\ninstrument.needle.friction.viscous_in_N_s_m2 = 7\n"));
+  const ShaftFriction by_set =
+      friction(only(kSmallScene + needle, {{"instrument.needle.friction.viscous_in_N_s_m2", "7"}}));
+  for (const ShaftFriction& f : {by_variant, by_set}) {
+    EXPECT_EQ(f.viscous_in, 7.0);
+    EXPECT_EQ(f.static_in, 18.0);
+    EXPECT_EQ(f.dynamic_in, 11.0);
+  }
+}
+
 // Another kind of law replaces the law; the same kind changes single parameters of it.
 TEST(Variants, ReplaceALawOfAnotherKindOnly) {
   const std::string law =

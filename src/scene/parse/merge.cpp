@@ -11,6 +11,13 @@ bool contains(const std::vector<std::string>& group, const std::string& key) {
   return std::find(group.begin(), group.end(), key) != group.end();
 }
 
+/// The section of a kind, with the keys that only tables of this kind have; none: the section has no kinds, or not this one.
+const SectionSpec* section_of_kind(const SectionSpec& section, const Node* kind) {
+  if (!kind || !kind->text()) return nullptr;
+  const KindSpec* of = section.kind(*kind->text());
+  return of ? &of->section : nullptr;
+}
+
 /// Removes from `table` the keys that `key` excludes.
 void drop_excluded(const SectionSpec& section, Table& table, const std::string& key) {
   for (const Exclusion& exclusion : section.exclusions) {
@@ -91,9 +98,14 @@ Node merged(const SectionSpec& section, const Node& base, const Node& overlay, c
   if (replaced || std::any_of(section.starts.begin(), section.starts.end(), given)) return overlay;
   Node result = base;
   result.where = overlay.where;
-  for (const Member& m : *overlay.table()) drop_excluded(section, *result.table(), m.key);
+  const SectionSpec* of_kind = section_of_kind(section, other_kind ? other_kind : kind);
+  for (const Member& m : *overlay.table()) {
+    drop_excluded(section, *result.table(), m.key);
+    if (of_kind) drop_excluded(*of_kind, *result.table(), m.key);
+  }
   for (const Member& m : *overlay.table()) {
     const KeySpec* key = section.find(m.key);
+    if (!key && of_kind) key = of_kind->find(m.key);
     const auto own =
         std::find_if(result.table()->begin(), result.table()->end(), [&](const Member& r) { return r.key == m.key; });
     if (own == result.table()->end()) {
