@@ -120,6 +120,36 @@ TEST(Probes, SectionsCarryTheForceOfTheTool) {
   }
 }
 
+// In motion the part in front of a section is pushed by the tool and by the section: F_tool = F_section + Σ m a over its vertices, at
+// each instant of explicit steps. a is the change of the velocities of the half steps around it; 1e-6 is for double precision.
+TEST(Probes, SectionsAndInertiaCarryTheForceOfTheTool) {
+  constexpr double h = 2e-5;
+  Tissue tissue = tissue_preset("phantom_ef10_100t").tissue;
+  tissue.maxwell = {{.share = 0.3, .time = 0.01}};
+  const TetMesh mesh = irregular();
+  Simulation simulation(mesh, {{0, tissue}}, {.step = h, .precision = Precision::double_precision});
+  simulation.fix("z_min");
+  const ConstraintId tool =
+      simulation.drive("z_max", press({.direction = {0.2, 0.0, -1.0}, .velocity = 0.05, .depth = 0.003}));
+  double inertia_share = 0.0;
+  for (const double z : {0.0101, 0.0155, 0.027}) {
+    ASSERT_TRUE(simulation.advance_to(simulation.time() + 0.004).made());
+    const Vec3d point{0.015, 0.015, z};
+    Probes probes(simulation, {{"cut", ProbePlane{point, {0.0, 0.0, 1.0}}}});
+    const Vec3d section = Reading(probes, simulation).vector("cut_force", "N");
+    const std::vector<Vec3d> before(simulation.velocity().begin(), simulation.velocity().end());
+    ASSERT_TRUE(simulation.step().made());
+    Vec3d inertia{};
+    for (std::size_t v = 0; v < before.size(); ++v) {
+      if (mesh.vertices[v].z > z) inertia += (simulation.velocity()[v] - before[v]) * (simulation.masses()[v] / h);
+    }
+    const Vec3d force = simulation.force(tool).total();
+    EXPECT_LE(norm(section + inertia - force), 1e-6 * norm(force)) << "z = " << z;
+    inertia_share = std::max(inertia_share, norm(inertia) / norm(force));
+  }
+  EXPECT_GT(inertia_share, 1e-3);  // without it the test would fail
+}
+
 // The moment of a section: a bar bent by a force across its end carries F L there, about a point of the section.
 TEST(Probes, SectionCarriesTheMoment) {
   const TetMesh mesh = box_mesh({.cells = {2, 2, 8}, .size = {0.01, 0.01, 0.04}});
