@@ -82,7 +82,8 @@ Course course_of(const MaterialOptions& o, MaterialTest test) {
       throw std::invalid_argument(
           fmt::format("--to {:g}: a stretch is above 0; 1 is rest, 0.7 is pressed by 30 %", end));
     }
-    const double way = std::abs(end - value), length = way / o.rate.value_or(o.stress ? way : kOwnRate);
+    const double way = std::abs(end - value);
+    const double length = way > 0.0 ? way / o.rate.value_or(o.stress ? way : kOwnRate) : 0.0;
     for (std::size_t i = 1; i <= o.points && way > 0.0; ++i) {
       const double share = static_cast<double>(i) / static_cast<double>(o.points);
       course.times.push_back(time + share * length);
