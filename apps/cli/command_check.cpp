@@ -232,7 +232,10 @@ void print_body(const Variant& v, const Taste& taste) {
   for (const FixedSpec& fixed : v.fixed) {
     say("  fixed    {}, in {}\n", set_text(taste.mesh, fixed.set), axes_text(fixed.axes));
   }
-  if (v.fixed.empty()) say("  fixed    nothing: the body is free to drift\n");
+  const bool sprung = std::any_of(v.loads.begin(), v.loads.end(), [](const LoadSpec& l) {
+    return l.load.spring != Vec3d{} || l.load.spring_per_area != Vec3d{};
+  });
+  if (v.fixed.empty()) say("  fixed    nothing: {}\n", sprung ? "springs hold the body" : "the body is free to drift");
   for (const LoadSpec& load : v.loads) {
     say("  load     {}: {}\n", set_text(taste.mesh, load.set), load_text(load.load));
   }
