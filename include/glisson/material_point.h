@@ -62,7 +62,8 @@ struct MaterialState {
 /// A point of a tissue with its history.
 ///
 /// Steps are implicit and of second order: the viscous stress by two stages [Alexander1977], branches by their exact weights
-/// for a stress that is linear over the step. Without viscosity and branches a state does not depend on the steps.
+/// for a stress that is linear over the step. Without viscosity and branches a state does not depend on the steps. Tissue::volume_change
+/// plays no part: where all tets deform alike, their volume changes are those of their neighbours.
 class MaterialPoint {
  public:
   /// @throws std::invalid_argument for a tissue that is not valid, or whose measure depends on the mesh (regular_mean_ratio,
