@@ -16,6 +16,7 @@
 #include "cli/mesh_cache.h"
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
+#include "fit/data/units.h"
 #include "fit/files/fit_json.h"
 #include "fit/files/fit_state.h"
 #include "fit/run_fit.h"
@@ -91,18 +92,42 @@ void print_laws(const FitResult& result) {
   if (result.laws.empty()) return;
   std::size_t width = 3;
   for (const auto& l : result.laws) width = std::max(width, l.name.size());
-  say("{:<{}}  {:>10}  {:>12}  {:>13}  {:>10}  {:>10}\n", "law", width, "parameters", "rms fit [N]", "rms test [N]",
-      "AIC", "BIC");
+  const std::string unit = result.unit.empty() ? "of peak" : result.unit;
+  say("{:<{}}  {:>10}  {:>14}  {:>15}  {:>10}  {:>10}\n", "law", width, "parameters", "rms fit [" + unit + "]",
+      "rms test [" + unit + "]", "AIC", "BIC");
   for (const auto& l : result.laws) {
     const std::string test = l.rms_heldout ? fmt::format("{:.4g}", *l.rms_heldout) : "-";
-    say("{:<{}}  {:>10}  {:>12.4g}  {:>13}  {:>10.1f}  {:>10.1f}{}\n", l.name, width, l.parameters, l.rms_fit, test,
+    say("{:<{}}  {:>10}  {:>14.4g}  {:>15}  {:>10.1f}  {:>10.1f}{}\n", l.name, width, l.parameters, l.rms_fit, test,
         l.aic, l.bic, l.best ? "  <- what the data support" : "");
   }
   say("\n");
 }
 
+/// Each kind of test: what the fit of all makes of it, and what a fit to one test alone would have said of the others.
+void print_tests(const FitResult& result) {
+  const bool kinds = std::any_of(result.tests.begin(), result.tests.end(),
+                                 [](const fit::TestResult& t) { return !t.r2_of_alone.empty(); });
+  if (!kinds) return;
+  std::size_t width = 12;
+  for (const fit::TestResult& t : result.tests) width = std::max(width, t.name.size() + 9);
+  const auto line = [&](const std::string& name, const auto& cell) {
+    std::string text = fmt::format("{:<{}}", name, width);
+    for (const fit::TestResult& t : result.tests) text += fmt::format("  {:>{}}", cell(t), std::max<std::size_t>(9, t.name.size()));
+    say("{}\n", text);
+  };
+  line("R² in", [](const fit::TestResult& t) { return t.name; });
+  line("fit of all", [](const fit::TestResult& t) { return fmt::format("{:.3f}", t.r2); });
+  for (std::size_t a = 0; a < result.tests.size(); ++a) {
+    if (result.tests[a].held_out) continue;
+    line(result.tests[a].name + " alone", [&](const fit::TestResult& t) { return fmt::format("{:.3f}", t.r2_of_alone[a]); });
+  }
+  line("rms of all", [](const fit::TestResult& t) { return fit::measured_text(t.rms, t.unit); });
+  say("\n");
+}
+
 void print_result(const FitResult& result) {
   print_laws(result);
+  print_tests(result);
   print_parameters(result);
   say("\n");
   for (const std::string& sentence : result.conclusions) say("- {}\n", sentence);

@@ -7,6 +7,7 @@
 
 #include "cli/progress.h"
 #include "cli/standard_streams.h"
+#include "fit/data/units.h"
 
 namespace glisson::app {
 namespace {
@@ -20,7 +21,7 @@ FitProgressLine::FitProgressLine(bool quiet) : quiet_(quiet), live_(isatty(STDOU
 std::string FitProgressLine::text(const fit::FitProgress& p) const {
   std::string line = p.law.empty() ? "" : p.law + ": ";
   line += fmt::format("{} {}/{}", p.stage, p.done, p.planned);
-  if (p.best_rms > 0.0) line += fmt::format(", best {:.4g} N rms", p.best_rms);
+  if (p.best_rms > 0.0) line += ", best " + fit::measured_text(p.best_rms, p.unit, 4) + " rms";
   if (p.found > 0) line += fmt::format(" found {} time{}", p.found, p.found == 1 ? "" : "s");
   line += fmt::format(", {} forward runs", p.forward_runs);
   const double spent = std::chrono::duration<double>(Clock::now() - begin_).count();

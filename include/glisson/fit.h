@@ -14,8 +14,74 @@
 #include <vector>
 
 #include "glisson/scene/scene.h"
+#include "glisson/words.h"
 
 namespace glisson::fit {
+
+/// What a laboratory does to a specimen.
+enum class LabTest {
+  compression,
+  tension,
+  relaxation,
+  creep,
+  cyclic,
+  equibiaxial,
+  planar,
+  simple_shear,
+  torsion,
+  oscillation
+};
+}  // namespace glisson::fit
+
+namespace glisson {
+
+template <>
+inline constexpr Word<fit::LabTest> kWords<fit::LabTest>[] = {
+    {"compression", fit::LabTest::compression, "pressed between plates, or by an instrument of the scene"},
+    {"tension", fit::LabTest::tension, "pulled along its height; the sides are free"},
+    {"relaxation", fit::LabTest::relaxation, "brought to a strain and held there: the stress over time"},
+    {"creep", fit::LabTest::creep, "loaded and held there: the strain over time"},
+    {"cyclic", fit::LabTest::cyclic, "strained to and fro"},
+    {"equibiaxial", fit::LabTest::equibiaxial, "stretched alike along two axes; the third is free"},
+    {"planar", fit::LabTest::planar, "stretched along one axis, held along the second; the third is free: pure shear"},
+    {"simple_shear", fit::LabTest::simple_shear, "one face moved along the other at a constant distance"},
+    {"torsion", fit::LabTest::torsion, "a cylinder twisted at a constant length: torque over angle"},
+    {"oscillation", fit::LabTest::oscillation, "small shear to and fro: storage and loss modulus over frequency"}};
+
+}  // namespace glisson
+
+namespace glisson::fit {
+
+/// How a specimen deforms in a test.
+enum class Deforming { compression, tension, equibiaxial, planar, simple_shear, torsion };
+}  // namespace glisson::fit
+namespace glisson {
+template <>
+inline constexpr Word<fit::Deforming> kWords<fit::Deforming>[] = {
+    {"compression", fit::Deforming::compression, "along its height, the sides free"},
+    {"tension", fit::Deforming::tension, "along its height, the sides free"},
+    {"equibiaxial", fit::Deforming::equibiaxial, "alike along two axes, the third free"},
+    {"planar", fit::Deforming::planar, "along one axis, held along the second, the third free"},
+    {"simple_shear", fit::Deforming::simple_shear, "one face along the other at a constant distance"},
+    {"torsion", fit::Deforming::torsion, "a cylinder about its axis at a constant length"}};
+}  // namespace glisson
+namespace glisson::fit {
+
+/// What of a test was measured; the forward model answers in the same measure.
+enum class Measured { nominal, cauchy, second_piola, torque, strain, storage, loss };
+
+/// What the numbers of a curve are. Without more it is a press or an insertion: a force over a displacement.
+struct Measurement {
+  LabTest test = LabTest::compression;
+  Deforming deforming = Deforming::compression;
+  Measured measured = Measured::nominal;
+  double stretch = 1.0;             ///< at rest about which an oscillation is small [-]
+  bool timed = true;                ///< false: the file has no times, those of the curve are made up
+  bool point = false;               ///< the specimen has no size: force on 1 m², displacement of 1 m
+  std::string unit = "N";           ///< of Curve::force
+  std::string drive_unit = "m";     ///< of Curve::displacement
+  bool is_press() const { return test == LabTest::compression && measured == Measured::nominal && !point; }
+};
 
 /// How a parameter is searched between its bounds.
 enum class Scale { linear, logarithmic };
@@ -30,6 +96,15 @@ struct Parameter {
 };
 
 /// A test: how far the tool went and how hard it was pushed, at the same instants. Compression and insertion count positive.
+///
+/// In other tests `displacement` is what was driven and `force` what was measured, both positive as the test goes:
+///
+///   test                                       displacement                            force
+///   compression, tension, equibiaxial, planar  |λ − 1| × height [m]                     P, σ or S × area [N]
+///   simple_shear                               γ × height [m]                           the same of xz [N]
+///   torsion                                    angle [rad]                              torque [N m]
+///   creep                                      nominal stress × area [N]                strain × height [m]
+///   oscillation                                frequency [Hz], `time` is the row        storage or loss modulus [Pa]
 struct Curve {
   std::string name;                  ///< unique among the curves of a fit, e.g. the file's stem
   std::string group;                 ///< repetitions of one test share it, e.g. "2 mm/s"
@@ -40,6 +115,7 @@ struct Curve {
   double noise = 0.0;                ///< standard deviation of the force about a smooth curve [N]; 0: not known
   double weight = 1.0;               ///< factor on the residuals, ≥ 0
   bool held_out = false;             ///< kept from the fit, to test it
+  Measurement measurement{};
 
   std::size_t size() const { return time.size(); }
 };
@@ -107,6 +183,20 @@ struct StartResult {
   int basin = -1;     ///< in FitResult::basins; −1: failed
 };
 
+/// All curves of one test: how well the fit of all meets them, and fits to each test alone.
+struct TestResult {
+  std::string name;  ///< of its group
+  LabTest test = LabTest::compression;
+  double r2 = 0.0;          ///< 1 − Σ (fitted − measured)² / Σ (measured − mean)²
+  double rms = 0.0;         ///< of fitted − measured, in `unit`
+  std::string unit;         ///< of rms
+  std::size_t points = 0;   ///< of its curves
+  bool held_out = false;
+  /// r2 of this test by a fit to one test alone, in the order of FitResult::tests; NaN for a test that is held out or has no
+  /// such fit; empty: there is only one.
+  std::vector<double> r2_of_alone;
+};
+
 /// A law that was compared.
 struct LawResult {
   std::string name;
@@ -132,8 +222,10 @@ struct FitResult {
   std::vector<CurveResult> curves;
   std::vector<std::string> accounts;  ///< what was done to each curve, in a sentence
   std::vector<GroupResult> groups;
-  double rms_fit = 0.0;                       ///< [N]
-  std::optional<double> rms_heldout, spread;  ///< of held-out curves; of repetitions about their mean [N]
+  std::vector<TestResult> tests;  ///< as `groups`
+  std::string unit = "N";  ///< of all errors below; "" where tests differ in theirs: parts of each curve's largest number
+  double rms_fit = 0.0;                       ///< [N], or in `unit`
+  std::optional<double> rms_heldout, spread;  ///< of held-out curves; of repetitions about their mean
   std::vector<ProfileResult> profiles;
   std::vector<BasinResult> basins;  ///< best first
   std::vector<StartResult> starts;
@@ -158,7 +250,8 @@ struct FitProgress {
   std::string law;    ///< being fitted
   std::string stage;  ///< "forward models", "starts", "profiles", "bootstrap"
   std::size_t done = 0, planned = 1;
-  double best_rms = 0.0;  ///< [N]; of all fitted curves
+  double best_rms = 0.0;  ///< of all fitted curves, in `unit`
+  std::string unit = "N";  ///< as that of FitResult
   int found = 0;          ///< how often the best optimum was found so far
   std::uint64_t forward_runs = 0;
 };

@@ -13,11 +13,18 @@
 #include "fit/uncertainty/further_specimen.h"
 #include "fit/uncertainty/next_experiments.h"
 #include "fit/uncertainty/profile.h"
+#include "fit/uncertainty/test_table.h"
 #include "fit/uncertainty/validation.h"
 #include "fit/uncertainty/verdict.h"
 
 namespace glisson::fit {
 namespace {
+
+std::vector<Curve> curves_of(const FitResult& result) {
+  std::vector<Curve> list;
+  for (const CurveResult& c : result.curves) list.push_back(c.curve);
+  return list;
+}
 
 bool stopped(const FitRun& options) { return options.stop != nullptr && options.stop->load(); }
 
@@ -25,8 +32,9 @@ std::string rounded(double x, int digits = 3) { return brief(x, digits); }
 
 std::optional<double> known(double x) { return std::isfinite(x) ? std::optional(x) : std::nullopt; }
 
+/// In the unit of the errors; of a specimen of known area as a stress, too.
 std::string newtons_or_stress(double force, const FitResult& result) {
-  if (!result.area) return rounded(force) + " N";
+  if (!result.area || result.unit != "N") return measured_text(force, result.unit);
   return rounded(force) + " N (" + rounded(1e-3 * force / *result.area) + " kPa)";
 }
 
@@ -43,6 +51,16 @@ void conclude_on_curves(const Validation& all, const FitResult& result, std::vec
     }
     sentences.push_back(text);
   }
+}
+
+/// Which of several kinds of test the law meets worst.
+void conclude_on_tests(const FitResult& result, std::vector<std::string>& sentences) {
+  if (result.tests.size() < 2 || of_one_kind(curves_of(result))) return;
+  std::string text = "R² is";
+  for (std::size_t t = 0; t < result.tests.size(); ++t)
+    text += (t == 0 ? " " : ", ") + rounded(result.tests[t].r2) + " in " + result.tests[t].name +
+            (result.tests[t].held_out ? " (held out)" : "");
+  sentences.push_back(text + ".");
 }
 
 /// The error of held-out curves up to a displacement, beside their spread, over all of them as one test.
@@ -193,7 +211,9 @@ void fill_bootstrap(const Problem& problem, const Optimum& optimum, const Covari
 
 void fill_curves(const LawSearch& search, const FitSpec& spec, const FitCurves& curves, FitResult& result) {
   const std::vector<Prediction> predictions = search.predictions();
-  const Validation all = validate(curves.curves, predictions);
+  const Validation all = errors_in_common_unit(curves.curves, predictions);
+  result.unit = common_unit(curves.curves);
+  result.tests = test_results(curves.curves, predictions);
   result.accounts = curves.accounts;
   result.curves.clear();
   result.groups.clear();
@@ -211,6 +231,7 @@ void fill_curves(const LawSearch& search, const FitSpec& spec, const FitCurves& 
   result.rms_heldout = known(all.rms_heldout);
   if (repeated > 0) result.spread = std::sqrt(squares / static_cast<double>(repeated));
   conclude_on_curves(all, result, result.conclusions);
+  conclude_on_tests(result, result.conclusions);
   if (spec.proof.displacement) {
     const std::string text = limited_errors(curves, predictions, *spec.proof.displacement);
     if (!text.empty()) result.conclusions.push_back(text);
@@ -238,13 +259,25 @@ void fill_search(const LawSearch& search, const FitSpec& spec, FitResult& result
   conclude_on_search(search, result.conclusions);
 }
 
+namespace {
+
+/// What a fit to each test alone predicts of the others: where there are several kinds, and runs cost little.
+void fill_tests_alone(const LawSearch& search, const FitCurves& curves, const FitRun& options, FitResult& result) {
+  constexpr int kStarts = 6;
+  const bool cheap = search.ladder().taken().name == "specimen";
+  if (!cheap || result.tests.size() < 2 || of_one_kind(curves.curves) || stopped(options)) return;
+  fill_alone(result.tests, curves.curves, search.problem(), search.optimum().scaled, kStarts, search.descent());
+}
+
+}  // namespace
+
 void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves, const FitRun& options,
                 FitResult& result) {
   constexpr int kRounds = 3;
   const auto told = [&](const char* stage, std::size_t done, std::size_t planned) {
     if (!options.progress) return;
     options.progress({search.law().name, stage, done, planned, rms_at(search.problem(), search.optimum().scaled),
-                      search.found().basins.front().found, search.forward_runs()});
+                      common_unit(curves.curves), search.found().basins.front().found, search.forward_runs()});
   };
   Covariance covariance;
   std::optional<Profiles> profiled;
@@ -264,6 +297,7 @@ void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves,
   fill_curves(search, spec, curves, result);
   fill_search(search, spec, result);
   fill_parameters(search.problem(), search.optimum(), covariance, profiled ? &*profiled : nullptr, result);
+  fill_tests_alone(search, curves, options, result);
   if (profiled) fill_profiles(search.problem(), *profiled, covariance, search.optimum().cost, result);
   if (!covariance.failure.empty()) {
     result.conclusions.push_back("The uncertainty of the parameters could not be computed: " + covariance.failure);

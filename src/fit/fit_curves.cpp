@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <set>
 
 #include "fit/data/load_curves.h"
+#include "fit/data/test_columns.h"
 #include "fit/data/units.h"
 #include "fit/uncertainty/validation.h"
 
@@ -17,8 +20,16 @@ double largest_force(const Curve& curve) {
   return most;
 }
 
-/// `A1`, and `A1 (2)` for the second of that name.
+/// `A1`; with its test where tests of one file share a name; `A1 (2)` for the second of that name.
 void make_unique(std::vector<Curve>& curves) {
+  std::map<std::string, std::set<std::string>> groups;
+  for (const Curve& c : curves) groups[c.name].insert(c.group);
+  for (Curve& c : curves) {
+    const bool other_test = std::any_of(curves.begin(), curves.end(), [&](const Curve& o) {
+      return o.measurement.test != c.measurement.test || o.measurement.measured != c.measurement.measured;
+    });
+    if (groups[c.name].size() > 1 && other_test) c.name += ", " + c.group;
+  }
   std::map<std::string, int> seen;
   for (Curve& c : curves) {
     const int number = ++seen[c.name];
@@ -51,6 +62,49 @@ std::vector<PreparedCurve> loaded(const DataSpec& spec, const SpecimenSize& size
   return std::move(nearer);
 }
 
+/// `test 2`; where there are tests of several kinds their own names, numbered from the second of a kind on.
+std::string default_group(const std::vector<DataSpec>& data, std::size_t number) {
+  const LabTest test = data[number].test;
+  const bool all_presses =
+      std::all_of(data.begin(), data.end(), [](const DataSpec& d) { return d.test == LabTest::compression; });
+  if (all_presses) return "test " + std::to_string(number + 1);
+  const auto own = data.begin() + static_cast<std::ptrdiff_t>(number);
+  const auto before = std::count_if(data.begin(), own, [&](const DataSpec& d) { return d.test == test; });
+  return std::string(word_of(test)) + (before > 0 ? " " + std::to_string(before + 1) : "");
+}
+
+/// Young's modulus that a curve shows [Pa] at small strain, by its first tenth, of one that cannot be pressed together; 0: none.
+double modulus_of(const Curve& c, double area, double height) {
+  constexpr double kPart = 0.1;
+  const Measurement& m = c.measurement;
+  double most = 0.0, fd = 0.0, dd = 0.0;
+  for (const double d : c.displacement) most = std::max(most, std::abs(d));
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    if (std::abs(c.displacement[i]) > kPart * most && dd > 0.0) continue;
+    fd += c.force[i] * c.displacement[i];
+    dd += c.displacement[i] * c.displacement[i];
+  }
+  if (m.test == LabTest::oscillation) {
+    double sum = 0.0;
+    for (const double g : c.force) sum += g;
+    return m.measured == Measured::storage ? 3.0 * sum / static_cast<double>(c.size()) : 0.0;
+  }
+  if (!(fd > 0.0)) return 0.0;
+  const double stiffness = m.measured == Measured::strain ? dd / fd : fd / dd;
+  switch (m.deforming) {
+    case Deforming::torsion:  // G = 2 M H / (π R⁴ φ) and A = π R²
+      return 3.0 * stiffness * 2.0 * std::numbers::pi * height / (area * area);
+    case Deforming::simple_shear:
+      return 3.0 * stiffness * height / area;
+    case Deforming::equibiaxial:
+      return 0.5 * stiffness * height / area;
+    case Deforming::planar:
+      return 0.75 * stiffness * height / area;
+    default:
+      return stiffness * height / area;
+  }
+}
+
 }  // namespace
 
 std::vector<std::size_t> FitCurves::indices(bool held_out) const {
@@ -71,13 +125,15 @@ FitCurves read_curves(const FitSpec& spec, const SpecimenSize& size, const std::
   FitCurves all;
   for (std::size_t d = 0; d < spec.data.size(); ++d) {
     DataSpec data = spec.data[d];
-    if (data.group.empty()) data.group = "test " + std::to_string(d + 1);
-    for (PreparedCurve& p : loaded(data, size, base)) {
-      p.curve.group = data.group;
-      p.curve.held_out = data.held_out;
-      p.curve.weight = data.weight;
-      all.curves.push_back(std::move(p.curve));
-      all.accounts.push_back(p.account.text());
+    if (data.group.empty()) data.group = default_group(spec.data, d);
+    for (const DataSpec& part : parted(data)) {
+      for (PreparedCurve& p : loaded(part, size, base)) {
+        p.curve.group = part.group;
+        p.curve.held_out = part.held_out;
+        p.curve.weight = part.weight;
+        all.curves.push_back(std::move(p.curve));
+        all.accounts.push_back(p.account.text());
+      }
     }
   }
   make_unique(all.curves);
@@ -85,6 +141,7 @@ FitCurves read_curves(const FitSpec& spec, const SpecimenSize& size, const std::
 }
 
 std::vector<double> spreads_of(const std::vector<Curve>& curves, Weighing how) {
+  if (how == Weighing::automatic) how = of_one_kind(curves) ? Weighing::common : Weighing::peak;
   std::vector<double> list;
   double squares = 0.0;
   for (const Curve& c : curves) {
@@ -97,7 +154,47 @@ std::vector<double> spreads_of(const std::vector<Curve>& curves, Weighing how) {
   return list;
 }
 
+bool of_one_kind(const std::vector<Curve>& curves) {
+  return std::all_of(curves.begin(), curves.end(), [&](const Curve& c) {
+    const Measurement &m = c.measurement, &first = curves.front().measurement;
+    return m.deforming == first.deforming && m.measured == first.measured && m.unit == first.unit;
+  });
+}
+
+std::string common_unit(const std::vector<Curve>& curves) {
+  const bool one = std::all_of(curves.begin(), curves.end(),
+                               [&](const Curve& c) { return c.measurement.unit == curves.front().measurement.unit; });
+  if (!one) return {};
+  return curves.empty() ? "N" : curves.front().measurement.unit;
+}
+
+double size_in(const std::string& unit, const Curve& curve) {
+  return unit.empty() ? 1.0 / std::max(largest_force(curve), 1e-300) : 1.0;
+}
+
+Validation errors_in_common_unit(const std::vector<Curve>& curves, std::vector<Prediction> predictions) {
+  const std::string unit = common_unit(curves);
+  if (!unit.empty()) return validate(curves, predictions);
+  std::vector<Curve> parts = curves;
+  for (std::size_t c = 0; c < parts.size(); ++c) {
+    const double size = size_in(unit, curves[c]);
+    for (double& f : parts[c].force) f *= size;
+    for (double& f : predictions[c].force) f *= size;
+  }
+  return validate(parts, predictions);
+}
+
 double initial_modulus(const std::vector<Curve>& curves, double area, double height) {
+  if (!of_one_kind(curves) || curves.front().measurement.deforming != Deforming::compression ||
+      curves.front().measurement.measured == Measured::strain) {
+    double logs = 0.0;
+    int count = 0;
+    for (const Curve& c : curves) {
+      const double modulus = modulus_of(c, area, height);
+      if (modulus > 0.0) logs += std::log(modulus), ++count;
+    }
+    return count > 0 ? std::exp(logs / count) : 1000.0;
+  }
   constexpr double kPart = 0.1;
   double fd = 0.0, dd = 0.0;
   for (const Curve& c : curves) {

@@ -33,6 +33,7 @@ std::string unit_of_key(const std::string& key);
 
 /// How the residuals of different curves are weighed against each other.
 enum class Weighing {
+  automatic,  ///< common where all curves are of one kind of test, else peak
   common,  ///< one standard deviation for all: the root mean square of the curves' noise
   noise,   ///< each curve its own noise
   peak     ///< one hundredth of each curve's largest force
@@ -41,7 +42,7 @@ enum class Weighing {
 struct SearchSpec {
   int starts = 20, found_again = 0, screen = 4, most_iterations = 100;
   std::uint64_t seed = 1;
-  Weighing weighing = Weighing::common;
+  Weighing weighing = Weighing::automatic;
   Loss loss;
 };
 

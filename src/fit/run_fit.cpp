@@ -29,7 +29,10 @@ using Searches = std::vector<std::unique_ptr<LawSearch>>;
 SpecimenSize size_of(const FitSpec& spec) {
   if (!spec.specimen) return {};
   const Specimen s = specimen_of(*spec.specimen);
-  return {s.area, s.height};
+  return {.area = s.area,
+          .height = s.height,
+          .radius = s.radius > 0.0 ? std::optional(s.radius) : std::nullopt,
+          .point = spec.specimen->shape == SpecimenShape::point};
 }
 
 /// A description alone may name no parameter: those of laws that are asked for come with them.
@@ -118,6 +121,7 @@ bool Run::search_one(const LawSpec& law) {
     if (options_.remember) options_.remember(memory_);
     if (!options_.progress) return;
     FitProgress p{law.name, "starts", so_far.starts.size(), static_cast<std::size_t>(spec_.search.starts)};
+    p.unit = common_unit(curves_.curves);
     if (!so_far.basins.empty()) {
       p.best_rms = rms_at(search->problem(), so_far.basins.front().scaled);
       p.found = so_far.basins.front().found;
@@ -144,7 +148,7 @@ std::size_t Run::choose(FitResult& result) const {
     LawFit fit{
         search.law().name, problem.parameters().size(), 2.0 * search.optimum().cost, problem.size(), effective, {}};
     const std::vector<Prediction> predictions = search.predictions();
-    const Validation errors = validate(curves_.curves, predictions);
+    const Validation errors = errors_in_common_unit(curves_.curves, predictions);
     for (const CurveError& e : errors.curves) {
       if (e.held_out) fit.heldout_rms.push_back(e.failure.empty() ? e.rms : std::numeric_limits<double>::infinity());
     }
@@ -157,7 +161,7 @@ std::size_t Run::choose(FitResult& result) const {
     of.push_back(s);
   }
   if (fits.empty()) return 0;
-  const LawRanking ranking = rank_laws(fits);
+  const LawRanking ranking = rank_laws(fits, common_unit(curves_.curves));
   std::vector<LawResult> ordered;
   for (const LawRank& rank : ranking.order) {
     LawResult row = result.laws[rank.law];

@@ -58,7 +58,8 @@ void check_parameters(const std::vector<ParameterSpec>& list, const Node& table,
 
 /// Friction is a number of [specimen] and of a parameter, and asks for a forward model of its own.
 void check_faces(const FitSpec& fit, const Place& place) {
-  const bool rubs = fit.specimen && fit.specimen->round && fit.specimen->faces == Faces::friction;
+  const bool rubs = fit.specimen && fit.specimen->shape == SpecimenShape::cylinder &&
+                    fit.specimen->faces == Faces::friction;
   const auto frees = [](const ParameterSpec& p) { return is_plate_key(p.key); };
   const auto any = [&](const auto& list) { return std::any_of(list.begin(), list.end(), frees); };
   const bool freed = any(fit.parameters) ||
@@ -72,6 +73,28 @@ void check_faces(const FitSpec& fit, const Place& place) {
         "[[parameter]] with the key `specimen.friction` or `specimen.adhesion_Pa`");
   if (plates_of(*fit.specimen) && fit.forward.kind != ForwardKind::automatic)
     place.complain("[forward] kind applies to smooth faces; remove it, or set faces = \"smooth\" in [specimen]");
+}
+
+/// Tests that a scene, a specimen that sticks, or a point cannot make.
+void check_tests(const FitSpec& fit, const Node& table, const Place& place) {
+  const bool sticks = fit.specimen && plates_of(*fit.specimen);
+  const bool round = fit.specimen && fit.specimen->shape == SpecimenShape::cylinder;
+  for (std::size_t i = 0; i < fit.data.size(); ++i) {
+    const DataSpec& data = fit.data[i];
+    if (data.test == LabTest::compression) continue;
+    const Node& own = (*table.find("data")->array())[i];
+    const Place here = place.inside("data." + std::to_string(i), own.where);
+    const std::string test = "test = \"" + std::string(word_of(data.test)) + "\" ";
+    if (!fit.specimen)
+      here.complain(*own.find("test"), "test",
+                    test + "asks for a [specimen]; a scene is driven by its tool, which is \"compression\"");
+    else if (sticks && data.test != LabTest::torsion && data.test != LabTest::oscillation)
+      here.complain(*own.find("test"), "test",
+                    test + "is fitted for smooth faces; set faces = \"smooth\" in [specimen]");
+    const bool twisted = data.test == LabTest::torsion || data.deforming == Deforming::torsion;
+    if (fit.specimen && twisted && !round)
+      here.complain(*own.find("test"), "test", "torsion asks for [specimen] kind = \"cylinder\"");
+  }
 }
 
 /// One needle, one curve, and nothing else that is free.
@@ -92,6 +115,7 @@ void finish_fit(FitSpec& fit, const Node& table, const Place& place) {
   if (const Node* tissue = table.find("tissue")) fit.set.push_back({"tissue", scene::toml_text(*tissue)});
   if (!fit.parameters.empty()) check_parameters(fit.parameters, table, place);
   check_faces(fit, place);
+  check_tests(fit, table, place);
   check_insertion(fit, place);
   if (fit.data.empty()) place.complain("there are no curves; give one or more [[data]] with `files`");
   const bool any_fitted = std::any_of(fit.data.begin(), fit.data.end(), [](const DataSpec& d) { return !d.held_out; });
@@ -143,7 +167,8 @@ const SectionSpec& search_section() {
         .within(between(1, 10000));
     s.key("seed", &SearchSpec::seed, "seed of the quasi-random starts");
     s.choice<Weighing>("weighing", &SearchSpec::weighing,
-                       {{"common", Weighing::common, "all points have equal weight, in newtons"},
+                       {{"auto", Weighing::automatic, "common for tests of one kind, else peak"},
+                        {"common", Weighing::common, "all points have equal weight, in newtons"},
                         {"noise", Weighing::noise, "each curve by its own noise"},
                         {"peak", Weighing::peak, "each curve by its own largest force"}},
                        "relative weight of the curves");

@@ -60,8 +60,8 @@ std::string tissue_of_fit(const LawSearch& search, const FitResult& result, cons
     tissue_values.push_back(values[p]);
   }
   std::string text = "# Fitted by `glisson fit " + spec.file.filename().string() + "`: " + spec.title + "\n";
-  text += "# Law " + result.law + "; fitted curves matched to " + brief(result.rms_fit) + " N rms";
-  if (result.rms_heldout) text += ", held-out ones to " + brief(*result.rms_heldout) + " N";
+  text += "# Law " + result.law + "; fitted curves matched to " + measured_text(result.rms_fit, result.unit, 4) + " rms";
+  if (result.rms_heldout) text += ", held-out ones to " + measured_text(*result.rms_heldout, result.unit, 4);
   text += ".\n";
   for (const ParameterResult& p : result.parameters) {
     text += "#   " + p.parameter.name + " = " + brief(p.value) + (p.parameter.unit.empty() ? "" : " ") +

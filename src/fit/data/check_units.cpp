@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kFarOff = 30.0;      // between a true stress against an engineering one, ≈ 3, and a slip of 100
 constexpr double kDeepest = 1.0;      // of compression, in heights
+constexpr double kFarthest = 10.0;   // of any other test
 constexpr double kShallowest = 5e-4;  // of a test of soft tissue, in heights
 constexpr double kSoftest = 10.0, kStiffest = 2e7;   // secant moduli of soft tissues and their phantoms [Pa]
 constexpr double kSlowest = 1e-8, kFastest = 100.0;  // tools [m/s]
@@ -83,11 +84,17 @@ class UnitCheck {
 
   void run() {
     const std::size_t before = problems_.count();
+    const Measurement& m = test_.measurement;
+    if (m.test == LabTest::oscillation) return check_modulus(test_.force_source, largest(test_.force));
     check_signs();
-    check_depth();
-    check_columns();
-    check_speed();
-    if (problems_.count() == before) check_stiffness();
+    if (m.drive_unit == "rad") {
+      check_twist();
+    } else if (m.measured != Measured::strain) {
+      check_depth();
+      check_columns();
+    }
+    if (m.timed && m.drive_unit == "m") check_speed();
+    if (problems_.count() == before && m.measured != Measured::strain) check_stiffness();
   }
 
  private:
@@ -100,7 +107,8 @@ class UnitCheck {
 
   /// The number as the file has it: without the height or area that turned strain into way, stress into force.
   double own(const Source& source, double si) const {
-    if (source.quantity == Quantity::strain) return si / size_.height.value_or(1.0);
+    if (source.quantity == Quantity::strain || source.quantity == Quantity::stretch)
+      return si / size_.height.value_or(1.0);
     if (source.quantity == Quantity::stress) return si / size_.area.value_or(1.0);
     return si;
   }
@@ -123,14 +131,27 @@ class UnitCheck {
     const double deepest = span_of(test_.displacement);
     if (!size_.height || deepest <= 0.0) return;
     const double strain = deepest / *size_.height;
-    if (strain <= kDeepest && strain >= kShallowest) return;
+    const bool pressed = test_.measurement.deforming == Deforming::compression;
+    const double farthest = pressed ? kDeepest : kFarthest;
+    if (strain <= farthest && strain >= kShallowest) return;
     const Source& source = test_.displacement_source;
     const double value = own(source, deepest);
-    double ratio = strain > kDeepest ? 1000.0 : 1e-3;
-    if (source.quantity == Quantity::strain) ratio = strain > kDeepest ? 100.0 : 1e-2;
-    complain(read_as(source, value) + ", " + brief(strain) + " of the specimen's height of " +
-             brief(*size_.height * 1e3) + " mm; a test goes to between " + brief(kShallowest) + " and " +
-             brief(kDeepest) + way_out(source, value, ratio));
+    double ratio = strain > farthest ? 1000.0 : 1e-3;
+    if (source.quantity != Quantity::length) ratio = strain > farthest ? 100.0 : 1e-2;
+    const std::string height =
+        size_.point ? ", a strain of " + brief(strain)
+                    : ", " + brief(strain) + " of the specimen's height of " + brief(*size_.height * 1e3) + " mm";
+    complain(read_as(source, value) + height + "; a test goes to between " + brief(kShallowest) + " and " +
+             brief(farthest) + way_out(source, value, ratio));
+  }
+
+  /// Surface shear of a twisted cylinder: an angle in degrees taken for radians is far beyond it.
+  void check_twist() {
+    const double angle = span_of(test_.displacement), shear = angle * *size_.radius / *size_.height;
+    if (shear <= kFarthest && shear >= kShallowest) return;
+    complain(read_as(test_.displacement_source, angle) + ", a shear of " + brief(shear) +
+             " at the surface; a test goes to between " + brief(kShallowest) + " and " + brief(kFarthest) +
+             way_out(test_.displacement_source, angle, shear > kFarthest ? 57.3 : 1.0 / 57.3));
   }
 
   void check_columns() {
@@ -178,12 +199,18 @@ class UnitCheck {
     if (!size_.area || !size_.height) return;
     const double way = span_of(test_.displacement), force = span_of(test_.force);
     if (!(way > 0.0) || !(force > 0.0)) return;
-    const double modulus = force / *size_.area / (way / *size_.height);
+    // of a twisted cylinder G = 2 M H / (π R⁴ φ)
+    const double over = test_.measurement.drive_unit == "rad"
+                            ? 0.5 * *size_.area * *size_.radius * *size_.radius / *size_.height
+                            : *size_.area / *size_.height;
+    check_modulus(test_.force_source, own(test_.force_source, force), force / way / over);
+  }
+  void check_modulus(const Source& source, double value) { check_modulus(source, value, value); }
+  void check_modulus(const Source& source, double value, double modulus) {
     if (modulus >= kSoftest && modulus <= kStiffest) return;
-    const double value = own(test_.force_source, force);
-    complain(read_as(test_.force_source, value) + ", a stiffness of " + brief(modulus) +
-             " Pa over the specimen; soft tissues have " + brief(kSoftest) + " to " + brief(kStiffest) + " Pa" +
-             way_out(test_.force_source, value, modulus > kStiffest ? 1000.0 : 1e-3));
+    complain(read_as(source, value) + ", a stiffness of " + brief(modulus) + " Pa over the specimen; soft tissues have " +
+             brief(kSoftest) + " to " + brief(kStiffest) + " Pa" +
+             way_out(source, value, modulus > kStiffest ? 1000.0 : 1e-3));
   }
 
   const RawTest& test_;

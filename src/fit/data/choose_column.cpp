@@ -87,7 +87,7 @@ const Unit* unit_of(const CurveFile& file, std::size_t column, const std::string
                     const std::string& key, scene::Problems& problems) {
   const std::string in_file = column < file.units.size() ? file.units[column] : std::string{};
   std::string text = said.empty() ? in_file : said;
-  if (text.empty() && quantity == Quantity::strain) text = "-";
+  if (text.empty() && (quantity == Quantity::strain || quantity == Quantity::stretch)) text = "-";
   const Unit* unit = find_unit(quantity, text);
   if (unit) return unit;
   problems.add(at_names(file), key,
@@ -97,22 +97,11 @@ const Unit* unit_of(const CurveFile& file, std::size_t column, const std::string
   return nullptr;
 }
 
-std::span<const std::string_view> customary(Quantity quantity) {
-  static constexpr std::array<std::string_view, 3> kTime{"time", "zeit", "temps"};
-  static constexpr std::array<std::string_view, 10> kWay{"displacement", "compression", "extension", "position",
-                                                         "depth",        "indentation", "stroke",    "crosshead",
-                                                         "travel",       "weg"};
-  static constexpr std::array<std::string_view, 3> kForce{"force", "load", "kraft"};
-  if (quantity == Quantity::time) return kTime;
-  if (quantity == Quantity::length) return kWay;
-  return kForce;
-}
-
 /// Beside a unit that is of another quantity, the word does not count: "Compression (%)", "Load cell (mV)".
-bool is_customary(const CurveFile& file, std::size_t column, Quantity quantity) {
+bool is_customary(const CurveFile& file, std::size_t column, Quantity quantity,
+                  std::span<const std::string_view> words) {
   if (!file.units[column].empty() && !find_unit(quantity, file.units[column])) return false;
   const std::string name = lower(file.names[column]);
-  const auto words = customary(quantity);
   return std::any_of(words.begin(), words.end(), [&](std::string_view w) { return name.starts_with(w); });
 }
 
@@ -127,11 +116,19 @@ std::optional<ChosenColumn> choose_column(const CurveFile& file, const ColumnSpe
   return ChosenColumn{*index, {file.title(*index), quantity, unit}};
 }
 
-std::optional<ChosenColumn> guess_column(const CurveFile& file, Quantity quantity, const std::string& key,
+bool has_customary(const CurveFile& file, Quantity quantity, std::span<const std::string_view> words) {
+  for (std::size_t i = 0; i < file.names.size(); ++i) {
+    if (is_customary(file, i, quantity, words)) return true;
+  }
+  return false;
+}
+
+std::optional<ChosenColumn> guess_column(const CurveFile& file, Quantity quantity,
+                                         std::span<const std::string_view> words, const std::string& key,
                                          scene::Problems& problems) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < file.names.size(); ++i) {
-    if (is_customary(file, i, quantity)) found.push_back(i);
+    if (is_customary(file, i, quantity, words)) found.push_back(i);
   }
   if (found.size() == 1) {
     ColumnSpec spec;

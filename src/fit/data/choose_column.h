@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "fit/data/data_spec.h"
 #include "fit/data/raw_test.h"
@@ -19,8 +21,11 @@ struct ChosenColumn {
 std::optional<ChosenColumn> choose_column(const CurveFile& file, const ColumnSpec& spec, Quantity quantity,
                                           const std::string& key, scene::Problems& problems);
 
-/// The one column whose name begins with a customary word for time, way or force; complains where none or several do.
-std::optional<ChosenColumn> guess_column(const CurveFile& file, Quantity quantity, const std::string& key,
+/// Whether a column's name begins with one of the words, and its unit is none of another quantity.
+bool has_customary(const CurveFile& file, Quantity quantity, std::span<const std::string_view> words);
+/// The one column whose name does; complains where none or several do.
+std::optional<ChosenColumn> guess_column(const CurveFile& file, Quantity quantity,
+                                         std::span<const std::string_view> words, const std::string& key,
                                          scene::Problems& problems);
 
 /// All columns whose names and units say stress or strain.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fit/data/curve_file.h"
+#include "glisson/fit.h"
 
 namespace glisson::fit {
 
@@ -24,7 +25,10 @@ struct ColumnSpec {
 };
 
 struct ColumnsSpec {
-  ColumnSpec time, displacement, strain, force, stress;
+  ColumnSpec time;
+  ColumnSpec displacement, strain, stretch, true_strain, green_strain, shear, angle, frequency;  ///< what is driven
+  ColumnSpec force, stress, cauchy_stress, second_piola_stress, torque;                          ///< what answers
+  ColumnSpec storage_modulus, loss_modulus;
 };
 
 enum class ContactKind { none, detect, given, automatic };
@@ -79,11 +83,16 @@ struct ResampleSpec {
 struct SpecimenSize {
   std::optional<double> area;    ///< at rest, across the load [m²]
   std::optional<double> height;  ///< at rest, along the load [m]
+  std::optional<double> radius;  ///< of a cylinder [m]
+  bool point = false;            ///< stands for no body: area and height are 1
 };
 
 struct DataSpec {
   std::string group;  ///< repetitions of one test share it; empty: given by whoever numbers the sections
   std::vector<std::filesystem::path> files;
+  LabTest test = LabTest::compression;
+  std::optional<Deforming> deforming;  ///< of a test whose name does not say it; none: the file's stretch, else compression
+  double prestretch = 1.0;             ///< of an oscillation
   bool held_out = false;
   double weight = 1.0;
   TextSpec text;

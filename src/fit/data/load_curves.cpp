@@ -70,8 +70,9 @@ double common_preload(const std::vector<PreparedCurve>& curves) {
 
 std::vector<PreparedCurve> load_curves(const DataSpec& spec, const SpecimenSize& common,
                                        const std::filesystem::path& base) {
-  const SpecimenSize size{spec.size.area ? spec.size.area : common.area,
-                          spec.size.height ? spec.size.height : common.height};
+  SpecimenSize size = common;
+  if (spec.size.area) size.area = spec.size.area;
+  if (spec.size.height) size.height = spec.size.height;
   std::string faults;
   std::vector<RawTest> tests;
   for (const auto& file : spec.files)

@@ -23,6 +23,7 @@ class Preparation {
     account_.rows_skipped = test.rows_skipped;
     account_.rows_merged = test.rows_merged;
     account_.turned = test.turned;
+    account_.unit = test.measurement.unit;
   }
 
   std::optional<PreparedCurve> run() {
@@ -142,7 +143,8 @@ class Preparation {
       rows_.force = local_fit(rows_.time, rows_.force, static_cast<std::size_t>(spec_.filter.half_width),
                               static_cast<std::size_t>(spec_.filter.degree))
                         .values;
-    const double velocity = loading_velocity();
+    const Measurement& m = test_.measurement;
+    const double velocity = m.timed && m.drive_unit == "m" ? loading_velocity() : 0.0;
     if (!can_resample()) return std::nullopt;
     const Resampled points = resampled(rows_, spec_.resample);
     rows_ = points.rows;
@@ -180,6 +182,7 @@ class Preparation {
     c.noise = noise;
     c.weight = spec_.weight;
     c.held_out = spec_.held_out;
+    c.measurement = test_.measurement;
     return c;
   }
 
@@ -203,10 +206,10 @@ std::string CurveAccount::text() const {
   if (!contact_how.starts_with("as recorded")) {
     t += "; contact " + contact_how + " at " + brief(contact * 1e3) + " mm";
     if (contact_deviation > 0.0) t += " ± " + brief(contact_deviation * 1e3) + " mm";
-    t += ", " + brief(force_at_rest) + " N subtracted from the force";
+    t += ", " + measured_text(force_at_rest, unit, 4) + " subtracted from the force";
   }
   if (rows_cropped > 0) t += "; " + std::to_string(rows_cropped) + " rows cropped";
-  return t + "; " + std::to_string(points) + " points, noise of a row " + brief(row_noise) + " N";
+  return t + "; " + std::to_string(points) + " points, noise of a row " + measured_text(row_noise, unit, 4);
 }
 
 std::optional<PreparedCurve> prepare(const RawTest& test, const DataSpec& spec, const SpecimenSize& size,

@@ -31,6 +31,7 @@ struct CurveAccount {
   double force_at_rest = 0.0;      ///< taken off the force [N]
   double first_force = 0.0;        ///< at the first rows, where contact was detected [N]
   double row_noise = 0.0;          ///< standard deviation of the force of single rows [N]
+  std::string unit = "N";          ///< of the forces
 
   /// One line of words.
   std::string text() const;

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "fit/data/choose_column.h"
+#include "fit/data/test_columns.h"
 
 namespace glisson::fit {
 namespace {
@@ -16,48 +18,9 @@ constexpr double kLargest = 1e30;  // of any number in SI: squares and sums of i
 struct Reading {
   ChosenColumn column;
   double factor = 1.0;
-  Sign sign = Sign::found;
 };
 
-struct Readings {
-  std::optional<Reading> time, displacement, force;
-};
-
-std::optional<Reading> reading(std::optional<ChosenColumn> column, double size, Sign sign) {
-  if (!column) return std::nullopt;
-  const double factor = column->source.unit->factor * size;
-  return Reading{std::move(*column), factor, sign};
-}
-
-/// A way from the column of the way, or of the strain; a force from that of the force, or of the stress.
-std::optional<Reading> way_or_force(const CurveFile& file, const ColumnSpec& own, const ColumnSpec& relative, bool way,
-                                    const std::optional<double>& size, scene::Problems& problems) {
-  const Quantity quantity = way ? Quantity::length : Quantity::force;
-  const std::string key = way ? "columns.displacement" : "columns.force";
-  if (own.given) return reading(choose_column(file, own, quantity, key, problems), 1.0, own.sign);
-  if (!relative.given) return reading(guess_column(file, quantity, key, problems), 1.0, own.sign);
-  const std::string relative_key = way ? "columns.strain" : "columns.stress";
-  if (!size) {
-    problems.add({1, 1, {}}, relative_key,
-                 way ? "needs the height of the specimen to be converted to a displacement; give height_mm"
-                     : "needs the area of the specimen to be converted to a force; give area_mm2");
-    return std::nullopt;
-  }
-  return reading(choose_column(file, relative, way ? Quantity::strain : Quantity::stress, relative_key, problems),
-                 *size, relative.sign);
-}
-
-Readings choose(const CurveFile& file, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems) {
-  const ColumnsSpec& c = spec.columns;
-  Readings found;
-  if (c.time.given)
-    found.time = reading(choose_column(file, c.time, Quantity::time, "columns.time", problems), 1.0, Sign::positive);
-  else if (!spec.speed)
-    found.time = reading(guess_column(file, Quantity::time, "columns.time", problems), 1.0, Sign::positive);
-  found.displacement = way_or_force(file, c.displacement, c.strain, true, size.height, problems);
-  found.force = way_or_force(file, c.force, c.stress, false, size.area, problems);
-  return found;
-}
+Reading reading(const ChosenColumn& column) { return {column, column.source.unit->factor}; }
 
 /// Why a field is no number: in the file's words.
 std::string fault_of(const CurveFile& file, const CurveFile::Row& row, const ChosenColumn& column) {
@@ -78,6 +41,13 @@ struct Rows {
   const DataSpec& spec;
   scene::Problems& problems;
   std::size_t bad = 0;
+
+  /// Whether a row has nothing in any of the columns: tests of other lengths lie beside this one.
+  static bool empty(const CurveFile::Row& row, const std::vector<const Reading*>& readings) {
+    return std::all_of(readings.begin(), readings.end(), [&](const Reading* r) {
+      return r->column.index < row.fields.size() && row.fields[r->column.index].text.empty();
+    });
+  }
 
   /// The numbers of the columns in a row; complains of the first that is none.
   std::optional<std::vector<double>> numbers(const CurveFile::Row& row, const std::vector<const Reading*>& readings) {
@@ -127,6 +97,40 @@ double direction_of(const std::vector<double>& values, Sign sign) {
   return *std::max_element(values.begin(), values.end(), farther) < start ? -1.0 : 1.0;
 }
 
+/// What is wrong with a driven number that no test reaches; empty: nothing.
+std::string driven_fault(Drive drive, double value) {
+  if (drive == Drive::stretch && !(value > 0.0)) return "a stretch is above 0, and 1 at rest";
+  if (drive == Drive::frequency && !(value > 0.0)) return "a frequency is above 0";
+  return {};
+}
+
+/// How a test deforms its specimen: by its name; else as it is said, or as the stretch of the file goes.
+Deforming deforming_of(const DataSpec& spec, Drive drive, const std::vector<double>& driven) {
+  switch (spec.test) {
+    case LabTest::compression:
+      return Deforming::compression;
+    case LabTest::tension:
+      return Deforming::tension;
+    case LabTest::equibiaxial:
+      return Deforming::equibiaxial;
+    case LabTest::planar:
+      return Deforming::planar;
+    case LabTest::simple_shear:
+    case LabTest::oscillation:
+      return Deforming::simple_shear;
+    case LabTest::torsion:
+      return Deforming::torsion;
+    case LabTest::relaxation:
+    case LabTest::creep:
+    case LabTest::cyclic:
+      break;
+  }
+  if (spec.deforming || drive != Drive::stretch || driven.empty())
+    return spec.deforming.value_or(Deforming::compression);
+  const auto nearer = [](double a, double b) { return std::abs(a - 1.0) < std::abs(b - 1.0); };
+  return *std::max_element(driven.begin(), driven.end(), nearer) > 1.0 ? Deforming::tension : Deforming::compression;
+}
+
 /// @return whether the numbers were turned
 bool turn(std::vector<double>& values, Sign sign) {
   if (direction_of(values, sign) > 0.0) return false;
@@ -138,6 +142,13 @@ bool turn(std::vector<double>& values, Sign sign) {
 std::vector<double> time_of(const std::vector<double>& way, double speed) {
   std::vector<double> time(way.size(), 0.0);
   for (std::size_t i = 1; i < way.size(); ++i) time[i] = time[i - 1] + std::abs(way[i] - way[i - 1]) / speed;
+  return time;
+}
+
+/// Instants of a test that no time goes with: its rows.
+std::vector<double> rows_as_time(std::size_t rows) {
+  std::vector<double> time(rows);
+  std::iota(time.begin(), time.end(), 0.0);
   return time;
 }
 
@@ -193,39 +204,123 @@ void read_checks(RawTest& test, const std::vector<ChosenColumn>& columns, const 
 
 }  // namespace
 
+namespace {
+
+/// Complains of numbers that a test cannot have, by line.
+void require_possible(const RawTest& test, const TestColumns& columns, scene::Problems& problems) {
+  std::size_t shown = 0;
+  for (std::size_t i = 0; i < test.size() && shown < kBadRowsShown; ++i) {
+    std::string fault = driven_fault(columns.drive, test.displacement[i]);
+    const Source* source = &test.displacement_source;
+    double value = test.displacement[i];
+    if (fault.empty() && (columns.answer == Answer::loss_modulus || columns.answer == Answer::storage_modulus) &&
+        test.force[i] < 0.0) {
+      fault = "a modulus of an oscillation is not below 0: a passive tissue gives no work";
+      source = &test.force_source, value = test.force[i];
+    }
+    if (fault.empty()) continue;
+    ++shown;
+    problems.add({test.lines[i], 1, {}}, "",
+                 source->title + " is " + brief(value / source->unit->factor) + " " + std::string(source->unit->name) +
+                     "; " + fault + "; check the columns and their units");
+  }
+}
+
+/// A stretch that goes the other way than the test's name.
+void require_direction(const RawTest& test, const TestColumns& columns, double outward, scene::Problems& problems) {
+  if (columns.drive != Drive::stretch || test.measurement.test == LabTest::cyclic) return;
+  double most = 0.0;
+  for (const double stretch : test.displacement) {
+    if (std::abs(stretch - 1.0) > std::abs(most)) most = stretch - 1.0;
+  }
+  if (!(outward * most < 0.0) || test.measurement.deforming == Deforming::equibiaxial ||
+      test.measurement.deforming == Deforming::planar)
+    return;
+  problems.add({std::max(test.names_line, 1U), 1, {}}, "",
+               test.displacement_source.title + " goes to " + brief(1.0 + most) + ", which is " +
+                   (most < 0.0 ? "compression" : "tension") + "; give test = \"" +
+                   (most < 0.0 ? "compression" : "tension") + "\", or another column");
+}
+
+/// From the numbers of the file to those of a curve.
+void convert(RawTest& test, const DataSpec& spec, const TestColumns& columns, const SpecimenSize& size,
+             scene::Problems& problems) {
+  Measurement& m = test.measurement;
+  m.deforming = deforming_of(spec, columns.drive, test.displacement);
+  const double outward = m.deforming == Deforming::compression ? -1.0 : 1.0;  // 1: a stretch above 1 is positive
+  require_possible(test, columns, problems);
+  require_direction(test, columns, outward, problems);
+  const bool free_sign = columns.drive != Drive::stretch && columns.drive != Drive::frequency;
+  if (free_sign && turn(test.displacement, columns.driven_sign)) test.turned.push_back(test.displacement_source.title);
+  const bool modulus = columns.answer == Answer::storage_modulus || columns.answer == Answer::loss_modulus;
+  if (!modulus && turn(test.force, columns.answering_sign)) test.turned.push_back(test.force_source.title);
+  for (double& x : test.displacement) x = driven_number(columns.drive, x, size, outward);
+  for (double& f : test.force) f = answering_number(columns.answer, f, size);
+}
+
+/// What the curve's numbers are, and their units.
+Measurement measurement_of(const DataSpec& spec, const TestColumns& columns, const SpecimenSize& size, bool timed) {
+  Measurement m;
+  m.test = spec.test;
+  m.measured = measured_by(columns.answer);
+  m.stretch = spec.prestretch;
+  m.timed = timed;
+  m.point = size.point;
+  m.unit = size.point ? "Pa" : "N";
+  m.drive_unit = size.point ? "-" : "m";
+  if (spec.test == LabTest::torsion || spec.deforming == Deforming::torsion) m.unit = "N m", m.drive_unit = "rad";
+  if (spec.test == LabTest::oscillation) m.unit = "Pa", m.drive_unit = "Hz";
+  return m;
+}
+
+/// A force-controlled test: the load is driven, the strain answers.
+void swap_load(RawTest& test) {
+  std::swap(test.displacement, test.force);
+  std::swap(test.displacement_source, test.force_source);
+  std::swap(test.measurement.unit, test.measurement.drive_unit);
+  test.measurement.measured = Measured::strain;
+}
+
+}  // namespace
+
 RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems) {
   RawTest test;
   test.file = file.file;
   test.names_line = file.names_line;
   test.separator = file.separator;
   test.decimal = file.decimal;
-  const std::size_t before = problems.count();
-  const Readings from = choose(file, spec, size, problems);
-  if (problems.count() > before || !from.displacement || !from.force) return test;
-  std::vector<const Reading*> readings{&*from.displacement, &*from.force};
-  if (from.time) readings.push_back(&*from.time);
-  const std::vector<ChosenColumn> checked = check_columns(file);
+  const auto columns = test_columns(file, spec, size, problems);
+  if (!columns) return test;
+  const Reading driven = reading(columns->driven), answering = reading(columns->answering);
+  const std::optional<Reading> time = columns->time ? std::optional(reading(*columns->time)) : std::nullopt;
+  std::vector<const Reading*> readings{&driven, &answering};
+  if (time) readings.push_back(&*time);
+  const std::vector<ChosenColumn> checked =
+      spec.test == LabTest::compression ? check_columns(file) : std::vector<ChosenColumn>{};
   for (const ChosenColumn& c : checked) test.checks.push_back({c.source, {}});
   Rows rows{file, spec, problems};
   for (const CurveFile::Row& row : file.rows) {
+    if (Rows::empty(row, {&driven, &answering})) continue;
     const auto values = rows.numbers(row, readings);
     if (!values) continue;
     test.lines.push_back(row.line);
     test.displacement.push_back((*values)[0]);
     test.force.push_back((*values)[1]);
-    if (from.time) test.time.push_back((*values)[2]);
+    if (time) test.time.push_back((*values)[2]);
     read_checks(test, checked, file, row);
   }
   rows.finish(test.lines.size());
   test.rows_skipped = rows.bad;
-  for (const auto& [values, reading] :
-       {std::pair{&test.displacement, &*from.displacement}, {&test.force, &*from.force}}) {
-    if (turn(*values, reading->sign)) test.turned.push_back(reading->column.source.title);
-  }
-  if (!from.time) test.time = time_of(test.displacement, *spec.speed);
-  test.displacement_source = from.displacement->column.source;
-  test.force_source = from.force->column.source;
-  test.time_source = from.time ? from.time->column.source : Source{"speed_mm_s", Quantity::time, nullptr};
+  test.displacement_source = driven.column.source;
+  test.force_source = answering.column.source;
+  test.measurement = measurement_of(spec, *columns, size, time || spec.speed);
+  const std::size_t before = problems.count();
+  convert(test, spec, *columns, size, problems);
+  if (problems.count() > before) return test;
+  if (spec.speed && !time) test.time = time_of(test.displacement, *spec.speed);
+  if (!spec.speed && !time) test.time = rows_as_time(test.lines.size());
+  test.time_source = time ? time->column.source : Source{"speed_mm_s", Quantity::time, nullptr};
+  if (spec.test == LabTest::creep) swap_load(test);
   merge_times(test, file, problems);
   return test;
 }

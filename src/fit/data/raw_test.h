@@ -1,4 +1,4 @@
-// raw_test.h — the columns of a file that a fit needs, in SI, positive in compression: every row, nothing cleaned.
+// raw_test.h — the columns of a file that a fit needs, in SI, positive as the test goes: every row, nothing cleaned.
 #pragma once
 
 #include <filesystem>
@@ -32,6 +32,7 @@ struct RawTest {
   Source time_source, displacement_source, force_source;
   std::vector<CheckColumn> checks;  ///< stresses and strains beside force and way
   std::vector<std::string> turned;  ///< titles of the columns whose sign was turned
+  Measurement measurement{};
   std::size_t rows_skipped = 0;     ///< without a number in a column that is needed
   std::size_t rows_merged = 0;      ///< of the same time as the row before, averaged with it
   char separator = ',', decimal = '.';

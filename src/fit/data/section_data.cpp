@@ -1,5 +1,6 @@
 #include "fit/data/section_data.h"
 
+#include "fit/data/test_columns.h"
 #include "fit/data/units.h"
 #include "scene/parse/section.h"
 
@@ -43,6 +44,20 @@ void require_order(const Node& table, const std::optional<double>& low, const st
                    const std::string& least, const std::string& most, const Place& place) {
   if (low && high && !(*low < *high))
     place.complain(*table.find(most), most, "must be greater than `" + least + "`; nothing would be left");
+}
+
+/// The words of an enumeration as choices.
+template <class E>
+std::vector<scene::Choice<E>> choices_of() {
+  std::vector<scene::Choice<E>> list;
+  for (const Word<E>& w : kWords<E>) list.push_back({std::string(w.word), w.value, std::string(w.help), is_alias(w)});
+  return list;
+}
+template <class E>
+std::vector<scene::Choice<std::optional<E>>> optional_choices_of() {
+  std::vector<scene::Choice<std::optional<E>>> list;
+  for (const Word<E>& w : kWords<E>) list.push_back({std::string(w.word), w.value, std::string(w.help), is_alias(w)});
+  return list;
 }
 
 SectionSpec detect_kind() {
@@ -102,18 +117,47 @@ void add_mark_keys(Section<TextSpec>& s) {
                  "decimal mark");
 }
 
+/// One column of each list at most.
+void require_one(const Node& columns, const Place& here, std::initializer_list<std::pair<const char*, bool>> list) {
+  const char* first = nullptr;
+  for (const auto& [key, given] : list) {
+    if (given && first)
+      here.complain(*columns.find(key), key, "contradicts `" + std::string(first) + "`; give one of the two");
+    if (given && !first) first = key;
+  }
+}
+
 void require_columns(const DataSpec& x, const Node& table, const Place& place) {
   const ColumnsSpec& c = x.columns;
   const Node* columns = table.find("columns");
-  const Place here = place.inside("columns", columns ? columns->where : place.where);
-  if (c.strain.given && c.displacement.given)
-    here.complain(*columns->find("strain"), "strain", "contradicts `displacement`; give one of the two");
-  if (c.stress.given && c.force.given)
-    here.complain(*columns->find("stress"), "stress", "contradicts `force`; give one of the two");
+  if (!columns) return;
+  const Place here = place.inside("columns", columns->where);
+  require_one(*columns, here,
+              {{"displacement", c.displacement.given},
+               {"strain", c.strain.given},
+               {"stretch", c.stretch.given},
+               {"true_strain", c.true_strain.given},
+               {"green_strain", c.green_strain.given},
+               {"shear", c.shear.given},
+               {"angle", c.angle.given},
+               {"frequency", c.frequency.given}});
+  require_one(*columns, here,
+              {{"force", c.force.given},
+               {"stress", c.stress.given},
+               {"cauchy_stress", c.cauchy_stress.given},
+               {"second_piola_stress", c.second_piola_stress.given},
+               {"torque", c.torque.given},
+               {"storage_modulus", c.storage_modulus.given || c.loss_modulus.given}});
 }
 
 void finish_data(DataSpec& x, const Node& table, const Place& place) {
   x.origin = place.text();
+  if (x.deforming && names_its_deformation(x.test))
+    place.complain(*table.find("mode"), "mode",
+                   "belongs to relaxation, creep and cyclic; a test of " + std::string(word_of(x.test)) +
+                       " says how it deforms");
+  if (x.prestretch != 1.0 && x.test != LabTest::oscillation)
+    place.complain(*table.find("prestretch"), "prestretch", "belongs to test = \"oscillation\"");
   if (x.files.empty()) place.complain(*table.find("files"), "files", "is empty; name at least one file");
   require_columns(x, table, place);
 }
@@ -146,22 +190,52 @@ const SectionSpec& column_section() {
 const SectionSpec& columns_section() {
   static const SectionSpec section = [] {
     Section<ColumnsSpec> s("data.columns",
-                           "Meaning of the columns. A column that is not given is detected if exactly one name begins "
-                           "with a customary word: time; displacement, compression, extension, depth, …; force, load.");
+                           "Meaning of the columns: one that is driven, one that answers, and the time. A column that "
+                           "is not given is detected if exactly one name begins with a customary word: time; "
+                           "displacement, compression, extension, depth, …; force, load; stretch; strain; stress; "
+                           "shear; angle; torque; frequency. A file may hold several tests side by side: rows that "
+                           "are empty in the columns of one are no rows of it.");
     s.table("time", column_section(), &ColumnsSpec::time, "time, in s, ms or min");
     s.table("displacement", column_section(), &ColumnsSpec::displacement,
             "displacement of the tool, in m, cm, mm, µm, um or in");
     s.table("strain", column_section(), &ColumnsSpec::strain,
             "engineering strain, in - or %, instead of displacement; needs the height");
+    s.table("stretch", column_section(), &ColumnsSpec::stretch,
+            "length over length at rest, below 1 in compression, instead of displacement");
+    s.table("true_strain", column_section(), &ColumnsSpec::true_strain, "logarithmic strain, ln λ, in - or %");
+    s.table("green_strain", column_section(), &ColumnsSpec::green_strain, "Green's strain, (λ² − 1)/2, in - or %");
+    s.table("shear", column_section(), &ColumnsSpec::shear,
+            "amount of shear, displacement over distance of the faces, in - or %");
+    s.table("angle", column_section(), &ColumnsSpec::angle, "angle of twist of one face against the other, in rad or deg");
+    s.table("frequency", column_section(), &ColumnsSpec::frequency, "of an oscillation, in Hz, kHz or rad/s");
     s.table("force", column_section(), &ColumnsSpec::force, "force, in N, mN, kN, gf, kgf or lbf");
     s.table("stress", column_section(), &ColumnsSpec::stress,
-            "engineering stress, in Pa, kPa or MPa, instead of force; needs the area");
+            "nominal stress, force over area at rest, in Pa, kPa or MPa, instead of force; needs the area");
+    s.table("cauchy_stress", column_section(), &ColumnsSpec::cauchy_stress,
+            "true stress, force over the present area, in Pa, kPa or MPa");
+    s.table("second_piola_stress", column_section(), &ColumnsSpec::second_piola_stress,
+            "second Piola–Kirchhoff stress, nominal stress over stretch, in Pa, kPa or MPa");
+    s.table("torque", column_section(), &ColumnsSpec::torque, "torque about the axis, in N m, mN m, µN m or N mm");
+    s.table("storage_modulus", column_section(), &ColumnsSpec::storage_modulus, "G′ of an oscillation, in Pa, kPa or MPa");
+    s.table("loss_modulus", column_section(), &ColumnsSpec::loss_modulus,
+            "G″ of an oscillation; beside G′ it is a curve of its own");
     s.finish([](ColumnsSpec& x, const Node& table, const Place& place) {
       require_unit(x.time, table, "time", Quantity::time, place);
       require_unit(x.displacement, table, "displacement", Quantity::length, place);
       require_unit(x.strain, table, "strain", Quantity::strain, place);
+      require_unit(x.stretch, table, "stretch", Quantity::stretch, place);
+      require_unit(x.true_strain, table, "true_strain", Quantity::strain, place);
+      require_unit(x.green_strain, table, "green_strain", Quantity::strain, place);
+      require_unit(x.shear, table, "shear", Quantity::strain, place);
+      require_unit(x.angle, table, "angle", Quantity::angle, place);
+      require_unit(x.frequency, table, "frequency", Quantity::frequency, place);
       require_unit(x.force, table, "force", Quantity::force, place);
       require_unit(x.stress, table, "stress", Quantity::stress, place);
+      require_unit(x.cauchy_stress, table, "cauchy_stress", Quantity::stress, place);
+      require_unit(x.second_piola_stress, table, "second_piola_stress", Quantity::stress, place);
+      require_unit(x.torque, table, "torque", Quantity::torque, place);
+      require_unit(x.storage_modulus, table, "storage_modulus", Quantity::stress, place);
+      require_unit(x.loss_modulus, table, "loss_modulus", Quantity::stress, place);
     });
     return s.spec();
   }();
@@ -283,6 +357,13 @@ const SectionSpec& data_section() {
     Section<D> s("data", "Measured curves: repetitions of one test, one file each.");
     s.key("name", &D::group, "name of the test, e.g. \"2 mm/s\"; the files are its repetitions");
     s.key("files", &D::files, "files, relative to FIT.toml, or to --data DIR").must();
+    s.choice<LabTest>("test", &D::test, choices_of<LabTest>(), "what was done to the specimen");
+    s.choice<std::optional<Deforming>>("mode", &D::deforming, optional_choices_of<Deforming>(),
+                                       "how the specimen deforms in a test of relaxation, creep or cycles")
+        .otherwise("tension or compression as a column of stretches says, else compression");
+    s.key("prestretch", &D::prestretch, "length over length at rest about which an oscillation is small")
+        .in("-")
+        .within(above(0));
     s.choice<bool>("use", &D::held_out, {{"fit", false, "fitted"}, {"test", true, "held out, to test the fit"}},
                    "purpose");
     s.key("weight", &D::weight, "factor on the residuals").in("-").within(at_least(0));

@@ -1,4 +1,4 @@
-// units.h — the units in which laboratories write times, ways, forces, stresses and strains.
+// units.h — the units in which laboratories write what they measure.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace glisson::fit {
 
-enum class Quantity { time, length, force, stress, strain };
+enum class Quantity { time, length, force, stress, strain, stretch, angle, torque, frequency };
 
 struct Unit {
   std::string_view name;
@@ -33,5 +33,8 @@ Title split_title(std::string_view title);
 
 /// A few significant digits, for messages.
 inline std::string brief(double value, int digits = 4) { return detail::number_text(value, digits); }
+
+/// A measured number with its unit, for messages: `0.31 N`, `1.2 kPa`; without a unit a part, `2.1 %`.
+std::string measured_text(double value, std::string_view unit, int digits = 3);
 
 }  // namespace glisson::fit

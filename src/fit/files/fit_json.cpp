@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "glisson/version.h"
 
@@ -49,20 +50,80 @@ Json parameter_json(const fit::ParameterResult& p) {
           {"words", p.words}};
 }
 
-Json curve_json(const fit::CurveResult& c, const std::string& account) {
+/// What stands along an axis of a curve's chart: a label with its unit, and what turns SI into it.
+struct AxisOf {
+  std::string label;
+  double scale = 1.0;
+};
+Json axis_json(const AxisOf& axis) { return {{"label", axis.label}, {"scale", axis.scale}}; }
+
+/// The driven number: a strain where the height is known.
+AxisOf driven_axis(const fit::Measurement& m, const FitResult& result) {
+  const double height = result.height.value_or(1.0);
+  if (m.test == fit::LabTest::oscillation) return {"frequency [Hz]", 1.0};
+  if (m.drive_unit == "rad") return {"angle [°]", 180.0 / std::numbers::pi};
+  if (m.measured == fit::Measured::strain) return {"nominal stress [kPa]", 1e-3 / result.area.value_or(1.0)};
+  if (m.deforming == fit::Deforming::simple_shear) return {"shear [%]", 100.0 / height};
+  if (result.height) return {m.deforming == fit::Deforming::compression ? "strain [%]" : "extension [%]", 100.0 / height};
+  return {"displacement [mm]", 1000.0};
+}
+
+/// The measured number: a stress where the area is known.
+AxisOf measured_axis(const fit::Measurement& m, const FitResult& result) {
+  const double stress = 1e-3 / result.area.value_or(1.0);
+  switch (m.measured) {
+    case fit::Measured::cauchy:
+      return {"Cauchy stress [kPa]", stress};
+    case fit::Measured::second_piola:
+      return {"second Piola–Kirchhoff stress [kPa]", stress};
+    case fit::Measured::torque:
+      return {"torque [mN m]", 1e3};
+    case fit::Measured::strain:
+      return {"strain [%]", 100.0 / result.height.value_or(1.0)};
+    case fit::Measured::storage:
+      return {"storage modulus [kPa]", 1e-3};
+    case fit::Measured::loss:
+      return {"loss modulus [kPa]", 1e-3};
+    case fit::Measured::nominal:
+      break;
+  }
+  if (!result.area) return {"force [N]", 1.0};
+  return {m.deforming == fit::Deforming::simple_shear ? "shear stress [kPa]" : "nominal stress [kPa]", stress};
+}
+
+/// Along x: time where the test goes by it, else what is driven.
+Json curve_x(const fit::Measurement& m, const FitResult& result) {
+  const bool by_time = m.test == fit::LabTest::relaxation || m.test == fit::LabTest::creep;
+  Json axis = axis_json(by_time ? AxisOf{"time [s]", 1.0} : driven_axis(m, result));
+  axis["of"] = by_time ? "time" : "drive";
+  axis["log"] = m.test == fit::LabTest::oscillation;
+  return axis;
+}
+
+/// Numbers of a press are named by their units; those of other tests stand beside theirs.
+Json curve_json(const fit::CurveResult& c, const FitResult& result, const std::string& account) {
   const std::vector<double> none(c.curve.size(), std::nan(""));
+  const fit::Measurement& m = c.curve.measurement;
+  const bool newtons = m.unit == "N" && m.drive_unit == "m";
+  const std::string n = newtons ? "_N" : "";
   return {{"name", c.curve.name},
           {"group", c.curve.group},
+          {"test", word_of(m.test)},
+          {"deforming", word_of(m.deforming)},
           {"velocity_m_s", number(c.curve.velocity)},
           {"held_out", c.curve.held_out},
-          {"time_s", numbers(c.curve.time)},
-          {"displacement_m", numbers(c.curve.displacement)},
-          {"measured_N", numbers(c.curve.force)},
-          {"fitted_N", numbers(c.fitted.empty() ? none : c.fitted)},
-          {"further_low_N", numbers(c.further_low)},
-          {"further_high_N", numbers(c.further_high)},
-          {"noise_N", number(c.curve.noise)},
-          {"rms_N", number(c.rms)},
+          {"unit", m.unit},
+          {"drive_unit", m.drive_unit},
+          {"x", curve_x(m, result)},
+          {"y", axis_json(measured_axis(m, result))},
+          {"time_s", m.timed ? numbers(c.curve.time) : Json::array()},
+          {newtons ? "displacement_m" : "drive", numbers(c.curve.displacement)},
+          {"measured" + n, numbers(c.curve.force)},
+          {"fitted" + n, numbers(c.fitted.empty() ? none : c.fitted)},
+          {"further_low" + n, numbers(c.further_low)},
+          {"further_high" + n, numbers(c.further_high)},
+          {"noise" + n, number(c.curve.noise)},
+          {"rms" + n, number(c.rms)},
           {"account", account}};
 }
 
@@ -71,6 +132,26 @@ Json groups_json(const FitResult& result) {
   for (const fit::GroupResult& g : result.groups)
     list.push_back(
         {{"name", g.name}, {"held_out", g.held_out}, {"rms_N", number(g.rms)}, {"spread_N", number(g.spread)}});
+  return list;
+}
+
+/// Of each test what the fit of all makes of it, and fits to one test alone.
+Json tests_json(const FitResult& result) {
+  Json list = Json::array();
+  for (const fit::TestResult& t : result.tests) {
+    Json alone = Json::object();
+    for (std::size_t a = 0; a < t.r2_of_alone.size(); ++a) {
+      if (!result.tests[a].held_out) alone[result.tests[a].name] = number(t.r2_of_alone[a]);
+    }
+    list.push_back({{"name", t.name},
+                    {"test", word_of(t.test)},
+                    {"r2", number(t.r2)},
+                    {"rms", number(t.rms)},
+                    {"unit", t.unit},
+                    {"points", t.points},
+                    {"held_out", t.held_out},
+                    {"r2_of_alone", alone}});
+  }
   return list;
 }
 
@@ -125,14 +206,16 @@ Json designs_json(const FitResult& result) {
   return list;
 }
 
-/// Strain and stress where the specimen's size is known; else displacement and force.
+/// Strain and stress where the specimen's size is known, else displacement and force: of most curves, and of all errors.
 Json axis_x(const FitResult& result) {
   if (result.height) return {{"label", "strain [%]"}, {"scale", 100.0 / *result.height}};
   return {{"label", "displacement [mm]"}, {"scale", 1000.0}};
 }
 Json axis_y(const FitResult& result) {
-  if (result.area) return {{"label", "nominal stress [kPa]"}, {"scale", 1e-3 / *result.area}};
-  return {{"label", "force [N]"}, {"scale", 1.0}};
+  if (result.unit.empty()) return {{"label", "part of the largest [%]"}, {"scale", 100.0}};
+  if (result.unit == "Pa") return {{"label", "stress [kPa]"}, {"scale", 1e-3}};
+  if (result.unit == "N" && result.area) return {{"label", "nominal stress [kPa]"}, {"scale", 1e-3 / *result.area}};
+  return {{"label", result.unit == "N" ? "force [N]" : "measured [" + result.unit + "]"}, {"scale", 1.0}};
 }
 
 }  // namespace
@@ -141,7 +224,7 @@ Json fit_json(const FitResult& result, const FitHeading& heading) {
   Json parameters = Json::array(), curves = Json::array(), correlation = Json::array(), replicates = Json::array();
   for (const fit::ParameterResult& p : result.parameters) parameters.push_back(parameter_json(p));
   for (std::size_t c = 0; c < result.curves.size(); ++c)
-    curves.push_back(curve_json(result.curves[c], c < result.accounts.size() ? result.accounts[c] : ""));
+    curves.push_back(curve_json(result.curves[c], result, c < result.accounts.size() ? result.accounts[c] : ""));
   for (const std::vector<double>& row : result.correlation) correlation.push_back(numbers(row));
   for (const std::vector<double>& row : result.bootstrap) replicates.push_back(numbers(row));
   Json bootstrap = nullptr;
@@ -168,6 +251,8 @@ Json fit_json(const FitResult& result, const FitHeading& heading) {
             {"forward_error_N", number(result.forward_error)},
             {"correlation", correlation},
             {"groups", groups_json(result)},
+            {"tests", tests_json(result)},
+            {"unit", result.unit},
             {"profiles", profiles_json(result)},
             {"bootstrap", bootstrap},
             {"laws", laws_json(result)},

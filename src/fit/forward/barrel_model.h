@@ -14,7 +14,7 @@
 #include <string>
 
 #include "fit/forward/barrel.h"
-#include "fit/forward/uniaxial.h"
+#include "fit/forward/specimen_model.h"
 
 namespace glisson::fit {
 
@@ -48,7 +48,7 @@ class BarrelModel final : public MotionModel {
   Plates plates_;
   TissueAt tissue_;
   std::vector<std::string> keys_;
-  UniaxialModel homogeneous_;
+  SpecimenModel homogeneous_;
   double farthest_ = 0.0;  ///< displacement of all curves [m]
   std::shared_ptr<const BarrelMesh> mesh_;
   mutable std::mutex mutex_;

@@ -233,7 +233,7 @@ struct Maker {
   }
   std::shared_ptr<const Model> specimen(const Specimen& size) const {
     const TissueAt tissue = tissue_at(inner);
-    return tissue ? with_offsets(std::make_shared<UniaxialModel>(problem.curves, size, tissue)) : nullptr;
+    return tissue ? with_offsets(std::make_shared<SpecimenModel>(problem.curves, size, tissue)) : nullptr;
   }
   std::shared_ptr<const Model> barrel(const BarrelGrid& grid) const {
     std::vector<std::string> of_tissue;

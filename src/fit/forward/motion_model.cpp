@@ -18,11 +18,14 @@ double lead_time(const Curve& curve, double first) {
 MonotoneCubic<double> way_of(const Curve& curve, double contact, std::size_t& lead) {
   std::vector<double> times, way;
   const double first = curve.displacement.front() - contact;
-  lead = first > 0.0 ? 1 : 0;
-  if (lead > 0) times.push_back(curve.time.front() - lead_time(curve, first)), way.push_back(0.0);
+  // a press touches nothing before contact; a grip goes either way
+  const bool grips = curve.measurement.test != LabTest::compression;
+  lead = first > 0.0 || (grips && first != 0.0) ? 1 : 0;
+  if (lead > 0) times.push_back(curve.time.front() - lead_time(curve, std::abs(first))), way.push_back(0.0);
   for (std::size_t i = 0; i < curve.size(); ++i) {
+    const double d = curve.displacement[i] - contact;
     times.push_back(curve.time[i]);
-    way.push_back(std::max(0.0, curve.displacement[i] - contact));
+    way.push_back(grips ? d : std::max(0.0, d));
   }
   return {std::move(times), std::move(way)};
 }

@@ -75,9 +75,13 @@ SectionSpec block_kind() {
   return s.spec();
 }
 
-KindSpec kind_of(SectionSpec section, bool round) {
-  return {std::move(section), [round](void* target) -> void* {
-            static_cast<SpecimenSpec*>(target)->round = round;
+SectionSpec point_kind() {
+  return Section<SpecimenSpec>("point", "Stress over strain: no size is needed, and none is known.").spec();
+}
+
+KindSpec kind_of(SectionSpec section, SpecimenShape shape) {
+  return {std::move(section), [shape](void* target) -> void* {
+            static_cast<SpecimenSpec*>(target)->shape = shape;
             return target;
           }};
 }
@@ -86,32 +90,36 @@ KindSpec kind_of(SectionSpec section, bool round) {
 
 const SectionSpec& specimen_section() {
   static const SectionSpec section = [] {
-    Section<SpecimenSpec> s("specimen", "A specimen pressed between plates, in place of a scene.");
+    Section<SpecimenSpec> s("specimen", "A specimen of a laboratory, in place of a scene.");
     s.key("cells", &SpecimenSpec::cells,
           "cubes along x, y and z of the body that the homogeneous specimen is compared with")
         .within(between(1, 100));
-    s.spec().kinds = {kind_of(cylinder_kind(), true), kind_of(block_kind(), false)};
+    s.spec().kinds = {kind_of(cylinder_kind(), SpecimenShape::cylinder), kind_of(block_kind(), SpecimenShape::block),
+                      kind_of(point_kind(), SpecimenShape::point)};
     return s.spec();
   }();
   return section;
 }
 
 Specimen specimen_of(const SpecimenSpec& spec) {
-  const double area = spec.round ? 0.25 * std::numbers::pi * spec.diameter * spec.diameter : spec.width * spec.depth;
-  return {.area = area, .height = spec.height};
+  if (spec.shape == SpecimenShape::point) return {.area = 1.0, .height = 1.0};
+  if (spec.shape == SpecimenShape::block) return {.area = spec.width * spec.depth, .height = spec.height};
+  return {.area = 0.25 * std::numbers::pi * spec.diameter * spec.diameter,
+          .height = spec.height,
+          .radius = 0.5 * spec.diameter};
 }
 
 std::optional<Plates> plates_of(const SpecimenSpec& spec) {
-  if (!spec.round || spec.faces == Faces::smooth) return {};
+  if (spec.shape != SpecimenShape::cylinder || spec.faces == Faces::smooth) return {};
   return Plates{0.5 * spec.diameter, spec.height, spec.faces, spec.grip};
 }
 
 std::string specimen_scene(const SpecimenSpec& spec) {
-  const double area = specimen_of(spec).area;
-  const double width = spec.round ? std::sqrt(area) : spec.width;
+  const Specimen size = specimen_of(spec);
+  const double area = size.area, width = spec.shape == SpecimenShape::block ? spec.width : std::sqrt(area);
   std::string text = "title = \"A specimen between smooth plates\"\n\n[mesh]\nkind = \"box\"\n";
   text += "cells = " + Codec<std::array<int, 3>>::show(spec.cells) + "\n";
-  text += "size_m = " + Codec<Vec3d>::show({width, area / width, spec.height}) + "\n\n";
+  text += "size_m = " + Codec<Vec3d>::show({width, area / width, size.height}) + "\n\n";
   for (const char* axis : {"x", "y", "z"})
     text += "[[fixed]]\nset = \"" + std::string(axis) + "_min\"\naxes = \"" + axis + "\"\n\n";
   return text +

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "fit/forward/barrel_model.h"
-#include "fit/forward/uniaxial.h"
+#include "fit/forward/specimen_model.h"
 #include "glisson/simulation/simulation.h"
 #include "scene/parse/schema.h"
 
@@ -29,9 +29,11 @@ struct ForwardSpec {
   double approach = 0.0;   ///< way of an instrument in the scene before it touches the tissue [m], ≥ 0
 };
 
-/// A specimen between plates, in place of a scene.
+enum class SpecimenShape { cylinder, block, point };
+
+/// A specimen of a laboratory, in place of a scene.
 struct SpecimenSpec {
-  bool round = true;
+  SpecimenShape shape = SpecimenShape::cylinder;
   Faces faces = Faces::smooth;        ///< of a cylinder
   Grip grip;                          ///< of its faces
   double diameter = 0.05;             ///< of a cylinder [m], > 0
@@ -43,6 +45,7 @@ struct SpecimenSpec {
 const scene::SectionSpec& forward_section();   ///< fills ForwardSpec
 const scene::SectionSpec& specimen_section();  ///< fills SpecimenSpec
 
+/// A point has an area of 1 m² and a height of 1 m: its forces are stresses, its displacements strains.
 Specimen specimen_of(const SpecimenSpec& spec);
 /// None where the plates are smooth.
 std::optional<Plates> plates_of(const SpecimenSpec& spec);

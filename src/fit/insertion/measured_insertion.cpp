@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "fit/data/choose_column.h"
+#include "fit/data/test_columns.h"
 
 namespace glisson::fit {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 std::vector<double> column(const CurveFile& file, const ColumnSpec& spec, Quantity quantity, const std::string& key,
                            scene::Problems& problems) {
   const std::optional<ChosenColumn> chosen =
-      spec.given ? choose_column(file, spec, quantity, key, problems) : guess_column(file, quantity, key, problems);
+      spec.given ? choose_column(file, spec, quantity, key, problems) : guess_column(file, quantity, customary_words(quantity), key, problems);
   std::vector<double> values;
   if (!chosen) return values;
   for (const CurveFile::Row& row : file.rows) {

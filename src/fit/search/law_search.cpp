@@ -62,10 +62,11 @@ double rms_at(const Problem& problem, std::span<const double> scaled) {
   if (r.values.empty()) return std::numeric_limits<double>::infinity();
   double squares = 0.0;
   std::size_t count = 0;
+  const std::string unit = common_unit(problem.curves());
   for (std::size_t c = 0; c < problem.curves().size(); ++c) {
     const Curve& curve = problem.curves()[c];
     if (!(curve.weight > 0.0)) continue;
-    const double newtons = problem.spread()[c] / curve.weight;
+    const double newtons = problem.spread()[c] / curve.weight * size_in(unit, curve);
     for (std::size_t i = 0; i < curve.size(); ++i) {
       const double f = newtons * r.values[problem.offset(c) + i];
       squares += f * f;
@@ -152,6 +153,9 @@ void LawSearch::search(LawMemory& memory, const std::function<void(const MultiSt
 /// How far a body of tets between the plates is from the homogeneous state that was fitted.
 void LawSearch::compare_specimen() {
   if (!spec_.specimen || spec_.forward.kind != ForwardKind::automatic || optimum_.scaled.empty()) return;
+  const bool presses = std::all_of(curves_.curves.begin(), curves_.curves.end(),
+                                   [](const Curve& c) { return c.measurement.is_press(); });
+  if (!presses) return;
   if (forward_.plates) return compare_grids();
   ForwardProblem there = problem_at_optimum(forward_.curves);
   there.spec.kind = ForwardKind::automatic;
@@ -242,7 +246,9 @@ std::string LawSearch::forward_words() const {
   std::string words;
   if (forward_.spec.kind != ForwardKind::automatic) {
     words = forward_.plates            ? "Forward model: a cylinder that bulges between its plates."
-            : taken.name == "specimen" ? "Forward model: a homogeneous specimen."
+            : taken.name == "specimen" ? spec_.specimen && spec_.specimen->shape == SpecimenShape::point
+                                             ? "Forward model: a material point."
+                                             : "Forward model: a homogeneous specimen."
                                        : "Forward model: " + taken.name + ", as asked for.";
   } else if (ladder_.chosen == 0) {
     words = "Forward model: the scene itself; no cheaper model stayed within the noise of the curves.";

@@ -81,7 +81,7 @@ class LawSearch {
 /// The scene of a fit: a file, or one made for its specimen; over it the fit's keys and the law's.
 SceneText scene_of(const FitSpec& spec, const LawSpec& law);
 
-/// The root mean square of force differences at a point, over all fitted curves [N]; infinite where a run fails.
+/// The root mean square of force differences at a point, over all fitted curves, in their common_unit; infinite where a run fails.
 double rms_at(const Problem& problem, std::span<const double> scaled);
 
 }  // namespace glisson::fit

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "fit/data/units.h"
+
 namespace glisson::fit {
 namespace {
 
@@ -69,12 +71,20 @@ bool is_as_good(const LawRank& r, const LawRank& best) {
   return r.heldout <= kNoWorse * best.heldout || (r.heldout < kWorse * best.heldout && r.behind <= r.behind_error);
 }
 
-std::string words_of(const LawRank& r, bool heldout) {
+/// `0.12 ± 0.05 N`.
+std::string difference_text(const LawRank& r, const std::string& unit) {
+  const auto number = [&](double x, int digits) {
+    std::string text = measured_text(x, unit, digits);
+    return std::pair(text.substr(0, text.find(' ')), text.find(' ') == std::string::npos ? "" : text.substr(text.find(' ')));
+  };
+  if (number(r.behind, 2).second != number(r.behind_error, 1).second)
+    return measured_text(r.behind, unit, 2) + " ± " + measured_text(r.behind_error, unit, 1);
+  return number(r.behind, 2).first + " ± " + measured_text(r.behind_error, unit, 1);
+}
+
+std::string words_of(const LawRank& r, bool heldout, const std::string& unit) {
   if (!heldout) return r.as_good ? "as good" : "";
-  char text[96];
-  std::snprintf(text, sizeof text, "errs by %.2g ± %.1g N more than the best%s", r.behind, r.behind_error,
-                r.as_good ? ": as good" : "");
-  return text;
+  return "errs by " + difference_text(r, unit) + " more than the best" + (r.as_good ? ": as good" : "");
 }
 
 std::size_t place_of(const LawRanking& ranking, std::size_t law) {
@@ -83,7 +93,7 @@ std::size_t place_of(const LawRanking& ranking, std::size_t law) {
   return place + 1;
 }
 
-std::string write(const LawRanking& ranking, std::span<const LawFit> laws, bool heldout) {
+std::string write(const LawRanking& ranking, std::span<const LawFit> laws, bool heldout, const std::string& unit) {
   const LawFit &chosen = laws[ranking.chosen], &best = laws[ranking.best];
   const LawRank& c = ranking.order[place_of(ranking, ranking.chosen) - 1];
   const LawRank& b = ranking.order.front();
@@ -91,7 +101,8 @@ std::string write(const LawRanking& ranking, std::span<const LawFit> laws, bool 
   std::string s = "the data support " + std::to_string(chosen.parameters) +
                   (chosen.parameters == 1 ? " parameter: " : " parameters: ") + chosen.name;
   if (heldout)
-    std::snprintf(text, sizeof text, " errs by %.3g N on curves that its fit has not seen", c.heldout);
+    std::snprintf(text, sizeof text, " errs by %s on curves that its fit has not seen",
+                  measured_text(c.heldout, unit).c_str());
   else
     std::snprintf(text, sizeof text, " has an %s %.1f above the least (fewer than two curves are held out%s)",
                   ranking.corrected ? "AICc" : "AIC", c.delta_aicc,
@@ -100,10 +111,9 @@ std::string write(const LawRanking& ranking, std::span<const LawFit> laws, bool 
   if (ranking.chosen == ranking.best) return s + ", the least of all; no simpler law is as good";
   if (heldout)
     std::snprintf(text, sizeof text,
-                  ", rank %zu of %zu; the best, %s with %zu, errs by %.3g N, and %zu curves do not tell them apart "
-                  "(%.2g ± %.2g N)",
-                  place_of(ranking, ranking.chosen), laws.size(), best.name.c_str(), best.parameters, b.heldout,
-                  chosen.heldout_rms.size(), c.behind, c.behind_error);
+                  ", rank %zu of %zu; the best, %s with %zu, errs by %s, and %zu curves do not tell them apart (%s)",
+                  place_of(ranking, ranking.chosen), laws.size(), best.name.c_str(), best.parameters,
+                  measured_text(b.heldout, unit).c_str(), chosen.heldout_rms.size(), difference_text(c, unit).c_str());
   else
     std::snprintf(text, sizeof text, ", too little to prefer %s with %zu", best.name.c_str(), best.parameters);
   return s + text;
@@ -122,7 +132,7 @@ Criteria criteria(double sum_squares, std::size_t samples, double effective, std
   return c;
 }
 
-LawRanking rank_laws(std::span<const LawFit> laws) {
+LawRanking rank_laws(std::span<const LawFit> laws, const std::string& unit) {
   check(laws);
   LawRanking out;
   const bool heldout = laws[0].heldout_rms.size() > 1;
@@ -144,10 +154,10 @@ LawRanking rank_laws(std::span<const LawFit> laws) {
   for (LawRank& r : out.order) {
     if (heldout) measure_behind(r, laws[r.law].heldout_rms, laws[out.best].heldout_rms);
     r.as_good = heldout ? is_as_good(r, out.order.front()) : r.delta_aicc <= out.order.front().delta_aicc + 2.0;
-    r.words = words_of(r, heldout);
+    r.words = words_of(r, heldout, unit);
     if (r.as_good && laws[r.law].parameters < laws[out.chosen].parameters) out.chosen = r.law;
   }
-  out.sentence = write(out, laws, heldout);
+  out.sentence = write(out, laws, heldout, unit);
   return out;
 }
 

@@ -60,6 +60,6 @@ struct LawRanking {
 /// likelihoods of different sample sizes do not compare (as the variance inflation of [BurnhamAnderson2002], taken from the
 /// most general model).
 /// @throws std::invalid_argument  no law, or laws with different samples or held-out curves
-LawRanking rank_laws(std::span<const LawFit> laws);
+LawRanking rank_laws(std::span<const LawFit> laws, const std::string& unit = "N");
 
 }  // namespace glisson::fit

@@ -7,7 +7,7 @@
 
 namespace glisson::fit {
 
-/// The rms error on each fitted curve of a fit to the others [N], from the optimum of all; infinite where the model fails.
+/// The rms error on each fitted curve of a fit to the others in their unit (common_unit), from the optimum of all; infinite where the model fails.
 /// Nothing where fewer than three curves are fitted, or where `stop` is set. Cost: a short descent for each curve.
 std::vector<double> left_out_errors(const Problem& problem, const Optimum& optimum, const DescentOptions& options);
 

@@ -80,6 +80,9 @@ std::vector<ExperimentSpec> usual_experiments(const std::vector<Curve>& fitted, 
 std::vector<DesignResult> next_experiments(const LawSearch& search, const FitSpec& spec, const Covariance& covariance) {
   const Problem& problem = search.problem();
   if (!covariance.failure.empty() || !common_keys_only(search.law())) return {};
+  const bool presses = std::all_of(problem.curves().begin(), problem.curves().end(),
+                                   [](const Curve& c) { return c.measurement.is_press(); });
+  if (!presses) return {};  // the usual next tests are presses
   const double deepest =
       spec.specimen ? kDeepestStrain * spec.specimen->height : std::numeric_limits<double>::infinity();
   const std::vector<ExperimentSpec> experiments =

@@ -1,5 +1,5 @@
-// uniaxial_forward_test.cpp — a homogeneous specimen against closed forms, and against the body it stands for.
-#include "fit/forward/uniaxial.h"
+// specimen_model_test.cpp — a homogeneous specimen against closed forms, and against the body it stands for.
+#include "fit/forward/specimen_model.h"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -9,7 +9,7 @@
 #include "fit/forward/offset_model.h"
 #include "fit/forward/scene_model.h"
 
-namespace glisson::fit::uniaxial_forward_test {
+namespace glisson::fit::specimen_model_test {
 namespace {
 
 constexpr double kArea = 4e-4, kHeight = 0.02;
@@ -28,7 +28,7 @@ Curve ramp(double velocity, double strain, int points) {
 }
 
 std::vector<double> force_of(const Tissue& tissue, const Curve& curve) {
-  const UniaxialModel model({curve}, {kArea, kHeight}, [&](std::span<const double>) { return tissue; });
+  const SpecimenModel model({curve}, {kArea, kHeight}, [&](std::span<const double>) { return tissue; });
   const Prediction p = model.predict(0, {});
   EXPECT_EQ(p.failure, "");
   EXPECT_EQ(p.force.size(), curve.size());
@@ -217,7 +217,7 @@ TEST(OffsetModel, ShiftsContactAndForce) {
   Curve a = ramp(0.01, 0.3, 31), b = a;
   a.name = "a", b.name = "b";
   const auto inner =
-      std::make_shared<UniaxialModel>(std::vector{a, b}, Specimen{kArea, kHeight}, [](std::span<const double> x) {
+      std::make_shared<SpecimenModel>(std::vector{a, b}, Specimen{kArea, kHeight}, [](std::span<const double> x) {
         Tissue t;
         t.youngs_modulus = x[0];
         return t;
@@ -243,7 +243,7 @@ TEST(UniaxialForward, IsAskedFromManyThreadsAndFailsInWords) {
   Tissue tissue;
   tissue.hyperelastic = Fung{1000, 3.0, 50000};
   tissue.maxwell = {{0.3, 1.0}};
-  const UniaxialModel model({ramp(0.01, 0.5, 101)}, {kArea, kHeight}, [&](std::span<const double> x) {
+  const SpecimenModel model({ramp(0.01, 0.5, 101)}, {kArea, kHeight}, [&](std::span<const double> x) {
     if (x[0] > 1.0) throw std::runtime_error("no such tissue");
     return tissue;
   });
@@ -253,9 +253,9 @@ TEST(UniaxialForward, IsAskedFromManyThreadsAndFailsInWords) {
                     [&](std::size_t i) { all[i] = model.predict(0, std::vector{0.0}).force; });
   for (const auto& force : all) EXPECT_EQ(force, once);
   EXPECT_EQ(model.predict(0, std::vector{2.0}).failure, "no such tissue");
-  const UniaxialModel thin({ramp(0.01, 0.5, 11)}, {kArea, 0.009}, [&](std::span<const double>) { return tissue; });
+  const SpecimenModel thin({ramp(0.01, 0.5, 11)}, {kArea, 0.009}, [&](std::span<const double>) { return tissue; });
   EXPECT_NE(thin.predict(0, {}).failure.find("pressed to nothing"), std::string::npos);
 }
 
 }  // namespace
-}  // namespace glisson::fit::uniaxial_forward_test
+}  // namespace glisson::fit::specimen_model_test

@@ -1,0 +1,250 @@
+#include "fit/data/test_columns.h"
+
+#include <array>
+#include <cmath>
+
+namespace glisson::fit {
+namespace {
+
+constexpr std::array<std::string_view, 3> kTimeWords{"time", "zeit", "temps"};
+constexpr std::array<std::string_view, 10> kDisplacementWords{"displacement", "compression", "extension", "position", "depth",
+                                              "indentation",  "stroke",      "crosshead", "travel",   "weg"};
+constexpr std::array<std::string_view, 3> kStrainWords{"strain", "engineering strain", "nominal strain"};
+constexpr std::array<std::string_view, 3> kStretchWords{"stretch", "lambda", "λ"};
+constexpr std::array<std::string_view, 4> kTrueStrainWords{"true strain", "true_strain", "log strain", "logarithmic strain"};
+constexpr std::array<std::string_view, 2> kGreenStrainWords{"green", "e_green"};
+constexpr std::array<std::string_view, 3> kShearWords{"shear strain", "shear_strain", "shear amount"};
+constexpr std::array<std::string_view, 3> kAngleWords{"angle", "twist", "rotation"};
+constexpr std::array<std::string_view, 2> kFrequencyWords{"frequency", "freq"};
+constexpr std::array<std::string_view, 3> kForceWords{"force", "load", "kraft"};
+constexpr std::array<std::string_view, 6> kStressWords{"stress",             "nominal stress",     "nominal_stress",
+                                       "engineering stress", "engineering_stress", "shear stress"};
+constexpr std::array<std::string_view, 3> kCauchyWords{"cauchy", "true stress", "true_stress"};
+constexpr std::array<std::string_view, 2> kPiolaWords{"second piola", "pk2"};
+constexpr std::array<std::string_view, 2> kTorqueWords{"torque", "moment"};
+constexpr std::array<std::string_view, 3> kStorageWords{"storage", "g'", "g′"};
+constexpr std::array<std::string_view, 3> kLossWords{"loss mod", "g''", "g″"};
+
+using C = ColumnsSpec;
+const std::array<ColumnRole, 8> kDrives{{{"displacement", &C::displacement, Quantity::length, kDisplacementWords, true},
+                                         {"strain", &C::strain, Quantity::strain, kStrainWords},
+                                         {"stretch", &C::stretch, Quantity::stretch, kStretchWords},
+                                         {"true_strain", &C::true_strain, Quantity::strain, kTrueStrainWords},
+                                         {"green_strain", &C::green_strain, Quantity::strain, kGreenStrainWords},
+                                         {"shear", &C::shear, Quantity::strain, kShearWords},
+                                         {"angle", &C::angle, Quantity::angle, kAngleWords, true},
+                                         {"frequency", &C::frequency, Quantity::frequency, kFrequencyWords}}};
+const std::array<ColumnRole, 7> kAnswers{
+    {{"force", &C::force, Quantity::force, kForceWords, true},
+     {"stress", &C::stress, Quantity::stress, kStressWords},
+     {"cauchy_stress", &C::cauchy_stress, Quantity::stress, kCauchyWords},
+     {"second_piola_stress", &C::second_piola_stress, Quantity::stress, kPiolaWords},
+     {"torque", &C::torque, Quantity::torque, kTorqueWords, true},
+     {"storage_modulus", &C::storage_modulus, Quantity::stress, kStorageWords},
+     {"loss_modulus", &C::loss_modulus, Quantity::stress, kLossWords}}};
+
+bool takes(const DataSpec& spec, Drive drive) {
+  const bool sheared = spec.test == LabTest::simple_shear || spec.deforming == Deforming::simple_shear;
+  const bool twisted = spec.test == LabTest::torsion || spec.deforming == Deforming::torsion;
+  switch (drive) {
+    case Drive::frequency:
+      return spec.test == LabTest::oscillation;
+    case Drive::angle:
+      return twisted;
+    case Drive::shear:
+      return sheared;
+    case Drive::displacement:
+      return spec.test != LabTest::oscillation && !twisted;
+    default:
+      return spec.test != LabTest::oscillation && !twisted && !sheared;
+  }
+}
+
+bool takes(const DataSpec& spec, Answer answer) {
+  const bool twisted = spec.test == LabTest::torsion || spec.deforming == Deforming::torsion;
+  switch (answer) {
+    case Answer::storage_modulus:
+    case Answer::loss_modulus:
+      return spec.test == LabTest::oscillation;
+    case Answer::torque:
+      return twisted;
+    case Answer::force:
+    case Answer::stress:
+      return spec.test != LabTest::oscillation && !twisted;
+    default:  // creep is driven by what a machine holds: the force
+      return spec.test != LabTest::oscillation && spec.test != LabTest::creep && !twisted;
+  }
+}
+
+template <class Kind, std::size_t N>
+class ColumnSearch {
+ public:
+  ColumnSearch(const std::array<ColumnRole, N>& roles, const CurveFile& file, const DataSpec& spec, const SpecimenSize& size,
+         scene::Problems& problems)
+      : roles_(roles), file_(file), spec_(spec), size_(size), problems_(problems) {}
+
+  Kind kind{};
+  Sign sign = Sign::found;
+
+  /// The column that is given, else the first kind of which one has a customary name.
+  std::optional<ChosenColumn> choose() {
+    for (std::size_t i = 0; i < N; ++i) {
+      const ColumnSpec& column = spec_.columns.*roles_[i].spec;
+      if (!column.given) continue;
+      kind = static_cast<Kind>(i), sign = column.sign;
+      if (!fits(roles_[i])) return {};
+      return choose_column(file_, column, roles_[i].quantity, key_of(roles_[i]), problems_);
+    }
+    const ColumnRole* first = nullptr;
+    for (std::size_t i = 0; i < N; ++i) {
+      if (!takes(spec_, static_cast<Kind>(i)) || (roles_[i].needs_size && size_.point)) continue;
+      if (!first) first = &roles_[i], kind = static_cast<Kind>(i);
+      if (!has_customary(file_, roles_[i].quantity, roles_[i].words)) continue;
+      kind = static_cast<Kind>(i);
+      if (!fits(roles_[i])) return {};
+      return guess_column(file_, roles_[i].quantity, roles_[i].words, key_of(roles_[i]), problems_);
+    }
+    return guess_column(file_, first->quantity, first->words, key_of(*first), problems_);
+  }
+
+ private:
+  static std::string key_of(const ColumnRole& role) { return "columns." + std::string(role.key); }
+
+  std::string all_taken() const {
+    std::string text;
+    for (std::size_t i = 0; i < N; ++i) {
+      if (takes(spec_, static_cast<Kind>(i)) && !(roles_[i].needs_size && size_.point))
+        text.append(text.empty() ? "columns." : ", columns.").append(roles_[i].key);
+    }
+    return text;
+  }
+
+  bool fits(const ColumnRole& role) {
+    const std::string test(word_of(spec_.test));
+    if (!takes(spec_, kind)) {
+      problems_.add({1, 1, {}}, key_of(role),
+                    "does not belong to test = \"" + test + "\"; give " + all_taken() + ", or another test");
+      return false;
+    }
+    if (role.needs_size && size_.point) {
+      problems_.add({1, 1, {}}, key_of(role),
+                    "needs the specimen's size, and a point has none; give " + all_taken() +
+                        ", or [specimen] kind = \"cylinder\" or \"block\"");
+      return false;
+    }
+    return has_size(role);
+  }
+
+  bool has_size(const ColumnRole& role) {
+    const bool stress = role.quantity == Quantity::stress && spec_.test != LabTest::oscillation;
+    const bool strain = role.quantity == Quantity::strain || role.quantity == Quantity::stretch;
+    if (stress && !size_.area)
+      problems_.add({1, 1, {}}, key_of(role),
+                    "needs the area of the specimen to be converted to a force; give area_mm2");
+    if (strain && !size_.height)
+      problems_.add({1, 1, {}}, key_of(role),
+                    "needs the height of the specimen to be converted to a displacement; give height_mm");
+    if (role.quantity == Quantity::angle && !size_.radius)
+      problems_.add({1, 1, {}}, key_of(role), "needs a round specimen; give [specimen] kind = \"cylinder\"");
+    return !(stress && !size_.area) && !(strain && !size_.height) &&
+           !(role.quantity == Quantity::angle && !size_.radius);
+  }
+
+  const std::array<ColumnRole, N>& roles_;
+  const CurveFile& file_;
+  const DataSpec& spec_;
+  const SpecimenSize& size_;
+  scene::Problems& problems_;
+};
+
+/// The time, where the file has it; a test that goes by it needs it.
+std::optional<ChosenColumn> time_column(const CurveFile& file, const DataSpec& spec, const SpecimenSize& size,
+                                        scene::Problems& problems) {
+  const ColumnSpec& own = spec.columns.time;
+  if (own.given) return choose_column(file, own, Quantity::time, "columns.time", problems);
+  if (spec.speed || spec.test == LabTest::oscillation) return {};
+  const bool by_time = !names_its_deformation(spec.test);
+  const bool press = spec.test == LabTest::compression && !size.point;
+  if (!by_time && !press && !has_customary(file, Quantity::time, kTimeWords)) return {};
+  return guess_column(file, Quantity::time, kTimeWords, "columns.time", problems);
+}
+
+}  // namespace
+
+bool names_its_deformation(LabTest test) {
+  return test != LabTest::relaxation && test != LabTest::creep && test != LabTest::cyclic;
+}
+
+std::span<const std::string_view> customary_words(Quantity quantity) {
+  if (quantity == Quantity::time) return kTimeWords;
+  if (quantity == Quantity::length) return kDisplacementWords;
+  return kForceWords;
+}
+
+std::optional<TestColumns> test_columns(const CurveFile& file, const DataSpec& spec, const SpecimenSize& size,
+                                        scene::Problems& problems) {
+  const std::size_t before = problems.count();
+  TestColumns found;
+  found.time = time_column(file, spec, size, problems);
+  ColumnSearch<Drive, kDrives.size()> drives(kDrives, file, spec, size, problems);
+  const auto driven = drives.choose();
+  ColumnSearch<Answer, kAnswers.size()> answers(kAnswers, file, spec, size, problems);
+  const auto answering = answers.choose();
+  if (problems.count() > before || !driven || !answering) return {};
+  found.drive = drives.kind, found.driven = *driven, found.driven_sign = drives.sign;
+  found.answer = answers.kind, found.answering = *answering, found.answering_sign = answers.sign;
+  return found;
+}
+
+double driven_number(Drive drive, double value, const SpecimenSize& size, double outward) {
+  const double height = size.height.value_or(1.0);
+  switch (drive) {
+    case Drive::strain:
+    case Drive::shear:
+      return value * height;
+    case Drive::stretch:
+      return outward * (value - 1.0) * height;
+    case Drive::true_strain:
+      return outward * std::expm1(outward * value) * height;
+    case Drive::green_strain:
+      return outward * (std::sqrt(1.0 + 2.0 * outward * value) - 1.0) * height;
+    case Drive::displacement:
+    case Drive::angle:
+    case Drive::frequency:
+      return value;
+  }
+  return value;
+}
+
+double answering_number(Answer answer, double value, const SpecimenSize& size) {
+  const bool stress =
+      answer == Answer::stress || answer == Answer::cauchy_stress || answer == Answer::second_piola_stress;
+  return stress ? value * size.area.value_or(1.0) : value;
+}
+
+Measured measured_by(Answer answer) {
+  switch (answer) {
+    case Answer::cauchy_stress:
+      return Measured::cauchy;
+    case Answer::second_piola_stress:
+      return Measured::second_piola;
+    case Answer::torque:
+      return Measured::torque;
+    case Answer::storage_modulus:
+      return Measured::storage;
+    case Answer::loss_modulus:
+      return Measured::loss;
+    default:
+      return Measured::nominal;
+  }
+}
+
+std::vector<DataSpec> parted(const DataSpec& spec) {
+  if (!spec.columns.storage_modulus.given || !spec.columns.loss_modulus.given) return {spec};
+  DataSpec storage = spec, loss = spec;
+  storage.columns.loss_modulus = {}, loss.columns.storage_modulus = {};
+  storage.group += " G′", loss.group += " G″";
+  return {std::move(storage), std::move(loss)};
+}
+
+}  // namespace glisson::fit

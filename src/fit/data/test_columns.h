@@ -1,0 +1,62 @@
+// test_columns.h — which columns a test takes: one that is driven and one that answers, and what their numbers are.
+//
+//   compression, tension, relaxation, …   displacement, strain, stretch …  ──▶  force, stress, cauchy_stress …
+//   simple_shear                          shear, displacement              ──▶  the same
+//   torsion                               angle                            ──▶  torque
+//   oscillation                           frequency                        ──▶  storage_modulus or loss_modulus
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "fit/data/choose_column.h"
+#include "fit/data/data_spec.h"
+
+namespace glisson::fit {
+
+/// A column that some test takes.
+struct ColumnRole {
+  std::string_view key;  ///< in [data.columns]
+  ColumnSpec ColumnsSpec::* spec;
+  Quantity quantity;
+  std::span<const std::string_view> words;  ///< with which its name customarily begins, in small letters
+  bool needs_size = false;                  ///< to be converted, or to be of use: a point has none
+};
+
+enum class Drive { displacement, strain, stretch, true_strain, green_strain, shear, angle, frequency };
+enum class Answer { force, stress, cauchy_stress, second_piola_stress, torque, storage_modulus, loss_modulus };
+
+/// Whether a test's name says how the specimen deforms; others hold, load or cycle one of these deformations.
+bool names_its_deformation(LabTest test);
+
+/// Words with which the name of a column of times, displacements or forces customarily begins.
+std::span<const std::string_view> customary_words(Quantity quantity);
+
+/// The columns of a file that a test takes.
+struct TestColumns {
+  Drive drive = Drive::displacement;
+  Answer answer = Answer::force;
+  ChosenColumn driven, answering;
+  Sign driven_sign = Sign::found, answering_sign = Sign::found;
+  std::optional<ChosenColumn> time;
+};
+
+/// Chooses them. Complains, and returns nothing, where one is missing, does not belong to the test, or needs a size that the
+/// specimen has not.
+std::optional<TestColumns> test_columns(const CurveFile& file, const DataSpec& spec, const SpecimenSize& size,
+                                        scene::Problems& problems);
+
+/// The driven number of a row, from its own in SI and positive as the test goes, to that of a Curve.
+/// @param outward  1 where the test extends the specimen, −1 where it compresses it
+double driven_number(Drive drive, double value, const SpecimenSize& size, double outward);
+/// The same of the answering number.
+double answering_number(Answer answer, double value, const SpecimenSize& size);
+
+/// What a test measures by an answering column.
+Measured measured_by(Answer answer);
+
+/// A test of several answering columns as one of each: G′ and G″.
+std::vector<DataSpec> parted(const DataSpec& spec);
+
+}  // namespace glisson::fit

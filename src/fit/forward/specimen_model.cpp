@@ -1,0 +1,180 @@
+#include "fit/forward/specimen_model.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "glisson/material_point.h"
+#include "material/uniaxial_path.h"
+
+namespace glisson::fit {
+namespace {
+
+constexpr double kMostStretch = 0.01, kMostTime = 1.0 / 400.0;  ///< of a step, the latter of the whole history
+constexpr double kLeastStretch = 0.02;
+
+/// 1 where the driven number extends the specimen, −1 where it compresses it.
+double outward_of(const Curve& curve) { return curve.measurement.deforming == Deforming::compression ? -1.0 : 1.0; }
+
+/// The history of one curve in stretches, of a shear in amounts.
+struct Stretching {
+  const History& way;
+  double rest, per_displacement;
+
+  double of(double displacement) const { return rest + per_displacement * displacement; }
+  StretchRate at(double time) const { return {of(way.at(time)), per_displacement * way.rate(time)}; }
+};
+
+[[noreturn]] void fail_at(const Curve& curve, std::size_t i, double stretch, const std::string& what) {
+  throw std::runtime_error("curve \"" + curve.name + "\", " + std::to_string(curve.time[i]) + " s, stretch " +
+                           std::to_string(stretch) + ": " + what);
+}
+
+void require_stretch(const Curve& curve, std::size_t i, double stretch) {
+  if (!(stretch > kLeastStretch)) fail_at(curve, i, stretch, "the specimen is pressed to nothing; check its height");
+}
+
+/// The stress along the axis in the curve's measure.
+double axial_stress(const UniaxialState& state, const Curve& curve, std::size_t i, double stretch) {
+  if (!state.converged || !std::isfinite(state.stress))
+    fail_at(curve, i, stretch, "no width between 0.02 and 50 times that at rest leaves the sides free");
+  if (curve.measurement.measured == Measured::cauchy)
+    return state.stress / (state.lateral_stretch * state.lateral_stretch);
+  if (curve.measurement.measured == Measured::second_piola) return state.stress / stretch;
+  return state.stress;
+}
+
+/// How often the way between two instants is parted for a tissue with a past.
+int parts_of(double change, double width, double whole) {
+  return static_cast<int>(std::max(1.0, std::ceil(std::max(change / kMostStretch, width / (kMostTime * whole)) - 1e-9)));
+}
+
+/// Stress at each instant of the curve, for a tissue whose stress is that of the present stretch.
+void elastic_stresses(UniaxialPath& path, const Stretching& way, const Curve& curve, std::vector<double>& out) {
+  path.start(0.0);
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const double stretch = way.of(way.way.displacements()[i + way.way.lead()]);
+    require_stretch(curve, i, stretch);
+    out[i] = axial_stress(path.at(stretch), curve, i, stretch);
+  }
+}
+
+/// The same for one with a past, by steps through the whole history.
+void stresses_in_time(UniaxialPath& path, const Stretching& way, const Curve& curve, std::vector<double>& out) {
+  const std::vector<double>& times = way.way.times();
+  const std::size_t lead = way.way.lead();
+  const double whole = way.way.end() - way.way.begin();
+  UniaxialState state = path.start(way.at(times.front()).rate);
+  if (lead == 0)
+    out[0] = way.way.displacements().front() > 0.0 || way.at(times.front()).rate != 0.0 ? state.stress : 0.0;
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    const double width = times[k] - times[k - 1];
+    const double change =
+        std::abs(way.way.displacements()[k] - way.way.displacements()[k - 1]) * std::abs(way.per_displacement);
+    const int steps = parts_of(change, width, whole);
+    const double h = width / steps;
+    StretchRate end;
+    for (int s = 0; s < steps; ++s) {
+      const double t = times[k - 1] + s * h;
+      end = way.at(s + 1 == steps ? times[k] : t + h);
+      require_stretch(curve, k - lead, end.stretch);
+      state = path.advance(h, way.at(t + UniaxialPath::kMiddle * h), end);
+      if (!state.converged) axial_stress(state, curve, k - lead, end.stretch);
+    }
+    out[k - lead] = axial_stress(state, curve, k - lead, end.stretch);
+  }
+}
+
+/// What is driven of a material point, and where its answer stands.
+struct Component {
+  MaterialTest test = MaterialTest::uniaxial;
+  std::size_t i = 2, j = 2;
+};
+
+Component component_of(Deforming deforming) {
+  if (deforming == Deforming::simple_shear) return {MaterialTest::simple_shear, 0, 2};
+  if (deforming == Deforming::equibiaxial) return {MaterialTest::equibiaxial, 0, 0};
+  if (deforming == Deforming::planar) return {MaterialTest::planar, 2, 2};
+  return {MaterialTest::uniaxial, 2, 2};
+}
+
+/// The driven component of the stress in a measure, of a creep the strain.
+double answer_of(const MaterialState& state, const Component& c, Measured measured) {
+  const Mat3d& F = state.deformation;
+  if (measured == Measured::strain) return F(c.i, c.j) - (c.i == c.j ? 1.0 : 0.0);
+  if (measured == Measured::cauchy) return state.cauchy(c.i, c.j);
+  if (measured == Measured::second_piola) return (inverse(F) * state.nominal)(c.i, c.j);
+  return state.nominal(c.i, c.j);
+}
+
+/// A material point along the curve: driven by stretch or shear, of a creep by stress.
+void by_point(const Tissue& tissue, const Stretching& way, const Curve& curve, std::vector<double>& out) {
+  const Measured measured = curve.measurement.measured;
+  const Component c = component_of(curve.measurement.deforming);
+  const bool by_stress = measured == Measured::strain;
+  const MaterialControl control = by_stress ? MaterialControl::nominal_stress : MaterialControl::deformation;
+  const bool has_past = tissue.viscosity > 0.0 || !tissue.maxwell.empty();
+  const std::vector<double>& times = way.way.times();
+  const std::size_t lead = way.way.lead();
+  const double whole = way.way.end() - way.way.begin();
+  const double first = way.of(way.way.displacements().front());
+  double value = by_stress || c.i != c.j ? 0.0 : 1.0;
+  MaterialPoint point(tissue);
+  const auto go = [&](double h, double to, std::size_t k) {
+    if (!by_stress && c.i == c.j) require_stretch(curve, k, to);
+    if (const MaterialState& s = point.advance(h, test_targets(c.test, control, to)); !s.converged)
+      fail_at(curve, k, to, s.message);
+    value = to;
+  };
+  if (first != value) go(1e-9 * whole, first, 0);
+  if (lead == 0) out[0] = answer_of(point.state(), c, measured);
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    const double width = times[k] - times[k - 1], end = way.of(way.way.displacements()[k]);
+    const int steps = has_past ? parts_of(by_stress ? 0.0 : std::abs(end - value), width, whole) : 1;
+    for (int s = 1; s <= steps; ++s)
+      go(width / steps, s == steps ? end : way.of(way.way.at(times[k - 1] + s * width / steps)), k - lead);
+    out[k - lead] = answer_of(point.state(), c, measured);
+  }
+}
+
+}  // namespace
+
+SpecimenModel::SpecimenModel(std::vector<Curve> curves, const Specimen& specimen, TissueAt tissue)
+    : MotionModel(std::move(curves)), specimen_(specimen), tissue_(std::move(tissue)) {
+  if (!(specimen.area > 0.0) || !(specimen.height > 0.0))
+    throw std::invalid_argument("specimen: area = " + std::to_string(specimen.area) +
+                                " m², height = " + std::to_string(specimen.height) + " m; allowed: both > 0");
+  for (std::size_t i = 0; i < this->curves(); ++i) require_curves({&curve(i), 1});
+}
+
+Prediction SpecimenModel::predict_from(std::size_t index, std::span<const double> values, double contact) const {
+  Prediction result;
+  try {
+    const Curve& measured = curve(index);
+    const Measurement& m = measured.measurement;
+    const History history(measured, contact);
+    const Tissue tissue = tissue_(values);
+    result.force.resize(measured.size());
+    const bool along = m.deforming == Deforming::compression || m.deforming == Deforming::tension;
+    const double outward = outward_of(measured), load = m.measured == Measured::strain ? specimen_.height : specimen_.area;
+    if (along && m.measured != Measured::strain && !tissue.fibres) {
+      UniaxialPath path(tissue);
+      const Stretching way{history, 1.0, outward / specimen_.height};
+      if (path.has_past())
+        stresses_in_time(path, way, measured, result.force);
+      else
+        elastic_stresses(path, way, measured, result.force);
+    } else if (m.measured == Measured::strain) {
+      by_point(tissue, {history, 0.0, outward / specimen_.area}, measured, result.force);
+    } else {
+      const double rest = m.deforming == Deforming::simple_shear ? 0.0 : 1.0;
+      by_point(tissue, {history, rest, outward / specimen_.height}, measured, result.force);
+    }
+    for (double& f : result.force) f *= outward * load;
+  } catch (const std::exception& error) {
+    result.force.clear();
+    result.failure = error.what();
+  }
+  return result;
+}
+
+}  // namespace glisson::fit
