@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <ranges>
 
+#include "fit/fit_curves.h"
 #include "fit/uncertainty/autocorrelation.h"
 #include "fit/uncertainty/distribution.h"
 #include "fit/uncertainty/influence.h"
@@ -58,9 +59,10 @@ Matrix NoiseStudy::rest_of(const Rows& curve) const {
   return Matrix::Identity(j.cols(), j.cols()) - j.transpose() * j * inverse_;
 }
 
-/// Whether each combination is known from several curves.
+/// Whether each combination is known from several curves, which are of one kind: those of different tests differ by the law's
+/// misfit, too.
 bool NoiseStudy::stand_alone() const {
-  if (jacobian_.cols() == 0 || curves_.size() < kFewestCurves) return false;
+  if (jacobian_.cols() == 0 || curves_.size() < kFewestCurves || !of_one_kind(problem_.curves())) return false;
   const Vector root = inverse_.diagonal().array().sqrt();
   return std::ranges::all_of(curves_, [&](const Rows& curve) {
     const Matrix j = block(curve) * root.asDiagonal();
@@ -88,8 +90,9 @@ NoiseKind NoiseStudy::kind_of(const CovarianceOptions& options, NoiseEstimate& e
                        "): " + format("%.0f samples count as %.1f", samples_, e.effective)
                  : "the residuals look independent (" + probability_text(e.independence) + ")";
   e.why += std::string(". How specimens differ is not in the intervals: ") +
-           (curves_.size() < kFewestCurves ? "that takes three curves or more"
-                                           : "some parameter is known from one curve alone");
+           (curves_.size() < kFewestCurves       ? "that takes three curves or more"
+            : !of_one_kind(problem_.curves()) ? "curves of different tests differ by the misfit of the law, too"
+                                              : "some parameter is known from one curve alone");
   return swings ? NoiseKind::autocorrelated : NoiseKind::independent;
 }
 
