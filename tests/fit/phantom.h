@@ -20,7 +20,7 @@ inline const std::filesystem::path kPhantoms = glisson::test::shipped("../shared
 inline bool have_phantoms() { return std::filesystem::exists(kPhantoms / "EF10_100T_A1.csv"); }
 
 /// Diameter 50 mm, height 30 mm.
-inline const SpecimenSize kPhantomSize{3.14159265358979323846 * 0.025 * 0.025, 0.030};
+inline const SpecimenSize kPhantomSize{.area = 3.14159265358979323846 * 0.025 * 0.025, .height = 0.030, .radius = {}};
 
 inline std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);

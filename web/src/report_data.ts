@@ -138,10 +138,11 @@ export interface FitData {
   law: string; // the law of `parameters`, e.g. "ogden, 1 term"
   parameters: FitParameter[];
   correlation: (number | null)[][]; // of the scaled parameters; row i belongs to parameters[i]; empty: unknown
-  x: FitAxis; // display = displacement [m] × scale, e.g. "strain [%]"
-  y: FitAxis; // display = force [N] × scale, e.g. "nominal stress [kPa]"
+  x: FitAxis; // of curves that say none: display = displacement [m] × scale, e.g. "strain [%]"
+  y: FitAxis; // of all errors, and of curves that say none: display = force [N] × scale, e.g. "nominal stress [kPa]"
   curves: FitCurve[];
   groups: FitGroup[];
+  tests: FitTest[]; // as the groups
   rms_fit: number; // [N]
   rms_heldout: number | null; // [N]; null: no curve held out
   spread_N: number | null; // spread_N of the groups, rms over them; null: none repeated
@@ -189,14 +190,33 @@ export interface FitCurve {
   group: string; // name of its FitGroup
   velocity_m_s: number;
   held_out: boolean;
-  time_s: number[];
-  displacement_m: number[];
-  measured_N: number[];
-  fitted_N: number[]; // null within: the simulation ended before
-  further_low_N: number[]; // between these a further specimen's force lies in 95 %; empty: not known
-  further_high_N: number[];
-  noise_N: number; // standard deviation of the measured force
-  rms_N: number; // of fitted − measured
+  x: FitCurveAxis;
+  y: FitAxis; // of measured and fitted
+  unit: string; // of measured and fitted
+  drive_unit: string;
+  time_s: number[]; // empty: the test has no times
+  drive: number[]; // what was driven: of a press the displacement [m]
+  measured: number[]; // of a press the force [N]
+  fitted: number[]; // null within: the simulation ended before
+  further_low: number[]; // between these a further specimen's force lies in 95 %; empty: not known
+  further_high: number[];
+  noise: number; // standard deviation of `measured`
+  rms: number; // of fitted − measured
+}
+
+/** The x axis of a curve: time, or what was driven. */
+export interface FitCurveAxis extends FitAxis {
+  of: "drive" | "time";
+  log: boolean;
+}
+
+/** A kind of test: how well the fit of all meets it, and what fits to one test alone make of it. */
+export interface FitTest {
+  name: string; // of its group
+  held_out: boolean;
+  r2: number;
+  r2_of_alone: { name: string; r2: number }[]; // empty: there is only one kind of test
+  points: number;
 }
 
 /** Repetitions of one test; a test both fitted and held out is two groups of one name. */

@@ -139,7 +139,7 @@ describe("charts of curves", () => {
 
   it("draw measured below simulated, in the units of the axes, one entry of the legend for each", () => {
     const fit = fitFixture();
-    const [model] = curveCharts(fit, panelsOf(fit));
+    const [model] = curveCharts(panelsOf(fit));
     expect([...new Set(model!.lines.map((line) => line.entry))]).toEqual(["measured", "simulated", "further"]);
     expect(model!.lines).toHaveLength(8);
     const simulated = model!.lines[3]!;
@@ -159,24 +159,22 @@ describe("charts of curves", () => {
 
 describe("residuals", () => {
   it("are measured minus simulated in the unit of the charts, gaps kept", () => {
-    const curve = { ...fitFixture().curves[0]!, measured_N: [1, 2, 3], fitted_N: [0.5, 2.5, NaN] };
-    expect(residualsOf(curve, 10)).toEqual([5, -5, NaN]);
+    const curve = { ...fitFixture().curves[0]!, measured: [1, 2, 3], fitted: [0.5, 2.5, NaN] };
+    expect(residualsOf({ ...curve, y: { label: "force [N]", scale: 10 } })).toEqual([5, -5, NaN]);
   });
 
   it("have a scale however many samples there are", () => {
     const curve = bareFit().curves[0]!;
-    const many = { ...curve, measured_N: Array(300_000).fill(1), fitted_N: Array(300_000).fill(3) };
-    expect(residualScale({ ...bareFit(), curves: [many], y: { label: "force [N]", scale: 1 } }).high).toBeCloseTo(
-      2.16,
-      9,
-    );
+    const many = { ...curve, measured: Array(300_000).fill(1), fitted: Array(300_000).fill(3) };
+    const y = { label: "force [N]", scale: 1 };
+    expect(residualScale({ ...bareFit(), curves: [{ ...many, y }] }, y).high).toBeCloseTo(2.16, 9);
   });
 
   it("share a symmetric scale that holds all of them and the noise", () => {
     const fit = largeFit();
-    const scale = residualScale(fit);
+    const scale = residualScale(fit, fit.y);
     expect(scale.low).toBe(-scale.high);
-    const largest = fit.curves.flatMap((curve) => residualsOf(curve, fit.y.scale)).map(Math.abs);
+    const largest = fit.curves.flatMap(residualsOf).map(Math.abs);
     expect(scale.high).toBeGreaterThan(Math.max(...largest));
   });
 });
@@ -250,7 +248,7 @@ describe("files", () => {
     expect(lines).toHaveLength(1 + 5 * 260);
     const last = lines[260]!;
     expect(last).toMatch(/^A1,"EF10_100T, 10 mm\/min",0,/);
-    expect(Number(last.split(",").at(-3))).toBe(fit.curves[0]!.fitted_N[259]);
+    expect(Number(last.split(",").at(-5))).toBe(fit.curves[0]!.fitted[259]);
   });
 
   it("keep open ends of intervals empty", () => {

@@ -23,6 +23,9 @@ function randomNumbers(seed) {
   return { uniform, normal };
 }
 
+const X = { label: "compressive strain [%]", scale: 100 / HEIGHT };
+const Y = { label: "nominal stress [kPa]", scale: 1e-3 / AREA };
+
 /** Force on the cylinder [N] at a displacement [m]; compression counts positive. */
 export function cylinderForce(displacement, { mu, alpha }) {
   const stretch = 1 - displacement / HEIGHT;
@@ -31,25 +34,29 @@ export function cylinderForce(displacement, { mu, alpha }) {
 
 function curve(name, group, heldOut, velocity, random, factor, points = 260) {
   const noise = 0.012;
-  const displacement_m = Array.from({ length: points }, (_, at) => (0.6 * HEIGHT * at) / (points - 1));
+  const drive = Array.from({ length: points }, (_, at) => (0.6 * HEIGHT * at) / (points - 1));
   const overhead = 1 + 0.12 * Math.log10(velocity / 1e-4);
-  const measured_N = displacement_m.map(
+  const measured = drive.map(
     (d) => overhead * factor * cylinderForce(d, TRUTH) * (1 + 0.02 * Math.sin(260 * d)) + noise * random.normal(),
   );
-  const fitted_N = displacement_m.map((d) => overhead * cylinderForce(d, { mu: 1192, alpha: 6.38 }));
+  const fitted = drive.map((d) => overhead * cylinderForce(d, { mu: 1192, alpha: 6.38 }));
   return {
     name,
     group,
     velocity_m_s: velocity,
     held_out: heldOut,
-    time_s: displacement_m.map((d) => d / velocity),
-    displacement_m,
-    measured_N,
-    fitted_N,
-    further_low_N: fitted_N.map((force) => 0.9 * force),
-    further_high_N: fitted_N.map((force) => 1.1 * force),
-    noise_N: noise,
-    rms_N: rms(measured_N.map((value, at) => value - fitted_N[at])),
+    time_s: drive.map((d) => d / velocity),
+    drive,
+    measured,
+    fitted,
+    further_low: fitted.map((force) => 0.9 * force),
+    further_high: fitted.map((force) => 1.1 * force),
+    noise,
+    rms: rms(measured.map((value, at) => value - fitted[at])),
+    x: { ...X, of: "drive", log: false },
+    y: Y,
+    unit: "N",
+    drive_unit: "m",
   };
 }
 
@@ -58,12 +65,12 @@ const rms = (values) => Math.sqrt(values.reduce((sum, value) => sum + value * va
 function groupOf(name, heldOut, curves) {
   const own = curves.filter((c) => c.group === name && c.held_out === heldOut);
   const all = curves.filter((c) => c.group === name);
-  const mean = all[0].measured_N.map((_, at) => all.reduce((sum, c) => sum + c.measured_N[at], 0) / all.length);
-  const spread = rms(all.flatMap((c) => c.measured_N.map((value, at) => value - mean[at])));
+  const mean = all[0].measured.map((_, at) => all.reduce((sum, c) => sum + c.measured[at], 0) / all.length);
+  const spread = rms(all.flatMap((c) => c.measured.map((value, at) => value - mean[at])));
   return {
     name,
     held_out: heldOut,
-    rms_N: rms(own.map((c) => c.rms_N)),
+    rms_N: rms(own.map((c) => c.rms)),
     spread_N: all.length > 1 ? spread * Math.sqrt(all.length / (all.length - 1)) : null,
   };
 }
@@ -180,12 +187,13 @@ export function fitFixture() {
       [-0.94, 1, -0.12],
       [0.08, -0.12, 1],
     ],
-    x: { label: "compressive strain [%]", scale: 100 / HEIGHT },
-    y: { label: "nominal stress [kPa]", scale: 1e-3 / AREA },
+    x: X,
+    y: Y,
     curves,
     groups: groupsOf(curves),
-    rms_fit: rms(curves.filter((c) => !c.held_out).map((c) => c.rms_N)),
-    rms_heldout: rms(curves.filter((c) => c.held_out).map((c) => c.rms_N)),
+    tests: [],
+    rms_fit: rms(curves.filter((c) => !c.held_out).map((c) => c.rms)),
+    rms_heldout: rms(curves.filter((c) => c.held_out).map((c) => c.rms)),
     spread_N: rms(groupsOf(curves).map((group) => group.spread_N)),
     profiles: parameters.map((given) => profile(given, given.verdict === "not identifiable")),
     basins: [
@@ -240,7 +248,7 @@ function law(name, parameters, rmsFit, rmsHeldOut, aic, bic, best, words) {
 /** A fit of one curve of which little is known: interrupted, nothing held out, no profiles, no intervals. */
 export function bareFit() {
   const whole = fitFixture();
-  const curves = [{ ...whole.curves[0], fitted_N: whole.curves[0].fitted_N.map((f, at) => (at > 200 ? null : f)) }];
+  const curves = [{ ...whole.curves[0], fitted: whole.curves[0].fitted.map((f, at) => (at > 200 ? null : f)) }];
   return {
     ...whole,
     name: "bare",
@@ -252,6 +260,7 @@ export function bareFit() {
     law: "",
     curves,
     groups: groupsOf(curves),
+    tests: [],
     parameters: whole.parameters.slice(0, 1).map((given) => ({
       ...given,
       sd: null,
@@ -327,6 +336,7 @@ export function largeFit() {
     correlation: parameters.map((_, a) => parameters.map((__, b) => r(a, b))),
     curves,
     groups: groupsOf(curves),
+    tests: [],
     profiles: parameters.map((given, at) => profile({ ...given, value: 10 ** (1 + 0.4 * at) }, at % 4 === 2)),
     basins: Array.from({ length: 14 }, (_, at) => ({
       cost: 1e-3 * 3 ** at,

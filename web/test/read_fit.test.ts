@@ -25,8 +25,15 @@ describe("reading a fit", () => {
   it("makes the lists of a curve equally long, gaps where the simulation ended before", () => {
     const curve = { displacement_m: [0, 1, 2], measured_N: [0, 5, 9], fitted_N: [0, null], group: "A" };
     const fit = read({ curves: [curve] });
-    expect(fit.curves[0]!.fitted_N).toEqual([0, NaN, NaN]);
+    expect(fit.curves[0]!.fitted).toEqual([0, NaN, NaN]);
     expect(fit.groups).toMatchObject([{ name: "A", held_out: false, spread_N: null }]);
+  });
+
+  it("gives each curve of another test its own axes", () => {
+    const x = { label: "frequency [Hz]", scale: 1, of: "drive", log: true };
+    const curve = { drive: [1, 10], measured: [2, 3], fitted: [2, 4], rms: 0.7, x, y: { label: "G [kPa]", scale: 1e-3 } };
+    const [own] = read({ curves: [curve], tests: [{ name: "A", r2: 0.9, r2_of_alone: { A: 0.99 } }] }).curves;
+    expect(own).toMatchObject({ drive: [1, 10], fitted: [2, 4], rms: 0.7, x, y: { scale: 1e-3 }, time_s: [] });
   });
 
   it("keeps one group for the fitted and one for the held-out curves of a test", () => {

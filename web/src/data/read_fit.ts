@@ -8,13 +8,16 @@ import type {
   FitLaw,
   FitParameter,
   FitProfile,
+  FitTest,
 } from "../report_data.ts";
 import { type Raw, finite, list, numberOrNaN, numberOrNull, numbers, record, text } from "./raw.ts";
 
 export function readFit(raw: Raw, index: number): FitData {
   const name = text(raw["name"]) || `fit-${index + 1}`;
   const parameters = list(raw["parameters"]).map((parameter, at) => readParameter(record(parameter), at));
-  const curves = list(raw["curves"]).map((curve, at) => readCurve(record(curve), at));
+  const x = readAxis(raw["x"], "displacement [m]");
+  const y = readAxis(raw["y"], "force [N]");
+  const curves = list(raw["curves"]).map((curve, at) => readCurve(record(curve), at, x, y));
   const bootstrap = record(raw["bootstrap"]);
   const replicates = rowsOf(bootstrap["values"], parameters.length);
   const basins = list(raw["basins"]).map((basin) => readBasin(record(basin)));
@@ -28,10 +31,11 @@ export function readFit(raw: Raw, index: number): FitData {
     law: text(raw["law"]),
     parameters,
     correlation: readMatrix(raw["correlation"], parameters.length),
-    x: readAxis(raw["x"], "displacement [m]"),
-    y: readAxis(raw["y"], "force [N]"),
+    x,
+    y,
     curves,
     groups: readGroups(raw["groups"], curves),
+    tests: list(raw["tests"]).map((test) => readTest(record(test))),
     rms_fit: numberOrNaN(raw["rms_fit"]),
     rms_heldout: numberOrNull(raw["rms_heldout"]),
     spread_N: numberOrNull(raw["spread_N"]),
@@ -115,25 +119,44 @@ function rowsOf(value: unknown, width: number): number[][] {
     .filter((row) => row.length === width);
 }
 
-function readCurve(raw: Raw, index: number): FitCurve {
-  const [time_s, displacement_m, measured_N, fitted_N] = ["time_s", "displacement_m", "measured_N", "fitted_N"].map(
-    (key) => numbers(raw[key]),
-  ) as [number[], number[], number[], number[]];
-  const length = Math.min(displacement_m.length, measured_N.length);
+/** Curves of presses have their units in their keys. */
+function readCurve(raw: Raw, index: number, x: FitAxis, y: FitAxis): FitCurve {
+  const of = (key: string) => raw[key] ?? raw[`${key}_N`];
+  const drive = numbers(raw["drive"] ?? raw["displacement_m"]);
+  const measured = numbers(of("measured"));
+  const time_s = numbers(raw["time_s"]);
+  const length = Math.min(drive.length, measured.length);
   const whole = (values: number[]) => Array.from({ length }, (_, at) => values[at] ?? NaN);
+  const axis = record(raw["x"]);
   return {
     name: text(raw["name"]) || `curve ${index + 1}`,
     group: text(raw["group"]),
     velocity_m_s: numberOrNaN(raw["velocity_m_s"]),
     held_out: raw["held_out"] === true,
-    time_s: whole(time_s),
-    displacement_m: whole(displacement_m),
-    measured_N: whole(measured_N),
-    fitted_N: whole(fitted_N),
-    further_low_N: numbers(raw["further_low_N"]).slice(0, length),
-    further_high_N: numbers(raw["further_high_N"]).slice(0, length),
-    noise_N: finite(raw["noise_N"], 0),
-    rms_N: numberOrNaN(raw["rms_N"]),
+    x: raw["x"]
+      ? { ...readAxis(axis, x.label), of: axis["of"] === "time" ? "time" : "drive", log: axis["log"] === true }
+      : { ...x, of: "drive", log: false },
+    y: raw["y"] ? readAxis(raw["y"], y.label) : y,
+    unit: text(raw["unit"]) || "N",
+    drive_unit: text(raw["drive_unit"]) || "m",
+    time_s: time_s.length > 0 ? whole(time_s) : [],
+    drive: whole(drive),
+    measured: whole(measured),
+    fitted: whole(numbers(of("fitted"))),
+    further_low: numbers(of("further_low")).slice(0, length),
+    further_high: numbers(of("further_high")).slice(0, length),
+    noise: finite(of("noise"), 0),
+    rms: numberOrNaN(of("rms")),
+  };
+}
+
+function readTest(raw: Raw): FitTest {
+  return {
+    name: text(raw["name"]),
+    held_out: raw["held_out"] === true,
+    r2: numberOrNaN(raw["r2"]),
+    r2_of_alone: Object.entries(record(raw["r2_of_alone"])).map(([name, r2]) => ({ name, r2: numberOrNaN(r2) })),
+    points: finite(raw["points"], 0),
   };
 }
 
@@ -149,7 +172,7 @@ function readGroups(value: unknown, curves: readonly FitCurve[]): FitGroup[] {
     }));
   for (const curve of curves) {
     if (groups.some((group) => group.name === curve.group && group.held_out === curve.held_out)) continue;
-    groups.push({ name: curve.group, held_out: curve.held_out, rms_N: curve.rms_N, spread_N: null });
+    groups.push({ name: curve.group, held_out: curve.held_out, rms_N: curve.rms, spread_N: null });
   }
   return groups;
 }

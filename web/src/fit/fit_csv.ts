@@ -22,19 +22,21 @@ export function csvFiles(fit: FitData): CsvFile[] {
 }
 
 export function curvesCsv(fit: FitData): string {
-  const columns = "curve,group,held_out,velocity_m_s,time_s,displacement_m,measured_N,fitted_N,further_low_N,further_high_N".split(",");
+  const columns = "curve,group,held_out,velocity_m_s,time_s,drive,measured,fitted,further_low,further_high,drive_unit,unit".split(",");
   const rows = fit.curves.flatMap((curve) =>
-    curve.displacement_m.map((displacement, at) => [
+    curve.drive.map((drive, at) => [
       curve.name,
       curve.group,
       Number(curve.held_out),
       curve.velocity_m_s,
       curve.time_s[at] ?? null,
-      displacement,
-      curve.measured_N[at] ?? null,
-      curve.fitted_N[at] ?? null,
-      curve.further_low_N[at] ?? null,
-      curve.further_high_N[at] ?? null,
+      drive,
+      curve.measured[at] ?? null,
+      curve.fitted[at] ?? null,
+      curve.further_low[at] ?? null,
+      curve.further_high[at] ?? null,
+      curve.drive_unit,
+      curve.unit,
     ]),
   );
   return rowsToCsv(columns, rows);

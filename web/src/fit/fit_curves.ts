@@ -15,7 +15,7 @@ export function fitCurves(fit: FitData): HTMLElement | null {
   const panels = panelsOf(fit);
   if (panels.length === 0) return null;
   const state = new SceneState([MEASURED, SIMULATED, FURTHER]);
-  const figures = curveCharts(fit, panels).map((model, at) => {
+  const figures = curveCharts(panels).map((model, at) => {
     model.note = panelNote(fit, panels[at]!);
     return figure(model.title, new Chart(model, state).element, use(panels[at]!.group.held_out), "fit-curves");
   });

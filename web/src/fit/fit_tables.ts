@@ -84,6 +84,27 @@ export function groupTable(fit: FitData): HTMLElement | null {
   );
 }
 
+/** R² of each test by the fit of all, and by fits to one test alone; null where there is one kind of test. */
+export function testTable(fit: FitData): HTMLElement | null {
+  const tests = fit.tests;
+  if (!tests.some((test) => test.r2_of_alone.length > 0)) return null;
+  const alone = tests.filter((test) => !test.held_out).map((test) => test.name);
+  const number = (r2: number | undefined) => (r2 !== undefined && Number.isFinite(r2) ? r2.toFixed(3) : "–");
+  const rows = [
+    ["all tests", ...tests.map((test) => number(test.r2))],
+    ...alone.map((name) => [
+      `${name} alone`,
+      ...tests.map((test) => number(test.r2_of_alone.find((other) => other.name === name)?.r2)),
+    ]),
+  ];
+  return block(
+    "R² of each test",
+    [{ name: "Fitted to" }, ...tests.map((test) => ({ name: test.name, numeric: true }))],
+    rows,
+    "R² is 1 − the sum of squares left over that about the mean: below 0 the mean would be nearer.",
+  );
+}
+
 /** The ratio in words; a dash where nothing was repeated. */
 function againstSpread(group: FitGroup): Child {
   const ratio = spreadRatio(group);

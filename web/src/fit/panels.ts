@@ -1,6 +1,6 @@
 // panels.ts — curves of a fit put into charts: a chart for each group and use, all on the same axes.
 import type { ChartModel, Extent, Line } from "../charts/model.ts";
-import { extentOf, scaled } from "../charts/model.ts";
+import { extentOf, logExtentOf, scaled } from "../charts/model.ts";
 import { FIT_STYLE, MEASURED_STYLE, TOTAL_STYLE } from "../charts/line_style.ts";
 import { axisLabel } from "../format/units.ts";
 import type { FitCurve, FitData, FitGroup } from "../report_data.ts";
@@ -25,19 +25,26 @@ export function panelsOf(fit: FitData): Panel[] {
     .sort((a, b) => Number(a.group.held_out) - Number(b.group.held_out));
 }
 
-/** Models of the charts; on one common range unless that would flatten one of them. */
-export function curveCharts(fit: FitData, panels: readonly Panel[]): ChartModel[] {
-  const models = panels.map((panel) => curveChart(fit, panel));
-  const common = commonExtent(models.map((model) => extentOf(model.lines)));
+/** Models of the charts; where their axes are the same on one common range, unless that would flatten one of them. */
+export function curveCharts(panels: readonly Panel[]): ChartModel[] {
+  const models = panels.map(curveChart);
+  for (const model of models) if (model.xLog) model.extent = logExtentOf(model.lines);
+  const alike = new Set(models.map((model) => `${model.xLabel} ${model.yLabel}`)).size === 1;
+  const common = alike ? commonExtent(models.map((model) => extentOf(model.lines))) : null;
   if (common) for (const model of models) model.extent = common;
   return models;
 }
 
-function curveChart(fit: FitData, panel: Panel): ChartModel {
+/** Where the points of a curve lie along x, in the unit of its axis. */
+export function along(curve: FitCurve): Float64Array {
+  return scaled(curve.x.of === "time" ? curve.time_s : curve.drive, curve.x.scale);
+}
+
+function curveChart(panel: Panel): ChartModel {
   const count = panel.curves.length;
-  const lines = (["measured_N", "fitted_N"] as const).flatMap((column) =>
+  const lines = (["measured", "fitted"] as const).flatMap((column) =>
     panel.curves.map((curve): Line => {
-      const measured = column === "measured_N";
+      const measured = column === "measured";
       const kind = measured ? MEASURED : SIMULATED;
       return {
         id: `${kind} ${curve.name}`,
@@ -45,17 +52,18 @@ function curveChart(fit: FitData, panel: Panel): ChartModel {
         entry: kind,
         label: measured && count > 1 ? `${MEASURED}, ${count} repetitions` : kind,
         style: measured ? MEASURED_STYLE : TOTAL_STYLE,
-        x: scaled(curve.displacement_m, fit.x.scale),
-        y: scaled(curve[column], fit.y.scale),
+        x: along(curve),
+        y: scaled(curve[column], curve.y.scale),
         times: null,
       };
     }),
   );
-  lines.push(...furtherLines(fit, panel));
+  lines.push(...furtherLines(panel));
   return {
     title: panelTitle(panel),
-    xLabel: axisLabel(fit.x.label),
-    yLabel: axisLabel(fit.y.label),
+    xLog: panel.curves[0]!.x.log,
+    xLabel: axisLabel(panel.curves[0]!.x.label),
+    yLabel: axisLabel(panel.curves[0]!.y.label),
     lines,
     events: [],
     note: "",
@@ -63,9 +71,9 @@ function curveChart(fit: FitData, panel: Panel): ChartModel {
 }
 
 /** Between which forces a further specimen is expected, at the instants of the longest curve. */
-function furtherLines(fit: FitData, panel: Panel): Line[] {
-  const curve = panel.curves.reduce((a, b) => (b.further_low_N.length > a.further_low_N.length ? b : a));
-  return (["further_low_N", "further_high_N"] as const)
+function furtherLines(panel: Panel): Line[] {
+  const curve = panel.curves.reduce((a, b) => (b.further_low.length > a.further_low.length ? b : a));
+  return (["further_low", "further_high"] as const)
     .filter((column) => curve[column].length > 0)
     .map((column) => ({
       id: `${FURTHER} ${column}`,
@@ -73,8 +81,8 @@ function furtherLines(fit: FitData, panel: Panel): Line[] {
       entry: FURTHER,
       label: "95 % of further specimens",
       style: FIT_STYLE,
-      x: scaled(curve.displacement_m, fit.x.scale),
-      y: scaled(curve[column], fit.y.scale),
+      x: along(curve),
+      y: scaled(curve[column], curve.y.scale),
       times: null,
     }));
 }

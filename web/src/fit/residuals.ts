@@ -2,8 +2,8 @@
 import { h } from "../page/dom.ts";
 import { figure } from "../page/figure.ts";
 import { axisLabel, nameOfLabel, unitOfLabel } from "../format/units.ts";
-import type { FitCurve, FitData } from "../report_data.ts";
-import { type Panel, panelTitle, panelsOf } from "./panels.ts";
+import type { FitAxis, FitCurve, FitData } from "../report_data.ts";
+import { type Panel, along, panelTitle, panelsOf } from "./panels.ts";
 import { type PlotMark, plot } from "./plot/plot.ts";
 import { type Scale, makeScale, scaleOf } from "./plot/scale.ts";
 import { use } from "./verdicts.ts";
@@ -14,13 +14,12 @@ const MOST_READ = 60;
 export function residualFigures(fit: FitData): HTMLElement | null {
   const panels = panelsOf(fit);
   if (panels.length === 0) return null;
-  const y = residualScale(fit);
   const plots = panels.map((panel) =>
     h(
       "div",
       { class: "plot-cell" },
       h("p", { class: "plot-title" }, h("span", {}, panelTitle(panel)), use(panel.group.held_out)),
-      residualPlot(fit, panel, y),
+      residualPlot(panel, residualScale(fit, panel.curves[0]!.y)),
     ),
   );
   const about = h("span", { class: "figure-about" }, "Measured − simulated; grey band: ± 2 sd of the noise");
@@ -28,27 +27,28 @@ export function residualFigures(fit: FitData): HTMLElement | null {
 }
 
 /** Residuals of a curve in the unit of the charts. */
-export function residualsOf(curve: FitCurve, scale: number): number[] {
-  return curve.measured_N.map((measured, at) => (measured - curve.fitted_N[at]!) * scale);
+export function residualsOf(curve: FitCurve): number[] {
+  return curve.measured.map((measured, at) => (measured - curve.fitted[at]!) * curve.y.scale);
 }
 
-/** One scale for all: symmetric, and wide enough for the noise. */
-export function residualScale(fit: FitData): Scale {
+/** One scale for all of one axis: symmetric, and wide enough for the noise. */
+export function residualScale(fit: FitData, axis: FitAxis): Scale {
   let size = 0;
-  for (const curve of fit.curves) {
-    size = Math.max(size, 2.2 * curve.noise_N * Math.abs(fit.y.scale));
-    for (const residual of residualsOf(curve, fit.y.scale)) {
+  for (const curve of fit.curves.filter((curve) => curve.y.label === axis.label)) {
+    size = Math.max(size, 2.2 * curve.noise * Math.abs(curve.y.scale));
+    for (const residual of residualsOf(curve)) {
       if (Number.isFinite(residual)) size = Math.max(size, Math.abs(residual));
     }
   }
   return makeScale(-1.08 * size, 1.08 * size);
 }
 
-function residualPlot(fit: FitData, panel: Panel, y: Scale): HTMLElement {
-  const unit = unitOfLabel(fit.y.label);
-  const noise = Math.max(...panel.curves.map((curve) => curve.noise_N)) * Math.abs(fit.y.scale);
-  const xs = panel.curves.map((curve) => curve.displacement_m.map((displacement) => displacement * fit.x.scale));
-  const residuals = panel.curves.map((curve) => residualsOf(curve, fit.y.scale));
+function residualPlot(panel: Panel, y: Scale): HTMLElement {
+  const axes = panel.curves[0]!;
+  const unit = unitOfLabel(axes.y.label);
+  const noise = Math.max(...panel.curves.map((curve) => curve.noise)) * Math.abs(axes.y.scale);
+  const xs = panel.curves.map((curve) => Array.from(along(curve)));
+  const residuals = panel.curves.map(residualsOf);
   const marks: PlotMark[] = [
     { kind: "band", className: "plot-noise", x: [null, null], y: [-2 * noise, 2 * noise] },
     { kind: "rule", className: "plot-rule", y: 0 },
@@ -66,8 +66,8 @@ function residualPlot(fit: FitData, panel: Panel, y: Scale): HTMLElement {
   ];
   return plot({
     title: `Residuals of ${panelTitle(panel)}`,
-    x: { label: axisLabel(fit.x.label), scale: scaleOf(xs.flat(), 0) },
-    y: { label: unit ? `Residual [${unit}]` : `Residual of ${nameOfLabel(fit.y.label)}`, scale: y },
+    x: { label: axisLabel(axes.x.label), scale: scaleOf(xs.flat(), 0, axes.x.log) },
+    y: { label: unit ? `Residual [${unit}]` : `Residual of ${nameOfLabel(axes.y.label)}`, scale: y },
     marks,
   });
 }
