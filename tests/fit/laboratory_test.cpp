@@ -136,7 +136,8 @@ Tissue relaxing() {
 TEST(Laboratory, AHoldRelaxesByItsBranches) {
   constexpr double kRate = 0.05, kRise = 4.0;
   Curve curve = test_of(LabTest::relaxation, Deforming::simple_shear, Measured::nominal, {});
-  for (const double t : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 7.0, 12.0, 30.0, 100.0}) {
+  for (int i = 0; i <= 400; ++i) {
+    const double t = i <= 200 ? 0.025 * i : 5.0 + 0.5 * (i - 200);
     curve.time.push_back(t);
     curve.displacement.push_back(kRate * std::min(t, kRise));
   }
@@ -305,7 +306,7 @@ TEST_F(Written, WhatCannotBeIsSaid) {
   EXPECT_THAT(fault("test = \"tension\"\ncolumns.strain.name = \"stretch\"\ncolumns.stretch.name = \"stretch\"\n", good),
               HasSubstr("contradicts `strain`"));
   EXPECT_THAT(fault("test = \"tension\"\n", table({"stretch", "stress (kPa)"}, {{1, 0.5, 0, -0.5, -1}, {0, 1, 2, 3, 4}})),
-              AllOf(HasSubstr("t.csv:4:1: \"stretch\" is 0 -; a stretch is above 0")));
+              AllOf(HasSubstr("t.csv:4:1: \"stretch\" is 0; a stretch is above 0")));
   EXPECT_THAT(fault("test = \"tension\"\n", table({"stretch", "stress"}, {kStretches, kilopascals})),
               HasSubstr("says no unit; give `unit` as one of kPa, Pa, MPa"));
   EXPECT_THAT(fault("test = \"tension\"\n", table({"stretch", "stress (MPa)"},

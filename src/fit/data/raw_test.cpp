@@ -221,8 +221,8 @@ void require_possible(const RawTest& test, const TestColumns& columns, scene::Pr
     if (fault.empty()) continue;
     ++shown;
     problems.add({test.lines[i], 1, {}}, "",
-                 source->title + " is " + brief(value / source->unit->factor) + " " + std::string(source->unit->name) +
-                     "; " + fault + "; check the columns and their units");
+                 source->title + " is " + measured_text(value / source->unit->factor, source->unit->name, 4) + "; " +
+                     fault + "; check the columns and their units");
   }
 }
 
@@ -248,8 +248,9 @@ void convert(RawTest& test, const DataSpec& spec, const TestColumns& columns, co
   Measurement& m = test.measurement;
   m.deforming = deforming_of(spec, columns.drive, test.displacement);
   const double outward = m.deforming == Deforming::compression ? -1.0 : 1.0;  // 1: a stretch above 1 is positive
+  const std::size_t before = problems.count();
   require_possible(test, columns, problems);
-  require_direction(test, columns, outward, problems);
+  if (problems.count() == before) require_direction(test, columns, outward, problems);
   const bool free_sign = columns.drive != Drive::stretch && columns.drive != Drive::frequency;
   if (free_sign && turn(test.displacement, columns.driven_sign)) test.turned.push_back(test.displacement_source.title);
   const bool modulus = columns.answer == Answer::storage_modulus || columns.answer == Answer::loss_modulus;

@@ -355,12 +355,7 @@ Ladder choose_forward(const ForwardProblem& problem) {
     ladder.rungs.push_back({.name = "specimen that bulges", .failure = {}, .model = make.barrel({})});
     return ladder;
   }
-  ladder.compared = one_of_each_group(problem.curves);
-  ladder.places = places_of(problem.parameters, problem.spec.points);
-  const std::shared_ptr<const SceneModel> scene = make.scene(reference(problem.spec));
-  const Variant variant = scene->variant(0, make.inner_values(ladder.places[0]));
-  const std::optional<Specimen> size = homogeneous_specimen(variant, make.options({}, kEver));
-  if (problem.spec.kind == ForwardKind::uniaxial) {
+  const auto only_specimen = [&](const std::optional<Specimen>& size) {
     const auto specimen = size ? make.specimen(*size) : nullptr;
     if (!specimen)
       throw std::invalid_argument(
@@ -368,6 +363,18 @@ Ladder choose_forward(const ForwardProblem& problem) {
           "parameters "
           "of [tissue] alone; take kind = \"scene\" or \"auto\"");
     ladder.rungs.push_back({.name = "specimen", .failure = {}, .model = specimen});
+  };
+  if (problem.specimen) {
+    only_specimen(problem.specimen);
+    return ladder;
+  }
+  ladder.compared = one_of_each_group(problem.curves);
+  ladder.places = places_of(problem.parameters, problem.spec.points);
+  const std::shared_ptr<const SceneModel> scene = make.scene(reference(problem.spec));
+  const Variant variant = scene->variant(0, make.inner_values(ladder.places[0]));
+  const std::optional<Specimen> size = homogeneous_specimen(variant, make.options({}, kEver));
+  if (problem.spec.kind == ForwardKind::uniaxial) {
+    only_specimen(size);
     return ladder;
   }
   ladder.rungs.push_back({.name = "the scene", .failure = {}, .model = make.with_offsets(scene)});

@@ -46,6 +46,7 @@ struct Ladder {
 struct ForwardProblem {
   SceneText scene;
   ForwardSpec spec;
+  std::optional<Specimen> specimen{};  ///< that deforms alike all over by what it is; then there is no other model
   std::optional<Plates> plates{};     ///< of a cylinder that bulges; then there is no other model
   std::vector<Parameter> parameters;  ///< names are keys: of the scene, or of offset_model.h
   std::vector<Curve> curves;          ///< of all, those held out, too

@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "glisson/material_point.h"
+#include "glisson/oscillation.h"
+#include "glisson/torsion.h"
 #include "material/uniaxial_path.h"
 
 namespace glisson::fit {
@@ -136,6 +138,31 @@ void by_point(const Tissue& tissue, const Stretching& way, const Curve& curve, s
   }
 }
 
+/// Storage or loss modulus at the curve's frequencies.
+void moduli(const Tissue& tissue, const Curve& curve, std::vector<double>& out) {
+  const std::vector<ComplexModulus> found = oscillation(tissue, curve.displacement, curve.measurement.stretch);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = curve.measurement.measured == Measured::loss ? found[i].loss : found[i].storage;
+}
+
+/// Torque at each instant of a cylinder of a radius and a height, twisted by the curve's angles.
+void torques(const Tissue& tissue, const History& history, const Specimen& size, const Curve& curve,
+             std::vector<double>& out) {
+  const std::size_t lead = history.lead();
+  const double first = history.begin(), whole = history.end() - first;
+  std::vector<double> times, twists;
+  for (std::size_t k = 0; k < history.times().size(); ++k) {
+    times.push_back(history.times()[k] - first);
+    twists.push_back(history.displacements()[k] / size.height);
+  }
+  double widest = 0.0;
+  for (std::size_t k = 1; k < times.size(); ++k) widest = std::max(widest, times[k] - times[k - 1]);
+  const bool has_past = tissue.viscosity > 0.0 || !tissue.maxwell.empty();
+  const TorsionOptions options{.between = has_past ? static_cast<std::size_t>(parts_of(0.0, widest, whole)) : 1};
+  const std::vector<TorsionState> states = torsion(tissue, size.radius, times, twists, options);
+  for (std::size_t i = 0; i < curve.size(); ++i) out[i] = states[i + lead].torque;
+}
+
 }  // namespace
 
 SpecimenModel::SpecimenModel(std::vector<Curve> curves, const Specimen& specimen, TissueAt tissue)
@@ -155,6 +182,13 @@ Prediction SpecimenModel::predict_from(std::size_t index, std::span<const double
     const Tissue tissue = tissue_(values);
     result.force.resize(measured.size());
     const bool along = m.deforming == Deforming::compression || m.deforming == Deforming::tension;
+    if (m.test == LabTest::oscillation || m.deforming == Deforming::torsion) {
+      if (m.test == LabTest::oscillation)
+        moduli(tissue, measured, result.force);
+      else
+        torques(tissue, history, specimen_, measured, result.force);
+      return result;
+    }
     const double outward = outward_of(measured), load = m.measured == Measured::strain ? specimen_.height : specimen_.area;
     if (along && m.measured != Measured::strain && !tissue.fibres) {
       UniaxialPath path(tissue);

@@ -83,6 +83,7 @@ LawSearch::LawSearch(const FitSpec& spec, LawSpec law, const FitCurves& curves, 
   if (spec.specimen) forward_.plates = plates_of(*spec.specimen);
   // A specimen deforms alike all over by what the word means; whether a body of tets does so, too, is looked at in the end.
   if (spec.specimen && forward_.spec.kind == ForwardKind::automatic) forward_.spec.kind = ForwardKind::uniaxial;
+  if (spec.specimen && forward_.spec.kind == ForwardKind::uniaxial) forward_.specimen = specimen_of(*spec.specimen);
   for (const ParameterSpec& p : law_.parameters) {
     forward_.parameters.push_back(parameter_of(p));
     forward_.parameters.back().name = p.key;
@@ -159,6 +160,7 @@ void LawSearch::compare_specimen() {
   if (forward_.plates) return compare_grids();
   ForwardProblem there = problem_at_optimum(forward_.curves);
   there.spec.kind = ForwardKind::automatic;
+  there.specimen.reset();
   try {
     const Ladder ladder = choose_forward(there);
     const auto own = std::find_if(ladder.rungs.begin(), ladder.rungs.end(),

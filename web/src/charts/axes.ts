@@ -22,13 +22,9 @@ function common(): uPlot.Axis {
   };
 }
 
-export function xAxis(label: string, log = false): uPlot.Axis {
-  const axis = { ...common(), scale: "x", label, labelSize: 20, labelGap: 2, size: 30, space: 64 };
-  // along decades every tick is a number of its own; those between get no text
-  return log ? { ...axis, values: (_plot, splits) => splits.map((value) => (isDecade(value) ? String(value) : "")) } : axis;
+export function xAxis(label: string): uPlot.Axis {
+  return { ...common(), scale: "x", label, labelSize: 20, labelGap: 2, size: 30, space: 64 };
 }
-
-const isDecade = (value: number) => value > 0 && Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-9;
 
 export function yAxis(): uPlot.Axis {
   return { ...common(), scale: "y", space: 36, size: (_plot, values) => widthOf(values) };

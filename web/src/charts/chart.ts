@@ -135,10 +135,10 @@ export class Chart {
       padding: [6, 14, 0, 0],
       legend: { show: false },
       scales: {
-        x: { time: false, distr: this.model.xLog ? 3 : 1, auto: false, min: this.view.xMin, max: this.view.xMax, range: (_u, min, max) => [min, max] },
+        x: { time: false, auto: false, min: this.view.xMin, max: this.view.xMax, range: (_u, min, max) => [min, max] },
         y: { auto: false, min: this.view.yMin, max: this.view.yMax, range: (_u, min, max) => [min, max] },
       },
-      axes: [xAxis(this.model.xLabel, this.model.xLog), yAxis()],
+      axes: [xAxis(this.model.xLabel), yAxis()],
       series: [{}, { paths: () => null, points: { show: false } }],
       cursor: {
         x: true,

@@ -21,7 +21,6 @@ export interface ChartModel {
   events: EventMark[];
   note: string;
   extent?: Extent; // to show first; without, that of its lines
-  xLog?: boolean; // along decades; all x above 0
 }
 
 /** A moment of a variant that is worth a mark: where on the x axis, and what it was. */
@@ -41,12 +40,6 @@ export interface Extent {
 /** Numbers times a factor, as the plain array of doubles that charts draw from. */
 export function scaled(values: readonly number[], factor: number): Float64Array {
   return Float64Array.from(values, (value) => value * factor);
-}
-
-/** The same along decades of x. */
-export function logExtentOf(lines: readonly Line[]): Extent {
-  const [xMin, xMax] = rangeOf(lines.map((line) => line.x.filter((x) => x > 0)));
-  return { ...extentOf(lines), xMin, xMax };
 }
 
 /** Range to show: all points of the lines, zero included where it is near, a little air above and below. */

@@ -1,6 +1,6 @@
 // panels.ts — curves of a fit put into charts: a chart for each group and use, all on the same axes.
 import type { ChartModel, Extent, Line } from "../charts/model.ts";
-import { extentOf, logExtentOf, scaled } from "../charts/model.ts";
+import { extentOf, scaled } from "../charts/model.ts";
 import { FIT_STYLE, MEASURED_STYLE, TOTAL_STYLE } from "../charts/line_style.ts";
 import { axisLabel } from "../format/units.ts";
 import type { FitCurve, FitData, FitGroup } from "../report_data.ts";
@@ -28,7 +28,6 @@ export function panelsOf(fit: FitData): Panel[] {
 /** Models of the charts; where their axes are the same on one common range, unless that would flatten one of them. */
 export function curveCharts(panels: readonly Panel[]): ChartModel[] {
   const models = panels.map(curveChart);
-  for (const model of models) if (model.xLog) model.extent = logExtentOf(model.lines);
   const alike = new Set(models.map((model) => `${model.xLabel} ${model.yLabel}`)).size === 1;
   const common = alike ? commonExtent(models.map((model) => extentOf(model.lines))) : null;
   if (common) for (const model of models) model.extent = common;
@@ -38,6 +37,11 @@ export function curveCharts(panels: readonly Panel[]): ChartModel[] {
 /** Where the points of a curve lie along x, in the unit of its axis. */
 export function along(curve: FitCurve): Float64Array {
   return scaled(curve.x.of === "time" ? curve.time_s : curve.drive, curve.x.scale);
+}
+
+/** The same as a chart takes it: exponents of ten where its axis counts decades. */
+function placed(curve: FitCurve): Float64Array {
+  return curve.x.log ? along(curve).map(Math.log10) : along(curve);
 }
 
 function curveChart(panel: Panel): ChartModel {
@@ -52,7 +56,7 @@ function curveChart(panel: Panel): ChartModel {
         entry: kind,
         label: measured && count > 1 ? `${MEASURED}, ${count} repetitions` : kind,
         style: measured ? MEASURED_STYLE : TOTAL_STYLE,
-        x: along(curve),
+        x: placed(curve),
         y: scaled(curve[column], curve.y.scale),
         times: null,
       };
@@ -61,7 +65,7 @@ function curveChart(panel: Panel): ChartModel {
   lines.push(...furtherLines(panel));
   return {
     title: panelTitle(panel),
-    xLog: panel.curves[0]!.x.log,
+    logX: panel.curves[0]!.x.log,
     xLabel: axisLabel(panel.curves[0]!.x.label),
     yLabel: axisLabel(panel.curves[0]!.y.label),
     lines,
@@ -81,7 +85,7 @@ function furtherLines(panel: Panel): Line[] {
       entry: FURTHER,
       label: "95 % of further specimens",
       style: FIT_STYLE,
-      x: along(curve),
+      x: placed(curve),
       y: scaled(curve[column], curve.y.scale),
       times: null,
     }));
