@@ -18,6 +18,7 @@
 #include "glisson/math.h"
 #include "glisson/mesh.h"
 #include "glisson/mesh_refinement.h"
+#include "glisson/oscillation.h"
 #include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 #include "glisson/simulation/tet_fields.h"
