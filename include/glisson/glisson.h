@@ -22,4 +22,5 @@
 #include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 #include "glisson/simulation/tet_fields.h"
+#include "glisson/torsion.h"
 #include "glisson/version.h"

@@ -17,6 +17,7 @@
 
 #include "base/text.h"
 #include "material/branch_weights.h"
+#include "material/course.h"
 #include "material/response.h"
 
 namespace glisson {
@@ -25,8 +26,7 @@ namespace {
 constexpr double kMiddle = 0.29289321881345254;  // γ
 constexpr double kWithin = 1e-12;                // of the stress, up to which a prescribed one is met
 constexpr int kIterations = 60, kHalvings = 30;
-constexpr int kMostParts = 256;   // into which a step is parted where Newton's method does not find the way
-constexpr double kAtOnce = 1e-9;  // of the second time, within which a first value at time 0 is applied
+constexpr int kMostParts = 256;  // into which a step is parted where Newton's method does not find the way
 
 constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
 
@@ -323,38 +323,17 @@ MaterialTargets test_targets(MaterialTest test, MaterialControl control, double 
 std::vector<MaterialState> material_test(const Tissue& tissue, MaterialTest test, MaterialControl control,
                                          std::span<const double> times, std::span<const double> values,
                                          std::size_t between) {
-  const auto fail = [](const std::string& why) { throw std::invalid_argument("material test: " + why); };
-  if (times.empty() || times.size() != values.size()) {
-    fail(std::to_string(times.size()) + " times and " + std::to_string(values.size()) +
-         " values; give as many of both, one or more");
-  }
-  if (between < 1) fail("between = 0 is outside the allowed range, ≥ 1");
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    if (std::isfinite(times[k]) && (k == 0 ? times[k] >= 0.0 : times[k] > times[k - 1])) continue;
-    fail("time " + std::to_string(k + 1) + " = " + detail::number_text(times[k]) +
-         (k == 0 ? " s is outside the allowed range, ≥ 0" : " s is not later than the one before it"));
-  }
-  const bool shear = test == MaterialTest::simple_shear;
-  double value = control == MaterialControl::deformation && !shear ? 1.0 : 0.0, time = 0.0;
+  const Course course{times, values, between};
+  course.require_valid("material test");
+  const double rest = control == MaterialControl::deformation && test != MaterialTest::simple_shear ? 1.0 : 0.0;
   MaterialPoint point(tissue);
   std::vector<MaterialState> states;
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    const bool at_once = times[k] == 0.0;
-    const double way = at_once ? kAtOnce * (times.size() > 1 ? times[1] : 1.0) : times[k] - time;
-    if (at_once && values[k] == value) {
-      states.push_back(point.state());
-      continue;
-    }
-    for (std::size_t i = 1; i <= between; ++i) {
-      const double share = static_cast<double>(i) / static_cast<double>(between);
-      const MaterialTargets targets = test_targets(test, control, value + share * (values[k] - value));
-      if (!point.advance(way / static_cast<double>(between), targets).converged) break;
-    }
-    states.push_back(point.state());
-    if (!point.state().converged) break;
-    states.back().time = times[k];
-    value = values[k], time = at_once ? way : times[k];
-  }
+  course.follow(
+      rest, [&](double h, double value) { return point.advance(h, test_targets(test, control, value)).converged; },
+      [&](std::size_t k) {
+        states.push_back(point.state());
+        if (states.back().converged) states.back().time = times[k];
+      });
   return states;
 }
 
