@@ -26,8 +26,9 @@ from .paper_figures import figures
 from .running import run, simulation
 from .scenes import load_scene, parse_scene, scenes_folder, to_toml
 from .sweeping import SweepError, sweep
-from .tissues import MaterialCurve, material_test, tabulated, tissue_from
+from .tissues import MaterialCurve, TorsionCurve, material_test, oscillation, tabulated, tissue_from, torsion
 
 __version__ = VERSION
-_INNER = {"annotations", "read_scene", "read_scene_text", "run_material_test", "run_variant"}  # what the functions above are made of
+# What the functions above are made of.
+_INNER = {"annotations", "read_scene", "read_scene_text", "run_material_test", "run_oscillation", "run_torsion", "run_variant"}
 __all__ = [name for name in dir() if not name.startswith("_") and name not in _INNER]

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ._core import TableLaw, Tissue, run_material_test
+from ._core import TableLaw, Tissue, run_material_test, run_oscillation, run_torsion
 from .scenes import parse_scene, to_toml
 
 
@@ -91,3 +91,75 @@ def material_test(
         warnings.warn(states.pop().message, RuntimeWarning, stacklevel=2)
     rows = {name: np.array([getattr(s, name) for s in states]).reshape(-1, 3, 3) for name in ("deformation", "nominal", "cauchy")}
     return MaterialCurve(time=np.array([s.time for s in states]), **rows)
+
+
+def oscillation(
+    tissue: Tissue,
+    frequencies: Any,
+    *,
+    stretch: float = 1.0,
+    mode: Literal["simple_shear", "uniaxial"] = "simple_shear",
+) -> np.ndarray:
+    """Complex modulus of a small oscillation about a static stretch along z, with free sides and all branches relaxed.
+
+    The stress is linearised exactly: there is no amplitude and no step to choose. The real part is the storage modulus, the imaginary
+    part the loss modulus, both on the lengths and areas at the static stretch.
+
+    :param frequencies: [Hz], 0 or above; 0 gives the relaxed modulus
+    :param stretch: the static stretch, above 0
+    :param mode: simple_shear gives G*: x moves with z, all else is held. uniaxial gives E*: z moves, the sides are free
+    :return: modulus [Pa], complex, one a frequency
+    :raises ValueError: naming the argument, its value and the allowed range
+
+    >>> tissue = Tissue(youngs_modulus=2800, viscosity=10)
+    >>> modulus = oscillation(tissue, [0, 1])
+    >>> modulus.real.round(6).tolist(), modulus.imag.round(3).tolist()
+    ([1000.0, 1000.0], [0.0, 62.832])
+    """
+    rows = run_oscillation(tissue, np.asarray(frequencies, dtype=float).ravel().tolist(), stretch, mode)
+    moduli = np.array(rows, dtype=float).reshape(-1, 2)
+    return moduli[:, 0] + 1j * moduli[:, 1]
+
+
+@dataclass(frozen=True)
+class TorsionCurve:
+    """What a torsion test of a cylinder measures, a row a time."""
+
+    time: np.ndarray  #: [s], (n,)
+    twist: np.ndarray  #: angle over length at rest [rad/m], (n,)
+    torque: np.ndarray  #: [N m], (n,)
+    axial_force: np.ndarray  #: [N], (n,); below 0 the specimen pushes the plates apart
+
+
+def torsion(
+    tissue: Tissue,
+    radius: float,
+    times: Any,
+    twist: Any,
+    *,
+    stretch: float = 1.0,
+    between: int = 1,
+    radii: int = 12,
+) -> TorsionCurve:
+    """A cylinder of tissue between bonded plates that turn against each other at a fixed distance; its side is free.
+
+    Each shell is in simple shear, with a history of its own. The volume change that the twist brings is neglected: the torque errs by
+    a share of the order γ² μ/κ, with γ the shear at the rim, and the part of the axial force that grows with γ² by one of the order
+    μ/κ. Between two times the twist changes linearly; a first time of 0 applies the first twist at once.
+
+    :param radius: at rest [m], above 0
+    :param times: [s], ascending
+    :param twist: angle over length at rest [rad/m], one a time
+    :param stretch: static axial stretch before the twist, with free sides and all branches relaxed
+    :param between: steps from one time to the next; more of them for a tissue with viscosity or branches
+    :param radii: Gauss points along the radius; more of them for a law with a kink
+    :raises ValueError: naming the argument, its value and the allowed range
+
+    >>> curve = torsion(Tissue(youngs_modulus=2800), 0.01, [1, 2], [5, 10])  # G J φ
+    >>> curve.torque.round(8).tolist()
+    [7.854e-05, 0.00015708]
+    """
+    t, twists = (np.asarray(values, dtype=float).ravel() for values in (times, twist))
+    rows = run_torsion(tissue, radius, t.tolist(), twists.tolist(), stretch, between, radii)
+    forces = np.array(rows, dtype=float).reshape(-1, 2)
+    return TorsionCurve(time=t, twist=twists, torque=forces[:, 0], axial_force=forces[:, 1])

@@ -1,7 +1,9 @@
-// bind_material_point.cpp — a tissue without a body: prescribed stretch and stress.
+// bind_material_point.cpp — a tissue without a body: prescribed stretch and stress, oscillation, torsion.
 #include "glisson/material_point.h"
 
 #include "bind.h"
+#include "glisson/oscillation.h"
+#include "glisson/torsion.h"
 #include "rooms.h"
 
 namespace glisson::python {
@@ -39,6 +41,26 @@ std::vector<MaterialState> test(const Tissue& tissue, MaterialTest kind, const s
                        stretch ? *stretch : *stress, between);
 }
 
+/// G′ and G″ of each frequency [Pa].
+std::vector<std::array<double, 2>> complex_moduli(const Tissue& tissue, const std::vector<double>& frequencies,
+                                                  double stretch, OscillationMode mode) {
+  std::vector<std::array<double, 2>> rows;
+  for (const ComplexModulus& m : oscillation(tissue, frequencies, stretch, mode)) rows.push_back({m.storage, m.loss});
+  return rows;
+}
+
+/// Torque [N m] and axial force [N] at each time.
+std::vector<std::array<double, 2>> twisted(const Tissue& tissue, double radius, const std::vector<double>& times,
+                                           const std::vector<double>& twists, double stretch, std::size_t between,
+                                           std::size_t radii) {
+  std::vector<std::array<double, 2>> rows;
+  for (const TorsionState& s :
+       torsion(tissue, radius, times, twists, {.stretch = stretch, .between = between, .radii = radii})) {
+    rows.push_back({s.torque, s.axial_force});
+  }
+  return rows;
+}
+
 }  // namespace
 
 void bind_material_point(nb::module_& m) {
@@ -63,6 +85,9 @@ void bind_material_point(nb::module_& m) {
            ">>> round(float(point.advance(1.0, {\"zz\": 1.1}, stress={\"xx\": 0, \"yy\": 0}).nominal[2, 2]))\n360");
   m.def("run_material_test", &test, "tissue"_a, "test"_a, "times"_a, "stretch"_a = nb::none(), "stress"_a = nb::none(),
         "between"_a = 1, doc("material_test"));
+  m.def("run_oscillation", &complex_moduli, "tissue"_a, "frequencies"_a, "stretch"_a, "mode"_a, doc("oscillation"));
+  m.def("run_torsion", &twisted, "tissue"_a, "radius"_a, "times"_a, "twists"_a, "stretch"_a, "between"_a, "radii"_a,
+        doc("torsion"));
 }
 
 }  // namespace glisson::python

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 namespace glisson {
+
+/// Branches that a tissue may have.
+inline constexpr std::size_t kMostBranches = 8;
 
 /// q(t + h) = decay q(t) + from S(t) + to S(t + h).
 struct BranchWeights {

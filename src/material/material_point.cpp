@@ -5,16 +5,19 @@
 //   P_elastic(H)_ij + P_viscous(H, Ḣ)_ij − carry( Σ g_k q_k )_ij = P_ij,      q_k′ = (S − q_k)/τ_k
 //
 // with Ḣ = (H − from)/weight at the stages t + γh and t + h of [Alexander1977], γ = 1 − 1/√2, and q_k by the weights of
-// branch_weights.h, as in uniaxial_path.h.
+// branch_weights.h, as in uniaxial_path.h. A step works on a copy of the history, which is taken over where it succeeds; nothing
+// in it allocates.
 #include "glisson/material_point.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "base/text.h"
 #include "material/branch_weights.h"
+#include "material/course.h"
 #include "material/response.h"
 
 namespace glisson {
@@ -23,8 +26,7 @@ namespace {
 constexpr double kMiddle = 0.29289321881345254;  // γ
 constexpr double kWithin = 1e-12;                // of the stress, up to which a prescribed one is met
 constexpr int kIterations = 60, kHalvings = 30;
-constexpr int kMostParts = 256;   // into which a step is parted where Newton's method does not find the way
-constexpr double kAtOnce = 1e-9;  // of the second time, within which a first value at time 0 is applied
+constexpr int kMostParts = 256;  // into which a step is parted where Newton's method does not find the way
 
 constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
 
@@ -65,59 +67,90 @@ struct Stage {
 }  // namespace
 
 struct MaterialPoint::Parts {
-  explicit Parts(const Tissue& tissue) : response(tissue), q(tissue.maxwell.size()) {
+  /// What the point has come through.
+  struct History {
+    Mat3d deformation = identity<double>();       ///< F
+    Mat3d nominal{};                              ///< P [Pa]
+    Sym3<double> relaxing{};                      ///< S there [Pa]
+    std::array<Sym3<double>, kMostBranches> q{};  ///< as many as the tissue has branches [Pa]
+  };
+  /// P of a deformation with the S that its branches relax.
+  template <class T>
+  struct Answer {
+    Mat3<T> P;
+    Sym3<T> S{};
+  };
+
+  explicit Parts(const Tissue& tissue) : response(tissue) {
     if (tissue.fibres) shape.fibre = unit(tissue.fibres->direction);
   }
 
   Response response;
   ElementShape shape;
+  History history;
   MaterialState state;
-  Sym3<double> relaxing{};  ///< S there [Pa]
-  std::vector<Sym3<double>> q;
 
+  const std::vector<MaxwellBranch>& branches() const { return response.tissue().maxwell; }
   bool viscous() const { return response.tissue().viscosity > 0.0; }
-  Mat3d gradient() const { return sum(state.deformation, scaled(identity<double>(), -1.0)); }
 
-  /// P of a stage, all parts.
+  /// The stress of a stage, all parts.
   template <class T>
-  Mat3<T> stress(const Stage& stage, const Mat3<T>& H) const {
+  Answer<T> answer(const Stage& stage, const Mat3<T>& H) const {
     const Mat3<T> elastic = response.elastic(H, shape);
-    Mat3<T> P = elastic;
+    Answer<T> a{.P = elastic};
     if (stage.weight > 0.0) {
       const Mat3<T> moved = sum(H, scaled(with_scalar<T>(stage.from), T(-1.0)));
-      P = sum(P, response.viscous(H, scaled(moved, T(1.0 / stage.weight))));
+      a.P = sum(a.P, response.viscous(H, scaled(moved, T(1.0 / stage.weight))));
     }
-    if (q.empty()) return P;
-    const Sym3<T> held = with_scalar<T>(stage.kept) + response.relaxing(H, elastic) * T(stage.share);
-    return sum(P, response.carry(H, held * T(-1.0)));
+    if (branches().empty()) return a;
+    a.S = response.relaxing(H, elastic);
+    const Sym3<T> held = with_scalar<T>(stage.kept) + a.S * T(stage.share);
+    a.P = sum(a.P, response.carry(H, held * T(-1.0)));
+    return a;
   }
 
   /// What the branches keep of the past at the end of h, and what they take of the stress there.
-  void weigh(double h, Stage& stage) const {
-    for (std::size_t k = 0; k < q.size(); ++k) {
-      const MaxwellBranch& branch = response.tissue().maxwell[k];
+  void weigh(double h, const History& past, Stage& stage) const {
+    for (std::size_t k = 0; k < branches().size(); ++k) {
+      const MaxwellBranch& branch = branches()[k];
       const BranchWeights w = branch_weights(h, branch.time);
-      stage.kept += (q[k] * w.decay + relaxing * w.from) * branch.share;
+      stage.kept += (past.q[k] * w.decay + past.relaxing * w.from) * branch.share;
       stage.share += branch.share * w.to;
     }
   }
 
-  bool solve(const Stage& stage, Mat3d& H) const;
-  bool step(double h, const MaterialTargets& from, const MaterialTargets& to);
+  std::optional<Answer<double>> solve(const Stage& stage, Mat3d& H) const;
+  bool step(double h, const MaterialTargets& from, const MaterialTargets& to, History& now) const;
+  void show(double time);
 };
 
 namespace {
 
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 9, 9>;
+using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 9, 1>;
+
 /// Components whose stress is prescribed.
-std::vector<std::array<std::size_t, 2>> unknowns(const MaterialTargets& targets) {
-  std::vector<std::array<std::size_t, 2>> free;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (targets(i, j).control == MaterialControl::nominal_stress) free.push_back({i, j});
+class Unknowns {
+ public:
+  explicit Unknowns(const MaterialTargets& targets) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        if (targets(i, j).control == MaterialControl::nominal_stress) at_[count_++] = {i, j};
+      }
     }
   }
-  return free;
-}
+  Eigen::Index size() const { return static_cast<Eigen::Index>(count_); }
+  /// The k-th of them in a matrix.
+  template <class Matrix>
+  auto& of(Matrix& m, Eigen::Index k) const {
+    const auto [i, j] = at_[static_cast<std::size_t>(k)];
+    return m(i, j);
+  }
+
+ private:
+  std::array<std::array<std::size_t, 2>, 9> at_{};
+  std::size_t count_ = 0;
+};
 
 /// The targets at a share of the way between two.
 MaterialTargets between(const MaterialTargets& a, const MaterialTargets& b, double share) {
@@ -139,64 +172,58 @@ void hold(const MaterialTargets& targets, Mat3d& H) {
 
 }  // namespace
 
-/// Newton's method for the free components, from H on; a step is halved until it brings the stress nearer.
-bool MaterialPoint::Parts::solve(const Stage& stage, Mat3d& H) const {
+/// Newton's method for the free components, from H on; a step is halved until it brings the stress nearer. None: no way is found.
+auto MaterialPoint::Parts::solve(const Stage& stage, Mat3d& H) const -> std::optional<Answer<double>> {
   hold(stage.targets, H);
-  if (!response.small() && !(determinant_of(H) > 0.0)) return false;
-  const auto free = unknowns(stage.targets);
-  const auto n = static_cast<Eigen::Index>(free.size());
-  double size = 0.0;
-  const auto residual = [&](const Mat3d& at) {
-    const Mat3d P = stress(stage, at);
-    Eigen::VectorXd r(n);
-    size = std::sqrt(squared_norm(P));
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const auto [i, j] = free[static_cast<std::size_t>(k)];
-      r[k] = P(i, j) - stage.targets(i, j).value;
-    }
+  if (!response.small() && !(determinant_of(H) > 0.0)) return std::nullopt;
+  const Unknowns free(stage.targets);
+  const Eigen::Index n = free.size();
+  Answer<double> there = answer(stage, H);
+  if (n == 0) return there;
+  const auto residual = [&] {
+    Column r(n);
+    for (Eigen::Index k = 0; k < n; ++k) r[k] = free.of(there.P, k) - free.of(stage.targets, k).value;
     return r;
   };
-  Eigen::VectorXd r = residual(H);
-  if (!r.allFinite()) return false;
-  for (int iteration = 0; iteration < kIterations && n > 0; ++iteration) {
-    Eigen::MatrixXd K(n, n);
+  Column r = residual();
+  if (!r.allFinite()) return std::nullopt;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    Square K(n, n);
     for (Eigen::Index k = 0; k < n; ++k) {
       Mat3<Dual> moved = with_scalar<Dual>(H);
-      moved(free[static_cast<std::size_t>(k)][0], free[static_cast<std::size_t>(k)][1]).d = 1.0;
-      const Mat3<Dual> P = stress(stage, moved);
-      for (Eigen::Index l = 0; l < n; ++l) {
-        K(l, k) = P(free[static_cast<std::size_t>(l)][0], free[static_cast<std::size_t>(l)][1]).d;
-      }
+      free.of(moved, k).d = 1.0;
+      const Mat3<Dual> P = answer(stage, moved).P;
+      for (Eigen::Index l = 0; l < n; ++l) K(l, k) = free.of(P, l).d;
     }
-    const Eigen::VectorXd step = K.fullPivLu().solve(-r);
-    if (!step.allFinite()) return false;
+    const Column step = K.fullPivLu().solve(-r);
+    if (!step.allFinite()) return std::nullopt;
     // Rounding of P is that of its largest slope times F's last digit.
-    const double met = kWithin * size + 4e-16 * K.cwiseAbs().maxCoeff();
+    const double met = kWithin * std::sqrt(squared_norm(there.P)) + 4e-16 * K.cwiseAbs().maxCoeff();
     const double before = r.norm();
     double share = 1.0;
     for (int halving = 0; halving < kHalvings; ++halving, share *= 0.5) {
       Mat3d next = H;
-      for (Eigen::Index k = 0; k < n; ++k) {
-        next(free[static_cast<std::size_t>(k)][0], free[static_cast<std::size_t>(k)][1]) += share * step[k];
-      }
+      for (Eigen::Index k = 0; k < n; ++k) free.of(next, k) += share * step[k];
       if (!response.small() && !(determinant_of(next) > 0.0)) continue;
-      r = residual(next);
+      there = answer(stage, next);
+      r = residual();
       if (!r.allFinite() || (r.norm() >= before && r.norm() > met)) continue;
       H = next;
       break;
     }
-    if (r.allFinite() && r.norm() <= met) return true;
-    if (!r.allFinite() || r.norm() >= before) return false;
+    if (r.allFinite() && r.norm() <= met) return there;
+    if (!r.allFinite() || r.norm() >= before) return std::nullopt;
   }
-  return n == 0;
+  return std::nullopt;
 }
 
-bool MaterialPoint::Parts::step(double h, const MaterialTargets& from, const MaterialTargets& to) {
-  Mat3d H = gradient();
+/// One step of a history; false leaves it undefined.
+bool MaterialPoint::Parts::step(double h, const MaterialTargets& from, const MaterialTargets& to, History& now) const {
+  Mat3d H = sum(now.deformation, scaled(identity<double>(), -1.0));
   Stage last{.targets = to, .kept = {}};
   if (viscous()) {
     Stage first{.targets = between(from, to, kMiddle), .from = H, .weight = kMiddle * h, .kept = {}};
-    weigh(kMiddle * h, first);
+    weigh(kMiddle * h, now, first);
     Mat3d middle = H;
     if (!solve(first, middle)) return false;
     const Mat3d stage_rate = scaled(sum(middle, scaled(H, -1.0)), 1.0 / first.weight);
@@ -204,19 +231,22 @@ bool MaterialPoint::Parts::step(double h, const MaterialTargets& from, const Mat
     last.weight = first.weight;
     H = sum(last.from, scaled(stage_rate, last.weight));
   }
-  weigh(h, last);
-  if (!solve(last, H)) return false;
-  const Mat3d P = stress(last, H);
-  const Sym3<double> S = q.empty() ? Sym3<double>{} : response.relaxing(H, response.elastic(H, shape));
-  for (std::size_t k = 0; k < q.size(); ++k) {
-    const BranchWeights w = branch_weights(h, response.tissue().maxwell[k].time);
-    q[k] = q[k] * w.decay + relaxing * w.from + S * w.to;
+  weigh(h, now, last);
+  const std::optional<Answer<double>> found = solve(last, H);
+  if (!found) return false;
+  for (std::size_t k = 0; k < branches().size(); ++k) {
+    const BranchWeights w = branch_weights(h, branches()[k].time);
+    now.q[k] = now.q[k] * w.decay + now.relaxing * w.from + found->S * w.to;
   }
-  relaxing = S;
-  const Mat3d F = deformation_gradient(H);
-  state.time += h, state.deformation = F, state.nominal = P;
-  state.cauchy = response.small() ? P : scaled(P * transposed(F), 1.0 / determinant(F));
+  now.deformation = deformation_gradient(H), now.nominal = found->P, now.relaxing = found->S;
   return true;
+}
+
+void MaterialPoint::Parts::show(double time) {
+  const Mat3d &F = history.deformation, &P = history.nominal;
+  state.time = time, state.deformation = F, state.nominal = P;
+  state.cauchy = response.small() ? P : scaled(P * transposed(F), 1.0 / determinant(F));
+  state.converged = true, state.message.clear();
 }
 
 MaterialPoint::MaterialPoint(const Tissue& tissue) {
@@ -247,22 +277,21 @@ const MaterialState& MaterialPoint::advance(double h, const MaterialTargets& tar
       from(i, j).value = stress ? parts_->state.nominal(i, j) : parts_->state.deformation(i, j);
     }
   }
-  const Parts before = *parts_;
+  const double time = parts_->state.time + h;
   for (int parts = 1; parts <= kMostParts; parts *= 4) {
+    Parts::History now = parts_->history;
     bool made = true;
     for (int k = 0; k < parts && made; ++k) {
       made = parts_->step(h / parts, between(from, targets, double(k) / parts),
-                          between(from, targets, double(k + 1) / parts));
+                          between(from, targets, double(k + 1) / parts), now);
     }
-    if (made) {
-      parts_->state.converged = true, parts_->state.message.clear();
-      return parts_->state;
-    }
-    *parts_ = before;
+    if (!made) continue;
+    parts_->history = now;
+    parts_->show(time);
+    return parts_->state;
   }
   parts_->state.converged = false;
-  parts_->state.message = "no deformation carries the prescribed stress at " +
-                          detail::number_text(before.state.time + h) +
+  parts_->state.message = "no deformation carries the prescribed stress at " + detail::number_text(time) +
                           " s: it is beyond what the tissue bears, or the step is too long; prescribe less, take "
                           "shorter steps, or prescribe the stretch";
   return parts_->state;
@@ -294,38 +323,17 @@ MaterialTargets test_targets(MaterialTest test, MaterialControl control, double 
 std::vector<MaterialState> material_test(const Tissue& tissue, MaterialTest test, MaterialControl control,
                                          std::span<const double> times, std::span<const double> values,
                                          std::size_t between) {
-  const auto fail = [](const std::string& why) { throw std::invalid_argument("material test: " + why); };
-  if (times.empty() || times.size() != values.size()) {
-    fail(std::to_string(times.size()) + " times and " + std::to_string(values.size()) +
-         " values; give as many of both, one or more");
-  }
-  if (between < 1) fail("between = 0 is outside the allowed range, ≥ 1");
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    if (std::isfinite(times[k]) && (k == 0 ? times[k] >= 0.0 : times[k] > times[k - 1])) continue;
-    fail("time " + std::to_string(k + 1) + " = " + detail::number_text(times[k]) +
-         (k == 0 ? " s is outside the allowed range, ≥ 0" : " s is not later than the one before it"));
-  }
-  const bool shear = test == MaterialTest::simple_shear;
-  double value = control == MaterialControl::deformation && !shear ? 1.0 : 0.0, time = 0.0;
+  const Course course{times, values, between};
+  course.require_valid("material test");
+  const double rest = control == MaterialControl::deformation && test != MaterialTest::simple_shear ? 1.0 : 0.0;
   MaterialPoint point(tissue);
   std::vector<MaterialState> states;
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    const bool at_once = times[k] == 0.0;
-    const double way = at_once ? kAtOnce * (times.size() > 1 ? times[1] : 1.0) : times[k] - time;
-    if (at_once && values[k] == value) {
-      states.push_back(point.state());
-      continue;
-    }
-    for (std::size_t i = 1; i <= between; ++i) {
-      const double share = static_cast<double>(i) / static_cast<double>(between);
-      const MaterialTargets targets = test_targets(test, control, value + share * (values[k] - value));
-      if (!point.advance(way / static_cast<double>(between), targets).converged) break;
-    }
-    states.push_back(point.state());
-    if (!point.state().converged) break;
-    states.back().time = times[k];
-    value = values[k], time = at_once ? way : times[k];
-  }
+  course.follow(
+      rest, [&](double h, double value) { return point.advance(h, test_targets(test, control, value)).converged; },
+      [&](std::size_t k) {
+        states.push_back(point.state());
+        if (states.back().converged) states.back().time = times[k];
+      });
   return states;
 }
 

@@ -3,12 +3,11 @@
 
 #include "base/require_fields.h"
 #include "base/text.h"
+#include "material/branch_weights.h"
 #include "material/stiffness_formulas.h"
 
 namespace glisson {
 namespace {
-
-constexpr std::size_t kMostBranches = 8;
 
 /// What must not stand beside a hyperelastic law, which takes the place of the stiffness laws, and what needs one.
 Fault check_laws(const Tissue& t) {

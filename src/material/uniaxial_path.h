@@ -13,6 +13,7 @@
 #include <array>
 
 #include "material/axial_response.h"
+#include "material/branch_weights.h"
 #include "material/uniaxial.h"
 
 namespace glisson {
@@ -40,7 +41,6 @@ class UniaxialPath {
   UniaxialState at(double stretch);
 
  private:
-  static constexpr std::size_t kMostBranches = 8;
   using Branches = std::array<Axial<double>, kMostBranches>;
 
   /// What a stage knows beside the stretch across.

@@ -77,6 +77,41 @@ TEST_F(Commands, MaterialGivesTheCurveOfATissue) {
   EXPECT_NE(run({"material", "nothing.toml"}).err.find("there is no such file"), std::string::npos);
 }
 
+// material: torsion and oscillation give the closed forms of neo-Hooke; what a test does not read is refused, and a page with the curve
+// is written.
+TEST_F(Commands, MaterialTwistsAndOscillates) {
+  const std::string tissue = write(
+      "tissue.toml", "[tissue]\nhyperelastic = { kind = \"neo_hookean\", mu_Pa = 1000, bulk_modulus_Pa = 1e11 }\n");
+  const Outcome twisted = run({"material", tissue, "--test", "torsion", "--radius-mm", "20", "--length-mm", "30",
+                               "--to", "90", "--points", "2", "--json", "--picture", "torsion.html"});
+  ASSERT_THAT(twisted, Exits(0)) << twisted.err;
+  const nlohmann::json torsion = nlohmann::json::parse(twisted.out)["columns"];
+  const double twist = std::acos(-1.0) / 2.0 / 0.03, torque = 0.5 * std::acos(-1.0) * 1000.0 * twist * 1.6e-7;
+  EXPECT_NEAR(torsion["torque_N_m"][1].get<double>(), torque, 1e-6 * torque);
+  EXPECT_NEAR(torsion["twist_rad_m"][1].get<double>(), twist, 1e-9 * twist);
+  EXPECT_NEAR(torsion["axial_force_N"][1].get<double>(), -0.5 * twist * torque, 1e-6 * twist * torque);
+  EXPECT_NE(read_text(folder_ / "torsion.html").find("Torque against angle"), std::string::npos);
+
+  const Outcome text = run({"material", tissue, "--test", "oscillation", "--stretch", "1.2", "--from-hz", "0.1",
+                            "--to-hz", "10", "--points", "3", "--csv", "modulus.csv"});
+  ASSERT_THAT(text, Exits(0)) << text.err;
+  EXPECT_NE(text.out.find("storage_modulus [Pa]"), std::string::npos) << text.out;
+  EXPECT_NE(read_text(folder_ / "modulus.csv").find("\n1,14"), std::string::npos) << read_text(folder_ / "modulus.csv");
+
+  const auto refused = [&](std::vector<std::string> more, const std::string& message) {
+    more.insert(more.begin(), {"material", tissue});
+    const Outcome outcome = run(more);
+    EXPECT_THAT(outcome, Exits(2)) << message;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
+  };
+  refused({"--test", "torsion", "--radius-mm=-3"}, "--radius-mm -3: outside the allowed range, > 0");
+  refused({"--radius-mm", "3"}, "--radius-mm: it belongs to --test torsion, and the test is uniaxial");
+  refused({"--test", "oscillation", "--to", "1.1"}, "--to: it belongs to tests over time");
+  refused({"--test", "oscillation", "--from-hz", "5", "--to-hz", "1"}, "--to-hz 1: it is below --from-hz 5");
+  refused({"--test", "oscillation", "--mode", "bulk"}, "allowed: simple_shear, uniaxial");
+  refused({"--picture", "curve.png"}, "ends in .html");
+}
+
 // info prints the same figures as text and as JSON; --scale acts on them.
 TEST_F(Commands, InfoDescribesAMesh) {
   ASSERT_THAT(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet"}), Exits(0));

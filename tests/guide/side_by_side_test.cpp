@@ -11,10 +11,12 @@
 #include "glisson/instruments/tool_motion.h"
 #include "glisson/io.h"
 #include "glisson/material_point.h"
+#include "glisson/oscillation.h"
 #include "glisson/scene/scene.h"
 #include "glisson/scene/tissue_presets.h"
 #include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
+#include "glisson/torsion.h"
 #include "support/must_step.h"
 #include "support/places.h"
 
@@ -71,7 +73,7 @@ class Files : public testing::Test {
 TEST(SideBySide, ColumnStandsInThisFile) {
   const std::string here = text_of(test::shipped("tests/guide/side_by_side_test.cpp"));
   const std::vector<std::string> snippets = cpp_column();
-  EXPECT_EQ(snippets.size(), 14U);
+  EXPECT_EQ(snippets.size(), 16U);
   for (const std::string& snippet : snippets) EXPECT_NE(here.find(snippet), std::string::npos) << snippet;
 }
 
@@ -90,6 +92,9 @@ TEST_F(SideBySideRuns, BuildsAndSteps) {
                 .back()
                 .nominal(2, 2),
             0.1 * 3600.0);  // it stiffens
+  const std::vector<double> frequencies{1.0, 10.0}, twists{5.0, 10.0};
+  EXPECT_NEAR(oscillation(tissue, frequencies).back().storage, tissue.lame().mu, 1e-6);
+  EXPECT_LT(torsion(tissue, 0.01, times, twists).back().axial_force, 1e-12);
 
   Simulation simulation(mesh, {{0, tissue}});
   simulation.fix("z_min");

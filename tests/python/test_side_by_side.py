@@ -59,6 +59,8 @@ def names():
         "tissue": glisson.Tissue(youngs_modulus=7200),
         "times": [1, 2],
         "stretches": [1.05, 1.1],
+        "frequencies": [1, 10],
+        "twists": [5, 10],
     }
     known["tool"] = body.drive([224], glisson.PressMotion())
     return known
@@ -78,6 +80,9 @@ def test_the_python_column_runs(place):
     assert glisson.law_value(done["a tissue with a law"].law, 3600, 0.1) == 5400
     assert done["a tissue with a source"] == glisson.tissue_preset("paper_liver").tissue
     assert done["its stress over stretch"].nominal[-1, 2, 2] == pytest.approx(720)
+    mu = known["tissue"].lame()[1]
+    assert done["its complex modulus"] == pytest.approx([mu, mu])
+    assert done["a cylinder of it, twisted"].torque[-1] == pytest.approx(mu * 3.141592654 / 2 * 0.01**4 * 10)
     assert known["body"].tissue(0).youngs_modulus == 7200 and known["body"].steps == 1
     assert [result.end for result in done["run a scene"].values()] == ["finished"]
     assert max(done["fit a tissue to curves"].values()) > 100
@@ -108,7 +113,8 @@ def test_the_scene_column_is_a_scene(place, program):
 
 def test_commands_run(place, program):
     """Rows whose third column is a command."""
-    for task in ("its stress over stretch", "run a scene", "fit a tissue to curves"):
+    tests = ("its stress over stretch", "its complex modulus", "a cylinder of it, twisted")
+    for task in (*tests, "run a scene", "fit a tissue to curves"):
         word, *arguments = shlex.split(ROWS[task][2][0])
         assert word == "glisson"
         done = subprocess.run([program, *arguments], capture_output=True, text=True, check=False)

@@ -170,6 +170,34 @@ def test_material_point_step_by_step():
     assert last.converged and last.deformation[0, 0] == pytest.approx(0.96)
 
 
+def test_oscillation_is_the_generalised_maxwell_body():
+    """G* = μ (1 − Σ g/(1 + iωτ)) over frequency; a stretched neo-Hooke is stiffer by λ²."""
+    tissue = glisson.Tissue(youngs_modulus=2800, maxwell=[glisson.MaxwellBranch(share=0.4, time=0.5)])
+    frequencies = np.logspace(-2, 2, 9)
+    exact = 1000 * (1 - 0.4 / (1 + 2j * np.pi * frequencies * 0.5))
+    np.testing.assert_allclose(glisson.oscillation(tissue, frequencies), exact, rtol=1e-8)
+    neo_hooke = glisson.Tissue(hyperelastic=glisson.NeoHookean(mu=1000, bulk_modulus=1e11))
+    assert glisson.oscillation(neo_hooke, 1, stretch=1.2)[0] == pytest.approx(1440, rel=1e-6)
+    assert glisson.oscillation(neo_hooke, [1], mode="uniaxial")[0] == pytest.approx(3000, rel=1e-6)
+    with pytest.raises(ValueError, match="frequency 1 = -1 Hz"):
+        glisson.oscillation(tissue, [-1])
+
+
+def test_torsion_is_rivlins():
+    """Torque and normal force of neo-Hooke in closed form; a cylinder that is held relaxes."""
+    mu, radius, twist = 1000.0, 0.01, np.array([20.0, 40.0])
+    tissue = glisson.Tissue(hyperelastic=glisson.NeoHookean(mu=mu, bulk_modulus=1e8))
+    curve = glisson.torsion(tissue, radius, [1, 2], twist)
+    np.testing.assert_allclose(curve.torque, np.pi / 2 * mu * twist * radius**4, rtol=1e-6)
+    np.testing.assert_allclose(curve.axial_force, -np.pi / 4 * mu * twist**2 * radius**4, rtol=1e-6)
+    assert curve.twist.tolist() == twist.tolist() and curve.time.tolist() == [1, 2]
+    tissue.maxwell = [glisson.MaxwellBranch(share=0.5, time=1)]
+    held = glisson.torsion(tissue, radius, [0, 100], [20, 20])
+    assert held.torque[1] / held.torque[0] == pytest.approx(0.5, rel=1e-2)
+    with pytest.raises(ValueError, match="radius = 0 m"):
+        glisson.torsion(tissue, 0, [1], [1])
+
+
 def test_material_point_refuses_bad_input():
     """Bad input is refused by name; a stress that nothing carries warns and keeps what was computed."""
     point = glisson.MaterialPoint(glisson.Tissue())

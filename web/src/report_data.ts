@@ -104,6 +104,8 @@ export interface ChartSpec {
   variants: string[] | null; // names; null: all
   points?: { label: string; x: number[]; y: number[] }[]; // measured, in the axes' display units, drawn as circles
   fits?: { label: string; x: number[]; y: number[] }[]; // extra lines, in the axes' display units, drawn dashed
+  lines?: { label: string; x: number[]; y: number[] }[]; // the chart's own, in the axes' display units, as those of variants
+  log_x?: boolean; // x by its logarithm; all x above 0
 }
 
 export interface AxisSpec {

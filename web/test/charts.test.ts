@@ -80,6 +80,25 @@ describe("default charts", () => {
     expect([...model!.lines[1]!.y]).toEqual([0, 1]);
   });
 
+  it("draw lines of their own, over decades where x is by its logarithm", () => {
+    const spec: ChartSpec = {
+      title: "t",
+      x: { column: "frequency", label: "frequency [Hz]", scale: 1 },
+      y: { column: "modulus", label: "modulus [kPa]", scale: 1 },
+      variants: [],
+      lines: [
+        { label: "storage", x: [0.01, 1, 100], y: [1, 2, 3] },
+        { label: "loss", x: [0.01, 1, 100], y: [0, 1, 0] },
+      ],
+      log_x: true,
+    };
+    const [model] = variantCharts(scene([], [spec]));
+    expect(model!.logX).toBe(true);
+    expect(model!.lines.map((one) => one.label)).toEqual(["storage", "loss"]);
+    expect([...model!.lines[1]!.x]).toEqual([-2, 0, 2]);
+    expect(model!.lines[0]!.style.dash).toEqual([]);
+  });
+
   it("leave out parts that are zero throughout, and say so", () => {
     const model = partsChart(variant("a"));
     expect(model!.lines.map((one) => one.label)).toEqual(["total", "elastic"]);

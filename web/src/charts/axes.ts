@@ -1,6 +1,6 @@
 // axes.ts — how axes of charts look: quiet grid, ticks in the page's typeface, width that fits the labels.
 import type uPlot from "uplot";
-import { formatTick } from "../format/number.ts";
+import { formatSignificant, formatTick } from "../format/number.ts";
 import { themeColour } from "../page/theme.ts";
 
 const FONT_SIZE = 12;
@@ -24,6 +24,16 @@ function common(): uPlot.Axis {
 
 export function xAxis(label: string): uPlot.Axis {
   return { ...common(), scale: "x", label, labelSize: 20, labelGap: 2, size: 30, space: 64 };
+}
+
+/** The same where the scale counts decades: a tick at each, and within them where less than two are shown. */
+export function logAxis(label: string): uPlot.Axis {
+  return {
+    ...xAxis(label),
+    incrs: (_plot, _axis, low, high) => (high - low > 2 ? [1, 2, 5, 10] : [0.05, 0.1, 0.25, 0.5, 1]),
+    values: (_plot, splits) =>
+      splits.map((decades) => formatSignificant(10 ** decades, Number.isInteger(decades) ? 1 : 2)),
+  };
 }
 
 export function yAxis(): uPlot.Axis {

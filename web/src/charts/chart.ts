@@ -5,7 +5,7 @@ import { nameOfLabel, unitOfLabel } from "../format/units.ts";
 import { h } from "../page/dom.ts";
 import { currentTheme, isPrinting, onTheme } from "../page/theme.ts";
 import { whenVisible } from "../page/visibility.ts";
-import { xAxis, yAxis } from "./axes.ts";
+import { logAxis, xAxis, yAxis } from "./axes.ts";
 import { drawLine } from "./draw_lines.ts";
 import { drawEvents } from "./event_marks.ts";
 import { Legend, entryOf } from "./legend.ts";
@@ -138,7 +138,7 @@ export class Chart {
         x: { time: false, auto: false, min: this.view.xMin, max: this.view.xMax, range: (_u, min, max) => [min, max] },
         y: { auto: false, min: this.view.yMin, max: this.view.yMax, range: (_u, min, max) => [min, max] },
       },
-      axes: [xAxis(this.model.xLabel), yAxis()],
+      axes: [this.model.logX ? logAxis(this.model.xLabel) : xAxis(this.model.xLabel), yAxis()],
       series: [{}, { paths: () => null, points: { show: false } }],
       cursor: {
         x: true,
@@ -252,7 +252,8 @@ export class Chart {
       }
     }
     const unit = unitOfLabel(this.model.xLabel);
-    this.readout.textContent = `${nameOfLabel(this.model.xLabel)} ${formatSignificant(atX, 4)}\u00a0${unit}`;
+    const shown = this.model.logX ? 10 ** atX : atX;
+    this.readout.textContent = `${nameOfLabel(this.model.xLabel)} ${formatSignificant(shown, 4)}\u00a0${unit}`;
     this.legend.setValues(new Map([...values].map(([entry, found]) => [entry, valuesText(found)])));
   }
 

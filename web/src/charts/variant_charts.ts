@@ -53,6 +53,20 @@ function chartOf(spec: ChartSpec, scene: SceneData): ChartModel {
       times: null,
     });
   });
+  const own = lines.length;
+  (spec.lines ?? []).forEach((line, index) => {
+    lines.push({
+      id: `line ${index}`,
+      variant: null,
+      label: line.label,
+      style: lineStyle(own + index),
+      x: scaled(line.x, 1),
+      y: scaled(line.y, 1),
+      times: null,
+    });
+  });
+  const logX = spec.log_x === true;
+  if (logX) lines.forEach((line) => (line.x = line.x.map(Math.log10)));
   return {
     title: spec.title || `${spec.y.label} against ${spec.x.label}`,
     xLabel: axisLabel(spec.x.label),
@@ -60,6 +74,7 @@ function chartOf(spec: ChartSpec, scene: SceneData): ChartModel {
     lines,
     events: scene.variants.flatMap((variant) => eventMarks(variant, spec.x.column, spec.x.scale)),
     note: "",
+    logX,
   };
 }
 

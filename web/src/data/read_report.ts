@@ -172,6 +172,8 @@ function readChart(raw: Raw): ChartSpec {
     variants: Array.isArray(raw["variants"]) ? raw["variants"].map(text) : null,
     points: list(raw["points"]).map((points) => readCurve(record(points))),
     fits: list(raw["fits"]).map((fit) => readCurve(record(fit))),
+    lines: list(raw["lines"]).map((line) => readCurve(record(line))),
+    log_x: raw["log_x"] === true,
   };
 }
 
