@@ -20,7 +20,7 @@ from ._core import *  # all that is bound
 from . import plot
 from ._version import VERSION
 from .driving import FunctionDriver
-from .fitting import FitResult, fit, known_laws
+from .fitting import FitResult, TestFit, fit, known_laws
 from .meshes import format_report, from_meshio, from_pyvista, read_mesh, to_pyvista, write_vtu
 from .paper_figures import figures
 from .running import run, simulation

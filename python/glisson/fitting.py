@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,19 +37,40 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Curve:
-    """A measured curve and the force of the fitted tissue at its times."""
+    """A measured curve and what the fitted tissue answers at its points.
+
+    A press has displacements [m] and forces [N]. Other tests have what `test` drives and measures, in SI: of a point strains and
+    stresses, of a torsion angles and torques, of an oscillation frequencies and moduli.
+    """
 
     name: str
     group: str
+    test: str  #: as in FIT.toml: compression, tension, relaxation …
     velocity: float | None  #: [m/s]
     held_out: bool
-    time: Array  #: [s]
-    displacement: Array  #: [m]
-    measured: Array  #: [N]
-    fitted: Array  #: [N]; NaN where the simulation failed
-    further_low: Array  #: between these a further specimen's force lies in 95 % [N]; empty: not known
+    time: Array  #: [s]; empty where the test has none
+    displacement: Array  #: what was driven, in `drive_unit`
+    measured: Array  #: in `unit`
+    fitted: Array  #: in `unit`; NaN where the simulation failed
+    further_low: Array  #: between these a further specimen lies in 95 %; empty: not known
     further_high: Array
-    rms: float | None  #: of fitted − measured [N]
+    rms: float | None  #: of fitted − measured, in `unit`
+    drive_unit: str = "m"
+    unit: str = "N"
+
+
+@dataclass(frozen=True)
+class TestFit:
+    """How well a fit meets one of several tests."""
+
+    name: str
+    test: str
+    r2: float | None  #: 1 − Σ (fitted − measured)² / Σ (measured − mean)²
+    rms: float | None  #: in `unit`
+    unit: str
+    points: int
+    held_out: bool
+    r2_of_alone: dict[str, float | None]  #: by fits to one test alone, by its name; empty: there is one kind of test
 
 
 class FitResult:
@@ -87,6 +109,11 @@ class FitResult:
         return [_curve(row) for row in self._data["curves"]]
 
     @property
+    def tests(self) -> list[TestFit]:
+        """Of each test how well the fit meets it."""
+        return [TestFit(**row) for row in self._data["tests"]]
+
+    @property
     def conclusions(self) -> list[str]:
         """What the curves determine and what they do not, in sentences."""
         return list(self._data.get("conclusions", []))
@@ -123,7 +150,7 @@ def fit(
     Ctrl-C, or an exception in `progress`, ends it. With `state` the same call resumes from there; fit.state.json in the folder
     of `glisson fit --out` is such a file.
 
-    :param description: a FIT.toml, its text (with a line end), or a dict of its keys
+    :param description: a FIT.toml, its text (with a line end), or a dict of its keys, whose `files` may be data frames
     :param laws: laws to fit in addition to those of the description (known_laws)
     :param data: folder of the curves' files; none: that of the description
     :param base: folder that a text or dict stands for
@@ -136,15 +163,16 @@ def fit(
     """
     from . import _fit
 
-    if isinstance(description, Mapping):
-        spec = _fit.parse_fit(to_toml(description), "fit", Path(base))
-    elif isinstance(description, str) and "\n" in description:
-        spec = _fit.parse_fit(description, "fit", Path(base))
-    else:
-        spec = _fit.load_fit(Path(description))
     folder = "" if data is None else os.fspath(data)
     kept = "" if state is None else os.fspath(state)
-    return FitResult(*_fit.run(spec, list(laws), folder, starts, bootstrap, progress, kept))
+    with tempfile.TemporaryDirectory(prefix="glisson_") as frames:
+        if isinstance(description, Mapping):
+            spec = _fit.parse_fit(to_toml(_with_files(description, Path(frames))), "fit", Path(base))
+        elif isinstance(description, str) and "\n" in description:
+            spec = _fit.parse_fit(description, "fit", Path(base))
+        else:
+            spec = _fit.load_fit(Path(description))
+        return FitResult(*_fit.run(spec, list(laws), folder, starts, bootstrap, progress, kept))
 
 
 def known_laws() -> dict[str, str]:
@@ -158,24 +186,46 @@ def known_laws() -> dict[str, str]:
     return dict(_fit.known_laws())
 
 
+def _with_files(description: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """The same description with files in place of data frames."""
+
+    def file_of(number: int, place: int, file: Any) -> Any:
+        if not hasattr(file, "to_csv"):
+            return file
+        written = folder / f"frame_{number + 1}_{place + 1}.csv"
+        file.to_csv(written, index=False)
+        return str(written)
+
+    data = [
+        {**one, "files": [file_of(n, i, f) for i, f in enumerate(one.get("files", []))]}
+        for n, one in enumerate(description.get("data", []))
+    ]
+    return {**description, **({"data": data} if data else {})}
+
+
 def _interval(ends: Sequence[float | None] | None) -> Interval | None:
     return (ends[0], ends[1]) if ends else None
 
 
 def _curve(row: Mapping[str, Any]) -> Curve:
+    newtons = "_N" if "measured_N" in row else ""
+
     def numbers(key: str) -> Array:
         return np.array([np.nan if x is None else x for x in row[key]], dtype=float)
 
     return Curve(
         name=row["name"],
         group=row["group"],
+        test=row["test"],
         velocity=row["velocity_m_s"],
         held_out=row["held_out"],
         time=numbers("time_s"),
-        displacement=numbers("displacement_m"),
-        measured=numbers("measured_N"),
-        fitted=numbers("fitted_N"),
-        further_low=numbers("further_low_N"),
-        further_high=numbers("further_high_N"),
-        rms=row["rms_N"],
+        displacement=numbers("displacement_m" if newtons else "drive"),
+        measured=numbers("measured" + newtons),
+        fitted=numbers("fitted" + newtons),
+        further_low=numbers("further_low" + newtons),
+        further_high=numbers("further_high" + newtons),
+        rms=row["rms" + newtons],
+        drive_unit=row["drive_unit"],
+        unit=row["unit"],
     )

@@ -52,6 +52,40 @@ def test_results_are_arrays(tmp_path, phantom):
     assert repr(phantom).startswith("<FitResult ")
 
 
+class Frame:
+    """What a fit asks of a data frame."""
+
+    def __init__(self, **columns):
+        self.columns = columns
+
+    def to_csv(self, file, *, index):
+        assert index is False
+        rows = zip(*self.columns.values(), strict=True)
+        lines = [",".join(self.columns), *(",".join(repr(float(x)) for x in row) for row in rows)]
+        Path(file).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def test_data_frames_are_files():
+    """A laboratory's tests as data frames, several in one fit: tension and shear of neo-Hooke's law give its modulus."""
+    stretch, shear = np.linspace(1.0, 1.3, 16), np.linspace(0.0, 0.4, 12)
+    pulled = Frame(stretch=stretch, stress_kPa=stretch - stretch**-2)
+    sheared = Frame(shear_strain=shear, stress_kPa=shear)
+    result = glisson.fit(
+        {
+            "specimen": {"kind": "point"},
+            "tissue": {"hyperelastic": {"kind": "neo_hookean", "mu_Pa": 500, "bulk_modulus_Pa": 1e9}},
+            "parameter": [{"key": "tissue.hyperelastic.mu_Pa", "low": 10, "high": 1e5}],
+            "data": [{"files": [pulled], "test": "tension"}, {"files": [sheared], "test": "simple_shear"}],
+        },
+        **QUICK,
+    )
+    assert result.values["tissue.hyperelastic.mu_Pa"] == pytest.approx(1000.0, rel=1e-4)
+    assert [(t.test, t.points, t.unit) for t in result.tests] == [("tension", 16, "Pa"), ("simple_shear", 12, "Pa")]
+    assert all(t.r2 > 0.9999 and set(t.r2_of_alone) == {"tension", "simple_shear"} for t in result.tests)
+    assert [curve.unit for curve in result.curves] == ["Pa", "Pa"] and result.curves[0].time.size == 0
+    assert result.curves[1].displacement == pytest.approx(shear)
+
+
 def test_progress_is_told_and_ends_the_fit(scenes):
     """A fit tells how far it is; what the watcher raises ends it."""
 
