@@ -18,7 +18,7 @@ inline T NeoHookean::energy(T i1, T /*i2*/) const {
 }
 
 template <class T>
-GLISSON_FORMULA InvariantSlopes<T> NeoHookean::slopes(T /*i1*/) const {
+GLISSON_FORMULA InvariantSlopes<T> NeoHookean::slopes(T /*i1*/, T /*i2*/) const {
   return {T(0.5 * mu), T(0), T(0)};
 }
 
@@ -28,7 +28,7 @@ inline T MooneyRivlin::energy(T i1, T i2) const {
 }
 
 template <class T>
-GLISSON_FORMULA InvariantSlopes<T> MooneyRivlin::slopes(T /*i1*/) const {
+GLISSON_FORMULA InvariantSlopes<T> MooneyRivlin::slopes(T /*i1*/, T /*i2*/) const {
   return {T(c10), T(c01), T(0)};
 }
 
@@ -38,7 +38,7 @@ inline T Yeoh::energy(T i1, T /*i2*/) const {
 }
 
 template <class T>
-GLISSON_FORMULA InvariantSlopes<T> Yeoh::slopes(T i1) const {
+GLISSON_FORMULA InvariantSlopes<T> Yeoh::slopes(T i1, T /*i2*/) const {
   using namespace scalar;
   const T two_c2(2.0 * c2), three_c3 = T(3) * T(c3);
   return {mul_add(i1, mul_add(i1, three_c3, two_c2), T(c1)), T(0), mul_add(i1, three_c3 + three_c3, two_c2)};
@@ -54,7 +54,7 @@ inline T Fung::energy(T i1, T /*i2*/) const {
 }
 
 template <class T>
-GLISSON_FORMULA InvariantSlopes<T> Fung::slopes(T i1) const {
+GLISSON_FORMULA InvariantSlopes<T> Fung::slopes(T i1, T /*i2*/) const {
   using namespace scalar;
   const T most(kLargestExponent), e = T(b) * i1, w = T(0.5 * mu) * exp(min(e, most));
   return {w, T(0), select(e < most, w * T(b), T(0))};
@@ -70,7 +70,7 @@ inline T VerondaWestmann::energy(T i1, T i2) const {
 }
 
 template <class T>
-GLISSON_FORMULA InvariantSlopes<T> VerondaWestmann::slopes(T i1) const {
+GLISSON_FORMULA InvariantSlopes<T> VerondaWestmann::slopes(T i1, T /*i2*/) const {
   using namespace scalar;
   const T most(kLargestExponent), e = T(b) * i1, w = T(c * b) * exp(min(e, most));
   return {w, T(-0.5 * c * b), select(e < most, w * T(b), T(0))};

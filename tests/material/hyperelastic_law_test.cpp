@@ -16,18 +16,22 @@ template <class Law>
 void expect_slopes(const Law& law) {
   for (const double i1 : {0.0, 1e-3, 0.4, 5.0, 14.9, 15.1, 40.0}) {
     const double i2 = 0.7 * i1;
-    const InvariantSlopes<Dual> w = law.slopes(Dual{i1, 1.0});
+    const InvariantSlopes<Dual> w = law.slopes(Dual{i1, 1.0}, Dual{i2}), v = law.slopes(Dual{i1}, Dual{i2, 1.0});
     const auto expect = [&](double slope, double derivative) {
       EXPECT_NEAR(slope, derivative, 1e-13 * std::abs(derivative)) << Law::kName << " at " << i1;
     };
     expect(w.first.v, law.energy(Dual{i1, 1.0}, Dual{i2}).d);
     expect(w.second.v, law.energy(Dual{i1}, Dual{i2, 1.0}).d);
     expect(w.bend.v, w.first.d);
-    EXPECT_EQ(Law::kSecond, w.second.v != 0.0) << Law::kName;
+    expect(w.mixed.v, w.second.d);
+    expect(w.mixed.v, v.first.d);
+    expect(w.second_bend.v, v.second.d);
+    EXPECT_EQ(Law::kSecond != SecondInvariant::none, w.second.v != 0.0) << Law::kName;
+    if (Law::kSecond != SecondInvariant::general) EXPECT_TRUE(w.mixed.v == 0.0 && w.second_bend.v == 0.0) << Law::kName;
   }
 }
 
-// ∂W/∂Ī₁, ∂W/∂Ī₂ and ∂²W/∂Ī₁² of every law are the derivatives of its energy, to rounding.
+// ∂W/∂Ī₁, ∂W/∂Ī₂ and the three second slopes of every law are the derivatives of its energy, to rounding.
 TEST(HyperelasticLaw, SlopesAreThoseOfTheEnergy) {
   for (const HyperelasticLaw& law : test::every_hyperelastic_law()) {
     std::visit(
