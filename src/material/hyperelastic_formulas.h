@@ -77,6 +77,22 @@ GLISSON_FORMULA InvariantSlopes<T> VerondaWestmann::slopes(T i1, T /*i2*/) const
 }
 
 template <class T>
+inline T Gent::energy(T i1, T /*i2*/) const {
+  using std::log1p;
+  const T x = i1 * T(1.0 / limit), end(1.0 - kLeast);
+  const T inside = x < end ? x : end, beyond = (x - inside) * T(1.0 / kLeast);
+  return T(0.5 * mu * limit) * (beyond * (T(1.0) + T(0.5) * beyond) - log1p(-inside));
+}
+
+template <class T>
+GLISSON_FORMULA InvariantSlopes<T> Gent::slopes(T i1, T /*i2*/) const {
+  using namespace scalar;
+  const T left = mul_add(T(-1.0 / limit), i1, T(1)), held = max(left, T(kLeast));
+  const T longer = T(1) / held, w = T(0.5 * mu) * longer;
+  return {mul_add(w * longer, held - left, w), T(0), w * longer * T(1.0 / limit)};
+}
+
+template <class T>
 inline T Ogden::growth(double a, T l) {
   using std::expm1;
   const T e = T(a) * l;

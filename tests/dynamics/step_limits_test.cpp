@@ -154,6 +154,7 @@ std::vector<Law> laws() {
   });
   add("veronda_westmann",
       [=](Tissue& t) { t.hyperelastic = VerondaWestmann{.c = mu, .b = 2.0, .bulk_modulus = kappa}; });
+  add("gent", [=](Tissue& t) { t.hyperelastic = Gent{.mu = mu, .limit = 1.0, .bulk_modulus = kappa}; });
   return all;
 }
 // The viscous matrix of tissue of large strain grows with its stretch, and where viscosity is what limits the step, so does

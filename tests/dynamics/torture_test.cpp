@@ -282,7 +282,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Law{"ogden", hyperelastic(Ogden{.mu = {mu()}, .alpha = {-4.7}, .bulk_modulus = kappa()})},
                     Law{"veronda_westmann",
                         hyperelastic(VerondaWestmann{.c = 0.5 * mu(), .b = 2.0, .bulk_modulus = kappa()})},
-                    Law{"fung", hyperelastic(Fung{.mu = mu(), .b = 3.0, .bulk_modulus = kappa()})}),
+                    Law{"fung", hyperelastic(Fung{.mu = mu(), .b = 3.0, .bulk_modulus = kappa()})},
+                    Law{"gent", hyperelastic(Gent{.mu = mu(), .limit = 1.0, .bulk_modulus = kappa()})}),
     law_name_of);
 
 }  // namespace

@@ -43,5 +43,22 @@ TEST(HyperelasticLaw, SlopesAreThoseOfTheEnergy) {
   }
 }
 
+// Gent's chains have a hundredth of their length left where the parabola begins: W, its slope and its second slope are continuous,
+// and the second slope, 10⁴ times that of rest, stays.
+TEST(Limits, GentGoesOnAsAParabola) {
+  const Gent law{.mu = 1300.0, .limit = 0.7};
+  const double end = 0.7 * (1.0 - Gent::kLeast), below = end - 1e-12, above = end + 1e-12, far = 100.0;
+  const InvariantSlopes<double> v = law.slopes(below, 0.0), w = law.slopes(above, 0.0), f = law.slopes(far, 0.0);
+  EXPECT_NEAR(w.first, 650.0 / Gent::kLeast, 1e-6 * w.first);
+  EXPECT_NEAR(v.first, w.first, 1e-8 * w.first);
+  EXPECT_NEAR(v.bend, w.bend, 1e-8 * w.bend);
+  EXPECT_NEAR(law.energy(above, 0.0), law.energy(below, 0.0), 1e-8 * law.energy(below, 0.0));
+  EXPECT_EQ(f.bend, w.bend);
+  EXPECT_NEAR(f.first, w.first + w.bend * (far - above), 1e-9 * f.first);
+  const double risen = (far - above) * (w.first + 0.5 * w.bend * (far - above));
+  EXPECT_NEAR(law.energy(far, 0.0), law.energy(above, 0.0) + risen, 1e-9 * risen);
+  EXPECT_TRUE(std::isfinite(law.slopes(-2.9, 0.0).first)) << "a tet that has shrunk to nothing";
+}
+
 }  // namespace
 }  // namespace glisson

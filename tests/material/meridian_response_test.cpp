@@ -28,7 +28,8 @@ TEST(MeridianResponse, IsTheGeneralOne) {
   for (const HyperelasticLaw& law : std::initializer_list<HyperelasticLaw>{
            NeoHookean{1000, 9000}, MooneyRivlin{300, 200, 9000},
            Yeoh{.c1 = 400, .c2 = 50, .c3 = 7, .bulk_modulus = 9000}, Fung{1000, 2.0, 9000},
-           VerondaWestmann{.c = 700, .b = 1.5, .bulk_modulus = 9000}, Ogden{{700, -100}, {6.0, -4.7}, 9000}}) {
+           VerondaWestmann{.c = 700, .b = 1.5, .bulk_modulus = 9000}, Ogden{{700, -100}, {6.0, -4.7}, 9000},
+           Gent{.mu = 1000, .limit = 8.0, .bulk_modulus = 9000}}) {
     for (int i = 0; i < 200; ++i) {
       const double scale = i == 0 ? 0.0 : (i % 4 == 0 ? 1e-3 : 1.0);
       std::array<double, 5> H;

@@ -92,6 +92,10 @@ struct LawExample<Ogden> {
             {{700.0, 500.0, 100.0}, {1.3, 5.0, -2.0}, kExampleBulk}};
   }
 };
+template <>
+struct LawExample<Gent> {
+  static std::vector<Gent> laws() { return {{.mu = 1300.0, .limit = 20.0, .bulk_modulus = kExampleBulk}}; }
+};
 
 namespace detail {
 

@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "glisson/material/hyperelastic/fung.h"
+#include "glisson/material/hyperelastic/gent.h"
 #include "glisson/material/hyperelastic/mooney_rivlin.h"
 #include "glisson/material/hyperelastic/neo_hookean.h"
 #include "glisson/material/hyperelastic/ogden.h"
@@ -20,7 +21,7 @@
 
 namespace glisson {
 
-using HyperelasticLaw = std::variant<NeoHookean, MooneyRivlin, Yeoh, Fung, VerondaWestmann, Ogden>;
+using HyperelasticLaw = std::variant<NeoHookean, MooneyRivlin, Yeoh, Fung, VerondaWestmann, Ogden, Gent>;
 
 inline std::string_view law_name(const HyperelasticLaw& law) {
   return std::visit([](const auto& l) { return l.kName; }, law);

@@ -179,6 +179,11 @@ InvariantEnergy energy_of(const VerondaWestmann& l, Real a, Real b) {
   return {l.c * std::expm1(l.b * a) - Real(l.c) * l.b / 2 * b, l.c * l.b * std::exp(l.b * a), -Real(l.c) * l.b / 2};
 }
 
+InvariantEnergy energy_of(const Gent& l, Real a, Real) {
+  const Real left = 1 - a / l.limit;
+  return {-Real(l.mu) * l.limit / 2 * std::log(left), l.mu / (2 * left), 0};
+}
+
 struct Invariants {
   Real J, I1, I2;
   explicit Invariants(const RealTensor& F) : J(F.determinant()), I1(F.squaredNorm()) {
