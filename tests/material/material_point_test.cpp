@@ -44,6 +44,11 @@ InvariantSlope invariant_slopes(const VerondaWestmann& l, double x, double) {
   return {l.c * l.b * std::exp(l.b * x), -0.5 * l.c * l.b};
 }
 InvariantSlope invariant_slopes(const Gent& l, double x, double) { return {0.5 * l.mu * l.limit / (l.limit - x), 0.0}; }
+InvariantSlope invariant_slopes(const Invariants& l, double x, double y) {
+  return {l.c10 + 2.0 * l.c20 * x + l.c11 * y + 3.0 * l.c30 * x * x + 0.5 * l.a1 * std::exp(l.b1 * x) +
+              l.q1 * x * std::exp(l.r1 * x * x),
+          l.c01 + l.c11 * x + 2.0 * l.c02 * y + 0.5 * l.a2 * std::exp(l.b2 * y) + l.q2 * y * std::exp(l.r2 * y * y)};
+}
 
 /// dW/dλ of an incompressible test [Pa].
 template <class Law>

@@ -13,6 +13,7 @@
 
 #include "glisson/material/hyperelastic/fung.h"
 #include "glisson/material/hyperelastic/gent.h"
+#include "glisson/material/hyperelastic/invariants.h"
 #include "glisson/material/hyperelastic/mooney_rivlin.h"
 #include "glisson/material/hyperelastic/neo_hookean.h"
 #include "glisson/material/hyperelastic/ogden.h"
@@ -21,7 +22,7 @@
 
 namespace glisson {
 
-using HyperelasticLaw = std::variant<NeoHookean, MooneyRivlin, Yeoh, Fung, VerondaWestmann, Ogden, Gent>;
+using HyperelasticLaw = std::variant<NeoHookean, MooneyRivlin, Yeoh, Fung, VerondaWestmann, Ogden, Gent, Invariants>;
 
 inline std::string_view law_name(const HyperelasticLaw& law) {
   return std::visit([](const auto& l) { return l.kName; }, law);
