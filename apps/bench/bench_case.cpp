@@ -13,11 +13,21 @@
 namespace glisson::app {
 namespace {
 
-constexpr std::array<std::string_view, 15> kModels{
-    "linear", "law",     "full",          "corotational", "green", "green_energy",     "fibres", "neo_hookean",
-    "nodal",  "maxwell", "mooney_rivlin", "yeoh",         "fung",  "veronda_westmann", "ogden"};
+constexpr std::array<std::string_view, 18> kModels{
+    "linear",      "law",   "full",    "corotational",  "green", "green_energy", "fibres",
+    "neo_hookean", "nodal", "maxwell", "mooney_rivlin", "yeoh",  "fung",         "veronda_westmann",
+    "ogden",       "gent",  "rivlin",  "invariants"};
 
 constexpr double kShear = 3600.0 / 2.8, kBulk = 6000.0;  ///< of E = 3.6 kPa and ν = 0.4 [Pa]
+
+Invariants of_invariants(bool exponentials) {
+  Invariants law{.c10 = 0.2 * kShear, .c01 = 0.1 * kShear, .c20 = 0.1 * kShear, .c11 = 0.02 * kShear};
+  law.c02 = 0.05 * kShear, law.c30 = 0.02 * kShear, law.bulk_modulus = kBulk;
+  if (!exponentials) return law;
+  law.a1 = 0.2 * kShear, law.b1 = 2.0, law.a2 = 0.2 * kShear, law.b2 = 1.0;
+  law.q1 = 0.1 * kShear, law.r1 = 0.5, law.q2 = 0.1 * kShear, law.r2 = 0.5;
+  return law;
+}
 
 HyperelasticLaw hyperelastic(Model model) {
   switch (model) {
@@ -31,6 +41,11 @@ HyperelasticLaw hyperelastic(Model model) {
       return VerondaWestmann{.c = 0.5 * kShear, .b = 2.0, .bulk_modulus = kBulk};
     case Model::ogden:
       return Ogden{.mu = {0.8 * kShear, 0.2 * kShear}, .alpha = {-4.7, 3.0}, .bulk_modulus = kBulk};
+    case Model::gent:
+      return Gent{.mu = kShear, .limit = 2.0, .bulk_modulus = kBulk};
+    case Model::rivlin:
+    case Model::invariants:
+      return of_invariants(model == Model::invariants);
     default:
       return NeoHookean{.mu = kShear, .bulk_modulus = kBulk};
   }

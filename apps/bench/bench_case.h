@@ -28,7 +28,10 @@ enum class Model {
   yeoh,
   fung,
   veronda_westmann,
-  ogden  ///< of two terms
+  ogden,  ///< of two terms
+  gent,
+  rivlin,     ///< `invariants` with Rivlin's six terms
+  invariants  ///< with all terms: four exponentials
 };
 
 /// All of them, in the order of Model.

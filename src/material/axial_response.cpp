@@ -9,14 +9,23 @@
 namespace glisson {
 namespace {
 
-/// Ī₁ − 3.
+/// Ī₁ − 3 of a stretch along that is 1 + e times the one aside.
 template <class T>
-T first_excess(Axial<T> h) {
+T excess_of_ratio(T e) {
   using std::cbrt;
-  const T e = (h.along - h.side) / (h.side + T(1.0));  // c/a − 1
   const T k = cbrt((T(1.0) + e) * (T(1.0) + e));
   const T less = e * (T(2.0) + e) / (k * k + k + T(1.0));  // k − 1
   return less * less * (k + T(2.0)) / k;
+}
+/// Ī₁ − 3.
+template <class T>
+T first_excess(Axial<T> h) {
+  return excess_of_ratio((h.along - h.side) / (h.side + T(1.0)));
+}
+/// Ī₂ − 3, which is Ī₁ − 3 of the cofactors a c, a c and a².
+template <class T>
+T second_excess(Axial<T> h) {
+  return excess_of_ratio((h.side - h.along) / (h.along + T(1.0)));
 }
 
 /// a² − c².
@@ -82,7 +91,7 @@ Axial<T> AxialResponse::hyperelastic(Axial<T> h) const {
                         const std::array<T, 3> t = l.slopes(std::array<T, 3>{-third, -third, third + third});
                         return {t[0] / a, t[2] / c};
                       } else {
-                        const InvariantSlopes<T> w = l.slopes(first_excess(h));
+                        const InvariantSlopes<T> w = slopes_at(l, first_excess(h), [&] { return second_excess(h); });
                         const T root = cbrt(a * a * c), first = T(1.0) / (root * root);
                         return first_slopes(h, first) * w.first + second_slopes(h, first * first) * w.second;
                       }

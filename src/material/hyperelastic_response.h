@@ -35,6 +35,16 @@ T isochoric_excess(const Mat3<T>& H) {
   return T(3.0) * p / (T(1.0) - p);
 }
 
+/// The slopes of a law at Ī₁ − 3 and Ī₂ − 3. @param i2  a function that works it out, for laws that ask
+template <class Law, class T, class Second>
+InvariantSlopes<T> slopes_at(const Law& law, T i1, Second i2) {
+  if constexpr (Law::kSecond == SecondInvariant::general) {
+    return law.slopes(i1, i2());
+  } else {
+    return law.slopes(i1, T(0.0));
+  }
+}
+
 /// The isochoric part of a law of the invariants.
 template <class Law, class T>
 Mat3<T> invariant_piola(const Law& law, const Mat3<T>& H) {
@@ -44,7 +54,7 @@ Mat3<T> invariant_piola(const Law& law, const Mat3<T>& H) {
   const ValueSlope<T> a = volume_power<2>(J), b = volume_power<4>(J);
   const Mat3<T> second = sum(scaled(F, trace(E)), scaled(product(F, full(E)), T(-1.0)));  // tr(E) F − F E
   if (J >= T(kSmallestVolume)) {
-    const InvariantSlopes<T> w = law.slopes(isochoric_excess(H));
+    const InvariantSlopes<T> w = slopes_at(law, isochoric_excess(H), [&] { return isochoric_excess(K); });
     const Mat3<T> first = deviatoric_direction(H, K, j);
     const T I2 = T(3.0) + T(2.0) * trace(K) + squared_norm(K), rho = I2 / (T(3.0) * J);
     const T left = (T(3.0) * j - T(2.0) * trace(K) - squared_norm(K)) / (T(3.0) * J);  // 1 − ρ
@@ -54,7 +64,7 @@ Mat3<T> invariant_piola(const Law& law, const Mat3<T>& H) {
   }
   const Mat3<T> cof = deformation_gradient(K);
   const T I1 = squared_norm(F), I2 = squared_norm(cof);
-  const InvariantSlopes<T> w = law.slopes(a.value * I1 - T(3.0));
+  const InvariantSlopes<T> w = slopes_at(law, a.value * I1 - T(3.0), [&] { return b.value * I2 - T(3.0); });
   const Mat3<T> shear = sum(scaled(F, T(2.0) * (w.first * a.value + T(2.0) * w.second * b.value)),
                             scaled(second, T(4.0) * w.second * b.value));
   return sum(shear, scaled(cof, w.first * a.slope * I1 + w.second * b.slope * I2));

@@ -17,12 +17,13 @@ std::array<T, 3> logarithmic_slopes(const Law& law, const std::array<T, 3>& l) {
     const auto powers = [&](double n) { return std::array<T, 3>{expm1(l[0] * n), expm1(l[1] * n), expm1(l[2] * n)}; };
     const std::array<T, 3> square = powers(2.0);
     const T i1 = square[0] + square[1] + square[2];
-    const InvariantSlopes<T> w = law.slopes(i1);
+    std::array<T, 3> inverse{T(0.0), T(0.0), T(0.0)};
+    if constexpr (Law::kSecond != SecondInvariant::none) inverse = powers(-2.0);
+    const T i2 = inverse[0] + inverse[1] + inverse[2];
+    const InvariantSlopes<T> w = law.slopes(i1, i2);
     std::array<T, 3> t;
     for (std::size_t i = 0; i < 3; ++i) t[i] = T(2.0) * w.first * (square[i] - i1 * (1.0 / 3.0));
-    if constexpr (Law::kSecond) {
-      const std::array<T, 3> inverse = powers(-2.0);
-      const T i2 = inverse[0] + inverse[1] + inverse[2];
+    if constexpr (Law::kSecond != SecondInvariant::none) {
       for (std::size_t i = 0; i < 3; ++i) t[i] = t[i] - T(2.0) * w.second * (inverse[i] - i2 * (1.0 / 3.0));
     }
     return t;

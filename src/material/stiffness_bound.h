@@ -9,12 +9,14 @@
 //   λ_max² ≤ I₁ − 2 J/√I₁ = A                          (two stretches have the product J/λ_max; J ≥ 0)
 //   κ/2 (J − 1)²          κ I₂ + κ |J − 1| √A          for J < 0 and J > 1 √(2 I₁) in the place of √A
 //   w(Ī₁)                 |w₁| J^(−⅔) [ 2 + 10/9 I₁ I₂/J² + ⅔ I₁/J √A + 4/3 (√(I₁ I₂)/J − 3) ] + |w₁₁| ‖∂Ī₁‖²
-//   w(Ī₂)                 the same of cof F, times A, and the slope times √A
+//   w(Ī₂)                 the same of cof F, times A, and the slope times √A; |w₂₂| ‖∂Ī₂‖² and 2 |w₁₂| ‖∂Ī₁‖ ‖∂Ī₂‖ with
+//                         ‖∂Ī₂‖² = 4 J^(−8/3) [ 4/9 I₂³/J² − 5/3 I₁ I₂ + 3 J² ]
 //   Ogden                 the tangent itself: its matrix in the principal frame has 3 × 3 and six numbers beside
 //
 // Below J = 0.2 powers of J go on as volume_powers.h says, and with a(J), b(J) for J^(−⅔), J^(−4/3)
 //   w(a I₁)               |w₁| [ 2 a + |a'| ( 2 √(I₁ I₂) − 6 J + I₁ √A ) + |a''| I₁ I₂ ] + |w₁₁| ‖2 a F + a' I₁ cof F‖²
-//   w(b I₂)               |w₂| [ 4 b (I₁ + √I₂) + |b'| I₂ ( 4 √(2 I₁) + √A ) + |b''| I₂² ]
+//   w(b I₂)               |w₂| [ 4 b (I₁ + √I₂) + |b'| I₂ ( 4 √(2 I₁) + √A ) + |b''| I₂² ] + |w₂₂| ‖∂(b I₂)‖²,
+//                         ‖∂(b I₂)‖² = 4 b² (I₁ I₂ + 3 J²) + 8 b b' J I₁ I₂ + b'² I₂³, and the product of both with 2 |w₁₂|
 // J itself counts there, which is 0 or less: held at the limit, A is too small and may fall below 0.
 #pragma once
 
@@ -74,24 +76,41 @@ inline double first_invariant_slope_squared(const BoundInvariants& i) {
   return 4.0 / (J23 * J23) * std::max(0.0, i.I1 * i.I1 * i.I2 / (9.0 * i.J * i.J) - i.I1);
 }
 
+/// ‖∂Ī₂/∂F‖².
+inline double second_invariant_slope_squared(const BoundInvariants& i) {
+  const double J2 = i.J * i.J, J43 = std::cbrt(J2 * J2);
+  const double inner = 4.0 / 9.0 * i.I2 * i.I2 * i.I2 / J2 - 5.0 / 3.0 * i.I1 * i.I2 + 3.0 * J2;
+  return 4.0 / (J43 * J43) * std::max(0.0, inner);
+}
+
+/// What ∂²W/∂Ī² adds to the bound. @param first, second  ‖∂Ī₁/∂F‖², ‖∂Ī₂/∂F‖²
+inline double curvature_bound(const InvariantSlopes<double>& w, double first, double second) {
+  return std::abs(w.bend) * first + std::abs(w.second_bend) * second +
+         2.0 * std::abs(w.mixed) * std::sqrt(std::max(0.0, first * second));
+}
+
 /// For J ≥ kSmallestVolume.
 template <class Law>
 double invariant_bound(const Law& law, const BoundInvariants& i) {
   const BoundInvariants c{i.I2, i.I1 * i.J * i.J, i.J * i.J};  // those of cof F
-  const InvariantSlopes<double> w = law.slopes(std::max(0.0, i.I1 / std::cbrt(i.J * i.J) - 3.0));
+  const double J23 = std::cbrt(i.J * i.J);
+  const InvariantSlopes<double> w =
+      slopes_at(law, std::max(0.0, i.I1 / J23 - 3.0), [&] { return i.I2 / (J23 * J23) - 3.0; });
   const double A = largest_stretch_squared(i);
-  const double first =
-      std::abs(w.first) * first_invariant_bend(i) + std::abs(w.bend) * first_invariant_slope_squared(i);
+  double bound = std::abs(w.first) * first_invariant_bend(i);
+  bound += curvature_bound(w, first_invariant_slope_squared(i), second_invariant_slope_squared(i));
   const double second =
       std::abs(w.second) * (first_invariant_bend(c) * A + std::sqrt(first_invariant_slope_squared(c)) * 2.0);
-  return first + second;
+  return bound + second;
 }
 
 /// The same where powers of J go on below their limit.
 template <class Law>
 double collapsed_bound(const Law& law, const BoundInvariants& i) {
   const ValueSlope<Dual> a = volume_power<2>(Dual{i.J, 1.0}), b = volume_power<4>(Dual{i.J, 1.0});
-  const InvariantSlopes<double> w = law.slopes(std::max(0.0, a.value.v * i.I1 - 3.0));
+  // a tet that has shrunk to little has Ī < 3, where a square is steep, too
+  const double excess = a.value.v * i.I1 - 3.0, least = Law::kSecond == SecondInvariant::general ? -3.0 : 0.0;
+  const InvariantSlopes<double> w = slopes_at(law, std::max(least, excess), [&] { return b.value.v * i.I2 - 3.0; });
   const double product = std::sqrt(i.I1 * i.I2), stretch = cofactor_bend(i, false);
   const double a1 = std::abs(a.slope.v), b1 = std::abs(b.slope.v);
   const double bend =
@@ -100,7 +119,10 @@ double collapsed_bound(const Law& law, const BoundInvariants& i) {
       i.I1 * (4.0 * a.value.v * (a.value.v + 3.0 * a.slope.v * i.J) + a1 * a1 * product * product);
   const double second = 4.0 * b.value.v * (i.I1 + std::sqrt(i.I2)) +
                         b1 * i.I2 * (4.0 * std::sqrt(2.0 * i.I1) + stretch) + std::abs(b.slope.d) * i.I2 * i.I2;
-  return std::abs(w.first) * bend + std::abs(w.bend) * slope_squared + std::abs(w.second) * second;
+  const double second_slope_squared = 4.0 * b.value.v * b.value.v * (i.I1 * i.I2 + 3.0 * i.J * i.J) +
+                                      i.I2 * b.slope.v * (8.0 * b.value.v * i.J * i.I1 + b.slope.v * i.I2 * i.I2);
+  return std::abs(w.first) * bend + curvature_bound(w, slope_squared, second_slope_squared) +
+         std::abs(w.second) * second;
 }
 
 /// λ_max of ∂P/∂F of P = Σ p_i u_i ⊗ n_i, from the entries of ∂p_i/∂λ_j and of each pair (p_i ∓ p_j)/(λ_i ∓ λ_j)

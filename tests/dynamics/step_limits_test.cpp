@@ -154,6 +154,12 @@ std::vector<Law> laws() {
   });
   add("veronda_westmann",
       [=](Tissue& t) { t.hyperelastic = VerondaWestmann{.c = mu, .b = 2.0, .bulk_modulus = kappa}; });
+  add("gent", [=](Tissue& t) { t.hyperelastic = Gent{.mu = mu, .limit = 1.0, .bulk_modulus = kappa}; });
+  add("rivlin", [=](Tissue& t) {
+    t.hyperelastic = Invariants{
+        .c10 = 0.25 * mu, .c01 = 0.25 * mu, .c20 = 0.2 * mu, .c11 = 0.1 * mu, .c02 = 0.2 * mu, .bulk_modulus = kappa};
+  });
+  add("exponential_of_i2", [=](Tissue& t) { t.hyperelastic = Invariants{.a2 = mu, .b2 = 2.0, .bulk_modulus = kappa}; });
   return all;
 }
 // The viscous matrix of tissue of large strain grows with its stretch, and where viscosity is what limits the step, so does

@@ -228,6 +228,12 @@ TEST(Tet, RecoversFromFlatAndInsideOut) {
   }
 }
 
+Invariants of_second_invariant() {
+  Invariants law{.c01 = 0.25 * mu(), .c02 = 0.2 * mu(), .bulk_modulus = kappa()};
+  law.a2 = 0.5 * mu(), law.q1 = 0.5 * mu();
+  return law;
+}
+
 class Barrel : public testing::TestWithParam<Law> {};
 
 /// How the press of a barrel that lies on its side, as a liver does, has ended.
@@ -282,7 +288,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Law{"ogden", hyperelastic(Ogden{.mu = {mu()}, .alpha = {-4.7}, .bulk_modulus = kappa()})},
                     Law{"veronda_westmann",
                         hyperelastic(VerondaWestmann{.c = 0.5 * mu(), .b = 2.0, .bulk_modulus = kappa()})},
-                    Law{"fung", hyperelastic(Fung{.mu = mu(), .b = 3.0, .bulk_modulus = kappa()})}),
+                    Law{"fung", hyperelastic(Fung{.mu = mu(), .b = 3.0, .bulk_modulus = kappa()})},
+                    Law{"gent", hyperelastic(Gent{.mu = mu(), .limit = 1.0, .bulk_modulus = kappa()})},
+                    Law{"invariants", hyperelastic(of_second_invariant())}),
     law_name_of);
 
 }  // namespace

@@ -33,6 +33,15 @@ std::vector<Tissue> every_axial_tissue() {
       }
     }
   }
+  // at the end, where they change no draw of the others: a law of s loses more digits where stretches are nearly equal
+  Invariants sum{.c10 = 200, .c01 = 100, .c20 = 30, .c11 = 20, .c02 = 10, .c30 = 5, .bulk_modulus = 9000};
+  sum.a1 = 100, sum.b1 = 1.5, sum.a2 = 80, sum.b2 = 0.7, sum.q1 = 50, sum.r1 = 0.1, sum.q2 = 40, sum.r2 = 0.05;
+  for (const HyperelasticLaw& law :
+       std::initializer_list<HyperelasticLaw>{Gent{.mu = 1000, .limit = 8.0, .bulk_modulus = 9000}, sum}) {
+    Tissue t;
+    t.hyperelastic = law;
+    all.push_back(t);
+  }
   return all;
 }
 

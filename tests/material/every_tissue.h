@@ -110,6 +110,9 @@ inline std::vector<Tissue> hyperelastic_tissues() {
     t.hyperelastic = law;
     t.name = std::string(law_name(law));
     if (const auto* o = std::get_if<Ogden>(&law)) t.name += " " + std::to_string(o->mu.size());
+    if (const auto* i = std::get_if<Invariants>(&law)) {
+      t.name += i->a2 == 0.0 ? " polynomial" : (i->c10 == 0.0 ? " second" : " all");
+    }
     all.push_back(t);
   }
   return all;

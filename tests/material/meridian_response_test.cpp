@@ -25,10 +25,13 @@ Mat3<T> full_of(const std::array<T, 5>& H) {
 TEST(MeridianResponse, IsTheGeneralOne) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> entry(-0.3, 0.3);
+  Invariants sum{.c10 = 200, .c01 = 100, .c20 = 30, .c11 = 20, .c02 = 10, .c30 = 5, .bulk_modulus = 9000};
+  sum.a1 = 100, sum.b1 = 1.5, sum.a2 = 80, sum.b2 = 0.7, sum.q1 = 50, sum.r1 = 0.1, sum.q2 = 40, sum.r2 = 0.05;
   for (const HyperelasticLaw& law : std::initializer_list<HyperelasticLaw>{
            NeoHookean{1000, 9000}, MooneyRivlin{300, 200, 9000},
            Yeoh{.c1 = 400, .c2 = 50, .c3 = 7, .bulk_modulus = 9000}, Fung{1000, 2.0, 9000},
-           VerondaWestmann{.c = 700, .b = 1.5, .bulk_modulus = 9000}, Ogden{{700, -100}, {6.0, -4.7}, 9000}}) {
+           VerondaWestmann{.c = 700, .b = 1.5, .bulk_modulus = 9000}, Ogden{{700, -100}, {6.0, -4.7}, 9000},
+           Gent{.mu = 1000, .limit = 8.0, .bulk_modulus = 9000}, sum}) {
     for (int i = 0; i < 200; ++i) {
       const double scale = i == 0 ? 0.0 : (i % 4 == 0 ? 1e-3 : 1.0);
       std::array<double, 5> H;

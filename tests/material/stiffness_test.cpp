@@ -50,6 +50,34 @@ TEST(Stiffening, FollowsTheHyperelasticTangent) {
   }
 }
 
+// So do laws that stiffen steeply, where the second slopes of W are most of the tangent: chains near their end, exponents of
+// twenty, squares without a linear part.
+TEST(Stiffening, FollowsSteepLawsOfTheInvariants) {
+  for (const HyperelasticLaw& law : std::initializer_list<HyperelasticLaw>{
+           Gent{.mu = 1300.0, .limit = 0.5}, Invariants{.c01 = 650.0, .c02 = 13000.0},
+           Invariants{.c10 = 325.0, .c01 = 325.0, .c11 = 13000.0}, Invariants{.a1 = 1300.0, .b1 = 20.0},
+           Invariants{.a2 = 1300.0, .b2 = 20.0}, Invariants{.c10 = 650.0, .q1 = 13000.0, .r1 = 10.0},
+           Invariants{.c01 = 650.0, .q2 = 13000.0, .r2 = 10.0},
+           Invariants{.c10 = 1000.0, .c01 = -350.0, .c20 = 500.0, .c11 = -300.0, .c02 = 100.0}}) {
+    for (const double bulk : {6000.0, 6e5}) {
+      Tissue t;
+      t.hyperelastic = law;
+      std::visit([&](auto& l) { l.bulk_modulus = bulk; }, *t.hyperelastic);
+      const test::Specimen s(t);
+      const double at_rest = stiffest(s, {});
+      test::Draw draw(55);
+      for (int n = 0; n < 2000; ++n) {
+        const Mat3d H = draw.stretched(0.7, 1.0 / 0.7);
+        ASSERT_LT(stiffest(s, H), 1.2 * at_rest * s.response.stiffening(H, s.shape).ratio) << law_name(law) << " " << n;
+      }
+      for (int n = 0; n < 2000; ++n) {
+        const Mat3d H = draw.stretched(0.3, 1.5);
+        ASSERT_LE(stiffest(s, H), at_rest * s.response.stiffening(H, s.shape).norm * (1.0 + 1e-9)) << law_name(law);
+      }
+    }
+  }
+}
+
 // A corotational tet resists turning as soon as it is drawn out by more than its shear modulus lets go: the tangent without
 // λ R ⊗ R stays below 2 μ and the part that the stiffening tells of, which is needed to a tenth.
 TEST(Stiffening, FollowsTheCorotationalTangentAgainstTurning) {

@@ -88,6 +88,8 @@ def test_hyperelastic_laws():
         800: glisson.Yeoh(c1=400, bulk_modulus=5e4),
         700: glisson.Fung(mu=700, b=2, bulk_modulus=5e4),
         900: glisson.Ogden(mu=[500, 400], alpha=[2, -2], bulk_modulus=5e4),
+        1100: glisson.Gent(mu=1100, limit=2, bulk_modulus=5e4),
+        1300: glisson.Invariants(c10=200, c01=150, a1=400, a2=200, bulk_modulus=5e4),
     }
     for mu, law in laws.items():
         glisson.Tissue(hyperelastic=law).check()

@@ -92,6 +92,23 @@ struct LawExample<Ogden> {
             {{700.0, 500.0, 100.0}, {1.3, 5.0, -2.0}, kExampleBulk}};
   }
 };
+template <>
+struct LawExample<Gent> {
+  static std::vector<Gent> laws() { return {{.mu = 1300.0, .limit = 20.0, .bulk_modulus = kExampleBulk}}; }
+};
+/// The polynomial; the exponentials of Ī₂ alone; all terms.
+template <>
+struct LawExample<Invariants> {
+  static std::vector<Invariants> laws() {
+    Invariants polynomial{.c10 = 400.0, .c01 = 250.0, .c20 = 60.0, .c11 = 30.0, .c02 = 20.0, .c30 = 10.0};
+    Invariants second{.a2 = 1300.0, .b2 = 0.6, .q2 = 200.0, .r2 = 0.02};
+    Invariants all{.c10 = 150.0, .c01 = 100.0, .c20 = 40.0, .c11 = -10.0, .c02 = 15.0, .c30 = 5.0};
+    all.a1 = 500.0, all.b1 = 0.6, all.a2 = 300.0, all.b2 = 0.4;
+    all.q1 = 100.0, all.r1 = 0.03, all.q2 = 60.0, all.r2 = 0.02;
+    for (Invariants* law : {&polynomial, &second, &all}) law->bulk_modulus = kExampleBulk;
+    return {polynomial, second, all};
+  }
+};
 
 namespace detail {
 

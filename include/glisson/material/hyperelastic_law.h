@@ -2,8 +2,8 @@
 //
 // Each is one file under hyperelastic/ with `kName`, `kHelp`, `fields` (its scene keys and messages), `check`,
 // `shear_modulus`, and its energy W beside κ/2 (J − 1)², as a function
-//   w(Ī₁ − 3) + c (Ī₂ − 3), Ī₁ = J^(−⅔) I₁ and Ī₂ = J^(−4/3) I₂:   energy(i1, i2), slopes(i1)
-//   or of the logarithms of λ̄_i = J^(−⅓) λ_i (Ogden):              energy(l), slopes(l)
+//   of Ī₁ − 3 and Ī₂ − 3, Ī₁ = J^(−⅔) I₁ and Ī₂ = J^(−4/3) I₂:   energy(i1, i2), slopes(i1, i2)
+//   or of the logarithms of λ̄_i = J^(−⅓) λ_i (Ogden):            energy(l), slopes(l)
 // in a scalar T: double, or a number that carries a derivative (src/material/dual.h); the slopes of a law of the invariants
 // in vectors of lanes too. These formulas are in src/material/hyperelastic_formulas.h.
 #pragma once
@@ -12,6 +12,8 @@
 #include <variant>
 
 #include "glisson/material/hyperelastic/fung.h"
+#include "glisson/material/hyperelastic/gent.h"
+#include "glisson/material/hyperelastic/invariants.h"
 #include "glisson/material/hyperelastic/mooney_rivlin.h"
 #include "glisson/material/hyperelastic/neo_hookean.h"
 #include "glisson/material/hyperelastic/ogden.h"
@@ -20,7 +22,7 @@
 
 namespace glisson {
 
-using HyperelasticLaw = std::variant<NeoHookean, MooneyRivlin, Yeoh, Fung, VerondaWestmann, Ogden>;
+using HyperelasticLaw = std::variant<NeoHookean, MooneyRivlin, Yeoh, Fung, VerondaWestmann, Ogden, Gent, Invariants>;
 
 inline std::string_view law_name(const HyperelasticLaw& law) {
   return std::visit([](const auto& l) { return l.kName; }, law);

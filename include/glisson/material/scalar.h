@@ -21,11 +21,17 @@ struct ValueSlope {
   T value, slope;
 };
 
-/// ∂W/∂Ī₁, ∂W/∂Ī₂ and ∂²W/∂Ī₁² of an energy w(Ī₁ − 3) + c (Ī₂ − 3) [Pa]. A law with c = 0 says `kSecond = false`, which
-/// spares lanes everything about Ī₂.
+/// How W of a law of the invariants takes Ī₂: not at all, in proportion, W = w(Ī₁ − 3) + c (Ī₂ − 3), or in any way. A law says
+/// it as `kSecond`; what it does not need, lanes do not work out.
+enum class SecondInvariant { none, proportional, general };
+
+/// Slopes of W(Ī₁, Ī₂) [Pa].
 template <class T>
 struct InvariantSlopes {
-  T first, second, bend;
+  T first, second;       ///< ∂W/∂Ī₁, ∂W/∂Ī₂
+  T bend;                ///< ∂²W/∂Ī₁²
+  T mixed = T(0);        ///< ∂²W/∂Ī₁∂Ī₂, 0 unless the law is `general`
+  T second_bend = T(0);  ///< ∂²W/∂Ī₂², likewise
 };
 
 namespace scalar {

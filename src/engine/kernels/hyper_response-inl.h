@@ -51,6 +51,14 @@ HWY_INLINE F first_invariant_slope_squared(const LaneInvariants& i, F power) {
   return number(4.0F) * power * power * hn::Max(inner, hn::Zero(Lanes()));
 }
 
+/// ‖∂Ī₂/∂F‖². @param power  J^(−⅔)
+HWY_INLINE F second_invariant_slope_squared(const LaneInvariants& i, F power) {
+  const F J2 = i.J * i.J, square = power * power;
+  const F inner = hn::MulAdd(i.I2, hn::MulSub(number(4.0F / 9.0F) * i.I2, i.I2 / J2, number(5.0F / 3.0F) * i.I1),
+                             number(3.0F) * J2);
+  return number(4.0F) * square * square * hn::Max(inner, hn::Zero(Lanes()));
+}
+
 /// κ (J − 1) cof F, and what all laws share.
 struct HyperState {
   Tensor H, K;
@@ -79,6 +87,27 @@ HWY_INLINE F excess(const Invariants<F>& inv) {
   const F p = one_minus_q(Lanes(), inv);
   return number(3.0F) * p / (number(1.0F) - hn::Min(p, number(0.999F)));
 }
+/// Of K = cof F − I, for Ī₂ − 3 is Ī₁ − 3 of cof F. With those of H nothing cancels:
+///   m₂(K) = m₂ + 3 det H + j t,   det K = j (m₂ + det H) − det H,   det(I + K) − 1 = j (2 + j)
+HWY_INLINE Invariants<F> cofactor_invariants(const HyperState& s) {
+  const Invariants<F>& h = s.inv;
+  const F j = h.volume_change, t = trace(s.K), two = number(2.0F);
+  const Tensor D = plus_identity(s.K, t * number(-1.0F / 3.0F));
+  const F xy = D.h[0][1] + D.h[1][0], yz = D.h[1][2] + D.h[2][1], zx = D.h[2][0] + D.h[0][2];
+  const F diagonal = hn::MulAdd(D.h[0][0], D.h[0][0], hn::MulAdd(D.h[1][1], D.h[1][1], D.h[2][2] * D.h[2][2]));
+  const F off = hn::MulAdd(xy, xy, hn::MulAdd(yz, yz, zx * zx));
+  return {t, hn::MulAdd(j, h.trace, hn::MulAdd(number(3.0F), h.determinant, h.minors)),
+          hn::MulSub(j, h.minors + h.determinant, h.determinant), hn::MulAdd(diagonal, two, off), j * (two + j)};
+}
+template <class Law>
+GLISSON_FORMULA InvariantSlopes<LaneScalar> lane_slopes(const Law& law, const HyperState& s) {
+  const LaneScalar first(excess(s.inv));
+  if constexpr (Law::kSecond == SecondInvariant::general) {
+    return law.slopes(first, LaneScalar(excess(cofactor_invariants(s))));
+  } else {
+    return law.slopes(first, LaneScalar(0.0));
+  }
+}
 
 template <class Law>
 void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&, ResponseBlock& out) {
@@ -86,14 +115,19 @@ void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue&
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState s = hyper_state(in.gradient + item * 9 * kLanes);
     const F j = s.inv.volume_change, one = number(1.0F), pressure = pressure_of(in, r, item, j);
-    const InvariantSlopes<LaneScalar> slopes = law.slopes(LaneScalar(excess(s.inv)));
+    const InvariantSlopes<LaneScalar> slopes = lane_slopes(law, s);
     const F first = slopes.first.v, second = slopes.second.v, bend = slopes.bend.v;
     Tensor P = times(number(2.0F) * first * s.power, deviatoric_direction(s.H, s.K, j, squares_of(s.H)));
     P = plus(plus_identity(P, pressure), pressure, s.K);
     const LaneInvariants i{s.I1, s.I2, s.J};
-    F bound = hn::MulAdd(hn::Abs(first), first_invariant_bend(i, s.power),
-                         hn::Abs(bend) * first_invariant_slope_squared(i, s.power));
-    if constexpr (Law::kSecond) {
+    const F first_squared = first_invariant_slope_squared(i, s.power);
+    F bound = hn::MulAdd(hn::Abs(first), first_invariant_bend(i, s.power), hn::Abs(bend) * first_squared);
+    if constexpr (Law::kSecond == SecondInvariant::general) {
+      const F second_squared = second_invariant_slope_squared(i, s.power);
+      bound = hn::MulAdd(hn::Abs(slopes.second_bend.v), second_squared, bound);
+      bound = hn::MulAdd(number(2.0F) * hn::Abs(slopes.mixed.v), hn::Sqrt(first_squared * second_squared), bound);
+    }
+    if constexpr (Law::kSecond != SecondInvariant::none) {
       const Symmetric E = green_strain(s.H);
       const Tensor F1 = plus_identity(s.H, one);
       const F three_J = number(3.0F) * s.J, t = trace_of(E);

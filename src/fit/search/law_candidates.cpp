@@ -139,6 +139,37 @@ std::vector<Known> hyperelastic_laws() {
              .modulus("tissue.hyperelastic.c_Pa", 0.003, 30.0)
              .free("tissue.hyperelastic.b", 0.01, 30.0, Scale::logarithmic);
        }},
+      {{"gent", "Gent, chains that are stretched out at a finite Ī₁"},
+       [](const auto& n, Stiffness m) -> LawSpec {
+         return Candidate(n, m)
+             .hyperelastic("kind = \"gent\", mu_Pa = 1, limit = 10")
+             .modulus("tissue.hyperelastic.mu_Pa", 0.003, 10.0)
+             .free("tissue.hyperelastic.limit", 0.01, 1000.0, Scale::logarithmic);
+       }},
+      {{"fung_i2", "exponential of I₂"},
+       [](const auto& n, Stiffness m) -> LawSpec {
+         return Candidate(n, m)
+             .hyperelastic("kind = \"invariants\", a2_Pa = 1, b2 = 1")
+             .modulus("tissue.hyperelastic.a2_Pa", 0.003, 10.0)
+             .free("tissue.hyperelastic.b2", 0.01, 30.0, Scale::logarithmic);
+       }},
+      {{"square_i2", "I₂ and its square"},
+       [](const auto& n, Stiffness m) -> LawSpec {
+         return Candidate(n, m)
+             .hyperelastic("kind = \"invariants\", c01_Pa = 1")
+             .modulus("tissue.hyperelastic.c01_Pa", 0.001, 10.0)
+             .any_modulus("tissue.hyperelastic.c02_Pa", 3.0);
+       }},
+      {{"rivlin", "Rivlin's polynomial of second order, five moduli"},
+       [](const auto& n, Stiffness m) -> LawSpec {
+         return Candidate(n, m)
+             .hyperelastic("kind = \"invariants\", c10_Pa = 1")
+             .modulus("tissue.hyperelastic.c10_Pa", 1e-4, 10.0)
+             .any_modulus("tissue.hyperelastic.c01_Pa", 3.0)
+             .any_modulus("tissue.hyperelastic.c20_Pa", 3.0)
+             .any_modulus("tissue.hyperelastic.c11_Pa", 3.0)
+             .any_modulus("tissue.hyperelastic.c02_Pa", 3.0);
+       }},
       {{"ogden", "Ogden, one term"},
        [](const auto& n, Stiffness m) -> LawSpec {
          return Candidate(n, m)

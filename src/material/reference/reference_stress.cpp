@@ -179,9 +179,33 @@ InvariantEnergy energy_of(const VerondaWestmann& l, Real a, Real b) {
   return {l.c * std::expm1(l.b * a) - Real(l.c) * l.b / 2 * b, l.c * l.b * std::exp(l.b * a), -Real(l.c) * l.b / 2};
 }
 
-struct Invariants {
+InvariantEnergy energy_of(const Gent& l, Real a, Real) {
+  const Real left = 1 - a / l.limit;
+  return {-Real(l.mu) * l.limit / 2 * std::log(left), l.mu / (2 * left), 0};
+}
+/// a/2b (e^{bx} − 1), q/2r (e^{rx²} − 1), and their slopes.
+struct Term {
+  Real W, slope;
+};
+Term exponential_term(Real a, Real b, Real x) { return {a / (2 * b) * std::expm1(b * x), a / 2 * std::exp(b * x)}; }
+Term square_exponential_term(Real q, Real r, Real x) {
+  return {q / (2 * r) * std::expm1(r * x * x), q * x * std::exp(r * x * x)};
+}
+InvariantEnergy energy_of(const Invariants& l, Real a, Real b) {
+  InvariantEnergy w{l.c10 * a + l.c01 * b + l.c20 * a * a + l.c11 * a * b + l.c02 * b * b + l.c30 * a * a * a,
+                    l.c10 + 2 * l.c20 * a + l.c11 * b + 3 * l.c30 * a * a, l.c01 + l.c11 * a + 2 * l.c02 * b};
+  for (const Term& t : {exponential_term(l.a1, l.b1, a), square_exponential_term(l.q1, l.r1, a)}) {
+    w.W += t.W, w.first += t.slope;
+  }
+  for (const Term& t : {exponential_term(l.a2, l.b2, b), square_exponential_term(l.q2, l.r2, b)}) {
+    w.W += t.W, w.second += t.slope;
+  }
+  return w;
+}
+
+struct TensorInvariants {
   Real J, I1, I2;
-  explicit Invariants(const RealTensor& F) : J(F.determinant()), I1(F.squaredNorm()) {
+  explicit TensorInvariants(const RealTensor& F) : J(F.determinant()), I1(F.squaredNorm()) {
     const RealTensor C = F.transpose() * F;
     I2 = (I1 * I1 - C.squaredNorm()) / 2;
   }
@@ -191,7 +215,7 @@ struct Invariants {
 
 template <class Law>
 RealTensor isochoric_piola(const Law& law, const RealTensor& F) {
-  const Invariants i(F);
+  const TensorInvariants i(F);
   const InvariantEnergy w = energy_of(law, i.first_excess(), i.second_excess());
   const RealTensor inverse_transposed = F.inverse().transpose();
   const RealTensor first = std::pow(i.J, -Real(2) / 3) * (2 * F - Real(2) / 3 * i.I1 * inverse_transposed);
@@ -201,7 +225,7 @@ RealTensor isochoric_piola(const Law& law, const RealTensor& F) {
 }
 template <class Law>
 Real isochoric_energy(const Law& law, const RealTensor& F) {
-  const Invariants i(F);
+  const TensorInvariants i(F);
   return energy_of(law, i.first_excess(), i.second_excess()).W;
 }
 

@@ -19,7 +19,7 @@ struct Fung {
   static constexpr std::string_view kName = "fung";
   static constexpr std::string_view kHelp = "W = μ/(2b) (exp(b (Ī₁ − 3)) − 1) + κ/2 (J − 1)² (exponent at most 12)";
   static constexpr double kLargestExponent = 12.0;
-  static constexpr bool kSecond = false;
+  static constexpr SecondInvariant kSecond = SecondInvariant::none;
   template <class Take>
   static constexpr auto fields(Take take) {
     return take(field("mu", &Fung::mu, "Pa", at_least(kSmallestModulus), "μ, shear modulus at rest").must(),
@@ -31,7 +31,7 @@ struct Fung {
   template <class T>
   T energy(T i1, T i2) const;
   template <class T>
-  InvariantSlopes<T> slopes(T i1) const;
+  InvariantSlopes<T> slopes(T i1, T i2) const;
 
   bool operator==(const Fung&) const = default;
 };

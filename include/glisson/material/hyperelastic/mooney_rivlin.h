@@ -16,7 +16,7 @@ struct MooneyRivlin {
 
   static constexpr std::string_view kName = "mooney_rivlin";
   static constexpr std::string_view kHelp = "W = c₁₀ (Ī₁ − 3) + c₀₁ (Ī₂ − 3) + κ/2 (J − 1)², μ = 2 (c₁₀ + c₀₁)";
-  static constexpr bool kSecond = true;
+  static constexpr SecondInvariant kSecond = SecondInvariant::proportional;
   template <class Take>
   static constexpr auto fields(Take take) {
     return take(field("c10", &MooneyRivlin::c10, "Pa", "c₁₀").must(),
@@ -27,7 +27,7 @@ struct MooneyRivlin {
   template <class T>
   T energy(T i1, T i2) const;
   template <class T>
-  InvariantSlopes<T> slopes(T i1) const;
+  InvariantSlopes<T> slopes(T i1, T i2) const;
   std::string check() const {
     return c10 + c01 > 0.0 ? "" : "c10 + c01 must be above 0, it is half the shear modulus at rest";
   }

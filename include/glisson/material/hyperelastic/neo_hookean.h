@@ -15,7 +15,7 @@ struct NeoHookean {
 
   static constexpr std::string_view kName = "neo_hookean";
   static constexpr std::string_view kHelp = "W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)²";
-  static constexpr bool kSecond = false;
+  static constexpr SecondInvariant kSecond = SecondInvariant::none;
   template <class Take>
   static constexpr auto fields(Take take) {
     return take(field("mu", &NeoHookean::mu, "Pa", at_least(kSmallestModulus), "μ, shear modulus at rest").must(),
@@ -26,7 +26,7 @@ struct NeoHookean {
   template <class T>
   T energy(T i1, T i2) const;
   template <class T>
-  InvariantSlopes<T> slopes(T i1) const;
+  InvariantSlopes<T> slopes(T i1, T i2) const;
 
   bool operator==(const NeoHookean&) const = default;
 };

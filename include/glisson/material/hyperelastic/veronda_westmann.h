@@ -20,7 +20,7 @@ struct VerondaWestmann {
   static constexpr std::string_view kHelp =
       "W = c (exp(b (Ī₁ − 3)) − 1) − ½ c b (Ī₂ − 3) + κ/2 (J − 1)², μ = c b (exponent at most 12)";
   static constexpr double kLargestExponent = 12.0;
-  static constexpr bool kSecond = true;
+  static constexpr SecondInvariant kSecond = SecondInvariant::proportional;
   template <class Take>
   static constexpr auto fields(Take take) {
     return take(field("c", &VerondaWestmann::c, "Pa", at_least(kSmallestModulus), "c").must(),
@@ -32,7 +32,7 @@ struct VerondaWestmann {
   template <class T>
   T energy(T i1, T i2) const;
   template <class T>
-  InvariantSlopes<T> slopes(T i1) const;
+  InvariantSlopes<T> slopes(T i1, T i2) const;
 
   bool operator==(const VerondaWestmann&) const = default;
 };

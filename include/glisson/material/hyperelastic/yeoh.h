@@ -15,7 +15,7 @@ struct Yeoh {
 
   static constexpr std::string_view kName = "yeoh";
   static constexpr std::string_view kHelp = "W = c₁ (Ī₁ − 3) + c₂ (Ī₁ − 3)² + c₃ (Ī₁ − 3)³ + κ/2 (J − 1)², μ = 2 c₁";
-  static constexpr bool kSecond = false;
+  static constexpr SecondInvariant kSecond = SecondInvariant::none;
   template <class Take>
   static constexpr auto fields(Take take) {
     return take(field("c1", &Yeoh::c1, "Pa", at_least(kSmallestModulus), "c₁, half the shear modulus at rest").must(),
@@ -26,7 +26,7 @@ struct Yeoh {
   template <class T>
   T energy(T i1, T i2) const;
   template <class T>
-  InvariantSlopes<T> slopes(T i1) const;
+  InvariantSlopes<T> slopes(T i1, T i2) const;
 
   bool operator==(const Yeoh&) const = default;
 };
