@@ -41,12 +41,14 @@ constexpr const char* kFitFooter =
     "  glisson fit scenes/fit/phantom_mean.toml\n"
     "  glisson fit scenes/fit/phantom_ef10_100t.toml --data ~/phantom --laws constant,linear,ogden,yeoh\n"
     "  glisson fit scenes/fit/liver_velocity.toml --out out/liver\n"
+    "  glisson fit scenes/fit/brain_cortex.toml --discover 3\n"
     "  glisson fit --list-laws";
 
 struct FitCommand {
   std::string file, out, data;
   std::vector<std::string> laws;
   std::optional<int> starts, bootstrap;
+  int discover = 0;
   int threads = 1;
   bool quiet = false, fresh = false, list_laws = false;
 };
@@ -88,6 +90,25 @@ void print_parameters(const FitResult& result) {
   }
 }
 
+/// The three best of each size.
+void print_discovered(const FitResult& result) {
+  if (result.discovered.empty()) return;
+  constexpr int kShown = 3;
+  std::size_t width = 3;
+  for (const auto& d : result.discovered) width = std::max(width, d.name.size());
+  say("{} laws of a library of terms; the best of each size by their cost:\n", result.discovered.size());
+  say("{:>5}  {:>10}  {:>12}  {:>9}  {}\n", "terms", "parameters", "cost", "least R²", "law");
+  int terms = 0, shown = 0;
+  for (const auto& d : result.discovered) {
+    shown = d.terms == terms ? shown + 1 : 1;
+    terms = d.terms;
+    if (shown > kShown && !d.taken) continue;
+    say("{:>5}  {:>10}  {:>12.5g}  {:>9.3f}  {}{}\n", d.terms, d.parameters, d.cost, d.r2, d.name,
+        d.taken ? "  <- compared below" : "");
+  }
+  say("\n");
+}
+
 void print_laws(const FitResult& result) {
   if (result.laws.empty()) return;
   std::size_t width = 3;
@@ -126,6 +147,7 @@ void print_tests(const FitResult& result) {
 }
 
 void print_result(const FitResult& result) {
+  print_discovered(result);
   print_laws(result);
   print_tests(result);
   print_parameters(result);
@@ -163,6 +185,7 @@ int run(const FitCommand& command) {
   MeshCache meshes(command.quiet);
   fit::FitRun options;
   options.laws = command.laws;
+  options.discover = command.discover;
   options.data_folder = command.data;
   options.load = meshes.loader();
   options.stop = &stop_flag();
@@ -221,6 +244,12 @@ void add_fit(CLI::App& program, Action& action) {
   command->add_option("--laws", options->laws, "fit each of these laws and report which the data support")
       ->delimiter(',')
       ->type_name("NAME,…");
+  command
+      ->add_option("--discover", options->discover,
+                   "look for a law of at most N terms among all subsets of a library, and compare the best of each size")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4))
+      ->excludes("--laws");
   command->add_flag("--list-laws", options->list_laws, "print the laws that --laws knows");
   command->add_option("--starts", options->starts, "largest number of descents")
       ->type_name("N")

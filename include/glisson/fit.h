@@ -208,6 +208,15 @@ struct LawResult {
   std::string words;
 };
 
+/// A law of the library of terms, fitted while looking for one of few terms.
+struct DiscoveredLaw {
+  std::string name;
+  int terms = 0, parameters = 0;
+  double cost = 0.0;  ///< ½ Σ ρ(r²) of its best descent
+  double r2 = 0.0;    ///< the least of all tests
+  bool taken = false;  ///< compared with the others by data its fit has not seen
+};
+
 /// What a further test would narrow.
 struct DesignResult {
   std::string what, parameter;                ///< the test, and the parameter it narrows most
@@ -238,6 +247,7 @@ struct FitResult {
   bool complete = true;                        ///< false: interrupted
   std::vector<std::vector<double>> bootstrap;  ///< replicates, a row of parameters each
   std::vector<LawResult> laws;
+  std::vector<DiscoveredLaw> discovered;  ///< all that were looked at; within a size the best first
   std::vector<DesignResult> designs;
   std::vector<std::string> conclusions;     ///< sentences
   std::string tissue;                       ///< text of tissue.toml, which a scene reads with `tissue.file`
@@ -267,6 +277,9 @@ struct FitForecast {
 /// Options of run_fit. Callbacks are called one at a time.
 struct FitOptions {
   std::vector<std::string> laws;  ///< further laws to compare, besides those of the file: names of `glisson fit --laws`
+  /// Looks for a law of at most so many terms among all subsets of a library, 1 to 4; 0: does not. The best of each size are
+  /// compared in place of the file's law. For a [specimen] with smooth faces.
+  int discover = 0;
   std::filesystem::path data_folder;  ///< that files of curves are relative to; empty: the folder of FIT.toml
   MeshLoader load;                    ///< reads mesh files of the scene; none: a scene with a mesh file is an error
   const std::atomic<bool>* stop = nullptr;  ///< set it to end the fit with what is known

@@ -144,6 +144,7 @@ def fit(
     bootstrap: int | None = None,
     progress: Callable[[str, int, int, float], object] | None = None,
     state: str | os.PathLike[str] | None = None,
+    discover: int = 0,
 ) -> FitResult:
     """Fits a tissue to measured curves, with uncertainties.
 
@@ -158,6 +159,7 @@ def fit(
     :param bootstrap: fits to curves drawn again, in place of the description's
     :param progress: called with stage, done, planned and the best rms so far [N]
     :param state: file that keeps what is known while the fit runs; gone when it is complete. Of another fit it is begun anew
+    :param discover: looks for a law of at most so many terms among all subsets of a library, 1 to 4; 0: does not
     :raises SceneError: with every problem of the description
     :raises ValueError: naming a state that is not as it was written; delete it
     """
@@ -172,7 +174,7 @@ def fit(
             spec = _fit.parse_fit(description, "fit", Path(base))
         else:
             spec = _fit.load_fit(Path(description))
-        return FitResult(*_fit.run(spec, list(laws), folder, starts, bootstrap, progress, kept))
+        return FitResult(*_fit.run(spec, list(laws), folder, starts, bootstrap, progress, kept, discover))
 
 
 def known_laws() -> dict[str, str]:

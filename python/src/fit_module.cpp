@@ -28,13 +28,16 @@ void remember_in(const std::filesystem::path& state, const fit::FitSpec& spec, f
 std::pair<std::string, std::string> run(fit::FitSpec spec, const std::vector<std::string>& laws,
                                         const std::filesystem::path& data, std::optional<int> starts,
                                         std::optional<int> bootstrap, const nb::object& progress,
-                                        const std::filesystem::path& state) {
+                                        const std::filesystem::path& state, int discover) {
+  if (discover < 0 || discover > 4)
+    throw std::invalid_argument("discover = " + std::to_string(discover) + " is out of range; allowed: 0 to 4 terms");
   if (starts) spec.search.starts = *starts;
   if (bootstrap) spec.proof.bootstrap = *bootstrap;
   std::atomic<bool> stop{false};
   std::exception_ptr raised;
   fit::FitRun options;
   options.laws = laws;
+  options.discover = discover;
   options.data_folder = data;
   options.load = python::mesh_loader();
   options.stop = &stop;
@@ -94,9 +97,9 @@ NB_MODULE(_fit, m) {
       "Names of the laws that a fit can compare, and what they are");
   m.def("run", run, "spec"_a, "laws"_a = std::vector<std::string>{}, "data"_a = std::filesystem::path{},
         "starts"_a = nb::none(), "bootstrap"_a = nb::none(), "progress"_a = nb::none(),
-        "state"_a = std::filesystem::path{}, "The texts of fit.json and tissue.toml.",
+        "state"_a = std::filesystem::path{}, "discover"_a = 0, "The texts of fit.json and tissue.toml.",
         nb::sig("def run(spec: FitSpec, laws: collections.abc.Sequence[str] = [], data: str | os.PathLike[str] = '', "
                 "starts: int | None = None, bootstrap: int | None = None, progress: "
                 "collections.abc.Callable[[str, int, int, float], object] | None = None, state: str | os.PathLike[str] "
-                "= '') -> tuple[str, str]"));
+                "= '', discover: int = 0) -> tuple[str, str]"));
 }

@@ -11,6 +11,7 @@
 #include "fit/fit_curves.h"
 #include "fit/forward/offset_model.h"
 #include "fit/insertion/run_insertion_fit.h"
+#include "fit/search/discovery.h"
 #include "fit/search/law_candidates.h"
 #include "fit/search/law_search.h"
 #include "fit/tissue_of_fit.h"
@@ -18,6 +19,7 @@
 #include "fit/uncertainty/criteria.h"
 #include "fit/uncertainty/forecast.h"
 #include "fit/uncertainty/left_out.h"
+#include "fit/uncertainty/test_table.h"
 #include "fit/uncertainty/validation.h"
 
 namespace glisson::fit {
@@ -37,7 +39,7 @@ SpecimenSize size_of(const FitSpec& spec) {
 
 /// A description alone may name no parameter: those of laws that are asked for come with them.
 void require_something_free(const FitSpec& spec, const FitRun& options) {
-  if (!spec.parameters.empty() || !spec.laws.empty() || !options.laws.empty()) return;
+  if (!spec.parameters.empty() || !spec.laws.empty() || !options.laws.empty() || options.discover > 0) return;
   throw SceneError(
       spec.file.string() +
       ": nothing is free; give one or more [[parameter]] with key, low and high, or fit laws by name: --laws "
@@ -81,6 +83,7 @@ class Run {
   FitResult to_end();
 
  private:
+  std::vector<LawSpec> discover(FitResult& result);
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
   bool search_all(const std::vector<LawSpec>& laws);
   bool search_one(const LawSpec& law);
@@ -92,9 +95,58 @@ class Run {
   FitMemory memory_;
   FitCurves curves_;
   Searches searches_;
+  std::uint64_t discovery_runs_ = 0;
   std::vector<std::string> left_out_;  ///< a sentence for each law that does not run
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
+
+/// Fits every law of the library from a few starts; the best of each size, of the invariants and of the stretches, go on.
+std::vector<LawSpec> Run::discover(FitResult& result) {
+  constexpr int kStarts = 4;
+  const SpecimenSize size = size_of(spec_);
+  if (!size.area || plates_of(*spec_.specimen))
+    throw std::invalid_argument("--discover asks for a [specimen] with smooth faces: hundreds of laws are fitted");
+  const std::vector<TermLaw> all =
+      term_laws(initial_modulus(curves_.chosen(curves_.indices(false)), *size.area, *size.height), options_.discover);
+  FitSpec quick = spec_;
+  quick.search.starts = kStarts;
+  FitRun silent = options_;
+  silent.progress = {}, silent.forecast = {}, silent.remember = {}, silent.memory = {};
+  for (std::size_t i = 0; i < all.size() && !stopped(); ++i) {
+    if (options_.progress) options_.progress({all[i].law.name, "discovery", i, all.size()});
+    DiscoveredLaw found{all[i].law.name, all[i].terms, static_cast<int>(all[i].law.parameters.size()),
+                        std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), false};
+    try {
+      LawSearch search(quick, all[i].law, curves_, silent);
+      LawMemory memory;
+      search.search(memory, {});
+      found.cost = search.optimum().cost;
+      found.r2 = 1.0;
+      for (const TestResult& t : test_results(curves_.curves, search.predictions())) found.r2 = std::min(found.r2, t.r2);
+      discovery_runs_ += search.forward_runs();
+    } catch (const std::runtime_error&) {  // a law that does not run anywhere is none that the data carry
+    }
+    result.discovered.push_back(std::move(found));
+  }
+  std::vector<LawSpec> best;
+  for (int terms = 1; terms <= options_.discover; ++terms) {
+    for (const bool stretches : {false, true}) {
+      std::size_t least = result.discovered.size();
+      for (std::size_t i = 0; i < result.discovered.size(); ++i) {
+        const bool of_kind = all[i].terms == terms && all[i].stretches == stretches;
+        if (!of_kind || !std::isfinite(result.discovered[i].cost)) continue;
+        if (least == result.discovered.size() || result.discovered[i].cost < result.discovered[least].cost) least = i;
+      }
+      if (least == result.discovered.size()) continue;
+      result.discovered[least].taken = true;
+      best.push_back(all[least].law);
+    }
+  }
+  std::stable_sort(result.discovered.begin(), result.discovered.end(), [](const DiscoveredLaw& a, const DiscoveredLaw& b) {
+    return a.terms != b.terms ? a.terms < b.terms : a.cost < b.cost;
+  });
+  return best;
+}
 
 /// False where it was stopped before all laws had been looked at.
 bool Run::search_all(const std::vector<LawSpec>& laws) {
@@ -179,6 +231,7 @@ std::size_t Run::choose(FitResult& result) const {
 
 void Run::count_runs(FitResult& result) const {
   double seconds = 0.0;
+  result.forward_runs = discovery_runs_;
   for (const auto& search : searches_) {
     result.forward_runs += search->forward_runs();
     seconds += search->forward_seconds();
@@ -191,8 +244,8 @@ FitResult Run::to_end() {
   require_something_free(spec_, options_);
   const SpecimenSize size = size_of(spec_);
   curves_ = read_curves(spec_, size, options_.data_folder.empty() ? spec_.file.parent_path() : options_.data_folder);
-  const std::vector<LawSpec> laws = laws_of(spec_, options_, curves_);
   FitResult result;
+  const std::vector<LawSpec> laws = options_.discover > 0 ? discover(result) : laws_of(spec_, options_, curves_);
   result.area = size.area;
   result.height = size.height;
   const bool all = search_all(laws);

@@ -196,6 +196,18 @@ Json laws_json(const FitResult& result) {
   return list;
 }
 
+Json discovered_json(const FitResult& result) {
+  Json list = Json::array();
+  for (const fit::DiscoveredLaw& d : result.discovered)
+    list.push_back({{"name", d.name},
+                    {"terms", d.terms},
+                    {"parameters", d.parameters},
+                    {"cost", number(d.cost)},
+                    {"least_r2", number(d.r2)},
+                    {"taken", d.taken}});
+  return list;
+}
+
 Json designs_json(const FitResult& result) {
   Json list = Json::array();
   for (const fit::DesignResult& d : result.designs)
@@ -256,6 +268,7 @@ Json fit_json(const FitResult& result, const FitHeading& heading) {
             {"profiles", profiles_json(result)},
             {"bootstrap", bootstrap},
             {"laws", laws_json(result)},
+            {"discovered", discovered_json(result)},
             {"designs", designs_json(result)},
             {"conclusions", result.conclusions},
             {"x", axis_x(result)},

@@ -136,6 +136,7 @@ std::string fit_fingerprint(const fit::FitSpec& spec, const fit::FitRun& options
     for (const std::filesystem::path& file : data.files) print.add_file(file.is_relative() ? base / file : file);
   }
   for (const std::string& law : options.laws) print.add(law);
+  if (options.discover > 0) print.add(std::to_string(options.discover));
   return print.text();
 }
 
