@@ -32,8 +32,8 @@ struct TorsionState {
 ///   F_θz = φ r,   T = 2π ∫ σ_θz r² dr,   N = π ∫ (2 σ_zz − σ_rr − σ_θθ) r dr,   r from 0 to the present radius
 ///
 /// The radius changes with λ, not with the twist: the volume change that the twist brings is neglected. With γ the shear at the rim and
-/// κ the bulk modulus the torque errs by a share of the order γ² μ/κ, and the part of N that grows with γ² by one of the order μ/κ.
-/// Kinematics `small` has no such part.
+/// κ the bulk modulus the torque errs by a share of the order γ² μ/κ, and the part of N that grows with γ² by one of the order μ/κ: of a
+/// compressible neo-Hookean cylinder that part is 3κ/(3κ + μ) of what is returned, to second order in γ. Kinematics `small` has none.
 /// @param radius  R at rest [m], > 0
 /// @param times   [s], ascending, as of material_test: from rest at time 0, a first time of 0 applies the first twist at once
 /// @param twists  φ [rad/m], one a time; in between it changes linearly with time

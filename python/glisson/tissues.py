@@ -145,7 +145,7 @@ def torsion(
 
     Each shell is in simple shear, with a history of its own. The volume change that the twist brings is neglected: the torque errs by
     a share of the order γ² μ/κ, with γ the shear at the rim, and the part of the axial force that grows with γ² by one of the order
-    μ/κ. Between two times the twist changes linearly; a first time of 0 applies the first twist at once.
+    μ/κ: of a compressible neo-Hookean cylinder that part is 3κ/(3κ + μ) of what is returned. Between two times the twist changes linearly; a first time of 0 applies the first twist at once.
 
     :param radius: at rest [m], above 0
     :param times: [s], ascending
