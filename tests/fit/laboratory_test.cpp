@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 #include "fit/data/load_curves.h"
@@ -59,7 +60,7 @@ struct Form {
   const char* name;
   Deforming deforming;
   double side;  ///< 1: extends
-  /// Nominal stress of Mooney and Rivlin, W = c10 (I₁ − 3) + c01 (I₂ − 3), at a stretch or amount of shear [Rivlin1948].
+  /// Nominal stress of Mooney and Rivlin, W = c10 (I₁ − 3) + c01 (I₂ − 3), at a stretch or amount of shear [Rivlin1949].
   double (*stress)(double x, double c10, double c01);
 };
 
@@ -182,6 +183,35 @@ TEST(Laboratory, ASpecimenIsItsPointTimesItsSize) {
     const SpecimenModel model({body}, {kArea, kHeight}, [&](std::span<const double>) { return mooney(); });
     const std::vector<double> stress = answer(mooney(), point), force = model.predict(0, {}).force;
     for (std::size_t i = 0; i < stress.size(); ++i) EXPECT_NEAR(force[i], stress[i] * kArea, 1e-12);
+  }
+}
+
+// Rivlin's torque of an incompressible cylinder: T = π μ R⁴ φ / (2 H) for Mooney's law, at any angle [Rivlin1949].
+TEST(Laboratory, TorqueIsRivlins) {
+  constexpr double kRadius = 0.01, kHeight = 0.02;
+  Curve curve = test_of(LabTest::torsion, Deforming::torsion, Measured::torque, {0.0, 0.2, 0.5, 1.0});
+  const SpecimenModel model({curve}, {.area = std::numbers::pi * kRadius * kRadius, .height = kHeight, .radius = kRadius},
+                            [](std::span<const double>) { return mooney(); });
+  const std::vector<double> torque = model.predict(0, {}).force;
+  ASSERT_EQ(torque.size(), curve.size());
+  for (std::size_t i = 0; i < curve.size(); ++i)
+    EXPECT_NEAR(torque[i], 0.5 * std::numbers::pi * kMu * std::pow(kRadius, 4) * curve.displacement[i] / kHeight, 1e-6 * 1e-3);
+}
+
+// G′ = μ (1 − Σ g) + μ Σ g ω²τ²/(1 + ω²τ²), G″ = μ Σ g ωτ/(1 + ω²τ²).
+TEST(Laboratory, ModuliOfAnOscillationAreMaxwells) {
+  const std::vector<double> frequencies{0.001, 0.01, 0.1, 1.0, 10.0};
+  for (const Measured measured : {Measured::storage, Measured::loss}) {
+    const std::vector<double> found =
+        answer(relaxing(), test_of(LabTest::oscillation, Deforming::simple_shear, measured, frequencies));
+    for (std::size_t i = 0; i < frequencies.size(); ++i) {
+      double exact = measured == Measured::storage ? kMu * 0.3 : 0.0;
+      for (const auto& [g, tau] : {std::pair{0.4, 2.0}, {0.3, 30.0}}) {
+        const double x = 2.0 * std::numbers::pi * frequencies[i] * tau;
+        exact += kMu * g * (measured == Measured::storage ? x * x : x) / (1.0 + x * x);
+      }
+      EXPECT_NEAR(found[i], exact, 1e-8 * kMu);
+    }
   }
 }
 
@@ -359,7 +389,81 @@ TEST(Laboratory, CortexPrefersOgden) {
   EXPECT_EQ(short_ones.front(), "ogden");
 }
 
-// 40 sets of the three tests by one tissue, 2 % of the largest stress as correlated noise: 95 % intervals hold the truth.
+// A sweep of frequencies and a creep of the same tissue, together: its branch is found, and each file's columns with it.
+TEST_F(Written, ASweepAndACreepGiveTheBranch) {
+  std::vector<double> hertz, storage, loss, time, stress, strain;
+  for (int i = 0; i < 15; ++i) {
+    hertz.push_back(std::pow(10.0, -2.0 + 0.2 * i));
+    const double x = 2.0 * std::numbers::pi * hertz.back() * 3.0;
+    storage.push_back(1e3 * (0.5 + 0.5 * x * x / (1.0 + x * x)));
+    loss.push_back(1e3 * 0.5 * x / (1.0 + x * x));
+  }
+  // γ = τ/μ (1 + g/(1 − g) (1 − e^{−(1 − g) t/τ})) after a load at once
+  for (int i = 0; i < 40; ++i) {
+    time.push_back(0.5 * i);
+    stress.push_back(50.0);
+    strain.push_back(0.05 * (1.0 + 1.0 * -std::expm1(-0.5 * time.back() / 3.0)));
+  }
+  folder_.write("sweep.csv", table({"frequency (Hz)", "storage (Pa)", "loss (Pa)"}, {hertz, storage, loss}));
+  folder_.write("creep.csv", table({"time (s)", "stress (Pa)", "shear_strain"}, {time, stress, strain}));
+  const std::string text = R"([specimen]
+kind = "point"
+[tissue]
+hyperelastic = { kind = "neo_hookean", mu_Pa = 500, bulk_modulus_Pa = 1e6 }
+maxwell = [{ share = 0.2, time_s = 1 }]
+[[parameter]]
+key = "tissue.hyperelastic.mu_Pa"
+low = 10
+high = 1e5
+[[parameter]]
+key = "tissue.maxwell.0.share"
+low = 0.01
+high = 0.95
+[[parameter]]
+key = "tissue.maxwell.0.time_s"
+low = 0.1
+high = 100
+[[data]]
+files = ["sweep.csv"]
+test = "oscillation"
+columns.storage_modulus.name = "storage"
+columns.loss_modulus.name = "loss"
+[[data]]
+files = ["creep.csv"]
+test = "creep"
+mode = "simple_shear"
+[search]
+starts = 4
+[proof]
+bootstrap = 0
+)";
+  const FitResult r = run_fit_text(text, (folder_.path() / "fit.toml").string());
+  EXPECT_NEAR(r.parameters[0].value, 1000.0, 2.0);
+  EXPECT_NEAR(r.parameters[1].value, 0.5, 0.002);
+  EXPECT_NEAR(r.parameters[2].value, 3.0, 0.02);
+  ASSERT_EQ(r.tests.size(), 3u);
+  EXPECT_EQ(r.unit, "") << "moduli and strains have no unit in common";
+  for (const TestResult& t : r.tests) EXPECT_GT(t.r2, 0.9999) << t.name;
+}
+
+// Of all laws of at most two terms one is above 0.95 in each of cortex's tests.
+TEST(Laboratory, AFewTermsAreFoundForCortex) {
+  FitOptions options;
+  options.discover = 2;
+  FitSpec spec = load_fit(test::shipped("scenes/fit/brain_cortex.toml"));
+  spec.proof.bootstrap = 0, spec.search.starts = 8;
+  const FitResult r = run_fit(spec, {options, {}, {}});
+  ASSERT_GE(r.discovered.size(), 40u);
+  for (std::size_t i = 1; i < r.discovered.size(); ++i) {
+    const DiscoveredLaw &a = r.discovered[i - 1], &b = r.discovered[i];
+    EXPECT_TRUE(a.terms < b.terms || (a.terms == b.terms && a.cost <= b.cost));
+  }
+  double best = 0.0;
+  for (const DiscoveredLaw& d : r.discovered) best = std::max(best, d.r2);
+  EXPECT_GE(best, 0.95);
+}
+
+// 200 sets of the three tests by one tissue, 2 % of the largest stress as correlated noise: 95 % intervals hold the truth.
 TEST(Laboratory, IntervalsOfTwinsHoldTheTruth) {
   const std::vector<Parameter> parameters{{"mu", "Pa", 10.0, 1e5, Scale::logarithmic, 1e3}, {"alpha", "", -60.0, -1.0}};
   const std::vector<double> truth{1400.0, -15.0};
