@@ -98,7 +98,7 @@ struct Indented {
   double depth = 0.0;                 ///< indentation at 0.15 N [m]
 };
 
-/// Tissue that stiffens 5-fold and more below a capsule that stiffens, as in scenes/needle/bovine_liver.toml.
+/// Tissue that stiffens 5-fold and more below a capsule that stiffens, as in scenes/fit/needle_before_puncture.toml.
 Indented indent(Family family, int cells) {
   const TetMesh mesh = block(family, cells);
   Tissue tissue;

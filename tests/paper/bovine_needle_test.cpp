@@ -1,5 +1,6 @@
 // The needle of scenes/needle/bovine_liver.toml follows the measured curve of bovine liver [Okamura2004] before, at and after
-// the puncture of the surface, through three inner punctures and on the plateau.
+// the puncture of the surface, through three inner punctures and on the plateau; on finer meshes it is the same, and its tissue
+// gains no energy.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,6 +43,9 @@ class Curve final : public RunObserver {
     force.push_back(-s.instruments.front().force.z);
     support.push_back(0.0);
     for (const ForceParts& f : s.supports) support.back() += f.total().z;
+    if (!s.stored_energy) return;
+    stored_most = std::max(stored_most, *s.stored_energy);
+    drift_most = std::max(drift_most, std::abs(s.energies.elastic - *s.stored_energy));
   }
   void on_event(const RunEvent& e) override { events.push_back(e.what); }
 
@@ -61,10 +65,19 @@ class Curve final : public RunObserver {
   }
 
   std::vector<double> position, force, support;
+  double stored_most = 0.0;  ///< largest W(u), where the run keeps it [J]
+  double drift_most = 0.0;   ///< that the work of the elastic forces was off it [J]
   std::vector<InstrumentEvent> events;
 };
 
-// Before the puncture within 0.05 N rms of the nine points; puncture within 5 % in force and place; least force of the 2 mm after it
+/// At another speed [mm/s], sampled as often per millimetre, without frames.
+std::vector<Override> at_speed(double speed) {
+  return {{"output.frames", "0"},
+          {"output.sample_rate_hz", std::to_string(500.0 / 3.0 * speed)},
+          {"instrument.needle.motion.velocity_mm_s", std::to_string(speed)}};
+}
+
+// Before the puncture within 0.035 N rms of the nine points; puncture within 5 % in force and place; least force of the 2 mm after it
 // within what was measured there, 0.15 to 0.42 N; the plateau's mean within 10 %; and while nothing moves fast the supports bear what
 // the hand feels, to 1 %.
 void expect_surface_and_plateau(const Curve& curve) {
@@ -79,7 +92,9 @@ void expect_surface_and_plateau(const Curve& curve) {
     if (p.what == "puncture") puncture = p;
   }
   ASSERT_EQ(count, 9);
-  EXPECT_LT(std::sqrt(squares / count), 0.05);
+  const double rms = std::sqrt(squares / count);
+  ::testing::Test::RecordProperty("rms_before_uN", static_cast<int>(1e6 * rms));
+  EXPECT_LT(rms, 0.035);
 
   const double broke = curve.position_of("puncture");
   EXPECT_NEAR(broke, puncture.position, 0.05 * puncture.position);
@@ -131,7 +146,7 @@ std::map<double, std::pair<double, int>> whole_curve(const std::filesystem::path
   return sums;
 }
 
-// 0.12 N rms over 0 to 48 mm, every 0.2 mm, but for 0.3 mm on either side of the four drops.
+// 0.08 N rms over 0 to 48 mm, every 0.2 mm, but for 0.3 mm on either side of the four drops.
 void expect_whole_curve(const Curve& curve, const std::map<double, std::pair<double, int>>& points) {
   std::vector<double> drops;
   for (const Point& p : measured()) {
@@ -156,22 +171,105 @@ void expect_whole_curve(const Curve& curve, const std::map<double, std::pair<dou
   const double rms = std::sqrt(squares / count);
   ::testing::Test::RecordProperty("rms_uN", static_cast<int>(1e6 * rms));
   EXPECT_GT(count, 220);
-  EXPECT_LT(rms, 0.12);
+  EXPECT_LT(rms, 0.08);
 }
 
 // What the scene claims, on one run of it. The whole curve, of 371 points, is read from beside the checkout; that part is skipped
 // where it is missing.
 TEST(BovineNeedle, FollowsTheMeasuredCurve) {
-  const Scene scene = test::shipped_scene("needle/bovine_liver.toml", {{"output.frames", "0"}});
+  const Scene scene = test::shipped_scene("needle/bovine_liver.toml", at_speed(3.0));
+  Variant variant = scene.variants.front();
+  variant.simulation.track_energies = false;
   Curve curve;
   const std::atomic<bool> stop{false};
-  const RunSummary summary = run_variant(scene.variants.front(), {}, curve, stop);
+  const RunSummary summary = run_variant(variant, {}, curve, stop);
   ASSERT_EQ(summary.end, RunSummary::End::finished);
   expect_surface_and_plateau(curve);
   expect_inner_punctures(curve);
   const auto path = test::shipped("../shared/data/needle/bovine_liver.csv");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   expect_whole_curve(curve, whole_curve(path));
+}
+
+struct Cells {
+  int radial, axial;
+};
+
+/// Up to the puncture, ten times as fast as measured, on a mesh of so many cells.
+Curve pressed_in(const Cells& cells) {
+  std::vector<Override> overrides = at_speed(30.0);
+  overrides.push_back({"mesh.radial_cells", std::to_string(cells.radial)});
+  overrides.push_back({"mesh.axial_cells", std::to_string(cells.axial)});
+  overrides.push_back({"instrument.needle.motion.depth_mm", "10.6"});  // the approach of 0.44 mm included
+  const Scene scene = test::shipped_scene("needle/bovine_liver.toml", overrides);
+  Curve curve;
+  const std::atomic<bool> stop{false};
+  EXPECT_EQ(run_variant(scene.variants.front(), {}, curve, stop).end, RunSummary::End::finished);
+  return curve;
+}
+
+/// Position where the force first reaches a value [mm].
+double position_at(const Curve& curve, double force) {
+  for (std::size_t i = 1; i < curve.force.size(); ++i) {
+    if (curve.force[i] < force) continue;
+    const double share = (force - curve.force[i - 1]) / (curve.force[i] - curve.force[i - 1]);
+    return curve.position[i - 1] + share * (curve.position[i] - curve.position[i - 1]);
+  }
+  return std::nan("");
+}
+
+void record(const Cells& cells, const Curve& curve, double surface) {
+  const std::string of = std::to_string(cells.radial) + "x" + std::to_string(cells.axial);
+  const auto keep = [&](const std::string& what, double value) {
+    ::testing::Test::RecordProperty(of + what, static_cast<int>(std::lround(value)));
+  };
+  for (int d = 2; d <= 9; ++d) keep("_at_" + std::to_string(d) + "mm_uN", 1e6 * curve.at(surface + d));
+  for (const double f : {0.15, 0.5, 1.0})
+    keep("_depth_at_" + std::to_string(std::lround(1e3 * f)) + "mN_um", 1e3 * (position_at(curve, f) - surface));
+  keep("_puncture_um", 1e3 * (curve.position_of("puncture") - surface));
+}
+
+// The mesh resolves the zone: what is fitted belongs to the tissue. Against the finest of three meshes, of 43 200 to 93 312 tets, the
+// force 2 to 9 mm deep within 2 %, the indentations at 0.15, 0.5 and 1 N and at the puncture within 3 %.
+TEST(BovineNeedle, IsTheSameOnFinerMeshes) {
+  constexpr double kSurface = kStart + 0.44;
+  const Cells finest{12, 36};
+  const Curve fine = pressed_in(finest);
+  record(finest, fine, kSurface);
+  for (const Cells& cells : {Cells{10, 24}, Cells{12, 24}}) {
+    SCOPED_TRACE(std::to_string(cells.radial) + " x " + std::to_string(cells.axial) + " cells");
+    const Curve curve = pressed_in(cells);
+    record(cells, curve, kSurface);
+    for (int depth = 2; depth <= 9; ++depth) {
+      const double force = fine.at(kSurface + depth);
+      EXPECT_NEAR(curve.at(kSurface + depth), force, 0.02 * force) << depth << " mm deep";
+    }
+    for (const double force : {0.15, 0.5, 1.0}) {
+      const double depth = position_at(fine, force) - kSurface;
+      EXPECT_NEAR(position_at(curve, force) - kSurface, depth, 0.03 * depth) << "at " << force << " N";
+    }
+    const double puncture = fine.position_of("puncture") - kSurface;
+    EXPECT_NEAR(curve.position_of("puncture") - kSurface, puncture, 0.03 * puncture);
+  }
+}
+
+// Averaged volumes and a law with an energy: through four drops at ten times the measured speed, the work of the elastic forces
+// is W(u) to 1 %, and the tissue comes to rest. With a stiffness law of the form `secant` it would have given off 4 mJ more.
+TEST(BovineNeedle, GainsNoEnergyFromItsTissue) {
+  std::vector<Override> overrides = at_speed(30.0);
+  overrides.push_back({"output.sample_rate_hz", "500"});
+  overrides.push_back({"output.stored_energy", "true"});
+  const Scene scene = test::shipped_scene("needle/bovine_liver.toml", overrides);
+  Curve curve;
+  const std::atomic<bool> stop{false};
+  const RunSummary summary = run_variant(scene.variants.front(), {}, curve, stop);
+  ASSERT_EQ(summary.end, RunSummary::End::finished);
+  RecordProperty("stored_most_uJ", static_cast<int>(std::lround(1e6 * curve.stored_most)));
+  RecordProperty("drift_most_nJ", static_cast<int>(std::lround(1e9 * curve.drift_most)));
+  RecordProperty("kinetic_end_nJ", static_cast<int>(std::lround(1e9 * summary.energies.kinetic)));
+  ASSERT_GT(curve.stored_most, 1e-3);
+  EXPECT_LT(curve.drift_most, 0.01 * curve.stored_most);
+  EXPECT_LT(summary.energies.kinetic, 1e-3 * curve.stored_most);
 }
 
 }  // namespace
