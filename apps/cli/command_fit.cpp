@@ -133,14 +133,16 @@ void print_tests(const FitResult& result) {
   for (const fit::TestResult& t : result.tests) width = std::max(width, t.name.size() + 9);
   const auto line = [&](const std::string& name, const auto& cell) {
     std::string text = fmt::format("{:<{}}", name, width);
-    for (const fit::TestResult& t : result.tests) text += fmt::format("  {:>{}}", cell(t), std::max<std::size_t>(9, t.name.size()));
+    for (const fit::TestResult& t : result.tests)
+      text += fmt::format("  {:>{}}", cell(t), std::max<std::size_t>(9, t.name.size()));
     say("{}\n", text);
   };
   line("R² in", [](const fit::TestResult& t) { return t.name; });
   line("fit of all", [](const fit::TestResult& t) { return fmt::format("{:.3f}", t.r2); });
   for (std::size_t a = 0; a < result.tests.size(); ++a) {
     if (result.tests[a].held_out) continue;
-    line(result.tests[a].name + " alone", [&](const fit::TestResult& t) { return fmt::format("{:.3f}", t.r2_of_alone[a]); });
+    line(result.tests[a].name + " alone",
+         [&](const fit::TestResult& t) { return fmt::format("{:.3f}", t.r2_of_alone[a]); });
   }
   line("rms of all", [](const fit::TestResult& t) { return fit::measured_text(t.rms, t.unit); });
   say("\n");
@@ -245,8 +247,9 @@ void add_fit(CLI::App& program, Action& action) {
       ->delimiter(',')
       ->type_name("NAME,…");
   command
-      ->add_option("--discover", options->discover,
-                   "look for a law of at most N terms among all subsets of a library, and compare the best of each size")
+      ->add_option(
+          "--discover", options->discover,
+          "look for a law of at most N terms among all subsets of a library, and compare the best of each size")
       ->type_name("N")
       ->check(CLI::Range(1, 4))
       ->excludes("--laws");

@@ -75,11 +75,11 @@ struct Measurement {
   LabTest test = LabTest::compression;
   Deforming deforming = Deforming::compression;
   Measured measured = Measured::nominal;
-  double stretch = 1.0;             ///< at rest about which an oscillation is small [-]
-  bool timed = true;                ///< false: the file has no times, those of the curve are made up
-  bool point = false;               ///< the specimen has no size: force on 1 m², displacement of 1 m
-  std::string unit = "N";           ///< of Curve::force
-  std::string drive_unit = "m";     ///< of Curve::displacement
+  double stretch = 1.0;          ///< at rest about which an oscillation is small [-]
+  bool timed = true;             ///< false: the file has no times, those of the curve are made up
+  bool point = false;            ///< the specimen has no size: force on 1 m², displacement of 1 m
+  std::string unit = "N";        ///< of Curve::force
+  std::string drive_unit = "m";  ///< of Curve::displacement
   bool is_press() const { return test == LabTest::compression && measured == Measured::nominal && !point; }
 };
 
@@ -187,10 +187,10 @@ struct StartResult {
 struct TestResult {
   std::string name;  ///< of its group
   LabTest test = LabTest::compression;
-  double r2 = 0.0;          ///< 1 − Σ (fitted − measured)² / Σ (measured − mean)²
-  double rms = 0.0;         ///< of fitted − measured, in `unit`
-  std::string unit;         ///< of rms
-  std::size_t points = 0;   ///< of its curves
+  double r2 = 0.0;         ///< 1 − Σ (fitted − measured)² / Σ (measured − mean)²
+  double rms = 0.0;        ///< of fitted − measured, in `unit`
+  std::string unit;        ///< of rms
+  std::size_t points = 0;  ///< of its curves
   bool held_out = false;
   /// r2 of this test by a fit to one test alone, in the order of FitResult::tests; NaN for a test that is held out or has no
   /// such fit; empty: there is only one.
@@ -212,8 +212,8 @@ struct LawResult {
 struct DiscoveredLaw {
   std::string name;
   int terms = 0, parameters = 0;
-  double cost = 0.0;  ///< ½ Σ ρ(r²) of its best descent
-  double r2 = 0.0;    ///< the least of all tests
+  double cost = 0.0;   ///< ½ Σ ρ(r²) of its best descent
+  double r2 = 0.0;     ///< the least of all tests
   bool taken = false;  ///< compared with the others by data its fit has not seen
 };
 
@@ -232,8 +232,9 @@ struct FitResult {
   std::vector<std::string> accounts;  ///< what was done to each curve, in a sentence
   std::vector<GroupResult> groups;
   std::vector<TestResult> tests;  ///< as `groups`
-  std::string unit = "N";  ///< of all errors below; "" where tests differ in theirs: parts of each curve's largest number
-  double rms_fit = 0.0;                       ///< [N], or in `unit`
+  std::string unit =
+      "N";               ///< of all errors below; "" where tests differ in theirs: parts of each curve's largest number
+  double rms_fit = 0.0;  ///< [N], or in `unit`
   std::optional<double> rms_heldout, spread;  ///< of held-out curves; of repetitions about their mean
   std::vector<ProfileResult> profiles;
   std::vector<BasinResult> basins;  ///< best first
@@ -260,9 +261,9 @@ struct FitProgress {
   std::string law;    ///< being fitted
   std::string stage;  ///< "forward models", "starts", "profiles", "bootstrap"
   std::size_t done = 0, planned = 1;
-  double best_rms = 0.0;  ///< of all fitted curves, in `unit`
+  double best_rms = 0.0;   ///< of all fitted curves, in `unit`
   std::string unit = "N";  ///< as that of FitResult
-  int found = 0;          ///< how often the best optimum was found so far
+  int found = 0;           ///< how often the best optimum was found so far
   std::uint64_t forward_runs = 0;
 };
 

@@ -154,11 +154,13 @@ std::vector<double> spreads_of(const std::vector<Curve>& curves, Weighing how) {
   return list;
 }
 
+bool same_kind(const Curve& a, const Curve& b) {
+  const Measurement &m = a.measurement, &n = b.measurement;
+  return m.deforming == n.deforming && m.measured == n.measured && m.unit == n.unit;
+}
+
 bool of_one_kind(const std::vector<Curve>& curves) {
-  return std::all_of(curves.begin(), curves.end(), [&](const Curve& c) {
-    const Measurement &m = c.measurement, &first = curves.front().measurement;
-    return m.deforming == first.deforming && m.measured == first.measured && m.unit == first.unit;
-  });
+  return std::all_of(curves.begin(), curves.end(), [&](const Curve& c) { return same_kind(c, curves.front()); });
 }
 
 std::string common_unit(const std::vector<Curve>& curves) {

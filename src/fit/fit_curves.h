@@ -27,7 +27,9 @@ FitCurves read_curves(const FitSpec& spec, const SpecimenSize& size, const std::
 /// less than a thousandth of its largest force, that thousandth stands for it.
 std::vector<double> spreads_of(const std::vector<Curve>& curves, Weighing how);
 
-/// Whether all curves are of the same deformation, in the same measure and unit.
+/// Whether two curves are of the same deformation, in the same measure and unit.
+bool same_kind(const Curve& a, const Curve& b);
+/// Whether all are.
 bool of_one_kind(const std::vector<Curve>& curves);
 /// The unit of all curves' forces; empty where they differ: errors are then parts of each curve's largest number.
 std::string common_unit(const std::vector<Curve>& curves);

@@ -34,9 +34,9 @@ std::string unit_of_key(const std::string& key);
 /// How the residuals of different curves are weighed against each other.
 enum class Weighing {
   automatic,  ///< common where all curves are of one kind of test, else peak
-  common,  ///< one standard deviation for all: the root mean square of the curves' noise
-  noise,   ///< each curve its own noise
-  peak     ///< one hundredth of each curve's largest force
+  common,     ///< one standard deviation for all: the root mean square of the curves' noise
+  noise,      ///< each curve its own noise
+  peak        ///< one hundredth of each curve's largest force
 };
 
 struct SearchSpec {

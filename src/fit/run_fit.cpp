@@ -114,15 +114,20 @@ std::vector<LawSpec> Run::discover(FitResult& result) {
   silent.progress = {}, silent.forecast = {}, silent.remember = {}, silent.memory = {};
   for (std::size_t i = 0; i < all.size() && !stopped(); ++i) {
     if (options_.progress) options_.progress({all[i].law.name, "discovery", i, all.size()});
-    DiscoveredLaw found{all[i].law.name, all[i].terms, static_cast<int>(all[i].law.parameters.size()),
-                        std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), false};
+    DiscoveredLaw found{all[i].law.name,
+                        all[i].terms,
+                        static_cast<int>(all[i].law.parameters.size()),
+                        std::numeric_limits<double>::infinity(),
+                        -std::numeric_limits<double>::infinity(),
+                        false};
     try {
       LawSearch search(quick, all[i].law, curves_, silent);
       LawMemory memory;
       search.search(memory, {});
       found.cost = search.optimum().cost;
       found.r2 = 1.0;
-      for (const TestResult& t : test_results(curves_.curves, search.predictions())) found.r2 = std::min(found.r2, t.r2);
+      for (const TestResult& t : test_results(curves_.curves, search.predictions()))
+        found.r2 = std::min(found.r2, t.r2);
       discovery_runs_ += search.forward_runs();
     } catch (const std::runtime_error&) {  // a law that does not run anywhere is none that the data carry
     }
@@ -142,9 +147,10 @@ std::vector<LawSpec> Run::discover(FitResult& result) {
       best.push_back(all[least].law);
     }
   }
-  std::stable_sort(result.discovered.begin(), result.discovered.end(), [](const DiscoveredLaw& a, const DiscoveredLaw& b) {
-    return a.terms != b.terms ? a.terms < b.terms : a.cost < b.cost;
-  });
+  std::stable_sort(result.discovered.begin(), result.discovered.end(),
+                   [](const DiscoveredLaw& a, const DiscoveredLaw& b) {
+                     return a.terms != b.terms ? a.terms < b.terms : a.cost < b.cost;
+                   });
   return best;
 }
 

@@ -58,8 +58,8 @@ void check_parameters(const std::vector<ParameterSpec>& list, const Node& table,
 
 /// Friction is a number of [specimen] and of a parameter, and asks for a forward model of its own.
 void check_faces(const FitSpec& fit, const Place& place) {
-  const bool rubs = fit.specimen && fit.specimen->shape == SpecimenShape::cylinder &&
-                    fit.specimen->faces == Faces::friction;
+  const bool rubs =
+      fit.specimen && fit.specimen->shape == SpecimenShape::cylinder && fit.specimen->faces == Faces::friction;
   const auto frees = [](const ParameterSpec& p) { return is_plate_key(p.key); };
   const auto any = [&](const auto& list) { return std::any_of(list.begin(), list.end(), frees); };
   const bool freed = any(fit.parameters) ||

@@ -60,7 +60,8 @@ std::string tissue_of_fit(const LawSearch& search, const FitResult& result, cons
     tissue_values.push_back(values[p]);
   }
   std::string text = "# Fitted by `glisson fit " + spec.file.filename().string() + "`: " + spec.title + "\n";
-  text += "# Law " + result.law + "; fitted curves matched to " + measured_text(result.rms_fit, result.unit, 4) + " rms";
+  text +=
+      "# Law " + result.law + "; fitted curves matched to " + measured_text(result.rms_fit, result.unit, 4) + " rms";
   if (result.rms_heldout) text += ", held-out ones to " + measured_text(*result.rms_heldout, result.unit, 4);
   text += ".\n";
   for (const ParameterResult& p : result.parameters) {

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "fit/data/load_curves.h"
-#include "fit/forward/specimen_model.h"
 #include "fit/fit_curves.h"
+#include "fit/forward/specimen_model.h"
 #include "fit/run_fit.h"
 #include "fit/search/least_squares.h"
 #include "fit/uncertainty/covariance.h"
@@ -115,7 +115,8 @@ TEST(Laboratory, MeasuresOfStressAreThoseOfTheBooks) {
       EXPECT_NEAR(piola[i], P[i] / stretch, 1e-12 * std::abs(P[i]));
     }
   }
-  const auto cauchy = answer(neo_hooke(), test_of(LabTest::simple_shear, Deforming::simple_shear, Measured::cauchy, strains));
+  const auto cauchy =
+      answer(neo_hooke(), test_of(LabTest::simple_shear, Deforming::simple_shear, Measured::cauchy, strains));
   const auto piola =
       answer(neo_hooke(), test_of(LabTest::simple_shear, Deforming::simple_shear, Measured::second_piola, strains));
   for (std::size_t i = 0; i < strains.size(); ++i) {
@@ -190,12 +191,14 @@ TEST(Laboratory, ASpecimenIsItsPointTimesItsSize) {
 TEST(Laboratory, TorqueIsRivlins) {
   constexpr double kRadius = 0.01, kHeight = 0.02;
   Curve curve = test_of(LabTest::torsion, Deforming::torsion, Measured::torque, {0.0, 0.2, 0.5, 1.0});
-  const SpecimenModel model({curve}, {.area = std::numbers::pi * kRadius * kRadius, .height = kHeight, .radius = kRadius},
+  const SpecimenModel model({curve},
+                            {.area = std::numbers::pi * kRadius * kRadius, .height = kHeight, .radius = kRadius},
                             [](std::span<const double>) { return mooney(); });
   const std::vector<double> torque = model.predict(0, {}).force;
   ASSERT_EQ(torque.size(), curve.size());
   for (std::size_t i = 0; i < curve.size(); ++i)
-    EXPECT_NEAR(torque[i], 0.5 * std::numbers::pi * kMu * std::pow(kRadius, 4) * curve.displacement[i] / kHeight, 1e-6 * 1e-3);
+    EXPECT_NEAR(torque[i], 0.5 * std::numbers::pi * kMu * std::pow(kRadius, 4) * curve.displacement[i] / kHeight,
+                1e-6 * 1e-3);
 }
 
 // G′ = μ (1 − Σ g) + μ Σ g ω²τ²/(1 + ω²τ²), G″ = μ Σ g ωτ/(1 + ω²τ²).
@@ -269,8 +272,9 @@ TEST_F(Written, StrainsOfEveryKindAreTheSame) {
       {"true_strain", [](double x) { return std::log(x); }},
       {"green_strain", [](double x) { return 0.5 * (x * x - 1.0); }}};
   for (const auto& [name, f] : kinds) {
-    const Curve c = load("test = \"tension\"\ncolumns." + name + " = { name = \"x\" }\ncolumns.stress = { name = \"P\" }\n",
-                         table({"x", "P (kPa)"}, {mapped(kStretches, f), kilopascals}));
+    const Curve c =
+        load("test = \"tension\"\ncolumns." + name + " = { name = \"x\" }\ncolumns.stress = { name = \"P\" }\n",
+             table({"x", "P (kPa)"}, {mapped(kStretches, f), kilopascals}));
     ASSERT_EQ(c.size(), kStretches.size());
     EXPECT_FALSE(c.measurement.timed);
     EXPECT_EQ(c.measurement.deforming, Deforming::tension);
@@ -285,8 +289,9 @@ TEST_F(Written, StrainsOfEveryKindAreTheSame) {
 TEST_F(Written, CompressionIsPositiveHoweverItIsWritten) {
   const std::vector<double> stretches = mapped(kStretches, [](double x) { return 2.0 - x; });
   const std::vector<double> negative = mapped(stretches, [](double x) { return 2.0 * (x - 1.0); });
-  const Curve by_stretch = load("test = \"compression\"\ncolumns.stretch.name = \"x\"\ncolumns.cauchy_stress.name = \"s\"\n",
-                                table({"x", "s (kPa)"}, {stretches, negative}));
+  const Curve by_stretch =
+      load("test = \"compression\"\ncolumns.stretch.name = \"x\"\ncolumns.cauchy_stress.name = \"s\"\n",
+           table({"x", "s (kPa)"}, {stretches, negative}));
   const Curve by_log =
       load("test = \"compression\"\ncolumns.true_strain.name = \"x\"\ncolumns.cauchy_stress.name = \"s\"\n",
            table({"x", "s (kPa)"}, {mapped(stretches, [](double x) { return -std::log(x); }), negative}));
@@ -314,8 +319,9 @@ TEST_F(Written, AHoldTakesItsDirectionFromTheStretch) {
 
 // Tests of other lengths lie side by side: rows that are empty in the columns of one are no rows of it.
 TEST_F(Written, TestsLieSideBySide) {
-  const std::string text = "a,b (kPa),g,t (kPa)\n1,0,0,0\n1.1,1,0.1,0.2\n1.2,2,0.2,0.4\n1.3,3,0.3,0.6\n1.4,4,0.4,0.8\n"
-                           ",,0.5,1\n,,0.6,1.2\n";
+  const std::string text =
+      "a,b (kPa),g,t (kPa)\n1,0,0,0\n1.1,1,0.1,0.2\n1.2,2,0.2,0.4\n1.3,3,0.3,0.6\n1.4,4,0.4,0.8\n"
+      ",,0.5,1\n,,0.6,1.2\n";
   const Curve a = load("test = \"tension\"\ncolumns.stretch.name = \"a\"\ncolumns.stress.name = \"b\"\n", text);
   const Curve g = load("test = \"simple_shear\"\ncolumns.shear.name = \"g\"\ncolumns.stress.name = \"t\"\n", text);
   EXPECT_EQ(a.size(), 5u);
@@ -327,16 +333,20 @@ TEST_F(Written, WhatCannotBeIsSaid) {
   const std::vector<double> kilopascals = mapped(kStretches, [](double x) { return 2.0 * (x - 1.0); });
   const std::string good = table({"stretch", "stress (kPa)"}, {kStretches, kilopascals});
   EXPECT_EQ(fault("test = \"tension\"\n", good), "no fault");  // customary names are found
-  EXPECT_THAT(fault("test = \"compression\"\n", good),
-              AllOf(HasSubstr("t.csv:1:1: \"stretch\" goes to 1.3, which is tension"), HasSubstr("give test = \"tension\"")));
+  EXPECT_THAT(
+      fault("test = \"compression\"\n", good),
+      AllOf(HasSubstr("t.csv:1:1: \"stretch\" goes to 1.3, which is tension"), HasSubstr("give test = \"tension\"")));
   EXPECT_THAT(fault("test = \"tension\"\ncolumns.shear.name = \"stretch\"\n", good),
               AllOf(HasSubstr("columns.shear: does not belong to test = \"tension\""), HasSubstr("columns.stretch")));
-  EXPECT_THAT(fault("test = \"tension\"\ncolumns.force.name = \"stress\"\n", good),
-              AllOf(HasSubstr("columns.force: needs the specimen's size, and a point has none"), HasSubstr("columns.stress")));
-  EXPECT_THAT(fault("test = \"tension\"\ncolumns.strain.name = \"stretch\"\ncolumns.stretch.name = \"stretch\"\n", good),
-              HasSubstr("contradicts `strain`"));
-  EXPECT_THAT(fault("test = \"tension\"\n", table({"stretch", "stress (kPa)"}, {{1, 0.5, 0, -0.5, -1}, {0, 1, 2, 3, 4}})),
-              AllOf(HasSubstr("t.csv:4:1: \"stretch\" is 0; a stretch is above 0")));
+  EXPECT_THAT(
+      fault("test = \"tension\"\ncolumns.force.name = \"stress\"\n", good),
+      AllOf(HasSubstr("columns.force: needs the specimen's size, and a point has none"), HasSubstr("columns.stress")));
+  EXPECT_THAT(
+      fault("test = \"tension\"\ncolumns.strain.name = \"stretch\"\ncolumns.stretch.name = \"stretch\"\n", good),
+      HasSubstr("contradicts `strain`"));
+  EXPECT_THAT(
+      fault("test = \"tension\"\n", table({"stretch", "stress (kPa)"}, {{1, 0.5, 0, -0.5, -1}, {0, 1, 2, 3, 4}})),
+      AllOf(HasSubstr("t.csv:4:1: \"stretch\" is 0; a stretch is above 0")));
   EXPECT_THAT(fault("test = \"tension\"\n", table({"stretch", "stress"}, {kStretches, kilopascals})),
               HasSubstr("says no unit; give `unit` as one of kPa, Pa, MPa"));
   EXPECT_THAT(fault("test = \"tension\"\n", table({"stretch", "stress (MPa)"},
@@ -502,6 +512,56 @@ TEST(Laboratory, IntervalsOfTwinsHoldTheTruth) {
   for (const double share : held) {
     EXPECT_GE(share, 0.90);
     EXPECT_LE(share, 0.99);
+  }
+}
+
+// Four specimens for each of three tests, whose stiffness differs by 10 % from one to the next: 95 % intervals are of the mean of
+// specimens.
+TEST(Laboratory, IntervalsOfSeveralSpecimensAreOfTheirMean) {
+  const std::vector<Parameter> parameters{{"mu", "Pa", 10.0, 1e5, Scale::logarithmic, 1e3}, {"alpha", "", -60.0, -1.0}};
+  const std::vector<double> truth{1400.0, -15.0};
+  std::vector<double> strains;
+  for (int i = 0; i < 30; ++i) strains.push_back(0.1 * i / 29.0);
+  const TissueAt tissue = [](std::span<const double> v) {
+    Tissue t;
+    t.hyperelastic = Ogden{{v[0]}, {v[1]}, 1e6};
+    return t;
+  };
+  std::vector<Curve> plans;
+  for (const Form& form : kForms) {
+    if (form.deforming == Deforming::equibiaxial || form.deforming == Deforming::planar) continue;
+    plans.push_back(test_of(test_named(form.name), form.deforming, Measured::nominal, strains));
+    plans.back().group = form.name;
+  }
+  const SpecimenModel model(plans, {1.0, 1.0}, tissue);
+  constexpr int kSeeds = 200, kSpecimens = 4;
+  double held[2] = {0.0, 0.0}, width = 0.0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    testing_models::Noise noise(static_cast<std::uint64_t>(1000 + seed));
+    std::vector<Curve> curves;
+    std::vector<std::size_t> indices;
+    for (std::size_t c = 0; c < plans.size(); ++c) {
+      const std::vector<double> exact = model.predict(c, truth).force;
+      for (int k = 0; k < kSpecimens; ++k) {
+        const double own = 1.0 + 0.1 * noise();
+        const std::vector<double> e = noise.correlated(exact.size(), 0.6);
+        curves.push_back(plans[c]);
+        indices.push_back(c);
+        for (std::size_t i = 0; i < exact.size(); ++i)
+          curves.back().force[i] = own * exact[i] + 0.01 * std::abs(exact.back()) * e[i];
+      }
+    }
+    const Problem problem(parameters, curves, indices, spreads_of(curves, Weighing::automatic), model);
+    const Optimum best = descend(problem, problem.to_scaled(std::vector{800.0, -8.0}));
+    const Covariance c = covariance(problem, best.scaled);
+    EXPECT_EQ(c.noise.kind, NoiseKind::by_curve);
+    for (std::size_t p = 0; p < 2; ++p) held[p] += c.interval[p].holds(truth[p]) ? 1.0 / kSeeds : 0.0;
+    width += (c.interval[0].high - c.interval[0].low) / truth[0] / kSeeds;
+  }
+  std::printf("mu %.3f alpha %.3f, mean width of mu %.3f\n", held[0], held[1], width);
+  for (const double share : held) {
+    EXPECT_GE(share, 0.90);
+    EXPECT_LE(share, 0.98);
   }
 }
 

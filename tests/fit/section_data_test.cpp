@@ -347,7 +347,7 @@ TEST_F(BadFile, NeedsTheSpecimenForStressAndStrain) {
   EXPECT_EQ(fault(text, keys + "height_mm = 30\narea_mm2 = 1000\n"), "");
 }
 
-constexpr SpecimenSize kSmall{1e-4, 10e-3};
+constexpr SpecimenSize kSmall{.area = 1e-4, .height = 10e-3, .radius = {}};
 
 // A slip of 1000 in way, force or time is seen from the specimen, from other columns, from the speed.
 TEST_F(BadFile, UnitsThatAreOffByAThousand) {

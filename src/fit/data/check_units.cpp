@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFarOff = 30.0;      // between a true stress against an engineering one, ≈ 3, and a slip of 100
 constexpr double kDeepest = 1.0;      // of compression, in heights
-constexpr double kFarthest = 10.0;   // of any other test
+constexpr double kFarthest = 10.0;    // of any other test
 constexpr double kShallowest = 5e-4;  // of a test of soft tissue, in heights
 constexpr double kSoftest = 10.0, kStiffest = 2e7;   // secant moduli of soft tissues and their phantoms [Pa]
 constexpr double kSlowest = 1e-8, kFastest = 100.0;  // tools [m/s]
@@ -208,8 +208,8 @@ class UnitCheck {
   void check_modulus(const Source& source, double value) { check_modulus(source, value, value); }
   void check_modulus(const Source& source, double value, double modulus) {
     if (modulus >= kSoftest && modulus <= kStiffest) return;
-    complain(read_as(source, value) + ", a stiffness of " + brief(modulus) + " Pa over the specimen; soft tissues have " +
-             brief(kSoftest) + " to " + brief(kStiffest) + " Pa" +
+    complain(read_as(source, value) + ", a stiffness of " + brief(modulus) +
+             " Pa over the specimen; soft tissues have " + brief(kSoftest) + " to " + brief(kStiffest) + " Pa" +
              way_out(source, value, modulus > kStiffest ? 1000.0 : 1e-3));
   }
 

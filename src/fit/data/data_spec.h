@@ -91,8 +91,9 @@ struct DataSpec {
   std::string group;  ///< repetitions of one test share it; empty: given by whoever numbers the sections
   std::vector<std::filesystem::path> files;
   LabTest test = LabTest::compression;
-  std::optional<Deforming> deforming;  ///< of a test whose name does not say it; none: the file's stretch, else compression
-  double prestretch = 1.0;             ///< of an oscillation
+  std::optional<Deforming>
+      deforming;            ///< of a test whose name does not say it; none: the file's stretch, else compression
+  double prestretch = 1.0;  ///< of an oscillation
   bool held_out = false;
   double weight = 1.0;
   TextSpec text;

@@ -33,8 +33,8 @@ struct RawTest {
   std::vector<CheckColumn> checks;  ///< stresses and strains beside force and way
   std::vector<std::string> turned;  ///< titles of the columns whose sign was turned
   Measurement measurement{};
-  std::size_t rows_skipped = 0;     ///< without a number in a column that is needed
-  std::size_t rows_merged = 0;      ///< of the same time as the row before, averaged with it
+  std::size_t rows_skipped = 0;  ///< without a number in a column that is needed
+  std::size_t rows_merged = 0;   ///< of the same time as the row before, averaged with it
   char separator = ',', decimal = '.';
 
   std::size_t size() const { return time.size(); }

@@ -153,9 +153,9 @@ void require_columns(const DataSpec& x, const Node& table, const Place& place) {
 void finish_data(DataSpec& x, const Node& table, const Place& place) {
   x.origin = place.text();
   if (x.deforming && names_its_deformation(x.test))
-    place.complain(*table.find("mode"), "mode",
-                   "belongs to relaxation, creep and cyclic; a test of " + std::string(word_of(x.test)) +
-                       " says how it deforms");
+    place.complain(
+        *table.find("mode"), "mode",
+        "belongs to relaxation, creep and cyclic; a test of " + std::string(word_of(x.test)) + " says how it deforms");
   if (x.prestretch != 1.0 && x.test != LabTest::oscillation)
     place.complain(*table.find("prestretch"), "prestretch", "belongs to test = \"oscillation\"");
   if (x.files.empty()) place.complain(*table.find("files"), "files", "is empty; name at least one file");
@@ -206,7 +206,8 @@ const SectionSpec& columns_section() {
     s.table("green_strain", column_section(), &ColumnsSpec::green_strain, "Green's strain, (λ² − 1)/2, in - or %");
     s.table("shear", column_section(), &ColumnsSpec::shear,
             "amount of shear, displacement over distance of the faces, in - or %");
-    s.table("angle", column_section(), &ColumnsSpec::angle, "angle of twist of one face against the other, in rad or deg");
+    s.table("angle", column_section(), &ColumnsSpec::angle,
+            "angle of twist of one face against the other, in rad or deg");
     s.table("frequency", column_section(), &ColumnsSpec::frequency, "of an oscillation, in Hz, kHz or rad/s");
     s.table("force", column_section(), &ColumnsSpec::force, "force, in N, mN, kN, gf, kgf or lbf");
     s.table("stress", column_section(), &ColumnsSpec::stress,
@@ -216,7 +217,8 @@ const SectionSpec& columns_section() {
     s.table("second_piola_stress", column_section(), &ColumnsSpec::second_piola_stress,
             "second Piola–Kirchhoff stress, nominal stress over stretch, in Pa, kPa or MPa");
     s.table("torque", column_section(), &ColumnsSpec::torque, "torque about the axis, in N m, mN m, µN m or N mm");
-    s.table("storage_modulus", column_section(), &ColumnsSpec::storage_modulus, "G′ of an oscillation, in Pa, kPa or MPa");
+    s.table("storage_modulus", column_section(), &ColumnsSpec::storage_modulus,
+            "G′ of an oscillation, in Pa, kPa or MPa");
     s.table("loss_modulus", column_section(), &ColumnsSpec::loss_modulus,
             "G″ of an oscillation; beside G′ it is a curve of its own");
     s.finish([](ColumnsSpec& x, const Node& table, const Place& place) {

@@ -7,18 +7,20 @@ namespace glisson::fit {
 namespace {
 
 constexpr std::array<std::string_view, 3> kTimeWords{"time", "zeit", "temps"};
-constexpr std::array<std::string_view, 10> kDisplacementWords{"displacement", "compression", "extension", "position", "depth",
-                                              "indentation",  "stroke",      "crosshead", "travel",   "weg"};
+constexpr std::array<std::string_view, 10> kDisplacementWords{"displacement", "compression", "extension", "position",
+                                                              "depth",        "indentation", "stroke",    "crosshead",
+                                                              "travel",       "weg"};
 constexpr std::array<std::string_view, 3> kStrainWords{"strain", "engineering strain", "nominal strain"};
 constexpr std::array<std::string_view, 3> kStretchWords{"stretch", "lambda", "λ"};
-constexpr std::array<std::string_view, 4> kTrueStrainWords{"true strain", "true_strain", "log strain", "logarithmic strain"};
+constexpr std::array<std::string_view, 4> kTrueStrainWords{"true strain", "true_strain", "log strain",
+                                                           "logarithmic strain"};
 constexpr std::array<std::string_view, 2> kGreenStrainWords{"green", "e_green"};
 constexpr std::array<std::string_view, 3> kShearWords{"shear strain", "shear_strain", "shear amount"};
 constexpr std::array<std::string_view, 3> kAngleWords{"angle", "twist", "rotation"};
 constexpr std::array<std::string_view, 2> kFrequencyWords{"frequency", "freq"};
 constexpr std::array<std::string_view, 3> kForceWords{"force", "load", "kraft"};
-constexpr std::array<std::string_view, 6> kStressWords{"stress",             "nominal stress",     "nominal_stress",
-                                       "engineering stress", "engineering_stress", "shear stress"};
+constexpr std::array<std::string_view, 6> kStressWords{
+    "stress", "nominal stress", "nominal_stress", "engineering stress", "engineering_stress", "shear stress"};
 constexpr std::array<std::string_view, 3> kCauchyWords{"cauchy", "true stress", "true_stress"};
 constexpr std::array<std::string_view, 2> kPiolaWords{"second piola", "pk2"};
 constexpr std::array<std::string_view, 2> kTorqueWords{"torque", "moment"};
@@ -79,8 +81,8 @@ bool takes(const DataSpec& spec, Answer answer) {
 template <class Kind, std::size_t N>
 class ColumnSearch {
  public:
-  ColumnSearch(const std::array<ColumnRole, N>& roles, const CurveFile& file, const DataSpec& spec, const SpecimenSize& size,
-         scene::Problems& problems)
+  ColumnSearch(const std::array<ColumnRole, N>& roles, const CurveFile& file, const DataSpec& spec,
+               const SpecimenSize& size, scene::Problems& problems)
       : roles_(roles), file_(file), spec_(spec), size_(size), problems_(problems) {}
 
   Kind kind{};

@@ -18,7 +18,7 @@ namespace glisson::fit {
 /// A column that some test takes.
 struct ColumnRole {
   std::string_view key;  ///< in [data.columns]
-  ColumnSpec ColumnsSpec::* spec;
+  ColumnSpec ColumnsSpec::*spec;
   Quantity quantity;
   std::span<const std::string_view> words;  ///< with which its name customarily begins, in small letters
   bool needs_size = false;                  ///< to be converted, or to be of use: a point has none

@@ -64,7 +64,8 @@ AxisOf driven_axis(const fit::Measurement& m, const FitResult& result) {
   if (m.drive_unit == "rad") return {"angle [°]", 180.0 / std::numbers::pi};
   if (m.measured == fit::Measured::strain) return {"nominal stress [kPa]", 1e-3 / result.area.value_or(1.0)};
   if (m.deforming == fit::Deforming::simple_shear) return {"shear [%]", 100.0 / height};
-  if (result.height) return {m.deforming == fit::Deforming::compression ? "strain [%]" : "extension [%]", 100.0 / height};
+  if (result.height)
+    return {m.deforming == fit::Deforming::compression ? "strain [%]" : "extension [%]", 100.0 / height};
   return {"displacement [mm]", 1000.0};
 }
 

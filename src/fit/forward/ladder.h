@@ -47,9 +47,9 @@ struct ForwardProblem {
   SceneText scene;
   ForwardSpec spec;
   std::optional<Specimen> specimen{};  ///< that deforms alike all over by what it is; then there is no other model
-  std::optional<Plates> plates{};     ///< of a cylinder that bulges; then there is no other model
-  std::vector<Parameter> parameters;  ///< names are keys: of the scene, or of offset_model.h
-  std::vector<Curve> curves;          ///< of all, those held out, too
+  std::optional<Plates> plates{};      ///< of a cylinder that bulges; then there is no other model
+  std::vector<Parameter> parameters;   ///< names are keys: of the scene, or of offset_model.h
+  std::vector<Curve> curves;           ///< of all, those held out, too
   MeshLoader load{};
   const std::atomic<bool>* stop = nullptr;
   std::string taken;  ///< the model that an interrupted run of the same fit chose by its clock; empty: choose

@@ -47,7 +47,8 @@ double axial_stress(const UniaxialState& state, const Curve& curve, std::size_t 
 
 /// How often the way between two instants is parted for a tissue with a past.
 int parts_of(double change, double width, double whole) {
-  return static_cast<int>(std::max(1.0, std::ceil(std::max(change / kMostStretch, width / (kMostTime * whole)) - 1e-9)));
+  return static_cast<int>(
+      std::max(1.0, std::ceil(std::max(change / kMostStretch, width / (kMostTime * whole)) - 1e-9)));
 }
 
 /// Stress at each instant of the curve, for a tissue whose stress is that of the present stretch.
@@ -189,7 +190,8 @@ Prediction SpecimenModel::predict_from(std::size_t index, std::span<const double
         torques(tissue, history, specimen_, measured, result.force);
       return result;
     }
-    const double outward = outward_of(measured), load = m.measured == Measured::strain ? specimen_.height : specimen_.area;
+    const double outward = outward_of(measured),
+                 load = m.measured == Measured::strain ? specimen_.height : specimen_.area;
     if (along && m.measured != Measured::strain && !tissue.fibres) {
       UniaxialPath path(tissue);
       const Stretching way{history, 1.0, outward / specimen_.height};

@@ -12,7 +12,8 @@ namespace {
 std::vector<double> column(const CurveFile& file, const ColumnSpec& spec, Quantity quantity, const std::string& key,
                            scene::Problems& problems) {
   const std::optional<ChosenColumn> chosen =
-      spec.given ? choose_column(file, spec, quantity, key, problems) : guess_column(file, quantity, customary_words(quantity), key, problems);
+      spec.given ? choose_column(file, spec, quantity, key, problems)
+                 : guess_column(file, quantity, customary_words(quantity), key, problems);
   std::vector<double> values;
   if (!chosen) return values;
   for (const CurveFile::Row& row : file.rows) {

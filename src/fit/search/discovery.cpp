@@ -17,11 +17,11 @@ struct Term {
 };
 
 constexpr std::array kTerms{
-    Term{"I₁", "c10_Pa", nullptr, true},       Term{"I₂", "c01_Pa", nullptr, true},
-    Term{"exp I₁", "a1_Pa", "b1", true},       Term{"exp I₂", "a2_Pa", "b2", true},
-    Term{"I₁²", "c20_Pa", nullptr, false},     Term{"I₂²", "c02_Pa", nullptr, false},
-    Term{"exp I₁²", "q1_Pa", "r1", false},     Term{"exp I₂²", "q2_Pa", "r2", false},
-    Term{"I₁ I₂", "c11_Pa", nullptr, false},   Term{"I₁³", "c30_Pa", nullptr, false},
+    Term{"I₁", "c10_Pa", nullptr, true},     Term{"I₂", "c01_Pa", nullptr, true},
+    Term{"exp I₁", "a1_Pa", "b1", true},     Term{"exp I₂", "a2_Pa", "b2", true},
+    Term{"I₁²", "c20_Pa", nullptr, false},   Term{"I₂²", "c02_Pa", nullptr, false},
+    Term{"exp I₁²", "q1_Pa", "r1", false},   Term{"exp I₂²", "q2_Pa", "r2", false},
+    Term{"I₁ I₂", "c11_Pa", nullptr, false}, Term{"I₁³", "c30_Pa", nullptr, false},
 };
 
 ParameterSpec free(const std::string& key, double low, double high, Scale scale) {
@@ -40,8 +40,8 @@ LawSpec of_invariants(const std::vector<Term>& terms, double modulus) {
     law.parameters.push_back(free(t.modulus, kLeast * modulus, kMost * modulus, Scale::logarithmic));
     if (t.rate) law.parameters.push_back(free(t.rate, 0.01, 500.0, Scale::logarithmic));
   }
-  law.set.push_back({"tissue.hyperelastic", "{ kind = \"invariants\"" + keys +
-                                                ", bulk_modulus_Pa = " + scene::show(kBulk * modulus) + " }"});
+  law.set.push_back({"tissue.hyperelastic",
+                     "{ kind = \"invariants\"" + keys + ", bulk_modulus_Pa = " + scene::show(kBulk * modulus) + " }"});
   return law;
 }
 

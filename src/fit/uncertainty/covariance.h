@@ -6,6 +6,7 @@
 //   independent      C = σ² (JᵀJ)⁻¹                                     residuals look like white noise
 //   autocorrelated   C = σ² (JᵀJ)⁻¹ JᵀVJ (JᵀJ)⁻¹                        they swing (residual_correlation.h)
 //   by_curve         C = (JᵀJ)⁻¹ (Σ_c u_c u_cᵀ) (JᵀJ)⁻¹ (G − 1) / G     G specimens, which differ from one another
+//                    of several kinds of test: the sum over kinds of Σ_c (u_c − ū)(u_c − ū)ᵀ G/(G − 1) in its place
 #pragma once
 
 #include <cstddef>

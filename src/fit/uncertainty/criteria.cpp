@@ -75,7 +75,8 @@ bool is_as_good(const LawRank& r, const LawRank& best) {
 std::string difference_text(const LawRank& r, const std::string& unit) {
   const auto number = [&](double x, int digits) {
     std::string text = measured_text(x, unit, digits);
-    return std::pair(text.substr(0, text.find(' ')), text.find(' ') == std::string::npos ? "" : text.substr(text.find(' ')));
+    return std::pair(text.substr(0, text.find(' ')),
+                     text.find(' ') == std::string::npos ? "" : text.substr(text.find(' ')));
   };
   if (number(r.behind, 2).second != number(r.behind_error, 1).second)
     return measured_text(r.behind, unit, 2) + " ± " + measured_text(r.behind_error, unit, 1);

@@ -3,6 +3,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "fit/fit_curves.h"
+
 namespace glisson::fit {
 namespace {
 
@@ -27,7 +29,8 @@ Vector left_of(const Matrix& j, const Vector& r) {
 
 FurtherSpecimen::FurtherSpecimen(const Problem& fitted, const Covariance& covariance)
     : fitted_(fitted), covariance_(covariance) {
-  if (!covariance.failure.empty() || covariance.noise.kind != NoiseKind::by_curve) return;
+  if (!covariance.failure.empty() || covariance.noise.kind != NoiseKind::by_curve || !of_one_kind(fitted.curves()))
+    return;  // a further specimen of one kind of test; which specimens made several is not known
   const Residuals r = fitted.residuals(covariance.scaled, true);
   if (r.values.empty()) return;
   double samples = 0.0;

@@ -46,6 +46,12 @@ NoiseStudy::NoiseStudy(const Problem& problem, const std::vector<double>& residu
     if (!(curve.weight > 0.0) || curve.size() == 0) continue;
     curves_.push_back({static_cast<Eigen::Index>(problem.offset(c)), static_cast<Eigen::Index>(curve.size())});
     numbers_.push_back(c);
+    const auto kind = std::ranges::find_if(
+        kinds_, [&](const auto& of) { return same_kind(problem.curves()[numbers_[of.front()]], curve); });
+    if (kind == kinds_.end())
+      kinds_.push_back({curves_.size() - 1});
+    else
+      kind->push_back(curves_.size() - 1);
     samples_ += static_cast<double>(curve.size());
   }
   // a loss that bends down everywhere has no optimum there: the least is kept above zero
@@ -59,10 +65,14 @@ Matrix NoiseStudy::rest_of(const Rows& curve) const {
   return Matrix::Identity(j.cols(), j.cols()) - j.transpose() * j * inverse_;
 }
 
-/// Whether each combination is known from several curves, which are of one kind: those of different tests differ by the law's
-/// misfit, too.
+/// Whether there are several kinds of test.
+bool NoiseStudy::of_kinds() const { return kinds_.size() > 1; }
+
+/// Whether each combination is known from several curves, and each kind of test has several: curves of different kinds differ by
+/// the law's misfit, too.
 bool NoiseStudy::stand_alone() const {
-  if (jacobian_.cols() == 0 || curves_.size() < kFewestCurves || !of_one_kind(problem_.curves())) return false;
+  if (jacobian_.cols() == 0) return false;
+  if (std::ranges::any_of(kinds_, [](const auto& kind) { return kind.size() < kFewestCurves; })) return false;
   const Vector root = inverse_.diagonal().array().sqrt();
   return std::ranges::all_of(curves_, [&](const Rows& curve) {
     const Matrix j = block(curve) * root.asDiagonal();
@@ -81,8 +91,8 @@ NoiseKind NoiseStudy::kind_of(const CovarianceOptions& options, NoiseEstimate& e
     return refused ? NoiseKind::autocorrelated : *options.force;
   }
   if (alone) {
-    e.why = "each of the " + std::to_string(curves_.size()) +
-            " curves counts as one sample: intervals are of the mean of specimens such as these";
+    e.why = "each of the " + std::to_string(curves_.size()) + " curves counts as one sample" +
+            (of_kinds() ? " of its kind of test" : "") + ": intervals are of the mean of specimens such as these";
     return NoiseKind::by_curve;
   }
   const bool swings = e.independence < options.significance;
@@ -90,9 +100,9 @@ NoiseKind NoiseStudy::kind_of(const CovarianceOptions& options, NoiseEstimate& e
                        "): " + format("%.0f samples count as %.1f", samples_, e.effective)
                  : "the residuals look independent (" + probability_text(e.independence) + ")";
   e.why += std::string(". How specimens differ is not in the intervals: ") +
-           (curves_.size() < kFewestCurves       ? "that takes three curves or more"
-            : !of_one_kind(problem_.curves()) ? "curves of different tests differ by the misfit of the law, too"
-                                              : "some parameter is known from one curve alone");
+           (of_kinds()                       ? "that takes three curves or more of each kind of test"
+            : curves_.size() < kFewestCurves ? "that takes three curves or more"
+                                             : "some parameter is known from one curve alone");
   return swings ? NoiseKind::autocorrelated : NoiseKind::independent;
 }
 
@@ -119,9 +129,41 @@ NoiseEstimate NoiseStudy::choose(const CovarianceOptions& options) {
   return e;
 }
 
+/// J_cᵀr_c of the curves of one kind about their mean: what all of a kind share is the law's misfit to it.
+Matrix NoiseStudy::pulls_of_kind(std::size_t kind) const {
+  const std::vector<std::size_t>& own = kinds_[kind];
+  Matrix pulls(jacobian_.cols(), static_cast<Eigen::Index>(own.size()));
+  for (std::size_t k = 0; k < own.size(); ++k)
+    pulls.col(static_cast<Eigen::Index>(k)) = block(curves_[own[k]]).transpose() * of(curves_[own[k]]);
+  return pulls.colwise() - pulls.rowwise().mean();
+}
+
+/// The part of one kind in the covariance: G/(G − 1) Σ_c (u_c − ū)(u_c − ū)ᵀ between inverses.
+Matrix NoiseStudy::by_kind(std::size_t kind) const {
+  const Matrix pulls = pulls_of_kind(kind);
+  const auto curves = static_cast<double>(pulls.cols());
+  return inverse_ * (pulls * pulls.transpose()) * inverse_ * (curves / (curves - 1.0));
+}
+
+/// The least over the combinations of (Σ v)² / Σ v²/(G − 1), v the variance by each kind [Welch1947].
+double NoiseStudy::freedom_by_kind() const {
+  Vector sum = Vector::Zero(jacobian_.cols()), parts = sum;
+  for (std::size_t kind = 0; kind < kinds_.size(); ++kind) {
+    const Vector v = by_kind(kind).diagonal();
+    sum += v;
+    parts += v.cwiseAbs2() / static_cast<double>(kinds_[kind].size() - 1);
+  }
+  return std::max(1.0, (sum.cwiseAbs2().array() / parts.array().max(1e-300)).minCoeff());
+}
+
 /// u_c = (I − J_cᵀJ_c (JᵀJ)⁻¹)⁻¹ J_cᵀr_c over the curves.
 Matrix NoiseStudy::by_curve() const {
   const auto n = jacobian_.cols();
+  if (of_kinds()) {
+    Matrix sum = Matrix::Zero(n, n);
+    for (std::size_t kind = 0; kind < kinds_.size(); ++kind) sum += by_kind(kind);
+    return sum;
+  }
   const auto curves = static_cast<double>(curves_.size());
   Matrix middle = Matrix::Zero(n, n);
   for (const Rows& curve : curves_) {
@@ -164,6 +206,7 @@ double NoiseStudy::freedom() const {
   const double left = std::max(samples_ - static_cast<double>(jacobian_.cols()), 1.0);
   if (kind_ == NoiseKind::independent) return left;
   if (kind_ == NoiseKind::autocorrelated) return correlation_.freedom(jacobian_, inverse_, curves_);
+  if (of_kinds()) return freedom_by_kind();
   double least = static_cast<double>(curves_.size() - 1);
   for (Eigen::Index p = 0; p < jacobian_.cols(); ++p)
     least = std::min(least, freedom_of(Vector::Unit(jacobian_.cols(), p)));

@@ -28,15 +28,20 @@ class NoiseStudy {
   Eigen::MatrixXd block(const Rows& curve) const { return jacobian_.middleRows(curve.first, curve.size); }
   NoiseKind kind_of(const CovarianceOptions& options, NoiseEstimate& e) const;
   bool stand_alone() const;
+  bool of_kinds() const;
   Eigen::MatrixXd rest_of(const Rows& curve) const;
   Eigen::MatrixXd by_curve() const;
+  Eigen::MatrixXd pulls_of_kind(std::size_t kind) const;
+  Eigen::MatrixXd by_kind(std::size_t kind) const;
+  double freedom_by_kind() const;
   double freedom_of(const Eigen::VectorXd& combination) const;
 
   const Problem& problem_;
   Eigen::MatrixXd jacobian_, inverse_;
-  Eigen::VectorXd scores_;            ///< ψ / mean ψ': for squares the residuals
-  std::vector<Rows> curves_;          ///< those with weight
-  std::vector<std::size_t> numbers_;  ///< of them in the problem
+  Eigen::VectorXd scores_;                       ///< ψ / mean ψ': for squares the residuals
+  std::vector<Rows> curves_;                     ///< those with weight
+  std::vector<std::size_t> numbers_;             ///< of them in the problem
+  std::vector<std::vector<std::size_t>> kinds_;  ///< curves of each kind of test
   ResidualCorrelation correlation_;
   double samples_ = 0.0, variance_ = 0.0, mean_slope_ = 1.0;
   NoiseKind kind_ = NoiseKind::independent;
