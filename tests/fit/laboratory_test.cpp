@@ -354,7 +354,23 @@ TEST_F(Written, WhatCannotBeIsSaid) {
               HasSubstr("soft tissues have 10 to 2e+07 Pa"));
   EXPECT_THAT(fault("test = \"tension\"\nmode = \"planar\"\n", good),
               HasSubstr("mode: belongs to relaxation, creep and cyclic"));
+  EXPECT_THAT(fault("test = \"oscillation\"\ncolumns.storage_modulus.name = \"G\"\n",
+                    table({"frequency (Hz)", "G (Pa)"}, {{1, 2, 3, 4, 5}, {100, 110, -120, 130, 140}})),
+              HasSubstr("t.csv:4:1: \"G (Pa)\" is -120 Pa; a modulus of an oscillation is not below 0"));
+  const std::string cylinder = "kind = \"cylinder\"\ndiameter_mm = 10\nheight_mm = 10";
+  const std::string twisted = table({"angle (rad)", "torque (mN m)"}, {{0, 10, 20, 30, 40}, {0, 0.01, 0.02, 0.03, 0.04}});
+  EXPECT_THAT(fault("test = \"torsion\"\n", twisted, cylinder),
+              AllOf(HasSubstr("a shear of 20 at the surface"), HasSubstr("columns.angle = { name = \"angle (rad)\", unit = \"deg\" }")));
+  EXPECT_THAT(fault("test = \"torsion\"\n", twisted), HasSubstr("torsion asks for [specimen] kind = \"cylinder\""));
   EXPECT_THAT(fault("test = \"stretching\"\n", good), HasSubstr("\"tension\""));
+}
+
+// A tissue with a past under a test whose file has no times.
+TEST(Laboratory, APastNeedsTimes) {
+  Curve curve = test_of(LabTest::tension, Deforming::tension, Measured::nominal, {0.0, 0.1});
+  curve.measurement.timed = false;
+  const SpecimenModel model({curve}, {1.0, 1.0}, [](std::span<const double>) { return relaxing(); });
+  EXPECT_THAT(model.predict(0, {}).failure, HasSubstr("give columns.time or speed_mm_s"));
 }
 
 TEST(Laboratory, AScenesToolMakesNoTension) {

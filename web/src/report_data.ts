@@ -160,6 +160,7 @@ export interface FitData {
   complete: boolean; // false: interrupted
   bootstrap: { replicates: number; values: number[][] } | null; // one row of parameters each
   laws: FitLaw[]; // empty: one law only
+  discovered: FitDiscovered[]; // laws of few terms that were looked at; within a size the best first
   designs: FitDesign[]; // best first
   conclusions: string[]; // sentences, most important first
 }
@@ -210,6 +211,16 @@ export interface FitCurve {
 export interface FitCurveAxis extends FitAxis {
   of: "drive" | "time";
   log: boolean;
+}
+
+/** A law of a library of terms. */
+export interface FitDiscovered {
+  name: string;
+  terms: number;
+  parameters: number;
+  cost: number;
+  least_r2: number; // of all tests
+  taken: boolean; // compared with the others
 }
 
 /** A kind of test: how well the fit of all meets it, and what fits to one test alone make of it. */

@@ -192,6 +192,7 @@ export function fitFixture() {
     curves,
     groups: groupsOf(curves),
     tests: [],
+    discovered: [],
     rms_fit: rms(curves.filter((c) => !c.held_out).map((c) => c.rms)),
     rms_heldout: rms(curves.filter((c) => c.held_out).map((c) => c.rms)),
     spread_N: rms(groupsOf(curves).map((group) => group.spread_N)),
@@ -261,6 +262,7 @@ export function bareFit() {
     curves,
     groups: groupsOf(curves),
     tests: [],
+    discovered: [],
     parameters: whole.parameters.slice(0, 1).map((given) => ({
       ...given,
       sd: null,
@@ -337,6 +339,7 @@ export function largeFit() {
     curves,
     groups: groupsOf(curves),
     tests: [],
+    discovered: [],
     profiles: parameters.map((given, at) => profile({ ...given, value: 10 ** (1 + 0.4 * at) }, at % 4 === 2)),
     basins: Array.from({ length: 14 }, (_, at) => ({
       cost: 1e-3 * 3 ** at,

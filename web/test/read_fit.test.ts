@@ -31,7 +31,14 @@ describe("reading a fit", () => {
 
   it("gives each curve of another test its own axes", () => {
     const x = { label: "frequency [Hz]", scale: 1, of: "drive", log: true };
-    const curve = { drive: [1, 10], measured: [2, 3], fitted: [2, 4], rms: 0.7, x, y: { label: "G [kPa]", scale: 1e-3 } };
+    const curve = {
+      drive: [1, 10],
+      measured: [2, 3],
+      fitted: [2, 4],
+      rms: 0.7,
+      x,
+      y: { label: "G [kPa]", scale: 1e-3 },
+    };
     const [own] = read({ curves: [curve], tests: [{ name: "A", r2: 0.9, r2_of_alone: { A: 0.99 } }] }).curves;
     expect(own).toMatchObject({ drive: [1, 10], fitted: [2, 4], rms: 0.7, x, y: { scale: 1e-3 }, time_s: [] });
   });
@@ -56,7 +63,12 @@ describe("reading a fit", () => {
   });
 
   it("puts an interval's ends in order, keeps open ends of a profile, and no half of the others", () => {
-    const parameter = { ci95_curvature: [3, 2], ci95_profile: [null, 4], ci95_bootstrap: [1, null], verdict: "certain" };
+    const parameter = {
+      ci95_curvature: [3, 2],
+      ci95_profile: [null, 4],
+      ci95_bootstrap: [1, null],
+      verdict: "certain",
+    };
     expect(read({ parameters: [parameter] }).parameters[0]).toMatchObject({
       ci95_curvature: [2, 3],
       ci95_profile: [null, 4],

@@ -53,18 +53,12 @@ const Unit* better_unit(const Source& source, double ratio) {
   return best;
 }
 
-/// `columns.force`.
-std::string as_key_name(const Source& source) {
-  constexpr std::array kKeys{"time", "displacement", "force", "stress", "strain"};
-  return std::string("columns.") + kKeys[static_cast<std::size_t>(source.quantity)];
-}
-
 /// `columns.force = { name = "Load (N)", unit = "N" }`.
 std::string as_key(const Source& source, const Unit& unit) {
   const std::string choice = source.title.front() == '"'
                                  ? "name = " + source.title
                                  : "number = " + source.title.substr(source.title.find(' ') + 1);
-  return as_key_name(source) + " = { " + choice + ", unit = \"" + std::string(unit.name) + "\" }";
+  return source.key + " = { " + choice + ", unit = \"" + std::string(unit.name) + "\" }";
 }
 
 /// `; in N it would be 84.1 N: give columns.force = …`.
@@ -123,7 +117,7 @@ class UnitCheck {
     if (!(together < -kAgainst * std::sqrt(d2 * f2))) return;
     complain(test_.force_source.title + " falls as " + test_.displacement_source.title +
              " rises, force against its own displacement; give sign = \"positive\" or \"negative\" in " +
-             as_key_name(test_.displacement_source) + " or " + as_key_name(test_.force_source) +
+             test_.displacement_source.key + " or " + test_.force_source.key +
              ", or leave both to be found" + kWayOut);
   }
 

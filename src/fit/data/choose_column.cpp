@@ -113,7 +113,7 @@ std::optional<ChosenColumn> choose_column(const CurveFile& file, const ColumnSpe
   if (!index) return std::nullopt;
   const Unit* unit = unit_of(file, *index, spec.unit, quantity, key, problems);
   if (!unit) return std::nullopt;
-  return ChosenColumn{*index, {file.title(*index), quantity, unit}};
+  return ChosenColumn{*index, {file.title(*index), quantity, unit, key}};
 }
 
 bool has_customary(const CurveFile& file, Quantity quantity, std::span<const std::string_view> words) {
@@ -152,7 +152,7 @@ std::vector<ChosenColumn> check_columns(const CurveFile& file) {
          {std::pair{Quantity::stress, "stress"}, std::pair{Quantity::strain, "strain"}}) {
       const Unit* unit = find_unit(quantity, file.units[i]);
       if (unit && lower(file.names[i]).find(word) != std::string::npos)
-        found.push_back({i, {file.title(i), quantity, unit}});
+        found.push_back({i, {file.title(i), quantity, unit, "columns." + std::string(word)}});
     }
   }
   return found;

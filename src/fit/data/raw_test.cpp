@@ -209,7 +209,7 @@ namespace {
 /// Complains of numbers that a test cannot have, by line.
 void require_possible(const RawTest& test, const TestColumns& columns, scene::Problems& problems) {
   std::size_t shown = 0;
-  for (std::size_t i = 0; i < test.size() && shown < kBadRowsShown; ++i) {
+  for (std::size_t i = 0; i < test.lines.size() && shown < kBadRowsShown; ++i) {
     std::string fault = driven_fault(columns.drive, test.displacement[i]);
     const Source* source = &test.displacement_source;
     double value = test.displacement[i];
@@ -320,7 +320,7 @@ RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize
   if (problems.count() > before) return test;
   if (spec.speed && !time) test.time = time_of(test.displacement, *spec.speed);
   if (!spec.speed && !time) test.time = rows_as_time(test.lines.size());
-  test.time_source = time ? time->column.source : Source{"speed_mm_s", Quantity::time, nullptr};
+  test.time_source = time ? time->column.source : Source{"speed_mm_s", Quantity::time, nullptr, "speed_mm_s"};
   if (spec.test == LabTest::creep) swap_load(test);
   merge_times(test, file, problems);
   return test;

@@ -16,6 +16,7 @@ struct Source {
   std::string title;  ///< `"Load (N)"`
   Quantity quantity = Quantity::force;
   const Unit* unit = nullptr;
+  std::string key{};  ///< `columns.force`
 };
 
 /// A column that is not used, but must agree with one that is.

@@ -87,6 +87,15 @@ void stresses_in_time(UniaxialPath& path, const Stretching& way, const Curve& cu
   }
 }
 
+bool has_past(const Tissue& tissue) { return tissue.viscosity > 0.0 || !tissue.maxwell.empty(); }
+
+/// Rows are no seconds.
+void require_times(const Measurement& m, const Tissue& tissue) {
+  if (m.timed || m.test == LabTest::oscillation || !has_past(tissue)) return;
+  throw std::runtime_error(
+      "a tissue with viscosity or Maxwell branches needs the time of each row; give columns.time or speed_mm_s");
+}
+
 /// What is driven of a material point, and where its answer stands.
 struct Component {
   MaterialTest test = MaterialTest::uniaxial;
@@ -115,7 +124,7 @@ void by_point(const Tissue& tissue, const Stretching& way, const Curve& curve, s
   const Component c = component_of(curve.measurement.deforming);
   const bool by_stress = measured == Measured::strain;
   const MaterialControl control = by_stress ? MaterialControl::nominal_stress : MaterialControl::deformation;
-  const bool has_past = tissue.viscosity > 0.0 || !tissue.maxwell.empty();
+  const bool slow = has_past(tissue);
   const std::vector<double>& times = way.way.times();
   const std::size_t lead = way.way.lead();
   const double whole = way.way.end() - way.way.begin();
@@ -132,7 +141,7 @@ void by_point(const Tissue& tissue, const Stretching& way, const Curve& curve, s
   if (lead == 0) out[0] = answer_of(point.state(), c, measured);
   for (std::size_t k = 1; k < times.size(); ++k) {
     const double width = times[k] - times[k - 1], end = way.of(way.way.displacements()[k]);
-    const int steps = has_past ? parts_of(by_stress ? 0.0 : std::abs(end - value), width, whole) : 1;
+    const int steps = slow ? parts_of(by_stress ? 0.0 : std::abs(end - value), width, whole) : 1;
     for (int s = 1; s <= steps; ++s)
       go(width / steps, s == steps ? end : way.of(way.way.at(times[k - 1] + s * width / steps)), k - lead);
     out[k - lead] = answer_of(point.state(), c, measured);
@@ -158,8 +167,7 @@ void torques(const Tissue& tissue, const History& history, const Specimen& size,
   }
   double widest = 0.0;
   for (std::size_t k = 1; k < times.size(); ++k) widest = std::max(widest, times[k] - times[k - 1]);
-  const bool has_past = tissue.viscosity > 0.0 || !tissue.maxwell.empty();
-  const TorsionOptions options{.between = has_past ? static_cast<std::size_t>(parts_of(0.0, widest, whole)) : 1};
+  const TorsionOptions options{.between = has_past(tissue) ? static_cast<std::size_t>(parts_of(0.0, widest, whole)) : 1};
   const std::vector<TorsionState> states = torsion(tissue, size.radius, times, twists, options);
   for (std::size_t i = 0; i < curve.size(); ++i) out[i] = states[i + lead].torque;
 }
@@ -181,6 +189,7 @@ Prediction SpecimenModel::predict_from(std::size_t index, std::span<const double
     const Measurement& m = measured.measurement;
     const History history(measured, contact);
     const Tissue tissue = tissue_(values);
+    require_times(m, tissue);
     result.force.resize(measured.size());
     const bool along = m.deforming == Deforming::compression || m.deforming == Deforming::tension;
     if (m.test == LabTest::oscillation || m.deforming == Deforming::torsion) {

@@ -59,6 +59,16 @@ export function readFit(raw: Raw, index: number): FitData {
         ? { replicates: finite(bootstrap["replicates"], replicates.length), values: replicates }
         : null,
     laws: list(raw["laws"]).map((law) => readLaw(record(law))),
+    discovered: list(raw["discovered"])
+      .map(record)
+      .map((law) => ({
+        name: text(law["name"]),
+        terms: finite(law["terms"], 0),
+        parameters: finite(law["parameters"], 0),
+        cost: numberOrNaN(law["cost"]),
+        least_r2: numberOrNaN(law["least_r2"]),
+        taken: law["taken"] === true,
+      })),
     designs: list(raw["designs"])
       .map(record)
       .map((design) => ({

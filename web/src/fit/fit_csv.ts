@@ -22,7 +22,10 @@ export function csvFiles(fit: FitData): CsvFile[] {
 }
 
 export function curvesCsv(fit: FitData): string {
-  const columns = "curve,group,held_out,velocity_m_s,time_s,drive,measured,fitted,further_low,further_high,drive_unit,unit".split(",");
+  const columns =
+    "curve,group,held_out,velocity_m_s,time_s,drive,measured,fitted,further_low,further_high,drive_unit,unit".split(
+      ",",
+    );
   const rows = fit.curves.flatMap((curve) =>
     curve.drive.map((drive, at) => [
       curve.name,

@@ -7,7 +7,7 @@ import { correlationFigures } from "./correlations.ts";
 import { fitCurves } from "./fit_curves.ts";
 import { fitDownloads, resultFile } from "./fit_downloads.ts";
 import { fitHead } from "./fit_head.ts";
-import { designTable, groupTable, lawTable, testTable } from "./fit_tables.ts";
+import { designTable, discoveredTable, groupTable, lawTable, testTable } from "./fit_tables.ts";
 import { parameterTable } from "./parameter_table.ts";
 import { profileFigures } from "./profiles.ts";
 import { residualFigures } from "./residuals.ts";
@@ -32,7 +32,10 @@ export function fitSection(fit: FitData, id: string, titled: boolean): SceneView
     block("Correlations", wrap("figures figures-pair", correlationFigures(fit))),
     block("Residuals", wrap("figures", [residualFigures(fit)])),
     block("Starts", wrap("figures figures-pair", startFigures(fit))),
-    block("Tables", wrap("results", [testTable(fit), groupTable(fit), lawTable(fit), designTable(fit)])),
+    block(
+      "Tables",
+      wrap("results", [testTable(fit), groupTable(fit), discoveredTable(fit), lawTable(fit), designTable(fit)]),
+    ),
     block("Notes", notes(fit.notes)),
     block("Files", files(fit)),
   );

@@ -41,6 +41,9 @@ function block(
   );
 }
 
+/** Laws shown of each number of terms, besides those that are compared. */
+const BEST_OF_EACH = 3;
+
 const withUnit = (name: string, unit: string) => (unit ? `${name} [${unit}]` : name);
 
 /** Forces of two columns in the unit of the charts, all with the same decimals. */
@@ -102,6 +105,37 @@ export function testTable(fit: FitData): HTMLElement | null {
     [{ name: "Fitted to" }, ...tests.map((test) => ({ name: test.name, numeric: true }))],
     rows,
     "R² is 1 − the sum of squares left over that about the mean: below 0 the mean would be nearer.",
+  );
+}
+
+/** The best laws of each number of terms; null where none were looked for. */
+export function discoveredTable(fit: FitData): HTMLElement | null {
+  const shown = fit.discovered.filter((law, at, all) => {
+    const before = all.slice(0, at).filter((other) => other.terms === law.terms).length;
+    return before < BEST_OF_EACH || law.taken;
+  });
+  const costs = formatColumn(
+    shown.map((law) => law.cost),
+    4,
+  );
+  const rows = shown.map((law, at) => [
+    formatInteger(law.terms),
+    formatInteger(law.parameters),
+    law.taken ? h("strong", {}, law.name) : law.name,
+    costs[at]!,
+    Number.isFinite(law.least_r2) ? law.least_r2.toFixed(3) : "–",
+  ]);
+  return block(
+    `The best of ${fit.discovered.length} laws of few terms`,
+    [
+      { name: "Terms", numeric: true },
+      { name: "Parameters", numeric: true },
+      { name: "Law" },
+      { name: "Cost", numeric: true },
+      { name: "Least R²", numeric: true },
+    ],
+    rows,
+    "Every subset of a library of terms was fitted; those in bold are compared by data that their fits have not seen.",
   );
 }
 
