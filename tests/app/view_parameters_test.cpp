@@ -34,10 +34,10 @@ const std::vector<std::string> kTissues{
     "hyperelastic = { kind = \"fung\", mu_Pa = 1000, b = 4, bulk_modulus_Pa = 20000 }",
     "hyperelastic = { kind = \"veronda_westmann\", c_Pa = 300, b = 3, bulk_modulus_Pa = 20000 }",
     "hyperelastic = { kind = \"ogden\", mu_Pa = [600, 400], alpha = [3, -2], bulk_modulus_Pa = 20000 }",
-    "hyperelastic = { kind = \"gent\", mu_Pa = 1000, limit = 3, bulk_modulus_Pa = 20000 }",
-    "hyperelastic = { kind = \"invariants\", c10_Pa = 300, c02_Pa = -20, a2_Pa = 500, bulk_modulus_Pa = 20000 }",
     "fibres = { stiffness_Pa = 500 }",
-    "maxwell = [{ share = 0.3, time_s = 0.1 }, { share = 0.2, time_s = 2 }]"};
+    "maxwell = [{ share = 0.3, time_s = 0.1 }, { share = 0.2, time_s = 2 }]",
+    "hyperelastic = { kind = \"gent\", mu_Pa = 1000, limit = 3, bulk_modulus_Pa = 20000 }",
+    "hyperelastic = { kind = \"invariants\", c10_Pa = 300, c02_Pa = -20, a2_Pa = 500, bulk_modulus_Pa = 20000 }"};
 
 // The numbers of a tissue stand within their ranges, and each of them written is the one that is read.
 TEST(LiveParameters, AreThoseOfTheTissue) {
