@@ -20,12 +20,6 @@
 namespace glisson::fit {
 namespace {
 
-std::vector<Curve> curves_of(const FitResult& result) {
-  std::vector<Curve> list;
-  for (const CurveResult& c : result.curves) list.push_back(c.curve);
-  return list;
-}
-
 bool stopped(const FitRun& options) { return options.stop != nullptr && options.stop->load(); }
 
 std::string rounded(double x, int digits = 3) { return brief(x, digits); }
@@ -53,9 +47,11 @@ void conclude_on_curves(const Validation& all, const FitResult& result, std::vec
   }
 }
 
-/// Which of several kinds of test the law meets worst.
+/// How well the law meets each of several tests; presses of one specimen are told by their rms alone.
 void conclude_on_tests(const FitResult& result, std::vector<std::string>& sentences) {
-  if (result.tests.size() < 2 || of_one_kind(curves_of(result))) return;
+  const bool presses = std::all_of(result.curves.begin(), result.curves.end(),
+                                   [](const CurveResult& c) { return c.curve.measurement.is_press(); });
+  if (result.tests.size() < 2 || presses) return;
   std::string text = "R² is";
   for (std::size_t t = 0; t < result.tests.size(); ++t)
     text += (t == 0 ? " " : ", ") + rounded(result.tests[t].r2) + " in " + result.tests[t].name +

@@ -358,9 +358,11 @@ TEST_F(Written, WhatCannotBeIsSaid) {
                     table({"frequency (Hz)", "G (Pa)"}, {{1, 2, 3, 4, 5}, {100, 110, -120, 130, 140}})),
               HasSubstr("t.csv:4:1: \"G (Pa)\" is -120 Pa; a modulus of an oscillation is not below 0"));
   const std::string cylinder = "kind = \"cylinder\"\ndiameter_mm = 10\nheight_mm = 10";
-  const std::string twisted = table({"angle (rad)", "torque (mN m)"}, {{0, 10, 20, 30, 40}, {0, 0.01, 0.02, 0.03, 0.04}});
+  const std::string twisted =
+      table({"angle (rad)", "torque (mN m)"}, {{0, 10, 20, 30, 40}, {0, 0.01, 0.02, 0.03, 0.04}});
   EXPECT_THAT(fault("test = \"torsion\"\n", twisted, cylinder),
-              AllOf(HasSubstr("a shear of 20 at the surface"), HasSubstr("columns.angle = { name = \"angle (rad)\", unit = \"deg\" }")));
+              AllOf(HasSubstr("a shear of 20 at the surface"),
+                    HasSubstr("columns.angle = { name = \"angle (rad)\", unit = \"deg\" }")));
   EXPECT_THAT(fault("test = \"torsion\"\n", twisted), HasSubstr("torsion asks for [specimen] kind = \"cylinder\""));
   EXPECT_THAT(fault("test = \"stretching\"\n", good), HasSubstr("\"tension\""));
 }
@@ -399,6 +401,26 @@ TEST(Laboratory, CortexIsFittedInThreeTestsTogether) {
   EXPECT_LT(r.tests[1].r2_of_alone[0], 0.0) << "tension alone knows nothing of compression";
   EXPECT_NEAR(r.parameters[1].value, -18.7, 0.2);
   EXPECT_EQ(r.unit, "Pa");
+}
+
+// Quasi-linear branches: the least squares of one Ogden term and two branches leave R² 0.73, 0.41 and 0.90 of three depths.
+// Along the same ramp, 1 % of height a second to a stretch of 0.9, the specimens carry 0.163, 0.300 and 0.255 kPa.
+TEST(Laboratory, ThreeDepthsOfMuscleShareNoQuasiLinearLaw) {
+  FitSpec spec = load_fit(test::shipped("scenes/fit/muscle_hold.toml"));
+  spec.proof.bootstrap = 0, spec.proof.profiles = false, spec.search.starts = 2;
+  const FitResult r = run_fit(spec, {});
+  ASSERT_EQ(r.tests.size(), 3u);
+  const double expected[]{0.73, 0.41, 0.90};
+  for (std::size_t t = 0; t < 3; ++t) EXPECT_NEAR(r.tests[t].r2, expected[t], 0.01) << r.tests[t].name;
+  const std::vector<double> at_tenth{163.0, 300.0, 255.0};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Curve& curve = r.curves[c].curve;
+    EXPECT_EQ(curve.measurement.deforming, Deforming::compression);
+    std::size_t i = 1;
+    while (i + 1 < curve.size() && curve.displacement[i] < 0.1 - 1e-9) ++i;
+    const double part = (0.1 - curve.displacement[i - 1]) / (curve.displacement[i] - curve.displacement[i - 1]);
+    EXPECT_NEAR(curve.force[i - 1] + part * (curve.force[i] - curve.force[i - 1]), at_tenth[c], 2.0);
+  }
 }
 
 // Two terms of Ogden, α ≤ 60, reach 0.985 in each; and by name the law of one term comes before all others of one number or two.

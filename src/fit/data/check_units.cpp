@@ -117,8 +117,7 @@ class UnitCheck {
     if (!(together < -kAgainst * std::sqrt(d2 * f2))) return;
     complain(test_.force_source.title + " falls as " + test_.displacement_source.title +
              " rises, force against its own displacement; give sign = \"positive\" or \"negative\" in " +
-             test_.displacement_source.key + " or " + test_.force_source.key +
-             ", or leave both to be found" + kWayOut);
+             test_.displacement_source.key + " or " + test_.force_source.key + ", or leave both to be found" + kWayOut);
   }
 
   void check_depth() {

@@ -15,7 +15,8 @@ constexpr std::array<std::string_view, 3> kStretchWords{"stretch", "lambda", "λ
 constexpr std::array<std::string_view, 4> kTrueStrainWords{"true strain", "true_strain", "log strain",
                                                            "logarithmic strain"};
 constexpr std::array<std::string_view, 2> kGreenStrainWords{"green", "e_green"};
-constexpr std::array<std::string_view, 3> kShearWords{"shear strain", "shear_strain", "shear amount"};
+constexpr std::array<std::string_view, 6> kShearWords{"shear strain", "shear_strain", "shear amount",
+                                                      "shear_amount", "gamma",        "γ"};
 constexpr std::array<std::string_view, 3> kAngleWords{"angle", "twist", "rotation"};
 constexpr std::array<std::string_view, 2> kFrequencyWords{"frequency", "freq"};
 constexpr std::array<std::string_view, 3> kForceWords{"force", "load", "kraft"};

@@ -167,7 +167,8 @@ void torques(const Tissue& tissue, const History& history, const Specimen& size,
   }
   double widest = 0.0;
   for (std::size_t k = 1; k < times.size(); ++k) widest = std::max(widest, times[k] - times[k - 1]);
-  const TorsionOptions options{.between = has_past(tissue) ? static_cast<std::size_t>(parts_of(0.0, widest, whole)) : 1};
+  const TorsionOptions options{.between =
+                                   has_past(tissue) ? static_cast<std::size_t>(parts_of(0.0, widest, whole)) : 1};
   const std::vector<TorsionState> states = torsion(tissue, size.radius, times, twists, options);
   for (std::size_t i = 0; i < curve.size(); ++i) out[i] = states[i + lead].torque;
 }
