@@ -136,7 +136,7 @@ Tissue relaxing() {
 // In simple shear the branches are linear: at a constant rate τ = μ γ̇ (t − Σ g (t − τ_k (1 − e^{−t/τ_k}))), and after it the
 // hold decays branch by branch.
 TEST(Laboratory, AHoldRelaxesByItsBranches) {
-  constexpr double kRate = 0.05, kRise = 4.0;
+  constexpr double kRate = 0.005, kRise = 4.0;  // small: what is carried from the second stress to the first is of third order
   Curve curve = test_of(LabTest::relaxation, Deforming::simple_shear, Measured::nominal, {});
   for (int i = 0; i <= 400; ++i) {
     const double t = i <= 200 ? 0.025 * i : 5.0 + 0.5 * (i - 200);
@@ -501,7 +501,7 @@ TEST(Laboratory, AFewTermsAreFoundForCortex) {
   FitSpec spec = load_fit(test::shipped("scenes/fit/brain_cortex.toml"));
   spec.proof.bootstrap = 0, spec.search.starts = 8;
   const FitResult r = run_fit(spec, {options, {}, {}});
-  ASSERT_GE(r.discovered.size(), 40u);
+  ASSERT_EQ(r.discovered.size(), 36u) << "4 terms alone, 30 pairs with a modulus at rest, one and two of Ogden";
   for (std::size_t i = 1; i < r.discovered.size(); ++i) {
     const DiscoveredLaw &a = r.discovered[i - 1], &b = r.discovered[i];
     EXPECT_TRUE(a.terms < b.terms || (a.terms == b.terms && a.cost <= b.cost));

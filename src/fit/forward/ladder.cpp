@@ -32,7 +32,6 @@ struct Candidate {
 };
 
 bool is_viscous(const Tissue& t) { return t.viscosity > 0.0; }
-bool has_past(const Tissue& t) { return is_viscous(t) || !t.maxwell.empty(); }
 template <class Test>
 bool any_tissue(const Variant& v, Test test) {
   return test(v.tissue) ||

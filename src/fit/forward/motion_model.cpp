@@ -15,13 +15,24 @@ double lead_time(const Curve& curve, double first) {
   return speed > 0.0 ? first / speed : curve.time.back() - curve.time.front();
 }
 
+/// The same of a specimen that is gripped: at the speed with which it goes on, where that takes it there within the test's
+/// duration; else at once, as a hold or a creep whose first row is loaded already.
+double lead_of_grip(const Curve& curve, double first) {
+  constexpr double kAtOnce = 1e-6;
+  const double whole = curve.time.back() - curve.time.front();
+  const double way = curve.displacement[1] - curve.displacement[0], width = curve.time[1] - curve.time[0];
+  const double lead = first / way * width;
+  return std::isfinite(lead) && lead > 0.0 && lead < whole ? lead : kAtOnce * whole;
+}
+
 MonotoneCubic<double> way_of(const Curve& curve, double contact, std::size_t& lead) {
   std::vector<double> times, way;
   const double first = curve.displacement.front() - contact;
   // a press touches nothing before contact; a grip goes either way
   const bool grips = curve.measurement.test != LabTest::compression;
   lead = first > 0.0 || (grips && first != 0.0) ? 1 : 0;
-  if (lead > 0) times.push_back(curve.time.front() - lead_time(curve, std::abs(first))), way.push_back(0.0);
+  if (lead > 0)
+    times.push_back(curve.time.front() - (grips ? lead_of_grip(curve, first) : lead_time(curve, first))), way.push_back(0.0);
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const double d = curve.displacement[i] - contact;
     times.push_back(curve.time[i]);

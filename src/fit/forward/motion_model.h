@@ -13,7 +13,8 @@ namespace glisson::fit {
 /// The motion of a curve from rest on: d(t) [m], with d = 0 at its begin; of a press never below.
 ///
 /// Between the measured instants it goes by cubics that do not overshoot, as a recorded tool does. A curve whose first
-/// point is in the tissue already (d > 0, e.g. after a shift of the contact) is led there at the speed with which it goes on.
+/// point is in the tissue already (d > 0, e.g. after a shift of the contact) is led there at the speed with which it goes on; of a
+/// specimen that is gripped and held from the first row on, at once.
 class History {
  public:
   /// @param contact  where the tool meets the tissue, in displacements of the curve [m]

@@ -87,8 +87,6 @@ void stresses_in_time(UniaxialPath& path, const Stretching& way, const Curve& cu
   }
 }
 
-bool has_past(const Tissue& tissue) { return tissue.viscosity > 0.0 || !tissue.maxwell.empty(); }
-
 /// Rows are no seconds.
 void require_times(const Measurement& m, const Tissue& tissue) {
   if (m.timed || m.test == LabTest::oscillation || !has_past(tissue)) return;
@@ -174,6 +172,8 @@ void torques(const Tissue& tissue, const History& history, const Specimen& size,
 }
 
 }  // namespace
+
+bool has_past(const Tissue& tissue) { return tissue.viscosity > 0.0 || !tissue.maxwell.empty(); }
 
 SpecimenModel::SpecimenModel(std::vector<Curve> curves, const Specimen& specimen, TissueAt tissue)
     : MotionModel(std::move(curves)), specimen_(specimen), tissue_(std::move(tissue)) {

@@ -22,6 +22,9 @@ struct Specimen {
 /// The tissue at values of the parameters; may throw std::exception, whose text becomes the failure.
 using TissueAt = std::function<Tissue(std::span<const double>)>;
 
+/// Whether the stress depends on more than the present deformation.
+bool has_past(const Tissue& tissue);
+
 /// Every test of Curve: F = P A at stretches λ = 1 ± d/H, its measure and sign as Curve has them. Plates hold a pressed specimen:
 /// where it lags behind a withdrawal it pulls.
 ///
