@@ -80,6 +80,8 @@ struct Measurement {
   bool point = false;            ///< the specimen has no size: force on 1 m², displacement of 1 m
   std::string unit = "N";        ///< of Curve::force
   std::string drive_unit = "m";  ///< of Curve::displacement
+
+  bool operator==(const Measurement&) const = default;
   bool is_press() const { return test == LabTest::compression && measured == Measured::nominal && !point; }
 };
 

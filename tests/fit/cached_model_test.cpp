@@ -46,6 +46,15 @@ TEST(CachedModel, KeepsApartCurvesWithParametersOfTheirOwn) {
   EXPECT_EQ(model.predict(1, std::vector{0.5}).force[0], 1.5);
 }
 
+// Storage and loss modulus over the same frequencies are two answers, as tension and compression by the same strains are.
+TEST(CachedModel, KeepsApartOtherTests) {
+  const auto inner = std::make_shared<Counting>();
+  std::vector<Curve> tests = curves();
+  tests[1].measurement.measured = Measured::loss;
+  const CachedModel model(inner, tests);
+  EXPECT_EQ(model.predict(1, std::vector{0.5}).force[0], 1.5);
+}
+
 TEST(CachedModel, ManyThreadsWaitForOneRun) {
   const auto inner = std::make_shared<Counting>();
   const CachedModel model(inner, curves());

@@ -221,8 +221,8 @@ void require_possible(const RawTest& test, const TestColumns& columns, scene::Pr
     if (fault.empty()) continue;
     ++shown;
     problems.add({test.lines[i], 1, {}}, "",
-                 source->title + " is " + measured_text(value / source->unit->factor, source->unit->name, 4) + "; " +
-                     fault + "; check the columns and their units");
+                 source->title + " is " + brief(value / source->unit->factor) +
+                     (source->unit->name == "-" ? "" : " " + std::string(source->unit->name)) + "; " + fault + "; check the columns and their units");
   }
 }
 

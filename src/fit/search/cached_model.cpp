@@ -13,8 +13,9 @@ CachedModel::CachedModel(std::shared_ptr<const Model> inner, const std::vector<C
   for (std::size_t c = 0; c < curves.size(); ++c) {
     std::size_t same = c;
     for (std::size_t k = 0; k < c && same == c && distinct[c] == 0; ++k) {
-      if (distinct[k] == 0 && curves[k].time == curves[c].time && curves[k].displacement == curves[c].displacement)
-        same = k;
+      const Curve &a = curves[k], &b = curves[c];
+      const bool alike = a.time == b.time && a.displacement == b.displacement && a.measurement == b.measurement;
+      if (distinct[k] == 0 && alike) same = k;
     }
     same_as_.push_back(same);
   }
