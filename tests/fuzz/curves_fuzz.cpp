@@ -1,6 +1,6 @@
 // curves_fuzz.cpp — any bytes as a file of measurements: a curve in order, or a message that names the file.
 //
-// The first byte chooses what is made of the rows (contact, cycle, crop, filter, resampling), so that one corpus covers the
+// The first byte chooses what is made of the rows (contact, cycle, crop, filter, resampling) and which test it is, so that one corpus covers the
 // preparation as well as the reader.
 #include <array>
 #include <cmath>
@@ -23,7 +23,19 @@ void require(bool kept, const char* promise) {
   std::abort();
 }
 
+/// With the three highest bits the lower ones choose a test of a point, whose columns have customary names.
+bool of_point(std::uint8_t choice) { return choice >= 0xe0; }
+
+DataSpec test_of_point(std::uint8_t choice) {
+  DataSpec spec;
+  const auto& tests = glisson::kWords<LabTest>;
+  spec.test = tests[static_cast<std::size_t>(choice & 0x0f) % std::size(tests)].value;
+  spec.unlikely = (choice & 0x10) != 0;
+  return spec;
+}
+
 DataSpec spec_of(std::uint8_t choice) {
+  if (of_point(choice)) return test_of_point(choice);
   DataSpec spec;
   const auto bit = [&](int i) { return (choice >> i & 1) != 0; };
   spec.skip_bad_rows = bit(0);
@@ -57,7 +69,9 @@ void require_sound(const Curve& c) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const DataSpec spec = spec_of(data[0]);
-  const SpecimenSize specimen{1e-4, 1e-2};
+  const bool point = of_point(data[0]);
+  const SpecimenSize specimen{
+      .area = point ? 1.0 : 1e-4, .height = point ? 1.0 : 1e-2, .radius = {}, .point = point};
   try {
     const CurveFile file = parse_curve_file({reinterpret_cast<const char*>(data) + 1, size - 1}, "fuzz.csv");
     glisson::scene::Problems problems("fuzz.csv");

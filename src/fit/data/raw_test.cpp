@@ -255,7 +255,16 @@ void convert(RawTest& test, const DataSpec& spec, const TestColumns& columns, co
   if (free_sign && turn(test.displacement, columns.driven_sign)) test.turned.push_back(test.displacement_source.title);
   const bool modulus = columns.answer == Answer::storage_modulus || columns.answer == Answer::loss_modulus;
   if (!modulus && turn(test.force, columns.answering_sign)) test.turned.push_back(test.force_source.title);
-  for (double& x : test.displacement) x = driven_number(columns.drive, x, size, outward);
+  for (std::size_t i = 0; i < test.lines.size(); ++i) {
+    double& x = test.displacement[i];
+    const double own = x;
+    x = driven_number(columns.drive, x, size, outward);
+    if (std::isfinite(x) || problems.count() > before) continue;
+    problems.add({test.lines[i], 1, {}}, "",
+                 test.displacement_source.title + " is " + brief(own) + ", a strain that no specimen has: " +
+                     (columns.drive == Drive::green_strain ? "Green's is above -0.5" : "it has no stretch") +
+                     "; check the columns and their units");
+  }
   for (double& f : test.force) f = answering_number(columns.answer, f, size);
 }
 

@@ -170,6 +170,11 @@ std::vector<Known> hyperelastic_laws() {
              .any_modulus("tissue.hyperelastic.c11_Pa", 3.0)
              .any_modulus("tissue.hyperelastic.c02_Pa", 3.0);
        }},
+  };
+}
+
+std::vector<Known> ogden_laws() {
+  return {
       {{"ogden", "Ogden, one term"},
        [](const auto& n, Stiffness m) -> LawSpec {
          return Candidate(n, m)
@@ -193,6 +198,7 @@ const std::vector<Known>& all() {
   static const std::vector<Known> list = [] {
     std::vector<Known> both = stiffness_laws();
     for (Known& law : hyperelastic_laws()) both.push_back(std::move(law));
+    for (Known& law : ogden_laws()) both.push_back(std::move(law));
     return both;
   }();
   return list;
