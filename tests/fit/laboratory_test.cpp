@@ -136,7 +136,8 @@ Tissue relaxing() {
 // In simple shear the branches are linear: at a constant rate τ = μ γ̇ (t − Σ g (t − τ_k (1 − e^{−t/τ_k}))), and after it the
 // hold decays branch by branch.
 TEST(Laboratory, AHoldRelaxesByItsBranches) {
-  constexpr double kRate = 0.005, kRise = 4.0;  // small: what is carried from the second stress to the first is of third order
+  constexpr double kRate = 0.005,
+                   kRise = 4.0;  // small: what is carried from the second stress to the first is of third order
   Curve curve = test_of(LabTest::relaxation, Deforming::simple_shear, Measured::nominal, {});
   for (int i = 0; i <= 400; ++i) {
     const double t = i <= 200 ? 0.025 * i : 5.0 + 0.5 * (i - 200);

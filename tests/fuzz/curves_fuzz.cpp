@@ -70,8 +70,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const DataSpec spec = spec_of(data[0]);
   const bool point = of_point(data[0]);
-  const SpecimenSize specimen{
-      .area = point ? 1.0 : 1e-4, .height = point ? 1.0 : 1e-2, .radius = {}, .point = point};
+  const SpecimenSize specimen{.area = point ? 1.0 : 1e-4, .height = point ? 1.0 : 1e-2, .radius = {}, .point = point};
   try {
     const CurveFile file = parse_curve_file({reinterpret_cast<const char*>(data) + 1, size - 1}, "fuzz.csv");
     glisson::scene::Problems problems("fuzz.csv");

@@ -222,7 +222,8 @@ void require_possible(const RawTest& test, const TestColumns& columns, scene::Pr
     ++shown;
     problems.add({test.lines[i], 1, {}}, "",
                  source->title + " is " + brief(value / source->unit->factor) +
-                     (source->unit->name == "-" ? "" : " " + std::string(source->unit->name)) + "; " + fault + "; check the columns and their units");
+                     (source->unit->name == "-" ? "" : " " + std::string(source->unit->name)) + "; " + fault +
+                     "; check the columns and their units");
   }
 }
 

@@ -32,7 +32,8 @@ MonotoneCubic<double> way_of(const Curve& curve, double contact, std::size_t& le
   const bool grips = curve.measurement.test != LabTest::compression;
   lead = first > 0.0 || (grips && first != 0.0) ? 1 : 0;
   if (lead > 0)
-    times.push_back(curve.time.front() - (grips ? lead_of_grip(curve, first) : lead_time(curve, first))), way.push_back(0.0);
+    times.push_back(curve.time.front() - (grips ? lead_of_grip(curve, first) : lead_time(curve, first))),
+        way.push_back(0.0);
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const double d = curve.displacement[i] - contact;
     times.push_back(curve.time[i]);
