@@ -82,6 +82,8 @@ struct Measurement {
   std::string drive_unit = "m";  ///< of Curve::displacement
 
   bool operator==(const Measurement&) const = default;
+  /// 1 where a positive displacement extends the specimen, −1 where it compresses it.
+  double outward() const { return deforming == Deforming::compression ? -1.0 : 1.0; }
   bool is_press() const { return test == LabTest::compression && measured == Measured::nominal && !point; }
 };
 

@@ -248,7 +248,7 @@ void convert(RawTest& test, const DataSpec& spec, const TestColumns& columns, co
              scene::Problems& problems) {
   Measurement& m = test.measurement;
   m.deforming = deforming_of(spec, columns.drive, test.displacement);
-  const double outward = m.deforming == Deforming::compression ? -1.0 : 1.0;  // 1: a stretch above 1 is positive
+  const double outward = m.outward();
   const std::size_t before = problems.count();
   require_possible(test, columns, problems);
   if (problems.count() == before) require_direction(test, columns, outward, problems);

@@ -107,7 +107,12 @@ class ColumnSearch {
       if (!fits(roles_[i])) return {};
       return guess_column(file_, roles_[i].quantity, roles_[i].words, key_of(roles_[i]), problems_);
     }
-    return guess_column(file_, first->quantity, first->words, key_of(*first), problems_);
+    if (first) return guess_column(file_, first->quantity, first->words, key_of(*first), problems_);
+    problems_.add({1, 1, {}}, "",
+                  "test = \"" + std::string(word_of(spec_.test)) +
+                      "\" needs the specimen's size, and a point has none; give "
+                      "[specimen] kind = \"cylinder\"");
+    return {};
   }
 
  private:

@@ -23,8 +23,7 @@ constexpr std::array kAngle{Unit{"rad", 1.0}, Unit{"deg", std::numbers::pi / 180
 constexpr std::array kTorque{Unit{"N m", 1.0},   Unit{"N·m", 1.0},   Unit{"Nm", 1.0},    Unit{"mN m", 1e-3},
                              Unit{"mN·m", 1e-3}, Unit{"mNm", 1e-3},  Unit{"N mm", 1e-3}, Unit{"Nmm", 1e-3},
                              Unit{"µN m", 1e-6}, Unit{"µN·m", 1e-6}, Unit{"µNm", 1e-6},  Unit{"uNm", 1e-6}};
-constexpr std::array kFrequency{Unit{"Hz", 1.0}, Unit{"rad/s", 0.5 / std::numbers::pi},
-                                Unit{"1/s", 0.5 / std::numbers::pi}, Unit{"kHz", 1e3}};
+constexpr std::array kFrequency{Unit{"Hz", 1.0}, Unit{"rad/s", 0.5 / std::numbers::pi}, Unit{"kHz", 1e3}};
 constexpr std::array kQuantities{Quantity::time,   Quantity::length, Quantity::force,
                                  Quantity::stress, Quantity::strain, Quantity::stretch,
                                  Quantity::angle,  Quantity::torque, Quantity::frequency};

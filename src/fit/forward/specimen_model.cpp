@@ -14,9 +14,6 @@ namespace {
 constexpr double kMostStretch = 0.01, kMostTime = 1.0 / 400.0;  ///< of a step, the latter of the whole history
 constexpr double kLeastStretch = 0.02;
 
-/// 1 where the driven number extends the specimen, −1 where it compresses it.
-double outward_of(const Curve& curve) { return curve.measurement.deforming == Deforming::compression ? -1.0 : 1.0; }
-
 /// The history of one curve in stretches, of a shear in amounts.
 struct Stretching {
   const History& way;
@@ -200,8 +197,7 @@ Prediction SpecimenModel::predict_from(std::size_t index, std::span<const double
         torques(tissue, history, specimen_, measured, result.force);
       return result;
     }
-    const double outward = outward_of(measured),
-                 load = m.measured == Measured::strain ? specimen_.height : specimen_.area;
+    const double outward = m.outward(), load = m.measured == Measured::strain ? specimen_.height : specimen_.area;
     if (along && m.measured != Measured::strain && !tissue.fibres) {
       UniaxialPath path(tissue);
       const Stretching way{history, 1.0, outward / specimen_.height};

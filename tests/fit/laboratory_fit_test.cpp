@@ -1,0 +1,218 @@
+// Several tests of a laboratory in one fit: measured tissue against known optima, twins against the truth.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "fit/fit_curves.h"
+#include "fit/run_fit.h"
+#include "fit/search/least_squares.h"
+#include "fit/uncertainty/covariance.h"
+#include "laboratory.h"
+#include "phantom.h"
+#include "small_models.h"
+
+namespace glisson::fit::laboratory_fit_test {
+namespace {
+
+using namespace laboratory;
+
+// One Ogden term fitted to the three tests together, each weighed by its largest stress: the optimum of least squares with an
+// incompressible law has R² 0.926, 0.997 and 0.977 at α = −18.7.
+TEST(LaboratoryFit, CortexIsFittedInThreeTestsTogether) {
+  const FitResult r = run_fit(test::shipped("scenes/fit/brain_cortex.toml"));
+  ASSERT_EQ(r.tests.size(), 3u);
+  const double expected[]{0.926, 0.997, 0.977};
+  for (std::size_t t = 0; t < 3; ++t) {
+    EXPECT_NEAR(r.tests[t].r2, expected[t], 0.002) << r.tests[t].name;
+    EXPECT_EQ(r.tests[t].points, 17u);
+    EXPECT_EQ(r.tests[t].unit, "Pa");
+    ASSERT_EQ(r.tests[t].r2_of_alone.size(), 3u);
+    EXPECT_GT(r.tests[t].r2_of_alone[t], 0.98) << "alone, each test is met";
+  }
+  EXPECT_LT(r.tests[1].r2_of_alone[0], 0.0) << "tension alone knows nothing of compression";
+  EXPECT_NEAR(r.parameters[1].value, -18.7, 0.2);
+  EXPECT_EQ(r.unit, "Pa");
+}
+
+// Quasi-linear branches: the least squares of one Ogden term and two branches leave R² 0.73, 0.41 and 0.90 of three depths.
+// Along the same ramp, 1 % of height a second to a stretch of 0.9, the specimens carry 0.163, 0.300 and 0.255 kPa.
+TEST(LaboratoryFit, ThreeDepthsOfMuscleShareNoQuasiLinearLaw) {
+  FitSpec spec = load_fit(test::shipped("scenes/fit/muscle_hold.toml"));
+  spec.proof.bootstrap = 0, spec.proof.profiles = false, spec.search.starts = 2;
+  const FitResult r = run_fit(spec, {});
+  ASSERT_EQ(r.tests.size(), 3u);
+  const double expected[]{0.73, 0.41, 0.90};
+  for (std::size_t t = 0; t < 3; ++t) EXPECT_NEAR(r.tests[t].r2, expected[t], 0.01) << r.tests[t].name;
+  const std::vector<double> at_tenth{163.0, 300.0, 255.0};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Curve& curve = r.curves[c].curve;
+    EXPECT_EQ(curve.measurement.deforming, Deforming::compression);
+    std::size_t i = 1;
+    while (i + 1 < curve.size() && curve.displacement[i] < 0.1 - 1e-9) ++i;
+    const double part = (0.1 - curve.displacement[i - 1]) / (curve.displacement[i] - curve.displacement[i - 1]);
+    EXPECT_NEAR(curve.force[i - 1] + part * (curve.force[i] - curve.force[i - 1]), at_tenth[c], 2.0);
+  }
+}
+
+// By name the law of one Ogden term comes before all others of one number or two.
+TEST(LaboratoryFit, CortexPrefersOgden) {
+  FitOptions options;
+  options.laws = {"neo_hookean", "mooney_rivlin", "fung", "veronda_westmann", "ogden", "ogden2"};
+  FitSpec spec = load_fit(test::shipped("scenes/fit/brain_cortex.toml"));
+  spec.proof.bootstrap = 0;
+  const FitResult r = run_fit(spec, {options, {}, {}});
+  std::vector<std::string> short_ones;
+  for (const LawResult& law : r.laws) {
+    if (law.parameters <= 2) short_ones.push_back(law.name);
+  }
+  EXPECT_EQ(short_ones.front(), "ogden");
+}
+
+// A sweep of frequencies and a creep of the same tissue, together: its branch is found, and each file's columns with it.
+TEST(LaboratoryFit, ASweepAndACreepGiveTheBranch) {
+  const phantom::Folder folder("laboratory_fit");
+  std::vector<double> hertz, storage, loss, time, stress, strain;
+  for (int i = 0; i < 15; ++i) {
+    hertz.push_back(std::pow(10.0, -2.0 + 0.2 * i));
+    const double x = 2.0 * std::numbers::pi * hertz.back() * 3.0;
+    storage.push_back(1e3 * (0.5 + 0.5 * x * x / (1.0 + x * x)));
+    loss.push_back(1e3 * 0.5 * x / (1.0 + x * x));
+  }
+  // γ = τ/μ (1 + g/(1 − g) (1 − e^{−(1 − g) t/τ})) after a load at once
+  for (int i = 0; i < 40; ++i) {
+    time.push_back(0.5 * i);
+    stress.push_back(50.0);
+    strain.push_back(0.05 * (1.0 + 1.0 * -std::expm1(-0.5 * time.back() / 3.0)));
+  }
+  folder.write("sweep.csv", table({"frequency (Hz)", "storage (Pa)", "loss (Pa)"}, {hertz, storage, loss}));
+  folder.write("creep.csv", table({"time (s)", "stress (Pa)", "shear_strain"}, {time, stress, strain}));
+  const std::string text = R"([specimen]
+kind = "point"
+[tissue]
+hyperelastic = { kind = "neo_hookean", mu_Pa = 500, bulk_modulus_Pa = 1e6 }
+maxwell = [{ share = 0.2, time_s = 1 }]
+[[parameter]]
+key = "tissue.hyperelastic.mu_Pa"
+low = 10
+high = 1e5
+[[parameter]]
+key = "tissue.maxwell.0.share"
+low = 0.01
+high = 0.95
+[[parameter]]
+key = "tissue.maxwell.0.time_s"
+low = 0.1
+high = 100
+[[data]]
+files = ["sweep.csv"]
+test = "oscillation"
+columns.storage_modulus.name = "storage"
+columns.loss_modulus.name = "loss"
+[[data]]
+files = ["creep.csv"]
+test = "creep"
+mode = "simple_shear"
+[search]
+starts = 4
+[proof]
+bootstrap = 0
+)";
+  const FitResult r = run_fit_text(text, (folder.path() / "fit.toml").string());
+  EXPECT_NEAR(r.parameters[0].value, 1000.0, 2.0);
+  EXPECT_NEAR(r.parameters[1].value, 0.5, 0.002);
+  EXPECT_NEAR(r.parameters[2].value, 3.0, 0.02);
+  ASSERT_EQ(r.tests.size(), 3u);
+  EXPECT_EQ(r.unit, "") << "moduli and strains have no unit in common";
+  for (const TestResult& t : r.tests) EXPECT_GT(t.r2, 0.9999) << t.name;
+}
+
+// Of all laws of at most two terms one is above 0.985 in each of cortex's tests.
+TEST(LaboratoryFit, AFewTermsAreFoundForCortex) {
+  FitOptions options;
+  options.discover = 2;
+  FitSpec spec = load_fit(test::shipped("scenes/fit/brain_cortex.toml"));
+  spec.proof.bootstrap = 0, spec.search.starts = 8;
+  const FitResult r = run_fit(spec, {options, {}, {}});
+  ASSERT_EQ(r.discovered.size(), 36u) << "4 terms alone, 30 pairs with a modulus at rest, one and two of Ogden";
+  for (std::size_t i = 1; i < r.discovered.size(); ++i) {
+    const DiscoveredLaw &a = r.discovered[i - 1], &b = r.discovered[i];
+    EXPECT_TRUE(a.terms < b.terms || (a.terms == b.terms && a.cost <= b.cost));
+  }
+  double best = 0.0;
+  for (const DiscoveredLaw& d : r.discovered) best = std::max(best, d.r2);
+  EXPECT_GE(best, 0.985);
+}
+
+/// Compression, tension and simple shear of one tissue, at the same 40 strains to 10 %.
+struct Twins {
+  std::vector<Parameter> parameters{{"mu", "Pa", 10.0, 1e5, Scale::logarithmic, 1e3}, {"alpha", "", -60.0, -1.0}};
+  std::vector<double> truth{1400.0, -15.0};
+  std::vector<Curve> plans;
+  std::unique_ptr<SpecimenModel> model;
+
+  Twins() {
+    std::vector<double> strains;
+    for (int i = 0; i < 40; ++i) strains.push_back(0.1 * i / 39.0);
+    for (const Form& form : kForms) {
+      if (form.deforming == Deforming::equibiaxial || form.deforming == Deforming::planar) continue;
+      plans.push_back(test_of(test_named(form.name), form.deforming, Measured::nominal, strains));
+      plans.back().group = form.name;
+    }
+    model = std::make_unique<SpecimenModel>(plans, Specimen{1.0, 1.0}, [](std::span<const double> v) {
+      Tissue t;
+      t.hyperelastic = Ogden{{v[0]}, {v[1]}, 1e6};
+      return t;
+    });
+  }
+
+  /// Curves of so many specimens a test, whose stiffness differs by `between`, with a part of the largest stress as noise.
+  std::vector<Curve> drawn(std::uint64_t seed, int specimens, double between, double part,
+                           std::vector<std::size_t>& origin) const {
+    testing_models::Noise noise(seed);
+    std::vector<Curve> curves;
+    for (std::size_t c = 0; c < plans.size(); ++c) {
+      const std::vector<double> exact = model->predict(c, truth).force;
+      for (int k = 0; k < specimens; ++k) {
+        const double own = between > 0.0 ? 1.0 + between * noise() : 1.0;
+        const std::vector<double> e = noise.correlated(exact.size(), 0.6);
+        curves.push_back(plans[c]);
+        origin.push_back(c);
+        for (std::size_t i = 0; i < exact.size(); ++i)
+          curves.back().force[i] = own * exact[i] + part * std::abs(exact.back()) * e[i];
+      }
+    }
+    return curves;
+  }
+
+  /// In how many of 200 sets the 95 % intervals hold the truth lies between 90 and 98 %.
+  void expect_covered(std::uint64_t first_seed, int specimens, double between, double part, bool by_curve) const {
+    constexpr int kSeeds = 200;
+    double held[2] = {0.0, 0.0};
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      std::vector<std::size_t> origin;
+      const std::vector<Curve> curves =
+          drawn(first_seed + static_cast<std::uint64_t>(seed), specimens, between, part, origin);
+      const Problem problem(parameters, curves, origin, spreads_of(curves, Weighing::automatic), *model);
+      const Optimum best = descend(problem, problem.to_scaled(std::vector{800.0, -8.0}));
+      const Covariance c = covariance(problem, best.scaled);
+      EXPECT_EQ(c.noise.kind == NoiseKind::by_curve, by_curve);
+      for (std::size_t p = 0; p < 2; ++p) held[p] += c.interval[p].holds(truth[p]) ? 1.0 / kSeeds : 0.0;
+    }
+    std::printf("mu %.3f alpha %.3f\n", held[0], held[1]);
+    for (const double share : held) {
+      EXPECT_GE(share, 0.90);
+      EXPECT_LE(share, 0.98);
+    }
+  }
+};
+
+// 200 sets of the three tests by one tissue, 2 % of the largest stress as correlated noise. Three tests are no three specimens.
+TEST(LaboratoryFit, IntervalsOfTwinsHoldTheTruth) { Twins().expect_covered(0, 1, 0.0, 0.02, false); }
+
+// Four specimens for each of three tests, whose stiffness differs by 10 % from one to the next: intervals are of their mean.
+TEST(LaboratoryFit, IntervalsOfSeveralSpecimensAreOfTheirMean) { Twins().expect_covered(1000, 4, 0.1, 0.01, true); }
+
+}  // namespace
+}  // namespace glisson::fit::laboratory_fit_test
