@@ -16,12 +16,14 @@
 #include "cli/mesh_cache.h"
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
+#include "cli/tissue_text.h"
 #include "fit/data/units.h"
 #include "fit/files/fit_json.h"
 #include "fit/files/fit_state.h"
 #include "fit/run_fit.h"
 #include "fit/search/law_candidates.h"
 #include "report/json_text.h"
+#include "report/law_data.h"
 #include "report/output_file.h"
 #include "report/output_folder.h"
 #include "report/report_page.h"
@@ -159,12 +161,21 @@ void print_result(const FitResult& result) {
       result.wall_s);
 }
 
+/// FitData: fit.json and the curves of the fitted law.
+nlohmann::json page_data(const FitResult& result, const nlohmann::ordered_json& json, const fs::path& folder) {
+  nlohmann::json data(json);
+  const bool a_tissue = !result.tissue.empty() && result.result_file == "tissue.toml";
+  data["law_curves"] =
+      a_tissue ? stress_data(tissue_of_toml(result.tissue, result.result_file, folder)) : nlohmann::json::array();
+  return data;
+}
+
 void write_results(const FitResult& result, const FitHeading& heading, const fs::path& folder) {
   const nlohmann::ordered_json json = fit_json(result, heading);
   write_whole(folder / "fit.json", json_text(json, 1) + "\n");
   if (!result.tissue.empty()) write_whole(folder / result.result_file, result.tissue);
   nlohmann::json page = report_json(heading.title, "a fit", nlohmann::json::array());
-  page["fits"] = nlohmann::json::array({nlohmann::json(json)});
+  page["fits"] = nlohmann::json::array({page_data(result, json, folder)});
   write_whole(folder / "report.html", report_page(report_template(), page));
 }
 

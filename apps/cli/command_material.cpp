@@ -6,7 +6,6 @@
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -17,7 +16,6 @@
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "cli/tissue_text.h"
-#include "glisson/scene/scene.h"
 #include "glisson/scene/tissue_presets.h"
 #include "report/json_text.h"
 #include "report/output_file.h"
@@ -32,10 +30,7 @@ Tissue open_tissue(const std::string& name) {
   std::ifstream in(file);
   if (!in) throw std::invalid_argument(name + ": there is no such file");
   std::string text{std::istreambuf_iterator<char>(in), {}};
-  const std::regex mesh(R"((^|\n)[ \t]*\[?[ \t]*mesh\b)");
-  if (!std::regex_search(text, mesh)) text += "\n[mesh]\nkind = \"box\"\n[motion]\nmax_steps = 1\n";
-  const Scene scene = parse_scene(text, name, file.parent_path());
-  return scene.variants.front().tissue;
+  return tissue_of_toml(std::move(text), name, file.parent_path());
 }
 
 std::string csv_text(const std::vector<Column>& columns) {

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <regex>
 #include <vector>
+
+#include "glisson/scene/scene.h"
 
 namespace glisson::app {
 namespace {
@@ -51,6 +54,12 @@ std::string law_text(const Tissue& t) {
   const char* part = t.maxwell_part == MaxwellPart::all ? "all" : "the deviator";
   for (const MaxwellBranch& b : t.maxwell) text += fmt::format(", {:g} of {} relaxes in {:g} s", b.share, part, b.time);
   return text;
+}
+
+Tissue tissue_of_toml(std::string text, const std::string& name, const std::filesystem::path& folder) {
+  const std::regex mesh(R"((^|\n)[ \t]*\[?[ \t]*mesh\b)");
+  if (!std::regex_search(text, mesh)) text += "\n[mesh]\nkind = \"box\"\n[motion]\nmax_steps = 1\n";
+  return parse_scene(text, name, folder).variants.front().tissue;
 }
 
 }  // namespace glisson::app

@@ -14,13 +14,18 @@
 
 #include "material/axial_response.h"
 #include "material/branch_weights.h"
-#include "material/uniaxial.h"
 
 namespace glisson {
 
 /// A stretch along z and how fast it changes.
 struct StretchRate {
   double stretch = 1.0, rate = 0.0;  ///< λ [-], > 0; λ̇ [1/s]
+};
+
+struct UniaxialState {
+  double stress = 0.0;           ///< nominal stress along z, P_zz [Pa]
+  double lateral_stretch = 1.0;  ///< across [-]
+  bool converged = false;        ///< false: no lateral stretch between 0.05 and 20 leaves the sides free
 };
 
 class UniaxialPath {

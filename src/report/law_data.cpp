@@ -2,10 +2,16 @@
 #include "report/law_data.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "material/uniaxial.h"
+#include "glisson/material_point.h"
+#include "material/static_stretch.h"
 
 namespace glisson {
 namespace {
@@ -59,19 +65,93 @@ void add_curves(nlohmann::json& curves, const Tissue& tissue, const std::string&
   curves.push_back(curve(prefix + "μ", x, [&](double value) { return lame_at(tissue, value).mu; }));
 }
 
-/// Nominal stress of a tensile and compression test with free sides.
-nlohmann::json stretch_data(const Tissue& tissue) {
-  constexpr double kFrom = 0.5, kTo = 1.5;
-  const Response response(tissue);
-  std::vector<double> x, y;
-  for (int i = 0; i < kPoints; ++i) {
-    x.push_back(kFrom + (kTo - kFrom) * i / (kPoints - 1));
-    y.push_back(uniaxial_state(response, x.back()).stress);
+/// A test whose curve is drawn: from rest to `from` and to `to`.
+struct DrawnTest {
+  MaterialTest test;
+  double rest, from, to;
+  std::size_t row, column;  // of the driven component
+  const char *measure, *quantity;
+};
+
+constexpr DrawnTest kDrawnTests[] = {
+    {MaterialTest::uniaxial, 1.0, 0.5, 1.5, 2, 2, "stretch, sides free [-]", "nominal stress"},
+    {MaterialTest::simple_shear, 0.0, 0.0, 1.0, 0, 2, "amount of shear [-]", "shear stress"}};
+
+constexpr int kSteps = 100;            // from `from` to `to`; a hundredth of stretch or shear each
+constexpr double kSteepest = 4.0;      // stress over the modulus at rest: what lies above would hide all else
+constexpr double kSmallStrain = 1e-4;  // for that modulus
+
+/// Relaxed stress where the driven component has come to a value; none where no state is found.
+std::optional<double> stress_at(MaterialPoint& point, const DrawnTest& drawn, double value) {
+  const MaterialState& state = point.advance(kLongTime, test_targets(drawn.test, MaterialControl::deformation, value));
+  if (!state.converged) return std::nullopt;
+  return state.nominal(drawn.row, drawn.column);
+}
+
+/// From rest to both ends, as far as the tissue has an answer that a picture can show.
+std::vector<double> drawn_stresses(const Tissue& tissue, const DrawnTest& drawn, const std::vector<double>& x) {
+  MaterialPoint nearby(tissue);
+  const std::optional<double> small = stress_at(nearby, drawn, drawn.rest + kSmallStrain);
+  const double highest = small ? kSteepest * std::abs(*small) / kSmallStrain : 0.0;
+  std::vector<double> y(x.size(), std::numeric_limits<double>::quiet_NaN());
+  const auto rest = std::lround((drawn.rest - drawn.from) / (drawn.to - drawn.from) * kSteps);
+  y[static_cast<std::size_t>(rest)] = 0.0;
+  for (const int step : {1, -1}) {
+    MaterialPoint point(tissue);
+    for (auto i = rest + step; i >= 0 && i <= kSteps; i += step) {
+      const auto at = static_cast<std::size_t>(i);
+      const std::optional<double> stress = stress_at(point, drawn, x[at]);
+      if (!stress || std::abs(*stress) > highest) break;
+      y[at] = *stress;
+    }
   }
-  return {{"measure", "stretch, sides free [-]"},
-          {"quantity", "nominal stress"},
-          {"x", x},
-          {"curves", {{{"label", std::string(law_name(*tissue.hyperelastic))}, {"y", y}}}}};
+  return y;
+}
+
+/// The tissues whose curves are drawn, with what is said of each: after a test as quick as no branch can follow, and relaxed.
+std::vector<std::pair<std::string, Tissue>> states_of(Tissue tissue) {
+  tissue.viscosity = 0.0;
+  if (tissue.maxwell.empty()) return {{"", std::move(tissue)}};
+  Tissue at_once = tissue;
+  at_once.maxwell.clear();
+  return {{"at once", std::move(at_once)}, {"relaxed", std::move(tissue)}};
+}
+
+/// LawData of one test; null where the law depends on the mesh.
+nlohmann::json stress_data(const DrawnTest& drawn, const std::vector<std::pair<std::string, Tissue>>& tissues) {
+  std::vector<double> x;
+  for (int i = 0; i <= kSteps; ++i) x.push_back(drawn.from + (drawn.to - drawn.from) * i / kSteps);
+  nlohmann::json curves = nlohmann::json::array();
+  for (const auto& [prefix, tissue] : tissues) {
+    for (const auto& [state, drawn_tissue] : states_of(tissue)) {
+      try {
+        const std::string label = prefix.empty() || state.empty() ? prefix + state : prefix + ": " + state;
+        curves.push_back({{"label", label}, {"y", drawn_stresses(drawn_tissue, drawn, x)}});
+      } catch (const std::invalid_argument&) {  // a measure that depends on the mesh: there is no curve of the material
+        return nullptr;
+      }
+    }
+  }
+  return {{"measure", drawn.measure}, {"quantity", drawn.quantity}, {"x", std::move(x)}, {"curves", std::move(curves)}};
+}
+
+void add_stress_data(nlohmann::json& all, const std::vector<std::pair<std::string, Tissue>>& tissues) {
+  for (const DrawnTest& drawn : kDrawnTests) {
+    if (nlohmann::json data = stress_data(drawn, tissues); !data.is_null()) all.push_back(std::move(data));
+  }
+}
+
+nlohmann::json modulus_data(const Variant& variant, double reach) {
+  const DeformationMeasure measure = variant.tissue.measure;
+  const double end = measure == DeformationMeasure::regular_mean_ratio ? 1.0 : reach;
+  std::vector<double> x;
+  for (int i = 0; i < kPoints; ++i) x.push_back(end * i / (kPoints - 1));
+  nlohmann::json curves = nlohmann::json::array();
+  add_curves(curves, variant.tissue, "", x);
+  for (const RegionSpec& region : variant.regions) {
+    if (region.tissue.measure == measure) add_curves(curves, region.tissue, region.name + ": ", x);
+  }
+  return {{"measure", measure_label(measure)}, {"quantity", "modulus"}, {"x", x}, {"curves", curves}};
 }
 
 }  // namespace
@@ -82,18 +162,19 @@ double law_reach(const Variant& variant) {
   return reach;
 }
 
+nlohmann::json stress_data(const Tissue& tissue) {
+  nlohmann::json all = nlohmann::json::array();
+  add_stress_data(all, {{"", tissue}});
+  return all;
+}
+
 nlohmann::json law_data(const Variant& variant, double reach) {
-  if (variant.tissue.hyperelastic) return stretch_data(variant.tissue);
-  const DeformationMeasure measure = variant.tissue.measure;
-  const double end = measure == DeformationMeasure::regular_mean_ratio ? 1.0 : reach;
-  std::vector<double> x;
-  for (int i = 0; i < kPoints; ++i) x.push_back(end * i / (kPoints - 1));
-  nlohmann::json curves = nlohmann::json::array();
-  add_curves(curves, variant.tissue, "", x);
-  for (const RegionSpec& region : variant.regions) {
-    if (region.tissue.measure == measure) add_curves(curves, region.tissue, region.name + ": ", x);
-  }
-  return {{"measure", measure_label(measure)}, {"x", x}, {"curves", curves}};
+  nlohmann::json all = nlohmann::json::array();
+  if (!variant.tissue.hyperelastic) all.push_back(modulus_data(variant, reach));
+  std::vector<std::pair<std::string, Tissue>> tissues{{"", variant.tissue}};
+  for (const RegionSpec& region : variant.regions) tissues.emplace_back(region.name, region.tissue);
+  add_stress_data(all, tissues);
+  return all;
 }
 
 }  // namespace glisson

@@ -192,7 +192,7 @@ nlohmann::json VariantRecorder::json(double law_reach) const {
           {"forces", table_json(table_->columns(), data_)},
           {"probes", table_json(probe_columns_, probe_data_)},
           {"events", events_json()},
-          {"law", law_data(variant_, law_reach)},
+          {"law_curves", law_data(variant_, law_reach)},
           {"surface", surface_ ? surface_->json() : nlohmann::json()}};
 }
 

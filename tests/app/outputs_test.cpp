@@ -247,7 +247,7 @@ TEST_F(Outputs, ReportHoldsTheRun) {
   EXPECT_EQ(v["surface"]["vertices"], 26) << "all but the middle one of 3 × 3 × 3";
   EXPECT_EQ(v["surface"]["frames"].size(), 3u);
   EXPECT_EQ(v["surface"]["rest"].get<std::string>().size(), 26u * 3 * 4 / 3 * 4) << "26 × 3 floats in base64";
-  EXPECT_EQ(v["law"]["curves"][0]["y"][0], 3600.0);
+  EXPECT_EQ(v["law_curves"][0]["curves"][0]["y"][0], 3600.0);
 }
 
 // A second tool has a file of its own with the first twelve columns.

@@ -248,7 +248,7 @@ function figure2() {
       label,
       summary: summary(columns, wall),
       forces: columns,
-      law: lawOf(y),
+      law_curves: [lawOf(y)],
       surface: surface(24, depth, 1.1),
     };
   };
@@ -343,7 +343,7 @@ function figure3() {
         label: `${speed * 1000} mm/s`,
         summary: summary(columns, 1.1 + n),
         forces: columns,
-        law: lawOf(laws.linear),
+        law_curves: [lawOf(laws.linear)],
         surface: n < 2 ? surface(10, 0.01, (1.1 * 0.01) / speed) : null,
       };
     }),
@@ -377,7 +377,7 @@ function bare() {
         label: "Nothing recorded",
         summary: {},
         forces: { columns: [], data: [] },
-        law: null,
+        law_curves: [],
         surface: null,
       },
       {
@@ -392,7 +392,7 @@ function bare() {
             [0, 0.05, null, 0.17],
           ],
         },
-        law: { measure: "", x: [], curves: [] },
+        law_curves: [{ measure: "", x: [], curves: [] }],
         surface: { ...surface(2, 0.004, 1), frames: [] },
       },
       {
@@ -400,7 +400,7 @@ function bare() {
         label: "Zero-length columns",
         summary: { end: "interrupted" },
         forces: { columns: ["time_s", "force_N"], data: [[], []] },
-        law: null,
+        law_curves: [],
         surface: null,
       },
     ],

@@ -40,7 +40,7 @@ function needleVariant(name, speed, withEvents = true) {
       ],
     },
     events: withEvents ? [event(0.03, "contact"), event(1 / 3, "puncture"), event(0.36, "drop")] : [],
-    law: null,
+    law_curves: [],
     surface: body,
   };
 }

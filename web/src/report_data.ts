@@ -36,7 +36,7 @@ export interface VariantData {
   forces: Columns; // columns of forces.csv
   probes: Columns; // columns of probes.csv, row by row those of forces; empty without probes
   events: EventData[]; // events.csv; empty where there is no instrument
-  law: LawData | null;
+  law_curves: LawData[];
   surface: SurfaceData | null;
 }
 
@@ -56,9 +56,9 @@ export interface Columns {
 
 export interface LawData {
   measure: string; // e.g. "equivalent shear strain s [-]"
-  quantity: "modulus" | "nominal stress"; // of the curves
+  quantity: "modulus" | "nominal stress" | "shear stress"; // of the curves
   x: number[];
-  curves: { label: string; y: number[] }[]; // [Pa]
+  curves: { label: string; y: number[] }[]; // [Pa]; NaN where the law has no answer
 }
 
 export interface SurfaceData {
@@ -138,6 +138,7 @@ export interface FitData {
   tissue: string; // the result, ready for scenes; "" where there is none
   result_file?: string; // its name; tissue.toml where it is not said
   law: string; // the law of `parameters`, e.g. "ogden, 1 term"
+  law_curves: LawData[]; // what that law says in tests of the material; empty where the result is no tissue
   parameters: FitParameter[];
   correlation: (number | null)[][]; // of the scaled parameters; row i belongs to parameters[i]; empty: unknown
   x: FitAxis; // of curves that say none: display = displacement [m] × scale, e.g. "strain [%]"

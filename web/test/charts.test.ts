@@ -20,13 +20,15 @@ const line = (x: number[], y: number[]): Line => ({
   times: null,
 });
 
-const variant = (name: string, y = [3600, 3600]): VariantData => ({
+const variant = (name: string, y = [3600, 3600, 3600]): VariantData => ({
   name,
   label: name,
   summary: {},
   events: [],
   surface: null,
-  law: { measure: "equivalent shear strain s [-]", quantity: "modulus", x: [0, 1], curves: [{ label: "E", y }] },
+  law_curves: [
+    { measure: "equivalent shear strain s [-]", quantity: "modulus", x: [0, 0.5, 1], curves: [{ label: "E", y }] },
+  ],
   probes: { columns: [], data: [] },
   forces: {
     columns: ["time_s", "depth_m", "force_N", "elastic_N", "viscous_N", "energy_elastic_J"],
@@ -110,22 +112,34 @@ describe("default charts", () => {
     const law = {
       measure: "stretch, sides free [-]",
       quantity: "nominal stress" as const,
-      x: [0.5, 1.5],
-      curves: [{ label: "ogden", y: [-9000, 2000] }],
+      x: [0.5, 1, 1.5],
+      curves: [{ label: "", y: [-9000, 0, 2000] }],
     };
-    const models = lawCharts([variant("a"), { ...variant("b"), law }]);
+    const models = lawCharts([variant("a", [3600, 3600, 7200]), { ...variant("b"), law_curves: [law] }]);
     expect(models.map((model) => [model.title, model.yLabel])).toEqual([
       ["Law of stiffness", "Modulus E [kPa]"],
       ["Stress against stretch", "Nominal stress [kPa]"],
     ]);
   });
 
+  it("end a law's line where it has no answer, and name what is at once and what is relaxed", () => {
+    const curves = [
+      { label: "at once", y: [-9000, 0, 2000, 4500] },
+      { label: "relaxed", y: [NaN, 0, 1000, 2200] },
+    ];
+    const law = { measure: "amount of shear [-]", quantity: "shear stress" as const, x: [0, 1, 2, 3], curves };
+    const [model] = lawCharts([{ ...variant("a"), law_curves: [law] }]);
+    expect(model).toMatchObject({ title: "Stress against shear", yLabel: "Shear stress [kPa]" });
+    expect(model!.lines.map((one) => one.label)).toEqual(["a, at once", "a, relaxed"]);
+    expect([...model!.lines[1]!.y]).toEqual([NaN, 0, 1, 2.2]);
+  });
+
   it("show laws only where one is not constant, the constant ones with it", () => {
     expect(lawCharts([variant("a"), variant("b")])).toEqual([]);
-    const [model] = lawCharts([variant("a"), variant("b", [3600, 7200])]);
+    const [model] = lawCharts([variant("a"), variant("b", [3600, 3600, 7200])]);
     expect(model).toMatchObject({ xLabel: "Equivalent shear strain s [–]", yLabel: "Modulus E [kPa]" });
     expect(model!.lines.map((one) => one.label)).toEqual(["a", "b"]);
-    const [merged] = lawCharts([variant("a"), variant("b", [3600, 7200]), variant("c", [3600, 7200])]);
+    const [merged] = lawCharts([variant("a"), variant("b", [3600, 3600, 7200]), variant("c", [3600, 3600, 7200])]);
     expect(merged!.lines.map((one) => one.label)).toEqual(["a", "b / c"]);
   });
 

@@ -193,6 +193,7 @@ export function fitFixture() {
     groups: groupsOf(curves),
     tests: [],
     discovered: [],
+    law_curves: [],
     rms_fit: rms(curves.filter((c) => !c.held_out).map((c) => c.rms)),
     rms_heldout: rms(curves.filter((c) => c.held_out).map((c) => c.rms)),
     spread_N: rms(groupsOf(curves).map((group) => group.spread_N)),
@@ -263,6 +264,7 @@ export function bareFit() {
     groups: groupsOf(curves),
     tests: [],
     discovered: [],
+    law_curves: [],
     parameters: whole.parameters.slice(0, 1).map((given) => ({
       ...given,
       sd: null,
@@ -340,6 +342,7 @@ export function largeFit() {
     groups: groupsOf(curves),
     tests: [],
     discovered: [],
+    law_curves: [],
     profiles: parameters.map((given, at) => profile({ ...given, value: 10 ** (1 + 0.4 * at) }, at % 4 === 2)),
     basins: Array.from({ length: 14 }, (_, at) => ({
       cost: 1e-3 * 3 ** at,

@@ -73,7 +73,7 @@ const variant = (events: [number, number, string][], more: Record<string, number
     forces: { columns: Object.keys(columns), data: Object.values(columns) },
     probes: { columns: [], data: [] },
     events: events.map(([time_s, depth_m, event]) => ({ time_s, depth_m, event, instrument: "needle" })),
-    law: null,
+    law_curves: [],
     surface: null,
   };
 };

@@ -25,7 +25,7 @@ describe("reading the report", () => {
     expect(report.scenes[0]).toMatchObject({ name: "scene-1", title: "scene-1", notes: [], charts: [], checks: [] });
     expect(report.scenes[0]!.variants[0]).toMatchObject({
       label: "variant-1",
-      law: null,
+      law_curves: [],
       surface: null,
       forces: { columns: [], data: [] },
     });
@@ -47,9 +47,12 @@ describe("reading the report", () => {
   });
 
   it("takes a law without curves and a surface without triangles for none", () => {
-    const variant = { law: { measure: "s", x: [], curves: [] }, surface: { vertices: 3, rest: "AAAA", triangles: "" } };
+    const variant = {
+      law_curves: [{ measure: "s", x: [], curves: [] }],
+      surface: { vertices: 3, rest: "AAAA", triangles: "" },
+    };
     expect(read({ format: 1, scenes: [{ variants: [variant] }] }).scenes[0]!.variants[0]).toMatchObject({
-      law: null,
+      law_curves: [],
       surface: null,
     });
   });

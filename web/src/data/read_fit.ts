@@ -10,6 +10,7 @@ import type {
   FitProfile,
   FitTest,
 } from "../report_data.ts";
+import { readLaws } from "./read_law.ts";
 import { type Raw, finite, list, numberOrNaN, numberOrNull, numbers, record, text } from "./raw.ts";
 
 export function readFit(raw: Raw, index: number): FitData {
@@ -29,6 +30,7 @@ export function readFit(raw: Raw, index: number): FitData {
     source: text(raw["source"]),
     tissue: text(raw["tissue"]),
     law: text(raw["law"]),
+    law_curves: readLaws(raw["law_curves"]),
     parameters,
     correlation: readMatrix(raw["correlation"], parameters.length),
     x,

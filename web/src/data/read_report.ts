@@ -10,13 +10,13 @@ import type {
   FrameData,
   InstrumentForm,
   InstrumentPlace,
-  LawData,
   ReportData,
   SceneData,
   SurfaceData,
   TableData,
   VariantData,
 } from "../report_data.ts";
+import { readLaws } from "./read_law.ts";
 import { type Raw, finite, isRecord, list, numberOrNaN, record, text } from "./raw.ts";
 import { readFit } from "./read_fit.ts";
 
@@ -83,7 +83,7 @@ function readVariant(raw: Raw, index: number): VariantData {
     forces: readColumns(record(raw["forces"])),
     probes: readColumns(record(raw["probes"])),
     events: list(raw["events"]).map((event) => readEvent(record(event))),
-    law: isRecord(raw["law"]) ? readLaw(raw["law"]) : null,
+    law_curves: readLaws(raw["law_curves"]),
     surface: isRecord(raw["surface"]) ? readSurface(raw["surface"]) : null,
   };
 }
@@ -101,17 +101,6 @@ function readColumns(raw: Raw): Columns {
   const data = list(raw["data"]).map((column) => list(column).map(numberOrNaN));
   const columns = list(raw["columns"]).map(text).slice(0, data.length);
   return { columns, data: data.slice(0, columns.length) };
-}
-
-function readLaw(raw: Raw): LawData | null {
-  const x = list(raw["x"]).map(numberOrNaN);
-  const curves = list(raw["curves"])
-    .map(record)
-    .map((curve) => ({ label: text(curve["label"]), y: list(curve["y"]).map(numberOrNaN) }))
-    .filter((curve) => curve.y.length > 0);
-  if (x.length === 0 || curves.length === 0) return null;
-  const quantity = raw["quantity"] === "nominal stress" ? "nominal stress" : "modulus";
-  return { measure: text(raw["measure"]) || "measure [-]", quantity, x, curves };
 }
 
 function readSurface(raw: Raw): SurfaceData | null {

@@ -8,6 +8,7 @@ import { fitCurves } from "./fit_curves.ts";
 import { fitDownloads, resultFile } from "./fit_downloads.ts";
 import { fitHead } from "./fit_head.ts";
 import { designTable, discoveredTable, groupTable, lawTable, testTable } from "./fit_tables.ts";
+import { discoveryFigure, lawFigures } from "./law_figures.ts";
 import { parameterTable } from "./parameter_table.ts";
 import { profileFigures } from "./profiles.ts";
 import { residualFigures } from "./residuals.ts";
@@ -28,6 +29,7 @@ export function fitSection(fit: FitData, id: string, titled: boolean): SceneView
     fitHead(fit, id, titled),
     block("Curves", fitCurves(fit)),
     block("Parameters", parameterTable(fit)),
+    block("Law", wrap("figures figures-pair", [...lawFigures(fit), discoveryFigure(fit)])),
     block("Profiles", wrap("figures", [profileFigures(fit)])),
     block("Correlations", wrap("figures figures-pair", correlationFigures(fit))),
     block("Residuals", wrap("figures", [residualFigures(fit)])),
