@@ -125,7 +125,9 @@ nlohmann::json stress_data(const DrawnTest& drawn, const std::vector<std::pair<s
   for (const auto& [prefix, tissue] : tissues) {
     for (const auto& [state, drawn_tissue] : states_of(tissue)) {
       try {
-        const std::string label = prefix.empty() || state.empty() ? prefix + state : prefix + ": " + state;
+        std::string label = prefix;
+        if (!prefix.empty() && !state.empty()) label += ": ";
+        label += state;
         curves.push_back({{"label", label}, {"y", drawn_stresses(drawn_tissue, drawn, x)}});
       } catch (const std::invalid_argument&) {  // a measure that depends on the mesh: there is no curve of the material
         return nullptr;
