@@ -9,6 +9,7 @@
 #include <regex>
 #include <set>
 
+#include "glisson/material_point.h"
 #include "glisson/scene/tissue_presets.h"
 #include "material/response.h"
 #include "scene/scene_text.h"
@@ -182,6 +183,24 @@ TEST(Presets, BrainRelaxesAsPublished) {
   set_bulk(*stiff.hyperelastic, 1e5 * 842.0);
   const double l = 0.7, P = 2.0 * 842.0 / -4.7 * (std::pow(l, -5.7) - std::pow(l, 1.35));
   EXPECT_NEAR(compressive_stress(Response(stiff), 1.0 - l), -P, 1e-3 * -P);
+}
+
+// Miller's polynomial, which the paper cites: P = 2 (λ − λ⁻²) (w₁ + w₂/λ) at once, w_k = c_k + 2 d_k (I_k − 3), and 0.185 of it
+// after long times.
+TEST(Presets, BrainOfThePaperIsMillersPolynomial) {
+  Tissue t = tissue_preset("brain_miller_polynomial").tissue;
+  EXPECT_DOUBLE_EQ(shear_modulus(*t.hyperelastic), 2.0 * (263.0 + 263.0));
+  set_bulk(*t.hyperelastic, 1e5 * 1052.0);
+  for (const double l : {0.7, 0.85, 1.1}) {
+    const double w1 = 263.0 + 2.0 * 491.0 * (l * l + 2.0 / l - 3.0),
+                 w2 = 263.0 + 2.0 * 491.0 * (2.0 * l + 1.0 / (l * l) - 3.0);
+    const double P = 2.0 * (l - 1.0 / (l * l)) * (w1 + w2 / l);
+    const std::vector<double> times{1e-6, 1e6}, held{l, l};
+    const auto states = material_test(t, MaterialTest::uniaxial, MaterialControl::deformation, times, held);
+    ASSERT_TRUE(states.back().converged);
+    EXPECT_NEAR(states[0].nominal(2, 2), P, 1e-3 * std::abs(P)) << l;
+    EXPECT_NEAR(states[1].nominal(2, 2), 0.185 * P, 1e-3 * std::abs(P)) << l;
+  }
 }
 
 // Elastography measures the speed of shear waves, or the shear modulus: the presets give it back.

@@ -187,9 +187,9 @@ std::vector<Known> ogden_laws() {
          return Candidate(n, m)
              .hyperelastic("kind = \"ogden\", mu_Pa = [1, 1], alpha = [-2, 2]")
              .modulus("tissue.hyperelastic.mu_Pa[0]", 1e-5, 10.0)
-             .free("tissue.hyperelastic.alpha[0]", -30.0, -0.1, Scale::linear)
+             .free("tissue.hyperelastic.alpha[0]", -60.0, -0.1, Scale::linear)
              .modulus("tissue.hyperelastic.mu_Pa[1]", 1e-5, 10.0)
-             .free("tissue.hyperelastic.alpha[1]", 0.1, 30.0, Scale::linear);
+             .free("tissue.hyperelastic.alpha[1]", 0.1, 60.0, Scale::linear);
        }},
   };
 }
