@@ -50,6 +50,14 @@ struct Container::State {
   bool begun = false;
   std::vector<ContactRow> rows;
   std::map<std::uint32_t, Bond> bonds;
+  /// What a step needs of a bond. The vessel stands still.
+  struct Hold {
+    std::uint32_t vertex = 0;
+    const ContactSolid* solid = nullptr;
+    Vec3d there, normal;  ///< in space
+  };
+  std::vector<Hold> holds;   ///< of all bonds, by vertex
+  std::vector<char> bonded;  ///< per vertex of the body
   ContainerLoads loads;
   struct Bearing {
     std::uint32_t vertex;
@@ -63,6 +71,7 @@ struct Container::State {
   bool holds_at(const Vec3d& x) const { return to_frame(options.pose, x).z <= height; }
   void require_inside(const BodyView& body) const;
   void bond_first(const BodyView& body);
+  void list_bonds();
   void add_rows(const InteractionStep& step);
   void hold_bonds(const InteractionStep& step);
   void bear(std::uint32_t vertex, const ContactSolid& solid, const Vec3d& normal, const Vec3d& force);
@@ -131,9 +140,20 @@ void Container::State::bond_first(const BodyView& body) {
   }
 }
 
+void Container::State::list_bonds() {
+  holds.clear();
+  bonded.assign(reach.surface().body_vertices(), 0);
+  for (const auto& [v, bond] : bonds) {
+    const ContactSolid& solid = solids[bond.solid];
+    const Vec3d normal = solid.after.axes * distance_to(*solid.shape, bond.place).normal;
+    holds.push_back({v, &solid, to_space(solid.after, bond.place), normal});
+    bonded[v] = 1;
+  }
+}
+
 void Container::State::add_rows(const InteractionStep& step) {
   for (const std::uint32_t v : reach.vertices()) {
-    if (bonds.count(v) != 0) continue;
+    if (bonded[v] != 0) continue;
     const std::uint32_t place = step.place_of[v];
     const Vec3d x = step.position(place), way = step.vertices[place].velocity * step.h;
     if (!holds_at(x)) continue;
@@ -161,15 +181,13 @@ void Container::State::bear(std::uint32_t vertex, const ContactSolid& solid, con
 }
 
 void Container::State::hold_bonds(const InteractionStep& step) {
-  for (const auto& [v, bond] : bonds) {
-    const std::uint32_t place = step.place_of[v];
+  for (const Hold& hold : holds) {
+    const std::uint32_t place = step.place_of[hold.vertex];
     if (place == InteractionStep::kNowhere) continue;
-    const ContactSolid& solid = solids[bond.solid];
-    const Vec3d wanted = (to_space(solid.after, bond.place) - step.position(place)) * (1.0 / step.h);
-    const Vec3d impulse = stopping(step, place, wanted);
+    const Vec3d impulse = stopping(step, place, (hold.there - step.position(place)) * (1.0 / step.h));
     step.push(place, impulse);
     step.book(WorkSink::contact, place, impulse);
-    bear(v, solid, solid.after.axes * distance_to(*solid.shape, bond.place).normal, impulse * (1.0 / step.h));
+    bear(hold.vertex, *hold.solid, hold.normal, impulse * (1.0 / step.h));
   }
 }
 
@@ -189,11 +207,13 @@ void Container::attached(const BodyView& body, double) {
   state_->reach.attach(body);
   state_->require_inside(body);
   if (state_->options.bonded) state_->bond_first(body);
+  state_->list_bonds();
 }
 
 void Container::body_changed(const BodyView& body, std::span<const std::uint32_t> origins) {
   give_to_copies(state_->bonds, body.mesh.vertices.size(), origins);
   state_->reach.attach(body);
+  state_->list_bonds();
 }
 
 std::span<const std::uint32_t> Container::reach(double, double h) { return state_->reach.ask(state_->solids, h); }
@@ -209,6 +229,7 @@ void Container::constrain(const InteractionStep& step) {
   s.add_rows(step);
   if (!s.rows.empty()) s.books.solve(s.rows, step);
   s.books.close(s.rows, step);
+  const std::size_t bonds_before = s.bonds.size();
   for (const ContactRow& row : s.rows) {
     if (row.impulse() == Vec3d{}) continue;
     s.bear(step.vertices[row.places[0]].vertex, *row.solid, row.normal, row.impulse() * (1.0 / step.h));
@@ -217,6 +238,7 @@ void Container::constrain(const InteractionStep& step) {
     const auto solid = static_cast<std::uint32_t>(row.solid - s.solids.data());
     if (s.options.bonded) s.bonds[step.vertices[row.places[0]].vertex] = {solid, end_of(row, step)};
   }
+  if (s.bonds.size() > bonds_before) s.list_bonds();
   s.hold_bonds(step);
 }
 
@@ -231,6 +253,7 @@ void Container::archive(Archive& ar) {
   State& s = *state_;
   ar(s.begun, s.books, s.bonds, s.found_inside, s.reach);
   for (const auto& [v, bond] : s.bonds) ar.check(v < s.reach.surface().body_vertices() && bond.solid < s.solids.size());
+  if (ar.reads()) s.list_bonds();
 }
 
 }  // namespace glisson

@@ -9,6 +9,10 @@ namespace {
 
 /// 1/(m + γ h) of a vertex with mass.
 Vec3d inverse_inertia(const ActiveKick::Kicked& k, double h) {
+  if (k.dashpot == Vec3d{}) {
+    const double inverse = 1.0 / (k.mass + k.damping * h);
+    return {inverse, inverse, inverse};
+  }
   const auto inverse = [&](double dashpot) { return 1.0 / (k.mass + (k.damping + dashpot) * h); };
   return {inverse(k.dashpot.x), inverse(k.dashpot.y), inverse(k.dashpot.z)};
 }
@@ -46,7 +50,8 @@ void ActiveKick::begin(double h) {
 Vec3d ActiveKick::keep(std::size_t k, const ActiveVertex& w, std::span<const Vec3d> loads) {
   const double m = state_.body.masses[w.vertex];
   const Vec3d load = m > 0.0 ? loads[w.vertex] : Vec3d{};
-  kicked_[k] = {m, state_.gamma[w.vertex], w.velocity, load, {}, state_.loads.dashpot(w.vertex)};
+  kicked_[k] = {m, state_.gamma[w.vertex], w.velocity, load, {}, state_.loads.dashpot(w.vertex), {}};
+  if (m > 0.0) kicked_[k].mobility = inverse_inertia(kicked_[k], step_);
   return load;
 }
 
@@ -65,8 +70,7 @@ void ActiveKick::kick(std::span<ActiveVertex> active) {
     const Vec3d load = keep(k, w, of_loads);
     const double m = kicked_[k].mass;
     const Vec3d force = w.elastic + w.viscous + gravity_ * m + load;
-    w.velocity =
-        m > 0.0 ? component_product(w.velocity * m + force * step_, inverse_inertia(kicked_[k], step_)) : Vec3d{};
+    w.velocity = m > 0.0 ? component_product(w.velocity * m + force * step_, kicked_[k].mobility) : Vec3d{};
   }
 }
 
@@ -91,7 +95,7 @@ void ActiveKick::impose_motions(std::span<ActiveVertex> active) const {
 
 std::span<const Vec3d> ActiveKick::mobility() {
   mobility_.clear();
-  for (const Kicked& k : kicked_) mobility_.push_back(k.mass > 0.0 ? inverse_inertia(k, step_) : Vec3d{});
+  for (const Kicked& k : kicked_) mobility_.push_back(k.mobility);
   for (std::size_t c = 0; c < places_.size(); ++c) {
     if (!state_.holds(c)) continue;
     for (const std::uint32_t place : places_[c]) {

@@ -20,6 +20,7 @@ class ActiveKick {
     double mass = 0.0, damping = 0.0;
     Vec3d velocity_before, load, contact;  ///< contact: force of the interactions
     Vec3d dashpot{};                       ///< to the ground, along x, y, z [kg/s]
+    Vec3d mobility{};                      ///< 1/(m + γ h), 0 without mass [1/kg]
     void archive(Archive& ar) { ar(mass, damping, velocity_before, load, contact, dashpot); }
     /// All that drags it [N].
     Vec3d drag(const Vec3d& v) const { return v * damping + component_product(dashpot, v); }
