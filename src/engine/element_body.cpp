@@ -128,7 +128,7 @@ void ElementBody::set_branch_stresses(std::size_t block, std::span<const Sym3<do
   if (any_ != nullptr) any_->set_branch_stresses(block, stresses, u_);
 }
 
-void ElementBody::watch(std::span<const std::uint32_t> vertices) {
+void ElementBody::watch(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> /*apart*/) {
   for (const std::uint32_t v : vertices) is_active_[v] = 1;
   std::vector<ActiveVertex> now;
   std::size_t known = 0;

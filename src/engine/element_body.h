@@ -34,7 +34,7 @@ class ElementBody final : public MovingBody {
   BranchMemory branch_memory(std::size_t block) const override;
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override;
   void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) override;
-  void watch(std::span<const std::uint32_t> vertices) override;
+  void watch(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> apart) override;
   void watch_only(std::span<const std::uint32_t> vertices) override;
   std::span<ActiveVertex> active() override { return active_; }
   void place_active() override;

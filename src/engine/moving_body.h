@@ -81,7 +81,9 @@ class MovingBody {
   virtual void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) = 0;
 
   /// Adds vertices to those active; one that is active already stays so.
-  virtual void watch(std::span<const std::uint32_t> vertices) = 0;
+  /// @param apart  whose elastic and viscous forces are asked for one by one, ascending; of others, unless a step is
+  ///               accounted, `elastic` may be both
+  virtual void watch(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> apart) = 0;
   /// Takes all others from those active; they go on from where active() last placed them.
   /// @param vertices  ascending, all of them active
   virtual void watch_only(std::span<const std::uint32_t> vertices) = 0;

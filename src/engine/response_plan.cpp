@@ -45,6 +45,16 @@ bool has_lanes(const Tissue& t) {
   return known_measure && !raw_energy;
 }
 
+bool has_constant_moduli(const Tissue& t) {
+  return std::holds_alternative<ConstantLaw>(t.law) && !t.lambda_law && !t.mu_law;
+}
+
+bool in_one_pass(const Tissue& t) {
+  const bool small = !t.hyperelastic && t.kinematics == Kinematics::small && t.law_form == LawForm::secant;
+  return small && !t.maxwell.empty() && !t.fibres && t.viscous_tensor != ViscousTensor::pioletti &&
+         t.volume_change == VolumeChange::element;
+}
+
 LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::size_t mu_law) {
   LaneResponse r;
   r.moduli = moduli;

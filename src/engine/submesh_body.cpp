@@ -44,7 +44,7 @@ SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping
 void SubmeshBody::follow_layout(std::span<const double> nodal_damping) {
   state_.assign(body_.vertex_count * kStateDoubles, 0.0);
   masses_.assign(body_.vertex_count, 0.0), damping_.assign(body_.vertex_count, 0.0);
-  watches_.resize(submeshes_.parts.size()), holds_active_.assign(submeshes_.parts.size(), 0);
+  watches_.resize(submeshes_.parts.size()), holds_apart_.assign(submeshes_.parts.size(), 0);
   looked_.assign(submeshes_.parts.size(), Looked::small), found_.resize(submeshes_.parts.size());
   plans_.clear(), large_plans_.clear();
   for (const TissueBlock& block : body_.blocks) {
@@ -112,7 +112,8 @@ Vec3d SubmeshBody::velocity_of(std::uint32_t vertex) const {
   return vector_of(state_.data() + submeshes_.record_of_vertex[vertex] * kStateDoubles + 4);
 }
 
-void SubmeshBody::watch(std::span<const std::uint32_t> vertices) {
+void SubmeshBody::watch(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> apart) {
+  apart_.assign(apart.begin(), apart.end());
   std::vector<std::uint32_t> all(vertices.begin(), vertices.end());
   for (const ActiveVertex& w : active_) all.push_back(w.vertex);
   std::sort(all.begin(), all.end());
@@ -137,10 +138,11 @@ void SubmeshBody::watch_only(std::span<const std::uint32_t> vertices) {
 /// Sorts the active vertices to the submesh or the run of the interface that has them.
 void SubmeshBody::find_watches() {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> records;  // record, place
-  std::vector<char> is_active(masses_.size(), 0);
+  std::vector<char> is_apart(masses_.size(), 0);
   for (std::uint32_t place = 0; place < active_.size(); ++place) {
-    records.emplace_back(submeshes_.record_of_vertex[active_[place].vertex], place);
-    is_active[records.back().first] = 1;
+    const std::uint32_t v = active_[place].vertex;
+    records.emplace_back(submeshes_.record_of_vertex[v], place);
+    is_apart[records.back().first] = std::binary_search(apart_.begin(), apart_.end(), v) ? 1 : 0;
   }
   std::sort(records.begin(), records.end());
   for (auto& list : watches_) list.clear();
@@ -156,9 +158,12 @@ void SubmeshBody::find_watches() {
     watches_[s].push_back({static_cast<std::uint32_t>(record - submeshes_.parts[s].first_interior), place});
   }
   for (std::size_t p = 0; p < watches_.size(); ++p) {
-    const auto& shared = submeshes_.parts[p].shared;
-    holds_active_[p] = !watches_[p].empty() ||
-                       std::any_of(shared.begin(), shared.end(), [&](std::uint32_t r) { return is_active[r] != 0; });
+    const Submesh& part = submeshes_.parts[p];
+    const auto asked = [&](std::uint32_t record) { return is_apart[record] != 0; };
+    holds_apart_[p] =
+        std::any_of(watches_[p].begin(), watches_[p].end(),
+                    [&](const Watch& w) { return asked(static_cast<std::uint32_t>(part.first_interior) + w.local); }) ||
+        std::any_of(part.shared.begin(), part.shared.end(), asked);
   }
 }
 

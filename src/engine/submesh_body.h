@@ -45,7 +45,7 @@ class SubmeshBody final : public MovingBody {
   BranchMemory branch_memory(std::size_t block) const override;
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override;
   void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) override;
-  void watch(std::span<const std::uint32_t> vertices) override;
+  void watch(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> apart) override;
   void watch_only(std::span<const std::uint32_t> vertices) override;
   std::span<ActiveVertex> active() override { return active_; }
   void place_active() override;
@@ -89,6 +89,7 @@ class SubmeshBody final : public MovingBody {
     LaneResponse lanes;
     RespondStage respond;
     MaxwellStep maxwell;
+    bool one_pass = false, constant = false;  ///< in_one_pass(), has_constant_moduli()
   };
   /// Of a submesh whose tets share their volume change: one over the volume around each local vertex, and ϑ_a.
   struct SharedVolume {
@@ -121,6 +122,7 @@ class SubmeshBody final : public MovingBody {
   void narrow(const Submesh& part, Scratch& scratch) const;
   void push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;
   void push_response(std::size_t s, bool split, Scratch& scratch, Findings& found);
+  void push_relaxing(std::size_t s, bool split, Scratch& scratch, Findings& found);
   bool shares_volume(const Submesh& part) const;
   void weigh_vertices();
   void spread_volume(std::size_t s, Scratch& scratch);
@@ -168,7 +170,8 @@ class SubmeshBody final : public MovingBody {
   std::vector<ActiveVertex> active_;
   std::vector<std::vector<Watch>> watches_;            ///< per submesh, of its interior
   std::vector<std::vector<Watch>> interface_watches_;  ///< per chunk of the interface
-  std::vector<char> holds_active_;                     ///< per submesh: one of its vertices is active
+  std::vector<std::uint32_t> apart_;                   ///< vertices whose forces are asked for one by one, ascending
+  std::vector<char> holds_apart_;                      ///< per submesh: it has one of them
   std::vector<Looked> looked_;                         ///< per submesh
   std::vector<Findings> found_, interface_found_;
   Advance advance_;

@@ -10,8 +10,12 @@ namespace glisson::engine {
 std::unique_ptr<SubmeshBody::LargePlan> SubmeshBody::large_plan_of(const TissueBlock& block, const Plan& plan) const {
   if (block.tissue.is_tensor_mass()) return nullptr;
   const LaneResponse lanes = lane_response(block.tissue, plan.tissue, plan.laws - 1);
-  return std::make_unique<LargePlan>(
-      LargePlan{Response(block.tissue), lanes, respond_stage(*kernels_.response, block.tissue), {}});
+  return std::make_unique<LargePlan>(LargePlan{Response(block.tissue),
+                                               lanes,
+                                               respond_stage(*kernels_.response, block.tissue),
+                                               {},
+                                               in_one_pass(block.tissue),
+                                               has_constant_moduli(block.tissue)});
 }
 
 /// Weights of all branches for a step of h from the state that is asked for.
@@ -39,10 +43,40 @@ void SubmeshBody::list_response(const Submesh& part, std::size_t batch, std::siz
   }
 }
 
+/// Tissue of small strain with branches, its stresses in one pass.
+void SubmeshBody::push_relaxing(std::size_t s, bool split, Scratch& scratch, Findings& found) {
+  Submesh& part = submeshes_.parts[s];
+  const Plan& plan = plans_[part.block];
+  const LargePlan& large = *large_plans_[part.block];
+  const Elements elements = elements_of(part, scratch);
+  const std::size_t tets = kernels_.lanes * kChainTets, numbers = memory_numbers(large.response.tissue());
+  const StressPass pass = kernels_.response->relaxing_small[large.constant ? 0 : 1][split ? 1 : 0];
+  const auto gather = large.lanes.viscous ? kernels_.gather_viscous : kernels_.gather_elastic;
+  Block& block = scratch.block;
+  ResponseBlock& out = scratch.response;
+  for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
+    const std::size_t n = std::min(kBlockBatches, part.chains.count - b);
+    gather(elements, b, n, block);
+    if (!large.constant) {
+      if (kernels_.measure[plan.measure](elements, b, n, block)) found.inverted = true;
+      run_laws(plan, n * tets, block);
+    }
+    const ResponseItems items{
+        .gradient = block.gradient, .memory = part.memory.data() + b * tets * numbers, .items = n * kChainTets};
+    const PassFound here = pass(items, large.lanes, large.maxwell, block, out);
+    found.inverted = found.inverted || here.inverted;
+    found.stiffening = std::max(found.stiffening, double(here.stiffest));
+    if (!large.constant && double(here.stiffest) > list_limit(part.block)) list_response(part, b, n, out, found);
+    kernels_.push_stress(elements, b, n, out.piola, scratch.elastic.data());
+    if (split) kernels_.push_stress(elements, b, n, block.viscous, scratch.viscous.data());
+  }
+}
+
 void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Findings& found) {
   Submesh& part = submeshes_.parts[s];
   const Plan& plan = plans_[part.block];
   const LargePlan& large = *large_plans_[part.block];
+  if (large.one_pass && !large.maxwell.relaxed) return push_relaxing(s, split, scratch, found);
   const LaneResponse& lanes = large.lanes;
   const ResponseKernels& stages = *kernels_.response;
   const Elements elements = elements_of(part, scratch);

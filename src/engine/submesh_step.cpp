@@ -34,7 +34,7 @@ double SubmeshBody::list_limit(std::size_t block) const {
 
 /// Whether elastic and viscous forces of a submesh are kept apart.
 bool SubmeshBody::splits(std::size_t s, bool accounted) const {
-  return plans_[submeshes_.parts[s].block].viscous && (accounted || holds_active_[s] != 0);
+  return plans_[submeshes_.parts[s].block].viscous && (accounted || holds_apart_[s] != 0);
 }
 
 void SubmeshBody::narrow(const Submesh& part, Scratch& scratch) const {

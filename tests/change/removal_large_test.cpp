@@ -32,7 +32,7 @@ Forces forces_built_anew(TetMesh mesh, const Tissues& tissues, const Body& chang
   const Body body = build_body(mesh, tissues);
   EXPECT_EQ(body.masses, changed.masses);  // to the bit: added up in the same order
   engine::SubmeshBody anew(body, std::vector<double>(body.vertex_count, 0.0));
-  anew.watch(all_vertices(mesh));
+  anew.watch(all_vertices(mesh), all_vertices(mesh));
   return forces_of(anew, state);
 }
 
@@ -45,7 +45,7 @@ TEST_P(RemovalFromLarge, LeavesTheForcesOfABodyBuiltAnew) {
   Body body = build_body(mesh, tissues);
   const std::vector<double> damping(body.vertex_count, 0.0);
   engine::SubmeshBody moving(body, damping);
-  moving.watch(all_vertices(mesh));
+  moving.watch(all_vertices(mesh), all_vertices(mesh));
   BodyChanger changer(body);
   const State state = random_state(mesh, kCell, random);
   for (const std::size_t count : {1U, 5U, 20U, 100U}) {

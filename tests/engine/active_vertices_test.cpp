@@ -52,7 +52,7 @@ class Watch : public testing::TestWithParam<const engine::Kernels*> {
 // Sets active one after the other add up to their union, and cover interiors and interfaces both.
 TEST_P(Watch, SetsAddUp) {
   engine::SubmeshBody moving(body_, undamped_, options_);
-  for (const Vertices& set : sets()) moving.watch(set);
+  for (const Vertices& set : sets()) moving.watch(set, union_of_sets());
   const Vertices expected = union_of_sets();
   ASSERT_EQ(moving.active().size(), expected.size());
   std::size_t between = 0;
@@ -70,7 +70,7 @@ TEST_P(Watch, TellsForcesAndStates) {
   const test::EngineForces all = test::engine_forces(body_, u_, v_, options_);
   for (const bool accounted : {false, true}) {
     engine::SubmeshBody moving(body_, undamped_, options_);
-    for (const Vertices& set : sets()) moving.watch(set);
+    for (const Vertices& set : sets()) moving.watch(set, union_of_sets());
     moving.set_state(u_, v_);
     moving.advance(1e-5, {0.0, 0.0, -9.81}, accounted);
     std::vector<Vec3d> elastic, viscous, expected_elastic, expected_viscous;
@@ -90,7 +90,7 @@ TEST_P(Watch, TellsForcesAndStates) {
 TEST_P(Watch, StandStillWhileOthersMove) {
   constexpr double h = 1e-4;
   engine::SubmeshBody watching(body_, undamped_, options_), free(body_, undamped_, options_);
-  for (const Vertices& set : sets()) watching.watch(set);
+  for (const Vertices& set : sets()) watching.watch(set, union_of_sets());
   for (engine::SubmeshBody* moving : {&watching, &free}) {
     moving->set_state(u_, v_);
     moving->advance(h, {0.0, 0.0, -9.81}, false);
@@ -114,9 +114,9 @@ TEST_P(Watch, StandStillWhileOthersMove) {
 TEST_P(Watch, LetsVerticesGo) {
   engine::SubmeshBody letting(body_, undamped_, options_), never(body_, undamped_, options_);
   const Vertices kept = sets()[0];
-  for (const Vertices& set : sets()) letting.watch(set);
+  for (const Vertices& set : sets()) letting.watch(set, union_of_sets());
   letting.watch_only(kept);
-  never.watch(kept);
+  never.watch(kept, kept);
   for (engine::SubmeshBody* moving : {&letting, &never}) {
     moving->set_state(u_, v_);
     moving->advance(1e-4, {0.0, 0.0, -9.81}, false);
@@ -130,8 +130,8 @@ TEST_P(Watch, PlacingMovesExactlyThose) {
   engine::SubmeshBody moving(body_, undamped_, options_);
   moving.set_state(u_, v_);
   const std::vector<Vertices> all = sets();
-  moving.watch(all[0]);
-  moving.watch(all[1]);
+  moving.watch(all[0], all[0]);
+  moving.watch(all[1], all[1]);
   test::EngineState expected{u_, v_};
   for (ActiveVertex& w : moving.active()) {
     expected.u[w.vertex] = w.displacement = {1e-3 * w.vertex, -1.0, 2.0};
@@ -139,7 +139,7 @@ TEST_P(Watch, PlacingMovesExactlyThose) {
   }
   moving.place_active();
   EXPECT_EQ(test::state_of(moving, n_), expected);
-  moving.watch(all[2]);
+  moving.watch(all[2], all[2]);
   for (const ActiveVertex& w : moving.active()) {
     EXPECT_EQ(w.displacement, expected.u[w.vertex]);
     EXPECT_EQ(w.velocity, expected.v[w.vertex]);

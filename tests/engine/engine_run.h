@@ -29,7 +29,7 @@ inline EngineForces engine_forces(const Body& body, std::span<const Vec3d> u, st
   engine::SubmeshBody moving(body, std::vector<double>(body.vertex_count, 0.0), options);
   std::vector<std::uint32_t> all(body.vertex_count);
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-  moving.watch(all);
+  moving.watch(all, all);
   moving.set_state(u, v);
   EngineForces f;
   f.advance = moving.advance(0.0, {}, false);

@@ -51,6 +51,19 @@ TEST(ResponseFlops, GrowWithEachBranchAlike) {
   EXPECT_EQ(counts[3] - counts[2], counts[2] - counts[1]);
 }
 
+// Small strain with branches in one pass: strain 3, stress 3 + 2 + 6, of the deviator 6 more; a branch adds 6 products of two to
+// q, as many to what has relaxed, and 6 × 3 to its memory.
+TEST(ResponseFlops, OfOnePassAreCountedByHand) {
+  Tissue tissue;
+  tissue.maxwell = {{.share = 0.2, .time = 1.0}};
+  tissue.maxwell_part = MaxwellPart::all;
+  const std::size_t one = count_response_flops(tissue).tet;
+  tissue.maxwell.push_back({.share = 0.2, .time = 2.0});
+  EXPECT_EQ(count_response_flops(tissue).tet - one, 6u * (2 + 2 + 3));
+  tissue.maxwell_part = MaxwellPart::deviator;
+  EXPECT_EQ(count_response_flops(tissue).tet - one, 6u * (2 + 2 + 3) + 6u);
+}
+
 // A law with more in it counts more; shared volumes have a pass of their own.
 TEST(ResponseFlops, FollowTheLaw) {
   const std::size_t neo_hookean = count_response_flops(with(NeoHookean{.mu = 1000.0, .bulk_modulus = 1e4})).tet;

@@ -32,7 +32,7 @@ struct Driven {
     v = test::random_field(body.vertex_count, kSpeed, random);
     std::vector<std::uint32_t> all(body.vertex_count);
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-    moving->watch(all);
+    moving->watch(all, all);
     moving->set_state(u, v);
     for (int step = 0; step < 3; ++step) {
       moving->advance(kStep, {}, false);

@@ -51,7 +51,7 @@ struct BusyBody {
   }
 
   void start(MovingBody& moving) const {
-    moving.watch(watched);
+    moving.watch(watched, watched);
     moving.set_state(u, v);
   }
 

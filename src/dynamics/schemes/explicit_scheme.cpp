@@ -38,7 +38,7 @@ void ExplicitScheme::acts_on(std::span<const std::uint32_t> vertices) {
 
 void ExplicitScheme::watch(std::span<const std::uint32_t> vertices) {
   const std::vector<std::uint32_t> before = active_vertices();
-  moving_->watch(vertices);
+  moving_->watch(vertices, held_);
   active_changed(before);
 }
 
@@ -212,7 +212,7 @@ void ExplicitScheme::take_body(Archive& ar) {
   } else {
     std::unique_ptr<MovingBody> fresh = make_moving_body(state_.body, state_.gamma, state_.options, info_);
     fresh->archive_layout(ar, state_.gamma);
-    fresh->watch(active_vertices());
+    fresh->watch(active_vertices(), held_);
     moving_ = std::move(fresh);
   }
   if (!ar.reads()) return;
@@ -260,7 +260,7 @@ void ExplicitScheme::build_anew(const TissueChange& change) {
   const std::vector<std::uint32_t> active = active_vertices();
   moving_ = make_moving_body(state_.body, state_.gamma, state_.options, info_);
   moving_->set_state(state.displacement, state.velocity);
-  moving_->watch(active);
+  moving_->watch(active, held_);
   for (const auto& [b, stresses] : kept) moving_->set_branch_stresses(b, stresses);
 }
 

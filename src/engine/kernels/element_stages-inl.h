@@ -109,9 +109,6 @@ struct GatherTetRates {
   }
 };
 
-/// What a stress is multiplied by to give forces from the products of edges: −V w.
-inline constexpr float kForceScale = -1.0F / 6.0F;
-
 enum class Run { chain, fan, closed_fan };
 
 /// Goes round the edge 0–1 of a fan, from tet to tet.
@@ -345,6 +342,19 @@ struct ScaledPiola {
   }
 };
 
+/// A stress that is scaled already; 0 where there is no tet, whatever its branches remember.
+struct StoredStress {
+  const float* stress;
+
+  HWY_INLINE Stress<F> operator()(std::size_t item, F w) const {
+    const Lanes d;
+    const auto present = hn::Gt(w, hn::Zero(d));
+    const auto get = [&](std::size_t k)
+                         GLISSON_INLINED { return hn::MaskedLoad(present, d, stress + (item * 6 + k) * kLanes); };
+    return {get(0), get(1), get(2), get(3), get(4), get(5)};
+  }
+};
+
 template <Push P>
 inline void push(const Elements& e, std::size_t begin, std::size_t n, const Block& block) {
   push_batches(e, begin, n, P == Push::viscous ? e.viscous : e.elastic, ScaledStress<P>{e, block});
@@ -352,6 +362,10 @@ inline void push(const Elements& e, std::size_t begin, std::size_t n, const Bloc
 
 inline void push_piola(const Elements& e, std::size_t begin, std::size_t n, const float* piola, float* forces) {
   push_batches(e, begin, n, forces, ScaledPiola{piola});
+}
+
+inline void push_stress(const Elements& e, std::size_t begin, std::size_t n, const float* stress, float* forces) {
+  push_batches(e, begin, n, forces, StoredStress{stress});
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

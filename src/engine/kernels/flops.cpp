@@ -1,4 +1,5 @@
 #include "engine/kernels/flops.h"
+#include "engine/kernels/response_kernels.h"
 
 #include <algorithm>
 
@@ -34,12 +35,14 @@ bool follows_shape(const Tissue& tissue) {
   return !is_constant(tissue.lambda_law.value_or(ConstantLaw{})) || !is_constant(tissue.mu_law.value_or(ConstantLaw{}));
 }
 
-/// The three tets of a chain whose tissue deforms much, divided by three; P goes to the push as nine numbers.
+/// The three tets of a chain whose tissue deforms much, divided by three; P goes to the push as nine numbers, which are scaled
+/// there, a symmetric stress as six that are already.
 double response_flops_per_tet(const ElementFlops& f, const Tissue& tissue) {
   const ResponseFlops response = count_response_flops(tissue);
   const double fields = tissue.viscosity > 0.0 ? 2.0 : 1.0, gradient = static_cast<double>(f.gradient);
   const double once = 5.0 / 3.0 * kDifference + gradient;
-  double sum = once * fields + static_cast<double>(response.tet) + 9.0 + 3.0 * static_cast<double>(f.force) + 8.0;
+  const double scaled = in_one_pass(tissue) ? (fields - 1.0) * static_cast<double>(f.stress) : 9.0;
+  double sum = once * fields + static_cast<double>(response.tet) + scaled + 3.0 * static_cast<double>(f.force) + 8.0;
   if (follows_shape(tissue))
     sum += static_cast<double>(f.measure[static_cast<std::size_t>(tissue.measure)]) + laws_flops(tissue);
   // a pass of its own: gradients again, V times the change, added up at vertices (10 a chain), the mean of four (10 a chain)

@@ -37,6 +37,7 @@ const Kernels* kernels() {
       .push_viscous = push<Push::viscous>,
       .push_merged = push<Push::merged>,
       .push_piola = push_piola,
+      .push_stress = push_stress,
       .edges_elastic = edges_elastic,
       .edges_merged = edges_viscous<false>,
       .edges_split = edges_viscous<true>,

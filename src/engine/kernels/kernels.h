@@ -17,6 +17,9 @@
 
 namespace glisson::engine {
 
+/// What a stress is multiplied by to give forces from the products of edges: −V w.
+inline constexpr float kForceScale = -1.0F / 6.0F;
+
 /// Values of a block of batches between the stages, vectors of L lanes: item i = 3 batch + (0: A, 1: B, 2: C).
 struct Block {
   alignas(64) float gradient[kBlockTets * 9];  ///< H, [item][9][lane]
@@ -126,6 +129,9 @@ struct Kernels {
   /// Forces f_a = −V P s_a of a first Piola–Kirchhoff stress P [Pa], [item][9][lane], row by row: P_ij at 3 i + j.
   /// Added to the force records `forces`: the elastic or the viscous ones.
   void (*push_piola)(const Elements&, std::size_t begin, std::size_t n, const float* piola, float* forces) = nullptr;
+
+  /// The same of a symmetric stress times kForceScale, [item][6][lane]: xx, yy, zz, xy, yz, zx.
+  void (*push_stress)(const Elements&, std::size_t begin, std::size_t n, const float* stress, float* forces) = nullptr;
 
   /// Forces of a linear submesh. @return the largest squared displacement difference of an edge [m²]
   float (*edges_elastic)(const Edges&) = nullptr;

@@ -130,6 +130,7 @@ inline F Log1p(Lanes, F a) { return after(23, std::log1p(a.value), a); }
 #include "engine/kernels/average_nodal-inl.h"
 #include "engine/kernels/hyper_response-inl.h"
 #include "engine/kernels/lane_scalar-inl.h"
+#include "engine/kernels/relaxing_small-inl.h"
 #include "engine/kernels/viscous_response-inl.h"
 
 namespace glisson::engine {
@@ -188,13 +189,19 @@ ResponseFlops count_response_flops(const Tissue& tissue) {
                          .memory = memory.data(),
                          .element = nullptr,
                          .items = 1};
-  respond(tissue, in, r, *block, *out);
-  if (r.fibre > 0.0F) traced::fibres(in, r, *out);
   MaxwellStep step;
   step.moves = true;
-  if (r.branches > 0) traced::maxwell(in, r, step, *out);
-  if (r.viscous) traced::viscous(in, r, r.branches > 0, *out);
-  if (r.viscous || r.branches > 0) traced::merge(1, *out);
+  if (in_one_pass(tissue)) {
+    const bool constant = has_constant_moduli(tissue);
+    const StressPass pass = constant ? traced::relaxing_small<false, false> : traced::relaxing_small<true, false>;
+    pass(in, r, step, *block, *out);
+  } else {
+    respond(tissue, in, r, *block, *out);
+    if (r.fibre > 0.0F) traced::fibres(in, r, *out);
+    if (r.branches > 0) traced::maxwell(in, r, step, *out);
+    if (r.viscous) traced::viscous(in, r, r.branches > 0, *out);
+    if (r.viscous || r.branches > 0) traced::merge(1, *out);
+  }
   ResponseFlops flops;
   flops.tet = tape.reaching({{out->piola, 9}, {memory.data(), memory.size()}});
   if (tissue.volume_change == VolumeChange::average_nodal) {

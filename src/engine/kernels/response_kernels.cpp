@@ -8,6 +8,7 @@
 
 #include "engine/kernels/average_nodal-inl.h"
 #include "engine/kernels/hyper_response-inl.h"
+#include "engine/kernels/relaxing_small-inl.h"
 #include "engine/kernels/response_kernels.h"
 #include "engine/kernels/viscous_response-inl.h"
 
@@ -23,6 +24,8 @@ const ResponseKernels* response_table() {
                                      .fibres = fibres,
                                      .maxwell = maxwell,
                                      .viscous = viscous,
+                                     .relaxing_small = {{relaxing_small<false, false>, relaxing_small<false, true>},
+                                                        {relaxing_small<true, false>, relaxing_small<true, true>}},
                                      .stiffest = stiffest,
                                      .volume_changes = volume_changes,
                                      .spread_to_vertices = spread_to_vertices,

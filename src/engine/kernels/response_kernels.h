@@ -1,6 +1,7 @@
 // response_kernels.h — the stages of tissues beyond the paper's: H in, first Piola–Kirchhoff stress P out.
 //
 //   gather H, Ḣ ──▶ [measure, law] ──▶ respond: P ──▶ fibres ──▶ Maxwell ──▶ viscous ──▶ push
+//   gather H, σ_v ──▶ [measure, law] ──▶ all of it in one pass ──▶ push, where in_one_pass()
 //
 // A tet whose J has fallen below kSmallestVolume is answered by material/response.h instead, in double, one at a time: lanes
 // hold the formulas for tissue, that one those for tets that are flat or inverted.
@@ -91,6 +92,15 @@ using RespondStage = void (*)(const ResponseItems&, const LaneResponse&, const R
 /// By index in HyperelasticLaw.
 using HyperelasticStages = std::array<RespondStage, std::variant_size_v<HyperelasticLaw>>;
 
+/// What a pass over a block has found: the largest of out.ratio, and whether a tet has J ≤ 0, where it looked.
+struct PassFound {
+  float stiffest = 0.0F;
+  bool inverted = false;
+};
+/// From H to the stresses times kForceScale, six numbers an item (relaxing_small-inl.h).
+using StressPass = PassFound (*)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, Block&,
+                                 ResponseBlock& out);
+
 /// The functions of one instruction set.
 struct ResponseKernels {
   RespondStage small = nullptr, corotational = nullptr, green = nullptr;
@@ -99,6 +109,8 @@ struct ResponseKernels {
   void (*fibres)(const ResponseItems&, const LaneResponse&, ResponseBlock& out) = nullptr;
   void (*maxwell)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, ResponseBlock& out) = nullptr;
   void (*viscous)(const ResponseItems&, const LaneResponse&, bool add, ResponseBlock& out) = nullptr;
+  /// All of them for tissue of small strain with branches: [moduli follow a law][elastic and viscous apart].
+  StressPass relaxing_small[2][2] = {};
   /// The largest of out.ratio.
   float (*stiffest)(std::size_t items, const ResponseBlock& out) = nullptr;
   /// For volume changes that are shared (average_nodal-inl.h).
@@ -116,6 +128,10 @@ struct ResponseKernels {
 bool has_lanes(const Tissue& tissue);
 LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::size_t mu_law);
 LaneWeights lane_weights(double step, double time);
+/// Whether relaxing_small has all that a tissue asks for.
+bool in_one_pass(const Tissue& tissue);
+/// Whether no modulus of a tissue follows its deformation.
+bool has_constant_moduli(const Tissue& tissue);
 /// The elastic stage of a tissue.
 RespondStage respond_stage(const ResponseKernels& kernels, const Tissue& tissue);
 
