@@ -4,7 +4,9 @@
 #include <cmath>
 #include <numeric>
 #include <ostream>
+#include <random>
 
+#include "dynamics/step/step_control.h"
 #include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 
@@ -27,6 +29,38 @@ TEST(GivenStep, RefusalNamesTheWaysOut) {
       ADD_FAILURE() << "accepted";
     } catch (const std::invalid_argument& error) {
       for (const char* way : ways) EXPECT_NE(std::string(error.what()).find(way), std::string::npos) << error.what();
+    }
+  }
+}
+
+// Stiffness rises at random under the viscosities of figure 3 and of a needle, nodal damping or none: without a search the step
+// stays below h* of what there is, and where viscosity limits it, within a tenth of it for twice the stiffness. √2 of it was
+// given up before.
+TEST(AutomaticStep, KeepsItsLengthWhereViscosityLimitsIt) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> rise(1.0, 1.3);
+  for (const double viscosity : {0.3, 3.0, 30.0}) {
+    for (const double damping : {0.0, 20.0}) {
+      Tissue tissue;
+      tissue.law = LinearLaw{.slope = 40000.0}, tissue.viscosity = viscosity;
+      const Body body = build_body(test::jittered_box({4, 4, 4}, 0.005, 0.2, random), {{0, tissue}});
+      std::vector<double> gamma;
+      for (const double m : body.masses) gamma.push_back(damping * m);
+      SimulationOptions options;
+      options.exact_steps = false;
+      const std::vector<double> rest{1.0};
+      StepControl control(body, gamma, Drag::lags, options, rest);
+      for (double r = 1.0; r < 30.0; r *= rise(random)) {
+        std::vector<StiffElement> listed;
+        for (std::uint32_t e = 0; e < body.elements.size() && r > control.list_above()[0]; ++e)
+          listed.push_back({e, r, r});
+        ASSERT_TRUE(control.accept(std::vector{r}, listed));
+        const double exact = stable_step(body, std::vector{r}, gamma).step;
+        EXPECT_LE(control.stable_step(), exact * (1.0 + 1e-9)) << viscosity << ", " << damping << ", " << r;
+        if (viscosity == 30.0 && r < 2.0) {
+          EXPECT_GE(control.stable_step(), 0.9 * exact) << damping << ", " << r;
+        }
+      }
     }
   }
 }

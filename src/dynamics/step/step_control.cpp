@@ -25,6 +25,7 @@ StepControl::StepControl(const Body& body, const std::vector<double>& nodal_damp
   look_at_body();
   rest_.level = at_least_one(stiffening);
   rest_.limits = limits_at(rest_.level);
+  undragged_ = undragged_step(rest_.level);
   now_ = rest_;
   remember_search();
   step_ = options.step.value_or(kSafety * now_.limits.pace);
@@ -101,6 +102,18 @@ bool StepControl::drag_thickens() const {
   return drag_ == Drag::lags && std::any_of(body_.blocks.begin(), body_.blocks.end(), thickens);
 }
 
+/// h* of a stiffness where nothing drags; 0 where that says no more than h* itself: no viscosity lags, or it grows with K, or K
+/// stays what it is. From single elements where a search takes too long.
+double StepControl::undragged_step(std::span<const double> level) const {
+  const auto drags = [](const TissueBlock& b) { return b.viscous.mu > 0.0 || b.viscous.lambda > 0.0; };
+  if (drag_ != Drag::lags || drag_thickens() || std::ranges::none_of(body_.blocks, drags) ||
+      std::ranges::all_of(body_.blocks, is_linear))
+    return 0.0;
+  const std::vector<double> none(body_.blocks.size(), 0.0), undamped(nodal_damping_.size(), 0.0);
+  return exact_ ? glisson::stable_step(body_, level, undamped, {}, nullptr, none).step
+                : element_bound_step(body_, level, none);
+}
+
 /// The same searches follow from the same start: those that were made then need not be made again.
 StepControl::Limits StepControl::limits_at(std::span<const double> stiffening) {
   const std::size_t i = searches_made_++;
@@ -132,10 +145,19 @@ StepControl::Limits StepControl::bound_at(std::span<const double> stiffening) co
     for (std::size_t b = 0; b < known.level.size(); ++b) r = std::max(r, stiffening[b] / known.level[b]);
     const double pace = known.limits.pace, undamped = 1.0 + 0.5 * pace * damping_rate_;
     if (drag_thickens()) return r > 1.0 ? pace / (r * undamped) : pace;
-    return pace * std::max(1.0 / r, 1.0 / (std::sqrt(r) * undamped));
+    const double h = pace * std::max(1.0 / r, 1.0 / (std::sqrt(r) * undamped));
+    return undragged_ > 0.0 ? std::max(h, beside_drag(pace / undamped, r, known.level)) : h;
   };
   const double h = std::max(from(now_), from(rest_));
   return {h, h};
+}
+
+/// What is left of a step h that is borne at a level when stiffness grows by r from there and viscosity does not.
+double StepControl::beside_drag(double h, double r, std::span<const double> level) const {
+  double most = 1.0;
+  for (std::size_t b = 0; b < level.size(); ++b) most = std::max(most, level[b] / rest_.level[b]);
+  const double part = std::min(1.0, most * (h / undragged_) * (h / undragged_)), rest = 1.0 - part;
+  return h * 2.0 / (rest + std::sqrt(rest * rest + 4.0 * part * r));
 }
 
 void StepControl::prepare_changes(const detail::VertexStars& stars) {
@@ -144,6 +166,7 @@ void StepControl::prepare_changes(const detail::VertexStars& stars) {
 }
 
 void StepControl::mesh_changed(const BodyChange& change, const detail::VertexStars& stars) {
+  undragged_ = 0.0;
   if (!change.origins.empty()) guess_ = rest_guess_ = {};
   if (damping_rate_ > 0.0) damping_rate_ = largest_damping_rate();  // a body without damping gets none by a cut
   forget_searches();
@@ -204,6 +227,7 @@ void StepControl::choose_limits(std::span<const double> stiffening, bool undefor
   };
   if (exact_) guess_ = {};
   rest_.limits = exact_ ? limits_at(rest_.level) : bound(rest_.level);
+  undragged_ = undragged_step(rest_.level);
   if (exact_) remember_search();
   now_.limits = exact_ ? (now_.level == rest_.level ? rest_.limits : limits_at(now_.level)) : bound(now_.level);
 }
@@ -236,7 +260,8 @@ void StepControl::body_read(const detail::VertexStars* stars) {
 }
 
 void StepControl::archive(Archive& ar) {
-  ar(step_, window_, in_window_, unchecked_, caution_, shape_step_, held_, now_.limits, rest_.limits, searched_.limits);
+  ar(step_, window_, in_window_, unchecked_, caution_, shape_step_, held_, undragged_, now_.limits, rest_.limits,
+     searched_.limits);
   for (auto* list : {&now_.level, &rest_.level, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
     ar.same_size(*list);
   }

@@ -4,6 +4,8 @@
 // nothing is computed; when one rises above it, h* is computed again with a safety factor, so that a run needs few searches.
 // Where a search takes too long (real time), the last h* gives a bound: for stiffness up to r times as large,
 //   φ(h/r) of r K  =  (1/r) φ(h) of K  ≤ 4,   and without nodal damping φ(h/√r) of r K ≤ φ(h) of K ≤ 4.
+// Where viscosity that does not grow with K limits the step, K has room: with h_K that of the tissue without viscosity,
+//   φ(x h) of r K  ≤  x [ φ(h) + max(0, x r − 1) h² λ_max(K) ]  ≤  4   for   x [ 1 + max(0, x r − 1) (h/h_K)² ] = 1.
 // Once in a window of steps an automatic step may grow again: where the stiffest moment of the window stayed well below the
 // level, h* is computed for that moment. The window doubles each time, so that oscillating tissue costs no search a cycle.
 // After a short peak the bound restores the step within a few steps.
@@ -72,6 +74,7 @@ struct StepChoice {
   Searched searched_;
   Guess guess_, rest_guess_;  ///< the second is from the search at rest
   bool exact_ = true;         ///< whether each level is searched
+  double undragged_ = 0.0;    ///< h* of the stiffness at rest alone, from below; 0: not known [s]
   AddedStiffness stiff_;      ///< of single tets
 };
 
@@ -149,6 +152,8 @@ class StepControl : StepChoice {
   Limits bound_at(std::span<const double> stiffening) const;
   bool is_bounded() const;
   bool drag_thickens() const;
+  double undragged_step(std::span<const double> level) const;
+  double beside_drag(double h, double r, std::span<const double> level) const;
   double with_added(double step, const AddedStiffness& added) const;
   [[noreturn]] void refuse_above(double stable) const { throw std::invalid_argument(too_large(stable)); }
   std::string too_large(double stable) const;
