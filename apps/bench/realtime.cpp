@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/percentile.h"
+
 namespace glisson::app {
 namespace {
 
@@ -73,6 +75,20 @@ RealtimeResult run_realtime(BuiltVariant& body, OnInversion on_inversion, const 
   result.simulated_s = body.simulation.time() - simulated_from;
   result.steps = body.simulation.steps() - steps_before;
   return result;
+}
+
+RealtimeFigures figures_of(const RealtimeResult& result, double frame_s) {
+  RealtimeFigures f{.frames = result.compute_s.size()};
+  if (f.frames == 0) return f;
+  f.p50_us = 1e6 * percentile(result.compute_s, 50.0);
+  f.p99_us = 1e6 * percentile(result.compute_s, 99.0);
+  f.p999_us = 1e6 * percentile(result.compute_s, 99.9);
+  f.max_us = 1e6 * percentile(result.compute_s, 100.0);
+  f.missed = static_cast<std::size_t>(
+      std::count_if(result.compute_s.begin(), result.compute_s.end(), [&](double s) { return s > frame_s; }));
+  f.steps_per_frame = static_cast<double>(result.steps) / static_cast<double>(f.frames);
+  f.realtime_factor = result.simulated_s / result.wall_s;
+  return f;
 }
 
 }  // namespace glisson::app

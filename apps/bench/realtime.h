@@ -32,6 +32,15 @@ struct RealtimeResult {
   AdvanceEnd end;
 };
 
+/// What the frames of a run took.
+struct RealtimeFigures {
+  double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
+  std::size_t frames = 0, missed = 0;  ///< those that took longer than a frame
+  double steps_per_frame = 0.0, realtime_factor = 0.0;
+};
+
+RealtimeFigures figures_of(const RealtimeResult& result, double frame_s);
+
 /// @param body  moves from its present time on
 RealtimeResult run_realtime(BuiltVariant& body, OnInversion on_inversion, const RealtimeOptions& options,
                             const std::atomic<bool>& stop);

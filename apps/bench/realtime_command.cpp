@@ -4,13 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "bench/bench_text.h"
 #include "bench/json_option.h"
-#include "bench/percentile.h"
+#include "bench/largest_body.h"
 #include "bench/realtime.h"
 #include "cli/exit_code.h"
 #include "cli/interrupt.h"
@@ -29,6 +31,7 @@ constexpr const char* kFooter =
     "\n"
     "Examples:\n"
     "  glisson bench realtime scenes/paper/figure3b.toml --variant eta_0\n"
+    "  glisson bench realtime scenes/needle/liver_container.toml --variant live --find\n"
     "  glisson bench realtime scenes/organs/liver.toml --mesh liver.vtu --seconds 30 --json realtime.json";
 
 constexpr std::size_t kMostEventful = 20;  // lines of events
@@ -37,6 +40,7 @@ struct Options {
   SceneOptions scene;
   double seconds = 10.0, frame_ms = 1.0;
   int threads = 0;
+  bool find = false;
   std::string json;
 };
 
@@ -54,27 +58,7 @@ Variant choose_variant(const Options& options) {
   return variant;
 }
 
-struct Figures {
-  double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
-  std::size_t frames = 0, missed = 0;
-  double steps_per_frame = 0.0, realtime_factor = 0.0;
-};
-
-Figures figures_of(const RealtimeResult& result, double frame_s) {
-  Figures f{.frames = result.compute_s.size()};
-  if (f.frames == 0) return f;
-  f.p50_us = 1e6 * percentile(result.compute_s, 50.0);
-  f.p99_us = 1e6 * percentile(result.compute_s, 99.0);
-  f.p999_us = 1e6 * percentile(result.compute_s, 99.9);
-  f.max_us = 1e6 * percentile(result.compute_s, 100.0);
-  f.missed = static_cast<std::size_t>(
-      std::count_if(result.compute_s.begin(), result.compute_s.end(), [&](double s) { return s > frame_s; }));
-  f.steps_per_frame = static_cast<double>(result.steps) / static_cast<double>(f.frames);
-  f.realtime_factor = result.simulated_s / result.wall_s;
-  return f;
-}
-
-void print_figures(const Variant& variant, const BuiltVariant& body, const RealtimeResult& r, const Figures& f,
+void print_figures(const Variant& variant, const BuiltVariant& body, const RealtimeResult& r, const RealtimeFigures& f,
                    double frame_s) {
   const EngineInfo& engine = body.simulation.engine_info();
   say("{}, {}: {} tets, h = {:.4g} s, {:.1f} steps a frame of {:g} ms, threads {}\n", variant.scene_name, variant.name,
@@ -93,7 +77,7 @@ void print_figures(const Variant& variant, const BuiltVariant& body, const Realt
 }
 
 nlohmann::ordered_json realtime_json(const Variant& variant, const BuiltVariant& body, const RealtimeResult& r,
-                                     const Figures& f, double frame_s) {
+                                     const RealtimeFigures& f, double frame_s) {
   const EngineInfo& engine = body.simulation.engine_info();
   nlohmann::ordered_json json = machine_json();
   json["scene"] = variant.scene_name;
@@ -109,7 +93,7 @@ nlohmann::ordered_json realtime_json(const Variant& variant, const BuiltVariant&
   json["dropped"] = r.dropped;
   json["steps"] = r.steps;
   json["steps_per_frame"] = f.steps_per_frame;
-  json["compute_us"] = {{"p50", f.p50_us}, {"p99", f.p99_us}, {"p99_9", f.p999_us}, {"max", f.max_us}};
+  json["p50_us"] = f.p50_us, json["p99_us"] = f.p99_us, json["p99_9_us"] = f.p999_us, json["max_us"] = f.max_us;
   json["wall_s"] = r.wall_s;
   json["simulated_s"] = r.simulated_s;
   json["realtime_factor"] = f.realtime_factor;
@@ -128,15 +112,49 @@ int exit_code_of(const RealtimeResult& result, const BuiltVariant& body) {
   return kNumericalEnd;
 }
 
+int find(const Options& options, const Variant& variant) {
+  const RealtimeOptions pace{.seconds = options.seconds, .frame_s = 1e-3 * options.frame_ms};
+  std::vector<int> threads{options.threads};
+  if (options.threads == 0) threads = {1, static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))};
+  if (threads.back() == 1) threads.resize(1);
+  nlohmann::ordered_json json = machine_json();
+  json["scene"] = variant.scene_name, json["variant"] = variant.name, json["frame_s"] = pace.frame_s;
+  json["seconds"] = pace.seconds, json["trials"] = nlohmann::ordered_json::array();
+  json["largest"] = nlohmann::ordered_json::array();
+  say("{}, {}, frames of {:g} ms\n", variant.scene_name, variant.name, options.frame_ms);
+  say("{:>8}  {:>7}  {:>11}  {:>8}  {:>8}  {:>8}  {:>8}  pace\n", "tets", "threads", "steps/frame", "p50 [µs]",
+      "p99 [µs]", "max [µs]", "late");
+  for (const int n : threads) {
+    const auto tell_trial = [&](const BodyTrial& t) {
+      const RealtimeFigures& f = t.figures;
+      say("{:>8}  {:>7}  {:>11.1f}  {:>8.0f}  {:>8.0f}  {:>8.0f}  {:>8}  {}\n", t.tets, n, f.steps_per_frame, f.p50_us,
+          f.p99_us, f.max_us, f.missed + t.dropped, t.keeps ? "kept" : "not kept");
+      json["trials"].push_back(trial_json(t));
+      write_json(options.json, json);
+    };
+    const std::optional<BodyTrial> best = largest_body(variant, n, pace, stop_flag(), tell_trial);
+    if (stop_flag()) return kInterrupted;
+    if (best) {
+      say("largest on {} {}: {} tets\n", n, n == 1 ? "thread" : "threads", best->tets);
+      json["largest"].push_back(trial_json(*best));
+    } else {
+      say("on {} {} no body keeps the pace\n", n, n == 1 ? "thread" : "threads");
+    }
+  }
+  write_json(options.json, json);
+  return kDone;
+}
+
 int realtime(const Options& options) {
   const Variant variant = choose_variant(options);
+  catch_interrupts();
+  if (options.find) return find(options, variant);
   MeshCache meshes(false);
   BuiltVariant body = build_variant(variant, meshes.loader());
   const RealtimeOptions pace{.seconds = std::min(options.seconds, run_duration(variant)),
                              .frame_s = 1e-3 * options.frame_ms};
-  catch_interrupts();
   const RealtimeResult result = run_realtime(body, variant.on_inversion, pace, stop_flag());
-  const Figures figures = figures_of(result, pace.frame_s);
+  const RealtimeFigures figures = figures_of(result, pace.frame_s);
   print_figures(variant, body, result, figures, pace.frame_s);
   write_json(options.json, realtime_json(variant, body, result, figures, pace.frame_s));
   return exit_code_of(result, body);
@@ -160,6 +178,8 @@ CLI::App* add_realtime(CLI::App& bench, Action& action) {
       ->type_name("N")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
+  command->add_flag("--find", options->find,
+                    "look for the largest body, by the cells of the scene's mesh, that keeps the pace for --seconds");
   add_json_option(*command, options->json);
   command->footer(kFooter);
   command->callback([options, &action] { action = [options] { return realtime(*options); }; });

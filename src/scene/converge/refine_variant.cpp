@@ -15,15 +15,6 @@ bool chosen_by_number(const Variant& variant) {
   });
 }
 
-void multiply_cells(MeshSource& mesh, int factor) {
-  if (auto* box = std::get_if<BoxOptions>(&mesh)) {
-    for (int& n : box->cells) n *= factor;
-  } else if (auto* cylinder = std::get_if<CylinderOptions>(&mesh)) {
-    cylinder->radial_cells *= factor;
-    cylinder->axial_cells *= factor;
-  }
-}
-
 /// A variant whose mesh, with its sets and regions, is this one.
 RefinedVariant on_mesh(const Variant& variant, TetMesh mesh) {
   RefinedVariant result{variant, {}, true};
@@ -35,6 +26,18 @@ RefinedVariant on_mesh(const Variant& variant, TetMesh mesh) {
 }
 
 }  // namespace
+
+bool multiply_cells(MeshSource& mesh, double factor) {
+  const auto multiply = [factor](int& n) { n = std::max(1, static_cast<int>(std::lround(n * factor))); };
+  if (auto* box = std::get_if<BoxOptions>(&mesh)) {
+    for (int& n : box->cells) multiply(n);
+    return true;
+  }
+  auto* cylinder = std::get_if<CylinderOptions>(&mesh);
+  if (cylinder == nullptr) return false;
+  multiply(cylinder->radial_cells), multiply(cylinder->axial_cells);
+  return true;
+}
 
 RefinedVariant refined_variant(const Variant& variant, int times, const MeshLoader& load) {
   Variant own = variant;

@@ -12,6 +12,9 @@ struct RefinedVariant {
   bool split = false;  ///< whether tets were split: sets and regions are then those of the given mesh
 };
 
+/// Gives a mesh made of cells so many times as many along every direction, at least one. @return whether it is
+bool multiply_cells(MeshSource& mesh, double factor);
+
 /// The variant with its mesh `times` times twice as fine.
 ///
 /// A generated mesh gets twice the cells along every direction, and sets and regions are chosen anew by their places. A
