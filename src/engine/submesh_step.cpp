@@ -82,11 +82,17 @@ void SubmeshBody::list_by_laws(const Submesh& part, std::size_t batch, std::size
   const std::uint32_t* element = part.chains.element.data() + batch * tets;
   const double mu = 1.0 / double(plan.tissue.rest_mu), bulk = mu / (2.0 * double(plan.tissue.bulk_over_two_mu));
   const double limit = list_limit(part.block);
+  const bool two = plan.laws == 2;
+  const auto low = static_cast<float>(limit * (1.0 - kFloatMargin));
+  std::array<char, kBlockTets> may{};  // which of them to look at: few
+  for (std::size_t i = 0; i < n * tets; ++i) {
+    const float left = low - block.value[0][i], rise = block.slope[0][i];
+    may[i] = static_cast<char>(two || left < 0.0F || rise * rise * block.y[i] > left * left);
+  }
   const auto larger = [&](double l, double m) { return std::max(m * mu, (l + 2.0 / 3.0 * m) * bulk); };
   for (std::size_t i = 0; i < n * tets; ++i) {
-    if (element[i] == kNoElement) continue;
+    if (may[i] == 0 || element[i] == kNoElement) continue;
     const double first = double(block.value[0][i]), slope = std::abs(double(block.slope[0][i]));
-    const bool two = plan.laws == 2;
     const double value = two ? larger(first, double(block.value[1][i])) : first;
     const double rise = two ? larger(slope, std::abs(double(block.slope[1][i]))) : slope;
     const double r = value + rise * std::sqrt(std::max(0.0, double(block.y[i])));

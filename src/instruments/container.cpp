@@ -55,6 +55,7 @@ struct Container::State {
     std::uint32_t vertex = 0;
     const ContactSolid* solid = nullptr;
     Vec3d there, normal;  ///< in space
+    Vec3d force;          ///< on the tissue, of the last step [N]
   };
   std::vector<Hold> holds;   ///< of all bonds, by vertex
   std::vector<char> bonded;  ///< per vertex of the body
@@ -64,7 +65,7 @@ struct Container::State {
     Vec3d force;
     double normal;
   };
-  std::vector<Bearing> bearing;  ///< of the last step [N]
+  std::vector<Bearing> bearing;  ///< of what is not bonded, in the last step [N]
 
   void build();
   void add_solid(const Shape& shape, const Pose& pose);
@@ -74,7 +75,7 @@ struct Container::State {
   void list_bonds();
   void add_rows(const InteractionStep& step);
   void hold_bonds(const InteractionStep& step);
-  void bear(std::uint32_t vertex, const ContactSolid& solid, const Vec3d& normal, const Vec3d& force);
+  void load(const ContactSolid& solid, const Vec3d& normal, const Vec3d& force);
 };
 
 void Container::State::add_solid(const Shape& shape, const Pose& pose) {
@@ -146,7 +147,7 @@ void Container::State::list_bonds() {
   for (const auto& [v, bond] : bonds) {
     const ContactSolid& solid = solids[bond.solid];
     const Vec3d normal = solid.after.axes * distance_to(*solid.shape, bond.place).normal;
-    holds.push_back({v, &solid, to_space(solid.after, bond.place), normal});
+    holds.push_back({v, &solid, to_space(solid.after, bond.place), normal, {}});
     bonded[v] = 1;
   }
 }
@@ -170,8 +171,7 @@ void Container::State::add_rows(const InteractionStep& step) {
   begun = true;
 }
 
-void Container::State::bear(std::uint32_t vertex, const ContactSolid& solid, const Vec3d& normal, const Vec3d& force) {
-  bearing.push_back({vertex, force, dot(force, normal)});
+void Container::State::load(const ContactSolid& solid, const Vec3d& normal, const Vec3d& force) {
   if (&solid == solids.data()) {
     loads.bottom -= force;
   } else {
@@ -181,13 +181,15 @@ void Container::State::bear(std::uint32_t vertex, const ContactSolid& solid, con
 }
 
 void Container::State::hold_bonds(const InteractionStep& step) {
-  for (const Hold& hold : holds) {
+  for (Hold& hold : holds) {
     const std::uint32_t place = step.place_of[hold.vertex];
+    hold.force = {};
     if (place == InteractionStep::kNowhere) continue;
     const Vec3d impulse = stopping(step, place, (hold.there - step.position(place)) * (1.0 / step.h));
     step.push(place, impulse);
     step.book(WorkSink::contact, place, impulse);
-    bear(hold.vertex, *hold.solid, hold.normal, impulse * (1.0 / step.h));
+    hold.force = impulse * (1.0 / step.h);
+    load(*hold.solid, hold.normal, hold.force);
   }
 }
 
@@ -232,7 +234,9 @@ void Container::constrain(const InteractionStep& step) {
   const std::size_t bonds_before = s.bonds.size();
   for (const ContactRow& row : s.rows) {
     if (row.impulse() == Vec3d{}) continue;
-    s.bear(step.vertices[row.places[0]].vertex, *row.solid, row.normal, row.impulse() * (1.0 / step.h));
+    const Vec3d force = row.impulse() * (1.0 / step.h);
+    s.bearing.push_back({step.vertices[row.places[0]].vertex, force, dot(force, row.normal)});
+    s.load(*row.solid, row.normal, force);
     step.book(WorkSink::contact, row.places[0], row.normal * row.pressing);
     step.book(WorkSink::friction, row.places[0], row.rubbing);
     const auto solid = static_cast<std::uint32_t>(row.solid - s.solids.data());
@@ -244,6 +248,7 @@ void Container::constrain(const InteractionStep& step) {
 
 bool Container::add_contact(std::span<Vec3d> force, std::span<double> pressing) const {
   for (const State::Bearing& b : state_->bearing) force[b.vertex] += b.force, pressing[b.vertex] += b.normal;
+  for (const State::Hold& h : state_->holds) force[h.vertex] += h.force, pressing[h.vertex] += dot(h.force, h.normal);
   return true;
 }
 

@@ -182,6 +182,7 @@ void StepControl::mesh_changed(const BodyChange& change, const detail::VertexSta
   searched_ = {rest_, block_numbers()};
   if (automatic_) step_ = std::min(step_, kSafety * now_.limits.pace);
   levels_.remove(change.removed);
+  levels_.reshape(change.reshaped);
   take_stiff();
   unchecked_ = enforce_ && step_ > now_.limits.stable;
 }

@@ -12,31 +12,31 @@ namespace {
 
 constexpr double kLevelMargin = 1.05, kMostLevelMargin = 3.0;  ///< of a level above the stiffness seen
 
-/// A tet above the base: what it asks of its vertices' masses.
-struct Asking {
-  std::uint32_t element;
-  double k, c;               ///< V x m, of stiffness and of viscosity
-  std::array<double, 4> of;  ///< V x m |s_a|²
-};
-
-/// Σ s sᵀ/W with the shares W of the masses.
-Sym3<double> over_shares(const Body& body, const Asking& a, const std::vector<double>& asked) {
-  const std::array<Vec3d, 4> s = shape_gradients(body.rest[a.element]);
+/// Σ s sᵀ/W with the shares W of the masses, W_a = m_a of_a/asked_a.
+Sym3<double> over_shares(const Body& body, std::uint32_t element, const std::array<double, 4>& of,
+                         const std::vector<double>& asked) {
+  const std::array<Vec3d, 4> s = shape_gradients(body.rest[element]);
   Sym3<double> sum;
   for (std::size_t i = 0; i < 4; ++i) {
-    const std::uint32_t v = body.elements[a.element][i];
-    sum += outer_square(s[i]) * (asked[v] / (body.masses[v] * a.of[i]));
+    const std::uint32_t v = body.elements[element][i];
+    sum += outer_square(s[i]) * (asked[v] / (body.masses[v] * of[i]));
   }
   return sum;
 }
 
 }  // namespace
 
+void StiffnessLevels::measure(Member& m) const {
+  const std::array<Vec3d, 4> s = shape_gradients(body_.rest[m.element]);
+  for (std::size_t i = 0; i < 4; ++i) m.squares[i] = dot(s[i], s[i]);
+}
+
 StiffnessLevels::Member& StiffnessLevels::member(std::uint32_t element) {
   if (place_.empty()) place_.assign(body_.elements.size(), 0);
   std::uint32_t& place = place_[element];
   if (place == 0) {
     members_.push_back({.element = element, .block = static_cast<std::uint32_t>(block_index(body_, element))});
+    measure(members_.back());
     place = static_cast<std::uint32_t>(members_.size());
   }
   return members_[place - 1];
@@ -123,35 +123,44 @@ std::size_t StiffnessLevels::count_above(std::span<const double> base) const {
       std::count_if(members_.begin(), members_.end(), [&](const Member& m) { return m.ratio > base[m.block]; }));
 }
 
-AddedStiffness StiffnessLevels::added(std::span<const double> base, const std::vector<char>& viscous) {
-  std::vector<Asking> all;
-  std::vector<Member*> whose;
-  for (Member& m : members_) {
+void StiffnessLevels::gather_asking(std::span<const double> base, const std::vector<char>& viscous) {
+  asking_.clear();
+  if (asked_.size() != body_.vertex_count) asked_.assign(body_.vertex_count, 0.0);
+  for (std::uint32_t place = 0; place < members_.size(); ++place) {
+    Member& m = members_[place];
     m.part = 1.0;
     const std::size_t b = m.block;
-    if (!(m.ratio > base[b]) || !(body_.rest[m.element].volume > 0.0)) continue;
-    const double more = m.ratio - base[b], volume = body_.rest[m.element].volume;
-    Asking a{m.element, volume * std::min(more, m.norm) * modulus_bound(body_.blocks[b].elastic), 0.0, {}};
+    const double volume = body_.rest[m.element].volume;
+    if (!(m.ratio > base[b]) || !(volume > 0.0)) continue;
+    const double more = m.ratio - base[b];
+    Asking a{place, volume * std::min(more, m.norm) * modulus_bound(body_.blocks[b].elastic), 0.0, 0.0, {}};
     if (viscous[b] != 0) a.c = volume * more * modulus_bound(body_.blocks[b].viscous);
-    const std::array<Vec3d, 4> s = shape_gradients(body_.rest[m.element]);
-    for (std::size_t i = 0; i < 4; ++i) a.of[i] = a.k * dot(s[i], s[i]);
-    all.push_back(a), whose.push_back(&m);
+    const Tet& t = body_.elements[m.element];
+    for (std::size_t i = 0; i < 4; ++i) asked_[t[i]] += a.of[i] = a.k * m.squares[i];
+    asking_.push_back(a);
   }
-  if (asked_.size() != body_.vertex_count) asked_.assign(body_.vertex_count, 0.0);
-  for (const Asking& a : all) {
-    for (std::size_t i = 0; i < 4; ++i) asked_[body_.elements[a.element][i]] += a.of[i];
+  // The trace of Σ s sᵀ/W is above its λ_max, and simple: |s_a|²/W_a = asked_a/(m_a k).
+  for (Asking& a : asking_) {
+    for (const std::uint32_t v : body_.elements[members_[a.place].element]) a.upper += asked_[v] / body_.masses[v];
+    a.upper /= a.k;
   }
-  std::vector<double> upper;  // the trace is above λ_max
-  for (const Asking& a : all) upper.push_back(trace(over_shares(body_, a, asked_)));
+}
+
+AddedStiffness StiffnessLevels::added(std::span<const double> base, const std::vector<char>& viscous) {
+  gather_asking(base, viscous);
   AddedStiffness most;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].k * upper[i] <= most.k && all[i].c * upper[i] <= most.c) continue;
-    const double per_mass = largest_eigenvalue(over_shares(body_, all[i], asked_));
-    most = {std::max(most.k, all[i].k * per_mass), std::max(most.c, all[i].c * per_mass)};
-  }
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    whose[i]->part = most.k > 0.0 ? all[i].k * upper[i] / most.k : 1.0;
-    for (const std::uint32_t v : body_.elements[all[i].element]) asked_[v] = 0.0;
+  const auto look = [&](const Asking& a) {
+    if (a.k * a.upper <= most.k && a.c * a.upper <= most.c) return;
+    const double per_mass = largest_eigenvalue(over_shares(body_, members_[a.place].element, a.of, asked_));
+    most = {std::max(most.k, a.k * per_mass), std::max(most.c, a.c * per_mass)};
+  };
+  // the likely worst first: what lies below it is not looked at
+  const auto worst = std::ranges::max_element(asking_, {}, [](const Asking& a) { return a.k * a.upper; });
+  if (worst != asking_.end()) look(*worst);
+  for (const Asking& a : asking_) look(a);
+  for (const Asking& a : asking_) {
+    members_[a.place].part = most.k > 0.0 ? a.k * a.upper / most.k : 1.0;
+    for (const std::uint32_t v : body_.elements[members_[a.place].element]) asked_[v] = 0.0;
   }
   return most;
 }
@@ -167,6 +176,13 @@ void StiffnessLevels::remove(std::span<const std::uint32_t> elements) {
   keep_ordered();
 }
 
+void StiffnessLevels::reshape(std::span<const std::uint32_t> elements) {
+  if (members_.empty()) return;
+  for (const std::uint32_t e : elements) {
+    if (place_[e] != 0) measure(members_[place_[e] - 1]);
+  }
+}
+
 void StiffnessLevels::clear() {
   for (const Member& m : members_) place_[m.element] = 0;
   members_.clear(), above_.clear();
@@ -180,8 +196,8 @@ void StiffnessLevels::archive(Archive& ar) {
     clear();
     for (const Member& m : members) {
       ar.check(m.element < body_.elements.size() && (place_.empty() || place_[m.element] == 0));
-      const std::uint32_t block = member(m.element).block;
-      members_.back() = m, members_.back().block = block;
+      const Member fresh = member(m.element);
+      members_.back() = m, members_.back().block = fresh.block, members_.back().squares = fresh.squares;
     }
   }
   ar(meetings_);

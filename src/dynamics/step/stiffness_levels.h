@@ -13,6 +13,7 @@
 // once in a window, and a tet that has recovered is forgotten.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -54,7 +55,7 @@ class StiffnessLevels {
   /// Forgets tets that the level of their block bears: they are told again where they rise above it.
   void forget_below(std::span<const double> base);
   /// What the tets above `base` take. @param viscous  per block, whether viscosity grows with them
-  /// Cost: 0.1 µs a tet above the base.
+  /// Cost: some 20 ns a tet above the base, and an eigenvalue for each that may be the worst.
   AddedStiffness added(std::span<const double> base, const std::vector<char>& viscous);
   /// Tets above a base.
   std::size_t count_above(std::span<const double> base) const;
@@ -62,6 +63,8 @@ class StiffnessLevels {
 
   /// Forgets elements that are gone.
   void remove(std::span<const std::uint32_t> elements);
+  /// Takes in that elements have another shape at rest.
+  void reshape(std::span<const std::uint32_t> elements);
   void clear();
   void archive(Archive& ar);
 
@@ -73,9 +76,19 @@ class StiffnessLevels {
     double last = 0.0, before = 0.0;           ///< ratio at the last two meetings
     double part = 1.0;                         ///< of what all took, at most; 1 until it is known
     std::uint64_t met = 0;                     ///< number of the last
+    std::array<double, 4> squares{};           ///< |s_a|² [1/m²]
     void archive(Archive& ar) { ar(element, met, ratio, norm, seen_ratio, seen_norm, last, before, part); }
   };
+  /// What a tet above the base asks of its vertices' masses.
+  struct Asking {
+    std::uint32_t place;       ///< among members
+    double k, c;               ///< V x m, of stiffness and of viscosity
+    double upper;              ///< of λ_max(Σ s sᵀ/W)
+    std::array<double, 4> of;  ///< V x m |s_a|²
+  };
   Member& member(std::uint32_t element);
+  void measure(Member& m) const;
+  void gather_asking(std::span<const double> base, const std::vector<char>& viscous);
   static bool is_above(const Member& m, double base);
   static double room_of(const Member& m);
   void keep_ordered();
@@ -85,6 +98,7 @@ class StiffnessLevels {
   std::vector<std::uint32_t> place_;  ///< per element: 1 + place among members, 0 where it is none; empty: none is
   std::vector<std::uint32_t> above_;  ///< members that the last meet() found above
   std::uint64_t meetings_ = 0;
+  std::vector<Asking> asking_;
   std::vector<double> asked_;  ///< per vertex, 0 between calls
 };
 
