@@ -13,10 +13,10 @@
 namespace glisson::app {
 namespace {
 
-constexpr std::array<std::string_view, 18> kModels{
-    "linear",      "law",   "full",    "corotational",  "green", "green_energy", "fibres",
-    "neo_hookean", "nodal", "maxwell", "mooney_rivlin", "yeoh",  "fung",         "veronda_westmann",
-    "ogden",       "gent",  "rivlin",  "invariants"};
+constexpr std::array<std::string_view, 20> kModels{
+    "linear", "law",         "full",   "branches",  "law_branches",  "corotational", "green", "green_energy",
+    "fibres", "neo_hookean", "nodal",  "maxwell",   "mooney_rivlin", "yeoh",         "fung",  "veronda_westmann",
+    "ogden",  "gent",        "rivlin", "invariants"};
 
 constexpr double kShear = 3600.0 / 2.8, kBulk = 6000.0;  ///< of E = 3.6 kPa and ν = 0.4 [Pa]
 
@@ -84,7 +84,8 @@ Tissue model_tissue(Model model) {
   Tissue tissue;
   tissue.name = model_name(model);
   const LinearLaw doubling{.slope = tissue.youngs_modulus / 0.5};
-  if (model == Model::law || model == Model::full || model == Model::green_energy) tissue.law = doubling;
+  const bool follows = model == Model::law || model == Model::full || model == Model::law_branches;
+  if (follows || model == Model::green_energy) tissue.law = doubling;
   if (model == Model::full) tissue.viscosity = 10.0;
   if (model == Model::corotational) tissue.kinematics = Kinematics::corotational;
   const bool green = model == Model::green || model == Model::green_energy || model == Model::fibres;
@@ -93,7 +94,8 @@ Tissue model_tissue(Model model) {
   if (model == Model::fibres) tissue.fibres = Fibres{.direction = {1.0, 1.0, 0.0}, .stiffness = 3600.0};
   if (model >= Model::neo_hookean) tissue.hyperelastic = hyperelastic(model);
   if (model == Model::nodal) tissue.volume_change = VolumeChange::average_nodal;
-  if (model == Model::maxwell) tissue.maxwell = {{.share = 0.4, .time = 0.5}, {.share = 0.3, .time = 50.0}};
+  const bool relaxes = model == Model::maxwell || model == Model::branches || model == Model::law_branches;
+  if (relaxes) tissue.maxwell = {{.share = 0.4, .time = 0.5}, {.share = 0.3, .time = 50.0}};
   return tissue;
 }
 

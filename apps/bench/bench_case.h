@@ -17,6 +17,8 @@ enum class Model {
   linear,
   law,
   full,
+  branches,      ///< linear, two branches
+  law_branches,  ///< law, two branches
   corotational,
   green,
   green_energy,  ///< Green strain, E doubles at s = 0.5, as an energy
