@@ -68,7 +68,7 @@ inline constexpr Word<fit::Deforming> kWords<fit::Deforming>[] = {
 namespace glisson::fit {
 
 /// What of a test was measured; the forward model answers in the same measure.
-enum class Measured { nominal, cauchy, second_piola, torque, strain, storage, loss };
+enum class Measured { nominal, cauchy, second_piola, torque, axial, strain, storage, loss };
 
 /// What the numbers of a curve are. Without more it is a press or an insertion: a force over a displacement.
 struct Measurement {
@@ -106,7 +106,8 @@ struct Parameter {
 ///   test                                       displacement                            force
 ///   compression, tension, equibiaxial, planar  |λ − 1| × height [m]                     P, σ or S × area [N]
 ///   simple_shear                               γ × height [m]                           the same of xz [N]
-///   torsion                                    angle [rad]                              torque [N m]
+///   torsion                                    angle [rad]                              torque [N m], or axial force [N],
+///                                                                                       positive as it pushes the plates apart
 ///   creep                                      nominal stress × area [N]                strain × height [m]
 ///   oscillation                                frequency [Hz], `time` is the row        storage or loss modulus [Pa]
 struct Curve {

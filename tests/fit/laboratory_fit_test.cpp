@@ -128,6 +128,51 @@ bootstrap = 0
   for (const TestResult& t : r.tests) EXPECT_GT(t.r2, 0.9999) << t.name;
 }
 
+// Torque and normal force of Rivlin's cylinder side by side: T = π (c₁ + c₂) R⁴ ψ, and it pushes the plates apart by
+// N = ½ π (c₁ + 2 c₂) R⁴ ψ² [Rivlin1949], ψ twist over height. The torque knows the sum of both coefficients alone.
+TEST(LaboratoryFit, TorqueAndNormalForcePartMooneysCoefficients) {
+  constexpr double kC1 = 300.0, kC2 = 180.0, kRadius = 0.0125, kHeight = 0.01;
+  const phantom::Folder folder("laboratory_torsion");
+  std::vector<double> angle, torque, normal;
+  for (int i = 0; i <= 20; ++i) {
+    angle.push_back(0.02 * i);
+    const double psi = angle.back() / kHeight, r4 = std::pow(kRadius, 4);
+    torque.push_back(1e3 * std::numbers::pi * (kC1 + kC2) * r4 * psi);
+    normal.push_back(1e3 * 0.5 * std::numbers::pi * (kC1 + 2.0 * kC2) * r4 * psi * psi);
+  }
+  folder.write("twist.csv", table({"angle (rad)", "torque (mN m)", "normal force (mN)"}, {angle, torque, normal}));
+  const std::string text = R"([specimen]
+kind = "cylinder"
+radius_mm = 12.5
+height_mm = 10
+[tissue]
+hyperelastic = { kind = "mooney_rivlin", c10_Pa = 200, c01_Pa = 200, bulk_modulus_Pa = 1e8 }
+[[parameter]]
+key = "tissue.hyperelastic.c10_Pa"
+low = 1
+high = 1e4
+[[parameter]]
+key = "tissue.hyperelastic.c01_Pa"
+low = 1
+high = 1e4
+[[data]]
+files = ["twist.csv"]
+test = "torsion"
+columns.angle.name = "angle"
+columns.torque.name = "torque"
+columns.axial_force.name = "normal force"
+[search]
+starts = 4
+[proof]
+bootstrap = 0
+)";
+  const FitResult r = run_fit_text(text, (folder.path() / "fit.toml").string());
+  EXPECT_NEAR(r.parameters[0].value, kC1, 1e-3 * kC1);
+  EXPECT_NEAR(r.parameters[1].value, kC2, 1e-3 * kC2);
+  ASSERT_EQ(r.tests.size(), 2u);
+  for (const TestResult& t : r.tests) EXPECT_GT(t.r2, 0.99999) << t.name;
+}
+
 // Of all laws of at most two terms one is above 0.985 in each of cortex's tests.
 TEST(LaboratoryFit, AFewTermsAreFoundForCortex) {
   FitOptions options;

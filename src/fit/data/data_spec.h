@@ -27,7 +27,7 @@ struct ColumnSpec {
 struct ColumnsSpec {
   ColumnSpec time;
   ColumnSpec displacement, strain, stretch, true_strain, green_strain, shear, angle, frequency;  ///< what is driven
-  ColumnSpec force, stress, cauchy_stress, second_piola_stress, torque;                          ///< what answers
+  ColumnSpec force, stress, cauchy_stress, second_piola_stress, torque, axial_force;             ///< what answers
   ColumnSpec storage_modulus, loss_modulus;
 };
 

@@ -254,8 +254,10 @@ void convert(RawTest& test, const DataSpec& spec, const TestColumns& columns, co
   if (problems.count() == before) require_direction(test, columns, outward, problems);
   const bool free_sign = columns.drive != Drive::stretch && columns.drive != Drive::frequency;
   if (free_sign && turn(test.displacement, columns.driven_sign)) test.turned.push_back(test.displacement_source.title);
-  const bool modulus = columns.answer == Answer::storage_modulus || columns.answer == Answer::loss_modulus;
-  if (!modulus && turn(test.force, columns.answering_sign)) test.turned.push_back(test.force_source.title);
+  // a specimen may push its plates apart or pull them together, and a modulus has its sign
+  const bool as_it_is = columns.answer == Answer::storage_modulus || columns.answer == Answer::loss_modulus ||
+                        (columns.answer == Answer::axial_force && columns.answering_sign == Sign::found);
+  if (!as_it_is && turn(test.force, columns.answering_sign)) test.turned.push_back(test.force_source.title);
   for (std::size_t i = 0; i < test.lines.size(); ++i) {
     double& x = test.displacement[i];
     const double own = x;
@@ -280,6 +282,7 @@ Measurement measurement_of(const DataSpec& spec, const TestColumns& columns, con
   m.unit = size.point ? "Pa" : "N";
   m.drive_unit = size.point ? "-" : "m";
   if (spec.test == LabTest::torsion || spec.deforming == Deforming::torsion) m.unit = "N m", m.drive_unit = "rad";
+  if (m.measured == Measured::axial) m.unit = "N";
   if (spec.test == LabTest::oscillation) m.unit = "Pa", m.drive_unit = "Hz";
   return m;
 }

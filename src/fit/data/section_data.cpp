@@ -146,7 +146,7 @@ void require_columns(const DataSpec& x, const Node& table, const Place& place) {
                {"stress", c.stress.given},
                {"cauchy_stress", c.cauchy_stress.given},
                {"second_piola_stress", c.second_piola_stress.given},
-               {"torque", c.torque.given},
+               {"torque", c.torque.given || c.axial_force.given},
                {"storage_modulus", c.storage_modulus.given || c.loss_modulus.given}});
 }
 
@@ -217,6 +217,10 @@ const SectionSpec& columns_section() {
     s.table("second_piola_stress", column_section(), &ColumnsSpec::second_piola_stress,
             "second Piola–Kirchhoff stress, nominal stress over stretch, in Pa, kPa or MPa");
     s.table("torque", column_section(), &ColumnsSpec::torque, "torque about the axis, in N m, mN m, µN m or N mm");
+    s.table("axial_force", column_section(), &ColumnsSpec::axial_force,
+            "force along the axis of a torsion, positive where the specimen pushes the plates apart, as rheometers "
+            "show it; "
+            "beside the torque it is a curve of its own");
     s.table("storage_modulus", column_section(), &ColumnsSpec::storage_modulus,
             "G′ of an oscillation, in Pa, kPa or MPa");
     s.table("loss_modulus", column_section(), &ColumnsSpec::loss_modulus,
@@ -236,6 +240,7 @@ const SectionSpec& columns_section() {
       require_unit(x.cauchy_stress, table, "cauchy_stress", Quantity::stress, place);
       require_unit(x.second_piola_stress, table, "second_piola_stress", Quantity::stress, place);
       require_unit(x.torque, table, "torque", Quantity::torque, place);
+      require_unit(x.axial_force, table, "axial_force", Quantity::force, place);
       require_unit(x.storage_modulus, table, "storage_modulus", Quantity::stress, place);
       require_unit(x.loss_modulus, table, "loss_modulus", Quantity::stress, place);
     });

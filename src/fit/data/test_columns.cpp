@@ -25,6 +25,7 @@ constexpr std::array<std::string_view, 6> kStressWords{
 constexpr std::array<std::string_view, 3> kCauchyWords{"cauchy", "true stress", "true_stress"};
 constexpr std::array<std::string_view, 2> kPiolaWords{"second piola", "pk2"};
 constexpr std::array<std::string_view, 2> kTorqueWords{"torque", "moment"};
+constexpr std::array<std::string_view, 4> kAxialWords{"axial force", "axial_force", "normal force", "normal_force"};
 constexpr std::array<std::string_view, 3> kStorageWords{"storage", "g'", "g′"};
 constexpr std::array<std::string_view, 3> kLossWords{"loss mod", "g''", "g″"};
 
@@ -37,12 +38,13 @@ const std::array<ColumnRole, 8> kDrives{{{"displacement", &C::displacement, Quan
                                          {"shear", &C::shear, Quantity::strain, kShearWords},
                                          {"angle", &C::angle, Quantity::angle, kAngleWords, true},
                                          {"frequency", &C::frequency, Quantity::frequency, kFrequencyWords}}};
-const std::array<ColumnRole, 7> kAnswers{
+const std::array<ColumnRole, 8> kAnswers{
     {{"force", &C::force, Quantity::force, kForceWords, true},
      {"stress", &C::stress, Quantity::stress, kStressWords},
      {"cauchy_stress", &C::cauchy_stress, Quantity::stress, kCauchyWords},
      {"second_piola_stress", &C::second_piola_stress, Quantity::stress, kPiolaWords},
      {"torque", &C::torque, Quantity::torque, kTorqueWords, true},
+     {"axial_force", &C::axial_force, Quantity::force, kAxialWords, true},
      {"storage_modulus", &C::storage_modulus, Quantity::stress, kStorageWords},
      {"loss_modulus", &C::loss_modulus, Quantity::stress, kLossWords}}};
 
@@ -70,6 +72,7 @@ bool takes(const DataSpec& spec, Answer answer) {
     case Answer::loss_modulus:
       return spec.test == LabTest::oscillation;
     case Answer::torque:
+    case Answer::axial_force:
       return twisted;
     case Answer::force:
     case Answer::stress:
@@ -238,6 +241,8 @@ Measured measured_by(Answer answer) {
       return Measured::second_piola;
     case Answer::torque:
       return Measured::torque;
+    case Answer::axial_force:
+      return Measured::axial;
     case Answer::storage_modulus:
       return Measured::storage;
     case Answer::loss_modulus:
@@ -248,11 +253,20 @@ Measured measured_by(Answer answer) {
 }
 
 std::vector<DataSpec> parted(const DataSpec& spec) {
-  if (!spec.columns.storage_modulus.given || !spec.columns.loss_modulus.given) return {spec};
-  DataSpec storage = spec, loss = spec;
-  storage.columns.loss_modulus = {}, loss.columns.storage_modulus = {};
-  storage.group += " G′", loss.group += " G″";
-  return {std::move(storage), std::move(loss)};
+  struct Pair {
+    ColumnSpec ColumnsSpec::*first;
+    ColumnSpec ColumnsSpec::*second;
+    const char *of_first, *of_second;
+  };
+  for (const Pair& pair : {Pair{&C::storage_modulus, &C::loss_modulus, " G′", " G″"},
+                           Pair{&C::torque, &C::axial_force, " torque", " axial force"}}) {
+    if (!(spec.columns.*pair.first).given || !(spec.columns.*pair.second).given) continue;
+    DataSpec first = spec, second = spec;
+    first.columns.*pair.second = {}, second.columns.*pair.first = {};
+    first.group += pair.of_first, second.group += pair.of_second;
+    return {std::move(first), std::move(second)};
+  }
+  return {spec};
 }
 
 }  // namespace glisson::fit

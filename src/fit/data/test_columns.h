@@ -2,7 +2,7 @@
 //
 //   compression, tension, relaxation, …   displacement, strain, stretch …  ──▶  force, stress, cauchy_stress …
 //   simple_shear                          shear, displacement              ──▶  the same
-//   torsion                               angle                            ──▶  torque
+//   torsion                               angle                            ──▶  torque, axial_force or both
 //   oscillation                           frequency                        ──▶  storage_modulus or loss_modulus
 #pragma once
 
@@ -25,7 +25,16 @@ struct ColumnRole {
 };
 
 enum class Drive { displacement, strain, stretch, true_strain, green_strain, shear, angle, frequency };
-enum class Answer { force, stress, cauchy_stress, second_piola_stress, torque, storage_modulus, loss_modulus };
+enum class Answer {
+  force,
+  stress,
+  cauchy_stress,
+  second_piola_stress,
+  torque,
+  axial_force,
+  storage_modulus,
+  loss_modulus
+};
 
 /// Whether a test's name says how the specimen deforms; others hold, load or cycle one of these deformations.
 bool names_its_deformation(LabTest test);
@@ -56,7 +65,7 @@ double answering_number(Answer answer, double value, const SpecimenSize& size);
 /// What a test measures by an answering column.
 Measured measured_by(Answer answer);
 
-/// A test of several answering columns as one of each: G′ and G″.
+/// A test of two answering columns as one of each: G′ and G″, torque and axial force.
 std::vector<DataSpec> parted(const DataSpec& spec);
 
 }  // namespace glisson::fit

@@ -79,6 +79,8 @@ AxisOf measured_axis(const fit::Measurement& m, const FitResult& result) {
       return {"second Piola–Kirchhoff stress [kPa]", stress};
     case fit::Measured::torque:
       return {"torque [mN m]", 1e3};
+    case fit::Measured::axial:
+      return {"axial force [mN]", 1e3};
     case fit::Measured::strain:
       return {"strain [%]", 100.0 / result.height.value_or(1.0)};
     case fit::Measured::storage:

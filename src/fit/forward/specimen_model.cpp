@@ -150,8 +150,8 @@ void moduli(const Tissue& tissue, const Curve& curve, std::vector<double>& out) 
     out[i] = curve.measurement.measured == Measured::loss ? found[i].loss : found[i].storage;
 }
 
-/// Torque at each instant of a cylinder of a radius and a height, twisted by the curve's angles.
-void torques(const Tissue& tissue, const History& history, const Specimen& size, const Curve& curve,
+/// Torque or axial force at each instant of a cylinder of a radius and a height, twisted by the curve's angles.
+void twisted(const Tissue& tissue, const History& history, const Specimen& size, const Curve& curve,
              std::vector<double>& out) {
   const std::size_t lead = history.lead();
   const double first = history.begin(), whole = history.end() - first;
@@ -165,7 +165,9 @@ void torques(const Tissue& tissue, const History& history, const Specimen& size,
   const TorsionOptions options{.between =
                                    has_past(tissue) ? static_cast<std::size_t>(parts_of(0.0, widest, whole)) : 1};
   const std::vector<TorsionState> states = torsion(tissue, size.radius, times, twists, options);
-  for (std::size_t i = 0; i < curve.size(); ++i) out[i] = states[i + lead].torque;
+  const bool axial = curve.measurement.measured == Measured::axial;
+  for (std::size_t i = 0; i < curve.size(); ++i)
+    out[i] = axial ? -states[i + lead].axial_force : states[i + lead].torque;
 }
 
 }  // namespace
@@ -194,7 +196,7 @@ Prediction SpecimenModel::predict_from(std::size_t index, std::span<const double
       if (m.test == LabTest::oscillation)
         moduli(tissue, measured, result.force);
       else
-        torques(tissue, history, specimen_, measured, result.force);
+        twisted(tissue, history, specimen_, measured, result.force);
       return result;
     }
     const double outward = m.outward(), load = m.measured == Measured::strain ? specimen_.height : specimen_.area;
