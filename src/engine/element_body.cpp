@@ -116,7 +116,7 @@ void ElementBody::tissues_changed(std::span<const std::size_t> blocks, std::span
 }
 
 BranchMemory ElementBody::branch_memory(std::size_t block) const {
-  return any_ != nullptr ? any_->branch_memory(block, since_memory_) : BranchMemory{};
+  return any_ != nullptr ? any_->branch_memory(block, since_memory_, u_) : BranchMemory{};
 }
 
 std::vector<Sym3<double>> ElementBody::branch_stresses(std::size_t block) {

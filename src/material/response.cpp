@@ -34,7 +34,8 @@ StrainNumbers<T> strain_numbers(Kinematics kinematics, const Mat3<T>& H) {
 }  // namespace
 
 Response::Response(const Tissue& tissue)
-    : tissue_(tissue), laws_(tissue), lame_(tissue.lame()), viscosity_(viscous_coefficients(tissue)) {
+    : tissue_(tissue), laws_(tissue), lame_(tissue.lame()), viscosity_(viscous_coefficients(tissue)),
+      paces_(tissue.maxwell) {
   for (const MaxwellBranch& b : tissue_.maxwell) relaxing_share_ += b.share;
 }
 
@@ -54,6 +55,10 @@ T Response::measure(const Mat3<T>& H, const ElementShape& shape) const {
   }
   const EdgeMetric<double>& g = shape.metric;
   return regular_mean_ratio(H, T(shape.volume), EdgeMetric<T>{T(g.xx), T(g.yy), T(g.zz), T(g.xy), T(g.yz), T(g.zx)});
+}
+
+double Response::measure_steepness(const Mat3d& H, const ElementShape& shape) const {
+  return std::sqrt(squared_norm(measure_gradient(H, measure(H, shape), shape)));
 }
 
 /// λ tr(ε) I + 2 μ ε in the tissue's kinematics, as P.
@@ -304,6 +309,8 @@ template Mat3<double> Response::elastic(const Mat3<double>&, const ElementShape&
 template Mat3<Dual> Response::elastic(const Mat3<Dual>&, const ElementShape&, const Dual*) const;
 template Mat3<double> Response::viscous(const Mat3<double>&, const Mat3<double>&) const;
 template Mat3<Dual> Response::viscous(const Mat3<Dual>&, const Mat3<Dual>&) const;
+template double Response::measure(const Mat3<double>&, const ElementShape&) const;
+template Dual Response::measure(const Mat3<Dual>&, const ElementShape&) const;
 template Sym3<double> Response::relaxing(const Mat3<double>&, const Mat3<double>&) const;
 template Sym3<Dual> Response::relaxing(const Mat3<Dual>&, const Mat3<Dual>&) const;
 template double Response::volume_change(const Mat3<double>&) const;
