@@ -36,7 +36,7 @@ void make_semidefinite(ElementTangent& C) {
 
 }  // namespace
 
-TissueOperator::TissueOperator(const Body& body) : body_(body) { body_changed(); }
+TissueOperator::TissueOperator(const Body& body, StepKind step) : body_(body), step_(step) { body_changed(); }
 
 void TissueOperator::body_changed() {
   responses_.clear();
@@ -86,7 +86,7 @@ T TissueOperator::measure_of_times(std::size_t b, std::size_t e, const Mat3<T>& 
 template <class T>
 BranchWeights<T> TissueOperator::weights(std::size_t b, std::size_t e, std::size_t k, double since, T x) const {
   const MaxwellBranch& branch = body_.blocks[b].tissue.maxwell[k];
-  if (branch.time_law) return responses_[b].paces().weights(k, since, memory_.pace[place_of(b, e) + k], x);
+  if (branch.time_law) return responses_[b].paces().weights(k, since, memory_.pace[place_of(b, e) + k], x, step_);
   const BranchWeights<> w = branch_weights(since, branch.time);
   return {T(w.decay), T(w.from), T(w.to)};
 }
@@ -97,31 +97,7 @@ void TissueOperator::set_paces(std::size_t b, std::size_t e, const Mat3d& H) {
   if (!paces.follows()) return;
   const double x = responses_[b].measure(H, shapes_[e]);
   for (std::size_t k = 0; k < body_.blocks[b].tissue.maxwell.size(); ++k)
-    memory_.pace[place_of(b, e) + k] = paces.at(k, x).value;
-}
-
-/// A bound of what the tangent gains because the pace depends on the deformation, over λ_max of the tangent at rest:
-///   ‖F ∂q/∂ξ ⊗ ∂ξ/∂F‖,   ∂ξ/∂F = ½ h (1/τ)′ ∂x/∂F,   ∂q/∂ξ = e^(−ξ) (S₀ − q₀) + β′(ξ) (S − S₀),   β′ ≤ ½
-double TissueOperator::added_stiffness(std::size_t b, std::size_t e, double since, const Mat3d& H,
-                                       const Sym3<double>& S) const {
-  const Response& response = responses_[b];
-  if (!response.paces().follows() || !(since > 0.0) || std::isinf(since)) return 0.0;
-  const TissueBlock& block = body_.blocks[b];
-  const double x = response.measure(H, shapes_[e]);
-  const Sym3<double>& before = memory_.stress[first_stress_[b] + e - block.begin];
-  double sum = 0.0;
-  for (std::size_t k = 0; k < block.tissue.maxwell.size(); ++k) {
-    const double slope = response.paces().at(k, x).slope;
-    if (slope == 0.0) continue;
-    const Sym3<double> turn =
-        (before - memory_.relaxed[place_of(b, e) + k]) * weights(b, e, k, since, x).decay + (S - before) * 0.5;
-    sum += block.tissue.maxwell[k].share * 0.5 * since * std::abs(slope) * std::sqrt(contract(turn, turn));
-  }
-  if (sum == 0.0) return 0.0;
-  const LameParameters rest = block.tissue.lame();
-  const double stretch = response.small() ? 1.0 : std::sqrt(squared_norm(deformation_gradient(H)));
-  return sum * stretch * response.measure_steepness(H, shapes_[e]) /
-         std::max(3.0 * rest.lambda + 2.0 * rest.mu, 2.0 * rest.mu);
+    memory_.pace[place_of(b, e) + k] = paces.at(k, x);
 }
 
 /// Σ g (S − q): what the branches have not relaxed yet.
@@ -158,15 +134,13 @@ void TissueOperator::forces(const TissueState& state, std::span<Vec3d> elastic, 
       if (!(jacobian(H) > 0.0)) watch.inverted.push_back(body_.mesh_tet[e]);
       Mat3d P = response.elastic(H, shapes_[e], shared ? &mean[e] : nullptr);
       if (dashpot) scatter(body_, e, response.viscous(H, element_gradient(body_, e, state.v)), viscous);
-      Stiffening stiff = response.stiffening(H, shapes_[e]);
       if (branches) {
         const Sym3<double> S = response.relaxing(H, P);
         scatter(body_, e, response.carry(H, overstress(b, e, state.since, H, S)), viscous);
         P = sum(P, response.carry(H, S * -response.relaxing_share()));
-        const double more = added_stiffness(b, e, state.since, H, S);
-        stiff.ratio += more, stiff.norm += more;
       }
       scatter(body_, e, P, elastic);
+      const Stiffening stiff = response.stiffening(H, shapes_[e]);
       watch.see(b, e, stiff.ratio, stiff.norm);
     }
   }

@@ -53,7 +53,8 @@ struct TissueTangent {
 class TissueOperator {
  public:
   /// @param body  must outlive this
-  explicit TissueOperator(const Body& body);
+  /// @param step  what the branches whose times follow the deformation go by
+  explicit TissueOperator(const Body& body, StepKind step = StepKind::implicit);
 
   /// Overwrites `elastic` and `viscous` [N]. Elastic is what is left after long times; viscous is the rest: Kelvin–Voigt
   /// and what the Maxwell branches have not relaxed yet.
@@ -99,7 +100,6 @@ class TissueOperator {
   BranchWeights<T> weights(std::size_t block, std::size_t e, std::size_t k, double since, T x) const;
   template <class T>
   T measure_of_times(std::size_t block, std::size_t e, const Mat3<T>& H) const;
-  double added_stiffness(std::size_t block, std::size_t e, double since, const Mat3d& H, const Sym3<double>& S) const;
   void set_paces(std::size_t block, std::size_t e, const Mat3d& H);
   /// Where branch 0 of an element is in memory.
   std::size_t place_of(std::size_t block, std::size_t e) const {
@@ -108,6 +108,7 @@ class TissueOperator {
   }
 
   const Body& body_;
+  StepKind step_;
   std::vector<Response> responses_;        ///< per tissue block
   std::vector<ElementShape> shapes_;       ///< per element
   std::vector<std::size_t> first_branch_;  ///< per block: place of its first element's branches in memory

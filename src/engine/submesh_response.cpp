@@ -78,7 +78,7 @@ void SubmeshBody::run_paces(const LaneResponse& lanes, std::size_t values, const
                             ResponseBlock& out) const {
   for (std::size_t k = 0; k < lanes.branches; ++k) {
     const LanePace& pace = lanes.pace[k];
-    kernels_.response->pace[pace.kind](pace, block.x, values, out.pace[k], out.pace_slope[k]);
+    kernels_.response->pace[pace.kind](pace, block.x, values, out.pace[k]);
   }
 }
 
@@ -119,7 +119,7 @@ void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Fin
     if (lanes.fibre > 0.0F) stages.fibres(items, lanes, out);
     if (!lanes.pace.empty()) {
       run_paces(lanes, n * tets, scratch.block, out);
-      stages.following(items, lanes, large.maxwell, scratch.block, out);
+      stages.following(items, lanes, large.maxwell, out);
     } else if (lanes.branches > 0) {
       stages.maxwell(items, lanes, large.maxwell, out);
     }

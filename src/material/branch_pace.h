@@ -2,7 +2,8 @@
 //
 // A branch whose time follows the measure x goes by a clock of its own, ξ = ∫ dt/τ(x(t)), in which it is a plain branch of
 // time 1: dq/dξ = S − q. Over a step of h the trapezoid rule takes ξ on by ½ h (1/τ(x₀) + 1/τ(x₁)), and q follows by the
-// weights of a plain branch, exact for S linear in ξ (docs/theory.md §7).
+// weights of a plain branch, exact for S linear in ξ, or in explicit steps by those that take energy in each of them
+// (docs/theory.md §7).
 #pragma once
 
 #include <array>
@@ -17,6 +18,9 @@
 #include "material/time_formulas.h"
 
 namespace glisson {
+
+/// What a step solves for: a state that its forces balance, or the next one from forces that are known.
+enum class StepKind { implicit, central_difference };
 
 class BranchPaces {
  public:
@@ -37,22 +41,22 @@ class BranchPaces {
   /// Whether the time of some branch follows the deformation.
   bool follows() const { return follows_; }
 
-  /// 1/τ of the k-th branch at measure x, and its slope by x [1/s].
+  /// 1/τ of the k-th branch at measure x [1/s].
   template <class T>
-  ValueSlope<T> at(std::size_t k, T x) const {
+  T at(std::size_t k, T x) const {
     using std::exp;
     const Pace& pace = paces_[k];
-    if (!pace.law) return {T(pace.plain), T(0.0)};
-    const ValueSlope<T> l = std::visit([&](const auto& law) { return law.at(pace.numbers, x); }, *pace.law);
-    const T value = T(pace.plain) * exp(-l.value);
-    return {value, -value * l.slope};
+    if (!pace.law) return T(pace.plain);
+    const T logarithm = std::visit([&](const auto& law) { return law.at(pace.numbers, x).value; }, *pace.law);
+    return T(pace.plain) * exp(-logarithm);
   }
 
   /// Weights of the k-th branch over a step of h [s] from a pace `before` to that at measure x.
   template <class T>
-  BranchWeights<T> weights(std::size_t k, double h, double before, T x) const {
+  BranchWeights<T> weights(std::size_t k, double h, double before, T x, StepKind step = StepKind::implicit) const {
     if (std::isinf(h)) return {T(0.0), T(0.0), T(1.0)};
-    return weights_over(T(0.5 * h) * (T(before) + at(k, x).value));
+    const T passed = T(0.5 * h) * (T(before) + at(k, x));
+    return step == StepKind::implicit ? weights_over(passed) : passive_weights_over(passed);
   }
 
  private:

@@ -28,6 +28,18 @@ BranchWeights<T> weights_over(T x) {
   return {T(1.0) - rise, rise - to, to};
 }
 
+/// Weights for explicit steps in which x changes from one to the next: q(t + h) = e^(−x) q(t) + ½ (1 − e^(−x)) (S(t) + S(t + h)).
+///
+/// The overstress o = S − q then goes on by o₁ = e^(−x) o₀ + ½ (1 + e^(−x)) ΔS, and of the work of the central difference,
+/// ½ (o₀ + o₁) Δε, what the spring does not hold is a square, whatever x is: ½ (o₀ + o₁)² (1 − e^(−x))/(1 + e^(−x)) over the
+/// modulus. So a branch takes energy in every single step (docs/theory.md §7). They differ from those above by x²/12.
+template <class T>
+BranchWeights<T> passive_weights_over(T x) {
+  using std::expm1;
+  const T rise = x > T(0.0) ? -expm1(-x) : T(0.0);
+  return {T(1.0) - rise, T(0.5) * rise, T(0.5) * rise};
+}
+
 /// @param h  [s], ≥ 0 and may be infinite
 /// @param time  τ [s], > 0
 inline BranchWeights<> branch_weights(double h, double time) { return weights_over(h / time); }

@@ -131,7 +131,7 @@ struct MaterialPoint::Parts {
   void set_paces(History& now) const {
     if (!response.paces().follows()) return;
     const double x = response.measure(sum(now.deformation, scaled(identity<double>(), -1.0)), shape);
-    for (std::size_t k = 0; k < branches().size(); ++k) now.pace[k] = response.paces().at(k, x).value;
+    for (std::size_t k = 0; k < branches().size(); ++k) now.pace[k] = response.paces().at(k, x);
   }
 
   /// What the branches keep of the past at the end of h, and what they take of the stress there.

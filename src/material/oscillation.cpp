@@ -30,7 +30,7 @@ class Linearised {
     relaxed_ = S * response_.relaxing_share();
     const double x = response_.paces().follows() ? response_.measure(H_, shape_) : 0.0;
     for (std::size_t k = 0; k < tissue.maxwell.size(); ++k)
-      times_.push_back(tissue.maxwell[k].time_law ? 1.0 / response_.paces().at(k, x).value : tissue.maxwell[k].time);
+      times_.push_back(tissue.maxwell[k].time_law ? 1.0 / response_.paces().at(k, x) : tissue.maxwell[k].time);
   }
 
   Tangent along(std::size_t i, std::size_t j) const {

@@ -57,10 +57,6 @@ T Response::measure(const Mat3<T>& H, const ElementShape& shape) const {
   return regular_mean_ratio(H, T(shape.volume), EdgeMetric<T>{T(g.xx), T(g.yy), T(g.zz), T(g.xy), T(g.yz), T(g.zx)});
 }
 
-double Response::measure_steepness(const Mat3d& H, const ElementShape& shape) const {
-  return std::sqrt(squared_norm(measure_gradient(H, measure(H, shape), shape)));
-}
-
 /// λ tr(ε) I + 2 μ ε in the tissue's kinematics, as P.
 template <class T>
 Mat3<T> Response::tensor_mass(const Mat3<T>& H, const Moduli<T>& m, const T* mean) const {

@@ -62,8 +62,6 @@ class Response {
   T measure(const Mat3<T>& H, const ElementShape& shape) const;
   /// How fast the branches relax at a measure.
   const BranchPaces& paces() const { return paces_; }
-  /// ‖∂x/∂F‖ [-].
-  double measure_steepness(const Mat3d& H, const ElementShape& shape) const;
 
   /// The volume change ϑ that the bulk resists: tr ε of the kinematics, J − 1 of a hyperelastic law [-].
   template <class T>

@@ -84,7 +84,7 @@ void UniaxialPath::update_branches(double h, double side, double stretch) {
 void UniaxialPath::set_paces(Axial<double> h) {
   if (!response_.paces().follows()) return;
   const double x = response_.measure(h);
-  for (std::size_t b = 0; b < branches_; ++b) pace_[b] = response_.paces().at(b, x).value;
+  for (std::size_t b = 0; b < branches_; ++b) pace_[b] = response_.paces().at(b, x);
 }
 
 UniaxialState UniaxialPath::start(double rate) {

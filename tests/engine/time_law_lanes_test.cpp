@@ -68,8 +68,8 @@ struct Vibration {
   explicit Vibration(const Tissue& t) : tissue(t) {
     std::mt19937 random(11);
     mesh = test::jittered_box({3, 3, 3}, 0.01, 0.2, random);
-    u = test::random_field(mesh.vertices.size(), 0.0015, random);
-    v = test::random_field(mesh.vertices.size(), 0.05, random);
+    u = test::random_field(mesh.vertices.size(), 0.0005, random);
+    v = test::random_field(mesh.vertices.size(), 0.02, random);
   }
   Simulation start(SimulationOptions options = {}) const {
     Simulation s(mesh, {{0, tissue}}, options);
@@ -87,8 +87,8 @@ double distance(const Simulation& a, const Simulation& b, std::size_t vertices) 
   return apart / size;
 }
 
-// A rate and an exponent of 0: the motion is that of the plain branches, whose memory is kept in another way, to the rounding
-// of 300 steps.
+// A rate and an exponent of 0: the motion is that of the plain branches, whose memory is kept in another way, up to (h/τ)²/12,
+// 5e-7 here, and the rounding of 600 steps.
 TEST(TimeLawLanes, ConstantLawIsThePlainBranch) {
   for (const Tissue& plain : test::maxwell_tissues()) {
     if (plain.relaxation_follows()) continue;
@@ -98,30 +98,46 @@ TEST(TimeLawLanes, ConstantLawIsThePlainBranch) {
     t.maxwell[0].time_law = ExponentialTime{.rate = 0.0};
     t.maxwell[1].time_law = PowerTime{.exponent = 0.0};
     const Vibration was(t);
-    Simulation a = is.start({.step = 1e-4}), b = was.start({.step = 1e-4});
-    for (int n = 0; n < 300; ++n) test::must_step(a), test::must_step(b);
+    Simulation a = is.start({.step = 5e-5}), b = was.start({.step = 5e-5});
+    for (int n = 0; n < 600; ++n) test::must_step(a), test::must_step(b);
     EXPECT_LE(distance(b, a, is.u.size()), 2e-5) << t.name;
   }
 }
 
+/// Tissues whose elastic part has an energy after long times too.
+std::vector<Tissue> conservative() {
+  std::vector<Tissue> all;
+  for (const Kinematics k : test::all_of<Kinematics>()) {
+    Tissue t;
+    t.youngs_modulus = 3000.0, t.kinematics = k, t.maxwell_part = MaxwellPart::all, t.name = test::name_of(k);
+    all.push_back(t);
+  }
+  Tissue t;
+  t.hyperelastic = NeoHookean{.mu = 1000.0, .bulk_modulus = 6000.0}, t.name = "neo-Hookean";
+  all.push_back(t);
+  all.back().maxwell_part = MaxwellPart::all;
+  return all;
+}
+
 // Times that fall by the deformation to a thousandth of the step, and times that rise from there: by the step that the engine
-// chooses a free vibration loses energy and does not gain any.
+// chooses, the branches take energy from a free vibration at all times and give none, and it is a part of what there was.
 TEST(TimeLawLanes, TheStableStepHolds) {
-  for (Tissue t : following_tissues()) {
-    if (t.measure != DeformationMeasure::equivalent_shear_strain) continue;
+  for (Tissue t : conservative()) {
     for (const TimeLaw& law : std::initializer_list<TimeLaw>{
-             ExponentialTime{.rate = -200.0, .least = 1e-6}, ExponentialTime{.rate = 200.0, .most = 1e6},
+             ExponentialTime{.rate = -300.0, .least = 1e-6}, ExponentialTime{.rate = 300.0, .most = 1e6},
              PowerTime{.exponent = 3.0, .reference = 0.05, .least = 1e-6, .most = 1e6},
              PowerTime{.exponent = -3.0, .reference = 0.05, .least = 1e-6, .most = 1e6}}) {
       for (const double time : {1e-4, 1e-2}) {
         t.maxwell = {{.share = 0.6, .time = time, .time_law = law}, {.share = 0.3, .time = 1.0, .time_law = law}};
         const Vibration is(t);
         Simulation s = is.start({.track_energies = true});
-        double most = 0.0;
-        for (int n = 0; n < 3000; ++n) test::must_step(s), most = std::max(most, s.energies().kinetic);
-        EXPECT_LT(s.energies().kinetic, 0.1 * most) << t.name << ", " << law_name(law) << ", " << time;
-        EXPECT_TRUE(std::isfinite(most)) << t.name;
-        EXPECT_GT(s.energies().maxwell, 0.0) << t.name;
+        for (int n = 0; n < 3000; ++n) {
+          test::must_step(s);
+          const Energies e = s.energies();
+          ASSERT_GT(e.maxwell, -1e-3 * e.initial) << t.name << ", " << law_name(law) << ", " << time << ", step " << n;
+          ASSERT_LT(e.kinetic, e.initial) << t.name << ", " << law_name(law) << ", " << time << ", step " << n;
+        }
+        EXPECT_GT(s.energies().maxwell, 0.05 * s.energies().initial) << t.name;
       }
     }
   }

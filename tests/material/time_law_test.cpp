@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "glisson/material_point.h"
 #include "glisson/oscillation.h"
@@ -28,15 +29,13 @@ TEST(TimeLaw, IsItsFormula) {
   EXPECT_NEAR(time_factor(cubic, 0.01), 1e-3, 1e-17);
   EXPECT_NEAR(time_factor(cubic, 0.0), 1e-3, 1e-17);
   const BranchPaces paces({{0.4, 2.0, slower}, {0.3, 5.0, cubic}, {0.1, 8.0, {}}});
-  const auto of = [&](std::size_t k, double x) { return paces.at(k, x); };
-  EXPECT_NEAR(of(0, 0.2).slope, -5.0 * std::exp(-1.0) / 2.0, 1e-15);
-  EXPECT_DOUBLE_EQ(of(0, 1.0).slope, 0.0);
-  EXPECT_NEAR(of(1, 0.1).value, 8.0 / 5.0, 1e-14);
-  EXPECT_NEAR(of(1, 0.1).slope, -8.0 / 5.0 * 30.0, 1e-12);
-  EXPECT_DOUBLE_EQ(of(1, 0.001).slope, 0.0);
-  EXPECT_DOUBLE_EQ(of(2, 0.5).value, 0.125);
-  const ValueSlope<Dual> d = paces.at(1, Dual(0.1, 1.0));
-  EXPECT_NEAR(d.value.d, d.slope.v, 1e-12);
+  EXPECT_NEAR(paces.at(0, 0.2), 0.5 * std::exp(-1.0), 1e-15);
+  EXPECT_NEAR(paces.at(1, 0.1), 8.0 / 5.0, 1e-14);
+  EXPECT_DOUBLE_EQ(paces.at(2, 0.5), 0.125);
+  EXPECT_NEAR(paces.at(0, Dual(0.2, 1.0)).d, -2.5 * std::exp(-1.0), 1e-14);
+  EXPECT_NEAR(paces.at(1, Dual(0.1, 1.0)).d, -48.0, 1e-12);
+  EXPECT_DOUBLE_EQ(paces.at(0, Dual(1.0, 1.0)).d, 0.0);
+  EXPECT_DOUBLE_EQ(paces.at(1, Dual(0.001, 1.0)).d, 0.0);
 }
 
 // The pace of a tetrahedron is that of the oracle, which takes its measure from corners.
@@ -49,7 +48,7 @@ TEST(TimeLaw, OraclePaces) {
       const Mat3d H = n < 10 ? draw.stretched(0.67, 1.44) : draw.tensor(1e-3);
       for (std::size_t k = 0; k < t.maxwell.size(); ++k) {
         const auto exact = static_cast<double>(reference::pace(s.point, k, test::real_gradient(H)));
-        EXPECT_NEAR(s.response.paces().at(k, s.response.measure(H, s.shape)).value, exact, 1e-9 * exact) << t.name;
+        EXPECT_NEAR(s.response.paces().at(k, s.response.measure(H, s.shape)), exact, 1e-9 * exact) << t.name;
       }
     }
   }
@@ -174,7 +173,7 @@ TEST(TimeLaw, DissipationIsNeverNegative) {
     const auto pace = [&](double shear) {
       Mat3d H{};
       H(0, 2) = shear;
-      return response.paces().at(0, response.measure(H, ElementShape{})).value;
+      return response.paces().at(0, response.measure(H, ElementShape{}));
     };
     for (const double period : {0.01, 1.0, 100.0}) {
       MaterialPoint point(one);
@@ -193,6 +192,54 @@ TEST(TimeLaw, DissipationIsNeverNegative) {
       }
       EXPECT_GT(lost, 0.0);
       EXPECT_GE(least, -1e-12 * lost) << law_name(*branch.time_law) << ", period " << period;
+    }
+  }
+}
+
+// The weights of explicit steps take energy in each, however long and whatever the step before was, and are those of the exact
+// step up to ξ²/12.
+TEST(TimeLaw, ExplicitWeightsTakeEnergyInEveryStep) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (int n = 0; n < 2000; ++n) {
+    const double xi = std::exp(6.0 * normal(random)), before = normal(random), strain = normal(random);
+    const BranchWeights<> w = passive_weights_over(xi);
+    const double after =
+        w.decay * before + (1.0 - w.to) * strain;  // of a modulus of 1: S − q, with S from 0 to the strain
+    const double heat = 0.5 * (before + after) * strain - 0.5 * (after * after - before * before);
+    EXPECT_GE(heat, -1e-15 * (before * before + after * after + strain * strain)) << xi;
+  }
+  for (const double xi : {0.3, 0.1, 0.01}) {
+    const BranchWeights<> passive = passive_weights_over(xi), exact = weights_over(xi);
+    EXPECT_DOUBLE_EQ(passive.decay, exact.decay);
+    EXPECT_NEAR((1.0 - passive.to) / (1.0 - exact.to) - 1.0, xi * xi / 12.0, 0.01 * xi * xi);
+  }
+}
+
+// A mass on two springs, one behind a dashpot whose time is chosen anew in each step, at random and so that the motion grows
+// most: at steps up to the limit of both springs together it does not grow.
+TEST(TimeLaw, AMassIsStableUpToTheStepOfTheInstant) {
+  std::mt19937 random(6);
+  std::lognormal_distribution<double> any(0.0, 4.0);
+  const double soft = 1.0, spring = 3.0, mass = 1.0, h = 2.0 * std::sqrt(0.98 * mass / (soft + spring));
+  for (const bool worst : {false, true}) {
+    double x = 1.0, v = 0.0, over = 0.0, first = 0.0;
+    for (int n = 0; n < 20000; ++n) {
+      v -= h / mass * (soft * x + over);
+      const double next = x + h * v;
+      // ½ m v² + ½ c x x' + ½ o v h + o²/2C, which leapfrog keeps where nothing is lost
+      const double energy =
+          0.5 * mass * v * v + 0.5 * soft * x * next + 0.5 * over * h * v + 0.5 * over * over / spring;
+      if (n == 0) first = energy;
+      ASSERT_LE(energy, first * (1.0 + 1e-12)) << n;
+      double chosen = 0.0, most = -1.0;
+      for (int trial = 0; trial < (worst ? 20 : 1); ++trial) {
+        const BranchWeights<> w = passive_weights_over(any(random));
+        const double after = w.decay * over + (1.0 - w.to) * spring * (next - x);
+        const double speed = std::abs(v - h / mass * (soft * next + after));
+        if (speed > most) most = speed, chosen = after;
+      }
+      over = chosen, x = next;
     }
   }
 }

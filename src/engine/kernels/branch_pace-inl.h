@@ -1,6 +1,8 @@
 // branch_pace-inl.h — Maxwell branches whose times follow the deformation, in lanes.
 //
-//   o = S − q:   o(t + h) = e^(−ξ) o(t) + (1 − β) (S(t + h) − S(t)),   1 − β = (1 − e^(−ξ))/ξ,   ξ = ½ h (1/τ(t) + 1/τ(t + h))
+//   o = S − q:   o(t + h) = e^(−ξ) o(t) + ½ (1 + e^(−ξ)) (S(t + h) − S(t)),   ξ = ½ h (1/τ(t) + 1/τ(t + h))
+//
+// by the weights of branch_weights.h that take energy in every step.
 //
 // ξ is known at the end of the step alone, so the memory keeps what the weights act on: o of each branch, S, and 1/τ of each
 // branch. o rather than q, because its float then decays by a rounding of its own size, however short the step is.
@@ -25,51 +27,26 @@
 HWY_BEFORE_NAMESPACE();
 namespace glisson::engine::HWY_NAMESPACE {
 
-/// 1/τ = e^(−ln φ)/τ₀ and its slope.
+/// 1/τ = e^(−ln φ)/τ₀.
 template <class Law>
-inline void pace_of(const LanePace& pace, const float* x, std::size_t n, float* value, float* slope) {
+inline void pace_of(const LanePace& pace, const float* x, std::size_t n, float* value) {
   std::array<float, std::tuple_size_v<decltype(Law().numbers())>> numbers;
   std::copy_n(pace.numbers.begin(), numbers.size(), numbers.begin());
   const LaneScalar plain(pace.plain);
   for (std::size_t i = 0; i < n; i += kLanes) {
-    const ValueSlope<LaneScalar> l = Law::at(numbers, LaneScalar(hn::Load(Lanes(), x + i)));
-    const LaneScalar p = plain * exp(-l.value);
-    hn::Store(p.v, Lanes(), value + i);
-    hn::Store((-p * l.slope).v, Lanes(), slope + i);
+    const LaneScalar logarithm = Law::at(numbers, LaneScalar(hn::Load(Lanes(), x + i))).value;
+    hn::Store((plain * exp(-logarithm)).v, Lanes(), value + i);
   }
 }
-inline void constant_pace(const LanePace& pace, const float*, std::size_t n, float* value, float* slope) {
-  for (std::size_t i = 0; i < n; i += kLanes) {
-    hn::Store(number(pace.plain), Lanes(), value + i);
-    hn::Store(hn::Zero(Lanes()), Lanes(), slope + i);
-  }
+inline void constant_pace(const LanePace& pace, const float*, std::size_t n, float* value) {
+  for (std::size_t i = 0; i < n; i += kLanes) hn::Store(number(pace.plain), Lanes(), value + i);
 }
 template <class... Laws>
 constexpr PaceStages pace_stages(std::type_identity<std::variant<Laws...>>) {
   return {pace_of<Laws>..., constant_pace};
 }
 
-/// 1 − e^(−ξ), and that over ξ.
-struct Passed {
-  F rise, kept;
-};
-HWY_INLINE Passed passed(F xi) {
-  const F one = number(1.0F), little = number(1e-4F);
-  const F rise = hn::Neg(hn::Expm1(Lanes(), hn::Neg(xi)));
-  const F short_way = hn::NegMulAdd(number(0.5F), xi, one);
-  return {rise, hn::IfThenElse(hn::Lt(xi, little), short_way, rise / hn::Max(xi, little))};
-}
-
-/// ‖∂x/∂E‖ of a measure, near its largest [-].
-HWY_INLINE F steepness(DeformationMeasure measure, F x) {
-  if (measure == DeformationMeasure::one_minus_q) {
-    return number(4.0F / 3.0F) * hn::Sqrt(number(1.5F) * hn::Max(x, hn::Zero(Lanes())));
-  }
-  return measure == DeformationMeasure::regular_mean_ratio ? number(1.64F) * x : number(1.0F);
-}
-
-inline void following(const ResponseItems& in, const LaneResponse& r, const MaxwellStep& step, const Block& block,
-                      ResponseBlock& out) {
+inline void following(const ResponseItems& in, const LaneResponse& r, const MaxwellStep& step, ResponseBlock& out) {
   const Lanes d;
   const F one = number(1.0F), none = hn::Zero(d), half_step = number(step.relaxed ? 0.0F : 0.5F * step.since);
   const std::size_t n = r.branches, numbers = 7 * n + 6;
@@ -82,17 +59,14 @@ inline void following(const ResponseItems& in, const LaneResponse& r, const Maxw
     float* paces = before + 6 * kLanes;
     const Symmetric change = plus(S, number(-1.0F), load_symmetric(before));
     Symmetric over = times(none, S);
-    F turn = none;  // Σ g ½ h |(1/τ)′| ‖∂q/∂ξ‖
     for (std::size_t k = 0; k < n; ++k) {
-      const F pace = hn::Load(d, out.pace[k] + item * kLanes), slope = hn::Load(d, out.pace_slope[k] + item * kLanes);
+      const F pace = hn::Load(d, out.pace[k] + item * kLanes);
       Symmetric o = times(none, S);
       if (!step.relaxed) {
-        const Passed w = passed(hn::Max(half_step * (hn::Load(d, paces + k * kLanes) + pace), none));
+        const F xi = hn::Max(half_step * (hn::Load(d, paces + k * kLanes) + pace), none);
+        const F rise = hn::Neg(hn::Expm1(d, hn::Neg(xi)));  // 1 − e^(−ξ)
         const Symmetric held = load_symmetric(memory + 6 * k * kLanes);
-        const Symmetric left = plus(held, hn::Neg(w.rise), held);
-        o = plus(left, w.kept, change);
-        const Symmetric moves = plus(left, number(0.5F), change);
-        turn = hn::MulAdd(number(r.share[k]) * half_step * hn::Abs(slope), hn::Sqrt(contraction(moves, moves)), turn);
+        o = plus(plus(held, hn::Neg(rise), held), hn::NegMulAdd(number(0.5F), rise, one), change);
       }
       over = plus(over, number(r.share[k]), o);
       if (!step.moves) continue;
@@ -102,15 +76,6 @@ inline void following(const ResponseItems& in, const LaneResponse& r, const Maxw
     if (step.moves) store_symmetric(S, before);
     store_tensor(carried(r, H, over), out.viscous + item * 9 * kLanes);
     store_tensor(plus(P, number(-r.relaxing), carried(r, H, S)), out.piola + item * 9 * kLanes);
-    F stretch = one;
-    if (!r.small) {
-      const Symmetric E = green_strain(H);
-      stretch = hn::MulAdd(number(2.0F), hn::Sqrt(contraction(E, E)), one);
-    }
-    const F steep = steepness(r.measure, hn::Load(d, block.x + item * kLanes));
-    const F more = number(r.rest_bound) * turn * stretch * steep;
-    see_stiffness(out, item, hn::Load(d, out.ratio + item * kLanes) + more,
-                  hn::Load(d, out.norm + item * kLanes) + more);
   }
 }
 

@@ -165,9 +165,8 @@ void relax(const ResponseItems& in, const LaneResponse& r, const MaxwellStep& st
     return;
   }
   constexpr PaceStages kPaces = traced::pace_stages(std::type_identity<TimeLaw>());
-  for (std::size_t k = 0; k < r.branches; ++k)
-    kPaces[r.pace[k].kind](r.pace[k], block.x, 1, out.pace[k], out.pace_slope[k]);
-  traced::following(in, r, step, block, out);
+  for (std::size_t k = 0; k < r.branches; ++k) kPaces[r.pace[k].kind](r.pace[k], block.x, 1, out.pace[k]);
+  traced::following(in, r, step, out);
 }
 
 }  // namespace

@@ -27,7 +27,6 @@ struct ResponseBlock {
   alignas(64) float ratio[kBlockTets];        ///< material/response.h, Stiffening, [item][lane]; 0 where no tet is
   alignas(64) float norm[kBlockTets];
   alignas(64) float pace[kMostBranches][kBlockTets];  ///< 1/τ of branches whose times follow the measure [1/s]
-  alignas(64) float pace_slope[kMostBranches][kBlockTets];
 };
 
 /// How fast a branch relaxes: 1/τ, with the law of its time where it has one.
@@ -102,8 +101,8 @@ struct MaxwellStep {
 /// P of the elastic part into `out.piola`; what the tangent has come to into `out.ratio` and `out.norm`.
 using RespondStage = void (*)(const ResponseItems&, const LaneResponse&, const Rescue&, const Block&,
                               ResponseBlock& out);
-/// 1/τ and its slope of a branch at n measures.
-using PaceStage = void (*)(const LanePace&, const float* x, std::size_t n, float* pace, float* slope);
+/// 1/τ of a branch at n measures.
+using PaceStage = void (*)(const LanePace&, const float* x, std::size_t n, float* pace);
 /// By index in TimeLaw; the last is for branches without a law.
 using PaceStages = std::array<PaceStage, kNoTimeLaw + 1>;
 /// By index in HyperelasticLaw.
@@ -126,8 +125,7 @@ struct ResponseKernels {
   void (*fibres)(const ResponseItems&, const LaneResponse&, ResponseBlock& out) = nullptr;
   void (*maxwell)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, ResponseBlock& out) = nullptr;
   /// The same for branches some of whose times follow the measure, whose paces are in `out`.
-  void (*following)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, const Block&,
-                    ResponseBlock& out) = nullptr;
+  void (*following)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, ResponseBlock& out) = nullptr;
   PaceStages pace{};
   void (*viscous)(const ResponseItems&, const LaneResponse&, bool add, ResponseBlock& out) = nullptr;
   /// All of them for tissue of small strain with branches: [moduli follow a law][elastic and viscous apart].

@@ -106,7 +106,7 @@ void SubmeshBody::make_memory_explicit() {
 }
 
 /// Of branches whose times follow the deformation, from their overstress o, S and 1/τ when the memory was kept:
-///   S − q = e^(−ξ) o + (1 − β) (S − S₀)        (branch_pace-inl.h)
+///   S − q = e^(−ξ) o + ½ (1 + e^(−ξ)) (S − S₀)        (branch_pace-inl.h)
 void SubmeshBody::follow_branches(std::size_t b, BranchMemory& memory) const {
   const TissueBlock& block = body_.blocks[b];
   const std::size_t n = memory.branches;
@@ -119,7 +119,7 @@ void SubmeshBody::follow_branches(std::size_t b, BranchMemory& memory) const {
       const Sym3<double> before = tensor_at(number, 6 * n);
       for (std::size_t k = 0; k < n; ++k) {
         const auto pace = static_cast<double>(*number(6 * n + 6 + k));
-        const BranchWeights<> w = response.paces().weights(k, since_memory_, pace, x[at]);
+        const BranchWeights<> w = response.paces().weights(k, since_memory_, pace, x[at], StepKind::central_difference);
         memory.left[at * n + k] = 1.0 - w.to;
         memory.held[at * n + k] = before * (1.0 - w.to) - tensor_at(number, 6 * k) * w.decay;
       }
@@ -192,7 +192,7 @@ void SubmeshBody::set_branch_stresses(std::size_t b, std::span<const Sym3<double
         if (follows) {
           put_tensor(over, number, 6 * k);
           // as much slower as it is faster now: no time has passed for the branch
-          *number(6 * n + 6 + k) = -static_cast<float>(large_plans_[b]->response.paces().at(k, x[at]).value);
+          *number(6 * n + 6 + k) = -static_cast<float>(large_plans_[b]->response.paces().at(k, x[at]));
         } else {
           const double left = 1.0 - static_cast<double>(lane_weights(since_memory_, branches[k].time).to);
           put_tensor(S[at] * left - over, number, 6 * k);
