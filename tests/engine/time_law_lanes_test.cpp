@@ -29,15 +29,16 @@ Mat3d mean_piola(const Simulation& body, std::size_t tets) {
 }
 
 // A cube all of whose vertices are led through shear and stretch, to and fro, in float: the stress of its tets is that of the
-// material point, of which the test of the equation knows that it is its solution. 1e-5 of the stress.
+// material point, of which the test of the equation knows that it is its solution. 1e-5 of the stress, of which the steps, a
+// hundredth and less of the times, are the smaller part.
 TEST(TimeLawLanes, ABodyIsItsMaterialPoint) {
   constexpr double kSpeed = 1.5, kEnd = 0.12;
-  constexpr int kSteps = 600;
+  constexpr int kSteps = 2400;
   const TetMesh mesh = box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}});
   const auto amount = [](double t) { return kSpeed * std::min(t, 0.9 * (kEnd - t)); };
   for (Tissue tissue : following_tissues()) {
     tissue.density = 1e6;  // all vertices are led: inertia moves nothing, and the stable step is long
-    tissue.maxwell[0].time = 0.05, tissue.maxwell[1].time = 0.1;
+    tissue.maxwell[0].time = 0.2, tissue.maxwell[1].time = 0.4;
     MaterialPoint point(tissue);
     Simulation body(mesh, {{0, tissue}}, {.step = kEnd / kSteps});
     for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
@@ -53,7 +54,7 @@ TEST(TimeLawLanes, ABodyIsItsMaterialPoint) {
       MaterialTargets targets;
       targets(0, 0).value = 1.0 + 0.5 * a, targets(0, 2).value = a, targets(2, 2).value = 1.0 - 0.4 * a;
       ASSERT_TRUE(point.advance(kEnd / kSteps, targets).converged);
-      if (k % 150 != 0) continue;
+      if (k % 600 != 0) continue;
       EXPECT_LE(test::apart(mean_piola(body, mesh.tets.size()), point.state().nominal), 1e-5)
           << tissue.name << ", step " << k;
     }
