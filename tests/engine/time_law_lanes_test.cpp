@@ -29,8 +29,8 @@ Mat3d mean_piola(const Simulation& body, std::size_t tets) {
 }
 
 // A cube all of whose vertices are led through shear and stretch, to and fro, in float: the stress of its tets is that of the
-// material point, of which the test of the equation knows that it is its solution. 1e-5 of the stress, of which the steps, a
-// hundredth and less of the times, are the smaller part.
+// material point, of which the test of the equation knows that it is its solution. 1e-5 of the largest stress: the end is without
+// strain, where only what the branches hold is left.
 TEST(TimeLawLanes, ABodyIsItsMaterialPoint) {
   constexpr double kSpeed = 1.5, kEnd = 0.12;
   constexpr int kSteps = 2400;
@@ -40,6 +40,7 @@ TEST(TimeLawLanes, ABodyIsItsMaterialPoint) {
     tissue.density = 1e6;  // all vertices are led: inertia moves nothing, and the stable step is long
     tissue.maxwell[0].time = 0.2, tissue.maxwell[1].time = 0.4;
     MaterialPoint point(tissue);
+    double largest = 0.0;
     Simulation body(mesh, {{0, tissue}}, {.step = kEnd / kSteps});
     for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
       const std::array<std::uint32_t, 1> one{v};
@@ -54,9 +55,10 @@ TEST(TimeLawLanes, ABodyIsItsMaterialPoint) {
       MaterialTargets targets;
       targets(0, 0).value = 1.0 + 0.5 * a, targets(0, 2).value = a, targets(2, 2).value = 1.0 - 0.4 * a;
       ASSERT_TRUE(point.advance(kEnd / kSteps, targets).converged);
+      largest = std::max(largest, test::size_of(point.state().nominal));
       if (k % 600 != 0) continue;
-      EXPECT_LE(test::apart(mean_piola(body, mesh.tets.size()), point.state().nominal), 1e-5)
-          << tissue.name << ", step " << k;
+      const Mat3d apart = test::difference(mean_piola(body, mesh.tets.size()), point.state().nominal);
+      EXPECT_LE(test::size_of(apart), 1e-5 * largest) << tissue.name << ", step " << k;
     }
   }
 }
