@@ -13,10 +13,10 @@
 namespace glisson::app {
 namespace {
 
-constexpr std::array<std::string_view, 20> kModels{
+constexpr std::array<std::string_view, 21> kModels{
     "linear", "law",         "full",   "branches",  "law_branches",  "corotational", "green", "green_energy",
     "fibres", "neo_hookean", "nodal",  "maxwell",   "mooney_rivlin", "yeoh",         "fung",  "veronda_westmann",
-    "ogden",  "gent",        "rivlin", "invariants"};
+    "ogden",  "gent",        "rivlin", "invariants",  "following"};
 
 constexpr double kShear = 3600.0 / 2.8, kBulk = 6000.0;  ///< of E = 3.6 kPa and ν = 0.4 [Pa]
 
@@ -96,6 +96,10 @@ Tissue model_tissue(Model model) {
   if (model == Model::nodal) tissue.volume_change = VolumeChange::average_nodal;
   const bool relaxes = model == Model::maxwell || model == Model::branches || model == Model::law_branches;
   if (relaxes) tissue.maxwell = {{.share = 0.4, .time = 0.5}, {.share = 0.3, .time = 50.0}};
+  if (model == Model::following) {
+    tissue.maxwell = {{.share = 0.4, .time = 0.5, .time_law = PowerTime{.exponent = 1.0}},
+                      {.share = 0.3, .time = 50.0, .time_law = ExponentialTime{.rate = 5.0}}};
+  }
   return tissue;
 }
 

@@ -32,8 +32,9 @@ enum class Model {
   veronda_westmann,
   ogden,  ///< of two terms
   gent,
-  rivlin,     ///< `invariants` with Rivlin's six terms
-  invariants  ///< with all terms: four exponentials
+  rivlin,      ///< `invariants` with Rivlin's six terms
+  invariants,  ///< with all terms: four exponentials
+  following    ///< neo-Hookean, two branches whose times follow the deformation
 };
 
 /// All of them, in the order of Model.

@@ -15,7 +15,8 @@ std::string value_text(double x) { return fmt::format("{:g}", x); }
 std::string value_text(const std::vector<double>& list) { return fmt::format("[{:g}]", fmt::join(list, ", ")); }
 
 /// The law's word and its keys as a scene has them.
-std::string hyperelastic_text(const HyperelasticLaw& law) {
+template <class Laws>
+std::string law_keys(const Laws& laws) {
   return std::visit(
       []<class Law>(const Law& l) {
         std::string text;
@@ -24,7 +25,7 @@ std::string hyperelastic_text(const HyperelasticLaw& law) {
         });
         return fmt::format("{}: {}", Law::kName, text);
       },
-      law);
+      laws);
 }
 
 std::string linear_text(const Tissue& t) {
@@ -47,12 +48,15 @@ std::string kinematics_text(const Tissue& t) {
 }  // namespace
 
 std::string law_text(const Tissue& t) {
-  std::string text = t.hyperelastic ? hyperelastic_text(*t.hyperelastic) : linear_text(t) + kinematics_text(t);
+  std::string text = t.hyperelastic ? law_keys(*t.hyperelastic) : linear_text(t) + kinematics_text(t);
   if (t.volume_change == VolumeChange::average_nodal) text += ", average nodal volume changes";
   if (t.viscosity > 0.0) text += fmt::format(", η = {:.6g} Pa·s", t.viscosity);
   if (t.fibres) text += fmt::format(", fibres of {:.6g} Pa", t.fibres->stiffness);
   const char* part = t.maxwell_part == MaxwellPart::all ? "all" : "the deviator";
-  for (const MaxwellBranch& b : t.maxwell) text += fmt::format(", {:g} of {} relaxes in {:g} s", b.share, part, b.time);
+  for (const MaxwellBranch& b : t.maxwell) {
+    text += fmt::format(", {:g} of {} relaxes in {:g} s", b.share, part, b.time);
+    if (b.time_law) text += " × " + law_keys(*b.time_law);
+  }
   return text;
 }
 

@@ -64,6 +64,13 @@ std::pair<double, double> pair_of(const LameParameters& lame) { return {lame.lam
 void bind_tissues(nb::module_& m) {
   bind_laws(m);
   Options<Fibres>(m, "Fibres");
+  bind_each(m, "Time", std::type_identity<TimeLaw>());
+  m.def(
+      "time_factor",
+      [](const TimeLaw& law, const nb::object& x) {
+        return at_each(x, [&](double at) { return time_factor(law, at); });
+      },
+      "law"_a, "x"_a, doc("time_factor"));
   Options<MaxwellBranch>(m, "MaxwellBranch");
   Options<Tissue> tissue(m, "Tissue");
   tissue.def(

@@ -2,7 +2,8 @@
 //
 //   σ_k = g_k (S − q_k) = g_k (left_k S − held_k)        q_k = held_k + (1 − left_k) S, S of the present deformation
 //
-// So the stress of a branch follows from the present S and from numbers that no step is needed for.
+// So the stress of a branch follows from the present S and from numbers that no step is needed for. Where the times of
+// branches follow the deformation, `left` is a tet's own, as `held` always is.
 #pragma once
 
 #include <vector>
@@ -14,13 +15,14 @@ namespace glisson {
 
 /// Empty: all branches have relaxed, or there are none.
 struct BranchMemory {
+  std::size_t branches = 0;        ///< n of the tissue; 0: empty
   std::vector<Sym3<double>> held;  ///< of branch k of n of the block's element i at n i + k [Pa]
-  std::vector<double> left;        ///< of each branch [-]
+  std::vector<double> left;        ///< likewise [-]
 
-  bool empty() const { return left.empty(); }
+  bool empty() const { return branches == 0; }
   /// σ_k of an element, counted from the block's first [Pa].
   Sym3<double> stress(const MaxwellBranch& branch, std::size_t i, std::size_t k, const Sym3<double>& S) const {
-    return (S * left[k] - held[i * left.size() + k]) * branch.share;
+    return (S * left[i * branches + k] - held[i * branches + k]) * branch.share;
   }
 };
 

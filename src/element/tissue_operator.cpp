@@ -36,24 +36,27 @@ void make_semidefinite(ElementTangent& C) {
 
 }  // namespace
 
-TissueOperator::TissueOperator(const Body& body) : body_(body) { body_changed(); }
+TissueOperator::TissueOperator(const Body& body, StepKind step) : body_(body), step_(step) { body_changed(); }
 
 void TissueOperator::body_changed() {
   responses_.clear();
   shapes_.assign(body_.elements.size(), {});
   first_branch_.clear(), first_stress_.clear();
   std::size_t branches = 0, stresses = 0;
+  bool follows = false;
   shares_volume_ = false;
   for (const TissueBlock& block : body_.blocks) {
     responses_.emplace_back(block.tissue);
     first_branch_.push_back(branches), first_stress_.push_back(stresses);
     const std::size_t n = block.end - block.begin, k = block.tissue.maxwell.size();
     branches += n * k, stresses += k > 0 ? n : 0;
+    follows = follows || responses_.back().paces().follows();
     shares_volume_ = shares_volume_ || block.tissue.volume_change == VolumeChange::average_nodal;
     for (std::size_t e = block.begin; e < block.end; ++e) shapes_[e] = element_shape(body_, block.tissue, e);
   }
   memory_.relaxed.resize(branches);
   memory_.stress.resize(stresses);
+  memory_.pace.resize(follows ? branches : 0);
   has_memory_ = branches > 0;
 }
 
@@ -73,18 +76,43 @@ std::vector<double> TissueOperator::mean_volume_change(std::span<const Vec3d> u)
   return mean;
 }
 
+/// The measure of an element, where times of branches follow it.
+template <class T>
+T TissueOperator::measure_of_times(std::size_t b, std::size_t e, const Mat3<T>& H) const {
+  return responses_[b].paces().follows() ? responses_[b].measure(H, shapes_[e]) : T(0.0);
+}
+
+/// Of a branch over the time since the past. @param x  measure of the element now
+template <class T>
+BranchWeights<T> TissueOperator::weights(std::size_t b, std::size_t e, std::size_t k, double since, T x) const {
+  const MaxwellBranch& branch = body_.blocks[b].tissue.maxwell[k];
+  if (branch.time_law) return responses_[b].paces().weights(k, since, memory_.pace[place_of(b, e) + k], x, step_);
+  const BranchWeights<> w = branch_weights(since, branch.time);
+  return {T(w.decay), T(w.from), T(w.to)};
+}
+
+/// Takes the paces of an element's branches down.
+void TissueOperator::set_paces(std::size_t b, std::size_t e, const Mat3d& H) {
+  const BranchPaces& paces = responses_[b].paces();
+  if (!paces.follows()) return;
+  const double x = responses_[b].measure(H, shapes_[e]);
+  for (std::size_t k = 0; k < body_.blocks[b].tissue.maxwell.size(); ++k)
+    memory_.pace[place_of(b, e) + k] = paces.at(k, x);
+}
+
 /// Σ g (S − q): what the branches have not relaxed yet.
 template <class T>
-Sym3<T> TissueOperator::overstress(std::size_t b, std::size_t e, double since, const Sym3<T>& S) const {
+Sym3<T> TissueOperator::overstress(std::size_t b, std::size_t e, double since, const Mat3<T>& H,
+                                   const Sym3<T>& S) const {
   const TissueBlock& block = body_.blocks[b];
   const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
   const std::size_t at = e - block.begin;
   const Sym3<T> before = with_scalar<T>(memory_.stress[first_stress_[b] + at]);
+  const T x = measure_of_times(b, e, H);
   Sym3<T> sum{};
   for (std::size_t k = 0; k < branches.size(); ++k) {
-    const BranchWeights w = branch_weights(since, branches[k].time);
-    const Sym3<T> q = with_scalar<T>(memory_.relaxed[first_branch_[b] + at * branches.size() + k]) * T(w.decay) +
-                      before * T(w.from) + S * T(w.to);
+    const BranchWeights<T> w = weights(b, e, k, since, x);
+    const Sym3<T> q = with_scalar<T>(memory_.relaxed[place_of(b, e) + k]) * w.decay + before * w.from + S * w.to;
     sum += (S - q) * T(branches[k].share);
   }
   return sum;
@@ -108,7 +136,7 @@ void TissueOperator::forces(const TissueState& state, std::span<Vec3d> elastic, 
       if (dashpot) scatter(body_, e, response.viscous(H, element_gradient(body_, e, state.v)), viscous);
       if (branches) {
         const Sym3<double> S = response.relaxing(H, P);
-        scatter(body_, e, response.carry(H, overstress(b, e, state.since, S)), viscous);
+        scatter(body_, e, response.carry(H, overstress(b, e, state.since, H, S)), viscous);
         P = sum(P, response.carry(H, S * -response.relaxing_share()));
       }
       scatter(body_, e, P, elastic);
@@ -143,7 +171,7 @@ void TissueOperator::linearise(const TissueState& state, double rate, bool semid
         Mat3<Dual> P = response.elastic(H, shapes_[e], shared ? &theta : nullptr);
         if (!branches) return P;
         const Sym3<Dual> S = response.relaxing(H, P);
-        return sum(P, response.carry(H, overstress(b, e, state.since, S) - S * Dual(response.relaxing_share())));
+        return sum(P, response.carry(H, overstress(b, e, state.since, H, S) - S * Dual(response.relaxing_share())));
       };
       const double fixed = shared ? mean[e] : 0.0;
       for (std::size_t c = 0; c < 9; ++c) {
@@ -196,37 +224,36 @@ void TissueOperator::advance_memory(const TissueState& state) {
     const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
     if (branches.empty()) continue;
     const bool shared = block.tissue.volume_change == VolumeChange::average_nodal;
-    std::vector<BranchWeights> weights;
-    for (const MaxwellBranch& m : branches) weights.push_back(branch_weights(state.since, m.time));
     for (std::size_t e = block.begin; e < block.end; ++e) {
       const std::size_t at = e - block.begin;
       const Mat3d H = element_gradient(body_, e, state.u);
       const Sym3<double> S =
           responses_[b].relaxing(H, responses_[b].elastic(H, shapes_[e], shared ? &mean[e] : nullptr));
       Sym3<double>& before = memory_.stress[first_stress_[b] + at];
+      const double x = measure_of_times(b, e, H);
       for (std::size_t k = 0; k < branches.size(); ++k) {
-        Sym3<double>& q = memory_.relaxed[first_branch_[b] + at * branches.size() + k];
-        q = q * weights[k].decay + before * weights[k].from + S * weights[k].to;
+        const BranchWeights<> w = weights(b, e, k, state.since, x);
+        Sym3<double>& q = memory_.relaxed[place_of(b, e) + k];
+        q = q * w.decay + before * w.from + S * w.to;
       }
       before = S;
+      set_paces(b, e, H);
     }
   }
 }
 
-BranchMemory TissueOperator::branch_memory(std::size_t b, double since) const {
+BranchMemory TissueOperator::branch_memory(std::size_t b, double since, std::span<const Vec3d> u) const {
   const TissueBlock& block = body_.blocks[b];
   BranchMemory memory;
   const std::size_t n = block.tissue.maxwell.size();
-  std::vector<BranchWeights> weights;
-  for (const MaxwellBranch& m : block.tissue.maxwell) {
-    weights.push_back(branch_weights(since, m.time));
-    memory.left.push_back(1.0 - weights.back().to);
-  }
-  for (std::size_t i = 0; n > 0 && i < block.end - block.begin; ++i) {
-    const Sym3<double>& before = memory_.stress[first_stress_[b] + i];
+  memory.branches = n;
+  for (std::size_t e = block.begin; n > 0 && e < block.end; ++e) {
+    const Sym3<double>& before = memory_.stress[first_stress_[b] + e - block.begin];
+    const double x = measure_of_times(b, e, element_gradient(body_, e, u));
     for (std::size_t k = 0; k < n; ++k) {
-      memory.held.push_back(memory_.relaxed[first_branch_[b] + i * n + k] * weights[k].decay +
-                            before * weights[k].from);
+      const BranchWeights<> w = weights(b, e, k, since, x);
+      memory.held.push_back(memory_.relaxed[place_of(b, e) + k] * w.decay + before * w.from);
+      memory.left.push_back(1.0 - w.to);
     }
   }
   return memory;
@@ -261,6 +288,7 @@ void TissueOperator::tissues_changed(std::span<const std::size_t> blocks, std::s
       continue;
     }
     copy(before.relaxed, first_branch[b], n * k, memory_.relaxed, first_branch_[b]);
+    if (responses_[b].paces().follows()) copy(before.pace, first_branch[b], n * k, memory_.pace, first_branch_[b]);
     copy(before.stress, first_stress[b], n, memory_.stress, first_stress_[b]);
   }
 }
@@ -274,6 +302,7 @@ void TissueOperator::set_branch_stresses(std::size_t b, std::span<const Sym3<dou
   for (std::size_t i = 0; i < stresses.size(); ++i) {
     memory_.relaxed[first_branch_[b] + i] = S[i / n] - stresses[i] * (1.0 / block.tissue.maxwell[i % n].share);
   }
+  for (std::size_t e = block.begin; e < block.end; ++e) set_paces(b, e, element_gradient(body_, e, u));
   std::copy(S.begin(), S.end(), memory_.stress.begin() + static_cast<std::ptrdiff_t>(first_stress_[b]));
 }
 

@@ -19,12 +19,17 @@
 
 namespace glisson {
 
-/// What a tissue remembers of its past: of each element and Maxwell branch the relaxed stress, and the stress then.
+/// What a tissue remembers of its past: of each element and Maxwell branch the relaxed stress, the stress then, and how fast
+/// the branch relaxed.
 struct TissueMemory {
   std::vector<Sym3<double>> relaxed;  ///< q of branch k of element e at first_branch(e) + k [Pa]
   std::vector<Sym3<double>> stress;   ///< S of each element of a tissue with branches, else empty [Pa]
+  std::vector<double> pace;  ///< 1/τ at the place of q; empty where the times of all branches are constant [1/s]
   bool operator==(const TissueMemory&) const = default;
-  void archive(auto& ar) { ar.same_size(relaxed), ar.same_size(stress); }
+  void archive(auto& ar) {
+    ar.same_size(relaxed), ar.same_size(stress);
+    if (!pace.empty()) ar.same_size(pace);
+  }
 };
 
 /// The state a body is asked about.
@@ -48,7 +53,8 @@ struct TissueTangent {
 class TissueOperator {
  public:
   /// @param body  must outlive this
-  explicit TissueOperator(const Body& body);
+  /// @param step  what the branches whose times follow the deformation go by
+  explicit TissueOperator(const Body& body, StepKind step = StepKind::implicit);
 
   /// Overwrites `elastic` and `viscous` [N]. Elastic is what is left after long times; viscous is the rest: Kelvin–Voigt
   /// and what the Maxwell branches have not relaxed yet.
@@ -62,7 +68,8 @@ class TissueOperator {
   /// y = K x.
   void apply(const TissueTangent& tangent, std::span<const Vec3d> x, std::span<Vec3d> y) const;
 
-  /// Takes the state in as the past: relaxed stresses go on by `state.since`, exactly for stress linear in time.
+  /// Takes the state in as the past: relaxed stresses go on by `state.since`, exactly for stress linear in time, or in the
+  /// branch's own time where that follows the deformation.
   void advance_memory(const TissueState& state);
   const TissueMemory& memory() const { return memory_; }
   void set_memory(TissueMemory memory) { memory_ = std::move(memory); }
@@ -73,7 +80,8 @@ class TissueOperator {
   void body_changed();
 
   /// What the branches of a block hold. @param since  time since the memory was last brought up to date [s], ≥ 0
-  BranchMemory branch_memory(std::size_t block, double since) const;
+  /// @param u  displacement now [m]
+  BranchMemory branch_memory(std::size_t block, double since, std::span<const Vec3d> u) const;
   /// Stress g (S − q) of each element and branch of a block, with the memory up to date [Pa].
   std::vector<Sym3<double>> branch_stresses(std::size_t block, std::span<const Vec3d> u) const;
   /// Follows tissues that have changed in the body. Branches of those blocks carry no stress then; the others keep theirs.
@@ -87,9 +95,20 @@ class TissueOperator {
  private:
   std::vector<double> mean_volume_change(std::span<const Vec3d> u) const;
   template <class T>
-  Sym3<T> overstress(std::size_t block, std::size_t e, double since, const Sym3<T>& S) const;
+  Sym3<T> overstress(std::size_t block, std::size_t e, double since, const Mat3<T>& H, const Sym3<T>& S) const;
+  template <class T>
+  BranchWeights<T> weights(std::size_t block, std::size_t e, std::size_t k, double since, T x) const;
+  template <class T>
+  T measure_of_times(std::size_t block, std::size_t e, const Mat3<T>& H) const;
+  void set_paces(std::size_t block, std::size_t e, const Mat3d& H);
+  /// Where branch 0 of an element is in memory.
+  std::size_t place_of(std::size_t block, std::size_t e) const {
+    const TissueBlock& b = body_.blocks[block];
+    return first_branch_[block] + (e - b.begin) * b.tissue.maxwell.size();
+  }
 
   const Body& body_;
+  StepKind step_;
   std::vector<Response> responses_;        ///< per tissue block
   std::vector<ElementShape> shapes_;       ///< per element
   std::vector<std::size_t> first_branch_;  ///< per block: place of its first element's branches in memory

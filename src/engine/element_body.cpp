@@ -27,7 +27,7 @@ ElementBody::ElementBody(const Body& body, std::span<const double> nodal_damping
 void ElementBody::make_operator() {
   const bool tensor_masses = all_tensor_masses(body_);
   tissue_ = tensor_masses ? make_element_operator(body_) : nullptr;
-  any_ = tensor_masses ? nullptr : std::make_unique<TissueOperator>(body_);
+  any_ = tensor_masses ? nullptr : std::make_unique<TissueOperator>(body_, StepKind::central_difference);
 }
 
 void ElementBody::bring_memory_up_to_date(double since) {
@@ -108,7 +108,7 @@ void ElementBody::tissues_changed(std::span<const std::size_t> blocks, std::span
   }
   tissue_.reset();
   if (any_ == nullptr) {
-    any_ = std::make_unique<TissueOperator>(body_);
+    any_ = std::make_unique<TissueOperator>(body_, StepKind::central_difference);
     bring_memory_up_to_date(std::numeric_limits<double>::infinity());
   } else {
     any_->tissues_changed(blocks, u_);
@@ -116,7 +116,7 @@ void ElementBody::tissues_changed(std::span<const std::size_t> blocks, std::span
 }
 
 BranchMemory ElementBody::branch_memory(std::size_t block) const {
-  return any_ != nullptr ? any_->branch_memory(block, since_memory_) : BranchMemory{};
+  return any_ != nullptr ? any_->branch_memory(block, since_memory_, u_) : BranchMemory{};
 }
 
 std::vector<Sym3<double>> ElementBody::branch_stresses(std::size_t block) {

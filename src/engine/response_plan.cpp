@@ -23,6 +23,22 @@ void divide_moduli(Law& law, double unit) {
   });
 }
 
+std::vector<LanePace> lane_paces(const std::vector<MaxwellBranch>& branches) {
+  std::vector<LanePace> all;
+  for (const MaxwellBranch& b : branches) {
+    LanePace pace{float(1.0 / b.time), b.time_law ? b.time_law->index() : kNoTimeLaw, {}};
+    if (b.time_law) {
+      std::visit(
+          [&](const auto& law) {
+            for (const double x : law.numbers()) pace.numbers.push_back(float(x));
+          },
+          *b.time_law);
+    }
+    all.push_back(std::move(pace));
+  }
+  return all;
+}
+
 }  // namespace
 
 LaneLaw lane_law(StiffnessLaw law, double base, double unit) {
@@ -52,7 +68,7 @@ bool has_constant_moduli(const Tissue& t) {
 bool in_one_pass(const Tissue& t) {
   const bool small = !t.hyperelastic && t.kinematics == Kinematics::small && t.law_form == LawForm::secant;
   return small && !t.maxwell.empty() && !t.fibres && t.viscous_tensor != ViscousTensor::pioletti &&
-         t.volume_change == VolumeChange::element;
+         t.volume_change == VolumeChange::element && !t.relaxation_follows();
 }
 
 LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::size_t mu_law) {
@@ -71,6 +87,7 @@ LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::
   r.deviator = tissue.maxwell_part == MaxwellPart::deviator;
   r.branches = tissue.maxwell.size();
   for (std::size_t k = 0; k < r.branches; ++k) r.share[k] = float(tissue.maxwell[k].share), r.relaxing += r.share[k];
+  if (tissue.relaxation_follows()) r.pace = lane_paces(tissue.maxwell);
   if (tissue.fibres) r.fibre = float(tissue.fibres->stiffness);
   const LameParameters lame = tissue.lame();
   r.rest_bound = float(1.0 / std::max(3.0 * lame.lambda + 2.0 * lame.mu, 2.0 * lame.mu));
@@ -89,7 +106,7 @@ RespondStage respond_stage(const ResponseKernels& kernels, const Tissue& tissue)
 }
 
 LaneWeights lane_weights(double step, double time) {
-  const BranchWeights w = branch_weights(step, time);
+  const BranchWeights<> w = branch_weights(step, time);
   return {float(w.decay), float(w.from), float(w.to)};
 }
 

@@ -117,6 +117,8 @@ class SubmeshBody final : public MovingBody {
   void lay_out_touched(const BodyChange& change);
   bool refit(Submesh& part) const;
   std::vector<Sym3<double>> relaxing_stresses(std::size_t block) const;
+  std::vector<double> measures(std::size_t block) const;
+  void follow_branches(std::size_t block, BranchMemory& memory) const;
   void make_memory_explicit();
   void run_submesh(std::size_t s, const Step& step, Scratch& scratch);
   void narrow(const Submesh& part, Scratch& scratch) const;
@@ -128,6 +130,7 @@ class SubmeshBody final : public MovingBody {
   void spread_volume(std::size_t s, Scratch& scratch);
   void join_volume(std::size_t s);
   Elements elements_of(const Submesh& part, Scratch& scratch) const;
+  void run_paces(const LaneResponse& lanes, std::size_t values, const Block& block, ResponseBlock& out) const;
   void run_laws(const Plan& plan, std::size_t values, Block& block) const;
   bool watch_laws(const Plan& plan, std::size_t values, float limit, Block& block, StiffnessSeen& seen) const;
   double list_limit(std::size_t block) const;

@@ -27,6 +27,7 @@ void SubmeshBody::set_maxwell_step(double h) {
       plan->maxwell.previous[k] = lane_weights(since_memory_, branches[k].time);
       plan->maxwell.next[k] = lane_weights(h, branches[k].time);
     }
+    plan->maxwell.since = float(since_memory_);
     plan->maxwell.relaxed = std::isinf(since_memory_);
     plan->maxwell.moves = h > 0.0;
   }
@@ -72,6 +73,15 @@ void SubmeshBody::push_relaxing(std::size_t s, bool split, Scratch& scratch, Fin
   }
 }
 
+/// 1/τ of each branch at the measures of a block.
+void SubmeshBody::run_paces(const LaneResponse& lanes, std::size_t values, const Block& block,
+                            ResponseBlock& out) const {
+  for (std::size_t k = 0; k < lanes.branches; ++k) {
+    const LanePace& pace = lanes.pace[k];
+    kernels_.response->pace[pace.kind](pace, block.x, values, out.pace[k]);
+  }
+}
+
 void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Findings& found) {
   Submesh& part = submeshes_.parts[s];
   const Plan& plan = plans_[part.block];
@@ -107,7 +117,12 @@ void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Fin
     run_laws(plan, n * tets, scratch.block);
     large.respond(items, lanes, to, scratch.block, out);
     if (lanes.fibre > 0.0F) stages.fibres(items, lanes, out);
-    if (lanes.branches > 0) stages.maxwell(items, lanes, large.maxwell, out);
+    if (!lanes.pace.empty()) {
+      run_paces(lanes, n * tets, scratch.block, out);
+      stages.following(items, lanes, large.maxwell, out);
+    } else if (lanes.branches > 0) {
+      stages.maxwell(items, lanes, large.maxwell, out);
+    }
     if (lanes.viscous) stages.viscous(items, lanes, lanes.branches > 0, out);
     const float stiffest = stages.stiffest(items.items, out);
     found.stiffening = std::max(found.stiffening, double(stiffest));

@@ -68,7 +68,7 @@ AxialResponse::AxialResponse(const Tissue& tissue)
                                 "take a scene in place of the homogeneous specimen");
   const bool of_shape = tissue.measure == DeformationMeasure::equivalent_shear_strain ||
                         tissue.measure == DeformationMeasure::one_minus_q;
-  if (!tissue.hyperelastic && !constant_ && !of_shape)
+  if (((!tissue.hyperelastic && !constant_) || response_.paces().follows()) && !of_shape)
     throw std::invalid_argument(
         "tissue \"" + tissue.name +
         "\" has a law of a measure that depends on the mesh; allowed: "
@@ -99,6 +99,19 @@ Axial<T> AxialResponse::hyperelastic(Axial<T> h) const {
                     law);
 }
 
+/// Of Ī₁ − 3.
+template <class T>
+T AxialResponse::measure_of(T excess) const {
+  const T less_q = excess / (excess + T(3.0));  // 1 − q
+  return tissue().measure == DeformationMeasure::equivalent_shear_strain ? intensity_of(less_q) : less_q;
+}
+
+template <class T>
+T AxialResponse::measure(Axial<T> h) const {
+  const double a = value_of(h.side) + 1.0, c = value_of(h.along) + 1.0;
+  return std::min(a, c) > 0.0 ? measure_of(first_excess(h)) : response_.measure(full_of(h), ElementShape{});
+}
+
 template <class T>
 Axial<T> AxialResponse::tensor_mass(Axial<T> h) const {
   using std::sqrt;
@@ -110,8 +123,7 @@ Axial<T> AxialResponse::tensor_mass(Axial<T> h) const {
   T measure(0.0), i1(0.0);
   if (!constant_) {
     i1 = first_excess(h);
-    const T less_q = i1 / (i1 + T(3.0));  // 1 − q
-    measure = x.measure == DeformationMeasure::equivalent_shear_strain ? intensity_of(less_q) : less_q;
+    measure = measure_of(i1);
     m = laws_.at(measure);
   }
   const T dilation = e.side + e.side + e.along, p = m.lambda * dilation;
@@ -170,6 +182,8 @@ Axial<T> AxialResponse::relaxing(Axial<T> h, Axial<T> P) const {
 
 template Axial<double> AxialResponse::elastic(Axial<double>) const;
 template Axial<Dual> AxialResponse::elastic(Axial<Dual>) const;
+template double AxialResponse::measure(Axial<double>) const;
+template Dual AxialResponse::measure(Axial<Dual>) const;
 template Axial<double> AxialResponse::viscous(Axial<double>, Axial<double>) const;
 template Axial<Dual> AxialResponse::viscous(Axial<Dual>, Axial<Dual>) const;
 template Axial<double> AxialResponse::relaxing(Axial<double>, Axial<double>) const;

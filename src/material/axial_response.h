@@ -36,6 +36,10 @@ class AxialResponse {
   /// The stress S of which the Maxwell branches relax their shares, from the elastic P [Pa].
   template <class T>
   Axial<T> relaxing(Axial<T> h, Axial<T> P) const;
+  /// The measure x of deformation that laws of moduli and of the branches' times follow [-].
+  template <class T>
+  T measure(Axial<T> h) const;
+  const BranchPaces& paces() const { return response_.paces(); }
   /// F S; S for small strain.
   template <class T>
   Axial<T> carry(Axial<T> h, Axial<T> S) const {
@@ -49,6 +53,8 @@ class AxialResponse {
  private:
   template <class T>
   Axial<T> hyperelastic(Axial<T> h) const;
+  template <class T>
+  T measure_of(T excess) const;
   template <class T>
   Axial<T> tensor_mass(Axial<T> h) const;
 

@@ -48,6 +48,7 @@ inline Dual exp(Dual a) {
   return {e, e * a.d};
 }
 inline Dual expm1(Dual a) { return {std::expm1(a.v), std::exp(a.v) * a.d}; }
+inline Dual log(Dual a) { return {std::log(a.v), a.d / a.v}; }
 inline Dual log1p(Dual a) { return {std::log1p(a.v), a.d / (1.0 + a.v)}; }
 
 /// The number without its derivative.

@@ -2,10 +2,10 @@
 //
 // Unknown are the F_ij whose P_ij is prescribed. At each stage of a step they solve, by Newton with exact tangents (Dual),
 //
-//   P_elastic(H)_ij + P_viscous(H, Ḣ)_ij − carry( Σ g_k q_k )_ij = P_ij,      q_k′ = (S − q_k)/τ_k
+//   P_elastic(H)_ij + P_viscous(H, Ḣ)_ij − carry( Σ g_k q_k )_ij = P_ij,      q_k′ = (S − q_k)/τ_k(x)
 //
 // with Ḣ = (H − from)/weight at the stages t + γh and t + h of [Alexander1977], γ = 1 − 1/√2, and q_k by the weights of
-// branch_weights.h, as in uniaxial_path.h. A step works on a copy of the history, which is taken over where it succeeds; nothing
+// branch_weights.h and branch_pace.h, as in uniaxial_path.h. A step works on a copy of the history, which is taken over where it succeeds; nothing
 // in it allocates.
 #include "glisson/material_point.h"
 
@@ -55,15 +55,6 @@ void require_targets(double h, const MaterialTargets& targets) {
   }
 }
 
-/// What a stage knows beside the deformation.
-struct Stage {
-  MaterialTargets targets;
-  Mat3d from{};         ///< H − weight Ḣ of the stage
-  double weight = 0.0;  ///< γh [s]; 0: no viscosity
-  Sym3<double> kept{};  ///< Σ g (decay q + from S(t))
-  double share = 0.0;   ///< Σ g to
-};
-
 }  // namespace
 
 struct MaterialPoint::Parts {
@@ -73,6 +64,18 @@ struct MaterialPoint::Parts {
     Mat3d nominal{};                              ///< P [Pa]
     Sym3<double> relaxing{};                      ///< S there [Pa]
     std::array<Sym3<double>, kMostBranches> q{};  ///< as many as the tissue has branches [Pa]
+    std::array<double, kMostBranches> pace{};     ///< 1/τ there of branches whose times follow the deformation [1/s]
+  };
+
+  /// What a stage knows beside the deformation.
+  struct Stage {
+    MaterialTargets targets;
+    Mat3d from{};         ///< H − weight Ḣ of the stage
+    double weight = 0.0;  ///< γh [s]; 0: no viscosity
+    double length = 0.0;  ///< time from the past's end to the stage [s]
+    const History* past = nullptr;
+    Sym3<double> kept{};  ///< Σ g (decay q + from S(t)) of branches whose weights do not depend on the deformation
+    double share = 0.0;   ///< Σ g to, likewise
   };
   /// P of a deformation with the S that its branches relax.
   template <class T>
@@ -83,6 +86,7 @@ struct MaterialPoint::Parts {
 
   explicit Parts(const Tissue& tissue) : response(tissue) {
     if (tissue.fibres) shape.fibre = unit(tissue.fibres->direction);
+    set_paces(history);
   }
 
   Response response;
@@ -104,16 +108,39 @@ struct MaterialPoint::Parts {
     }
     if (branches().empty()) return a;
     a.S = response.relaxing(H, elastic);
-    const Sym3<T> held = with_scalar<T>(stage.kept) + a.S * T(stage.share);
+    Sym3<T> held = with_scalar<T>(stage.kept) + a.S * T(stage.share);
+    if (response.paces().follows()) held += following(stage, response.measure(H, shape), a.S);
     a.P = sum(a.P, response.carry(H, held * T(-1.0)));
     return a;
   }
 
+  /// Σ g q at a stage of branches whose times follow the measure x.
+  template <class T>
+  Sym3<T> following(const Stage& stage, T x, const Sym3<T>& S) const {
+    Sym3<T> sum{};
+    const History& past = *stage.past;
+    for (std::size_t k = 0; k < branches().size(); ++k) {
+      if (!branches()[k].time_law) continue;
+      const BranchWeights<T> w = response.paces().weights(k, stage.length, past.pace[k], x);
+      sum += (with_scalar<T>(past.q[k]) * w.decay + with_scalar<T>(past.relaxing) * w.from + S * w.to) *
+             T(branches()[k].share);
+    }
+    return sum;
+  }
+
+  void set_paces(History& now) const {
+    if (!response.paces().follows()) return;
+    const double x = response.measure(sum(now.deformation, scaled(identity<double>(), -1.0)), shape);
+    for (std::size_t k = 0; k < branches().size(); ++k) now.pace[k] = response.paces().at(k, x);
+  }
+
   /// What the branches keep of the past at the end of h, and what they take of the stress there.
   void weigh(double h, const History& past, Stage& stage) const {
+    stage.length = h, stage.past = &past;
     for (std::size_t k = 0; k < branches().size(); ++k) {
       const MaxwellBranch& branch = branches()[k];
-      const BranchWeights w = branch_weights(h, branch.time);
+      if (branch.time_law) continue;
+      const BranchWeights<> w = branch_weights(h, branch.time);
       stage.kept += (past.q[k] * w.decay + past.relaxing * w.from) * branch.share;
       stage.share += branch.share * w.to;
     }
@@ -234,11 +261,14 @@ bool MaterialPoint::Parts::step(double h, const MaterialTargets& from, const Mat
   weigh(h, now, last);
   const std::optional<Answer<double>> found = solve(last, H);
   if (!found) return false;
+  const double x = response.paces().follows() ? response.measure(H, shape) : 0.0;
   for (std::size_t k = 0; k < branches().size(); ++k) {
-    const BranchWeights w = branch_weights(h, branches()[k].time);
+    const BranchWeights<> w =
+        branches()[k].time_law ? response.paces().weights(k, h, now.pace[k], x) : branch_weights(h, branches()[k].time);
     now.q[k] = now.q[k] * w.decay + now.relaxing * w.from + found->S * w.to;
   }
   now.deformation = deformation_gradient(H), now.nominal = found->P, now.relaxing = found->S;
+  set_paces(now);
   return true;
 }
 
@@ -254,7 +284,7 @@ MaterialPoint::MaterialPoint(const Tissue& tissue) {
   const bool constant = std::holds_alternative<ConstantLaw>(tissue.law) && !tissue.lambda_law && !tissue.mu_law;
   const bool by_shear = tissue.measure == DeformationMeasure::equivalent_shear_strain ||
                         tissue.measure == DeformationMeasure::one_minus_q;
-  if (!tissue.hyperelastic && !constant && !by_shear) {
+  if (((!tissue.hyperelastic && !constant) || tissue.relaxation_follows()) && !by_shear) {
     throw std::invalid_argument("material point: measure = \"" + std::string(word_of(tissue.measure)) +
                                 "\" depends on the shape of a tet, and a point has none; take " +
                                 "\"equivalent_shear_strain\" or \"one_minus_q\"");

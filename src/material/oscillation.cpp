@@ -28,6 +28,9 @@ class Linearised {
     if (tissue.fibres) shape_.fibre = unit(tissue.fibres->direction);
     const Sym3<double> S = response_.relaxing(H_, response_.elastic(H_, shape_));
     relaxed_ = S * response_.relaxing_share();
+    const double x = response_.paces().follows() ? response_.measure(H_, shape_) : 0.0;
+    for (std::size_t k = 0; k < tissue.maxwell.size(); ++k)
+      times_.push_back(tissue.maxwell[k].time_law ? 1.0 / response_.paces().at(k, x) : tissue.maxwell[k].time);
   }
 
   Tangent along(std::size_t i, std::size_t j) const {
@@ -48,8 +51,8 @@ class Linearised {
   /// A component of dP at an angular frequency [1/s].
   Complex at(const Tangent& t, std::size_t i, std::size_t j, double omega) const {
     Complex stress{t.held(i, j), omega * t.viscous(i, j)};
-    for (const MaxwellBranch& b : response_.tissue().maxwell) {
-      stress -= b.share * t.relaxing(i, j) / Complex{1.0, omega * b.time};
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      stress -= response_.tissue().maxwell[k].share * t.relaxing(i, j) / Complex{1.0, omega * times_[k]};
     }
     return stress;
   }
@@ -61,7 +64,8 @@ class Linearised {
   Response response_;
   ElementShape shape_;
   Mat3d H_;
-  Sym3<double> relaxed_{};  ///< Σ g q
+  std::vector<double> times_;  ///< τ of each branch there: where all has relaxed, its slope moves nothing [s]
+  Sym3<double> relaxed_{};     ///< Σ g q
 };
 
 /// dP_zz/dF_zz with sides that carry no stress.

@@ -34,7 +34,8 @@ StrainNumbers<T> strain_numbers(Kinematics kinematics, const Mat3<T>& H) {
 }  // namespace
 
 Response::Response(const Tissue& tissue)
-    : tissue_(tissue), laws_(tissue), lame_(tissue.lame()), viscosity_(viscous_coefficients(tissue)) {
+    : tissue_(tissue), laws_(tissue), lame_(tissue.lame()), viscosity_(viscous_coefficients(tissue)),
+      paces_(tissue.maxwell) {
   for (const MaxwellBranch& b : tissue_.maxwell) relaxing_share_ += b.share;
 }
 
@@ -304,6 +305,8 @@ template Mat3<double> Response::elastic(const Mat3<double>&, const ElementShape&
 template Mat3<Dual> Response::elastic(const Mat3<Dual>&, const ElementShape&, const Dual*) const;
 template Mat3<double> Response::viscous(const Mat3<double>&, const Mat3<double>&) const;
 template Mat3<Dual> Response::viscous(const Mat3<Dual>&, const Mat3<Dual>&) const;
+template double Response::measure(const Mat3<double>&, const ElementShape&) const;
+template Dual Response::measure(const Mat3<Dual>&, const ElementShape&) const;
 template Sym3<double> Response::relaxing(const Mat3<double>&, const Mat3<double>&) const;
 template Sym3<Dual> Response::relaxing(const Mat3<Dual>&, const Mat3<Dual>&) const;
 template double Response::volume_change(const Mat3<double>&) const;

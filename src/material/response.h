@@ -6,6 +6,7 @@
 // one. T is double, or Dual for ∂P/∂F : dF. Written to be read: the engine's lanes are tested against it.
 #pragma once
 
+#include "material/branch_pace.h"
 #include "material/dual.h"
 #include "material/modulus_laws.h"
 #include "material/shape_measure.h"
@@ -56,6 +57,12 @@ class Response {
     return small() ? full(S) : product(deformation_gradient(H), full(S));
   }
 
+  /// The measure x of deformation that laws of moduli and of the branches' times follow [-].
+  template <class T>
+  T measure(const Mat3<T>& H, const ElementShape& shape) const;
+  /// How fast the branches relax at a measure.
+  const BranchPaces& paces() const { return paces_; }
+
   /// The volume change ϑ that the bulk resists: tr ε of the kinematics, J − 1 of a hyperelastic law [-].
   template <class T>
   T volume_change(const Mat3<T>& H) const;
@@ -78,8 +85,6 @@ class Response {
  private:
   double tensor_mass_stiffening(const Mat3d& H, const ElementShape& shape) const;
   template <class T>
-  T measure(const Mat3<T>& H, const ElementShape& shape) const;
-  template <class T>
   Mat3<T> tensor_mass(const Mat3<T>& H, const Moduli<T>& m, const T* mean) const;
   template <class T>
   T mean_slope_energy(const Mat3<T>& H, const Moduli<T>& m) const;
@@ -91,6 +96,7 @@ class Response {
   Tissue tissue_;
   ModulusLaws laws_;
   LameParameters lame_, viscosity_;
+  BranchPaces paces_;
   double relaxing_share_ = 0.0;
 };
 

@@ -1,10 +1,14 @@
 // tissue.cpp — conversion of moduli and the refusal of tissues that mean nothing.
 #include "glisson/material/tissue.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/require_fields.h"
 #include "base/text.h"
 #include "material/branch_weights.h"
 #include "material/stiffness_formulas.h"
+#include "material/time_formulas.h"
 
 namespace glisson {
 namespace {
@@ -54,6 +58,10 @@ bool Tissue::is_tensor_mass() const {
   return paper && !fibres && maxwell.empty() && volume_change == VolumeChange::element;
 }
 
+bool Tissue::relaxation_follows() const {
+  return std::any_of(maxwell.begin(), maxwell.end(), [](const MaxwellBranch& b) { return b.time_law.has_value(); });
+}
+
 Fault Tissue::check() const {
   if (maxwell.size() > kMostBranches)
     return {std::to_string(maxwell.size()) + " branches; allowed: at most 8", "maxwell"};
@@ -68,6 +76,10 @@ Fault Tissue::check() const {
 }
 
 void require_valid(const Tissue& t) { detail::require_fields("tissue \"" + t.name + "\"", t); }
+
+double time_factor(const TimeLaw& law, double x) {
+  return std::exp(std::visit([x](const auto& l) { return l.at(l.numbers(), x).value; }, law));
+}
 
 double law_value(const StiffnessLaw& law, double base, double x) { return law_at(law, base, x).value; }
 double law_derivative(const StiffnessLaw& law, double base, double x) { return law_at(law, base, x).slope; }

@@ -24,8 +24,18 @@ Axial<T> UniaxialPath::stress(const Stage& stage, T side) const {
   if (stage.weight > 0.0)
     P = P + response_.viscous(h, Axial<T>{(side - T(stage.from)) * T(1.0 / stage.weight), T(stage.z.rate)});
   if (branches_ == 0) return P;
-  const Axial<T> q =
-      Axial<T>{T(stage.kept.side), T(stage.kept.along)} + response_.relaxing(h, elastic) * T(stage.share);
+  const Axial<T> S = response_.relaxing(h, elastic);
+  Axial<T> q = Axial<T>{T(stage.kept.side), T(stage.kept.along)} + S * T(stage.share);
+  if (response_.paces().follows()) {
+    const auto constant = [](Axial<double> a) { return Axial<T>{T(a.side), T(a.along)}; };
+    const T x = response_.measure(h);
+    for (std::size_t b = 0; b < branches_; ++b) {
+      const MaxwellBranch& branch = response_.tissue().maxwell[b];
+      if (!branch.time_law) continue;
+      const BranchWeights<T> w = response_.paces().weights(b, stage.length, pace_[b], x);
+      q = q + (constant(q_[b]) * w.decay + constant(relaxing_) * w.from + S * w.to) * T(branch.share);
+    }
+  }
   return P - response_.carry(h, q);
 }
 
@@ -47,10 +57,11 @@ UniaxialState UniaxialPath::solve(const Stage& stage, double guess) {
 
 /// What the branches keep of the past at the end of h, and what they take of the stress there.
 void UniaxialPath::weigh(double h, Stage& stage) const {
-  stage.kept = {}, stage.share = 0.0;
+  stage.length = h, stage.kept = {}, stage.share = 0.0;
   for (std::size_t b = 0; b < branches_; ++b) {
     const MaxwellBranch& branch = response_.tissue().maxwell[b];
-    const BranchWeights w = branch_weights(h, branch.time);
+    if (branch.time_law) continue;
+    const BranchWeights<> w = branch_weights(h, branch.time);
     stage.kept = stage.kept + (q_[b] * w.decay + relaxing_ * w.from) * branch.share;
     stage.share += branch.share * w.to;
   }
@@ -61,15 +72,25 @@ void UniaxialPath::update_branches(double h, double side, double stretch) {
   const Axial<double> strain{side - 1.0, stretch - 1.0};
   const Axial<double> S = response_.relaxing(strain, response_.elastic(strain));
   for (std::size_t b = 0; b < branches_; ++b) {
-    const BranchWeights w = branch_weights(h, response_.tissue().maxwell[b].time);
+    const MaxwellBranch& branch = response_.tissue().maxwell[b];
+    const BranchWeights<> w = branch.time_law ? response_.paces().weights(b, h, pace_[b], response_.measure(strain))
+                                              : branch_weights(h, branch.time);
     q_[b] = q_[b] * w.decay + relaxing_ * w.from + S * w.to;
   }
   relaxing_ = S;
+  set_paces(strain);
+}
+
+void UniaxialPath::set_paces(Axial<double> h) {
+  if (!response_.paces().follows()) return;
+  const double x = response_.measure(h);
+  for (std::size_t b = 0; b < branches_; ++b) pace_[b] = response_.paces().at(b, x);
 }
 
 UniaxialState UniaxialPath::start(double rate) {
   side_ = stretch_ = 1.0, side_rate_ = last_slope_ = 0.0;
   relaxing_ = {}, q_ = {};
+  set_paces({});
   if (!response_.is_viscous()) return {0.0, 1.0, true};
   // nothing is deformed yet; across, the viscous stress alone is 0, and it is linear in the rates
   const Axial<double> none{}, along = response_.viscous(none, {0.0, rate}),

@@ -7,7 +7,8 @@
 //
 // Without viscosity it is algebraic. With it, it is a stiff differential equation for a; two implicit stages, at
 // t + γh and t + h with γ = 1 − 1/√2, are of second order and damp what they do not resolve [Alexander1977]. The branches
-// go by their exact weights for S linear over the step.
+// go by their exact weights for S linear over the step, or in a branch's own time where that follows the deformation
+// (branch_pace.h).
 #pragma once
 
 #include <array>
@@ -47,19 +48,23 @@ class UniaxialPath {
 
  private:
   using Branches = std::array<Axial<double>, kMostBranches>;
+  using Paces = std::array<double, kMostBranches>;
 
   /// What a stage knows beside the stretch across.
   struct Stage {
     StretchRate z;
     double from = 1.0;    ///< a − (weight h) ȧ of the stage
     double weight = 0.0;  ///< γh [s]; 0: no viscosity
-    Axial<double> kept;   ///< Σ g (decay q + from S(t))
-    double share = 0.0;   ///< Σ g to
+    double length = 0.0;  ///< time from the state before to the stage [s]
+    Axial<double>
+        kept;  ///< Σ g (decay q + from S(t)), of branches whose weights do not depend on the stage's deformation
+    double share = 0.0;  ///< Σ g to, likewise
   };
   template <class T>
   Axial<T> stress(const Stage& stage, T side) const;
   UniaxialState solve(const Stage& stage, double guess);
   void weigh(double h, Stage& stage) const;
+  void set_paces(Axial<double> h);
   void update_branches(double h, double side, double stretch);
 
   AxialResponse response_;
@@ -67,6 +72,7 @@ class UniaxialPath {
   double side_ = 1.0, side_rate_ = 0.0, last_slope_ = 0.0, stretch_ = 1.0;
   Axial<double> relaxing_{};  ///< S at the end of the last step
   Branches q_{};
+  Paces pace_{};  ///< 1/τ there of branches whose times follow the deformation [1/s]
 };
 
 }  // namespace glisson

@@ -158,6 +158,12 @@ inline std::vector<Tissue> maxwell_tissues() {
       t.maxwell = {{0.45, 0.5}, {0.365, 50.0}}, t.maxwell_part = part;
       t.name += part == MaxwellPart::all ? " maxwell all" : " maxwell deviator";
       all.push_back(t);
+      t.maxwell[0].time_law = ExponentialTime{.rate = -4.0, .least = 0.02};
+      t.maxwell[1] = {
+          .share = 0.365, .time = 0.2, .time_law = PowerTime{.exponent = 1.5, .reference = 0.3, .least = 0.01}};
+      if (part == MaxwellPart::all) t.measure = DeformationMeasure::one_minus_q;
+      t.name += " following";
+      all.push_back(t);
     }
   }
   return all;

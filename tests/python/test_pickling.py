@@ -43,7 +43,7 @@ def test_a_tissue_with_all_it_may_have_pickles():
         glisson.Tissue(
             name="wall",
             law=glisson.ExponentialLaw(amplitude=600, rate=8),
-            maxwell=[glisson.MaxwellBranch(share=0.3, time=1.86)],
+            maxwell=[glisson.MaxwellBranch(share=0.3, time=1.86, time_law=glisson.ExponentialTime(rate=2))],
             fibres=glisson.Fibres(direction=[0, 1, 0]),
         ),
         glisson.tissue_preset("phantom_ef10_100t").tissue,

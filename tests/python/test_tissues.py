@@ -172,6 +172,24 @@ def test_material_point_step_by_step():
     assert last.converged and last.deformation[0, 0] == pytest.approx(0.96)
 
 
+def test_time_of_a_branch_follows_the_deformation():
+    """A held shear relaxes by the time at its own measure, and the laws are those of scenes."""
+    law = glisson.PowerTime(exponent=2, reference=0.1)
+    np.testing.assert_allclose(glisson.time_factor(law, [0.05, 0.2]), [0.25, 4], rtol=1e-12)
+    assert glisson.time_factor(glisson.ExponentialTime(rate=3, most=2), 1.0) == 2
+    branch = glisson.MaxwellBranch(share=0.5, time=1, time_law=law)
+    neo_hooke = glisson.NeoHookean(mu=1000, bulk_modulus=1e5)
+    tissue = glisson.Tissue(hyperelastic=neo_hooke, maxwell=[branch])
+    held = glisson.material_test(tissue, "simple_shear", [1e-6, 1], stretch=[0.2, 0.2], between=2000).nominal[:, 0, 2]
+    s = np.sqrt(1.5 * (1 - 3 / (3 + 0.2**2)))  # the measure of a shear of 0.2
+    np.testing.assert_allclose(held[1] / held[0], 0.5 + 0.5 * np.exp(-((0.1 / s) ** 2)), rtol=1e-4)
+    assert glisson.tissue_from({"maxwell": [{"share": 0.5, "time_s": 1, "time_law": {"kind": "power", "exponent": 2}}]}).maxwell == [
+        branch
+    ]
+    with pytest.raises(ValueError, match="reference"):
+        glisson.Tissue(maxwell=[glisson.MaxwellBranch(share=0.5, time_law=glisson.PowerTime(reference=0))]).check()
+
+
 def test_oscillation_is_the_generalised_maxwell_body():
     """G* = μ (1 − Σ g/(1 + iωτ)) over frequency; a stretched neo-Hooke is stiffer by λ²."""
     tissue = glisson.Tissue(youngs_modulus=2800, maxwell=[glisson.MaxwellBranch(share=0.4, time=0.5)])

@@ -64,7 +64,8 @@ tissue = { kinematics = "green", law_form = "energy", fibres = { direction = [0,
 name = "brain"
 box_m = { min = [0, 0, 0], max = [1, 1, 1] }
 tissue.hyperelastic = { kind = "neo_hookean", mu_Pa = 800, bulk_modulus_Pa = 9000 }
-tissue.maxwell = [{ share = 0.5, time_s = 2 }, { share = 0.25, time_s = 30 }]
+tissue.maxwell = [{ share = 0.5, time_s = 2 }, { share = 0.25, time_s = 30, time_law = { kind = "power", exponent = 1.5, reference = 0.2, least = 0.01, most = 50 } }]
+tissue.measure = "one_minus_q"
 tissue.maxwell_part = "all"
 tissue.volume_change = "average_nodal"
 
@@ -247,7 +248,9 @@ TEST(EveryKey, OfLargeDeformationIsRead) {
   EXPECT_EQ(band.fibres->stiffness, 700.0);
   const Tissue& brain = v.regions.at(3).tissue;
   EXPECT_EQ(std::get<NeoHookean>(brain.hyperelastic.value()), (NeoHookean{800, 9000}));
-  EXPECT_EQ(brain.maxwell, (std::vector<MaxwellBranch>{{0.5, 2.0}, {0.25, 30.0}}));
+  const PowerTime slower{.exponent = 1.5, .reference = 0.2, .least = 0.01, .most = 50.0};
+  EXPECT_EQ(brain.maxwell, (std::vector<MaxwellBranch>{{0.5, 2.0}, {0.25, 30.0, slower}}));
+  EXPECT_EQ(brain.measure, DeformationMeasure::one_minus_q);
   EXPECT_EQ(brain.maxwell_part, MaxwellPart::all);
   EXPECT_EQ(brain.volume_change, VolumeChange::average_nodal);
 }

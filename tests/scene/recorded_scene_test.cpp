@@ -59,7 +59,9 @@ INSTANTIATE_TEST_SUITE_P(
         "hyperelastic = { kind = \"veronda_westmann\", c_Pa = 900, b = 2, bulk_modulus_Pa = 6000 }\n",
         "hyperelastic = { kind = \"invariants\", c10_Pa = -20, a2_Pa = 500, b2 = 3, bulk_modulus_Pa = 6000 }\n",
         "kinematics = \"green\"\nfibres = { direction = [1, 0, 0], stiffness_Pa = 4000 }\n",
-        "[[tissue.maxwell]]\nshare = 0.3\ntime_s = 1.86\n[[tissue.maxwell]]\nshare = 0.2\ntime_s = 51.3\n"));
+        "[[tissue.maxwell]]\nshare = 0.3\ntime_s = 1.86\n[[tissue.maxwell]]\nshare = 0.2\ntime_s = 51.3\n",
+        "[[tissue.maxwell]]\nshare = 0.3\ntime_s = 1.86\ntime_law = { kind = \"exponential\", rate = 4, most = 20 "
+        "}\n"));
 
 // Keys of a preset give way to the numbers of the moment.
 TEST(RecordedSceneOfAPreset, KeepsTheTissueOfTheMoment) {

@@ -151,7 +151,18 @@ class Collector {
       const double time = tissue_.maxwell[i].time;
       add("Time τ" + number, "over which it relaxes", "s", {time / (kFactor * kFactor), time * kFactor * kFactor, true},
           [i](Tissue& t) { return &t.maxwell[i].time; });
+      if (!tissue_.maxwell[i].time_law) continue;
+      const auto place = [i](Tissue& t) { return &*t.maxwell[i].time_law; };
+      std::visit([&](const auto& law) { time_law(number, law, place); }, *tissue_.maxwell[i].time_law);
     }
+  }
+
+  template <class Law, class Place>
+  void time_law(const std::string& number, const Law& law, Place place) {
+    each_field<Law>([&](const auto& x) {
+      add("τ" + number + " " + label_of(x.name), std::string(x.help), unit_of(x), range_of(x, law.*x.member),
+          [place, member = x.member](Tissue& t) { return &(std::get<Law>(*place(t)).*member); });
+    });
   }
 
   std::vector<TissueParameter>& out_;

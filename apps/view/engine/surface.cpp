@@ -141,9 +141,13 @@ std::vector<BranchMemory> Surface::near_branches(const Snapshot& state) const {
     for (std::size_t e = block.begin; e < block.end; ++e) {
       const BranchPlace& at = shape_->branches[near_tets_[near_body_->mesh_tet[e]]];
       const BranchMemory& all = state.branches[at.block];
-      memory[b].left = all.left;
-      const auto first = all.held.begin() + static_cast<std::ptrdiff_t>(at.element * all.left.size());
-      memory[b].held.insert(memory[b].held.end(), first, first + static_cast<std::ptrdiff_t>(all.left.size()));
+      memory[b].branches = all.branches;
+      const auto take = [&](const auto& from, auto& to) {
+        const auto first = from.begin() + static_cast<std::ptrdiff_t>(at.element * all.branches);
+        to.insert(to.end(), first, first + static_cast<std::ptrdiff_t>(all.branches));
+      };
+      take(all.held, memory[b].held);
+      take(all.left, memory[b].left);
     }
   }
   return memory;

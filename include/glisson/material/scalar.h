@@ -1,7 +1,7 @@
 // scalar.h — the words in which the formula of a law is written, so that one text serves a number, a number that carries
 // a derivative (src/material/dual.h) and a vector of lanes (src/engine/kernels/lane_scalar-inl.h).
 //
-//   + − * /   <  >  >=   select(choice, yes, no)   min  max   mul_add(a, b, c) = a b + c   exp  expm1   T(constant)
+//   + − * /   <  >  >=   select(choice, yes, no)   min  max   mul_add(a, b, c) = a b + c   exp  expm1  log   T(constant)
 //
 // A formula does not branch on its argument: lanes work out both sides and select. mul_add says where a vector rounds once.
 #pragma once
@@ -36,7 +36,7 @@ struct InvariantSlopes {
 
 namespace scalar {
 
-using std::exp, std::expm1;
+using std::exp, std::expm1, std::log;
 
 /// What compares to true or false; lanes have words of their own.
 template <class T>

@@ -8,6 +8,7 @@
 #include "glisson/field.h"
 #include "glisson/material/hyperelastic_law.h"
 #include "glisson/material/stiffness_law.h"
+#include "glisson/material/time_law.h"
 #include "glisson/math.h"
 #include "glisson/words.h"
 
@@ -82,17 +83,21 @@ struct Fibres {
   bool operator==(const Fibres&) const = default;
 };
 
-/// One branch of a generalised Maxwell body: μ(t) = μ₀ (1 − Σ g (1 − e^(−t/τ))).
+/// One branch of a generalised Maxwell body: μ(t) = μ₀ (1 − Σ g (1 − e^(−t/τ))). With a law of its time τ follows the
+/// tissue's measure of deformation, and the relaxation is no longer linear: dq/dt = (S − q)/τ(x) (docs/theory.md §7).
 struct MaxwellBranch {
-  double share = 0.0;  ///< g, share of the instantaneous modulus that relaxes [-], > 0; sum < 1
-  double time = 1.0;   ///< τ [s], > 0
+  double share = 0.0;                 ///< g, share of the instantaneous modulus that relaxes [-], > 0; sum < 1
+  double time = 1.0;                  ///< τ [s], > 0
+  std::optional<TimeLaw> time_law{};  ///< factor on τ as a function of the measure; none: constant
 
   template <class Take>
   static constexpr auto fields(Take take) {
     return take(field("share", &MaxwellBranch::share, "-", strictly_between(0, 1),
                       "g, share of the instantaneous modulus that relaxes; sum below 1")
                     .must(),
-                field("time", &MaxwellBranch::time, "s", above(0), "τ, time constant").must());
+                field("time", &MaxwellBranch::time, "s", above(0), "τ, time constant").must(),
+                field("time_law", &MaxwellBranch::time_law, "law of τ, in the tissue's measure of deformation")
+                    .otherwise("τ constant"));
   }
   bool operator==(const MaxwellBranch&) const = default;
 };
@@ -180,6 +185,8 @@ struct Tissue {
 
   /// Instantaneous λ and μ at rest; those of the hyperelastic law where there is one.
   LameParameters lame() const;
+  /// Whether the time of some Maxwell branch follows the measure.
+  bool relaxation_follows() const;
   /// Whether the force is that of the paper's element: small strain, secant law, no fibres, no branches.
   bool is_tensor_mass() const;
   bool operator==(const Tissue&) const = default;

@@ -32,7 +32,7 @@ class ImplicitScheme : public Scheme {
   Vec3d velocity_of(std::uint32_t vertex) const override { return now_.v[vertex]; }
   ForceParts force(ConstraintId constraint) const override;
   Vec3d torque(ConstraintId constraint, const Vec3d& about) const override;
-  BranchMemory branch_memory(std::size_t block) const override { return tissue_.branch_memory(block, 0.0); }
+  BranchMemory branch_memory(std::size_t block) const override { return tissue_.branch_memory(block, 0.0, now_.u); }
   void archive_motion(Archive& ar) override;
 
  protected:

@@ -46,6 +46,7 @@ inline LaneScalar min(LaneScalar a, LaneScalar b) { return LaneScalar(hn::Min(a.
 inline LaneScalar max(LaneScalar a, LaneScalar b) { return LaneScalar(hn::Max(a.v, b.v)); }
 inline LaneScalar mul_add(LaneScalar a, LaneScalar b, LaneScalar c) { return LaneScalar(hn::MulAdd(a.v, b.v, c.v)); }
 inline LaneScalar exp(LaneScalar a) { return LaneScalar(hn::Exp(Lanes(), a.v)); }
+inline LaneScalar log(LaneScalar a) { return LaneScalar(hn::Log(Lanes(), a.v)); }
 inline LaneScalar expm1(LaneScalar a) { return LaneScalar(hn::Expm1(Lanes(), a.v)); }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

@@ -18,6 +18,7 @@
 #include "engine/kernels/flops.h"
 #include "engine/kernels/inlined.h"
 #include "engine/kernels/response_kernels.h"
+#include "engine/layout/response_batches.h"
 #include "material/hyperelastic_formulas.h"
 #include "material/stiffness_formulas.h"
 
@@ -122,12 +123,14 @@ inline void Store(F a, Lanes, float* at) {
 // Highway's, counted by hand in hwy/contrib/math: range reduction, polynomial and scaling; conversions are none.
 inline F Exp(Lanes, F a) { return after(24, std::exp(a.value), a); }
 inline F Expm1(Lanes, F a) { return after(25, std::expm1(a.value), a); }
+inline F Log(Lanes, F a) { return after(23, std::log(a.value), a); }
 inline F Log1p(Lanes, F a) { return after(23, std::log1p(a.value), a); }
 }  // namespace hn
 
 }  // namespace glisson::engine::HWY_NAMESPACE
 
 #include "engine/kernels/average_nodal-inl.h"
+#include "engine/kernels/branch_pace-inl.h"
 #include "engine/kernels/hyper_response-inl.h"
 #include "engine/kernels/lane_scalar-inl.h"
 #include "engine/kernels/relaxing_small-inl.h"
@@ -153,6 +156,17 @@ void respond(const Tissue& tissue, const ResponseItems& in, const LaneResponse& 
     case Kinematics::green:
       return traced::tensor_mass<Kinematics::green>(in, r, none, block, out);
   }
+}
+
+void relax(const ResponseItems& in, const LaneResponse& r, const MaxwellStep& step, const Block& block,
+           ResponseBlock& out) {
+  if (r.pace.empty()) {
+    if (r.branches > 0) traced::maxwell(in, r, step, out);
+    return;
+  }
+  constexpr PaceStages kPaces = traced::pace_stages(std::type_identity<TimeLaw>());
+  for (std::size_t k = 0; k < r.branches; ++k) kPaces[r.pace[k].kind](r.pace[k], block.x, 1, out.pace[k]);
+  traced::following(in, r, step, out);
 }
 
 }  // namespace
@@ -181,7 +195,7 @@ ResponseFlops count_response_flops(const Tissue& tissue) {
   const LaneResponse r = lane_response(tissue, {1.0F, 1.0F, 1.0F, 1.0F, 1.0F, 1.0F}, two_laws ? 1 : 0);
   std::array<float, 9> gradient = kGradient, rate = kGradient;
   std::array<float, 3> fibre{1.0F, 0.0F, 0.0F};
-  std::vector<float> memory(6 * std::max<std::size_t>(1, r.branches), 0.0F), mean{0.001F};
+  std::vector<float> memory(std::max<std::size_t>(6, memory_numbers(tissue)), 0.0F), mean{0.001F};
   const ResponseItems in{.gradient = gradient.data(),
                          .rate = rate.data(),
                          .mean = tissue.volume_change == VolumeChange::average_nodal ? mean.data() : nullptr,
@@ -198,7 +212,7 @@ ResponseFlops count_response_flops(const Tissue& tissue) {
   } else {
     respond(tissue, in, r, *block, *out);
     if (r.fibre > 0.0F) traced::fibres(in, r, *out);
-    if (r.branches > 0) traced::maxwell(in, r, step, *out);
+    relax(in, r, step, *block, *out);
     if (r.viscous) traced::viscous(in, r, r.branches > 0, *out);
     if (r.viscous || r.branches > 0) traced::merge(1, *out);
   }

@@ -7,6 +7,7 @@
 #include <hwy/foreach_target.h>
 
 #include "engine/kernels/average_nodal-inl.h"
+#include "engine/kernels/branch_pace-inl.h"
 #include "engine/kernels/hyper_response-inl.h"
 #include "engine/kernels/relaxing_small-inl.h"
 #include "engine/kernels/response_kernels.h"
@@ -23,6 +24,8 @@ const ResponseKernels* response_table() {
                                      .hyperelastic = hyperelastic_stages(std::type_identity<HyperelasticLaw>()),
                                      .fibres = fibres,
                                      .maxwell = maxwell,
+                                     .following = following,
+                                     .pace = pace_stages(std::type_identity<TimeLaw>()),
                                      .viscous = viscous,
                                      .relaxing_small = {{relaxing_small<false, false>, relaxing_small<false, true>},
                                                         {relaxing_small<true, false>, relaxing_small<true, true>}},

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "element/body.h"
 #include "engine/kernels/kernels.h"
@@ -25,7 +26,16 @@ struct ResponseBlock {
   alignas(64) float viscous[kBlockTets * 9];  ///< P, viscous, and what the branches have not relaxed yet
   alignas(64) float ratio[kBlockTets];        ///< material/response.h, Stiffening, [item][lane]; 0 where no tet is
   alignas(64) float norm[kBlockTets];
+  alignas(64) float pace[kMostBranches][kBlockTets];  ///< 1/τ of branches whose times follow the measure [1/s]
 };
+
+/// How fast a branch relaxes: 1/τ, with the law of its time where it has one.
+struct LanePace {
+  float plain = 0.0F;          ///< 1/τ without the law [1/s]
+  std::size_t kind = 0;        ///< index in TimeLaw, or kNoTimeLaw
+  std::vector<float> numbers;  ///< of the law's formula
+};
+inline constexpr std::size_t kNoTimeLaw = std::variant_size_v<TimeLaw>;
 
 /// Which volume change tets share: that of the kinematics, or J − 1.
 enum class VolumeKind { small, corotational, green, hyperelastic };
@@ -41,7 +51,8 @@ struct LaneResponse {
   std::optional<HyperelasticLaw> law;
   std::size_t mu_law = 0;    ///< which of the block's two laws scales μ
   std::size_t branches = 0;  ///< of Maxwell
-  std::array<float, 8> share{};
+  std::array<float, kMostBranches> share{};
+  std::vector<LanePace> pace;  ///< of each branch; empty where all times are constant
   bool small = false, deviator = true, viscous = false, pioletti = false, energy = false;
   DeformationMeasure measure{};
   VolumeKind volume = VolumeKind::small;
@@ -59,7 +70,7 @@ struct ResponseItems {
   const float* rate = nullptr;             ///< Ḣ, the same
   const float* mean = nullptr;             ///< volume change of all that share it, [item][lane]; null: its own
   const float* fibre = nullptr;            ///< unit directions, [item][3][lane]
-  float* memory = nullptr;                 ///< [item][branch][6][lane] [Pa]
+  float* memory = nullptr;                 ///< [item][number][lane], numbers as in response_batches.h
   const std::uint32_t* element = nullptr;  ///< of the body, [item][lane]; kNoElement where none is
   std::size_t items = 0;
 };
@@ -81,7 +92,8 @@ float rescue_stretch_sum(const float* H, std::size_t stride);
 
 /// A step of the branches: with `previous` to the state that is asked for, with `next` on from it.
 struct MaxwellStep {
-  std::array<LaneWeights, 8> previous, next;
+  std::array<LaneWeights, kMostBranches> previous, next;
+  float since = 0.0F;    ///< time since the memory was kept [s], where times of branches follow the measure
   bool relaxed = false;  ///< whether q is S: a state that was set
   bool moves = false;    ///< whether the memory goes on
 };
@@ -89,6 +101,10 @@ struct MaxwellStep {
 /// P of the elastic part into `out.piola`; what the tangent has come to into `out.ratio` and `out.norm`.
 using RespondStage = void (*)(const ResponseItems&, const LaneResponse&, const Rescue&, const Block&,
                               ResponseBlock& out);
+/// 1/τ of a branch at n measures.
+using PaceStage = void (*)(const LanePace&, const float* x, std::size_t n, float* pace);
+/// By index in TimeLaw; the last is for branches without a law.
+using PaceStages = std::array<PaceStage, kNoTimeLaw + 1>;
 /// By index in HyperelasticLaw.
 using HyperelasticStages = std::array<RespondStage, std::variant_size_v<HyperelasticLaw>>;
 
@@ -108,6 +124,9 @@ struct ResponseKernels {
   /// Adds to `out.piola`; writes and adds to `out.viscous`.
   void (*fibres)(const ResponseItems&, const LaneResponse&, ResponseBlock& out) = nullptr;
   void (*maxwell)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, ResponseBlock& out) = nullptr;
+  /// The same for branches some of whose times follow the measure, whose paces are in `out`.
+  void (*following)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, ResponseBlock& out) = nullptr;
+  PaceStages pace{};
   void (*viscous)(const ResponseItems&, const LaneResponse&, bool add, ResponseBlock& out) = nullptr;
   /// All of them for tissue of small strain with branches: [moduli follow a law][elastic and viscous apart].
   StressPass relaxing_small[2][2] = {};

@@ -10,8 +10,12 @@ namespace glisson::engine {
 void lay_out_response(const Body& body, const Tissue& tissue, const ChainBatches& before, Submesh& part,
                       std::size_t lanes);
 
-/// Numbers that the memory of one element takes: six for each branch.
-inline std::size_t memory_numbers(const Tissue& tissue) { return 6 * tissue.maxwell.size(); }
+/// Numbers that the memory of one element takes: six for each branch (viscous_response-inl.h). Where times of branches follow
+/// the deformation they are its overstress S − q, and S and the branches' paces 1/τ lie behind them (branch_pace-inl.h).
+inline std::size_t memory_numbers(const Tissue& tissue) {
+  const std::size_t n = tissue.maxwell.size();
+  return 6 * n + (tissue.relaxation_follows() ? 6 + n : 0);
+}
 
 /// Calls `visit(element, numbers)` for each element of a submesh with Maxwell memory, `numbers` a function from the number's
 /// place, 0 … memory_numbers − 1, to where it lies.

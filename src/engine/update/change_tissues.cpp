@@ -10,11 +10,25 @@
 #include <cmath>
 
 #include "element/block_response.h"
+#include "element/element_shape.h"
 #include "engine/layout/response_batches.h"
 #include "engine/submesh_body.h"
 #include "engine/submesh_scratch.h"
 
 namespace glisson::engine {
+namespace {
+
+/// The tensor in the six numbers of a memory from the i-th on.
+Sym3<double> tensor_at(const auto& number, std::size_t i) {
+  const auto m = [&](std::size_t k) { return static_cast<double>(*number(i + k)); };
+  return {m(0), m(1), m(2), m(3), m(4), m(5)};
+}
+void put_tensor(const Sym3<double>& a, const auto& number, std::size_t i) {
+  const std::array<double, 6> numbers{a.xx, a.yy, a.zz, a.xy, a.yz, a.zx};
+  for (std::size_t k = 0; k < 6; ++k) *number(i + k) = static_cast<float>(numbers[k]);
+}
+
+}  // namespace
 
 bool SubmeshBody::supports_tissues() const {
   return std::all_of(body_.blocks.begin(), body_.blocks.end(),
@@ -62,6 +76,19 @@ void SubmeshBody::tissues_changed(std::span<const std::size_t> blocks, std::span
   take_masses(nodal_damping);
 }
 
+/// The tissue's measure of each element of a block.
+std::vector<double> SubmeshBody::measures(std::size_t b) const {
+  const TissueBlock& block = body_.blocks[b];
+  std::vector<Vec3d> u(body_.vertex_count), v(body_.vertex_count);
+  read_state(u, v);
+  std::vector<double> x;
+  for (std::size_t e = block.begin; e < block.end; ++e) {
+    x.push_back(large_plans_[b]->response.measure(element_gradient(body_, e, std::span<const Vec3d>(u)),
+                                                  element_shape(body_, block.tissue, e)));
+  }
+  return x;
+}
+
 std::vector<Sym3<double>> SubmeshBody::relaxing_stresses(std::size_t block) const {
   std::vector<Vec3d> u(body_.vertex_count), v(body_.vertex_count);
   read_state(u, v);
@@ -78,22 +105,51 @@ void SubmeshBody::make_memory_explicit() {
   }
 }
 
+/// Of branches whose times follow the deformation, from their overstress o, S and 1/τ when the memory was kept:
+///   S − q = e^(−ξ) o + ½ (1 + e^(−ξ)) (S − S₀)        (branch_pace-inl.h)
+void SubmeshBody::follow_branches(std::size_t b, BranchMemory& memory) const {
+  const TissueBlock& block = body_.blocks[b];
+  const std::size_t n = memory.branches;
+  const Response& response = large_plans_[b]->response;
+  const std::vector<double> x = measures(b);
+  for (const Submesh& part : submeshes_.parts) {
+    if (part.block != b) continue;
+    for_memory(part, block.tissue, kernels_.lanes, [&](std::uint32_t e, const auto& number) {
+      const std::size_t at = e - block.begin;
+      const Sym3<double> before = tensor_at(number, 6 * n);
+      for (std::size_t k = 0; k < n; ++k) {
+        const auto pace = static_cast<double>(*number(6 * n + 6 + k));
+        const BranchWeights<> w = response.paces().weights(k, since_memory_, pace, x[at], StepKind::central_difference);
+        memory.left[at * n + k] = 1.0 - w.to;
+        memory.held[at * n + k] = before * (1.0 - w.to) - tensor_at(number, 6 * k) * w.decay;
+      }
+    });
+  }
+}
+
 /// The memory holds m with q = m + to S, `to` of the last step (viscous_response-inl.h).
 BranchMemory SubmeshBody::branch_memory(std::size_t b) const {
   const TissueBlock& block = body_.blocks[b];
   const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
   BranchMemory memory;
   if (branches.empty() || std::isinf(since_memory_)) return memory;
-  for (const MaxwellBranch& branch : branches) {
-    memory.left.push_back(1.0 - static_cast<double>(lane_weights(since_memory_, branch.time).to));
+  const std::size_t n = branches.size();
+  memory.branches = n;
+  memory.held.resize((block.end - block.begin) * n), memory.left.resize(memory.held.size());
+  if (block.tissue.relaxation_follows()) {
+    follow_branches(b, memory);
+    return memory;
   }
-  memory.held.resize((block.end - block.begin) * branches.size());
+  std::vector<double> left;
+  for (const MaxwellBranch& branch : branches) {
+    left.push_back(1.0 - static_cast<double>(lane_weights(since_memory_, branch.time).to));
+  }
   for (const Submesh& part : submeshes_.parts) {
     if (part.block != b) continue;
     for_memory(part, block.tissue, kernels_.lanes, [&](std::uint32_t e, const auto& number) {
-      for (std::size_t k = 0; k < branches.size(); ++k) {
-        const auto m = [&](std::size_t i) { return static_cast<double>(*number(6 * k + i)); };
-        memory.held[(e - block.begin) * branches.size() + k] = {m(0), m(1), m(2), m(3), m(4), m(5)};
+      for (std::size_t k = 0; k < n; ++k) {
+        memory.held[(e - block.begin) * n + k] = tensor_at(number, 6 * k);
+        memory.left[(e - block.begin) * n + k] = left[k];
       }
     });
   }
@@ -124,16 +180,25 @@ void SubmeshBody::set_branch_stresses(std::size_t b, std::span<const Sym3<double
     make_memory_explicit();
   }
   const std::vector<Sym3<double>> S = relaxing_stresses(b);
+  const bool follows = block.tissue.relaxation_follows();
+  const std::vector<double> x = follows ? measures(b) : std::vector<double>{};
+  const std::size_t n = branches.size();
   for (Submesh& part : submeshes_.parts) {
     if (part.block != b) continue;
     for_memory(part, block.tissue, kernels_.lanes, [&](std::uint32_t e, const auto& number) {
-      for (std::size_t k = 0; k < branches.size(); ++k) {
-        const double left = 1.0 - static_cast<double>(lane_weights(since_memory_, branches[k].time).to);
-        const std::size_t at = e - block.begin;
-        const Sym3<double> m = S[at] * left - stresses[at * branches.size() + k] * (1.0 / branches[k].share);
-        const std::array<double, 6> numbers{m.xx, m.yy, m.zz, m.xy, m.yz, m.zx};
-        for (std::size_t i = 0; i < 6; ++i) *number(6 * k + i) = static_cast<float>(numbers[i]);
+      const std::size_t at = e - block.begin;
+      for (std::size_t k = 0; k < n; ++k) {
+        const Sym3<double> over = stresses[at * n + k] * (1.0 / branches[k].share);
+        if (follows) {
+          put_tensor(over, number, 6 * k);
+          // as much slower as it is faster now: no time has passed for the branch
+          *number(6 * n + 6 + k) = -static_cast<float>(large_plans_[b]->response.paces().at(k, x[at]));
+        } else {
+          const double left = 1.0 - static_cast<double>(lane_weights(since_memory_, branches[k].time).to);
+          put_tensor(S[at] * left - over, number, 6 * k);
+        }
       }
+      if (follows) put_tensor(S[at], number, 6 * n);
     });
   }
 }

@@ -1,5 +1,6 @@
 #include "material/reference/reference_stress.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "material/stiffness_formulas.h"
@@ -349,6 +350,20 @@ RealTensor relaxing_stress(const MaterialPoint& point, const RealTensor& F) {
   if (is_small(t)) return all ? symmetric_part(P) : deviator(symmetric_part(P));
   const RealTensor S = F.inverse() * P, C = F.transpose() * F;
   return symmetric_part(all ? S : RealTensor(S - contract(S, C) / 3 * C.inverse()));
+}
+
+Real pace(const MaterialPoint& point, std::size_t branch, const RealTensor& F) {
+  const MaxwellBranch& b = point.tissue.maxwell[branch];
+  if (!b.time_law) return 1 / Real(b.time);
+  const Real x = shape_measure(point, F);
+  Real factor = 0;
+  if (const auto* e = std::get_if<ExponentialTime>(&*b.time_law)) {
+    factor = std::clamp(std::exp(e->rate * x), Real(e->least), Real(e->most));
+  } else {
+    const auto& p = std::get<PowerTime>(*b.time_law);
+    factor = std::clamp(std::pow(x / p.reference, Real(p.exponent)), Real(p.least), Real(p.most));
+  }
+  return 1 / (b.time * factor);
 }
 
 double relaxed_ramp(double t, double time) { return t + time * std::expm1(-t / time); }

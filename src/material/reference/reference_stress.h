@@ -46,6 +46,9 @@ RealTensor regular_turn(const MaterialPoint& point);
 /// Value of the tissue's measure, from the tetrahedron's corners.
 Real shape_measure(const MaterialPoint& point, const RealTensor& F);
 
+/// Rate 1/τ(x) at which a branch relaxes at a deformation [1/s].
+Real pace(const MaterialPoint& point, std::size_t branch, const RealTensor& F);
+
 /// Relaxed stress of a Maxwell branch after a time t of S(t) = S₁ t [Pa for S₁ = 1 Pa/s]:
 ///   q = ∫ e^(−(t−s)/τ)/τ S(s) ds = t − τ (1 − e^(−t/τ)).
 double relaxed_ramp(double t, double time);

@@ -32,6 +32,7 @@ std::string scene_reference_markdown() {
   text += section_text(hyperelastic_section(), "`[tissue.hyperelastic]`");
   text += section_text(fibres_section(), "`[tissue.fibres]`");
   text += section_text(maxwell_section(), "`[[tissue.maxwell]]`");
+  text += section_text(time_law_section(), "`[tissue.maxwell.time_law]`");
   text += section_text(law_section(), "`[tissue.law]`, `[tissue.lambda_law]`, `[tissue.mu_law]`");
   text += section_text(region_section(), "`[[region]]`");
   text += section_text(motion_section(), "`[motion]`");

@@ -49,6 +49,15 @@ void convert_lame(Tissue& tissue, const Node& table, const Place& place) {
   }
 }
 
+/// A hyperelastic law has no measure; times of branches have.
+void refuse_idle_measure(const Tissue& tissue, const Node& table, const Place& place) {
+  const Node* measure = table.find("measure");
+  if (!measure || !table.find("hyperelastic") || tissue.relaxation_follows()) return;
+  place.complain(
+      *measure, "measure",
+      "and `hyperelastic` exclude each other, where no branch of `maxwell` has a `time_law`; remove `measure`");
+}
+
 }  // namespace
 
 const SectionSpec& law_section() {
@@ -67,6 +76,20 @@ const SectionSpec& law_section() {
 const SectionSpec& fibres_section() {
   static const SectionSpec section =
       described<Fibres>("tissue.fibres", "Fibres along one direction a: W = ½ c (a·E a)².");
+  return section;
+}
+
+const SectionSpec& time_law_section() {
+  static const SectionSpec section = [] {
+    SectionSpec s;
+    s.name = "tissue.maxwell.time_law";
+    s.help =
+        "Time of a branch as a function of the local deformation x, the tissue's `measure`, selected by `kind`: the "
+        "branch "
+        "relaxes by q′ = (S − q)/τ(x), and its relaxation is no longer linear.";
+    s.kinds = law_kinds(std::type_identity<TimeLaw>{});
+    return s;
+  }();
   return section;
 }
 
@@ -114,8 +137,11 @@ const SectionSpec& tissue_section() {
     s.spec().exclusions = {{{{"preset"}, {"file"}}, false},
                            {{{"youngs_modulus_Pa", "poisson_ratio"}, {"lambda_Pa", "mu_Pa"}, {"hyperelastic"}}, false},
                            {{{"law"}, {"lambda_law", "mu_law"}, {"hyperelastic"}}, false},
-                           {{{"kinematics", "law_form", "measure"}, {"hyperelastic"}}, false}};
-    s.finish(convert_lame);
+                           {{{"kinematics", "law_form"}, {"hyperelastic"}}, false}};
+    s.finish([](Tissue& tissue, const Node& table, const Place& place) {
+      convert_lame(tissue, table, place);
+      refuse_idle_measure(tissue, table, place);
+    });
     return s.spec();
   }();
   return section;

@@ -15,6 +15,7 @@ const SectionSpec& selection_section();          ///< fills Selection
 const SectionSpec& law_section();                ///< fills StiffnessLaw
 const SectionSpec& hyperelastic_section();       ///< fills HyperelasticLaw
 const SectionSpec& fibres_section();             ///< fills Fibres
+const SectionSpec& time_law_section();           ///< fills TimeLaw
 const SectionSpec& maxwell_section();            ///< fills MaxwellBranch
 const SectionSpec& tissue_section();             ///< fills Tissue
 const SectionSpec& region_section();             ///< fills RegionSpec
@@ -48,6 +49,7 @@ const SectionSpec& scene_section();              ///< what a scene says once; fi
 inline const SectionSpec& section_of(std::type_identity<StiffnessLaw>) { return law_section(); }
 inline const SectionSpec& section_of(std::type_identity<HyperelasticLaw>) { return hyperelastic_section(); }
 inline const SectionSpec& section_of(std::type_identity<Fibres>) { return fibres_section(); }
+inline const SectionSpec& section_of(std::type_identity<TimeLaw>) { return time_law_section(); }
 inline const SectionSpec& section_of(std::type_identity<MaxwellBranch>) { return maxwell_section(); }
 inline const SectionSpec& section_of(std::type_identity<ImplicitOptions>) { return implicit_section(); }
 inline const SectionSpec& section_of(std::type_identity<Rupture>) { return rupture_section(); }

@@ -87,6 +87,7 @@ void put_tissue(Node& tissue, const Tissue& now) {
     Node& branch = branches.emplace_back(Node{Table{}, {}});
     set(branch, "share", number_node(b.share));
     set(branch, "time_s", number_node(b.time));
+    if (b.time_law) set(branch, "time_law", law_node(*b.time_law));
   }
   set(tissue, "maxwell", {std::move(branches), {}});
 }
