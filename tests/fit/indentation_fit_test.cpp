@@ -151,7 +151,7 @@ std::string made(const Tissue& tissue, const Indenter& indenter, const Layer& la
 }
 
 // Twenty starts, profiles and 200 replicates of a law, a share and a time from one ramp and hold: the truth is found within the
-// intervals, in less time of processors than two of them have in 30 s.
+// intervals, in less than 30 s of one processor.
 TEST(IndentationFit, FindsItsTwin) {
   Tissue truth = brain(600.0, -9.0);
   truth.maxwell = {{0.45, 8.0}};
@@ -163,7 +163,7 @@ TEST(IndentationFit, FindsItsTwin) {
   const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;  // of all threads
   const std::vector<double> expected{600.0, -9.0, 0.45, 8.0};
   std::printf("%.1f s of processors, %llu runs\n", seconds, static_cast<unsigned long long>(result.forward_runs));
-  EXPECT_LT(seconds, 60.0);
+  EXPECT_LT(seconds, 30.0);
   for (std::size_t p = 0; p < expected.size(); ++p) {
     const ParameterResult& r = result.parameters[p];
     std::printf("%s %.4g [%.4g, %.4g] %s\n", r.parameter.name.c_str(), r.value, r.ci95()->low, r.ci95()->high,
