@@ -97,16 +97,16 @@ void add_material(CLI::App& program, Action& action) {
   command
       ->add_option(
           "--to", options->to,
-          "stretches to go to from 1, one after the other; of simple_shear its amount, of torsion angles [deg], "
-          "from 0;\ndefault 1.3, 0.5, 30")
+          "stretches to go to from 1, one after the other; of simple_shear its amount, of torsion angles [deg] "
+          "and of indentation depths [mm], from 0;\ndefault 1.3, 0.5, 30, 1")
       ->type_name("LIST")
       ->delimiter(',');
   command->add_flag("--stress", options->stress, "--to is nominal stress [Pa]: creep with --hold");
   command
-      ->add_option(
-          "--rate", options->rate,
-          "of the driven value [1/s, Pa/s, deg/s]; default 0.01, of torsion 1, with --stress a second for each "
-          "end")
+      ->add_option("--rate", options->rate,
+                   "of the driven value [1/s, Pa/s, deg/s, mm/s]; default 0.01, of torsion and indentation 1, with "
+                   "--stress a second for each "
+                   "end")
       ->type_name("R")
       ->check(CLI::PositiveNumber);
   command->add_option("--hold", options->hold, "time for which the last value is held [s]; default 0")
@@ -122,13 +122,25 @@ void add_material(CLI::App& program, Action& action) {
                    "steps for each line, where the tissue has viscosity or branches; default 10")
       ->type_name("N")
       ->check(CLI::Range(1, 100000));
-  command->add_option("--radius-mm", options->radius_mm, "of torsion: radius of the cylinder at rest; default 10")
+  command
+      ->add_option(
+          "--radius-mm", options->radius_mm,
+          "of torsion: radius of the cylinder at rest; of indentation: of the sphere or flat punch; default 10")
       ->type_name("R");
   command->add_option("--length-mm", options->length_mm, "of torsion: its length at rest; default 10")->type_name("L");
   command
       ->add_option("--stretch", options->stretch,
                    "of torsion and oscillation: static stretch along z before, relaxed; default 1")
       ->type_name("X");
+  command->add_option("--indenter", options->indenter, "of indentation: sphere, the default, flat or cone")
+      ->type_name("WORD");
+  command->add_option("--half-angle-deg", options->half_angle_deg, "of a cone: between axis and side; default 60")
+      ->type_name("A");
+  command->add_option("--thickness-mm", options->thickness_mm, "of indentation: of the layer; default a half-space")
+      ->type_name("H");
+  command->add_option("--diameter-mm", options->diameter_mm, "of indentation: of the specimen; default wide")
+      ->type_name("D");
+  command->add_flag("--bonded", options->bonded, "of indentation: tissue sticks to the indenter");
   command->add_option("--from-hz", options->from_hz, "of oscillation: lowest frequency; default 0.01")->type_name("F");
   command->add_option("--to-hz", options->to_hz, "of oscillation: highest frequency; default 100")->type_name("F");
   command->add_option("--mode", options->mode, "of oscillation: simple_shear for G*, the default, or uniaxial for E*")

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "glisson/indentation.h"
 #include "glisson/material_point.h"
 #include "glisson/oscillation.h"
 #include "glisson/torsion.h"
@@ -23,7 +24,10 @@ constexpr double kOwnSize = 10.0;      // radius and length [mm]
 constexpr double kFromHz = 0.01, kToHz = 100.0;
 constexpr std::size_t kOwnPoints = 20, kOwnBetween = 10;
 
-constexpr const char *kTorsion = "torsion", *kOscillation = "oscillation";
+constexpr double kOwnDepth = 1.0, kOwnDepthRate = 1.0;  // [mm], [mm/s]
+constexpr double kOwnHalfAngle = 60.0;                  // [deg]
+
+constexpr const char *kTorsion = "torsion", *kOscillation = "oscillation", *kIndentation = "indentation";
 
 template <class Enum>
 Enum by_word(const std::string& option, const std::string& name, const std::string& known) {
@@ -42,7 +46,7 @@ std::string all_words() {
 
 /// Refuses what a test does not read, rather than to let it pass unread.
 void refuse_strangers(const MaterialOptions& o) {
-  const bool torsion = o.test == kTorsion, oscillation = o.test == kOscillation;
+  const bool torsion = o.test == kTorsion, oscillation = o.test == kOscillation, indentation = o.test == kIndentation;
   struct Given {
     const char* option;
     bool given, read;
@@ -52,9 +56,16 @@ void refuse_strangers(const MaterialOptions& o) {
            Given{"--to", !o.to.empty(), !oscillation, "tests over time"},
            {"--rate", o.rate.has_value(), !oscillation, "tests over time"},
            {"--hold", o.hold.has_value(), !oscillation, "tests over time"},
-           {"--between", o.between.has_value(), !oscillation, "tests over time"},
-           {"--stress", o.stress, !oscillation && !torsion, "a homogeneous test over time"},
-           {"--radius-mm", o.radius_mm.has_value(), torsion, "--test torsion"},
+           {"--between", o.between.has_value(), !oscillation && !indentation, "tests over time, but of indentation"},
+           {"--stress", o.stress, !oscillation && !torsion && !indentation, "a homogeneous test over time"},
+           {"--radius-mm", o.radius_mm.has_value(), torsion || (indentation && o.indenter.value_or("") != "cone"),
+            "--test torsion, and --test indentation of a sphere or flat punch"},
+           {"--indenter", o.indenter.has_value(), indentation, "--test indentation"},
+           {"--half-angle-deg", o.half_angle_deg.has_value(), indentation && o.indenter.value_or("") == "cone",
+            "--test indentation --indenter cone"},
+           {"--thickness-mm", o.thickness_mm.has_value(), indentation, "--test indentation"},
+           {"--diameter-mm", o.diameter_mm.has_value(), indentation, "--test indentation"},
+           {"--bonded", o.bonded, indentation, "--test indentation"},
            {"--length-mm", o.length_mm.has_value(), torsion, "--test torsion"},
            {"--stretch", o.stretch.has_value(), torsion || oscillation, "--test torsion and --test oscillation"},
            {"--from-hz", o.from_hz.has_value(), oscillation, "--test oscillation"},
@@ -200,6 +211,49 @@ MaterialResult twisted(const MaterialOptions& o, const Tissue& tissue) {
   return result;
 }
 
+/// The indenter of the options, and words for it.
+std::pair<fit::Indenter, std::string> indenter_of(const MaterialOptions& o) {
+  const std::string shape = o.indenter.value_or("sphere");
+  fit::Indenter indenter{.bonded = o.bonded};
+  if (shape == "cone") {
+    const double degrees = o.half_angle_deg.value_or(kOwnHalfAngle);
+    if (!(degrees >= 10.0 && degrees <= 89.0))
+      throw std::invalid_argument(fmt::format("--half-angle-deg {:g}: outside the allowed range, 10 to 89", degrees));
+    indenter.shape = fit::IndenterShape::cone, indenter.half_angle = degrees * std::numbers::pi / 180.0;
+    return {indenter, fmt::format("a cone of {:g}° half angle", degrees)};
+  }
+  if (shape != "sphere" && shape != "flat")
+    throw std::invalid_argument("--indenter " + shape + ": there is no such word; allowed: sphere, flat, cone");
+  indenter.shape = shape == "flat" ? fit::IndenterShape::flat : fit::IndenterShape::sphere;
+  indenter.radius = 1e-3 * above_zero("--radius-mm", o.radius_mm.value_or(kOwnSize));
+  return {indenter,
+          fmt::format("a {} of {:g} mm radius", shape == "flat" ? "flat punch" : shape, 1e3 * indenter.radius)};
+}
+
+MaterialResult indented(const MaterialOptions& o, const Tissue& tissue) {
+  const auto [indenter, words] = indenter_of(o);
+  fit::Layer layer;
+  if (o.thickness_mm) layer.thickness = 1e-3 * above_zero("--thickness-mm", *o.thickness_mm);
+  if (o.diameter_mm) layer.radius = 0.5e-3 * above_zero("--diameter-mm", *o.diameter_mm);
+  Timeline line = timeline(o, 0.0, o.to.empty() ? std::vector{kOwnDepth} : o.to, o.rate.value_or(kOwnDepthRate));
+  std::vector<double> depths = line.values;
+  for (double& d : depths) d *= 1e-3;
+  MaterialResult result;
+  try {
+    std::vector<double> forces = fit::indentation(tissue, indenter, layer, line.times, depths);
+    result.columns = {{"time", "s", line.times}, {"depth", "mm", line.values}, {"force", "N", std::move(forces)}};
+  } catch (const std::runtime_error& error) {
+    result.trouble = error.what();
+    return result;
+  }
+  const bool held = o.hold.value_or(0.0) > 0.0;
+  result.charts = {{held ? "Force against time" : "Force against depth", "", held ? std::size_t{0} : 1, {2}}};
+  result.words = (o.thickness_mm ? fmt::format("A layer of {:g} mm, bonded to its floor, under ", *o.thickness_mm)
+                                 : std::string("A half-space under ")) +
+                 words + (o.bonded ? ", bonded to it." : ", without friction.");
+  return result;
+}
+
 MaterialResult oscillating(const MaterialOptions& o, const Tissue& tissue) {
   const double from = above_zero("--from-hz", o.from_hz.value_or(kFromHz)),
                to = above_zero("--to-hz", o.to_hz.value_or(std::max(kToHz, from)));
@@ -236,11 +290,14 @@ std::string Column::heading() const {
   return text;
 }
 
-std::string material_test_names() { return all_words<MaterialTest>() + ", " + kTorsion + ", " + kOscillation; }
+std::string material_test_names() {
+  return all_words<MaterialTest>() + ", " + kTorsion + ", " + kOscillation + ", " + kIndentation;
+}
 
 MaterialResult run_material_test(const MaterialOptions& options, const Tissue& tissue) {
   refuse_strangers(options);
   if (options.test == kTorsion) return twisted(options, tissue);
+  if (options.test == kIndentation) return indented(options, tissue);
   if (options.test == kOscillation) return oscillating(options, tissue);
   return homogeneous(options, tissue);
 }

@@ -15,8 +15,12 @@ struct MaterialOptions {
   bool stress = false;
   std::optional<double> rate, hold;
   std::optional<std::size_t> points, between;
-  std::optional<double> radius_mm, length_mm, stretch;  ///< of torsion, the last of oscillation too
-  std::optional<double> from_hz, to_hz;                 ///< of oscillation
+  std::optional<double> radius_mm, length_mm,
+      stretch;                          ///< of torsion, the first of indentation, the last of oscillation too
+  std::optional<std::string> indenter;  ///< of indentation
+  std::optional<double> thickness_mm, diameter_mm, half_angle_deg;
+  bool bonded = false;
+  std::optional<double> from_hz, to_hz;  ///< of oscillation
   std::optional<std::string> mode;
   std::string csv, picture;
   bool json = false;

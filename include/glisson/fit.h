@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "glisson/indentation.h"
 #include "glisson/scene/scene.h"
 #include "glisson/words.h"
 
@@ -29,7 +30,8 @@ enum class LabTest {
   planar,
   simple_shear,
   torsion,
-  oscillation
+  oscillation,
+  indentation
 };
 }  // namespace glisson::fit
 
@@ -46,14 +48,16 @@ inline constexpr Word<fit::LabTest> kWords<fit::LabTest>[] = {
     {"planar", fit::LabTest::planar, "stretched along one axis, held along the second; the third is free: pure shear"},
     {"simple_shear", fit::LabTest::simple_shear, "one face moved along the other at a constant distance"},
     {"torsion", fit::LabTest::torsion, "a cylinder twisted at a constant length: torque over angle"},
-    {"oscillation", fit::LabTest::oscillation, "small shear to and fro: storage and loss modulus over frequency"}};
+    {"oscillation", fit::LabTest::oscillation, "small shear to and fro: storage and loss modulus over frequency"},
+    {"indentation", fit::LabTest::indentation,
+     "an indenter pressed into a layer: force over depth, and as it is held"}};
 
 }  // namespace glisson
 
 namespace glisson::fit {
 
 /// How a specimen deforms in a test.
-enum class Deforming { compression, tension, equibiaxial, planar, simple_shear, torsion };
+enum class Deforming { compression, tension, equibiaxial, planar, simple_shear, torsion, indentation };
 }  // namespace glisson::fit
 namespace glisson {
 template <>
@@ -63,7 +67,8 @@ inline constexpr Word<fit::Deforming> kWords<fit::Deforming>[] = {
     {"equibiaxial", fit::Deforming::equibiaxial, "alike along two axes, the third free"},
     {"planar", fit::Deforming::planar, "along one axis, held along the second, the third free"},
     {"simple_shear", fit::Deforming::simple_shear, "one face along the other at a constant distance"},
-    {"torsion", fit::Deforming::torsion, "a cylinder about its axis at a constant length"}};
+    {"torsion", fit::Deforming::torsion, "a cylinder about its axis at a constant length"},
+    {"indentation", fit::Deforming::indentation, "a layer under an indenter"}};
 }  // namespace glisson
 namespace glisson::fit {
 
@@ -75,11 +80,12 @@ struct Measurement {
   LabTest test = LabTest::compression;
   Deforming deforming = Deforming::compression;
   Measured measured = Measured::nominal;
-  double stretch = 1.0;          ///< at rest about which an oscillation is small [-]
-  bool timed = true;             ///< false: the file has no times, those of the curve are made up
-  bool point = false;            ///< the specimen has no size: force on 1 m², displacement of 1 m
-  std::string unit = "N";        ///< of Curve::force
-  std::string drive_unit = "m";  ///< of Curve::displacement
+  double stretch = 1.0;                ///< at rest about which an oscillation is small [-]
+  bool timed = true;                   ///< false: the file has no times, those of the curve are made up
+  bool point = false;                  ///< the specimen has no size: force on 1 m², displacement of 1 m
+  std::string unit = "N";              ///< of Curve::force
+  std::string drive_unit = "m";        ///< of Curve::displacement
+  std::optional<Indenter> indenter{};  ///< of an indentation
 
   bool operator==(const Measurement&) const = default;
   /// 1 where a positive displacement extends the specimen, −1 where it compresses it.
@@ -109,6 +115,7 @@ struct Parameter {
 ///   torsion                                    angle [rad]                              torque [N m], or axial force [N],
 ///                                                                                       positive as it pushes the plates apart
 ///   creep                                      nominal stress × area [N]                strain × height [m]
+///   indentation                                depth [m]                                force [N]
 ///   oscillation                                frequency [Hz], `time` is the row        storage or loss modulus [Pa]
 struct Curve {
   std::string name;                  ///< unique among the curves of a fit, e.g. the file's stem

@@ -9,6 +9,7 @@
 #include "fit/data/load_curves.h"
 #include "fit/data/test_columns.h"
 #include "fit/data/units.h"
+#include "fit/forward/indenter.h"
 #include "fit/uncertainty/validation.h"
 
 namespace glisson::fit {
@@ -90,6 +91,11 @@ double modulus_of(const Curve& c, double area, double height) {
     return m.measured == Measured::storage ? 3.0 * sum / static_cast<double>(c.size()) : 0.0;
   }
   if (!(fd > 0.0)) return 0.0;
+  if (m.indenter) {  // by the closed form, at the deepest
+    const auto far = static_cast<std::size_t>(std::max_element(c.displacement.begin(), c.displacement.end()) -
+                                              c.displacement.begin());
+    return std::max(0.0, thick_layer_modulus(*m.indenter, c.displacement[far], c.force[far]));
+  }
   const double stiffness = m.measured == Measured::strain ? dd / fd : fd / dd;
   switch (m.deforming) {
     case Deforming::torsion:  // G = 2 M H / (π R⁴ φ) and A = π R²

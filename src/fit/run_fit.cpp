@@ -30,6 +30,8 @@ using Searches = std::vector<std::unique_ptr<LawSearch>>;
 /// Area and height where the fit says them.
 SpecimenSize size_of(const FitSpec& spec) {
   if (!spec.specimen) return {};
+  if (spec.specimen->shape == SpecimenShape::layer)
+    return {.area = {}, .height = spec.specimen->thickness, .radius = {}};
   const Specimen s = specimen_of(*spec.specimen);
   return {.area = s.area,
           .height = s.height,
@@ -53,8 +55,9 @@ std::vector<LawSpec> laws_of(const FitSpec& spec, const FitRun& options, const F
   laws.insert(laws.end(), spec.laws.begin(), spec.laws.end());
   const SpecimenSize size = size_of(spec);
   for (const std::string& name : options.laws) {
-    const double modulus =
-        size.area ? initial_modulus(curves.chosen(curves.indices(false)), *size.area, *size.height) : own_modulus(spec);
+    const double modulus = spec.specimen ? initial_modulus(curves.chosen(curves.indices(false)),
+                                                           size.area.value_or(1.0), size.height.value_or(1.0))
+                                         : own_modulus(spec);
     LawSpec& law = laws.emplace_back(law_candidate(name, modulus, spec.specimen.has_value()));
     for (const ParameterSpec& p : spec.parameters) {  // those of the measurement belong to every law
       if (is_curve_key(p.key) || is_plate_key(p.key)) law.parameters.push_back(p);
@@ -105,7 +108,9 @@ std::vector<LawSpec> Run::discover(FitResult& result) {
   constexpr int kStarts = 4;
   const SpecimenSize size = size_of(spec_);
   if (!size.area || plates_of(*spec_.specimen))
-    throw std::invalid_argument("--discover asks for a [specimen] with smooth faces: hundreds of laws are fitted");
+    throw std::invalid_argument(
+        "--discover asks for a [specimen] that deforms alike all over, no layer, with smooth faces: hundreds of laws "
+        "are fitted");
   const std::vector<TermLaw> all =
       term_laws(initial_modulus(curves_.chosen(curves_.indices(false)), *size.area, *size.height), options_.discover);
   FitSpec quick = spec_;
@@ -253,7 +258,7 @@ FitResult Run::to_end() {
   FitResult result;
   const std::vector<LawSpec> laws = options_.discover > 0 ? discover(result) : laws_of(spec_, options_, curves_);
   result.area = size.area;
-  result.height = size.height;
+  if (size.area) result.height = size.height;  // of a layer displacements are depths
   const bool all = search_all(laws);
   if (all && searches_.empty()) throw std::runtime_error(left_out_.front() + "; nor does any other run");
   std::size_t chosen = 0;

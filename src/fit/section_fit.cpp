@@ -71,8 +71,23 @@ void check_faces(const FitSpec& fit, const Place& place) {
     place.complain(
         "[specimen] faces = \"friction\" asks for `friction` or `adhesion_Pa` above 0, or for a "
         "[[parameter]] with the key `specimen.friction` or `specimen.adhesion_Pa`");
+  if (layer_of(*fit.specimen) && fit.forward.kind != ForwardKind::automatic)
+    place.complain("[forward] kind does not apply to a layer; remove it");
   if (plates_of(*fit.specimen) && fit.forward.kind != ForwardKind::automatic)
     place.complain("[forward] kind applies to smooth faces; remove it, or set faces = \"smooth\" in [specimen]");
+}
+
+/// An indenter presses a layer, and nothing else does.
+void check_layer(const FitSpec& fit, const DataSpec& data, const Node& own, const Place& here) {
+  if (!fit.specimen) return;
+  const bool layer = layer_of(*fit.specimen).has_value();
+  const char* key = own.find("test") ? "test" : "files";
+  if (data.indents() && !layer) here.complain(*own.find(key), key, "indentation asks for [specimen] kind = \"layer\"");
+  if (!data.indents() && layer)
+    here.complain(*own.find(key), key,
+                  "test = \"" + std::string(word_of(data.test)) +
+                      "\" is not made on a layer, which is pressed by an indenter; give test = \"indentation\", or "
+                      "[specimen] kind = \"cylinder\", \"block\" or \"point\"");
 }
 
 /// Tests that a scene, a specimen that sticks, or a point cannot make.
@@ -81,9 +96,10 @@ void check_tests(const FitSpec& fit, const Node& table, const Place& place) {
   const bool round = fit.specimen && fit.specimen->shape == SpecimenShape::cylinder;
   for (std::size_t i = 0; i < fit.data.size(); ++i) {
     const DataSpec& data = fit.data[i];
-    if (data.test == LabTest::compression) continue;
     const Node& own = (*table.find("data")->array())[i];
     const Place here = place.inside("data." + std::to_string(i), own.where);
+    check_layer(fit, data, own, here);
+    if (data.test == LabTest::compression) continue;
     const std::string test = "test = \"" + std::string(word_of(data.test)) + "\" ";
     if (!fit.specimen)
       here.complain(*own.find("test"), "test",

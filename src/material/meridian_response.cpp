@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "material/dual.h"
+#include "material/hyperelastic_formulas.h"
 
 namespace glisson {
 namespace {

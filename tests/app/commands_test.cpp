@@ -77,6 +77,27 @@ TEST_F(Commands, MaterialGivesTheCurveOfATissue) {
   EXPECT_NE(run({"material", "nothing.toml"}).err.find("there is no such file"), std::string::npos);
 }
 
+// material: an indented layer gives Hertz's force within 1 %, and half of it after a hold in which half relaxes.
+TEST_F(Commands, MaterialIsIndented) {
+  const std::string tissue =
+      write("soft.toml",
+            "[tissue]\nhyperelastic = { kind = \"neo_hookean\", mu_Pa = 1000, bulk_modulus_Pa = 1e7 }\n"
+            "maxwell = [{ share = 0.5, time_s = 1 }]\n");
+  const Outcome pressed = run({"material", tissue, "--test", "indentation", "--radius-mm", "20", "--to", "0.2",
+                               "--rate", "200", "--hold", "30", "--points", "4", "--json"});
+  ASSERT_THAT(pressed, Exits(0)) << pressed.err;
+  const nlohmann::json columns = nlohmann::json::parse(pressed.out)["columns"];
+  const double hertz = 4.0 / 3.0 * 4000.0 * std::sqrt(0.02 * 2e-4) * 2e-4;
+  EXPECT_NEAR(columns["force_N"][3].get<double>(), hertz, 0.01 * hertz);
+  EXPECT_NEAR(columns["force_N"].back().get<double>(), 0.5 * hertz, 0.005 * hertz);
+  EXPECT_NE(
+      run({"material", tissue, "--test", "indentation", "--indenter", "ball"}).err.find("allowed: sphere, flat, cone"),
+      std::string::npos);
+  EXPECT_NE(run({"material", tissue, "--test", "indentation", "--thickness-mm", "2", "--to", "3"})
+                .err.find("a depth of 3 mm in a layer of 2 mm"),
+            std::string::npos);
+}
+
 // material: torsion and oscillation give the closed forms of neo-Hooke; what a test does not read is refused, and a page with the curve
 // is written.
 TEST_F(Commands, MaterialTwistsAndOscillates) {

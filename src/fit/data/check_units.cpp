@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "fit/data/raw_test.h"
+#include "fit/forward/indenter.h"
 
 namespace glisson::fit {
 namespace {
@@ -124,16 +125,19 @@ class UnitCheck {
     const double deepest = span_of(test_.displacement);
     if (!size_.height || deepest <= 0.0) return;
     const double strain = deepest / *size_.height;
-    const bool pressed = test_.measurement.deforming == Deforming::compression;
+    const Deforming how = test_.measurement.deforming;
+    const bool indented = how == Deforming::indentation, pressed = indented || how == Deforming::compression;
     const double farthest = pressed ? kDeepest : kFarthest;
-    if (strain <= farthest && strain >= kShallowest) return;
+    if (strain <= farthest && (indented || strain >= kShallowest)) return;
     const Source& source = test_.displacement_source;
     const double value = own(source, deepest);
     double ratio = strain > farthest ? 1000.0 : 1e-3;
     if (source.quantity != Quantity::length) ratio = strain > farthest ? 100.0 : 1e-2;
     const std::string height =
-        size_.point ? ", a strain of " + brief(strain)
-                    : ", " + brief(strain) + " of the specimen's height of " + brief(*size_.height * 1e3) + " mm";
+        size_.point
+            ? ", a strain of " + brief(strain)
+            : ", " + brief(strain) + (indented ? " of the layer's thickness of " : " of the specimen's height of ") +
+                  brief(*size_.height * 1e3) + " mm";
     complain(read_as(source, value) + height + "; a test goes to between " + brief(kShallowest) + " and " +
              brief(farthest) + way_out(source, value, ratio));
   }
@@ -188,7 +192,15 @@ class UnitCheck {
                kWayOut);
   }
 
+  /// Of an indenter by the closed form for a thick layer; a thin one is stiffer, by less than a slip of the unit.
+  void check_indentation() {
+    const double depth = span_of(test_.displacement), force = span_of(test_.force);
+    if (!(depth > 0.0) || !(force > 0.0)) return;
+    check_modulus(test_.force_source, force, thick_layer_modulus(*test_.measurement.indenter, depth, force));
+  }
+
   void check_stiffness() {
+    if (test_.measurement.indenter) return check_indentation();
     if (!size_.area || !size_.height) return;
     const double way = span_of(test_.displacement), force = span_of(test_.force);
     if (!(way > 0.0) || !(force > 0.0)) return;

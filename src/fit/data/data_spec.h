@@ -94,6 +94,7 @@ struct DataSpec {
   std::optional<Deforming>
       deforming;            ///< of a test whose name does not say it; none: the file's stretch, else compression
   double prestretch = 1.0;  ///< of an oscillation
+  std::optional<Indenter> indenter;  ///< of an indentation
   bool held_out = false;
   double weight = 1.0;
   TextSpec text;
@@ -108,6 +109,8 @@ struct DataSpec {
   FilterSpec filter;
   ResampleSpec resample;
   std::string origin;  ///< where FIT.toml says it, for messages
+
+  bool indents() const { return test == LabTest::indentation || deforming == Deforming::indentation; }
 };
 
 }  // namespace glisson::fit

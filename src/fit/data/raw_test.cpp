@@ -120,6 +120,8 @@ Deforming deforming_of(const DataSpec& spec, Drive drive, const std::vector<doub
       return Deforming::simple_shear;
     case LabTest::torsion:
       return Deforming::torsion;
+    case LabTest::indentation:
+      return Deforming::indentation;
     case LabTest::relaxation:
     case LabTest::creep:
     case LabTest::cyclic:
@@ -279,6 +281,7 @@ Measurement measurement_of(const DataSpec& spec, const TestColumns& columns, con
   m.stretch = spec.prestretch;
   m.timed = timed;
   m.point = size.point;
+  m.indenter = spec.indenter;
   m.unit = size.point ? "Pa" : "N";
   m.drive_unit = size.point ? "-" : "m";
   if (spec.test == LabTest::torsion || spec.deforming == Deforming::torsion) m.unit = "N m", m.drive_unit = "rad";

@@ -1,5 +1,7 @@
 #include "fit/data/section_data.h"
 
+#include <numbers>
+
 #include "fit/data/test_columns.h"
 #include "fit/data/units.h"
 #include "scene/parse/section.h"
@@ -21,6 +23,14 @@ struct OptionalSquareMilli {
   static constexpr scene::Shape kShape = scene::Shape::one;
   static std::optional<double> read(const Node& n) { return scene::number_of(n) * 1e-6; }
   static std::string show(const std::optional<double>& x) { return x ? scene::show(*x * 1e6) : ""; }
+};
+
+/// Degrees of the file, radians of the struct.
+struct Degrees {
+  static constexpr scene::ValueType kType = scene::ValueType::number;
+  static constexpr scene::Shape kShape = scene::Shape::one;
+  static double read(const Node& n) { return scene::number_of(n) * std::numbers::pi / 180.0; }
+  static std::string show(double x) { return scene::show(x * 180.0 / std::numbers::pi); }
 };
 
 /// A kind that says which word was chosen and fills the struct itself.
@@ -85,6 +95,34 @@ SectionSpec given_kind() {
   s.key<Milli>("at_mm", &ContactSpec::at, "displacement in the file at first contact").in("mm").must();
   s.key("zero_force", &ContactSpec::zero_force, "subtracts the mean force before contact");
   return s.spec();
+}
+
+SectionSpec indenter_kind(IndenterShape shape, const char* name, const char* help) {
+  Section<Indenter> s(name, help);
+  const bool flat = shape == IndenterShape::flat;
+  if (shape == IndenterShape::cone)
+    s.key<Degrees>("half_angle_deg", &Indenter::half_angle, "angle between its axis and its side")
+        .in("°")
+        .within(between(10, 89))
+        .must();
+  else
+    s.key<Milli>("radius_mm", &Indenter::radius, flat ? "radius of its face" : "radius")
+        .in("mm")
+        .within(above(0))
+        .must();
+  s.choice<bool>(
+      "contact", &Indenter::bonded,
+      {{"frictionless", false, flat ? "tissue slides along its face; for small depths" : "tissue slides along it"},
+       {"bonded", true, "tissue stays where it touches first"}},
+      "how tissue meets it");
+  return s.spec();
+}
+
+KindSpec indenter_of(IndenterShape shape, const char* name, const char* help) {
+  return {indenter_kind(shape, name, help), [shape](void* target) -> void* {
+            static_cast<Indenter*>(target)->shape = shape;
+            return target;
+          }};
 }
 
 SectionSpec median_kind() {
@@ -156,6 +194,17 @@ void finish_data(DataSpec& x, const Node& table, const Place& place) {
     place.complain(
         *table.find("mode"), "mode",
         "belongs to relaxation, creep and cyclic; a test of " + std::string(word_of(x.test)) + " says how it deforms");
+  if (x.indents() && !x.indenter)
+    place.complain(*table.find(x.test == LabTest::indentation ? "test" : "mode"),
+                   x.test == LabTest::indentation ? "test" : "mode",
+                   "indentation asks for an indenter; give indenter = { kind = \"sphere\", radius_mm = … }, "
+                   "{ kind = \"flat\", radius_mm = … } or { kind = \"cone\", half_angle_deg = … }");
+  if (!x.indents() && x.indenter)
+    place.complain(*table.find("indenter"), "indenter", "belongs to test = \"indentation\"");
+  if (x.deforming == Deforming::indentation && x.test == LabTest::creep)
+    place.complain(*table.find("mode"), "mode",
+                   "an indentation is fitted as it is driven by its depth; give test = \"indentation\" with columns of "
+                   "depth, force and time");
   if (x.prestretch != 1.0 && x.test != LabTest::oscillation)
     place.complain(*table.find("prestretch"), "prestretch", "belongs to test = \"oscillation\"");
   if (x.files.empty()) place.complain(*table.find("files"), "files", "is empty; name at least one file");
@@ -274,6 +323,17 @@ const SectionSpec& contact_section() {
   return section;
 }
 
+const SectionSpec& indenter_section() {
+  static const SectionSpec section = [] {
+    Section<Indenter> s("data.indenter", "The rigid indenter of an indentation.");
+    s.spec().kinds = {indenter_of(IndenterShape::sphere, "sphere", "A ball, on a shaft as wide as itself."),
+                      indenter_of(IndenterShape::flat, "flat", "A flat-ended cylinder with a sharp edge."),
+                      indenter_of(IndenterShape::cone, "cone", "A cone with a sharp tip.")};
+    return s.spec();
+  }();
+  return section;
+}
+
 const SectionSpec& crop_section() {
   static const SectionSpec section = [] {
     using C = CropSpec;
@@ -371,6 +431,10 @@ const SectionSpec& data_section() {
     s.key("prestretch", &D::prestretch, "length over length at rest about which an oscillation is small")
         .in("-")
         .within(above(0));
+    s.table(
+         "indenter", indenter_section(), [](D & d) -> auto& { return d.indenter.emplace(); },
+         "the indenter of an indentation")
+        .otherwise("none");
     s.choice<bool>("use", &D::held_out, {{"fit", false, "fitted"}, {"test", true, "held out, to test the fit"}},
                    "purpose");
     s.key("weight", &D::weight, "factor on the residuals").in("-").within(at_least(0));

@@ -59,9 +59,9 @@ bool takes(const DataSpec& spec, Drive drive) {
     case Drive::shear:
       return sheared;
     case Drive::displacement:
-      return spec.test != LabTest::oscillation && !twisted;
+      return spec.indents() || (spec.test != LabTest::oscillation && !twisted);
     default:
-      return spec.test != LabTest::oscillation && !twisted && !sheared;
+      return !spec.indents() && spec.test != LabTest::oscillation && !twisted && !sheared;
   }
 }
 
@@ -75,10 +75,11 @@ bool takes(const DataSpec& spec, Answer answer) {
     case Answer::axial_force:
       return twisted;
     case Answer::force:
-    case Answer::stress:
       return spec.test != LabTest::oscillation && !twisted;
+    case Answer::stress:
+      return !spec.indents() && spec.test != LabTest::oscillation && !twisted;
     default:  // creep is driven by what a machine holds: the force
-      return spec.test != LabTest::oscillation && spec.test != LabTest::creep && !twisted;
+      return !spec.indents() && spec.test != LabTest::oscillation && spec.test != LabTest::creep && !twisted;
   }
 }
 

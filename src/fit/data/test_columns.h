@@ -3,6 +3,7 @@
 //   compression, tension, relaxation, …   displacement, strain, stretch …  ──▶  force, stress, cauchy_stress …
 //   simple_shear                          shear, displacement              ──▶  the same
 //   torsion                               angle                            ──▶  torque, axial_force or both
+//   indentation                           displacement (the depth)         ──▶  force
 //   oscillation                           frequency                        ──▶  storage_modulus or loss_modulus
 #pragma once
 

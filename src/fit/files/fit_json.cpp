@@ -61,6 +61,7 @@ Json axis_json(const AxisOf& axis) { return {{"label", axis.label}, {"scale", ax
 AxisOf driven_axis(const fit::Measurement& m, const FitResult& result) {
   const double height = result.height.value_or(1.0);
   if (m.test == fit::LabTest::oscillation) return {"frequency [Hz]", 1.0};
+  if (m.deforming == fit::Deforming::indentation) return {"depth [mm]", 1e3};
   if (m.drive_unit == "rad") return {"angle [°]", 180.0 / std::numbers::pi};
   if (m.measured == fit::Measured::strain) return {"nominal stress [kPa]", 1e-3 / result.area.value_or(1.0)};
   if (m.deforming == fit::Deforming::simple_shear) return {"shear [%]", 100.0 / height};
@@ -94,9 +95,21 @@ AxisOf measured_axis(const fit::Measurement& m, const FitResult& result) {
   return {m.deforming == fit::Deforming::simple_shear ? "shear stress [kPa]" : "nominal stress [kPa]", stress};
 }
 
+/// Whether an indenter rests at its depth for most of the time.
+bool is_held(const fit::Curve& c) {
+  if (c.measurement.deforming != fit::Deforming::indentation || !c.measurement.timed) return false;
+  const double deepest = *std::max_element(c.displacement.begin(), c.displacement.end());
+  const auto arrived =
+      std::find_if(c.displacement.begin(), c.displacement.end(), [&](double d) { return d > 0.98 * deepest; });
+  const bool stays = c.displacement.back() > 0.98 * deepest;
+  return stays && c.time[static_cast<std::size_t>(arrived - c.displacement.begin())] - c.time.front() <
+                      0.5 * (c.time.back() - c.time.front());
+}
+
 /// Along x: time where the test goes by it, else what is driven.
-Json curve_x(const fit::Measurement& m, const FitResult& result) {
-  const bool by_time = m.test == fit::LabTest::relaxation || m.test == fit::LabTest::creep;
+Json curve_x(const fit::Curve& curve, const FitResult& result) {
+  const fit::Measurement& m = curve.measurement;
+  const bool by_time = m.test == fit::LabTest::relaxation || m.test == fit::LabTest::creep || is_held(curve);
   Json axis = axis_json(by_time ? AxisOf{"time [s]", 1.0} : driven_axis(m, result));
   axis["of"] = by_time ? "time" : "drive";
   axis["log"] = m.test == fit::LabTest::oscillation;
@@ -117,7 +130,7 @@ Json curve_json(const fit::CurveResult& c, const FitResult& result, const std::s
           {"held_out", c.curve.held_out},
           {"unit", m.unit},
           {"drive_unit", m.drive_unit},
-          {"x", curve_x(m, result)},
+          {"x", curve_x(c.curve, result)},
           {"y", axis_json(measured_axis(m, result))},
           {"time_s", m.timed ? numbers(c.curve.time) : Json::array()},
           {newtons ? "displacement_m" : "drive", numbers(c.curve.displacement)},

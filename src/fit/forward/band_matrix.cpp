@@ -6,6 +6,8 @@ namespace glisson::fit {
 
 void BandMatrix::fix(std::size_t row) {
   std::fill_n(data_.begin() + static_cast<std::ptrdiff_t>(row * stride_), stride_, 0.0);
+  const std::size_t last = std::min(row + half_, rows_ - 1);
+  for (std::size_t r = row > half_ ? row - half_ : 0; r <= last; ++r) (*this)(r, row) = 0.0;
   (*this)(row, row) = 1.0;
 }
 
@@ -19,12 +21,12 @@ bool BandMatrix::factor() {
   for (std::size_t k = 0; k < rows_; ++k) {
     const double* pivot = &data_[k * stride_ + half_];
     if (pivot[0] == 0.0 || !std::isfinite(pivot[0])) return false;
-    const std::size_t last = std::min(k + half_, rows_ - 1), width = last - k;
-    for (std::size_t i = k + 1; i <= last; ++i) {
-      double* row = &data_[i * stride_ + half_ - (i - k)];
-      if (row[0] == 0.0) continue;
-      row[0] /= pivot[0];
-      for (std::size_t c = 1; c <= width; ++c) row[c] -= row[0] * pivot[c];
+    const std::size_t width = std::min(half_, rows_ - 1 - k);
+    for (std::size_t i = 1; i <= width; ++i) {
+      if (pivot[i] == 0.0) continue;
+      const double share = pivot[i] / pivot[0];
+      double* row = &data_[(k + i) * stride_ + half_];  // from its diagonal on
+      for (std::size_t c = i; c <= width; ++c) row[c - i] -= share * pivot[c];
     }
   }
   return true;
@@ -32,9 +34,10 @@ bool BandMatrix::factor() {
 
 void BandMatrix::solve(std::vector<double>& x) const {
   for (std::size_t k = 0; k < rows_; ++k) {
-    const std::size_t first = k > half_ ? k - half_ : 0;
-    const double* row = &data_[k * stride_ + half_ - (k - first)];
-    for (std::size_t c = first; c < k; ++c) x[k] -= row[c - first] * x[c];
+    const double* row = &data_[k * stride_ + half_];
+    const std::size_t width = std::min(half_, rows_ - 1 - k);
+    const double part = x[k] / row[0];
+    for (std::size_t c = 1; c <= width; ++c) x[k + c] -= row[c] * part;
   }
   for (std::size_t k = rows_; k-- > 0;) {
     const double* row = &data_[k * stride_ + half_];

@@ -1,6 +1,7 @@
-// band_matrix.h — a square matrix whose entries lie near the diagonal, factored in place.
+// band_matrix.h — a symmetric matrix whose entries lie near the diagonal, factored in place.
 //
-// Elimination without exchange of rows, as the tangent of a solid allows. Cost: n w² for n rows of half-width w.
+// Elimination without exchange of rows, as the tangent of a solid allows, of the half above the diagonal alone. Cost: ½ n w² for
+// n rows of half-width w.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,7 @@ class BandMatrix {
   void clear() { std::fill(data_.begin(), data_.end(), 0.0); }
   /// |row − column| ≤ half width.
   double& operator()(std::size_t row, std::size_t column) { return data_[row * stride_ + column + half_ - row]; }
-  /// The row becomes that of the unit matrix.
+  /// The row and the column become those of the unit matrix.
   void fix(std::size_t row);
   /// x += factor × the row.
   void add_row(std::size_t row, double factor, std::vector<double>& x) const;

@@ -18,13 +18,23 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
+/// Sizes of elements, each `grading` times the one before it.
+std::vector<double> falling(std::size_t count, double grading) {
+  std::vector<double> sizes(count, 1.0);
+  for (std::size_t i = 1; i < count; ++i) sizes[i] = sizes[i - 1] * grading;
+  return sizes;
+}
+
 }  // namespace
 
+BarrelMesh::BarrelMesh(double radius, double whole_height, const BarrelGrid& grid)
+    : MeridianMesh(ends_and_middles(falling(grid.radial, grid.grading), radius),
+                   ends_and_middles(falling(grid.axial, grid.grading), 0.5 * whole_height)),
+      height(whole_height) {}
+
 Barrel::Barrel(std::shared_ptr<const BarrelMesh> mesh, const HyperelasticLaw& law, Faces faces, Grip grip)
-    : mesh_(std::move(mesh)), law_(law), faces_(faces), grip_(grip), pressures_(mesh_->elements.size()),
-      force_(2 * mesh_->columns() * mesh_->rows()), tangent_(force_.size(), 4 * mesh_->rows() + 5) {
-  state_.u.assign(force_.size(), 0.0);
-  state_.pressures.assign(mesh_->elements.size(), {});
+    : mesh_(std::move(mesh)), solid_(mesh_, law), faces_(faces), grip_(grip) {
+  state_.body = solid_.at_rest();
   past_ = {state_};
 }
 
@@ -36,36 +46,20 @@ Barrel::State Barrel::predicted(double displacement) const {
   const State &last = past_.back(), &before = past_[past_.size() - 2];
   const double ahead = (displacement - last.displacement) / (last.displacement - before.displacement);
   next.spread += ahead * (last.spread - before.spread);
-  for (std::size_t k = 0; k < next.u.size(); ++k) next.u[k] += ahead * (last.u[k] - before.u[k]);
-  for (std::size_t e = 0; e < next.pressures.size(); ++e)
-    for (std::size_t a = 0; a < 3; ++a) next.pressures[e][a] += ahead * (last.pressures[e][a] - before.pressures[e][a]);
+  next.body.extrapolate(last.body, before.body, ahead);
   return next;
 }
 
 void Barrel::put_on_plates() {
   for (std::size_t c = 0; c < mesh_->columns(); ++c) {
-    state_.u[2 * face_vertex(c)] = state_.spread * mesh_->radii[c];
-    state_.u[2 * face_vertex(c) + 1] = -0.5 * state_.displacement;
+    state_.body.u[2 * face_vertex(c)] = state_.spread * mesh_->radii[c];
+    state_.body.u[2 * face_vertex(c) + 1] = -0.5 * state_.displacement;
   }
 }
 
 /// False where an element is folded.
 bool Barrel::assemble() {
-  std::fill(force_.begin(), force_.end(), 0.0);
-  tangent_.clear();
-  for (std::size_t index = 0; index < mesh_->elements.size(); ++index) {
-    const BarrelElement& e = mesh_->elements[index];
-    const auto dof = [&](std::size_t i) { return 2 * e.vertices[i / 2] + i % 2; };
-    BarrelElement::Vector u;
-    for (std::size_t i = 0; i < u.size(); ++i) u[i] = state_.u[dof(i)];
-    const BarrelElement::Answer a = e.answer(law_, u, state_.pressures[index]);
-    if (a.folded) return false;
-    pressures_[index] = a.pressure;
-    for (std::size_t i = 0; i < u.size(); ++i) {
-      force_[dof(i)] += a.force[i];
-      for (std::size_t k = 0; k < u.size(); ++k) tangent_(dof(i), dof(k)) += a.tangent[i][k];
-    }
-  }
+  if (!solid_.assemble(state_.body)) return false;
   if (leans_) lean();
   return true;
 }
@@ -74,31 +68,32 @@ bool Barrel::assemble() {
 void Barrel::lean() {
   const std::vector<double>& z = mesh_->heights;
   const double plate = 0.5 * (mesh_->height - state_.displacement), soft = kSoft * mesh_->height;
-  const double stiffness = 2.0 * std::numbers::pi * mesh_->radii.back() * (shear_modulus(law_) + pressure_) / soft;
+  const double stiffness =
+      2.0 * std::numbers::pi * mesh_->radii.back() * (shear_modulus(solid_.law()) + pressure_) / soft;
   side_force_ = 0.0;
   for (std::size_t k = 0; k + 1 < z.size(); ++k) {
     const std::size_t dof = 2 * ((mesh_->columns() - 1) * mesh_->rows() + k) + 1;
-    const double depth = z[k] + state_.u[dof] - plate;
+    const double depth = z[k] + state_.body.u[dof] - plate;
     if (!(depth > 0.0)) continue;
     const double here = stiffness * 0.5 * (z[k + 1] - (k > 0 ? z[k - 1] : z[k]));
     const double force = here * (depth < soft ? 0.5 * depth * depth / soft : depth - 0.5 * soft);
     side_force_ += force;
-    force_[dof] += force;
-    tangent_(dof, dof) += here * std::min(1.0, depth / soft);
+    solid_.force[dof] += force;
+    solid_.tangent(dof, dof) += here * std::min(1.0, depth / soft);
   }
 }
 
 double Barrel::face_force() const {
   double total = 0.0;
-  for (std::size_t c = 0; c < mesh_->columns(); ++c) total -= force_[2 * face_vertex(c) + 1];
+  for (std::size_t c = 0; c < mesh_->columns(); ++c) total -= solid_.force[2 * face_vertex(c) + 1];
   return total;
 }
 
 Barrel::Balance Barrel::face_balance() const {
-  Balance face{.by_u = std::vector<double>(force_.size(), 0.0)};
+  Balance face{.by_u = std::vector<double>(solid_.unknowns(), 0.0)};
   for (std::size_t c = 0; c < mesh_->columns(); ++c) {
-    face.rest += mesh_->radii[c] * force_[2 * face_vertex(c)];
-    tangent_.add_row(2 * face_vertex(c), mesh_->radii[c], face.by_u);
+    face.rest += mesh_->radii[c] * solid_.force[2 * face_vertex(c)];
+    solid_.tangent.add_row(2 * face_vertex(c), mesh_->radii[c], face.by_u);
   }
   for (std::size_t c = 0; c < mesh_->columns(); ++c) face.by_spread += mesh_->radii[c] * face.by_u[2 * face_vertex(c)];
   return face;
@@ -111,47 +106,33 @@ void Barrel::add_friction(Balance& face) const {
   const double most = arm * (grip_.adhesion * std::numbers::pi * radius * radius + grip_.friction * face_force());
   face.rest += most * x / root;
   face.by_spread += most / (root * root * root * width);
-  std::vector<double> by_u(force_.size(), 0.0);
+  std::vector<double> by_u(solid_.unknowns(), 0.0);
   for (std::size_t c = 0; c < mesh_->columns(); ++c)
-    tangent_.add_row(2 * face_vertex(c) + 1, -arm * grip_.friction * x / root, by_u);
+    solid_.tangent.add_row(2 * face_vertex(c) + 1, -arm * grip_.friction * x / root, by_u);
   for (std::size_t c = 0; c < mesh_->columns(); ++c) face.by_spread += mesh_->radii[c] * by_u[2 * face_vertex(c)];
   for (std::size_t k = 0; k < by_u.size(); ++k) face.by_u[k] += by_u[k];
 }
 
 /// The step that Newton's method takes off u and, as its result, off s: a band, bordered by the face's balance.
 double Barrel::solve_step(Balance& face, std::vector<double>& step) {
-  std::vector<double> lead(force_.size(), 0.0);  // ∂(∂W/∂u)/∂s
+  std::vector<double> lead(solid_.unknowns(), 0.0);  // ∂(∂W/∂u)/∂s
   for (std::size_t c = 0; c < mesh_->columns(); ++c)
-    tangent_.add_row(2 * face_vertex(c), mesh_->radii[c], lead);  // symmetric: a row is a column
-  step = force_;
-  const auto hold = [&](std::size_t dof) { step[dof] = lead[dof] = face.by_u[dof] = 0.0, tangent_.fix(dof); };
+    solid_.tangent.add_row(2 * face_vertex(c), mesh_->radii[c], lead);  // symmetric: a row is a column
+  step = solid_.force;
+  const auto hold = [&](std::size_t dof) { step[dof] = lead[dof] = face.by_u[dof] = 0.0, solid_.tangent.fix(dof); };
   for (std::size_t k = 0; k < mesh_->rows(); ++k) hold(2 * k);  // the axis
   for (std::size_t c = 0; c < mesh_->columns(); ++c) {
     hold(2 * c * mesh_->rows() + 1);  // mid-height
     hold(2 * face_vertex(c)), hold(2 * face_vertex(c) + 1);
   }
-  if (!tangent_.factor()) return std::numeric_limits<double>::quiet_NaN();
-  tangent_.solve(step);
+  if (!solid_.tangent.factor()) return std::numeric_limits<double>::quiet_NaN();
+  solid_.tangent.solve(step);
   if (faces_ == Faces::bonded) return 0.0;
-  tangent_.solve(lead);
+  solid_.tangent.solve(lead);
   const double less = (face.rest - dot(face.by_u, step)) / (face.by_spread - dot(face.by_u, lead));
   for (std::size_t k = 0; k < step.size(); ++k) step[k] -= less * lead[k];
   for (std::size_t c = 0; c < mesh_->columns(); ++c) step[2 * face_vertex(c)] = less * mesh_->radii[c];
   return less;
-}
-
-/// Displacements, and pressures by their derivatives.
-void Barrel::take_step(const std::vector<double>& step) {
-  for (std::size_t k = 0; k < step.size(); ++k) state_.u[k] -= step[k];
-  for (std::size_t index = 0; index < pressures_.size(); ++index) {
-    const BarrelElement& e = mesh_->elements[index];
-    for (std::size_t a = 0; a < 3; ++a) {
-      double& p = state_.pressures[index][a];
-      p = pressures_[index].value[a];
-      for (std::size_t i = 0; i < BarrelElement::kUnknowns; ++i)
-        p -= pressures_[index].by_u[a][i] * step[2 * e.vertices[i / 2] + i % 2];
-    }
-  }
 }
 
 bool Barrel::converge() {
@@ -162,7 +143,7 @@ bool Barrel::converge() {
     if (faces_ == Faces::friction) add_friction(face);
     std::vector<double> step;
     state_.spread -= solve_step(face, step);
-    take_step(step);
+    solid_.take(step, state_.body);
     double most = 0.0;
     for (const double x : step) most = std::max(most, std::abs(x));
     if (!(most < mesh_->height) || !std::isfinite(state_.spread)) return false;

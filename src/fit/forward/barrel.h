@@ -7,6 +7,10 @@
 //          with A its area at rest and τ what a tacky face bears without pressure
 //   side   where it bulges over the edge it comes to lie on the plate, without friction there
 //
+//      plate ──────────────●      a quarter of its meridian, mirrored at the axis and at mid-height, with elements that are
+//            ├───┼───┼──┼─┤       smaller towards the edge ●, where faces that stick have a singularity
+//      axis  └───┴───┴──┴─┘ mid-height
+//
 // Newton's method from rest on, the pressures of the elements beside the displacements; steps are halved where it does not
 // converge. The state is a function of the displacement alone: friction is that of a compression that goes on.
 #pragma once
@@ -14,8 +18,7 @@
 #include <memory>
 #include <vector>
 
-#include "fit/forward/band_matrix.h"
-#include "fit/forward/barrel_mesh.h"
+#include "fit/forward/meridian_solid.h"
 
 namespace glisson::fit {
 
@@ -30,6 +33,18 @@ enum class Faces {
 struct Grip {
   double friction = 0.0;  ///< f ≥ 0 [-]
   double adhesion = 0.0;  ///< τ ≥ 0, on the area at rest [Pa]
+};
+
+/// Elements along the radius and along half the height; each is `grading` times the one before it.
+struct BarrelGrid {
+  std::size_t radial = 4, axial = 3;
+  double grading = 0.6;
+};
+
+struct BarrelMesh : MeridianMesh {
+  BarrelMesh(double radius, double height, const BarrelGrid& grid = {});
+
+  double height;  ///< of the whole cylinder [m]
 };
 
 class Barrel {
@@ -48,8 +63,7 @@ class Barrel {
  private:
   struct State {
     double displacement = 0.0, spread = 0.0;
-    std::vector<double> u;                         ///< u_r, u_z of each vertex [m]
-    std::vector<BarrelElement::Linear> pressures;  ///< of each element [Pa]
+    MeridianState body;
   };
   /// What the face's balance lacks, with its derivatives by s and u.
   struct Balance {
@@ -65,23 +79,18 @@ class Barrel {
   Balance face_balance() const;
   void add_friction(Balance& face) const;
   double solve_step(Balance& face, std::vector<double>& step);
-  void take_step(const std::vector<double>& step);
   double face_force() const;
   std::size_t face_vertex(std::size_t column) const { return (column + 1) * mesh_->rows() - 1; }
 
   std::shared_ptr<const BarrelMesh> mesh_;
-  HyperelasticLaw law_;
+  MeridianSolid solid_;
   Faces faces_;
   Grip grip_;
   bool leans_ = true;
   State state_;
   std::vector<State> past_;  ///< the last states, the newest at the end
   double pressure_ = 0.0;    ///< about that of the plate [Pa]
-  // of the last assembly
-  std::vector<BarrelElement::Pressure> pressures_;
-  std::vector<double> force_;  ///< ∂W/∂u [N]
-  double side_force_ = 0.0;    ///< of the plate on the side [N]
-  BandMatrix tangent_;
+  double side_force_ = 0.0;  ///< of the plate on the side in the last assembly [N]
 };
 
 }  // namespace glisson::fit

@@ -13,6 +13,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "fit/forward/indentation_model.h"
 #include "fit/forward/offset_model.h"
 
 namespace glisson::fit {
@@ -244,6 +245,18 @@ struct Maker {
           "[specimen] faces that stick or rub ask for parameters of [tissue], `specimen.…` and `curve.…` alone");
     return with_offsets(std::make_shared<BarrelModel>(problem.curves, *problem.plates, tissue, inner, grid));
   }
+  std::shared_ptr<const Model> layer(IndentationOptions options) const {
+    const TissueAt tissue = tissue_at(inner);
+    if (!tissue)
+      throw std::invalid_argument("a layer under an indenter asks for parameters of [tissue] and `curve.…` alone");
+    std::vector<Parameter> parameters;
+    for (const Parameter& p : problem.parameters) {
+      if (!is_curve_key(p.name)) parameters.push_back(p);
+      if (p.name.ends_with("contact_mm")) options.margin += std::max(0.0, -1e-3 * p.low);
+    }
+    return with_offsets(
+        std::make_shared<IndentationModel>(problem.curves, *problem.layer, tissue, std::move(parameters), options));
+  }
   std::vector<double> inner_values(std::span<const double> all) const {
     std::vector<double> values;
     for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -354,6 +367,10 @@ Ladder choose_forward(const ForwardProblem& problem) {
     ladder.rungs.push_back({.name = "specimen that bulges", .failure = {}, .model = make.barrel({})});
     return ladder;
   }
+  if (problem.layer) {
+    ladder.rungs.push_back({.name = "layer", .failure = {}, .model = make.layer({})});
+    return ladder;
+  }
   const auto only_specimen = [&](const std::optional<Specimen>& size) {
     const auto specimen = size ? make.specimen(*size) : nullptr;
     if (!specimen)
@@ -449,7 +466,9 @@ double check_forward(const Ladder& ladder, const ForwardProblem& problem, std::s
 double grid_error(const Ladder& ladder, const ForwardProblem& problem, std::span<const double> values) {
   std::vector<std::size_t> curves(problem.curves.size());
   std::iota(curves.begin(), curves.end(), std::size_t{0});
-  const auto finer = Maker(problem).barrel({.radial = 6, .axial = 5, .grading = 0.7});
+  const Maker make(problem);
+  const auto finer = problem.layer ? make.layer({.fineness = 1.5, .table = false})
+                                   : make.barrel({.radial = 6, .axial = 5, .grading = 0.7});
   std::string failure;
   const Forces own = run_side_by_side(*ladder.model(), curves, values, failure);
   const Forces other = failure.empty() ? run_side_by_side(*finer, curves, values, failure) : Forces{};

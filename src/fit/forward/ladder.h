@@ -1,7 +1,7 @@
 // ladder.h — the cheapest forward model that keeps its error below the noise of the data.
 //
 //   specimen · static · implicit, long steps · semi-implicit · explicit, heavier tissue · …  ◀── compared ──▶  the scene itself
-//   a cylinder between plates with friction, where [specimen] says so: by itself
+//   a cylinder between plates with friction, or a layer under an indenter, where [specimen] says so: by itself
 //
 // All are compared at the start of the parameters and at some places within their bounds, on one curve of each group (its
 // repetitions go the same way). The cheapest whose error is everywhere below `tolerance` × noise is taken; if none is, the
@@ -48,6 +48,7 @@ struct ForwardProblem {
   ForwardSpec spec;
   std::optional<Specimen> specimen{};  ///< that deforms alike all over by what it is; then there is no other model
   std::optional<Plates> plates{};      ///< of a cylinder that bulges; then there is no other model
+  std::optional<Layer> layer{};        ///< under an indenter; then there is no other model
   std::vector<Parameter> parameters;   ///< names are keys: of the scene, or of offset_model.h
   std::vector<Curve> curves;           ///< of all, those held out, too
   MeshLoader load{};
@@ -71,7 +72,7 @@ double check_forward(const Ladder& ladder, const ForwardProblem& problem, std::s
 /// The ladder in words: a line for each model, and which was taken.
 std::string describe(const Ladder& ladder);
 
-/// The largest rms difference of a cylinder that bulges from one of more and smaller elements [N].
+/// The largest rms difference of a cylinder that bulges, or of a layer, from one of more and smaller elements [N].
 /// @throws std::runtime_error where one of them does not run
 double grid_error(const Ladder& ladder, const ForwardProblem& problem, std::span<const double> values);
 

@@ -29,7 +29,8 @@ MonotoneCubic<double> way_of(const Curve& curve, double contact, std::size_t& le
   std::vector<double> times, way;
   const double first = curve.displacement.front() - contact;
   // a press touches nothing before contact; a grip goes either way
-  const bool grips = curve.measurement.test != LabTest::compression;
+  const Measurement& m = curve.measurement;
+  const bool grips = m.test != LabTest::compression && m.deforming != Deforming::indentation;
   lead = first > 0.0 || (grips && first != 0.0) ? 1 : 0;
   if (lead > 0)
     times.push_back(curve.time.front() - (grips ? lead_of_grip(curve, first) : lead_time(curve, first))),

@@ -79,6 +79,23 @@ SectionSpec point_kind() {
   return Section<SpecimenSpec>("point", "Stress over strain: no size is needed, and none is known.").spec();
 }
 
+SectionSpec layer_kind() {
+  using S = SpecimenSpec;
+  Section<S> s("layer", "On a rigid floor, under an indenter: of test = \"indentation\".");
+  s.key<OptionalMilli>("thickness_mm", &S::thickness, "thickness at rest")
+      .in("mm")
+      .within(above(0))
+      .otherwise("a half-space");
+  s.key<OptionalMilli>("diameter_mm", &S::layer_diameter, "diameter, the indenter in its middle and its side free")
+      .in("mm")
+      .within(above(0))
+      .otherwise("wide");
+  s.choice<bool>("floor", &S::bonded_floor,
+                 {{"bonded", true, "it does not slide on the floor"}, {"smooth", false, "it slides freely"}},
+                 "how it meets the floor");
+  return s.spec();
+}
+
 KindSpec kind_of(SectionSpec section, SpecimenShape shape) {
   return {std::move(section), [shape](void* target) -> void* {
             static_cast<SpecimenSpec*>(target)->shape = shape;
@@ -95,14 +112,14 @@ const SectionSpec& specimen_section() {
           "cubes along x, y and z of the body that the homogeneous specimen is compared with")
         .within(between(1, 100));
     s.spec().kinds = {kind_of(cylinder_kind(), SpecimenShape::cylinder), kind_of(block_kind(), SpecimenShape::block),
-                      kind_of(point_kind(), SpecimenShape::point)};
+                      kind_of(point_kind(), SpecimenShape::point), kind_of(layer_kind(), SpecimenShape::layer)};
     return s.spec();
   }();
   return section;
 }
 
 Specimen specimen_of(const SpecimenSpec& spec) {
-  if (spec.shape == SpecimenShape::point) return {.area = 1.0, .height = 1.0};
+  if (spec.shape == SpecimenShape::point || spec.shape == SpecimenShape::layer) return {.area = 1.0, .height = 1.0};
   if (spec.shape == SpecimenShape::block) return {.area = spec.width * spec.depth, .height = spec.height};
   return {.area = 0.25 * std::numbers::pi * spec.diameter * spec.diameter,
           .height = spec.height,
@@ -112,6 +129,13 @@ Specimen specimen_of(const SpecimenSpec& spec) {
 std::optional<Plates> plates_of(const SpecimenSpec& spec) {
   if (spec.shape != SpecimenShape::cylinder || spec.faces == Faces::smooth) return {};
   return Plates{0.5 * spec.diameter, spec.height, spec.faces, spec.grip};
+}
+
+std::optional<Layer> layer_of(const SpecimenSpec& spec) {
+  if (spec.shape != SpecimenShape::layer) return {};
+  return Layer{.thickness = spec.thickness.value_or(Layer::kNone),
+               .radius = spec.layer_diameter ? 0.5 * *spec.layer_diameter : Layer::kNone,
+               .bonded_floor = spec.bonded_floor};
 }
 
 std::string specimen_scene(const SpecimenSpec& spec) {

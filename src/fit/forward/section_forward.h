@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fit/forward/barrel_model.h"
+#include "fit/forward/layer_mesh.h"
 #include "fit/forward/specimen_model.h"
 #include "glisson/simulation/simulation.h"
 #include "scene/parse/schema.h"
@@ -29,23 +30,28 @@ struct ForwardSpec {
   double approach = 0.0;   ///< way of an instrument in the scene before it touches the tissue [m], ≥ 0
 };
 
-enum class SpecimenShape { cylinder, block, point };
+enum class SpecimenShape { cylinder, block, point, layer };
 
 /// A specimen of a laboratory, in place of a scene.
 struct SpecimenSpec {
   SpecimenShape shape = SpecimenShape::cylinder;
-  Faces faces = Faces::smooth;        ///< of a cylinder
-  Grip grip;                          ///< of its faces
-  double diameter = 0.05;             ///< of a cylinder [m], > 0
-  double width = 0.02, depth = 0.02;  ///< of a block [m], > 0
-  double height = 0.03;               ///< [m], > 0
-  std::array<int, 3> cells{1, 1, 2};  ///< of the body that it is compared with
+  Faces faces = Faces::smooth;                      ///< of a cylinder
+  Grip grip;                                        ///< of its faces
+  double diameter = 0.05;                           ///< of a cylinder [m], > 0
+  double width = 0.02, depth = 0.02;                ///< of a block [m], > 0
+  double height = 0.03;                             ///< [m], > 0
+  std::optional<double> thickness, layer_diameter;  ///< of a layer [m], > 0; none: a half-space, wide
+  bool bonded_floor = true;                         ///< of a layer
+  std::array<int, 3> cells{1, 1, 2};                ///< of the body that it is compared with
 };
 
 const scene::SectionSpec& forward_section();   ///< fills ForwardSpec
 const scene::SectionSpec& specimen_section();  ///< fills SpecimenSpec
 
-/// A point has an area of 1 m² and a height of 1 m: its forces are stresses, its displacements strains.
+/// None where the specimen is no layer.
+std::optional<Layer> layer_of(const SpecimenSpec& spec);
+/// A point has an area of 1 m² and a height of 1 m: its forces are stresses, its displacements strains. So has a layer, whose
+/// forces and displacements stay what they are.
 Specimen specimen_of(const SpecimenSpec& spec);
 /// None where the plates are smooth.
 std::optional<Plates> plates_of(const SpecimenSpec& spec);

@@ -80,7 +80,7 @@ LawSearch::LawSearch(const FitSpec& spec, LawSpec law, const FitCurves& curves, 
     : spec_(spec), law_(std::move(law)), curves_(curves), options_(options) {
   forward_.scene = scene_of(spec, law_);
   forward_.spec = spec.forward;
-  if (spec.specimen) forward_.plates = plates_of(*spec.specimen);
+  if (spec.specimen) forward_.plates = plates_of(*spec.specimen), forward_.layer = layer_of(*spec.specimen);
   // A specimen deforms alike all over by what the word means; whether a body of tets does so, too, is looked at in the end.
   if (spec.specimen && forward_.spec.kind == ForwardKind::automatic) forward_.spec.kind = ForwardKind::uniaxial;
   if (spec.specimen && forward_.spec.kind == ForwardKind::uniaxial) forward_.specimen = specimen_of(*spec.specimen);
@@ -154,6 +154,7 @@ void LawSearch::search(LawMemory& memory, const std::function<void(const MultiSt
 /// How far a body of tets between the plates is from the homogeneous state that was fitted.
 void LawSearch::compare_specimen() {
   if (!spec_.specimen || spec_.forward.kind != ForwardKind::automatic || optimum_.scaled.empty()) return;
+  if (forward_.layer) return compare_grids();
   const bool presses = std::all_of(curves_.curves.begin(), curves_.curves.end(),
                                    [](const Curve& c) { return c.measurement.is_press(); });
   if (!presses) return;
@@ -174,7 +175,7 @@ void LawSearch::compare_specimen() {
   }
 }
 
-/// How far a cylinder that bulges is from one of more elements.
+/// How far a cylinder that bulges, or a layer, is from one of more elements.
 void LawSearch::compare_grids() {
   try {
     specimen_error_ = grid_error(ladder_, forward_, values());
@@ -247,7 +248,8 @@ std::string LawSearch::forward_words() const {
   const Rung& taken = ladder_.taken();
   std::string words;
   if (forward_.spec.kind != ForwardKind::automatic) {
-    words = forward_.plates            ? "Forward model: a cylinder that bulges between its plates."
+    words = forward_.layer             ? "Forward model: a layer under an indenter."
+            : forward_.plates          ? "Forward model: a cylinder that bulges between its plates."
             : taken.name == "specimen" ? spec_.specimen && spec_.specimen->shape == SpecimenShape::point
                                              ? "Forward model: a material point."
                                              : "Forward model: a homogeneous specimen."

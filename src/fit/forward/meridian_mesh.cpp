@@ -1,4 +1,4 @@
-#include "fit/forward/barrel_mesh.h"
+#include "fit/forward/meridian_mesh.h"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -9,17 +9,6 @@
 namespace glisson::fit {
 namespace {
 
-/// Ends and middles of elements from 0 to `length`.
-std::vector<double> graded(double length, std::size_t count, double grading) {
-  std::vector<double> places{0.0};
-  double size = 1.0;
-  for (std::size_t i = 0; i < count; ++i, size *= grading)
-    places.push_back(places.back() + 0.5 * size), places.push_back(places.back() + 0.5 * size);
-  for (double& x : places) x *= length / places.back();
-  places.back() = length;
-  return places;
-}
-
 /// The quadratic polynomials of −1, 0, 1 and their slopes.
 struct Quadratic {
   std::array<double, 3> value, slope;
@@ -29,15 +18,15 @@ Quadratic quadratic(double x) {
 }
 
 /// @param r0  radius where the element begins @param dr, dz  its sizes [m]
-void place_points(BarrelElement& e, double r0, double dr, double dz) {
+void place_points(MeridianElement& e, double r0, double dr, double dz) {
   const double far = std::sqrt(0.6);
   const std::array<double, 3> at{-far, 0.0, far}, weight{5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};
   Eigen::Matrix3d mass = Eigen::Matrix3d::Zero();
-  for (std::size_t q = 0; q < BarrelElement::kPoints; ++q) {
-    BarrelElement::Point& p = e.points[q];
+  for (std::size_t q = 0; q < MeridianElement::kPoints; ++q) {
+    MeridianElement::Point& p = e.points[q];
     const double xi = at[q / 3], eta = at[q % 3], radius = r0 + 0.5 * (1.0 + xi) * dr;
     const Quadratic along_r = quadratic(xi), along_z = quadratic(eta);
-    for (std::size_t n = 0; n < BarrelElement::kVertices; ++n) {
+    for (std::size_t n = 0; n < MeridianElement::kVertices; ++n) {
       p.by_r[n] = along_r.slope[n / 3] * along_z.value[n % 3] * 2.0 / dr;
       p.by_z[n] = along_r.value[n / 3] * along_z.slope[n % 3] * 2.0 / dz;
       p.by_hoop[n] = along_r.value[n / 3] * along_z.value[n % 3] / radius;
@@ -66,13 +55,13 @@ void add_curvature(std::array<MeridianTensor, 5>& tangent, const MeridianTensor&
   add(0, 4, F[3]), add(1, 4, -F[2]), add(2, 4, -F[1]), add(3, 4, F[0]);
 }
 
-double at(const BarrelElement::Linear& a, const BarrelElement::Linear& b) {
+double at(const MeridianElement::Linear& a, const MeridianElement::Linear& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-MeridianTensor gradient(const BarrelElement::Point& p, const BarrelElement::Vector& u) {
+MeridianTensor gradient(const MeridianElement::Point& p, const MeridianElement::Vector& u) {
   MeridianTensor F{1.0, 0.0, 0.0, 1.0, 1.0};
-  for (std::size_t n = 0; n < BarrelElement::kVertices; ++n) {
+  for (std::size_t n = 0; n < MeridianElement::kVertices; ++n) {
     const double ur = u[2 * n], uz = u[2 * n + 1];
     F[0] += ur * p.by_r[n], F[1] += ur * p.by_z[n], F[4] += ur * p.by_hoop[n];
     F[2] += uz * p.by_r[n], F[3] += uz * p.by_z[n];
@@ -81,8 +70,8 @@ MeridianTensor gradient(const BarrelElement::Point& p, const BarrelElement::Vect
 }
 
 /// Adds a point's stress and tangent.
-void add_point(const BarrelElement::Point& p, const MeridianStress& s, BarrelElement::Answer& out) {
-  for (std::size_t n = 0; n < BarrelElement::kVertices; ++n) {
+void add_point(const MeridianElement::Point& p, const MeridianStress& s, MeridianElement::Answer& out) {
+  for (std::size_t n = 0; n < MeridianElement::kVertices; ++n) {
     const double r = p.weight * p.by_r[n], z = p.weight * p.by_z[n], h = p.weight * p.by_hoop[n];
     out.force[2 * n] += r * s.P[0] + z * s.P[1] + h * s.P[4];
     out.force[2 * n + 1] += r * s.P[2] + z * s.P[3];
@@ -91,7 +80,7 @@ void add_point(const BarrelElement::Point& p, const MeridianStress& s, BarrelEle
       radial[a] = r * s.tangent[0][a] + z * s.tangent[1][a] + h * s.tangent[4][a];
       axial[a] = r * s.tangent[2][a] + z * s.tangent[3][a];
     }
-    for (std::size_t m = 0; m < BarrelElement::kVertices; ++m) {
+    for (std::size_t m = 0; m < MeridianElement::kVertices; ++m) {
       const double br = p.by_r[m], bz = p.by_z[m], bh = p.by_hoop[m];
       out.tangent[2 * n][2 * m] += radial[0] * br + radial[1] * bz + radial[4] * bh;
       out.tangent[2 * n][2 * m + 1] += radial[2] * br + radial[3] * bz;
@@ -103,7 +92,7 @@ void add_point(const BarrelElement::Point& p, const MeridianStress& s, BarrelEle
 
 }  // namespace
 
-BarrelElement::Answer BarrelElement::answer(const HyperelasticLaw& law, const Vector& u, const Linear& now) const {
+MeridianElement::Answer MeridianElement::answer(const HyperelasticLaw& law, const Vector& u, const Linear& now) const {
   Answer out;
   std::array<MeridianTensor, kPoints> F;
   std::array<Volume, kPoints> volume;
@@ -143,13 +132,21 @@ BarrelElement::Answer BarrelElement::answer(const HyperelasticLaw& law, const Ve
   return out;
 }
 
-BarrelMesh::BarrelMesh(double radius, double whole_height, const BarrelGrid& grid)
-    : height(whole_height), radii(graded(radius, grid.radial, grid.grading)),
-      heights(graded(0.5 * whole_height, grid.axial, grid.grading)) {
+std::vector<double> ends_and_middles(const std::vector<double>& sizes, double length) {
+  std::vector<double> places{0.0};
+  for (const double size : sizes)
+    places.push_back(places.back() + 0.5 * size), places.push_back(places.back() + 0.5 * size);
+  for (double& x : places) x *= length / places.back();
+  places.back() = length;
+  return places;
+}
+
+MeridianMesh::MeridianMesh(std::vector<double> columns_at, std::vector<double> rows_at)
+    : radii(std::move(columns_at)), heights(std::move(rows_at)) {
   for (std::size_t i = 0; i + 2 < columns(); i += 2) {
     for (std::size_t k = 0; k + 2 < rows(); k += 2) {
-      BarrelElement& e = elements.emplace_back();
-      for (std::size_t n = 0; n < BarrelElement::kVertices; ++n) e.vertices[n] = (i + n / 3) * rows() + k + n % 3;
+      MeridianElement& e = elements.emplace_back();
+      for (std::size_t n = 0; n < MeridianElement::kVertices; ++n) e.vertices[n] = (i + n / 3) * rows() + k + n % 3;
       place_points(e, radii[i], radii[i + 2] - radii[i], heights[k + 2] - heights[k]);
     }
   }

@@ -1,11 +1,9 @@
-// barrel_mesh.h — a quarter of a cylinder's meridian in quadratic elements, and what one of them answers.
+// meridian_mesh.h — the meridian of a round body in quadratic elements, and what one of them answers.
 //
-//      plate ──────────────●      mirrored at the axis and at mid-height; elements of 9 vertices, smaller towards the
-//            │   │   │  │ │       edge ●, where faces that stick have a singularity. The volume change of an element is
-//            ├───┼───┼──┼─┤       taken as linear in it, and its pressure is eliminated there [SussmanBathe1987]:
-//      axis  │   │   │  │ │       nearly incompressible tissues do not lock.
-//            └───┴───┴──┴─┘
-//              mid-height
+//          z │   │   │  │ │
+//            ├───┼───┼──┼─┤       Elements of 9 vertices in columns from the axis and rows from below. The volume change of
+//      axis  │   │   │  │ │       an element is taken as linear in it, and its pressure is eliminated there
+//            └───┴───┴──┴─┘ r     [SussmanBathe1987]: nearly incompressible tissues do not lock.
 #pragma once
 
 #include <array>
@@ -15,13 +13,7 @@
 
 namespace glisson::fit {
 
-/// Elements along the radius and along half the height; each is `grading` times the one before it.
-struct BarrelGrid {
-  std::size_t radial = 4, axial = 3;
-  double grading = 0.6;
-};
-
-struct BarrelElement {
+struct MeridianElement {
   static constexpr std::size_t kVertices = 9, kPoints = 9, kUnknowns = 2 * kVertices;
   using Vector = std::array<double, kUnknowns>;  ///< u_r and u_z of each vertex in turn
   using Linear = std::array<double, 3>;          ///< of 1, ξ, η
@@ -52,15 +44,18 @@ struct BarrelElement {
   Answer answer(const HyperelasticLaw& law, const Vector& u, const Linear& now) const;
 };
 
-/// The vertex of a column (from the axis) and a row (from mid-height) is column × rows + row.
-struct BarrelMesh {
-  BarrelMesh(double radius, double height, const BarrelGrid& grid = {});
+/// The vertex of a column (from the axis) and a row (from below) is column × rows + row.
+struct MeridianMesh {
+  /// @param columns, rows  radii and heights of the vertices, ascending: ends and middles of elements in turn [m]
+  MeridianMesh(std::vector<double> columns, std::vector<double> rows);
 
-  double height;
   std::vector<double> radii, heights;  ///< of columns and rows [m]
-  std::vector<BarrelElement> elements;
+  std::vector<MeridianElement> elements;
   std::size_t columns() const { return radii.size(); }
   std::size_t rows() const { return heights.size(); }
 };
+
+/// Ends and middles of elements from 0 on. @param sizes  of the elements, in any unit @param length  of all of them [m]
+std::vector<double> ends_and_middles(const std::vector<double>& sizes, double length);
 
 }  // namespace glisson::fit

@@ -1,0 +1,62 @@
+#include "fit/forward/indenter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/text.h"
+
+namespace glisson::fit {
+
+double contact_radius(const Indenter& indenter, double depth) {
+  switch (indenter.shape) {
+    case IndenterShape::flat:
+      return indenter.radius;
+    case IndenterShape::cone:
+      return 2.0 / std::numbers::pi * depth * std::tan(indenter.half_angle);
+    case IndenterShape::sphere:
+      break;
+  }
+  return std::min(indenter.radius, std::sqrt(indenter.radius * depth));
+}
+
+double thick_layer_force(const Indenter& indenter, double depth) {
+  switch (indenter.shape) {
+    case IndenterShape::flat:
+      return 2.0 * indenter.radius * depth;
+    case IndenterShape::cone:
+      return 2.0 / std::numbers::pi * depth * depth * std::tan(indenter.half_angle);
+    case IndenterShape::sphere:
+      break;
+  }
+  return 4.0 / 3.0 * std::sqrt(indenter.radius * depth) * depth;
+}
+
+double thick_layer_modulus(const Indenter& indenter, double depth, double force) {
+  return 0.75 * force / thick_layer_force(indenter, depth);
+}
+
+Entry entry_of(const Indenter& indenter, double tip, double r, double z) {
+  if (indenter.shape == IndenterShape::cone) {
+    const double c = std::cos(indenter.half_angle), s = std::sin(indenter.half_angle);
+    return {.depth = (z - tip) * s - r * c, .by_r = -c, .by_z = s};
+  }
+  const double up = z - tip - indenter.radius;
+  if (up >= 0.0) return {.depth = indenter.radius - r, .by_r = -1.0};  // on the shaft
+  const double distance = std::hypot(r, up), nr = r / distance, nz = up / distance;
+  return {.depth = indenter.radius - distance,
+          .by_r = -nr,
+          .by_z = -nz,
+          .rr = -nz * nz / distance,
+          .rz = nr * nz / distance,
+          .zz = -nr * nr / distance};
+}
+
+std::string words_of(const Indenter& indenter) {
+  if (indenter.shape == IndenterShape::cone)
+    return "a cone of " + detail::number_text(indenter.half_angle * 180.0 / std::numbers::pi) + "° half angle";
+  return (indenter.shape == IndenterShape::flat ? "a flat punch of " : "a sphere of ") +
+         detail::number_text(1e3 * indenter.radius) + " mm radius";
+}
+
+}  // namespace glisson::fit
