@@ -14,7 +14,8 @@ struct SeenFace {
 
 class Climb {
  public:
-  Climb(Workspace& w, std::uint32_t vertex) : w_(w), vertex_(vertex), surfaces_(surfaces_of(w.complex.masks[vertex])) {
+  Climb(Workspace& w, std::uint32_t vertex, bool loose)
+      : w_(w), vertex_(vertex), loose_(loose), surfaces_(surfaces_of(w.complex.masks[vertex])) {
     static constexpr std::uint8_t kSeen[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
     const auto& points = w.complex.points;
     for (const std::uint32_t t : w.complex.stars[vertex]) {
@@ -26,11 +27,11 @@ class Climb {
     quality_.resize(faces_.size());
     at_ = points[vertex];
     least_ = evaluate(at_, -1e300);
-    if (surfaces_) slack_ = std::max(kSlack * w.edge(), w.fields.off(at_, surfaces_));
+    if (surfaces_) slack_ = std::max((loose ? kFlipSlack : kSlack) * w.edge(), w.fields.off(at_, surfaces_));
   }
 
   bool run() {
-    if (std::popcount(surfaces_) > 2 || faces_.empty()) return false;
+    if ((std::popcount(surfaces_) > 2 && !loose_) || faces_.empty()) return false;
     bool moved = false;
     for (int i = 0; i < 4; ++i) {
       if (!step(0.06) && !step(0.015)) break;
@@ -81,7 +82,7 @@ class Climb {
 
   bool step(double band) {
     for (std::size_t i = 0; i < faces_.size(); ++i) quality_[i] = quality(faces_[i], at_);
-    normals_ = surfaces_ ? w_.fields.normals(at_, surfaces_, normal_, 2) : 0;
+    normals_ = surfaces_ && !loose_ ? w_.fields.normals(at_, surfaces_, normal_, 2) : 0;
     const auto worst = static_cast<std::size_t>(std::min_element(quality_.begin(), quality_.end()) - quality_.begin());
     gradients_.assign(1, gradient(faces_[worst], quality_[worst]));
     for (std::size_t i = 0; i < faces_.size(); ++i) {
@@ -98,9 +99,10 @@ class Climb {
 
   bool try_at(Vec3d p) {
     const double least_gain = 1e-4;
-    if (surfaces_ && w_.fields.project(p, surfaces_) > slack_) return false;
+    if (surfaces_ && !loose_ && w_.fields.project(p, surfaces_) > slack_) return false;
     const double q = evaluate(p, least_ + least_gain);
     if (q <= least_ + least_gain) return false;
+    if (loose_ && w_.fields.off(p, surfaces_) > slack_) return false;
     least_ = q;
     at_ = p;
     return true;
@@ -108,6 +110,7 @@ class Climb {
 
   Workspace& w_;
   std::uint32_t vertex_;
+  bool loose_;
   Mask surfaces_;
   double slack_ = 0.0;  ///< [m]
   std::vector<SeenFace> faces_;
@@ -121,7 +124,7 @@ class Climb {
 
 }  // namespace
 
-bool smooth_vertex(Workspace& w, std::uint32_t vertex) { return Climb(w, vertex).run(); }
+bool smooth_vertex(Workspace& w, std::uint32_t vertex, bool loose) { return Climb(w, vertex, loose).run(); }
 
 bool centre_vertex(Workspace& w, std::uint32_t vertex, double floor) {
   TetComplex& c = w.complex;

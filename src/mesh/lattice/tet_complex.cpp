@@ -16,6 +16,7 @@ std::uint32_t TetComplex::add_vertex(const Vec3d& point) {
   points.push_back(point);
   stars.emplace_back();
   masks.push_back(0);
+  changed.push_back(0);
   const auto v = static_cast<std::uint32_t>(points.size() - 1);
   if (trying_) log_.push_back({Change::Kind::vertex, 0, v, {}, {}, 0});
   return v;
@@ -34,7 +35,11 @@ std::uint32_t TetComplex::add_tet(const Tet& tet, Label label) {
     labels[t] = label;
   }
   for (const std::uint32_t v : tet) stars[v].push_back(t);
-  if (trying_) log_.push_back({Change::Kind::added, label, t, tet, {}, 0});
+  if (trying_) {
+    log_.push_back({Change::Kind::added, label, t, tet, {}, 0});
+  } else {
+    note_tet(tet);
+  }
   return t;
 }
 
@@ -50,8 +55,20 @@ void TetComplex::remove_tet(std::uint32_t t) {
 }
 
 void TetComplex::move(std::uint32_t vertex, const Vec3d& to) {
-  if (trying_) log_.push_back({Change::Kind::moved, 0, vertex, {}, points[vertex], 0});
+  if (trying_) {
+    log_.push_back({Change::Kind::moved, 0, vertex, {}, points[vertex], 0});
+  } else {
+    note_move(vertex);
+  }
   points[vertex] = to;
+}
+
+void TetComplex::note_tet(const Tet& tet) {
+  for (const std::uint32_t v : tet) changed[v] = clock;
+}
+
+void TetComplex::note_move(std::uint32_t vertex) {
+  for (const std::uint32_t t : stars[vertex]) note_tet(tets[t]);
 }
 
 void TetComplex::set_mask(std::uint32_t vertex, Mask mask) {
@@ -159,19 +176,24 @@ void TetComplex::begin() {
 }
 
 void TetComplex::keep() {
+  for (const Change& c : log_) {
+    if (c.kind == Change::Kind::added) note_tet(c.tet);
+    if (c.kind == Change::Kind::moved) note_move(c.index);
+  }
   log_.clear();
   trying_ = false;
 }
 
 void TetComplex::take_back() {
-  trying_ = false;
-  for (std::size_t i = log_.size(); i-- > 0;) {
-    const Change& c = log_[i];
+  const std::vector<Change> log = std::move(log_);  // undoing is noted in a log that nobody reads
+  for (std::size_t i = log.size(); i-- > 0;) {
+    const Change& c = log[i];
     switch (c.kind) {
       case Change::Kind::vertex:
         points.pop_back();
         stars.pop_back();
         masks.pop_back();
+        changed.pop_back();
         break;
       case Change::Kind::added:
         remove_tet(c.index);
@@ -188,6 +210,7 @@ void TetComplex::take_back() {
     }
   }
   log_.clear();
+  trying_ = false;
 }
 
 void TetComplex::touched(std::vector<std::uint32_t>& out) const {

@@ -58,6 +58,10 @@ class TetComplex {
   /// Cuts an edge at a new vertex. @return the vertex
   std::uint32_t split_edge(std::uint32_t u, std::uint32_t v, const Vec3d& at);
 
+  /// Counts the changes that stay; `changed[v]` is its value when a tet at v or a neighbour of v last changed.
+  std::uint32_t clock = 1;
+  std::vector<std::uint32_t> changed;
+
   // A trial: what happens between begin() and keep() or take_back().
   void begin();
   void keep();
@@ -75,6 +79,9 @@ class TetComplex {
     Vec3d point;
     Mask mask;
   };
+  void note_tet(const Tet& tet);
+  void note_move(std::uint32_t vertex);
+
   std::vector<std::uint32_t> free_;
   std::vector<Change> log_;
   bool trying_ = false;
