@@ -135,6 +135,9 @@ std::string finer_mesh(const MeshSource& mesh, double factor) {
     return fmt::format("mesh.radial_cells = {} and mesh.axial_cells = {}", times(cylinder->radial_cells),
                        times(cylinder->axial_cells));
   }
+  if (const auto* body = std::get_if<ImplicitBody>(&mesh)) {
+    return fmt::format("mesh.edge_mm = {:.2g}", 1e3 * body->edge / factor);
+  }
   return fmt::format("a mesh {:.2g} times as fine there", factor);
 }
 

@@ -31,7 +31,7 @@ struct BodyRegion {
 };
 
 struct RegionMeshOptions {
-  double edge = 0.005;           ///< mean length of the edges [m], > 0
+  double edge = 0.005;              ///< mean length of the edges [m], > 0
   std::size_t max_tets = 20000000;  ///< more are refused before any memory is taken
   /// Called now and then with the part that is done, 0 to 1; false stops the work. Empty: nothing is called.
   std::function<bool(double)> progress{};
@@ -49,9 +49,9 @@ struct RegionVolume {
 struct RegionMeshReport {
   double min_dihedral_deg = 0.0, max_dihedral_deg = 0.0;
   double seconds = 0.0;
-  std::vector<RegionVolume> regions;      ///< holes left out, in the order of the list
-  std::vector<std::uint32_t> poor_tets;   ///< with a dihedral angle below 10° or above 165°
-  std::vector<std::string> warnings;      ///< one sentence each, with the way out
+  std::vector<RegionVolume> regions;     ///< holes left out, in the order of the list
+  std::vector<std::uint32_t> poor_tets;  ///< with a dihedral angle below 10° or above 165°
+  std::vector<std::string> warnings;     ///< one sentence each, with the way out
 };
 
 struct RegionMesh {
@@ -69,11 +69,5 @@ struct RegionMesh {
 /// @throws std::runtime_error  where `progress` asked for the end
 /// Cost: some 30 µs and 400 bytes a tet.
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options);
-
-/// Counts of dihedral angles in bins of `bin_deg` from 0° to 180°, six angles a tet.
-std::vector<std::size_t> dihedral_histogram(const TetMesh& mesh, double bin_deg = 10.0);
-
-/// The six dihedral angles of a tet [degrees].
-std::array<double, 6> dihedral_angles(const TetMesh& mesh, std::size_t tet);
 
 }  // namespace glisson

@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "glisson/implicit.h"
 #include "glisson/instruments/blade.h"
 #include "glisson/instruments/capsule.h"
 #include "glisson/instruments/contact.h"
@@ -40,7 +41,7 @@ struct MeshFile {
   std::filesystem::path path;  ///< absolute, or relative to the current directory
   double scale = 1.0;          ///< factor on coordinates
 };
-using MeshSource = std::variant<BoxOptions, CylinderOptions, MeshFile>;
+using MeshSource = std::variant<BoxOptions, CylinderOptions, MeshFile, ImplicitBody>;
 
 // `origin` in the structs below is the place in the scene, `file:line:column: key`, for messages that need the mesh. It
 // may be empty.

@@ -17,7 +17,7 @@
 namespace glisson::lattice {
 namespace {
 
-constexpr int kBlock = 4;            ///< cubes a side of a block
+constexpr int kBlock = 4;  ///< cubes a side of a block
 constexpr double kMaxCells = 4e8;
 
 class Lattice {
@@ -57,7 +57,8 @@ class Lattice {
       cells *= n;
       if (!(cells <= kMaxCells)) {
         throw std::invalid_argument("edge [m] = " + detail::show(fields_.edge()) + " is too small for a body of " +
-                                    detail::show(high[d] - low[d]) + " m: the lattice would have more than 4e8 cubes; "
+                                    detail::show(high[d] - low[d]) +
+                                    " m: the lattice would have more than 4e8 cubes; "
                                     "give a larger edge");
       }
       n_[d] = static_cast<int>(n);
@@ -125,10 +126,10 @@ class Lattice {
     const double tets = 6.0 * static_cast<double>(inside_);  // two vertices and twelve tets a cube
     if (tets <= static_cast<double>(max_tets_)) return;
     const double factor = std::cbrt(tets / static_cast<double>(max_tets_));
-    throw std::invalid_argument("edge [m] = " + detail::show(fields_.edge()) + " asks for some " +
-                                detail::number_text(tets, 2) + " tets; at most " + std::to_string(max_tets_) +
-                                " are allowed: give an edge of " + detail::number_text(1.02 * factor * fields_.edge(), 2) +
-                                " m or more, or raise the limit");
+    throw std::invalid_argument(
+        "edge [m] = " + detail::show(fields_.edge()) + " asks for some " + detail::number_text(tets, 2) +
+        " tets; at most " + std::to_string(max_tets_) + " are allowed: give an edge of " +
+        detail::number_text(1.02 * factor * fields_.edge(), 2) + " m or more, or raise the limit");
   }
 
   std::uint32_t vertex(bool is_centre, int i, int j, int k) {

@@ -111,7 +111,8 @@ class Cleaver {
     }
     std::stable_sort(draws.begin(), draws.end(), [](const Draw& a, const Draw& b) { return a.share < b.share; });
     for (const Draw& d : draws) {
-      if (crosses(d.vertex, d.other)) draw(d.vertex, c_.points[d.vertex] + (c_.points[d.other] - c_.points[d.vertex]) * d.t);
+      if (crosses(d.vertex, d.other))
+        draw(d.vertex, c_.points[d.vertex] + (c_.points[d.other] - c_.points[d.vertex]) * d.t);
     }
   }
 
@@ -156,7 +157,8 @@ class Cleaver {
   void cut_edges() {
     std::erase_if(crossings_, [&](const Crossing& x) { return !crosses(x.u, x.v); });
     std::vector<std::pair<double, std::size_t>> order;
-    for (std::size_t i = 0; i < crossings_.size(); ++i) order.emplace_back(-length(crossings_[i].u, crossings_[i].v), i);
+    for (std::size_t i = 0; i < crossings_.size(); ++i)
+      order.emplace_back(-length(crossings_[i].u, crossings_[i].v), i);
     std::sort(order.begin(), order.end());
     for (const auto& [minus_length, i] : order) cut(crossings_[i]);
   }

@@ -38,7 +38,8 @@ bool surfaces_stay(const Workspace& w, std::uint32_t from, std::uint32_t into) {
       if (dot(before, after) < 0.7 * norm(before) * norm(after)) return false;
       const Mask common = mask & c.masks[rest[0]] & c.masks[rest[1]];
       const double off = w.fields.off((a + b + q) * (1.0 / 3.0), surfaces_of(common));
-      if (off > kFlipSlack * w.edge() && off > w.fields.off((a + b + p) * (1.0 / 3.0), surfaces_of(common))) return false;
+      if (off > kFlipSlack * w.edge() && off > w.fields.off((a + b + p) * (1.0 / 3.0), surfaces_of(common)))
+        return false;
     }
   }
   return true;
@@ -52,12 +53,13 @@ bool contract_edge(Workspace& w, std::uint32_t from, std::uint32_t into, double 
   if ((mask & ~c.masks[into]) != 0) return false;
   const EdgeRing ring = c.edge_ring(from, into);
   if (!ring.simple) return false;
-  const bool on_surface = std::popcount(mask) > 1;
+  if (mask & kCorner) return false;
+  const bool on_surface = std::popcount(mask & ~kMarks) > 1;
   if (on_surface) {
     // The edge itself must lie in all of the interfaces of `from`.
     Mask at_edge = c.labels_at_edge(from, into);
     if (!ring.closed) at_edge |= mask & c.masks[into] & ~c.labels_at(from);
-    if (at_edge != mask) return false;
+    if ((at_edge & ~kMarks) != (mask & ~kMarks)) return false;
   }
   for (const std::uint32_t t : c.stars[from]) {
     if (c.has(t, into)) continue;

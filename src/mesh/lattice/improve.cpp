@@ -152,11 +152,11 @@ class Improver {
   /// Labels that meet along an edge, with what is empty; 0 where that cannot be told.
   Mask edge_mask(std::uint32_t u, std::uint32_t v) const {
     const EdgeRing ring = c_.edge_ring(u, v);
-    if (!ring.simple) return 0;
+    if (!ring.simple || (c_.masks[u] & c_.masks[v] & kCrease)) return 0;
     const Mask inside = c_.labels_at_edge(u, v);
     if (ring.closed) return inside;
     const Mask region_bits = bit(w_.fields.outside()) - 1;
-    const Mask empty = c_.masks[u] & c_.masks[v] & ~(region_bits & ~holes());
+    const Mask empty = c_.masks[u] & c_.masks[v] & ~kMarks & ~(region_bits & ~holes());
     return empty ? inside | empty : 0;
   }
   Mask holes() const {
@@ -214,6 +214,7 @@ class Improver {
 bool improve(Workspace& w, double aim, const std::function<bool(double)>& go_on) {
   Improver improver(w, aim);
   improver.spread();
+  follow_creases(w);
   bool stopped = false;
   for (int i = 0; i < kPasses && !stopped; ++i) {
     const auto part = [&](double of_pass) {

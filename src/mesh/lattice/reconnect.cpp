@@ -105,9 +105,11 @@ Chains chains_of(const TetComplex& c, const EdgeRing& ring) {
 /// Whether the interface may bend from the line u–v to the line p–q.
 bool may_bend(const Workspace& w, std::uint32_t u, std::uint32_t v, std::uint32_t p, std::uint32_t q) {
   const auto& m = w.complex.masks;
-  const Mask common = m[u] & m[v] & m[p] & m[q];
+  const Mask common = m[u] & m[v] & m[p] & m[q] & ~kMarks;
   if (std::popcount(common) != 2) return false;
-  const auto middle = [&](std::uint32_t a, std::uint32_t b) { return (w.complex.points[a] + w.complex.points[b]) * 0.5; };
+  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+    return (w.complex.points[a] + w.complex.points[b]) * 0.5;
+  };
   const Mask surface = surfaces_of(common);
   const double after = w.fields.off(middle(p, q), surface);
   return after < 0.5 * kFlipSlack * w.edge() || after <= std::max(0.0, w.fields.off(middle(u, v), surface));

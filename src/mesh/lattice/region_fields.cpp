@@ -37,7 +37,8 @@ Vec3d RegionFields::gradient(std::size_t k, const Vec3d& p) const {
 Label RegionFields::label(const Vec3d& p) const {
   for (std::size_t k = 0; k < count(); ++k) {
     const Bounds& b = regions_[k].bounds;
-    const bool near = p.x >= b.min.x && p.y >= b.min.y && p.z >= b.min.z && p.x <= b.max.x && p.y <= b.max.y && p.z <= b.max.z;
+    const bool near =
+        p.x >= b.min.x && p.y >= b.min.y && p.z >= b.min.z && p.x <= b.max.x && p.y <= b.max.y && p.z <= b.max.z;
     if (near && value(k, p) < 0.0) return static_cast<Label>(k);
   }
   return outside();

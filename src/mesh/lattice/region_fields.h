@@ -8,9 +8,14 @@
 
 namespace glisson::lattice {
 
+inline constexpr Mask kCrease = Mask{1} << 62;  ///< in the mask of a vertex on a crease (crease.h)
+inline constexpr Mask kCorner = Mask{1} << 61;  ///< at the end of creases; it stays
+inline constexpr Mask kMarks = kCrease | kCorner;
+
 /// Surfaces that a vertex lies on, given the labels that meet there: between two regions it is that of the one with
 /// precedence, so of all labels but the last.
 inline Mask surfaces_of(Mask labels) {
+  labels &= ~kMarks;
   if (labels == 0) return 0;
   Mask last = Mask{1} << 63;
   while (!(labels & last)) last >>= 1;

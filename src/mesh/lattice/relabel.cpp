@@ -39,8 +39,8 @@ bool relabel(Workspace& w, std::uint32_t t) {
   }
   if (other_faces < 2 || same == 0) return false;
   // With three faces on the interface its tip goes; the face that is left must be the interface within the slack.
-  const Mask common = c.masks[tet[0]] & c.masks[tet[1]] & c.masks[tet[2]] & c.masks[tet[3]];
-  const Mask all = c.masks[tet[0]] | c.masks[tet[1]] | c.masks[tet[2]] | c.masks[tet[3]];
+  const Mask common = c.masks[tet[0]] & c.masks[tet[1]] & c.masks[tet[2]] & c.masks[tet[3]] & ~kMarks;
+  const Mask all = (c.masks[tet[0]] | c.masks[tet[1]] | c.masks[tet[2]] | c.masks[tet[3]]) & ~kMarks;
   const bool empty = other_label == w.fields.outside();
   if (other_faces == 2 && std::popcount(common) < 2) return false;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -54,17 +54,15 @@ bool relabel(Workspace& w, std::uint32_t t) {
     }
     if (std::popcount(face) < 2 || w.fields.off(middle, surfaces_of(face)) > kFlipSlack * w.edge()) return false;
   }
-  const Mask regions = bit(w.fields.outside()) - 1;
   Mask hollow = bit(w.fields.outside());
   for (std::size_t k = 0; k < w.fields.count(); ++k) hollow |= w.fields.region(k).hole ? bit(static_cast<Label>(k)) : 0;
-  (void)regions;
   c.remove_tet(t);
   if (!empty) c.add_tet(tet, other_label);
   for (const std::uint32_t v : tet) {
     if (c.stars[v].empty()) continue;
     Mask mask = c.labels_at(v);
     if (on_boundary(c, v)) mask |= (c.masks[v] & hollow) ? c.masks[v] & hollow : all & hollow;
-    c.set_mask(v, mask);
+    c.set_mask(v, std::popcount(mask) > 1 ? mask | (c.masks[v] & kMarks) : mask);
   }
   return true;
 }

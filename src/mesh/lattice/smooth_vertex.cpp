@@ -16,6 +16,10 @@ class Climb {
  public:
   Climb(Workspace& w, std::uint32_t vertex, bool loose)
       : w_(w), vertex_(vertex), loose_(loose), surfaces_(surfaces_of(w.complex.masks[vertex])) {
+    const Mask mask = w.complex.masks[vertex];
+    crease_ = (mask & kCrease) && !loose;
+    fixed_ = (mask & kCorner) || (std::popcount(surfaces_) > 2 && !loose);
+    if (crease_) sides_ = w.sides[vertex];
     static constexpr std::uint8_t kSeen[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
     const auto& points = w.complex.points;
     for (const std::uint32_t t : w.complex.stars[vertex]) {
@@ -31,13 +35,14 @@ class Climb {
   }
 
   bool run() {
-    if ((std::popcount(surfaces_) > 2 && !loose_) || faces_.empty()) return false;
+    if (fixed_ || faces_.empty()) return false;
     bool moved = false;
     for (int i = 0; i < 4; ++i) {
       if (!step(0.06) && !step(0.015)) break;
       moved = true;
     }
     if (moved) w_.complex.move(vertex_, at_);
+    if (moved && crease_) w_.sides[vertex_] = sides_;
     return moved;
   }
 
@@ -62,7 +67,8 @@ class Climb {
 
   Vec3d gradient(const SeenFace& f, double q) const {
     const double h = 1e-5 * w_.edge();
-    const Vec3d g{quality(f, at_ + Vec3d{h, 0, 0}) - q, quality(f, at_ + Vec3d{0, h, 0}) - q, quality(f, at_ + Vec3d{0, 0, h}) - q};
+    const Vec3d g{quality(f, at_ + Vec3d{h, 0, 0}) - q, quality(f, at_ + Vec3d{0, h, 0}) - q,
+                  quality(f, at_ + Vec3d{0, 0, h}) - q};
     return along(g * (1.0 / h));
   }
 
@@ -82,7 +88,7 @@ class Climb {
 
   bool step(double band) {
     for (std::size_t i = 0; i < faces_.size(); ++i) quality_[i] = quality(faces_[i], at_);
-    normals_ = surfaces_ && !loose_ ? w_.fields.normals(at_, surfaces_, normal_, 2) : 0;
+    find_normals();
     const auto worst = static_cast<std::size_t>(std::min_element(quality_.begin(), quality_.end()) - quality_.begin());
     gradients_.assign(1, gradient(faces_[worst], quality_[worst]));
     for (std::size_t i = 0; i < faces_.size(); ++i) {
@@ -97,20 +103,41 @@ class Climb {
     return false;
   }
 
+  void find_normals() {
+    normals_ = 0;
+    if (crease_) {
+      const CreasePlanes planes = crease_planes(w_.fields, surface(), at_, sides_);
+      normal_[0] = planes.normal_a;
+      normal_[1] = planes.normal_b;
+      normals_ = 2;
+    } else if (surfaces_ && !loose_) {
+      normals_ = w_.fields.normals(at_, surfaces_, normal_, 2);
+    }
+  }
+  std::size_t surface() const { return static_cast<std::size_t>(std::countr_zero(surfaces_)); }
+
   bool try_at(Vec3d p) {
+    CreaseSides sides = sides_;
     const double least_gain = 1e-4;
-    if (surfaces_ && !loose_ && w_.fields.project(p, surfaces_) > slack_) return false;
+    if (crease_) {
+      if (project_to_crease(w_.fields, surface(), p, sides) > kSlack * w_.edge()) return false;
+    } else if (surfaces_ && !loose_ && w_.fields.project(p, surfaces_) > slack_) {
+      return false;
+    }
     const double q = evaluate(p, least_ + least_gain);
     if (q <= least_ + least_gain) return false;
     if (loose_ && w_.fields.off(p, surfaces_) > slack_) return false;
     least_ = q;
     at_ = p;
+    sides_ = sides;
     return true;
   }
 
   Workspace& w_;
   std::uint32_t vertex_;
   bool loose_;
+  bool crease_ = false, fixed_ = false;
+  CreaseSides sides_{};
   Mask surfaces_;
   double slack_ = 0.0;  ///< [m]
   std::vector<SeenFace> faces_;
@@ -129,7 +156,8 @@ bool smooth_vertex(Workspace& w, std::uint32_t vertex, bool loose) { return Clim
 bool centre_vertex(Workspace& w, std::uint32_t vertex, double floor) {
   TetComplex& c = w.complex;
   const Mask mask = c.masks[vertex], surfaces = surfaces_of(mask);
-  if (std::popcount(surfaces) > 2 || c.stars[vertex].empty()) return false;
+  if (std::popcount(surfaces) > 2 || c.stars[vertex].empty() || (mask & kCorner)) return false;
+  if (mask & kCrease) return false;  // moved by smooth_vertex alone
   thread_local std::vector<std::uint32_t> around;
   c.neighbours(vertex, around);
   Vec3d sum{};

@@ -103,7 +103,8 @@ EdgeRing TetComplex::edge_ring(std::uint32_t u, std::uint32_t v) const {
   if (n == 0) return out;
   std::size_t first = 0;  // the start of an open chain: nobody's end
   for (std::size_t i = 0; i < n; ++i) {
-    const bool is_end = std::any_of(links.begin(), links.begin() + n, [&](const Link& l) { return l.to == links[i].from; });
+    const bool is_end =
+        std::any_of(links.begin(), links.begin() + n, [&](const Link& l) { return l.to == links[i].from; });
     if (is_end) continue;
     first = i;
     break;

@@ -30,9 +30,9 @@ class TetComplex {
  public:
   std::vector<Vec3d> points;
   std::vector<Tet> tets;
-  std::vector<Label> labels;                       ///< of tets
-  std::vector<std::vector<std::uint32_t>> stars;   ///< tets at each vertex
-  std::vector<Mask> masks;                         ///< labels that meet at each vertex, with those of what is empty
+  std::vector<Label> labels;                      ///< of tets
+  std::vector<std::vector<std::uint32_t>> stars;  ///< tets at each vertex
+  std::vector<Mask> masks;                        ///< labels that meet at each vertex, with those of what is empty
 
   std::uint32_t add_vertex(const Vec3d& point);
   std::uint32_t add_tet(const Tet& tet, Label label);

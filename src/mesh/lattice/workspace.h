@@ -3,18 +3,21 @@
 
 #include <vector>
 
+#include "mesh/lattice/crease.h"
 #include "mesh/lattice/region_fields.h"
 #include "mesh/lattice/tet_complex.h"
 #include "mesh/lattice/tet_quality.h"
 
 namespace glisson::lattice {
 
-inline constexpr double kSlack = 0.02;     ///< of the edge: a vertex may leave its surfaces by this much
-inline constexpr double kFlipSlack = 0.1;  ///< of the edge: so may the middle of an edge or face that a change puts there
+inline constexpr double kSlack = 0.02;  ///< of the edge: a vertex may leave its surfaces by this much
+inline constexpr double kFlipSlack =
+    0.1;  ///< of the edge: so may the middle of an edge or face that a change puts there
 
 struct Workspace {
   TetComplex& complex;
   const RegionFields& fields;
+  std::vector<CreaseSides> sides{};  ///< of vertices on creases
 
   double edge() const { return fields.edge(); }
   double quality(std::uint32_t t) const {

@@ -25,6 +25,7 @@ TetMesh source_mesh(const Variant& variant, const MeshLoader& load) {
   }
   try {
     if (const auto* box = std::get_if<BoxOptions>(&variant.mesh)) return box_mesh(*box);
+    if (const auto* body = std::get_if<ImplicitBody>(&variant.mesh)) return implicit_mesh(*body).mesh;
     return cylinder_mesh(std::get<CylinderOptions>(variant.mesh));
   } catch (const std::invalid_argument& error) {
     fail(variant, "", std::string("mesh: ") + error.what());

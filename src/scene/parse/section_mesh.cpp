@@ -94,7 +94,7 @@ const SectionSpec& mesh_section() {
     s.name = "mesh";
     s.help = "The body: a generated mesh or one from a file, selected by `kind`.";
     s.kinds = {mesh_kind<BoxOptions>(box_kind()), mesh_kind<CylinderOptions>(cylinder_kind()),
-               mesh_kind<MeshFile>(file_kind())};
+               mesh_kind<ImplicitBody>(implicit_body_kind()), mesh_kind<MeshFile>(file_kind())};
     return s;
   }();
   return section;

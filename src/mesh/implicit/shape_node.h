@@ -1,0 +1,45 @@
+// shape_node.h — a node of the tree of shapes: its distance and its box.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "glisson/implicit.h"
+
+namespace glisson {
+
+class Solid::Node {
+ public:
+  explicit Node(const Bounds& box) : bounds(box) {}
+  virtual ~Node() = default;
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+  virtual double distance(const Vec3d& p) const = 0;
+
+  const Bounds bounds;
+};
+
+namespace detail {
+
+inline Vec3d lesser(const Vec3d& a, const Vec3d& b) {
+  return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+}
+inline Vec3d greater(const Vec3d& a, const Vec3d& b) {
+  return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+}
+inline Vec3d all(double x) { return {x, x, x}; }
+inline Bounds grown(const Bounds& b, double by) { return {b.min - all(by), b.max + all(by)}; }
+inline Bounds joined(const Bounds& a, const Bounds& b) { return {lesser(a.min, b.min), greater(a.max, b.max)}; }
+inline bool is_finite(const Bounds& b) {
+  const auto finite = [](const Vec3d& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
+  return finite(b.min) && finite(b.max);
+}
+/// From a point to a box [m]; 0 inside.
+inline double box_distance(const Bounds& b, const Vec3d& p) {
+  return norm(greater(greater(b.min - p, p - b.max), Vec3d{}));
+}
+inline const Bounds kEverywhere{all(-std::numeric_limits<double>::infinity()),
+                                all(std::numeric_limits<double>::infinity())};
+
+}  // namespace detail
+}  // namespace glisson
