@@ -18,7 +18,7 @@ namespace {
 constexpr double kParted = 0.87;      ///< cosine of 30°: normals of the ends
 constexpr double kStillParted = 0.90; ///< and where they part
 constexpr double kDrawShare = 0.38;   ///< of the edge
-constexpr double kLeastQuality = 0.03;
+constexpr double kLeastDrawn = 0.03;
 
 class Follower {
  public:
@@ -121,7 +121,7 @@ class Follower {
     const Vec3d from = c_.points[v];
     const double before = w_.star_quality(v);
     c_.points[v] = to;
-    if (w_.star_quality(v) > std::min(before, kLeastQuality)) return true;
+    if (w_.star_quality(v) > std::min(before, kLeastDrawn)) return true;
     c_.points[v] = from;
     return false;
   }

@@ -10,6 +10,7 @@
 #include "mesh/lattice/body_lattice.h"
 #include "mesh/lattice/cleave.h"
 #include "mesh/lattice/improve.h"
+#include "mesh/lattice/keep_volume.h"
 
 namespace glisson {
 namespace {
@@ -17,6 +18,7 @@ namespace {
 using namespace lattice;
 
 constexpr double kAim = 0.26;                                ///< quality that is worked for; 15° and 158°
+constexpr double kFloor = 0.2;            ///< that the last step leaves; 11.5° and 163.4°
 constexpr std::size_t kMostRegions = 60;                     ///< labels are bits of a mask
 constexpr double kLeastAngle = 10.0, kLargestAngle = 165.0;  ///< [degrees]
 
@@ -123,6 +125,7 @@ RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMesh
   go_on(0.3);
   Workspace w{complex, fields};
   improve(w, kAim, [&](double part) { return go_on(0.3 + 0.7 * part); });
+  keep_volume(w, kFloor);
   RegionMesh out;
   out.mesh = compact(complex, regions);
   measure_angles(out.mesh, out.report);
