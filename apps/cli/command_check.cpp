@@ -138,6 +138,9 @@ std::string finer_mesh(const MeshSource& mesh, double factor) {
   if (const auto* body = std::get_if<ImplicitBody>(&mesh)) {
     return fmt::format("mesh.edge_mm = {:.2g}", 1e3 * body->edge / factor);
   }
+  if (const auto* liver = std::get_if<LiverOptions>(&mesh)) {
+    return fmt::format("mesh.edge_mm = {:.2g}", 1e3 * liver->edge / factor);
+  }
   return fmt::format("a mesh {:.2g} times as fine there", factor);
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,12 @@ struct RegionMesh {
   RegionMeshReport report;
 };
 
+/// `progress` asked for the end.
+class MeshingStopped : public std::runtime_error {
+ public:
+  MeshingStopped() : std::runtime_error("the mesher was stopped") {}
+};
+
 /// Meshes regions by a body-centred lattice whose vertices are drawn onto the interfaces and whose edges are cut at the
 /// interfaces, then improves the tets until all dihedral angles are between 10° and 165°.
 ///                                                   [LabelleShewchuk2007; BronsonLevineWhitaker2012]
@@ -66,7 +73,7 @@ struct RegionMesh {
 /// Same input, same bytes.
 /// @throws std::invalid_argument  naming the region or option, its value and the way out: no region, an edge that is not
 ///   positive or longer than a region is wide, regions that are empty, more than max_tets
-/// @throws std::runtime_error  where `progress` asked for the end
+/// @throws MeshingStopped  where `progress` asked for the end
 /// Cost: some 30 µs and 400 bytes a tet.
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options);
 

@@ -26,7 +26,7 @@ class Union final : public Solid::Node {
   double distance(const Vec3d& p) const override {
     double least = of_.front()->distance(p);
     for (std::size_t i = 1; i < of_.size(); ++i) {
-      if (box_distance(of_[i]->bounds, p) >= least + blend_) continue;  // further off than it could matter
+      if (is_beyond(of_[i]->bounds, p, least + blend_)) continue;  // further off than it could matter
       least = blended_min(least, of_[i]->distance(p), blend_);
     }
     return least;
@@ -61,7 +61,7 @@ class Difference final : public Solid::Node {
   double distance(const Vec3d& p) const override {
     double most = from_->distance(p);
     for (const NodePtr& other : others_) {
-      if (-box_distance(other->bounds, p) <= most - blend_) continue;  // further off than it could matter
+      if (is_beyond(other->bounds, p, blend_ - most)) continue;  // further off than it could matter
       most = -blended_min(-most, other->distance(p), blend_);
     }
     return most;

@@ -38,6 +38,11 @@ inline bool is_finite(const Bounds& b) {
 inline double box_distance(const Bounds& b, const Vec3d& p) {
   return norm(greater(greater(b.min - p, p - b.max), Vec3d{}));
 }
+/// Whether p is outside a box and further from it than `reach`: what the box holds is then further, too.
+inline bool is_beyond(const Bounds& b, const Vec3d& p, double reach) {
+  const double distance = box_distance(b, p);
+  return distance > 0.0 && distance >= reach;
+}
 inline const Bounds kEverywhere{all(-std::numeric_limits<double>::infinity()),
                                 all(std::numeric_limits<double>::infinity())};
 

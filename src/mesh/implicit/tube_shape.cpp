@@ -92,7 +92,7 @@ class Tube final : public Solid::Node {
   double distance(const Vec3d& p) const override {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t r = 0; r < runs_.size(); ++r) {
-      if (box_distance(runs_[r], p) >= least) continue;
+      if (is_beyond(runs_[r], p, least)) continue;
       const std::size_t end = std::min((r + 1) * kRun, pieces_.size());
       for (std::size_t i = r * kRun; i < end; ++i) least = std::min(least, pieces_[i].distance(p));
     }

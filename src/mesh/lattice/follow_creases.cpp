@@ -15,9 +15,9 @@
 namespace glisson::lattice {
 namespace {
 
-constexpr double kParted = 0.87;      ///< cosine of 30°: normals of the ends
-constexpr double kStillParted = 0.90; ///< and where they part
-constexpr double kDrawShare = 0.38;   ///< of the edge
+constexpr double kParted = 0.87;       ///< cosine of 30°: normals of the ends
+constexpr double kStillParted = 0.90;  ///< and where they part
+constexpr double kDrawShare = 0.38;    ///< of the edge
 constexpr double kLeastDrawn = 0.03;
 
 class Follower {
@@ -134,8 +134,9 @@ class Follower {
   bool marked(std::uint32_t v) const { return (c_.masks[v] & kCrease) != 0; }
 
   void draw(std::vector<Place>& places) {
-    std::stable_sort(places.begin(), places.end(),
-                     [](const Place& a, const Place& b) { return std::min(a.t, 1.0 - a.t) < std::min(b.t, 1.0 - b.t); });
+    std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+      return std::min(a.t, 1.0 - a.t) < std::min(b.t, 1.0 - b.t);
+    });
     for (const Place& x : places) {
       if (std::min(x.t, 1.0 - x.t) > kDrawShare || marked(x.u) || marked(x.v)) continue;
       const std::uint32_t near = x.t < 0.5 ? x.u : x.v;
@@ -197,10 +198,11 @@ class Follower {
     Mat3d rows;
     for (std::size_t j = 0; j < 3; ++j) rows(0, j) = pu.normal_a[j], rows(1, j) = pu.normal_b[j], rows(2, j) = third[j];
     if (std::abs(determinant(rows)) < 0.05) return;
-    const Vec3d corner =
-        inverse(rows) * Vec3d{dot(pu.normal_a, p) - pu.value_a, dot(pu.normal_b, p) - pu.value_b, dot(third, q) - value};
+    const Vec3d corner = inverse(rows) * Vec3d{dot(pu.normal_a, p) - pu.value_a, dot(pu.normal_b, p) - pu.value_b,
+                                               dot(third, q) - value};
     const std::uint32_t near = norm(corner - p) <= norm(corner - q) ? u : v;
-    if (norm(corner - c_.points[near]) > 0.7 * w_.edge() || w_.fields.off(corner, Mask{1} << *k) > kSlack * w_.edge()) return;
+    if (norm(corner - c_.points[near]) > 0.7 * w_.edge() || w_.fields.off(corner, Mask{1} << *k) > kSlack * w_.edge())
+      return;
     if (try_move(near, corner)) c_.masks[near] |= kCorner;
   }
 

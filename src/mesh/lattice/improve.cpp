@@ -20,7 +20,8 @@ namespace {
 constexpr int kSpreads = 3, kPasses = 12;
 constexpr double kSpreadFloor = 0.3;  ///< quality that spreading vertices leaves
 constexpr double kTrialGain = 1e-3;
-constexpr double kMust = 0.2;  ///< quality from which on no trials are made; 11.5° and 163.4°
+constexpr double kMostOff = 0.12;  ///< of the edge: the middle of an interface's edge from its surface
+constexpr double kMust = 0.2;      ///< quality from which on no trials are made; 11.5° and 163.4°
 
 constexpr std::array<std::array<std::size_t, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
@@ -61,6 +62,25 @@ class Improver {
       better += mend(p.index);
     }
     return better;
+  }
+
+  /// Puts a vertex on edges of interfaces that leave their surface by more than kMostOff, where good tets come of it.
+  std::size_t refine_curved() {
+    std::size_t refined = 0;
+    std::vector<std::uint32_t> around;
+    const std::size_t count = c_.points.size();
+    for (std::uint32_t u = 0; u < count; ++u) {
+      if (!surfaces_of(c_.masks[u]) || c_.stars[u].empty()) continue;
+      c_.neighbours(u, around);
+      for (const std::uint32_t v : around) {
+        if (v < u || !surfaces_of(c_.masks[u] & c_.masks[v])) continue;
+        const Mask surfaces = surfaces_of(edge_mask(u, v));
+        if (!surfaces) continue;
+        const double off = w_.fields.off((c_.points[u] + c_.points[v]) * 0.5, surfaces);
+        if (off > kMostOff * w_.edge()) refined += insert_on(u, v, kMust);
+      }
+    }
+    return refined;
   }
 
  private:
@@ -129,24 +149,25 @@ class Improver {
 
   /// A new vertex on the longest edges, and the edges around it taken out where that helps.
   bool insert(const Tet& tet, double before) {
-    for (const auto& [i, j] : kEdges) {
-      const std::uint32_t u = tet[i], v = tet[j];
-      const Mask mask = edge_mask(u, v);
-      if (mask == 0) continue;
-      Vec3d at = (c_.points[u] + c_.points[v]) * 0.5;
-      if (const Mask s = surfaces_of(mask)) {
-        if (w_.fields.project(at, s) > kSlack * w_.edge()) continue;
-      }
-      c_.begin();
-      const std::uint32_t m = c_.split_edge(u, v, at);
-      c_.set_mask(m, mask);
-      if (w_.star_quality(m) > 0.0) {
-        reconnect_around(m);
-        smooth_around(m);
-      }
-      if (settle(before)) return true;
+    return std::any_of(kEdges.begin(), kEdges.end(),
+                       [&](const auto& edge) { return insert_on(tet[edge[0]], tet[edge[1]], before); });
+  }
+
+  bool insert_on(std::uint32_t u, std::uint32_t v, double before) {
+    const Mask mask = edge_mask(u, v);
+    if (mask == 0) return false;
+    Vec3d at = (c_.points[u] + c_.points[v]) * 0.5;
+    if (const Mask s = surfaces_of(mask)) {
+      if (w_.fields.project(at, s) > kSlack * w_.edge()) return false;
     }
-    return false;
+    c_.begin();
+    const std::uint32_t m = c_.split_edge(u, v, at);
+    c_.set_mask(m, mask);
+    if (w_.star_quality(m) > 0.0) {
+      reconnect_around(m);
+      smooth_around(m);
+    }
+    return settle(before);
   }
 
   /// Labels that meet along an edge, with what is empty; 0 where that cannot be told.
@@ -214,15 +235,22 @@ class Improver {
 bool improve(Workspace& w, double aim, const std::function<bool(double)>& go_on) {
   Improver improver(w, aim);
   improver.spread();
-  follow_creases(w);
   bool stopped = false;
-  for (int i = 0; i < kPasses && !stopped; ++i) {
-    const auto part = [&](double of_pass) {
-      stopped = stopped || !go_on((i + of_pass) / kPasses);
-      return !stopped;
-    };
-    if (improver.pass(part) == 0) break;
-  }
+  int done = 0;
+  const auto passes = [&](int count) {
+    for (int i = 0; i < count && !stopped; ++i, ++done) {
+      const auto part = [&](double of_pass) {
+        stopped = stopped || !go_on(std::min(1.0, (done + of_pass) / (2 * kPasses)));
+        return !stopped;
+      };
+      if (improver.pass(part) == 0) break;
+    }
+  };
+  follow_creases(w);
+  passes(kPasses);
+  follow_creases(w);
+  improver.refine_curved();
+  passes(kPasses);
   return !stopped;
 }
 

@@ -18,7 +18,7 @@ namespace {
 using namespace lattice;
 
 constexpr double kAim = 0.26;                                ///< quality that is worked for; 15° and 158°
-constexpr double kFloor = 0.2;            ///< that the last step leaves; 11.5° and 163.4°
+constexpr double kFloor = 0.2;                               ///< that the last step leaves; 11.5° and 163.4°
 constexpr std::size_t kMostRegions = 60;                     ///< labels are bits of a mask
 constexpr double kLeastAngle = 10.0, kLargestAngle = 165.0;  ///< [degrees]
 
@@ -112,7 +112,7 @@ void require_tets_in_each(const std::vector<BodyRegion>& regions, double edge, c
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const auto go_on = [&](double part) {
-    if (options.progress && !options.progress(part)) throw std::runtime_error("the mesher was stopped");
+    if (options.progress && !options.progress(part)) throw MeshingStopped();
     return true;
   };
   require_regions(regions);
