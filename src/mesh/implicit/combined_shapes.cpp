@@ -23,7 +23,7 @@ class Union final : public Solid::Node {
  public:
   Union(const Bounds& box, std::vector<NodePtr> of, double blend) : Node(box), of_(std::move(of)), blend_(blend) {}
 
-  double distance(const Vec3d& p) const override {
+  double formula(const Vec3d& p) const override {
     double least = of_.front()->distance(p);
     for (std::size_t i = 1; i < of_.size(); ++i) {
       if (is_beyond(of_[i]->bounds, p, least + blend_)) continue;  // further off than it could matter
@@ -42,7 +42,7 @@ class Intersection final : public Solid::Node {
   Intersection(const Bounds& box, std::vector<NodePtr> of, double blend)
       : Node(box), of_(std::move(of)), blend_(blend) {}
 
-  double distance(const Vec3d& p) const override {
+  double formula(const Vec3d& p) const override {
     double most = of_.front()->distance(p);
     for (std::size_t i = 1; i < of_.size(); ++i) most = -blended_min(-most, -of_[i]->distance(p), blend_);
     return most;
@@ -58,7 +58,7 @@ class Difference final : public Solid::Node {
   Difference(NodePtr from, std::vector<NodePtr> others, double blend)
       : Node(from->bounds), from_(std::move(from)), others_(std::move(others)), blend_(blend) {}
 
-  double distance(const Vec3d& p) const override {
+  double formula(const Vec3d& p) const override {
     double most = from_->distance(p);
     for (const NodePtr& other : others_) {
       if (is_beyond(other->bounds, p, blend_ - most)) continue;  // further off than it could matter
@@ -79,7 +79,7 @@ class Placed final : public Solid::Node {
       : Node(box_of(of->bounds, turn, scale, move)), of_(std::move(of)), back_(transposed(turn)), scale_(scale),
         move_(move) {}
 
-  double distance(const Vec3d& p) const override {
+  double formula(const Vec3d& p) const override {
     return scale_ * of_->distance(back_ * (p - move_) * (1.0 / scale_));
   }
 

@@ -6,20 +6,7 @@
 
 #include "glisson/implicit.h"
 
-namespace glisson {
-
-class Solid::Node {
- public:
-  explicit Node(const Bounds& box) : bounds(box) {}
-  virtual ~Node() = default;
-  Node(const Node&) = delete;
-  Node& operator=(const Node&) = delete;
-  virtual double distance(const Vec3d& p) const = 0;
-
-  const Bounds bounds;
-};
-
-namespace detail {
+namespace glisson::detail {
 
 inline Vec3d lesser(const Vec3d& a, const Vec3d& b) {
   return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
@@ -46,5 +33,27 @@ inline bool is_beyond(const Bounds& b, const Vec3d& p, double reach) {
 inline const Bounds kEverywhere{all(-std::numeric_limits<double>::infinity()),
                                 all(std::numeric_limits<double>::infinity())};
 
-}  // namespace detail
+}  // namespace glisson::detail
+
+namespace glisson {
+
+class Solid::Node {
+ public:
+  explicit Node(const Bounds& box) : bounds(box) {}
+  virtual ~Node() = default;
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  /// At least the distance to the box, so that leaving out what lies in a far box changes no bit.
+  double distance(const Vec3d& p) const {
+    const double value = formula(p);
+    return value > 0.0 ? std::max(value, detail::box_distance(bounds, p)) : value;
+  }
+
+  const Bounds bounds;
+
+ protected:
+  virtual double formula(const Vec3d& p) const = 0;
+};
+
 }  // namespace glisson

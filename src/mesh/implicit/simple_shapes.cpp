@@ -15,7 +15,7 @@ template <class Function>
 class Formula final : public Solid::Node {
  public:
   Formula(const Bounds& box, Function function) : Node(box), function_(std::move(function)) {}
-  double distance(const Vec3d& p) const override { return function_(p); }
+  double formula(const Vec3d& p) const override { return function_(p); }
 
  private:
   Function function_;

@@ -89,7 +89,7 @@ class Tube final : public Solid::Node {
       runs_.push_back(box_of(pieces, i, std::min(i + kRun, pieces.size())));
   }
 
-  double distance(const Vec3d& p) const override {
+  double formula(const Vec3d& p) const override {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       if (is_beyond(runs_[r], p, least)) continue;

@@ -18,6 +18,7 @@ namespace {
 constexpr double kParted = 0.87;       ///< cosine of 30°: normals of the ends
 constexpr double kStillParted = 0.90;  ///< and where they part
 constexpr double kDrawShare = 0.38;    ///< of the edge
+constexpr double kCornerReach = 0.8;   ///< of the edge
 constexpr double kLeastDrawn = 0.03;
 
 class Follower {
@@ -169,41 +170,67 @@ class Follower {
     }
   }
 
-  /// Where a crease turns from one vertex to the next, three planes meet: the nearer vertex goes there.
+  /// Where creases of different direction are near each other, three planes meet: the nearest vertex goes there.
   void draw_corners() {
-    std::vector<std::uint32_t> around;
+    std::vector<std::uint32_t> around, further, near;
     for (std::uint32_t u = 0; u < c_.points.size(); ++u) {
       if (!marked(u) || (c_.masks[u] & kCorner)) continue;
       c_.neighbours(u, around);
-      for (const std::uint32_t v : around) {
-        if (v > u && marked(v) && !(c_.masks[v] & kCorner) && surface(u) == surface(v)) draw_corner(u, v);
+      near = around;
+      for (const std::uint32_t n : around) {
+        if (!surfaces_of(c_.masks[n])) continue;
+        c_.neighbours(n, further);
+        near.insert(near.end(), further.begin(), further.end());
+      }
+      std::sort(near.begin(), near.end());
+      near.erase(std::unique(near.begin(), near.end()), near.end());
+      for (const std::uint32_t v : near) {
+        if (v != u && surface(v) == surface(u) && draw_corner(u, v, near)) break;
       }
     }
   }
 
-  void draw_corner(std::uint32_t u, std::uint32_t v) {
+  /// The plane at v that is least like those of a crease; its normal and a point of it.
+  std::pair<Vec3d, Vec3d> third_plane(std::size_t k, std::uint32_t v, const CreasePlanes& crease) const {
+    const Vec3d& q = c_.points[v];
+    if (!marked(v)) return {normal_at(k, q), q};
+    const CreasePlanes pv = crease_planes(w_.fields, k, q, w_.sides[v]);
+    const bool is_a = likeness(pv.normal_a, crease) < likeness(pv.normal_b, crease);
+    return is_a ? std::pair(pv.normal_a, q - pv.normal_a * pv.value_a) : std::pair(pv.normal_b, q - pv.normal_b * pv.value_b);
+  }
+  static double likeness(const Vec3d& n, const CreasePlanes& crease) {
+    return std::max(dot(n, crease.normal_a), dot(n, crease.normal_b));
+  }
+
+  /// The corner of the crease at u and the plane at v, where that is on the surface. @param near  vertices that may go there
+  bool draw_corner(std::uint32_t u, std::uint32_t v, const std::vector<std::uint32_t>& near) {
     const auto k = surface(u);
-    if (!k) return;
-    const CreasePlanes pu = crease_planes(w_.fields, *k, c_.points[u], w_.sides[u]);
-    const CreasePlanes pv = crease_planes(w_.fields, *k, c_.points[v], w_.sides[v]);
-    const Vec3d lu = cross(pu.normal_a, pu.normal_b), lv = cross(pv.normal_a, pv.normal_b);
-    if (std::abs(dot(lu, lv)) > 0.8 * norm(lu) * norm(lv)) return;
-    // The third plane: that side of v which is least like those of u.
-    const auto likeness = [&](const Vec3d& n) { return std::max(dot(n, pu.normal_a), dot(n, pu.normal_b)); };
-    const bool is_a = likeness(pv.normal_a) < likeness(pv.normal_b);
-    const Vec3d third = is_a ? pv.normal_a : pv.normal_b;
-    const double value = is_a ? pv.value_a : pv.value_b;
-    if (likeness(third) > 0.8) return;
-    const Vec3d &p = c_.points[u], &q = c_.points[v];
+    if (!k || (c_.masks[v] & kCorner)) return false;
+    const Vec3d& p = c_.points[u];
+    const CreasePlanes pu = crease_planes(w_.fields, *k, p, w_.sides[u]);
+    const auto [third, q] = third_plane(*k, v, pu);
+    if (likeness(third, pu) > 0.8) return false;
     Mat3d rows;
     for (std::size_t j = 0; j < 3; ++j) rows(0, j) = pu.normal_a[j], rows(1, j) = pu.normal_b[j], rows(2, j) = third[j];
-    if (std::abs(determinant(rows)) < 0.05) return;
+    if (std::abs(determinant(rows)) < 0.05) return false;
     const Vec3d corner = inverse(rows) * Vec3d{dot(pu.normal_a, p) - pu.value_a, dot(pu.normal_b, p) - pu.value_b,
-                                               dot(third, q) - value};
-    const std::uint32_t near = norm(corner - p) <= norm(corner - q) ? u : v;
-    if (norm(corner - c_.points[near]) > 0.7 * w_.edge() || w_.fields.off(corner, Mask{1} << *k) > kSlack * w_.edge())
-      return;
-    if (try_move(near, corner)) c_.masks[near] |= kCorner;
+                                               dot(third, q)};
+    if (w_.fields.off(corner, Mask{1} << *k) > kSlack * w_.edge()) return false;
+    std::vector<std::pair<double, std::uint32_t>> order;
+    for (const std::uint32_t x : near) {
+      const double distance = norm(corner - c_.points[x]);
+      if (surface(x) != k || distance > kCornerReach * w_.edge()) continue;
+      if (c_.masks[x] & kCorner) return false;  // taken
+      order.emplace_back(distance, x);
+    }
+    std::sort(order.begin(), order.end());
+    for (const auto& [distance, x] : order) {
+      if (!try_move(x, corner)) continue;
+      mark(x, w_.sides[u]);
+      c_.masks[x] |= kCorner;
+      return true;
+    }
+    return false;
   }
 
   Workspace& w_;
