@@ -31,7 +31,7 @@ constexpr const char* kCheckFooter =
     "\n"
     "Examples:\n"
     "  glisson check scenes/paper/figure3b.toml\n"
-    "  glisson check scenes/organs/liver.toml --mesh liver.vtu --set tissue.poisson_ratio=0.45";
+    "  glisson check scenes/organs/own_liver.toml --mesh liver.vtu --set tissue.poisson_ratio=0.45";
 
 struct CheckOptions {
   SceneOptions scene;

@@ -17,7 +17,8 @@
 namespace glisson::lattice {
 namespace {
 
-constexpr int kSpreads = 3, kPasses = 12;
+constexpr int kSpreads = 3, kPasses = 12, kLastPasses = 4;
+constexpr double kLastSlack = 0.2;  ///< of the edge
 constexpr double kSpreadFloor = 0.3;  ///< quality that spreading vertices leaves
 constexpr double kTrialGain = 1e-3;
 constexpr double kMostOff = 0.12;  ///< of the edge: the middle of an interface's edge from its surface
@@ -35,6 +36,16 @@ class Improver {
         if (surfaces_of(c_.masks[v])) centre_vertex(w_, v, kSpreadFloor);
       }
     }
+  }
+
+  /// Lets vertices go further from their surfaces where a tet is still poor. @return whether there is one
+  bool let_loose() {
+    loose_ = kLastSlack;
+    std::fill(tried_.begin(), tried_.end(), 0);
+    for (std::uint32_t t = 0; t < c_.tets.size(); ++t) {
+      if (c_.alive(t) && w_.quality(t) < kGood) return true;
+    }
+    return false;
   }
 
   /// @return how many tets got better
@@ -219,13 +230,14 @@ class Improver {
 
   bool loosen(const Tet& tet) {
     bool moved = false;
-    for (const std::uint32_t v : tet) moved = smooth_vertex(w_, v, true) || moved;
+    for (const std::uint32_t v : tet) moved = smooth_vertex(w_, v, loose_) || moved;
     return moved;
   }
 
   Workspace& w_;
   TetComplex& c_;
   double aim_;
+  double loose_ = kFlipSlack;
   std::vector<std::uint32_t> touched_;
   std::vector<std::uint32_t> tried_;  ///< of tets: the complex's clock
 };
@@ -251,6 +263,7 @@ bool improve(Workspace& w, double aim, const std::function<bool(double)>& go_on)
   follow_creases(w);
   improver.refine_curved();
   passes(kPasses);
+  if (!stopped && improver.let_loose()) passes(kLastPasses);
   return !stopped;
 }
 

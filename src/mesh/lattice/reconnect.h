@@ -7,7 +7,7 @@ namespace glisson::lattice {
 
 /// Takes an edge out: the polygon around it, or the two on both sides of an interface, is divided into triangles, each joined
 /// to both ends of the edge. The division with the best worst tet is found by dynamic programming.
-///                                                    [FreitagOllivierGooch1997; Shewchuk2002]
+///                                                    [FreitagOllivierGooch1997]
 /// @return whether the edge went; the least quality of the tets there has then grown
 bool remove_edge(Workspace& w, std::uint32_t u, std::uint32_t v);
 

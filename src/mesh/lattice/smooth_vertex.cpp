@@ -14,11 +14,11 @@ struct SeenFace {
 
 class Climb {
  public:
-  Climb(Workspace& w, std::uint32_t vertex, bool loose)
-      : w_(w), vertex_(vertex), loose_(loose), surfaces_(surfaces_of(w.complex.masks[vertex])) {
+  Climb(Workspace& w, std::uint32_t vertex, double loose)
+      : w_(w), vertex_(vertex), loose_(loose > 0.0), surfaces_(surfaces_of(w.complex.masks[vertex])) {
     const Mask mask = w.complex.masks[vertex];
-    crease_ = (mask & kCrease) && !loose;
-    fixed_ = (mask & kCorner) || (std::popcount(surfaces_) > 2 && !loose);
+    crease_ = (mask & kCrease) && !loose_;
+    fixed_ = (mask & kCorner) || (std::popcount(surfaces_) > 2 && !loose_);
     if (crease_) sides_ = w.sides[vertex];
     static constexpr std::uint8_t kSeen[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
     const auto& points = w.complex.points;
@@ -31,7 +31,7 @@ class Climb {
     quality_.resize(faces_.size());
     at_ = points[vertex];
     least_ = evaluate(at_, -1e300);
-    if (surfaces_) slack_ = std::max((loose ? kFlipSlack : kSlack) * w.edge(), w.fields.off(at_, surfaces_));
+    if (surfaces_) slack_ = std::max(std::max(loose, kSlack) * w.edge(), w.fields.off(at_, surfaces_));
   }
 
   bool run() {
@@ -151,7 +151,7 @@ class Climb {
 
 }  // namespace
 
-bool smooth_vertex(Workspace& w, std::uint32_t vertex, bool loose) { return Climb(w, vertex, loose).run(); }
+bool smooth_vertex(Workspace& w, std::uint32_t vertex, double loose) { return Climb(w, vertex, loose).run(); }
 
 bool centre_vertex(Workspace& w, std::uint32_t vertex, double floor) {
   TetComplex& c = w.complex;
