@@ -112,11 +112,14 @@ std::string refusal(const ImplicitBody& body) {
 TEST(ImplicitBody, RefusesWhatDoesNotFit) {
   const NamedShape ball{"ball", BallShape{{}, 0.01}};
   EXPECT_THAT(refusal({{ball, ball}, {{"ball", "", false}}}), HasSubstr("name of an earlier shape"));
-  EXPECT_THAT(refusal({{ball, {"all", UnionShape{{"bal"}, 0.0}}}, {{"all", "", false}}}), HasSubstr("did you mean \"ball\"?"));
-  EXPECT_THAT(refusal({{ball, {"all", DifferenceShape{{"ball"}, 0.0}}}, {{"all", "", false}}}), HasSubstr("at least one"));
+  EXPECT_THAT(refusal({{ball, {"all", UnionShape{{"bal"}, 0.0}}}, {{"all", "", false}}}),
+              HasSubstr("did you mean \"ball\"?"));
+  EXPECT_THAT(refusal({{ball, {"all", DifferenceShape{{"ball"}, 0.0}}}, {{"all", "", false}}}),
+              HasSubstr("at least one"));
   EXPECT_THAT(refusal({{ball}, {{"body", "box", false}}}), AllOf(HasSubstr("region 0"), HasSubstr("no shape \"box\"")));
   EXPECT_THAT(refusal({{ball}, {{"ball", "", false}, {"ball", "", false}}}), HasSubstr("name of an earlier region"));
-  EXPECT_THAT(refusal({{{"ball", BallShape{{}, -1}}}, {{"ball", "", false}}}), AllOf(HasSubstr("\"ball\""), HasSubstr("radius")));
+  EXPECT_THAT(refusal({{{"ball", BallShape{{}, -1}}}, {{"ball", "", false}}}),
+              AllOf(HasSubstr("\"ball\""), HasSubstr("radius")));
   EXPECT_THAT(refusal({{{"half", HalfSpaceShape{}}}, {{"half", "", false}}}), HasSubstr("reaches to infinity"));
   EXPECT_THAT(refusal({{{"box", BoxShape{{}, {1, 1, 1}, 0.6}}}, {{"box", "", false}}}), HasSubstr("rounding"));
   EXPECT_THAT(refusal({{{"tube", TubeShape{{{{}, 1}}}}}, {{"tube", "", false}}}), HasSubstr("two points or more"));

@@ -79,9 +79,7 @@ class Placed final : public Solid::Node {
       : Node(box_of(of->bounds, turn, scale, move)), of_(std::move(of)), back_(transposed(turn)), scale_(scale),
         move_(move) {}
 
-  double formula(const Vec3d& p) const override {
-    return scale_ * of_->distance(back_ * (p - move_) * (1.0 / scale_));
-  }
+  double formula(const Vec3d& p) const override { return scale_ * of_->distance(back_ * (p - move_) * (1.0 / scale_)); }
 
  private:
   static Bounds box_of(const Bounds& b, const Mat3d& turn, double scale, const Vec3d& move) {

@@ -196,7 +196,8 @@ class Follower {
     if (!marked(v)) return {normal_at(k, q), q};
     const CreasePlanes pv = crease_planes(w_.fields, k, q, w_.sides[v]);
     const bool is_a = likeness(pv.normal_a, crease) < likeness(pv.normal_b, crease);
-    return is_a ? std::pair(pv.normal_a, q - pv.normal_a * pv.value_a) : std::pair(pv.normal_b, q - pv.normal_b * pv.value_b);
+    return is_a ? std::pair(pv.normal_a, q - pv.normal_a * pv.value_a)
+                : std::pair(pv.normal_b, q - pv.normal_b * pv.value_b);
   }
   static double likeness(const Vec3d& n, const CreasePlanes& crease) {
     return std::max(dot(n, crease.normal_a), dot(n, crease.normal_b));
@@ -213,8 +214,8 @@ class Follower {
     Mat3d rows;
     for (std::size_t j = 0; j < 3; ++j) rows(0, j) = pu.normal_a[j], rows(1, j) = pu.normal_b[j], rows(2, j) = third[j];
     if (std::abs(determinant(rows)) < 0.05) return false;
-    const Vec3d corner = inverse(rows) * Vec3d{dot(pu.normal_a, p) - pu.value_a, dot(pu.normal_b, p) - pu.value_b,
-                                               dot(third, q)};
+    const Vec3d corner =
+        inverse(rows) * Vec3d{dot(pu.normal_a, p) - pu.value_a, dot(pu.normal_b, p) - pu.value_b, dot(third, q)};
     if (w_.fields.off(corner, Mask{1} << *k) > kSlack * w_.edge()) return false;
     std::vector<std::pair<double, std::uint32_t>> order;
     for (const std::uint32_t x : near) {

@@ -18,7 +18,7 @@ namespace glisson::lattice {
 namespace {
 
 constexpr int kSpreads = 3, kPasses = 12, kLastPasses = 4;
-constexpr double kLastSlack = 0.2;  ///< of the edge
+constexpr double kLastSlack = 0.2;    ///< of the edge
 constexpr double kSpreadFloor = 0.3;  ///< quality that spreading vertices leaves
 constexpr double kTrialGain = 1e-3;
 constexpr double kMostOff = 0.12;  ///< of the edge: the middle of an interface's edge from its surface
