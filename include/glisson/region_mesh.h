@@ -72,9 +72,9 @@ class MeshingStopped : public std::runtime_error {
 /// Interfaces are shared: the tets of two regions meet in common faces. Parts thinner than two edges may be lost.
 /// Same input, same bytes.
 /// @throws std::invalid_argument  naming the region or option, its value and the way out: no region, an edge that is not
-///   positive or longer than a region is wide, regions that are empty, more than max_tets
+///   positive or longer than a region is wide, regions that are empty, more than max_tets or than there is memory for
 /// @throws MeshingStopped  where `progress` asked for the end
-/// Cost: some 30 µs and 400 bytes a tet.
+/// Cost: some 10 µs and 150 bytes a tet, up to 100 µs where many thin parts meet.
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options);
 
 }  // namespace glisson

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ctime>
 #include <map>
 #include <numbers>
 
@@ -94,8 +95,8 @@ RegionMesh mesh_of(const Solid& solid, double edge) { return mesh_regions({regio
 /// Random bodies, ten a test.
 class RandomBodies : public testing::TestWithParam<unsigned> {};
 
-// A random body is meshed conformingly, every dihedral angle lies between 10° and 165°, and it takes no more than 0.3 ms a
-// tet (six times the mean on the machine it was written on).
+// A random body is meshed conformingly, every dihedral angle lies between 10° and 165°, and it takes no more than 1 ms of the
+// processor a tet, twenty times the mean on the machine it was written on.
 TEST_P(RandomBodies, AreConformingAndOfGoodShape) {
   constexpr double kEdge = 0.15;
   for (unsigned i = 0; i < 10; ++i) {
@@ -103,10 +104,12 @@ TEST_P(RandomBodies, AreConformingAndOfGoodShape) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const std::vector<BodyRegion> regions = RandomShapes(seed).body();
     try {
+      const std::clock_t start = std::clock();
       const RegionMesh made = mesh_regions(regions, {kEdge});
+      const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
       expect_conforming(made.mesh);
       expect_good_shapes(made);
-      EXPECT_LT(made.report.seconds, 1.0 + 3e-4 * static_cast<double>(made.mesh.tets.size()));
+      EXPECT_LT(seconds, 1.0 + 1e-3 * static_cast<double>(made.mesh.tets.size()));
     } catch (const std::invalid_argument& error) {  // a region that others cover
       EXPECT_THAT(error.what(), HasSubstr("earlier regions cover it"));
     }

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/available_memory.h"
 #include "base/text.h"
 
 namespace glisson::lattice {
@@ -19,6 +20,7 @@ namespace {
 
 constexpr int kBlock = 4;  ///< cubes a side of a block
 constexpr double kMaxCells = 4e8;
+constexpr double kBytesATet = 250;  ///< of the mesher and the mesh it returns; measured: 150
 
 class Lattice {
  public:
@@ -122,14 +124,26 @@ class Lattice {
     }
   }
 
+  /// Refuses more tets than are allowed, or than there is memory for.
   void refuse_too_many() const {
     const double tets = 6.0 * static_cast<double>(inside_);  // two vertices and twelve tets a cube
-    if (tets <= static_cast<double>(max_tets_)) return;
-    const double factor = std::cbrt(tets / static_cast<double>(max_tets_));
-    throw std::invalid_argument(
-        "edge [m] = " + detail::show(fields_.edge()) + " asks for some " + detail::number_text(tets, 2) +
-        " tets; at most " + std::to_string(max_tets_) + " are allowed: give an edge of " +
-        detail::number_text(1.02 * factor * fields_.edge(), 2) + " m or more, or raise the limit");
+    const std::string asks =
+        "edge [m] = " + detail::show(fields_.edge()) + " asks for some " + detail::number_text(tets, 2) + " tets; ";
+    const auto larger_edge = [&](double most) {
+      const double factor = std::cbrt(tets / most);
+      return "give an edge of " + detail::number_text(1.02 * factor * fields_.edge(), 2) + " m or more";
+    };
+    const auto allowed = static_cast<double>(max_tets_);
+    if (tets > allowed) {
+      throw std::invalid_argument(asks + "at most " + std::to_string(max_tets_) +
+                                  " are allowed: " + larger_edge(allowed) + ", or raise the limit");
+    }
+    const std::optional<double> memory = detail::available_memory();
+    if (memory && tets * kBytesATet > *memory) {
+      throw std::invalid_argument(asks + "that takes " + detail::number_text(1e-6 * tets * kBytesATet, 2) + " MB and " +
+                                  detail::number_text(1e-6 * *memory, 2) +
+                                  " MB are available: " + larger_edge(std::max(1.0, *memory / kBytesATet)));
+    }
   }
 
   std::uint32_t vertex(bool is_centre, int i, int j, int k) {
