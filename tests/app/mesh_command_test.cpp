@@ -73,8 +73,8 @@ TEST_F(MeshCommand, ExplainsWhatItRefuses) {
   const Outcome fine = run({"mesh", scene, "--set", "mesh.edge_mm=0.1", "--out", (folder_ / "m.vtu").string()});
   EXPECT_THAT(fine, Exits(2));
   EXPECT_THAT(fine.err, HasSubstr("give an edge of"));
-  const Outcome little = run_in({.memory_bytes = 1200UL << 20},
-                                {"mesh", scene, "--set", "mesh.edge_mm=0.33", "--out", (folder_ / "m.vtu").string()});
+  const Outcome little = run_in({.memory_bytes = 400UL << 20},
+                                {"mesh", scene, "--set", "mesh.edge_mm=0.8", "--out", (folder_ / "m.vtu").string()});
   EXPECT_THAT(little, Exits(2));
   EXPECT_THAT(little.err, HasSubstr("MB are available: give an edge of"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "m.vtu"));
