@@ -105,7 +105,9 @@ int mesh(const MeshOptions& options) {
     throw std::invalid_argument("--out " + options.out +
                                 ": the mesh is written as .vtu; give a name that ends in .vtu");
   }
-  const Scene scene = open_scene(options.scene);
+  SceneOptions asked = options.scene;
+  asked.set.insert(asked.set.begin(), "motion.max_steps=1");  // a mesh alone needs no end of a run
+  const Scene scene = open_scene(asked);
   const Variant& variant = chosen_variant(scene, options.quiet);
   MeshCache meshes(options.quiet);
   catch_interrupts();

@@ -50,6 +50,9 @@ name = "tilted"
 [[region]]
 name = "vessel"
 tissue.youngs_modulus_Pa = 9000
+
+[motion]
+duration_s = 0.1
 )";
 
 /// The scene with `from` replaced by `to`.
@@ -106,7 +109,7 @@ TEST(ImplicitScene, IsOverridden) {
 // Slips are told with the place, the value and the way out.
 TEST(ImplicitScene, ExplainsSlips) {
   EXPECT_THAT(complaint(changed("of = [\"vessel\"", "of = [\"vesel\"")),
-              HasSubstr("s.toml:20:1: mesh.shape.2.of: there is no shape \"vesel\" before; did you mean \"vessel\"?"));
+              HasSubstr("s.toml:20:6: mesh.shape.2.of: there is no shape \"vesel\" before; did you mean \"vessel\"?"));
   EXPECT_THAT(complaint(changed("shape = \"inside\"", "shape = \"outside\"")),
               HasSubstr("mesh.region.0.shape: there is no shape"));
   EXPECT_THAT(complaint(changed("name = \"vessel\"\nkind", "name = \"organ\"\nkind")),
@@ -135,7 +138,7 @@ TEST(ImplicitScene, ExplainsWhatCannotBeMeshed) {
 // The liver's options and its vertex sets are known to a scene.
 TEST(LiverScene, HasItsOptionsAndSets) {
   const std::string text =
-      "[mesh]\nkind = \"liver\"\nedge_mm = 16\ntumour_radius_mm = 0\n[[fixed]]\nset = \"bare_area\"\n";
+      "[mesh]\nkind = \"liver\"\nedge_mm = 16\ntumour_radius_mm = 0\n[motion]\nduration_s = 1\n[[fixed]]\nset = \"bare_area\"\n";
   const Variant variant = parse(text).variants.at(0);
   EXPECT_DOUBLE_EQ(std::get<LiverOptions>(variant.mesh).edge, 0.016);
   const TetMesh mesh = build_mesh(variant, {});
