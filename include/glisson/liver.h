@@ -31,7 +31,7 @@ struct LiverOptions {
 };
 
 /// The shapes and regions of a liver: `tumour`, `hepatic_veins`, `portal_veins` and `parenchyma`, in this order of precedence.
-/// Veins thinner than an edge and a half at their end are left out from there.
+/// A vein thinner than 1.2 edges is left out from there, a tree of less than three edges in all.
 /// @throws std::invalid_argument naming the option, its value and the allowed range
 ImplicitBody liver_body(const LiverOptions& options);
 

@@ -8,8 +8,8 @@ namespace {
 
 using Points = std::vector<LiverParts::Point>;
 
-/// The thinnest vein that a mesh can follow: 0.9 edges across.
-constexpr double kThinnest = 0.45;
+constexpr double kThinnest = 0.6;  ///< of the edge: the least radius of a vein in which the lattice always has vertices
+constexpr double kShortest = 3.0;  ///< edges: a tree with less than that in all is no region
 
 /// A vein up to where it becomes too thin for the mesh; empty where less than two points are left.
 Points followed(Points vein, double least) {
@@ -24,15 +24,26 @@ Points followed(Points vein, double least) {
   return n < 2 ? Points{} : vein;
 }
 
+double length_of(const Points& vein) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < vein.size(); ++i) length += norm(vein[i].at - vein[i - 1].at);
+  return length;
+}
+
 void add_tree(LiverParts& parts, const std::string& name, const std::vector<Points>& veins, double edge) {
-  std::vector<std::string> of;
-  for (std::size_t i = 0; i < veins.size(); ++i) {
-    const Points kept = followed(veins[i], kThinnest * edge);
-    if (kept.empty()) continue;
-    of.push_back(name + "_" + std::to_string(i));
-    parts.tube(of.back(), kept);
+  std::vector<Points> kept;
+  double length = 0.0;
+  for (const Points& vein : veins) {
+    kept.push_back(followed(vein, kThinnest * edge));
+    length += length_of(kept.back());
   }
-  if (of.empty()) return;
+  if (length < kShortest * edge) return;
+  std::vector<std::string> of;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (kept[i].empty()) continue;
+    of.push_back(name + "_" + std::to_string(i));
+    parts.tube(of.back(), kept[i]);
+  }
   parts.unite(name + "_tree", of, 2.0);
   parts.region(name, name + "_tree", "whole");
 }
