@@ -138,7 +138,8 @@ TEST(ImplicitScene, ExplainsWhatCannotBeMeshed) {
 // The liver's options and its vertex sets are known to a scene.
 TEST(LiverScene, HasItsOptionsAndSets) {
   const std::string text =
-      "[mesh]\nkind = \"liver\"\nedge_mm = 16\ntumour_radius_mm = 0\n[motion]\nduration_s = 1\n[[fixed]]\nset = \"bare_area\"\n";
+      "[mesh]\nkind = \"liver\"\nedge_mm = 16\ntumour_radius_mm = 0\n[motion]\nduration_s = 1\n[[fixed]]\nset = "
+      "\"bare_area\"\n";
   const Variant variant = parse(text).variants.at(0);
   EXPECT_DOUBLE_EQ(std::get<LiverOptions>(variant.mesh).edge, 0.016);
   const TetMesh mesh = build_mesh(variant, {});
