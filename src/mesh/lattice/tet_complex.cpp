@@ -152,14 +152,13 @@ void TetComplex::neighbours(std::uint32_t vertex, std::vector<std::uint32_t>& ou
 }
 
 std::uint32_t TetComplex::split_edge(std::uint32_t u, std::uint32_t v, const Vec3d& at) {
-  std::array<std::uint32_t, 128> around;
-  std::size_t n = 0;
+  thread_local std::vector<std::uint32_t> around;
+  around.clear();
   for (const std::uint32_t t : stars[u]) {
-    if (has(t, v) && n < around.size()) around[n++] = t;
+    if (has(t, v)) around.push_back(t);
   }
   const std::uint32_t m = add_vertex(at);
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t t = around[i];
+  for (const std::uint32_t t : around) {
     const Label label = labels[t];
     Tet low = tets[t], high = tets[t];
     low[corner_of(low, v)] = m;
