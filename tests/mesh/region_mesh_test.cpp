@@ -219,6 +219,39 @@ TEST(RegionMesh, KeepsSharpEdges) {
   EXPECT_LT(off.back(), 0.2);  // where a face bridges an edge near its end
 }
 
+/// The tets of a region as a mesh of its own.
+TetMesh part_of(const TetMesh& mesh, int region) {
+  TetMesh part;
+  part.vertices = mesh.vertices;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (mesh.regions[t] == region) part.tets.push_back(mesh.tets[t]);
+  }
+  return part;
+}
+
+// What is two edges thick is kept whole: a shell without holes, and a vessel in one piece inside another region.
+TEST(RegionMesh, KeepsWhatIsTwoEdgesThick) {
+  const double edge = 0.005;
+  const RegionMesh shell = mesh_of(subtract(BallShape{{}, 0.05}, {Solid(BallShape{{}, 0.04})}), edge);
+  const double exact = 4.0 / 3.0 * kPi * (125e-6 - 64e-6);
+  EXPECT_NEAR(shell.report.regions[0].volume, exact, 0.01 * exact);
+  EXPECT_EQ(inspect(shell.mesh).pieces, 1u);
+  std::size_t inside = 0;
+  for (const Triangle& t : boundary_triangles(shell.mesh)) inside += norm(shell.mesh.vertices[t[0]]) < 0.045;
+  // Euler's formula for a closed surface without handles, 2 = V − E + F = V − F/2, holds for the inner wall.
+  std::vector<std::uint32_t> corners;
+  for (const Triangle& t : boundary_triangles(shell.mesh)) {
+    if (norm(shell.mesh.vertices[t[0]]) < 0.045) corners.insert(corners.end(), t.begin(), t.end());
+  }
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  EXPECT_EQ(2 * corners.size(), inside + 4);
+
+  const Solid vessel = TubeShape{{{{-0.04, 0, 0}, edge}, {{0, 0.02, 0.01}, edge}, {{0.04, -0.01, 0}, edge}}};
+  const RegionMesh body = mesh_regions({region_of("vessel", vessel), region_of("body", BallShape{{}, 0.06})}, {edge});
+  EXPECT_EQ(inspect(part_of(body.mesh, 1)).pieces, 1u);
+}
+
 // The same body gives the same bytes.
 TEST(RegionMesh, IsTheSameEachTime) {
   const std::vector<BodyRegion> regions = RandomShapes(8).body();
