@@ -23,7 +23,7 @@ ANY_NAME = "# Written without a look at the module: {why}\nfrom typing import An
 CLASS = re.compile(r"^class (\w+)[^\n]*:\n(?:(?:    [^\n]*|)\n)+", re.MULTILINE)
 INIT = re.compile(r"^    def __init__\(self, \*\*kwargs\)[^\n]*\n", re.MULTILINE)
 SETTER = re.compile(r"@(\w+)\.setter\n    def \1\(self, arg: (.+?), /\) -> None")
-MAKER = re.compile(r"^def (box|cylinder)_mesh\(\*\*kwargs\)", re.MULTILINE)
+MAKER = re.compile(r"^def (box|cylinder|liver)_mesh\(\*\*kwargs\)", re.MULTILINE)
 
 
 def constructor(text: str) -> str:

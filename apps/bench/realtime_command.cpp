@@ -32,7 +32,7 @@ constexpr const char* kFooter =
     "Examples:\n"
     "  glisson bench realtime scenes/paper/figure3b.toml --variant eta_0\n"
     "  glisson bench realtime scenes/needle/liver_container.toml --variant live --find\n"
-    "  glisson bench realtime scenes/organs/liver.toml --mesh liver.vtu --seconds 30 --json realtime.json";
+    "  glisson bench realtime scenes/organs/liver.toml --seconds 30 --json realtime.json";
 
 constexpr std::size_t kMostEventful = 20;  // lines of events
 

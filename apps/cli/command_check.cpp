@@ -31,7 +31,7 @@ constexpr const char* kCheckFooter =
     "\n"
     "Examples:\n"
     "  glisson check scenes/paper/figure3b.toml\n"
-    "  glisson check scenes/organs/liver.toml --mesh liver.vtu --set tissue.poisson_ratio=0.45";
+    "  glisson check scenes/organs/own_liver.toml --mesh liver.vtu --set tissue.poisson_ratio=0.45";
 
 struct CheckOptions {
   SceneOptions scene;
@@ -134,6 +134,12 @@ std::string finer_mesh(const MeshSource& mesh, double factor) {
   if (const auto* cylinder = std::get_if<CylinderOptions>(&mesh)) {
     return fmt::format("mesh.radial_cells = {} and mesh.axial_cells = {}", times(cylinder->radial_cells),
                        times(cylinder->axial_cells));
+  }
+  if (const auto* body = std::get_if<ImplicitBody>(&mesh)) {
+    return fmt::format("mesh.edge_mm = {:.2g}", 1e3 * body->edge / factor);
+  }
+  if (const auto* liver = std::get_if<LiverOptions>(&mesh)) {
+    return fmt::format("mesh.edge_mm = {:.2g}", 1e3 * liver->edge / factor);
   }
   return fmt::format("a mesh {:.2g} times as fine there", factor);
 }

@@ -40,6 +40,7 @@ nlohmann::ordered_json info_json(const std::string& file, const TetMesh& mesh, c
   json["worst_mean_ratio"] = r.worst_mean_ratio;
   json["worst_tet"] = r.worst_tet;
   json["median_mean_ratio"] = r.median_mean_ratio;
+  json["dihedral_histogram_10_deg"] = dihedral_histogram(mesh);
   json["reoriented_tets"] = r.reoriented_tets;
   json["duplicate_tets"] = r.duplicate_tets;
   json["degenerate_tets"] = r.degenerate_tets;

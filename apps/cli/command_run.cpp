@@ -29,7 +29,7 @@ constexpr const char* kRunFooter =
     "Examples:\n"
     "  glisson run scenes/paper/figure2.toml\n"
     "  glisson run scenes/paper/figure2.toml --set tissue.poisson_ratio=0.45 --out out/stiffer\n"
-    "  glisson run scenes/organs/liver.toml --mesh liver.vtu\n"
+    "  glisson run scenes/organs/own_liver.toml --mesh liver.vtu\n"
     "  glisson run scenes/paper/figure3b.toml --variant eta_0 eta_1000 --threads 2";
 
 struct RunOptions {

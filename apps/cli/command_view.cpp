@@ -29,7 +29,7 @@ constexpr const char* kViewFooter =
     "  glisson view scenes/needle/bovine_liver.toml\n"
     "  glisson view scenes/paper/figure3a.toml --variant v10 --port 8080\n"
     "  glisson view out/figure3a --variant v10\n"
-    "  glisson view scenes/organs/liver.toml --mesh liver.vtu --host 0.0.0.0 --token \"$(openssl rand -hex 16)\"";
+    "  glisson view scenes/organs/liver.toml --host 0.0.0.0 --token \"$(openssl rand -hex 16)\"";
 
 struct Options {
   SceneOptions scene;

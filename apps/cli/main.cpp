@@ -35,6 +35,7 @@ constexpr const char* kFooter =
     "  glisson converge my_scene.toml           the error of its mesh, from finer ones\n"
     "  glisson fit my_fit.toml                  a tissue for measured curves, with uncertainties\n"
     "  glisson view my_scene.toml               run it live in the browser: push, pull, read the force\n"
+    "  glisson mesh my_scene.toml --out b.vtu   write the mesh of a scene, and its figures\n"
     "  glisson info organ.vtu                   contents and defects of a mesh file\n"
     "  glisson bench --quick                    what a step costs on this machine\n"
     "\n"
@@ -85,6 +86,7 @@ int run_program(int argc, char** argv) {
   add_run(program, action);
   add_check(program, action);
   add_converge(program, action);
+  add_mesh(program, action);
   add_info(program, action);
   add_reproduce(program, action);
   add_schema(program, action);

@@ -24,6 +24,8 @@ Override parse_override(const std::string& text) {
 
 std::string mesh_text(const MeshSource& source) {
   if (const auto* file = std::get_if<MeshFile>(&source)) return file->path.string();
+  if (std::holds_alternative<ImplicitBody>(source)) return "a body of shapes";
+  if (std::holds_alternative<LiverOptions>(source)) return "a liver of shapes";
   return std::holds_alternative<BoxOptions>(source) ? "a box" : "a cylinder";
 }
 

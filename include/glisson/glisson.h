@@ -4,6 +4,7 @@
 // Glisson::fit) are libraries of their own.
 #pragma once
 
+#include "glisson/implicit.h"
 #include "glisson/instruments/blade.h"
 #include "glisson/instruments/capsule.h"
 #include "glisson/instruments/contact.h"
@@ -14,11 +15,13 @@
 #include "glisson/instruments/needle.h"
 #include "glisson/instruments/rigid_motion.h"
 #include "glisson/instruments/tool_motion.h"
+#include "glisson/liver.h"
 #include "glisson/material_point.h"
 #include "glisson/math.h"
 #include "glisson/mesh.h"
 #include "glisson/mesh_refinement.h"
 #include "glisson/oscillation.h"
+#include "glisson/region_mesh.h"
 #include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 #include "glisson/simulation/tet_fields.h"

@@ -51,6 +51,12 @@ double volume(const TetMesh& mesh);
 ///                                                                        [LiuJoe1994, eq. 1]
 double regular_mean_ratio(const TetMesh& mesh, std::size_t tet);
 
+/// The dihedral angles of a tet at its edges 01, 02, 03, 12, 13, 23 [degrees].
+std::array<double, 6> dihedral_angles(const TetMesh& mesh, std::size_t tet);
+
+/// Counts of the dihedral angles of all tets, six each, in bins of `bin_deg` degrees from 0° to 180°.
+std::vector<std::size_t> dihedral_histogram(const TetMesh& mesh, double bin_deg = 10.0);
+
 /// How a cube is split into six tetrahedra.
 enum class BoxSplit { kuhn, alternating };
 template <>

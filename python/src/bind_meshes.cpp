@@ -155,6 +155,9 @@ void bind_meshes(nb::module_& m) {
           "refined", [](const TetMesh& mesh) { return refined(mesh); }, doc("refined"))
       .def("boundary_triangles", triangles_of, doc("boundary_triangles"))
       .def(
+          "dihedral_histogram", [](const TetMesh& mesh, double bin_deg) { return dihedral_histogram(mesh, bin_deg); },
+          "bin_deg"_a = 10.0, doc("dihedral_histogram"))
+      .def(
           "inspect", [](const TetMesh& mesh) { return inspect(mesh); }, doc("inspect"))
       .def("__getstate__", mesh_state, nb::sig(kGetState))
       .def("__setstate__", set_mesh_state, nb::sig(kSetState))

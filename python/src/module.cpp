@@ -9,6 +9,7 @@ NB_MODULE(_core, m) {
   nanobind::set_leak_warnings(false);  // objects of a script may live until the interpreter ends
   m.doc() = "The engine of glisson; import glisson instead.";
   py::bind_meshes(m);
+  py::bind_implicit(m);
   py::bind_tissues(m);
   py::bind_material_point(m);
   py::bind_instruments(m);

@@ -6,6 +6,7 @@
 namespace glisson::python {
 
 void bind_meshes(nanobind::module_& m);
+void bind_implicit(nanobind::module_& m);
 void bind_tissues(nanobind::module_& m);
 void bind_material_point(nanobind::module_& m);
 void bind_instruments(nanobind::module_& m);

@@ -79,6 +79,24 @@ void add_sets(std::string& text, const TetMesh& mesh) {
   }
 }
 
+/// Dihedral angles in bins of 10°, as bars of up to 40 marks.
+void add_angles(std::string& text, const TetMesh& mesh) {
+  constexpr std::size_t kWidth = 40;
+  const std::vector<std::size_t> counts = dihedral_histogram(mesh);
+  const auto is_used = [](std::size_t n) { return n > 0; };
+  const auto first = std::find_if(counts.begin(), counts.end(), is_used);
+  const auto last = std::find_if(counts.rbegin(), counts.rend(), is_used).base();
+  const std::size_t most = *std::max_element(counts.begin(), counts.end());
+  text += "\nDihedral angles:\n";
+  for (auto bin = first; bin < last; ++bin) {
+    const auto from = 10 * (bin - counts.begin());
+    const std::size_t marks = (*bin * kWidth + most - 1) / most;  // one for the least that is not 0
+    char range[40];
+    std::snprintf(range, sizeof range, "  %3td°–%3td° %10zu ", from, from + 10, *bin);
+    text += range + std::string(marks, '#') + '\n';
+  }
+}
+
 void add_warnings(std::string& text, const MeshReport& report) {
   if (report.warnings.empty()) {
     text += "\nNothing suspicious.\n";
@@ -104,6 +122,7 @@ std::string format_report(const std::string& name, const MeshReport& report, con
   if (mesh != nullptr) {
     add_regions(text, *mesh);
     add_sets(text, *mesh);
+    if (!mesh->tets.empty()) add_angles(text, *mesh);
   }
   add_warnings(text, report);
   return text;

@@ -21,6 +21,7 @@ using namespace scene;
 std::vector<std::string> generated_sets(const MeshSource& mesh) {
   if (std::holds_alternative<BoxOptions>(mesh)) return {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
   if (std::holds_alternative<CylinderOptions>(mesh)) return {"bottom", "top", "wall", "axis"};
+  if (std::holds_alternative<LiverOptions>(mesh)) return {"bare_area", "dome", "visceral_face"};
   return {};
 }
 

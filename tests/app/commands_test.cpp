@@ -29,7 +29,7 @@ TEST_F(Commands, CheckNamesInstrumentsByTheirKind) {
 // Every subcommand explains itself with examples.
 TEST_F(Commands, HelpHasExamples) {
   for (const std::string command :
-       {"run", "check", "converge", "info", "reproduce", "schema", "laws", "tissues", "material"}) {
+       {"run", "check", "converge", "mesh", "info", "reproduce", "schema", "laws", "tissues", "material"}) {
     const Outcome outcome = run({command, "--help"});
     EXPECT_THAT(outcome, Exits(0)) << command;
     EXPECT_NE(outcome.out.find("Examples:\n  glisson " + command), std::string::npos) << outcome.out;

@@ -14,7 +14,7 @@ namespace {
 TEST(Liver, IsPressedAtTheAutomaticStep) {
   const std::filesystem::path file = test::shipped("../shared/data/meshes/liver.vtu");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "the liver mesh is not here: " << file;
-  const Scene scene = test::shipped_scene("organs/liver.toml", {{"mesh.path", file.string()}});
+  const Scene scene = test::shipped_scene("organs/own_liver.toml", {{"mesh.path", file.string()}});
   const MeshLoader load = [](const MeshFile& source) { return read_mesh(source.path, source.scale).mesh; };
   const test::RunRecord run = test::run_recorded(scene.variants.front(), load);
 

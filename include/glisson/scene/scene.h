@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "glisson/implicit.h"
 #include "glisson/instruments/blade.h"
 #include "glisson/instruments/capsule.h"
 #include "glisson/instruments/contact.h"
@@ -22,6 +23,7 @@
 #include "glisson/instruments/needle.h"
 #include "glisson/instruments/rigid_motion.h"
 #include "glisson/instruments/tool_motion.h"
+#include "glisson/liver.h"
 #include "glisson/material/tissue.h"
 #include "glisson/mesh.h"
 #include "glisson/simulation/probe.h"
@@ -40,7 +42,7 @@ struct MeshFile {
   std::filesystem::path path;  ///< absolute, or relative to the current directory
   double scale = 1.0;          ///< factor on coordinates
 };
-using MeshSource = std::variant<BoxOptions, CylinderOptions, MeshFile>;
+using MeshSource = std::variant<BoxOptions, CylinderOptions, MeshFile, ImplicitBody, LiverOptions>;
 
 // `origin` in the structs below is the place in the scene, `file:line:column: key`, for messages that need the mesh. It
 // may be empty.
@@ -400,7 +402,7 @@ class RunObserver {
 };
 
 /// Mesh, sets and regions of a variant, ready to simulate. @throws SceneError, and what `load` throws
-TetMesh build_mesh(const Variant& variant, const MeshLoader& load);
+TetMesh build_mesh(const Variant& variant, const MeshLoader& load, const std::function<bool(double)>& progress = {});
 
 /// Tissue of each region number that occurs in a mesh made by build_mesh.
 std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh);

@@ -18,13 +18,15 @@ namespace {
   throw SceneError((origin.empty() ? variant.scene_name + name : origin) + ": " + what);
 }
 
-TetMesh source_mesh(const Variant& variant, const MeshLoader& load) {
+TetMesh source_mesh(const Variant& variant, const MeshLoader& load, const std::function<bool(double)>& progress) {
   if (const auto* file = std::get_if<MeshFile>(&variant.mesh)) {
     if (!load) fail(variant, "", "no reader for mesh files was given, and [mesh] asks for " + file->path.string());
     return load(*file);
   }
   try {
     if (const auto* box = std::get_if<BoxOptions>(&variant.mesh)) return box_mesh(*box);
+    if (const auto* body = std::get_if<ImplicitBody>(&variant.mesh)) return implicit_mesh(*body, progress).mesh;
+    if (const auto* liver = std::get_if<LiverOptions>(&variant.mesh)) return liver_mesh(*liver, progress).mesh;
     return cylinder_mesh(std::get<CylinderOptions>(variant.mesh));
   } catch (const std::invalid_argument& error) {
     fail(variant, "", std::string("mesh: ") + error.what());
@@ -184,8 +186,8 @@ Probes probes_of(const Variant& variant, const Simulation& simulation) {
 
 }  // namespace
 
-TetMesh build_mesh(const Variant& variant, const MeshLoader& load) {
-  TetMesh mesh = source_mesh(variant, load);
+TetMesh build_mesh(const Variant& variant, const MeshLoader& load, const std::function<bool(double)>& progress) {
+  TetMesh mesh = source_mesh(variant, load, progress);
   require_not_empty(variant, mesh);
   for (const auto& [name, selection] : variant.sets)
     mesh.vertex_sets[name] = scene::select_vertices(mesh, name, selection);

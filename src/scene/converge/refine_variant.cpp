@@ -33,6 +33,14 @@ bool multiply_cells(MeshSource& mesh, double factor) {
     for (int& n : box->cells) multiply(n);
     return true;
   }
+  if (auto* body = std::get_if<ImplicitBody>(&mesh)) {
+    body->edge /= factor;
+    return true;
+  }
+  if (auto* liver = std::get_if<LiverOptions>(&mesh)) {
+    liver->edge /= factor;
+    return true;
+  }
   auto* cylinder = std::get_if<CylinderOptions>(&mesh);
   if (cylinder == nullptr) return false;
   multiply(cylinder->radial_cells), multiply(cylinder->axial_cells);

@@ -12,7 +12,8 @@ struct RefinedVariant {
   bool split = false;  ///< whether tets were split: sets and regions are then those of the given mesh
 };
 
-/// Gives a mesh made of cells so many times as many along every direction, at least one. @return whether it is
+/// Gives a mesh made of cells so many times as many along every direction, at least one, and one of shapes edges so many times
+/// shorter. @return whether it is one of these
 bool multiply_cells(MeshSource& mesh, double factor);
 
 /// The variant with its mesh `times` times twice as fine.

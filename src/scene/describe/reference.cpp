@@ -27,6 +27,9 @@ std::string scene_reference_markdown() {
       .append("```\n\n## Sections\n\n");
   text += "### The top of the scene\n\n" + scene_section().help + "\n\n" + key_table(scene_section());
   text += section_text(mesh_section(), "`[mesh]`");
+  text += section_text(shape_section(), "`[[mesh.shape]]`");
+  text += section_text(tube_point_section(), "`[[mesh.shape.points]]`");
+  text += section_text(shape_region_section(), "`[[mesh.region]]`");
   text += section_text(selection_section(), "`[sets.NAME]`") + selection_parts();
   text += section_text(tissue_section(), "`[tissue]`");
   text += section_text(hyperelastic_section(), "`[tissue.hyperelastic]`");

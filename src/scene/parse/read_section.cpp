@@ -49,16 +49,28 @@ std::vector<Headed> headed_sections(const std::vector<const SectionSpec*>& roots
   return all;
 }
 
-/// Where a key exists, e.g. "[motion]", in the sections' own keys before those of their kinds; empty: nowhere.
-std::string home_of_key(const std::string& key, const std::vector<const SectionSpec*>& roots) {
+/// The kind of a section that has the key: "[[instrument]] of kind "punch""; empty: none.
+std::string kind_with(const Headed& h, const std::string& key) {
+  for (const KindSpec& kind : h.section->kinds) {
+    if (kind.section.find(key)) return h.heading() + " of kind \"" + kind.section.name + "\"";
+  }
+  return "";
+}
+
+/// Where a key exists, e.g. "[motion]": in another kind of the section it was given in, in the sections' own keys, in those of
+/// their kinds; empty: nowhere.
+std::string home_of_key(const std::string& key, const SectionSpec& given_in,
+                        const std::vector<const SectionSpec*>& roots) {
   const std::vector<Headed> all = headed_sections(roots);
+  for (const Headed& h : all) {
+    if (h.section != &given_in) continue;
+    if (std::string home = kind_with(h, key); !home.empty()) return home;
+  }
   for (const Headed& h : all) {
     if (h.section->find(key)) return h.heading();
   }
   for (const Headed& h : all) {
-    for (const KindSpec& kind : h.section->kinds) {
-      if (kind.section.find(key)) return h.heading() + " of kind \"" + kind.section.name + "\"";
-    }
+    if (std::string home = kind_with(h, key); !home.empty()) return home;
   }
   return "";
 }
@@ -71,7 +83,7 @@ std::string unknown_key(const SectionSpec& section, const KindSpec* kind, const 
   if (const std::string meant = nearest(word, known); !meant.empty() && meant != word) {
     return "unknown key; did you mean " + in_ticks(meant) + "?";
   }
-  if (const std::string home = home_of_key(word, roots); !home.empty())
+  if (const std::string home = home_of_key(word, section, roots); !home.empty())
     return "unknown key here; it belongs in " + home;
   return "unknown key; known here: " + listed(known);
 }

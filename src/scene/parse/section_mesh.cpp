@@ -18,6 +18,12 @@ SectionSpec cylinder_kind() {
                                     "the vertex sets `bottom`, `top`, `wall`, `axis`.");
 }
 
+SectionSpec liver_kind() {
+  return described<LiverOptions>(
+      "A liver of shapes with the regions `parenchyma`, `portal_veins`, `hepatic_veins` and "
+      "`tumour`, and the vertex sets `bare_area`, `dome` and `visceral_face` (docs/liver.md).");
+}
+
 SectionSpec file_kind() {
   Section<MeshFile> s("file",
                       "A mesh of tetrahedra from a file: .vtu, .vtk, .msh (Gmsh 2.2 or 4.1). Its named groups "
@@ -94,6 +100,7 @@ const SectionSpec& mesh_section() {
     s.name = "mesh";
     s.help = "The body: a generated mesh or one from a file, selected by `kind`.";
     s.kinds = {mesh_kind<BoxOptions>(box_kind()), mesh_kind<CylinderOptions>(cylinder_kind()),
+               mesh_kind<ImplicitBody>(implicit_body_kind()), mesh_kind<LiverOptions>(liver_kind()),
                mesh_kind<MeshFile>(file_kind())};
     return s;
   }();

@@ -9,6 +9,10 @@
 namespace glisson::scene {
 
 const SectionSpec& mesh_section();               ///< fills MeshSource
+const SectionSpec& shape_section();              ///< fills NamedShape
+const SectionSpec& shape_region_section();       ///< fills ShapeRegion
+const SectionSpec& tube_point_section();         ///< fills TubePoint
+SectionSpec implicit_body_kind();                ///< of [mesh]; fills ImplicitBody
 const SectionSpec& box_section();                ///< fills Selection::Box
 const SectionSpec& sphere_section();             ///< fills Selection::Sphere
 const SectionSpec& selection_section();          ///< fills Selection
@@ -52,6 +56,7 @@ inline const SectionSpec& section_of(std::type_identity<Fibres>) { return fibres
 inline const SectionSpec& section_of(std::type_identity<TimeLaw>) { return time_law_section(); }
 inline const SectionSpec& section_of(std::type_identity<MaxwellBranch>) { return maxwell_section(); }
 inline const SectionSpec& section_of(std::type_identity<ImplicitOptions>) { return implicit_section(); }
+inline const SectionSpec& section_of(std::type_identity<TubePoint>) { return tube_point_section(); }
 inline const SectionSpec& section_of(std::type_identity<Rupture>) { return rupture_section(); }
 inline const SectionSpec& section_of(std::type_identity<TipResistance>) { return tip_section(); }
 inline const SectionSpec& section_of(std::type_identity<InnerMembrane>) { return inner_membrane_section(); }

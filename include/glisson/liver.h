@@ -1,0 +1,42 @@
+// liver.h — a liver of shapes: lobes, fissures, vessels to the third generation and a tumour, in the proportions of an adult.
+//
+// Axes as a scene of the upright body has them: x to the patient's left, y to the back, z to the head. The origin lies in the
+// middle of the organ's box. Sizes, angles and calibres with their sources: docs/liver.md.
+#pragma once
+
+#include "glisson/implicit.h"
+
+namespace glisson {
+
+struct LiverOptions {
+  static constexpr std::string_view kName = "liver";
+  double edge = 0.008;                        ///< mean length of the tets' edges [m], > 0
+  double scale = 1.0;                         ///< factor on all lengths [-]; 1: 21 × 16 × 11 cm
+  bool vessels = true;                        ///< portal and hepatic veins as regions; else they are parenchyma
+  Vec3d tumour_center{-0.035, -0.005, 0.01};  ///< [m], before scaling
+  double tumour_radius = 0.012;               ///< [m], before scaling; 0: no tumour
+  std::uint64_t max_tets = 5000000;           ///< more are refused
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using L = LiverOptions;
+    return take(field("edge", &L::edge, "mm", above(0), "mean length of the tets' edges")
+                    .advise("15 gives some 5000 tets, 8 some 31 000, 2 some 1.9 million"),
+                field("scale", &L::scale, "-", between(0.2, 3), "factor on all lengths"),
+                field("vessels", &L::vessels, "portal and hepatic veins as regions of their own"),
+                field("tumour_center", &L::tumour_center, "mm", "centre of the tumour, before scaling"),
+                field("tumour_radius", &L::tumour_radius, "mm", at_least(0), "its radius, before scaling; 0: none"),
+                field("max_tets", &L::max_tets, between(1, 1e9), "a finer mesh is refused"));
+  }
+};
+
+/// The shapes and regions of a liver: `tumour`, `hepatic_veins`, `portal_veins` and `parenchyma`, in this order of precedence.
+/// A vein thinner than 1.2 edges is left out from there, a tree of less than three edges in all.
+/// @throws std::invalid_argument naming the option, its value and the allowed range
+ImplicitBody liver_body(const LiverOptions& options);
+
+/// Its mesh, with the vertex sets `bare_area` (at the back, around the vena cava), `dome` (under the diaphragm) and
+/// `visceral_face` (below). @throws as liver_body and mesh_regions
+RegionMesh liver_mesh(const LiverOptions& options, std::function<bool(double)> progress = {});
+
+}  // namespace glisson

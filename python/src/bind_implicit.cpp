@@ -1,0 +1,114 @@
+// bind_implicit.cpp — bodies of shapes or of any function of a point, their mesher, and the liver.
+#include "bind.h"
+#include "glisson/implicit.h"
+#include "glisson/liver.h"
+#include "rooms.h"
+
+namespace glisson::python {
+namespace {
+
+using Shapes = std::vector<Solid>;
+
+void bind_shapes(nb::module_& m) {
+  Options<BallShape>(m, "BallShape");
+  Options<EllipsoidShape>(m, "EllipsoidShape");
+  Options<BoxShape>(m, "BoxShape");
+  Options<CylinderShape>(m, "CylinderShape");
+  Options<TubePoint>(m, "TubePoint");
+  Options<TubeShape>(m, "TubeShape");
+  Options<TorusShape>(m, "TorusShape");
+  Options<HalfSpaceShape>(m, "HalfSpaceShape");
+}
+
+void bind_solid(nb::module_& m) {
+  nb::class_<Solid>(m, "Solid", doc("Solid"))
+      .def(nb::init_implicit<BallShape>(), "shape"_a)
+      .def(nb::init_implicit<EllipsoidShape>(), "shape"_a)
+      .def(nb::init_implicit<BoxShape>(), "shape"_a)
+      .def(nb::init_implicit<CylinderShape>(), "shape"_a)
+      .def(nb::init_implicit<TubeShape>(), "shape"_a)
+      .def(nb::init_implicit<TorusShape>(), "shape"_a)
+      .def(nb::init_implicit<HalfSpaceShape>(), "shape"_a)
+      .def_static(
+          "from_function",
+          [](std::function<double(const Vec3d&)> distance, const Vec3d& min, const Vec3d& max) {
+            return Solid(std::move(distance), {min, max});
+          },
+          "distance"_a, "min"_a, "max"_a,
+          "Any function of a point [m]: negative inside, outside at most the distance, of its size near the surface; "
+          "the box "
+          "from `min` to `max` holds all of it.")
+      .def("distance", &Solid::distance, "point"_a, doc("Solid::distance"))
+      .def_prop_ro(
+          "bounds", [](const Solid& s) { return std::pair(s.bounds().min, s.bounds().max); }, doc("Solid::bounds"))
+      .def(
+          "placed",
+          [](const Solid& s, double scale, const Vec3d& axis, double angle_deg, const Vec3d& move) {
+            return s.placed({"", scale, axis, angle_deg, move});
+          },
+          nb::kw_only(), "scale"_a = 1.0, "axis"_a = Vec3d{0, 0, 1}, "angle_deg"_a = 0.0, "move"_a = Vec3d{},
+          "Scaled about the origin, turned about an axis through it and moved [m], in this order.")
+      .def("__or__",
+           [](const Solid& a, const Solid& b) {
+             return unite({a, b});
+           })
+      .def("__and__",
+           [](const Solid& a, const Solid& b) {
+             return intersect({a, b});
+           })
+      .def("__sub__", [](const Solid& a, const Solid& b) { return subtract(a, {b}); });
+  m.def("unite", unite, "shapes"_a, "blend"_a = 0.0, doc("unite"));
+  m.def("intersect", intersect, "shapes"_a, "blend"_a = 0.0, doc("intersect"));
+  m.def("subtract", subtract, "shape"_a, "others"_a, "blend"_a = 0.0, doc("subtract"));
+}
+
+using Made = std::pair<TetMesh, RegionMeshReport>;
+
+Made made(RegionMesh mesh) { return {std::move(mesh.mesh), std::move(mesh.report)}; }
+
+void bind_mesher(nb::module_& m) {
+  nb::class_<BodyRegion>(m, "BodyRegion", doc("BodyRegion"))
+      .def(
+          "__init__",
+          [](BodyRegion* self, const std::string& name, const Solid& solid, bool hole) {
+            new (self) BodyRegion(region_of(name, solid, hole));
+          },
+          "name"_a, "solid"_a, "hole"_a = false)
+      .def_ro("name", &BodyRegion::name)
+      .def_ro("hole", &BodyRegion::hole, doc("BodyRegion::hole"));
+  nb::class_<RegionVolume>(m, "RegionVolume", doc("RegionVolume"))
+      .def_ro("name", &RegionVolume::name)
+      .def_ro("number", &RegionVolume::number, doc("RegionVolume::number"))
+      .def_ro("tets", &RegionVolume::tets)
+      .def_ro("volume", &RegionVolume::volume, doc("RegionVolume::volume"));
+  nb::class_<RegionMeshReport>(m, "RegionMeshReport", doc("RegionMeshReport"))
+      .def_ro("min_dihedral_deg", &RegionMeshReport::min_dihedral_deg)
+      .def_ro("max_dihedral_deg", &RegionMeshReport::max_dihedral_deg)
+      .def_ro("seconds", &RegionMeshReport::seconds)
+      .def_ro("regions", &RegionMeshReport::regions, doc("RegionMeshReport::regions"))
+      .def_ro("poor_tets", &RegionMeshReport::poor_tets, doc("RegionMeshReport::poor_tets"))
+      .def_ro("warnings", &RegionMeshReport::warnings, doc("RegionMeshReport::warnings"));
+  m.def(
+      "mesh_regions",
+      [](const std::vector<BodyRegion>& regions, double edge, std::size_t max_tets) {
+        return made(mesh_regions(regions, {edge, max_tets, [](double) { return PyErr_CheckSignals() == 0; }}));
+      },
+      "regions"_a, "edge"_a, "max_tets"_a = RegionMeshOptions{}.max_tets, doc("mesh_regions"));
+  Options<LiverOptions>(m, "LiverOptions");
+  m.def(
+      "liver_mesh",
+      [](const nb::kwargs& options) {
+        return made(liver_mesh(nb::cast<LiverOptions>(nb::type<LiverOptions>()(**options))));
+      },
+      doc("liver_mesh"));
+}
+
+}  // namespace
+
+void bind_implicit(nb::module_& m) {
+  bind_shapes(m);
+  bind_solid(m);
+  bind_mesher(m);
+}
+
+}  // namespace glisson::python

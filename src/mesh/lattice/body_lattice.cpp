@@ -1,0 +1,211 @@
+// body_lattice.cpp — the corners and centres of cubes, and four tets about each face between two centres.
+//
+//        o-----------o          Two centres C, D on the sides of a common face and an edge P–Q of the face make a tet:
+//       /|    D     /|          its dihedral angles are 60° and 90°, its edges 1 (C–D, P–Q) and √3/2 of the cube's side.
+//      o-+---------o |
+//      | o - Q - - + o          Blocks of cubes are skipped where no region's distance, taken at the block's centre, reaches
+//      |/    C     |/           them: no vertex is evaluated far outside.
+//      o-----P-----o
+#include "mesh/lattice/body_lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/available_memory.h"
+#include "base/text.h"
+
+namespace glisson::lattice {
+namespace {
+
+constexpr int kBlock = 4;  ///< cubes a side of a block
+constexpr double kMaxCells = 4e8;
+constexpr double kBytesATet = 250;  ///< of the mesher and the mesh it returns; measured: 150
+
+class Lattice {
+ public:
+  Lattice(const RegionFields& fields, std::size_t max_tets, TetComplex& complex)
+      : fields_(fields), max_tets_(max_tets), complex_(complex), side_(cube_side(fields.edge())) {
+    place();
+    corner_.resize(count(1), kUnknown);
+    centre_.resize(count(0), kUnknown);
+  }
+
+  void fill() {
+    mark_inside();
+    refuse_too_many();
+    for (int k = 0; k < n_[2]; ++k) {
+      for (int j = 0; j < n_[1]; ++j) {
+        for (int i = 0; i < n_[0]; ++i) add_cube(i, j, k);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kUnknown = ~0u, kOutside = ~0u - 1, kInside = ~0u - 2;  ///< above all vertex numbers
+
+  void place() {
+    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+    for (std::size_t r = 0; r < fields_.count(); ++r) {
+      if (fields_.region(r).hole) continue;
+      for (std::size_t d = 0; d < 3; ++d) {
+        low[d] = std::min(low[d], fields_.region(r).bounds.min[d]);
+        high[d] = std::max(high[d], fields_.region(r).bounds.max[d]);
+      }
+    }
+    double cells = 1.0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const double n = std::ceil((high[d] - low[d]) / side_ - 1e-9) + 4.0;
+      cells *= n;
+      if (!(cells <= kMaxCells)) {
+        throw std::invalid_argument("edge [m] = " + detail::show(fields_.edge()) + " is too small for a body of " +
+                                    detail::show(high[d] - low[d]) +
+                                    " m: the lattice would have more than 4e8 cubes; "
+                                    "give a larger edge");
+      }
+      n_[d] = static_cast<int>(n);
+      origin_[d] = 0.5 * (low[d] + high[d]) - 0.5 * n * side_;
+    }
+  }
+
+  std::size_t count(int more) const {
+    return static_cast<std::size_t>(n_[0] + more) * static_cast<std::size_t>(n_[1] + more) *
+           static_cast<std::size_t>(n_[2] + more);
+  }
+  std::uint32_t& at(bool is_centre, int i, int j, int k) {
+    const int more = is_centre ? 0 : 1;
+    const auto row = static_cast<std::size_t>(k) * static_cast<std::size_t>(n_[1] + more) + static_cast<std::size_t>(j);
+    return (is_centre ? centre_ : corner_)[row * static_cast<std::size_t>(n_[0] + more) + static_cast<std::size_t>(i)];
+  }
+  Vec3d place_of(bool is_centre, int i, int j, int k) const {
+    const double more = is_centre ? 0.5 : 0.0;
+    return origin_ + Vec3d{i + more, j + more, k + more} * side_;
+  }
+
+  /// Whether a region may reach a block whose lowest cube is (i, j, k).
+  bool reached(int i, int j, int k) const {
+    const double half = 0.5 * kBlock * side_;
+    const Vec3d centre = place_of(false, i, j, k) + Vec3d{half, half, half};
+    for (std::size_t r = 0; r < fields_.count(); ++r) {
+      if (fields_.region(r).hole) continue;
+      const Bounds& b = fields_.region(r).bounds;
+      bool near = true;
+      for (std::size_t d = 0; d < 3; ++d) near = near && centre[d] + half >= b.min[d] && centre[d] - half <= b.max[d];
+      if (near && fields_.value(r, centre) <= 1.7321 * half) return true;
+    }
+    return false;
+  }
+
+  void mark_inside() {
+    for (int k = 0; k < n_[2]; k += kBlock) {
+      for (int j = 0; j < n_[1]; j += kBlock) {
+        for (int i = 0; i < n_[0]; i += kBlock) {
+          if (reached(i, j, k)) mark_block(i, j, k);
+        }
+      }
+    }
+  }
+
+  void mark_block(int i0, int j0, int k0) {
+    for (const bool is_centre : {false, true}) {
+      const int more = is_centre ? 0 : 1;
+      for (int k = k0; k < std::min(k0 + kBlock + more, n_[2] + more); ++k) {
+        for (int j = j0; j < std::min(j0 + kBlock + more, n_[1] + more); ++j) {
+          for (int i = i0; i < std::min(i0 + kBlock + more, n_[0] + more); ++i) {
+            std::uint32_t& mark = at(is_centre, i, j, k);
+            if (mark != kUnknown) continue;
+            const Label label = fields_.label(place_of(is_centre, i, j, k));
+            const bool inside = label != fields_.outside() && !fields_.region(label).hole;
+            inside_ += inside;
+            mark = inside ? kInside : kOutside;
+          }
+        }
+      }
+    }
+  }
+
+  /// Refuses more tets than are allowed, or than there is memory for.
+  void refuse_too_many() const {
+    const double tets = 6.0 * static_cast<double>(inside_);  // two vertices and twelve tets a cube
+    const std::string asks =
+        "edge [m] = " + detail::show(fields_.edge()) + " asks for some " + detail::number_text(tets, 2) + " tets; ";
+    const auto larger_edge = [&](double most) {
+      const double factor = std::cbrt(tets / most);
+      return "give an edge of " + detail::number_text(1.02 * factor * fields_.edge(), 2) + " m or more";
+    };
+    const auto allowed = static_cast<double>(max_tets_);
+    if (tets > allowed) {
+      throw std::invalid_argument(asks + "at most " + std::to_string(max_tets_) +
+                                  " are allowed: " + larger_edge(allowed) + ", or raise the limit");
+    }
+    const std::optional<double> memory = detail::available_memory();
+    if (memory && tets * kBytesATet > *memory) {
+      throw std::invalid_argument(asks + "that takes " + detail::number_text(1e-6 * tets * kBytesATet, 2) + " MB and " +
+                                  detail::number_text(1e-6 * *memory, 2) +
+                                  " MB are available: " + larger_edge(std::max(1.0, *memory / kBytesATet)));
+    }
+  }
+
+  std::uint32_t vertex(bool is_centre, int i, int j, int k) {
+    std::uint32_t& mark = at(is_centre, i, j, k);
+    if (mark < kInside) return mark;
+    used_inside_.push_back(mark == kInside);
+    return mark = complex_.add_vertex(place_of(is_centre, i, j, k));
+  }
+
+  struct Place {
+    bool is_centre;
+    int i, j, k;
+  };
+  void add(const std::array<Place, 4>& places) {
+    Tet tet;
+    for (std::size_t c = 0; c < 4; ++c) tet[c] = vertex(places[c].is_centre, places[c].i, places[c].j, places[c].k);
+    complex_.add_tet(tet, kUndecided);
+  }
+
+  /// The tets about the faces between cube (i, j, k) and the next along x, y and z.
+  void add_cube(int i, int j, int k) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::array<int, 3> next{i, j, k};
+      if (++next[axis] >= n_[axis]) continue;
+      const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
+      const Place from{true, i, j, k}, to{true, next[0], next[1], next[2]};
+      std::array<Place, 4> corners;
+      for (std::size_t n = 0; n < 4; ++n) {  // around the face, anticlockwise about the axis
+        std::array<int, 3> at = next;
+        at[b] += n == 1 || n == 2;
+        at[c] += n >= 2;
+        corners[n] = {false, at[0], at[1], at[2]};
+      }
+      for (std::size_t n = 0; n < 4; ++n) {
+        const std::array<Place, 4> tet{from, to, corners[n], corners[(n + 1) % 4]};
+        const bool any = std::any_of(tet.begin(), tet.end(), [&](const Place& p) { return inside_at(p); });
+        if (any) add(tet);
+      }
+    }
+  }
+
+  bool inside_at(const Place& p) {
+    const std::uint32_t mark = at(p.is_centre, p.i, p.j, p.k);
+    if (mark == kInside) return true;
+    return mark < kInside && used_inside_[mark];
+  }
+
+  const RegionFields& fields_;
+  std::size_t max_tets_;
+  TetComplex& complex_;
+  double side_;
+  std::array<int, 3> n_{};
+  Vec3d origin_{};
+  std::vector<std::uint32_t> corner_, centre_;
+  std::size_t inside_ = 0;
+  std::vector<char> used_inside_;  ///< of vertices that have a number
+};
+
+}  // namespace
+
+void fill_lattice(const RegionFields& fields, std::size_t max_tets, TetComplex& complex) {
+  Lattice(fields, max_tets, complex).fill();
+}
+
+}  // namespace glisson::lattice

@@ -1,0 +1,25 @@
+// body_lattice.h — the body-centred cubic lattice around a body: what the mesher starts from.
+#pragma once
+
+#include "mesh/lattice/region_fields.h"
+#include "mesh/lattice/tet_complex.h"
+
+namespace glisson::lattice {
+
+/// Mean length of the lattice's edges over the side of its cubes: 8 edges of √3/2 and 6 of 1 leave each vertex.
+inline constexpr double kMeanEdge = 0.9234;
+
+/// Largest side of the cubes for a mean edge.
+inline double cube_side(double edge) { return edge / kMeanEdge; }
+
+/// Tets that a body of this volume gets: 12 a cube.
+inline double expected_tets(double volume, double edge) {
+  const double side = cube_side(edge);
+  return 12.0 * volume / (side * side * side);
+}
+
+/// All lattice tets with a corner in a region, undecided.
+/// @throws std::invalid_argument  more than max_tets, or a lattice that is too large
+void fill_lattice(const RegionFields& fields, std::size_t max_tets, TetComplex& complex);
+
+}  // namespace glisson::lattice

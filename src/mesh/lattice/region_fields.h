@@ -1,0 +1,53 @@
+// region_fields.h — the regions' functions as the mesher asks for them: values, gradients, points drawn onto surfaces.
+#pragma once
+
+#include <vector>
+
+#include "glisson/region_mesh.h"
+#include "mesh/lattice/tet_complex.h"
+
+namespace glisson::lattice {
+
+inline constexpr Mask kCrease = Mask{1} << 62;  ///< in the mask of a vertex on a crease (crease.h)
+inline constexpr Mask kCorner = Mask{1} << 61;  ///< at the end of creases; it stays
+inline constexpr Mask kMarks = kCrease | kCorner;
+
+/// Surfaces that a vertex lies on, given the labels that meet there: between two regions it is that of the one with
+/// precedence, so of all labels but the last.
+inline Mask surfaces_of(Mask labels) {
+  labels &= ~kMarks;
+  if (labels == 0) return 0;
+  Mask last = Mask{1} << 63;
+  while (!(labels & last)) last >>= 1;
+  return labels & ~last;
+}
+
+class RegionFields {
+ public:
+  RegionFields(const std::vector<BodyRegion>& regions, double edge) : regions_(regions), edge_(edge) {}
+
+  std::size_t count() const { return regions_.size(); }
+  const BodyRegion& region(std::size_t k) const { return regions_[k]; }
+  double edge() const { return edge_; }
+  /// Label of what is in no region.
+  Label outside() const { return static_cast<Label>(regions_.size()); }
+
+  double value(std::size_t k, const Vec3d& p) const { return regions_[k].distance(p); }
+  /// By four points at the corners of a tetrahedron: of second order, and for a third of the cost of six.
+  Vec3d gradient(std::size_t k, const Vec3d& p) const;
+  /// First region with p inside, or outside().
+  Label label(const Vec3d& p) const;
+
+  /// Moves p onto all the surfaces, by the shortest steps. @return the largest |value| left [m]
+  double project(Vec3d& p, Mask surfaces) const;
+  /// Largest |value| of the surfaces at p [m].
+  double off(const Vec3d& p, Mask surfaces) const;
+  /// Unit normals of the surfaces at p. @return how many
+  std::size_t normals(const Vec3d& p, Mask surfaces, Vec3d* out, std::size_t capacity) const;
+
+ private:
+  const std::vector<BodyRegion>& regions_;
+  double edge_;
+};
+
+}  // namespace glisson::lattice

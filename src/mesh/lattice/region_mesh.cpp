@@ -1,0 +1,138 @@
+// region_mesh.cpp — the mesher from end to end: lattice, cuts, improvement, figures.
+#include "glisson/region_mesh.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/text.h"
+#include "mesh/lattice/body_lattice.h"
+#include "mesh/lattice/cleave.h"
+#include "mesh/lattice/improve.h"
+#include "mesh/lattice/keep_volume.h"
+
+namespace glisson {
+namespace {
+
+using namespace lattice;
+
+constexpr double kAim = 0.26;                                ///< quality that is worked for; 15° and 158°
+constexpr double kFloor = 0.2;                               ///< that the last step leaves; 11.5° and 163.4°
+constexpr std::size_t kMostRegions = 60;                     ///< labels are bits of a mask
+constexpr double kLeastAngle = 10.0, kLargestAngle = 165.0;  ///< [degrees]
+
+Vec3d size_of(const Bounds& b) { return b.max - b.min; }
+
+void require_regions(const std::vector<BodyRegion>& regions) {
+  const bool any = std::any_of(regions.begin(), regions.end(), [](const BodyRegion& r) { return !r.hole; });
+  if (!any) throw std::invalid_argument("the body has no region to fill; give at least one that is no hole");
+  if (regions.size() > kMostRegions) {
+    throw std::invalid_argument(std::to_string(regions.size()) + " regions; at most " + std::to_string(kMostRegions) +
+                                " are allowed: join some of them");
+  }
+  for (const BodyRegion& r : regions) {
+    const Vec3d size = size_of(r.bounds);
+    const double least = std::min({size.x, size.y, size.z}), sum = size.x + size.y + size.z;
+    if (least > 0.0 && std::isfinite(sum)) continue;
+    throw std::invalid_argument("region \"" + r.name +
+                                "\" has an empty or infinite box: its shapes leave nothing, or "
+                                "are not bounded; see whether they overlap as they should");
+  }
+}
+
+void require_edge(double edge) {
+  if (edge > 0.0 && std::isfinite(edge)) return;
+  throw std::invalid_argument("edge [m] = " + detail::show(edge) + " is outside the allowed range, > 0 and finite");
+}
+
+/// Tets and the vertices they use, numbered anew in their order.
+TetMesh compact(const TetComplex& c, const std::vector<BodyRegion>& regions) {
+  TetMesh mesh;
+  std::vector<std::uint32_t> number(c.points.size(), ~0u);
+  for (std::uint32_t v = 0; v < c.points.size(); ++v) {
+    if (c.stars[v].empty()) continue;
+    number[v] = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(c.points[v]);
+  }
+  for (std::uint32_t t = 0; t < c.tets.size(); ++t) {
+    if (!c.alive(t)) continue;
+    Tet tet = c.tets[t];
+    for (std::uint32_t& v : tet) v = number[v];
+    mesh.tets.push_back(tet);
+    mesh.regions.push_back(c.labels[t] + 1);
+  }
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    if (!regions[k].hole) mesh.region_names[static_cast<int>(k) + 1] = regions[k].name;
+  }
+  return mesh;
+}
+
+void measure_angles(const TetMesh& mesh, RegionMeshReport& report) {
+  report.min_dihedral_deg = 180.0;
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
+    const auto angles = dihedral_angles(mesh, t);
+    const auto [low, high] = std::minmax_element(angles.begin(), angles.end());
+    report.min_dihedral_deg = std::min(report.min_dihedral_deg, *low);
+    report.max_dihedral_deg = std::max(report.max_dihedral_deg, *high);
+    if (*low < kLeastAngle || *high > kLargestAngle) report.poor_tets.push_back(t);
+  }
+  if (report.poor_tets.empty()) return;
+  report.warnings.push_back(detail::count_text(report.poor_tets.size(), "tet has", "tets have") +
+                            " an angle below 10° or above 165° (" + detail::index_list(report.poor_tets) +
+                            "): surfaces meet at a sharp angle there; blend them, or change the edge");
+}
+
+void measure_regions(const TetMesh& mesh, const std::vector<BodyRegion>& regions, RegionMeshReport& report) {
+  std::vector<RegionVolume> all;
+  for (std::size_t k = 0; k < regions.size(); ++k) all.push_back({regions[k].name, static_cast<int>(k) + 1, 0, 0.0});
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    RegionVolume& v = all[static_cast<std::size_t>(mesh.regions[t]) - 1];
+    ++v.tets;
+    v.volume += six_rest_volume(mesh, t) / 6.0;
+  }
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    if (!regions[k].hole) report.regions.push_back(all[k]);
+  }
+}
+
+void require_tets_in_each(const std::vector<BodyRegion>& regions, double edge, const RegionMeshReport& report) {
+  for (const RegionVolume& v : report.regions) {
+    if (v.tets > 0) continue;
+    const Vec3d size = size_of(regions[static_cast<std::size_t>(v.number) - 1].bounds);
+    throw std::invalid_argument("region \"" + v.name + "\" is left without a tet: it is thinner than two edges of " +
+                                detail::number_text(edge, 3) + " m (its box is " + detail::number_text(size.x, 3) +
+                                " × " + detail::number_text(size.y, 3) + " × " + detail::number_text(size.z, 3) +
+                                " m), or earlier regions cover it; give a smaller edge or another order");
+  }
+}
+
+}  // namespace
+
+RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto go_on = [&](double part) {
+    if (options.progress && !options.progress(part)) throw MeshingStopped();
+    return true;
+  };
+  require_regions(regions);
+  require_edge(options.edge);
+  const RegionFields fields(regions, options.edge);
+  TetComplex complex;
+  fill_lattice(fields, options.max_tets, complex);
+  go_on(0.1);
+  cleave(fields, complex);
+  go_on(0.3);
+  Workspace w{complex, fields};
+  improve(w, kAim, [&](double part) { return go_on(0.3 + 0.7 * part); });
+  keep_volume(w, kFloor);
+  RegionMesh out;
+  out.mesh = compact(complex, regions);
+  measure_angles(out.mesh, out.report);
+  measure_regions(out.mesh, regions, out.report);
+  require_tets_in_each(regions, options.edge, out.report);
+  out.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+}  // namespace glisson

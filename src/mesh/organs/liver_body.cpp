@@ -1,0 +1,79 @@
+// liver_body.cpp — the outside of the liver and its regions; the veins are in liver_veins.cpp.
+//
+// All lengths here in millimetres: x to the left, y to the back, z to the head (docs/liver.md).
+#include <algorithm>
+#include <cmath>
+
+#include "base/require_fields.h"
+#include "glisson/liver.h"
+#include "mesh/organs/liver_parts.h"
+
+namespace glisson {
+namespace {
+
+using detail::LiverParts;
+
+/// Lobes joined softly, then what neighbours press into them.
+void add_outside(LiverParts& parts) {
+  parts.ellipsoid("right_lobe_upright", {0, 0, 0}, {62, 55, 81}, 2.4);
+  parts.place("right_lobe", "right_lobe_upright", {0, 1, 0}, 8.0, {-38, 0, -4});
+  parts.ellipsoid("left_lobe_level", {0, 0, 0}, {62, 36, 31}, 2.2);
+  parts.place("left_lobe", "left_lobe_level", {0, 1, 0}, -8.0, {44, -12, 42});
+  parts.unite("lobes", {"right_lobe", "left_lobe"}, 30);
+  parts.ball("stomach", {70, 14, -64}, 80);
+  parts.ball("kidney", {-54, 80, -66}, 48);
+  parts.ball("colon", {-22, -8, -122}, 52);
+  parts.subtract("visceral", {"lobes", "stomach", "kidney", "colon"}, 14);
+  parts.ellipsoid("caudate_lobe", {10, 30, 18}, {18, 16, 32}, 2.0);
+  parts.unite("with_caudate", {"visceral", "caudate_lobe"}, 8);
+  parts.tube("vena_cava", {{{-2, 60, -100}, 12}, {{0, 54, 0}, 12}, {{4, 46, 100}, 12}});
+  parts.ellipsoid("falciform_notch", {20, -52, 0}, {4, 24, 26}, 2.0);
+  parts.tube("gallbladder_fossa", {{{-16, -46, -66}, 13}, {{-6, -14, -54}, 11}, {{0, 8, -38}, 6}});
+  parts.ellipsoid("porta", {4, 14, -26}, {20, 6, 7}, 2.0);
+  parts.subtract("whole", {"with_caudate", "vena_cava", "falciform_notch", "gallbladder_fossa", "porta"}, 5);
+}
+
+}  // namespace
+
+ImplicitBody liver_body(const LiverOptions& options) {
+  detail::require_fields("liver", options);
+  LiverParts parts(options.scale);
+  add_outside(parts);
+  if (options.tumour_radius > 0.0) {
+    parts.ball("tumour_ball", options.tumour_center * 1e3, options.tumour_radius * 1e3);
+    parts.region("tumour", "tumour_ball", "whole");
+  }
+  if (options.vessels) detail::add_veins(parts, 1e3 * options.edge / options.scale);
+  ImplicitBody body = parts.body();
+  body.regions.push_back({"parenchyma", "whole", false});
+  body.edge = options.edge;
+  body.max_tets = options.max_tets;
+  return body;
+}
+
+RegionMesh liver_mesh(const LiverOptions& options, std::function<bool(double)> progress) {
+  RegionMesh made = implicit_mesh(liver_body(options), std::move(progress));
+  std::vector<char> seen(made.mesh.vertices.size(), 0);
+  auto& sets = made.mesh.vertex_sets;
+  for (const char* name : {"bare_area", "dome", "visceral_face"}) sets[name] = {};
+  std::vector<Vec3d> normals(made.mesh.vertices.size());
+  for (const Triangle& t : boundary_triangles(made.mesh)) {
+    const Vec3d &a = made.mesh.vertices[t[0]], &b = made.mesh.vertices[t[1]], &c = made.mesh.vertices[t[2]];
+    const Vec3d n = cross(b - a, c - a);
+    for (const std::uint32_t v : t) {
+      normals[v] += n;
+      seen[v] = 1;
+    }
+  }
+  for (std::uint32_t v = 0; v < seen.size(); ++v) {
+    if (!seen[v] || !(norm(normals[v]) > 0.0)) continue;
+    const Vec3d n = unit(normals[v]), p = made.mesh.vertices[v] * (1e3 / options.scale);
+    // Bare: the back of the right lobe and about the vena cava, above the kidney.
+    if (n.y > 0.5 && p.z > -20.0 && p.x > -75.0 && p.x < 25.0) sets["bare_area"].push_back(v);
+    if (n.z > 0.3) sets["dome"].push_back(v);
+    if (n.z < -0.3) sets["visceral_face"].push_back(v);
+  }
+  return made;
+}
+
+}  // namespace glisson

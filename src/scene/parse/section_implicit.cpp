@@ -1,0 +1,83 @@
+// section_implicit.cpp — [mesh] of kind "implicit": [[mesh.shape]] and [[mesh.region]].
+#include "glisson/scene/scene.h"
+#include "scene/parse/section.h"
+#include "scene/parse/sections.h"
+
+namespace glisson::scene {
+namespace {
+
+template <class S>
+KindSpec shape_kind(std::string help) {
+  return {described<S>(std::move(help)),
+          [](void* shape) -> void* { return &static_cast<NamedShape*>(shape)->what.emplace<S>(); }};
+}
+
+/// A fault between names, at the key of the shape or region that has it.
+void complain_of_names(ImplicitBody& body, const Node& table, const Place& place) {
+  for (const char* list : {"shape", "region"}) {
+    if (!table.find(list) || table.find(list)->array()->empty()) {
+      const std::string heading = std::string("[[mesh.") + list + "]]";
+      return place.complain("has no " + heading + "; give one or more");
+    }
+  }
+  const BodyFault fault = glisson::check_names(body);
+  if (fault.what.empty()) return;
+  const std::string list = fault.in_region ? "region" : "shape";
+  const Node& element = (*table.find(list)->array())[fault.index];
+  const Node* given = element.find(fault.key);
+  place.complain(given ? *given : element, list + "." + std::to_string(fault.index) + "." + fault.key, fault.what);
+}
+
+}  // namespace
+
+const SectionSpec& tube_point_section() {
+  static const SectionSpec section = described<TubePoint>(
+      "mesh.shape.points", "A point of a tube: `points = [{ at_mm = [0, 0, 0], radius_mm = 3 }, ...]`.");
+  return section;
+}
+
+const SectionSpec& shape_section() {
+  static const SectionSpec section = [] {
+    Section<NamedShape> s("mesh.shape",
+                          "A shape, selected by `kind`. It may refer to those before it, and is part of the body only "
+                          "through a region (docs/implicit.md).");
+    s.key("name", &NamedShape::name, "name").must();
+    s.spec().kinds = {
+        shape_kind<BallShape>("A ball."),
+        shape_kind<EllipsoidShape>("An ellipsoid along x, y and z, or with larger exponents a superellipsoid: rounder "
+                                   "than a box or a cylinder."),
+        shape_kind<BoxShape>("A box along x, y and z."),
+        shape_kind<CylinderShape>("A cylinder between two points."),
+        shape_kind<TubeShape>("A tube of varying radius along a smooth line through points, with round ends."),
+        shape_kind<TorusShape>("A ring."),
+        shape_kind<HalfSpaceShape>("All on one side of a plane; cuts other shapes."),
+        shape_kind<UnionShape>("Shapes joined."),
+        shape_kind<DifferenceShape>("The first shape without the others."),
+        shape_kind<IntersectionShape>("What shapes share."),
+        shape_kind<PlacedShape>("A shape scaled, turned about the origin and moved, in this order.")};
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& shape_region_section() {
+  static const SectionSpec section = described<ShapeRegion>(
+      "mesh.region",
+      "A region of the mesh, in the order of precedence: the first takes what it covers from all others.");
+  return section;
+}
+
+SectionSpec implicit_body_kind() {
+  Section<ImplicitBody> s(
+      "implicit",
+      "A body of shapes with one or more regions, meshed conformingly: regions meet in common faces, "
+      "and all dihedral angles lie between 10° and 165° (docs/implicit.md).");
+  s.key<Milli>("edge_mm", &ImplicitBody::edge, "mean length of the tets' edges").in("mm").within(above(0));
+  s.key("max_tets", &ImplicitBody::max_tets, "a finer mesh is refused").within(between(1, 1e9));
+  s.tables("shape", shape_section(), &ImplicitBody::shapes, "the shapes");
+  s.tables("region", shape_region_section(), &ImplicitBody::regions, "the regions, by precedence");
+  s.finish(complain_of_names);
+  return s.spec();
+}
+
+}  // namespace glisson::scene

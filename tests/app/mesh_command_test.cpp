@@ -1,0 +1,84 @@
+// mesh_command_test.cpp — glisson mesh: the mesh of a scene as a file, and its figures.
+#include <cmath>
+
+#include "app/program.h"
+#include "glisson/io.h"
+
+namespace glisson::test {
+namespace {
+
+using MeshCommand = ProgramTest;
+using ::testing::HasSubstr;
+
+const std::string kTwoRegions = R"(
+[mesh]
+kind = "implicit"
+edge_mm = 6
+[[mesh.shape]]
+name = "core"
+kind = "ball"
+radius_mm = 15
+[[mesh.shape]]
+name = "body"
+kind = "box"
+size_mm = [60, 50, 40]
+[[mesh.region]]
+name = "core"
+[[mesh.region]]
+name = "body"
+)";
+
+// The file holds the regions as integers with their names, the JSON the figures under the names that scripts read.
+TEST_F(MeshCommand, WritesMeshAndFigures) {
+  const Outcome outcome = run({"mesh", write("s.toml", kTwoRegions), "--out", (folder_ / "m.vtu").string(), "--json",
+                               (folder_ / "m.json").string()});
+  ASSERT_THAT(outcome, Exits(0)) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("dihedral angles"));
+  const TetMesh mesh = read_mesh(folder_ / "m.vtu").mesh;
+  EXPECT_EQ(mesh.region_names.at(1), "core");
+  EXPECT_EQ(mesh.region_names.at(2), "body");
+  const nlohmann::json figures = read_json(folder_ / "m.json");
+  EXPECT_EQ(figures.at("tets"), mesh.tets.size());
+  EXPECT_GE(figures.at("min_dihedral_deg").get<double>(), 10.0);
+  EXPECT_LE(figures.at("max_dihedral_deg").get<double>(), 165.0);
+  EXPECT_GT(figures.at("seconds").get<double>(), 0.0);
+  ASSERT_EQ(figures.at("regions").size(), 2u);
+  EXPECT_EQ(figures.at("regions")[0].at("name"), "core");
+  EXPECT_NEAR(figures.at("regions")[0].at("volume_ml").get<double>(), 4.0 / 3.0 * M_PI * 1.5 * 1.5 * 1.5, 0.3);
+  EXPECT_NEAR(
+      figures.at("regions")[0].at("volume_ml").get<double>() + figures.at("regions")[1].at("volume_ml").get<double>(),
+      120.0, 1.0);
+  const Outcome info = run({"info", (folder_ / "m.vtu").string()});
+  EXPECT_THAT(info.out, HasSubstr("Dihedral angles:\n"));
+}
+
+// A scene without shapes has a mesh as well.
+TEST_F(MeshCommand, WritesGeneratedMeshes) {
+  const Outcome outcome =
+      run({"mesh", write("s.toml", small_scene()), "--out", (folder_ / "box.vtu").string(), "--quiet"});
+  ASSERT_THAT(outcome, Exits(0)) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(read_mesh(folder_ / "box.vtu").mesh.tets.size(), 48u);
+}
+
+// What cannot be done is said, with the way out, and no file is left.
+TEST_F(MeshCommand, ExplainsWhatItRefuses) {
+  const std::string scene = write("s.toml", kTwoRegions);
+  const Outcome name = run({"mesh", scene, "--out", (folder_ / "m.stl").string()});
+  EXPECT_THAT(name, Exits(2));
+  EXPECT_THAT(name.err, HasSubstr("give a name that ends in .vtu"));
+  const Outcome coarse = run({"mesh", scene, "--set", "mesh.edge_mm=80", "--out", (folder_ / "m.vtu").string()});
+  EXPECT_THAT(coarse, Exits(2));
+  EXPECT_THAT(coarse.err, HasSubstr("smaller edge"));
+  const Outcome fine = run({"mesh", scene, "--set", "mesh.edge_mm=0.1", "--out", (folder_ / "m.vtu").string()});
+  EXPECT_THAT(fine, Exits(2));
+  EXPECT_THAT(fine.err, HasSubstr("give an edge of"));
+  const Outcome little = run_in({.memory_bytes = 400UL << 20},
+                                {"mesh", scene, "--set", "mesh.edge_mm=0.8", "--out", (folder_ / "m.vtu").string()});
+  EXPECT_THAT(little, Exits(2));
+  EXPECT_THAT(little.err, HasSubstr("MB are available: give an edge of"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "m.vtu"));
+}
+
+}  // namespace
+}  // namespace glisson::test

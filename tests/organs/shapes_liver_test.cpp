@@ -1,0 +1,66 @@
+// The liver that comes with the project, pressed and pierced: no file is needed, and what happens is what its scenes say.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/places.h"
+#include "support/scene_runs.h"
+
+namespace glisson {
+namespace {
+
+/// Of one probe, with every sample.
+class ProbedRecorder final : public RunObserver {
+ public:
+  explicit ProbedRecorder(std::string column) : name_(std::move(column)) {}
+  void on_built(const BuiltVariant& built) override {
+    const auto& columns = built.probes.columns();
+    at_ = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name_) - columns.begin());
+    ASSERT_LT(at_, columns.size()) << name_;
+  }
+  void on_sample(const Sample& s) override {
+    value.push_back(s.probes[at_]);
+    depth.push_back(s.instruments.front().depth);
+  }
+  void on_event(const RunEvent& event) override { events.push_back(event.what.event); }
+
+  std::vector<double> value, depth;
+  std::vector<std::string> events;
+
+ private:
+  std::string name_;
+  std::size_t at_ = 0;
+};
+
+// Lying on its back the liver settles by some millimetres; a fingertip 15 mm deep meets some newtons; energies balance.
+TEST(ShapesLiver, IsPressed) {
+  const Scene scene = test::shipped_scene("organs/liver.toml", {{"mesh.edge_mm", "13"}});
+  const test::RunRecord run = test::run_recorded(scene.variants.front());
+  EXPECT_EQ(run.summary.end, RunSummary::End::finished);
+  EXPECT_NEAR(run.depth.back(), 0.025, 1e-4);
+  EXPECT_LT(std::abs(run.at(0.9, run.force)), 1e-9) << "it does not touch yet";
+  EXPECT_GT(run.force.back(), 0.5);
+  EXPECT_LT(run.force.back(), 5.0);
+  const Energies& e = run.summary.energies;
+  EXPECT_LE(std::abs(e.imbalance()), 1e-6 * (std::abs(e.work_tools) + std::abs(e.work_loads)));
+}
+
+// The needle punctures the surface and then the tumour, which it pushes away before it by more than 2 mm and which comes
+// back by a part of that once it is pierced.
+TEST(ShapesLiver, MovesItsTumourAwayFromTheNeedle) {
+  const Scene scene = test::shipped_scene("organs/liver_needle.toml", {{"mesh.edge_mm", "10"}});
+  ProbedRecorder recorder("target_displacement_y_m");
+  const std::atomic<bool> stop{false};
+  const RunSummary summary = run_variant(scene.variants.front(), {}, recorder, stop);
+  EXPECT_EQ(summary.end, RunSummary::End::finished);
+  const auto most = std::max_element(recorder.value.begin() + static_cast<std::ptrdiff_t>(recorder.value.size() / 2),
+                                     recorder.value.end());
+  EXPECT_GT(*most, 0.002);
+  for (const char* event : {"puncture", "inner puncture"}) {
+    EXPECT_EQ(std::count(recorder.events.begin(), recorder.events.end(), event), 1) << event;
+  }
+}
+
+}  // namespace
+}  // namespace glisson

@@ -1,0 +1,49 @@
+"""Bodies of shapes: distances, meshes of several regions, any function of a point, the liver."""
+
+import glisson
+import numpy as np
+import pytest
+
+
+def test_a_body_of_two_regions_is_meshed():
+    core = glisson.Solid(glisson.BallShape(radius=0.02))
+    body = glisson.unite([core, glisson.Solid(glisson.BoxShape(size=[0.06, 0.05, 0.05], rounding=0.01))], blend=0.005)
+    mesh, report = glisson.mesh_regions([glisson.BodyRegion("core", core), glisson.BodyRegion("body", body)], edge=0.005)
+    assert set(np.unique(mesh.regions)) == {1, 2}
+    assert mesh.region_names == {1: "core", 2: "body"}
+    assert report.min_dihedral_deg >= 10 and report.max_dihedral_deg <= 165
+    assert report.regions[0].volume == pytest.approx(4 / 3 * np.pi * 0.02**3, rel=0.01)
+    assert sum(r.volume for r in report.regions) == pytest.approx(mesh.volume)
+    assert sum(mesh.dihedral_histogram()) == 6 * len(mesh.tets)
+
+
+def test_any_function_of_a_point_is_a_solid():
+    wavy = glisson.Solid.from_function(lambda p: float(np.linalg.norm(p)) - 0.02, [-0.02] * 3, [0.02] * 3)
+    assert wavy.distance([0.03, 0, 0]) == pytest.approx(0.01)
+    mesh, _ = glisson.mesh_regions([glisson.BodyRegion("ball", wavy)], edge=0.01)
+    assert len(mesh.tets) > 50
+
+
+def test_solids_combine_and_move():
+    ball = glisson.Solid(glisson.BallShape(radius=1))
+    other = ball.placed(move=[1, 0, 0])
+    assert (ball | other).distance([2.5, 0, 0]) == pytest.approx(0.5)
+    assert (ball & other).distance([0.5, 0, 0]) == pytest.approx(-0.5)
+    assert (ball - other).distance([0.5, 0, 0]) == pytest.approx(0.5)
+    low, high = (ball | other).bounds
+    assert list(low) == [-1, -1, -1] and list(high) == [2, 1, 1]
+
+
+def test_what_cannot_be_meshed_is_named():
+    ball = glisson.BodyRegion("ball", glisson.Solid(glisson.BallShape(radius=0.01)))
+    with pytest.raises(ValueError, match="smaller edge"):
+        glisson.mesh_regions([ball], edge=0.1)
+    with pytest.raises(ValueError, match="radius"):
+        glisson.Solid(glisson.BallShape(radius=-1))
+
+
+def test_the_liver_has_its_regions_and_sets():
+    mesh, report = glisson.liver_mesh(edge=0.012, tumour_radius=0.015)
+    assert [r.name for r in report.regions][0] == "tumour"
+    assert mesh.volume == pytest.approx(1.5e-3, rel=0.05)
+    assert {"bare_area", "dome", "visceral_face"} <= set(mesh.vertex_sets)
