@@ -2,7 +2,7 @@
 import type { Frame, SurfaceMotion } from "../mesh3d/timeline.ts";
 import type { InstrumentForm } from "../report_data.ts";
 import { type Colouring, valuesOf } from "./colouring.ts";
-import type { Keyframe, LiveFrame } from "./protocol.ts";
+import type { Hello, Keyframe, LiveFrame } from "./protocol.ts";
 
 export class LiveSurface implements SurfaceMotion {
   readonly vertices: number;
@@ -10,15 +10,23 @@ export class LiveSurface implements SurfaceMotion {
   readonly rest: Float32Array;
   readonly fixed: Uint8Array;
   readonly end = 0;
+  readonly tissue: string;
+  readonly regions: readonly { name: string; triangles: Uint32Array }[];
+  readonly instruments: readonly InstrumentForm[];
+  private readonly kinds: Uint8Array | null;
   private readonly newest: Frame;
   private readonly values: Float32Array;
 
-  /** @param instruments  forms of the instruments @param sets  tools that come before them and have no form */
+  /** @param sets  tools that come before the instruments and have no form */
   constructor(
     keyframe: Keyframe,
-    readonly instruments: readonly InstrumentForm[],
+    hello: Pick<Hello, "instruments" | "tissue" | "regions">,
     private readonly sets: number,
   ) {
+    this.instruments = hello.instruments;
+    this.tissue = hello.tissue ?? "";
+    this.regions = keyframe.regions.map((triangles, i) => ({ name: hello.regions?.[i] ?? "", triangles }));
+    this.kinds = keyframe.kinds;
     this.rest = keyframe.rest;
     this.vertices = keyframe.rest.length / 3;
     this.triangles = keyframe.triangles;
@@ -29,6 +37,7 @@ export class LiveSurface implements SurfaceMotion {
       displacement: new Float32Array(3 * this.vertices),
       intensity: new Float32Array(this.vertices),
       triangles: this.triangles,
+      kinds: this.kinds,
       instruments: [],
     };
   }
@@ -68,5 +77,9 @@ export class LiveSurface implements SurfaceMotion {
 
   trianglesAt(): Uint32Array {
     return this.triangles;
+  }
+
+  kindsAt(): Uint8Array | null {
+    return this.kinds;
   }
 }

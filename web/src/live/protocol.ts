@@ -46,6 +46,8 @@ export interface Hello {
   tools: ToolInfo[];
   parameters: ParameterInfo[];
   instruments: InstrumentForm[];
+  tissue?: string; // name of what most of the body is
+  regions?: string[]; // names of the others, in the order of a keyframe's surfaces
   recorded: Recorded | null; // a run that is played, not simulated
   can_record: boolean;
 }
@@ -89,6 +91,8 @@ export interface Keyframe {
   rest: Float32Array;
   triangles: Uint32Array;
   marks: Uint8Array;
+  kinds: Uint8Array | null; // of each triangle: 0 skin, 1 a face that was cut, 2 skin whose capsule is torn
+  regions: Uint32Array[]; // triangles of the closed surfaces of inner regions
 }
 
 export interface ToolState {
@@ -156,7 +160,23 @@ function decodeKeyframe(view: DataView): Keyframe {
     rest: new Float32Array(view.buffer.slice(16, atTriangles) as ArrayBuffer),
     triangles: new Uint32Array(view.buffer.slice(atTriangles, atMarks) as ArrayBuffer),
     marks: new Uint8Array(view.buffer as ArrayBuffer, atMarks, vertices),
+    ...decodeInside(view, atMarks + vertices, triangles),
   };
+}
+
+/** Kinds of the triangles and surfaces of inner regions; a program that sends none has neither. */
+function decodeInside(view: DataView, from: number, triangles: number): Pick<Keyframe, "kinds" | "regions"> {
+  if (view.byteLength < from + triangles) return { kinds: null, regions: [] };
+  const kinds = new Uint8Array(view.buffer as ArrayBuffer, from, triangles);
+  let at = 4 * Math.ceil((from + triangles) / 4);
+  const regions: Uint32Array[] = [];
+  for (let left = view.getUint32(at, true); left > 0; left--) {
+    const count = view.getUint32(at + 4, true);
+    at += 4;
+    regions.push(new Uint32Array(view.buffer.slice(at + 4, at + 4 + 12 * count) as ArrayBuffer));
+    at += 12 * count;
+  }
+  return { kinds: kinds.some((kind) => kind !== 0) ? kinds : null, regions };
 }
 
 const vector = (view: DataView, at: number): [number, number, number] => [
