@@ -44,3 +44,40 @@ export function canvasOf(canvas) {
 export async function lineColours(canvas) {
   return (await canvasOf(canvas)).colours;
 }
+
+/**
+ * Shares of the pixels in a square of 30 × 30 that are of each tone, about a place in shares of an element's size.
+ * @param tones  names to tests of ([low, middle, high], [r, g, b]) of a pixel, which run in the page
+ */
+export async function tonesAt(page, locator, x, y, tones) {
+  const shot = await locator.screenshot({ animations: "disabled" });
+  const tests = Object.entries(tones).map(([name, is]) => [name, is.toString()]);
+  return page.evaluate(
+    async ([base64, x, y, tests]) => {
+      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+      const picture = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+      const context = new OffscreenCanvas(picture.width, picture.height).getContext("2d");
+      context.drawImage(picture, 0, 0);
+      const left = Math.round(x * picture.width) - 15;
+      const { data } = context.getImageData(left, Math.round(y * picture.height) - 15, 30, 30);
+      const shares = {};
+      for (const [name, text] of tests) {
+        const is = new Function(`return ${text}`)();
+        let count = 0;
+        for (let i = 0; i < data.length; i += 4) {
+          const colour = [data[i], data[i + 1], data[i + 2]];
+          if (
+            is(
+              [...colour].sort((a, b) => a - b),
+              colour,
+            )
+          )
+            count++;
+        }
+        shares[name] = (4 * count) / data.length;
+      }
+      return shares;
+    },
+    [shot.toString("base64"), x, y, tests],
+  );
+}

@@ -2,7 +2,7 @@
 import type { Frame, SurfaceMotion } from "../mesh3d/timeline.ts";
 import type { InstrumentForm } from "../report_data.ts";
 import { type Colouring, valuesOf } from "./colouring.ts";
-import type { Hello, Keyframe, LiveFrame } from "./protocol.ts";
+import type { Keyframe, LiveFrame } from "./protocol.ts";
 
 export class LiveSurface implements SurfaceMotion {
   readonly vertices: number;
@@ -12,20 +12,18 @@ export class LiveSurface implements SurfaceMotion {
   readonly end = 0;
   readonly tissue: string;
   readonly regions: readonly { name: string; triangles: Uint32Array }[];
-  readonly instruments: readonly InstrumentForm[];
   private readonly kinds: Uint8Array | null;
   private readonly newest: Frame;
   private readonly values: Float32Array;
 
-  /** @param sets  tools that come before the instruments and have no form */
+  /** @param instruments  forms of the instruments @param sets  tools that come before them and have no form */
   constructor(
     keyframe: Keyframe,
-    hello: Pick<Hello, "instruments" | "tissue" | "regions">,
+    readonly instruments: readonly InstrumentForm[],
     private readonly sets: number,
   ) {
-    this.instruments = hello.instruments;
-    this.tissue = hello.tissue ?? "";
-    this.regions = keyframe.regions.map((triangles, i) => ({ name: hello.regions?.[i] ?? "", triangles }));
+    this.tissue = keyframe.tissue;
+    this.regions = keyframe.regions;
     this.kinds = keyframe.kinds;
     this.rest = keyframe.rest;
     this.vertices = keyframe.rest.length / 3;

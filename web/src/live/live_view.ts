@@ -135,7 +135,7 @@ export class LiveView {
       this.model.dispose();
     }
     const sets = hello.tools.filter((tool) => !tool.instrument).length;
-    this.surface = new LiveSurface(keyframe, hello, sets);
+    this.surface = new LiveSurface(keyframe, hello.instruments, sets);
     this.model = new SurfaceModel(this.surface, this.material, this.fine);
     this.keyframe = keyframe.number;
     this.stage.scene.add(this.model.group);

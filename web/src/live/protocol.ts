@@ -46,8 +46,6 @@ export interface Hello {
   tools: ToolInfo[];
   parameters: ParameterInfo[];
   instruments: InstrumentForm[];
-  tissue?: string; // name of what most of the body is
-  regions?: string[]; // names of the others, in the order of a keyframe's surfaces
   recorded: Recorded | null; // a run that is played, not simulated
   can_record: boolean;
 }
@@ -92,7 +90,8 @@ export interface Keyframe {
   triangles: Uint32Array;
   marks: Uint8Array;
   kinds: Uint8Array | null; // of each triangle: 0 skin, 1 a face that was cut, 2 skin whose capsule is torn
-  regions: Uint32Array[]; // triangles of the closed surfaces of inner regions
+  tissue: string; // name of what most of the body is; may be empty
+  regions: { name: string; triangles: Uint32Array }[]; // closed surfaces of what else there is
 }
 
 export interface ToolState {
@@ -164,20 +163,31 @@ function decodeKeyframe(view: DataView): Keyframe {
   };
 }
 
-/** Kinds of the triangles and surfaces of inner regions; a program that sends none has neither. */
-function decodeInside(view: DataView, from: number, triangles: number): Pick<Keyframe, "kinds" | "regions"> {
-  if (view.byteLength < from + triangles) return { kinds: null, regions: [] };
+/** Kinds of the triangles, names, and surfaces of inner regions; a program that sends none has neither. */
+function decodeInside(view: DataView, from: number, triangles: number): Pick<Keyframe, "kinds" | "tissue" | "regions"> {
+  if (view.byteLength < from + triangles + 4) return { kinds: null, tissue: "", regions: [] };
   const kinds = new Uint8Array(view.buffer as ArrayBuffer, from, triangles);
-  let at = 4 * Math.ceil((from + triangles) / 4);
-  const regions: Uint32Array[] = [];
-  for (let left = view.getUint32(at, true); left > 0; left--) {
-    const count = view.getUint32(at + 4, true);
-    at += 4;
-    regions.push(new Uint32Array(view.buffer.slice(at + 4, at + 4 + 12 * count) as ArrayBuffer));
-    at += 12 * count;
+  let at = aligned(from + triangles);
+  const words = (): string => {
+    const bytes = new Uint8Array(view.buffer as ArrayBuffer, at + 4, view.getUint32(at, true));
+    at = aligned(at + 4 + bytes.length);
+    return new TextDecoder().decode(bytes);
+  };
+  const tissue = words();
+  const count = view.getUint32(at, true);
+  at += 4;
+  const regions: Keyframe["regions"] = [];
+  for (let i = 0; i < count; i++) {
+    const name = words();
+    const corners = 3 * view.getUint32(at, true);
+    if (at + 4 + 4 * corners > view.byteLength) throw new RangeError("a region that was cut short");
+    regions.push({ name, triangles: new Uint32Array(view.buffer.slice(at + 4, at + 4 + 4 * corners) as ArrayBuffer) });
+    at += 4 + 4 * corners;
   }
-  return { kinds: kinds.some((kind) => kind !== 0) ? kinds : null, regions };
+  return { kinds: kinds.some((kind) => kind !== 0) ? kinds : null, tissue, regions };
 }
+
+const aligned = (at: number): number => 4 * Math.ceil(at / 4);
 
 const vector = (view: DataView, at: number): [number, number, number] => [
   view.getFloat32(at, true),

@@ -16,9 +16,10 @@ export class BodySkin {
   private shares: Float32Array | null = null; // of the scale, of each display vertex
   private made = 0;
 
-  /** @param rest  of the coarse vertices @param subdivided  where the surface is small enough */
+  /** @param rest  of the coarse vertices @param colourOf  of each of these triangles @param subdivided  where the surface is small enough */
   constructor(
     private readonly rest: Float32Array,
+    private readonly colourOf: (triangles: Uint32Array) => (triangle: number) => readonly [number, number, number],
     material: TissueMaterial,
     line: THREE.LineBasicMaterial,
     public subdivided = true,
@@ -43,6 +44,7 @@ export class BodySkin {
     set("rest", surface.positions.slice(), 3);
     set("sky", this.shade(surface), 1);
     set("raw", rawness(surface, kind), 1);
+    set("tint", tints(surface, this.colourOf(triangles)), 3);
     this.shares = new Float32Array(surface.count);
     set("value", this.shares, 1).setUsage(THREE.DynamicDrawUsage);
     geometry.setIndex(new THREE.BufferAttribute(surface.triangles, 1));
@@ -87,6 +89,20 @@ export class BodySkin {
     this.mesh.geometry.dispose();
     this.edges.geometry.dispose();
   }
+}
+
+/** Mean colour of the triangles around each display vertex. */
+function tints(surface: DisplaySurface, of: (triangle: number) => readonly [number, number, number]): Float32Array {
+  const sum = new Float32Array(3 * surface.count);
+  const count = new Float32Array(surface.count);
+  const times = surface.subdivide ? 4 : 1;
+  for (let c = 0; c < surface.triangles.length; c++) {
+    const v = surface.triangles[c]!;
+    const colour = of(Math.floor(c / (3 * times)));
+    for (let k = 0; k < 3; k++) sum[3 * v + k] = sum[3 * v + k]! + colour[k]!;
+    count[v] = count[v]! + 1;
+  }
+  return sum.map((total, i) => total / (count[Math.floor(i / 3)]! || 1));
 }
 
 /** Of each display vertex: 1 on faces that were cut, 0 on skin. */

@@ -14,7 +14,7 @@ import { ContactShadow } from "./contact_shadow.ts";
 import { InnerRegions } from "./inner_regions.ts";
 import { InstrumentModel } from "./instrument_model.ts";
 import { markTexture } from "./mark_texture.ts";
-import { coloursOf } from "./tissue_colours.ts";
+import { coloursOf, regionColours } from "./tissue_colours.ts";
 import type { TissueMaterial } from "./tissue_material.ts";
 import type { SurfaceMotion } from "./timeline.ts";
 
@@ -83,8 +83,10 @@ export class SurfaceModel {
     this.intensity = new Float32Array(timeline.vertices);
     material.size = this.size;
     const { tissue, raw } = coloursOf(timeline.tissue);
-    material.colours(tissue, raw);
-    this.body = new BodySkin(timeline.rest.subarray(0, 3 * timeline.vertices), material, this.edgeMaterial, fine);
+    material.raw = raw;
+    const rest = timeline.rest.subarray(0, 3 * timeline.vertices);
+    const colourOf = regionTints(tissue, timeline.regions);
+    this.body = new BodySkin(rest, colourOf, material, this.edgeMaterial, fine);
     this.body.build(this.shown, this.shownKinds);
     this.held = this.points(1, "square");
     this.driven = this.points(2, "disc");
@@ -293,6 +295,22 @@ export class SurfaceModel {
   dispose(): void {
     for (const thing of this.disposables) thing.dispose();
   }
+}
+
+type Tint = readonly [number, number, number];
+
+/** Colour of a triangle: of the region whose surface it is part of, else of the tissue. */
+function regionTints(tissue: string, regions: SurfaceMotion["regions"]): (all: Uint32Array) => (t: number) => Tint {
+  const tint = (colour: string): Tint => new THREE.Color(colour).toArray() as unknown as Tint;
+  const key = (all: Uint32Array, at: number) => [all[at]!, all[at + 1]!, all[at + 2]!].sort((a, b) => a - b).join(" ");
+  const own = tint(tissue);
+  const known = new Map<string, Tint>();
+  regions.forEach(({ name, triangles }, i) => {
+    const colour = tint(regionColours(name, i).tissue);
+    for (let at = 0; at < triangles.length; at += 3) known.set(key(triangles, at), colour);
+  });
+  if (known.size === 0) return () => () => own;
+  return (all) => (t) => known.get(key(all, 3 * t)) ?? own;
 }
 
 /** Changes only the depth at which points are drawn, by `lift` towards the camera [m]. */

@@ -33,7 +33,6 @@ export class TissueMaterial extends THREE.ShaderMaterial {
       polygonOffsetUnits: 1,
       uniforms: {
         perSize: { value: 1 },
-        tissue: { value: new THREE.Color() },
         rawTissue: { value: new THREE.Color() },
         moisture: { value: 1 },
         coloured: { value: 0 },
@@ -53,8 +52,8 @@ export class TissueMaterial extends THREE.ShaderMaterial {
     this.uniforms["perSize"]!.value = 1 / size;
   }
 
-  colours(tissue: string, raw: string): void {
-    (this.uniforms["tissue"]!.value as THREE.Color).set(tissue);
+  /** Of tissue that was cut. */
+  set raw(raw: string) {
     (this.uniforms["rawTissue"]!.value as THREE.Color).set(raw);
   }
 

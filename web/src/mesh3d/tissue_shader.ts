@@ -14,12 +14,14 @@ attribute float sky;
 attribute float hollow;
 attribute float value;
 attribute float raw;
+attribute vec3 tint;
 varying vec3 vNormal;
 varying vec3 vPlace;
 varying vec3 vWorld;
 varying vec3 vRest;
 varying vec3 vShade;
 varying float vValue;
+varying vec3 vTint;
 uniform float perSize;
 void main() {
   vec3 objectNormal = normal;
@@ -30,6 +32,7 @@ void main() {
   vRest = rest * perSize;
   vShade = vec3(sky, hollow, raw);
   vValue = value;
+  vTint = tint;
   gl_Position = projectionMatrix * mvPosition;
   #include <clipping_planes_vertex>
 }
@@ -111,7 +114,7 @@ varying vec3 vWorld;
 varying vec3 vRest;
 varying vec3 vShade;
 varying float vValue;
-uniform vec3 tissue;
+varying vec3 vTint;
 uniform vec3 rawTissue;
 uniform float moisture;
 uniform float coloured;
@@ -135,7 +138,7 @@ void main() {
   float inside = gl_FrontFacing ? 0.0 : 1.0;
   raw = max(raw, inside);
   float sky = vShade.x * (1.0 - 0.8 * clamp(vShade.y * 1.6, 0.0, 1.0));
-  vec3 base = mix(tissue, rawTissue, raw);
+  vec3 base = mix(vTint, rawTissue, raw);
   float wet = moisture;
   float mottle = 0.5;
 #ifdef FINE
