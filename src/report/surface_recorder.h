@@ -52,7 +52,7 @@ class SurfaceRecorder {
   std::vector<std::uint8_t> kinds_;       // SurfaceKind of each triangle
   SkinFaces skin_;
   std::size_t mesh_vertices_ = 0, removed_ = 0, torn_ = 0;
-  bool changed_ = false;       // the surface, since the last frame that was kept
+  bool changed_ = false;        // the surface, since the last frame that was kept
   bool kinds_changed_ = false;  // what its triangles are
   std::vector<std::shared_ptr<Capsule>> capsules_;
   std::vector<std::shared_ptr<Instrument>> instruments_;

@@ -1,4 +1,5 @@
 // What of a body can be drawn: its outer faces are skin until something cuts them, and inner regions are closed.
+#include <algorithm>
 #include <array>
 #include <map>
 
@@ -64,7 +65,7 @@ std::size_t count(const BodySurface& surface, SurfaceKind kind) {
 
 // The outer faces are those of the boundary, all of them skin; the nodule's own are closed and hold its tets' volume.
 TEST(BodySurface, HasTheBoundaryAndClosedRegions) {
-  const TetMesh mesh = build_mesh(nodule_block());
+  const TetMesh mesh = build_mesh(nodule_block(), {});
   const BodySurface surface = SkinFaces(mesh).surface(mesh);
   EXPECT_EQ(surface.outer, boundary_triangles(mesh));
   EXPECT_EQ(count(surface, SurfaceKind::skin), surface.outer.size());
@@ -82,7 +83,7 @@ TEST(BodySurface, HasTheBoundaryAndClosedRegions) {
 
 // Of tets that are gone, neighbours show a cut face each, and the body is closed still.
 TEST(BodySurface, ShowsWhatRemovedTetsUncover) {
-  const TetMesh mesh = build_mesh(nodule_block());
+  const TetMesh mesh = build_mesh(nodule_block(), {});
   const BodySurface whole = SkinFaces(mesh).surface(mesh);
   const auto gone = [](std::uint32_t tet) { return tet < 6; };  // a corner's cube
   const BodySurface open = SkinFaces(mesh).surface(mesh, gone);
@@ -126,8 +127,8 @@ TEST(BodySurface, ShowsWhereACapsuleIsTorn) {
   EXPECT_NE(body.shape_key(), key);
   const view::Surface surface(body.shape());
   ASSERT_EQ(std::count(surface.kinds().begin(), surface.kinds().end(), 2), 1);
-  const std::size_t torn = static_cast<std::size_t>(
-      std::find(surface.kinds().begin(), surface.kinds().end(), 2) - surface.kinds().begin());
+  const std::size_t torn =
+      static_cast<std::size_t>(std::find(surface.kinds().begin(), surface.kinds().end(), 2) - surface.kinds().begin());
   Triangle found{};
   for (std::size_t k = 0; k < 3; ++k) found[k] = surface.mesh_vertex(surface.triangles()[3 * torn + k]);
   Triangle expected = capsule.triangles()[7];
@@ -143,7 +144,8 @@ TEST(BodySurface, TravelsInTheKeyframe) {
   const std::string bytes = view::keyframe_message(surface, 3);
   const auto u32 = [&](std::size_t at) {
     std::uint32_t x = 0;
-    for (std::size_t k = 0; k < 4; ++k) x |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + k])) << 8 * k;
+    for (std::size_t k = 0; k < 4; ++k)
+      x |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + k])) << 8 * k;
     return x;
   };
   const std::size_t vertices = u32(8), triangles = u32(12);

@@ -53,12 +53,23 @@ describe("the body's surface", () => {
     expect(blue).toBeLessThan(tint.length / 9);
   });
 
-  it("has four times the triangles where it is fine, and the coarse ones where it is plain", () => {
-    const skin = skinOf();
-    expect(skin.mesh.geometry.index!.count).toBe(12 * triangles);
-    skin.subdivided = false;
-    skin.build(shape.triangles, null);
-    expect(skin.mesh.geometry.index!.count).toBe(3 * triangles);
+  it("is rounded up to a size, which is smaller where it is plain", () => {
+    const large = box(16); // 3072 triangles
+    for (const [fine, times] of [
+      [true, 4],
+      [false, 1],
+    ] as const) {
+      const skin = new BodySkin(
+        large.rest,
+        () => () => [0, 0, 0],
+        new TissueMaterial(),
+        new THREE.LineBasicMaterial(),
+        fine,
+      );
+      skin.build(large.triangles, null);
+      expect(skin.mesh.geometry.index!.count).toBe(times * large.triangles.length);
+    }
+    expect(skinOf().mesh.geometry.index!.count).toBe(12 * triangles);
   });
 
   it("brings shares of the scale to its texels", () => {

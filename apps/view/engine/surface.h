@@ -70,7 +70,7 @@ class Surface {
   std::vector<std::uint8_t> kinds_;
   std::vector<Region> regions_;
   std::string tissue_;
-  std::size_t outer_ = 0;  ///< vertices at the boundary
+  std::size_t outer_ = 0;              ///< vertices at the boundary
   std::vector<std::uint32_t> number_;  ///< surface vertex of each mesh vertex, or none
   std::vector<NearTet> near_;          ///< tets with a vertex at the surface
   std::vector<double> tets_around_;    ///< of each surface vertex

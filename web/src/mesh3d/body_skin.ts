@@ -1,6 +1,6 @@
 // body_skin.ts — the three.js object of a body's surface as it is drawn, and its wireframe, made anew where it is cut.
 import * as THREE from "three";
-import { DisplaySurface } from "./display_surface.ts";
+import { DisplaySurface, MOST_SUBDIVIDED, MOST_SUBDIVIDED_PLAIN } from "./display_surface.ts";
 import { directionsFor, skyShare } from "./occlusion.ts";
 import { lookupOf, type TissueMaterial } from "./tissue_material.ts";
 
@@ -16,13 +16,13 @@ export class BodySkin {
   private shares: Float32Array | null = null; // of the scale, of each display vertex
   private made = 0;
 
-  /** @param rest  of the coarse vertices @param colourOf  of each of these triangles @param subdivided  where the surface is small enough */
+  /** @param rest  of the coarse vertices @param colourOf  of each of these triangles @param fine  a larger surface is rounded, too */
   constructor(
     private readonly rest: Float32Array,
     private readonly colourOf: (triangles: Uint32Array) => (triangle: number) => readonly [number, number, number],
     material: TissueMaterial,
     line: THREE.LineBasicMaterial,
-    public subdivided = true,
+    public fine = true,
   ) {
     this.mesh = new THREE.Mesh(new THREE.BufferGeometry(), material);
     this.edges = new THREE.LineSegments(new THREE.BufferGeometry(), line);
@@ -30,7 +30,8 @@ export class BodySkin {
 
   /** Another surface on the same vertices. @param kind  of each triangle: 0 skin, 1 a face that was cut, 2 torn */
   build(triangles: Uint32Array, kind: Uint8Array | null): void {
-    const surface = new DisplaySurface(this.rest, triangles, kind, this.subdivided ? undefined : false);
+    const most = this.fine ? MOST_SUBDIVIDED : MOST_SUBDIVIDED_PLAIN;
+    const surface = new DisplaySurface(this.rest, triangles, kind, triangles.length / 3 <= most);
     this.surface = surface;
     const geometry = new THREE.BufferGeometry();
     const set = (name: string, values: Float32Array, components: number) => {

@@ -195,7 +195,7 @@ export class SurfaceModel {
     this.cap.coloured = look.coloured;
     this.inner.show(look.seeThrough || this.cap.open, look.coloured);
     if (!plainer) return;
-    this.body.subdivided = look.fine;
+    this.body.fine = look.fine;
     this.rebuild();
   }
 
@@ -228,6 +228,7 @@ export class SurfaceModel {
     const cut = [this.body.mesh, this.body.edges, this.held, this.driven, this.hiddenDriven, ...this.ghost.children];
     for (const object of cut) ((object as THREE.Mesh).material as THREE.Material).clippingPlanes = planes;
     this.cap.plane = plane;
+    this.shadow.mesh.visible = plane === null; // the shadow is that of the whole body
     this.inner.plane = plane;
     this.inner.show(this.look.seeThrough || this.cap.open, this.look.coloured);
   }
