@@ -126,17 +126,24 @@ export class LiveView {
     this.canvas.addEventListener("keydown", (event) => this.key(event));
   }
 
-  /** Another skin: the first, or one that was cut. */
+  /** Another skin: the first, or one that was cut. The old one stays until a frame tells where the new one is. */
   takeKeyframe(keyframe: Keyframe): void {
+    this.coming = keyframe;
+  }
+
+  private coming: Keyframe | null = null;
+
+  private build(keyframe: Keyframe): void {
     const hello = this.hello();
     if (!hello || !this.stage) return;
+    this.coming = null;
     if (this.model) {
       this.stage.scene.remove(this.model.group);
       this.model.dispose();
     }
     const sets = hello.tools.filter((tool) => !tool.instrument).length;
     this.surface = new LiveSurface(keyframe, hello.instruments, sets);
-    this.model = new SurfaceModel(this.surface, this.material, this.fine);
+    this.model = new SurfaceModel(this.surface, this.material, this.fine, this.fitted ? "again" : "first");
     this.keyframe = keyframe.number;
     this.stage.scene.add(this.model.group);
     if (this.cutTool) this.cutTool.size = this.model.diagonal;
@@ -172,6 +179,7 @@ export class LiveView {
     this.request = 0;
     this.easeDrawing();
     const frame = this.newest;
+    if (frame && frame.keyframe === this.coming?.number) this.build(this.coming);
     if (!frame || !this.surface || !this.model || frame.keyframe !== this.keyframe) return;
     if (frame.epoch !== this.epoch) this.range.reset(this.colouring, this.leastRange);
     this.epoch = frame.epoch;

@@ -5,7 +5,7 @@ import { directionsFor, skyShare } from "./occlusion.ts";
 import { lookupOf, type TissueMaterial } from "./tissue_material.ts";
 
 /** Triangles times directions that the shade may cost: some 100 ms. A surface that came by a cut gets less. */
-const EFFORT = { first: 400_000, later: 80_000 };
+const EFFORT = { first: 400_000, again: 80_000 };
 /** How raw a triangle of each kind is: skin, cut, skin under a capsule that has torn. */
 const RAW = [0, 1, 0.8];
 
@@ -14,7 +14,6 @@ export class BodySkin {
   readonly edges: THREE.LineSegments;
   private surface!: DisplaySurface;
   private shares: Float32Array | null = null; // of the scale, of each display vertex
-  private made = 0;
 
   /** @param rest  of the coarse vertices @param colourOf  of each of these triangles @param fine  a larger surface is rounded, too */
   constructor(
@@ -23,6 +22,7 @@ export class BodySkin {
     material: TissueMaterial,
     line: THREE.LineBasicMaterial,
     public fine = true,
+    private time: "first" | "again" = "first",
   ) {
     this.mesh = new THREE.Mesh(new THREE.BufferGeometry(), material);
     this.edges = new THREE.LineSegments(new THREE.BufferGeometry(), line);
@@ -70,7 +70,8 @@ export class BodySkin {
   private bake(surface: DisplaySurface, sky: Float32Array): void {
     const wedges = surface.wedges;
     const [points, normals] = [surface.positions, surface.normals].map((all) => all.subarray(0, 3 * wedges.count));
-    const directions = directionsFor(wedges.ofCorner.length / 3, this.made++ === 0 ? EFFORT.first : EFFORT.later);
+    const directions = directionsFor(wedges.ofCorner.length / 3, EFFORT[this.time]);
+    this.time = "again";
     const share = skyShare(points!, normals!, wedges.ofCorner, directions);
     sky.set(share);
     this.shaded = { triangles: surface.coarse, sky: share };

@@ -67,11 +67,15 @@ export class SurfaceModel {
   private shownKinds: Uint8Array | null; // … and their kinds
   private look: ModelLook = { coloured: false, seeThrough: false, fine: true };
 
-  /** @param material  of the body; it is the caller's, since making one anew with each surface would be slow */
+  /**
+   * @param material  of the body; it is the caller's, since making one anew with each surface would be slow
+   * @param time  whether the body is seen for the first time, or has become another one while it moves
+   */
   constructor(
     readonly timeline: SurfaceMotion,
     private readonly material: TissueMaterial,
     fine: boolean,
+    time: "first" | "again" = "first",
   ) {
     this.shown = timeline.triangles;
     this.shownKinds = timeline.kindsAt(timeline.frames[0]!.time);
@@ -86,7 +90,7 @@ export class SurfaceModel {
     material.raw = raw;
     const rest = timeline.rest.subarray(0, 3 * timeline.vertices);
     const colourOf = regionTints(tissue, timeline.regions);
-    this.body = new BodySkin(rest, colourOf, material, this.edgeMaterial, fine);
+    this.body = new BodySkin(rest, colourOf, material, this.edgeMaterial, fine, time);
     this.body.build(this.shown, this.shownKinds);
     this.held = this.points(1, "square");
     this.driven = this.points(2, "disc");
