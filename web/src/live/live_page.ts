@@ -113,7 +113,7 @@ export class LivePage {
       this.view.look.colour,
       this.view.look.detail,
       check("Edges", (on) => (this.view.edges = on)),
-      check("Force", (on) => (this.view.arrows = on), true),
+      check("Force", (on) => (this.view.force.on = on), true),
       this.view.look.seeThrough,
       this.view.cut.tick,
       button("Show all", "Show the whole body (0)", () => this.view.fit()),
@@ -329,7 +329,7 @@ export class LivePage {
 
   private showNumbers(frame: LiveFrame): void {
     const tool = frame.tools[this.tool];
-    this.view.tool = this.tool;
+    this.view.force.tool = this.tool;
     const direction = this.hello?.tools[this.tool]?.direction;
     if (tool && direction) {
       const force = tool.force.reduce((sum, f, i) => sum + f * direction[i]!, 0);

@@ -4,9 +4,7 @@ import * as THREE from "three";
 import { strokeOf } from "../charts/line_style.ts";
 import { type ClipBody, clipKey, clipPlane, firstSeen, rememberClip, rememberedClip } from "../mesh3d/clip.ts";
 import { ClipControls } from "../mesh3d/clip_controls.ts";
-import { ColourBar } from "../mesh3d/colour_bar.ts";
 import { fineIsFast, hopeForFine, Pace } from "../mesh3d/drawing_speed.ts";
-import { ForceArrow } from "../mesh3d/force_arrow.ts";
 import { lookKey, rememberedLook, rememberLook, TISSUE } from "../mesh3d/look.ts";
 import { LookControls } from "../mesh3d/look_controls.ts";
 import { ScaleBar } from "../mesh3d/scale_bar.ts";
@@ -16,14 +14,15 @@ import { TissueMaterial } from "../mesh3d/tissue_material.ts";
 import { drawsInSoftware, webglContext } from "../mesh3d/webgl.ts";
 import { h } from "../page/dom.ts";
 import { currentTheme, onTheme, themeColour } from "../page/theme.ts";
-import { AS_TISSUE, type Colouring, COLOURINGS, colouringOf, ColourRange, unitOf } from "./colouring.ts";
+import { ColourScale } from "./colour_scale.ts";
+import { AS_TISSUE, type Colouring, COLOURINGS, colouringOf } from "./colouring.ts";
 import { CutTool } from "./cut_tool.ts";
+import { ForceShown } from "./force_shown.ts";
 import { LiveSurface } from "./live_surface.ts";
 import type { Hello, Keyframe, LiveFrame } from "./protocol.ts";
 
 const DRIVEN = 2;
 const EASINGS = [0.7, 0.5]; // shares of the pixels in each direction
-const LEAST_FORCE = 0.02; // that an arrow is as long as can be for [N]
 
 export interface Hands {
   mayAct(): boolean;
@@ -51,7 +50,6 @@ export class LiveView {
       "through it, F colours it by a field or as tissue. With the cutting tool (K) arrow keys move the blade, Enter puts it down and lifts it.",
   });
   edges = false;
-  arrows = true; // of forces
   onColour: (colouring: Colouring) => void = () => {};
   private readonly lookSettings = rememberedLook("live", [TISSUE, ...COLOURINGS.map(({ name }) => name)]);
   readonly look = new LookControls(
@@ -65,21 +63,18 @@ export class LiveView {
     () => this.clipBody,
     () => this.cutChanged(),
   );
-  private readonly bar = new ColourBar();
   private readonly stage: Stage | null;
   private surface: LiveSurface | null = null;
   private model: SurfaceModel | null = null;
   private keyframe = -1;
   private epoch = -1;
-  private readonly range = new ColourRange();
-  private colouring: Colouring = colouringOf(this.lookSettings.colour);
+  private readonly scale = new ColourScale(colouringOf(this.lookSettings.colour), () => this.model?.diagonal ?? 1);
+  readonly force: ForceShown;
   private readonly material = new TissueMaterial();
   private readonly scaleBar = new ScaleBar();
-  private readonly arrow = new ForceArrow();
   private readonly pace = new Pace();
   private canBeFine = hopeForFine();
   private measured = false;
-  private mostForce = LEAST_FORCE;
   private dragMode: DragMode = "pull";
   readonly cutTool: CutTool | null = null;
   private frame: LiveFrame | null = null;
@@ -94,10 +89,10 @@ export class LiveView {
     private readonly hello: () => Hello | null,
     private readonly hands: Hands,
   ) {
+    this.force = new ForceShown(hello);
     const context = webglContext(this.canvas, !drawsInSoftware());
-    this.element = h("div", { class: "mesh-viewport live-viewport" }, this.canvas, this.bar.element);
-    this.element.append(this.scaleBar.element, this.arrow.label);
-    this.bar.element.hidden = true;
+    this.element = h("div", { class: "mesh-viewport live-viewport" }, this.canvas, this.scale.bar.element);
+    this.element.append(this.scaleBar.element, this.force.arrow.label);
     this.stage = context ? new Stage(this.canvas, context) : null;
     if (!this.stage) {
       this.element.replaceChildren(
@@ -114,7 +109,7 @@ export class LiveView {
     this.stage.scene.add(this.thread);
     this.stage.beforeDrawing = () => this.model?.cutOpen(this.plane);
     this.stage.afterDrawing = () => this.annotate();
-    this.stage.scene.add(this.arrow.group);
+    this.stage.scene.add(this.force.arrow.group);
     this.cutTool = new CutTool(this.stage, this.canvas, this.hands, (caster) => this.seenAt(caster));
     this.stage.scene.add(this.cutTool.lines);
     this.element.append(this.cutTool.crosshair);
@@ -181,18 +176,19 @@ export class LiveView {
     const frame = this.newest;
     if (frame && frame.keyframe === this.coming?.number) this.build(this.coming);
     if (!frame || !this.surface || !this.model || frame.keyframe !== this.keyframe) return;
-    if (frame.epoch !== this.epoch) this.range.reset(this.colouring, this.leastRange);
+    if (frame.epoch !== this.epoch) this.scale.reset();
     this.epoch = frame.epoch;
     this.frame = frame;
-    this.colourBy(this.surface.take(frame, this.colouring));
+    this.scale.take(this.surface.take(frame, this.scale.colouring), this.surface);
     this.model.setLook({
-      coloured: this.colouring.name !== TISSUE,
+      coloured: this.scale.colouring.name !== TISSUE,
       seeThrough: this.lookSettings.seeThrough,
       fine: this.fine,
     });
     this.model.show({ edges: this.edges, ghost: false, marks: true, held: this.model.heldCount <= MANY_MARKS });
     this.model.update(0, 1, 1);
-    this.showForce(frame);
+    const held = frame.grabbing && this.dragged?.what === "tissue" ? this.place(this.dragged.vertex) : null;
+    this.force.show(frame, this.model, held);
     this.drawThread();
     this.canvas.dataset["look"] = this.fine ? "fine" : "plain";
     if (!this.measured && this.stage) this.measure(this.stage);
@@ -211,29 +207,8 @@ export class LiveView {
   private annotate(): void {
     if (!this.stage) return;
     this.scaleBar.show(this.stage.metresPerPixel, this.stage.size.width);
-    this.arrow.place(this.stage, [this.bar.element, this.scaleBar.element]);
+    this.force.arrow.place(this.stage, [this.scale.bar.element, this.scaleBar.element]);
   }
-
-  /** The force of the hand's pull while there is one, else of the tool that is pushed. */
-  private showForce(frame: LiveFrame): void {
-    const { model } = this;
-    if (!model) return;
-    const pulled = frame.grabbing && this.dragged?.what === "tissue" ? this.place(this.dragged.vertex) : null;
-    const at = pulled ?? this.tipOf(frame);
-    const force = new THREE.Vector3(...(pulled ? frame.grabForce : (frame.tools[this.tool]?.force ?? [0, 0, 0])));
-    this.mostForce = Math.max(this.mostForce, force.length());
-    this.arrow.show(at && this.arrows ? { at, force, most: this.mostForce } : null, model.middle, model.diagonal);
-  }
-
-  private tipOf(frame: LiveFrame): THREE.Vector3 | null {
-    const tip = frame.tools[this.tool]?.points.slice(-3) ?? [];
-    const instrument = this.hello()?.tools[this.tool]?.instrument === true;
-    if (!instrument) return frame.tools.length > 0 ? (this.model?.toolPlace(0) ?? null) : null;
-    return tip.length === 3 ? new THREE.Vector3(...(tip as [number, number, number])) : null;
-  }
-
-  /** Of which tool the force is shown. */
-  tool = 0;
 
   private get clipBody(): ClipBody | null {
     return this.model?.clipBody ?? null;
@@ -252,10 +227,8 @@ export class LiveView {
     rememberLook("live", this.lookSettings);
     this.look.refresh();
     const colouring = colouringOf(this.lookSettings.colour);
-    if (colouring.name !== this.colouring.name) {
-      this.colouring = colouring;
-      this.range.reset(colouring, this.leastRange);
-      this.showRange();
+    if (colouring.name !== this.scale.colouring.name) {
+      this.scale.colouring = colouring;
       this.onColour(colouring);
     }
     if (this.newest) this.takeFrame(this.newest); // a body that is paused is drawn anew, too
@@ -263,38 +236,15 @@ export class LiveView {
 
   /** What colours stand for; a body without stress has no pressure to show. */
   get colours(): Colouring {
-    return this.colouring;
+    return this.scale.colouring;
   }
 
   /** Tells which fields there are. */
   offer(hasStress: boolean): void {
     this.look.colour.querySelector<HTMLOptionElement>("[value=pressure]")!.hidden = !hasStress;
-    if (hasStress || this.colouring.name !== "pressure") return;
+    if (hasStress || this.scale.colouring.name !== "pressure") return;
     this.lookSettings.colour = AS_TISSUE.name;
     this.lookChanged();
-  }
-
-  private get leastRange(): number {
-    return this.colouring.least * (this.colouring.name === "displacement" ? (this.model?.diagonal ?? 1) : 1);
-  }
-
-  /** Brings the frame's numbers to colours; those of a field that has not come yet stay as they were. */
-  private colourBy(span: { low: number; high: number } | null): void {
-    if (!span || !this.surface) return;
-    const { rest } = this.colouring;
-    const changed = this.range.follow(span.low, span.high, rest, this.leastRange, performance.now());
-    if (changed || !this.bar.element.dataset["range"]) this.showRange();
-    this.surface.scale(this.range.low, this.range.high, rest === 1);
-  }
-
-  private showRange(): void {
-    const { low, high } = this.range;
-    const { unit, perUnit } = unitOf(this.colouring, low, high);
-    this.bar.describe(this.colouring.label, `${this.colouring.symbol} [${unit}]`);
-    this.bar.setRange(perUnit * high, perUnit * low, this.colouring.rest === 1);
-    if (this.colouring.name === TISSUE) this.bar.element.hidden = true;
-    this.bar.element.dataset["range"] = `${low} ${high}`;
-    this.bar.element.dataset["colouring"] = this.colouring.name;
   }
 
   /** What a drag on the body does. */
@@ -326,7 +276,7 @@ export class LiveView {
     });
     for (const line of [this.thread, this.cutTool?.lines])
       (line?.material as THREE.LineBasicMaterial | undefined)?.color.set(driven);
-    this.arrow.colour = themeColour("--mesh-force");
+    this.force.arrow.colour = themeColour("--mesh-force");
     this.stage?.invalidate();
   }
 

@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import { DisplaySurface, MOST_SUBDIVIDED, MOST_SUBDIVIDED_PLAIN } from "./display_surface.ts";
 import { directionsFor, skyShare } from "./occlusion.ts";
+import type { Tint } from "./tissue_colours.ts";
 import { lookupOf, type TissueMaterial } from "./tissue_material.ts";
 
 /** Triangles times directions that the shade may cost: some 100 ms. A surface that came by a cut gets less. */
@@ -18,7 +19,7 @@ export class BodySkin {
   /** @param rest  of the coarse vertices @param colourOf  of each of these triangles @param fine  a larger surface is rounded, too */
   constructor(
     private readonly rest: Float32Array,
-    private readonly colourOf: (triangles: Uint32Array) => (triangle: number) => readonly [number, number, number],
+    private readonly colourOf: (triangles: Uint32Array) => (triangle: number) => Tint,
     material: TissueMaterial,
     line: THREE.LineBasicMaterial,
     public fine = true,
@@ -94,7 +95,7 @@ export class BodySkin {
 }
 
 /** Mean colour of the triangles around each display vertex. */
-function tints(surface: DisplaySurface, of: (triangle: number) => readonly [number, number, number]): Float32Array {
+function tints(surface: DisplaySurface, of: (triangle: number) => Tint): Float32Array {
   const sum = new Float32Array(3 * surface.count);
   const count = new Float32Array(surface.count);
   const times = surface.subdivide ? 4 : 1;

@@ -14,7 +14,7 @@ import { ContactShadow } from "./contact_shadow.ts";
 import { InnerRegions } from "./inner_regions.ts";
 import { InstrumentModel } from "./instrument_model.ts";
 import { markTexture } from "./mark_texture.ts";
-import { coloursOf, regionColours } from "./tissue_colours.ts";
+import { coloursOf, regionTints } from "./tissue_colours.ts";
 import type { TissueMaterial } from "./tissue_material.ts";
 import type { SurfaceMotion } from "./timeline.ts";
 
@@ -300,22 +300,6 @@ export class SurfaceModel {
   dispose(): void {
     for (const thing of this.disposables) thing.dispose();
   }
-}
-
-type Tint = readonly [number, number, number];
-
-/** Colour of a triangle: of the region whose surface it is part of, else of the tissue. */
-function regionTints(tissue: string, regions: SurfaceMotion["regions"]): (all: Uint32Array) => (t: number) => Tint {
-  const tint = (colour: string): Tint => new THREE.Color(colour).toArray() as unknown as Tint;
-  const key = (all: Uint32Array, at: number) => [all[at]!, all[at + 1]!, all[at + 2]!].sort((a, b) => a - b).join(" ");
-  const own = tint(tissue);
-  const known = new Map<string, Tint>();
-  regions.forEach(({ name, triangles }, i) => {
-    const colour = tint(regionColours(name, i).tissue);
-    for (let at = 0; at < triangles.length; at += 3) known.set(key(triangles, at), colour);
-  });
-  if (known.size === 0) return () => () => own;
-  return (all) => (t) => known.get(key(all, 3 * t)) ?? own;
 }
 
 /** Changes only the depth at which points are drawn, by `lift` towards the camera [m]. */

@@ -1,4 +1,6 @@
 // tissue_colours.ts — the colour of a tissue by its name, as it looks fresh: for regions, too, whose names say what they are.
+import * as THREE from "three";
+import type { SurfaceMotion } from "./timeline.ts";
 
 export interface TissueColours {
   tissue: string;
@@ -33,4 +35,23 @@ export function regionColours(name: string, index: number): TissueColours {
   const known = NAMED.find(([pattern]) => pattern.test(name))?.[1];
   const other = OTHERS[index % OTHERS.length]!;
   return known ?? { tissue: other, raw: other };
+}
+
+export type Tint = readonly [number, number, number];
+
+/** Colour of a triangle: of the region whose surface it is part of, else of the tissue. */
+export function regionTints(
+  tissue: string,
+  regions: SurfaceMotion["regions"],
+): (all: Uint32Array) => (t: number) => Tint {
+  const tint = (colour: string): Tint => new THREE.Color(colour).toArray() as unknown as Tint;
+  const key = (all: Uint32Array, at: number) => [all[at]!, all[at + 1]!, all[at + 2]!].sort((a, b) => a - b).join(" ");
+  const own = tint(tissue);
+  const known = new Map<string, Tint>();
+  regions.forEach(({ name, triangles }, i) => {
+    const colour = tint(regionColours(name, i).tissue);
+    for (let at = 0; at < triangles.length; at += 3) known.set(key(triangles, at), colour);
+  });
+  if (known.size === 0) return () => () => own;
+  return (all) => (t) => known.get(key(all, 3 * t)) ?? own;
 }
