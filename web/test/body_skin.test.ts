@@ -54,7 +54,7 @@ describe("the body's surface", () => {
   });
 
   it("is rounded up to a size, which is smaller where it is plain", () => {
-    const large = box(16); // 3072 triangles
+    const large = box(23); // 6348 triangles
     for (const [fine, times] of [
       [true, 4],
       [false, 1],

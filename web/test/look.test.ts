@@ -5,6 +5,7 @@ import { firstLook, isLook, lookKey, TISSUE } from "../src/mesh3d/look.ts";
 import { Pace } from "../src/mesh3d/drawing_speed.ts";
 import { DisplaySurface } from "../src/mesh3d/display_surface.ts";
 import { directionsFor, skyShare } from "../src/mesh3d/occlusion.ts";
+import { mottles } from "../src/mesh3d/mottle.ts";
 import { lengthText, roundLength } from "../src/mesh3d/scale_bar.ts";
 import { coloursOf, regionColours } from "../src/mesh3d/tissue_colours.ts";
 import { lookupOf } from "../src/mesh3d/tissue_material.ts";
@@ -128,6 +129,35 @@ describe("a number beside an arrow", () => {
     const place = freePlace({ x: 240, y: 100 }, own, room, [scale])!;
     expect(place.x + own.width <= scale.x || place.y >= scale.height).toBe(true);
     expect(freePlace({ x: 100, y: 100 }, own, room, [{ x: 0, y: 0, ...room }])).toBeNull();
+  });
+});
+
+describe("mottles", () => {
+  const points = Float32Array.from({ length: 3 * 4000 }, (_, i) => 0.1 * (((i * 7919) % 4001) / 4001));
+
+  it("vary about a half, neither flat nor beyond the scale, and are the same each time", () => {
+    const values = mottles(points, 0.17);
+    const mean = values.reduce((sum, x) => sum + x, 0) / values.length;
+    expect(mean).toBeGreaterThan(0.42);
+    expect(mean).toBeLessThan(0.58);
+    expect(Math.min(...values)).toBeGreaterThanOrEqual(0);
+    expect(Math.max(...values)).toBeLessThanOrEqual(1);
+    expect(Math.max(...values) - Math.min(...values)).toBeGreaterThan(0.4);
+    expect(mottles(points, 0.17)).toEqual(values);
+  });
+
+  it("go by the body's size: twice as large, twice as broad", () =>
+    expect(
+      mottles(
+        points.map((x) => 2 * x),
+        0.34,
+      ),
+    ).toEqual(mottles(points, 0.17)));
+
+  it("are continuous, across the cells of the lattice, too", () => {
+    const line = Float32Array.from({ length: 3 * 2001 }, (_, i) => (i % 3 === 0 ? i / 6000 : 0.03));
+    const values = mottles(line, 1);
+    for (let i = 1; i < values.length; i++) expect(Math.abs(values[i]! - values[i - 1]!)).toBeLessThan(0.02);
   });
 });
 

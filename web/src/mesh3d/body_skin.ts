@@ -1,6 +1,7 @@
 // body_skin.ts — the three.js object of a body's surface as it is drawn, and its wireframe, made anew where it is cut.
 import * as THREE from "three";
 import { DisplaySurface, MOST_SUBDIVIDED, MOST_SUBDIVIDED_PLAIN } from "./display_surface.ts";
+import { mottles } from "./mottle.ts";
 import { directionsFor, skyShare } from "./occlusion.ts";
 import type { Tint } from "./tissue_colours.ts";
 import { lookupOf, type TissueMaterial } from "./tissue_material.ts";
@@ -46,6 +47,7 @@ export class BodySkin {
     set("rest", surface.positions.slice(), 3);
     set("sky", this.shade(surface), 1);
     set("raw", rawness(surface, kind), 1);
+    set("mottle", mottles(surface.positions, this.mesh.material.size), 1);
     set("tint", tints(surface, this.colourOf(triangles)), 3);
     this.shares = new Float32Array(surface.count);
     set("value", this.shares, 1).setUsage(THREE.DynamicDrawUsage);

@@ -11,7 +11,7 @@ import { next, type Wedges, wedgesOf } from "./creases.ts";
 
 /** A surface of more triangles is fine enough as it is, and four times as many would cost too much; less so in the plain look. */
 export const MOST_SUBDIVIDED = 24_000;
-export const MOST_SUBDIVIDED_PLAIN = 3_000;
+export const MOST_SUBDIVIDED_PLAIN = 6_000;
 const NONE = -1;
 /** Crease edges that meet at less than this cosine are a corner of the shape, not a curve. */
 const CORNER = 0.5;

@@ -23,7 +23,7 @@ const NAMED: readonly [RegExp, TissueColours][] = [
   [/bone|rib|plate|frame/i, { tissue: "#d9cdb4", raw: "#cdb79a" }],
   [/gel|phantom|silicone|ecoflex/i, { tissue: "#c8b59a", raw: "#c0a98c" }],
 ];
-const LIVER: TissueColours = { tissue: "#75332a", raw: "#691a16" };
+const LIVER: TissueColours = { tissue: "#75332a", raw: "#722622" };
 /** For regions whose names say nothing, one after the other. */
 const OTHERS = ["#b98a5c", "#6f5f9c", "#3f5f9a", "#7f8a4a", "#b0605a", "#5f8a8a"];
 

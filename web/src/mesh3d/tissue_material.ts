@@ -52,6 +52,10 @@ export class TissueMaterial extends THREE.ShaderMaterial {
     this.uniforms["perSize"]!.value = 1 / size;
   }
 
+  get size(): number {
+    return 1 / (this.uniforms["perSize"]!.value as number);
+  }
+
   /** Of tissue that was cut. */
   set raw(raw: string) {
     (this.uniforms["rawTissue"]!.value as THREE.Color).set(raw);

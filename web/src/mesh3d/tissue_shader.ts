@@ -15,6 +15,7 @@ attribute float hollow;
 attribute float value;
 attribute float raw;
 attribute vec3 tint;
+attribute float mottle;
 varying vec3 vNormal;
 varying vec3 vPlace;
 varying vec3 vWorld;
@@ -22,6 +23,7 @@ varying vec3 vRest;
 varying vec3 vShade;
 varying float vValue;
 varying vec3 vTint;
+varying float vMottle;
 uniform float perSize;
 void main() {
   vec3 objectNormal = normal;
@@ -33,6 +35,7 @@ void main() {
   vShade = vec3(sky, hollow, raw);
   vValue = value;
   vTint = tint;
+  vMottle = mottle;
   gl_Position = projectionMatrix * mvPosition;
   #include <clipping_planes_vertex>
 }
@@ -67,6 +70,11 @@ vec4 latticeNoise(vec3 x) {
 `;
 
 const TURNED = /* glsl */ `
+// Two lattices turned against each other show neither; one is enough where it is fine.
+vec4 noiseOnce(vec3 x) {
+  vec4 turned = latticeNoise(TURN * x);
+  return vec4(transpose(TURN) * turned.xyz, turned.w);
+}
 vec4 noiseAt(vec3 x) {
   vec4 straight = latticeNoise(TURN * x);
   vec4 turned = latticeNoise(TURN * (TURN * x) * 1.37 + 41.0);
@@ -115,6 +123,7 @@ varying vec3 vRest;
 varying vec3 vShade;
 varying float vValue;
 varying vec3 vTint;
+varying float vMottle;
 uniform vec3 rawTissue;
 uniform float moisture;
 uniform float coloured;
@@ -140,13 +149,13 @@ void main() {
   float sky = vShade.x * (1.0 - 0.8 * clamp(vShade.y * 1.6, 0.0, 1.0));
   vec3 base = mix(vTint, rawTissue, raw);
   float wet = moisture;
-  float mottle = 0.5;
+  float mottle = vMottle;
 #ifdef FINE
   float texel = length(fwidth(vRest));
   vec4 broad = noiseAt(vRest * 5.0);
   vec4 middle = noiseAt(vRest * 21.0 + 7.0);
-  vec4 fine = noiseAt(vRest * 74.0 + 19.0);
-  vec4 grain = noiseAt(vRest * 190.0 + 3.0);
+  vec4 fine = noiseOnce(vRest * 74.0 + 19.0);
+  vec4 grain = noiseOnce(vRest * 190.0 + 3.0);
   float seeMiddle = 1.0 - smoothstep(0.25, 0.7, texel * 21.0);
   float seeFine = 1.0 - smoothstep(0.25, 0.7, texel * 74.0);
   float seeGrain = 1.0 - smoothstep(0.25, 0.7, texel * 190.0);
@@ -163,13 +172,15 @@ void main() {
   vec3 slope = sign(det) * (hx * r1 + hy * r2);
   n = normalize(abs(det) * perLength * n - slope);
   wet *= mix(0.55, 1.25, smoothstep(0.34, 0.66, 0.6 * broad.w + 0.4 * middle.w));
-  // Lobules: a faint network of paler lines, darker between broad patches; raw tissue bleeds in spots.
+  float spots = smoothstep(0.58, 0.70, fine.w * 0.5 + middle.w * 0.5) * seeFine;
+  base = mix(base, rawTissue * vec3(0.55, 0.30, 0.32), raw * 0.7 * spots); // raw tissue bleeds in spots
+#else
+  wet *= 0.5 + vMottle;
+#endif
+  // Lobules: a faint network of paler lines, darker between broad patches.
   vec3 pale = mix(base, base.rrr * vec3(1.35, 0.62, 0.47), 0.35);
   vec3 deep = base * vec3(0.72, 0.62, 0.64);
   base = mix(deep, mix(base, pale, smoothstep(0.48, 0.72, mottle)), smoothstep(0.28, 0.52, mottle));
-  float spots = smoothstep(0.58, 0.70, fine.w * 0.5 + middle.w * 0.5) * seeFine;
-  base = mix(base, rawTissue * vec3(0.55, 0.30, 0.32), raw * 0.7 * spots);
-#endif
   vec3 field = texture2D(scale, vec2(vValue, 0.5)).rgb;
   base = mix(base, field, coloured);
   wet *= 1.0 - 0.85 * coloured;
