@@ -124,6 +124,14 @@ describe("a number beside an arrow", () => {
       expect(inside(freePlace(at, own, room, [])!)).toBe(true);
   });
 
+  it("stands across the arrow, not on it", () => {
+    const at = { x: 180, y: 130 };
+    const level = freePlace(at, own, room, [], { x: 50, y: 3 })!;
+    expect(level.y + own.height <= at.y || level.y >= at.y).toBe(true);
+    const upright = freePlace(at, own, room, [], { x: -4, y: 60 })!;
+    expect(upright.x + own.width <= at.x || upright.x >= at.x).toBe(true);
+  });
+
   it("keeps off what is written there, and is left out where there is no room", () => {
     const scale = { x: 250, y: 0, width: 110, height: 200 };
     const place = freePlace({ x: 240, y: 100 }, own, room, [scale])!;

@@ -23,7 +23,8 @@ export class ForceArrow {
   private readonly material = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true });
   private readonly shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 16).translate(0, 0.5, 0), this.material);
   private readonly head = new THREE.Mesh(new THREE.ConeGeometry(1, 1, 24).translate(0, -0.5, 0), this.material);
-  private readonly tail = new THREE.Vector3();
+  private readonly tail = new THREE.Vector3(); // its free end …
+  private readonly tip = new THREE.Vector3(); // … and where it touches the body
 
   constructor() {
     this.group.add(this.shaft, this.head);
@@ -54,6 +55,7 @@ export class ForceArrow {
     this.shaft.scale.set(THICK * size, length - 0.9 * head, THICK * size);
     this.head.scale.set(0.34 * head, head, 0.34 * head);
     this.head.position.set(0, length, 0);
+    this.tip.copy(now.at);
     this.tail.copy(presses ? from : from.addScaledVector(along, length));
     this.label.textContent = `${formatSignificant(strength, 3)}\u00a0N`;
   }
@@ -65,7 +67,8 @@ export class ForceArrow {
     const at = stage.toScreen(this.tail);
     const own = { width: this.label.offsetWidth, height: this.label.offsetHeight };
     const taken = others.map((element) => boxIn(element, this.label.parentElement)).filter((box) => box !== null);
-    const place = freePlace(at, own, room, taken);
+    const tip = stage.toScreen(this.tip);
+    const place = freePlace(at, own, room, taken, { x: tip.x - at.x, y: tip.y - at.y });
     this.label.style.visibility = place ? "visible" : "hidden";
     if (place) this.label.style.transform = `translate(${place.x.toFixed(1)}px, ${place.y.toFixed(1)}px)`;
   }
@@ -84,19 +87,29 @@ export interface Box {
   height: number;
 }
 
-/** Beside, above or below a point: the first place that is within the room and meets no box. */
+/**
+ * Beside, above or below a point: the first place that is within the room and meets no box.
+ * @param along  direction in which a line leaves the point: places across it come first
+ */
 export function freePlace(
   at: { x: number; y: number },
   own: { width: number; height: number },
   room: { width: number; height: number },
   taken: readonly Box[],
+  along: { x: number; y: number } = { x: 0, y: 1 },
 ): { x: number; y: number } | null {
   const { width, height } = own;
-  const tries = [
+  const onLine = ({ x, y }: { x: number; y: number }) =>
+    Math.abs((x + width / 2 - at.x) * along.x + (y + height / 2 - at.y) * along.y) /
+    Math.hypot(x + width / 2 - at.x, y + height / 2 - at.y);
+  const beside = [
     { x: at.x + 12, y: at.y - height / 2 },
     { x: at.x - 12 - width, y: at.y - height / 2 },
     { x: at.x - width / 2, y: at.y - height - 12 },
     { x: at.x - width / 2, y: at.y + 12 },
+  ].sort((a, b) => onLine(a) - onLine(b));
+  const tries = [
+    ...beside,
     { x: at.x - width / 2, y: at.y - 2 * height - 24 },
     { x: at.x - width / 2, y: at.y - 4 * height - 24 },
   ].map(({ x, y }) => ({
