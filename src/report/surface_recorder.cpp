@@ -40,31 +40,59 @@ std::uint8_t fraction8(double value, double scale) {
 }  // namespace
 
 SurfaceRecorder::SurfaceRecorder(const Variant& variant, const Simulation& simulation, std::size_t max_bytes)
-    : variant_(variant) {
+    : variant_(variant), skin_(simulation.mesh()) {
   find_surface(simulation);
-  head_ = {{"triangles", base64_of(std::span<const std::uint32_t>(triangles_))},
-           {"instruments", nlohmann::json::array()}};
+  head_["triangles"] = base64_of(std::span<const std::uint32_t>(triangles_));
+  head_["instruments"] = nlohmann::json::array();
   const double wanted = kBase64BytesPerVertex * static_cast<double>(vertices_.size()) * variant.output.frames;
   stride_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(wanted / static_cast<double>(max_bytes))));
+}
+
+/// A vertex's own number; a new vertex gets the next one.
+std::uint32_t SurfaceRecorder::number_of(std::uint32_t vertex, const TetMesh& mesh) {
+  if (number_[vertex] == kInside) {
+    number_[vertex] = static_cast<std::uint32_t>(vertices_.size());
+    vertices_.push_back(vertex);
+    rest_.push_back(mesh.vertices[vertex]);
+    fixed_.push_back(0);
+  }
+  return number_[vertex];
 }
 
 /// The boundary as it is now. Vertices that were at it before keep their number.
 void SurfaceRecorder::find_surface(const Simulation& simulation) {
   const TetMesh& mesh = simulation.mesh();
   const std::vector<std::uint8_t> marks = constraint_marks(variant_, mesh);
+  BodySurface surface = skin_.surface(mesh, [&](std::uint32_t tet) { return simulation.is_removed(tet); });
+  const std::vector<Triangle> torn = torn_triangles(capsules_);
+  mark_torn(surface, torn);
+  torn_ = torn.size();
+  const bool first = vertices_.empty();
   number_.resize(mesh.vertices.size(), kInside);
   mesh_vertices_ = mesh.vertices.size();
   triangles_.clear();
-  for (const Triangle& triangle : boundary_triangles(removed_ > 0 ? simulation.present_mesh() : mesh)) {
+  for (const Triangle& triangle : surface.outer) {
     for (const std::uint32_t v : triangle) {
-      if (number_[v] == kInside) {
-        number_[v] = static_cast<std::uint32_t>(vertices_.size());
-        vertices_.push_back(v);
-        rest_.push_back(mesh.vertices[v]);
-        fixed_.push_back(marks[v]);
-      }
-      triangles_.push_back(number_[v]);
+      triangles_.push_back(number_of(v, mesh));
+      fixed_[triangles_.back()] = marks[v];
     }
+  }
+  kinds_.clear();
+  for (const SurfaceKind kind : surface.kinds) kinds_.push_back(static_cast<std::uint8_t>(kind));
+  if (first) find_regions(surface, mesh);
+}
+
+/// Surfaces of inner regions, as they are at first: their vertices come after those of the boundary.
+void SurfaceRecorder::find_regions(const BodySurface& surface, const TetMesh& mesh) {
+  head_["tissue"] = surface.tissue;
+  head_["regions"] = nlohmann::json::array();
+  for (const RegionSurface& region : surface.regions) {
+    std::vector<std::uint32_t> triangles;
+    for (const Triangle& triangle : region.triangles) {
+      for (const std::uint32_t v : triangle) triangles.push_back(number_of(v, mesh));
+    }
+    head_["regions"].push_back(
+        {{"name", region.name}, {"triangles", base64_of(std::span<const std::uint32_t>(triangles))}});
   }
 }
 
@@ -72,9 +100,11 @@ void SurfaceRecorder::find_new_surface(const Simulation& simulation) {
   std::size_t removed = 0;
   const auto tets = static_cast<std::uint32_t>(simulation.mesh().tets.size());
   for (std::uint32_t t = 0; t < tets; ++t) removed += simulation.is_removed(t) ? 1 : 0;
-  if (removed == removed_ && simulation.mesh().vertices.size() == mesh_vertices_) return;
+  const bool changed = removed != removed_ || simulation.mesh().vertices.size() != mesh_vertices_;
+  if (!changed && torn_triangles(capsules_).size() == torn_) return;
   removed_ = removed;
-  changed_ = true;
+  changed_ = changed_ || changed;
+  kinds_changed_ = true;
   find_surface(simulation);
 }
 
@@ -124,6 +154,7 @@ nlohmann::json SurfaceRecorder::frame(const Simulation& simulation, const TetFie
                       {"intensity", base64_of(std::span<const std::uint8_t>(colour))},
                       {"instruments", instrument_places_json(instruments_)}};
   if (changed_) json["triangles"] = base64_of(std::span<const std::uint32_t>(triangles_));
+  if (kinds_changed_) json["kinds"] = base64_of(std::span<const std::uint8_t>(kinds_));
   return json;
 }
 
@@ -138,7 +169,7 @@ void SurfaceRecorder::add(const Simulation& simulation, const TetFields& fields)
   if (seen_++ % stride_ != 0) return;
   frames_.push_back(std::move(*last_));
   last_.reset();
-  changed_ = false;
+  changed_ = kinds_changed_ = false;
 }
 
 nlohmann::json SurfaceRecorder::json() const {

@@ -1,8 +1,9 @@
 // surface_recorder.h — the moving surface of a body, small enough to travel inside the report page.
 //
-// Only boundary vertices are kept, renumbered; a body that is cut, or loses tets, gets a new surface with its next frame. A frame holds displacements as 16-bit fractions of the largest
-// one and intensities as 8-bit fractions of the largest one: 7 bytes a vertex, an error of 3e-5 of the largest
-// displacement, well below a pixel.
+// Only vertices of the boundary and of the surfaces of inner regions are kept, renumbered; a body that is cut, or loses
+// tets, gets a new boundary with its next frame, while inner regions keep theirs. A frame holds displacements as 16-bit
+// fractions of the largest one and intensities as 8-bit fractions of the largest one: 7 bytes a vertex, an error of 3e-5
+// of the largest displacement, well below a pixel.
 #pragma once
 
 #include <cstddef>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "glisson/scene/scene.h"
+#include "report/body_surface.h"
 
 namespace glisson {
 
@@ -24,6 +26,8 @@ class SurfaceRecorder {
 
   /// Instruments that frames show, too.
   void set_instruments(std::vector<std::shared_ptr<Instrument>> instruments);
+  /// Capsules whose tears frames show.
+  void set_capsules(std::vector<std::shared_ptr<Capsule>> capsules) { capsules_ = std::move(capsules); }
   /// Takes a frame. @param fields  of the same state
   void add(const Simulation& simulation, const TetFields& fields);
   /// Largest equivalent shear strain s of the surface so far [-].
@@ -33,6 +37,8 @@ class SurfaceRecorder {
 
  private:
   void find_surface(const Simulation& simulation);
+  void find_regions(const BodySurface& surface, const TetMesh& mesh);
+  std::uint32_t number_of(std::uint32_t vertex, const TetMesh& mesh);
   void find_new_surface(const Simulation& simulation);
   nlohmann::json frame(const Simulation& simulation, const TetFields& fields);
   std::vector<double> surface_intensity(const Simulation& simulation, const TetFields& fields) const;
@@ -43,8 +49,12 @@ class SurfaceRecorder {
   std::vector<std::uint32_t> triangles_;  // in surface vertices
   std::vector<Vec3d> rest_;               // of each surface vertex, when it was first at the surface [m]
   std::vector<std::uint8_t> fixed_;       // constraint mark of each surface vertex
-  std::size_t mesh_vertices_ = 0, removed_ = 0;
-  bool changed_ = false;  // the surface, since the last frame that was kept
+  std::vector<std::uint8_t> kinds_;       // SurfaceKind of each triangle
+  SkinFaces skin_;
+  std::size_t mesh_vertices_ = 0, removed_ = 0, torn_ = 0;
+  bool changed_ = false;        // the surface, since the last frame that was kept
+  bool kinds_changed_ = false;  // what its triangles are
+  std::vector<std::shared_ptr<Capsule>> capsules_;
   std::vector<std::shared_ptr<Instrument>> instruments_;
   nlohmann::json head_;
   nlohmann::json frames_ = nlohmann::json::array();

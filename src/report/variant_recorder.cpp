@@ -96,6 +96,7 @@ void VariantRecorder::on_start(const Variant&, const Simulation& simulation) {
 
 void VariantRecorder::on_built(const BuiltVariant& built) {
   surface_->set_instruments(built.instruments);
+  surface_->set_capsules(built.capsules);
   if (frames_) frames_->set_instruments(built.instruments);
   table_.emplace(variant_, built);
   data_.resize(table_->columns().size());

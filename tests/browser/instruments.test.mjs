@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { openBrowser, openPage, settle } from "./browser.mjs";
 import { surface } from "./fixture.mjs";
-import { canvasOf, pixelsOf } from "./pixels.mjs";
+import { canvasOf, pixelsOf, tonesAt } from "./pixels.mjs";
 import { pageWith } from "./report_under_test.mjs";
 
 const DEPTH = 0.03;
@@ -79,38 +79,28 @@ describe("a scene with a needle", () => {
     assert.equal(await mesh(), opened);
   });
 
-  test("the cut has a face: pale grey where the closed body has its colours, and none of its inside", async () => {
+  test("the cut has a face and shows none of the inside: raw tissue, pale grey where a field colours the skin", async () => {
     const open = panel.locator("input[name=open]");
+    const colour = panel.locator("select[aria-label=Colour]");
     // Below the needle's tip, in the middle of the body: of the face when open, of the dark skin when closed.
-    const tones = async () => {
-      const shot = await panel.locator("canvas").screenshot();
-      return page.evaluate(async (base64) => {
-        const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-        const picture = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
-        const context = new OffscreenCanvas(picture.width, picture.height).getContext("2d");
-        context.drawImage(picture, 0, 0);
-        const [x, y] = [Math.round(0.4 * picture.width), Math.round(0.55 * picture.height)];
-        const { data } = context.getImageData(x - 15, y - 15, 30, 30);
-        let [grey, dark] = [0, 0];
-        for (let i = 0; i < data.length; i += 4) {
-          const [low, high] = [
-            Math.min(data[i], data[i + 1], data[i + 2]),
-            Math.max(data[i], data[i + 1], data[i + 2]),
-          ];
-          if (high - low < 20 && low > 150) grey += 4 / data.length;
-          if (low < 100) dark += 4 / data.length;
-        }
-        return { grey, dark };
-      }, shot.toString("base64"));
-    };
+    const tones = () =>
+      tonesAt(page, panel.locator("canvas"), 0.4, 0.55, {
+        grey: ([low, , high]) => high - low < 20 && low > 150,
+        red: ([, , high], [r, g, b]) => high === r && r > 1.6 * g && r > 1.6 * b,
+      });
+    await colour.selectOption("intensity");
+    await settle(page);
     const opened = await tones();
-    assert.ok(opened.grey > 0.99 && opened.dark === 0, JSON.stringify(opened));
+    assert.ok(opened.grey > 0.99 && opened.red === 0, JSON.stringify(opened));
     await open.uncheck();
     await settle(page);
     const closed = await tones();
-    assert.ok(closed.grey < 0.01 && closed.dark > 0.9, JSON.stringify(closed));
+    assert.ok(closed.grey < 0.01 && closed.red < 0.1, JSON.stringify(closed));
     await open.check();
+    await colour.selectOption("none");
     await settle(page);
+    const raw = await tones();
+    assert.ok(raw.grey === 0 && raw.red > 0.99, JSON.stringify(raw));
   });
 
   test("the cut moves with its slider and goes across another axis; its place is said in millimetres", async () => {

@@ -1,4 +1,4 @@
-// measure_drawing.mjs SCENE [WIDTHxHEIGHT …] — what a frame costs the live page, and how many it draws: no test, a measurement.
+// measure_drawing.mjs SCENE [WIDTHxHEIGHT …] — in the fine look unless GLISSON_DETAIL says plain or auto; what a frame costs the live page, and how many it draws: no test, a measurement.
 //
 //   GLISSON_WEB_DIR=build/release/web/page node tests/browser/measure_drawing.mjs box.toml 1440x900 600x400
 //
@@ -50,6 +50,11 @@ async function measure(url, [width, height]) {
   const browser = await openBrowser({ viewport: { width, height } });
   const page = await browser.context.newPage();
   await page.addInitScript(`(${instrument})()`);
+  const look = { colour: "none", seeThrough: false, detail: process.env.GLISSON_DETAIL ?? "fine" };
+  await page.addInitScript(
+    (kept) => localStorage.setItem(`glisson-look:${location.pathname}:live`, kept),
+    JSON.stringify(look),
+  );
   await page.goto(url);
   await page.waitForFunction(() => document.querySelector(".live")?.dataset.drives === "true");
   const half = Math.round((SECONDS * 1000) / 2);

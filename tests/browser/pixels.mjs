@@ -44,3 +44,41 @@ export function canvasOf(canvas) {
 export async function lineColours(canvas) {
   return (await canvasOf(canvas)).colours;
 }
+
+/** RGBA of a square of 30 × 30 pixels about a place in shares of an element's size, from a real screenshot. */
+async function squareAt(page, locator, x, y) {
+  const shot = await locator.screenshot({ animations: "disabled" });
+  return page.evaluate(
+    async ([base64, x, y]) => {
+      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+      const picture = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+      const context = new OffscreenCanvas(picture.width, picture.height).getContext("2d");
+      context.drawImage(picture, 0, 0);
+      const left = Math.round(x * picture.width) - 15;
+      return [...context.getImageData(left, Math.round(y * picture.height) - 15, 30, 30).data];
+    },
+    [shot.toString("base64"), x, y],
+  );
+}
+
+/** Shares of that square that are of each tone. @param tones  names to tests of ([low, middle, high], [r, g, b]) of a pixel */
+export async function tonesAt(page, locator, x, y, tones) {
+  const data = await squareAt(page, locator, x, y);
+  const colours = Array.from({ length: data.length / 4 }, (_, i) => data.slice(4 * i, 4 * i + 3));
+  const share = (is) =>
+    colours.filter((c) =>
+      is(
+        [...c].sort((a, b) => a - b),
+        c,
+      ),
+    ).length / colours.length;
+  return Object.fromEntries(Object.entries(tones).map(([name, is]) => [name, share(is)]));
+}
+
+/** Mean difference between neighbours in that square, in levels of red. */
+export async function grainAt(page, locator, x, y) {
+  const data = await squareAt(page, locator, x, y);
+  let sum = 0;
+  for (let i = 0; i + 4 < data.length; i += 4) if ((i / 4) % 30 !== 29) sum += Math.abs(data[i] - data[i + 4]);
+  return sum / (29 * 30);
+}

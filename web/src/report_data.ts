@@ -67,7 +67,15 @@ export interface SurfaceData {
   rest: Base64; // f32, xyz per vertex [m]
   fixed: Base64; // u8 per vertex: 1 held, 2 driven by a tool, 0 free
   instruments: InstrumentForm[];
+  tissue?: string; // name of the tissue of most of the body
+  regions?: RegionSurface[]; // of all other regions; their inner vertices come after those of the outer surface
   frames: FrameData[]; // in time order, may be empty
+}
+
+/** The closed surface of a region of the body at rest. */
+export interface RegionSurface {
+  name: string;
+  triangles: Base64; // u32, three per triangle, outward
 }
 
 /** What an instrument looks like; lengths along its own z axis, from its tip up. */
@@ -95,6 +103,8 @@ export interface FrameData {
   instruments: InstrumentPlace[]; // one for each of the surface's
   triangles?: Base64; // where the surface has become another, from this frame on; vertices that come later are not in
   // earlier frames
+  kinds?: Base64; // u8 per triangle, from this frame on: 0 skin, 1 a face that was cut, 2 skin whose capsule is torn; a
+  // frame with other triangles and no kinds has skin only
 }
 
 export interface ChartSpec {

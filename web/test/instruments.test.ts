@@ -168,6 +168,23 @@ describe("a surface that is cut", () => {
     expect(timeline.at(0.5).share).toBe(0.5);
   });
 
+  it("says which of its triangles were cut, and keeps that until it is told otherwise", () => {
+    const kinds = base64(Uint8Array.of(1));
+    const frames = surface.frames.map((frame, i) => (i === 1 ? { ...frame, kinds } : frame));
+    const told = new Timeline(parsed({ ...surface, frames }).variants[0]!.surface!);
+    expect(told.kindsAt(0)).toBeNull();
+    expect([...told.kindsAt(1)!]).toEqual([1]);
+    expect([...told.kindsAt(1.5)!]).toEqual([1]);
+    expect(told.kindsAt(2)).toBeNull(); // other triangles, of which nothing is said
+  });
+
+  it("has the surfaces of inner regions by their names", () => {
+    const regions = [{ name: "tumour", triangles: base64(Uint32Array.from([0, 2, 1, 0, 1, 99])) }];
+    const told = new Timeline(parsed({ ...surface, tissue: "liver", regions }).variants[0]!.surface!);
+    expect(told.tissue).toBe("liver");
+    expect(told.regions.map(({ name, triangles }) => [name, ...triangles])).toEqual([["tumour", 0, 2, 1]]);
+  });
+
   it("comes with its instruments", () => {
     expect(timeline.instruments[0]!.kind).toBe("needle");
     expect(timeline.at(1).after.instruments[0]!.points[2]).toBe(2);

@@ -25,6 +25,17 @@ describe("commands", () => {
   });
 });
 
+/** A keyframe of three vertices and two triangles, one of them cut, with one region. */
+function keyframe(): ArrayBuffer {
+  const words = (text: string) => [...u32(text.length), ...new TextEncoder().encode(text), ...pad(text.length)];
+  const u32 = (value: number) => [...new Uint8Array(Uint32Array.of(value).buffer)];
+  const pad = (length: number) => new Array<number>((4 - (length % 4)) % 4).fill(0);
+  const head = [1, 0, 0, 0, ...u32(7), ...u32(3), ...u32(2)];
+  const body = [...new Array<number>(36).fill(0), ...[0, 1, 2, 0, 2, 1].flatMap(u32), 0, 2, 0];
+  const inside = [0, 1, ...pad(5), ...words("liver"), ...u32(1), ...words("portal vein"), ...u32(1)];
+  return Uint8Array.from([...head, ...body, ...inside, ...[2, 1, 0].flatMap(u32)]).buffer;
+}
+
 /** A frame with one tool of one point and two vertices. */
 function frame(field = 3): ArrayBuffer {
   const view = new DataView(new ArrayBuffer(64 + 76 + 14));
@@ -60,6 +71,17 @@ describe("messages", () => {
     expect(read.tools[0]!.points).toEqual([7, 0, 0]);
     expect(Array.from(read.displacement)).toEqual([0, -32767, 0, 0, 0, 0]);
     expect([read.field, read.low, read.high, ...read.values]).toEqual([3, -100, 155, 0, 255]);
+  });
+
+  test("a keyframe tells what its triangles are, and has the surfaces of inner regions", () => {
+    const read = decodeMessage(keyframe());
+    if (read?.kind !== "keyframe") throw new Error("no keyframe");
+    expect([read.rest.length, ...read.triangles, ...read.marks]).toEqual([9, 0, 1, 2, 0, 2, 1, 0, 2, 0]);
+    expect([...read.kinds!]).toEqual([0, 1]);
+    expect([read.tissue, read.regions[0]!.name]).toEqual(["liver", "portal vein"]);
+    expect([...read.regions[0]!.triangles]).toEqual([2, 1, 0]);
+    const older = decodeMessage(keyframe().slice(0, 16 + 36 + 24 + 3));
+    expect(older).toMatchObject({ kinds: null, tissue: "", regions: [] });
   });
 
   test("what is cut short, or of another kind, is none", () => {

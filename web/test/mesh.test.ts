@@ -1,6 +1,5 @@
 // The recorded motion is decoded, interpolated and played back as it was.
 import { describe, expect, it } from "vitest";
-import { uniqueEdges } from "../src/mesh3d/edges.ts";
 import { interpolate } from "../src/mesh3d/interpolate.ts";
 import { speedsFor } from "../src/mesh3d/player.ts";
 import { Timeline } from "../src/mesh3d/timeline.ts";
@@ -57,12 +56,6 @@ describe("timeline", () => {
     const short = new Timeline({ ...surface, frames: [{ ...frame(0, -0.004), displacement: "AAA=", intensity: "" }] });
     expect(short.frames[0]!.displacement.length).toBe(9);
     expect(short.intensityAt(0)).toBe(0);
-  });
-});
-
-describe("edges", () => {
-  it("appear once each: two triangles with a common side have five", () => {
-    expect(uniqueEdges(Uint32Array.from([0, 1, 2, 2, 1, 3]), 4).length / 2).toBe(5);
   });
 });
 

@@ -66,6 +66,7 @@ LiveBody::LiveBody(const Variant& variant, const MeshLoader& load) : variant_(va
   lead_tools();
   lead_instruments();
   built_ = std::make_unique<BuiltVariant>(variant_, load);
+  skin_ = std::make_shared<const SkinFaces>(built_->simulation.mesh());
   tissues_ = std::make_shared<const std::map<int, Tissue>>(region_tissues(variant_, built_->simulation.mesh()));
   const double size = diagonal(built_->simulation.mesh());
   for (ToolInfo& tool : tools_) {
@@ -166,6 +167,8 @@ std::shared_ptr<const BodyShape> LiveBody::shape() const {
   };
   for (const FixedSpec& x : variant_.fixed) mark(x.set, 1);
   for (const ToolSpec& x : variant_.tools) mark(x.set, 2);
+  shape->skin = skin_;
+  shape->torn = torn_triangles(built_->capsules);
   const Body& body = SimulationParts::scheme(built_->simulation).body();
   shape->branches.resize(shape->mesh.tets.size());  // nothing here removes tets: those of the mesh are all there
   for (std::uint32_t b = 0; b < body.blocks.size(); ++b) {

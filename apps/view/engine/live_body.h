@@ -44,8 +44,10 @@ class LiveBody {
   /// What the Maxwell branches of each tissue block hold now.
   std::vector<BranchMemory> branches() const;
   const std::shared_ptr<const std::map<int, Tissue>>& tissues() const { return tissues_; }
-  /// Changes when the shape does: a scene's blade makes vertices, and nothing here removes tets.
-  std::size_t shape_key() const { return built_->simulation.mesh().vertices.size() + hand_cuts_; }
+  /// Changes when the shape does: a scene's blade makes vertices, capsules tear, and nothing here removes tets.
+  std::size_t shape_key() const {
+    return built_->simulation.mesh().vertices.size() + hand_cuts_ + torn_triangles(built_->capsules).size();
+  }
 
  private:
   void lead_tools();
@@ -57,6 +59,7 @@ class LiveBody {
   std::vector<ToolInfo> tools_;
   std::vector<std::shared_ptr<LivePath>> ways_;
   std::unique_ptr<BuiltVariant> built_;
+  std::shared_ptr<const SkinFaces> skin_;
   std::shared_ptr<const std::map<int, Tissue>> tissues_;
   std::shared_ptr<GrabSpring> grab_;
   std::unique_ptr<HandCut> cut_;

@@ -10,6 +10,7 @@
 
 #include "element/branch_memory.h"
 #include "glisson/scene/scene.h"
+#include "report/body_surface.h"
 
 namespace glisson::view {
 
@@ -72,6 +73,8 @@ struct BodyShape {
   TetMesh mesh;                       ///< at rest, without removed tets; vertex numbers are those of the displacement
   std::vector<std::uint8_t> marks;    ///< per vertex: 1 held, 2 driven, 0 free
   std::vector<BranchPlace> branches;  ///< per tet; empty of a recorded run
+  std::vector<Triangle> torn{};       ///< of capsules
+  std::shared_ptr<const SkinFaces> skin{};  ///< of the body when it was made; none: nothing has been cut
 };
 
 struct Snapshot {

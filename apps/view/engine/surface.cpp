@@ -45,17 +45,33 @@ Surface::Surface(std::shared_ptr<const BodyShape> shape) : shape_(std::move(shap
   }
 }
 
+/// The boundary first: vertices of inner regions come after its own.
 void Surface::number_vertices() {
-  number_.assign(shape_->mesh.vertices.size(), kInside);
-  for (const Triangle& triangle : boundary_triangles(shape_->mesh)) {
+  const TetMesh& mesh = shape_->mesh;
+  number_.assign(mesh.vertices.size(), kInside);
+  BodySurface surface = shape_->skin ? shape_->skin->surface(mesh) : SkinFaces(mesh).surface(mesh);
+  mark_torn(surface, shape_->torn);
+  triangles_ = numbered(surface.outer);
+  outer_ = vertices_.size();
+  for (const SurfaceKind kind : surface.kinds) kinds_.push_back(static_cast<std::uint8_t>(kind));
+  for (const RegionSurface& region : surface.regions) regions_.push_back({region.name, numbered(region.triangles)});
+  tissue_ = surface.tissue;
+}
+
+/// Triangles in surface vertices; those that are new get the next numbers.
+std::vector<std::uint32_t> Surface::numbered(const std::vector<Triangle>& triangles) {
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(3 * triangles.size());
+  for (const Triangle& triangle : triangles) {
     for (const std::uint32_t v : triangle) {
       if (number_[v] == kInside) {
         number_[v] = static_cast<std::uint32_t>(vertices_.size());
         vertices_.push_back(v);
       }
-      triangles_.push_back(number_[v]);
+      numbers.push_back(number_[v]);
     }
   }
+  return numbers;
 }
 
 /// Sets of vertices that tets join.

@@ -1,6 +1,6 @@
 // surface.h — the skin of a body, and what a frame says of it: places in 16 bits, a field in 8.
 //
-//   keyframe   rest positions, marks and triangles; sent when the skin becomes another
+//   keyframe   rest positions, marks, triangles and what they are, surfaces of inner regions; sent when the skin becomes another
 //   frame      displacement from the keyframe as 16-bit fractions of the largest, a field as 8-bit fractions of its range:
 //              7 bytes a vertex, an error of 1.5e-5 of the largest displacement
 //
@@ -25,9 +25,17 @@ class Surface {
   const BodyShape& shape() const { return *shape_; }
   std::size_t size() const { return vertices_.size(); }
   const std::vector<std::uint32_t>& triangles() const { return triangles_; }  ///< in surface vertices
+  const std::vector<std::uint8_t>& kinds() const { return kinds_; }           ///< SurfaceKind of each triangle
+  struct Region {
+    std::string name;
+    std::vector<std::uint32_t> triangles;  ///< in surface vertices
+  };
+  const std::vector<Region>& regions() const { return regions_; }  ///< inside the body
+  const std::string& tissue() const { return tissue_; }            ///< name of the largest region
   /// Mesh vertex of a surface vertex.
   std::uint32_t mesh_vertex(std::size_t i) const { return vertices_[i]; }
-  std::uint8_t mark(std::size_t i) const { return shape_->marks[vertices_[i]]; }
+  /// 1 held, 2 driven, 0 free or inside.
+  std::uint8_t mark(std::size_t i) const { return i < outer_ ? shape_->marks[vertices_[i]] : std::uint8_t{0}; }
   const Vec3d& rest(std::size_t i) const { return shape_->mesh.vertices[vertices_[i]]; }
 
   /// Displacements beyond are drawn there [m]: a piece that was cut free flies on for ever where nothing damps it, and with 10 m
@@ -44,6 +52,7 @@ class Surface {
 
  private:
   void number_vertices();
+  std::vector<std::uint32_t> numbered(const std::vector<Triangle>& triangles);
   void count_pieces();
   template <class OfTet>
   std::vector<double> mean(OfTet of_tet) const;
@@ -58,6 +67,10 @@ class Surface {
   };
   std::shared_ptr<const BodyShape> shape_;
   std::vector<std::uint32_t> vertices_, triangles_;
+  std::vector<std::uint8_t> kinds_;
+  std::vector<Region> regions_;
+  std::string tissue_;
+  std::size_t outer_ = 0;              ///< vertices at the boundary
   std::vector<std::uint32_t> number_;  ///< surface vertex of each mesh vertex, or none
   std::vector<NearTet> near_;          ///< tets with a vertex at the surface
   std::vector<double> tets_around_;    ///< of each surface vertex

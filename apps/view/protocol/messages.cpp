@@ -30,6 +30,14 @@ class Bytes {
   void align() {
     while (text_.size() % 4 != 0) u8(0);
   }
+  void words(const std::string& text) {
+    u32(static_cast<std::uint32_t>(text.size()));
+    text_ += text;
+    align();
+  }
+  void triangles(const std::vector<std::uint32_t>& corners) {
+    for (const std::uint32_t corner : corners) u32(corner);
+  }
   std::string take() { return std::move(text_); }
   void reserve(std::size_t bytes) { text_.reserve(bytes); }
 
@@ -108,15 +116,24 @@ json recorded_json(const Recorded* recorded) {
 
 std::string keyframe_message(const Surface& surface, std::uint32_t number) {
   Bytes out;
-  out.reserve(16 + 13 * surface.size() + 4 * surface.triangles().size());
+  out.reserve(64 + 13 * surface.size() + 5 * surface.triangles().size());
   out.u8(static_cast<std::uint8_t>(MessageKind::keyframe));
   out.align();
   out.u32(number);
   out.u32(static_cast<std::uint32_t>(surface.size()));
   out.u32(static_cast<std::uint32_t>(surface.triangles().size() / 3));
   for (std::size_t i = 0; i < surface.size(); ++i) out.vec(surface.rest(i));
-  for (const std::uint32_t corner : surface.triangles()) out.u32(corner);
+  out.triangles(surface.triangles());
   for (std::size_t i = 0; i < surface.size(); ++i) out.u8(surface.mark(i));
+  for (const std::uint8_t kind : surface.kinds()) out.u8(kind);
+  out.align();
+  out.words(surface.tissue());
+  out.u32(static_cast<std::uint32_t>(surface.regions().size()));
+  for (const Surface::Region& region : surface.regions()) {
+    out.words(region.name);
+    out.u32(static_cast<std::uint32_t>(region.triangles.size() / 3));
+    out.triangles(region.triangles);
+  }
   return out.take();
 }
 

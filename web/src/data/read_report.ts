@@ -112,6 +112,10 @@ function readSurface(raw: Raw): SurfaceData | null {
     rest: text(raw["rest"]),
     fixed: text(raw["fixed"]),
     instruments: list(raw["instruments"]).map((form) => readForm(record(form))),
+    tissue: text(raw["tissue"]),
+    regions: list(raw["regions"])
+      .map(record)
+      .map((region) => ({ name: text(region["name"]), triangles: text(region["triangles"]) })),
     frames: list(raw["frames"]).map((frame) => readFrame(record(frame))),
   };
 }
@@ -145,6 +149,7 @@ function readFrame(raw: Raw): FrameData {
     intensity: text(raw["intensity"]),
     instruments: list(raw["instruments"]).map((place) => readPlace(record(place))),
     ...(raw["triangles"] ? { triangles: text(raw["triangles"]) } : {}),
+    ...(raw["kinds"] ? { kinds: text(raw["kinds"]) } : {}),
   };
 }
 

@@ -47,10 +47,19 @@ export const COLOURINGS: readonly Colouring[] = [
     rest: 0,
     least: 2e-3,
   },
-  { name: "none", label: "None", symbol: "", field: 0, units: plain, rest: 0, least: 1 },
 ];
+/** No field: the body looks as tissue. */
+export const AS_TISSUE: Colouring = {
+  name: "none",
+  label: "Tissue",
+  symbol: "",
+  field: 0,
+  units: plain,
+  rest: 0,
+  least: 1,
+};
 
-export const colouringOf = (name: string): Colouring => COLOURINGS.find((each) => each.name === name) ?? COLOURINGS[0]!;
+export const colouringOf = (name: string): Colouring => COLOURINGS.find((each) => each.name === name) ?? AS_TISSUE;
 
 /** Unit for a range: that of the largest number in it. */
 export function unitOf(colouring: Colouring, low: number, high: number): { unit: string; perUnit: number } {

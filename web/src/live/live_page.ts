@@ -6,7 +6,6 @@ import { toggleTheme } from "../page/theme.ts";
 import { Connection, type Status } from "./connection.ts";
 import { ForcePlot } from "./force_plot.ts";
 import { History } from "./history.ts";
-import { COLOURINGS, type Colouring, colouringOf } from "./colouring.ts";
 import { CutPanel } from "./cut_panel.ts";
 import { LiveView } from "./live_view.ts";
 import { ReplayControls } from "./replay_controls.ts";
@@ -64,14 +63,7 @@ export class LivePage {
   private readonly events = h("ol", { class: "live-events" });
   private readonly values = new Map<string, HTMLElement>();
   private pauseButton: HTMLButtonElement | null = null;
-  private colouring: Colouring = COLOURINGS[0]!;
   private readonly cutPanel: CutPanel;
-  private readonly colours = select(
-    "Colour",
-    COLOURINGS.map(({ name, label }) => ({ value: name, label })),
-    this.colouring.name,
-    (name) => this.colourBy(colouringOf(name)),
-  );
   private readonly recordButton = button(
     "Save recording",
     "Save all forces since the last reset, and the motion as a scene that glisson run can replay (zip)",
@@ -114,13 +106,15 @@ export class LivePage {
   }
 
   private body(): HTMLElement {
-    const edges = check("Edges", (on) => (this.view.edges = on));
-    this.view.onEdges = (on) => (edges.querySelector("input")!.checked = on);
+    this.view.onColour = ({ field }) => this.send({ kind: "colour", index: field });
     const tools = h(
       "div",
       { class: "live-view-tools" },
-      this.colours,
-      edges,
+      this.view.look.colour,
+      this.view.look.detail,
+      check("Edges", (on) => (this.view.edges = on)),
+      check("Force", (on) => (this.view.force.on = on), true),
+      this.view.look.seeThrough,
       this.view.cut.tick,
       button("Show all", "Show the whole body (0)", () => this.view.fit()),
       button("Save picture", "Save the view as a PNG", () => this.savePicture()),
@@ -181,8 +175,9 @@ export class LivePage {
   private start(hello: Hello): void {
     const again = this.hello !== null;
     this.hello = hello;
-    this.colours.querySelector<HTMLOptionElement>("[value=pressure]")!.hidden = !hello.has_stress;
-    if (this.colouring.field !== 1) this.colourBy(this.colouring); // a new line begins with s
+    this.view.offer(hello.has_stress);
+    const { field } = this.view.colours;
+    if (field !== 1) this.send({ kind: "colour", index: field }); // a new line begins with s
     if (again) return; // the line was cut: everything here is as it was
     this.history = new History(hello.tools.length);
     document.title = `${hello.title} – Glisson`;
@@ -260,12 +255,6 @@ export class LivePage {
     );
   }
 
-  private colourBy(colouring: Colouring): void {
-    this.colouring = colouring;
-    this.view.colours = colouring;
-    this.send({ kind: "colour", index: colouring.field });
-  }
-
   // ---- panels
 
   private buildRun(hello: Hello): void {
@@ -340,6 +329,7 @@ export class LivePage {
 
   private showNumbers(frame: LiveFrame): void {
     const tool = frame.tools[this.tool];
+    this.view.force.tool = this.tool;
     const direction = this.hello?.tools[this.tool]?.direction;
     if (tool && direction) {
       const force = tool.force.reduce((sum, f, i) => sum + f * direction[i]!, 0);

@@ -10,6 +10,9 @@ export class LiveSurface implements SurfaceMotion {
   readonly rest: Float32Array;
   readonly fixed: Uint8Array;
   readonly end = 0;
+  readonly tissue: string;
+  readonly regions: readonly { name: string; triangles: Uint32Array }[];
+  private readonly kinds: Uint8Array | null;
   private readonly newest: Frame;
   private readonly values: Float32Array;
 
@@ -19,6 +22,9 @@ export class LiveSurface implements SurfaceMotion {
     readonly instruments: readonly InstrumentForm[],
     private readonly sets: number,
   ) {
+    this.tissue = keyframe.tissue;
+    this.regions = keyframe.regions;
+    this.kinds = keyframe.kinds;
     this.rest = keyframe.rest;
     this.vertices = keyframe.rest.length / 3;
     this.triangles = keyframe.triangles;
@@ -29,6 +35,7 @@ export class LiveSurface implements SurfaceMotion {
       displacement: new Float32Array(3 * this.vertices),
       intensity: new Float32Array(this.vertices),
       triangles: this.triangles,
+      kinds: this.kinds,
       instruments: [],
     };
   }
@@ -68,5 +75,9 @@ export class LiveSurface implements SurfaceMotion {
 
   trianglesAt(): Uint32Array {
     return this.triangles;
+  }
+
+  kindsAt(): Uint8Array | null {
+    return this.kinds;
   }
 }

@@ -4,20 +4,25 @@ import * as THREE from "three";
 import { strokeOf } from "../charts/line_style.ts";
 import { type ClipBody, clipKey, clipPlane, firstSeen, rememberClip, rememberedClip } from "../mesh3d/clip.ts";
 import { ClipControls } from "../mesh3d/clip_controls.ts";
-import { ColourBar } from "../mesh3d/colour_bar.ts";
+import { fineIsFast, hopeForFine, Pace } from "../mesh3d/drawing_speed.ts";
+import { lookKey, rememberedLook, rememberLook, TISSUE } from "../mesh3d/look.ts";
+import { LookControls } from "../mesh3d/look_controls.ts";
+import { ScaleBar } from "../mesh3d/scale_bar.ts";
 import { Stage } from "../mesh3d/stage.ts";
-import { SurfaceModel } from "../mesh3d/surface_model.ts";
+import { MANY_MARKS, SurfaceModel } from "../mesh3d/surface_model.ts";
+import { TissueMaterial } from "../mesh3d/tissue_material.ts";
 import { drawsInSoftware, webglContext } from "../mesh3d/webgl.ts";
 import { h } from "../page/dom.ts";
 import { currentTheme, onTheme, themeColour } from "../page/theme.ts";
-import { type Colouring, COLOURINGS, ColourRange, unitOf } from "./colouring.ts";
+import { ColourScale } from "./colour_scale.ts";
+import { AS_TISSUE, type Colouring, COLOURINGS, colouringOf } from "./colouring.ts";
 import { CutTool } from "./cut_tool.ts";
+import { ForceShown } from "./force_shown.ts";
 import { LiveSurface } from "./live_surface.ts";
 import type { Hello, Keyframe, LiveFrame } from "./protocol.ts";
 
 const DRIVEN = 2;
-const TOO_SLOW = 42; // ms from one drawing to the next
-const EASINGS = [1, 0.7, 0.5]; // shares of the pixels in each direction; with the first, edges go
+const EASINGS = [0.7, 0.5]; // shares of the pixels in each direction
 
 export interface Hands {
   mayAct(): boolean;
@@ -41,25 +46,35 @@ export class LiveView {
     class: "mesh-canvas live-canvas",
     tabindex: 0,
     "aria-label":
-      "The body in three dimensions. Arrow keys turn it, plus and minus zoom, 0 shows all of it, C cuts it open. With the " +
-      "cutting tool (K) arrow keys move the blade, Enter puts it down and lifts it.",
+      "The body in three dimensions. Arrow keys turn it, plus and minus zoom, 0 shows all of it, C cuts it open, G sees " +
+      "through it, F colours it by a field or as tissue. With the cutting tool (K) arrow keys move the blade, Enter puts it down and lifts it.",
   });
-  edges: boolean | null = null; // null: as suits the mesh
-  onEdges: (on: boolean) => void = () => {};
+  edges = false;
+  onColour: (colouring: Colouring) => void = () => {};
+  private readonly lookSettings = rememberedLook("live", [TISSUE, ...COLOURINGS.map(({ name }) => name)]);
+  readonly look = new LookControls(
+    this.lookSettings,
+    COLOURINGS.map(({ name, label }) => ({ value: name, label })),
+    () => this.lookChanged(),
+  );
   private readonly clip = rememberedClip("live", { on: false, axis: "y", at: null, flipped: false });
   readonly cut = new ClipControls(
     this.clip,
     () => this.clipBody,
     () => this.cutChanged(),
   );
-  private readonly bar = new ColourBar();
   private readonly stage: Stage | null;
   private surface: LiveSurface | null = null;
   private model: SurfaceModel | null = null;
   private keyframe = -1;
   private epoch = -1;
-  private readonly range = new ColourRange();
-  private colouring: Colouring = COLOURINGS[0]!;
+  private readonly scale = new ColourScale(colouringOf(this.lookSettings.colour), () => this.model?.diagonal ?? 1);
+  readonly force: ForceShown;
+  private readonly material = new TissueMaterial();
+  private readonly scaleBar = new ScaleBar();
+  private readonly pace = new Pace();
+  private canBeFine = hopeForFine();
+  private measured = false;
   private dragMode: DragMode = "pull";
   readonly cutTool: CutTool | null = null;
   private frame: LiveFrame | null = null;
@@ -74,8 +89,10 @@ export class LiveView {
     private readonly hello: () => Hello | null,
     private readonly hands: Hands,
   ) {
+    this.force = new ForceShown(hello);
     const context = webglContext(this.canvas, !drawsInSoftware());
-    this.element = h("div", { class: "mesh-viewport live-viewport" }, this.canvas, this.bar.element);
+    this.element = h("div", { class: "mesh-viewport live-viewport" }, this.canvas, this.scale.bar.element);
+    this.element.append(this.scaleBar.element, this.force.arrow.label);
     this.stage = context ? new Stage(this.canvas, context) : null;
     if (!this.stage) {
       this.element.replaceChildren(
@@ -91,6 +108,8 @@ export class LiveView {
     this.thread.renderOrder = 10;
     this.stage.scene.add(this.thread);
     this.stage.beforeDrawing = () => this.model?.cutOpen(this.plane);
+    this.stage.afterDrawing = () => this.annotate();
+    this.stage.scene.add(this.force.arrow.group);
     this.cutTool = new CutTool(this.stage, this.canvas, this.hands, (caster) => this.seenAt(caster));
     this.stage.scene.add(this.cutTool.lines);
     this.element.append(this.cutTool.crosshair);
@@ -102,23 +121,28 @@ export class LiveView {
     this.canvas.addEventListener("keydown", (event) => this.key(event));
   }
 
-  /** Another skin: the first, or one that was cut. */
+  /** Another skin: the first, or one that was cut. The old one stays until a frame tells where the new one is. */
   takeKeyframe(keyframe: Keyframe): void {
+    this.coming = keyframe;
+  }
+
+  private coming: Keyframe | null = null;
+
+  private build(keyframe: Keyframe): void {
     const hello = this.hello();
     if (!hello || !this.stage) return;
+    this.coming = null;
     if (this.model) {
       this.stage.scene.remove(this.model.group);
       this.model.dispose();
     }
     const sets = hello.tools.filter((tool) => !tool.instrument).length;
     this.surface = new LiveSurface(keyframe, hello.instruments, sets);
-    this.model = new SurfaceModel(this.surface);
+    this.model = new SurfaceModel(this.surface, this.material, this.fine, this.fitted ? "again" : "first");
     this.keyframe = keyframe.number;
     this.stage.scene.add(this.model.group);
-    this.scale = null;
     if (this.cutTool) this.cutTool.size = this.model.diagonal;
     this.recolour();
-    this.onEdges(this.edgesShown);
     this.cut.refresh();
     if (!this.fitted) this.fit();
     this.fitted = true;
@@ -130,24 +154,18 @@ export class LiveView {
     if (this.request === 0) this.request = requestAnimationFrame(() => this.drawNewest());
   }
 
-  /** Where drawing is slow (no graphics card), edges go first, then pixels: motion is worth more than sharpness. */
+  /** Where drawing is slow, the fine look goes first, then pixels: motion is worth more than sharpness. */
   private easeDrawing(): void {
-    const now = performance.now();
-    const late = now - this.drawnAt > TOO_SLOW && now - this.drawnAt < 1000;
-    this.drawnAt = now;
-    this.slow = Math.max(0, this.slow + (late ? 1 : -1));
-    if (this.slow < 15 || this.eased >= EASINGS.length) return;
-    this.slow = 0;
-    this.stage?.coarsen(EASINGS[this.eased++]!);
-    this.onEdges(this.edgesShown);
+    if (!this.pace.tooSlow(performance.now())) return;
+    if (this.fine && this.lookSettings.detail === "auto") this.canBeFine = false;
+    else if (this.eased < EASINGS.length) this.stage?.coarsen(EASINGS[this.eased++]!);
   }
 
-  private get edgesShown(): boolean {
-    return this.edges ?? (this.eased === 0 && this.model?.edgesByDefault === true);
+  private get fine(): boolean {
+    const { detail } = this.lookSettings;
+    return detail === "auto" ? this.canBeFine : detail === "fine";
   }
 
-  private drawnAt = 0;
-  private slow = 0;
   private eased = 0;
   private newest: LiveFrame | null = null;
   private request = 0;
@@ -156,15 +174,40 @@ export class LiveView {
     this.request = 0;
     this.easeDrawing();
     const frame = this.newest;
+    if (frame && frame.keyframe === this.coming?.number) this.build(this.coming);
     if (!frame || !this.surface || !this.model || frame.keyframe !== this.keyframe) return;
-    if (frame.epoch !== this.epoch) this.range.reset(this.colouring, this.leastRange);
+    if (frame.epoch !== this.epoch) this.scale.reset();
     this.epoch = frame.epoch;
     this.frame = frame;
-    this.colourBy(this.surface.take(frame, this.colouring));
-    this.model.show({ edges: this.edgesShown, ghost: false, marks: true });
+    this.scale.take(this.surface.take(frame, this.scale.colouring), this.surface);
+    this.model.setLook({
+      coloured: this.scale.colouring.name !== TISSUE,
+      seeThrough: this.lookSettings.seeThrough,
+      fine: this.fine,
+    });
+    this.model.show({ edges: this.edges, ghost: false, marks: true, held: this.model.heldCount <= MANY_MARKS });
     this.model.update(0, 1, 1);
+    const held = frame.grabbing && this.dragged?.what === "tissue" ? this.place(this.dragged.vertex) : null;
+    this.force.show(frame, this.model, held);
     this.drawThread();
-    this.stage?.draw();
+    this.canvas.dataset["look"] = this.fine ? "fine" : "plain";
+    if (!this.measured && this.stage) this.measure(this.stage);
+    else this.stage?.draw();
+  }
+
+  /** The first frame tells whether the fine look is fast enough here. */
+  private measure(stage: Stage): void {
+    this.measured = true;
+    if (this.lookSettings.detail === "auto") this.canBeFine = fineIsFast(stage);
+    if (!this.canBeFine) this.request = requestAnimationFrame(() => this.drawNewest());
+    else stage.draw();
+  }
+
+  /** What is written over the picture follows it. */
+  private annotate(): void {
+    if (!this.stage) return;
+    this.scaleBar.show(this.stage.metresPerPixel, this.stage.size.width);
+    this.force.arrow.place(this.stage, [this.scale.bar.element, this.scaleBar.element]);
   }
 
   private get clipBody(): ClipBody | null {
@@ -180,50 +223,29 @@ export class LiveView {
     this.stage?.invalidate();
   }
 
-  /** Chooses what colours stand for. */
-  set colours(colouring: Colouring) {
-    this.colouring = colouring;
-    this.range.reset(colouring, this.leastRange);
-    this.showRange();
-    this.paint();
+  private lookChanged(): void {
+    rememberLook("live", this.lookSettings);
+    this.look.refresh();
+    const colouring = colouringOf(this.lookSettings.colour);
+    if (colouring.name !== this.scale.colouring.name) {
+      this.scale.colouring = colouring;
+      this.onColour(colouring);
+    }
+    if (this.newest) this.takeFrame(this.newest); // a body that is paused is drawn anew, too
   }
 
-  private get leastRange(): number {
-    return this.colouring.least * (this.colouring.name === "displacement" ? (this.model?.diagonal ?? 1) : 1);
+  /** What colours stand for; a body without stress has no pressure to show. */
+  get colours(): Colouring {
+    return this.scale.colouring;
   }
 
-  /** Brings the frame's numbers to colours; those of a field that has not come yet stay as they were. */
-  private colourBy(span: { low: number; high: number } | null): void {
-    if (!span || !this.surface) return;
-    const { rest } = this.colouring;
-    const changed = this.range.follow(span.low, span.high, rest, this.leastRange, performance.now());
-    if (changed || !this.bar.element.dataset["range"]) this.showRange();
-    this.surface.scale(this.range.low, this.range.high, rest === 1);
+  /** Tells which fields there are. */
+  offer(hasStress: boolean): void {
+    this.look.colour.querySelector<HTMLOptionElement>("[value=pressure]")!.hidden = !hasStress;
+    if (hasStress || this.scale.colouring.name !== "pressure") return;
+    this.lookSettings.colour = AS_TISSUE.name;
+    this.lookChanged();
   }
-
-  private showRange(): void {
-    const { low, high } = this.range;
-    const { unit, perUnit } = unitOf(this.colouring, low, high);
-    this.bar.describe(this.colouring.label, `${this.colouring.symbol} [${unit}]`);
-    this.bar.setRange(perUnit * high, perUnit * low, this.colouring.rest === 1);
-    if (this.colouring.name === "none") this.bar.element.hidden = true;
-    this.bar.element.dataset["range"] = `${low} ${high}`;
-    this.bar.element.dataset["colouring"] = this.colouring.name;
-  }
-
-  /** The skin by the scale, or in one quiet colour. */
-  private paint(): void {
-    if (!this.model) return;
-    const material = this.model.skin.material as THREE.MeshLambertMaterial;
-    this.scale ??= material.map;
-    const plain = this.colouring.name === "none";
-    material.map = plain ? null : this.scale;
-    material.color.set(plain ? themeColour("--mesh-plain") : "#ffffff");
-    material.needsUpdate = true;
-    this.stage?.invalidate();
-  }
-
-  private scale: THREE.Texture | null = null;
 
   /** What a drag on the body does. */
   set mode(mode: DragMode) {
@@ -254,7 +276,7 @@ export class LiveView {
     });
     for (const line of [this.thread, this.cutTool?.lines])
       (line?.material as THREE.LineBasicMaterial | undefined)?.color.set(driven);
-    this.paint();
+    this.force.arrow.colour = themeColour("--mesh-force");
     this.stage?.invalidate();
   }
 
@@ -375,7 +397,9 @@ export class LiveView {
     else if (this.clipBody && !event.ctrlKey && !event.metaKey && clipKey(event.key, this.clip, this.clipBody)) {
       this.cutChanged();
       this.cut.refresh();
-    } else return;
+    } else if (!event.ctrlKey && !event.metaKey && lookKey(event.key, this.lookSettings, COLOURINGS[0]!.name))
+      this.lookChanged();
+    else return;
     event.preventDefault();
   }
 }

@@ -89,6 +89,9 @@ export interface Keyframe {
   rest: Float32Array;
   triangles: Uint32Array;
   marks: Uint8Array;
+  kinds: Uint8Array | null; // of each triangle: 0 skin, 1 a face that was cut, 2 skin whose capsule is torn
+  tissue: string; // name of what most of the body is; may be empty
+  regions: { name: string; triangles: Uint32Array }[]; // closed surfaces of what else there is
 }
 
 export interface ToolState {
@@ -156,8 +159,35 @@ function decodeKeyframe(view: DataView): Keyframe {
     rest: new Float32Array(view.buffer.slice(16, atTriangles) as ArrayBuffer),
     triangles: new Uint32Array(view.buffer.slice(atTriangles, atMarks) as ArrayBuffer),
     marks: new Uint8Array(view.buffer as ArrayBuffer, atMarks, vertices),
+    ...decodeInside(view, atMarks + vertices, triangles),
   };
 }
+
+/** Kinds of the triangles, names, and surfaces of inner regions; a program that sends none has neither. */
+function decodeInside(view: DataView, from: number, triangles: number): Pick<Keyframe, "kinds" | "tissue" | "regions"> {
+  if (view.byteLength < from + triangles + 4) return { kinds: null, tissue: "", regions: [] };
+  const kinds = new Uint8Array(view.buffer as ArrayBuffer, from, triangles);
+  let at = aligned(from + triangles);
+  const words = (): string => {
+    const bytes = new Uint8Array(view.buffer as ArrayBuffer, at + 4, view.getUint32(at, true));
+    at = aligned(at + 4 + bytes.length);
+    return new TextDecoder().decode(bytes);
+  };
+  const tissue = words();
+  const count = view.getUint32(at, true);
+  at += 4;
+  const regions: Keyframe["regions"] = [];
+  for (let i = 0; i < count; i++) {
+    const name = words();
+    const corners = 3 * view.getUint32(at, true);
+    if (at + 4 + 4 * corners > view.byteLength) throw new RangeError("a region that was cut short");
+    regions.push({ name, triangles: new Uint32Array(view.buffer.slice(at + 4, at + 4 + 4 * corners) as ArrayBuffer) });
+    at += 4 + 4 * corners;
+  }
+  return { kinds: kinds.some((kind) => kind !== 0) ? kinds : null, tissue, regions };
+}
+
+const aligned = (at: number): number => 4 * Math.ceil(at / 4);
 
 const vector = (view: DataView, at: number): [number, number, number] => [
   view.getFloat32(at, true),

@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import type { InstrumentForm, InstrumentPlace } from "../report_data.ts";
 import { placeBetween, tubePositions, tubeTriangles } from "./instrument_shape.ts";
+import type { NearTool } from "./tissue_material.ts";
 import type { SurfaceMotion } from "./timeline.ts";
 
 const SIDES = 16;
@@ -75,7 +76,7 @@ export class InstrumentModel {
       const [from, to] = [before.instruments[i], after.instruments[i]];
       mesh.visible = from !== undefined && to !== undefined;
       if (!from || !to) return;
-      const place = placeBetween(from, to, share);
+      const place = (this.places[i] = placeBetween(from, to, share));
       if (this.timeline.instruments[i]!.kind === "needle")
         this.bend(mesh, place, this.timeline.instruments[i]!.radius_m);
       else move(mesh, place);
@@ -96,6 +97,30 @@ export class InstrumentModel {
     }
     mesh.geometry.computeVertexNormals();
   }
+
+  /** Where an instrument's tip is; null where there is none. */
+  tip(instrument: number, time: number): THREE.Vector3 | null {
+    const { before, after, share } = this.timeline.at(time);
+    const [from, to] = [before.instruments[instrument], after.instruments[instrument]];
+    if (!from || !to) return null;
+    const point = placeBetween(from, to, share).points.slice(-3);
+    return point.length === 3 ? new THREE.Vector3(...(point as [number, number, number])) : null;
+  }
+
+  /** What takes light of the tissue: a capsule about each instrument that has a radius. */
+  near(): NearTool[] {
+    const found: NearTool[] = [];
+    this.meshes.forEach((mesh, i) => {
+      const form = this.timeline.instruments[i]!;
+      const place = mesh.visible ? this.places[i] : undefined;
+      if (!place || !(form.radius_m > 0) || form.kind === "wall" || form.kind === "plate") return;
+      const tool = capsuleOf(form, place, LONGEST * this.size);
+      if (tool) found.push(tool);
+    });
+    return found;
+  }
+
+  private readonly places: InstrumentPlace[] = [];
 
   colour(tool: string): void {
     this.material.color.set(tool);
@@ -119,6 +144,19 @@ function bladeGeometry(ends: readonly number[], height: number): THREE.BufferGeo
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
   geometry.computeVertexNormals();
   return geometry;
+}
+
+/** From the tip along the instrument's own z axis, or along the end of a needle. */
+function capsuleOf(form: InstrumentForm, place: InstrumentPlace, longest: number): NearTool | null {
+  const points = form.kind === "needle" ? lastPart(place.points, longest) : place.points;
+  const tip = points.slice(-3);
+  if (tip.length < 3) return null;
+  const triple = (p: readonly number[]): [number, number, number] => [p[0]!, p[1]!, p[2]!];
+  if (form.kind === "needle") return { from: triple(points), to: triple(tip), radius: form.radius_m };
+  const axis = [place.axes[2] ?? 0, place.axes[5] ?? 0, place.axes[8] ?? 1];
+  const along = (length: number) => triple(tip.map((x, k) => x + length * axis[k]!));
+  const length = Math.min(form.length_m, longest);
+  return { from: along(form.radius_m), to: along(Math.max(length, form.radius_m)), radius: form.radius_m };
 }
 
 function move(mesh: THREE.Mesh, place: InstrumentPlace): void {

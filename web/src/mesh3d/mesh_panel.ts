@@ -12,11 +12,14 @@ import { type MeshVariant, MeshView, type RangeChoice, type ViewSettings } from 
 import { Player, speedsFor } from "./player.ts";
 import { composePicture } from "./screenshot.ts";
 import { interpolate } from "./interpolate.ts";
+import { lookKey, rememberedLook, rememberLook, TISSUE } from "./look.ts";
+import { LookControls } from "./look_controls.ts";
 import { webglContext } from "./webgl.ts";
 
 const SLIDER_STEPS = 600;
 /** More marks than this would hide the body: they are off until asked for. */
-const MANY_MARKS = 400;
+const MANY_MARKS = 40;
+const STRAIN = "intensity";
 const EXAGGERATIONS = [1, 2, 5, 10, 20, 50];
 
 /** Variants of a scene that have a surface to show. */
@@ -42,7 +45,10 @@ export class MeshPanel {
   private readonly playButton: HTMLButtonElement;
   private readonly settings: ViewSettings;
   private readonly cut: ClipControls;
+  private readonly look: LookControls;
+  private readonly rangeChoice = h("div", { class: "mesh-range" });
   private readonly player: Player;
+  private readonly tools: HTMLElement;
   private view: MeshView | null = null;
 
   /** @param first  name of the variant to start with, where it has a surface */
@@ -57,9 +63,11 @@ export class MeshPanel {
       variant: shown.name,
       exaggeration: 1,
       range: "all",
-      edges: true,
+      edges: false,
       ghost: false,
       marks: true,
+      arrow: true,
+      look: rememberedLook(scene.name, [TISSUE, STRAIN]),
       clip: rememberedClip(scene.name, {
         on: shown.surface.instruments.some((form) => form.kind === "needle"),
         axis: "y",
@@ -71,6 +79,9 @@ export class MeshPanel {
       this.settings.clip,
       () => this.view?.clipBody ?? null,
       () => this.cutChanged(),
+    );
+    this.look = new LookControls(this.settings.look, [{ value: STRAIN, label: "Equivalent shear strain s" }], () =>
+      this.lookChanged(),
     );
     const [start, end] = spanOf(shown);
     this.player = new Player(
@@ -86,7 +97,8 @@ export class MeshPanel {
     );
     this.playButton.addEventListener("click", () => this.player.toggle());
     this.slider.addEventListener("input", () => this.seekSlider());
-    this.viewport.append(this.canvas, this.bar.element, this.toolbar());
+    this.tools = this.toolbar();
+    this.viewport.append(this.canvas, this.bar.element, this.tools);
     this.element.append(
       this.viewport,
       this.key,
@@ -125,16 +137,23 @@ export class MeshPanel {
     const context = webglContext(this.canvas);
     if (!context) return this.showMissing();
     this.view = new MeshView(this.canvas, context, this.variants, this.settings);
-    this.settings.edges = this.view.edgesByDefault;
+    this.viewport.append(this.view.scaleBar.element, this.view.arrow.label);
+    this.view.labels = [this.bar.element, this.view.scaleBar.element, this.tools, this.key];
     const { held, driven } = this.view.marked;
     this.settings.marks = held + driven <= MANY_MARKS;
-    for (const setting of ["edges", "marks"] as const) {
-      const box = this.element.querySelector<HTMLInputElement>(`input[name=${setting}]`);
-      if (box) box.checked = this.settings[setting];
-    }
+    const box = this.element.querySelector<HTMLInputElement>("input[name=marks]");
+    if (box) box.checked = this.settings.marks;
+    this.refresh();
+    this.view.settleDetail();
     this.refresh();
     this.cut.refresh();
     this.describeMarks();
+  }
+
+  private lookChanged(): void {
+    rememberLook(this.scene.name, this.settings.look);
+    this.look.refresh();
+    this.refresh();
   }
 
   private cutChanged(): void {
@@ -173,12 +192,17 @@ export class MeshPanel {
       this.playButton.title = playing ? "Pause" : "Play";
       this.playButton.setAttribute("aria-label", this.playButton.title);
     }
-    this.bar.setRange(this.view?.colourRange ?? 0);
+    if (this.player.playing && this.view?.tooSlow(performance.now())) this.view.show(time);
+    const coloured = this.settings.look.colour !== TISSUE;
+    this.bar.setRange(coloured ? (this.view?.colourRange ?? 0) : 0);
+    this.rangeChoice.hidden = !coloured;
+    this.canvas.dataset["look"] = this.view?.fine === false ? "plain" : "fine";
     this.readout.textContent = this.describeTime();
     this.slider.setAttribute("aria-valuetext", this.readout.textContent);
     const label =
-      `Surface of ${this.current().label}, coloured by equivalent shear strain, at ${this.readout.textContent}. ` +
-      "Arrow keys turn it, + and − zoom, C cuts it open.";
+      `Surface of ${this.current().label}, ${coloured ? "coloured by equivalent shear strain" : "as tissue"}, ` +
+      `at ${this.readout.textContent}. Arrow keys turn it, + and − zoom, C cuts it open, G sees through it, ` +
+      "F colours it by equivalent shear strain or as tissue.";
     this.canvas.setAttribute("aria-label", label);
     this.state.setPlayhead(end > start ? { variant: this.settings.variant, time } : null);
   }
@@ -240,6 +264,12 @@ export class MeshPanel {
     ];
     if (this.variants.length > 1) ranges.unshift({ value: "all", label: "all variants" });
     else this.settings.range = "variant";
+    this.rangeChoice.append(
+      select("Colours up to", ranges, this.settings.range, (value) => {
+        this.settings.range = value as RangeChoice;
+        this.refresh();
+      }),
+    );
     return h(
       "div",
       { class: "mesh-options" },
@@ -248,23 +278,24 @@ export class MeshPanel {
         this.settings.exaggeration = Number(value);
         this.refresh();
       }),
-      select("Colours up to", ranges, this.settings.range, (value) => {
-        this.settings.range = value as RangeChoice;
-        this.refresh();
-      }),
+      this.look.colour,
+      this.rangeChoice,
+      this.look.detail,
       h(
         "div",
         { class: "mesh-checks" },
         this.check("Edges", "edges"),
         this.check("Rest shape", "ghost"),
         this.check("Marks", "marks"),
+        this.check("Force", "arrow"),
+        this.look.seeThrough,
         this.cut.tick,
       ),
       this.cut.element,
     );
   }
 
-  private check(label: string, setting: "edges" | "ghost" | "marks"): HTMLElement {
+  private check(label: string, setting: "edges" | "ghost" | "marks" | "arrow"): HTMLElement {
     const input = h("input", { type: "checkbox", name: setting, checked: this.settings[setting] });
     input.addEventListener("change", () => {
       this.settings[setting] = input.checked;
@@ -276,13 +307,14 @@ export class MeshPanel {
 
   private savePicture(): void {
     if (!this.view) return;
-    const range = this.view.colourRange;
+    const range = this.settings.look.colour === TISSUE ? null : this.view.colourRange;
+    const { scaleBar } = this.view;
     const factor = this.settings.exaggeration;
     const caption =
       `${this.scene.title} · ${this.current().label} · ${this.describeTime()}` +
       (factor === 1 ? "" : ` · displacement ${factor}×`);
     this.view.stage.withFinePicture((canvas) =>
-      composePicture(canvas, range, caption).toBlob((blob) => {
+      composePicture(canvas, { range, scale: scaleBar.shownLength }, caption).toBlob((blob) => {
         if (blob) download(`${this.scene.name}-${this.settings.variant}.png`, blob);
       }),
     );
@@ -308,7 +340,8 @@ export class MeshPanel {
     else if (body && clipKey(event.key, this.settings.clip, body)) {
       this.cutChanged();
       this.cut.refresh();
-    } else return;
+    } else if (lookKey(event.key, this.settings.look, STRAIN)) this.lookChanged();
+    else return;
     event.preventDefault();
   }
 }

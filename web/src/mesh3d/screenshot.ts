@@ -1,13 +1,19 @@
-// screenshot.ts — the 3D view as a picture that explains itself: mesh, colour scale, caption.
+// screenshot.ts — the 3D view as a picture that explains itself: mesh, scales, caption.
 import { formatTick } from "../format/number.ts";
 import { themeColour } from "../page/theme.ts";
 import { barTicks } from "./colour_bar.ts";
 import { colourOf } from "./colour_map.ts";
+import { lengthText } from "./scale_bar.ts";
 
 const CAPTION_HEIGHT = 36; // CSS pixels
 
-/** Puts the view with its colour scale on one canvas, a caption below it. */
-export function composePicture(view: HTMLCanvasElement, range: number, caption: string): HTMLCanvasElement {
+export interface PictureScales {
+  range: number | null; // end of the colour scale; null: the body is not coloured
+  scale: { metres: number; pixels: number }; // the bar of length, pixels in CSS
+}
+
+/** Puts the view with its scales on one canvas, a caption below it. */
+export function composePicture(view: HTMLCanvasElement, scales: PictureScales, caption: string): HTMLCanvasElement {
   const canvas = document.createElement("canvas");
   canvas.width = view.width;
   const unit = view.width / Math.max(1, view.clientWidth); // canvas pixels per CSS pixel
@@ -21,8 +27,29 @@ export function composePicture(view: HTMLCanvasElement, range: number, caption: 
   context.font = `${13 * unit}px ${themeColour("--font")}`;
   context.textBaseline = "middle";
   context.fillText(caption, 14 * unit, canvas.height - (CAPTION_HEIGHT / 2) * unit);
-  drawBar(context, range, unit, canvas.width);
+  if (scales.range !== null) drawBar(context, scales.range, unit, canvas.width);
+  drawLength(context, scales.scale, unit, view.height);
   return canvas;
+}
+
+function drawLength(
+  context: CanvasRenderingContext2D,
+  { metres, pixels }: PictureScales["scale"],
+  unit: number,
+  bottom: number,
+): void {
+  if (metres === 0) return;
+  const [left, y] = [14 * unit, bottom - 14 * unit];
+  context.strokeStyle = context.fillStyle = themeColour("--ink");
+  context.lineWidth = 1.5 * unit;
+  context.beginPath();
+  context.moveTo(left, y - 5 * unit);
+  context.lineTo(left, y);
+  context.lineTo(left + pixels * unit, y);
+  context.lineTo(left + pixels * unit, y - 5 * unit);
+  context.stroke();
+  context.textBaseline = "bottom";
+  context.fillText(lengthText(metres), left + 4 * unit, y - 4 * unit);
 }
 
 function drawBar(context: CanvasRenderingContext2D, range: number, unit: number, width: number): void {

@@ -20,6 +20,8 @@ export class Stage {
   private share = 1; // of the pixels in each direction
   /** Called before each drawing: what follows the eye is set there. */
   beforeDrawing: () => void = () => {};
+  /** Called after each drawing: what is written over the picture follows it. */
+  afterDrawing: () => void = () => {};
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -97,6 +99,35 @@ export class Stage {
     this.request = 0;
     this.beforeDrawing();
     this.renderer.render(this.scene, this.camera);
+    this.afterDrawing();
+  }
+
+  /** Draws and waits until that is done [ms]; null where the canvas has no size. */
+  timeDrawing(): number | null {
+    if (this.canvas.clientWidth === 0 || this.canvas.clientHeight === 0) return null;
+    const context = this.renderer.getContext();
+    const begin = performance.now();
+    this.draw();
+    context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, new Uint8Array(4)); // waits for what was drawn
+    return performance.now() - begin;
+  }
+
+  /** Of the canvas [CSS px]. */
+  get size(): { width: number; height: number } {
+    return { width: this.canvas.clientWidth, height: this.canvas.clientHeight };
+  }
+
+  /** Where a point is seen [CSS px from the canvas's upper left]. */
+  toScreen(point: THREE.Vector3): { x: number; y: number } {
+    const seen = point.clone().project(this.camera);
+    const { width, height } = this.size;
+    return { x: ((1 + seen.x) * width) / 2, y: ((1 - seen.y) * height) / 2 };
+  }
+
+  /** Length that a CSS pixel shows at the distance one looks at [m]. */
+  get metresPerPixel(): number {
+    const up = 2 * this.distance * Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+    return up / Math.max(1, this.canvas.clientHeight);
   }
 
   /** Draws at twice the resolution, hands the canvas to `use`, and draws as before. */

@@ -1,26 +1,27 @@
-// surface_model.ts — the three.js objects of one surface: skin, edges, rest ghost, marked vertices.
+// surface_model.ts — the three.js objects of one surface: body, wireframe, rest ghost, marked vertices, inner regions.
 //
-//   positions (one buffer) ─┬─ skin: triangles, coloured by equivalent shear strain through a 1D texture
-//                           ├─ edges
-//                           └─ held and driven vertices
-//                           ├─ cap: closes the skin where it is cut open
-//   rest positions ─────────── ghost: faint skin and its creases
+//   coarse positions (one buffer) ─┬─ held and driven vertices
+//                                  ├─ skin: the coarse triangles, met by rays and never drawn
+//                                  ├─ body and wireframe: the surface as it is drawn (BodySkin)
+//                                  │    └─ cap: closes it where it is cut open
+//                                  └─ inner regions, seen through the body or where it is opened
+//   rest positions ────────────────── ghost: faint skin and its creases
 import * as THREE from "three";
+import { BodySkin } from "./body_skin.ts";
 import type { ClipBody } from "./clip.ts";
 import { ClipCap } from "./clip_cap.ts";
-import { colourTexels } from "./colour_map.ts";
-import { uniqueEdges } from "./edges.ts";
+import { ContactShadow } from "./contact_shadow.ts";
+import { InnerRegions } from "./inner_regions.ts";
 import { InstrumentModel } from "./instrument_model.ts";
 import { markTexture } from "./mark_texture.ts";
+import { coloursOf, regionTints } from "./tissue_colours.ts";
+import type { TissueMaterial } from "./tissue_material.ts";
 import type { SurfaceMotion } from "./timeline.ts";
 
-const TEXELS = 256;
 const CREASE_DEGREES = 28;
-/** Above this many edges the wireframe would be a solid tint. */
-const MANY_EDGES = 30_000;
 /** Marks are drawn this share of the mesh's size nearer, or the skin beside a vertex would cut its sign. */
 const MARK_LIFT = 0.03;
-const MANY_MARKS = 40;
+export const MANY_MARKS = 40;
 const MARK_PIXELS = { square: 9, disc: 12 };
 
 export interface ModelColours {
@@ -29,17 +30,22 @@ export interface ModelColours {
   held: string;
   driven: string;
   instrument: string;
-  cap: string;
+  cap: string; // of a body that a field colours
+}
+
+/** How a body is drawn. */
+export interface ModelLook {
+  coloured: boolean; // by the field, else as tissue
+  seeThrough: boolean;
+  fine: boolean;
 }
 
 export class SurfaceModel {
   readonly group = new THREE.Group();
-  readonly edgesByDefault: boolean;
   readonly heldCount: number;
   readonly drivenCount: number;
   private readonly positions: THREE.BufferAttribute;
-  private readonly lookup: THREE.BufferAttribute; // texture coordinates: (intensity / range, ½)
-  private readonly intensity: Float32Array;
+  private readonly intensity: Float32Array; // and shares of the scale, once it has been brought to it
   private readonly edgeMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.35 });
   private readonly ghostLine = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.7, depthWrite: false });
   private readonly ghostSkin = new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.08, depthWrite: false });
@@ -48,39 +54,66 @@ export class SurfaceModel {
   private readonly held: THREE.Points;
   private readonly driven: THREE.Points;
   private readonly hiddenDriven: THREE.Points;
-  private readonly edges: THREE.LineSegments;
+  private readonly body: BodySkin;
+  private readonly inner: InnerRegions;
+  private readonly shadow: ContactShadow;
   private readonly ghost = new THREE.Group();
   private readonly disposables: { dispose(): void }[] = [];
   readonly skin: THREE.Mesh;
   private readonly skinGeometry: THREE.BufferGeometry;
   private readonly instruments: InstrumentModel;
   private readonly cap: ClipCap;
-  private shown: Uint32Array; // triangles of the skin now
+  private shown: Uint32Array; // triangles of the skin now …
+  private shownKinds: Uint8Array | null; // … and their kinds
+  private look: ModelLook = { coloured: false, seeThrough: false, fine: true };
 
-  constructor(readonly timeline: SurfaceMotion) {
+  /**
+   * @param material  of the body; it is the caller's, since making one anew with each surface would be slow
+   * @param time  whether the body is seen for the first time, or has become another one while it moves
+   */
+  constructor(
+    readonly timeline: SurfaceMotion,
+    private readonly material: TissueMaterial,
+    fine: boolean,
+    time: "first" | "again" = "first",
+  ) {
     this.shown = timeline.triangles;
+    this.shownKinds = timeline.kindsAt(timeline.frames[0]!.time);
+    this.look.fine = fine;
     this.box = new THREE.Box3().setFromArray(timeline.rest);
     this.size = this.box.getSize(new THREE.Vector3()).length();
     this.positions = new THREE.BufferAttribute(timeline.rest.slice(0, 3 * timeline.vertices), 3);
     this.positions.setUsage(THREE.DynamicDrawUsage);
-    this.lookup = new THREE.BufferAttribute(new Float32Array(2 * timeline.vertices).fill(0.5), 2);
     this.intensity = new Float32Array(timeline.vertices);
-    const edgeIndex = uniqueEdges(timeline.triangles, timeline.vertices);
-    this.edgesByDefault = edgeIndex.length / 2 <= MANY_EDGES;
-    this.edges = new THREE.LineSegments(this.shared(edgeIndex), this.edgeMaterial);
+    material.size = this.size;
+    const { tissue, raw } = coloursOf(timeline.tissue);
+    material.raw = raw;
+    const rest = timeline.rest.subarray(0, 3 * timeline.vertices);
+    const colourOf = regionTints(tissue, timeline.regions);
+    this.body = new BodySkin(rest, colourOf, material, this.edgeMaterial, fine, time);
+    this.body.build(this.shown, this.shownKinds);
     this.held = this.points(1, "square");
     this.driven = this.points(2, "disc");
     this.hiddenDriven = this.seenThrough(this.driven);
     this.heldCount = this.held.geometry.index?.count ?? 0;
     this.drivenCount = this.driven.geometry.index?.count ?? 0;
-    this.skin = this.makeSkin();
+    this.skin = new THREE.Mesh(
+      this.shared(timeline.triangles),
+      new THREE.MeshBasicMaterial({ side: THREE.DoubleSide }),
+    );
     this.skinGeometry = this.skin.geometry;
     this.instruments = new InstrumentModel(timeline, this.size);
-    this.cap = new ClipCap(this.skinGeometry, this.box.getCenter(new THREE.Vector3()), this.size);
+    const middle = this.box.getCenter(new THREE.Vector3());
+    this.cap = new ClipCap(this.body.mesh.geometry, middle, this.size);
+    this.cap.tissue = raw;
+    this.inner = new InnerRegions(timeline, this.positions, middle, this.size);
+    this.shadow = new ContactShadow(timeline.rest, timeline.triangles, this.box);
     this.group.add(
-      this.skin,
+      this.shadow.mesh,
+      this.body.mesh,
       this.cap.group,
-      this.edges,
+      this.inner.group,
+      this.body.edges,
       this.held,
       this.hiddenDriven,
       this.driven,
@@ -89,6 +122,7 @@ export class SurfaceModel {
     );
     this.group.traverse((object) => (object.frustumCulled = false));
     this.disposables.push(this.instruments, this.cap, this.edgeMaterial, this.ghostLine, this.ghostSkin);
+    this.disposables.push(this.body, this.inner, this.shadow, this.skin.material as THREE.Material);
   }
 
   private keep<T extends { dispose(): void }>(thing: T): T {
@@ -102,26 +136,6 @@ export class SurfaceModel {
     geometry.setAttribute("position", this.positions);
     geometry.setIndex(new THREE.BufferAttribute(index, 1));
     return geometry;
-  }
-
-  private makeSkin(): THREE.Mesh {
-    const texture = this.keep(new THREE.DataTexture(colourTexels(TEXELS), TEXELS, 1));
-    texture.colorSpace = THREE.SRGBColorSpace;
-    texture.minFilter = texture.magFilter = THREE.LinearFilter;
-    texture.needsUpdate = true;
-    const material = this.keep(
-      new THREE.MeshLambertMaterial({
-        map: texture,
-        flatShading: true,
-        side: THREE.DoubleSide,
-        polygonOffset: true,
-        polygonOffsetFactor: 1,
-        polygonOffsetUnits: 1,
-      }),
-    );
-    const geometry = this.shared(this.timeline.triangles);
-    geometry.setAttribute("uv", this.lookup);
-    return new THREE.Mesh(geometry, material);
   }
 
   private points(kind: number, shape: "square" | "disc"): THREE.Points {
@@ -166,15 +180,27 @@ export class SurfaceModel {
   update(time: number, exaggeration: number, range: number): void {
     this.timeline.sample(time, exaggeration, this.positions.array as Float32Array, this.intensity);
     const perUnit = range > 0 ? 1 / range : 0;
-    const inset = 0.5 / TEXELS;
-    for (let i = 0; i < this.intensity.length; i++) {
-      const t = Math.min(1, this.intensity[i]! * perUnit);
-      this.lookup.setX(i, inset + t * (1 - 2 * inset));
-    }
+    for (let i = 0; i < this.intensity.length; i++) this.intensity[i] = Math.min(1, this.intensity[i]! * perUnit);
     this.positions.needsUpdate = true;
-    this.lookup.needsUpdate = true;
-    this.showTriangles(this.timeline.trianglesAt(time));
+    this.showTriangles(this.timeline.trianglesAt(time), this.timeline.kindsAt(time));
+    this.body.update(this.positions.array as Float32Array, this.intensity);
+    this.inner.update();
     this.instruments.update(time);
+    this.material.tools = this.instruments.near();
+  }
+
+  /** Tissue or field, whole or seen through, fine or plain. */
+  setLook(look: ModelLook): void {
+    const plainer = look.fine !== this.look.fine;
+    this.look = { ...look };
+    this.material.coloured = look.coloured;
+    this.material.seeThrough = look.seeThrough;
+    this.material.fine = look.fine;
+    this.cap.coloured = look.coloured;
+    this.inner.show(look.seeThrough || this.cap.open, look.coloured);
+    if (!plainer) return;
+    this.body.fine = look.fine;
+    this.rebuild();
   }
 
   /** The instruments' own objects, in their order. */
@@ -186,29 +212,54 @@ export class SurfaceModel {
     return this.instruments.count > 0;
   }
 
-  /** A surface that was cut is another one from then on. */
-  private showTriangles(triangles: Uint32Array): void {
-    if (triangles === this.shown) return;
+  /** A surface that was cut, or whose capsule has torn, is another one from then on. */
+  private showTriangles(triangles: Uint32Array, kinds: Uint8Array | null): void {
+    if (triangles === this.shown && kinds === this.shownKinds) return;
     this.shown = triangles;
+    this.shownKinds = kinds;
     this.skinGeometry.setIndex(new THREE.BufferAttribute(triangles, 1));
-    const edges = uniqueEdges(triangles, this.timeline.vertices);
-    this.edges.geometry.setIndex(new THREE.BufferAttribute(edges, 1));
+    this.rebuild();
+  }
+
+  private rebuild(): void {
+    this.body.build(this.shown, this.shownKinds);
+    this.cap.skin = this.body.mesh.geometry;
   }
 
   /** Cuts the body open and closes it with a face: what the plane's normal points to stays; null: all of it. Instruments stay whole. */
   cutOpen(plane: THREE.Plane | null): void {
     const planes = plane ? [plane] : null;
-    for (const object of [this.skin, this.edges, this.held, this.driven, this.hiddenDriven, ...this.ghost.children])
-      ((object as THREE.Mesh).material as THREE.Material).clippingPlanes = planes;
+    const cut = [this.body.mesh, this.body.edges, this.held, this.driven, this.hiddenDriven, ...this.ghost.children];
+    for (const object of cut) ((object as THREE.Mesh).material as THREE.Material).clippingPlanes = planes;
     this.cap.plane = plane;
+    this.shadow.mesh.visible = plane === null; // the shadow is that of the whole body
+    this.inner.plane = plane;
+    this.inner.show(this.look.seeThrough || this.cap.open, this.look.coloured);
   }
 
-  /** What a plane is laid through: by its heart the way of the first instrument is seen. */
+  /** Of the box about it at rest. */
+  get middle(): THREE.Vector3 {
+    return this.box.getCenter(new THREE.Vector3());
+  }
+
+  /** Where the first tool acts: amid the vertices that it drives, else the first instrument's tip; null: there is none. */
+  toolPlace(time: number): THREE.Vector3 | null {
+    const driven = this.driven.geometry.index;
+    const at = new THREE.Vector3();
+    if (driven && driven.count > 0) {
+      const each = new THREE.Vector3();
+      for (let i = 0; i < driven.count; i++) at.add(each.fromBufferAttribute(this.positions, driven.getX(i)));
+      return at.divideScalar(driven.count);
+    }
+    return this.instruments.tip(0, time);
+  }
+
   /** Diagonal of the box about it at rest [m]. */
   get diagonal(): number {
     return this.size;
   }
 
+  /** What a plane is laid through: by its heart the way of the first instrument is seen. */
   get clipBody(): ClipBody {
     const tip = this.timeline.frames[this.timeline.frames.length - 1]!.instruments[0]?.points.slice(-3);
     const heart =
@@ -218,11 +269,12 @@ export class SurfaceModel {
     return { box: this.box, heart };
   }
 
-  show(parts: { edges: boolean; ghost: boolean; marks: boolean }): void {
-    this.edges.visible = parts.edges;
+  show(parts: { edges: boolean; ghost: boolean; marks: boolean; held?: boolean }): void {
+    this.body.edges.visible = parts.edges;
     if (parts.ghost && this.ghost.children.length === 0) this.buildGhost();
     this.ghost.visible = parts.ghost;
-    this.held.visible = this.driven.visible = this.hiddenDriven.visible = parts.marks;
+    this.held.visible = parts.marks && parts.held !== false;
+    this.driven.visible = this.hiddenDriven.visible = parts.marks;
   }
 
   colour(colours: ModelColours): void {

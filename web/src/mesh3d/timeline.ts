@@ -7,6 +7,7 @@ export interface Frame {
   displacement: Float32Array; // xyz per vertex [m]
   intensity: Float32Array; // per vertex [-]
   triangles: Uint32Array; // of the surface from here on
+  kinds: Uint8Array | null; // of each of them: 0 skin, 1 a face that was cut, 2 skin whose capsule is torn; null: all skin
   instruments: readonly InstrumentPlace[];
 }
 
@@ -18,10 +19,13 @@ export interface SurfaceMotion {
   readonly fixed: Uint8Array;
   readonly frames: readonly Frame[];
   readonly instruments: readonly InstrumentForm[];
+  readonly tissue: string; // name of what most of the body is; empty where it is not said
+  readonly regions: readonly { name: string; triangles: Uint32Array }[]; // closed surfaces inside the body
   readonly end: number; // time of the last frame [s]
   at(time: number): { before: Frame; after: Frame; share: number };
   sample(time: number, exaggeration: number, positions: Float32Array, intensity: Float32Array): void;
   trianglesAt(time: number): Uint32Array;
+  kindsAt(time: number): Uint8Array | null;
 }
 
 export class Timeline implements SurfaceMotion {
@@ -31,6 +35,8 @@ export class Timeline implements SurfaceMotion {
   readonly fixed: Uint8Array;
   readonly frames: readonly Frame[];
   readonly instruments: readonly InstrumentForm[];
+  readonly tissue: string;
+  readonly regions: readonly { name: string; triangles: Uint32Array }[];
   readonly recorded: boolean; // false: no frames, rest shape only
   readonly intensityMax: number;
 
@@ -41,10 +47,21 @@ export class Timeline implements SurfaceMotion {
     this.triangles = wholeTriangles(decodeU32(surface.triangles), this.vertices);
     this.fixed = fit(decodeU8(surface.fixed), new Uint8Array(this.vertices));
     this.instruments = surface.instruments;
+    this.tissue = surface.tissue ?? "";
+    this.regions = (surface.regions ?? []).map(({ name, triangles }) => ({
+      name,
+      triangles: wholeTriangles(decodeU32(triangles), this.vertices),
+    }));
     let triangles = this.triangles;
+    let kinds: Uint8Array | null = null;
+    const kindsOf = (bytes: string | undefined, changed: boolean): Uint8Array | null => {
+      if (!bytes) return changed ? null : kinds;
+      return fit(decodeU8(bytes), new Uint8Array(triangles.length / 3));
+    };
     const frames = surface.frames.map((frame) => ({
       time: frame.time_s,
       triangles: (triangles = frame.triangles ? wholeTriangles(decodeU32(frame.triangles), this.vertices) : triangles),
+      kinds: (kinds = kindsOf(frame.kinds, frame.triangles !== undefined)),
       instruments: frame.instruments,
       displacement: fit(decodeI16Scaled(frame.displacement, frame.displacement_scale_m), this.zeros(3)),
       intensity: fit(decodeU8Scaled(frame.intensity, frame.intensity_max), this.zeros(1)),
@@ -55,6 +72,7 @@ export class Timeline implements SurfaceMotion {
       displacement: this.zeros(3),
       intensity: this.zeros(1),
       triangles: this.triangles,
+      kinds: null,
       instruments: [],
     };
     this.frames = this.recorded ? frames : [still];
@@ -102,6 +120,12 @@ export class Timeline implements SurfaceMotion {
   trianglesAt(time: number): Uint32Array {
     const { before, after, share } = this.at(time);
     return share < 1 ? before.triangles : after.triangles;
+  }
+
+  /** What its triangles are at a time. */
+  kindsAt(time: number): Uint8Array | null {
+    const { before, after, share } = this.at(time);
+    return share < 1 ? before.kinds : after.kinds;
   }
 
   /** Largest intensity shown at a time. */
