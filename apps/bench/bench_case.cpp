@@ -14,9 +14,9 @@ namespace glisson::app {
 namespace {
 
 constexpr std::array<std::string_view, 21> kModels{
-    "linear", "law",         "full",   "branches",  "law_branches",  "corotational", "green", "green_energy",
-    "fibres", "neo_hookean", "nodal",  "maxwell",   "mooney_rivlin", "yeoh",         "fung",  "veronda_westmann",
-    "ogden",  "gent",        "rivlin", "invariants",  "following"};
+    "linear", "law",         "full",   "branches",   "law_branches",  "corotational", "green", "green_energy",
+    "fibres", "neo_hookean", "nodal",  "maxwell",    "mooney_rivlin", "yeoh",         "fung",  "veronda_westmann",
+    "ogden",  "gent",        "rivlin", "invariants", "following"};
 
 constexpr double kShear = 3600.0 / 2.8, kBulk = 6000.0;  ///< of E = 3.6 kPa and ν = 0.4 [Pa]
 
