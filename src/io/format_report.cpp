@@ -91,7 +91,7 @@ void add_angles(std::string& text, const TetMesh& mesh) {
   for (auto bin = first; bin < last; ++bin) {
     const auto from = 10 * (bin - counts.begin());
     const std::size_t marks = (*bin * kWidth + most - 1) / most;  // one for the least that is not 0
-    char range[40];
+    char range[64];
     std::snprintf(range, sizeof range, "  %3td°–%3td° %10zu ", from, from + 10, *bin);
     text += range + std::string(marks, '#') + '\n';
   }
