@@ -48,7 +48,8 @@ class Trials {
 
   BodyTrial run(const Variant& scaled, double seconds) {
     RealtimeResult all;
-    BodyTrial trial{.threads = threads_};
+    BodyTrial trial;
+    trial.threads = threads_;
     while (all.wall_s < seconds && !stop_ && all.end.end == RunSummary::End::finished) {
       BuiltVariant body = build_variant(scaled, meshes_.loader());
       trial.tets = body.simulation.mesh().tets.size();
