@@ -21,11 +21,13 @@ class ProbedRecorder final : public RunObserver {
   }
   void on_sample(const Sample& s) override {
     value.push_back(s.probes[at_]);
+    time.push_back(s.time);
     depth.push_back(s.instruments.front().depth);
+    force.push_back(s.instruments.front().force.y);
   }
   void on_event(const RunEvent& event) override { events.push_back(event.what.event); }
 
-  std::vector<double> value, depth;
+  std::vector<double> value, time, depth, force;  ///< force along y, the direction of both scenes
   std::vector<std::string> events;
 
  private:
@@ -36,13 +38,20 @@ class ProbedRecorder final : public RunObserver {
 // Lying on its back the liver settles by some millimetres; a fingertip 15 mm deep meets some newtons; energies balance.
 TEST(ShapesLiver, IsPressed) {
   const Scene scene = test::shipped_scene("organs/liver.toml", {{"mesh.edge_mm", "13"}});
-  const test::RunRecord run = test::run_recorded(scene.variants.front());
-  EXPECT_EQ(run.summary.end, RunSummary::End::finished);
+  ProbedRecorder run("tumour_displacement_y_m");
+  const std::atomic<bool> stop{false};
+  const RunSummary summary = run_variant(scene.variants.front(), {}, run, stop);
+  EXPECT_EQ(summary.end, RunSummary::End::finished);
   EXPECT_NEAR(run.depth.back(), 0.025, 1e-4);
-  EXPECT_LT(std::abs(run.at(0.9, run.force)), 1e-9) << "it does not touch yet";
-  EXPECT_GT(run.force.back(), 0.5);
+  const auto before =
+      static_cast<std::size_t>(std::lower_bound(run.time.begin(), run.time.end(), 0.95) - run.time.begin());
+  EXPECT_GT(run.value.at(before), 0.002) << "sagged by its weight [m]";
+  EXPECT_LT(run.value.at(before), 0.010);
+  EXPECT_EQ(run.force.at(before), 0.0) << "the finger does not touch yet";
+  EXPECT_GT(run.force.back(), 0.5) << "15 mm deep [N]";
   EXPECT_LT(run.force.back(), 5.0);
-  const Energies& e = run.summary.energies;
+  EXPECT_GT(run.value.back(), run.value.at(before)) << "the tumour goes with it";
+  const Energies& e = summary.energies;
   EXPECT_LE(std::abs(e.imbalance()), 1e-6 * (std::abs(e.work_tools) + std::abs(e.work_loads)));
 }
 
