@@ -145,7 +145,7 @@ TEST_F(Bench, WrongOptionsAreErrors) {
   };
   expect_error({"bench", "--sizes", "5"}, "--sizes: Value 5 not in range");
   expect_error({"bench", "--isa", "avx9"}, "--isa: avx9 not in {");
-  expect_error({"bench", "--models", "quadratic"}, "--models: quadratic not in {linear,law,full,corotational,");
+  expect_error({"bench", "--models", "quadratic"}, "--models: quadratic not in {linear,law,full,branches,");
   expect_error({"bench", "--threads", "0"}, "--threads: Value 0 not in range");
   expect_error({"bench", "--mesh", "none.vtu"}, "none.vtu: there is no such mesh");
   expect_error({"bench", "--json", "no/such/folder.json"}, "the folder no/such does not exist");
