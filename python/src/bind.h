@@ -92,6 +92,9 @@ std::string description(const FieldText& field);
 inline constexpr const char* kGetState = "def __getstate__(self) -> tuple[typing.Any, ...]";
 inline constexpr const char* kSetState = "def __setstate__(self, state: tuple[typing.Any, ...], /) -> None";
 
+/// A field's name; one that is a word of Python has an underscore behind it, as the language's style asks.
+inline const char* python_name(const char* name) { return std::string_view(name) == "from" ? "from_" : name; }
+
 /// A class of options: every field by name in its constructor, readable and writable, shown by repr(). Those of a
 /// described struct (glisson/field.h) are all there. It pickles.
 template <class T>
@@ -150,6 +153,7 @@ class Options : public nb::class_<T> {
   template <class M>
   void add(const char* name, M member, const std::string& description) {
     const std::string comment = doc(of_ + "::" + name);
+    name = python_name(name);
     this->def_rw(name, member, (comment.empty() ? description : comment).c_str());
     this->attr("_fields") = nb::object(this->attr("_fields")) + nb::make_tuple(name);
   }

@@ -24,6 +24,12 @@ def test_any_function_of_a_point_is_a_solid():
     assert len(mesh.tets) > 50
 
 
+def test_a_cylinder_goes_from_one_end_to_the_other():
+    cylinder = glisson.Solid(glisson.CylinderShape(from_=[0, 0, -1], to=[0, 0, 1], radius=2))
+    assert cylinder.distance([0, 0, 1.5]) == pytest.approx(0.5)
+    assert repr(glisson.CylinderShape()).startswith("CylinderShape(from_=")
+
+
 def test_solids_combine_and_move():
     ball = glisson.Solid(glisson.BallShape(radius=1))
     other = ball.placed(move=[1, 0, 0])
