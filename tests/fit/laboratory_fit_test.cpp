@@ -208,7 +208,7 @@ TEST(LaboratoryFit, TorqueAndNormalForcePartMooneysCoefficients) {
   folder.write("twist.csv", table({"angle (rad)", "torque (mN m)", "normal force (mN)"}, {angle, torque, normal}));
   const std::string text = R"([specimen]
 kind = "cylinder"
-radius_mm = 12.5
+diameter_mm = 25
 height_mm = 10
 [tissue]
 hyperelastic = { kind = "mooney_rivlin", c10_Pa = 200, c01_Pa = 200, bulk_modulus_Pa = 1e8 }
