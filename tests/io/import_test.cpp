@@ -145,6 +145,12 @@ TEST(FormatReport, SaysAllThatMatters) {
             "  region 9          \"a tumour\", 1 tet, 0.00028333 m³ (283.33 ml)\n"
             "  vertex set        \"base\", 3 vertices\n"
             "  vertex set        \"tip\", 1 vertex\n"
+            "\nDihedral angles:\n"
+            "   50°– 60°          2 ################\n"
+            "   60°– 70°          3 ########################\n"
+            "   70°– 80°          5 ########################################\n"
+            "   80°– 90°          1 ########\n"
+            "   90°–100°          1 ########\n"
             "\nNothing suspicious.\n");
   TetMesh spoilt = imported.mesh;
   spoilt.vertices.push_back({0, 0, 0});
