@@ -126,7 +126,9 @@ TEST_F(Commands, MaterialTwistsAndOscillates) {
     EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
   };
   refused({"--test", "torsion", "--radius-mm=-3"}, "--radius-mm -3: outside the allowed range, > 0");
-  refused({"--radius-mm", "3"}, "--radius-mm: it belongs to --test torsion, and --test indentation of a sphere or flat punch, and the test is uniaxial");
+  refused({"--radius-mm", "3"},
+          "--radius-mm: it belongs to --test torsion, and --test indentation of a sphere or flat punch, and the test "
+          "is uniaxial");
   refused({"--test", "oscillation", "--to", "1.1"}, "--to: it belongs to tests over time");
   refused({"--test", "oscillation", "--from-hz", "5", "--to-hz", "1"}, "--to-hz 1: it is below --from-hz 5");
   refused({"--test", "oscillation", "--mode", "bulk"}, "allowed: simple_shear, uniaxial");
