@@ -1,65 +1,25 @@
-// Loads on faces: constant stress on an irregular mesh, closed forms of pressure and foundations, energy, cuts, refusals.
+// Loads on faces: constant stress on an irregular mesh, closed forms of pressure and foundations, energy, refusals.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
-#include <sstream>
 
-#include "dynamics/state/loads.h"
-#include "support/bodies.h"
+#include "dynamics/surface_load.h"
 #include "support/must_step.h"
 #include "support/octant.h"
 
-namespace glisson {
+namespace glisson::surface_load_test {
 namespace {
 
 using test::must_step;
-
-SimulationOptions with(Integrator integrator) {
-  SimulationOptions o;
-  o.integrator = integrator;
-  o.precision = Precision::double_precision;
-  return o;
-}
-
-/// The vertex nearest to a place.
-std::uint32_t vertex_at(const TetMesh& mesh, const Vec3d& place) {
-  std::uint32_t best = 0;
-  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (norm(mesh.vertices[v] - place) < norm(mesh.vertices[best] - place)) best = v;
-  }
-  return best;
-}
-
-/// Holds the six rigid motions of a box at three of its corners, which a box in equilibrium does not feel.
-void hold_three_corners(Simulation& s, const Vec3d& size) {
-  s.fix(std::vector{vertex_at(s.mesh(), {0, 0, 0})});
-  s.fix(std::vector{vertex_at(s.mesh(), {size.x, 0, 0})}, {false, true, true});
-  s.fix(std::vector{vertex_at(s.mesh(), {0, size.y, 0})}, {false, false, true});
-}
 
 const std::array<const char*, 6> kSides{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 Vec3d outward(std::size_t side) {
   Vec3d n{};
   n[side / 2] = side % 2 == 0 ? -1.0 : 1.0;
   return n;
-}
-
-Tissue linear_tissue() {
-  Tissue t;
-  t.youngs_modulus = 10000.0;
-  t.poisson_ratio = 0.3;
-  return t;
-}
-
-Tissue neo_hookean(double mu, double bulk_modulus) {
-  Tissue t;
-  t.hyperelastic = NeoHookean{.mu = mu, .bulk_modulus = bulk_modulus};
-  return t;
 }
 
 // A box bears on each side the traction of one stress; every tet of an irregular mesh has that stress.
@@ -169,13 +129,6 @@ TEST(SurfaceLoad, FollowingPressureBlowsUpAShell) {
   EXPECT_NEAR(1.2 * exact * there, exact, 0.01 * exact);
   RecordProperty("pressure_over_exact", std::to_string(1.2 * there));
 }
-
-/// Loads on a body in a state, without a simulation.
-struct Loaded {
-  explicit Loaded(const TetMesh& mesh) : body(build_body(mesh, {{0, Tissue{}}})), loads(mesh.vertices.size()) {}
-  Body body;
-  Loads loads;
-};
 
 // Pressure that follows has no force and no moment on a closed surface, however bent; a moment that follows is what was given,
 // without a force; the stiffness is the derivative of the force.
@@ -321,68 +274,6 @@ TEST(SurfaceLoad, SpringsHoldABodyAtRest) {
   for (const Vec3d& u : s.displacement()) EXPECT_NEAR(u.z, -1000.0 / 2e4, 1e-9);
 }
 
-// Stiff springs shorten the automatic step so far that it stays stable, and are refused where a given step does not bear them.
-TEST(SurfaceLoad, SpringsEnterTheStableStep) {
-  const TetMesh mesh = box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}});
-  const SurfaceLoad stiff{.spring_per_area = {0.0, 0.0, 1e9}};
-  Simulation s(mesh, {{0, linear_tissue()}}, with(Integrator::central_difference));
-  const double before = s.step_size();
-  s.fix("z_min");
-  s.add_surface_load("z_max", stiff);
-  s.add_surface_load("x_max", {.traction = {100.0, 0.0, 0.0}});
-  EXPECT_LT(s.step_size(), 0.2 * before);
-  for (int i = 0; i < 2000; ++i) must_step(s);
-  for (const Vec3d& u : s.displacement()) EXPECT_LT(norm(u), 1e-3);
-
-  SimulationOptions o = with(Integrator::central_difference);
-  o.step = before;
-  Simulation given(mesh, {{0, linear_tissue()}}, o);
-  try {
-    given.add_surface_load("z_max", stiff);
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("above the stable step"), std::string::npos) << error.what();
-  }
-  must_step(given);
-  EXPECT_EQ(norm(given.displacement()[0]), 0.0) << "what was refused does not act";
-}
-
-// The squared frequency that the stable step allows for is above every eigenvalue of M⁻¹ ∂f/∂u, and not far above.
-TEST(SurfaceLoad, FollowingLoadsEnterTheStableStep) {
-  std::mt19937 random(13);
-  const TetMesh mesh = test::jittered_box({4, 4, 2}, 0.01, 0.3, random);
-  const std::vector<Vec3d> u = test::random_field(mesh.vertices.size(), 0.001, random);
-  for (const SurfaceLoad& load :
-       {SurfaceLoad{.pressure = 100.0, .follows = true}, SurfaceLoad{.traction = {50.0, 0.0, 80.0}, .follows = true},
-        SurfaceLoad{.moment = {0.0, 0.0, 1e-3}, .follows = true},
-        SurfaceLoad{.moment = {2e-3, 1e-3, 0.0}, .follows = true}}) {
-    Loaded body(mesh);
-    body.loads.add(body.body, mesh.vertex_sets.at("z_max"), load, {});
-    const auto n = static_cast<Eigen::Index>(3 * u.size());
-    Eigen::MatrixXd slope(n, n);
-    const double d = 1e-8;
-    for (Eigen::Index c = 0; c < n; ++c) {
-      const auto force_at = [&](double step) {
-        std::vector<Vec3d> there = u;
-        there[static_cast<std::size_t>(c) / 3][static_cast<std::size_t>(c) % 3] += step;
-        const std::span<const Vec3d> f = body.loads.at(0.0, body.body, there);
-        return std::vector<Vec3d>(f.begin(), f.end());
-      };
-      const std::vector<Vec3d> more = force_at(d), less = force_at(-d);
-      for (Eigen::Index r = 0; r < n; ++r) {
-        const auto v = static_cast<std::size_t>(r) / 3, axis = static_cast<std::size_t>(r) % 3;
-        slope(r, c) = (more[v][axis] - less[v][axis]) * (0.5 / d) / body.body.masses[v];
-      }
-    }
-    static_cast<void>(body.loads.at(0.0, body.body, u));
-    const double largest = Eigen::EigenSolver<Eigen::MatrixXd>(slope, false).eigenvalues().cwiseAbs().maxCoeff();
-    const double bound = body.loads.squared_frequency(body.body);
-    EXPECT_GE(bound, largest);
-    EXPECT_LE(bound, 30.0 * largest);
-    RecordProperty("bound_over_largest", std::to_string(bound / largest));
-  }
-}
-
 // A vertex that is named twice counts once.
 TEST(SurfaceLoad, AVertexNamedTwiceCountsOnce) {
   const TetMesh mesh = test::paper_mesh();
@@ -397,90 +288,6 @@ TEST(SurfaceLoad, AVertexNamedTwiceCountsOnce) {
     hash[twice] = s.state_hash();
   }
   EXPECT_EQ(hash[0], hash[1]);
-}
-
-// What tets that are removed had of the faces is gone with them; a cut through loaded faces leaves the whole load on, and its
-// own faces bear nothing. The force on the body is measured by what it does to the momentum of a free body in one step.
-TEST(SurfaceLoad, GoesWithItsFaces) {
-  const TetMesh mesh = box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}});
-  const auto force = [](Simulation& s) {
-    const auto momentum = [&] {
-      Vec3d sum{};
-      for (std::size_t v = 0; v < s.masses().size(); ++v) sum += s.velocity()[v] * s.masses()[v];
-      return sum;
-    };
-    const Vec3d before = momentum();
-    const double h = s.step_size();
-    must_step(s);
-    return (momentum() - before) * (1.0 / h);
-  };
-  Simulation s(mesh, {{0, linear_tissue()}}, with(Integrator::central_difference));
-  s.add_surface_load("z_max", {.traction = {1.0, 0.0, 10.0}, .pressure = 5.0});
-  EXPECT_LE(norm(force(s) - Vec3d{1.0, 0.0, 5.0} * 4e-4), 1e-12);
-  std::vector<Triangle> wall;  // the plane x = 1 cm
-  for (const Tet& t : mesh.tets) {
-    for (std::size_t a = 0; a < 4; ++a) {
-      Triangle face{};
-      std::size_t n = 0;
-      for (std::size_t b = 0; b < 4; ++b) {
-        if (b != a && std::abs(mesh.vertices[t[b]].x - 0.01) < 1e-9) face[n++] = t[b];
-        if (b != a && n == 0) continue;
-      }
-      if (n == 3) wall.push_back(face);
-    }
-  }
-  s.split_faces(wall);
-  ASSERT_GT(s.mesh().vertices.size(), mesh.vertices.size());
-  EXPECT_LE(norm(force(s) - Vec3d{1.0, 0.0, 5.0} * 4e-4), 1e-12);
-  std::vector<std::uint32_t> half;
-  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
-    double x = 0.0;
-    for (const std::uint32_t v : mesh.tets[t]) x += 0.25 * mesh.vertices[v].x;
-    if (x > 0.01) half.push_back(t);
-  }
-  s.remove_tets(half);
-  EXPECT_LE(norm(force(s) - Vec3d{1.0, 0.0, 5.0} * 2e-4), 1e-12);
-}
-
-// A run continued from a checkpoint, cut on the way, has the bytes of the one that was not interrupted; so has one on more
-// threads.
-TEST(SurfaceLoad, CheckpointsAndThreadsKeepTheBytes) {
-  for (const Integrator integrator :
-       {Integrator::central_difference, Integrator::semi_implicit, Integrator::implicit}) {
-    const auto made = [&](int threads) {
-      SimulationOptions o;
-      o.integrator = integrator;
-      o.threads = threads;
-      Tissue tissue = linear_tissue();
-      tissue.viscosity = integrator == Integrator::implicit ? 0.0 : 5.0;
-      Simulation s(test::paper_mesh(), {{0, tissue}}, o);
-      s.fix("z_min");
-      s.add_surface_load("z_max",
-                         {.force = {0.01, 0, 0},
-                          .traction = {10.0, 0, 0},
-                          .pressure = 100.0,
-                          .moment = {0, 0, 1e-4},
-                          .follows = true,
-                          .spring = {1, 2, 3},
-                          .dashpot_per_area = {10, 10, 5}},
-                         [](double t) { return std::sin(30.0 * t); });
-      return s;
-    };
-    const auto run = [](Simulation& s) {
-      for (int i = 0; i < 15; ++i) must_step(s);
-    };
-    Simulation whole = made(1), two = made(2), later = made(1);
-    run(whole), run(two);
-    whole.remove_tets(std::vector<std::uint32_t>{700, 701}), two.remove_tets(std::vector<std::uint32_t>{700, 701});
-    run(whole), run(two);
-    std::stringstream file;
-    whole.save(file);
-    later.load(file);
-    run(whole), run(two), run(later);
-    EXPECT_EQ(whole.state_hash(), later.state_hash()) << static_cast<int>(integrator);
-    EXPECT_EQ(whole.state_hash(), two.state_hash()) << static_cast<int>(integrator);
-    EXPECT_EQ(whole.energies().dissipated, later.energies().dissipated);
-  }
 }
 
 // A moment twists a round bar by M L / (G J), within the mesh's error; no rigid motion is loaded.
@@ -534,4 +341,4 @@ TEST(SurfaceLoad, RefusesWhatItCannotBear) {
 }
 
 }  // namespace
-}  // namespace glisson
+}  // namespace glisson::surface_load_test
