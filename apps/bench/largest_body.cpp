@@ -40,8 +40,8 @@ class Trials {
     scaled.simulation.threads = threads_;
     if (!multiply_cells(scaled.mesh, factor)) {
       throw std::invalid_argument("--find: the mesh of \"" + variant_.name +
-                                  "\" is not made of cells, so that it cannot be made finer; take a scene with "
-                                  "mesh.kind = \"box\" or \"cylinder\"");
+                                  "\" comes from a file, so that it cannot be made finer; take a scene with "
+                                  "another mesh.kind");
     }
     return scaled;
   }

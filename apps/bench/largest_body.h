@@ -21,7 +21,7 @@ struct BodyTrial {
 
 nlohmann::ordered_json trial_json(const BodyTrial& trial);
 
-/// Multiplies the cells of a generated mesh by a factor until the next step would not keep the pace; the largest that does is run
+/// Multiplies the cells of a generated mesh along an edge by a factor until the next step would not keep the pace; the largest that does is run
 /// again and again until `options.seconds` are over.
 /// @param tell  is called after each trial
 /// @return nothing where no body keeps the pace, or `stop` was set before one was found
