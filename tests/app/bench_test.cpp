@@ -208,11 +208,11 @@ TEST_F(Bench, RealtimeFindsTheLargestBody) {
   EXPECT_GT(largest["tets"], 0);
 }
 
-TEST_F(Bench, FindNeedsAMeshOfCells) {
+TEST_F(Bench, FindNeedsAMeshThatIsMade) {
   const std::string scene = write("s.toml", "[mesh]\nkind = \"file\"\npath = \"m.vtu\"\n[motion]\nduration_s = 1\n");
   const Outcome outcome = run({"bench", "realtime", scene, "--find"});
   EXPECT_THAT(outcome, Exits(2));
-  EXPECT_NE(outcome.err.find("is not made of cells"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("comes from a file"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Bench, HelpHasExamples) {
