@@ -73,6 +73,12 @@ TEST_F(MeshCommand, ExplainsWhatItRefuses) {
   const Outcome fine = run({"mesh", scene, "--set", "mesh.edge_mm=0.1", "--out", (folder_ / "m.vtu").string()});
   EXPECT_THAT(fine, Exits(2));
   EXPECT_THAT(fine.err, HasSubstr("give an edge of"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "m.vtu"));
+}
+
+TEST_F(MeshCommand, ExplainsThatMemoryIsTooLittle) {
+  if (!kMemoryHasLimits) GTEST_SKIP() << "the address sanitizer cannot run within a limit of addresses";
+  const std::string scene = write("s.toml", kTwoRegions);
   const Outcome little = run_in({.memory_bytes = 400UL << 20},
                                 {"mesh", scene, "--set", "mesh.edge_mm=0.8", "--out", (folder_ / "m.vtu").string()});
   EXPECT_THAT(little, Exits(2));

@@ -30,6 +30,12 @@ MATCHER_P(Exits, code, (negation ? "any exit code but " : "exit code ") + std::t
   return arg.exit_code == code;
 }
 
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool kMemoryHasLimits = false;  ///< the address sanitizer reserves 14 TB of addresses at its start
+#else
+inline constexpr bool kMemoryHasLimits = true;  ///< a program runs within Surroundings::memory_bytes
+#endif
+
 /// What the system gives a program.
 struct Surroundings {
   unsigned file_bytes = 0;         ///< the largest file it may write; 0: no limit

@@ -9,11 +9,6 @@ namespace {
 
 using Surrounded = ProgramTest;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr bool kMemoryHasLimits = false;  // the address sanitizer reserves 14 TB of addresses at its start
-#else
-constexpr bool kMemoryHasLimits = true;
-#endif
 using ::testing::HasSubstr;
 using ::testing::Not;
 

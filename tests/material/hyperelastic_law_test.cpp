@@ -27,7 +27,9 @@ void expect_slopes(const Law& law) {
     expect(w.mixed.v, v.first.d);
     expect(w.second_bend.v, v.second.d);
     EXPECT_EQ(Law::kSecond != SecondInvariant::none, w.second.v != 0.0) << Law::kName;
-    if (Law::kSecond != SecondInvariant::general) EXPECT_TRUE(w.mixed.v == 0.0 && w.second_bend.v == 0.0) << Law::kName;
+    if (Law::kSecond != SecondInvariant::general) {
+      EXPECT_TRUE(w.mixed.v == 0.0 && w.second_bend.v == 0.0) << Law::kName;
+    }
   }
 }
 
@@ -77,7 +79,9 @@ TEST(Limits, EnergyGoesOnAlongItsTangent) {
       const InvariantSlopes<double> w = second ? law.slopes(0.0, x) : law.slopes(x, 0.0);
       EXPECT_TRUE(std::isfinite(w.first) && std::isfinite(w.second) && std::isfinite(w.bend + w.second_bend))
           << law.kName;
-      if (x > end) EXPECT_EQ(second ? w.second_bend : w.bend, 0.0) << law.kName;
+      if (x > end) {
+        EXPECT_EQ(second ? w.second_bend : w.bend, 0.0) << law.kName;
+      }
       return second ? w.second : w.first;
     };
     const double below = end * (1.0 - 1e-9), above = end * (1.0 + 1e-9), far = 1e6 * end;
