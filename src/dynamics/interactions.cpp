@@ -19,10 +19,15 @@ bool is_among(std::span<const std::uint32_t> ascending, std::uint32_t vertex) {
 
 std::span<const std::uint32_t> Interactions::newcomers(double time, double h, std::size_t vertex_count) {
   newcomers_.clear();
-  left_ = false;
+  left_ = rest_changed_ = false;
   for (std::size_t k = 0; k < all_.size(); ++k) {
     name(k, all_[k]->reach(time, h), vertex_count);
     if (const auto kept = all_[k]->keeps()) keep(k, *kept);
+    const auto rests = all_[k]->rests();
+    if (!rests) continue;
+    rests_[k].assign(rests->begin(), rests->end());
+    sort_out(rests_[k]);
+    rest_changed_ = true;
   }
   sort_out(newcomers_);
   return newcomers_;
@@ -55,6 +60,15 @@ std::vector<std::uint32_t> Interactions::named() const {
   return all;
 }
 
+std::vector<std::uint32_t> Interactions::resting() const {
+  std::vector<std::uint32_t> all;
+  for (const std::vector<std::uint32_t>& mine : rests_) all.insert(all.end(), mine.begin(), mine.end());
+  sort_out(all);
+  const std::vector<std::uint32_t> acted_on = named();
+  std::erase_if(all, [&](std::uint32_t v) { return is_among(acted_on, v); });
+  return all;
+}
+
 void Interactions::follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) {
   for (std::vector<std::uint32_t>& mine : named_) {
     const std::size_t before = mine.size();
@@ -71,14 +85,15 @@ void Interactions::find_places(std::span<const ActiveVertex> active, std::size_t
   impulses_.assign(active.size(), Vec3d{});
 }
 
-void Interactions::begin(double time, double h, std::span<ActiveVertex> active, std::span<const Vec3d> rest,
-                         bool accounted) {
+void Interactions::begin(double time, double h, std::span<ActiveVertex> active, std::span<const RestingVertex> resting,
+                         std::span<const Vec3d> rest, bool accounted) {
   std::fill(impulses_.begin(), impulses_.end(), Vec3d{});
   step_.time = time;
   step_.h = h;
   step_.vertices = active;
   step_.place_of = place_of_;
   step_.rest = rest;
+  step_.resting = resting;
   step_.mobility = {};
   step_.impulses = impulses_;
   step_.interface_book = nullptr;
@@ -104,6 +119,10 @@ void Interactions::body_changed(const BodyView& body, std::span<const std::uint3
   for (const std::shared_ptr<Interaction>& x : all_) x->body_changed(body, origins);
 }
 
+void Interactions::state_set() {
+  for (const std::shared_ptr<Interaction>& x : all_) x->state_set();
+}
+
 double Interactions::tool_energy() const {
   double sum = 0.0;
   for (const std::shared_ptr<Interaction>& x : all_) sum += x->tool_energy();
@@ -121,9 +140,11 @@ void Interactions::archive(Archive& ar) {
   ar(count);
   ar.check(count == all_.size());
   for (const std::shared_ptr<Interaction>& x : all_) x->archive(ar);
-  for (std::vector<std::uint32_t>& mine : named_) {
-    ar.all_below(mine, place_of_.size());
-    ar.check(std::is_sorted(mine.begin(), mine.end()));
+  for (auto* lists : {&named_, &rests_}) {
+    for (std::vector<std::uint32_t>& mine : *lists) {
+      ar.all_below(mine, place_of_.size());
+      ar.check(std::is_sorted(mine.begin(), mine.end()));
+    }
   }
   ar.same_size(impulses_);
 }

@@ -13,7 +13,9 @@ namespace glisson {
 
 class Interactions {
  public:
-  void add(std::shared_ptr<Interaction> interaction) { all_.push_back(std::move(interaction)), named_.emplace_back(); }
+  void add(std::shared_ptr<Interaction> interaction) {
+    all_.push_back(std::move(interaction)), named_.emplace_back(), rests_.emplace_back();
+  }
   bool empty() const { return all_.empty(); }
   std::span<const std::shared_ptr<Interaction>> all() const { return all_; }
 
@@ -21,8 +23,12 @@ class Interactions {
   std::span<const std::uint32_t> newcomers(double time, double h, std::size_t vertex_count);
   /// Whether some interaction has let vertices go since newcomers() was asked.
   bool has_left() const { return left_; }
+  /// Whether what interactions hold still may have become other vertices since then.
+  bool rest_changed() const { return rest_changed_; }
   /// All vertices that some interaction may act on; ascending.
   std::vector<std::uint32_t> named() const;
+  /// All vertices that some interaction holds still and none may act on; ascending.
+  std::vector<std::uint32_t> resting() const;
   /// New vertices, numbered on from `first_new`, are named by those that named the vertices they are copies of.
   void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new);
   /// The vertices at hand have become others.
@@ -30,12 +36,14 @@ class Interactions {
 
   /// Begins a step. @param mobility  of each active vertex as if nothing held it, 1/(m + γh) [1/kg]
   /// @param accounted  whether they are to book their work
-  void begin(double time, double h, std::span<ActiveVertex> active, std::span<const Vec3d> rest, bool accounted);
+  void begin(double time, double h, std::span<ActiveVertex> active, std::span<const RestingVertex> resting,
+             std::span<const Vec3d> rest, bool accounted);
   void add_forces();
   /// @param held  per place and component: whether a support or motion holds it
   void constrain(std::span<const Vec3d> mobility);
   void moved();
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins);
+  void state_set();
 
   /// Per place, of the last step [N s].
   std::span<const Vec3d> impulses() const { return impulses_; }
@@ -52,7 +60,8 @@ class Interactions {
 
   std::vector<std::shared_ptr<Interaction>> all_;
   std::vector<std::vector<std::uint32_t>> named_;  ///< by each interaction, ascending
-  bool left_ = false;
+  std::vector<std::vector<std::uint32_t>> rests_;  ///< what each holds still, ascending
+  bool left_ = false, rest_changed_ = false;
   std::vector<std::uint32_t> place_of_, newcomers_;
   std::vector<Vec3d> impulses_;
   InteractionStep step_;

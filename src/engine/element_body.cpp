@@ -19,7 +19,7 @@ bool all_tensor_masses(const Body& body) {
 
 ElementBody::ElementBody(const Body& body, std::span<const double> nodal_damping, Precision precision)
     : body_(body), precision_(precision), damping_(nodal_damping.begin(), nodal_damping.end()),
-      is_active_(body.vertex_count, 0) {
+      is_active_(body.vertex_count, 0), rests_(body.vertex_count, 0) {
   for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->assign(body.vertex_count, Vec3d{});
   make_operator();
 }
@@ -69,6 +69,7 @@ void ElementBody::archive_layout(Archive& ar, std::span<const double> nodal_damp
   if (!ar.reads()) return;
   for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->resize(body_.vertex_count);
   is_active_.resize(body_.vertex_count, 0);
+  rest({});
   damping_.assign(nodal_damping.begin(), nodal_damping.end());
   make_operator();
 }
@@ -88,6 +89,7 @@ void ElementBody::apply(const BodyChange& change, const detail::VertexStars&, st
   elastic_.resize(u_.size());
   viscous_.resize(u_.size());
   is_active_.resize(u_.size(), 0);
+  rests_.resize(u_.size(), 0);
   damping_.assign(nodal_damping.begin(), nodal_damping.end());
   if (tissue_ != nullptr) tissue_ = make_element_operator(body_);
   if (any_ != nullptr) any_->body_changed();
@@ -146,6 +148,15 @@ void ElementBody::watch_only(std::span<const std::uint32_t> vertices) {
   std::erase_if(active_, [&](const ActiveVertex& w) { return is_active_[w.vertex] == 0; });
 }
 
+void ElementBody::rest(std::span<const std::uint32_t> vertices) {
+  rests_.assign(body_.vertex_count, 0);
+  resting_.clear();
+  for (const std::uint32_t v : vertices) {
+    rests_[v] = 1, v_[v] = {};
+    resting_.push_back({v, elastic_[v] + viscous_[v]});
+  }
+}
+
 void ElementBody::place_active() {
   for (const ActiveVertex& w : active_) u_[w.vertex] = w.displacement, v_[w.vertex] = w.velocity;
 }
@@ -177,9 +188,10 @@ const Advance& ElementBody::advance(double h, const Vec3d& gravity, bool account
   for (ActiveVertex& w : active_) {
     w = {w.vertex, elastic_[w.vertex], viscous_[w.vertex], u_[w.vertex], v_[w.vertex]};
   }
+  for (RestingVertex& r : resting_) r.force = elastic_[r.vertex] + viscous_[r.vertex];
   if (!advance_.finite || h == 0.0) return advance_;
   for (std::size_t i = 0; i < u_.size(); ++i) {
-    if (is_active_[i] != 0) continue;
+    if (is_active_[i] != 0 || rests_[i] != 0) continue;
     const double m = body_.masses[i];
     const Vec3d before = v_[i], weight = gravity * m;
     const Vec3d force = elastic_[i] + viscous_[i] + weight;

@@ -37,6 +37,8 @@ class ElementBody final : public MovingBody {
   void watch(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> apart) override;
   void watch_only(std::span<const std::uint32_t> vertices) override;
   std::span<ActiveVertex> active() override { return active_; }
+  void rest(std::span<const std::uint32_t> vertices) override;
+  std::span<RestingVertex> resting() override { return resting_; }
   void place_active() override;
   void list_above(std::span<const double> stiffening) override;
   const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;
@@ -54,8 +56,9 @@ class ElementBody final : public MovingBody {
   double since_memory_ = 0.0;              ///< time since the tissue's memory was brought up to date [s]
   std::vector<double> damping_;
   std::vector<Vec3d> u_, v_, elastic_, viscous_;
-  std::vector<char> is_active_;
+  std::vector<char> is_active_, rests_;
   std::vector<ActiveVertex> active_;
+  std::vector<RestingVertex> resting_;
   ElementWatch watch_;
   Advance advance_;
 };

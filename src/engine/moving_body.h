@@ -5,7 +5,8 @@
 // All vertices move as if they were free. Those that something else moves too (supports, tools, loads) are
 // *active*: the body leaves them where they are and hands out their forces; whoever drives them decides
 // their motion and places them. So the many vertices stay inside, in whatever layout and precision is fast,
-// and the few that others care for are told in double.
+// and the few that others care for are told in double. Vertices at *rest* stay where they are, and all that is told of them is
+// the force that they stand against.
 #pragma once
 
 #include <cstdint>
@@ -89,6 +90,11 @@ class MovingBody {
   virtual void watch_only(std::span<const std::uint32_t> vertices) = 0;
   /// In ascending order of vertex.
   virtual std::span<ActiveVertex> active() = 0;
+  /// Brings vertices to rest where they are, and lets all others go that rested; in force until the next call.
+  /// @param vertices  ascending
+  virtual void rest(std::span<const std::uint32_t> vertices) = 0;
+  /// Those at rest, ascending, with the force of the tissue at the last advance; who adds to it may do so in place.
+  virtual std::span<RestingVertex> resting() = 0;
   /// Takes displacement and velocity of every active vertex over from active().
   virtual void place_active() = 0;
 

@@ -44,7 +44,8 @@ SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping
 void SubmeshBody::follow_layout(std::span<const double> nodal_damping) {
   state_.assign(body_.vertex_count * kStateDoubles, 0.0);
   masses_.assign(body_.vertex_count, 0.0), damping_.assign(body_.vertex_count, 0.0);
-  watches_.resize(submeshes_.parts.size()), holds_apart_.assign(submeshes_.parts.size(), 0);
+  rests_.assign(body_.vertex_count, 0), resting_.clear();
+  holds_apart_.assign(submeshes_.parts.size(), 0);
   looked_.assign(submeshes_.parts.size(), Looked::small), found_.resize(submeshes_.parts.size());
   plans_.clear(), large_plans_.clear();
   for (const TissueBlock& block : body_.blocks) {
@@ -75,7 +76,10 @@ void SubmeshBody::make_room() {
   slots_elastic_.resize(submeshes_.interface.slot_count * kForceFloats);
   slots_viscous_.resize(slots_elastic_.size());
   const std::size_t chunks = (submeshes_.interface.size() + kInterfaceChunk - 1) / kInterfaceChunk;
-  interface_watches_.resize(chunks);
+  for (Watches* watches : {&watches_, &rest_watches_}) {
+    watches->interior.resize(submeshes_.parts.size());
+    watches->interface.resize(chunks);
+  }
   interface_found_.resize(chunks);
   std::size_t largest = kInterfaceChunk;
   for (const Submesh& part : submeshes_.parts) largest = std::max(largest, part.local_vertices());
@@ -135,36 +139,61 @@ void SubmeshBody::watch_only(std::span<const std::uint32_t> vertices) {
   find_watches();
 }
 
-/// Sorts the active vertices to the submesh or the run of the interface that has them.
-void SubmeshBody::find_watches() {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> records;  // record, place
-  std::vector<char> is_apart(masses_.size(), 0);
-  for (std::uint32_t place = 0; place < active_.size(); ++place) {
-    const std::uint32_t v = active_[place].vertex;
-    records.emplace_back(submeshes_.record_of_vertex[v], place);
-    is_apart[records.back().first] = std::binary_search(apart_.begin(), apart_.end(), v) ? 1 : 0;
-  }
-  std::sort(records.begin(), records.end());
-  for (auto& list : watches_) list.clear();
-  for (auto& list : interface_watches_) list.clear();
+/// Sorts vertices to the submesh or the run of the interface that has them. @param records  theirs, in their order
+void SubmeshBody::find_watches(std::span<const std::uint32_t> records, Watches& watches) const {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> sorted;  // record, place
+  for (std::uint32_t place = 0; place < records.size(); ++place) sorted.emplace_back(records[place], place);
+  std::sort(sorted.begin(), sorted.end());
+  for (auto& list : watches.interior) list.clear();
+  for (auto& list : watches.interface) list.clear();
   std::size_t s = 0;
-  for (const auto& [record, place] : records) {
+  for (const auto& [record, place] : sorted) {
     if (record >= submeshes_.interface.first_record) {
       const std::size_t k = record - submeshes_.interface.first_record;
-      interface_watches_[k / kInterfaceChunk].push_back({static_cast<std::uint32_t>(k % kInterfaceChunk), place});
+      watches.interface[k / kInterfaceChunk].push_back({static_cast<std::uint32_t>(k % kInterfaceChunk), place});
       continue;
     }
     while (record >= submeshes_.parts[s].first_interior + submeshes_.parts[s].interior_count) ++s;
-    watches_[s].push_back({static_cast<std::uint32_t>(record - submeshes_.parts[s].first_interior), place});
+    watches.interior[s].push_back({static_cast<std::uint32_t>(record - submeshes_.parts[s].first_interior), place});
   }
-  for (std::size_t p = 0; p < watches_.size(); ++p) {
+}
+
+void SubmeshBody::find_watches() {
+  std::vector<std::uint32_t> records;
+  std::vector<char> is_apart(masses_.size(), 0);
+  for (const ActiveVertex& w : active_) {
+    records.push_back(submeshes_.record_of_vertex[w.vertex]);
+    is_apart[records.back()] = std::binary_search(apart_.begin(), apart_.end(), w.vertex) ? 1 : 0;
+  }
+  find_watches(records, watches_);
+  records.clear();
+  for (const RestingVertex& r : resting_) records.push_back(submeshes_.record_of_vertex[r.vertex]);
+  find_watches(records, rest_watches_);
+  for (std::size_t p = 0; p < submeshes_.parts.size(); ++p) {
     const Submesh& part = submeshes_.parts[p];
+    const std::vector<Watch>& own = watches_.interior[p];
     const auto asked = [&](std::uint32_t record) { return is_apart[record] != 0; };
     holds_apart_[p] =
-        std::any_of(watches_[p].begin(), watches_[p].end(),
+        std::any_of(own.begin(), own.end(),
                     [&](const Watch& w) { return asked(static_cast<std::uint32_t>(part.first_interior) + w.local); }) ||
         std::any_of(part.shared.begin(), part.shared.end(), asked);
   }
+}
+
+void SubmeshBody::rest(std::span<const std::uint32_t> vertices) {
+  std::vector<std::uint32_t> changed;
+  for (const RestingVertex& r : resting_) changed.push_back(submeshes_.record_of_vertex[r.vertex]);
+  rests_.assign(masses_.size(), 0);
+  resting_.clear();
+  for (const std::uint32_t v : vertices) {
+    const std::uint32_t record = submeshes_.record_of_vertex[v];
+    rests_[record] = 1;
+    put(Vec3d{}, state_.data() + record * kStateDoubles + 4);
+    resting_.push_back({v, {}});
+    changed.push_back(record);
+  }
+  for (const std::uint32_t record : changed) set_coefficients(record);
+  find_watches();
 }
 
 void SubmeshBody::place_active() {
@@ -175,10 +204,10 @@ void SubmeshBody::place_active() {
   }
 }
 
-/// c = h/(m + γh) and d = γh/(m + γh) of a record; a vertex without mass does not move.
+/// c = h/(m + γh) and d = γh/(m + γh) of a record; a vertex without mass, or at rest, does not move.
 void SubmeshBody::set_coefficients(std::size_t record) {
   const double denominator = masses_[record] + damping_[record] * step_;
-  const bool moves = masses_[record] > 0.0;
+  const bool moves = masses_[record] > 0.0 && rests_[record] == 0;
   state_[record * kStateDoubles + 3] = moves ? step_ / denominator : 0.0;
   state_[record * kStateDoubles + 7] = moves ? damping_[record] * step_ / denominator : 1.0;
 }

@@ -48,6 +48,8 @@ class SubmeshBody final : public MovingBody {
   void watch(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> apart) override;
   void watch_only(std::span<const std::uint32_t> vertices) override;
   std::span<ActiveVertex> active() override { return active_; }
+  void rest(std::span<const std::uint32_t> vertices) override;
+  std::span<RestingVertex> resting() override { return resting_; }
   void place_active() override;
   void list_above(std::span<const double> stiffening) override {
     list_above_.assign(stiffening.begin(), stiffening.end());
@@ -67,9 +69,13 @@ class SubmeshBody final : public MovingBody {
     std::size_t measure = 0;
     bool viscous = false;
   };
-  /// A active vertex as its submesh or the interface sees it: position in their range, place in active_.
+  /// An active or resting vertex as its submesh or the interface sees it: position in their range, place among all of these.
   struct Watch {
     std::uint32_t local, place;
+  };
+  struct Watches {
+    std::vector<std::vector<Watch>> interior;   ///< per submesh, of its interior
+    std::vector<std::vector<Watch>> interface;  ///< per chunk of the interface
   };
   /// What a task found.
   struct Findings {
@@ -110,6 +116,7 @@ class SubmeshBody final : public MovingBody {
   void set_coefficients(std::size_t record);
   void make_room();
   void find_watches();
+  void find_watches(std::span<const std::uint32_t> records, Watches& watches) const;
   void find_parts();
   void add_records(std::span<const std::uint32_t> origins);
   void take_out(std::uint32_t element, const detail::VertexStars& stars);
@@ -144,6 +151,7 @@ class SubmeshBody final : public MovingBody {
   void fill_slots(const Submesh& part, bool split, const Scratch& scratch);
   void take_active(std::span<const Watch> watches, std::size_t first_record, const float* elastic,
                    const float* viscous);
+  void take_resting(std::span<const Watch> watches, const float* elastic, const float* viscous);
   void integrate(std::size_t first_record, std::size_t n, std::span<const Watch> watches, float* elastic,
                  float* viscous, const Step& step, VertexWork& work);
   void run_interface(std::size_t chunk, const Step& step, Scratch& scratch);
@@ -171,11 +179,12 @@ class SubmeshBody final : public MovingBody {
 
   LaneVector<float> slots_elastic_, slots_viscous_;  ///< force records
   std::vector<ActiveVertex> active_;
-  std::vector<std::vector<Watch>> watches_;            ///< per submesh, of its interior
-  std::vector<std::vector<Watch>> interface_watches_;  ///< per chunk of the interface
-  std::vector<std::uint32_t> apart_;                   ///< vertices whose forces are asked for one by one, ascending
-  std::vector<char> holds_apart_;                      ///< per submesh: it has one of them
-  std::vector<Looked> looked_;                         ///< per submesh
+  std::vector<RestingVertex> resting_;
+  std::vector<char> rests_;           ///< per record
+  Watches watches_, rest_watches_;    ///< of those active and of those at rest
+  std::vector<std::uint32_t> apart_;  ///< vertices whose forces are asked for one by one, ascending
+  std::vector<char> holds_apart_;     ///< per submesh: it has one of them
+  std::vector<Looked> looked_;        ///< per submesh
   std::vector<Findings> found_, interface_found_;
   Advance advance_;
   std::vector<double> list_above_;              ///< per tissue block: stiffening; empty: no element is listed

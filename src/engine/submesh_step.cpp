@@ -179,6 +179,14 @@ void SubmeshBody::take_active(std::span<const Watch> watches, std::size_t first_
   }
 }
 
+void SubmeshBody::take_resting(std::span<const Watch> watches, const float* elastic, const float* viscous) {
+  for (const Watch& watch : watches) {
+    Vec3d& force = resting_[watch.place].force;
+    force = vector_of(elastic + watch.local * kForceFloats);
+    if (viscous != nullptr) force += vector_of(viscous + watch.local * kForceFloats);
+  }
+}
+
 /// Kick and drift of the vertices between those active. Without `viscous`, `elastic` is the whole force.
 void SubmeshBody::integrate(std::size_t first_record, std::size_t n, std::span<const Watch> watches, float* elastic,
                             float* viscous, const Step& step, VertexWork& work) {
@@ -225,10 +233,12 @@ void SubmeshBody::run_submesh(std::size_t s, const Step& step, Scratch& scratch)
                  (!split || kernels_.all_finite(scratch.viscous.data(), floats));
   if (!found.finite) return;
   fill_slots(part, split, scratch);
-  take_active(watches_[s], part.first_interior, scratch.elastic.data(), split ? scratch.viscous.data() : nullptr);
+  const float* viscous = split ? scratch.viscous.data() : nullptr;
+  take_active(watches_.interior[s], part.first_interior, scratch.elastic.data(), viscous);
+  take_resting(rest_watches_.interior[s], scratch.elastic.data(), viscous);
   if (split && !step.accounted) kernels_.add(scratch.elastic.data(), scratch.viscous.data(), floats);
-  integrate(part.first_interior, part.interior_count, watches_[s], scratch.elastic.data(), scratch.viscous.data(), step,
-            found.work);
+  integrate(part.first_interior, part.interior_count, watches_.interior[s], scratch.elastic.data(),
+            scratch.viscous.data(), step, found.work);
 }
 
 void SubmeshBody::run_interface(std::size_t chunk, const Step& step, Scratch& scratch) {
@@ -245,9 +255,10 @@ void SubmeshBody::run_interface(std::size_t chunk, const Step& step, Scratch& sc
   }
   interface_found_[chunk] = {};
   const std::size_t first = shared.first_record + begin;
-  take_active(interface_watches_[chunk], first, elastic, viscous);
+  take_active(watches_.interface[chunk], first, elastic, viscous);
+  take_resting(rest_watches_.interface[chunk], elastic, viscous);
   if (!step.accounted && any_split_) kernels_.add(elastic, viscous, force_floats(n));
-  integrate(first, n, interface_watches_[chunk], elastic, viscous, step, interface_found_[chunk].work);
+  integrate(first, n, watches_.interface[chunk], elastic, viscous, step, interface_found_[chunk].work);
 }
 
 /// Adds up what the tasks found, in their order.

@@ -17,6 +17,8 @@ namespace {
 
 constexpr double kMostOut = 0.02;  ///< of the container's size: how far a body may stand out of it at the start
 constexpr double kTouch = 1e-6;    ///< of the vessel's size: tissue so near to a wall that holds it touches
+constexpr double kStill =
+    1e-12;  ///< of the vessel's size: tissue that moves no more than that in a step has come to rest
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// A plate whose outward normal is n, through a point; all in the frame of the vessel.
@@ -59,6 +61,9 @@ struct Container::State {
   };
   std::vector<Hold> holds;   ///< of all bonds, by vertex
   std::vector<char> bonded;  ///< per vertex of the body
+  std::vector<char> still;   ///< per vertex of the body: a bond at rest
+  bool still_changed = false;
+  std::vector<std::uint32_t> asked, kept, rests;
   ContainerLoads loads;
   struct Bearing {
     std::uint32_t vertex;
@@ -73,6 +78,10 @@ struct Container::State {
   void require_inside(const BodyView& body) const;
   void bond_first(const BodyView& body);
   void list_bonds();
+  void wake();
+  std::span<const std::uint32_t> without_still(std::span<const std::uint32_t> vertices,
+                                               std::vector<std::uint32_t>& left) const;
+  void look_for_rest(const InteractionStep& step);
   void add_rows(const InteractionStep& step);
   void hold_bonds(const InteractionStep& step);
   void load(const ContactSolid& solid, const Vec3d& normal, const Vec3d& force);
@@ -150,6 +159,34 @@ void Container::State::list_bonds() {
     holds.push_back({v, &solid, to_space(solid.after, bond.place), normal, {}});
     bonded[v] = 1;
   }
+  still.resize(bonded.size(), 0);
+}
+
+/// Bonds are held by impulses until they are seen to rest.
+void Container::State::wake() {
+  still.assign(reach.surface().body_vertices(), 0);
+  still_changed = true;
+}
+
+std::span<const std::uint32_t> Container::State::without_still(std::span<const std::uint32_t> vertices,
+                                                               std::vector<std::uint32_t>& left) const {
+  left.clear();
+  std::copy_if(vertices.begin(), vertices.end(), std::back_inserter(left),
+               [&](std::uint32_t v) { return still[v] == 0; });
+  return left;
+}
+
+/// Bonds that have not moved in this step need not be looked at again.
+void Container::State::look_for_rest(const InteractionStep& step) {
+  for (const Hold& hold : holds) {
+    if (still[hold.vertex] != 0) continue;
+    const std::uint32_t place = step.place_of[hold.vertex];
+    if (place == InteractionStep::kNowhere) continue;
+    if (norm(step.vertices[place].velocity) * step.h > kStill * size) continue;
+    if (norm(step.position(place) - hold.there) > kTouch * size) continue;  // something else holds it off its place
+    still[hold.vertex] = 1;
+    still_changed = true;
+  }
 }
 
 void Container::State::add_rows(const InteractionStep& step) {
@@ -180,15 +217,22 @@ void Container::State::load(const ContactSolid& solid, const Vec3d& normal, cons
   }
 }
 
+/// A bond at rest bears what its tissue exerts; others are stopped by impulses.
 void Container::State::hold_bonds(const InteractionStep& step) {
+  auto resting = step.resting.begin();
   for (Hold& hold : holds) {
     const std::uint32_t place = step.place_of[hold.vertex];
     hold.force = {};
-    if (place == InteractionStep::kNowhere) continue;
-    const Vec3d impulse = stopping(step, place, (hold.there - step.position(place)) * (1.0 / step.h));
-    step.push(place, impulse);
-    step.book(WorkSink::contact, place, impulse);
-    hold.force = impulse * (1.0 / step.h);
+    if (place != InteractionStep::kNowhere) {
+      const Vec3d impulse = stopping(step, place, (hold.there - step.position(place)) * (1.0 / step.h));
+      step.push(place, impulse);
+      step.book(WorkSink::contact, place, impulse);
+      hold.force = impulse * (1.0 / step.h);
+    } else {
+      while (resting != step.resting.end() && resting->vertex < hold.vertex) ++resting;
+      if (resting == step.resting.end() || resting->vertex != hold.vertex) continue;
+      hold.force = -resting->force;
+    }
     load(*hold.solid, hold.normal, hold.force);
   }
 }
@@ -216,11 +260,42 @@ void Container::body_changed(const BodyView& body, std::span<const std::uint32_t
   give_to_copies(state_->bonds, body.mesh.vertices.size(), origins);
   state_->reach.attach(body);
   state_->list_bonds();
+  state_->wake();
 }
 
-std::span<const std::uint32_t> Container::reach(double, double h) { return state_->reach.ask(state_->solids, h); }
+void Container::state_set() { state_->wake(); }
 
-std::optional<std::span<const std::uint32_t>> Container::keeps() { return state_->reach.keeps(); }
+/// All bonds that do not rest are to be at hand.
+std::span<const std::uint32_t> Container::reach(double, double h) {
+  State& s = *state_;
+  const std::span<const std::uint32_t> asked = s.without_still(s.reach.ask(s.solids, h), s.asked);
+  if (!s.still_changed) return asked;
+  for (const State::Hold& hold : s.holds) {
+    if (s.still[hold.vertex] == 0) s.asked.push_back(hold.vertex);
+  }
+  return s.asked;
+}
+
+std::optional<std::span<const std::uint32_t>> Container::keeps() {
+  State& s = *state_;
+  if (!s.reach.has_left() && !s.still_changed) return {};
+  s.without_still(s.reach.kept(), s.kept);
+  for (const State::Hold& hold : s.holds) {
+    if (s.still[hold.vertex] == 0) s.kept.push_back(hold.vertex);
+  }
+  return s.kept;
+}
+
+std::optional<std::span<const std::uint32_t>> Container::rests() {
+  State& s = *state_;
+  if (!s.still_changed) return {};
+  s.still_changed = false;
+  s.rests.clear();
+  for (const State::Hold& hold : s.holds) {
+    if (s.still[hold.vertex] != 0) s.rests.push_back(hold.vertex);
+  }
+  return s.rests;
+}
 
 void Container::add_forces(const InteractionStep& step) { state_->books.begin(step); }
 
@@ -252,11 +327,15 @@ bool Container::add_contact(std::span<Vec3d> force, std::span<double> pressing) 
   return true;
 }
 
-void Container::moved(const InteractionStep& step) { state_->reach.look(step); }
+void Container::moved(const InteractionStep& step) {
+  state_->reach.look(step);
+  state_->look_for_rest(step);
+}
 
 void Container::archive(Archive& ar) {
   State& s = *state_;
-  ar(s.begun, s.books, s.bonds, s.found_inside, s.reach);
+  ar(s.begun, s.books, s.bonds, s.found_inside, s.reach, s.still_changed);
+  ar.same_size(s.still);
   for (const auto& [v, bond] : s.bonds) ar.check(v < s.reach.surface().body_vertices() && bond.solid < s.solids.size());
   if (ar.reads()) s.list_bonds();
 }

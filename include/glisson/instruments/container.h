@@ -93,6 +93,8 @@ class Container final : public Interaction {
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;
   std::optional<std::span<const std::uint32_t>> keeps() override;
+  std::optional<std::span<const std::uint32_t>> rests() override;
+  void state_set() override;
   void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;

@@ -36,6 +36,12 @@ struct ActiveVertex {
   Vec3d velocity;          ///< [m/s]
 };
 
+/// A vertex that an interaction holds still, see Interaction::rests().
+struct RestingVertex {
+  std::uint32_t vertex = 0;
+  Vec3d force;  ///< of tissue and gravity on it at time t [N]
+};
+
 /// The present body, for interactions.
 struct BodyView {
   const TetMesh& mesh;                  ///< at rest, including removed tets, in present numbers
@@ -82,6 +88,8 @@ class InteractionStep {
   std::span<ActiveVertex> vertices;  ///< ascending by vertex; `velocity` is v₋ in add_forces, v₊ in constrain
   std::span<const std::uint32_t> place_of;  ///< per vertex of the mesh: its place in `vertices`, or kNowhere
   std::span<const Vec3d> rest;              ///< per vertex of the mesh: rest position [m]
+  std::span<const RestingVertex>
+      resting;  ///< ascending by vertex: what interactions hold still; none of them has a place
   /// Per place: velocity per impulse, 1/(m + γh), in each component; 0 where a support or motion holds it [1/kg].
   std::span<const Vec3d> mobility;
   std::span<Vec3d> impulses;                ///< per place: sum of the impulses of this step [N s]
@@ -136,6 +144,14 @@ class Interaction {
   /// Called after each reach(): all vertices that it may still act on, where these have become fewer; the rest is let go, unless
   /// something else acts on it. None: it keeps all that it has named. Valid until the next call.
   virtual std::optional<std::span<const std::uint32_t>> keeps() { return {}; }
+
+  /// Called after each reach(): all vertices that it holds still from this step on, with no velocity where they are, where these have
+  /// become others. They cost next to nothing: they are not active (it need not name them), and what they stand against is in
+  /// InteractionStep::resting. One that something else acts on is active as before, and has to be held by impulses.
+  /// Valid until the next call. None: the same as before.
+  virtual std::optional<std::span<const std::uint32_t>> rests() { return {}; }
+  /// The state was set from outside: what it holds still may be elsewhere, and is not at rest any more.
+  virtual void state_set() {}
 
   /// Adds forces that follow from the present state to `elastic` or `viscous` of active vertices.
   virtual void add_forces(const InteractionStep&) {}

@@ -57,6 +57,13 @@ void ExplicitScheme::let_go() {
   active_changed(before);
 }
 
+/// Takes vertices that interactions hold still, and nothing else acts on, from those active.
+void ExplicitScheme::bring_to_rest() {
+  std::vector<std::uint32_t> resting = interactions_.resting();
+  std::erase_if(resting, [&](std::uint32_t v) { return std::binary_search(held_.begin(), held_.end(), v); });
+  if (!std::ranges::equal(resting, moving_->resting(), {}, {}, &RestingVertex::vertex)) moving_->rest(resting);
+}
+
 std::vector<std::uint32_t> ExplicitScheme::active_vertices() const {
   std::vector<std::uint32_t> vertices;
   for (const ActiveVertex& w : moving_->active()) vertices.push_back(w.vertex);
@@ -65,6 +72,7 @@ std::vector<std::uint32_t> ExplicitScheme::active_vertices() const {
 
 void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
   moving_->set_state(displacement, velocity);
+  interactions_.state_set();
   control_->state_set();
   moving_->list_above(control_->list_above());
   take_stiffness(moving_->advance(0.0, {}, false));
@@ -82,6 +90,7 @@ void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
 void ExplicitScheme::begin_interactions(double h) {
   if (interactions_.empty()) return;
   const std::span<const std::uint32_t> newcomers = interactions_.newcomers(state_.time, h, state_.body.vertex_count);
+  if (interactions_.rest_changed() || !newcomers.empty() || interactions_.has_left()) bring_to_rest();
   if (!newcomers.empty()) watch(newcomers);
   if (interactions_.has_left()) let_go();
 }
@@ -180,7 +189,9 @@ StepResult ExplicitScheme::step() {
   }
 
   kick_.begin(h);
-  interactions_.begin(state_.time, h, moving_->active(), state_.body.rest_positions, state_.options.track_energies);
+  for (RestingVertex& r : moving_->resting()) r.force += kick_.gravity() * state_.body.masses[r.vertex];
+  interactions_.begin(state_.time, h, moving_->active(), moving_->resting(), state_.body.rest_positions,
+                      state_.options.track_energies);
   interactions_.add_forces();
   kick(h);
   constrain_interactions();
@@ -236,6 +247,7 @@ void ExplicitScheme::archive_motion(Archive& ar) {
   for (const StiffElement& s : stiff_) ar.check(s.element < state_.body.elements.size());
   ar(*control_, interactions_);
   if (!ar.reads()) return;
+  bring_to_rest();
   const std::vector<std::uint32_t> named = interactions_.named();
   ar.check(std::includes(active.begin(), active.end(), held_.begin(), held_.end()));
   ar.check(std::includes(active.begin(), active.end(), named.begin(), named.end()));
@@ -261,6 +273,7 @@ void ExplicitScheme::build_anew(const TissueChange& change) {
   moving_ = make_moving_body(state_.body, state_.gamma, state_.options, info_);
   moving_->set_state(state.displacement, state.velocity);
   moving_->watch(active, held_);
+  bring_to_rest();
   for (const auto& [b, stresses] : kept) moving_->set_branch_stresses(b, stresses);
 }
 

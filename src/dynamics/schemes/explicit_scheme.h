@@ -67,6 +67,7 @@ class ExplicitScheme : public Scheme {
   void watch(std::span<const std::uint32_t> vertices);
   void active_changed(std::span<const std::uint32_t> before);
   void let_go();
+  void bring_to_rest();
   void begin_interactions(double h);
   void constrain_interactions();
 

@@ -33,6 +33,7 @@ void SubmeshBody::add_records(std::span<const std::uint32_t> origins) {
     submeshes_.record_of_vertex.push_back(record);
     masses_.push_back(0.0);
     damping_.push_back(0.0);
+    rests_.push_back(0);
   }
 }
 

@@ -55,11 +55,15 @@ std::span<const std::uint32_t> ContactReach::ask(std::span<const ContactSolid> s
   return asking_;
 }
 
-std::optional<std::span<const std::uint32_t>> ContactReach::keeps() {
-  if (!gone_) return {};
+std::span<const std::uint32_t> ContactReach::kept() {
   kept_ = mine_;
   for (const SurfacePatch& p : surface_.patches()) kept_.push_back(p.sentinel);
   return kept_;
+}
+
+std::optional<std::span<const std::uint32_t>> ContactReach::keeps() {
+  if (!gone_) return {};
+  return kept();
 }
 
 void ContactReach::look(const InteractionStep& step) {

@@ -28,7 +28,11 @@ class ContactReach {
   void attach(const BodyView& body);
   /// Vertices to bring to hand, the sentinels of all patches at first. @param solids  their way in the coming step
   std::span<const std::uint32_t> ask(std::span<const ContactSolid> solids, double h);
-  /// What the last ask() left of all vertices, where it let some go.
+  /// Whether the last ask() let some go.
+  bool has_left() const { return gone_; }
+  /// All that has been asked for and not been let go.
+  std::span<const std::uint32_t> kept();
+  /// The same, where the last ask() let some go.
   std::optional<std::span<const std::uint32_t>> keeps();
   /// Where the sentinels are after a step.
   void look(const InteractionStep& step);
