@@ -14,12 +14,14 @@ std::unique_ptr<MovingBody> make_moving_body(const Body& body, std::span<const d
   const bool in_lanes = std::all_of(body.blocks.begin(), body.blocks.end(),
                                     [](const TissueBlock& block) { return engine::has_lanes(block.tissue); });
   if (options.precision == Precision::double_precision || !in_lanes) {
-    auto moving = std::make_unique<engine::ElementBody>(body, nodal_damping, options.precision);
+    auto moving = std::make_unique<engine::ElementBody>(body, nodal_damping, options.precision, options.drag_stages);
     info = info_of(*moving, body);
     return moving;
   }
   const engine::SubmeshOptions submeshes{
-      .threads = options.threads, .submesh_tets = engine::submesh_tets(body.elements.size(), options.mesh_changes)};
+      .threads = options.threads,
+      .submesh_tets = engine::submesh_tets(body.elements.size(), options.mesh_changes),
+      .drag_stages = options.drag_stages};
   auto moving = std::make_unique<engine::SubmeshBody>(body, nodal_damping, submeshes);
   info = info_of(*moving, body);
   return moving;

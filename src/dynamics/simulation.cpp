@@ -23,6 +23,13 @@ namespace {
 
 void require_options(const SimulationOptions& o) {
   detail::require_fields("simulation", o);
+  if (o.drag_stages > 1 && o.integrator != Integrator::central_difference) {
+    throw std::invalid_argument(
+        "simulation: drag_stages = " + std::to_string(o.drag_stages) +
+        " is outside the allowed range, 1 with "
+        "every integrator but central_difference: semi_implicit and implicit take the viscous force at the "
+        "end of the step");
+  }
   if (!o.mass_scaling_step || !capabilities(o.integrator).any_step_is_stable) return;
   throw std::invalid_argument(
       "simulation: mass_scaling_step [s] = " + detail::show(*o.mass_scaling_step) +

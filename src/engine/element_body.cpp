@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "element/drag_stages.h"
 #include "element/flush_denormals.h"
 #include "engine/kernels/response_kernels.h"
 
@@ -17,9 +18,9 @@ bool all_tensor_masses(const Body& body) {
 
 }  // namespace
 
-ElementBody::ElementBody(const Body& body, std::span<const double> nodal_damping, Precision precision)
+ElementBody::ElementBody(const Body& body, std::span<const double> nodal_damping, Precision precision, int drag_stages)
     : body_(body), precision_(precision), damping_(nodal_damping.begin(), nodal_damping.end()),
-      is_active_(body.vertex_count, 0), rests_(body.vertex_count, 0) {
+      stages_(glisson::drag_stages(drag_stages)), is_active_(body.vertex_count, 0), rests_(body.vertex_count, 0) {
   for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->assign(body.vertex_count, Vec3d{});
   make_operator();
 }
@@ -47,6 +48,31 @@ void ElementBody::evaluate(bool moves) {
   if (!moves) return;
   any_->advance_memory(state);
   since_memory_ = 0.0;
+}
+
+/// The viscous force in stages (element/drag_stages.h), from that at v₋.
+void ElementBody::run_drag_stages(double h, const Vec3d& gravity) {
+  drag_.clear();
+  for (const TissueBlock& block : body_.blocks) drag_.push_back(block.viscous);
+  std::vector<Vec3d> pushed(u_.size());
+  for (std::size_t k = 0; k < std::min(active_.size(), outer_.size()); ++k) pushed[active_[k].vertex] = outer_[k];
+  stage_sum_.assign(u_.size(), Vec3d{}), stage_change_.assign(u_.size(), Vec3d{});
+  pull_.resize(u_.size());
+  for (std::size_t k = 0; k < stages_.size(); ++k) {
+    if (k > 0) apply_linear(body_, drag_, stage_change_, pull_);
+    for (std::size_t i = 0; i < u_.size(); ++i) {
+      const double m = body_.masses[i];
+      if (k > 0) viscous_[i] -= pull_[i];
+      stage_sum_[i] += viscous_[i] * stages_[k];
+      const Vec3d force = elastic_[i] + viscous_[i] + pushed[i] + gravity * m - v_[i] * damping_[i];
+      const bool moves = m > 0.0 && rests_[i] == 0;
+      stage_change_[i] = moves ? force * (stages_[k] * h / (m + damping_[i] * h)) : Vec3d{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (3 * i < held_.size() && held_[3 * i + axis] != 0) stage_change_[i][axis] = 0.0;
+      }
+    }
+  }
+  viscous_.swap(stage_sum_);
 }
 
 void ElementBody::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
@@ -178,6 +204,7 @@ void ElementBody::list_above(std::span<const double> stiffening) {
 const Advance& ElementBody::advance(double h, const Vec3d& gravity, bool accounted) {
   const FlushDenormals flush;
   evaluate(h > 0.0);
+  if (stages_.size() > 1) run_drag_stages(h, gravity);
   advance_.stiffening = watch_.stiffening;
   advance_.stiff = watch_.stiff;
   advance_.inverted = watch_.inverted;

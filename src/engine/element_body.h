@@ -17,7 +17,8 @@ class ElementBody final : public MovingBody {
  public:
   /// @param body  must outlive this
   /// @param nodal_damping  γ_i per vertex [kg/s]
-  ElementBody(const Body& body, std::span<const double> nodal_damping, Precision precision);
+  /// @param drag_stages  SimulationOptions::drag_stages
+  ElementBody(const Body& body, std::span<const double> nodal_damping, Precision precision, int drag_stages = 1);
 
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
   void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const override;
@@ -39,6 +40,8 @@ class ElementBody final : public MovingBody {
   std::span<ActiveVertex> active() override { return active_; }
   void rest(std::span<const std::uint32_t> vertices) override;
   std::span<RestingVertex> resting() override { return resting_; }
+  void hold_in_stages(std::span<const char> components) override { held_.assign(components.begin(), components.end()); }
+  void push_in_stages(std::span<const Vec3d> outer) override { outer_.assign(outer.begin(), outer.end()); }
   void place_active() override;
   void list_above(std::span<const double> stiffening) override;
   const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;
@@ -46,6 +49,7 @@ class ElementBody final : public MovingBody {
  private:
   void make_operator();
   void evaluate(bool moves);
+  void run_drag_stages(double h, const Vec3d& gravity);
   void bring_memory_up_to_date(double since);
   void book(std::size_t vertex, const Vec3d& before, const Vec3d& weight);
 
@@ -54,9 +58,11 @@ class ElementBody final : public MovingBody {
   std::unique_ptr<ForceOperator> tissue_;  ///< where all tissues are tensor masses
   std::unique_ptr<TissueOperator> any_;    ///< else
   double since_memory_ = 0.0;              ///< time since the tissue's memory was brought up to date [s]
-  std::vector<double> damping_;
+  std::vector<double> damping_, stages_;   ///< stages of drag, as shares of a step
+  std::vector<LameParameters> drag_;       ///< per tissue block [Pa s]
+  std::vector<Vec3d> stage_change_, stage_sum_, pull_, outer_;  ///< δ, A of submesh_drag.cpp; C δ; on active vertices
   std::vector<Vec3d> u_, v_, elastic_, viscous_;
-  std::vector<char> is_active_, rests_;
+  std::vector<char> is_active_, rests_, held_;
   std::vector<ActiveVertex> active_;
   std::vector<RestingVertex> resting_;
   ElementWatch watch_;

@@ -98,6 +98,12 @@ class MovingBody {
   /// Takes displacement and velocity of every active vertex over from active().
   virtual void place_active() = 0;
 
+  /// Velocities that stages of drag leave as they are, in force until the next call.
+  /// @param components  3 i + axis per vertex: 1 where a support or motion holds it
+  virtual void hold_in_stages(std::span<const char> components) = 0;
+  /// Forces from outside in the last step, which stages of drag go by, too. @param outer  per active vertex [N]
+  virtual void push_in_stages(std::span<const Vec3d> outer) = 0;
+
   /// Lets advance() list elements that are stiffer than this.
   /// @param stiffening  per tissue block [-]
   virtual void list_above(std::span<const double> stiffening) = 0;

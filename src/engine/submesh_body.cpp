@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "element/drag_stages.h"
 #include "engine/layout/response_batches.h"
 #include "engine/submesh_scratch.h"
 
@@ -22,6 +23,7 @@ SubmeshBody::Plan SubmeshBody::plan_of(const TissueBlock& block) {
                  .rest_mu = float(mu)};
   plan.measure = static_cast<std::size_t>(tissue.measure);
   plan.viscous = tissue.viscosity > 0.0 || !tissue.maxwell.empty();
+  plan.drags = tissue.viscosity > 0.0;
   if (tissue.lambda_law || tissue.mu_law) {
     plan.laws = 2;
     plan.law = {lane_law(tissue.lambda_law.value_or(ConstantLaw{}), lambda, 1.0),
@@ -36,7 +38,8 @@ SubmeshBody::Plan SubmeshBody::plan_of(const TissueBlock& block) {
 SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping, const SubmeshOptions& options)
     : body_(body), kernels_(options.kernels != nullptr ? *options.kernels : best_kernels()),
       submeshes_(build_submeshes(body, kernels_.lanes, options.submesh_tets)),
-      pool_(options.threads > 0 ? options.threads : threads_for(body.elements.size())) {
+      pool_(options.threads > 0 ? options.threads : threads_for(body.elements.size())),
+      stages_(drag_stages(options.drag_stages)) {
   follow_layout(nodal_damping);
 }
 
@@ -45,6 +48,7 @@ void SubmeshBody::follow_layout(std::span<const double> nodal_damping) {
   state_.assign(body_.vertex_count * kStateDoubles, 0.0);
   masses_.assign(body_.vertex_count, 0.0), damping_.assign(body_.vertex_count, 0.0);
   rests_.assign(body_.vertex_count, 0), resting_.clear();
+  make_room_for_stages();
   holds_apart_.assign(submeshes_.parts.size(), 0);
   looked_.assign(submeshes_.parts.size(), Looked::small), found_.resize(submeshes_.parts.size());
   plans_.clear(), large_plans_.clear();

@@ -23,6 +23,7 @@ struct SubmeshOptions {
   int threads = 0;                   ///< 0: as many as pay for this size of body
   const Kernels* kernels = nullptr;  ///< none: those of the best instruction set
   std::size_t submesh_tets = kLeastSubmesh;
+  int drag_stages = 1;  ///< SimulationOptions::drag_stages
 };
 
 class SubmeshBody final : public MovingBody {
@@ -50,6 +51,8 @@ class SubmeshBody final : public MovingBody {
   std::span<ActiveVertex> active() override { return active_; }
   void rest(std::span<const std::uint32_t> vertices) override;
   std::span<RestingVertex> resting() override { return resting_; }
+  void hold_in_stages(std::span<const char> components) override;
+  void push_in_stages(std::span<const Vec3d> outer) override { outer_.assign(outer.begin(), outer.end()); }
   void place_active() override;
   void list_above(std::span<const double> stiffening) override {
     list_above_.assign(stiffening.begin(), stiffening.end());
@@ -67,7 +70,7 @@ class SubmeshBody final : public MovingBody {
     std::array<LaneLaw, 2> law;
     std::size_t laws = 1;  ///< 2: apart on λ and μ
     std::size_t measure = 0;
-    bool viscous = false;
+    bool viscous = false, drags = false;  ///< drags: it has a Kelvin–Voigt viscosity
   };
   /// An active or resting vertex as its submesh or the interface sees it: position in their range, place among all of these.
   struct Watch {
@@ -76,6 +79,11 @@ class SubmeshBody final : public MovingBody {
   struct Watches {
     std::vector<std::vector<Watch>> interior;   ///< per submesh, of its interior
     std::vector<std::vector<Watch>> interface;  ///< per chunk of the interface
+  };
+  /// A record of which stages of drag leave components as they are.
+  struct HeldRecord {
+    std::uint32_t record;
+    std::array<bool, 3> axes;
   };
   /// What a task found.
   struct Findings {
@@ -127,6 +135,17 @@ class SubmeshBody final : public MovingBody {
   std::vector<double> measures(std::size_t block) const;
   void follow_branches(std::size_t block, BranchMemory& memory) const;
   void make_memory_explicit();
+  bool in_stages() const { return !stage_sums_.empty(); }
+  void make_room_for_stages();
+  void run_drag_stages(const Step& step);
+  void drag_submesh(const Submesh& part, Scratch& scratch);
+  void drag_elements(const Submesh& part, Scratch& scratch) const;
+  void begin_stages(std::size_t first, std::size_t n, std::span<const Watch> active, const float* elastic,
+                    const float* viscous, const Step& step);
+  void run_stage(std::size_t first, std::size_t n, std::span<const Watch> active, std::size_t stage, const Step& step,
+                 const float* force);
+  void end_stages(std::size_t first, std::size_t n, std::span<const Watch> active, std::span<const Watch> resting,
+                  bool split, const Step& step, VertexWork& work);
   void run_submesh(std::size_t s, const Step& step, Scratch& scratch);
   void narrow(const Submesh& part, Scratch& scratch) const;
   void push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;
@@ -178,6 +197,12 @@ class SubmeshBody final : public MovingBody {
   std::uint64_t steps_ = 0;
 
   LaneVector<float> slots_elastic_, slots_viscous_;  ///< force records
+  std::vector<double> stages_;                       ///< of drag, as shares of a step
+  std::vector<HeldRecord> held_;                     ///< ascending: what stages leave as it is
+  LaneVector<double> stage_changes_;                 ///< of the velocities in the last stage, four numbers a record
+  LaneVector<float> stage_elastic_, stage_viscous_;  ///< E and V of DragStage, a force record for each of the state
+  LaneVector<float> stage_sums_;                     ///< A; empty: there is one stage
+  std::vector<Vec3d> outer_;                         ///< on each active vertex, in the last step [N]
   std::vector<ActiveVertex> active_;
   std::vector<RestingVertex> resting_;
   std::vector<char> rests_;           ///< per record

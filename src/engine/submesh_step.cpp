@@ -234,6 +234,10 @@ void SubmeshBody::run_submesh(std::size_t s, const Step& step, Scratch& scratch)
   if (!found.finite) return;
   fill_slots(part, split, scratch);
   const float* viscous = split ? scratch.viscous.data() : nullptr;
+  if (in_stages()) {
+    return begin_stages(part.first_interior, part.interior_count, watches_.interior[s], scratch.elastic.data(), viscous,
+                        step);
+  }
   take_active(watches_.interior[s], part.first_interior, scratch.elastic.data(), viscous);
   take_resting(rest_watches_.interior[s], scratch.elastic.data(), viscous);
   if (split && !step.accounted) kernels_.add(scratch.elastic.data(), scratch.viscous.data(), floats);
@@ -255,6 +259,9 @@ void SubmeshBody::run_interface(std::size_t chunk, const Step& step, Scratch& sc
   }
   interface_found_[chunk] = {};
   const std::size_t first = shared.first_record + begin;
+  if (in_stages()) {
+    return begin_stages(first, n, watches_.interface[chunk], elastic, any_split_ ? viscous : nullptr, step);
+  }
   take_active(watches_.interface[chunk], first, elastic, viscous);
   take_resting(rest_watches_.interface[chunk], elastic, viscous);
   if (!step.accounted && any_split_) kernels_.add(elastic, viscous, force_floats(n));
@@ -305,6 +312,7 @@ const Advance& SubmeshBody::advance(double h, const Vec3d& gravity, bool account
   if (finite) {
     pool_.run(interface_found_.size(),
               [&](std::size_t c, std::size_t thread) { run_interface(c, step, *scratch_[thread]); });
+    if (in_stages()) run_drag_stages(step);
   }
   ++steps_;
   if (h > 0.0) since_memory_ = h;

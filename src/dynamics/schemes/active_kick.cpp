@@ -30,6 +30,12 @@ void ActiveKick::follow(std::span<const std::uint32_t> before, std::span<const A
   for (std::size_t k = 0; k < before.size(); ++k) of_vertex[before[k]] = kicked_[k];
   kicked_.clear();
   for (const ActiveVertex& w : active) kicked_.push_back(of_vertex[w.vertex]);
+  if (!outer_.empty()) {
+    std::vector<Vec3d> outer_of(state_.body.vertex_count);
+    for (std::size_t k = 0; k < std::min(before.size(), outer_.size()); ++k) outer_of[before[k]] = outer_[k];
+    outer_.clear();
+    for (const ActiveVertex& w : active) outer_.push_back(outer_of[w.vertex]);
+  }
   const std::span<const Constraint> constraints = state_.constraints.all();
   places_.assign(constraints.size(), {});
   for (std::size_t c = 0; c < places_.size(); ++c) {
@@ -105,6 +111,18 @@ std::span<const Vec3d> ActiveKick::mobility() {
     }
   }
   return mobility_;
+}
+
+void ActiveKick::remember_tissue(std::span<const ActiveVertex> active) {
+  tissue_.clear();
+  for (const ActiveVertex& w : active) tissue_.push_back(w.elastic + w.viscous);
+}
+
+void ActiveKick::remember_outer(std::span<const ActiveVertex> active) {
+  outer_.clear();
+  for (std::size_t k = 0; k < active.size(); ++k) {
+    outer_.push_back(active[k].elastic + active[k].viscous - tissue_[k] + kicked_[k].load + kicked_[k].contact);
+  }
 }
 
 void ActiveKick::push(std::span<const Vec3d> impulses) {
@@ -183,7 +201,11 @@ void ActiveKick::add_interface(std::span<const ActiveVertex> active, const Inter
 
 void ActiveKick::archive(Archive& ar) {
   ar.same_size(kicked_);
-  ar(step_, time_, gravity_);
+  auto remembered = static_cast<std::uint32_t>(outer_.size());
+  ar(step_, time_, gravity_, remembered);
+  ar.check(remembered == 0 || remembered == kicked_.size());
+  outer_.resize(remembered);
+  ar.same_size(outer_);
 }
 
 }  // namespace glisson

@@ -46,6 +46,12 @@ class ActiveKick {
   /// What interactions exerted [N s].
   void push(std::span<const Vec3d> impulses);
 
+  /// Keeps the tissue's own forces, before interactions add theirs; then what loads and interactions exerted beside them.
+  void remember_tissue(std::span<const ActiveVertex> active);
+  void remember_outer(std::span<const ActiveVertex> active);
+  /// What was remembered, per active vertex, 0 for one that was not active then [N].
+  std::span<const Vec3d> outer() const { return outer_; }
+
   /// What a constraint exerted at the last kick.
   ForceParts force(std::span<const ActiveVertex> active, std::size_t constraint) const;
   /// Its torque about a place, with where the vertices were.
@@ -66,7 +72,7 @@ class ActiveKick {
   BodyState& state_;
   std::vector<Kicked> kicked_;                      ///< per active vertex
   std::vector<std::vector<std::uint32_t>> places_;  ///< per constraint: where its vertices are among those active
-  std::vector<Vec3d> mobility_;
+  std::vector<Vec3d> mobility_, tissue_, outer_;
   std::vector<Vec3d> displacement_;  ///< of active vertices, by vertex, for loads that ask for it [m]
   Vec3d gravity_{};
   double step_ = 0.0, time_ = 0.0;

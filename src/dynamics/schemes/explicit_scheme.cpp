@@ -6,13 +6,28 @@
 #include <stdexcept>
 
 #include "dynamics/make_body.h"
+#include "dynamics/step/step_rules.h"
 #include "element/tet_fields.h"
 
 namespace glisson {
+namespace {
+
+/// @throws std::invalid_argument where the tissue's viscous force cannot be taken in stages
+void require_stages_for(const Tissue& tissue, int stages) {
+  if (stages == 1 || is_small(tissue) || !(tissue.viscosity > 0.0)) return;
+  throw std::invalid_argument(
+      "tissue \"" + tissue.name + "\": drag_stages = " + std::to_string(stages) +
+      ", but stages of the viscous force are for tissue of small strain, without `hyperelastic` and with "
+      "kinematics = \"small\"; take drag_stages = 1, or model relaxation by maxwell branches");
+}
+
+}  // namespace
+
 ExplicitScheme::ExplicitScheme(Body body, const SimulationOptions& options, Drag drag)
     : Scheme(std::move(body), options), moving_(make_moving_body(state_.body, state_.gamma, options, info_)),
       stiffening_(moving_->advance(0.0, {}, false).stiffening),
       control_(std::make_unique<StepControl>(state_.body, state_.gamma, drag, options, stiffening_)) {
+  for (const TissueBlock& block : state_.body.blocks) require_stages_for(block.tissue, options.drag_stages);
   moving_->list_above(control_->list_above());
   if (!options.mesh_changes) return;
   moving_->apply({}, state_.changer().stars(), state_.gamma);
@@ -62,6 +77,16 @@ void ExplicitScheme::bring_to_rest() {
   std::vector<std::uint32_t> resting = interactions_.resting();
   std::erase_if(resting, [&](std::uint32_t v) { return std::binary_search(held_.begin(), held_.end(), v); });
   if (!std::ranges::equal(resting, moving_->resting(), {}, {}, &RestingVertex::vertex)) moving_->rest(resting);
+}
+
+/// Tells the body what supports and motions hold by now, for stages of drag.
+void ExplicitScheme::hold_in_stages() {
+  if (state_.options.drag_stages == 1) return;
+  std::vector<char> holding;
+  for (std::size_t c = 0; c < state_.base.size(); ++c) holding.push_back(state_.holds(c) ? 1 : 0);
+  if (told_ == holding) return;
+  moving_->hold_in_stages(state_.held_components());
+  told_ = std::move(holding);
 }
 
 std::vector<std::uint32_t> ExplicitScheme::active_vertices() const {
@@ -179,7 +204,9 @@ StepResult ExplicitScheme::step() {
             "less deep, soften the law, or take the implicit integrator"};
   }
   take_hold(h);
+  hold_in_stages();
   begin_interactions(h);
+  if (state_.options.drag_stages > 1) moving_->push_in_stages(kick_.outer());
   const Advance& seen = moving_->advance(h, state_.gravity_at(state_.time), state_.options.track_energies);
   take_stiffness(seen);
   copy_.current = false;
@@ -192,9 +219,11 @@ StepResult ExplicitScheme::step() {
   for (RestingVertex& r : moving_->resting()) r.force += kick_.gravity() * state_.body.masses[r.vertex];
   interactions_.begin(state_.time, h, moving_->active(), moving_->resting(), state_.body.rest_positions,
                       state_.options.track_energies);
+  if (state_.options.drag_stages > 1) kick_.remember_tissue(moving_->active());
   interactions_.add_forces();
   kick(h);
   constrain_interactions();
+  if (state_.options.drag_stages > 1) kick_.remember_outer(moving_->active());
   if (state_.options.track_energies) book(h, seen.work);
   for (ActiveVertex& w : moving_->active()) w.displacement += w.velocity * h;
   moving_->place_active();
@@ -233,6 +262,7 @@ void ExplicitScheme::take_body(Archive& ar) {
 }
 
 void ExplicitScheme::archive_motion(Archive& ar) {
+  told_.reset();
   std::vector<std::uint32_t> active = active_vertices();
   ar.all_below(active, state_.body.vertex_count);
   ar.all_below(held_, state_.body.vertex_count);
@@ -256,6 +286,7 @@ void ExplicitScheme::archive_motion(Archive& ar) {
 }
 
 void ExplicitScheme::take_over(const BodyChange& change) {
+  told_.reset();
   moving_->apply(change, state_.changer().stars(), state_.gamma);
   control_->mesh_changed(change, state_.changer().stars());
   copy_.current = false;
@@ -279,6 +310,7 @@ void ExplicitScheme::build_anew(const TissueChange& change) {
 
 /// Brings other tissues into the body; what is told of the last kick stays.
 void ExplicitScheme::follow_tissues(const TissueChange& change) {
+  told_.reset();
   const std::vector<ActiveVertex> told(moving_->active().begin(), moving_->active().end());
   if (moving_->supports_tissues()) {
     moving_->tissues_changed(change.blocks, state_.gamma);
@@ -305,6 +337,11 @@ std::string ExplicitScheme::past() {
   return past.bytes();
 }
 
+void ExplicitScheme::require_tissues(const BlockTissues& tissues) const {
+  Scheme::require_tissues(tissues);
+  for (const auto& [block, tissue] : tissues) require_stages_for(tissue, state_.options.drag_stages);
+}
+
 void ExplicitScheme::take_tissues(const TissueChange& change) {
   follow_tissues(change);
   const std::span<const Vec3d> u = displacement();
@@ -315,6 +352,7 @@ void ExplicitScheme::take_tissues(const TissueChange& change) {
 }
 
 void ExplicitScheme::follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) {
+  told_.reset();
   std::vector<std::uint32_t> followers;
   const std::size_t held = held_.size();
   for (std::uint32_t i = 0; i < origins.size(); ++i) {

@@ -4,13 +4,15 @@
 //   u(t+h) = [ h² F + (2m + γh) u(t) − m u(t−h) ] / (m + γh)            [Schwartz2002, eq. 4]
 // becomes
 //   v₊ = (m v₋ + h F) / (m + γ h),   u(t+h) = u(t) + h v₊.
-// The viscous force is taken at v₋: it lags by half a step, which the stable step accounts for.
+// The viscous force is taken at v₋: it lags by half a step, which the stable step accounts for; or in stages from v₋ on, which allow
+// longer steps (element/drag_stages.h).
 //
 //   h below h* of the stiffness last seen ─▶ the body advances its free vertices ─▶ here the active ones:
 //   add forces ─▶ kick v₋ → v₊ ─▶ impose motions ─▶ interactions constrain v₊ ─▶ book work ─▶ drift u
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,7 +31,8 @@ class ExplicitScheme : public Scheme {
                                         {.supports_interactions = true, .viscosity_limits_step = true}};
 
   /// @throws std::invalid_argument as Simulation's constructor
-  ExplicitScheme(Body body, const SimulationOptions& options) : ExplicitScheme(std::move(body), options, Drag::lags) {}
+  ExplicitScheme(Body body, const SimulationOptions& options)
+      : ExplicitScheme(std::move(body), options, options.drag_stages > 1 ? Drag::in_stages : Drag::lags) {}
 
   StepResult step() override;
   double step_size() const override { return control_->step(); }
@@ -62,12 +65,14 @@ class ExplicitScheme : public Scheme {
   void take_body(Archive& ar) override;
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override { return moving_->branch_stresses(block); }
   std::string past() override;
+  void require_tissues(const BlockTissues& tissues) const override;
   void take_tissues(const TissueChange& change) override;
   void take_back_tissues(const TissueChange& change) override { follow_tissues(change); }
   void watch(std::span<const std::uint32_t> vertices);
   void active_changed(std::span<const std::uint32_t> before);
   void let_go();
   void bring_to_rest();
+  void hold_in_stages();
   void begin_interactions(double h);
   void constrain_interactions();
 
@@ -95,6 +100,8 @@ class ExplicitScheme : public Scheme {
   std::vector<double> stiffening_;   ///< per tissue block, at the last evaluation
   std::vector<StiffElement> stiff_;  ///< what was listed then
   std::vector<ShapeRate> shape_rates_;
+  /// Per constraint: whether stages of drag know that it holds; none: the body has to be told anew.
+  std::optional<std::vector<char>> told_;
   std::unique_ptr<StepControl> control_;
   mutable StateCopy copy_;
   std::string message_;  ///< why the last step was not made

@@ -164,9 +164,9 @@ class SchemeSpectrum {
 
 /// Root of k h² + 2 (c − g) h = 4, the formula of one mode with unit mass; infinite where there is none.
 double mode_step(const RayleighQuotients& q) {
-  if (!(q.k > 0.0)) return std::numeric_limits<double>::infinity();
   const double d = q.g - q.c;
-  const double root = std::sqrt(d * d + 4.0 * q.k);
+  if (!(q.k > 0.0) && !(d < 0.0)) return std::numeric_limits<double>::infinity();
+  const double root = std::sqrt(d * d + 4.0 * std::max(0.0, q.k));
   // (d + root) / k without cancellation where viscosity dominates (d < 0)
   return d >= 0.0 ? (d + root) / q.k : 4.0 / (root - d);
 }

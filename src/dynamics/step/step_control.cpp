@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "dynamics/step/step_rules.h"
+#include "element/drag_stages.h"
 
 namespace glisson {
 namespace {
@@ -19,24 +20,28 @@ constexpr std::size_t kSearchesKept = 4;  ///< since steps were chosen anew
 
 StepControl::StepControl(const Body& body, const std::vector<double>& nodal_damping, Drag drag,
                          const SimulationOptions& options, std::span<const double> stiffening)
-    : body_(body), nodal_damping_(nodal_damping), drag_(drag), automatic_(!options.step),
+    : body_(body), nodal_damping_(nodal_damping), drag_(drag), drag_stages_(options.drag_stages),
+      weight_(drag == Drag::in_stages ? 2.0 / drag_stage_room(options.drag_stages) : 1.0), automatic_(!options.step),
       enforce_(options.enforce_stability), exact_asked_(options.exact_steps),
       scales_masses_(options.mass_scaling_step.has_value()), levels_(body) {
   look_at_body();
+  search_drag_limit();
   rest_.level = at_least_one(stiffening);
   rest_.limits = limits_at(rest_.level);
   undragged_ = undragged_step(rest_.level);
   now_ = rest_;
   remember_search();
   step_ = options.step.value_or(kSafety * now_.limits.pace);
-  if (enforce_ && step_ > now_.limits.stable) refuse_above(now_.limits.stable);
+  const double stable = std::min(now_.limits.stable, drag_limit_);
+  if (enforce_ && !automatic_ && step_ > stable) refuse_above(stable);
   forget_searches();
   start_anew();
 }
 
 /// Whether limits at a level follow from those at another: where C stays what it is, or its force lags.
 bool StepControl::is_bounded() const {
-  return drag_ == Drag::lags || std::all_of(body_.blocks.begin(), body_.blocks.end(), is_small);
+  return drag_ != Drag::at_once ||
+         std::ranges::all_of(body_.blocks, [](const TissueBlock& block) { return is_small(block); });
 }
 
 /// Largest γ/m of a vertex [1/s].
@@ -65,12 +70,14 @@ void StepControl::remember_search() {
 /// 4 h/h₁ below a step h₁ it bears, 4 (h/h₁)² where nothing drags, and φ(h) + k h² + 2 c h ≤ 4 must hold.
 double StepControl::with_added(double step, const AddedStiffness& added) const {
   if (!(added.k > 0.0) && !(added.c > 0.0)) return step;
-  const bool drags = std::any_of(body_.blocks.begin(), body_.blocks.end(), [](const TissueBlock& b) {
-    return b.viscous.mu != 0.0 || b.viscous.lambda != 0.0 || !b.tissue.maxwell.empty();
+  const double k = weight_ * added.k;
+  const bool drags = std::any_of(body_.blocks.begin(), body_.blocks.end(), [&](const TissueBlock& b) {
+    const bool viscous = b.viscous.mu != 0.0 || b.viscous.lambda != 0.0;
+    return (viscous && drag_ != Drag::in_stages) || !b.tissue.maxwell.empty();
   });
-  if (!drags) return 1.0 / std::sqrt(1.0 / (step * step) + 0.25 * added.k);
+  if (!drags) return 1.0 / std::sqrt(1.0 / (step * step) + 0.25 * k);
   const double c = added.c + 2.0 / step;  // of k h² + 2 c h = 4
-  return 4.0 / (c + std::sqrt(c * c + 4.0 * added.k));
+  return 4.0 / (c + std::sqrt(c * c + 4.0 * k));
 }
 
 std::string StepControl::too_large(double stable) const {
@@ -93,8 +100,47 @@ std::vector<double> StepControl::viscosity_at(std::span<const double> stiffening
   for (std::size_t b = 0; b < factor.size(); ++b) {
     if (!is_small(body_.blocks[b])) factor[b] = stiffening[b];
     if (drag_ == Drag::at_once) factor[b] -= 2.0;
+    if (drag_ == Drag::in_stages) factor[b] = 0.0;
   }
   return factor;
+}
+
+/// The stiffness that φ counts: with drag in stages h² K ≤ 2 room M is what φ ≤ 4 says of K times 2/room.
+std::vector<double> StepControl::weighed(std::span<const double> stiffening) const {
+  std::vector<double> level(stiffening.begin(), stiffening.end());
+  for (double& r : level) r *= weight_;
+  return level;
+}
+
+/// n stages bear eigenvalues of h M⁻¹ C up to n², where the explicit step of drag alone is that of 2.
+double StepControl::drag_limit_of(double explicit_step) const {
+  return 0.5 * static_cast<double>(drag_stages_ * drag_stages_) * explicit_step;
+}
+
+/// It leaves no guess, since it looks for another mode than the searches after it.
+void StepControl::search_drag_limit() {
+  if (drag_ != Drag::in_stages) return;
+  const std::vector<double> none(body_.blocks.size(), 0.0), whole(none.size(), 1.0),
+      undamped(nodal_damping_.size(), 0.0);
+  drag_limit_ = drag_limit_of(glisson::stable_step(body_, none, undamped, {}, nullptr, whole).step);
+  drag_searched_ = {drag_limit_, block_numbers()};
+}
+
+/// After a change of tissues, where a search takes too long: viscosities at most c and densities at least d times those of the search
+/// leave d/c of its limit.
+void StepControl::scale_drag_limit() {
+  if (drag_ != Drag::in_stages) return;
+  const std::vector<double> now = block_numbers();
+  const auto ratio = [](double a, double b) { return a > 0.0 ? a / b : 0.0; };  // ∞ where there was none
+  double c = 0.0, d = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const double *to = &now[5 * b], *from = &drag_searched_.numbers[5 * b];
+    c = std::max({c, ratio(to[2], from[2]), ratio(to[3], from[3])});
+    d = std::min(d, to[4] / from[4]);
+  }
+  const std::vector<double> none(body_.blocks.size(), 0.0), whole(none.size(), 1.0);
+  const double scaled = scales_masses_ ? 0.0 : drag_searched_.limit * d / c;
+  drag_limit_ = std::max(std::isfinite(c) ? scaled : 0.0, drag_limit_of(element_bound_step(body_, none, whole)));
 }
 
 /// Whether viscosity that lags grows with the level of some block.
@@ -129,10 +175,13 @@ StepControl::Limits StepControl::limits_at(std::span<const double> stiffening) {
 
 StepControl::Limits StepControl::search(std::span<const double> stiffening) {
   const auto h = [&](StabilityGuess& guess, std::span<const double> viscosity) {
-    return glisson::stable_step(body_, stiffening, nodal_damping_, {}, &guess, viscosity).step;
+    // in stages damping is left out: it gives less room than φ counts for it
+    const std::vector<double> undamped(drag_ == Drag::in_stages ? nodal_damping_.size() : 0, 0.0);
+    const std::span<const double> damping = undamped.empty() ? std::span<const double>(nodal_damping_) : undamped;
+    return glisson::stable_step(body_, weighed(stiffening), damping, {}, &guess, viscosity).step;
   };
   const double stable = h(guess_.stable, viscosity_at(stiffening));
-  if (drag_ == Drag::lags) return {stable, stable};
+  if (drag_ != Drag::at_once) return {stable, stable};
   return {stable, std::min(stable, h(guess_.pace, std::vector<double>(body_.blocks.size(), 0.0)))};
 }
 
@@ -160,6 +209,19 @@ double StepControl::beside_drag(double h, double r, std::span<const double> leve
   return h * 2.0 / (rest + std::sqrt(rest * rest + 4.0 * part * r));
 }
 
+/// Single elements hold for any part of the body, by their own mass. @param shapes  elements that have changed theirs
+void StepControl::limit_drag_by_elements(std::span<const std::uint32_t> shapes) {
+  if (drag_ != Drag::in_stages) return;
+  if (!(drag_part_ > 0.0)) {
+    const std::vector<double> none(body_.blocks.size(), 0.0), whole(none.size(), 1.0);
+    drag_part_ = drag_limit_of(element_bound_step(body_, none, whole));
+  }
+  for (const std::uint32_t e : shapes) {
+    drag_part_ = std::min(drag_part_, drag_limit_of(element_step(body_, body_.block_of(e), e, 0.0, 1.0)));
+  }
+  drag_limit_ = std::min(drag_limit_, drag_part_);
+}
+
 void StepControl::prepare_changes(const detail::VertexStars& stars) {
   const std::vector<double> one(body_.blocks.size(), 1.0);
   element_bound_ = std::make_unique<ElementStepBound>(body_, stars, viscosity_at(one));
@@ -172,7 +234,8 @@ void StepControl::mesh_changed(const BodyChange& change, const detail::VertexSta
   forget_searches();
   if (element_bound_ == nullptr) prepare_changes(stars);
   element_bound_->change(change);
-  const double part = element_bound_->step();
+  const double part = element_bound_->step() / std::sqrt(weight_);
+  limit_drag_by_elements(change.reshaped);
   // with stiffness r times that at rest: (h/√r)² r K + 2 (h/√r) C ≤ h² K + 2 h C, and h/r where C is r times as large, too
   for (Known* known : {&now_, &rest_}) {
     const double r = *std::max_element(known->level.begin(), known->level.end());
@@ -184,7 +247,7 @@ void StepControl::mesh_changed(const BodyChange& change, const detail::VertexSta
   levels_.remove(change.removed);
   levels_.reshape(change.reshaped);
   take_stiff();
-  unchecked_ = enforce_ && step_ > now_.limits.stable;
+  unchecked_ = enforce_ && step_ > (automatic_ ? now_.limits.stable : std::min(now_.limits.stable, drag_limit_));
 }
 
 std::vector<double> StepControl::block_numbers() const {
@@ -223,10 +286,11 @@ void StepControl::choose_limits(std::span<const double> stiffening, bool undefor
   const auto bound = [&](const std::vector<double>& level) {
     Limits limits = scaled_from_search(level);
     if (limits.pace * kWorthALook > searched_.limits.pace) return limits;
-    const double h = std::max(limits.pace, element_bound_step(body_, level, viscosity_at(level)));
+    const double h = std::max(limits.pace, element_bound_step(body_, weighed(level), viscosity_at(level)));
     return Limits{h, h};
   };
   if (exact_) guess_ = {};
+  exact_ ? search_drag_limit() : scale_drag_limit();
   rest_.limits = exact_ ? limits_at(rest_.level) : bound(rest_.level);
   undragged_ = undragged_step(rest_.level);
   if (exact_) remember_search();
@@ -249,6 +313,7 @@ void StepControl::tissues_changed(std::span<const double> stiffening, bool undef
   }
   if (automatic_) step_ = kSafety * now_.limits.pace;
   element_bound_.reset();
+  drag_part_ = 0.0;
   unchecked_ = false;
   forget_searches();
   start_anew();
@@ -261,8 +326,8 @@ void StepControl::body_read(const detail::VertexStars* stars) {
 }
 
 void StepControl::archive(Archive& ar) {
-  ar(step_, window_, in_window_, unchecked_, caution_, shape_step_, held_, undragged_, now_.limits, rest_.limits,
-     searched_.limits);
+  ar(step_, window_, in_window_, unchecked_, caution_, shape_step_, held_, undragged_, drag_limit_, now_.limits,
+     rest_.limits, searched_.limits);
   for (auto* list : {&now_.level, &rest_.level, &seen_, &lately_, &searched_.level, &searched_.numbers}) {
     ar.same_size(*list);
   }
@@ -270,7 +335,8 @@ void StepControl::archive(Archive& ar) {
     ar(g->mode, g->step);
     ar.check(g->mode.empty() || g->mode.size() == 3 * body_.vertex_count);
   }
-  ar(probe_, since_probe_, probes_, levels_);
+  ar(probe_, since_probe_, probes_, levels_, drag_part_, drag_searched_.limit);
+  ar.same_size(drag_searched_.numbers);
   if (element_bound_ != nullptr) ar(*element_bound_);
   if (!ar.reads()) return;
   searches_made_ = kSearchesKept;

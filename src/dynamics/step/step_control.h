@@ -38,8 +38,9 @@ namespace glisson {
 
 /// When a scheme takes the viscous force.
 enum class Drag {
-  lags,     ///< at v₋: the explicit scheme
-  at_once,  ///< at v₊: the semi-implicit one
+  lags,       ///< at v₋: the explicit scheme
+  in_stages,  ///< in stages from v₋ on (element/drag_stages.h)
+  at_once,    ///< at v₊: the semi-implicit one
 };
 
 /// How fast a stiff element changes shape: the norm of its velocity gradient [1/s].
@@ -65,6 +66,11 @@ struct StepChoice {
   struct Searched : Known {
     std::vector<double> numbers;  ///< per block: shear and bulk modulus, the same of viscosity, density
   };
+  /// What the last search of drag_limit_ was made for, and gave.
+  struct SearchedDrag {
+    double limit = 0.0;           ///< [s]
+    std::vector<double> numbers;  ///< as Searched has them
+  };
   /// Where the next search begins.
   struct Guess {
     StabilityGuess stable, pace;
@@ -75,7 +81,10 @@ struct StepChoice {
   Guess guess_, rest_guess_;  ///< the second is from the search at rest
   bool exact_ = true;         ///< whether each level is searched
   double undragged_ = 0.0;    ///< h* of the stiffness at rest alone, from below; 0: not known [s]
-  AddedStiffness stiff_;      ///< of single tets
+  /// What drag in stages leaves of a step beside any stiffness [s].
+  double drag_limit_ = std::numeric_limits<double>::infinity();
+  SearchedDrag drag_searched_;
+  AddedStiffness stiff_;  ///< of single tets
 };
 
 class StepControl : StepChoice {
@@ -129,9 +138,13 @@ class StepControl : StepChoice {
   double step() const {
     if (!automatic_) return step_;
     const double room = 1.0 / (kSafety * kSafety);
-    return std::min(caution_ * with_added(step_, {room * (stiff_.k + held_), stiff_.c / kSafety}), shape_step_);
+    const double h =
+        std::min(caution_ * with_added(step_, {room * (stiff_.k + held_), stiff_.c / kSafety}), shape_step_);
+    return std::min(h, kSafety * drag_limit_);
   }
-  double stable_step() const { return with_added(now_.limits.stable, {tools_ + stiff_.k, stiff_.c}); }
+  double stable_step() const {
+    return std::min(with_added(now_.limits.stable, {tools_ + stiff_.k, stiff_.c}), drag_limit_);
+  }
   /// What is wrong with a given step that accept() has refused, and the ways out.
   std::string too_large() const { return too_large(stable_step()); }
 
@@ -152,6 +165,11 @@ class StepControl : StepChoice {
   Limits bound_at(std::span<const double> stiffening) const;
   bool is_bounded() const;
   bool drag_thickens() const;
+  std::vector<double> weighed(std::span<const double> stiffening) const;
+  double drag_limit_of(double explicit_step) const;
+  void search_drag_limit();
+  void scale_drag_limit();
+  void limit_drag_by_elements(std::span<const std::uint32_t> shapes);
   double undragged_step(std::span<const double> level) const;
   double beside_drag(double h, double r, std::span<const double> level) const;
   double with_added(double step, const AddedStiffness& added) const;
@@ -192,6 +210,8 @@ class StepControl : StepChoice {
   const Body& body_;
   const std::vector<double>& nodal_damping_;
   Drag drag_;
+  int drag_stages_;
+  double weight_;  ///< of stiffness, see weighed()
   bool automatic_, enforce_, exact_asked_;
   bool scales_masses_;
   std::vector<Search> searches_;  ///< the first few, for a state that is set again and again
@@ -199,6 +219,7 @@ class StepControl : StepChoice {
   double step_ = 0.0;
   double damping_rate_ = 0.0;                        ///< largest γ/m [1/s]
   std::unique_ptr<ElementStepBound> element_bound_;  ///< none until the mesh changes
+  double drag_part_ = 0.0;                           ///< drag_limit_ by single elements; 0: not found yet [s]
   bool unchecked_ = false;                           ///< a given step is above the bound of a mesh that has changed
 
   std::vector<double> seen_, lately_;  ///< largest stiffening per block in this window, in the last few steps

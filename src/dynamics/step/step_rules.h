@@ -21,9 +21,8 @@ inline Sym3<double> outer_square(const Vec3d& s) {
   return {s.x * s.x, s.y * s.y, s.z * s.z, s.x * s.y, s.y * s.z, s.z * s.x};
 }
 
-inline bool is_small(const TissueBlock& block) {
-  return !block.tissue.hyperelastic && block.tissue.kinematics == Kinematics::small;
-}
+inline bool is_small(const Tissue& tissue) { return !tissue.hyperelastic && tissue.kinematics == Kinematics::small; }
+inline bool is_small(const TissueBlock& block) { return is_small(block.tissue); }
 
 inline bool is_linear(const TissueBlock& block) {
   const Tissue& t = block.tissue;

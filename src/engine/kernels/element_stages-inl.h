@@ -109,6 +109,17 @@ struct GatherTetRates {
   }
 };
 
+/// Viscous stress of one tet, velocities in the place of displacements. Moduli times kForceScale.
+struct GatherTetDrag {
+  static constexpr bool kVelocity = false;
+  Block& block;
+  F lambda, mu;
+
+  HWY_INLINE void operator()(const UV& d1, const UV& d2, const UV& d3, const F (&s)[3][3], std::size_t item) const {
+    store_stress(stress(gradient(d1.u, d2.u, d3.u, s), lambda, mu), block.viscous + item * 6 * kLanes);
+  }
+};
+
 enum class Run { chain, fan, closed_fan };
 
 /// Goes round the edge 0–1 of a fan, from tet to tet.
@@ -184,6 +195,12 @@ inline void gather(const Elements& e, std::size_t begin, std::size_t n, Block& b
   const F lambda = hn::Set(Lanes(), kForceScale * e.tissue.viscous_lambda),
           mu = hn::Set(Lanes(), kForceScale * e.tissue.viscous_mu);
   gather_batches(e, begin, n, GatherTet<kViscous>{block, lambda, mu});
+}
+
+inline void gather_drag(const Elements& e, std::size_t begin, std::size_t n, Block& block) {
+  const F lambda = hn::Set(Lanes(), kForceScale * e.tissue.viscous_lambda),
+          mu = hn::Set(Lanes(), kForceScale * e.tissue.viscous_mu);
+  gather_batches(e, begin, n, GatherTetDrag{block, lambda, mu});
 }
 
 inline void gather_rates(const Elements& e, std::size_t begin, std::size_t n, Block& block, float* rate) {

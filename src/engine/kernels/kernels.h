@@ -80,6 +80,16 @@ struct Kick {
   alignas(32) std::array<double, 4> gravity{};  ///< [m/s²], w = 0
 };
 
+/// Force records of a run of vertices in a stage of drag.
+struct DragStage {
+  Kick kick;
+  double tau = 0.0;  ///< share of the step
+  bool first = false;
+  const float* elastic = nullptr;  ///< E
+  float* viscous = nullptr;        ///< V, of this stage
+  float* sum = nullptr;            ///< A
+};
+
 /// A linear tissue's submesh by edges.
 struct Edges {
   const float* states = nullptr;
@@ -105,12 +115,19 @@ struct Kernels {
   void (*narrow_chosen)(const double* state, const std::uint32_t* which, const double* origin, std::size_t n,
                         float* out) = nullptr;
 
+  /// Vectors of four doubles, relative to `origin`, into the first half of float records. @param which  numbers of the vectors;
+  /// null: consecutive ones
+  void (*narrow_vectors)(const double* vectors, const std::uint32_t* which, const double* origin, std::size_t n,
+                         float* out) = nullptr;
+
   /// Batches [begin, begin + n): gradients, and viscous stress where there is viscosity. Where there are fans, `begin`
   /// is even, here and in push, and n is unless they are the last.
   void (*gather_elastic)(const Elements&, std::size_t begin, std::size_t n, Block&) = nullptr;
   void (*gather_viscous)(const Elements&, std::size_t begin, std::size_t n, Block&) = nullptr;
   /// Gradients of displacement, and of velocity into `rate`, [item][9][lane].
   void (*gather_rates)(const Elements&, std::size_t begin, std::size_t n, Block&, float* rate) = nullptr;
+  /// Viscous stress of the velocities in the first half of the records, for push_viscous.
+  void (*gather_drag)(const Elements&, std::size_t begin, std::size_t n, Block&) = nullptr;
   /// x and y of a block. @return whether a tet has J ≤ 0
   using Measure = bool (*)(const Elements&, std::size_t begin, std::size_t n, Block&);
   std::array<Measure, 3> measure{};                               ///< by DeformationMeasure
@@ -138,6 +155,9 @@ struct Kernels {
   float (*edges_merged)(const Edges&) = nullptr;
   float (*edges_split)(const Edges&) = nullptr;
 
+  /// A stage of drag of `n` vertices (element/drag_stages.h): V += f, A += τ V, δ = τ [c (E + V) − d (v₋ + h g) + h g], c and d from
+  /// their state records. The first stage has no f, and A = τ V. @param delta  four numbers a vertex; null: none is asked for
+  void (*drag)(const double* state, const DragStage&, std::size_t n, const float* force, double* delta) = nullptr;
   /// a += b, `n` floats, a multiple of 16.
   void (*add)(float* a, const float* b, std::size_t n) = nullptr;
   /// Whether all of `n` floats are finite; n is a multiple of 16.

@@ -50,6 +50,18 @@ inline void narrow_chosen(const double* state, const std::uint32_t* which, const
   }
 }
 
+inline void narrow_vectors(const double* vectors, const std::uint32_t* which, const double* origin, std::size_t n,
+                           float* out) {
+  const Doubles d;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* v = vectors + (which != nullptr ? which[i] : i) * 4;
+    for (std::size_t k = 0; k < 4; k += kDoubles) {
+      hn::Store(hn::DemoteTo(Narrow(), hn::Sub(hn::Load(d, v + k), hn::Load(d, origin + k))), Narrow(),
+                out + i * kStateFloats + k);
+    }
+  }
+}
+
 inline void add(float* a, const float* b, std::size_t n) {
   const Lanes d;
   for (std::size_t i = 0; i < n; i += kLanes) hn::Store(hn::Load(d, a + i) + hn::Load(d, b + i), d, a + i);
@@ -92,6 +104,30 @@ inline void sum_slots(const float* slots, const std::uint32_t* begin, const std:
 HWY_INLINE D4 xyz_bits(std::size_t k) {
   const Doubles d;
   return hn::VecFromMask(d, hn::FirstN(d, k < 3 ? 3 - k : 0));
+}
+
+inline void drag(const double* state, const DragStage& stage, std::size_t n, const float* force, double* delta) {
+  const Doubles d;
+  const Narrow narrow;
+  const auto share = hn::Set(narrow, static_cast<float>(stage.tau));
+  for (std::size_t i = 0; i < n; ++i, state += kStateDoubles) {
+    for (std::size_t k = 0; k < 4; k += kDoubles) {
+      const std::size_t at = kForceFloats * i + k;
+      auto viscous = hn::Load(narrow, stage.viscous + at);
+      if (!stage.first) {
+        viscous = hn::Add(viscous, hn::Load(narrow, force + at));
+        hn::Store(viscous, narrow, stage.viscous + at);
+      }
+      const auto part = hn::Mul(share, viscous);
+      hn::Store(stage.first ? part : hn::Add(part, hn::Load(narrow, stage.sum + at)), narrow, stage.sum + at);
+      if (delta == nullptr) continue;
+      const D4 fall = hn::Mul(hn::Set(d, stage.kick.step), hn::Load(d, stage.kick.gravity.data() + k));
+      const D4 all = hn::PromoteTo(d, hn::Add(viscous, hn::Load(narrow, stage.elastic + at)));
+      const D4 still = hn::NegMulAdd(hn::Set(d, state[7]), hn::Add(hn::Load(d, state + 4 + k), fall), fall);
+      const D4 change = hn::MulAdd(hn::Set(d, state[3]), all, still);
+      hn::Store(hn::And(xyz_bits(k), hn::Mul(hn::Set(d, stage.tau), change)), d, delta + 4 * i + k);
+    }
+  }
 }
 
 /// Sums of VertexWork, a component each.

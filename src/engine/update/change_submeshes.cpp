@@ -35,6 +35,7 @@ void SubmeshBody::add_records(std::span<const std::uint32_t> origins) {
     damping_.push_back(0.0);
     rests_.push_back(0);
   }
+  make_room_for_stages();
 }
 
 void SubmeshBody::take_out(std::uint32_t element, const detail::VertexStars& stars) {

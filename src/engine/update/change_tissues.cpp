@@ -73,6 +73,7 @@ void SubmeshBody::tissues_changed(std::span<const std::size_t> blocks, std::span
     find_watches();
   }
   as_built_ = false;
+  make_room_for_stages();
   take_masses(nodal_damping);
 }
 
