@@ -162,6 +162,25 @@ TEST_F(Commands, CheckSaysWhatTheTissueIs) {
   EXPECT_EQ(run({"check", scene}).out.find("corotational"), std::string::npos);
 }
 
+// Where viscosity keeps the step short, check says how many stages of it pay and how long the step then is; it is that, and with them
+// nothing is left to say.
+TEST_F(Commands, CheckTellsWhereStagesOfViscosityPay) {
+  const std::string scene = write("s.toml", small_scene());
+  const std::string viscous = "tissue.viscosity_Pa_s=100";
+  const auto stable = [](const Outcome& check) {
+    std::smatch found;
+    return std::regex_search(check.out, found, std::regex(R"(stable below ([\d.e-]+) s)")) ? std::stod(found[1]) : 0.0;
+  };
+  const Outcome plain = run({"check", scene, "--set", viscous});
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(plain.out, found, std::regex(R"(drag_stages = (\d) makes it ([\d.]+) times as long)")))
+      << plain.out;
+  const Outcome staged = run({"check", scene, "--set", viscous, "--set", "motion.drag_stages=" + found[1].str()});
+  EXPECT_NEAR(stable(staged) / stable(plain), std::stod(found[2]), 0.06 * std::stod(found[2]));
+  EXPECT_EQ(staged.out.find("drag_stages"), std::string::npos) << staged.out;
+  EXPECT_EQ(run({"check", scene}).out.find("drag_stages"), std::string::npos);
+}
+
 // A few stiff tets keep the step short: check says how many, which is first and what step mass would give; with that mass
 // the scene has the step and the summary the mass. An implicit scene has no such limit, and says so.
 TEST_F(Commands, CheckTellsWhichTetsKeepTheStepShort) {

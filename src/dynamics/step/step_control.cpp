@@ -86,7 +86,11 @@ std::string StepControl::too_large(double stable) const {
        << " s of this mesh and tissue, and the run would be unstable. Ways out: a smaller step, or \"auto\", which "
           "takes "
        << kSafety << " h*; the integrator ";
-  if (drag_ == Drag::lags) text << "\"semi_implicit\" where viscosity is what limits h*, or ";
+  if (drag_ == Drag::lags) {
+    text << "\"semi_implicit\", or drag_stages of 2 to " << kMostDragStages
+         << " beside instruments, where viscosity is what limits "
+         << "h*; ";
+  }
   text << "\"implicit\", which is stable at any step; less viscosity or more nodal damping, which raise h*; a larger "
        << "density, or mass scaling of the smallest tets, where the inertia of the tissue does not matter, h* growing "
        << "with its square root";
