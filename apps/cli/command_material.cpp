@@ -102,11 +102,12 @@ void add_material(CLI::App& program, Action& action) {
       ->type_name("LIST")
       ->delimiter(',');
   command->add_flag("--stress", options->stress, "--to is nominal stress [Pa]: creep with --hold");
+  command->add_flag("--force", options->force, "of indentation: --to is force [N]: creep with --hold");
   command
-      ->add_option("--rate", options->rate,
-                   "of the driven value [1/s, Pa/s, deg/s, mm/s]; default 0.01, of torsion and indentation 1, with "
-                   "--stress a second for each "
-                   "end")
+      ->add_option(
+          "--rate", options->rate,
+          "of the driven value [1/s, Pa/s, deg/s, mm/s, N/s]; default 0.01, of torsion and indentation 1, with "
+          "--stress and --force a second for each end")
       ->type_name("R")
       ->check(CLI::PositiveNumber);
   command->add_option("--hold", options->hold, "time for which the last value is held [s]; default 0")

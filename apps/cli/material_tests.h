@@ -19,7 +19,7 @@ struct MaterialOptions {
       stretch;                          ///< of torsion, the first of indentation, the last of oscillation too
   std::optional<std::string> indenter;  ///< of indentation
   std::optional<double> thickness_mm, diameter_mm, half_angle_deg;
-  bool bonded = false;
+  bool bonded = false, force = false;
   std::optional<double> from_hz, to_hz;  ///< of oscillation
   std::optional<std::string> mode;
   std::string csv, picture;

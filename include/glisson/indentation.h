@@ -3,6 +3,7 @@
 //   const Indenter ball{.shape = IndenterShape::sphere, .radius = 0.003};
 //   const std::vector<double> times{1.0, 2.0, 30.0}, depths{0.001, 0.002, 0.002};                 two seconds down, then held
 //   indentation(tissue, ball, {.thickness = 0.01}, times, depths)                                  [N], one a time
+//   indentation_depths(tissue, ball, {.thickness = 0.01}, times, forces)                           [m], under forces
 #pragma once
 
 #include <limits>
@@ -56,5 +57,16 @@ struct Layer {
 /// Costs some tens of solutions of 250 to 1000 unknowns: 0.05 to 0.5 s.
 std::vector<double> indentation(const Tissue& tissue, const Indenter& indenter, const Layer& layer,
                                 std::span<const double> times, std::span<const double> depths);
+
+/// The depth of an indenter under given forces: creep. Indentation solved for it, with its limits: the elastic force F₀ follows
+/// from F by the branches and viscosity, linearly, and the depth from F₀. Branches are exact while the contact grows or rests.
+/// @param times   [s], ascending, > 0; before them the indenter is at rest on the surface, at time 0
+/// @param forces  [N], one a time, > 0 where it presses; in between they change smoothly, without overshoot. A force that
+///                comes at once is one at a first time that is far below the others
+/// @return [m], one a time
+/// @throws as indentation; std::runtime_error where a layer does not bear the forces
+/// Costs some solutions for a law, one after the other until the mesh fits the depth.
+std::vector<double> indentation_depths(const Tissue& tissue, const Indenter& indenter, const Layer& layer,
+                                       std::span<const double> times, std::span<const double> forces);
 
 }  // namespace glisson::fit

@@ -201,10 +201,6 @@ void finish_data(DataSpec& x, const Node& table, const Place& place) {
                    "{ kind = \"flat\", radius_mm = … } or { kind = \"cone\", half_angle_deg = … }");
   if (!x.indents() && x.indenter)
     place.complain(*table.find("indenter"), "indenter", "belongs to test = \"indentation\"");
-  if (x.deforming == Deforming::indentation && x.test == LabTest::creep)
-    place.complain(*table.find("mode"), "mode",
-                   "an indentation is fitted as it is driven by its depth; give test = \"indentation\" with columns of "
-                   "depth, force and time");
   if (x.prestretch != 1.0 && x.test != LabTest::oscillation)
     place.complain(*table.find("prestretch"), "prestretch", "belongs to test = \"oscillation\"");
   if (x.files.empty()) place.complain(*table.find("files"), "files", "is empty; name at least one file");

@@ -32,6 +32,11 @@ double thick_layer_force(const Indenter& indenter, double depth) {
   return 4.0 / 3.0 * std::sqrt(indenter.radius * depth) * depth;
 }
 
+double depth_power(IndenterShape shape) {
+  if (shape == IndenterShape::flat) return 1.0;
+  return shape == IndenterShape::cone ? 2.0 : 1.5;
+}
+
 double thick_layer_modulus(const Indenter& indenter, double depth, double force) {
   return 0.75 * force / thick_layer_force(indenter, depth);
 }

@@ -18,6 +18,9 @@ double contact_radius(const Indenter& indenter, double depth);
 ///   flat 2 a d,   sphere 4/3 √R d^(3/2) (Hertz),   cone 2/π d² tan θ
 double thick_layer_force(const Indenter& indenter, double depth);
 
+/// The power of the depth in that: 1, 3/2, 2.
+double depth_power(IndenterShape shape);
+
 /// Young's modulus of a thick incompressible layer of little strain that answers with a force [Pa].
 double thick_layer_modulus(const Indenter& indenter, double depth, double force);
 
