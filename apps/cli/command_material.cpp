@@ -135,6 +135,10 @@ void add_material(CLI::App& program, Action& action) {
       ->type_name("X");
   command->add_option("--indenter", options->indenter, "of indentation: sphere, the default, flat or cone")
       ->type_name("WORD");
+  command
+      ->add_option("--edge-radius-mm", options->edge_radius_mm,
+                   "of a flat punch: of its rounded edge; default 0, sharp")
+      ->type_name("R");
   command->add_option("--half-angle-deg", options->half_angle_deg, "of a cone: between axis and side; default 60")
       ->type_name("A");
   command->add_option("--thickness-mm", options->thickness_mm, "of indentation: of the layer; default a half-space")

@@ -63,6 +63,8 @@ void refuse_strangers(const MaterialOptions& o) {
            {"--indenter", o.indenter.has_value(), indentation, "--test indentation"},
            {"--half-angle-deg", o.half_angle_deg.has_value(), indentation && o.indenter.value_or("") == "cone",
             "--test indentation --indenter cone"},
+           {"--edge-radius-mm", o.edge_radius_mm.has_value(), indentation && o.indenter.value_or("") == "flat",
+            "--test indentation --indenter flat"},
            {"--thickness-mm", o.thickness_mm.has_value(), indentation, "--test indentation"},
            {"--diameter-mm", o.diameter_mm.has_value(), indentation, "--test indentation"},
            {"--bonded", o.bonded, indentation, "--test indentation"},
@@ -227,6 +229,7 @@ std::pair<fit::Indenter, std::string> indenter_of(const MaterialOptions& o) {
     throw std::invalid_argument("--indenter " + shape + ": there is no such word; allowed: sphere, flat, cone");
   indenter.shape = shape == "flat" ? fit::IndenterShape::flat : fit::IndenterShape::sphere;
   indenter.radius = 1e-3 * above_zero("--radius-mm", o.radius_mm.value_or(kOwnSize));
+  indenter.edge_radius = 1e-3 * o.edge_radius_mm.value_or(0.0);
   return {indenter,
           fmt::format("a {} of {:g} mm radius", shape == "flat" ? "flat punch" : shape, 1e3 * indenter.radius)};
 }

@@ -16,7 +16,7 @@ namespace glisson::fit {
 
 /// What an indenter is.
 enum class IndenterShape {
-  flat,    ///< a face with a sharp edge
+  flat,    ///< a face with a sharp edge, or a rounded one
   sphere,  ///< a ball, on a shaft as wide as itself
   cone     ///< with a sharp tip
 };
@@ -27,7 +27,10 @@ struct Indenter {
   double radius = 0.0;      ///< of a sphere or a flat punch [m], > 0
   double half_angle = 0.0;  ///< of a cone, between its axis and its side, 0 to π/2 [rad]
   bool bonded = false;
+  double edge_radius = 0.0;  ///< of a flat punch: of its rounded edge, 0 to `radius` [m]; 0: sharp
 
+  /// A flat face with a sharp edge.
+  bool sharp() const { return shape == IndenterShape::flat && !(edge_radius > 0.0); }
   bool operator==(const Indenter&) const = default;
 };
 
@@ -45,8 +48,9 @@ struct Layer {
 /// The force of an indenter, in statics but for what the tissue's branches and viscosity remember.
 ///
 /// At little strain and depth it is Hertz's, Boussinesq's and Sneddon's [Sneddon1965] within 1 %, on thin bonded layers those of
-/// [Hayes1972], for every Poisson ratio. Strains are finite. A flat punch without friction can be followed while its edge slides by less
-/// than 5 % of its radius, a bonded one to a third of the thickness or so. Branches are exact while the depth grows or rests,
+/// [Hayes1972], for every Poisson ratio. Strains are finite. A sharp flat punch without friction can be followed while tissue slides by less
+/// than 5 % of its radius past its edge, where strain is singular; with a rounded edge to half its radius and more, a bonded one to a
+/// third of the thickness or so. Branches are exact while the depth grows or rests,
 /// where κ ≫ μ or they hold all of the stress, viscosity where strains are small and κ ≫ μ [LeeRadok1960]; while the indenter
 /// withdraws both are approximations. It does not pull.
 /// @param tissue  hyperelastic and isotropic

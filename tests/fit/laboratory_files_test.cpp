@@ -153,6 +153,8 @@ TEST_F(Written, WhatCannotBeIsSaid) {
               AllOf(HasSubstr("a shear of 20 at the surface"),
                     HasSubstr("columns.angle = { name = \"angle (rad)\", unit = \"deg\" }")));
   EXPECT_THAT(fault("test = \"torsion\"\n", twisted), HasSubstr("torsion asks for [specimen] kind = \"cylinder\""));
+  EXPECT_THAT(fault("test = \"creep\"\nmode = \"torsion\"\n", twisted, cylinder),
+              HasSubstr("driven by its angle; give test = \"torsion\""));
   EXPECT_THAT(fault("test = \"stretching\"\n", good), HasSubstr("\"tension\""));
 }
 

@@ -96,8 +96,10 @@ class UnitCheck {
   void complain(const std::string& what) { problems_.add({std::max(test_.names_line, 1U), 1, {}}, "", what); }
 
   std::string read_as(const Source& source, double value) const {
-    return source.title + ", read in " + std::string(source.unit->name) + ", goes to " +
-           brief(value / source.unit->factor) + " " + std::string(source.unit->name);
+    const bool pure = source.unit->name == "-";
+    return source.title + ", read " +
+           (pure ? std::string("as a pure number") : "in " + std::string(source.unit->name)) + ", goes to " +
+           (pure ? brief(value) : in_unit(value, *source.unit));
   }
 
   /// The number as the file has it: without the height or area that turned strain into way, stress into force.

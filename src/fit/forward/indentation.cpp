@@ -19,7 +19,12 @@ void require_above_zero(const char* name, double value, const char* unit) {
 }
 
 void require_shape(const Indenter& indenter) {
-  if (indenter.shape != IndenterShape::cone) return require_above_zero("radius", indenter.radius, " m");
+  if (indenter.shape != IndenterShape::cone) require_above_zero("radius", indenter.radius, " m");
+  if (!(indenter.edge_radius >= 0.0 && indenter.edge_radius <= indenter.radius))
+    throw std::invalid_argument("indentation: edge_radius = " + detail::number_text(indenter.edge_radius) +
+                                " m is outside the allowed range, 0 to the punch's radius of " +
+                                detail::number_text(indenter.radius) + " m");
+  if (indenter.shape != IndenterShape::cone) return;
   if (indenter.half_angle > 0.0 && indenter.half_angle < 0.5 * std::numbers::pi) return;
   throw std::invalid_argument("indentation: half_angle = " + detail::number_text(indenter.half_angle) +
                               " rad is outside the allowed range, 0 to π/2");

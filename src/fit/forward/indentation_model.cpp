@@ -19,9 +19,9 @@ constexpr double kBeyondMeasured = 1.1;  ///< of a creep: how far beyond what it
 constexpr double kFewest = 4.0;          ///< steps between two rows of a creep
 
 /// Depths at which a law is solved, of the deepest. Below the first a mesh for the deepest is too coarse.
-std::vector<double> depths_of(IndenterShape shape) {
-  if (shape == IndenterShape::flat) return {0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.625, 0.75, 0.875, 1.0};
-  if (shape == IndenterShape::cone) return {0.15, 0.22, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
+std::vector<double> depths_of(const Indenter& indenter) {
+  if (indenter.sharp()) return {0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.625, 0.75, 0.875, 1.0};
+  if (indenter.shape == IndenterShape::cone) return {0.15, 0.22, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
   return {0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.625, 0.75, 0.875, 1.0};
 }
 
@@ -65,7 +65,7 @@ class ElasticForce {
  private:
   static std::vector<double> places(const Indenter& indenter, double deepest) {
     std::vector<double> list{0.0};
-    for (const double part : depths_of(indenter.shape)) list.push_back(part * deepest);
+    for (const double part : depths_of(indenter)) list.push_back(part * deepest);
     return list;
   }
   /// A sphere of little depth meets a thick layer of little strain: Hertz's.
@@ -216,7 +216,7 @@ std::vector<double> IndentationModel::factors(const Indenting& own, std::span<co
   const HyperelasticLaw& law = law_of(tissue);
   IndentedLayer layer(layer_, own.indenter, law, own.deepest, options_.fineness);
   std::vector<double> list;
-  for (const double part : depths_of(own.indenter.shape)) {
+  for (const double part : depths_of(own.indenter)) {
     const double depth = part * own.deepest;
     list.push_back(std::log(layer.press(depth) / (plane_modulus(law) * thick_layer_force(own.indenter, depth))));
   }
