@@ -335,6 +335,8 @@ TEST(IndentationFit, NamesWhatCannotBe) {
   EXPECT_THAT(fault(kFit, "test = \"indentation\"",
                     "test = \"indentation\"\ncolumns.force = { name = \"force\", unit = \"kN\" }"),
               HasSubstr("soft tissues have"));
+  EXPECT_THAT(fault(kFit, "test = \"indentation\"", "test = \"creep\""),
+              HasSubstr("asks for mode = \"indentation\" in a test of creep"));
   const std::string creep = "test = \"creep\"\nmode = \"indentation\"\n";
   EXPECT_THAT(fault(kFit, "test = \"indentation\"", creep + "contact.kind = \"detect\""),
               HasSubstr("a creep is driven by its load"));

@@ -210,7 +210,10 @@ void finish_data(DataSpec& x, const Node& table, const Place& place) {
                    "indentation asks for an indenter; give indenter = { kind = \"sphere\", radius_mm = … }, "
                    "{ kind = \"flat\", radius_mm = … } or { kind = \"cone\", half_angle_deg = … }");
   if (!x.indents() && x.indenter)
-    place.complain(*table.find("indenter"), "indenter", "belongs to test = \"indentation\"");
+    place.complain(*table.find("indenter"), "indenter",
+                   names_its_deformation(x.test)
+                       ? "belongs to test = \"indentation\""
+                       : "asks for mode = \"indentation\" in a test of " + std::string(word_of(x.test)));
   if (x.test == LabTest::creep && x.deforming == Deforming::torsion)
     place.complain(*table.find("mode"), "mode",
                    "a torsion is fitted as it is driven by its angle; give test = \"torsion\" with columns of angle, "
