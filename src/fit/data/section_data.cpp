@@ -122,7 +122,8 @@ SectionSpec indenter_kind(IndenterShape shape, const char* name, const char* hel
     });
   }
   s.choice<bool>("contact", &Indenter::bonded,
-                 {{"frictionless", false, "tissue slides along it; under a sharp edge for small depths"},
+                 {{"frictionless", false,
+                   flat ? "tissue slides along it; under a sharp edge for small depths" : "tissue slides along it"},
                   {"bonded", true, "tissue stays where it touches first"}},
                  "how tissue meets it");
   return s.spec();
