@@ -102,11 +102,12 @@ void add_material(CLI::App& program, Action& action) {
       ->type_name("LIST")
       ->delimiter(',');
   command->add_flag("--stress", options->stress, "--to is nominal stress [Pa]: creep with --hold");
+  command->add_flag("--force", options->force, "of indentation: --to is force [N]: creep with --hold");
   command
-      ->add_option("--rate", options->rate,
-                   "of the driven value [1/s, Pa/s, deg/s, mm/s]; default 0.01, of torsion and indentation 1, with "
-                   "--stress a second for each "
-                   "end")
+      ->add_option(
+          "--rate", options->rate,
+          "of the driven value [1/s, Pa/s, deg/s, mm/s, N/s]; default 0.01, of torsion and indentation 1, with "
+          "--stress and --force a second for each end")
       ->type_name("R")
       ->check(CLI::PositiveNumber);
   command->add_option("--hold", options->hold, "time for which the last value is held [s]; default 0")
@@ -134,6 +135,10 @@ void add_material(CLI::App& program, Action& action) {
       ->type_name("X");
   command->add_option("--indenter", options->indenter, "of indentation: sphere, the default, flat or cone")
       ->type_name("WORD");
+  command
+      ->add_option("--edge-radius-mm", options->edge_radius_mm,
+                   "of a flat punch: of its rounded edge; default 0, sharp")
+      ->type_name("R");
   command->add_option("--half-angle-deg", options->half_angle_deg, "of a cone: between axis and side; default 60")
       ->type_name("A");
   command->add_option("--thickness-mm", options->thickness_mm, "of indentation: of the layer; default a half-space")

@@ -63,9 +63,12 @@ void refuse_strangers(const MaterialOptions& o) {
            {"--indenter", o.indenter.has_value(), indentation, "--test indentation"},
            {"--half-angle-deg", o.half_angle_deg.has_value(), indentation && o.indenter.value_or("") == "cone",
             "--test indentation --indenter cone"},
+           {"--edge-radius-mm", o.edge_radius_mm.has_value(), indentation && o.indenter.value_or("") == "flat",
+            "--test indentation --indenter flat"},
            {"--thickness-mm", o.thickness_mm.has_value(), indentation, "--test indentation"},
            {"--diameter-mm", o.diameter_mm.has_value(), indentation, "--test indentation"},
            {"--bonded", o.bonded, indentation, "--test indentation"},
+           {"--force", o.force, indentation, "--test indentation"},
            {"--length-mm", o.length_mm.has_value(), torsion, "--test torsion"},
            {"--stretch", o.stretch.has_value(), torsion || oscillation, "--test torsion and --test oscillation"},
            {"--from-hz", o.from_hz.has_value(), oscillation, "--test oscillation"},
@@ -226,6 +229,7 @@ std::pair<fit::Indenter, std::string> indenter_of(const MaterialOptions& o) {
     throw std::invalid_argument("--indenter " + shape + ": there is no such word; allowed: sphere, flat, cone");
   indenter.shape = shape == "flat" ? fit::IndenterShape::flat : fit::IndenterShape::sphere;
   indenter.radius = 1e-3 * above_zero("--radius-mm", o.radius_mm.value_or(kOwnSize));
+  indenter.edge_radius = 1e-3 * o.edge_radius_mm.value_or(0.0);
   return {indenter,
           fmt::format("a {} of {:g} mm radius", shape == "flat" ? "flat punch" : shape, 1e3 * indenter.radius)};
 }
@@ -235,19 +239,27 @@ MaterialResult indented(const MaterialOptions& o, const Tissue& tissue) {
   fit::Layer layer;
   if (o.thickness_mm) layer.thickness = 1e-3 * above_zero("--thickness-mm", *o.thickness_mm);
   if (o.diameter_mm) layer.radius = 0.5e-3 * above_zero("--diameter-mm", *o.diameter_mm);
-  Timeline line = timeline(o, 0.0, o.to.empty() ? std::vector{kOwnDepth} : o.to, o.rate.value_or(kOwnDepthRate));
-  std::vector<double> depths = line.values;
-  for (double& d : depths) d *= 1e-3;
+  if (o.force && o.to.empty()) throw std::invalid_argument("--force asks for --to, the forces to go to [N]");
+  Timeline line =
+      timeline(o, 0.0, o.to.empty() ? std::vector{kOwnDepth} : o.to, o.rate.value_or(o.force ? 0.0 : kOwnDepthRate));
   MaterialResult result;
   try {
-    std::vector<double> forces = fit::indentation(tissue, indenter, layer, line.times, depths);
-    result.columns = {{"time", "s", line.times}, {"depth", "mm", line.values}, {"force", "N", std::move(forces)}};
+    std::vector<double> depths = line.values, forces = line.values;  // [mm], [N]
+    if (o.force) {
+      depths = fit::indentation_depths(tissue, indenter, layer, line.times, forces);
+      for (double& d : depths) d *= 1e3;
+    } else {
+      for (double& d : line.values) d *= 1e-3;
+      forces = fit::indentation(tissue, indenter, layer, line.times, line.values);
+    }
+    result.columns = {{"time", "s", line.times}, {"depth", "mm", std::move(depths)}, {"force", "N", std::move(forces)}};
   } catch (const std::runtime_error& error) {
     result.trouble = error.what();
     return result;
   }
   const bool held = o.hold.value_or(0.0) > 0.0;
   result.charts = {{held ? "Force against time" : "Force against depth", "", held ? std::size_t{0} : 1, {2}}};
+  if (o.force && held) result.charts = {{"Depth against time", "", 0, {1}}};
   result.words = (o.thickness_mm ? fmt::format("A layer of {:g} mm, bonded to its floor, under ", *o.thickness_mm)
                                  : std::string("A half-space under ")) +
                  words + (o.bonded ? ", bonded to it." : ", without friction.");

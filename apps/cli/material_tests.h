@@ -18,8 +18,8 @@ struct MaterialOptions {
   std::optional<double> radius_mm, length_mm,
       stretch;                          ///< of torsion, the first of indentation, the last of oscillation too
   std::optional<std::string> indenter;  ///< of indentation
-  std::optional<double> thickness_mm, diameter_mm, half_angle_deg;
-  bool bonded = false;
+  std::optional<double> thickness_mm, diameter_mm, half_angle_deg, edge_radius_mm;
+  bool bonded = false, force = false;
   std::optional<double> from_hz, to_hz;  ///< of oscillation
   std::optional<std::string> mode;
   std::string csv, picture;

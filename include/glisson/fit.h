@@ -90,6 +90,8 @@ struct Measurement {
   bool operator==(const Measurement&) const = default;
   /// 1 where a positive displacement extends the specimen, −1 where it compresses it.
   double outward() const { return deforming == Deforming::compression ? -1.0 : 1.0; }
+  /// A creep: a load is driven, and the strain or depth answers.
+  bool loaded() const { return measured == Measured::strain; }
   bool is_press() const { return test == LabTest::compression && measured == Measured::nominal && !point; }
 };
 
@@ -115,7 +117,7 @@ struct Parameter {
 ///   torsion                                    angle [rad]                              torque [N m], or axial force [N],
 ///                                                                                       positive as it pushes the plates apart
 ///   creep                                      nominal stress × area [N]                strain × height [m]
-///   indentation                                depth [m]                                force [N]
+///   indentation                                depth [m]                                force [N]; of a creep the reverse
 ///   oscillation                                frequency [Hz], `time` is the row        storage or loss modulus [Pa]
 struct Curve {
   std::string name;                  ///< unique among the curves of a fit, e.g. the file's stem

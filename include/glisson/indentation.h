@@ -3,6 +3,7 @@
 //   const Indenter ball{.shape = IndenterShape::sphere, .radius = 0.003};
 //   const std::vector<double> times{1.0, 2.0, 30.0}, depths{0.001, 0.002, 0.002};                 two seconds down, then held
 //   indentation(tissue, ball, {.thickness = 0.01}, times, depths)                                  [N], one a time
+//   indentation_depths(tissue, ball, {.thickness = 0.01}, times, forces)                           [m], under forces
 #pragma once
 
 #include <limits>
@@ -15,7 +16,7 @@ namespace glisson::fit {
 
 /// What an indenter is.
 enum class IndenterShape {
-  flat,    ///< a face with a sharp edge
+  flat,    ///< a face with a sharp edge, or a rounded one
   sphere,  ///< a ball, on a shaft as wide as itself
   cone     ///< with a sharp tip
 };
@@ -26,7 +27,10 @@ struct Indenter {
   double radius = 0.0;      ///< of a sphere or a flat punch [m], > 0
   double half_angle = 0.0;  ///< of a cone, between its axis and its side, 0 to π/2 [rad]
   bool bonded = false;
+  double edge_radius = 0.0;  ///< of a flat punch: of its rounded edge, 0 to `radius` [m]; 0: sharp
 
+  /// A flat face with a sharp edge.
+  bool sharp() const { return shape == IndenterShape::flat && !(edge_radius > 0.0); }
   bool operator==(const Indenter&) const = default;
 };
 
@@ -44,8 +48,9 @@ struct Layer {
 /// The force of an indenter, in statics but for what the tissue's branches and viscosity remember.
 ///
 /// At little strain and depth it is Hertz's, Boussinesq's and Sneddon's [Sneddon1965] within 1 %, on thin bonded layers those of
-/// [Hayes1972], for every Poisson ratio. Strains are finite. A flat punch without friction can be followed while its edge slides by less
-/// than 5 % of its radius, a bonded one to a third of the thickness or so. Branches are exact while the depth grows or rests,
+/// [Hayes1972], for every Poisson ratio. Strains are finite. A sharp flat punch without friction can be followed while tissue slides by less
+/// than 5 % of its radius past its edge, where strain is singular; with a rounded edge to half its radius and more, a bonded one to a
+/// third of the thickness or so. Branches are exact while the depth grows or rests,
 /// where κ ≫ μ or they hold all of the stress, viscosity where strains are small and κ ≫ μ [LeeRadok1960]; while the indenter
 /// withdraws both are approximations. It does not pull.
 /// @param tissue  hyperelastic and isotropic
@@ -56,5 +61,16 @@ struct Layer {
 /// Costs some tens of solutions of 250 to 1000 unknowns: 0.05 to 0.5 s.
 std::vector<double> indentation(const Tissue& tissue, const Indenter& indenter, const Layer& layer,
                                 std::span<const double> times, std::span<const double> depths);
+
+/// The depth of an indenter under given forces: creep. Indentation solved for it, with its limits: the elastic force F₀ follows
+/// from F by the branches and viscosity, linearly, and the depth from F₀. Branches are exact while the contact grows or rests.
+/// @param times   [s], ascending, > 0; before them the indenter is at rest on the surface, at time 0
+/// @param forces  [N], one a time, > 0 where it presses; in between they change smoothly, without overshoot. A force that
+///                comes at once is one at a first time that is far below the others
+/// @return [m], one a time
+/// @throws as indentation; std::runtime_error where a layer does not bear the forces
+/// Costs some solutions for a law, one after the other until the mesh fits the depth.
+std::vector<double> indentation_depths(const Tissue& tissue, const Indenter& indenter, const Layer& layer,
+                                       std::span<const double> times, std::span<const double> forces);
 
 }  // namespace glisson::fit

@@ -92,11 +92,12 @@ double modulus_of(const Curve& c, double area, double height) {
   }
   if (!(fd > 0.0)) return 0.0;
   if (m.indenter) {  // by the closed form, at the deepest
-    const auto far = static_cast<std::size_t>(std::max_element(c.displacement.begin(), c.displacement.end()) -
-                                              c.displacement.begin());
-    return std::max(0.0, thick_layer_modulus(*m.indenter, c.displacement[far], c.force[far]));
+    const std::vector<double>&depths = m.loaded() ? c.force : c.displacement,
+          &forces = m.loaded() ? c.displacement : c.force;
+    const auto far = static_cast<std::size_t>(std::max_element(depths.begin(), depths.end()) - depths.begin());
+    return std::max(0.0, thick_layer_modulus(*m.indenter, depths[far], forces[far]));
   }
-  const double stiffness = m.measured == Measured::strain ? dd / fd : fd / dd;
+  const double stiffness = m.loaded() ? dd / fd : fd / dd;
   switch (m.deforming) {
     case Deforming::torsion:  // G = 2 M H / (π R⁴ φ) and A = π R²
       return 3.0 * stiffness * 2.0 * std::numbers::pi * height / (area * area);
@@ -109,6 +110,30 @@ double modulus_of(const Curve& c, double area, double height) {
     default:
       return stiffness * height / area;
   }
+}
+
+/// What a curve shows of the tissue's modulus, beside where it comes from.
+struct ShownModulus {
+  const Curve* curve;
+  std::string file;
+  double modulus;
+};
+
+/// Tests of one tissue differ by how fast and how far they go, not as a slip of a unit does.
+/// @throws SceneError naming the one that stands alone
+void require_one_tissue(std::vector<ShownModulus> shown) {
+  constexpr double kMostApart = 300.0;
+  if (shown.size() < 2) return;
+  std::sort(shown.begin(), shown.end(), [](const auto& a, const auto& b) { return a.modulus < b.modulus; });
+  const ShownModulus &least = shown.front(), &most = shown.back();
+  const double ratio = most.modulus / least.modulus, middle = shown[shown.size() / 2].modulus;
+  if (!(ratio > kMostApart)) return;
+  const bool upper = most.modulus / middle >= middle / least.modulus && shown.size() > 2;
+  const ShownModulus &one = upper ? most : least, &other = upper ? least : most;
+  throw SceneError(one.file + ":1:1: \"" + one.curve->name + "\" shows a modulus of " + brief(one.modulus) +
+                   " Pa at small strain, \"" + other.curve->name + "\" one of " + brief(other.modulus) +
+                   " Pa; of one tissue they are within " + brief(kMostApart) +
+                   " times of each other. Check the units of both files, or give unlikely = true in one's [[data]]");
 }
 
 }  // namespace
@@ -129,6 +154,7 @@ std::vector<Curve> FitCurves::chosen(const std::vector<std::size_t>& indices) co
 
 FitCurves read_curves(const FitSpec& spec, const SpecimenSize& size, const std::filesystem::path& base) {
   FitCurves all;
+  std::vector<std::pair<std::string, double>> shown;  // file and modulus of each curve; 0: nothing to compare
   for (std::size_t d = 0; d < spec.data.size(); ++d) {
     DataSpec data = spec.data[d];
     if (data.group.empty()) data.group = default_group(spec.data, d);
@@ -137,12 +163,21 @@ FitCurves read_curves(const FitSpec& spec, const SpecimenSize& size, const std::
         p.curve.group = part.group;
         p.curve.held_out = part.held_out;
         p.curve.weight = part.weight;
+        const double area = part.size.area.value_or(size.area.value_or(0.0)),
+                     height = part.size.height.value_or(size.height.value_or(0.0));
+        const bool known = p.curve.measurement.indenter || (area > 0.0 && height > 0.0);
+        shown.emplace_back(p.account.file.string(), known && !part.unlikely ? modulus_of(p.curve, area, height) : 0.0);
         all.curves.push_back(std::move(p.curve));
         all.accounts.push_back(p.account.text());
       }
     }
   }
   make_unique(all.curves);
+  std::vector<ShownModulus> moduli;
+  for (std::size_t c = 0; c < all.curves.size(); ++c) {
+    if (shown[c].second > 0.0) moduli.push_back({&all.curves[c], shown[c].first, shown[c].second});
+  }
+  require_one_tissue(std::move(moduli));
   return all;
 }
 
@@ -194,7 +229,7 @@ Validation errors_in_common_unit(const std::vector<Curve>& curves, std::vector<P
 
 double initial_modulus(const std::vector<Curve>& curves, double area, double height) {
   if (!of_one_kind(curves) || curves.front().measurement.deforming != Deforming::compression ||
-      curves.front().measurement.measured == Measured::strain) {
+      curves.front().measurement.loaded()) {
     double logs = 0.0;
     int count = 0;
     for (const Curve& c : curves) {

@@ -43,6 +43,7 @@ std::string fit_reference_markdown() {
   text += section_text(column_section(), "`[data.columns.NAME]`");
   text += section_text(text_section(), "`[data.text]`");
   text += section_text(contact_section(), "`[data.contact]`");
+  text += section_text(indenter_section(), "`[data.indenter]`");
   text += section_text(cycle_section(), "`[data.cycle]`");
   text += section_text(crop_section(), "`[data.crop]`");
   text += section_text(filter_section(), "`[data.filter]`");

@@ -105,7 +105,7 @@ class Run {
 
 /// Fits every law of the library from a few starts; the best of each size, of the invariants and of the stretches, go on.
 std::vector<LawSpec> Run::discover(FitResult& result) {
-  constexpr int kStarts = 4;
+  constexpr int kStarts = 4;  // of a sum of invariants; one of stretches has an optimum for each order of its terms
   const SpecimenSize size = size_of(spec_);
   if (!size.area || plates_of(*spec_.specimen))
     throw std::invalid_argument(
@@ -114,7 +114,6 @@ std::vector<LawSpec> Run::discover(FitResult& result) {
   const std::vector<TermLaw> all =
       term_laws(initial_modulus(curves_.chosen(curves_.indices(false)), *size.area, *size.height), options_.discover);
   FitSpec quick = spec_;
-  quick.search.starts = kStarts;
   FitRun silent = options_;
   silent.progress = {}, silent.forecast = {}, silent.remember = {}, silent.memory = {};
   for (std::size_t i = 0; i < all.size() && !stopped(); ++i) {
@@ -125,6 +124,7 @@ std::vector<LawSpec> Run::discover(FitResult& result) {
                         std::numeric_limits<double>::infinity(),
                         -std::numeric_limits<double>::infinity(),
                         false};
+    quick.search.starts = all[i].stretches ? kStarts * all[i].terms * all[i].terms : kStarts;
     try {
       LawSearch search(quick, all[i].law, curves_, silent);
       LawMemory memory;

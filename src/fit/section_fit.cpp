@@ -90,9 +90,24 @@ void check_layer(const FitSpec& fit, const DataSpec& data, const Node& own, cons
                       "[specimen] kind = \"cylinder\", \"block\" or \"point\"");
 }
 
+/// What plates that the faces cling to cannot do. @return what is wrong and the way out; empty: nothing
+std::string fault_of_plates(const DataSpec& data, Faces faces) {
+  const auto how = data.deforming.value_or(data.test == LabTest::tension ? Deforming::tension : Deforming::compression);
+  const bool two_axes = data.test == LabTest::equibiaxial || data.test == LabTest::planar ||
+                        how == Deforming::equibiaxial || how == Deforming::planar;
+  if (two_axes) return "is not made between plates; set faces = \"smooth\" in [specimen]";
+  if (faces != Faces::friction) return {};
+  if (how == Deforming::tension)
+    return "pulls, and plates pull only what is glued to them; set faces = \"bonded\" in [specimen]";
+  if (data.test == LabTest::cyclic && how == Deforming::compression)
+    return "goes back, and friction is that of a compression that goes on; give test = \"compression\" with "
+           "cycle.part = \"loading\", or set faces = \"bonded\" or \"smooth\" in [specimen]";
+  return {};
+}
+
 /// Tests that a scene, a specimen that sticks, or a point cannot make.
 void check_tests(const FitSpec& fit, const Node& table, const Place& place) {
-  const bool sticks = fit.specimen && plates_of(*fit.specimen);
+  const std::optional<Plates> plates = fit.specimen ? plates_of(*fit.specimen) : std::nullopt;
   const bool round = fit.specimen && fit.specimen->shape == SpecimenShape::cylinder;
   for (std::size_t i = 0; i < fit.data.size(); ++i) {
     const DataSpec& data = fit.data[i];
@@ -101,12 +116,12 @@ void check_tests(const FitSpec& fit, const Node& table, const Place& place) {
     check_layer(fit, data, own, here);
     if (data.test == LabTest::compression) continue;
     const std::string test = "test = \"" + std::string(word_of(data.test)) + "\" ";
+    const std::string fault = plates ? fault_of_plates(data, plates->faces) : std::string{};
     if (!fit.specimen)
       here.complain(*own.find("test"), "test",
                     test + "asks for a [specimen]; a scene is driven by its tool, which is \"compression\"");
-    else if (sticks && data.test != LabTest::torsion && data.test != LabTest::oscillation)
-      here.complain(*own.find("test"), "test",
-                    test + "is fitted for smooth faces; set faces = \"smooth\" in [specimen]");
+    else if (!fault.empty())
+      here.complain(*own.find("test"), "test", test + fault);
     const bool twisted = data.test == LabTest::torsion || data.deforming == Deforming::torsion;
     if (fit.specimen && twisted && !round)
       here.complain(*own.find("test"), "test", "torsion asks for [specimen] kind = \"cylinder\"");

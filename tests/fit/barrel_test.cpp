@@ -1,9 +1,11 @@
-// barrel_test.cpp — a cylinder between plates with friction against exact states, closed forms and the limits of its law.
+// barrel_test.cpp — a cylinder between plates that it clings to, pressed and pulled, against exact states, closed forms and the
+// limits of its law.
 #include "fit/forward/barrel.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "fit/forward/barrel_model.h"
@@ -31,12 +33,13 @@ std::vector<double> factors(const HyperelasticLaw& law, Faces faces, Grip grip, 
   std::vector<double> all;
   for (const double strain : strains) {
     const double pressure = homogeneous_pressure(law, strain);
-    all.push_back(barrel.press(strain * kHeight, pressure) / (pressure * std::numbers::pi * radius * radius));
+    all.push_back(barrel.press(strain * kHeight, std::abs(pressure)) / (pressure * std::numbers::pi * radius * radius));
   }
   return all;
 }
 
 const std::vector<double> kStrains{0.1, 0.2, 0.3, 0.4, 0.5, 0.58, 0.65};
+const std::vector<double> kPulls{-0.1, -0.2, -0.4, -0.7, -1.0};  ///< to twice the height
 
 // Smooth faces: the exact state is homogeneous, and elements of every law hold it to the rounding of Newton's last step.
 TEST(Barrel, OnSmoothFacesIsHomogeneous) {
@@ -45,6 +48,7 @@ TEST(Barrel, OnSmoothFacesIsHomogeneous) {
                                               VerondaWestmann{.c = 1000, .b = 0.7, .bulk_modulus = 1e6}}) {
     for (const double f : factors(law, Faces::smooth, {}, kStrains)) EXPECT_NEAR(f, 1.0, 1e-8) << law_name(law);
     for (const double f : factors(law, Faces::friction, {}, kStrains)) EXPECT_NEAR(f, 1.0, 1e-8) << law_name(law);
+    for (const double f : factors(law, Faces::smooth, {}, kPulls)) EXPECT_NEAR(f, 1.0, 1e-8) << law_name(law);
   }
 }
 
@@ -94,6 +98,59 @@ TEST(Barrel, FrictionLeadsFromSmoothToBonded) {
   }
 }
 
+// At little strain a bond knows no sign: pulled as much as pressed it resists alike, thick or thin, and the difference falls with
+// the strain. What the film of the last test but one says of a disk that is pressed holds of one that is pulled.
+TEST(Barrel, BondedPullsAsItPressesAtLittleStrain) {
+  for (const double radius : {kRadius, 4.0 * kRadius}) {
+    const auto both = [&](double strain) {
+      return factors(kYeoh, Faces::bonded, {}, {-strain}, radius).front() /
+             factors(kYeoh, Faces::bonded, {}, {strain}, radius).front();
+    };
+    EXPECT_NEAR(both(1e-4), 1.0, 1e-3) << radius;
+    EXPECT_NEAR((both(1e-3) - 1.0) / (both(1e-4) - 1.0), 10.0, 0.2) << radius;
+  }
+}
+
+// The engine's own bodies of tets in static equilibrium, bonded and pulled: neo-Hooke, κ = 100 μ, `average_nodal`, half of the cylinder
+// mirrored at mid-height, run with
+//   glisson run: mesh.kind = "cylinder" of 25 × 15 mm, fixed along z below, tool on the top along z, motion.integrator = "static"
+// carry what stands below on 5 760 and 46 080 tets. Extrapolated with the corner's order 1.2 they are met within 0.7 %.
+TEST(Barrel, PulledIsTheEnginesBodyInThreeDimensions) {
+  struct Row {
+    double stretch, coarse, fine;
+  };
+  for (const auto& [stretch, coarse, fine] :
+       {Row{1.12, 0.8925, 0.8758}, Row{1.24, 1.5927, 1.5660}, Row{1.36, 2.1667, 2.1325}, Row{1.48, 2.6574, 2.6166},
+        Row{1.60, 3.0920, 3.0446}}) {
+    const double limit = fine - (coarse - fine) / (std::pow(2.0, 1.2) - 1.0);
+    Barrel barrel(std::make_shared<BarrelMesh>(kRadius, kHeight), NeoHookean{1000, 1e5}, Faces::bonded);
+    const double force = -barrel.press((1.0 - stretch) * kHeight, 1000.0);
+    std::printf("stretch %.2f: %.4f of the engine's %.4f N\n", stretch, force / limit, limit);
+    EXPECT_NEAR(force / limit, 1.0, 0.008) << stretch;
+  }
+}
+
+// Twice as many elements change the force of a bonded specimen that is pulled to twice its height by less than 0.5 %, of laws
+// that stiffen and of one that does not. It resists more than one with free faces; of the law that does not stiffen the less so the
+// longer it is.
+TEST(Barrel, PulledIsConvergedInItsGrid) {
+  const BarrelGrid fine{.radial = 8, .axial = 6, .grading = 0.75};
+  for (const HyperelasticLaw& law :
+       std::initializer_list<HyperelasticLaw>{NeoHookean{1000, 1e6}, kYeoh, Ogden{{300}, {-9}, 1e6}}) {
+    const std::vector<double> a = factors(law, Faces::bonded, {}, kPulls),
+                              b = factors(law, Faces::bonded, {}, kPulls, kRadius, fine);
+    double more = 2.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      std::printf("%s, stretch %.1f: %.4f of the free, finer %.4f\n", std::string(law_name(law)).c_str(),
+                  1.0 - kPulls[i], a[i], b[i]);
+      EXPECT_NEAR(a[i] / b[i], 1.0, 0.005) << law_name(law) << " " << kPulls[i];
+      EXPECT_GT(a[i], 1.0);
+      if (law_name(law) == "neo_hookean") EXPECT_LT(a[i], more);
+      more = a[i];
+    }
+  }
+}
+
 // Twice as many elements, smaller at the edge, change the force by less than 1 % to 65 %, and by less than 0.3 % below 25 %,
 // where the side has not come to lie on the plate.
 TEST(Barrel, IsConvergedInItsGrid) {
@@ -133,6 +190,91 @@ TEST(BarrelModel, LiesOnTheBarrelsCurve) {
   }
 }
 
+/// A test of the model's own specimen, to an extension: < 0 compresses.
+Curve along(LabTest test, double extension, int points = 24) {
+  Curve c = ramp(std::abs(extension), points);
+  c.name = std::string(word_of(test));
+  c.measurement.test = test;
+  c.measurement.deforming = extension < 0.0 ? Deforming::compression : Deforming::tension;
+  return c;
+}
+
+Tissue yeoh() {
+  Tissue tissue;
+  tissue.hyperelastic = kYeoh;
+  return tissue;
+}
+
+// Tests to either side share one φ: pressed and pulled in one fit each has the force of its own barrel within 0.3 %, a cycle through
+// rest both of them, and torsion of the same specimen that of one with free faces, to the bit.
+TEST(BarrelModel, ServesBothSidesOfRest) {
+  Curve cycle = along(LabTest::cyclic, 0.3);
+  for (std::size_t i = 0; i < cycle.size(); ++i)
+    cycle.displacement[i] = 0.3 * kHeight * std::sin(2.0 * std::numbers::pi * static_cast<double>(i) / 23.0);
+  Curve twist = along(LabTest::torsion, 0.3);
+  twist.measurement.deforming = Deforming::torsion, twist.measurement.measured = Measured::torque;
+  const std::vector<Curve> curves{along(LabTest::compression, -0.3), along(LabTest::tension, 0.6), cycle, twist};
+  const TissueAt tissue = [](std::span<const double>) { return yeoh(); };
+  const BarrelModel model(curves, {kRadius, kHeight, Faces::bonded, {}}, tissue);
+  const SpecimenModel free(curves, {std::numbers::pi * kRadius * kRadius, kHeight, kRadius}, tissue);
+  const auto exact = [](double extension) {
+    Barrel barrel(std::make_shared<BarrelMesh>(kRadius, kHeight), kYeoh, Faces::bonded);
+    return -barrel.press(-extension, std::abs(homogeneous_pressure(kYeoh, -extension / kHeight)));
+  };
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Prediction p = model.predict(c, {});
+    ASSERT_EQ(p.failure, "");
+    const double outward = curves[c].measurement.outward();
+    for (std::size_t i = 1; i + 1 < curves[c].size(); i += 4) {
+      const double extension = outward * curves[c].displacement[i], force = outward * exact(extension);
+      EXPECT_NEAR(p.force[i], force, 0.003 * std::abs(force)) << curves[c].name << " " << extension / kHeight;
+    }
+  }
+  EXPECT_EQ(model.predict(3, {}).force, free.predict(3, {}).force);
+}
+
+// Creep between bonded faces is the inverse of tension and compression between them: under the forces that an elastic specimen
+// answers with it has the displacements it answered to, within 1e-6 of its height.
+TEST(BarrelModel, CreepsAsItIsPulled) {
+  for (const double extension : {-0.3, 0.5}) {
+    const TissueAt tissue = [](std::span<const double>) { return yeoh(); };
+    const Plates plates{kRadius, kHeight, Faces::bonded, {}};
+    Curve driven = along(LabTest::tension, extension), loaded = along(LabTest::creep, extension);
+    driven.measurement.test = extension < 0.0 ? LabTest::compression : LabTest::tension;
+    loaded.measurement.measured = Measured::strain;
+    loaded.force = driven.displacement;
+    // φ is known a fifth beyond a creep's own strains: as far as here
+    Curve farther = along(driven.measurement.test, 1.2 * extension);
+    loaded.displacement = BarrelModel({driven, farther}, plates, tissue).predict(0, {}).force;
+    const Prediction p = BarrelModel({loaded}, plates, tissue).predict(0, {});
+    ASSERT_EQ(p.failure, "");
+    for (std::size_t i = 0; i < p.force.size(); ++i)
+      EXPECT_NEAR(p.force[i], driven.displacement[i], 1e-6 * kHeight) << extension << " " << i;
+  }
+}
+
+// Friction has no meaning where plates pull, nor on the way back; true stress none where the section is not one.
+TEST(BarrelModel, NamesTestsThatItsPlatesCannotMake) {
+  const auto fault = [](Curve curve, Faces faces, Measured measured = Measured::nominal) -> std::string {
+    curve.measurement.measured = measured;
+    try {
+      BarrelModel({curve}, {kRadius, kHeight, faces, {.friction = 0.1}}, [](std::span<const double>) { return yeoh(); },
+                  {});
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "no fault";
+  };
+  EXPECT_NE(fault(along(LabTest::relaxation, 0.2), Faces::friction).find("faces = \"bonded\""), std::string::npos);
+  EXPECT_NE(fault(along(LabTest::cyclic, -0.2), Faces::friction).find("crop the file to its loading"),
+            std::string::npos);
+  EXPECT_NE(fault(along(LabTest::tension, 0.2), Faces::bonded, Measured::cauchy).find("give columns.stress"),
+            std::string::npos);
+  EXPECT_EQ(fault(along(LabTest::relaxation, -0.2), Faces::friction), "no fault");
+  Barrel barrel(std::make_shared<BarrelMesh>(kRadius, kHeight), kYeoh, Faces::friction, {.friction = 0.1});
+  EXPECT_THROW(barrel.press(-1e-3, 100.0), std::invalid_argument);
+}
+
 // What it cannot follow is told: a tissue without a hyperelastic law, and a press to nothing.
 TEST(BarrelModel, RefusesWhatItCannotFollow) {
   const auto failure = [](const Tissue& tissue, double strain) {
@@ -143,7 +285,7 @@ TEST(BarrelModel, RefusesWhatItCannotFollow) {
   Tissue tissue;
   EXPECT_NE(failure(tissue, 0.3).find("is not hyperelastic"), std::string::npos);
   tissue.hyperelastic = kYeoh;
-  EXPECT_NE(failure(tissue, 0.97).find("allowed: 0 to 0.95"), std::string::npos);
+  EXPECT_NE(failure(tissue, 0.97).find("allowed: 0.05 to 5"), std::string::npos);
 }
 
 }  // namespace

@@ -45,6 +45,45 @@ TEST(IndentedLayer, FlatPunchOnAHalfSpaceIsBoussinesqs) {
   for (const double poisson : kPoissons) EXPECT_NEAR(factors({}, punch, poisson, {1e-3 * kRadius}).front(), 1.0, 0.01);
 }
 
+/// Force over E* of a punch with a rounded edge, r²/(2ρ) beyond a face of radius b, at a radius a of contact, and its depth
+/// [Sneddon1965]: δ = a ∫ f′/√(a² − x²) dx, F = 2 E* ∫ x² f′/√(a² − x²) dx, f′ = (x − b)/ρ from b to a.
+struct Rounded {
+  double depth, force;
+};
+Rounded rounded_punch(double a, double b, double rho) {
+  const double root = std::sqrt(a * a - b * b), angle = std::acos(b / a);
+  return {a / rho * (root - b * angle),
+          2.0 / rho * (root * (b * b + 2.0 * a * a) / 3.0 - 0.5 * b * (a * a * angle + b * root))};
+}
+
+// A rounded edge: contact begins on the face and spreads over the edge as far as Sneddon's equations say, 1.5 % of force at every
+// depth beyond a hundredth of the radius: what three elements over the edge resolve.
+TEST(IndentedLayer, RoundedPunchOnAHalfSpaceIsSneddons) {
+  const double rho = 0.2 * kRadius, face = kRadius - rho;
+  const Indenter punch{.shape = IndenterShape::flat, .radius = kRadius, .edge_radius = rho};
+  IndentedLayer body({}, punch, neo_hooke(0.49), 0.04 * kRadius);
+  for (const double contact : {1.03, 1.04, 1.05}) {
+    const Rounded exact = rounded_punch(contact * face, face, rho);
+    ASSERT_LT(exact.depth, 0.04 * kRadius);
+    EXPECT_NEAR(body.press(exact.depth) / (2.0 * kMu / (1.0 - 0.49) * exact.force), 1.0, 0.015) << contact;
+  }
+}
+
+// A sharp frictionless punch ends at a depth of a quarter of its radius or so; one with an edge of a tenth of it goes to 0.6 of its
+// radius in a thick layer, to 0.3 in one as thick as it is wide, 1 % whatever the mesh.
+TEST(IndentedLayer, RoundedPunchGoesWhereASharpOneCannot) {
+  const Indenter punch{.shape = IndenterShape::flat, .radius = kRadius, .edge_radius = 0.1 * kRadius};
+  for (const Layer& layer : {Layer{}, Layer{.thickness = 2e-3}}) {
+    for (const HyperelasticLaw& law :
+         std::initializer_list<HyperelasticLaw>{NeoHookean{kMu, 1e6}, Ogden{{kMu}, {-10.0}, 1e6}}) {
+      const double deepest = layer.thick() ? 6e-4 : 3e-4;
+      IndentedLayer coarse(layer, punch, law, deepest), fine(layer, punch, law, deepest, 1.4);
+      for (const double d : {1e-4, 2e-4, deepest})
+        EXPECT_NEAR(coarse.press(d) / fine.press(d), 1.0, 0.01) << law_name(law) << " " << layer.thickness << " " << d;
+    }
+  }
+}
+
 // Sneddon: a blunt cone, whose strains of 2° are small at every depth, 1 %.
 TEST(IndentedLayer, BluntConeOnAHalfSpaceIsSneddons) {
   const Indenter cone{.shape = IndenterShape::cone, .half_angle = 88.0 * kDegree};
@@ -161,7 +200,8 @@ TEST(IndentedLayer, RefusesWhatItCannotFollow) {
   const Indenter punch{.shape = IndenterShape::flat, .radius = kRadius};
   EXPECT_THAT(fault({.thickness = 2e-3}, punch, 2e-3), HasSubstr("a depth of 2 mm in a layer of 2 mm"));
   EXPECT_THAT(fault({.thickness = 2e-3, .radius = 5e-4}, punch, 1e-4), HasSubstr("is wider than the specimen"));
-  EXPECT_THAT(fault({.thickness = 2e-3}, punch, 6e-4), HasSubstr("give contact = \"bonded\""));
+  EXPECT_THAT(fault({.thickness = 2e-3}, punch, 6e-4),
+              HasSubstr("give the edge_radius_mm that a real punch has, or contact = \"bonded\""));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "fit/data/load_curves.h"
+#include "fit/fit_curves.h"
 #include "fit/fit_spec.h"
 #include "laboratory.h"
 #include "phantom.h"
@@ -152,7 +153,31 @@ TEST_F(Written, WhatCannotBeIsSaid) {
               AllOf(HasSubstr("a shear of 20 at the surface"),
                     HasSubstr("columns.angle = { name = \"angle (rad)\", unit = \"deg\" }")));
   EXPECT_THAT(fault("test = \"torsion\"\n", twisted), HasSubstr("torsion asks for [specimen] kind = \"cylinder\""));
+  EXPECT_THAT(fault("test = \"creep\"\nmode = \"torsion\"\n", twisted, cylinder),
+              HasSubstr("driven by its angle; give test = \"torsion\""));
   EXPECT_THAT(fault("test = \"stretching\"\n", good), HasSubstr("\"tension\""));
+}
+
+// Tests of one fit are of one tissue: a thousandfold in one of three, each of which alone could be a tissue's, is named with its file.
+TEST_F(Written, AUnitThatOnlyTheOtherTestsBetrayIsNamed) {
+  folder_.write("p.csv", table({"stretch", "stress (kPa)"},
+                               {kStretches, mapped(kStretches, [](double x) { return 2.0 * (x - 1.0); })}));
+  folder_.write("s.csv", table({"gamma", "stress (Pa)"}, {{0, 0.05, 0.1, 0.15, 0.2}, {0, 30, 60, 90, 120}}));
+  folder_.write("t.csv", table({"gamma", "stress (kPa)"}, {{0, 0.05, 0.1, 0.15, 0.2}, {0, 30, 60, 90, 120}}));
+  const auto read = [&](const std::string& more) -> std::string {
+    std::string text = "[specimen]\nkind = \"point\"\n[[data]]\nfiles = [\"p.csv\"]\ntest = \"tension\"\n";
+    for (const char* file : {"s.csv", "t.csv"})
+      text += std::string("[[data]]\nfiles = [\"") + file + "\"]\ntest = \"simple_shear\"\n";
+    try {
+      read_curves(parse_fit(text + more, (folder_.path() / "fit.toml").string()), point_size(), folder_.path());
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "no fault";
+  };
+  EXPECT_THAT(read(""), AllOf(HasSubstr("t.csv:1:1: \"t\" shows a modulus of 1.8e+06 Pa"), HasSubstr("Check the units"),
+                              HasSubstr("unlikely = true")));
+  EXPECT_EQ(read("unlikely = true\n"), "no fault");
 }
 
 // Before a description is checked, as a fuzzer reads it.

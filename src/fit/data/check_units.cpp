@@ -84,20 +84,22 @@ class UnitCheck {
     check_signs();
     if (m.drive_unit == "rad") {
       check_twist();
-    } else if (m.measured != Measured::strain) {
+    } else {
       check_depth();
       check_columns();
     }
-    if (m.timed && m.drive_unit == "m") check_speed();
-    if (problems_.count() == before && m.measured != Measured::strain) check_stiffness();
+    if (m.timed && m.drive_unit == "m" && m.test != LabTest::creep) check_speed();
+    if (problems_.count() == before) check_stiffness();
   }
 
  private:
   void complain(const std::string& what) { problems_.add({std::max(test_.names_line, 1U), 1, {}}, "", what); }
 
   std::string read_as(const Source& source, double value) const {
-    return source.title + ", read in " + std::string(source.unit->name) + ", goes to " +
-           brief(value / source.unit->factor) + " " + std::string(source.unit->name);
+    const bool pure = source.unit->name == "-";
+    return source.title + ", read " +
+           (pure ? std::string("as a pure number") : "in " + std::string(source.unit->name)) + ", goes to " +
+           (pure ? brief(value) : in_unit(value, *source.unit));
   }
 
   /// The number as the file has it: without the height or area that turned strain into way, stress into force.
@@ -254,7 +256,11 @@ void compare_with_median(const std::vector<RawTest>& tests, const Size& size, co
 }  // namespace
 
 void check_units(const RawTest& test, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems) {
-  if (!spec.unlikely && test.size() > 0) UnitCheck(test, spec, size, problems).run();
+  if (spec.unlikely || test.size() == 0) return;
+  if (!test.measurement.loaded()) return UnitCheck(test, spec, size, problems).run();
+  RawTest deformed = test;  // as if its strain had been driven
+  swap_load(deformed, Measured::nominal);
+  UnitCheck(deformed, spec, size, problems).run();
 }
 
 std::vector<std::string> repetition_faults(const std::vector<RawTest>& tests) {

@@ -27,7 +27,7 @@ class Preparation {
   }
 
   std::optional<PreparedCurve> run() {
-    if (!enough("the file", "record or export more rows")) return std::nullopt;
+    if (!enough("the file", "record or export more rows") || !suits_creep()) return std::nullopt;
     if (spec_.filter.kind == FilterKind::median)
       rows_.force = running_median(rows_.force, static_cast<std::size_t>(spec_.filter.half_width));
     if (!take_cycle() || !enough("the cycle", "choose another `cycle`")) return std::nullopt;
@@ -45,6 +45,22 @@ class Preparation {
   }
   void complain(const std::string& what) {
     problems_.add({test_.lines.empty() ? 1U : test_.lines.back(), 1, {}}, "", what);
+  }
+
+  /// What goes by the displacement does not go with a test that is driven by its load.
+  bool suits_creep() {
+    if (!test_.measurement.loaded()) return true;
+    const CropSpec& c = spec_.crop;
+    if (spec_.contact.kind != ContactKind::none)
+      complain(
+          "a creep is driven by its load, in which no contact is found; remove `contact`, and free "
+          "curve.contact_mm where the file's zero is not at contact");
+    else if (c.min_displacement || c.max_displacement || c.min_strain || c.max_strain || c.min_force || c.max_force ||
+             c.until != CropUntil::end)
+      complain("a creep is cropped by time: give crop.min_time_s or crop.max_time_s alone");
+    else
+      return true;
+    return false;
   }
 
   bool take_cycle() {

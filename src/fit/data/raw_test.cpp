@@ -290,15 +290,14 @@ Measurement measurement_of(const DataSpec& spec, const TestColumns& columns, con
   return m;
 }
 
-/// A force-controlled test: the load is driven, the strain answers.
-void swap_load(RawTest& test) {
+}  // namespace
+
+void swap_load(RawTest& test, Measured answering) {
   std::swap(test.displacement, test.force);
   std::swap(test.displacement_source, test.force_source);
   std::swap(test.measurement.unit, test.measurement.drive_unit);
-  test.measurement.measured = Measured::strain;
+  test.measurement.measured = answering;
 }
-
-}  // namespace
 
 RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems) {
   RawTest test;
@@ -337,7 +336,7 @@ RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize
   if (spec.speed && !time) test.time = time_of(test.displacement, *spec.speed);
   if (!spec.speed && !time) test.time = rows_as_time(test.lines.size());
   test.time_source = time ? time->column.source : Source{"speed_mm_s", Quantity::time, nullptr, "speed_mm_s"};
-  if (spec.test == LabTest::creep) swap_load(test);
+  if (spec.test == LabTest::creep) swap_load(test, Measured::strain);
   merge_times(test, file, problems);
   return test;
 }

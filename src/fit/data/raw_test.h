@@ -45,6 +45,10 @@ struct RawTest {
 /// is returned is of use only where nothing was added to `problems`.
 RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems);
 
+/// What is driven and what answers change places: a creep drives its load, and the strain or depth answers.
+/// @param answering  what is measured then
+void swap_load(RawTest& test, Measured answering);
+
 /// Complains about numbers that look like another unit: a way beyond the specimen, stress and force that disagree, time and
 /// speed that do not give the way, stiffness that no soft tissue has; about a force against its own displacement.
 void check_units(const RawTest& test, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems);

@@ -110,11 +110,22 @@ SectionSpec indenter_kind(IndenterShape shape, const char* name, const char* hel
         .in("mm")
         .within(above(0))
         .must();
-  s.choice<bool>(
-      "contact", &Indenter::bonded,
-      {{"frictionless", false, flat ? "tissue slides along its face; for small depths" : "tissue slides along it"},
-       {"bonded", true, "tissue stays where it touches first"}},
-      "how tissue meets it");
+  if (flat) {
+    s.key<Milli>("edge_radius_mm", &Indenter::edge_radius, "radius of its rounded edge; 0: sharp")
+        .in("mm")
+        .within(at_least(0));
+    s.finish([](Indenter& x, const Node& table, const Place& place) {
+      if (x.edge_radius > x.radius)
+        place.complain(*table.find("edge_radius_mm"), "edge_radius_mm",
+                       scene::show(1e3 * x.edge_radius) +
+                           " is out of range; allowed: 0 to radius_mm = " + scene::show(1e3 * x.radius));
+    });
+  }
+  s.choice<bool>("contact", &Indenter::bonded,
+                 {{"frictionless", false,
+                   flat ? "tissue slides along it; under a sharp edge for small depths" : "tissue slides along it"},
+                  {"bonded", true, "tissue stays where it touches first"}},
+                 "how tissue meets it");
   return s.spec();
 }
 
@@ -200,11 +211,14 @@ void finish_data(DataSpec& x, const Node& table, const Place& place) {
                    "indentation asks for an indenter; give indenter = { kind = \"sphere\", radius_mm = … }, "
                    "{ kind = \"flat\", radius_mm = … } or { kind = \"cone\", half_angle_deg = … }");
   if (!x.indents() && x.indenter)
-    place.complain(*table.find("indenter"), "indenter", "belongs to test = \"indentation\"");
-  if (x.deforming == Deforming::indentation && x.test == LabTest::creep)
+    place.complain(*table.find("indenter"), "indenter",
+                   names_its_deformation(x.test)
+                       ? "belongs to test = \"indentation\""
+                       : "asks for mode = \"indentation\" in a test of " + std::string(word_of(x.test)));
+  if (x.test == LabTest::creep && x.deforming == Deforming::torsion)
     place.complain(*table.find("mode"), "mode",
-                   "an indentation is fitted as it is driven by its depth; give test = \"indentation\" with columns of "
-                   "depth, force and time");
+                   "a torsion is fitted as it is driven by its angle; give test = \"torsion\" with columns of angle, "
+                   "torque and time");
   if (x.prestretch != 1.0 && x.test != LabTest::oscillation)
     place.complain(*table.find("prestretch"), "prestretch", "belongs to test = \"oscillation\"");
   if (x.files.empty()) place.complain(*table.find("files"), "files", "is empty; name at least one file");
@@ -327,7 +341,7 @@ const SectionSpec& indenter_section() {
   static const SectionSpec section = [] {
     Section<Indenter> s("data.indenter", "The rigid indenter of an indentation.");
     s.spec().kinds = {indenter_of(IndenterShape::sphere, "sphere", "A ball, on a shaft as wide as itself."),
-                      indenter_of(IndenterShape::flat, "flat", "A flat-ended cylinder with a sharp edge."),
+                      indenter_of(IndenterShape::flat, "flat", "A flat-ended cylinder."),
                       indenter_of(IndenterShape::cone, "cone", "A cone with a sharp tip.")};
     return s.spec();
   }();

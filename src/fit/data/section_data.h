@@ -10,6 +10,7 @@ const scene::SectionSpec& column_section();    ///< fills ColumnSpec
 const scene::SectionSpec& columns_section();   ///< fills ColumnsSpec
 const scene::SectionSpec& text_section();      ///< fills TextSpec
 const scene::SectionSpec& contact_section();   ///< fills ContactSpec
+const scene::SectionSpec& indenter_section();  ///< fills Indenter
 const scene::SectionSpec& crop_section();      ///< fills CropSpec
 const scene::SectionSpec& cycle_section();     ///< fills CycleSpec
 const scene::SectionSpec& filter_section();    ///< fills FilterSpec

@@ -61,9 +61,10 @@ Json axis_json(const AxisOf& axis) { return {{"label", axis.label}, {"scale", ax
 AxisOf driven_axis(const fit::Measurement& m, const FitResult& result) {
   const double height = result.height.value_or(1.0);
   if (m.test == fit::LabTest::oscillation) return {"frequency [Hz]", 1.0};
-  if (m.deforming == fit::Deforming::indentation) return {"depth [mm]", 1e3};
+  if (m.deforming == fit::Deforming::indentation)
+    return m.loaded() ? AxisOf{"force [N]", 1.0} : AxisOf{"depth [mm]", 1e3};
   if (m.drive_unit == "rad") return {"angle [°]", 180.0 / std::numbers::pi};
-  if (m.measured == fit::Measured::strain) return {"nominal stress [kPa]", 1e-3 / result.area.value_or(1.0)};
+  if (m.loaded()) return {"nominal stress [kPa]", 1e-3 / result.area.value_or(1.0)};
   if (m.deforming == fit::Deforming::simple_shear) return {"shear [%]", 100.0 / height};
   if (result.height)
     return {m.deforming == fit::Deforming::compression ? "strain [%]" : "extension [%]", 100.0 / height};
@@ -83,6 +84,7 @@ AxisOf measured_axis(const fit::Measurement& m, const FitResult& result) {
     case fit::Measured::axial:
       return {"axial force [mN]", 1e3};
     case fit::Measured::strain:
+      if (m.deforming == fit::Deforming::indentation) return {"depth [mm]", 1e3};
       return {"strain [%]", 100.0 / result.height.value_or(1.0)};
     case fit::Measured::storage:
       return {"storage modulus [kPa]", 1e-3};

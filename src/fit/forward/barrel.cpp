@@ -60,7 +60,7 @@ void Barrel::put_on_plates() {
 /// False where an element is folded.
 bool Barrel::assemble() {
   if (!solid_.assemble(state_.body)) return false;
-  if (leans_) lean();
+  if (leans_ && state_.displacement > 0.0) lean();
   return true;
 }
 
@@ -153,9 +153,11 @@ bool Barrel::converge() {
 }
 
 double Barrel::press(double displacement, double pressure) {
+  if (displacement < 0.0 && faces_ == Faces::friction)
+    throw std::invalid_argument("plates pull only what is bonded to them; faces of friction let go");
   pressure_ = pressure;
   double to = displacement;
-  for (int halvings = 0; past_.back().displacement < displacement;) {
+  for (int halvings = 0; past_.back().displacement != displacement;) {
     const double from = past_.back().displacement;
     state_ = predicted(to);
     if (converge()) {
@@ -165,8 +167,8 @@ double Barrel::press(double displacement, double pressure) {
     } else if (++halvings <= kMostHalvings) {
       to = 0.5 * (from + to);
     } else {
-      throw std::runtime_error("no equilibrium between the plates beyond a strain of " +
-                               std::to_string(from / mesh_->height));
+      throw std::runtime_error("no equilibrium between the plates beyond a stretch of " +
+                               std::to_string(1.0 - from / mesh_->height));
     }
   }
   return face_force() + side_force_;

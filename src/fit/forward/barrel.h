@@ -1,5 +1,5 @@
-// barrel.h — a cylinder between plates on which it slides with friction or not at all: it bulges, and resists more than
-// one that deforms alike all over.
+// barrel.h — a cylinder between plates on which it slides with friction or not at all: pressed it bulges, pulled it necks in, and
+// it resists more than one that deforms alike all over.
 //
 //   face   u_r = s R: it spreads alike all over, by less than it would on smooth plates. With P_rz the traction on it and
 //          F the force on it, Coulomb's friction, made smooth, balances it over the face [docs/fit.md]:
@@ -12,7 +12,8 @@
 //      axis  └───┴───┴──┴─┘ mid-height
 //
 // Newton's method from rest on, the pressures of the elements beside the displacements; steps are halved where it does not
-// converge. The state is a function of the displacement alone: friction is that of a compression that goes on.
+// converge. The state is a function of the displacement alone: friction is that of a compression that goes on. A specimen that
+// is pulled has been glued: then its side touches nothing, and no face slides.
 #pragma once
 
 #include <memory>
@@ -54,8 +55,10 @@ class Barrel {
 
   /// Without plates beyond the edge: the side may bulge past them. For comparison with bodies without contact.
   void free_side() { leans_ = false; }
-  /// Goes on to a displacement above the last [m]. @param pressure  about that of the plate, by which it carries the side [Pa]
-  /// @return the force of the plate [N], > 0 @throws std::runtime_error where no equilibrium is found
+  /// Goes on to a displacement of the plates towards each other beyond the last; below 0 they part [m].
+  /// @param pressure  about that of the plate, by which it carries the side [Pa]
+  /// @return the force of the plate [N], > 0 where it presses
+  /// @throws std::runtime_error where no equilibrium is found, std::invalid_argument where faces of friction are pulled
   double press(double displacement, double pressure);
   /// s of the last state [-].
   double spread() const { return state_.spread; }

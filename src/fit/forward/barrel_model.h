@@ -1,10 +1,12 @@
 // barrel_model.h — the forward model of a cylinder whose faces stick to the plates or slide with friction.
 //
-//   F(d) = φ(d) F₀(d):   F₀ of the homogeneous state (material/uniaxial_path.h) at every instant,
-//                        φ what bulging makes of it, by barrel.h at some strains, a monotone cubic between them
+//   F(d) = φ(λ) F₀(d):   F₀ of the homogeneous state (material/uniaxial_path.h) at every instant,
+//                        φ what bulging or necking in makes of it, by barrel.h at some stretches, a monotone cubic between them
 //
-// φ varies slowly and is the same for all curves: one path of the barrel serves them all. It is that of the elastic tissue:
-// of a viscous one exact where strains are small and κ ≫ μ, else an approximation.
+// φ varies slowly and is the same for all curves that are pressed or pulled: two paths of the barrel, one to either side of rest,
+// serve them all. It is that of the elastic tissue: of a viscous one exact where strains are small and κ ≫ μ, else an
+// approximation. In a creep the load over φ is what the homogeneous specimen is loaded with, found by repetition.
+// Shear and torsion hold the faces whatever they are, and deform the specimen alike all over or along its axis.
 #pragma once
 
 #include <deque>
@@ -32,15 +34,21 @@ inline bool is_plate_key(const std::string& key) { return key == kFrictionKey ||
 class BarrelModel final : public MotionModel {
  public:
   /// @param keys  of the values; those of the plates are taken here, the others go on to `tissue` in their order
+  /// @throws std::invalid_argument for curves that such a specimen cannot make
   BarrelModel(std::vector<Curve> curves, const Plates& plates, TissueAt tissue, std::vector<std::string> keys = {},
               const BarrelGrid& grid = {});
   Prediction predict_from(std::size_t curve, std::span<const double> values, double contact) const override;
 
  private:
   struct Known;
-  /// φ over the strain.
+  /// φ over the strain, > 0 where the specimen is pulled.
   MonotoneCubic<double> factor(std::span<const double> values, double contact) const;
   std::shared_ptr<Known> known(std::span<const double> values, double contact) const;
+  std::vector<double> factors_at(const std::vector<double>& strains, std::span<const double> values) const;
+  Prediction crept(std::size_t curve, std::span<const double> values, double contact,
+                   const MonotoneCubic<double>& factor) const;
+  void require_curve(const Curve& curve) const;
+  void reach(const Curve& curve);
 
   std::vector<double> of_tissue(std::span<const double> values) const;
   Grip grip(std::span<const double> values) const;
@@ -49,7 +57,7 @@ class BarrelModel final : public MotionModel {
   TissueAt tissue_;
   std::vector<std::string> keys_;
   SpecimenModel homogeneous_;
-  double farthest_ = 0.0;  ///< displacement of all curves [m]
+  double pressed_ = 0.0, pulled_ = 0.0;  ///< the farthest that curves go to either side, ≥ 0 [m]
   std::shared_ptr<const BarrelMesh> mesh_;
   mutable std::mutex mutex_;
   mutable std::deque<std::shared_ptr<Known>> known_;

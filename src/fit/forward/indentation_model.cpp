@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/tools/roots.hpp>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "material/branch_weights.h"
@@ -13,18 +15,14 @@ namespace {
 
 constexpr double kTableError = 5e-3;                          ///< of a force, along the lines through the start
 constexpr double kMostDepth = 0.01, kMostWait = 1.0 / 400.0;  ///< of a step: of the deepest, and of the whole history
+constexpr double kBeyondMeasured = 1.1;  ///< of a creep: how far beyond what it has measured laws are solved
+constexpr double kFewest = 4.0;          ///< steps between two rows of a creep
 
 /// Depths at which a law is solved, of the deepest. Below the first a mesh for the deepest is too coarse.
-std::vector<double> depths_of(IndenterShape shape) {
-  if (shape == IndenterShape::flat) return {0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.625, 0.75, 0.875, 1.0};
-  if (shape == IndenterShape::cone) return {0.15, 0.22, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
+std::vector<double> depths_of(const Indenter& indenter) {
+  if (indenter.sharp()) return {0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.625, 0.75, 0.875, 1.0};
+  if (indenter.shape == IndenterShape::cone) return {0.15, 0.22, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
   return {0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.625, 0.75, 0.875, 1.0};
-}
-
-/// The power of the depth in the closed form.
-double power_of(IndenterShape shape) {
-  if (shape == IndenterShape::flat) return 1.0;
-  return shape == IndenterShape::cone ? 2.0 : 1.5;
 }
 
 /// E/(1 − ν²).
@@ -44,20 +42,30 @@ const HyperelasticLaw& law_of(const Tissue& tissue) {
 class ElasticForce {
  public:
   ElasticForce(const Indenter& indenter, double deepest, const HyperelasticLaw& law, const std::vector<double>& factors)
-      : indenter_(indenter), modulus_(plane_modulus(law)),
+      : indenter_(indenter), deepest_(deepest), modulus_(plane_modulus(law)),
         factor_(places(indenter, deepest), values(indenter, factors)) {}
 
   double at(double depth) const {
     return depth > 0.0 ? modulus_ * thick_layer_force(indenter_, depth) * std::exp(factor_.at(depth)) : 0.0;
   }
   double slope(double depth) const {
-    return depth > 0.0 ? at(depth) * (power_of(indenter_.shape) / depth + factor_.slope(depth)) : 0.0;
+    return depth > 0.0 ? at(depth) * (depth_power(indenter_.shape) / depth + factor_.slope(depth)) : 0.0;
+  }
+  /// The depth of a force; beyond the deepest by the power of the closed form, as at() is.
+  double depth_at(double force) const {
+    const double most = at(deepest_);
+    if (!(force > 0.0)) return 0.0;
+    if (force >= most) return deepest_ * std::pow(force / most, 1.0 / depth_power(indenter_.shape));
+    const auto miss = [&](double d) { return std::pair(at(d) - force, slope(d)); };
+    const double guess = deepest_ * std::pow(force / most, 1.0 / depth_power(indenter_.shape));
+    constexpr int kDigits = std::numeric_limits<double>::digits - 4;
+    return boost::math::tools::newton_raphson_iterate(miss, guess, 0.0, deepest_, kDigits);
   }
 
  private:
   static std::vector<double> places(const Indenter& indenter, double deepest) {
     std::vector<double> list{0.0};
-    for (const double part : depths_of(indenter.shape)) list.push_back(part * deepest);
+    for (const double part : depths_of(indenter)) list.push_back(part * deepest);
     return list;
   }
   /// A sphere of little depth meets a thick layer of little strain: Hertz's.
@@ -68,14 +76,49 @@ class ElasticForce {
   }
 
   Indenter indenter_;
-  double modulus_;
+  double deepest_, modulus_;
   MonotoneCubic<double> factor_;
 };
+
+double lag_of(const Tissue& tissue) { return viscous_coefficients(tissue).mu / shear_modulus(*tissue.hyperelastic); }
+
+/// Depth at the curve's instants under the forces of a history. The same equation, solved for F₀ step by step: with F₀ and what
+/// drives it, S = F + Σ g_i q_i, linear in a step, lag F₀′ = S − F₀ and the branches are exact in it.
+std::vector<double> depths_in_time(const ElasticForce& elastic, const Tissue& tissue, const History& way) {
+  const double lag = lag_of(tissue), whole = way.end() - way.begin();
+  const std::vector<double>& times = way.times();
+  std::array<double, kMostBranches> q{};
+  double before = 0.0, drive = 0.0;  // F₀ and S
+  const auto go = [&](double h, double force) {
+    std::array<BranchWeights<>, kMostBranches> w{};
+    double held = 0.0, more = 0.0;  // Σ g_i q_i at the end of the step is held + more F₀
+    for (std::size_t b = 0; b < tissue.maxwell.size(); ++b) {
+      w[b] = branch_weights(h, tissue.maxwell[b].time);
+      held += tissue.maxwell[b].share * (w[b].decay * q[b] + w[b].from * before);
+      more += tissue.maxwell[b].share * w[b].to;
+    }
+    const BranchWeights own = branch_weights(h, lag);
+    const double now = (own.decay * before + own.from * drive + own.to * (force + held)) / (1.0 - own.to * more);
+    for (std::size_t b = 0; b < tissue.maxwell.size(); ++b)
+      q[b] = w[b].decay * q[b] + w[b].from * before + w[b].to * now;
+    before = now, drive = force + held + more * now;
+  };
+  std::vector<double> out;
+  if (way.lead() == 0) out.push_back(0.0);  // it begins without a load
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    const double width = times[k] - times[k - 1];
+    const int steps = static_cast<int>(std::max(kFewest, std::ceil(width / (kMostWait * whole) - 1e-9)));
+    for (int s = 1; s <= steps; ++s)
+      go(width / steps, way.at(s == steps ? times[k] : times[k - 1] + s * width / steps));
+    out.push_back(elastic.depth_at(before));
+  }
+  return out;
+}
 
 /// Force at the curve's instants of a tissue that relaxes or is viscous.
 std::vector<double> forces_in_time(const ElasticForce& elastic, const Tissue& tissue, const History& way,
                                    double deepest) {
-  const double lag = viscous_coefficients(tissue).mu / shear_modulus(*tissue.hyperelastic);
+  const double lag = lag_of(tissue);
   std::array<double, kMostBranches> q{};
   const std::vector<double>& times = way.times();
   const double whole = way.end() - way.begin();
@@ -104,6 +147,14 @@ std::vector<double> forces_in_time(const ElasticForce& elastic, const Tissue& ti
   return out;
 }
 
+/// Depth at the curve's instants.
+std::vector<double> depths_of_loads(const ElasticForce& elastic, const Tissue& tissue, const History& way) {
+  if (has_past(tissue)) return depths_in_time(elastic, tissue, way);
+  std::vector<double> out;
+  for (std::size_t k = way.lead(); k < way.times().size(); ++k) out.push_back(elastic.depth_at(way.displacements()[k]));
+  return out;
+}
+
 void require_past(const Tissue& tissue, const Measurement& m) {
   if (tissue.viscosity > 0.0 && tissue.viscous_tensor == ViscousTensor::pioletti)
     throw std::runtime_error("indentation does not follow viscous_tensor = \"pioletti\"; give \"shear\"");
@@ -126,7 +177,12 @@ IndentationModel::IndentationModel(std::vector<Curve> curves, const Layer& layer
     of_.push_back(static_cast<std::size_t>(same - indenting_.begin()));
     if (same == indenting_.end()) indenting_.push_back(std::make_unique<Indenting>(Indenting{*indenter, 0.0, {}}));
     double& deepest = indenting_[of_.back()]->deepest;
-    for (const double d : curve(c).displacement) deepest = std::max(deepest, d + options_.margin);
+    if (curve(c).measurement.loaded()) {
+      for (const double d : curve(c).force)
+        deepest = std::max(deepest, std::min(kBeyondMeasured * d, 0.5 * (d + layer_.thickness)));
+    } else {
+      for (const double d : curve(c).displacement) deepest = std::max(deepest, d + options_.margin);
+    }
   }
   const std::vector<std::size_t> active = of_law(parameters);
   for (const auto& own : indenting_) {
@@ -160,7 +216,7 @@ std::vector<double> IndentationModel::factors(const Indenting& own, std::span<co
   const HyperelasticLaw& law = law_of(tissue);
   IndentedLayer layer(layer_, own.indenter, law, own.deepest, options_.fineness);
   std::vector<double> list;
-  for (const double part : depths_of(own.indenter.shape)) {
+  for (const double part : depths_of(own.indenter)) {
     const double depth = part * own.deepest;
     list.push_back(std::log(layer.press(depth) / (plane_modulus(law) * thick_layer_force(own.indenter, depth))));
   }
@@ -180,8 +236,12 @@ Prediction IndentationModel::predict_from(std::size_t index, std::span<const dou
     const Tissue tissue = tissue_(values);
     require_past(tissue, curve(index).measurement);
     const ElasticForce elastic(own.indenter, own.deepest, law_of(tissue), own.table->at(values));
-    const History history(curve(index), contact);
-    if (has_past(tissue)) {
+    const bool loaded = curve(index).measurement.loaded();
+    const History history(curve(index), loaded ? 0.0 : contact);
+    if (loaded) {
+      result.force = depths_of_loads(elastic, tissue, history);
+      for (double& d : result.force) d += contact;
+    } else if (has_past(tissue)) {
       result.force = forces_in_time(elastic, tissue, history, own.deepest);
     } else {
       for (std::size_t i = 0; i < curve(index).size(); ++i)

@@ -6,6 +6,8 @@
 // and law_table.h keeps them between runs: most runs of a fit solve nothing. Branches are exact while the contact grows or
 // rests, of the deviator where κ ≫ μ [LeeRadok1960], viscosity where strains are small and κ ≫ μ. While it shrinks, both are
 // approximations. The indenter does not pull.
+//
+// In a creep F(t) is given: the same equation is one for F₀(t), linear and solved step by step, and d is where F₀(d) is that.
 #pragma once
 
 #include <memory>

@@ -45,7 +45,7 @@ void IndentedLayer::place_surface() {
   constexpr std::array<double, 4> kAt{-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526},
       kWeight{0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538};
   const std::vector<double>& radii = solid_.mesh().radii;
-  if (indenter_.shape == IndenterShape::flat) {
+  if (indenter_.sharp()) {
     const auto beyond = [&](double r) { return r > indenter_.radius * (1.0 + 1e-9); };
     under_punch_ = static_cast<std::size_t>(std::find_if(radii.begin(), radii.end(), beyond) - radii.begin());
     return;
@@ -176,8 +176,9 @@ void IndentedLayer::require_edge() const {
   if (under_punch_ == 0 || indenter_.bonded) return;
   if (std::abs(state_.body.u[2 * surface_vertex(under_punch_ - 1)]) < kSlides * indenter_.radius) return;
   throw std::runtime_error("at a depth of " + millimetres(state_.depth) +
-                           " tissue slides past the edge of the flat punch, which cannot be followed without friction; "
-                           "give contact = \"bonded\" in `indenter`, or crop the depth");
+                           " tissue slides past the sharp edge of the flat punch, where strain has no bound; give "
+                           "the edge_radius_mm that a real punch has, or contact = \"bonded\", in `indenter`, or crop "
+                           "the depth");
 }
 
 double IndentedLayer::press(double depth) {

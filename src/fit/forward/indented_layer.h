@@ -1,9 +1,9 @@
 // indented_layer.h — a layer of tissue on a rigid floor, pressed by a rigid indenter: force over depth, in statics.
 //
-// A sphere or a cone pushes back what would enter it, along its normal, by a pressure that grows with how far it has entered: stiff
+// A sphere, a cone or a punch with a rounded edge pushes back what would enter it, along its normal, by a pressure that grows with how far it has entered: stiff
 // enough that 1e-3 of the force is missing. Without friction the tissue slides along it; to a bonded indenter it sticks where it touches first.
-// What lies under a flat punch goes down with it. Where that slides past the edge, at some depth without friction, this no
-// longer holds, and no force is given.
+// What lies under a sharp flat punch goes down with it. Without friction the edge draws tissue in around itself at some depth; then
+// this no longer holds: strain is singular there, finer meshes slide farther, and no force is given.
 //
 // Newton's method from rest on; the steps of depth grow where it converges fast and are shortened where it does not.
 #pragma once

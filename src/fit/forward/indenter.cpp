@@ -32,6 +32,11 @@ double thick_layer_force(const Indenter& indenter, double depth) {
   return 4.0 / 3.0 * std::sqrt(indenter.radius * depth) * depth;
 }
 
+double depth_power(IndenterShape shape) {
+  if (shape == IndenterShape::flat) return 1.0;
+  return shape == IndenterShape::cone ? 2.0 : 1.5;
+}
+
 double thick_layer_modulus(const Indenter& indenter, double depth, double force) {
   return 0.75 * force / thick_layer_force(indenter, depth);
 }
@@ -41,10 +46,13 @@ Entry entry_of(const Indenter& indenter, double tip, double r, double z) {
     const double c = std::cos(indenter.half_angle), s = std::sin(indenter.half_angle);
     return {.depth = (z - tip) * s - r * c, .by_r = -c, .by_z = s};
   }
-  const double up = z - tip - indenter.radius;
+  // a ball is a rounded edge without a face
+  const double rounding = indenter.shape == IndenterShape::flat ? indenter.edge_radius : indenter.radius;
+  const double out = r - (indenter.radius - rounding), up = z - tip - rounding;
   if (up >= 0.0) return {.depth = indenter.radius - r, .by_r = -1.0};  // on the shaft
-  const double distance = std::hypot(r, up), nr = r / distance, nz = up / distance;
-  return {.depth = indenter.radius - distance,
+  if (out <= 0.0 && indenter.shape == IndenterShape::flat) return {.depth = z - tip, .by_z = 1.0};
+  const double distance = std::hypot(out, up), nr = out / distance, nz = up / distance;
+  return {.depth = rounding - distance,
           .by_r = -nr,
           .by_z = -nz,
           .rr = -nz * nz / distance,

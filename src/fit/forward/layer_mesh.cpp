@@ -11,6 +11,7 @@ constexpr double kWide = 8.0;                      ///< where a wide layer ends 
 constexpr double kReach = 1.15;                    ///< of even elements, in radii of contact at the deepest
 constexpr double kAcross = 8.0;                    ///< elements over the contact
 constexpr double kEdge = 20.0;                     ///< of a flat punch: its radius over the smallest element
+constexpr double kRounding = 3.0;                  ///< elements over its rounded edge
 constexpr double kGrowth = 0.8, kFarGrowth = 1.5;  ///< by which an element is larger than the one before
 
 /// Sizes of elements from `first` on, each larger than the one before it, that fill a length. Beyond `near`, where displacements
@@ -26,11 +27,17 @@ std::vector<double> growing(double first, double near, double length, double fin
   return sizes;
 }
 
+/// The smallest element of a flat punch, at its edge.
+double edge_size(const Indenter& indenter, double contact, double fineness) {
+  const double even = contact / kEdge;
+  return (indenter.sharp() ? even : std::min(even, indenter.edge_radius / kRounding)) / fineness;
+}
+
 std::vector<double> radial_sizes(const Indenter& indenter, double contact, double end, double fineness) {
   std::vector<double> sizes;
   double outward = 0.0;
   if (indenter.shape == IndenterShape::flat) {
-    outward = contact / (kEdge * fineness);
+    outward = edge_size(indenter, contact, fineness);
     sizes = growing(outward, contact, contact, fineness);
     std::reverse(sizes.begin(), sizes.end());
   } else {
@@ -54,7 +61,7 @@ std::shared_ptr<const MeridianMesh> layer_mesh(const Layer& layer, const Indente
   const double height = layer.thick() ? kHalfSpace * contact : layer.thickness;
   const double wide = layer.thick() ? height : contact + kWide * std::max(height, contact);
   const double end = layer.wide() ? std::min(wide, kHalfSpace * contact) : layer.radius;
-  const double first = contact / ((flat ? 0.5 * kEdge : 0.75 * kAcross) * fineness);
+  const double first = flat ? 2.0 * edge_size(indenter, contact, fineness) : contact / (0.75 * kAcross * fineness);
   std::vector<double> down = growing(std::min(first, height / (2.0 * fineness)), 2.0 * contact, height, fineness);
   std::reverse(down.begin(), down.end());
   return std::make_shared<MeridianMesh>(ends_and_middles(radial_sizes(indenter, contact, end, fineness), end),

@@ -28,9 +28,9 @@ double lead_of_grip(const Curve& curve, double first) {
 MonotoneCubic<double> way_of(const Curve& curve, double contact, std::size_t& lead) {
   std::vector<double> times, way;
   const double first = curve.displacement.front() - contact;
-  // a press touches nothing before contact; a grip goes either way
+  // a press touches nothing before contact; a grip or a load goes either way
   const Measurement& m = curve.measurement;
-  const bool grips = m.test != LabTest::compression && m.deforming != Deforming::indentation;
+  const bool grips = m.loaded() || (m.test != LabTest::compression && m.deforming != Deforming::indentation);
   lead = first > 0.0 || (grips && first != 0.0) ? 1 : 0;
   if (lead > 0)
     times.push_back(curve.time.front() - (grips ? lead_of_grip(curve, first) : lead_time(curve, first))),

@@ -46,6 +46,13 @@ OffsetModel::OffsetModel(std::shared_ptr<const MotionModel> inner, std::span<con
       std::string what = keys[i];
       throw std::invalid_argument(what.append(": no curve \"").append(name).append("\"; there are: ").append(names));
     }
+    for (std::size_t c = 0; c < inner_->curves() && force; ++c) {
+      const Curve& curve = inner_->curve(c);
+      if (curve.measurement.loaded() && (name.empty() || curve.name == name))
+        throw std::invalid_argument(keys[i] + ": curve \"" + curve.name +
+                                    "\" is driven by its force, which has no offset; give contact_mm, or name "
+                                    "another curve: curve.NAME.force_offset_N");
+    }
     offsets_.push_back({i, force, name});
   }
 }

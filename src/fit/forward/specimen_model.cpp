@@ -187,7 +187,8 @@ Prediction SpecimenModel::predict_from(std::size_t index, std::span<const double
   try {
     const Curve& measured = curve(index);
     const Measurement& m = measured.measurement;
-    const History history(measured, contact);
+    const bool loaded = m.loaded();
+    const History history(measured, loaded ? 0.0 : contact);
     const Tissue tissue = tissue_(values);
     require_times(m, tissue);
     result.force.resize(measured.size());
@@ -199,21 +200,21 @@ Prediction SpecimenModel::predict_from(std::size_t index, std::span<const double
         twisted(tissue, history, specimen_, measured, result.force);
       return result;
     }
-    const double outward = m.outward(), load = m.measured == Measured::strain ? specimen_.height : specimen_.area;
-    if (along && m.measured != Measured::strain && !tissue.fibres) {
+    const double outward = m.outward(), load = loaded ? specimen_.height : specimen_.area;
+    if (along && !loaded && !tissue.fibres) {
       UniaxialPath path(tissue);
       const Stretching way{history, 1.0, outward / specimen_.height};
       if (path.has_past())
         stresses_in_time(path, way, measured, result.force);
       else
         elastic_stresses(path, way, measured, result.force);
-    } else if (m.measured == Measured::strain) {
+    } else if (loaded) {
       by_point(tissue, {history, 0.0, outward / specimen_.area}, measured, result.force);
     } else {
       const double rest = m.deforming == Deforming::simple_shear ? 0.0 : 1.0;
       by_point(tissue, {history, rest, outward / specimen_.height}, measured, result.force);
     }
-    for (double& f : result.force) f *= outward * load;
+    for (double& f : result.force) f = outward * load * f + (loaded ? contact : 0.0);
   } catch (const std::exception& error) {
     result.force.clear();
     result.failure = error.what();

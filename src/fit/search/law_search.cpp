@@ -179,7 +179,9 @@ void LawSearch::compare_specimen() {
 void LawSearch::compare_grids() {
   try {
     specimen_error_ = grid_error(ladder_, forward_, values());
-    second_look_ = "A finer grid gives the same force to " + rounded(*specimen_error_) + " N at the optimum.";
+    const std::string unit = common_unit(forward_.curves);  // of a creep that of its displacements
+    second_look_ = std::string("A finer grid gives the same ") + (unit == "m" ? "displacement" : "force") + " to " +
+                   rounded(*specimen_error_) + (unit.empty() ? "" : " " + unit) + " at the optimum.";
   } catch (const std::exception& error) {
     second_look_ = std::string("A finer grid could not be compared: ") + error.what();
   }
