@@ -302,6 +302,8 @@ y_scale = 1000
 value = "force_N"
 )";
   ASSERT_THAT(run({"run", write("s.toml", scene), "--out", "o", "--quiet"}), Exits(0));
+  EXPECT_THAT(run({"run", "s.toml", "--out", "o", "--quiet"}), Exits(0))
+      << "a second run replaces all files of the first";
   auto f = read_csv(folder_ / "o/main/forces.csv");
   EXPECT_NEAR(*std::min_element(f["position_z_m"].begin(), f["position_z_m"].end()), 0.028, 1e-5);
   const nlohmann::json map = report_data(folder_ / "o/report.html")["scenes"][0]["charts"][0]["map"];
