@@ -8,6 +8,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "mesh/inspect/tet_locator.h"
+
 namespace glisson::scene {
 namespace {
 
@@ -48,16 +50,13 @@ std::optional<double> touch_of(const Shape& shape, const Pose& start, const Vec3
                                std::span<const Triangle> surface) {
   const Vec3d own = transposed(start.axes) * direction;
   double first = kOutOfReach;
-  bool from_inside = false;  // a face that looks along the direction is met from within the body
   for (const Triangle& t : surface) {
     std::array<Vec3d, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) corners[i] = start.to_own(mesh.vertices[t[i]]);
-    const double touch = march_to_triangle(shape, corners, own, first);
-    if (touch < first) from_inside = dot(cross(corners[1] - corners[0], corners[2] - corners[0]), own) > 0.0;
-    first = std::min(first, touch);
+    first = march_to_triangle(shape, corners, own, first);
   }
   if (first >= kOutOfReach) return {};
-  return from_inside ? 0.0 : first;
+  return first;
 }
 
 /// A move that takes a given time whatever its length: its speed rises to the middle and falls from there.
@@ -108,22 +107,24 @@ std::vector<double> palpation_touches(const InstrumentSpec& x, const Vec3d& dire
     throw std::invalid_argument(
         "a palpation needs an instrument that presses in contact: punch, ball, probe, plate or block");
   const std::vector<Triangle> surface = boundary_triangles(mesh);
+  const detail::TetLocator body(mesh, {});
   const Pose start = start_pose(x);
   std::vector<double> touches;
   for (const Vec3d& aside : palpation_points(std::get<PalpationSpec>(x.motion.how), start)) {
     Pose at = start;
     at.position += aside;
     const std::optional<double> touch = touch_of(contact->shape, at, direction, mesh, surface);
-    if (touch && *touch > 0.0) {
+    const bool inside = body.locate(at.position).has_value() || (touch && *touch <= 0.0);
+    if (touch && !inside) {
       touches.push_back(*touch);
       continue;
     }
     std::ostringstream text;
     text << "the point of the palpation at (" << at.position.x << ", " << at.position.y << ", " << at.position.z
          << ") m "
-         << (touch ? "is inside the body at the start; move `tip_m` away from it against the direction"
-                   : "misses the body along the direction; move `tip_m`, or give fewer `columns` and `rows` or less "
-                     "`spacing_mm`");
+         << (inside ? "is inside the body at the start; move `tip_m` away from it against the direction"
+                    : "misses the body along the direction; move `tip_m`, or give fewer `columns` and `rows` or less "
+                      "`spacing_mm`");
     throw std::invalid_argument(text.str());
   }
   return touches;
