@@ -197,7 +197,8 @@ class Study {
                      .x = {"time_s", "time [s]", 1.0},
                      .y = {options_.column, options_.column, 1.0},
                      .measured = {},
-                     .variants = {}}};
+                     .variants = {},
+                     .value = {}}};
     SceneExtras extras;
     for (const ConvergenceStudy& s : studies_) {
       if (s.levels.size() < 2) continue;

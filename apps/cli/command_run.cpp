@@ -15,6 +15,7 @@
 #include "cli/standard_streams.h"
 #include "report/output_folder.h"
 #include "report/report_page.h"
+#include "report/scene_checks.h"
 
 namespace glisson::app {
 namespace {
@@ -49,10 +50,11 @@ std::vector<Job> jobs_of(const Scene& scene, const fs::path& folder, int threads
   return jobs;
 }
 
-void write_report(const Scene& scene, const std::vector<const VariantRecorder*>& variants, const fs::path& file) {
+void write_report(const Scene& scene, const std::vector<const VariantRecorder*>& variants, const SceneExtras& extras,
+                  const fs::path& file) {
   const std::string subtitle = scene.variants.size() == 1 ? "one variant" : fmt::format("{} variants", variants.size());
   const std::string title = scene.title.empty() ? scene.file.stem().string() : scene.title;
-  nlohmann::json scenes = nlohmann::json::array({scene_json(scene, variants)});
+  nlohmann::json scenes = nlohmann::json::array({scene_json(scene, variants, extras)});
   write_whole(file, report_page(report_template(), report_json(title, subtitle, std::move(scenes))));
 }
 
@@ -69,9 +71,13 @@ int run(const RunOptions& options) {
   const auto recorders = run_batch(jobs, {.threads = options.threads, .quiet = options.quiet}, meshes.loader());
   const auto started = started_of(recorders);
   if (!options.quiet) print_results(started);
-  write_report(scene, started, folder / "report.html");
+  SceneExtras extras;
+  extras.checks = scene_checks(scene, started);
+  const int failed = print_checks(extras.checks, "", options.quiet);
+  write_report(scene, started, extras, folder / "report.html");
   say("{}{}\n", options.quiet ? "" : "report: ", (folder / "report.html").string());
-  return end_of(started);
+  const int end = end_of(started);
+  return end == kDone && failed > 0 ? kFailed : end;
 }
 
 }  // namespace

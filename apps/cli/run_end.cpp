@@ -50,6 +50,18 @@ void print_results(const std::vector<const VariantRecorder*>& variants) {
   }
 }
 
+int print_checks(const nlohmann::json& checks, const std::string& of, bool only_failed) {
+  int failed = 0;
+  for (const nlohmann::json& check : checks) {
+    const bool pass = check["pass"];
+    failed += !pass;
+    if (pass && only_failed) continue;
+    say("{}  {}{}{}\n      {} (expected: {})\n", pass ? "ok  " : "FAIL", of, of.empty() ? "" : ": ",
+        check["what"].get<std::string>(), check["measured"].get<std::string>(), check["expected"].get<std::string>());
+  }
+  return failed;
+}
+
 int end_of(const std::vector<const VariantRecorder*>& variants) {
   bool trouble = false;
   for (const VariantRecorder* v : variants) {

@@ -143,7 +143,8 @@ void add_tissue2(SceneExtras& extras, const VariantRecorder& run) {
                   .x = {.column = "depth_m", .label = "depth [mm]", .scale = 1000.0},
                   .y = {.column = "force_N", .label = "force [N]", .scale = 1.0},
                   .measured = {},
-                  .variants = {run.variant().name}};
+                  .variants = {run.variant().name},
+                  .value = {}};
   nlohmann::json json = chart_json(chart);
   json["fits"] = {fit_line(quadratic, depth.back(), fmt::format("second order, R² = {:.5f}", quadratic.r2)),
                   fit_line(line, depth.back(), fmt::format("line, R² = {:.4f}", line.r2))};
@@ -155,11 +156,6 @@ const Variant& variant_named(const Scene& scene, const std::string& name) {
 }
 
 }  // namespace
-
-nlohmann::json check_json(const std::string& what, const std::string& measured, const std::string& expected,
-                          bool pass) {
-  return {{"what", what}, {"measured", measured}, {"expected", expected}, {"pass", pass}};
-}
 
 SceneExtras figure2_extras(const Scene& scene, const Finished& runs) {
   SceneExtras extras;

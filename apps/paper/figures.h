@@ -9,6 +9,7 @@
 #include <string>
 
 #include "report/report_page.h"
+#include "report/scene_checks.h"
 #include "report/variant_recorder.h"
 
 namespace glisson::app {
@@ -34,8 +35,5 @@ SceneExtras figure3b_extras(const Finished& runs);
 /// Section 2.4: runs every variant of the speed scene many times over, one after the other, and reports the medians.
 /// Takes about a second.
 SceneExtras speed_extras(const Scene& scene);
-
-/// CheckData of web/src/report_data.ts.
-nlohmann::json check_json(const std::string& what, const std::string& measured, const std::string& expected, bool pass);
 
 }  // namespace glisson::app

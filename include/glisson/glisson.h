@@ -25,5 +25,6 @@
 #include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 #include "glisson/simulation/tet_fields.h"
+#include "glisson/surface_region.h"
 #include "glisson/torsion.h"
 #include "glisson/version.h"

@@ -13,6 +13,7 @@
 #include "glisson/version.h"
 #include "report/json_text.h"
 #include "report/law_data.h"
+#include "report/scene_checks.h"
 
 namespace glisson {
 namespace {
@@ -63,7 +64,10 @@ nlohmann::json scene_json(const Scene& scene, const std::vector<const VariantRec
   nlohmann::json list = nlohmann::json::array();
   for (const VariantRecorder* v : variants) list.push_back(v->json(reach));
   nlohmann::json charts = nlohmann::json::array();
-  for (const ChartSpec& chart : scene.charts) charts.push_back(chart_json(chart));
+  for (const ChartSpec& chart : scene.charts) {
+    charts.push_back(chart_json(chart));
+    if (!chart.value.column.empty()) charts.back()["map"] = map_json(chart, variants);
+  }
   for (const nlohmann::json& chart : extras.charts) charts.push_back(chart);
   return {{"name", name},
           {"title", scene.title.empty() ? name : scene.title},

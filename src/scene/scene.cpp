@@ -146,15 +146,18 @@ void read_measured(MeasuredSpec& m) {
   }
 }
 
-void check_charts(const Scene& scene, const Node& node, Problems& problems) {
+/// Charts and checks may name variants, of those that there are.
+template <class Naming>
+void check_variants(const std::string& what, const std::vector<Naming>& list, const Scene& scene, const Node& node,
+                    Problems& problems) {
   std::vector<std::string> known;
   for (const Variant& v : scene.variants) known.push_back(v.name);
-  for (std::size_t i = 0; i < scene.charts.size(); ++i) {
-    for (std::size_t k = 0; k < scene.charts[i].variants.size(); ++k) {
-      const std::string& name = scene.charts[i].variants[k];
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    for (std::size_t k = 0; k < list[i].variants.size(); ++k) {
+      const std::string& name = list[i].variants[k];
       if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-      const Node& word = (*(*node.find("chart")->array())[i].find("variants")->array())[k];
-      problems.add(word.where, "chart." + std::to_string(i) + ".variants",
+      const Node& word = (*(*node.find(what)->array())[i].find("variants")->array())[k];
+      problems.add(word.where, what + "." + std::to_string(i) + ".variants",
                    "no variant \"" + name + "\"; the scene has: " + listed(known));
     }
   }
@@ -213,7 +216,8 @@ Scene parse_scene(std::string_view text, const std::string& name, const std::fil
   for (const Node& experiment : expanded.variants) result.variants.push_back(read_variant(experiment, base, problems));
   if (problems.count() == 0) {
     check_names(expanded.variants, "variant", problems);
-    check_charts(result, expanded.scene, problems);
+    check_variants("chart", result.charts, result, expanded.scene, problems);
+    check_variants("check", result.checks, result, expanded.scene, problems);
     load_measured(result, expanded.scene, base, problems);
   }
   problems.throw_if_any();

@@ -250,6 +250,73 @@ TEST_F(Outputs, ReportHoldsTheRun) {
   EXPECT_EQ(v["law_curves"][0]["curves"][0]["y"][0], 3600.0);
 }
 
+// Checks of a scene are printed and stand in the report; one that fails ends the program with status 1, and is said with --quiet too.
+TEST_F(Outputs, ChecksOfTheSceneAreHeldAgainstItsRun) {
+  const std::string checks =
+      "[[check]]\nwhat = \"it presses\"\ncolumn = \"force_N\"\nat = \"largest\"\nat_least = 0.01\n"
+      "[[check]]\nwhat = \"it goes down\"\ncolumn = \"depth_m\"\nat_least = 0.0009\nat_most = 0.0011\n";
+  const Outcome good = run({"run", write("s.toml", small_scene(checks)), "--out", "o"});
+  ASSERT_THAT(good, Exits(0));
+  EXPECT_NE(good.out.find("ok    it presses\n"), std::string::npos) << good.out;
+  EXPECT_NE(good.out.find("(expected: 0.0009 to 0.0011)"), std::string::npos) << good.out;
+  const nlohmann::json listed = report_data(folder_ / "o/report.html")["scenes"][0]["checks"];
+  ASSERT_EQ(listed.size(), 2u);
+  EXPECT_TRUE(listed[0]["pass"].get<bool>() && listed[1]["pass"].get<bool>());
+  const Outcome bad = run({"run", "s.toml", "--out", "o2", "--quiet", "--set", "check.1.at_most=0.00095"});
+  ASSERT_THAT(bad, Exits(1));
+  EXPECT_NE(bad.out.find("FAIL  it goes down\n"), std::string::npos) << bad.out;
+  EXPECT_EQ(bad.out.find("it presses"), std::string::npos) << bad.out;
+  EXPECT_NE(bad.out.find("o2/report.html"), std::string::npos) << bad.out;
+  const Outcome none =
+      run({"run", write("n.toml", small_scene("[[check]]\nwhat = \"w\"\ncolumn = \"forse_N\"\nat_least = 0\n")),
+           "--out", "o3"});
+  ASSERT_THAT(none, Exits(1));
+  EXPECT_NE(none.out.find("no column \"forse_N\""), std::string::npos) << none.out;
+}
+
+// A palpation of a flat block: a press at each point of the grid to the same depth below the surface, and the report's map has just
+// these places, with the largest force of each.
+TEST_F(Outputs, PalpationMakesAMap) {
+  const std::string scene = R"([mesh]
+kind = "box"
+cells = [6, 6, 3]
+size_m = [0.06, 0.06, 0.03]
+[motion]
+damping_rate_per_s = 40
+[[fixed]]
+set = "z_min"
+[[instrument]]
+kind = "ball"
+name = "finger"
+tip_m = [0.03, 0.03, 0.035]
+radius_mm = 6
+motion = { kind = "palpation", columns = 3, rows = 2, spacing_mm = 10, indentation_mm = 2, velocity_mm_s = 100, clearance_mm = 1, move_s = 0.02, hold_s = 0.02 }
+[output]
+frames = 2
+[[chart]]
+title = "map"
+x = "position_x_m"
+y = "position_y_m"
+x_scale = 1000
+y_scale = 1000
+value = "force_N"
+)";
+  ASSERT_THAT(run({"run", write("s.toml", scene), "--out", "o", "--quiet"}), Exits(0));
+  EXPECT_THAT(run({"run", "s.toml", "--out", "o", "--quiet"}), Exits(0))
+      << "a second run replaces all files of the first";
+  auto f = read_csv(folder_ / "o/main/forces.csv");
+  EXPECT_NEAR(*std::min_element(f["position_z_m"].begin(), f["position_z_m"].end()), 0.028, 1e-5);
+  const nlohmann::json map = report_data(folder_ / "o/report.html")["scenes"][0]["charts"][0]["map"];
+  ASSERT_EQ(map["of"].size(), 1u);
+  const std::vector<double> x = map["of"][0]["x"], y = map["of"][0]["y"], value = map["of"][0]["value"];
+  ASSERT_EQ(value.size(), 6u);
+  EXPECT_THAT(x, testing::Pointwise(testing::DoubleNear(1e-6), {20, 20, 30, 30, 40, 40}));
+  EXPECT_THAT(y, testing::Pointwise(testing::DoubleNear(1e-6), {25, 35, 25, 35, 25, 35}));
+  EXPECT_NEAR(*std::max_element(value.begin(), value.end()),
+              *std::max_element(f["force_N"].begin(), f["force_N"].end()), 1e-12);
+  EXPECT_GT(*std::min_element(value.begin(), value.end()), 0.05);
+}
+
 // A second tool has a file of its own with the first twelve columns.
 TEST_F(Outputs, SecondToolHasItsOwnFile) {
   const std::string scene = write("s.toml", small_scene(R"([[tool]]

@@ -1,7 +1,8 @@
-// The liver that comes with the project, pressed and pierced: no file is needed, and what happens is what its scenes say.
+// The liver that comes with the project, pressed, pierced, cut and felt: no file is needed, and what happens is what its scenes say.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "support/places.h"
@@ -69,6 +70,44 @@ TEST(ShapesLiver, MovesItsTumourAwayFromTheNeedle) {
   for (const char* event : {"puncture", "inner puncture"}) {
     EXPECT_EQ(std::count(recorder.events.begin(), recorder.events.end(), event), 1) << event;
   }
+}
+
+// The blade meets toughness times the length of its edge, and the retractors open what it has cut.
+TEST(ShapesLiver, IsOpenedByABlade) {
+  const Scene scene = test::shipped_scene("organs/liver_cut.toml", {{"mesh.edge_mm", "13"}});
+  ProbedRecorder run("left_side_displacement_x_m");
+  const std::atomic<bool> stop{false};
+  const RunSummary summary = run_variant(scene.variants.front(), {}, run, stop);
+  EXPECT_EQ(summary.end, RunSummary::End::finished);
+  const auto cut = static_cast<std::size_t>(std::lower_bound(run.time.begin(), run.time.end(), 0.5) - run.time.begin());
+  EXPECT_GT(run.value.back(), run.value.at(cut) + 0.004) << "beyond what the pull alone does [m]";
+  EXPECT_NEAR(*std::max_element(run.force.begin(), run.force.end()), 20.0 * 0.064, 0.02) << "[N]";
+}
+
+// Above the tumour the finger meets more force than beside it, and more than in sound tissue.
+TEST(ShapesLiver, LetsItsTumourBeFelt) {
+  const Scene scene = test::shipped_scene("organs/palpation.toml", {{"mesh.edge_mm", "12"},
+                                                                    {"instrument.0.motion.columns", "2"},
+                                                                    {"instrument.0.motion.rows", "1"},
+                                                                    {"instrument.0.motion.spacing_mm", "28"},
+                                                                    {"instrument.0.tip_m", "[-0.049, -0.09, 0.008]"},
+                                                                    {"output.frames", "0"}});
+  ASSERT_EQ(scene.variants.size(), 2u);
+  std::array<double, 2> beside{}, above{};  // largest forces of the first press, 28 mm aside, and of the second
+  for (std::size_t v = 0; v < 2; ++v) {
+    Variant variant = scene.variants[v];
+    variant.probes.push_back({{.name = "tumour", .where = ProbeRegion{"tumour"}}, ""});
+    ProbedRecorder run("tumour_displacement_y_m");
+    const std::atomic<bool> stop{false};
+    EXPECT_EQ(run_variant(variant, {}, run, stop).end, RunSummary::End::finished);
+    for (std::size_t i = 0; i < run.force.size(); ++i) {
+      double& most = run.time[i] < 0.5 * run.time.back() ? beside[v] : above[v];
+      most = std::max(most, run.force[i]);
+    }
+  }
+  EXPECT_GT(above[1], 1.25 * above[0]) << "[N]";
+  EXPECT_GT(above[1], 1.2 * beside[1]) << "[N]";
+  EXPECT_LT(beside[1], 1.15 * beside[0]) << "[N]";
 }
 
 }  // namespace

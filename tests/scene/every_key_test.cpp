@@ -145,6 +145,22 @@ y_label = "force [N]"
 measured = []
 variants = ["only"]
 
+[[chart]]
+title = "Map"
+x = "position_x_m"
+y = "position_y_m"
+value = "force_N"
+value_scale = 3
+value_label = "force [N/3]"
+
+[[check]]
+what = "it presses"
+column = "force_N"
+at = "peak"
+at_least = 0.5
+at_most = 2
+variants = ["only"]
+
 [[variant]]
 name = "only"
 label = "the only one"
@@ -160,7 +176,18 @@ TEST(EveryKey, OfTheSceneIsRead) {
   EXPECT_THAT(scene.notes, ElementsAre("one", "two"));
   EXPECT_EQ(scene.source, kEveryKey);
   EXPECT_EQ(scene.file, "s.toml");
-  ASSERT_EQ(scene.charts.size(), 1u);
+  ASSERT_EQ(scene.charts.size(), 2u);
+  EXPECT_EQ(scene.charts[0].value.column, "") << "lines";
+  EXPECT_EQ(scene.charts[1].value.column, "force_N");
+  EXPECT_EQ(scene.charts[1].value.scale, 3.0);
+  EXPECT_EQ(scene.charts[1].value.label, "force [N/3]");
+  ASSERT_EQ(scene.checks.size(), 1u);
+  EXPECT_EQ(scene.checks[0].what, "it presses");
+  EXPECT_EQ(scene.checks[0].column, "force_N");
+  EXPECT_EQ(scene.checks[0].at, CheckSpec::At::peak);
+  EXPECT_EQ(scene.checks[0].at_least, 0.5);
+  EXPECT_EQ(scene.checks[0].at_most, 2.0);
+  EXPECT_THAT(scene.checks[0].variants, ElementsAre("only"));
   EXPECT_EQ(scene.charts[0].title, "Force");
   EXPECT_EQ(scene.charts[0].x.column, "depth_m");
   EXPECT_EQ(scene.charts[0].x.scale, 1000.0);
@@ -354,6 +381,31 @@ TEST(EveryKey, OfRotationsIsRead) {
   EXPECT_EQ(run_duration(v), 2.0);
 }
 
+const std::string kPalpation = R"(
+[mesh]
+kind = "box"
+[[instrument]]
+kind = "ball"
+tip_m = [0.02, 0.02, 0.09]
+motion = { kind = "palpation", columns = 3, rows = 2, spacing_mm = 4, indentation_mm = 2, velocity_mm_s = 40, clearance_mm = 1, move_s = 0.2, hold_s = 0.1, start_s = 0.5 }
+)";
+
+// A palpation keeps its grid and its times; each press takes move, down and up, and hold.
+TEST(EveryKey, OfAPalpationIsRead) {
+  const Variant v = parse(kPalpation).variants[0];
+  const auto& p = std::get<PalpationSpec>(v.instruments.at(0).motion.how);
+  EXPECT_EQ(p.columns, 3);
+  EXPECT_EQ(p.rows, 2);
+  EXPECT_EQ(p.spacing, 0.004);
+  EXPECT_EQ(p.indentation, 0.002);
+  EXPECT_EQ(p.velocity, 0.04);
+  EXPECT_EQ(p.clearance, 0.001);
+  EXPECT_EQ(p.move, 0.2);
+  EXPECT_EQ(p.hold, 0.1);
+  EXPECT_EQ(p.start, 0.5);
+  EXPECT_NEAR(run_duration(v), 0.5 + 6 * (0.2 + 2 * 3e-3 / 0.04 + 0.1), 1e-12);
+}
+
 // The two other kinds of mesh keep their numbers; a file is looked for beside the scene.
 TEST(EveryKey, OfCylinderAndFileIsRead) {
   const std::string rest = "\n[motion]\nduration_s = 1\n";
@@ -393,7 +445,7 @@ TEST(EveryKey, IsInTheSceneOfThisTest) {
   collect(scene::scene_section(), keys);
   collect(scene::variant_section(), keys);
   EXPECT_GT(keys.size(), 60u);
-  const std::string text = kEveryKey + kRotations + test::kEveryInstrument;
+  const std::string text = kEveryKey + kRotations + kPalpation + test::kEveryInstrument;
   for (const char* key : {"path", "file", "record", "poses", "x_offset"})
     keys.erase(key);  // of files, which have tests of their own
   for (const std::string& key : keys) EXPECT_NE(text.find(key), std::string::npos) << key;

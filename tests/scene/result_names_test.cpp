@@ -42,7 +42,10 @@ TEST(ResultNames, AreKnownByTheirExactNames) {
   EXPECT_TRUE(is_result_file("forces_a b.csv"));
   EXPECT_TRUE(is_result_file("frame_0001.vtu"));
   EXPECT_TRUE(is_result_file("report.html.part"));
-  for (const char* name : {"Report.html", "forces_.csv", "frame_.vtu", "frame_1a.vtu", ".part", "thesis.txt", "frames"})
+  EXPECT_TRUE(is_result_file("tool_18 G_0012.vtp"));
+  EXPECT_TRUE(is_result_file("tool_a_b.pvd"));
+  for (const char* name : {"tool_0001.vtp", "tool__0001.vtp", "tool_a_.vtp", "tool_.pvd", "Report.html", "forces_.csv",
+                           "frame_.vtu", "frame_1a.vtu", ".part", "thesis.txt", "frames"})
     EXPECT_FALSE(is_result_file(name)) << name;
 }
 

@@ -116,6 +116,13 @@ export interface ChartSpec {
   fits?: { label: string; x: number[]; y: number[] }[]; // extra lines, in the axes' display units, drawn dashed
   lines?: { label: string; x: number[]; y: number[] }[]; // the chart's own, in the axes' display units, as those of variants
   log_x?: boolean; // x by its logarithm; all x above 0
+  map?: MapData; // a map in place of lines
+}
+
+/** The largest value at places (x, y), in display units; lists of a variant equally long. */
+export interface MapData {
+  label: string; // of the values, with unit
+  of: { variant: string; label: string; x: number[]; y: number[]; value: number[] }[];
 }
 
 export interface AxisSpec {

@@ -19,7 +19,7 @@ Vec3d any_across(const Vec3d& along) {
 /// Speed, ramp and farthest depth that a motion of the scene suggests.
 struct Habit {
   double speed = 0.01, ramp = kShortestRamp;
-  std::optional<double> depth;
+  double depth = 0.0;
 
   void operator()(const PressMotion& m) {
     speed = m.velocity;
@@ -28,15 +28,16 @@ struct Habit {
   }
   void operator()(const StrokesSpec& m) {
     speed = m.velocity;
-    for (const StrokesSpec::One& s : m.strokes) depth = std::max(depth.value_or(0.0), s.depth);
+    for (const StrokesSpec::One& s : m.strokes) depth = std::max(depth, s.depth);
   }
   template <class Other>
   void operator()(const Other&) {}
 };
 
-/// The scene's way of an instrument; none where it is pushed.
+/// The scene's way of an instrument; none where it is pushed, or feels for the body.
 std::optional<ToolPath> scene_way(const InstrumentSpec& spec) {
-  if (std::holds_alternative<PushSpec>(spec.motion.how)) return {};
+  if (std::holds_alternative<PushSpec>(spec.motion.how) || std::holds_alternative<PalpationSpec>(spec.motion.how))
+    return {};
   const std::shared_ptr<ToolDriver> driver = make_driver(spec);
   return ToolPath{[driver](double t) { return driver->advance(t, 0.0, {}).position - driver->start().position; },
                   driver->end()};
@@ -81,11 +82,11 @@ void LiveBody::lead_tools() {
   for (ToolSpec& x : variant_.tools) {
     Habit habit;
     habit(x.motion);
-    if (x.record) habit.depth.reset();
+    if (x.record) habit.depth = 0.0;
     ToolInfo info{.name = x.name, .direction = unit(x.motion.direction), .speed = habit.speed, .can_play = true};
     info.side = any_across(info.direction);
     info.third = cross(info.direction, info.side);
-    info.most_depth = 1.25 * habit.depth.value_or(0.0);
+    info.most_depth = 1.25 * habit.depth;
     ways_.push_back(std::make_shared<LivePath>(habit.speed, habit.ramp, tool_path(x)));
     x.path = ToolPath{[way = ways_.back()](double t) { return way->at(t); }, {}};
     tools_.push_back(info);
@@ -102,7 +103,7 @@ void LiveBody::lead_instruments() {
       info.side[i] = start.axes(i, 0);
       info.third[i] = start.axes(i, 1);
     }
-    info.most_depth = 1.25 * habit.depth.value_or(0.0);
+    info.most_depth = 1.25 * habit.depth;
     ways_.push_back(std::make_shared<LivePath>(habit.speed, habit.ramp, scene_way(x)));
     const bool turns =
         std::holds_alternative<RotationMotion>(x.motion.how) || std::holds_alternative<PosesSpec>(x.motion.how);

@@ -178,9 +178,36 @@ struct PushSpec {
         no_key("tool", &P::tool));
   }
 };
+/// Presses one after the other at the points of a grid: each as deep below the surface at rest as all others, however the
+/// surface lies. Every press takes the same time: `move`, down and up at `velocity`, and `hold`.
+struct PalpationSpec {
+  static constexpr std::string_view kName = "palpation";
+  int columns = 7, rows = 7;   ///< points along the instrument's own x and y axes; their middle is its tip at the start
+  double spacing = 0.01;       ///< of the points, across the direction [m]
+  double indentation = 0.005;  ///< from the first touch of the body at rest [m]
+  double velocity = 0.05;      ///< of a press [m/s]
+  double clearance = 0.003;    ///< from the surface, where a press begins and ends [m]
+  double move = 0.1, hold = 0.05, start = 0.0;
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using P = PalpationSpec;
+    return take(field("columns", &P::columns, between(1, 100), "points along the instrument's own x axis"),
+                field("rows", &P::rows, between(1, 100), "points along its own y axis"),
+                field("spacing", &P::spacing, "mm", above(0), "distance of neighbouring points, across the direction"),
+                field("indentation", &P::indentation, "mm", above(0), "depth of each press below the surface at rest"),
+                field("velocity", &P::velocity, "mm/s", above(0), "speed of a press"),
+                field("clearance", &P::clearance, "mm", above(0), "distance from the surface before and after a press"),
+                field("move", &P::move, "s", above(0), "time of the move to the next point"),
+                field("hold", &P::hold, "s", at_least(0), "rest at the depth"),
+                field("start", &P::start, "s", at_least(0), "start of the first move"));
+  }
+};
 struct InstrumentMotion {
   /// The last is a program's own path; no scene file gives it.
-  std::variant<PressMotion, StrokesSpec, SineMotion, PushSpec, RecordSpec, RotationMotion, PosesSpec, ToolPath> how;
+  std::variant<PressMotion, StrokesSpec, SineMotion, PushSpec, RecordSpec, RotationMotion, PosesSpec, PalpationSpec,
+               ToolPath>
+      how;
   std::optional<Vec3d> direction;  ///< of any length; none: the instrument's
 };
 
@@ -204,8 +231,11 @@ struct InstrumentSpec {
 PosesMotion started(const PosesSpec& spec);
 /// Initial pose of an instrument: its own z axis points back along its direction.
 Pose start_pose(const InstrumentSpec& instrument);
-/// Its driver. @throws std::invalid_argument
+/// Its driver. That of a palpation moves over a plane through its tip, where no body is known; its end is the right one.
+/// @throws std::invalid_argument
 std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& instrument);
+/// The same, with the body that a palpation feels. @throws std::invalid_argument naming a point that misses the body
+std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& instrument, const TetMesh& mesh);
 
 /// A file of numbers separated by commas: a line of names, `time_s` and `depth_m`, or `time_s`, `x_m`, `y_m` and `z_m`
 /// (or _mm), then a line for each time. @param direction  of depths, a unit vector
@@ -303,7 +333,26 @@ struct ChartSpec {
   AxisSpec x, y;
   std::vector<MeasuredSpec> measured;
   std::vector<std::string> variants;  ///< names; empty: all
+  /// Of a map: its largest value at each place (x, y) is shown as a colour, places where it is never above 0 left out.
+  /// No column: a chart of lines.
+  AxisSpec value;
 };
+
+/// What a run is expected to give: a value of a column within bounds.
+struct CheckSpec {
+  enum class At { end, largest, least, peak };
+  std::string what;    ///< a sentence
+  std::string column;  ///< of forces.csv or probes.csv
+  At at = At::end;
+  std::optional<double> at_least, at_most;  ///< in the unit of the column, one of them or both
+  std::vector<std::string> variants;        ///< names; empty: all
+};
+template <>
+inline constexpr Word<CheckSpec::At> kWords<CheckSpec::At>[] = {
+    {"end", CheckSpec::At::end, "the last value"},
+    {"largest", CheckSpec::At::largest, "the largest"},
+    {"least", CheckSpec::At::least, "the least"},
+    {"peak", CheckSpec::At::peak, "the largest size, without its sign"}};
 
 struct Scene {
   std::filesystem::path file;
@@ -312,6 +361,7 @@ struct Scene {
   std::string source;              ///< the text of the file
   std::vector<Variant> variants;   ///< one or more
   std::vector<ChartSpec> charts;   ///< empty: the report's own choice
+  std::vector<CheckSpec> checks;   ///< what its runs are expected to give
 };
 
 /// `key=value` as given to --set: dotted key, TOML value (a bare word is taken as a string).

@@ -8,6 +8,7 @@
 #include "base/nearest.h"
 #include "glisson/instruments/driven_set.h"
 #include "glisson/mesh.h"
+#include "scene/build/palpation.h"
 #include "scene/parse/select.h"
 
 namespace glisson {
@@ -19,6 +20,7 @@ Vec3d moving_direction(const InstrumentSpec& x) { return unit(x.motion.direction
 struct DriverMaker {
   Pose start;
   Vec3d direction;
+  std::vector<double> touches;  ///< of a palpation [m]; empty: none is known
 
   std::shared_ptr<ToolDriver> path(ToolPath path) const { return std::make_shared<PathDriver>(start, std::move(path)); }
 
@@ -51,6 +53,11 @@ struct DriverMaker {
   }
   std::shared_ptr<ToolDriver> operator()(const PosesSpec& m) const {
     return std::make_shared<RigidDriver>(start, poses_path(started(m)));
+  }
+  std::shared_ptr<ToolDriver> operator()(const PalpationSpec& m) const {
+    std::vector<double> touch = touches;
+    touch.resize(static_cast<std::size_t>(m.columns) * static_cast<std::size_t>(m.rows), 0.0);
+    return path(stroke_path(scene::palpation_strokes(m, start, direction, touch)));
   }
   std::shared_ptr<ToolDriver> operator()(const PushSpec& m) const {
     PushMotion push = m.tool;
@@ -90,9 +97,11 @@ struct InstrumentMaker {
       options.bevel_side = spec.side;
       options.regions = by_number(spec, mesh);
     }
-    return std::make_shared<typename Options::Instrument>(options, make_driver(spec));
+    return std::make_shared<typename Options::Instrument>(options, make_driver(spec, mesh));
   }
-  std::shared_ptr<Instrument> operator()(const OwnInstrument& make) const { return make(spec, make_driver(spec)); }
+  std::shared_ptr<Instrument> operator()(const OwnInstrument& make) const {
+    return make(spec, make_driver(spec, mesh));
+  }
 };
 
 }  // namespace
@@ -114,7 +123,14 @@ Pose start_pose(const InstrumentSpec& x) {
 }
 
 std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& x) {
-  return std::visit(DriverMaker{start_pose(x), moving_direction(x)}, x.motion.how);
+  return std::visit(DriverMaker{start_pose(x), moving_direction(x), {}}, x.motion.how);
+}
+
+std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& x, const TetMesh& mesh) {
+  const Vec3d direction = moving_direction(x);
+  std::vector<double> touches;
+  if (std::holds_alternative<PalpationSpec>(x.motion.how)) touches = scene::palpation_touches(x, direction, mesh);
+  return std::visit(DriverMaker{start_pose(x), direction, std::move(touches)}, x.motion.how);
 }
 
 namespace scene {

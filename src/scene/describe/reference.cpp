@@ -59,6 +59,7 @@ std::string scene_reference_markdown() {
   text += section_text(output_section(), "`[output]`");
   text += section_text(chart_section(), "`[[chart]]`");
   text += section_text(measured_section(), "`[[chart.measured]]`");
+  text += section_text(check_section(), "`[[check]]`");
   text += section_text(variant_section(), "`[[variant]]`");
   return text.append(kReferenceVariants).append(kReferenceOverrides).append(kReferenceRun);
 }

@@ -1,4 +1,4 @@
-// section_instrument_motion.cpp — [instrument.motion]: strokes, press, sine, record, push.
+// section_instrument_motion.cpp — [instrument.motion]: strokes, press, sine, record, push, palpation.
 #include "glisson/scene/scene.h"
 #include "scene/parse/section.h"
 #include "scene/parse/sections.h"
@@ -91,7 +91,11 @@ const SectionSpec& instrument_motion_section() {
         motion_kind<PushSpec>(push_kind()),
         motion_kind<RecordSpec>(record_section()),
         motion_kind<RotationMotion>(rotation_section()),
-        motion_kind<PosesSpec>(poses_section())};
+        motion_kind<PosesSpec>(poses_section()),
+        motion_kind<PalpationSpec>(described<PalpationSpec>(
+            "Presses at the points of a grid about the instrument's tip, one after the other: each to the same depth "
+            "below the surface at rest, as the instrument meets it along its direction. For `punch`, `ball`, `probe`, "
+            "`plate` and `block`; `value` of a `[[chart]]` shows the forces as a map."))};
     return s.spec();
   }();
   return section;

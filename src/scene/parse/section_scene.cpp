@@ -50,10 +50,46 @@ const SectionSpec& chart_section() {
         .otherwise("the column");
     s.tables("measured", measured_section(), &ChartSpec::measured, "measured points");
     s.key("variants", &ChartSpec::variants, "names of the variants shown").otherwise("all");
-    s.finish([](ChartSpec& c, const Node&, const Place&) {
-      for (AxisSpec* axis : {&c.x, &c.y}) {
+    s.key(
+         "value", [](ChartSpec & c) -> auto& { return c.value.column; },
+         "column whose largest value at each place (x, y) is shown as a map, in place of lines; places where it is "
+         "never above 0 are left out")
+        .otherwise("lines");
+    s.key(
+         "value_scale", [](ChartSpec & c) -> auto& { return c.value.scale; }, "factor on it for display")
+        .in("-");
+    s.key(
+         "value_label", [](ChartSpec & c) -> auto& { return c.value.label; }, "label of its colours, with unit")
+        .otherwise("the column");
+    s.finish([](ChartSpec& c, const Node& table, const Place& place) {
+      for (AxisSpec* axis : {&c.x, &c.y, &c.value}) {
         if (axis->label.empty()) axis->label = axis->column;
       }
+      if (!c.value.column.empty() && !c.measured.empty())
+        place.complain(*table.find("measured"), "measured",
+                       "a map shows no measured points; leave out `value` or these");
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& check_section() {
+  static const SectionSpec section = [] {
+    using C = CheckSpec;
+    Section<C> s("check",
+                 "What a run is expected to give. `glisson run` and the report say whether it does; where it does not, "
+                 "the program ends with status 1.");
+    s.key("what", &C::what, "a sentence that says so").must();
+    s.key("column", &C::column, "column of forces.csv or probes.csv").must();
+    s.key("at", &C::at, "which of its values");
+    s.key("at_least", &C::at_least, "lower bound, in the unit of the column").otherwise("none");
+    s.key("at_most", &C::at_most, "upper bound, in the unit of the column").otherwise("none");
+    s.key("variants", &C::variants, "names of the variants that are held to it").otherwise("all");
+    s.finish([](C& c, const Node&, const Place& place) {
+      if (!c.at_least && !c.at_most) place.complain("has no bound; give `at_least`, `at_most` or both");
+      if (c.at_least && c.at_most && *c.at_least > *c.at_most)
+        place.complain("`at_least` is above `at_most`; no value can be within them");
     });
     return s.spec();
   }();
@@ -101,6 +137,7 @@ const SectionSpec& scene_section() {
     s.key("description", &Scene::description, "what the experiment is, in a few sentences");
     s.key("notes", &Scene::notes, "choices made where the source gives no value, and the reasons").otherwise("[]");
     s.tables("chart", chart_section(), &Scene::charts, "charts of the report");
+    s.tables("check", check_section(), &Scene::checks, "what its runs are expected to give");
     s.bare({.name = "variant",
             .help = "experiments that differ in some keys",
             .type = ValueType::table,

@@ -17,11 +17,24 @@ bool between(std::string_view name, std::string_view begin, std::string_view end
   return name.size() > begin.size() + end.size() && name.starts_with(begin) && name.ends_with(end);
 }
 
+bool is_number(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
 bool is_frame(std::string_view name) {
   constexpr std::string_view kBegin = "frame_", kEnd = ".vtu";
+  return between(name, kBegin, kEnd) &&
+         is_number(name.substr(kBegin.size(), name.size() - kBegin.size() - kEnd.size()));
+}
+
+/// The surface of an instrument beside a frame, `tool_NAME_0001.vtp`, or their collection, `tool_NAME.pvd`.
+bool is_tool_surface(std::string_view name) {
+  constexpr std::string_view kBegin = "tool_", kEnd = ".vtp";
+  if (between(name, kBegin, ".pvd")) return true;
   if (!between(name, kBegin, kEnd)) return false;
   name = name.substr(kBegin.size(), name.size() - kBegin.size() - kEnd.size());
-  return std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+  const std::size_t number = name.rfind('_');
+  return number != std::string_view::npos && number > 0 && is_number(name.substr(number + 1));
 }
 
 /// A complaint about a name that a run's own file or folder may have; else empty.
@@ -46,7 +59,8 @@ std::string folded(std::string_view name) {
 
 bool is_result_file(std::string_view name) {
   const bool fixed = std::find(kResults.begin(), kResults.end(), name) != kResults.end();
-  return fixed || between(name, "forces_", ".csv") || is_frame(name) || between(name, "", ".part");
+  return fixed || between(name, "forces_", ".csv") || is_frame(name) || is_tool_surface(name) ||
+         between(name, "", ".part");
 }
 
 std::string unfit_as_folder(const std::string& name) {

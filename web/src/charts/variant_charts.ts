@@ -8,7 +8,7 @@ import { type ChartModel, type Line, scaled } from "./model.ts";
 
 /** The charts of a scene that compare its variants; empty where no variant has forces. */
 export function variantCharts(scene: SceneData): ChartModel[] {
-  const specs = scene.charts.length > 0 ? scene.charts : defaultSpecs(scene.variants);
+  const specs = scene.charts.length > 0 ? scene.charts.filter((spec) => !spec.map) : defaultSpecs(scene.variants);
   return specs.map((spec) => chartOf(spec, scene)).filter((model) => model.lines.length > 0);
 }
 

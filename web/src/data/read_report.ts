@@ -10,6 +10,7 @@ import type {
   FrameData,
   InstrumentForm,
   InstrumentPlace,
+  MapData,
   ReportData,
   SceneData,
   SurfaceData,
@@ -168,6 +169,28 @@ function readChart(raw: Raw): ChartSpec {
     fits: list(raw["fits"]).map((fit) => readCurve(record(fit))),
     lines: list(raw["lines"]).map((line) => readCurve(record(line))),
     log_x: raw["log_x"] === true,
+    ...(isRecord(raw["map"]) ? { map: readMap(raw["map"]) } : {}),
+  };
+}
+
+function readMap(raw: Raw): MapData {
+  const numbers = (value: unknown) => list(value).map(numberOrNaN);
+  return {
+    label: text(raw["label"]),
+    of: list(raw["of"])
+      .map(record)
+      .map((one) => {
+        const [x, y, value] = [numbers(one["x"]), numbers(one["y"]), numbers(one["value"])];
+        const length = Math.min(x.length, y.length, value.length);
+        const name = text(one["variant"]);
+        return {
+          variant: name,
+          label: text(one["label"]) || name,
+          x: x.slice(0, length),
+          y: y.slice(0, length),
+          value: value.slice(0, length),
+        };
+      }),
   };
 }
 

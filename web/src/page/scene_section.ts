@@ -3,6 +3,7 @@ import { Chart } from "../charts/chart.ts";
 import { containerChart, energyChart, partsChart } from "../charts/column_charts.ts";
 import { lawCharts } from "../charts/law_charts.ts";
 import type { ChartModel } from "../charts/model.ts";
+import { forceMap } from "../charts/force_map.ts";
 import { PROBE_QUANTITIES, probeChart } from "../charts/probe_charts.ts";
 import { SceneState } from "../charts/scene_state.ts";
 import { variantCharts } from "../charts/variant_charts.ts";
@@ -99,7 +100,11 @@ function sceneFigures(scene: SceneData): HTMLElement[] {
   const state = new SceneState(scene.variants.map((variant) => variant.name));
   const models = variantCharts(scene);
   const first = firstShown(models);
-  const curves = models.map((model) => figure(model.title, new Chart(model, state).element));
+  const maps = scene.charts.flatMap((spec) => {
+    const map = forceMap(spec);
+    return map ? [figure(spec.title, map, null, "figure-map")] : [];
+  });
+  const curves = [...maps, ...models.map((model) => figure(model.title, new Chart(model, state).element))];
   const laws = lawCharts(scene.variants).map((model) => figure(model.title, new Chart(model, state).element));
   const meshes = meshVariants(scene);
   const panel = meshes.length > 0 ? new MeshPanel(scene, meshes, state, first) : null;
