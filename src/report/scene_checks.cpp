@@ -39,13 +39,6 @@ std::string bounds_text(const CheckSpec& check) {
                         : fmt::format("at most {:.4g}", *check.at_most);
 }
 
-std::string word_of(CheckSpec::At at) {
-  for (const Word<CheckSpec::At>& w : kWords<CheckSpec::At>) {
-    if (w.value == at) return std::string(w.word);
-  }
-  return {};
-}
-
 nlohmann::json checked(const CheckSpec& check, const VariantRecorder& run, bool one) {
   const std::string what = one ? check.what : run.variant().label + ": " + check.what;
   const std::string expected = bounds_text(check);
