@@ -84,7 +84,7 @@ nlohmann::json map_json(const ChartSpec& chart, const std::vector<const VariantR
       const auto [at, fresh] = largest.try_emplace({std::llround(x[i] / kPlaces), std::llround(y[i] / kPlaces)}, i);
       if (!fresh && value[i] > value[at->second]) at->second = i;
     }
-    nlohmann::json xs = nlohmann::json::array(), ys = xs, values = xs;
+    nlohmann::json::array_t xs, ys, values;
     for (const auto& [place, i] : largest) {
       xs.push_back(x[i] * chart.x.scale);
       ys.push_back(y[i] * chart.y.scale);
