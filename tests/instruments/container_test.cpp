@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "instruments/contact_scenes.h"
+#include "support/must_step.h"
 
 namespace glisson::container_test {
 namespace {
@@ -211,6 +212,56 @@ TEST(Container, CheckpointGoesOn) {
     b.body.load(file);
     test::advance_to(b.body, 0.1);
     EXPECT_EQ(a.body.state_hash(), b.body.state_hash());
+  }
+}
+
+/// Acts on nothing, and has all vertices at hand: none may rest.
+class NamesAll : public Interaction {
+ public:
+  void attached(const BodyView& body, double) override {
+    for (std::uint32_t v = 0; v < body.mesh.vertices.size(); ++v) all_.push_back(v);
+  }
+  void body_changed(const BodyView&, std::span<const std::uint32_t>) override {}
+  std::span<const std::uint32_t> reach(double, double) override { return all_; }
+
+ private:
+  std::vector<std::uint32_t> all_;
+};
+
+// What is bonded rests and bears the same as where impulses stop it, weight and viscosity included; tissue that is set elsewhere is
+// pulled back to its place.
+TEST(Container, BondsThatRestBearTheSame) {
+  const TetMesh mesh = cylinder_mesh({.radius = 0.02, .height = 0.03, .radial_cells = 4, .axial_cells = 5});
+  ContainerOptions o = with(0.0, false, true);
+  o.vessel = CylinderVessel{.radius = 0.02};
+  Tissue viscous = tissue();
+  viscous.viscosity = 5.0;
+  ContainerLoads loads[2];
+  double force[2] = {};
+  for (const int stages : {1, 2}) {
+    for (const std::size_t named : {0U, 1U}) {
+      SimulationOptions options = damped(20.0, {0.0, 0.0, -9.81});
+      options.drag_stages = stages;
+      Simulation body(mesh, {{0, viscous}}, options);
+      const auto container = std::make_shared<Container>(o);
+      const auto tool = pressing(FlatPunch{.radius = 4e-3}, 0.03, 2e-3, 0.02);
+      body.attach(container);
+      body.attach(tool);
+      if (named == 1) body.attach(std::make_shared<NamesAll>());
+      test::advance_to(body, 0.1);
+      loads[named] = container->sensor_loads(), force[named] = tool->forces().total().z;
+      if (named == 1) continue;
+      std::vector<Vec3d> u(body.displacement().begin(), body.displacement().end());
+      const std::uint32_t bonded = mesh.vertex_sets.at("bottom").front();
+      u[bonded] += Vec3d{0.0, 0.0, 1e-4};
+      body.set_state(u, std::vector<Vec3d>(u.size()));
+      for (int i = 0; i < 5; ++i) test::must_step(body);
+      EXPECT_LE(norm(body.displacement()[bonded]), 1e-9);
+    }
+    EXPECT_GT(norm(loads[0].total()), 0.05);
+    EXPECT_LE(norm(loads[0].total() - loads[1].total()), 1e-5 * norm(loads[1].total())) << stages << " stages";
+    EXPECT_LE(norm(loads[0].side - loads[1].side), 1e-5 * norm(loads[1].total()));
+    EXPECT_NEAR(force[0], force[1], 1e-5 * std::abs(force[1]));
   }
 }
 
