@@ -19,12 +19,10 @@
 namespace glisson::drag_stages_test {
 namespace {
 
-Tissue viscous(double eta, ViscousTensor tensor = ViscousTensor::shear) {
-  Tissue t;
-  t.viscosity = eta;
-  t.viscous_tensor = tensor;
-  return t;
-}
+using test::case_name;
+using test::viscous;
+using Case = test::ViscousCase;
+
 SimulationOptions in_stages(int stages, Precision precision = Precision::single_precision) {
   SimulationOptions o;
   o.drag_stages = stages;
@@ -76,14 +74,6 @@ TEST(DragStages, AStepIsTheProductOfItsStages) {
   }
 }
 
-struct Case {
-  const char* name;
-  double eta;
-  ViscousTensor tensor;
-  double damping_rate;
-  int stages;
-};
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 class DragLimit : public testing::TestWithParam<Case> {};
 
 // A step just below h* magnifies nothing (rigid motions are double eigenvalues at 1, which rounding splits by √ε).
@@ -93,9 +83,8 @@ TEST_P(DragLimit, MagnifiesNothing) {
   const TetMesh mesh = test::jittered_box({1, 1, 2}, 0.01, 0.0, random);
   SimulationOptions o = in_stages(c.stages);
   o.damping_rate = c.damping_rate;
-  EXPECT_LE(test::spectral_radius(mesh, viscous(c.eta, c.tensor), o, 0.999), 1.0 + 1e-5);
+  EXPECT_LE(test::spectral_radius(mesh, c.tissue(), o, 0.999), 1.0 + 1e-5);
 }
-std::string case_name(const testing::TestParamInfo<Case>& c) { return c.param.name; }
 INSTANTIATE_TEST_SUITE_P(DragStages, DragLimit,
                          testing::Values(Case{"mild", 0.3, ViscousTensor::shear, 50.0, 2},
                                          Case{"middling", 10.0, ViscousTensor::shear, 0.0, 2},
@@ -214,6 +203,25 @@ TEST(DragStages, GiveTheSameBytes) {
   again.load(saved);
   run(again, 40);
   EXPECT_EQ(again.state_hash(), one.state_hash());
+}
+
+// A state that is set is the first one: what acted before does not act in its stages.
+TEST(DragStages, ForgetWhatActedBeforeAStateWasSet) {
+  const TetMesh mesh = test::paper_mesh();
+  const auto body = [&] {
+    SimulationOptions o = in_stages(3);
+    o.step = 2e-4;
+    Simulation s(mesh, {{0, viscous(20.0)}}, o);
+    s.fix(mesh.vertex_sets.at("z_min"));
+    s.add_load(mesh.vertex_sets.at("x_max"), {2.0, 0.0, 0.0});
+    return s;
+  };
+  Simulation used = body(), fresh = body();
+  for (int i = 0; i < 20; ++i) test::must_step(used);
+  const std::vector<Vec3d> none(mesh.vertices.size());
+  used.set_state(none, none);
+  for (int i = 0; i < 3; ++i) test::must_step(used), test::must_step(fresh);
+  EXPECT_EQ(used.state_hash(), fresh.state_hash());
 }
 
 // Tets that are taken out of a body whose step drag limits leave a step that is still stable.

@@ -8,6 +8,7 @@
 #include <ctime>
 #include <vector>
 
+#include "dynamics/viscous_case.h"
 #include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 
@@ -22,10 +23,8 @@ struct PressRun {
 inline PressRun figure3a(SimulationOptions o) {
   o.damping_rate = 20.0;
   o.threads = 1;
-  Tissue tissue;
-  tissue.viscosity = 1000.0;
   const TetMesh mesh = paper_mesh();
-  Simulation s(mesh, {{0, tissue}}, o);
+  Simulation s(mesh, {{0, viscous(1000.0)}}, o);
   s.fix(mesh.vertex_sets.at("z_min"));
   const ConstraintId tool = s.drive(paper_triangle(), press({.velocity = 0.01, .depth = 0.0105, .ramp = 0.002}));
   PressRun run;

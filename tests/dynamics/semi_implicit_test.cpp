@@ -16,12 +16,9 @@
 namespace glisson::semi_implicit_test {
 namespace {
 
-Tissue viscous(double eta, ViscousTensor tensor = ViscousTensor::shear) {
-  Tissue t;
-  t.viscosity = eta;
-  t.viscous_tensor = tensor;
-  return t;
-}
+using test::case_name;
+using test::viscous;
+using Case = test::ViscousCase;
 
 SimulationOptions semi_implicit() {
   SimulationOptions options;
@@ -36,13 +33,6 @@ double spectral_radius(const TetMesh& mesh, const Tissue& tissue, double damping
   return test::spectral_radius(mesh, tissue, o, factor);
 }
 
-struct Case {
-  const char* name;
-  double eta;
-  ViscousTensor tensor;
-  double damping_rate;
-};
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 class Limit : public testing::TestWithParam<Case> {};
 
 // h* is where the largest eigenvalue of the step leaves the unit circle: not before (rigid motions are double ones at 1,
@@ -51,12 +41,11 @@ TEST_P(Limit, IsWhereTheSpectrumLeavesTheUnitCircle) {
   const Case& c = GetParam();
   std::mt19937 random(8);
   const TetMesh mesh = test::jittered_box({1, 1, 2}, 0.01, 0.0, random);
-  const Tissue tissue = viscous(c.eta, c.tensor);
+  const Tissue tissue = c.tissue();
   EXPECT_LE(spectral_radius(mesh, tissue, c.damping_rate, 0.999), 1.0 + 1e-5);
   EXPECT_GE(spectral_radius(mesh, tissue, c.damping_rate, 1.02), 1.01);
 }
 
-std::string case_name(const testing::TestParamInfo<Case>& c) { return c.param.name; }
 INSTANTIATE_TEST_SUITE_P(SemiImplicit, Limit,
                          testing::Values(Case{"elastic", 0.0, ViscousTensor::shear, 0.0},
                                          Case{"mild", 0.3, ViscousTensor::shear, 50.0},

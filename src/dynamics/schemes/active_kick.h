@@ -49,7 +49,9 @@ class ActiveKick {
   /// Keeps the tissue's own forces, before interactions add theirs; then what loads and interactions exerted beside them.
   void remember_tissue(std::span<const ActiveVertex> active);
   void remember_outer(std::span<const ActiveVertex> active);
-  /// What was remembered, per active vertex, 0 for one that was not active then [N].
+  /// The state was set from outside: what acted on the last one is forgotten.
+  void forget_outer() { outer_.clear(); }
+  /// What was remembered, per active vertex, 0 for one that was not active then; empty: nothing was [N].
   std::span<const Vec3d> outer() const { return outer_; }
 
   /// What a constraint exerted at the last kick.

@@ -98,6 +98,7 @@ std::vector<std::uint32_t> ExplicitScheme::active_vertices() const {
 void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
   moving_->set_state(displacement, velocity);
   interactions_.state_set();
+  kick_.forget_outer();
   control_->state_set();
   moving_->list_above(control_->list_above());
   take_stiffness(moving_->advance(0.0, {}, false));
