@@ -49,6 +49,9 @@ struct RandomScene {
     rate = std::pow(10.0, number(-2.0, 0.5));
     wild = random() % 4 == 0;
     const bool lagged = options.integrator == Integrator::semi_implicit && tissue.viscosity == 0.0;
+    const bool staged = options.integrator == Integrator::central_difference && tissue.viscosity > 0.0 &&
+                        !tissue.hyperelastic && tissue.kinematics == Kinematics::small;
+    if (staged) options.drag_stages = 1 + static_cast<int>(seed % 4);
     touched = (options.integrator == Integrator::central_difference || lagged) && random() % 2 == 0 && !wild;
   }
   double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
