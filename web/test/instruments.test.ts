@@ -87,6 +87,12 @@ describe("events", () => {
     expect(eventMarks(made, "nowhere", 1)).toEqual([]);
   });
 
+  it("are left out where they would be a hatching", () => {
+    const many = (n: number) => Array.from({ length: n }, (_, i): [number, number, string] => [0.02 * i, 0, "contact"]);
+    expect(eventMarks(variant(many(24)), "time_s", 1)).toHaveLength(24);
+    expect(eventMarks(variant(many(25)), "time_s", 1)).toEqual([]);
+  });
+
   it("are in every chart of the scene", () => {
     const scene = { ...parsed({}), variants: [variant([[0.5, 0.005, "contact"]])] };
     expect(variantCharts(scene).map((chart) => chart.events[0]!.x)).toEqual([5, 0.5].map((x) => expect.closeTo(x, 9)));

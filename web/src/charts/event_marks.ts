@@ -5,7 +5,7 @@ import type { VariantData } from "../report_data.ts";
 import type { PlotBox } from "./draw_lines.ts";
 import type { EventMark, Extent } from "./model.ts";
 
-/** More than this many in one chart would be a hatching: the first ones are shown. */
+/** More than this many in one chart would be a hatching: none is shown. */
 const MOST = 24;
 const ROWS = 4;
 const FONT_SIZE = 12; // CSS pixels
@@ -19,10 +19,10 @@ export function eventMarks(variant: VariantData, name: string, scale: number): E
     if (name === "time_s") return time;
     return times && values ? interpolate(times, values, time) : NaN;
   };
-  return variant.events
+  const marks = variant.events
     .map((event) => ({ variant: variant.name, x: scale * place(event.time_s), label: event.event }))
-    .filter((mark) => Number.isFinite(mark.x))
-    .slice(0, MOST);
+    .filter((mark) => Number.isFinite(mark.x));
+  return marks.length > MOST ? [] : marks;
 }
 
 /** A label with its place: left end in pixels, and row from the top; row −1: no room, the mark stands alone. */
