@@ -337,7 +337,7 @@ bool can_drag_in_stages(const Variant& v) {
 
 /// Where viscosity keeps an explicit step short, the stages of the viscous force that make a simulated second cheapest.
 void print_stages(const Variant& v, const MeshLoader& load, const Taste& taste) {
-  constexpr double kCost = 1.0 / 3.0;  // of a stage, in steps
+  constexpr double kCost = 0.5;  // of a stage, in steps
   if (!can_drag_in_stages(v)) return;
   int best = 1;
   double pace = 1.0, growth = 1.0;
@@ -346,7 +346,7 @@ void print_stages(const Variant& v, const MeshLoader& load, const Taste& taste) 
     staged.simulation.step.reset();
     staged.simulation.drag_stages = n;
     const double longer = build_variant(staged, load).simulation.stable_step() / taste.stable_step_s;
-    if (longer / (1.0 + kCost * (n - 1)) <= pace) continue;
+    if (longer / (1.0 + kCost * (n - 1)) <= pace) break;  // it rises up to the limit by stiffness, and falls from there
     best = n, pace = longer / (1.0 + kCost * (n - 1)), growth = longer;
   }
   if (pace < kWorthSaying) return;

@@ -106,7 +106,7 @@ struct SimulationOptions {
   std::optional<double> mass_scaling_step{};
   /// central_difference: stages in which the viscous force is taken within a step, 1 … kMostDragStages. One is the paper's scheme. With
   /// n of them viscosity allows n²/2 times the step that it does with one, and stiffness 0.91 to 0.95 of what it does alone; a stage
-  /// more costs a third of a step. For tissue of small strain.
+  /// more costs half a step. For tissue of small strain.
   int drag_stages = 1;
   ImplicitOptions implicit{};
   Precision precision = Precision::single_precision;
