@@ -30,11 +30,12 @@ std::unique_ptr<MovingBody> make_moving_body(const Body& body, std::span<const d
 EngineInfo info_of(const MovingBody& moving, const Body& body) {
   const auto* parts = dynamic_cast<const engine::SubmeshBody*>(&moving);
   if (parts == nullptr) return {.instruction_set = "double, element by element", .threads = 1};
+  const bool counted = !parts->in_stages();  // stages of drag are not
   return {.instruction_set = parts->kernels().instruction_set,
           .threads = parts->threads(),
           .submeshes = parts->submeshes().parts.size(),
-          .flops_per_tet = engine::flops_per_tet(body, parts->submeshes()),
-          .bytes_per_tet = engine::bytes_per_tet(parts->submeshes(), body.elements.size())};
+          .flops_per_tet = counted ? engine::flops_per_tet(body, parts->submeshes()) : 0.0,
+          .bytes_per_tet = counted ? engine::bytes_per_tet(parts->submeshes(), body.elements.size()) : 0.0};
 }
 
 }  // namespace glisson

@@ -62,6 +62,8 @@ class SubmeshBody final : public MovingBody {
   const Submeshes& submeshes() const { return submeshes_; }
   const Kernels& kernels() const { return kernels_; }
   int threads() const { return pool_.threads(); }
+  /// Whether the viscous force is taken in several stages a step.
+  bool in_stages() const { return !stage_sums_.empty(); }
 
  private:
   /// How a tissue block is evaluated.
@@ -135,7 +137,6 @@ class SubmeshBody final : public MovingBody {
   std::vector<double> measures(std::size_t block) const;
   void follow_branches(std::size_t block, BranchMemory& memory) const;
   void make_memory_explicit();
-  bool in_stages() const { return !stage_sums_.empty(); }
   void make_room_for_stages();
   void run_drag_stages(const Step& step);
   void drag_submesh(const Submesh& part, Scratch& scratch);

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kMostOut = 0.02;  ///< of the container's size: how far a body may stand out of it at the start
 constexpr double kTouch = 1e-6;    ///< of the vessel's size: tissue so near to a wall that holds it touches
-constexpr double kStill =
-    1e-12;  ///< of the vessel's size: tissue that moves no more than that in a step has come to rest
+/// Of the vessel's size: tissue that moves no more than that in a step has come to rest.
+constexpr double kStill = 1e-12;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// A plate whose outward normal is n, through a point; all in the frame of the vessel.

@@ -88,8 +88,8 @@ class InteractionStep {
   std::span<ActiveVertex> vertices;  ///< ascending by vertex; `velocity` is v₋ in add_forces, v₊ in constrain
   std::span<const std::uint32_t> place_of;  ///< per vertex of the mesh: its place in `vertices`, or kNowhere
   std::span<const Vec3d> rest;              ///< per vertex of the mesh: rest position [m]
-  std::span<const RestingVertex>
-      resting;  ///< ascending by vertex: what interactions hold still; none of them has a place
+  /// Ascending by vertex: what interactions hold still; none of them has a place.
+  std::span<const RestingVertex> resting;
   /// Per place: velocity per impulse, 1/(m + γh), in each component; 0 where a support or motion holds it [1/kg].
   std::span<const Vec3d> mobility;
   std::span<Vec3d> impulses;                ///< per place: sum of the impulses of this step [N s]
