@@ -5,13 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "fit/fit_curves.h"
 #include "fit/run_fit.h"
-#include "fit/search/least_squares.h"
-#include "fit/uncertainty/covariance.h"
 #include "laboratory.h"
 #include "phantom.h"
-#include "small_models.h"
 
 namespace glisson::fit::laboratory_fit_test {
 namespace {
@@ -254,75 +250,6 @@ TEST(LaboratoryFit, AFewTermsAreFoundForCortex) {
   for (const DiscoveredLaw& d : r.discovered) best = std::max(best, d.r2);
   EXPECT_GE(best, 0.985);
 }
-
-/// Compression, tension and simple shear of one tissue, at the same 40 strains to 10 %.
-struct Twins {
-  std::vector<Parameter> parameters{{"mu", "Pa", 10.0, 1e5, Scale::logarithmic, 1e3}, {"alpha", "", -60.0, -1.0}};
-  std::vector<double> truth{1400.0, -15.0};
-  std::vector<Curve> plans;
-  std::unique_ptr<SpecimenModel> model;
-
-  Twins() {
-    std::vector<double> strains;
-    for (int i = 0; i < 40; ++i) strains.push_back(0.1 * i / 39.0);
-    for (const Form& form : kForms) {
-      if (form.deforming == Deforming::equibiaxial || form.deforming == Deforming::planar) continue;
-      plans.push_back(test_of(test_named(form.name), form.deforming, Measured::nominal, strains));
-      plans.back().group = form.name;
-    }
-    model = std::make_unique<SpecimenModel>(plans, Specimen{1.0, 1.0}, [](std::span<const double> v) {
-      Tissue t;
-      t.hyperelastic = Ogden{{v[0]}, {v[1]}, 1e6};
-      return t;
-    });
-  }
-
-  /// Curves of so many specimens a test, whose stiffness differs by `between`, with a part of the largest stress as noise.
-  std::vector<Curve> drawn(std::uint64_t seed, int specimens, double between, double part,
-                           std::vector<std::size_t>& origin) const {
-    testing_models::Noise noise(seed);
-    std::vector<Curve> curves;
-    for (std::size_t c = 0; c < plans.size(); ++c) {
-      const std::vector<double> exact = model->predict(c, truth).force;
-      for (int k = 0; k < specimens; ++k) {
-        const double own = between > 0.0 ? 1.0 + between * noise() : 1.0;
-        const std::vector<double> e = noise.correlated(exact.size(), 0.6);
-        curves.push_back(plans[c]);
-        origin.push_back(c);
-        for (std::size_t i = 0; i < exact.size(); ++i)
-          curves.back().force[i] = own * exact[i] + part * std::abs(exact.back()) * e[i];
-      }
-    }
-    return curves;
-  }
-
-  /// In how many of 200 sets the 95 % intervals hold the truth lies between 90 and 98 %.
-  void expect_covered(std::uint64_t first_seed, int specimens, double between, double part, bool by_curve) const {
-    constexpr int kSeeds = 200;
-    double held[2] = {0.0, 0.0};
-    for (int seed = 0; seed < kSeeds; ++seed) {
-      std::vector<std::size_t> origin;
-      const std::vector<Curve> curves =
-          drawn(first_seed + static_cast<std::uint64_t>(seed), specimens, between, part, origin);
-      const Problem problem(parameters, curves, origin, spreads_of(curves, Weighing::automatic), *model);
-      const Optimum best = descend(problem, problem.to_scaled(std::vector{800.0, -8.0}));
-      const Covariance c = covariance(problem, best.scaled);
-      EXPECT_EQ(c.noise.kind == NoiseKind::by_curve, by_curve);
-      for (std::size_t p = 0; p < 2; ++p) held[p] += c.interval[p].holds(truth[p]) ? 1.0 / kSeeds : 0.0;
-    }
-    std::printf("mu %.3f alpha %.3f\n", held[0], held[1]);
-    for (const double share : held) {
-      EXPECT_GE(share, 0.90);
-      EXPECT_LE(share, 0.98);
-    }
-  }
-};
-
-// 200 sets of the three tests by one tissue, 2 % of the largest stress as correlated noise. Three tests are no three specimens.
-TEST(LaboratoryFit, IntervalsOfTwinsHoldTheTruth) { Twins().expect_covered(0, 1, 0.0, 0.02, false); }
-
-// Four specimens for each of three tests, whose stiffness differs by 10 % from one to the next: intervals are of their mean.
-TEST(LaboratoryFit, IntervalsOfSeveralSpecimensAreOfTheirMean) { Twins().expect_covered(1000, 4, 0.1, 0.01, true); }
 
 }  // namespace
 }  // namespace glisson::fit::laboratory_fit_test

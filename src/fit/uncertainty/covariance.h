@@ -75,7 +75,7 @@ struct CovarianceOptions {
   double rank_tolerance =
       1e-5;  ///< a direction below it, over the strongest, is not determined: differences see no less
   double bound_tolerance = 1e-6;        ///< in z
-  double significance = 0.05;           ///< of the tests that choose the noise
+  double significance = 0.05;           ///< of the test of independence, which is told [LjungBox1978]
   std::optional<NoiseKind> force = {};  ///< instead of the tests; by_curve falls back where there are too few curves
 };
 
@@ -87,8 +87,9 @@ struct CovarianceOptions {
 ///
 /// by_curve is used where three curves or more each tell all that is determined: then an interval is that of the mean over
 /// specimens, the exact t-interval of their own estimates for a linear law, and a law's misfit, which they share, is not in
-/// it. Fewer curves say nothing of other specimens: their intervals are of noise and misfit, autocorrelated where
-/// [LjungBox1978] finds that residuals are.
+/// it. Fewer curves say nothing of other specimens: their intervals are of noise and misfit, by the correlation that is most likely
+/// (residual_correlation.h). A test of independence does not decide: on some 40 samples it overlooks a correlation of 0.6 between neighbours
+/// three times in ten, and intervals that then count all samples hold the truth in 82 to 88 %; with the likelihood alone in 91 to 96 %.
 Covariance covariance(const Problem& problem, std::span<const double> scaled, const CovarianceOptions& options = {});
 
 }  // namespace glisson::fit

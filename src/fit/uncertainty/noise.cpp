@@ -16,6 +16,7 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 constexpr std::size_t kFewestCurves = 3;
+constexpr double kAlike = 0.995;  ///< of the samples: more that count are all of them
 constexpr double kOwnPart = 0.9;  ///< of what is known of a combination, that may come from one curve
 
 std::string format(const char* pattern, double a, double b) {
@@ -95,10 +96,11 @@ NoiseKind NoiseStudy::kind_of(const CovarianceOptions& options, NoiseEstimate& e
             (of_kinds() ? " of its kind of test" : "") + ": intervals are of the mean of specimens such as these";
     return NoiseKind::by_curve;
   }
-  const bool swings = e.independence < options.significance;
-  e.why = swings ? "the residuals are not independent (" + probability_text(e.independence) +
-                       "): " + format("%.0f samples count as %.1f", samples_, e.effective)
-                 : "the residuals look independent (" + probability_text(e.independence) + ")";
+  const bool swings = e.effective < kAlike * samples_;
+  e.why = "the residuals " +
+          std::string(e.independence < options.significance ? "are not independent" : "look independent") + " (" +
+          probability_text(e.independence) + ")";
+  if (swings) e.why += format("; by their likeliest correlation %.0f samples count as %.1f", samples_, e.effective);
   e.why += std::string(". How specimens differ is not in the intervals: ") +
            (of_kinds()                       ? "that takes three curves or more of each kind of test"
             : curves_.size() < kFewestCurves ? "that takes three curves or more"
@@ -112,7 +114,7 @@ NoiseEstimate NoiseStudy::choose(const CovarianceOptions& options) {
   for (const Rows& curve : curves_) series.push_back(series_of(of(curve)));
   e.independence = independence_probability(series);
   e.effective_by_curve.assign(problem_.curves().size(), 0.0);
-  const bool white = options.force ? *options.force == NoiseKind::independent : e.independence >= options.significance;
+  const bool white = options.force == NoiseKind::independent;
   if (!white) correlation_ = ResidualCorrelation(scores_, jacobian_, curves_);
   for (std::size_t c = 0; c < curves_.size(); ++c) {
     const double samples = static_cast<double>(curves_[c].size) / correlation_.time(curves_[c].size);
@@ -121,7 +123,7 @@ NoiseEstimate NoiseStudy::choose(const CovarianceOptions& options) {
   }
   kind_ = kind_of(options, e);
   const double left = samples_ - static_cast<double>(jacobian_.cols());
-  variance_ = white ? scores_.squaredNorm() / std::max(left, 1.0) : correlation_.variance();
+  variance_ = kind_ == NoiseKind::independent ? scores_.squaredNorm() / std::max(left, 1.0) : correlation_.variance();
   e.kind = kind_;
   e.variance = variance_;
   e.rms = std::sqrt(scores_.squaredNorm() / std::max(samples_, 1.0));
