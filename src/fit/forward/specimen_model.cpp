@@ -1,6 +1,7 @@
 #include "fit/forward/specimen_model.h"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "glisson/material_point.h"
@@ -82,6 +83,62 @@ void stresses_in_time(UniaxialPath& path, const Stretching& way, const Curve& cu
     }
     out[k - lead] = axial_stress(state, curve, k - lead, end.stretch);
   }
+}
+
+/// A path under given stresses along its axis: each step's stretch by secants from the slope of the one before.
+class LoadedPath {
+ public:
+  explicit LoadedPath(const Tissue& tissue) : path_(tissue) { path_.start(0.0); }
+  double stretch() const { return stretch_; }
+
+  /// Goes on to a stress [Pa] in h [s]. @return false where secants do not get there
+  bool advance(double h, double stress) {
+    UniaxialPath there = path_;
+    const auto miss = [&](double stretch) {
+      there = path_;
+      const UniaxialState s = there.advance(h, {stretch, 0.0}, {stretch, 0.0});
+      return s.converged && stretch > kLeastStretch ? s.stress - stress : std::numeric_limits<double>::quiet_NaN();
+    };
+    double a = stretch_, b = stretch_ + growth_, slope = slope_;
+    double at_b = miss(b);
+    for (int i = 0; i < kMostSecants && std::isfinite(at_b); ++i) {
+      if (slope > 0.0 && std::abs(at_b) <= kClose * slope) {
+        growth_ = b - stretch_, stretch_ = b, slope_ = slope, path_ = there;
+        return true;
+      }
+      const double at_a = at_b;
+      a = b, b = a - (slope > 0.0 ? at_a / slope : std::copysign(kFirst, at_a));
+      at_b = miss(b);
+      if (std::abs(b - a) > kClose) slope = (at_b - at_a) / (b - a);
+    }
+    return false;
+  }
+
+ private:
+  static constexpr int kMostSecants = 30;
+  static constexpr double kClose = 1e-12, kFirst = 1e-4;  ///< stretches: where a search ends, and its first way
+  UniaxialPath path_;
+  double stretch_ = 1.0, growth_ = 0.0, slope_ = 0.0;  ///< the last step's way, and dP/dλ [Pa]; 0: not known yet
+};
+
+/// Strain at each instant of a creep along the axis, of a tissue with Maxwell branches. @return false where secants fail
+bool strains_in_time(const Tissue& tissue, const Stretching& way, const Curve& curve, std::vector<double>& out) {
+  LoadedPath path(tissue);
+  const std::vector<double>& times = way.way.times();
+  const std::size_t lead = way.way.lead();
+  const double whole = way.way.end() - way.way.begin(), first = way.of(way.way.displacements().front());
+  if (first != 0.0 && !path.advance(1e-9 * whole, first)) return false;
+  if (lead == 0) out[0] = path.stretch() - 1.0;
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    const double width = times[k] - times[k - 1];
+    const int steps = parts_of(0.0, width, whole);
+    for (int s = 1; s <= steps; ++s) {
+      const double t = s == steps ? times[k] : times[k - 1] + s * width / steps;
+      if (!path.advance(width / steps, way.of(s == steps ? way.way.displacements()[k] : way.way.at(t)))) return false;
+    }
+    out[k - lead] = path.stretch() - 1.0;
+  }
+  return true;
 }
 
 /// Rows are no seconds.
@@ -209,7 +266,10 @@ Prediction SpecimenModel::predict_from(std::size_t index, std::span<const double
       else
         elastic_stresses(path, way, measured, result.force);
     } else if (loaded) {
-      by_point(tissue, {history, 0.0, outward / specimen_.area}, measured, result.force);
+      const Stretching way{history, 0.0, outward / specimen_.area};
+      const bool by_path = along && !tissue.fibres && !tissue.maxwell.empty() && tissue.viscosity == 0.0;
+      if (!by_path || !strains_in_time(tissue, way, measured, result.force))
+        by_point(tissue, way, measured, result.force);
     } else {
       const double rest = m.deforming == Deforming::simple_shear ? 0.0 : 1.0;
       by_point(tissue, {history, rest, outward / specimen_.height}, measured, result.force);
