@@ -335,7 +335,8 @@ TEST(Prepare, CountsFromContact) {
 }
 
 TEST(Prepare, CropsByEveryMeasure) {
-  const SpecimenSize size{{}, 0.1};
+  SpecimenSize size;
+  size.height = 0.1;
   const auto cropped_to = [&](const std::function<void(CropSpec&)>& set) {
     DataSpec spec = every_row();
     set(spec.crop);

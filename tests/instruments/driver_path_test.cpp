@@ -27,11 +27,11 @@ std::string refusal(Make make) {
 
 /// Largest change of velocity between samples, over the acceleration that is allowed: about 1 for a path that is C¹.
 double velocity_jump(const ToolPath& path, double end, double acceleration) {
-  constexpr double kStep = 1e-4;
+  constexpr double kApart = 1e-4;
   double worst = 0.0;
-  for (double t = kStep; t < end; t += kStep) {
-    const Vec3d a = (path.displacement(t + kStep) - path.displacement(t) * 2.0 + path.displacement(t - kStep)) *
-                    (1.0 / (kStep * kStep));
+  for (double t = kApart; t < end; t += kApart) {
+    const Vec3d a = (path.displacement(t + kApart) - path.displacement(t) * 2.0 + path.displacement(t - kApart)) *
+                    (1.0 / (kApart * kApart));
     worst = std::max(worst, norm(a) / acceleration);
   }
   return worst;
