@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "glisson/simulation/integrator.h"
+
 namespace glisson {
 
 namespace {
@@ -17,12 +19,16 @@ bool is_among(std::span<const std::uint32_t> ascending, std::uint32_t vertex) {
 
 }  // namespace
 
+std::string Interaction::refuses_long_steps() const {
+  return "acts in short steps; take integrator = " + supporting_integrators();
+}
+
 std::span<const std::uint32_t> Interactions::newcomers(double time, double h, std::size_t vertex_count) {
   newcomers_.clear();
   left_ = rest_changed_ = false;
   for (std::size_t k = 0; k < all_.size(); ++k) {
     name(k, all_[k]->reach(time, h), vertex_count);
-    if (const auto kept = all_[k]->keeps()) keep(k, *kept);
+    if (const auto kept = all_[k]->keeps(); kept && lets_go_) keep(k, *kept);
     const auto rests = all_[k]->rests();
     if (!rests) continue;
     rests_[k].assign(rests->begin(), rests->end());
@@ -106,8 +112,9 @@ void Interactions::add_forces() {
   for (const std::shared_ptr<Interaction>& x : all_) x->add_forces(step_);
 }
 
-void Interactions::constrain(std::span<const Vec3d> mobility) {
+void Interactions::constrain(std::span<const Vec3d> mobility, StepCompliance* compliance) {
   step_.mobility = mobility;
+  step_.compliance = compliance;
   for (const std::shared_ptr<Interaction>& x : all_) x->constrain(step_);
 }
 

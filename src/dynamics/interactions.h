@@ -1,4 +1,4 @@
-// interactions.h — the interactions of a body under the explicit scheme, and the vertices they have at hand.
+// interactions.h — the interactions of a body, and the vertices they have at hand.
 #pragma once
 
 #include <memory>
@@ -16,6 +16,8 @@ class Interactions {
   void add(std::shared_ptr<Interaction> interaction) {
     all_.push_back(std::move(interaction)), named_.emplace_back(), rests_.emplace_back();
   }
+  /// None of what they have named is let go from now on: a step may be taken back.
+  void keep_all() { lets_go_ = false; }
   bool empty() const { return all_.empty(); }
   std::span<const std::shared_ptr<Interaction>> all() const { return all_; }
 
@@ -40,7 +42,9 @@ class Interactions {
              std::span<const Vec3d> rest, bool accounted);
   void add_forces();
   /// @param held  per place and component: whether a support or motion holds it
-  void constrain(std::span<const Vec3d> mobility);
+  void constrain(std::span<const Vec3d> mobility) { constrain(mobility, nullptr); }
+  /// In a long step.
+  void constrain(StepCompliance& compliance) { constrain({}, &compliance); }
   void moved();
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins);
   void state_set();
@@ -55,12 +59,14 @@ class Interactions {
   void archive(Archive& ar);
 
  private:
+  void constrain(std::span<const Vec3d> mobility, StepCompliance* compliance);
   void name(std::size_t interaction, std::span<const std::uint32_t> vertices, std::size_t vertex_count);
   void keep(std::size_t interaction, std::span<const std::uint32_t> vertices);
 
   std::vector<std::shared_ptr<Interaction>> all_;
   std::vector<std::vector<std::uint32_t>> named_;  ///< by each interaction, ascending
   std::vector<std::vector<std::uint32_t>> rests_;  ///< what each holds still, ascending
+  bool lets_go_ = true;
   bool left_ = false, rest_changed_ = false;
   std::vector<std::uint32_t> place_of_, newcomers_;
   std::vector<Vec3d> impulses_;

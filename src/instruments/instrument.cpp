@@ -152,8 +152,13 @@ void Instrument::drive(const InteractionStep& step) {
 }
 
 ToolVelocity Instrument::velocity_at(const Vec3d& x) const {
-  const Vec3d own = to_frame(before_, x);
   ToolVelocity velocity;
+  if (at_end_) {
+    const Vec3d way = x - to_space(before_, to_frame(pose_, x));
+    if (step_ > 0.0) velocity.before = velocity.after = way * (1.0 / step_);
+    return velocity;
+  }
+  const Vec3d own = to_frame(before_, x);
   if (last_step_ > 0.0) velocity.before = (x - to_space(earlier_, own)) * (1.0 / last_step_);
   if (step_ > 0.0) velocity.after = (to_space(pose_, own) - x) * (1.0 / step_);
   return velocity;

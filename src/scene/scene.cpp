@@ -79,18 +79,31 @@ bool is_viscous(const Variant& variant) {
   return variant.tissue.viscosity > 0.0 || std::any_of(variant.regions.begin(), variant.regions.end(), viscous);
 }
 
+/// Whether it is a rigid tool in contact that follows a path.
+bool follows_path_in_contact(const InstrumentSpec& x) {
+  const auto* contact = std::get_if<ContactOptions>(&x.what);
+  return contact != nullptr && !contact->bonded && !std::holds_alternative<PushSpec>(x.motion.how);
+}
+
 /// Complains where what acts on the body beside supports and tools meets an integrator that does not support it.
 void check_integrator(const Variant& variant, const Node& experiment, Problems& problems) {
   const Capabilities can = capabilities(variant.simulation.integrator);
   const bool acts = !variant.instruments.empty() || !variant.capsules.empty() || variant.container;
   if (can.supports(is_viscous(variant)) || !acts) return;
+  const bool only_contact =
+      variant.capsules.empty() && !variant.container &&
+      std::all_of(variant.instruments.begin(), variant.instruments.end(), follows_path_in_contact);
+  if (can.supports_contact && only_contact) return;
+  const std::string but = !can.supports_contact || variant.instruments.empty()
+                              ? ""
+                              : " but rigid ones in contact, not bonded, that follow a path";
   const std::string what = !variant.instruments.empty() ? "[[instrument]]"
                            : variant.container          ? "[container]"
                                                         : "[[capsule]]";
   const Node& key = *experiment.find("motion")->find("integrator");
   problems.add(key.where, "motion.integrator",
                "\"" + *key.text() + "\"" + (can.supports_interactions ? " with viscous tissue" : "") + " supports no " +
-                   what + "; take " + supporting_integrators() + " (Maxwell branches may stay)");
+                   what + but + "; take " + supporting_integrators() + " (Maxwell branches may stay)");
 }
 
 /// Reads the file of a recorded motion along a direction.

@@ -21,7 +21,7 @@ int cells(double length, double first, double growth) {
 }
 
 /// Force over Hertz's, when the ball has come to rest.
-double measured(const HertzMesh& m) {
+double measured(const HertzMesh& m, Integrator integrator = Integrator::central_difference, double step = 1e-4) {
   const double a = 2e-3, R = 20e-3, d = a * a / R;
   test::LayerOptions o;
   o.a = a, o.h = 25.0 * a, o.R = 25.0 * a, o.inside = m.inside, o.around = m.around;
@@ -29,7 +29,7 @@ double measured(const HertzMesh& m) {
   o.outside = cells(o.R - a, o.edge, m.growth), o.layers = cells(o.h, o.top, m.growth);
   Tissue t;
   t.poisson_ratio = 0.3, t.volume_change = VolumeChange::average_nodal;
-  test::PressedLayer p(o, t, Ball{R}, 0.0, d, 0.06, 120.0, 1e-4);
+  test::PressedLayer p(o, t, Ball{R}, 0.0, d, 0.06, 120.0, step, false, integrator);
   test::advance_to(p.body, 0.14);
   const double G = t.lame().mu, nu = t.poisson_ratio, F = p.force();
   const double deeper = d + 0.88 * F * (1.0 - nu) / (4.0 * G * o.h);
@@ -47,6 +47,15 @@ TEST(Hertz, ForceConverges) {
     before = error;
   }
   EXPECT_LT(before, 0.03);
+}
+
+// Statics in steps of 20 ms ends where the explicit scheme comes to rest.
+TEST(HertzInLongSteps, IsThatOfTheExplicitScheme) {
+  const HertzMesh mesh{3, 4, 1.5};
+  const double reference = measured(mesh), at_rest = measured(mesh, Integrator::quasi_static, 0.02);
+  RecordProperty("explicit", std::to_string(reference));
+  RecordProperty("static", std::to_string(at_rest));
+  EXPECT_NEAR(at_rest, reference, 0.01);
 }
 
 }  // namespace

@@ -11,10 +11,11 @@ struct PressedLayer {
   std::shared_ptr<ContactTool> tool;
 
   /// @param depth  below the surface, reached smoothly in `ramp` [m, s]
-  /// @param rate  damping [1/s] @param step  mass is added to tets that do not bear it [s]
+  /// @param rate  damping [1/s] @param step  mass is added to tets that do not bear it [s]; of an integrator with no h*: its step
   PressedLayer(const LayerOptions& layer, const Tissue& tissue, const Shape& shape, double friction, double depth,
-               double ramp, double rate, double step, bool bonded = false)
-      : body(layer_mesh(layer), {{0, tissue}}, options(rate, step)) {
+               double ramp, double rate, double step, bool bonded = false,
+               Integrator integrator = Integrator::central_difference)
+      : body(layer_mesh(layer), {{0, tissue}}, options(rate, step, integrator)) {
     const auto& sets = body.mesh().vertex_sets;
     std::vector<std::uint32_t> bottom = sets.at("bottom");
     body.fix(bottom);
@@ -49,8 +50,13 @@ struct PressedLayer {
       if (axes.x || axes.y) body.fix(std::vector{v}, axes);
     }
   }
-  static SimulationOptions options(double rate, double step) {
+  static SimulationOptions options(double rate, double step, Integrator integrator) {
     SimulationOptions o;
+    o.integrator = integrator;
+    if (capabilities(integrator).any_step_is_stable) {
+      o.step = step;
+      return o;
+    }
     o.damping_rate = rate, o.track_energies = false;
     if (step > 0.0) o.mass_scaling_step = step;
     return o;

@@ -179,6 +179,8 @@ class ContactTool final : public Instrument {
   const ContactOptions& options() const;
 
   InstrumentForm form() const override;
+  std::string refuses_long_steps() const override;
+  /// @throws std::invalid_argument where steps are long and it starts inside the body
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;

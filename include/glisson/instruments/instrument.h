@@ -58,6 +58,8 @@ class ToolDriver {
   virtual Pose advance(double time, double h, const Wrench& on_tool) = 0;
   /// Time at which the motion has ended [s]; none: it does not end by itself.
   virtual std::optional<double> end() const { return {}; }
+  /// Whether it goes where the force lets it: it has to be asked in short steps then.
+  virtual bool yields() const { return false; }
   /// Writes or reads its state, as Interaction's.
   virtual void archive(Archive&) {}
 };
@@ -81,9 +83,11 @@ class Instrument : public Interaction {
   std::string label() const override { return "instrument \"" + name_ + "\""; }
   virtual Pose pose() const { return pose_; }  ///< at the end of the last step
   const Vec3d& direction() const { return direction_; }
-  double depth() const;                                        ///< displacement along the direction since the start [m]
-  virtual double force_depth() const { return force_depth_; }  ///< the same at the time of the force [m]
-  virtual Pose force_pose() const { return before_; }          ///< pose at the time of the force
+  double depth() const;  ///< displacement along the direction since the start [m]
+  virtual double force_depth() const {
+    return at_end_ ? depth() : force_depth_;
+  }                                                                      ///< the same at the time of the force [m]
+  virtual Pose force_pose() const { return at_end_ ? pose_ : before_; }  ///< pose at the time of the force
   /// Where the hand holds it, at the time of the force [m]; its tip where it has no length.
   virtual Vec3d handle() const { return force_pose().position; }
   /// Torque of the hand's force about the handle on the tissue's side: that of forces() about the handle [N m].
@@ -105,6 +109,7 @@ class Instrument : public Interaction {
   /// The value of a column. @throws std::out_of_range naming it
   double read(std::string_view column) const;
   const ToolDriver& driver() const { return *driver_; }
+  void set_long_steps(bool are_long) override { at_end_ = are_long; }
   /// All events so far, in order.
   const std::vector<InstrumentEvent>& events() const { return events_; }
   /// What a picture shows of it.
@@ -121,7 +126,10 @@ class Instrument : public Interaction {
   /// Moves the pose to the end of the step; the previous one is in `before_`. To be called once a step, in reach() or
   /// first in constrain().
   void drive(const InteractionStep& step);
-  /// Velocity of the tool's own material at a point of space at the time of the forces; after drive().
+  /// Whether its forces are those at the end of a step.
+  bool forces_at_end() const { return at_end_; }
+  /// Velocity of the tool's own material at a point of space at the time of the forces; after drive(). In long steps that of the
+  /// step both before and after.
   ToolVelocity velocity_at(const Vec3d& x) const;
   /// Tells of a puncture of the surface.
   void tell_puncture(const Vec3d& place, double radius) const {
@@ -141,6 +149,7 @@ class Instrument : public Interaction {
   Pose earlier_;                         ///< a step before t
   double step_ = 0.0, last_step_ = 0.0;  ///< h and that of the step before t; 0: there was none [s]
   double force_depth_ = 0.0;
+  bool at_end_ = false;  ///< its steps are long
   std::vector<InstrumentEvent> events_;
   std::function<void(const Vec3d&, double)> on_puncture_;
 };

@@ -151,6 +151,7 @@ class PushDriver final : public ToolDriver {
   Pose start() const override { return start_; }
   Pose advance(double time, double h, const Wrench& on_tool) override;
   std::optional<double> end() const override { return motion_.end; }
+  bool yields() const override { return true; }
   void archive(Archive& ar) override;
 
   Vec3d velocity() const { return velocity_; }  ///< [m/s]
@@ -207,6 +208,7 @@ class HandDriver final : public ToolDriver {
 
   Pose start() const override { return start_; }
   Pose advance(double time, double h, const Wrench& on_tool) override;
+  bool yields() const override { return true; }
   void archive(Archive& ar) override;
 
  private:

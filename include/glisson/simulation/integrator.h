@@ -28,11 +28,13 @@ inline constexpr Word<Integrator> kWords<Integrator>[] = {
 
 /// What an integrator supports. Code that chooses or refuses an integrator uses these flags, not its name.
 struct Capabilities {
-  bool supports_interactions = false;           ///< instruments, capsules and containers: its steps are explicit
+  bool supports_interactions = false;           ///< instruments, capsules and containers: its steps are short
   bool supports_them_in_viscous_tissue = true;  ///< the same where some tissue has a Kelvin–Voigt viscosity
-  bool any_step_is_stable = false;              ///< it has no h*, needs no mass scaling and does not ring
-  bool viscosity_limits_step = false;           ///< h* falls with viscosity
-  bool forces_at_step_end = false;              ///< Simulation::force_time() is the end of a step, not its start
+  /// Of them rigid tools in contact that follow a path, in any tissue (Interaction::refuses_long_steps).
+  bool supports_contact = false;
+  bool any_step_is_stable = false;     ///< it has no h*, needs no mass scaling and does not ring
+  bool viscosity_limits_step = false;  ///< h* falls with viscosity
+  bool forces_at_step_end = false;     ///< Simulation::force_time() is the end of a step, not its start
 
   /// Whether interactions may act on such tissue.
   constexpr bool supports(bool viscous_tissue) const {

@@ -78,6 +78,18 @@ struct ToolVelocity {
   Vec3d after{};   ///< V₊, of this step
 };
 
+/// How far impulses move active vertices other than their own within a step that is long: one of `implicit` or `quasi_static`.
+class StepCompliance {
+ public:
+  virtual ~StepCompliance() = default;
+  /// Adds to the velocities of active vertices what an impulse [N s] at a place gives them: at once to those that were pushed or
+  /// asked for their mobility before, to the others at the next settle().
+  virtual void spread(std::size_t place, const Vec3d& impulse, std::span<ActiveVertex> vertices) = 0;
+  virtual void settle(std::span<ActiveVertex> vertices) = 0;
+  /// Velocity per impulse of a place on itself, from above: the same in all components that are free, 0 in others [1/kg].
+  virtual Vec3d mobility(std::size_t place) = 0;
+};
+
 /// The active vertices in a step.
 class InteractionStep {
  public:
@@ -94,12 +106,19 @@ class InteractionStep {
   std::span<const Vec3d> mobility;
   std::span<Vec3d> impulses;                ///< per place: sum of the impulses of this step [N s]
   InterfaceBook* interface_book = nullptr;  ///< where book() writes; null where energies are not tracked
+  /// Where the step is long: in place of `mobility`, which is empty then. `velocity` is (u(t + h) − u(t))/h. Null otherwise.
+  StepCompliance* compliance = nullptr;
 
   /// Position of the vertex at a place at time t, or at t + h after moved() [m].
   Vec3d position(std::size_t place) const { return rest[vertices[place].vertex] + vertices[place].displacement; }
 
   /// Applies an impulse [N s] to the vertex at a place; held components do not move.
   void push(std::size_t place, const Vec3d& impulse) const {
+    if (compliance != nullptr) {
+      compliance->spread(place, impulse, vertices);
+      impulses[place] += impulse;
+      return;
+    }
     const Vec3d& a = mobility[place];
     vertices[place].velocity += Vec3d{a.x * impulse.x, a.y * impulse.y, a.z * impulse.z};
     impulses[place] += impulse;
@@ -166,6 +185,13 @@ class Interaction {
   /// Whether it takes part in steps. Otherwise between_steps is called just once, when it is attached, to set up supports,
   /// motions and loads; then every integrator supports it, and it has no state for a checkpoint.
   virtual bool acts_in_steps() const { return true; }
+  /// Why it does not act in the long steps of `implicit` and `quasi_static`, as the end of a sentence with the way out; empty:
+  /// it does. Its forces are then those at the end of the step, and constrain() is called in every iteration of Newton's method,
+  /// with all as it was after reach().
+  virtual std::string refuses_long_steps() const;
+  /// Tells it, before `attached`, whether its steps will be long.
+  virtual void set_long_steps(bool /*are_long*/) {}
+
   /// Whether between_steps may add vertices: the arrays of the state may then move in memory at any step.
   virtual bool changes_body() const { return false; }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 
 #include "dynamics/step/rigid_motions.h"
 
@@ -36,6 +37,8 @@ void ImplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
   if (statics_) std::fill(now_.v.begin(), now_.v.end(), Vec3d{});
   last_h_ = 0.0;
   fresh_ = true;
+  std::fill(now_.contact.begin(), now_.contact.end(), Vec3d{});
+  solver_.contact().state_set();
   tissue_.advance_memory({now_.u, now_.v, std::numeric_limits<double>::infinity()});  // a state that is set has relaxed
   if (!state_.options.track_energies) return;
   double kinetic = 0.0;
@@ -61,6 +64,37 @@ void ImplicitScheme::take_tissues(const TissueChange& change) {
     tissue_.set_branch_stresses(change.blocks[i], change.branch_stresses[i], now_.u);
   }
   solver_.tissues_changed();
+  fresh_ = true;
+}
+
+void ImplicitScheme::attach(std::shared_ptr<Interaction> interaction, const BodyView& body) {
+  if (const std::string why = interaction->refuses_long_steps(); !why.empty()) {
+    throw std::invalid_argument("attach: integrator = " + std::string(word_of(state_.options.integrator)) +
+                                " does not support " + interaction->label() + ", which " + why);
+  }
+  if (!statics_ && state_.options.implicit.scheme != TimeScheme::backward_euler) {
+    throw std::invalid_argument(
+        "attach: " + interaction->label() + " needs scheme = backward_euler under implicit; " +
+        std::string(word_of(state_.options.implicit.scheme)) +
+        " lets tissue that meets a tool ring. Or take integrator = " + supporting_integrators());
+  }
+  interaction->set_long_steps(true);
+  try {
+    interaction->attached(body, state_.time);
+  } catch (...) {
+    interaction->set_long_steps(false);
+    throw;
+  }
+  solver_.need_factor();
+  solver_.contact().add(std::move(interaction));
+}
+
+void ImplicitScheme::tell_change(const BodyView& body, std::span<const std::uint32_t> origins) {
+  if (solver_.contact().acts()) solver_.contact().body_changed(body, origins);
+}
+
+void ImplicitScheme::follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) {
+  solver_.contact().follow(origins, first_new);
   fresh_ = true;
 }
 
@@ -113,6 +147,7 @@ void ImplicitScheme::finish(const TimeStep& s) {
   for (std::size_t i = 0; i < next.u.size(); ++i) last_change_[i] = next.u[i] - now_.u[i];
   last_h_ = s.h;
   std::swap(now_, next);
+  if (solver_.contact().acts()) solver_.contact().made(now_.u, now_.v);
   if (state_.options.track_energies) book(next);
 }
 
@@ -121,7 +156,7 @@ void ImplicitScheme::book(const Moment& before) {
   const bool at_end = !statics_ && state_.options.implicit.scheme == TimeScheme::backward_euler;
   const double w = at_end ? 0.0 : 0.5;
   double elastic = 0.0, viscous = 0.0, damping = 0.0, loads = 0.0, tools = 0.0, kinetic = 0.0, change = 0.0,
-         sudden = 0.0;
+         sudden = 0.0, contact = 0.0;
   for (std::size_t i = 0; i < now_.u.size(); ++i) {
     const Vec3d &du = last_change_[i], dv = now_.v[i] - before.v[i];
     const double m = state_.body.masses[i];
@@ -130,6 +165,8 @@ void ImplicitScheme::book(const Moment& before) {
     const Vec3d viscous_force = mean(before.viscous[i], now_.viscous[i]),
                 drag_force = -component_product(drag, mean(before.v[i], now_.v[i]));
     const Vec3d pull = mean(before.external[i] + before.gravity * m, now_.external[i] + now_.gravity * m);
+    const Vec3d touch = mean(before.contact[i], now_.contact[i]);
+    contact += dot(touch, du);
     const Vec3d elastic_force = mean(before.elastic[i], now_.elastic[i]);
     elastic += 0.5 * dot(before.elastic[i] + now_.elastic[i], du);
     viscous += dot(viscous_force, du);
@@ -137,10 +174,11 @@ void ImplicitScheme::book(const Moment& before) {
     loads += dot(pull, du);
     kinetic += 0.5 * m * dot(now_.v[i], now_.v[i]);
     if (at_end) change += 0.5 * m * dot(dv, dv) - 0.5 * dot(now_.elastic[i] - before.elastic[i], du);
-    const Vec3d others = elastic_force + viscous_force + drag_force + pull;
+    const Vec3d others = elastic_force + viscous_force + drag_force + pull + touch;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (solver_.held()[3 * i + axis] == 0) {
-        const double out = before.elastic[i][axis] + before.external[i][axis] + before.gravity[axis] * m;
+        const double out =
+            before.elastic[i][axis] + before.external[i][axis] + before.contact[i][axis] + before.gravity[axis] * m;
         if (statics_) sudden += 0.5 * out * du[axis];
         continue;
       }
@@ -154,6 +192,11 @@ void ImplicitScheme::book(const Moment& before) {
     change = tools + loads + elastic + viscous + damping - (kinetic - ledger_.now().kinetic);
   }
   Energies& energies = ledger_.books();
+  if (solver_.contact().acts()) {
+    const auto [impact, slip, cut] = solver_.contact().lost();
+    energies.contact += impact, energies.friction += slip, energies.fracture += cut;
+    tools += contact + impact + slip + cut;
+  }
   energies.elastic -= elastic;
   energies.dissipated -= viscous + damping;
   (only_relaxes(state_.body) ? energies.maxwell : energies.viscous) -= viscous;
@@ -205,7 +248,9 @@ StepResult ImplicitScheme::step() {
   int cuts = 0, most = 0;
   while (left > 0) {
     const double length = std::ldexp(h, -cuts);
-    if (left > 1 && !backup) backup = Backup{now_, tissue_.memory(), ledger_, last_change_, state_.time, last_h_};
+    if (left > 1 && !backup) {
+      backup = Backup{now_, tissue_.memory(), ledger_, last_change_, state_.time, last_h_, solver_.contact().backup()};
+    }
     if (part(length)) {
       --left;
       state_.time = begin + (h - static_cast<double>(left) * length);
@@ -218,6 +263,7 @@ StepResult ImplicitScheme::step() {
         tissue_.set_memory(std::move(backup->memory));
         ledger_ = backup->ledger, last_change_ = std::move(backup->last_change);
         state_.time = backup->time, last_h_ = backup->last_h;
+        solver_.contact().restore(backup->contact);
       }
       fresh_ = true;
       adapt(h, length);
@@ -247,6 +293,7 @@ void ImplicitScheme::archive_motion(Archive& ar) {
   for (const std::uint32_t t : watch().inverted) ar.check(t < tets);
   if (ar.reads() && !fresh) solver_.begin();
   if (!fresh) ar(solver_);
+  if (solver_.contact().acts()) ar(solver_.contact());
   fresh_ = fresh;
 }
 
@@ -254,8 +301,12 @@ void ImplicitScheme::archive_motion(Archive& ar) {
 ForceParts ImplicitScheme::vertex_force(std::uint32_t v, const Axes& axes) const {
   const double m = state_.body.masses[v];
   const Vec3d drag = statics_ ? Vec3d{} : component_product(state_.damping(v), now_.v[v]);
-  return {masked(-now_.elastic[v], axes), masked(-now_.viscous[v], axes),  masked(drag, axes),
-          masked(now_.a[v] * m, axes),    masked(now_.gravity * -m, axes), masked(-now_.external[v], axes)};
+  return {masked(-now_.elastic[v], axes),
+          masked(-now_.viscous[v], axes),
+          masked(drag, axes),
+          masked(now_.a[v] * m, axes),
+          masked(now_.gravity * -m, axes),
+          masked(-now_.external[v] - now_.contact[v], axes)};
 }
 
 ForceParts ImplicitScheme::force(ConstraintId constraint) const {

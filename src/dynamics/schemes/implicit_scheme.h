@@ -17,7 +17,8 @@ namespace glisson {
 
 class ImplicitScheme : public Scheme {
  public:
-  static constexpr IntegratorInfo kInfo{Integrator::implicit, {.any_step_is_stable = true, .forces_at_step_end = true}};
+  static constexpr IntegratorInfo kInfo{
+      Integrator::implicit, {.supports_contact = true, .any_step_is_stable = true, .forces_at_step_end = true}};
 
   /// @throws std::invalid_argument as Simulation's constructor
   ImplicitScheme(Body body, const SimulationOptions& options, bool statics = false);
@@ -33,13 +34,19 @@ class ImplicitScheme : public Scheme {
   ForceParts force(ConstraintId constraint) const override;
   Vec3d torque(ConstraintId constraint, const Vec3d& about) const override;
   BranchMemory branch_memory(std::size_t block) const override { return tissue_.branch_memory(block, 0.0, now_.u); }
+  /// @throws std::invalid_argument also for time schemes other than backward Euler, and for what does not act in long steps
+  void attach(std::shared_ptr<Interaction> interaction, const BodyView& body) override;
+  std::span<const std::shared_ptr<Interaction>> interactions() const override {
+    return solver_.contact().interactions().all();
+  }
+  void tell_change(const BodyView& body, std::span<const std::uint32_t> origins) override;
   void archive_motion(Archive& ar) override;
 
  protected:
   void acts_on(std::span<const std::uint32_t>) override { fresh_ = true; }
   void take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
   void take_over(const BodyChange& change) override;
-  void follow(std::span<const std::uint32_t>, std::uint32_t) override { fresh_ = true; }
+  void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) override;
   void take_body(Archive& ar) override;
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override {
     return tissue_.branch_stresses(block, now_.u);
@@ -55,6 +62,7 @@ class ImplicitScheme : public Scheme {
     EnergyLedger ledger;
     std::vector<Vec3d> last_change;
     double time, last_h;
+    StepContact::Backup contact;
   };
 
   ElementWatch& watch() { return solver_.watch(); }

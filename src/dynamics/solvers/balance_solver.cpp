@@ -12,7 +12,10 @@ constexpr double kForcing = 1e-3;      ///< accuracy of a linear solve within Ne
 constexpr int kMostPatience = 7;       ///< iterations with definite tangents before an exact one is tried again
 constexpr double kRounding = 1e-15;    ///< of u⁺ − u over u, which very short steps cannot do better than
 constexpr int kMostHalvings = 12;      ///< of a line search
-constexpr double kDifference = 1e-3;   ///< of h, for the velocity of a motion
+constexpr double kLeeway = 2.0;        ///< so much farther from balance an iteration with contact may lead …
+constexpr double kLeastShare = 0.02;   ///< … and this share of it is taken where all lead too far
+constexpr double kSlow = 0.35;  ///< of the residual: what an iteration with contact leaves where the factor is bad
+constexpr double kDifference = 1e-3;  ///< of h, for the velocity of a motion
 
 std::span<const Vec3d> view(const std::vector<Vec3d>& field) { return field; }
 
@@ -32,7 +35,7 @@ double unit_force(const Body& body) {
 
 BalanceSolver::BalanceSolver(BodyState& state, const TissueOperator& tissue, const Moment& now, bool statics)
     : state_(state), tissue_(tissue), now_(now), statics_(statics),
-      system_(tissue_, state.options.implicit.preconditioner) {}
+      system_(tissue_, state.options.implicit.preconditioner), contact_(state_, system_) {}
 
 void BalanceSolver::begin() {
   const std::size_t vertices = state_.body.vertex_count;
@@ -50,7 +53,16 @@ bool BalanceSolver::solve(const TimeStep& s, std::span<const Vec3d> last_change,
   load(s);
   const ElementWatch before = watch_;
   prescribe(s);
-  if (start(s, last_change, last_h) && newton(s)) return true;
+  if (!contact_.acts()) {
+    if (start(s, last_change, last_h) && newton(s)) return true;
+  } else {
+    contact_.begin(s.h, now_.u, now_.v, !statics_);
+    if (start(s, last_change, last_h) && newton_in_contact(s)) {
+      next_.contact = contact_.forces();
+      return true;
+    }
+    contact_.give_up();
+  }
   watch_ = before;
   return false;
 }
@@ -112,7 +124,8 @@ BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
   if (state_.loads.depends_on_state()) load(s);
   const Vec3d gravity = state_.gravity_at(state_.time + ahead);
   Balance b;
-  double inertial = 0.0, external = 0.0, rounding = 0.0;
+  double inertial = 0.0, external = 0.0, rounding = 0.0, contact = 0.0;
+  const bool touched = contact_.acts();
   for (std::size_t i = 0; i < next_.u.size(); ++i) {
     const double m = state_.body.masses[i];
     Vec3d pull = next_.external[i] + gravity * m, drag{};
@@ -123,6 +136,7 @@ BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
       drag = inertia + component_product(state_.damping(i), at_v_[i]);
     }
     external += dot(pull, pull);
+    if (touched) pull += contact_.forces()[i], contact += dot(contact_.forces()[i], contact_.forces()[i]);
     out_of_balance_[i] = drag - next_.elastic[i] - next_.viscous[i] - pull;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (held_[3 * i + axis] != 0) out_of_balance_[i][axis] = 0.0;
@@ -131,7 +145,7 @@ BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
   b.residual = flat(view(out_of_balance_)).norm();
   b.rounding = kRounding * s.a_rate * std::sqrt(rounding);
   b.scale = std::max({flat(view(next_.elastic)).norm(), flat(view(next_.viscous)).norm(), std::sqrt(inertial),
-                      std::sqrt(external), kSmallStrain * unit_force_});
+                      std::sqrt(external), std::sqrt(contact), kSmallStrain * unit_force_});
   return b;
 }
 
@@ -198,6 +212,66 @@ bool BalanceSolver::search_line(const TimeStep& s, const Eigen::VectorXd& direct
   }
   next_.u = from;
   balance = evaluate(s);
+  return false;
+}
+
+/// Takes u⁺ and forces of contact as an iteration has found them, or goes back towards where they were, `from` and `forces`,
+/// where that leads far away from balance. @return whether all was taken
+bool BalanceSolver::go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const std::vector<Vec3d>& forces,
+                               bool first, Balance& balance) {
+  const std::vector<Vec3d> to = next_.u, to_forces = contact_.forces();
+  const std::size_t inverted = watch_.inverted.size();
+  const double before = balance.residual;
+  double share = 1.0;
+  for (int i = 0; i < kMostHalvings; ++i) {
+    balance = evaluate(s);
+    const bool nearer = first || balance.residual <= kLeeway * before || balance.met(state_.options.implicit.tolerance);
+    if (std::isfinite(balance.residual) && nearer && watch_.inverted.size() <= inverted) return share == 1.0;
+    share *= 0.5;
+    if (share < kLeastShare && std::isfinite(balance.residual)) break;
+    std::vector<Vec3d> between = to_forces;
+    for (std::size_t v = 0; v < to.size(); ++v) {
+      next_.u[v] = from[v] + (to[v] - from[v]) * share;
+      between[v] = forces[v] + (to_forces[v] - forces[v]) * share;
+    }
+    contact_.set_forces(std::move(between));
+  }
+  return false;
+}
+
+/// Newton's method on equilibrium and contact together: an iteration with the forces of contact as they are, then these anew at
+/// where it leads. At the end both hold for one state.
+bool BalanceSolver::newton_in_contact(const TimeStep& s) {
+  const ImplicitOptions& options = state_.options.implicit;
+  Balance balance = evaluate(s);
+  bool semidefinite = false;
+  double mark = std::numeric_limits<double>::infinity(), last = mark;
+  int deadline = options.most_iterations;
+  Eigen::VectorXd direction;
+  for (iterations_ = 0; iterations_ < deadline; ++iterations_) {
+    if (!std::isfinite(balance.residual)) return false;
+    linearise(s, semidefinite);
+    if (iterations_ > 1 && balance.residual > kSlow * last && !system_.is_linear()) system_.renew();
+    const double exact = std::max(1e-12, 0.1 * options.tolerance * balance.scale / balance.residual);
+    const double accuracy = system_.is_linear() ? exact : std::max(exact, kForcing);
+    const bool even = !(balance.residual > 0.0) && system_.factor_number() > 0;
+    if (even) {
+      direction = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held_.size()));
+    } else {
+      const KrylovResult solved = system_.solve(-flat(view(out_of_balance_)), std::min(accuracy, 0.1), direction);
+      semidefinite = solved.curved;
+      if (!direction.allFinite()) return false;
+    }
+    const std::vector<Vec3d> from = next_.u, forces = contact_.forces();
+    flat(std::span<Vec3d>(next_.u)) += direction;
+    if (!contact_.correct(next_.u)) return false;
+    last = balance.residual;
+    const bool whole = go_towards(s, from, forces, iterations_ == 0, balance);
+    if (whole && balance.met(options.tolerance)) return true;
+    if (iterations_ == 0 || balance.residual < 0.5 * mark) {
+      mark = balance.residual, deadline = iterations_ + 1 + options.most_iterations;
+    }
+  }
   return false;
 }
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "dynamics/solvers/step_contact.h"
 #include "dynamics/solvers/tangent_system.h"
 #include "dynamics/state/body_state.h"
 #include "dynamics/step/time_steps.h"
@@ -21,13 +22,14 @@ struct Moment {
   std::vector<Vec3d> u, v, a;
   std::vector<Vec3d> elastic, viscous;  ///< [N]
   std::vector<Vec3d> external;          ///< loads, without gravity [N]
+  std::vector<Vec3d> contact;           ///< of interactions [N]
   Vec3d gravity{};
 
   void resize(std::size_t vertices) {
-    for (auto* field : {&u, &v, &a, &elastic, &viscous, &external}) field->resize(vertices);
+    for (auto* field : {&u, &v, &a, &elastic, &viscous, &external, &contact}) field->resize(vertices);
   }
   void archive(Archive& ar) {
-    for (auto* field : {&u, &v, &a, &elastic, &viscous, &external}) ar.same_size(*field);
+    for (auto* field : {&u, &v, &a, &elastic, &viscous, &external, &contact}) ar.same_size(*field);
     ar(gravity);
   }
 };
@@ -45,6 +47,10 @@ class BalanceSolver {
   /// @return false where there is no balance
   bool solve(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
   Moment& next() { return next_; }
+  StepContact& contact() { return contact_; }
+  const StepContact& contact() const { return contact_; }
+  /// Interactions act from now on, which need a factor.
+  void need_factor() { system_.need_factor(); }
 
   int iterations() const { return iterations_; }  ///< of the last solve
   ElementWatch& watch() { return watch_; }
@@ -68,6 +74,9 @@ class BalanceSolver {
   void load(const TimeStep& s);
   bool start(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
   bool newton(const TimeStep& s);
+  bool newton_in_contact(const TimeStep& s);
+  bool go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const std::vector<Vec3d>& forces, bool first,
+                  Balance& balance);
   void linearise(const TimeStep& s, bool semidefinite);
   bool search_line(const TimeStep& s, const Eigen::VectorXd& direction, Balance& balance);
 
@@ -76,6 +85,7 @@ class BalanceSolver {
   const Moment& now_;
   bool statics_;
   TangentSystem system_;
+  StepContact contact_;
   Moment next_;
   ElementWatch watch_;
   std::vector<char> held_;

@@ -183,6 +183,7 @@ void TangentSystem::refresh() {
     has_factor_ = factorise(definite);
   }
   current_ = true;
+  ++factor_number_;
   if (!has_factor_) find_blocks();
 }
 
@@ -248,6 +249,7 @@ void TangentSystem::archive(Archive& ar) {
   if (!ar.reads()) return;
   std::copy(values.begin(), values.end(), matrix_.valuePtr());
   factor_.factorize(matrix_);
+  ++factor_number_;
   has_factor_ = factor_.info() == Eigen::Success;
 }
 

@@ -57,6 +57,14 @@ class TangentSystem {
 
   /// y = A x on all components, held ones included.
   void apply(std::span<const Vec3d> x, std::span<Vec3d> y) const;
+  /// Factorises from now on, however large the body is: for factor_solve().
+  void need_factor() { factorises_ = true; }
+  /// Lets the next solve() make the factor anew.
+  void renew() { has_factor_ = current_ = false; }
+  /// How often the factor has been made; 0 while there is none.
+  std::uint64_t factor_number() const { return has_factor_ ? factor_number_ : 0; }
+  /// x = P⁻¹ b with the factorised matrix P, A at some earlier state; 0 on components that are held.
+  void factor_solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const { precondition(b, x); }
   /// x ≈ A⁻¹ b on the free components, 0 on the others.
   KrylovResult solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& x);
 
@@ -89,6 +97,7 @@ class TangentSystem {
   bool known_ = false;  ///< tangent_ is that of this body
   bool has_pattern_ = false, has_factor_ = false;
   bool current_ = false;  ///< the factor is that of A
+  std::uint64_t factor_number_ = 0;
 
   std::vector<Eigen::Matrix3d> inverse_blocks_;  ///< per vertex
 };

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "base/require_fields.h"
+#include "glisson/simulation/integrator.h"
 #include "instruments/contact/contact_state.h"
 
 namespace glisson {
@@ -85,7 +86,7 @@ Vec3d ContactTool::handle() const {
   const double end = f.kind == InstrumentForm::Kind::ball    ? 2.0 * f.radius
                      : f.kind == InstrumentForm::Kind::block ? f.size.z
                                                              : f.length;
-  return to_space(before_, {0.0, 0.0, end});
+  return to_space(force_pose(), {0.0, 0.0, end});
 }
 
 std::span<const InstrumentColumn> ContactTool::record_columns() const {
@@ -100,8 +101,15 @@ std::span<const InstrumentColumn> ContactTool::record_columns() const {
   return columns;
 }
 
+std::string ContactTool::refuses_long_steps() const {
+  if (state_->options.bonded) return "is bonded; take friction = inf, or integrator = " + supporting_integrators();
+  if (!driver().yields()) return {};
+  return "is moved by a force or a hand; give it a path in time, or take integrator = " + supporting_integrators();
+}
+
 void ContactTool::attached(const BodyView& body, double) {
   state_->reach.attach(body);
+  if (forces_at_end()) state_->require_outside(body, pose_, direction());
   if (state_->options.bonded) state_->bond_first(body, pose_);
 }
 
@@ -124,6 +132,7 @@ std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
   s.solid.earlier = s.solid.before, s.solid.last_h = s.last_h;
   s.solid.before = before_, s.solid.after = pose_;
   s.last_h = h;
+  s.trial.clear();
   return s.reach.ask({&s.solid, 1}, h);
 }
 
@@ -139,23 +148,20 @@ void ContactTool::constrain(const InteractionStep& step) {
   forces_ = {};
   s.rows.clear(), s.bond_impulses.clear(), s.pressed.clear(), s.exerted.clear(), s.effort = {};
   if (s.lost) return;
-  s.add_vertices(step);
-  s.effort.vertices = s.rows.size();
-  if (!s.rows.empty()) s.effort.sweeps = s.books.solve(s.rows, step);
-  if (s.solid.traits.presses_between) s.add_triangles(step);
-  s.effort.triangles = s.rows.size() - s.effort.vertices;
-  s.begin_triangles(step);
-  if (s.effort.triangles > 0) s.effort.sweeps += s.books.solve(s.rows, step);
-  s.effort.corrected = s.books.corrected();
-  s.books.close(s.rows, step);
+  if (step.compliance != nullptr) {
+    s.effort.sweeps = s.solve_long(step);
+  } else {
+    s.solve_short(step);
+  }
   if (s.options.bonded) s.bond(step, forces_);
   s.collect(step, forces_);
   if (step.interface_book != nullptr) book(step);
 
+  const double time = forces_at_end() ? step.time + step.h : step.time;
   if (touches()) {
-    if (!s.in_contact) add_event(step.time, force_depth(), "contact");
-    s.in_contact = true, s.last_touch = step.time, s.last_depth = force_depth();
-  } else if (s.in_contact && step.time > s.last_touch + kQuiet) {
+    if (!s.in_contact) add_event(time, force_depth(), "contact");
+    s.in_contact = true, s.last_touch = time, s.last_depth = force_depth();
+  } else if (s.in_contact && time > s.last_touch + kQuiet) {
     s.in_contact = false;
     add_event(s.last_touch, s.last_depth, "release");
   }
@@ -165,7 +171,8 @@ void ContactTool::constrain(const InteractionStep& step) {
 void ContactTool::book(const InteractionStep& step) const {
   for (const ContactRow& row : state_->rows) {
     if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
-    const ToolVelocity tool = velocity_at(row.origin);
+    const bool at_end = forces_at_end();
+    const ToolVelocity tool = velocity_at(at_end ? to_space(pose_, end_of(row, step)) : row.origin);
     for (std::uint32_t i = 0; i < row.count; ++i) {
       step.book(WorkSink::contact, row.places[i], row.normal * (row.pressing * row.weights[i]), tool);
       step.book(WorkSink::friction, row.places[i], row.rubbing * row.weights[i], tool);

@@ -8,7 +8,8 @@ namespace glisson {
 namespace {
 
 constexpr int kMostSweeps = 60;
-constexpr double kEnough = 1000.0;  // tolerances: rows that move by less have been solved
+constexpr int kMostLongSweeps = 1000;  // in a long step, where all points move one another
+constexpr double kEnough = 1000.0;     // tolerances: rows that move by less have been solved
 constexpr int kMostCorrections = 8;
 constexpr double kAtEdge = 1e-3;  // a weight below it: the point is on an edge of its triangle
 constexpr double kAlike = 0.8;  // cosine between normals of solid and triangle that are one but for the triangle's size
@@ -67,6 +68,14 @@ double first_touch(const ContactRow& row, const Vec3d& a, const Vec3d& b) {
 /// Velocity per impulse of a point that is a mean of vertices.
 Vec3d response_of(const ContactRow& row, const InteractionStep& step) {
   Vec3d sum;
+  if (step.compliance !=
+      nullptr) {  // from above, whatever the corners give one another: (Σ w √c)² by Schwarz's inequality
+    for (std::uint32_t i = 0; i < row.count; ++i) {
+      const Vec3d c = step.compliance->mobility(row.places[i]);
+      for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += row.weights[i] * std::sqrt(c[axis]);
+    }
+    return {sum.x * sum.x, sum.y * sum.y, sum.z * sum.z};
+  }
   for (std::uint32_t i = 0; i < row.count; ++i) {
     sum += step.mobility[row.places[i]] * (row.weights[i] * row.weights[i]);
   }
@@ -239,6 +248,8 @@ bool prepare(ContactRow& row, const InteractionStep& step, double share) {
   row.response = response_of(row, step);
   row.along = dot(row.normal, scaled(row.response, row.normal));
   row.level = -std::max(0.0, row.inside - step.h * std::min(row.solid->push_out_speed, row.inside / kSettling));
+  // in a long step other points of a triangle come to be its deepest: pushed out, they would bring energy in
+  if (step.compliance != nullptr && row.count == 3) row.level = -row.inside;
   const ContactSolid& solid = *row.solid;
   row.carried = (to_space(solid.after, row.start) - row.origin) * (1.0 / step.h);
   row.carried_before = row.carried;
@@ -256,13 +267,15 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step) {
   // a row whose vertices no other row has pushed since it was solved is solved still
   std::uint32_t clock = 1;
   std::vector<std::uint32_t> pushed(step.vertices.size(), clock), seen(rows.size(), 0);
-  for (int sweep = 1; sweep <= kMostSweeps; ++sweep) {
+  const bool is_long = step.compliance != nullptr;
+  const int most = is_long ? kMostLongSweeps : kMostSweeps;
+  for (int sweep = 1; sweep <= most; ++sweep) {
     double change = 0.0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
       ContactRow& row = rows[k];
       std::uint32_t latest = 0;
       for (std::uint32_t i = 0; i < row.count; ++i) latest = std::max(latest, pushed[row.places[i]]);
-      if (latest <= seen[k]) continue;
+      if (latest <= seen[k] && !is_long) continue;
       const bool alone = row.response.x == row.response.y && row.response.y == row.response.z;
       const double pressed = press(row, step), rubbed = rub(row, step);
       change = std::max({change, pressed, rubbed});
@@ -275,7 +288,7 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step) {
     }
     if (change <= enough) return sweep;
   }
-  return kMostSweeps;
+  return most;
 }
 
 std::array<double, 3> deepest(const Shape& shape, const std::array<Vec3d, 3>& corners, double& depth) {

@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+
+#include "base/text.h"
+#include "glisson/simulation/integrator.h"
 
 namespace glisson {
 namespace {
@@ -11,6 +15,7 @@ namespace {
 constexpr double kTouch = 1e-6;       // of the body's size: tissue so near to a tool that bonds touches
 constexpr double kAllowance = 0.01;   // of its longest edge: a triangle may be so deep inside between its corners …
 constexpr double kMostAllowed = 0.1;  // … and so much of the thickness
+constexpr int kMostRounds = 12;       // of looking for points that come inside in a long step
 constexpr double kStride = 0.25;      // of the thickness: a fast triangle is looked at so often on its way
 constexpr int kMostStrides = 200;
 
@@ -29,28 +34,113 @@ void ContactTool::State::measure(std::size_t i, const InteractionStep& step) {
   at_ends[i] = distance_to(options.shape, ends[i]).distance;
 }
 
-void ContactTool::State::add_vertices(const InteractionStep& step) {
-  const std::span<const std::uint32_t> mine = reach.vertices();
-  starts.resize(mine.size()), ends.resize(mine.size()), at_ends.resize(mine.size());
-  pressed.assign(mine.size(), 0.0), exerted.assign(mine.size(), Vec3d{});
+void ContactTool::State::begin_vertices(const InteractionStep&) {
+  const std::size_t count = reach.vertices().size();
+  starts.resize(count), ends.resize(count), at_ends.resize(count);
+  pressed.assign(count, 0.0), exerted.assign(count, Vec3d{}), has_row.assign(count, 0);
   touched.clear();
+}
+
+/// Finds the vertices that meet the tool and have no row yet. @return how many
+std::size_t ContactTool::State::add_vertices(const InteractionStep& step) {
+  const std::span<const std::uint32_t> mine = reach.vertices();
+  const std::size_t before = rows.size();
   for (std::uint32_t i = 0; i < mine.size(); ++i) {
     measure(i, step);
+    if (has_row[i] != 0) continue;
     if (at_ends[i] > norm(ends[i] - starts[i]) + solid.tolerance()) continue;  // nowhere on its way inside
     if (bonds.count(mine[i]) != 0) continue;
     ContactRow row;
     row.places[0] = step.place_of[mine[i]];
     row.solid = &solid;
     found_inside.mark(row, mine[i], 0, starts[i], begun);
-    if (prepare(row, step)) rows.push_back(row), touched.push_back(i);
+    if (prepare(row, step)) rows.push_back(row), touched.push_back(i), has_row[i] = 1;
     found_inside.settle(row, mine[i], 0);
   }
   begun = true;
+  return rows.size() - before;
+}
+
+void ContactTool::State::solve_short(const InteractionStep& step) {
+  begin_vertices(step);
+  add_vertices(step);
+  effort.vertices = rows.size();
+  if (!rows.empty()) effort.sweeps = books.solve(rows, step);
+  if (solid.traits.presses_between) add_triangles(step);
+  effort.triangles = rows.size() - effort.vertices;
+  begin_triangles(step);
+  if (effort.triangles > 0) effort.sweeps += books.solve(rows, step);
+  effort.corrected = books.corrected();
+  books.close(rows, step);
+}
+
+/// Begins with what the row had in the last iteration, or with the force of the last step.
+void ContactTool::State::begin_row(ContactRow& row, const InteractionStep& step) const {
+  Triangle key = {step.vertices[row.places[0]].vertex, step.vertices[row.places[0]].vertex,
+                  step.vertices[row.places[0]].vertex};
+  if (row.count == 3) key = corners_of(row, step);
+  if (!trial.empty()) {
+    if (const auto at = trial.find(key); at != trial.end())
+      row.pressing = at->second.first, row.rubbing = at->second.second;
+  } else if (const auto at = last_pressing.find(key); at != last_pressing.end()) {
+    row.pressing = at->second * step.h;
+  }
+  if (row.pressing > 0.0) push(row, step, row.impulse());
+}
+
+/// All rows of a long step. Points move one another, so that those that come inside by it are looked for until there are
+/// none: vertices first, as in a short step. @return sweeps
+int ContactTool::State::solve_long(const InteractionStep& step) {
+  begin_vertices(step);
+  triangle_has_row.assign(reach.triangles().size(), 0);
+  int sweeps = 0;
+  std::size_t fresh = add_vertices(step);
+  effort.vertices = fresh;
+  for (int round = 0; round < kMostRounds && (fresh > 0 || round == 0); ++round) {
+    for (std::size_t k = rows.size() - fresh; k < rows.size(); ++k) begin_row(rows[k], step);
+    if (!rows.empty()) sweeps += glisson::solve(rows, step);
+    step.compliance->settle(step.vertices);
+    fresh = add_vertices(step);
+    effort.vertices += fresh;
+    if (fresh > 0 || !solid.traits.presses_between) continue;
+    const std::size_t before = rows.size();
+    add_triangles(step);
+    fresh = rows.size() - before;
+    effort.triangles += fresh;
+  }
+  trial.clear();
+  for (const ContactRow& row : rows) {
+    const std::uint32_t v = step.vertices[row.places[0]].vertex;
+    trial[row.count == 3 ? corners_of(row, step) : Triangle{v, v, v}] = {row.pressing, row.rubbing};
+  }
+  return sweeps;
+}
+
+/// @throws std::invalid_argument naming how deep the tool is inside the body
+void ContactTool::State::require_outside(const BodyView& body, const Pose& pose, const Vec3d& direction) const {
+  double size = 0.0, deepest_phi = 0.0;
+  for (const std::uint32_t v : reach.surface().vertices()) {
+    const Vec3d x = body.mesh.vertices[v] + body.displacement[v];
+    size = std::max(size, norm(x - body.mesh.vertices[reach.surface().vertices().front()]));
+    deepest_phi = std::min(deepest_phi, distance_to(options.shape, to_frame(pose, x)).distance);
+  }
+  if (deepest_phi >= -kTouch * size) return;
+  const Vec3d back = direction * deepest_phi + Vec3d{};  // no −0
+  throw std::invalid_argument(
+      "contact tool \"" + options.name + "\": it starts inside the body, " + detail::number_text(-1e3 * deepest_phi) +
+      " mm deep, which long steps do not push out. Ways out: start it farther back, by (" +
+      detail::number_text(1e3 * back.x) + ", " + detail::number_text(1e3 * back.y) + ", " +
+      detail::number_text(1e3 * back.z) + ") mm or more, or take integrator = " + supporting_integrators());
 }
 
 void ContactTool::State::add_triangles(const InteractionStep& step) {
-  for (const std::uint32_t i : touched) measure(i, step);
-  for (const Triangle& t : reach.triangles()) {
+  if (step.compliance == nullptr) {  // in a long step all have just been measured
+    for (const std::uint32_t i : touched) measure(i, step);
+  }
+  const bool is_long = step.compliance != nullptr;
+  for (std::size_t k = 0; k < reach.triangles().size(); ++k) {
+    if (is_long && triangle_has_row[k] != 0) continue;
+    const Triangle& t = reach.triangles()[k];
     double longest = 0.0, farthest = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3d edge = ends[t[(i + 1) % 3]] - ends[t[i]], way = ends[t[i]] - starts[t[i]];
@@ -62,7 +152,9 @@ void ContactTool::State::add_triangles(const InteractionStep& step) {
     const double allowance = std::min(kAllowance * std::sqrt(longest), kMostAllowed * solid.traits.thickness);
     const double strides = std::ceil(std::sqrt(farthest) / (kStride * solid.traits.thickness));
     if (strides <= 1.0 && least_of({ends[t[0]], ends[t[1]], ends[t[2]]}) > -allowance) continue;
-    add_triangle(static_cast<std::uint32_t>(std::clamp(strides, 1.0, double(kMostStrides))), t, allowance, step);
+    const bool added =
+        add_triangle(static_cast<std::uint32_t>(std::clamp(strides, 1.0, double(kMostStrides))), t, allowance, step);
+    if (is_long) triangle_has_row[k] = added ? 1 : 0;
   }
 }
 
@@ -75,7 +167,8 @@ double ContactTool::State::least_of(const std::array<Vec3d, 3>& x) const {
 }
 
 /// Holds a triangle out that comes to be inside between its corners; a fast one is held where it first enters.
-void ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, double allowance,
+/// @return whether there is a row of it
+bool ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, double allowance,
                                       const InteractionStep& step) {
   for (std::uint32_t k = 1; k <= strides; ++k) {
     const double share = static_cast<double>(k) / strides;
@@ -90,9 +183,11 @@ void ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, 
     ContactRow row;
     for (std::size_t i = 0; i < 3; ++i) row.places[i] = step.place_of[reach.vertices()[t[i]]];
     row.count = 3, row.solid = &solid, row.allowance = allowance;
-    if (prepare(row, step, share)) rows.push_back(row);
-    return;
+    if (!prepare(row, step, share)) return false;
+    rows.push_back(row);
+    return true;
   }
+  return false;
 }
 
 /// Begins with the forces of the last step: when all rows have been found, as they look at where the free way ends.
@@ -150,10 +245,17 @@ void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces
   last_pressing.clear();
   for (const ContactRow& row : rows) {
     if (row.count == 3 && row.pressing > 0.0) last_pressing[corners_of(row, step)] = row.pressing * rate;
+    if (row.count == 1 && row.pressing > 0.0 && step.compliance != nullptr) {
+      const std::uint32_t v = step.vertices[row.places[0]].vertex;
+      last_pressing[{v, v, v}] = row.pressing * rate;
+    }
     if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
     forces.normal += row.normal * (row.pressing * rate);
     forces.friction += row.rubbing * rate;
-    forces.torque += cross(row.origin - solid.before.position, row.impulse()) * rate;
+    const bool at_end = step.compliance != nullptr;
+    const Vec3d arm =
+        at_end ? to_space(solid.after, end_of(row, step)) - solid.after.position : row.origin - solid.before.position;
+    forces.torque += cross(arm, row.impulse()) * rate;
     for (std::uint32_t i = 0; i < row.count; ++i) {
       bear(step.vertices[row.places[i]].vertex, row.pressing * row.weights[i], row.impulse() * row.weights[i]);
     }

@@ -35,16 +35,25 @@ struct ContactTool::State {
   ContactBooks books;
   bool begun = false;  ///< a step has been made since the tool was attached
   FoundInside found_inside;
-  std::map<Triangle, double> last_pressing;  ///< forces on triangles in the last step, to begin the next with [N]
+  /// Forces on triangles in the last step, to begin the next with [N]; in long steps on vertices too, three times the same.
+  std::map<Triangle, double> last_pressing;
+  std::map<Triangle, std::pair<double, Vec3d>>
+      trial;                                    ///< of a long step: pressing and rubbing of the last iteration [N s]
+  std::vector<char> has_row, triangle_has_row;  ///< per vertex and triangle of the reach
   bool in_contact = false;
   double last_touch = 0.0, last_depth = 0.0;
 
-  void add_vertices(const InteractionStep& step);
+  void begin_vertices(const InteractionStep& step);
+  std::size_t add_vertices(const InteractionStep& step);
+  void solve_short(const InteractionStep& step);
+  int solve_long(const InteractionStep& step);
+  void begin_row(ContactRow& row, const InteractionStep& step) const;
+  void require_outside(const BodyView& body, const Pose& pose, const Vec3d& direction) const;
   void measure(std::size_t i, const InteractionStep& step);
   double least_of(const std::array<Vec3d, 3>& corners) const;
   void bear(std::uint32_t vertex, double pressing, const Vec3d& impulse);
   void add_triangles(const InteractionStep& step);
-  void add_triangle(std::uint32_t strides, const Triangle& corners, double allowance, const InteractionStep& step);
+  bool add_triangle(std::uint32_t strides, const Triangle& corners, double allowance, const InteractionStep& step);
   void begin_triangles(const InteractionStep& step);
   void bond_first(const BodyView& body, const Pose& pose);
   void bond(const InteractionStep& step, ToolForces& forces);

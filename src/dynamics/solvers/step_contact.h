@@ -1,0 +1,90 @@
+// step_contact.h — interactions within a long step: their forces at its end, by the factor of the tangent.
+//
+//   Newton's u⁺ with the forces so far ─▶ taken off by P⁻¹ ─▶ interactions constrain, all points moving one another by P⁻¹
+//                                                          ─▶ u⁺ with the forces they find
+//
+// W = J P⁻¹ Jᵀ of contact is never formed: its columns P⁻¹ e are solved for where something is pushed for the first time,
+// and kept as long as the factor P. P is the tangent or near it; where it is not, Newton's method takes more iterations,
+// and ends at the same state.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dynamics/interactions.h"
+#include "dynamics/solvers/tangent_system.h"
+#include "dynamics/state/body_state.h"
+
+namespace glisson {
+
+class StepContact final : public StepCompliance {
+ public:
+  /// Both must outlive this.
+  StepContact(const BodyState& state, TangentSystem& system) : state_(state), system_(system) {}
+
+  bool acts() const { return !interactions_.empty(); }
+  const Interactions& interactions() const { return interactions_; }
+  void add(std::shared_ptr<Interaction> interaction);
+  /// Body or state have changed from outside: nothing presses as yet.
+  void body_changed(const BodyView& body, std::span<const std::uint32_t> origins);
+  void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) {
+    interactions_.follow(origins, first_new);
+  }
+  void state_set();
+
+  /// Where interactions were before a step, to go back to.
+  struct Backup {
+    std::vector<std::string> interactions;
+    std::vector<Vec3d> forces;
+  };
+  Backup backup();
+  void restore(const Backup& backup);
+
+  /// Begins a step from u, v at t; what the factor was made for is asked of it.
+  /// @param mass_matters  the factor depends on h
+  void begin(double h, std::span<const Vec3d> u, std::span<const Vec3d> v, bool mass_matters);
+  /// Takes back what begin() did.
+  void give_up() { restore(before_); }
+  /// Corrects u⁺ of a Newton iteration that was made with forces(), and finds these anew.
+  /// @return false where there is no factor
+  bool correct(std::span<Vec3d> u);
+  /// The step has been made, with u, v at its end.
+  void made(std::span<const Vec3d> u, std::span<const Vec3d> v);
+
+  /// On the vertices of the body, at the end of the step [N].
+  const std::vector<Vec3d>& forces() const { return forces_; }
+  void set_forces(std::vector<Vec3d> forces) { forces_ = std::move(forces); }
+  /// By WorkSink: what interactions took of the tools' work in the step [J].
+  std::array<double, 3> lost() const;
+
+  void spread(std::size_t place, const Vec3d& impulse, std::span<ActiveVertex> vertices) override;
+  void settle(std::span<ActiveVertex> vertices) override;
+  Vec3d mobility(std::size_t place) override;
+  void archive(Archive& ar);
+
+ private:
+  using Column = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  const Column& column(std::uint32_t vertex);
+  const Column& column_at(std::size_t place);
+  void move(std::size_t by, const Vec3d& impulse, std::size_t place, ActiveVertex& vertex) const;
+  void activate(std::span<const std::uint32_t> vertices);
+  void put_at_start(std::span<const Vec3d> u);
+
+  const BodyState& state_;
+  TangentSystem& system_;
+  Interactions interactions_;
+  std::vector<ActiveVertex> active_;
+  std::vector<Vec3d> forces_, start_;  ///< per vertex [N], u(t) [m]
+  Backup before_, reached_;            ///< before reach(), and after it
+  double h_ = 0.0, factor_h_ = 0.0;
+  std::uint64_t factor_ = 0;                 ///< that the columns are of
+  std::map<std::uint32_t, Column> columns_;  ///< per vertex: displacement of all components by a unit force [m/N]
+  std::vector<Column> at_places_;            ///< the same per place, of active vertices; empty: not asked for yet
+  std::vector<std::uint32_t> near_, far_;    ///< places that have columns, and the others
+  std::vector<Vec3d> unsettled_;             ///< per place: impulses that the others have not got yet [N s]
+};
+
+}  // namespace glisson
