@@ -79,10 +79,11 @@ bool is_viscous(const Variant& variant) {
   return variant.tissue.viscosity > 0.0 || std::any_of(variant.regions.begin(), variant.regions.end(), viscous);
 }
 
-/// Whether it is a rigid tool in contact that follows a path.
+/// Whether it is a rigid tool in contact that follows a path, and rubs only as a plate (ContactTool::refuses_long_steps).
 bool follows_path_in_contact(const InstrumentSpec& x) {
   const auto* contact = std::get_if<ContactOptions>(&x.what);
-  return contact != nullptr && !contact->bonded && !std::holds_alternative<PushSpec>(x.motion.how);
+  return contact != nullptr && !contact->bonded && !std::holds_alternative<PushSpec>(x.motion.how) &&
+         (contact->friction == 0.0 || std::holds_alternative<Plate>(contact->shape));
 }
 
 /// Complains where what acts on the body beside supports and tools meets an integrator that does not support it.
@@ -96,7 +97,7 @@ void check_integrator(const Variant& variant, const Node& experiment, Problems& 
   if (can.supports_contact && only_contact) return;
   const std::string but = !can.supports_contact || variant.instruments.empty()
                               ? ""
-                              : " but rigid ones in contact, not bonded, that follow a path";
+                              : " but rigid ones in contact that follow a path, not bonded, without friction where they are no plates";
   const std::string what = !variant.instruments.empty() ? "[[instrument]]"
                            : variant.container          ? "[container]"
                                                         : "[[capsule]]";

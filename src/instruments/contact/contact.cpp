@@ -102,7 +102,13 @@ std::span<const InstrumentColumn> ContactTool::record_columns() const {
 }
 
 std::string ContactTool::refuses_long_steps() const {
-  if (state_->options.bonded) return "is bonded; take friction = inf, or integrator = " + supporting_integrators();
+  const ContactOptions& o = state_->options;
+  if (o.bonded) return "is bonded; take integrator = " + supporting_integrators();
+  if (o.friction > 0.0 && !std::holds_alternative<Plate>(o.shape)) {
+    return "rubs and is no plate: its friction would be up to 8 % of the largest force off in steps so long; give friction = 0, or "
+           "take integrator = " +
+           supporting_integrators();
+  }
   if (!driver().yields()) return {};
   return "is moved by a force or a hand; give it a path in time, or take integrator = " + supporting_integrators();
 }
