@@ -1,11 +1,13 @@
-// command_mesh.cpp — glisson mesh: a scene's mesh as a file, and its figures.
+// command_mesh.cpp — glisson mesh: the mesh of a scene, or of the body within a closed surface, as a file, and its figures.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "bench/json_option.h"
 #include "cli/commands.h"
@@ -16,6 +18,7 @@
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "glisson/io.h"
+#include "glisson/scene/surface_file.h"
 
 namespace glisson::app {
 namespace {
@@ -25,10 +28,12 @@ constexpr const char* kMeshFooter =
     "\n"
     "Examples:\n"
     "  glisson mesh scenes/organs/liver.toml --out liver.vtu\n"
+    "  glisson mesh organ.stl --scale 0.001 --edge-mm 4 --out organ.vtu\n"
     "  glisson mesh scene.toml --set mesh.edge_mm=3 --out fine.vtu --json figures.json";
 
 struct MeshOptions {
   SceneOptions scene;
+  std::optional<double> edge_mm, scale;  ///< of a surface
   std::string out, json;
   bool quiet = false;
 };
@@ -100,15 +105,46 @@ TetMesh made(const Variant& variant, bool quiet, MeshCache& meshes) {
   }
 }
 
+/// The mesh that was asked for as a variant of its own, for a surface without a scene.
+Variant surface_variant(const MeshOptions& options) {
+  const std::filesystem::path file = options.scene.scene;
+  const auto refuse = [&](const std::string& what) {
+    throw std::invalid_argument(fmt::format("{}: {}", file.string(), what));
+  };
+  if (!options.scene.set.empty() || !options.scene.mesh.empty() || !options.scene.variants.empty())
+    refuse("--set, --mesh and --variant are for scenes; leave them out");
+  if (!options.edge_mm) refuse("a surface needs --edge-mm E, the mean length of the tets' edges in mm");
+  if (!(std::isfinite(*options.edge_mm) && *options.edge_mm > 0.0))
+    refuse(fmt::format("--edge-mm {} is out of range; allowed: > 0", *options.edge_mm));
+  ImplicitBody body;
+  body.edge = 1e-3 * *options.edge_mm;
+  body.shapes.push_back({file.stem().string(), load_surface(file, options.scale.value_or(1.0))});
+  body.regions.push_back({file.stem().string(), "", false});
+  Variant variant;
+  variant.name = "main";
+  variant.scene_name = file.string();
+  variant.mesh = std::move(body);
+  return variant;
+}
+
+Variant scene_variant(const MeshOptions& options) {
+  for (const auto& [name, given] : {std::pair("--edge-mm", options.edge_mm), std::pair("--scale", options.scale)}) {
+    if (given)
+      throw std::invalid_argument(
+          fmt::format("{} is for surfaces (.stl, .obj, .ply); the mesh of a scene takes --set mesh.{}={}", name,
+                      name == std::string("--scale") ? "scale" : "edge_mm", *given));
+  }
+  SceneOptions asked = options.scene;
+  asked.set.insert(asked.set.begin(), "motion.max_steps=1");  // a mesh alone needs no end of a run
+  return chosen_variant(open_scene(asked), options.quiet);
+}
+
 int mesh(const MeshOptions& options) {
   if (std::filesystem::path(options.out).extension() != ".vtu") {
     throw std::invalid_argument("--out " + options.out +
                                 ": the mesh is written as .vtu; give a name that ends in .vtu");
   }
-  SceneOptions asked = options.scene;
-  asked.set.insert(asked.set.begin(), "motion.max_steps=1");  // a mesh alone needs no end of a run
-  const Scene scene = open_scene(asked);
-  const Variant& variant = chosen_variant(scene, options.quiet);
+  const Variant variant = is_surface_file(options.scene.scene) ? surface_variant(options) : scene_variant(options);
   MeshCache meshes(options.quiet);
   catch_interrupts();
   const auto start = std::chrono::steady_clock::now();
@@ -134,9 +170,15 @@ int mesh(const MeshOptions& options) {
 }  // namespace
 
 void add_mesh(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("mesh", "write the mesh of a scene, and its figures");
+  CLI::App* command = program.add_subcommand("mesh", "write the mesh of a scene or surface, and its figures");
   const auto options = std::make_shared<MeshOptions>();
   add_scene_options(*command, options->scene);
+  command->get_option("scene")->description("scene file (TOML), or a closed surface (.stl, .obj, .ply)");
+  command->add_option("--edge-mm", options->edge_mm, "of a surface: mean length of the tets' edges")->type_name("E");
+  command
+      ->add_option("--scale", options->scale,
+                   "of a surface: factor on its coordinates, 0.001 for a file in millimetres")
+      ->type_name("FACTOR");
   command->add_option("--out", options->out, "the mesh, a .vtu file")->required()->type_name("FILE");
   add_json_option(*command, options->json);
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
