@@ -19,6 +19,7 @@
 #include "cli/standard_streams.h"
 #include "glisson/io.h"
 #include "glisson/scene/surface_file.h"
+#include "glisson/simulation/mesh_step.h"
 
 namespace glisson::app {
 namespace {
@@ -40,6 +41,8 @@ struct MeshOptions {
 
 struct MeshFigures {
   double least_deg = 180.0, largest_deg = 0.0, seconds = 0.0;
+  double edge = 0.0;                      ///< asked for [m]; 0: none was
+  std::optional<double> relative_step{};  ///< relative_stable_step, where an edge was asked for
   struct Region {
     std::string name;
     std::size_t tets = 0;
@@ -65,12 +68,20 @@ MeshFigures figures_of(const TetMesh& mesh) {
   return figures;
 }
 
+/// The edge that a mesh was asked for [m]; 0 where it was given by its cells or a file.
+double asked_edge(const MeshSource& source) {
+  if (const auto* body = std::get_if<ImplicitBody>(&source)) return body->edge;
+  if (const auto* liver = std::get_if<LiverOptions>(&source)) return liver->edge;
+  return 0.0;
+}
+
 nlohmann::ordered_json mesh_json(const TetMesh& mesh, const MeshFigures& figures) {
   nlohmann::ordered_json json;
   json["vertices"] = mesh.vertices.size();
   json["tets"] = mesh.tets.size();
   json["min_dihedral_deg"] = figures.least_deg;
   json["max_dihedral_deg"] = figures.largest_deg;
+  if (figures.relative_step) json["relative_stable_step"] = *figures.relative_step;
   json["seconds"] = figures.seconds;
   json["regions"] = nlohmann::ordered_json::array();
   for (const auto& [number, r] : figures.regions) {
@@ -156,11 +167,17 @@ int mesh(const MeshOptions& options) {
   }
   MeshFigures figures = figures_of(body);
   figures.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  figures.edge = asked_edge(variant.mesh);
+  if (figures.edge > 0.0) figures.relative_step = relative_stable_step(body, figures.edge);
   write_vtu(options.out, body);
   write_json(options.json, mesh_json(body, figures));
   if (options.quiet) return kDone;
   say("{}: {} tets, {} vertices, dihedral angles {:.1f}° to {:.1f}°, {:.2f} s\n", options.out, body.tets.size(),
       body.vertices.size(), figures.least_deg, figures.largest_deg, figures.seconds);
+  if (figures.relative_step) {
+    say("  stable step {:.2f} of that of regular tets with edges of {:.3g} mm\n", *figures.relative_step,
+        1e3 * figures.edge);
+  }
   for (const auto& [number, r] : figures.regions) {
     say("  region {:<3} {:<20} {:>9} tets {:>10.4g} mL\n", number, r.name, r.tets, 1e6 * r.volume);
   }

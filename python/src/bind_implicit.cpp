@@ -3,6 +3,7 @@
 #include "glisson/implicit.h"
 #include "glisson/liver.h"
 #include "glisson/scene/surface_file.h"
+#include "glisson/simulation/mesh_step.h"
 #include "glisson/surface_region.h"
 #include "rooms.h"
 
@@ -122,6 +123,7 @@ void bind_mesher(nb::module_& m) {
         return made(mesh_regions(regions, {edge, max_tets, [](double) { return PyErr_CheckSignals() == 0; }}));
       },
       "regions"_a, "edge"_a, "max_tets"_a = RegionMeshOptions{}.max_tets, doc("mesh_regions"));
+  m.def("relative_stable_step", relative_stable_step, "mesh"_a, "edge"_a, doc("relative_stable_step"));
   Options<LiverOptions>(m, "LiverOptions");
   m.def(
       "liver_mesh",

@@ -3,6 +3,7 @@
 
 #include "app/program.h"
 #include "glisson/io.h"
+#include "glisson/simulation/mesh_step.h"
 #include "support/surface_files.h"
 
 namespace glisson::test {
@@ -43,6 +44,8 @@ TEST_F(MeshCommand, WritesMeshAndFigures) {
   EXPECT_GE(figures.at("min_dihedral_deg").get<double>(), 10.0);
   EXPECT_LE(figures.at("max_dihedral_deg").get<double>(), 165.0);
   EXPECT_GT(figures.at("seconds").get<double>(), 0.0);
+  EXPECT_NEAR(figures.at("relative_stable_step").get<double>(), relative_stable_step(mesh, 0.006), 1e-12);
+  EXPECT_THAT(outcome.out, HasSubstr(" of that of regular tets with edges of 6 mm\n"));
   ASSERT_EQ(figures.at("regions").size(), 2u);
   EXPECT_EQ(figures.at("regions")[0].at("name"), "core");
   EXPECT_NEAR(figures.at("regions")[0].at("volume_ml").get<double>(), 4.0 / 3.0 * M_PI * 1.5 * 1.5 * 1.5, 0.3);

@@ -15,6 +15,7 @@ def test_a_body_of_two_regions_is_meshed():
     assert report.regions[0].volume == pytest.approx(4 / 3 * np.pi * 0.02**3, rel=0.01)
     assert sum(r.volume for r in report.regions) == pytest.approx(mesh.volume)
     assert sum(mesh.dihedral_histogram()) == 6 * len(mesh.tets)
+    assert 0.4 < glisson.relative_stable_step(mesh, 0.005) < 1
 
 
 def test_any_function_of_a_point_is_a_solid():
