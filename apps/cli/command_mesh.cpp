@@ -1,11 +1,13 @@
-// command_mesh.cpp — glisson mesh: a scene's mesh as a file, and its figures.
+// command_mesh.cpp — glisson mesh: the mesh of a scene, or of the body within a closed surface, as a file, and its figures.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "bench/json_option.h"
 #include "cli/commands.h"
@@ -16,6 +18,8 @@
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "glisson/io.h"
+#include "glisson/scene/surface_file.h"
+#include "glisson/simulation/mesh_step.h"
 
 namespace glisson::app {
 namespace {
@@ -25,16 +29,20 @@ constexpr const char* kMeshFooter =
     "\n"
     "Examples:\n"
     "  glisson mesh scenes/organs/liver.toml --out liver.vtu\n"
+    "  glisson mesh organ.stl --scale 0.001 --edge-mm 4 --out organ.vtu\n"
     "  glisson mesh scene.toml --set mesh.edge_mm=3 --out fine.vtu --json figures.json";
 
 struct MeshOptions {
   SceneOptions scene;
+  std::optional<double> edge_mm, scale;  ///< of a surface
   std::string out, json;
   bool quiet = false;
 };
 
 struct MeshFigures {
   double least_deg = 180.0, largest_deg = 0.0, seconds = 0.0;
+  double edge = 0.0;                      ///< asked for [m]; 0: none was
+  std::optional<double> relative_step{};  ///< relative_stable_step, where an edge was asked for
   struct Region {
     std::string name;
     std::size_t tets = 0;
@@ -60,12 +68,20 @@ MeshFigures figures_of(const TetMesh& mesh) {
   return figures;
 }
 
+/// The edge that a mesh was asked for [m]; 0 where it was given by its cells or a file.
+double asked_edge(const MeshSource& source) {
+  if (const auto* body = std::get_if<ImplicitBody>(&source)) return body->edge;
+  if (const auto* liver = std::get_if<LiverOptions>(&source)) return liver->edge;
+  return 0.0;
+}
+
 nlohmann::ordered_json mesh_json(const TetMesh& mesh, const MeshFigures& figures) {
   nlohmann::ordered_json json;
   json["vertices"] = mesh.vertices.size();
   json["tets"] = mesh.tets.size();
   json["min_dihedral_deg"] = figures.least_deg;
   json["max_dihedral_deg"] = figures.largest_deg;
+  if (figures.relative_step) json["relative_stable_step"] = *figures.relative_step;
   json["seconds"] = figures.seconds;
   json["regions"] = nlohmann::ordered_json::array();
   for (const auto& [number, r] : figures.regions) {
@@ -100,15 +116,46 @@ TetMesh made(const Variant& variant, bool quiet, MeshCache& meshes) {
   }
 }
 
+/// The mesh that was asked for as a variant of its own, for a surface without a scene.
+Variant surface_variant(const MeshOptions& options) {
+  const std::filesystem::path file = options.scene.scene;
+  const auto refuse = [&](const std::string& what) {
+    throw std::invalid_argument(fmt::format("{}: {}", file.string(), what));
+  };
+  if (!options.scene.set.empty() || !options.scene.mesh.empty() || !options.scene.variants.empty())
+    refuse("--set, --mesh and --variant are for scenes; leave them out");
+  if (!options.edge_mm) refuse("a surface needs --edge-mm E, the mean length of the tets' edges in mm");
+  if (!(std::isfinite(*options.edge_mm) && *options.edge_mm > 0.0))
+    refuse(fmt::format("--edge-mm {} is out of range; allowed: > 0", *options.edge_mm));
+  ImplicitBody body;
+  body.edge = 1e-3 * *options.edge_mm;
+  body.shapes.push_back({file.stem().string(), load_surface(file, options.scale.value_or(1.0))});
+  body.regions.push_back({file.stem().string(), "", false});
+  Variant variant;
+  variant.name = "main";
+  variant.scene_name = file.string();
+  variant.mesh = std::move(body);
+  return variant;
+}
+
+Variant scene_variant(const MeshOptions& options) {
+  for (const auto& [name, given] : {std::pair("--edge-mm", options.edge_mm), std::pair("--scale", options.scale)}) {
+    if (given)
+      throw std::invalid_argument(
+          fmt::format("{} is for surfaces (.stl, .obj, .ply); the mesh of a scene takes --set mesh.{}={}", name,
+                      name == std::string("--scale") ? "scale" : "edge_mm", *given));
+  }
+  SceneOptions asked = options.scene;
+  asked.set.insert(asked.set.begin(), "motion.max_steps=1");  // a mesh alone needs no end of a run
+  return chosen_variant(open_scene(asked), options.quiet);
+}
+
 int mesh(const MeshOptions& options) {
   if (std::filesystem::path(options.out).extension() != ".vtu") {
     throw std::invalid_argument("--out " + options.out +
                                 ": the mesh is written as .vtu; give a name that ends in .vtu");
   }
-  SceneOptions asked = options.scene;
-  asked.set.insert(asked.set.begin(), "motion.max_steps=1");  // a mesh alone needs no end of a run
-  const Scene scene = open_scene(asked);
-  const Variant& variant = chosen_variant(scene, options.quiet);
+  const Variant variant = is_surface_file(options.scene.scene) ? surface_variant(options) : scene_variant(options);
   MeshCache meshes(options.quiet);
   catch_interrupts();
   const auto start = std::chrono::steady_clock::now();
@@ -120,11 +167,17 @@ int mesh(const MeshOptions& options) {
   }
   MeshFigures figures = figures_of(body);
   figures.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  figures.edge = asked_edge(variant.mesh);
+  if (figures.edge > 0.0) figures.relative_step = relative_stable_step(body, figures.edge);
   write_vtu(options.out, body);
   write_json(options.json, mesh_json(body, figures));
   if (options.quiet) return kDone;
   say("{}: {} tets, {} vertices, dihedral angles {:.1f}° to {:.1f}°, {:.2f} s\n", options.out, body.tets.size(),
       body.vertices.size(), figures.least_deg, figures.largest_deg, figures.seconds);
+  if (figures.relative_step) {
+    say("  stable step {:.2f} of that of regular tets with edges of {:.3g} mm\n", *figures.relative_step,
+        1e3 * figures.edge);
+  }
   for (const auto& [number, r] : figures.regions) {
     say("  region {:<3} {:<20} {:>9} tets {:>10.4g} mL\n", number, r.name, r.tets, 1e6 * r.volume);
   }
@@ -134,9 +187,15 @@ int mesh(const MeshOptions& options) {
 }  // namespace
 
 void add_mesh(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("mesh", "write the mesh of a scene, and its figures");
+  CLI::App* command = program.add_subcommand("mesh", "write the mesh of a scene or surface, and its figures");
   const auto options = std::make_shared<MeshOptions>();
   add_scene_options(*command, options->scene);
+  command->get_option("scene")->description("scene file (TOML), or a closed surface (.stl, .obj, .ply)");
+  command->add_option("--edge-mm", options->edge_mm, "of a surface: mean length of the tets' edges")->type_name("E");
+  command
+      ->add_option("--scale", options->scale,
+                   "of a surface: factor on its coordinates, 0.001 for a file in millimetres")
+      ->type_name("FACTOR");
   command->add_option("--out", options->out, "the mesh, a .vtu file")->required()->type_name("FILE");
   add_json_option(*command, options->json);
   command->add_flag("--quiet", options->quiet, "print nothing but errors");

@@ -7,8 +7,10 @@
 // the surface it is that distance, so that a mesher may skip what it says is far away.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -235,14 +237,22 @@ Solid intersect(const std::vector<Solid>& shapes, double blend = 0.0);
 /// `shape` without the others.
 Solid subtract(const Solid& shape, const std::vector<Solid>& others, double blend = 0.0);
 
+/// The body within a closed surface of triangles from a file (glisson/surface_region.h, load_surface in glisson/scene/scene.h).
+struct SurfaceShape {
+  static constexpr std::string_view kName = "surface";
+  std::filesystem::path path;  ///< the file that it is from
+  double scale = 1.0;          ///< factor on coordinates [-], > 0
+  std::optional<Solid> solid;  ///< what the file holds
+};
+
 /// A region of an implicit body.
 BodyRegion region_of(const std::string& name, const Solid& shape, bool hole = false);
 
 /// A shape with a name, as a scene has it.
 struct NamedShape {
   std::string name;
-  std::variant<BallShape, EllipsoidShape, BoxShape, CylinderShape, TubeShape, TorusShape, HalfSpaceShape, UnionShape,
-               DifferenceShape, IntersectionShape, PlacedShape>
+  std::variant<BallShape, EllipsoidShape, BoxShape, CylinderShape, TubeShape, TorusShape, HalfSpaceShape, SurfaceShape,
+               UnionShape, DifferenceShape, IntersectionShape, PlacedShape>
       what;
 };
 

@@ -2,6 +2,9 @@
 #include "bind.h"
 #include "glisson/implicit.h"
 #include "glisson/liver.h"
+#include "glisson/scene/surface_file.h"
+#include "glisson/simulation/mesh_step.h"
+#include "glisson/surface_region.h"
 #include "rooms.h"
 
 namespace glisson::python {
@@ -62,6 +65,32 @@ void bind_solid(nb::module_& m) {
   m.def("subtract", subtract, "shape"_a, "others"_a, "blend"_a = 0.0, doc("subtract"));
 }
 
+std::vector<Triangle> to_triangles(const ArrayLike& array) {
+  const std::vector<std::uint32_t> corners = to_indices(array, 3, "triangles");
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < corners.size(); i += 3) triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  return triangles;
+}
+
+void bind_surfaces(nb::module_& m) {
+  m.def(
+      "surface_solid",
+      [](const ArrayLike& points, const ArrayLike& triangles) {
+        return surface_solid(to_vectors(points, "points"), to_triangles(triangles));
+      },
+      "points"_a, "triangles"_a, doc("surface_solid"));
+  m.def(
+      "read_surface",
+      [](const std::filesystem::path& file, double scale) {
+        TriangleSurface surface = read_surface(file, scale);
+        std::vector<std::uint32_t> corners;
+        for (const Triangle& t : surface.triangles) corners.insert(corners.end(), t.begin(), t.end());
+        const std::size_t count = surface.triangles.size();
+        return std::pair(vectors(std::move(surface.points)), owned<Numbers>(std::move(corners), {count, 3}));
+      },
+      "file"_a, "scale"_a = 1.0, doc("read_surface"));
+}
+
 using Made = std::pair<TetMesh, RegionMeshReport>;
 
 Made made(RegionMesh mesh) { return {std::move(mesh.mesh), std::move(mesh.report)}; }
@@ -94,6 +123,7 @@ void bind_mesher(nb::module_& m) {
         return made(mesh_regions(regions, {edge, max_tets, [](double) { return PyErr_CheckSignals() == 0; }}));
       },
       "regions"_a, "edge"_a, "max_tets"_a = RegionMeshOptions{}.max_tets, doc("mesh_regions"));
+  m.def("relative_stable_step", relative_stable_step, "mesh"_a, "edge"_a, doc("relative_stable_step"));
   Options<LiverOptions>(m, "LiverOptions");
   m.def(
       "liver_mesh",
@@ -108,6 +138,7 @@ void bind_mesher(nb::module_& m) {
 void bind_implicit(nb::module_& m) {
   bind_shapes(m);
   bind_solid(m);
+  bind_surfaces(m);
   bind_mesher(m);
 }
 

@@ -19,6 +19,7 @@ inline constexpr InputKind kTomlInput{"a .toml file", std::uintmax_t{16} << 20, 
 inline constexpr InputKind kTableInput{"a .csv file", std::uintmax_t{256} << 20, "record fewer rows or split it"};
 inline constexpr InputKind kStateInput{"a file that glisson wrote", std::uintmax_t{256} << 20, "delete it"};
 inline constexpr InputKind kMeshInput{"a mesh file", std::uintmax_t{16} << 30, "split or coarsen the mesh"};
+inline constexpr InputKind kSurfaceInput{"a surface file", std::uintmax_t{4} << 30, "coarsen the surface"};
 
 struct InputFile {
   std::string bytes;

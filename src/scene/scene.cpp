@@ -7,6 +7,7 @@
 
 #include "base/input_file.h"
 #include "base/nearest.h"
+#include "glisson/scene/surface_file.h"
 #include "scene/parse/expand.h"
 #include "scene/parse/sections.h"
 #include "scene/parse/select.h"
@@ -147,6 +148,22 @@ void complete_motions(Variant& variant, const Node& experiment, const std::files
   }
 }
 
+/// Reads the files of surfaces among a body's shapes.
+void complete_surfaces(ImplicitBody& body, const Node& experiment, const std::filesystem::path& base,
+                       Problems& problems) {
+  for (std::size_t i = 0; i < body.shapes.size(); ++i) {
+    auto* surface = std::get_if<SurfaceShape>(&body.shapes[i].what);
+    if (surface == nullptr) continue;
+    const Node& key = *(*experiment.find("mesh")->find("shape")->array())[i].find("path");
+    try {
+      if (surface->path.is_relative()) surface->path = base / surface->path;
+      *surface = load_surface(surface->path, surface->scale);
+    } catch (const std::invalid_argument& error) {
+      problems.add(key.where, "mesh.shape." + std::to_string(i) + ".path", error.what());
+    }
+  }
+}
+
 void read_measured(MeasuredSpec& m) {
   const WordTable table = read_word_table(m.path);
   const std::size_t x = table.column(m.x), y = table.column(m.y);
@@ -204,6 +221,7 @@ Variant scene::read_variant(const Node& experiment, const std::filesystem::path&
   if (problems.count() > before) return variant;
   auto* file = std::get_if<MeshFile>(&variant.mesh);
   if (file && file->path.is_relative()) file->path = base / file->path;
+  if (auto* body = std::get_if<ImplicitBody>(&variant.mesh)) complete_surfaces(*body, experiment, base, problems);
   complete_motions(variant, experiment, base, problems);
   if (problems.count() > before) return variant;
   if (const Node* tools = experiment.find("tool")) check_names(*tools->array(), "tool", problems);

@@ -3,6 +3,8 @@
 
 #include "app/program.h"
 #include "glisson/io.h"
+#include "glisson/simulation/mesh_step.h"
+#include "support/surface_files.h"
 
 namespace glisson::test {
 namespace {
@@ -42,6 +44,8 @@ TEST_F(MeshCommand, WritesMeshAndFigures) {
   EXPECT_GE(figures.at("min_dihedral_deg").get<double>(), 10.0);
   EXPECT_LE(figures.at("max_dihedral_deg").get<double>(), 165.0);
   EXPECT_GT(figures.at("seconds").get<double>(), 0.0);
+  EXPECT_NEAR(figures.at("relative_stable_step").get<double>(), relative_stable_step(mesh, 0.006), 1e-12);
+  EXPECT_THAT(outcome.out, HasSubstr(" of that of regular tets with edges of 6 mm\n"));
   ASSERT_EQ(figures.at("regions").size(), 2u);
   EXPECT_EQ(figures.at("regions")[0].at("name"), "core");
   EXPECT_NEAR(figures.at("regions")[0].at("volume_ml").get<double>(), 4.0 / 3.0 * M_PI * 1.5 * 1.5 * 1.5, 0.3);
@@ -74,6 +78,41 @@ TEST_F(MeshCommand, ExplainsWhatItRefuses) {
   EXPECT_THAT(fine, Exits(2));
   EXPECT_THAT(fine.err, HasSubstr("give an edge of"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "m.vtu"));
+}
+
+// A closed surface is meshed without a scene; its region has the file's name.
+TEST_F(MeshCommand, MeshesSurfaces) {
+  const std::string ball = write("ball.stl", stl_binary(icosphere(30.0, 3)));
+  const std::string out = (folder_ / "ball.vtu").string(), json = (folder_ / "ball.json").string();
+  const Outcome outcome = run({"mesh", ball, "--scale", "0.001", "--edge-mm", "6", "--out", out, "--json", json});
+  ASSERT_THAT(outcome, Exits(0)) << outcome.err;
+  EXPECT_EQ(read_mesh(out).mesh.region_names.at(1), "ball");
+  const nlohmann::json figures = read_json(json);
+  EXPECT_GE(figures.at("min_dihedral_deg").get<double>(), 10.0);
+  const double exact_ml = 1e-3 * volume_within(icosphere(30.0, 3));
+  EXPECT_NEAR(figures.at("regions")[0].at("volume_ml").get<double>(), exact_ml, 0.005 * exact_ml);
+
+  const auto refusal = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "mesh");
+    arguments.insert(arguments.end(), {"--out", (folder_ / "no.vtu").string()});
+    const Outcome refused = run(arguments);
+    EXPECT_THAT(refused, Exits(2));
+    return refused.err;
+  };
+  EXPECT_THAT(refusal({ball}), HasSubstr("ball.stl: a surface needs --edge-mm E"));
+  EXPECT_THAT(refusal({ball, "--edge-mm", "0"}), HasSubstr("--edge-mm 0 is out of range; allowed: > 0"));
+  EXPECT_THAT(refusal({ball, "--scale", "-1", "--edge-mm", "6"}),
+              HasSubstr("scale = -1 is out of range; allowed: > 0"));
+  EXPECT_THAT(refusal({ball, "--scale", "0.001", "--edge-mm", "90"}),
+              ::testing::AllOf(HasSubstr("ball.stl: "), HasSubstr("\"ball\""), HasSubstr("smaller edge")));
+  EXPECT_THAT(refusal({ball, "--edge-mm", "6", "--set", "mesh.edge_mm=3"}), HasSubstr("are for scenes"));
+  EXPECT_THAT(refusal({write("s.toml", kTwoRegions), "--edge-mm", "6"}), HasSubstr("--set mesh.edge_mm=6"));
+  EXPECT_THAT(refusal({(folder_ / "none.obj").string(), "--edge-mm", "6"}), HasSubstr("there is no such file"));
+  TriangleSurface open = icosphere(30.0, 1);
+  open.triangles.pop_back();
+  EXPECT_THAT(refusal({write("open.obj", obj_text(open)), "--edge-mm", "6"}),
+              HasSubstr("open.obj: the surface is open at 3 edges"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "no.vtu"));
 }
 
 TEST_F(MeshCommand, ExplainsThatMemoryIsTooLittle) {

@@ -76,7 +76,7 @@ TEST(SurfaceRegion, IsTheDistanceToABall) {
     EXPECT_NEAR(organ.distance(p), norm(p) - 0.05, 2e-4);
   }
   EXPECT_NEAR(organ.distance({}), -0.05, 2e-4);
-  EXPECT_GT(organ.bounds.max.z, 0.05);
+  EXPECT_NEAR(organ.bounds.max.z, 0.05, 1e-12);
 }
 
 // The tree finds the triangle that a search through all finds, and the same side.
@@ -103,6 +103,23 @@ TEST(SurfaceRegion, TreeIsTheSearchThroughAll) {
     EXPECT_LE(std::abs(organ.distance(p)), nearest * (1.0 + 1e-12));
     EXPECT_GE(std::abs(organ.distance(p)), nearest - 6e-4) << "half the distance of the points searched";
     EXPECT_EQ(organ.distance(p) < 0.0, turns > 0.5) << turns;
+  }
+}
+
+// A thin ring of long triangles, where far triangles count together: a hundredth of a millimetre to either side of each triangle is
+// inside or outside.
+TEST(SurfaceRegion, KnowsBothSidesOfEveryTriangle) {
+  const double R = 0.06, r = 0.005;
+  const Surface s = sheet(300, 8, [=](double u, double v) {
+    const double a = 2 * kPi * u, b = 2 * kPi * (v >= 1.0 ? 0.0 : v);
+    return Vec3d{(R + r * std::cos(b)) * std::cos(a), (R + r * std::cos(b)) * std::sin(a), r * std::sin(b)};
+  });
+  const BodyRegion ring = region(s);
+  for (const Triangle& t : s.triangles) {
+    const Vec3d &a = s.points[t[0]], &b = s.points[t[1]], &c = s.points[t[2]];
+    const Vec3d out = unit(cross(b - a, c - a)) * 1e-5, middle = (a + b + c) * (1.0 / 3.0);
+    EXPECT_NEAR(ring.distance(middle + out), 1e-5, 1e-10);
+    EXPECT_NEAR(ring.distance(middle - out), -1e-5, 1e-10);
   }
 }
 
@@ -167,10 +184,10 @@ TEST(SurfaceRegion, RefusesWhatIsNotClosed) {
   EXPECT_THAT(refusal({}), HasSubstr("has no triangles"));
   s = ball(24, 12);
   s.triangles[3][1] = 999999;
-  EXPECT_THAT(refusal(s), HasSubstr("triangle 3 has point 999999; there are"));
+  EXPECT_THAT(refusal(s), HasSubstr("triangle 3 of point 999999; there are"));
   s = ball(24, 12);
   s.points[5].y = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(refusal(s), HasSubstr("point 5 is not finite"));
+  EXPECT_THAT(refusal(s), HasSubstr("point 5 that is not finite"));
   EXPECT_THAT(refusal({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}}), HasSubstr("no volume"));
 }
 

@@ -15,6 +15,7 @@ def test_a_body_of_two_regions_is_meshed():
     assert report.regions[0].volume == pytest.approx(4 / 3 * np.pi * 0.02**3, rel=0.01)
     assert sum(r.volume for r in report.regions) == pytest.approx(mesh.volume)
     assert sum(mesh.dihedral_histogram()) == 6 * len(mesh.tets)
+    assert 0.4 < glisson.relative_stable_step(mesh, 0.005) < 1
 
 
 def test_any_function_of_a_point_is_a_solid():
@@ -38,6 +39,30 @@ def test_solids_combine_and_move():
     assert (ball - other).distance([0.5, 0, 0]) == pytest.approx(0.5)
     low, high = (ball | other).bounds
     assert list(low) == [-1, -1, -1] and list(high) == [2, 1, 1]
+
+
+CUBE = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)], dtype=float)
+FACES = [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6],
+         [1, 3, 5], [3, 7, 5]]  # fmt: skip
+
+
+def test_a_closed_surface_is_a_solid(tmp_path):
+    cube = glisson.surface_solid(CUBE, FACES)
+    assert cube.distance([0.5, 0.5, 0.75]) == pytest.approx(-0.25)
+    assert (cube | cube.placed(move=[1, 0, 0])).distance([3, 0.5, 0.5]) == pytest.approx(1)
+    file = tmp_path / "cube.obj"
+    lines = [f"v {x} {y} {z}" for x, y, z in 40 * CUBE] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in FACES]
+    file.write_text("\n".join(lines))
+    points, triangles = glisson.read_surface(file, scale=0.001)
+    np.testing.assert_allclose(points, 0.04 * CUBE)
+    np.testing.assert_array_equal(triangles, FACES)
+    mesh, _ = glisson.mesh_regions([glisson.BodyRegion("cube", glisson.surface_solid(points, triangles))], edge=0.01)
+    assert mesh.volume == pytest.approx(64e-6, rel=0.01)
+    with pytest.raises(ValueError, match="is open at 3 edges"):
+        glisson.surface_solid(CUBE, FACES[1:])
+    with pytest.raises(ValueError, match=r"cube.obj:21: expected x of a vertex"):
+        file.write_text("\n".join([*lines, "v x"]))
+        glisson.read_surface(file)
 
 
 def test_what_cannot_be_meshed_is_named():

@@ -1,6 +1,8 @@
 // scene_writer.cpp — see scene_writer.h.
 #include "view/engine/scene_writer.h"
 
+#include <algorithm>
+
 #include "report/json_text.h"
 #include "scene/run/recorded_scene.h"
 #include "view/engine/live_parameters.h"
@@ -8,11 +10,20 @@
 namespace glisson::view {
 namespace {
 
+/// Whether the mesh is made of files.
+bool has_files(const MeshSource& mesh) {
+  const auto* body = std::get_if<ImplicitBody>(&mesh);
+  return std::holds_alternative<MeshFile>(mesh) ||
+         (body != nullptr && std::any_of(body->shapes.begin(), body->shapes.end(), [](const NamedShape& s) {
+            return std::holds_alternative<SurfaceShape>(s.what);
+          }));
+}
+
 std::string head_of(const Scene& scene, const Variant& variant, const Recording& recording) {
   std::string head = "Recorded in glisson view: " + scene.title + ", " +
                      (variant.label.empty() ? variant.name : variant.label) +
                      ".\n`glisson run scene.toml` follows these paths again; the recorded forces are in forces.csv.\n";
-  if (const auto* mesh = std::get_if<MeshFile>(&variant.mesh); mesh != nullptr && scene.file.has_filename())
+  if (has_files(variant.mesh) && scene.file.has_filename())
     head += "Its mesh is a file: put this beside " + scene.file.filename().string() + ", or give `--mesh FILE`.\n";
   const std::string unsaid = recording.unsaid();
   if (!unsaid.empty())

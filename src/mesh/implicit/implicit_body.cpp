@@ -87,7 +87,11 @@ Solid build(const NamedShape& shape, const std::map<std::string, Solid>& known) 
           return subtract(first, shapes, s.blend);
         } else if constexpr (std::is_same_v<S, PlacedShape>)
           return called(s.of).placed(s);
-        else
+        else if constexpr (std::is_same_v<S, SurfaceShape>) {
+          if (!s.solid)
+            throw std::invalid_argument("its surface has not been read; take load_surface or surface_solid");
+          return *s.solid;
+        } else
           return Solid(s);
       },
       shape.what);

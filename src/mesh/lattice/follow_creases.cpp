@@ -158,6 +158,8 @@ class Follower {
       const EdgeRing ring = c_.edge_ring(x.u, x.v);
       if (!ring.simple) continue;
       const Mask mask = c_.masks[x.u] & c_.masks[x.v] & ~kMarks;
+      if (surfaces_of(mask) != Mask{1} << x.k)
+        continue;  // one end is where another region meets: not that surface's alone
       c_.begin();
       const std::uint32_t m = c_.split_edge(x.u, x.v, x.at);
       c_.set_mask(m, mask);

@@ -8,7 +8,7 @@
 namespace glisson::lattice {
 namespace {
 
-constexpr double kMostShift = 0.12;  ///< of the edge
+constexpr double kMostShift = 0.09;  ///< of the edge: within the tenth of it that interfaces keep
 
 /// Neighbours in the interface: those that have the surface and a face of it with the vertex.
 void interface_neighbours(const TetComplex& c, std::uint32_t v, std::vector<std::uint32_t>& out) {

@@ -17,7 +17,7 @@ class Climb {
   Climb(Workspace& w, std::uint32_t vertex, double loose)
       : w_(w), vertex_(vertex), loose_(loose > 0.0), surfaces_(surfaces_of(w.complex.masks[vertex])) {
     const Mask mask = w.complex.masks[vertex];
-    crease_ = (mask & kCrease) && !loose_;
+    crease_ = (mask & kCrease) && surfaces_ && !loose_;
     fixed_ = (mask & kCorner) || (std::popcount(surfaces_) > 2 && !loose_);
     if (crease_) sides_ = w.sides[vertex];
     static constexpr std::uint8_t kSeen[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};

@@ -12,6 +12,17 @@ KindSpec shape_kind(std::string help) {
           [](void* shape) -> void* { return &static_cast<NamedShape*>(shape)->what.emplace<S>(); }};
 }
 
+/// The file itself is read once its path is known (scene.cpp).
+KindSpec surface_kind() {
+  Section<SurfaceShape> s("surface", "The body within a closed surface of triangles from a file: .stl, .obj or .ply.");
+  s.key("path", &SurfaceShape::path, "the file, relative to the scene").must();
+  s.key("scale", &SurfaceShape::scale, "factor on the coordinates; 0.001 for a file in millimetres")
+      .in("-")
+      .within(above(0));
+  return {s.spec(),
+          [](void* shape) -> void* { return &static_cast<NamedShape*>(shape)->what.emplace<SurfaceShape>(); }};
+}
+
 /// A fault between names, at the key of the shape or region that has it.
 void complain_of_names(ImplicitBody& body, const Node& table, const Place& place) {
   for (const char* list : {"shape", "region"}) {
@@ -51,6 +62,7 @@ const SectionSpec& shape_section() {
         shape_kind<TubeShape>("A tube of varying radius along a smooth line through points, with round ends."),
         shape_kind<TorusShape>("A ring."),
         shape_kind<HalfSpaceShape>("All on one side of a plane; cuts other shapes."),
+        surface_kind(),
         shape_kind<UnionShape>("Shapes joined."),
         shape_kind<DifferenceShape>("The first shape without the others."),
         shape_kind<IntersectionShape>("What shapes share."),
