@@ -96,9 +96,10 @@ void check_integrator(const Variant& variant, const Node& experiment, Problems& 
       variant.capsules.empty() && !variant.container &&
       std::all_of(variant.instruments.begin(), variant.instruments.end(), follows_path_in_contact);
   if (can.supports_contact && only_contact) return;
-  const std::string but = !can.supports_contact || variant.instruments.empty()
-                              ? ""
-                              : " but rigid ones in contact that follow a path, not bonded, without friction where they are no plates";
+  const std::string but =
+      !can.supports_contact || variant.instruments.empty()
+          ? ""
+          : " but rigid ones in contact that follow a path, not bonded, without friction where they are no plates";
   const std::string what = !variant.instruments.empty() ? "[[instrument]]"
                            : variant.container          ? "[container]"
                                                         : "[[capsule]]";

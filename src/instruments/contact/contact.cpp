@@ -105,7 +105,8 @@ std::string ContactTool::refuses_long_steps() const {
   const ContactOptions& o = state_->options;
   if (o.bonded) return "is bonded; take integrator = " + supporting_integrators();
   if (o.friction > 0.0 && !std::holds_alternative<Plate>(o.shape)) {
-    return "rubs and is no plate: its friction would be up to 8 % of the largest force off in steps so long; give friction = 0, or "
+    return "rubs and is no plate: its friction would be up to 8 % of the largest force off in steps so long; give "
+           "friction = 0, or "
            "take integrator = " +
            supporting_integrators();
   }
