@@ -111,32 +111,34 @@ struct Press {
   Shape shape;
   double depth, friction;
   bool hyperelastic;
-  double bar;  ///< of the force
+  int cells;  ///< along the slab
 };
+
+void PrintTo(const Press& p, std::ostream* out) { *out << p.name; }
 
 class LongPress : public testing::TestWithParam<Press> {};
 
-// A fifth to a third of the slab's height: the force of a tool that has come to rest under the explicit scheme, in 25 steps of
-// `implicit` and in 12 of statics. Within 1 %; within 2 % for a ball on soft rubber, which rests on a few triangles of 5 mm. The ledger
-// closes, contact takes no more than 5 % of the tools' work, and in statics the support takes what the tool exerts.
+// By 0.3 of the slab's height: the force of a tool that has come to rest under the explicit scheme, in 25 steps of `implicit` and in 12 of
+// statics, within 1 %. On cells of 5 mm a ball, which rests on a few triangles there, is 1.5 % off in linear tissue and 2.4 % in rubber. The
+// ledger closes, contact takes no more than 5 % of the tools' work, and in statics the support takes what the tool exerts.
 TEST_P(LongPress, HasTheForceOfTheExplicitScheme) {
   const Press& c = GetParam();
   Tissue t = tissue();
   if (c.hyperelastic) t.hyperelastic = NeoHookean{.mu = 2000.0, .bulk_modulus = 8000.0};
   const auto path = down(c.depth, 0.5);
-  Pressed explicitly(Integrator::central_difference, 0.0, t, c.shape, c.friction, path);
+  Pressed explicitly(Integrator::central_difference, 0.0, t, c.shape, c.friction, path, c.cells);
   test::advance_to(explicitly.body, 1.0);
   const Vec3d reference = explicitly.force();
   EXPECT_LT(reference.z, -0.1);
   for (const Integrator integrator : {Integrator::implicit, Integrator::quasi_static}) {
-    Pressed p(integrator, integrator == Integrator::implicit ? 0.04 : 0.05, t, c.shape, c.friction, path);
+    Pressed p(integrator, integrator == Integrator::implicit ? 0.04 : 0.05, t, c.shape, c.friction, path, c.cells);
     const double end = integrator == Integrator::implicit ? 1.0 : 0.6;
     while (p.body.time() < end - 1e-9) {
       const StepResult r = p.body.step();
       ASSERT_TRUE(r.made()) << r.message;
     }
     const double error = p.force().z / reference.z - 1.0;
-    EXPECT_LT(std::abs(error), c.bar) << word_of(integrator);
+    EXPECT_LT(std::abs(error), 0.01) << word_of(integrator);
     RecordProperty(std::string(word_of(integrator)) + "_percent", std::to_string(100.0 * error));
     const Energies e = p.body.energies();
     EXPECT_GT(e.work_tools, 0.0);
@@ -153,12 +155,12 @@ TEST_P(LongPress, HasTheForceOfTheExplicitScheme) {
 
 INSTANTIATE_TEST_SUITE_P(
     Tools, LongPress,
-    testing::Values(Press{"Punch", FlatPunch{.radius = 0.008, .edge_radius = 0.002}, 0.006, 0.0, false, 0.01},
-                    Press{"Ball", Ball{0.01}, 0.007, 0.0, false, 0.01},
-                    Press{"BallOnRubber", Ball{0.01}, 0.004, 0.0, true, 0.02},
+    testing::Values(Press{"Punch", FlatPunch{.radius = 0.008, .edge_radius = 0.002}, 0.006, 0.0, false, 8},
+                    Press{"Ball", Ball{0.01}, 0.007, 0.0, false, 12},
+                    Press{"BallOnRubber", Ball{0.01}, 0.007, 0.0, true, 12},
                     Press{"BlockOnRubber", Block{.size = {0.015, 0.015, 0.02}, .edge_radius = 0.003}, 0.006, 0.0, true,
-                          0.01},
-                    Press{"PlateOnRubber", Plate{}, 0.006, 0.2, true, 0.01}),
+                          8},
+                    Press{"PlateOnRubber", Plate{}, 0.006, 0.2, true, 8}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 // A punch that stands brings no energy in, however many steps it stands: triangles that come to bear in turn are not pushed out.

@@ -245,19 +245,23 @@ TEST(Instruments, MistakesAreTold) {
               HasSubstr("nothing says when the run ends"));
 }
 
-// Needles bear explicit steps only, rigid tools in contact that follow a path all; another integrator is refused at its own line, viscosity with semi_implicit, too.
+// Needles bear explicit steps only, rigid tools in contact that follow a path longer ones; another integrator is refused at its own
+// line, viscosity with semi_implicit, too.
 TEST(Instruments, AskForAnIntegratorThatBearsThem) {
   for (const std::string word : {"implicit", "quasi_static"}) {
-    EXPECT_EQ(
-        complaint(kNeedle + "[motion]\nintegrator = \"" + word + "\"\n"),
-        "s.toml:14:14: motion.integrator: \"" + word +
-            "\" supports no [[instrument]] but rigid ones in contact, not bonded, that follow a path; take "
-            "central_difference, or semi_implicit for tissue without `viscosity_Pa_s` (Maxwell branches may stay)");
+    EXPECT_EQ(complaint(kNeedle + "[motion]\nintegrator = \"" + word + "\"\n"),
+              "s.toml:14:14: motion.integrator: \"" + word +
+                  "\" supports no [[instrument]] but rigid ones in contact that follow a path, not bonded, without "
+                  "friction where they "
+                  "are no plates; take central_difference, or semi_implicit for tissue without `viscosity_Pa_s` "
+                  "(Maxwell branches may stay)");
     const std::string ball = "[mesh]\nkind = \"box\"\n[[instrument]]\nkind = \"ball\"\ntip_m = [0, 0, 1]\n";
     const std::string implicit = "[motion]\nintegrator = \"" + word + "\"\n";
     EXPECT_EQ(complaint(ball + "motion = { kind = \"press\" }\n" + implicit), "");
     EXPECT_THAT(complaint(ball + "motion = { kind = \"push\", duration_s = 1 }\n" + implicit), HasSubstr("in contact"));
     EXPECT_THAT(complaint(ball + "bonded = true\nmotion = { kind = \"press\" }\n" + implicit), HasSubstr("not bonded"));
+    EXPECT_THAT(complaint(ball + "friction = 0.2\nmotion = { kind = \"press\" }\n" + implicit),
+                HasSubstr("without friction"));
   }
   const std::string semi = kNeedle + "[motion]\nintegrator = \"semi_implicit\"\n";
   EXPECT_EQ(complaint(semi), "");
