@@ -122,7 +122,7 @@ class LoadedPath {
 };
 
 /// Strain at each instant of a creep along the axis, of a tissue with Maxwell branches. @return false where secants fail
-bool strains_in_time(const Tissue& tissue, const Stretching& way, const Curve& curve, std::vector<double>& out) {
+bool strains_in_time(const Tissue& tissue, const Stretching& way, std::vector<double>& out) {
   LoadedPath path(tissue);
   const std::vector<double>& times = way.way.times();
   const std::size_t lead = way.way.lead();
@@ -268,8 +268,7 @@ Prediction SpecimenModel::predict_from(std::size_t index, std::span<const double
     } else if (loaded) {
       const Stretching way{history, 0.0, outward / specimen_.area};
       const bool by_path = along && !tissue.fibres && !tissue.maxwell.empty() && tissue.viscosity == 0.0;
-      if (!by_path || !strains_in_time(tissue, way, measured, result.force))
-        by_point(tissue, way, measured, result.force);
+      if (!by_path || !strains_in_time(tissue, way, result.force)) by_point(tissue, way, measured, result.force);
     } else {
       const double rest = m.deforming == Deforming::simple_shear ? 0.0 : 1.0;
       by_point(tissue, {history, rest, outward / specimen_.height}, measured, result.force);
