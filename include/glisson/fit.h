@@ -125,10 +125,12 @@ struct Curve {
   std::vector<double> time;          ///< ascending, from 0 [s]
   std::vector<double> displacement;  ///< of the tool from the point of contact [m]
   std::vector<double> force;         ///< on the tool, along its motion [N]
-  double velocity = 0.0;             ///< mean speed while loading [m/s]
-  double noise = 0.0;                ///< standard deviation of the force about a smooth curve [N]; 0: not known
-  double weight = 1.0;               ///< factor on the residuals, ≥ 0
-  bool held_out = false;             ///< kept from the fit, to test it
+  /// What the specimen went through before the first instant, as cycles before the one that is fitted: ascending, before time[0] [s, m].
+  std::vector<double> past_time, past_displacement;
+  double velocity = 0.0;  ///< mean speed while loading [m/s]
+  double noise = 0.0;     ///< standard deviation of the force about a smooth curve [N]; 0: not known
+  double weight = 1.0;    ///< factor on the residuals, ≥ 0
+  bool held_out = false;  ///< kept from the fit, to test it
   Measurement measurement{};
 
   std::size_t size() const { return time.size(); }

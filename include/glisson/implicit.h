@@ -237,7 +237,7 @@ Solid intersect(const std::vector<Solid>& shapes, double blend = 0.0);
 /// `shape` without the others.
 Solid subtract(const Solid& shape, const std::vector<Solid>& others, double blend = 0.0);
 
-/// The body within a closed surface of triangles from a file (glisson/surface_region.h, load_surface in glisson/scene/scene.h).
+/// The body within a closed surface of triangles from a file (glisson/surface_region.h, load_surface in glisson/scene/surface_file.h).
 struct SurfaceShape {
   static constexpr std::string_view kName = "surface";
   std::filesystem::path path;  ///< the file that it is from

@@ -182,8 +182,9 @@ TEST(RegionMesh, KeepsVolumes) {
     SCOPED_TRACE(body.name);
     const double coarse = mesh_of(body.solid, body.across / 10).report.regions[0].volume / body.volume - 1.0;
     const double fine = mesh_of(body.solid, body.across / 20).report.regions[0].volume / body.volume - 1.0;
-    EXPECT_LT(std::abs(coarse), 5e-3);
-    EXPECT_LT(std::abs(fine), std::max(std::abs(coarse) / 3.0, 1e-3));
+    std::printf("%s %.3f %% %.3f %%\n", body.name, 100.0 * coarse, 100.0 * fine);
+    EXPECT_LT(std::abs(coarse), 1.5e-3);
+    EXPECT_LT(std::abs(fine), std::max(std::abs(coarse) / 3.0, 5e-4));
   }
 }
 

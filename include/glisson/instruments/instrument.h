@@ -84,10 +84,10 @@ class Instrument : public Interaction {
   virtual Pose pose() const { return pose_; }  ///< at the end of the last step
   const Vec3d& direction() const { return direction_; }
   double depth() const;  ///< displacement along the direction since the start [m]
-  virtual double force_depth() const {
-    return at_end_ ? depth() : force_depth_;
-  }                                                                      ///< the same at the time of the force [m]
-  virtual Pose force_pose() const { return at_end_ ? pose_ : before_; }  ///< pose at the time of the force
+  /// The same at the time of the force [m].
+  virtual double force_depth() const { return at_end_ ? depth() : force_depth_; }
+  /// Pose at the time of the force.
+  virtual Pose force_pose() const { return at_end_ ? pose_ : before_; }
   /// Where the hand holds it, at the time of the force [m]; its tip where it has no length.
   virtual Vec3d handle() const { return force_pose().position; }
   /// Torque of the hand's force about the handle on the tissue's side: that of forces() about the handle [N m].

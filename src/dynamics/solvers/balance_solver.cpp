@@ -56,7 +56,7 @@ bool BalanceSolver::solve(const TimeStep& s, std::span<const Vec3d> last_change,
   if (!contact_.acts()) {
     if (start(s, last_change, last_h) && newton(s)) return true;
   } else {
-    contact_.begin(s.h, now_.u, now_.v, !statics_);
+    contact_.begin(s.h, now_.u, !statics_);
     if (start(s, last_change, last_h) && newton_in_contact(s)) {
       next_.contact = contact_.forces();
       return true;

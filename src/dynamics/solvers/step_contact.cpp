@@ -26,10 +26,12 @@ void StepContact::state_set() {
 
 /// Takes vertices to those that are at hand.
 void StepContact::activate(std::span<const std::uint32_t> vertices) {
-  for (const std::uint32_t v : vertices)
-    active_.push_back({.vertex = v, .elastic = {}, .viscous = {}, .displacement = {}, .velocity = {}});
-  for (const std::uint32_t v : interactions_.named())
-    active_.push_back({.vertex = v, .elastic = {}, .viscous = {}, .displacement = {}, .velocity = {}});
+  const auto take = [&](const auto& list) {
+    for (const std::uint32_t v : list) {
+      active_.push_back({.vertex = v, .elastic = {}, .viscous = {}, .displacement = {}, .velocity = {}});
+    }
+  };
+  take(vertices), take(interactions_.named());
   const auto before = [](const ActiveVertex& a, const ActiveVertex& b) { return a.vertex < b.vertex; };
   const auto same = [](const ActiveVertex& a, const ActiveVertex& b) { return a.vertex == b.vertex; };
   std::sort(active_.begin(), active_.end(), before);
@@ -63,7 +65,7 @@ void StepContact::put_at_start(std::span<const Vec3d> u) {
   }
 }
 
-void StepContact::begin(double h, std::span<const Vec3d> u, std::span<const Vec3d>, bool mass_matters) {
+void StepContact::begin(double h, std::span<const Vec3d> u, bool mass_matters) {
   before_ = backup();
   h_ = h;
   start_.assign(u.begin(), u.end());

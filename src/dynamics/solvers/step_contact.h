@@ -43,9 +43,8 @@ class StepContact final : public StepCompliance {
   Backup backup();
   void restore(const Backup& backup);
 
-  /// Begins a step from u, v at t; what the factor was made for is asked of it.
-  /// @param mass_matters  the factor depends on h
-  void begin(double h, std::span<const Vec3d> u, std::span<const Vec3d> v, bool mass_matters);
+  /// Begins a step of h from u at t. @param mass_matters  the factor depends on h: another one asks for it anew
+  void begin(double h, std::span<const Vec3d> u, bool mass_matters);
   /// Takes back what begin() did.
   void give_up() { restore(before_); }
   /// Corrects u⁺ of a Newton iteration that was made with forces(), and finds these anew.

@@ -12,6 +12,7 @@ namespace glisson::fit {
 namespace {
 
 constexpr std::size_t kFewestPoints = 5;
+constexpr double kPastPart = 0.002;  ///< of the whole time, between two rows that are kept of the past
 
 class Preparation {
  public:
@@ -76,9 +77,21 @@ class Preparation {
                " found; choose another cycle.number or cycle.part, or lower cycle.least");
       return false;
     }
-    if (!whole) rows_ = rows_.part(turns[first], turns[std::min(last, turns.size() - 1)] + 1);
+    if (!whole) {
+      const std::size_t end = turns[std::min(last, turns.size() - 1)] + 1;
+      keep_past(turns, turns[first], rows_.time[end - 1] - rows_.time.front());
+      rows_ = rows_.part(turns[first], end);
+    }
     account_.rows_in_cycle = rows_.size();
     return true;
+  }
+
+  /// What was before a row, which branches and viscosity remember: its turns, and rows at a five-hundredth of the whole time.
+  void keep_past(const std::vector<std::size_t>& turns, std::size_t until, double whole) {
+    for (std::size_t i = 0; i < until; ++i) {
+      const bool turn = std::binary_search(turns.begin(), turns.end(), i);
+      if (turn || rows_.time[i] - past_.time.back() >= kPastPart * whole) past_.push(rows_, i);
+    }
   }
 
   bool take_contact() {
@@ -138,8 +151,10 @@ class Preparation {
   }
 
   void start_at(double displacement, double time) {
-    for (double& x : rows_.displacement) x -= displacement;
-    for (double& t : rows_.time) t -= time;
+    for (Samples* rows : {&rows_, &past_}) {
+      for (double& x : rows->displacement) x -= displacement;
+      for (double& t : rows->time) t -= time;
+    }
   }
 
   std::optional<PreparedCurve> finish() {
@@ -193,6 +208,8 @@ class Preparation {
     c.group = spec_.group;
     c.time = std::move(rows_.time);
     c.displacement = std::move(rows_.displacement);
+    c.past_time = std::move(past_.time);
+    c.past_displacement = std::move(past_.displacement);
     c.force = std::move(rows_.force);
     c.velocity = velocity;
     c.noise = noise;
@@ -206,7 +223,7 @@ class Preparation {
   const DataSpec& spec_;
   const SpecimenSize& size_;
   scene::Problems& problems_;
-  Samples rows_;
+  Samples rows_, past_;  ///< past: before the first of a cycle
   CurveAccount account_;
 };
 

@@ -389,7 +389,7 @@ const SectionSpec& cycle_section() {
                          {"loading", CyclePart::loading, "loading only"},
                          {"unloading", CyclePart::unloading, "unloading only"}},
                         "part of the cycle");
-    s.key("number", &C::number, "which cycle, from 1")
+    s.key("number", &C::number, "which cycle, from 1; those before are in the past of a tissue that relaxes")
         .within(between(1, 100000))
         .otherwise("all with \"both\", else 1");
     s.key("least", &C::least, "smallest reversal that counts as a turn, as a fraction of the whole travel")

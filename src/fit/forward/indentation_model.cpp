@@ -110,7 +110,7 @@ std::vector<double> depths_in_time(const ElasticForce& elastic, const Tissue& ti
     const int steps = static_cast<int>(std::max(kFewest, std::ceil(width / (kMostWait * whole) - 1e-9)));
     for (int s = 1; s <= steps; ++s)
       go(width / steps, way.at(s == steps ? times[k] : times[k - 1] + s * width / steps));
-    out.push_back(elastic.depth_at(before));
+    if (k >= way.lead()) out.push_back(elastic.depth_at(before));
   }
   return out;
 }
@@ -142,7 +142,7 @@ std::vector<double> forces_in_time(const ElasticForce& elastic, const Tissue& ti
       }
       before = now;
     }
-    out.push_back(force(times[k], before));
+    if (k >= way.lead()) out.push_back(force(times[k], before));
   }
   return out;
 }

@@ -12,7 +12,7 @@ namespace glisson::fit {
 
 /// The motion of a curve from rest on: d(t) [m], with d = 0 at its begin; of a press never below.
 ///
-/// Between the measured instants it goes by cubics that do not overshoot, as a recorded tool does. A curve whose first
+/// It begins with what was before the curve's first instant (Curve::past_time), where that is known. Between the measured instants it goes by cubics that do not overshoot, as a recorded tool does. A curve whose first
 /// point is in the tissue already (d > 0, e.g. after a shift of the contact) is led there at the speed with which it goes on; of a
 /// specimen that is gripped and held from the first row on, at once.
 class History {
@@ -26,7 +26,7 @@ class History {
   double rate(double time) const { return way_.slope(time); }
   const std::vector<double>& times() const { return way_.times(); }
   const std::vector<double>& displacements() const { return way_.points(); }
-  /// How many of times() come before the curve's own instants: 0 or 1.
+  /// How many of times() come before the curve's own instants.
   std::size_t lead() const { return lead_; }
 
  private:

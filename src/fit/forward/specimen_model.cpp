@@ -43,6 +43,9 @@ double axial_stress(const UniaxialState& state, const Curve& curve, std::size_t 
   return state.stress;
 }
 
+/// The curve's own instant that one of the history is, for a message; the first where it was before.
+std::size_t own_instant(std::size_t k, std::size_t lead) { return k < lead ? 0 : k - lead; }
+
 /// How often the way between two instants is parted for a tissue with a past.
 int parts_of(double change, double width, double whole) {
   return static_cast<int>(
@@ -77,11 +80,11 @@ void stresses_in_time(UniaxialPath& path, const Stretching& way, const Curve& cu
     for (int s = 0; s < steps; ++s) {
       const double t = times[k - 1] + s * h;
       end = way.at(s + 1 == steps ? times[k] : t + h);
-      require_stretch(curve, k - lead, end.stretch);
+      require_stretch(curve, own_instant(k, lead), end.stretch);
       state = path.advance(h, way.at(t + UniaxialPath::kMiddle * h), end);
-      if (!state.converged) axial_stress(state, curve, k - lead, end.stretch);
+      if (!state.converged) axial_stress(state, curve, own_instant(k, lead), end.stretch);
     }
-    out[k - lead] = axial_stress(state, curve, k - lead, end.stretch);
+    if (k >= lead) out[k - lead] = axial_stress(state, curve, k - lead, end.stretch);
   }
 }
 
@@ -136,7 +139,7 @@ bool strains_in_time(const Tissue& tissue, const Stretching& way, std::vector<do
       const double t = s == steps ? times[k] : times[k - 1] + s * width / steps;
       if (!path.advance(width / steps, way.of(s == steps ? way.way.displacements()[k] : way.way.at(t)))) return false;
     }
-    out[k - lead] = path.stretch() - 1.0;
+    if (k >= lead) out[k - lead] = path.stretch() - 1.0;
   }
   return true;
 }
@@ -195,8 +198,8 @@ void by_point(const Tissue& tissue, const Stretching& way, const Curve& curve, s
     const double width = times[k] - times[k - 1], end = way.of(way.way.displacements()[k]);
     const int steps = slow ? parts_of(by_stress ? 0.0 : std::abs(end - value), width, whole) : 1;
     for (int s = 1; s <= steps; ++s)
-      go(width / steps, s == steps ? end : way.of(way.way.at(times[k - 1] + s * width / steps)), k - lead);
-    out[k - lead] = answer_of(point.state(), c, measured);
+      go(width / steps, s == steps ? end : way.of(way.way.at(times[k - 1] + s * width / steps)), own_instant(k, lead));
+    if (k >= lead) out[k - lead] = answer_of(point.state(), c, measured);
   }
 }
 

@@ -19,9 +19,10 @@ constexpr int kMostRounds = 12;       // of looking for points that come inside 
 constexpr double kStride = 0.25;      // of the thickness: a fast triangle is looked at so often on its way
 constexpr int kMostStrides = 200;
 
-Triangle corners_of(const ContactRow& row, const InteractionStep& step) {
-  return {step.vertices[row.places[0]].vertex, step.vertices[row.places[1]].vertex,
-          step.vertices[row.places[2]].vertex};
+/// What a row is known by from one step or iteration to the next: the corners of its triangle, or three times its vertex.
+Triangle key_of(const ContactRow& row, const InteractionStep& step) {
+  const auto vertex = [&](std::size_t i) { return step.vertices[row.places[row.count == 3 ? i : 0]].vertex; };
+  return {vertex(0), vertex(1), vertex(2)};
 }
 
 }  // namespace
@@ -76,9 +77,7 @@ void ContactTool::State::solve_short(const InteractionStep& step) {
 
 /// Begins with what the row had in the last iteration, or with the force of the last step.
 void ContactTool::State::begin_row(ContactRow& row, const InteractionStep& step) const {
-  Triangle key = {step.vertices[row.places[0]].vertex, step.vertices[row.places[0]].vertex,
-                  step.vertices[row.places[0]].vertex};
-  if (row.count == 3) key = corners_of(row, step);
+  const Triangle key = key_of(row, step);
   if (!trial.empty()) {
     if (const auto at = trial.find(key); at != trial.end())
       row.pressing = at->second.first, row.rubbing = at->second.second;
@@ -109,10 +108,7 @@ int ContactTool::State::solve_long(const InteractionStep& step) {
     effort.triangles += fresh;
   }
   trial.clear();
-  for (const ContactRow& row : rows) {
-    const std::uint32_t v = step.vertices[row.places[0]].vertex;
-    trial[row.count == 3 ? corners_of(row, step) : Triangle{v, v, v}] = {row.pressing, row.rubbing};
-  }
+  for (const ContactRow& row : rows) trial[key_of(row, step)] = {row.pressing, row.rubbing};
   return sweeps;
 }
 
@@ -134,10 +130,10 @@ void ContactTool::State::require_outside(const BodyView& body, const Pose& pose,
 }
 
 void ContactTool::State::add_triangles(const InteractionStep& step) {
-  if (step.compliance == nullptr) {  // in a long step all have just been measured
+  const bool is_long = step.compliance != nullptr;
+  if (!is_long) {  // in a long step all have just been measured
     for (const std::uint32_t i : touched) measure(i, step);
   }
-  const bool is_long = step.compliance != nullptr;
   for (std::size_t k = 0; k < reach.triangles().size(); ++k) {
     if (is_long && triangle_has_row[k] != 0) continue;
     const Triangle& t = reach.triangles()[k];
@@ -194,7 +190,7 @@ bool ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, 
 void ContactTool::State::begin_triangles(const InteractionStep& step) {
   for (ContactRow& row : rows) {
     if (row.count != 3) continue;
-    const auto last = last_pressing.find(corners_of(row, step));
+    const auto last = last_pressing.find(key_of(row, step));
     if (last == last_pressing.end()) continue;
     row.pressing = last->second * step.h;
     push(row, step, row.normal * row.pressing);
@@ -242,19 +238,15 @@ void ContactTool::State::bear(std::uint32_t vertex, double pressing, const Vec3d
 
 void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces) {
   const double rate = 1.0 / step.h;
+  const bool is_long = step.compliance != nullptr;
   last_pressing.clear();
   for (const ContactRow& row : rows) {
-    if (row.count == 3 && row.pressing > 0.0) last_pressing[corners_of(row, step)] = row.pressing * rate;
-    if (row.count == 1 && row.pressing > 0.0 && step.compliance != nullptr) {
-      const std::uint32_t v = step.vertices[row.places[0]].vertex;
-      last_pressing[{v, v, v}] = row.pressing * rate;
-    }
+    if ((row.count == 3 || is_long) && row.pressing > 0.0) last_pressing[key_of(row, step)] = row.pressing * rate;
     if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
     forces.normal += row.normal * (row.pressing * rate);
     forces.friction += row.rubbing * rate;
-    const bool at_end = step.compliance != nullptr;
     const Vec3d arm =
-        at_end ? to_space(solid.after, end_of(row, step)) - solid.after.position : row.origin - solid.before.position;
+        is_long ? to_space(solid.after, end_of(row, step)) - solid.after.position : row.origin - solid.before.position;
     forces.torque += cross(arm, row.impulse()) * rate;
     for (std::uint32_t i = 0; i < row.count; ++i) {
       bear(step.vertices[row.places[i]].vertex, row.pressing * row.weights[i], row.impulse() * row.weights[i]);
