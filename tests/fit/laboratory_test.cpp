@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "laboratory.h"
 
@@ -141,6 +142,38 @@ TEST(Laboratory, ModuliOfAnOscillationAreMaxwells) {
       }
       EXPECT_NEAR(found[i], exact, 1e-8 * kMu);
     }
+  }
+}
+
+// A cycle remembers those before it: the stress of the last of three is that of the whole run, of a tissue with branches in a press, in
+// shear and in creep.
+TEST(Laboratory, ACycleRemembersThoseBefore) {
+  for (const auto& [test, deforming, measured, most] :
+       {std::tuple(LabTest::cyclic, Deforming::compression, Measured::nominal, 0.1),
+        std::tuple(LabTest::cyclic, Deforming::simple_shear, Measured::nominal, 0.2),
+        std::tuple(LabTest::creep, Deforming::tension, Measured::strain, 100.0)}) {
+    Curve whole = test_of(test, deforming, measured, {});
+    for (int i = 0; i <= 120; ++i) {
+      whole.time.push_back(0.25 * i);
+      whole.displacement.push_back(0.5 * most * (1.0 - std::cos(2.0 * std::numbers::pi * i / 40.0)));
+    }
+    whole.force.assign(whole.size(), 0.0);
+    Curve last = whole;
+    for (std::vector<double>* rows : {&last.time, &last.displacement, &last.force})
+      rows->erase(rows->begin(), rows->begin() + 80);
+    last.past_time.assign(whole.time.begin(), whole.time.begin() + 80);
+    last.past_displacement.assign(whole.displacement.begin(), whole.displacement.begin() + 80);
+    Curve forgotten = last;
+    forgotten.past_time.clear(), forgotten.past_displacement.clear();
+    const std::vector<double> all = answer(relaxing(), whole), third = answer(relaxing(), last),
+                              alone = answer(relaxing(), forgotten);
+    double largest = 0.0, off = 0.0;
+    for (std::size_t i = 0; i < third.size(); ++i) {
+      largest = std::max(largest, std::abs(all[80 + i]));
+      off = std::max(off, std::abs(alone[i] - all[80 + i]));
+      EXPECT_NEAR(third[i], all[80 + i], 1e-9 * std::abs(all[100])) << i;
+    }
+    EXPECT_GT(off, 0.02 * largest) << "without its past it is another";
   }
 }
 

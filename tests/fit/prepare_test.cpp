@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <numeric>
 #include <random>
 
@@ -332,6 +333,33 @@ TEST(Prepare, CountsFromContact) {
       EXPECT_NEAR(c.curve.force[i], 500.0 * c.curve.displacement[i], 1e-4);
     EXPECT_NEAR(c.curve.velocity, 1e-3, 1e-12);
   }
+}
+
+// The rows before a cycle that is chosen stay with it: its turns and as many as branches need, counted from the same zero.
+TEST(Prepare, KeepsWhatWasBeforeACycle) {
+  RawTest test = pressed();
+  test.time.clear(), test.displacement.clear(), test.force.clear(), test.lines.clear();
+  for (int i = 0; i <= 6000; ++i) {
+    test.time.push_back(0.01 * i);
+    test.displacement.push_back(1e-3 * (1.0 - std::cos(2.0 * std::numbers::pi * i / 2000.0)));
+    test.force.push_back(500.0 * test.displacement.back());
+    test.lines.push_back(static_cast<std::size_t>(i) + 2);
+  }
+  DataSpec spec = every_row();
+  spec.cycle.number = 3;
+  const Curve c = prepared(test, spec).curve;
+  EXPECT_EQ(c.size(), 2001u);
+  EXPECT_NEAR(c.time.front(), 0.0, 1e-12);
+  ASSERT_EQ(c.past_time.size(), c.past_displacement.size());
+  EXPECT_GT(c.past_time.size(), 300u);
+  EXPECT_LT(c.past_time.size(), 400u);
+  EXPECT_NEAR(c.past_time.front(), -40.0, 1e-9);
+  EXPECT_LT(c.past_time.back(), 0.0);
+  for (std::size_t i = 0; i < c.past_time.size(); ++i)
+    EXPECT_NEAR(c.past_displacement[i],
+                1e-3 * (1.0 - std::cos(2.0 * std::numbers::pi * (c.past_time[i] + 40.0) / 20.0)), 1e-9);
+  spec.cycle.number = 1;
+  EXPECT_TRUE(prepared(test, spec).curve.past_time.empty());
 }
 
 TEST(Prepare, CropsByEveryMeasure) {
