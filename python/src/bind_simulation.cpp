@@ -234,7 +234,9 @@ void bind_readings(nb::module_& m) {
   nb::class_<MassScaling>(m, "MassScaling", doc("MassScaling"))
       .def_ro("added", &MassScaling::added, doc("MassScaling::added"))
       .def_ro("share", &MassScaling::share, doc("MassScaling::share"))
-      .def_ro("tets", &MassScaling::tets, doc("MassScaling::tets"));
+      .def_ro("tets", &MassScaling::tets, doc("MassScaling::tets"))
+      .def_ro("present", &MassScaling::present, doc("MassScaling::present"))
+      .def_ro("largest", &MassScaling::largest, doc("MassScaling::largest"));
   nb::class_<LimitingTet>(m, "LimitingTet", doc("LimitingTet"))
       .def_ro("tet", &LimitingTet::tet)
       .def_ro("altitude", &LimitingTet::altitude, doc("LimitingTet::altitude"))

@@ -30,6 +30,13 @@ void require_options(const SimulationOptions& o) {
         "every integrator but central_difference: semi_implicit and implicit take the viscous force at the "
         "end of the step");
   }
+  if (o.mass_scaling == MassScalingKind::variable &&
+      (o.integrator != Integrator::central_difference || o.step || !o.mass_scaling_step)) {
+    throw std::invalid_argument(
+        "simulation: mass_scaling = \"variable\" needs the integrator central_difference, step = \"auto\" and a "
+        "mass_scaling_step [s], which is the step that tets keep as they stiffen; take mass_scaling = \"fixed\", or "
+        "set these");
+  }
   if (!o.mass_scaling_step || !capabilities(o.integrator).any_step_is_stable) return;
   throw std::invalid_argument(
       "simulation: mass_scaling_step [s] = " + detail::show(*o.mass_scaling_step) +

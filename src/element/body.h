@@ -49,11 +49,17 @@ struct Body {
   std::vector<double> masses;         ///< lumped: a quarter of ρV to each vertex [kg]
   std::vector<Vec3d> rest_positions;  ///< [m]
   std::vector<double> mass_factor;    ///< of each element, ≥ 1: mass that was added; empty: none
+  std::vector<double> stiff_mass;     ///< per vertex, for as long as tets around it are stiff [kg]; empty: none
   std::vector<Vec3d> fibres;          ///< of each tet of the mesh, any length; empty: those of the tissues
 
   const TissueBlock& block_of(std::size_t element) const;
   /// What an element gives each of its vertices [kg].
   double quarter_mass(const TissueBlock& block, std::size_t element) const;
+  /// What forces accelerate at a vertex: its mass, and what is added while tets are stiff [kg].
+  double inertia(std::size_t vertex) const {
+    const double m = masses[vertex];
+    return vertex < stiff_mass.size() && m > 0.0 ? m + stiff_mass[vertex] : m;
+  }
 };
 
 /// A block of a valid tissue. @throws std::invalid_argument where it is not

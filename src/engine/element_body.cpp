@@ -61,7 +61,7 @@ void ElementBody::run_drag_stages(double h, const Vec3d& gravity) {
   for (std::size_t k = 0; k < stages_.size(); ++k) {
     if (k > 0) apply_linear(body_, drag_, stage_change_, pull_);
     for (std::size_t i = 0; i < u_.size(); ++i) {
-      const double m = body_.masses[i];
+      const double m = body_.inertia(i);
       if (k > 0) viscous_[i] -= pull_[i];
       stage_sum_[i] += viscous_[i] * stages_[k];
       const Vec3d force = elastic_[i] + viscous_[i] + pushed[i] + gravity * m - v_[i] * damping_[i];
@@ -194,7 +194,7 @@ void ElementBody::book(std::size_t i, const Vec3d& before, const Vec3d& weight) 
   work.before.viscous += dot(viscous_[i], before), work.after.viscous += dot(viscous_[i], v_[i]);
   work.before.damping += dot(drag, before), work.after.damping += dot(drag, v_[i]);
   work.before.loads += dot(weight, before), work.after.loads += dot(weight, v_[i]);
-  work.kinetic += 0.5 * body_.masses[i] * dot(before, v_[i]);
+  work.kinetic += 0.5 * body_.inertia(i) * dot(before, v_[i]);
 }
 
 void ElementBody::list_above(std::span<const double> stiffening) {
@@ -219,7 +219,7 @@ const Advance& ElementBody::advance(double h, const Vec3d& gravity, bool account
   if (!advance_.finite || h == 0.0) return advance_;
   for (std::size_t i = 0; i < u_.size(); ++i) {
     if (is_active_[i] != 0 || rests_[i] != 0) continue;
-    const double m = body_.masses[i];
+    const double m = body_.inertia(i);
     const Vec3d before = v_[i], weight = gravity * m;
     const Vec3d force = elastic_[i] + viscous_[i] + weight;
     v_[i] = m > 0.0 ? (before * m + force * h) * (1.0 / (m + damping_[i] * h)) : Vec3d{};

@@ -43,6 +43,7 @@ class ElementBody final : public MovingBody {
   void hold_in_stages(std::span<const char> components) override { held_.assign(components.begin(), components.end()); }
   void push_in_stages(std::span<const Vec3d> outer) override { outer_.assign(outer.begin(), outer.end()); }
   void place_active() override;
+  void inertia_changed(std::span<const std::uint32_t>) override {}  // it asks the body
   void list_above(std::span<const double> stiffening) override;
   const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;
 

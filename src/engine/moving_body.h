@@ -104,6 +104,9 @@ class MovingBody {
   /// Forces from outside in the last step, which stages of drag go by, too. @param outer  per active vertex [N]
   virtual void push_in_stages(std::span<const Vec3d> outer) = 0;
 
+  /// Follows Body::stiff_mass where that has changed. @param vertices  where
+  virtual void inertia_changed(std::span<const std::uint32_t> vertices) = 0;
+
   /// Lets advance() list elements that are stiffer than this.
   /// @param stiffening  per tissue block [-]
   virtual void list_above(std::span<const double> stiffening) = 0;

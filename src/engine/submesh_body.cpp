@@ -64,7 +64,7 @@ void SubmeshBody::follow_layout(std::span<const double> nodal_damping) {
 /// Masses and damping of all vertices, and what follows from them and the tissues.
 void SubmeshBody::take_masses(std::span<const double> nodal_damping) {
   for (std::size_t v = 0; v < body_.vertex_count; ++v) {
-    masses_[submeshes_.record_of_vertex[v]] = body_.masses[v];
+    masses_[submeshes_.record_of_vertex[v]] = body_.inertia(v);
     damping_[submeshes_.record_of_vertex[v]] = nodal_damping[v];
   }
   step_ = -1.0;  // coefficients of the records are made anew
@@ -214,6 +214,14 @@ void SubmeshBody::set_coefficients(std::size_t record) {
   const bool moves = masses_[record] > 0.0 && rests_[record] == 0;
   state_[record * kStateDoubles + 3] = moves ? step_ / denominator : 0.0;
   state_[record * kStateDoubles + 7] = moves ? damping_[record] * step_ / denominator : 1.0;
+}
+
+void SubmeshBody::inertia_changed(std::span<const std::uint32_t> vertices) {
+  for (const std::uint32_t v : vertices) {
+    const std::uint32_t record = submeshes_.record_of_vertex[v];
+    masses_[record] = body_.inertia(v);
+    set_coefficients(record);
+  }
 }
 
 void SubmeshBody::set_step(double h) {

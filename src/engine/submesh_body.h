@@ -54,6 +54,7 @@ class SubmeshBody final : public MovingBody {
   void hold_in_stages(std::span<const char> components) override;
   void push_in_stages(std::span<const Vec3d> outer) override { outer_.assign(outer.begin(), outer.end()); }
   void place_active() override;
+  void inertia_changed(std::span<const std::uint32_t> vertices) override;
   void list_above(std::span<const double> stiffening) override {
     list_above_.assign(stiffening.begin(), stiffening.end());
   }

@@ -26,6 +26,7 @@
 #include "glisson/simulation/contact_fields.h"
 #include "glisson/simulation/integrator.h"
 #include "glisson/simulation/interaction.h"
+#include "glisson/simulation/mass_scaling.h"
 #include "glisson/simulation/precision.h"
 #include "glisson/simulation/surface_load.h"
 #include "glisson/simulation/tet_fields.h"
@@ -104,6 +105,9 @@ struct SimulationOptions {
   /// [s], > 0; for meshes with a few tiny tets. The mass has inertia and weight; mass_scaling() reports it. None: no
   /// mass is added.
   std::optional<double> mass_scaling_step{};
+  /// When mass is added for that step: at rest and for good, or at vertices of tets that have stiffened, until they soften. The second
+  /// is for central_difference with an automatic step, which then is mass_scaling_step.
+  MassScalingKind mass_scaling = MassScalingKind::fixed;
   /// central_difference: stages in which the viscous force is taken within a step, 1 … kMostDragStages. One is the paper's scheme. With
   /// n of them viscosity allows n²/2 times the step that it does with one, and stiffness 0.91 to 0.95 of what it does alone; a stage
   /// more costs half a step. For tissue of small strain.
@@ -146,6 +150,10 @@ struct SimulationOptions {
               "central_difference and "
               "semi_implicit. `glisson check` reports the tets and the mass")
             .otherwise("no mass is added"),
+        field("mass_scaling", &SimulationOptions::mass_scaling,
+              "when mass is added for `mass_scaling_step`; variable: with an automatic step, which then is that one, "
+              "and not beside "
+              "semi_implicit (docs/integrators.md)"),
         field(
             "drag_stages", &SimulationOptions::drag_stages, between(1, kMostDragStages),
             "stages in which the viscous force is taken within a step of central_difference: 2 or 3 make steps longer "
@@ -283,9 +291,11 @@ struct SplitReport {
 
 /// Mass added by mass scaling.
 struct MassScaling {
-  double added = 0.0;               ///< [kg]
+  double added = 0.0;               ///< for good [kg]
   double share = 0.0;               ///< of the body's own mass [-]
-  std::vector<std::uint32_t> tets;  ///< with added mass, ascending
+  std::vector<std::uint32_t> tets;  ///< with mass added for good, ascending
+  double present = 0.0;             ///< variable: beside it, for tets that are stiff at present [kg]
+  double largest = 0.0;             ///< the most that this has been [kg]
 };
 
 /// A tet that may limit the step.

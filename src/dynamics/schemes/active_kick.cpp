@@ -54,7 +54,7 @@ void ActiveKick::begin(double h) {
 }
 
 Vec3d ActiveKick::keep(std::size_t k, const ActiveVertex& w, std::span<const Vec3d> loads) {
-  const double m = state_.body.masses[w.vertex];
+  const double m = state_.body.inertia(w.vertex);
   const Vec3d load = m > 0.0 ? loads[w.vertex] : Vec3d{};
   kicked_[k] = {m, state_.gamma[w.vertex], w.velocity, load, {}, state_.loads.dashpot(w.vertex), {}};
   if (m > 0.0) kicked_[k].mobility = inverse_inertia(kicked_[k], step_);
@@ -153,6 +153,18 @@ Vec3d ActiveKick::torque(std::span<const ActiveVertex> active, std::size_t const
     const ActiveVertex& w = active[place];
     const Vec3d then = state_.body.rest_positions[w.vertex] + w.displacement - w.velocity * (state_.time - time_);
     sum += cross(then - about, force_at(w, place, state_.constraints.all()[constraint].axes).total());
+  }
+  return sum;
+}
+
+double ActiveKick::force_scale(std::span<const ActiveVertex> active) const {
+  double sum = 0.0;
+  for (const Kicked& k : kicked_) sum += norm(k.contact) + norm(k.load);
+  for (std::size_t c = 0; c < places_.size(); ++c) {
+    if (!state_.holds(c)) continue;
+    for (const std::uint32_t place : places_[c]) {
+      sum += norm(force_at(active[place], place, state_.constraints.all()[c].axes).total());
+    }
   }
   return sum;
 }

@@ -24,6 +24,7 @@ StepControl::StepControl(const Body& body, const std::vector<double>& nodal_damp
       weight_(drag == Drag::in_stages ? 2.0 / drag_stage_room(options.drag_stages) : 1.0), automatic_(!options.step),
       enforce_(options.enforce_stability), exact_asked_(options.exact_steps),
       scales_masses_(options.mass_scaling_step.has_value()), levels_(body) {
+  if (options.mass_scaling == MassScalingKind::variable) heavy_step_ = options.mass_scaling_step;
   look_at_body();
   search_drag_limit();
   rest_.level = at_least_one(stiffening);
@@ -32,6 +33,7 @@ StepControl::StepControl(const Body& body, const std::vector<double>& nodal_damp
   now_ = rest_;
   remember_search();
   step_ = options.step.value_or(kSafety * now_.limits.pace);
+  if (heavy_step_) choose_heavy(*heavy_step_);
   const double stable = std::min(now_.limits.stable, drag_limit_);
   if (enforce_ && !automatic_ && step_ > stable) refuse_above(stable);
   forget_searches();
@@ -316,6 +318,7 @@ void StepControl::tissues_changed(std::span<const double> stiffening, bool undef
     }
   }
   if (automatic_) step_ = kSafety * now_.limits.pace;
+  if (heavy_step_) choose_heavy(*heavy_step_);
   element_bound_.reset();
   drag_part_ = 0.0;
   unchecked_ = false;
@@ -351,6 +354,10 @@ bool StepControl::accept(std::span<const double> stiffening, std::span<const Sti
   if (!enforce_) return true;
   for (const double r : stiffening) {
     if (!std::isfinite(r)) return true;  // the state is beyond repair; the step reports that it is not finite
+  }
+  if (heavy_step_) {
+    bear(stiff);
+    return true;
   }
   const std::span<const StiffElement> few = without_crowd(stiff);
   const StiffnessLevels::Met met = levels_.meet(few, now_.level, crowd_.empty() ? usual_ : crowd_);

@@ -22,13 +22,16 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dynamics/step/element_step_bound.h"
 #include "dynamics/step/stable_step.h"
+#include "dynamics/step/step_rules.h"
 #include "dynamics/step/stiffness_levels.h"
 #include "element/body_change.h"
 #include "glisson/archive.h"
@@ -145,11 +148,19 @@ class StepControl : StepChoice {
   double stable_step() const {
     return std::min(with_added(now_.limits.stable, {tools_ + stiff_.k, stiff_.c}), drag_limit_);
   }
+  /// Variable mass scaling shortens its step where added mass has an effect. @param inertia  Σ Δm |a| over Σ |F| of what acts on the
+  /// body, for the next accept() [-]
+  void take_inertia(double inertia) { inertia_ = inertia; }
+  /// Mass that stiff tets need beside their own for the step of variable mass scaling, where that has become other since this was
+  /// asked last; ascending by vertex, others need none.
+  std::optional<std::span<const VertexMass>> new_masses() {
+    if (!std::exchange(masses_are_new_, false)) return std::nullopt;
+    return stiff_masses_;
+  }
   /// What is wrong with a given step that accept() has refused, and the ways out.
   std::string too_large() const { return too_large(stable_step()); }
 
  private:
-  static constexpr double kSafety = 0.9;                                 ///< automatic step over h*
   static constexpr double kRegrowth = 1.015;                             ///< of a step that tools held short
   static constexpr std::uint64_t kFirstWindow = 1000, kFirstProbe = 64;  ///< [steps]
 
@@ -187,6 +198,11 @@ class StepControl : StepChoice {
   void start_anew();
 
   // levels (step_levels.cpp)
+  std::vector<char> thickening() const;
+  void choose_heavy(double wanted);
+  bool follow_inertia();
+  double heavy_step() const { return std::min(step_, kSafety * drag_limit_); }
+  void bear(std::span<const StiffElement> stiff);
   void list_from();
   AddedStiffness added_at(std::span<const double> level);
   void take_stiff();
@@ -230,6 +246,11 @@ class StepControl : StepChoice {
   bool probes_ = false;            ///< whether more than usual is listed, to choose the level of the blocks anew
   std::vector<StiffElement> few_;  ///< the stiffest of a crowd
   std::vector<double> crowd_;      ///< per block, the stiffest of those left out; empty: none were
+
+  std::optional<double> heavy_step_;      ///< of variable mass scaling [s]
+  std::vector<VertexMass> stiff_masses_;  ///< for that step
+  bool masses_are_new_ = false;
+  double inertia_ = 0.0;  ///< see take_inertia
 
   double tools_ = 0.0;    ///< ω² of what acts beside the tissue [1/s²]
   double held_ = 0.0;     ///< the same that an automatic step is chosen for: at least as much

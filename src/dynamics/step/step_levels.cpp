@@ -24,7 +24,11 @@ constexpr std::uint64_t kLongestProbe = 1024;  ///< [steps]
 constexpr double kLadder = 0.9;                ///< of one level that is tried to the next
 constexpr int kMostInVain = 8;                 ///< steps of that ladder without a better one
 constexpr double kCostOfLevels = 2.0;          ///< of a tet with a level of its own, over that of a tet, a step
-constexpr double kProbeDepth = 8.0;            ///< how far below the level of the blocks a probe looks
+constexpr double kMostRise = 1024.0;           ///< of stiffness that is looked at for a step
+constexpr double kMuchInertia = 0.05, kLittleInertia = 0.02;  ///< of added mass, of what acts on the body
+constexpr double kHeavyRegrowth = 1.1;            ///< of the step of variable mass scaling, in a short window
+constexpr double kLeastHeavyStep = 0.3;           ///< of what was asked for
+constexpr double kProbeDepth = 8.0;               ///< how far below the level of the blocks a probe looks
 constexpr std::size_t kFewTets = 64, kFewOf = 4;  ///< tets with levels of their own: so many and this part of all
 
 }  // namespace
@@ -45,8 +49,10 @@ void StepControl::start_anew() {
 }
 
 void StepControl::state_set() {
-  now_ = rest_;
-  if (automatic_) step_ = kSafety * now_.limits.pace;
+  if (!heavy_step_) {
+    now_ = rest_;
+    if (automatic_) step_ = kSafety * now_.limits.pace;
+  }
   start_anew();
 }
 
@@ -68,9 +74,63 @@ void StepControl::list_from() {
 /// What single tets take off the step, which depends on the level of their blocks.
 AddedStiffness StepControl::added_at(std::span<const double> level) {
   if (levels_.empty()) return {};
+  return levels_.added(level, thickening());
+}
+
+/// Per block, whether its viscosity grows with its stiffness.
+std::vector<char> StepControl::thickening() const {
   std::vector<char> viscous;
   for (const TissueBlock& block : body_.blocks) viscous.push_back(thickens(block) ? 1 : 0);
-  return levels_.added(level, viscous);
+  return viscous;
+}
+
+/// The stiffness that bears a step without added mass: the largest, which leaves the least to add.
+void StepControl::choose_heavy(double wanted) {
+  const auto at = [&](double rise) {
+    Known known{{}, rest_.level};
+    for (std::size_t b = 0; b < known.level.size(); ++b) {
+      if (!is_linear(body_.blocks[b])) known.level[b] *= rise;
+    }
+    known.limits = bound_at(known.level);
+    return known;
+  };
+  now_ = rest_;
+  double borne = 1.0, above = 1.0;
+  while (above < kMostRise && kSafety * at(above).limits.pace >= wanted) borne = above, above *= 2.0;
+  for (int halving = 0; halving < 20 && borne < above; ++halving) {
+    const double middle = 0.5 * (borne + above);
+    (kSafety * at(middle).limits.pace >= wanted ? borne : above) = middle;
+  }
+  now_ = at(borne);
+  step_ = std::min(wanted, kSafety * now_.limits.pace);
+}
+
+/// Where inertia of added mass shows, the step falls to what tets bear without it; it comes back slowly.
+/// @return whether it is another one
+bool StepControl::follow_inertia() {
+  const double inertia = std::exchange(inertia_, 0.0);
+  double wanted = step_;
+  if (inertia > kMuchInertia) {
+    const double borne = kSafety * with_added(rest_.limits.pace, added_at(rest_.level));
+    wanted = std::min(step_, std::max(borne, kLeastHeavyStep * *heavy_step_));
+  } else if (inertia < kLittleInertia && in_window_ % kShortWindow == 0) {
+    wanted = std::min(kHeavyRegrowth * step_, *heavy_step_);
+  }
+  if (wanted == step_) return false;
+  choose_heavy(wanted);
+  return true;
+}
+
+/// Variable mass scaling: stiff tets take levels of their own, and their vertices mass in the place of a shorter step.
+void StepControl::bear(std::span<const StiffElement> stiff) {
+  const StiffnessLevels::Met met = levels_.meet(stiff, now_.level, usual_);
+  unchecked_ = false;
+  if (met.above) levels_.raise(1.0);
+  const double rise = met.above ? met.rise : 1.0;
+  const bool settles = ++in_window_ % kShortWindow == 0 && !levels_.empty();
+  if (settles) levels_.settle();
+  if (follow_inertia() || met.above || settles) take_stiff();
+  be_cautious(rise);
 }
 
 void StepControl::set_added(double squared_frequency) {
@@ -84,7 +144,12 @@ void StepControl::follow_added(double squared_frequency) {
 }
 
 void StepControl::take_stiff() {
-  stiff_ = added_at(now_.level);
+  if (heavy_step_) {
+    levels_.masses_for(now_.level, thickening(), heavy_step() / kSafety, weight_, stiff_masses_);
+    masses_are_new_ = true;
+  } else {
+    stiff_ = added_at(now_.level);
+  }
   list_from();
 }
 

@@ -10,6 +10,7 @@
 
 namespace glisson {
 
+inline constexpr double kSafety = 0.9;            ///< automatic step over h*
 inline constexpr double kStiffeningMargin = 1.2;  ///< stiffening that a new h* allows for beyond the present one
 
 inline std::size_t block_index(const Body& body, std::size_t element) {

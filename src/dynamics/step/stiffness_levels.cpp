@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "dynamics/step/stable_step.h"
 #include "dynamics/step/step_rules.h"
@@ -29,6 +30,7 @@ Sym3<double> over_shares(const Body& body, std::uint32_t element, const std::arr
 void StiffnessLevels::measure(Member& m) const {
   const std::array<Vec3d, 4> s = shape_gradients(body_.rest[m.element]);
   for (std::size_t i = 0; i < 4; ++i) m.squares[i] = dot(s[i], s[i]);
+  m.spread = 0.0;
 }
 
 StiffnessLevels::Member& StiffnessLevels::member(std::uint32_t element) {
@@ -123,20 +125,57 @@ std::size_t StiffnessLevels::count_above(std::span<const double> base) const {
       std::count_if(members_.begin(), members_.end(), [&](const Member& m) { return m.ratio > base[m.block]; }));
 }
 
+/// What a member asks of its vertices' masses; k is 0 where the level of its block bears it.
+StiffnessLevels::Asking StiffnessLevels::ask(std::uint32_t place, std::span<const double> base,
+                                             const std::vector<char>& viscous) const {
+  const Member& m = members_[place];
+  const std::size_t b = m.block;
+  const double volume = body_.rest[m.element].volume;
+  if (!(m.ratio > base[b]) || !(volume > 0.0)) return {};
+  const double more = m.ratio - base[b];
+  Asking a{place, volume * std::min(more, m.norm) * modulus_bound(body_.blocks[b].elastic), 0.0, 0.0, {}};
+  if (viscous[b] != 0) a.c = volume * more * modulus_bound(body_.blocks[b].viscous);
+  for (std::size_t i = 0; i < 4; ++i) a.of[i] = a.k * m.squares[i];
+  return a;
+}
+
+double StiffnessLevels::spread(Member& m) const {
+  if (m.spread > 0.0) return m.spread;
+  const std::array<Vec3d, 4> s = shape_gradients(body_.rest[m.element]);
+  Sym3<double> sum;
+  for (std::size_t i = 0; i < 4; ++i) sum += outer_square(s[i]) * (1.0 / m.squares[i]);
+  return m.spread = largest_eigenvalue(sum);
+}
+
+void StiffnessLevels::masses_for(std::span<const double> base, const std::vector<char>& viscous, double step,
+                                 double weight, std::vector<VertexMass>& masses) {
+  masses.clear();
+  if (asked_.size() != body_.vertex_count) asked_.assign(body_.vertex_count, 0.0);
+  std::vector<std::uint32_t> touched;
+  for (std::uint32_t place = 0; place < members_.size(); ++place) {
+    members_[place].part = 1.0;
+    const Asking a = ask(place, base, viscous);
+    if (!(a.k > 0.0)) continue;
+    const double per_square = 0.25 * step * (weight * a.k * step + 2.0 * a.c) * spread(members_[place]);
+    const Tet& t = body_.elements[members_[place].element];
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (asked_[t[i]] == 0.0) touched.push_back(t[i]);
+      asked_[t[i]] += per_square * members_[place].squares[i];
+    }
+  }
+  std::ranges::sort(touched);
+  for (const std::uint32_t v : touched) masses.push_back({v, std::exchange(asked_[v], 0.0)});
+}
+
 void StiffnessLevels::gather_asking(std::span<const double> base, const std::vector<char>& viscous) {
   asking_.clear();
   if (asked_.size() != body_.vertex_count) asked_.assign(body_.vertex_count, 0.0);
   for (std::uint32_t place = 0; place < members_.size(); ++place) {
-    Member& m = members_[place];
-    m.part = 1.0;
-    const std::size_t b = m.block;
-    const double volume = body_.rest[m.element].volume;
-    if (!(m.ratio > base[b]) || !(volume > 0.0)) continue;
-    const double more = m.ratio - base[b];
-    Asking a{place, volume * std::min(more, m.norm) * modulus_bound(body_.blocks[b].elastic), 0.0, 0.0, {}};
-    if (viscous[b] != 0) a.c = volume * more * modulus_bound(body_.blocks[b].viscous);
-    const Tet& t = body_.elements[m.element];
-    for (std::size_t i = 0; i < 4; ++i) asked_[t[i]] += a.of[i] = a.k * m.squares[i];
+    members_[place].part = 1.0;
+    const Asking a = ask(place, base, viscous);
+    if (!(a.k > 0.0)) continue;
+    const Tet& t = body_.elements[members_[place].element];
+    for (std::size_t i = 0; i < 4; ++i) asked_[t[i]] += a.of[i];
     asking_.push_back(a);
   }
   // The trace of Σ s sᵀ/W is above its λ_max, and simple: |s_a|²/W_a = asked_a/(m_a k).

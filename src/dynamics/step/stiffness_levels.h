@@ -30,6 +30,12 @@ struct AddedStiffness {
   double c = 0.0;  ///< [1/s]
 };
 
+/// Mass of a vertex [kg].
+struct VertexMass {
+  std::uint32_t vertex = 0;
+  double mass = 0.0;
+};
+
 class StiffnessLevels {
  public:
   /// @param body  must outlive this
@@ -57,6 +63,11 @@ class StiffnessLevels {
   /// What the tets above `base` take. @param viscous  per block, whether viscosity grows with them
   /// Cost: some 20 ns a tet above the base, and an eigenvalue for each that may be the worst.
   AddedStiffness added(std::span<const double> base, const std::vector<char>& viscous);
+  /// The mass that vertices of the tets above `base` need beside their own, so that what these tets take leaves a step as it
+  /// is: with w_a = ¼ (k h² + 2 c h) λ |s_a|² and λ that of Σ ŝ_a ŝ_aᵀ, h² K_e + 2 h C_e ≤ 4 Σ w_a |x_a|².
+  /// @param step  h [s]  @param weight  on stiffness  @param masses  [out] ascending by vertex
+  void masses_for(std::span<const double> base, const std::vector<char>& viscous, double step, double weight,
+                  std::vector<VertexMass>& masses);
   /// Tets above a base.
   std::size_t count_above(std::span<const double> base) const;
   bool empty() const { return members_.empty(); }
@@ -77,6 +88,7 @@ class StiffnessLevels {
     double part = 1.0;                         ///< of what all took, at most; 1 until it is known
     std::uint64_t met = 0;                     ///< number of the last
     std::array<double, 4> squares{};           ///< |s_a|² [1/m²]
+    double spread = 0.0;                       ///< λ_max(Σ ŝ_a ŝ_aᵀ); 0: not asked for yet
     void archive(Archive& ar) { ar(element, met, ratio, norm, seen_ratio, seen_norm, last, before, part); }
   };
   /// What a tet above the base asks of its vertices' masses.
@@ -88,6 +100,8 @@ class StiffnessLevels {
   };
   Member& member(std::uint32_t element);
   void measure(Member& m) const;
+  Asking ask(std::uint32_t place, std::span<const double> base, const std::vector<char>& viscous) const;
+  double spread(Member& m) const;
   void gather_asking(std::span<const double> base, const std::vector<char>& viscous);
   static bool is_above(const Member& m, double base);
   static double room_of(const Member& m);

@@ -87,7 +87,7 @@ void SubmeshBody::apply(const BodyChange& change, const detail::VertexStars& sta
   add_records(change.origins);
   for (const std::uint32_t v : change.touched) {
     const std::uint32_t record = submeshes_.record_of_vertex[v];
-    masses_[record] = body_.masses[v];
+    masses_[record] = body_.inertia(v);
     damping_[record] = nodal_damping[v];
     set_coefficients(record);
   }

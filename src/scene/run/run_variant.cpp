@@ -223,7 +223,7 @@ void Run::summarise() {
   summary_.energies = simulation_.energies();
   summary_.stored_energy_J = simulation_.stored_energy();
   if (variant_.simulation.track_energies) see_drift();
-  summary_.mass_added_kg = simulation_.mass_scaling().added;
+  summary_.mass_added_kg = simulation_.mass_scaling().added + simulation_.mass_scaling().largest;
   summary_.state_hash = simulation_.state_hash();
 }
 

@@ -1,0 +1,230 @@
+// Mass for tets while they are stiff: the step stays what was asked for, forces at rest are those without, books are exact.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "glisson/instruments/motion.h"
+#include "support/bodies.h"
+#include "support/must_step.h"
+
+namespace glisson::variable_mass_test {
+namespace {
+
+/// E grows by five times itself for a deformation of one.
+Tissue stiffening() {
+  Tissue tissue;
+  tissue.law = LinearLaw{5.0 * tissue.youngs_modulus};
+  return tissue;
+}
+
+/// At 0.8 of the automatic step at rest.
+SimulationOptions at_four_fifths(const TetMesh& mesh, const Tissue& tissue, SimulationOptions o = {}) {
+  o.mass_scaling_step = 0.8 * Simulation(mesh, {{0, tissue}}, o).step_size();
+  o.mass_scaling = MassScalingKind::variable;
+  return o;
+}
+
+/// The paper's block on its ground, pressed at its triangle.
+Simulation pressed(const SimulationOptions& o, const Tissue& tissue, const PressMotion& motion) {
+  const TetMesh mesh = test::paper_mesh();
+  Simulation s(mesh, {{0, tissue}}, o);
+  s.fix(mesh.vertex_sets.at("z_min"));
+  s.drive(test::paper_triangle(), press(motion));
+  return s;
+}
+
+// Pressed, the plain body's step falls to two thirds of that at rest; with variable mass it is what was asked for. At rest both have the
+// same force, and let go, the tissue has its own mass again.
+TEST(VariableMass, KeepsTheStepAndTheForceAtRest) {
+  SimulationOptions o;
+  o.damping_rate = 50.0;
+  const TetMesh mesh = test::paper_mesh();
+  const SimulationOptions heavy = at_four_fifths(mesh, stiffening(), o);
+  const PressMotion motion{.velocity = 0.02, .depth = 0.012, .ramp = 0.1, .hold = 1.0, .returns = true};
+  Simulation plain = pressed(o, stiffening(), motion), scaled = pressed(heavy, stiffening(), motion);
+  const double at_rest = plain.step_size();
+  while (plain.time() < 1.5) test::must_step(plain);
+  while (scaled.time() < 1.5) test::must_step(scaled);
+  EXPECT_NEAR(scaled.step_size(), *heavy.mass_scaling_step, 1e-12);
+  EXPECT_LT(static_cast<double>(scaled.steps()), 0.8 * static_cast<double>(plain.steps()));
+  EXPECT_LT(plain.step_size(), 0.7 * at_rest);
+  EXPECT_GT(scaled.mass_scaling().present, 0.0);
+  EXPECT_GE(scaled.mass_scaling().largest, scaled.mass_scaling().present);
+  const double force = plain.force({1}).total().z;
+  EXPECT_NEAR(scaled.force({1}).total().z, force, 1e-3 * std::abs(force));
+  while (scaled.time() < 3.5) test::must_step(scaled);
+  EXPECT_EQ(scaled.mass_scaling().present, 0.0);
+  EXPECT_EQ(scaled.mass_scaling().added, 0.0) << "nothing for good: the step at rest is longer";
+}
+
+// A plate that comes and goes slowly meets the forces of the plain body; one that hits the tissue makes steps as short as that has.
+TEST(VariableMass, StepsAreShortWhereInertiaShows) {
+  SimulationOptions o;
+  o.damping_rate = 50.0;
+  const SimulationOptions heavy = at_four_fifths(test::paper_mesh(), stiffening(), o);
+  for (const double velocity : {1.0, 0.02}) {
+    const PressMotion motion{.velocity = velocity, .depth = 0.015, .ramp = 0.05 * 0.015 / velocity, .hold = 0.0};
+    Simulation plain = pressed(o, stiffening(), motion), scaled = pressed(heavy, stiffening(), motion);
+    double apart = 0.0, peak = 0.0;
+    const double end = 0.015 / velocity;
+    for (double t = 0.02 * end; t < end; t += 0.02 * end) {
+      while (plain.time() < t) test::must_step(plain);
+      while (scaled.time() < t) test::must_step(scaled);
+      const double force = plain.force({1}).elastic.z;
+      apart = std::max(apart, std::abs(scaled.force({1}).elastic.z - force)), peak = std::max(peak, std::abs(force));
+    }
+    RecordProperty("apart_at_" + std::to_string(velocity), std::to_string(apart / peak));
+    RecordProperty("steps_at_" + std::to_string(velocity),
+                   std::to_string(scaled.steps()) + " of " + std::to_string(plain.steps()));
+    if (velocity < 0.1) {
+      EXPECT_LT(apart, 0.01 * peak);
+    } else {
+      EXPECT_GT(static_cast<double>(scaled.steps()), 0.7 * static_cast<double>(plain.steps()));
+    }
+  }
+}
+
+// Mass comes and goes at the velocity there is: its kinetic energy is booked, in float and in double, with drag in stages too.
+TEST(VariableMass, BooksAreExact) {
+  for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
+    for (const int stages : {1, 2}) {
+      SimulationOptions o;
+      o.precision = precision, o.drag_stages = stages;
+      o.gravity = {0.0, 0.0, -9.81};
+      Tissue tissue = stiffening();
+      tissue.viscosity = 3.0;
+      const PressMotion motion{.velocity = 0.2, .depth = 0.02, .hold = 0.05, .returns = true};
+      Simulation s = pressed(at_four_fifths(test::paper_mesh(), tissue, o), tissue, motion);
+      while (s.time() < 0.4) test::must_step(s);
+      const Energies e = s.energies();
+      EXPECT_GT(s.mass_scaling().largest, 0.0);
+      EXPECT_NE(e.changed, 0.0);
+      EXPECT_LE(std::abs(e.imbalance()), 1e-9 * e.work_tools) << stages << " stages";
+    }
+  }
+}
+
+// Same bytes on any number of threads, and from a checkpoint on that was taken while mass was added.
+TEST(VariableMass, GivesTheSameBytes) {
+  const TetMesh mesh = box_mesh({.cells = {10, 10, 12}, .size = {0.1, 0.1, 0.12}});
+  const auto body = [&](int threads) {
+    SimulationOptions o = at_four_fifths(mesh, stiffening());
+    o.threads = threads;
+    Simulation s(mesh, {{0, stiffening()}}, o);
+    s.fix(mesh.vertex_sets.at("z_min"));
+    s.drive(mesh.vertex_sets.at("z_max"), press({.velocity = 0.05, .depth = 0.03, .ramp = 0.05}));
+    return s;
+  };
+  const auto run = [](Simulation& s, int steps) {
+    for (int i = 0; i < steps; ++i) test::must_step(s);
+  };
+  Simulation one = body(1), three = body(3);
+  run(one, 600), run(three, 600);
+  EXPECT_EQ(one.state_hash(), three.state_hash());
+  ASSERT_GT(one.mass_scaling().present, 0.0);
+  std::stringstream saved;
+  one.save(saved);
+  run(one, 60);
+  Simulation again = body(2);
+  run(again, 650);  // what is loaded replaces mass that is there
+  again.load(saved);
+  run(again, 60);
+  EXPECT_EQ(again.state_hash(), one.state_hash());
+  EXPECT_EQ(again.energies().imbalance(), one.energies().imbalance());
+  EXPECT_EQ(again.mass_scaling().present, one.mass_scaling().present);
+}
+
+// Tets that are taken out or split while they are heavy leave a stable body with balanced books; other tissue does, too.
+TEST(VariableMass, GoesOnThroughChangesOfTheBody) {
+  std::mt19937 random(4);
+  const TetMesh mesh = test::jittered_box({6, 5, 5}, 0.01, 0.1, random);
+  Simulation s(mesh, {{0, stiffening()}}, at_four_fifths(mesh, stiffening(), test::in_double()));
+  s.fix(mesh.vertex_sets.at("x_min"));
+  s.drive(mesh.vertex_sets.at("x_max"), press({.velocity = 0.05, .depth = 0.02, .ramp = 0.05, .hold = 1.0}));
+  while (s.time() < 0.35) test::must_step(s);
+  ASSERT_GT(s.mass_scaling().present, 0.0);
+  const auto go_on = [&](double until) {
+    while (s.time() < until) test::must_step(s);
+    for (const Vec3d& v : s.velocity()) ASSERT_LT(norm(v), 3.0);
+    EXPECT_LE(std::abs(s.energies().imbalance()), 1e-9 * s.energies().work_tools);
+  };
+  s.remove_tets(std::vector<std::uint32_t>{100, 101, 102, 103, 300, 301});
+  go_on(0.37);
+  Tissue softer = stiffening();
+  softer.youngs_modulus *= 0.5, softer.density *= 1.2;
+  s.set_tissue(0, softer);
+  go_on(0.4);
+  const std::vector<Vec3d> none(mesh.vertices.size());
+  s.set_state(none, none);
+  EXPECT_EQ(s.mass_scaling().present, 0.0);
+  go_on(0.42);
+}
+
+// Where the step at rest is too short, mass comes for good first, as without.
+TEST(VariableMass, BeginsFromABodyThatBearsTheStep) {
+  SimulationOptions o;
+  const TetMesh mesh = test::paper_mesh();
+  const double plain = Simulation(mesh, {{0, stiffening()}}).step_size();
+  o.mass_scaling_step = 1.5 * plain;
+  o.mass_scaling = MassScalingKind::variable;
+  const Simulation s(mesh, {{0, stiffening()}}, o);
+  EXPECT_NEAR(s.step_size(), 1.5 * plain, 1e-9);
+  EXPECT_GT(s.mass_scaling().added, 0.0);
+}
+
+// Any law, pressed to 40 % of the height at 0.1 m/s: the energy in the body never exceeds what the plate has put in.
+class DeepPressOfHeavyTets : public testing::TestWithParam<int> {};
+TEST_P(DeepPressOfHeavyTets, NeverBlowsUp) {
+  Tissue tissue;
+  const double mu = tissue.lame().mu, kappa = tissue.lame().lambda + 2.0 / 3.0 * mu;
+  switch (GetParam()) {
+    case 0:
+      tissue = stiffening();
+      break;
+    case 1:
+      tissue.kinematics = Kinematics::green;
+      break;
+    case 2:
+      tissue.hyperelastic = NeoHookean{.mu = mu, .bulk_modulus = kappa};
+      break;
+    case 3:
+      tissue.hyperelastic = Ogden{.mu = {mu}, .alpha = {-4.7}, .bulk_modulus = kappa};
+      break;
+    default:
+      tissue.law = ExponentialLaw{.amplitude = tissue.youngs_modulus, .rate = 6.0};
+  }
+  const TetMesh mesh = test::paper_mesh();
+  SimulationOptions o = test::in_double();
+  o.damping_rate = 20.0;
+  Simulation s(mesh, {{0, tissue}}, at_four_fifths(mesh, tissue, o));
+  s.fix(mesh.vertex_sets.at("z_min"));
+  s.drive(mesh.vertex_sets.at("z_max"), press({.velocity = 0.1, .depth = 0.048, .hold = 0.1}));
+  while (s.time() < 0.55) {
+    ASSERT_LE(s.step().status, StepStatus::inverted) << s.time();
+    ASSERT_LE(s.energies().kinetic, 1e-3 + std::abs(s.energies().work_tools)) << s.time();
+  }
+  for (const Vec3d& u : s.displacement()) EXPECT_LT(norm(u), 0.1);
+  EXPECT_LE(std::abs(s.energies().imbalance()), 1e-7 * s.energies().work_tools);
+}
+INSTANTIATE_TEST_SUITE_P(Laws, DeepPressOfHeavyTets, testing::Range(0, 5));
+
+TEST(VariableMass, RefusesWhatItCannotDo) {
+  const auto refuses = [](const SimulationOptions& o) {
+    EXPECT_THROW(Simulation(test::paper_mesh(), {{0, Tissue{}}}, o), std::invalid_argument);
+  };
+  SimulationOptions o;
+  o.mass_scaling = MassScalingKind::variable;
+  refuses(o);  // no step
+  o.mass_scaling_step = 1e-3;
+  o.step = 1e-4;
+  refuses(o);
+  o.step.reset();
+  o.integrator = Integrator::semi_implicit;
+  refuses(o);
+}
+
+}  // namespace
+}  // namespace glisson::variable_mass_test
