@@ -150,7 +150,7 @@ class Lattice {
     std::uint32_t& mark = at(is_centre, i, j, k);
     if (mark < kInside) return mark;
     used_inside_.push_back(mark == kInside);
-    return mark = complex_.add_vertex(place_of(is_centre, i, j, k));
+    return mark = complex_.add_vertex(place_of(is_centre, i, j, k), fields_.edge());
   }
 
   struct Place {

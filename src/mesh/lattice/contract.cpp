@@ -38,7 +38,7 @@ bool surfaces_stay(const Workspace& w, std::uint32_t from, std::uint32_t into) {
       if (dot(before, after) < 0.7 * norm(before) * norm(after)) return false;
       const Mask common = mask & c.masks[rest[0]] & c.masks[rest[1]];
       const double off = w.fields.off((a + b + q) * (1.0 / 3.0), surfaces_of(common));
-      if (off > kFlipSlack * w.edge() && off > w.fields.off((a + b + p) * (1.0 / 3.0), surfaces_of(common)))
+      if (off > kFlipSlack * w.edge(into) && off > w.fields.off((a + b + p) * (1.0 / 3.0), surfaces_of(common)))
         return false;
     }
   }

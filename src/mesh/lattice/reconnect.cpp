@@ -112,7 +112,8 @@ bool may_bend(const Workspace& w, std::uint32_t u, std::uint32_t v, std::uint32_
   };
   const Mask surface = surfaces_of(common);
   const double after = w.fields.off(middle(p, q), surface);
-  return after < 0.5 * kFlipSlack * w.edge() || after <= std::max(0.0, w.fields.off(middle(u, v), surface));
+  return after < 0.5 * kFlipSlack * w.complex.edge_between(u, v) ||
+         after <= std::max(0.0, w.fields.off(middle(u, v), surface));
 }
 
 bool joined(const TetComplex& c, std::uint32_t p, std::uint32_t q) {

@@ -34,16 +34,17 @@ class RegionFields {
 
   double value(std::size_t k, const Vec3d& p) const { return regions_[k].distance(p); }
   /// By four points at the corners of a tetrahedron: of second order, and for a third of the cost of six.
-  Vec3d gradient(std::size_t k, const Vec3d& p) const;
+  /// @param edge  length of edges asked for there [m]; also below
+  Vec3d gradient(std::size_t k, const Vec3d& p, double edge) const;
   /// First region with p inside, or outside().
   Label label(const Vec3d& p) const;
 
   /// Moves p onto all the surfaces, by the shortest steps. @return the largest |value| left [m]
-  double project(Vec3d& p, Mask surfaces) const;
+  double project(Vec3d& p, Mask surfaces, double edge) const;
   /// Largest |value| of the surfaces at p [m].
   double off(const Vec3d& p, Mask surfaces) const;
   /// Unit normals of the surfaces at p. @return how many
-  std::size_t normals(const Vec3d& p, Mask surfaces, Vec3d* out, std::size_t capacity) const;
+  std::size_t normals(const Vec3d& p, Mask surfaces, double edge, Vec3d* out, std::size_t capacity) const;
 
  private:
   const std::vector<BodyRegion>& regions_;
