@@ -13,6 +13,7 @@
 
 #include "glisson/math.h"
 #include "glisson/mesh.h"
+#include "glisson/mesh_size.h"
 
 namespace glisson {
 
@@ -36,6 +37,8 @@ struct RegionMeshOptions {
   std::size_t max_tets = 20000000;  ///< more are refused before any memory is taken
   /// Called now and then with the part that is done, 0 to 1; false stops the work. Empty: nothing is called.
   std::function<bool(double)> progress{};
+  std::vector<MeshSize> sizes{};  ///< where edges are shorter; the shortest of them counts
+  double growth = kGrowth;        ///< edge over distance at which edges grow away from these [-], 0.05 to 1
 };
 
 /// What came of a region.

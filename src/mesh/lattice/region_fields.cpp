@@ -44,6 +44,29 @@ Label RegionFields::label(const Vec3d& p) const {
   return outside();
 }
 
+Bounds RegionFields::bounds() const {
+  Bounds box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+  for (const BodyRegion& r : regions_) {
+    if (r.hole) continue;
+    for (std::size_t d = 0; d < 3; ++d) {
+      box.min[d] = std::min(box.min[d], r.bounds.min[d]);
+      box.max[d] = std::max(box.max[d], r.bounds.max[d]);
+    }
+  }
+  return box;
+}
+
+bool RegionFields::reached(const Vec3d& centre, double half) const {
+  for (std::size_t r = 0; r < count(); ++r) {
+    if (regions_[r].hole) continue;
+    const Bounds& b = regions_[r].bounds;
+    bool near = true;
+    for (std::size_t d = 0; d < 3; ++d) near = near && centre[d] + half >= b.min[d] && centre[d] - half <= b.max[d];
+    if (near && value(r, centre) <= 1.7321 * half) return true;
+  }
+  return false;
+}
+
 double RegionFields::project(Vec3d& p, Mask surfaces, double edge) const {
   std::size_t ks[kMostSurfaces], n = 0;
   for (Mask m = surfaces; m && n < kMostSurfaces; m &= m - 1) ks[n++] = static_cast<std::size_t>(std::countr_zero(m));

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "mesh/lattice/body_lattice.h"
 #include "mesh/lattice/cleave.h"
+#include "mesh/lattice/graded_lattice.h"
 #include "mesh/lattice/improve.h"
 #include "mesh/lattice/keep_volume.h"
 
@@ -117,9 +118,14 @@ RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMesh
   };
   require_regions(regions);
   require_edge(options.edge);
-  const RegionFields fields(regions, options.edge);
+  const SizeField sizes(regions, options.edge, options.sizes, options.growth);
+  const RegionFields fields(regions, sizes);
   TetComplex complex;
-  fill_lattice(fields, options.max_tets, complex);
+  if (sizes.uniform()) {
+    fill_lattice(fields, options.max_tets, complex);
+  } else {
+    fill_graded_lattice(fields, sizes, options.max_tets, complex);
+  }
   go_on(0.1);
   cleave(fields, complex);
   go_on(0.3);
