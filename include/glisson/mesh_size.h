@@ -33,11 +33,14 @@ struct PathPoint {
 /// A place and the edges there. One of `near`, `surface` and `path` names the place.
 struct MeshSize {
   static constexpr std::string_view kName = "size";
-  double edge = 0.002;          ///< mean length of the edges there [m], > 0, below that of the mesh
-  std::string near;             ///< a region: in it and around it
-  std::string surface;          ///< a region: on both sides of its surface
-  std::vector<PathPoint> path;  ///< a line through points, or around one point
-  double within = 0.0;          ///< the reach of `edge` beyond the region, surface or line [m], ≥ 0
+  double edge = 0.002;            ///< mean length of the edges there [m], > 0, below that of the mesh
+  std::string near{};             ///< a region: in it and around it
+  std::string surface{};          ///< a region: on both sides of its surface
+  std::vector<PathPoint> path{};  ///< a line through points, or around one point
+  double within = 0.0;            ///< the reach of `edge` beyond the region, surface or line [m], ≥ 0
+  /// Edges in the radius of curvature of `surface` [-]: the edge at each of its points is that share of the radius there, and no
+  /// shorter than `edge`, which creases get. 0: `edge` all over the surface.
+  double per_radius = 0.0;
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -47,10 +50,21 @@ struct MeshSize {
         field("near", &S::near, "name of a region: in it and around it"),
         field("surface", &S::surface, "name of a region: on both sides of its surface"),
         field("path", &S::path, "the points of a line, as that of a needle; one: around a point"),
-        field("within", &S::within, "mm", at_least(0), "how far that reaches; beyond it, edges grow by `growth`"));
+        field("within", &S::within, "mm", at_least(0), "how far that reaches; beyond it, edges grow by `growth`"),
+        field("per_radius", &S::per_radius, "-", between(0, 100),
+              "edges in the radius of curvature of `surface`, no shorter than its edge; 0: that edge all over it"));
   }
   Fault check() const;
 };
+
+/// What is wrong with sizes of a mesh: a region that is none of these, an edge that is not below that of the mesh. The fault's
+/// text names the size by its number; nothing where it is empty.
+struct SizeFault {
+  std::string what;
+  std::size_t index = 0;
+  std::string key;
+};
+SizeFault check_sizes(const std::vector<MeshSize>& sizes, double mesh_edge, const std::vector<std::string>& regions);
 
 /// Edge over distance at which the edges of a mesh grow away from a size [-].
 inline constexpr double kGrowth = 0.3;

@@ -80,4 +80,9 @@ class MeshingStopped : public std::runtime_error {
 /// Cost: some 10 µs and 150 bytes a tet, up to 100 µs where many thin parts meet.
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options);
 
+/// The edge asked for in each tet of a mesh, at its centre [m].
+/// @throws std::invalid_argument  as mesh_regions, for edge, sizes and growth
+std::vector<double> edges_asked(const TetMesh& mesh, const std::vector<BodyRegion>& regions,
+                                const RegionMeshOptions& options);
+
 }  // namespace glisson

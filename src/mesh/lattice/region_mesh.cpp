@@ -110,6 +110,20 @@ void require_tets_in_each(const std::vector<BodyRegion>& regions, double edge, c
 
 }  // namespace
 
+std::vector<double> edges_asked(const TetMesh& mesh, const std::vector<BodyRegion>& regions,
+                                const RegionMeshOptions& options) {
+  require_edge(options.edge);
+  const SizeField sizes(regions, options.edge, options.sizes, options.growth);
+  std::vector<double> edges;
+  edges.reserve(mesh.tets.size());
+  for (const Tet& t : mesh.tets) {
+    Vec3d centre{};
+    for (const std::uint32_t v : t) centre += mesh.vertices[v] * 0.25;
+    edges.push_back(sizes.at(centre));
+  }
+  return edges;
+}
+
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const auto go_on = [&](double part) {

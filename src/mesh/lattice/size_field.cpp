@@ -13,16 +13,43 @@ namespace glisson {
 
 Fault MeshSize::check() const {
   const int places = !near.empty() + !surface.empty() + !path.empty();
+  if (per_radius > 0.0 && surface.empty())
+    return {"is given without `surface`; name the region whose surface is curved", "per_radius"};
   if (places == 1) return {};
   return {places == 0 ? "names no place; give `near` or `surface` with the name of a region, or `path` with points"
                       : "names more than one place; give one of `near`, `surface` and `path`, and a size for each",
           "near"};
 }
 
-namespace lattice {
 namespace {
 
 constexpr double kMostRatio = 256.0;  ///< of the coarsest to the finest edge
+
+std::string no_such_region(const std::string& name, const std::vector<std::string>& regions) {
+  if (name.empty() || std::find(regions.begin(), regions.end(), name) != regions.end()) return {};
+  const std::string meant = scene::nearest(name, regions);
+  return "\"" + name + "\" is no region of the mesh" +
+         (meant.empty() ? "; there are: " + scene::listed(regions) : "; did you mean \"" + meant + "\"?");
+}
+
+}  // namespace
+
+SizeFault check_sizes(const std::vector<MeshSize>& sizes, double mesh_edge, const std::vector<std::string>& regions) {
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const MeshSize& s = sizes[i];
+    if (std::string what = no_such_region(s.near, regions); !what.empty()) return {std::move(what), i, "near"};
+    if (std::string what = no_such_region(s.surface, regions); !what.empty()) return {std::move(what), i, "surface"};
+    if (s.edge < mesh_edge && s.edge * kMostRatio >= mesh_edge) continue;
+    return {detail::number_text(1e3 * s.edge) +
+                " mm is out of range; allowed: " + detail::number_text(1e3 * mesh_edge / kMostRatio, 3) + " to below " +
+                detail::number_text(1e3 * mesh_edge) + ", the edge of the mesh",
+            i, "edge_mm"};
+  }
+  return {};
+}
+
+namespace lattice {
+namespace {
 
 double distance_from_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
   const Vec3d along = b - a;
@@ -31,25 +58,8 @@ double distance_from_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
   return norm(p - a - along * t);
 }
 
-const BodyRegion& region_called(const std::string& where, const std::string& key, const std::string& name,
-                                const std::vector<BodyRegion>& regions) {
-  std::vector<std::string> known;
-  for (const BodyRegion& r : regions) {
-    if (r.name == name) return r;
-    known.push_back(r.name);
-  }
-  const std::string meant = scene::nearest(name, known);
-  detail::refuse(where, key,
-                 "= \"" + name + "\" is no region" +
-                     (meant.empty() ? "; there are: " + scene::listed(known) : "; did you mean \"" + meant + "\"?"));
-}
-
-void require_finer(const std::string& where, double edge, double mesh_edge) {
-  if (edge < mesh_edge && edge * kMostRatio >= mesh_edge) return;
-  detail::refuse(where, "edge [m]",
-                 "= " + detail::show(edge) + " is outside the allowed range, " +
-                     detail::number_text(mesh_edge / kMostRatio, 3) + " to below " + detail::show(mesh_edge) +
-                     ", the mesh's own edge: give a finer size, or the mesh another edge");
+const BodyRegion& region_called(const std::string& name, const std::vector<BodyRegion>& regions) {
+  return *std::find_if(regions.begin(), regions.end(), [&](const BodyRegion& r) { return r.name == name; });
 }
 
 }  // namespace
@@ -61,14 +71,19 @@ SizeField::SizeField(const std::vector<BodyRegion>& regions, double edge, const 
     throw std::invalid_argument("growth = " + detail::show(growth) + " is outside the allowed range, " +
                                 kGrowthRange.text());
   }
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const MeshSize& size = sizes[i];
-    const std::string where = "size " + std::to_string(i);
-    detail::require_fields(where, size);
-    require_finer(where, size.edge, edge);
-    Place place{nullptr, !size.surface.empty(), {}, size.edge, size.within};
-    if (!size.near.empty()) place.region = &region_called(where, "near", size.near, regions);
-    if (!size.surface.empty()) place.region = &region_called(where, "surface", size.surface, regions);
+  std::vector<std::string> names;
+  for (const BodyRegion& r : regions) names.push_back(r.name);
+  for (std::size_t i = 0; i < sizes.size(); ++i) detail::require_fields("size " + std::to_string(i), sizes[i]);
+  if (const SizeFault fault = check_sizes(sizes, edge, names); !fault.what.empty()) {
+    throw std::invalid_argument("size " + std::to_string(fault.index) + ": " + fault.key + " " + fault.what);
+  }
+  for (const MeshSize& size : sizes) {
+    Place place{nullptr, !size.surface.empty(), {}, {}, size.edge, size.within};
+    if (!size.near.empty()) place.region = &region_called(size.near, regions);
+    if (!size.surface.empty()) place.region = &region_called(size.surface, regions);
+    if (size.per_radius > 0.0) {
+      place.curvature.emplace(curvature_sizes(*place.region, size.per_radius, size.edge, edge), growth, size.within);
+    }
     for (const PathPoint& point : size.path) place.path.push_back(point.at);
     places_.push_back(std::move(place));
     finest_ = std::min(finest_, size.edge);
@@ -91,6 +106,10 @@ double SizeField::at(const Vec3d& p) const {
   double edge = edge_;
   for (const Place& place : places_) {
     if (place.edge >= edge) continue;
+    if (place.curvature) {
+      edge = place.curvature->at(p, edge);
+      continue;
+    }
     edge = std::min(edge, place.edge + growth_ * std::max(0.0, distance(place, p) - place.within));
   }
   return edge;

@@ -1,9 +1,11 @@
 // size_field.h — the length of edges asked for at each point of a body (glisson/mesh_size.h).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "glisson/region_mesh.h"
+#include "mesh/lattice/curvature_sizes.h"
 
 namespace glisson::lattice {
 
@@ -25,6 +27,7 @@ class SizeField {
     const BodyRegion* region = nullptr;
     bool surface = false;
     std::vector<Vec3d> path;
+    std::optional<SizePoints> curvature;
     double edge = 0.0, within = 0.0;  ///< [m]
   };
   static double distance(const Place& place, const Vec3d& p);
