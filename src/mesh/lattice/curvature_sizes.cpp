@@ -1,6 +1,6 @@
 // curvature_sizes.cpp — see curvature_sizes.h.
 //
-// Cubes that the surface crosses are halved until the edge asked for in them is their side. Curvature is taken over a quarter of
+// Cubes that the surface crosses are halved until the edge asked for in them is twice their side. Curvature is taken over a quarter of
 // the side to both sides, so that a bend or crease is seen from a coarse cube, and measured in a fine one.
 #include "mesh/lattice/curvature_sizes.h"
 
@@ -45,7 +45,7 @@ class CurvatureSampler {
     }
     if (!(norm(p - centre) < 2.0 * reach)) p = centre;
     const double edge = std::max(finest_, 1.0 / (per_radius_ * curvature(p, side) + 1e-300));
-    if (edge < side && side > finest_) {
+    if (edge < 2.0 * side && side > finest_) {
       for (int c = 0; c < 8; ++c) {
         cube(centre + Vec3d{c & 1 ? 0.25 : -0.25, c & 2 ? 0.25 : -0.25, c & 4 ? 0.25 : -0.25} * side, 0.5 * side);
       }

@@ -16,7 +16,7 @@ struct SizePoint {
   double edge = 0.0;
 };
 
-/// Points of a region's surface where its radius of curvature over `per_radius` is below `coarsest`, some an edge apart.
+/// Points of a region's surface where its radius of curvature over `per_radius` is below `coarsest`, some half an edge apart.
 /// The edges are no shorter than `finest`; creases have that.
 /// @throws std::invalid_argument  naming the region, where there are more than two million
 std::vector<SizePoint> curvature_sizes(const BodyRegion& region, double per_radius, double finest, double coarsest);
