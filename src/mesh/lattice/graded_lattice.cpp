@@ -25,6 +25,7 @@
 namespace glisson::lattice {
 namespace {
 
+constexpr double kMostRoots = 2e7;
 constexpr double kTooCoarse = 0.55;  ///< of a cube's edge: no smaller edge is asked for at its centre and corners
 const double kMeanTetEdge =
     (1.0 + std::sqrt(3.0)) / 3.0;  ///< mean length of a lattice tet's edges over the cube's side
@@ -75,9 +76,9 @@ class GradedLattice {
       n[d] = static_cast<int>(count);
       origin_[d] = 0.5 * (box.min[d] + box.max[d]) - 0.5 * count * root;
     }
-    if (static_cast<double>(n[0]) * n[1] * n[2] > 1e8) {
+    if (static_cast<double>(n[0]) * n[1] * n[2] > kMostRoots) {
       throw std::invalid_argument("edge [m] = " + detail::show(sizes_.coarsest()) +
-                                  " is too small for the body: the lattice would have more than 1e8 cubes of that "
+                                  " is too small for the body: the lattice would have more than 2e7 cubes of that "
                                   "edge; give a larger edge");
     }
     return CellOctree(n, level);
