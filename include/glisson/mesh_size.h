@@ -33,7 +33,7 @@ struct PathPoint {
 /// A place and the edges there. One of `near`, `surface` and `path` names the place.
 struct MeshSize {
   static constexpr std::string_view kName = "size";
-  double edge = 0.002;            ///< mean length of the edges there [m], > 0, below that of the mesh
+  double edge = 0.002;            ///< mean length of the edges there [m], > 0; no effect where the mesh's is shorter
   std::string near{};             ///< a region: in it and around it
   std::string surface{};          ///< a region: on both sides of its surface
   std::vector<PathPoint> path{};  ///< a line through points, or around one point
@@ -57,8 +57,8 @@ struct MeshSize {
   Fault check() const;
 };
 
-/// What is wrong with sizes of a mesh: a region that is none of these, an edge that is not below that of the mesh. The fault's
-/// text names the size by its number; nothing where it is empty.
+/// What is wrong with sizes of a mesh: a region that is none of these, an edge below a 256th of that of the mesh; nothing where
+/// `what` is empty.
 struct SizeFault {
   std::string what;
   std::size_t index = 0;

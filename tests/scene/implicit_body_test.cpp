@@ -149,8 +149,9 @@ TEST(ImplicitScene, HasSizes) {
 TEST(ImplicitScene, ExplainsSlipsOfSizes) {
   EXPECT_THAT(complaint(sized("near = \"vessel\"", "near = \"vesel\"")),
               HasSubstr("mesh.size.0.near: \"vesel\" is no region of the mesh; did you mean \"vessel\"?"));
-  EXPECT_THAT(complaint(sized("edge_mm = 2.5", "edge_mm = 4.5")),
-              HasSubstr("mesh.size.0.edge_mm: 4.5 mm is out of range; allowed: 0.0156 to below 4"));
+  EXPECT_THAT(complaint(sized("edge_mm = 2.5", "edge_mm = 0.01")),
+              HasSubstr("mesh.size.0.edge_mm: 0.01 mm is out of range; allowed: 0.0156 or more, a 256th of the edge of "
+                        "the mesh, 4 mm"));
   EXPECT_THAT(complaint(sized("surface = \"tilted\"", "surface = \"tilted\"\nnear = \"vessel\"")),
               HasSubstr("names more than one place"));
   EXPECT_THAT(complaint(sized("near = \"vessel\"\n", "")), HasSubstr("names no place"));

@@ -39,10 +39,11 @@ SizeFault check_sizes(const std::vector<MeshSize>& sizes, double mesh_edge, cons
     const MeshSize& s = sizes[i];
     if (std::string what = no_such_region(s.near, regions); !what.empty()) return {std::move(what), i, "near"};
     if (std::string what = no_such_region(s.surface, regions); !what.empty()) return {std::move(what), i, "surface"};
-    if (s.edge < mesh_edge && s.edge * kMostRatio >= mesh_edge) continue;
+    if (s.edge * kMostRatio >= mesh_edge) continue;
     return {detail::number_text(1e3 * s.edge) +
-                " mm is out of range; allowed: " + detail::number_text(1e3 * mesh_edge / kMostRatio, 3) + " to below " +
-                detail::number_text(1e3 * mesh_edge) + ", the edge of the mesh",
+                " mm is out of range; allowed: " + detail::number_text(1e3 * mesh_edge / kMostRatio, 3) +
+                " or more, a " + detail::number_text(kMostRatio) + "th of the edge of the mesh, " +
+                detail::number_text(1e3 * mesh_edge) + " mm",
             i, "edge_mm"};
   }
   return {};
@@ -78,6 +79,7 @@ SizeField::SizeField(const std::vector<BodyRegion>& regions, double edge, const 
     throw std::invalid_argument("size " + std::to_string(fault.index) + ": " + fault.key + " " + fault.what);
   }
   for (const MeshSize& size : sizes) {
+    if (size.edge >= edge) continue;  // the mesh is as fine
     Place place{nullptr, !size.surface.empty(), {}, {}, size.edge, size.within};
     if (!size.near.empty()) place.region = &region_called(size.near, regions);
     if (!size.surface.empty()) place.region = &region_called(size.surface, regions);
