@@ -136,10 +136,10 @@ std::string finer_mesh(const MeshSource& mesh, double factor) {
                        times(cylinder->axial_cells));
   }
   if (const auto* body = std::get_if<ImplicitBody>(&mesh)) {
-    return fmt::format("mesh.edge_mm = {:.2g}", 1e3 * body->edge / factor);
+    return fmt::format("mesh.edge_mm = {:.2g}, or that edge there alone by [[mesh.size]]", 1e3 * body->edge / factor);
   }
   if (const auto* liver = std::get_if<LiverOptions>(&mesh)) {
-    return fmt::format("mesh.edge_mm = {:.2g}", 1e3 * liver->edge / factor);
+    return fmt::format("mesh.edge_mm = {:.2g}, or that edge there alone by [[mesh.size]]", 1e3 * liver->edge / factor);
   }
   return fmt::format("a mesh {:.2g} times as fine there", factor);
 }

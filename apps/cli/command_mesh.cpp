@@ -41,7 +41,7 @@ struct MeshOptions {
 
 struct MeshFigures {
   double least_deg = 180.0, largest_deg = 0.0, seconds = 0.0;
-  double edge = 0.0;                      ///< asked for [m]; 0: none was
+  std::pair<double, double> edges{};      ///< shortest and longest asked for [m]; 0: none were
   std::optional<double> relative_step{};  ///< relative_stable_step, where an edge was asked for
   struct Region {
     std::string name;
@@ -68,11 +68,18 @@ MeshFigures figures_of(const TetMesh& mesh) {
   return figures;
 }
 
-/// The edge that a mesh was asked for [m]; 0 where it was given by its cells or a file.
-double asked_edge(const MeshSource& source) {
-  if (const auto* body = std::get_if<ImplicitBody>(&source)) return body->edge;
-  if (const auto* liver = std::get_if<LiverOptions>(&source)) return liver->edge;
-  return 0.0;
+/// The body of shapes that a mesh was asked for by its edge; none where it was given by its cells or a file.
+std::optional<ImplicitBody> asked_body(const MeshSource& source) {
+  if (const auto* body = std::get_if<ImplicitBody>(&source)) return *body;
+  if (const auto* liver = std::get_if<LiverOptions>(&source)) return liver_body(*liver);
+  return {};
+}
+
+/// The shortest and longest edge that a body asks for [m].
+std::pair<double, double> edges_of(const ImplicitBody& body) {
+  double finest = body.edge;
+  for (const MeshSize& s : body.sizes) finest = std::min(finest, s.edge);
+  return {finest, body.edge};
 }
 
 nlohmann::ordered_json mesh_json(const TetMesh& mesh, const MeshFigures& figures) {
@@ -167,16 +174,21 @@ int mesh(const MeshOptions& options) {
   }
   MeshFigures figures = figures_of(body);
   figures.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  figures.edge = asked_edge(variant.mesh);
-  if (figures.edge > 0.0) figures.relative_step = relative_stable_step(body, figures.edge);
+  if (const auto asked = asked_body(variant.mesh)) {
+    figures.edges = edges_of(*asked);
+    figures.relative_step = asked->sizes.empty() ? relative_stable_step(body, asked->edge)
+                                                 : relative_stable_step(body, edges_asked(body, *asked));
+  }
   write_vtu(options.out, body);
   write_json(options.json, mesh_json(body, figures));
   if (options.quiet) return kDone;
   say("{}: {} tets, {} vertices, dihedral angles {:.1f}° to {:.1f}°, {:.2f} s\n", options.out, body.tets.size(),
       body.vertices.size(), figures.least_deg, figures.largest_deg, figures.seconds);
   if (figures.relative_step) {
-    say("  stable step {:.2f} of that of regular tets with edges of {:.3g} mm\n", *figures.relative_step,
-        1e3 * figures.edge);
+    const auto& [finest, coarsest] = figures.edges;
+    const std::string from = finest < coarsest ? fmt::format("{:.3g} to ", 1e3 * finest) : "";
+    say("  stable step {:.2f} of that of regular tets with edges of {}{:.3g} mm\n", *figures.relative_step, from,
+        1e3 * coarsest);
   }
   for (const auto& [number, r] : figures.regions) {
     say("  region {:<3} {:<20} {:>9} tets {:>10.4g} mL\n", number, r.name, r.tets, 1e6 * r.volume);

@@ -278,12 +278,14 @@ struct ImplicitBody {
   std::vector<ShapeRegion> regions;  ///< by precedence, the first over all others
   double edge = 0.005;               ///< mean length of edges [m], > 0
   std::uint64_t max_tets = 5000000;  ///< more are refused
+  std::vector<MeshSize> sizes{};     ///< where edges are shorter
+  double growth = kGrowth;           ///< edge over distance at which edges grow away from these [-]
 };
 
-/// What is wrong with the names in a body, and in which shape or region; nothing where `what` is empty.
+/// What is wrong with the names in a body, and in which shape, region or size; nothing where `what` is empty.
 struct BodyFault {
   std::string what;
-  bool in_region = false;
+  std::string_view list = "shape";  ///< or "region", "size"
   std::size_t index = 0;
   std::string key;
 };
@@ -294,5 +296,8 @@ std::vector<BodyRegion> regions_of(const ImplicitBody& body);
 
 /// Its mesh. @throws as regions_of and mesh_regions
 RegionMesh implicit_mesh(const ImplicitBody& body, std::function<bool(double)> progress = {});
+
+/// The edge that a body asks for in each tet of a mesh, at its centre [m]. @throws as regions_of and mesh_regions
+std::vector<double> edges_asked(const TetMesh& mesh, const ImplicitBody& body);
 
 }  // namespace glisson

@@ -16,22 +16,29 @@ struct LiverOptions {
   Vec3d tumour_center{-0.035, -0.005, 0.01};  ///< [m], before scaling
   double tumour_radius = 0.012;               ///< [m], before scaling; 0: no tumour
   std::uint64_t max_tets = 5000000;           ///< more are refused
+  std::vector<MeshSize> sizes{};              ///< where edges are shorter; not scaled
+  double growth = kGrowth;                    ///< edge over distance at which edges grow away from these [-]
 
   template <class Take>
   static constexpr auto fields(Take take) {
     using L = LiverOptions;
-    return take(field("edge", &L::edge, "mm", above(0), "mean length of the tets' edges")
-                    .advise("15 gives some 5000 tets, 8 some 31 000, 2 some 1.9 million"),
-                field("scale", &L::scale, "-", between(0.2, 3), "factor on all lengths"),
-                field("vessels", &L::vessels, "portal and hepatic veins as regions of their own"),
-                field("tumour_center", &L::tumour_center, "mm", "centre of the tumour, before scaling"),
-                field("tumour_radius", &L::tumour_radius, "mm", at_least(0), "its radius, before scaling; 0: none"),
-                field("max_tets", &L::max_tets, between(1, 1e9), "a finer mesh is refused"));
+    return take(
+        field("edge", &L::edge, "mm", above(0), "mean length of the tets' edges")
+            .advise("15 gives some 5000 tets, 8 some 31 000, 2 some 1.9 million"),
+        field("scale", &L::scale, "-", between(0.2, 3), "factor on all lengths"),
+        field("vessels", &L::vessels, "portal and hepatic veins as regions of their own"),
+        field("tumour_center", &L::tumour_center, "mm", "centre of the tumour, before scaling"),
+        field("tumour_radius", &L::tumour_radius, "mm", at_least(0), "its radius, before scaling; 0: none"),
+        field("max_tets", &L::max_tets, between(1, 1e9), "a finer mesh is refused"),
+        field("sizes", &L::sizes, "where edges are shorter, in the scene's coordinates").keyed("size"),
+        field("growth", &L::growth, "-", kGrowthRange, "edge over distance at which edges grow away from these"));
   }
+  Fault check() const;
 };
 
 /// The shapes and regions of a liver: `tumour`, `hepatic_veins`, `portal_veins` and `parenchyma`, in this order of precedence.
-/// A vein thinner than 1.2 edges is left out from there, a tree of less than three edges in all.
+/// A vein thinner than 1.2 edges is left out from there, a tree of less than three edges in all; the edge of a tree that a
+/// size names is that of the size.
 /// @throws std::invalid_argument naming the option, its value and the allowed range
 ImplicitBody liver_body(const LiverOptions& options);
 

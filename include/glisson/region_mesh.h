@@ -13,6 +13,7 @@
 
 #include "glisson/math.h"
 #include "glisson/mesh.h"
+#include "glisson/mesh_size.h"
 
 namespace glisson {
 
@@ -36,6 +37,8 @@ struct RegionMeshOptions {
   std::size_t max_tets = 20000000;  ///< more are refused before any memory is taken
   /// Called now and then with the part that is done, 0 to 1; false stops the work. Empty: nothing is called.
   std::function<bool(double)> progress{};
+  std::vector<MeshSize> sizes{};  ///< where edges are shorter; the shortest of them counts
+  double growth = kGrowth;        ///< edge over distance at which edges grow away from these [-], 0.05 to 1
 };
 
 /// What came of a region.
@@ -76,5 +79,10 @@ class MeshingStopped : public std::runtime_error {
 /// @throws MeshingStopped  where `progress` asked for the end
 /// Cost: some 10 µs and 150 bytes a tet, up to 100 µs where many thin parts meet.
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options);
+
+/// The edge asked for in each tet of a mesh, at its centre [m].
+/// @throws std::invalid_argument  as mesh_regions, for edge, sizes and growth
+std::vector<double> edges_asked(const TetMesh& mesh, const std::vector<BodyRegion>& regions,
+                                const RegionMeshOptions& options);
 
 }  // namespace glisson

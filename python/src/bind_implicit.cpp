@@ -96,6 +96,8 @@ using Made = std::pair<TetMesh, RegionMeshReport>;
 Made made(RegionMesh mesh) { return {std::move(mesh.mesh), std::move(mesh.report)}; }
 
 void bind_mesher(nb::module_& m) {
+  Options<PathPoint>(m, "PathPoint");
+  Options<MeshSize>(m, "MeshSize");
   nb::class_<BodyRegion>(m, "BodyRegion", doc("BodyRegion"))
       .def(
           "__init__",
@@ -119,11 +121,26 @@ void bind_mesher(nb::module_& m) {
       .def_ro("warnings", &RegionMeshReport::warnings, doc("RegionMeshReport::warnings"));
   m.def(
       "mesh_regions",
-      [](const std::vector<BodyRegion>& regions, double edge, std::size_t max_tets) {
-        return made(mesh_regions(regions, {edge, max_tets, [](double) { return PyErr_CheckSignals() == 0; }}));
+      [](const std::vector<BodyRegion>& regions, double edge, std::size_t max_tets, const std::vector<MeshSize>& sizes,
+         double growth) {
+        const auto go_on = [](double) { return PyErr_CheckSignals() == 0; };
+        return made(mesh_regions(regions, {edge, max_tets, go_on, sizes, growth}));
       },
-      "regions"_a, "edge"_a, "max_tets"_a = RegionMeshOptions{}.max_tets, doc("mesh_regions"));
-  m.def("relative_stable_step", relative_stable_step, "mesh"_a, "edge"_a, doc("relative_stable_step"));
+      "regions"_a, "edge"_a, "max_tets"_a = RegionMeshOptions{}.max_tets, "sizes"_a = std::vector<MeshSize>{},
+      "growth"_a = kGrowth, doc("mesh_regions"));
+  m.def(
+      "edges_asked",
+      [](const TetMesh& mesh, const std::vector<BodyRegion>& regions, double edge, const std::vector<MeshSize>& sizes,
+         double growth) {
+        return scalars(edges_asked(mesh, regions, {.edge = edge, .sizes = sizes, .growth = growth}));
+      },
+      "mesh"_a, "regions"_a, "edge"_a, "sizes"_a = std::vector<MeshSize>{}, "growth"_a = kGrowth, doc("edges_asked"));
+  m.def("relative_stable_step", nb::overload_cast<const TetMesh&, double>(relative_stable_step), "mesh"_a, "edge"_a,
+        doc("relative_stable_step"));
+  m.def(
+      "relative_stable_step",
+      [](const TetMesh& mesh, const std::vector<double>& edges) { return relative_stable_step(mesh, edges); }, "mesh"_a,
+      "edges"_a, "The same where another edge was asked for in each tet [m] (`edges_asked`).");
   Options<LiverOptions>(m, "LiverOptions");
   m.def(
       "liver_mesh",

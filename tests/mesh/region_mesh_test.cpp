@@ -11,70 +11,21 @@
 
 #include "glisson/liver.h"
 #include "glisson/simulation/mesh_step.h"
+#include "mesh_checks.h"
 #include "random_body.h"
 
 namespace glisson {
 namespace {
 
+using test::expect_conforming;
+using test::Face;
+using test::faces_of;
+using test::least_altitude;
 using test::RandomShapes;
 using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr double kPi = std::numbers::pi;
-
-struct Face {
-  std::array<std::uint32_t, 3> corners;
-  std::vector<int> regions;  ///< of its tets
-};
-
-std::vector<Face> faces_of(const TetMesh& mesh) {
-  std::map<std::array<std::uint32_t, 3>, std::vector<int>> faces;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      std::array<std::uint32_t, 3> f{mesh.tets[t][(i + 1) % 4], mesh.tets[t][(i + 2) % 4], mesh.tets[t][(i + 3) % 4]};
-      std::sort(f.begin(), f.end());
-      faces[f].push_back(mesh.regions[t]);
-    }
-  }
-  std::vector<Face> all;
-  for (auto& [corners, regions] : faces) all.push_back({corners, regions});
-  return all;
-}
-
-/// No face has more than two tets, and every edge of a region's boundary has an even number of its faces: it is closed.
-void expect_conforming(const TetMesh& mesh) {
-  ASSERT_NO_THROW(require_valid(mesh));
-  std::map<std::array<std::uint32_t, 2>, std::map<int, int>> edges;
-  for (const Face& f : faces_of(mesh)) {
-    ASSERT_LE(f.regions.size(), 2u);
-    if (f.regions.size() == 2 && f.regions[0] == f.regions[1]) continue;
-    for (const int region : f.regions) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        std::array<std::uint32_t, 2> e{f.corners[i], f.corners[(i + 1) % 3]};
-        std::sort(e.begin(), e.end());
-        ++edges[e][region];
-      }
-    }
-  }
-  for (const auto& [edge, counts] : edges) {
-    for (const auto& [region, count] : counts) ASSERT_EQ(count % 2, 0) << "an edge of region " << region << " is open";
-  }
-}
-
-/// Least altitude of a tet over that of a regular one of the edge asked for.
-double least_altitude(const TetMesh& mesh, double edge) {
-  double least = 1e9;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    const Tet& x = mesh.tets[t];
-    double area = 0.0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Vec3d& p = mesh.vertices[x[(i + 1) % 4]];
-      area = std::max(area, norm(cross(mesh.vertices[x[(i + 2) % 4]] - p, mesh.vertices[x[(i + 3) % 4]] - p)));
-    }
-    least = std::min(least, six_rest_volume(mesh, t) / area);
-  }
-  return least / (std::sqrt(2.0 / 3.0) * edge);
-}
 
 /// Angles between 10° and 165°, and no altitude that would shorten the stable step below 0.3 of that of regular tets (the
 /// last hundredths are those of a tet that was left when its angles were good).

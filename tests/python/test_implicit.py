@@ -18,6 +18,20 @@ def test_a_body_of_two_regions_is_meshed():
     assert 0.4 < glisson.relative_stable_step(mesh, 0.005) < 1
 
 
+def test_a_mesh_is_finer_where_sizes_ask_for_it():
+    regions = [glisson.BodyRegion("core", glisson.Solid(glisson.BallShape(radius=0.01))),
+               glisson.BodyRegion("ball", glisson.Solid(glisson.BallShape(radius=0.04)))]  # fmt: skip
+    sizes = [glisson.MeshSize(edge=0.004, near="core"), glisson.MeshSize(edge=0.004, path=[glisson.PathPoint(at=[0, 0, 0.04])])]
+    mesh, report = glisson.mesh_regions(regions, edge=0.008, sizes=sizes, growth=0.4)
+    assert report.min_dihedral_deg >= 10 and report.max_dihedral_deg <= 165
+    edges = glisson.edges_asked(mesh, regions, edge=0.008, sizes=sizes, growth=0.4)
+    assert edges.shape == (len(mesh.tets),)
+    assert edges.min() == pytest.approx(0.004) and edges.max() == pytest.approx(0.008)
+    assert glisson.relative_stable_step(mesh, edges) > 0.3
+    with pytest.raises(ValueError, match="no region of the mesh"):
+        glisson.mesh_regions(regions, edge=0.008, sizes=[glisson.MeshSize(edge=0.004, near="cor")])
+
+
 def test_any_function_of_a_point_is_a_solid():
     wavy = glisson.Solid.from_function(lambda p: float(np.linalg.norm(p)) - 0.02, [-0.02] * 3, [0.02] * 3)
     assert wavy.distance([0.03, 0, 0]) == pytest.approx(0.01)

@@ -106,6 +106,58 @@ TEST(ImplicitScene, IsOverridden) {
   EXPECT_DOUBLE_EQ(std::get<TubeShape>(body.shapes[1].what).points.at(0).radius, 0.001);
 }
 
+/// The scene with sizes.
+std::string sized(const std::string& from = "", const std::string& to = "") {
+  std::string text = changed("max_tets = 100000\n", "max_tets = 100000\ngrowth = 0.5\n") + R"(
+[[mesh.size]]
+near = "vessel"
+edge_mm = 2.5
+within_mm = 1
+
+[[mesh.size]]
+surface = "tilted"
+edge_mm = 2
+per_radius = 3
+
+[[mesh.size]]
+path = [{ at_mm = [-40, 0, 0] }, { at_mm = [40, 0, 0] }]
+edge_mm = 2.5
+)";
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+// Sizes arrive with their places, and a study of convergence halves them, too.
+TEST(ImplicitScene, HasSizes) {
+  const Variant variant = parse(sized()).variants.at(0);
+  const auto body = std::get<ImplicitBody>(variant.mesh);
+  EXPECT_EQ(body.growth, 0.5);
+  ASSERT_EQ(body.sizes.size(), 3u);
+  EXPECT_EQ(body.sizes[0].near, "vessel");
+  EXPECT_DOUBLE_EQ(body.sizes[0].edge, 0.0025);
+  EXPECT_DOUBLE_EQ(body.sizes[0].within, 0.001);
+  EXPECT_EQ(body.sizes[1].surface, "tilted");
+  EXPECT_EQ(body.sizes[1].per_radius, 3.0);
+  EXPECT_EQ(body.sizes[2].path.at(1).at, (Vec3d{0.04, 0, 0}));
+  const RefinedVariant fine = refined_variant(variant, 1, {});
+  EXPECT_DOUBLE_EQ(std::get<ImplicitBody>(fine.variant.mesh).sizes[0].edge, 0.00125);
+  EXPECT_GT(build_mesh(variant, {}).tets.size(), 2 * build_mesh(parse(kShapes).variants.at(0), {}).tets.size());
+}
+
+// Slips of sizes are told with the place, the value and the way out.
+TEST(ImplicitScene, ExplainsSlipsOfSizes) {
+  EXPECT_THAT(complaint(sized("near = \"vessel\"", "near = \"vesel\"")),
+              HasSubstr("mesh.size.0.near: \"vesel\" is no region of the mesh; did you mean \"vessel\"?"));
+  EXPECT_THAT(complaint(sized("edge_mm = 2.5", "edge_mm = 0.01")),
+              HasSubstr("mesh.size.0.edge_mm: 0.01 mm is out of range; allowed: 0.0156 or more, a 256th of the edge of "
+                        "the mesh, 4 mm"));
+  EXPECT_THAT(complaint(sized("surface = \"tilted\"", "surface = \"tilted\"\nnear = \"vessel\"")),
+              HasSubstr("names more than one place"));
+  EXPECT_THAT(complaint(sized("near = \"vessel\"\n", "")), HasSubstr("names no place"));
+  EXPECT_THAT(complaint(sized("growth = 0.5", "growth = 5")), HasSubstr("0.05 to 1"));
+}
+
 // Slips are told with the place, the value and the way out.
 TEST(ImplicitScene, ExplainsSlips) {
   EXPECT_THAT(complaint(changed("of = [\"vessel\"", "of = [\"vesel\"")),
@@ -146,6 +198,10 @@ TEST(LiverScene, HasItsOptionsAndSets) {
   EXPECT_FALSE(mesh.vertex_sets.at("bare_area").empty());
   EXPECT_EQ(mesh.region_names.rbegin()->second, "parenchyma");
   EXPECT_THAT(complaint(text + "[[fixed]]\nset = \"bare_are\"\n"), HasSubstr("bare_area"));
+  const std::string size = "[[mesh.size]]\nnear = \"parenchyma\"\nedge_mm = 8\n";
+  EXPECT_EQ(std::get<LiverOptions>(parse(text + size).variants.at(0).mesh).sizes.at(0).near, "parenchyma");
+  EXPECT_THAT(complaint(text + "[[mesh.size]]\nnear = \"tumor\"\nedge_mm = 8\n"),
+              HasSubstr("\"tumor\" is no region of the mesh; did you mean \"tumour\"?"));
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // need nothing else of a simulation.
 #pragma once
 
+#include <span>
+
 #include "glisson/mesh.h"
 
 namespace glisson {
@@ -15,5 +17,10 @@ namespace glisson {
 /// @throws std::invalid_argument  as require_valid, or an edge out of range
 /// Cost: some 5 µs a tet.
 double relative_stable_step(const TetMesh& mesh, double edge);
+
+/// The same where another edge was asked for in each tet (edges_asked in glisson/region_mesh.h): the forces of a tet are taken
+/// e² times, so that each has a step as if all edges were 1.
+/// @param edges  e of each tet [m], > 0
+double relative_stable_step(const TetMesh& mesh, std::span<const double> edges);
 
 }  // namespace glisson

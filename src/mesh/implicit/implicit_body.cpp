@@ -55,10 +55,10 @@ std::string reference_fault(const NamedShape& shape, const Names& known) {
 BodyFault shape_fault(const ImplicitBody& body, Names& known) {
   for (std::size_t i = 0; i < body.shapes.size(); ++i) {
     const NamedShape& s = body.shapes[i];
-    if (s.name.empty()) return {"is empty; give the shape a name", false, i, "name"};
+    if (s.name.empty()) return {"is empty; give the shape a name", "shape", i, "name"};
     if (std::find(known.begin(), known.end(), s.name) != known.end())
-      return {"\"" + s.name + "\" is the name of an earlier shape; give another", false, i, "name"};
-    if (std::string fault = reference_fault(s, known); !fault.empty()) return {std::move(fault), false, i, "of"};
+      return {"\"" + s.name + "\" is the name of an earlier shape; give another", "shape", i, "name"};
+    if (std::string fault = reference_fault(s, known); !fault.empty()) return {std::move(fault), "shape", i, "of"};
     known.push_back(s.name);
   }
   return {};
@@ -104,14 +104,15 @@ BodyFault check_names(const ImplicitBody& body) {
   if (BodyFault fault = shape_fault(body, known); !fault.what.empty()) return fault;
   for (std::size_t i = 0; i < body.regions.size(); ++i) {
     const ShapeRegion& r = body.regions[i];
-    if (r.name.empty()) return {"is empty; give the region a name", true, i, "name"};
+    if (r.name.empty()) return {"is empty; give the region a name", "region", i, "name"};
     if (std::find(regions.begin(), regions.end(), r.name) != regions.end())
-      return {"\"" + r.name + "\" is the name of an earlier region; give another", true, i, "name"};
+      return {"\"" + r.name + "\" is the name of an earlier region; give another", "region", i, "name"};
     if (std::find(known.begin(), known.end(), shape_name(r)) == known.end())
-      return {unknown_shape(shape_name(r), known), true, i, r.shape.empty() ? "name" : "shape"};
+      return {unknown_shape(shape_name(r), known), "region", i, r.shape.empty() ? "name" : "shape"};
     regions.push_back(r.name);
   }
-  return {};
+  SizeFault fault = check_sizes(body.sizes, body.edge, regions);
+  return {std::move(fault.what), "size", fault.index, std::move(fault.key)};
 }
 
 BodyRegion region_of(const std::string& name, const Solid& shape, bool hole) {
@@ -123,8 +124,8 @@ BodyRegion region_of(const std::string& name, const Solid& shape, bool hole) {
 
 std::vector<BodyRegion> regions_of(const ImplicitBody& body) {
   if (const BodyFault fault = check_names(body); !fault.what.empty()) {
-    const std::string kind = fault.in_region ? "region" : "shape";
-    throw std::invalid_argument(kind + " " + std::to_string(fault.index) + ": " + fault.key + " " + fault.what);
+    throw std::invalid_argument(std::string(fault.list) + " " + std::to_string(fault.index) + ": " + fault.key + " " +
+                                fault.what);
   }
   std::map<std::string, Solid> shapes;
   for (const NamedShape& s : body.shapes) {
@@ -140,7 +141,11 @@ std::vector<BodyRegion> regions_of(const ImplicitBody& body) {
 }
 
 RegionMesh implicit_mesh(const ImplicitBody& body, std::function<bool(double)> progress) {
-  return mesh_regions(regions_of(body), {body.edge, body.max_tets, std::move(progress)});
+  return mesh_regions(regions_of(body), {body.edge, body.max_tets, std::move(progress), body.sizes, body.growth});
+}
+
+std::vector<double> edges_asked(const TetMesh& mesh, const ImplicitBody& body) {
+  return edges_asked(mesh, regions_of(body), {.edge = body.edge, .sizes = body.sizes, .growth = body.growth});
 }
 
 }  // namespace glisson

@@ -33,7 +33,7 @@ class Lattice {
 
   void fill() {
     mark_inside();
-    refuse_too_many();
+    refuse_too_many(fields_.sizes(), 6.0 * static_cast<double>(inside_), max_tets_);  // two vertices, 12 tets a cube
     for (int k = 0; k < n_[2]; ++k) {
       for (int j = 0; j < n_[1]; ++j) {
         for (int i = 0; i < n_[0]; ++i) add_cube(i, j, k);
@@ -45,14 +45,7 @@ class Lattice {
   static constexpr std::uint32_t kUnknown = ~0u, kOutside = ~0u - 1, kInside = ~0u - 2;  ///< above all vertex numbers
 
   void place() {
-    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-    for (std::size_t r = 0; r < fields_.count(); ++r) {
-      if (fields_.region(r).hole) continue;
-      for (std::size_t d = 0; d < 3; ++d) {
-        low[d] = std::min(low[d], fields_.region(r).bounds.min[d]);
-        high[d] = std::max(high[d], fields_.region(r).bounds.max[d]);
-      }
-    }
+    const auto [low, high] = fields_.bounds();
     double cells = 1.0;
     for (std::size_t d = 0; d < 3; ++d) {
       const double n = std::ceil((high[d] - low[d]) / side_ - 1e-9) + 4.0;
@@ -85,15 +78,7 @@ class Lattice {
   /// Whether a region may reach a block whose lowest cube is (i, j, k).
   bool reached(int i, int j, int k) const {
     const double half = 0.5 * kBlock * side_;
-    const Vec3d centre = place_of(false, i, j, k) + Vec3d{half, half, half};
-    for (std::size_t r = 0; r < fields_.count(); ++r) {
-      if (fields_.region(r).hole) continue;
-      const Bounds& b = fields_.region(r).bounds;
-      bool near = true;
-      for (std::size_t d = 0; d < 3; ++d) near = near && centre[d] + half >= b.min[d] && centre[d] - half <= b.max[d];
-      if (near && fields_.value(r, centre) <= 1.7321 * half) return true;
-    }
-    return false;
+    return fields_.reached(place_of(false, i, j, k) + Vec3d{half, half, half}, half);
   }
 
   void mark_inside() {
@@ -114,8 +99,7 @@ class Lattice {
           for (int i = i0; i < std::min(i0 + kBlock + more, n_[0] + more); ++i) {
             std::uint32_t& mark = at(is_centre, i, j, k);
             if (mark != kUnknown) continue;
-            const Label label = fields_.label(place_of(is_centre, i, j, k));
-            const bool inside = label != fields_.outside() && !fields_.region(label).hole;
+            const bool inside = fields_.filled(fields_.label(place_of(is_centre, i, j, k)));
             inside_ += inside;
             mark = inside ? kInside : kOutside;
           }
@@ -124,33 +108,11 @@ class Lattice {
     }
   }
 
-  /// Refuses more tets than are allowed, or than there is memory for.
-  void refuse_too_many() const {
-    const double tets = 6.0 * static_cast<double>(inside_);  // two vertices and twelve tets a cube
-    const std::string asks =
-        "edge [m] = " + detail::show(fields_.edge()) + " asks for some " + detail::number_text(tets, 2) + " tets; ";
-    const auto larger_edge = [&](double most) {
-      const double factor = std::cbrt(tets / most);
-      return "give an edge of " + detail::number_text(1.02 * factor * fields_.edge(), 2) + " m or more";
-    };
-    const auto allowed = static_cast<double>(max_tets_);
-    if (tets > allowed) {
-      throw std::invalid_argument(asks + "at most " + std::to_string(max_tets_) +
-                                  " are allowed: " + larger_edge(allowed) + ", or raise the limit");
-    }
-    const std::optional<double> memory = detail::available_memory();
-    if (memory && tets * kBytesATet > *memory) {
-      throw std::invalid_argument(asks + "that takes " + detail::number_text(1e-6 * tets * kBytesATet, 2) + " MB and " +
-                                  detail::number_text(1e-6 * *memory, 2) +
-                                  " MB are available: " + larger_edge(std::max(1.0, *memory / kBytesATet)));
-    }
-  }
-
   std::uint32_t vertex(bool is_centre, int i, int j, int k) {
     std::uint32_t& mark = at(is_centre, i, j, k);
     if (mark < kInside) return mark;
     used_inside_.push_back(mark == kInside);
-    return mark = complex_.add_vertex(place_of(is_centre, i, j, k));
+    return mark = complex_.add_vertex(place_of(is_centre, i, j, k), fields_.edge());
   }
 
   struct Place {
@@ -203,6 +165,31 @@ class Lattice {
 };
 
 }  // namespace
+
+void refuse_too_many(const SizeField& sizes, double tets, std::size_t max_tets) {
+  const double edge = sizes.coarsest();
+  const std::string asks = (sizes.uniform() ? "edge [m] = " + detail::show(edge) + " asks"
+                                            : "edge [m] = " + detail::show(edge) + ", at the finest " +
+                                                  detail::show(sizes.finest()) + ", asks") +
+                           " for some " + detail::number_text(tets, 2) + " tets; ";
+  const auto larger_edge = [&](double most) {
+    const double factor = 1.02 * std::cbrt(tets / most);
+    if (!sizes.uniform())
+      return "give edges " + detail::number_text(factor, 2) + " times as long, or fine ones less far";
+    return "give an edge of " + detail::number_text(factor * edge, 2) + " m or more";
+  };
+  const auto allowed = static_cast<double>(max_tets);
+  if (tets > allowed) {
+    throw std::invalid_argument(asks + "at most " + std::to_string(max_tets) + " are allowed: " + larger_edge(allowed) +
+                                ", or raise the limit");
+  }
+  const std::optional<double> memory = detail::available_memory();
+  if (memory && tets * kBytesATet > *memory) {
+    throw std::invalid_argument(asks + "that takes " + detail::number_text(1e-6 * tets * kBytesATet, 2) + " MB and " +
+                                detail::number_text(1e-6 * *memory, 2) +
+                                " MB are available: " + larger_edge(std::max(1.0, *memory / kBytesATet)));
+  }
+}
 
 void fill_lattice(const RegionFields& fields, std::size_t max_tets, TetComplex& complex) {
   Lattice(fields, max_tets, complex).fill();

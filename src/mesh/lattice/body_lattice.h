@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/lattice/region_fields.h"
+#include "mesh/lattice/size_field.h"
 #include "mesh/lattice/tet_complex.h"
 
 namespace glisson::lattice {
@@ -17,6 +18,9 @@ inline double expected_tets(double volume, double edge) {
   const double side = cube_side(edge);
   return 12.0 * volume / (side * side * side);
 }
+
+/// Refuses more tets than are allowed, or than there is memory for. @throws std::invalid_argument
+void refuse_too_many(const SizeField& sizes, double tets, std::size_t max_tets);
 
 /// All lattice tets with a corner in a region, undecided.
 /// @throws std::invalid_argument  more than max_tets, or a lattice that is too large

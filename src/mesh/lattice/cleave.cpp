@@ -43,21 +43,22 @@ class Cleaver {
   void evaluate() {
     value_.assign(c_.points.size(), std::numeric_limits<double>::quiet_NaN());
     const Bounds& b = f_.region(region_).bounds;
-    const double margin = f_.edge();
+    const double margin = f_.edge();  // of the coarsest tets
     for (std::uint32_t t = 0; t < c_.tets.size(); ++t) {
       if (c_.labels[t] != kUndecided) continue;
       for (const std::uint32_t v : c_.tets[t]) {
-        if (std::isnan(value_[v])) value_[v] = value_at(c_.points[v], b, margin);
+        if (std::isnan(value_[v])) value_[v] = value_at(v, b, margin);
       }
     }
   }
 
-  double value_at(const Vec3d& p, const Bounds& b, double margin) const {
+  double value_at(std::uint32_t v, const Bounds& b, double margin) const {
+    const Vec3d& p = c_.points[v];
     for (std::size_t d = 0; d < 3; ++d) {
       if (p[d] < b.min[d] - margin || p[d] > b.max[d] + margin) return margin;
     }
     const double value = f_.value(region_, p);
-    return std::abs(value) < kOnSurface * f_.edge() ? 0.0 : value;
+    return std::abs(value) < kOnSurface * c_.edges[v] ? 0.0 : value;
   }
 
   bool crosses(std::uint32_t u, std::uint32_t v) const { return value_[u] * value_[v] < 0.0; }
@@ -66,10 +67,11 @@ class Cleaver {
   double root(std::uint32_t u, std::uint32_t v) const {
     double a = 0.0, b = 1.0, fa = value_[u], fb = value_[v];
     double t = 0.5;
+    const double close = 1e-3 * c_.edge_between(u, v);
     for (int i = 0; i < 12; ++i) {
       t = a + (b - a) * std::clamp(fa / (fa - fb), 0.05, 0.95);
       const double ft = f_.value(region_, c_.points[u] + (c_.points[v] - c_.points[u]) * t);
-      if (std::abs(ft) < 1e-3 * f_.edge()) break;
+      if (std::abs(ft) < close) break;
       ((ft < 0.0) == (fa < 0.0) ? a : b) = t;
       ((ft < 0.0) == (fa < 0.0) ? fa : fb) = ft;
     }
@@ -104,7 +106,7 @@ class Cleaver {
     };
     std::vector<Draw> draws;
     for (const Crossing& x : crossings_) {
-      const bool is_long = length(x.u, x.v) > kLongEdge * f_.edge() / 0.9234;
+      const bool is_long = length(x.u, x.v) > kLongEdge * c_.edge_between(x.u, x.v) / 0.9234;
       const double allowed = is_long ? kLongShare : kShortShare;
       if (x.t < allowed) draws.push_back({x.t / allowed, x.u, x.v, x.t});
       if (1.0 - x.t < allowed) draws.push_back({(1.0 - x.t) / allowed, x.v, x.u, 1.0 - x.t});
@@ -119,11 +121,12 @@ class Cleaver {
   /// Moves a vertex onto the surface, and along those it lies on; where that squeezes its tets, to the crossing.
   void draw(std::uint32_t v, const Vec3d& crossing) {
     const Vec3d from = c_.points[v];
+    const double edge = c_.edges[v];
     const Mask earlier = surfaces_of(c_.labels_at(v));
     Vec3d nearest = from;
-    const double left = f_.project(nearest, earlier | bit(static_cast<Label>(region_)));
-    const double far = 0.5 * f_.edge();
-    if (left < kOnSurface * f_.edge() && norm(nearest - from) < far) {
+    const double left = f_.project(nearest, earlier | bit(static_cast<Label>(region_)), edge);
+    const double far = 0.5 * edge;
+    if (left < kOnSurface * edge && norm(nearest - from) < far) {
       c_.points[v] = nearest;
       if (star_quality(v) > kLeastQuality) {
         value_[v] = 0.0;
@@ -133,7 +136,7 @@ class Cleaver {
     c_.points[v] = from;
     if (earlier != 0) {
       // Two surfaces so close that they are one to this mesh: the vertex is of both as it is.
-      if (std::abs(value_[v]) < 0.15 * f_.edge()) value_[v] = 0.0;
+      if (std::abs(value_[v]) < 0.15 * edge) value_[v] = 0.0;
       return;
     }
     c_.points[v] = crossing;
@@ -146,7 +149,7 @@ class Cleaver {
 
   double quality(std::uint32_t t) const {
     const Tet& x = c_.tets[t];
-    return tet_quality(c_.points[x[0]], c_.points[x[1]], c_.points[x[2]], c_.points[x[3]], f_.edge());
+    return tet_quality(c_.points[x[0]], c_.points[x[1]], c_.points[x[2]], c_.points[x[3]], c_.edge_in(x));
   }
   double star_quality(std::uint32_t v) const {
     double least = 1.0;
@@ -170,8 +173,9 @@ class Cleaver {
     value_.push_back(0.0);
     if (earlier == 0) return;
     Vec3d nearest = at;
-    const double left = f_.project(nearest, earlier | bit(static_cast<Label>(region_)));
-    if (left > kOnSurface * f_.edge() || norm(nearest - at) > 0.3 * f_.edge()) return;
+    const double edge = c_.edges[m];
+    const double left = f_.project(nearest, earlier | bit(static_cast<Label>(region_)), edge);
+    if (left > kOnSurface * edge || norm(nearest - at) > 0.3 * edge) return;
     const double before = star_quality(m);
     c_.points[m] = nearest;
     if (star_quality(m) < std::min(before, kLeastQuality)) c_.points[m] = at;

@@ -7,13 +7,36 @@
 namespace glisson::lattice {
 namespace {
 
-/// Whether only the ring of the edge is joined to both ends: else the contraction would fold tets onto each other.
+/// Edges opposite a vertex in its tets that do not have `other`, each once, ascending.
+void opposite_edges(const TetComplex& c, std::uint32_t vertex, std::uint32_t other,
+                    std::vector<std::array<std::uint32_t, 2>>& out) {
+  out.clear();
+  for (const std::uint32_t t : c.stars[vertex]) {
+    const Tet& tet = c.tets[t];
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) {
+        if (tet[i] == vertex || tet[j] == vertex || tet[i] == other || tet[j] == other) continue;
+        out.push_back({std::min(tet[i], tet[j]), std::max(tet[i], tet[j])});
+      }
+    }
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+}
+
+/// Whether only the ring of the edge is joined to both ends, by vertices and by faces: else the contraction would fold tets onto
+/// each other.
 bool links_meet_in_ring(const TetComplex& c, std::uint32_t u, std::uint32_t v, const EdgeRing& ring) {
   std::vector<std::uint32_t> a, b, both;
   c.neighbours(u, a);
   c.neighbours(v, b);
   std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
-  return both.size() == ring.ring.size();
+  if (both.size() != ring.ring.size()) return false;
+  std::vector<std::array<std::uint32_t, 2>> faces_u, faces_v, common;
+  opposite_edges(c, u, v, faces_u);
+  opposite_edges(c, v, u, faces_v);
+  std::set_intersection(faces_u.begin(), faces_u.end(), faces_v.begin(), faces_v.end(), std::back_inserter(common));
+  return common.size() == ring.tets.size();
 }
 
 /// Whether the faces of interfaces at `from` stay near their surfaces when it goes to `into`.
@@ -38,7 +61,7 @@ bool surfaces_stay(const Workspace& w, std::uint32_t from, std::uint32_t into) {
       if (dot(before, after) < 0.7 * norm(before) * norm(after)) return false;
       const Mask common = mask & c.masks[rest[0]] & c.masks[rest[1]];
       const double off = w.fields.off((a + b + q) * (1.0 / 3.0), surfaces_of(common));
-      if (off > kFlipSlack * w.edge() && off > w.fields.off((a + b + p) * (1.0 / 3.0), surfaces_of(common)))
+      if (off > kFlipSlack * w.edge(into) && off > w.fields.off((a + b + p) * (1.0 / 3.0), surfaces_of(common)))
         return false;
     }
   }

@@ -16,12 +16,13 @@ Vec3d unit_or(const Vec3d& v, const Vec3d& otherwise) {
 
 }  // namespace
 
-CreasePlanes crease_planes(const RegionFields& fields, std::size_t k, const Vec3d& p, const CreaseSides& sides) {
-  const double into = kInto * fields.edge();
+CreasePlanes crease_planes(const RegionFields& fields, std::size_t k, const Vec3d& p, double edge,
+                           const CreaseSides& sides) {
+  const double into = kInto * edge;
   CreasePlanes planes;
   const auto plane = [&](const Vec3d& side, Vec3d& normal, double& value) {
     const Vec3d at = p + side * into;
-    const Vec3d g = fields.gradient(k, at);
+    const Vec3d g = fields.gradient(k, at, edge);
     const double slope = std::max(norm(g), 1e-3);
     normal = g * (1.0 / slope);
     value = fields.value(k, at) / slope - dot(normal, side) * into;
@@ -31,10 +32,10 @@ CreasePlanes crease_planes(const RegionFields& fields, std::size_t k, const Vec3
   return planes;
 }
 
-double project_to_crease(const RegionFields& fields, std::size_t k, Vec3d& p, CreaseSides& sides) {
+double project_to_crease(const RegionFields& fields, std::size_t k, Vec3d& p, double edge, CreaseSides& sides) {
   double left = 0.0;
   for (int i = 0; i < 5; ++i) {
-    const CreasePlanes planes = crease_planes(fields, k, p, sides);
+    const CreasePlanes planes = crease_planes(fields, k, p, edge, sides);
     left = std::max(std::abs(planes.value_a), std::abs(planes.value_b));
     const double c = dot(planes.normal_a, planes.normal_b), det = 1.0 - c * c;
     if (det < 0.02) return 1e300;  // the sides have become one
@@ -43,10 +44,10 @@ double project_to_crease(const RegionFields& fields, std::size_t k, Vec3d& p, Cr
       return unit_or(side - line * dot(line, side) - normal * dot(normal, side), side);
     };
     sides = {turned(sides.a, planes.normal_a), turned(sides.b, planes.normal_b)};
-    if (left < 1e-4 * fields.edge()) break;
+    if (left < 1e-4 * edge) break;
     const double wa = (-planes.value_a + c * planes.value_b) / det, wb = (-planes.value_b + c * planes.value_a) / det;
     Vec3d step = planes.normal_a * wa + planes.normal_b * wb;
-    if (const double length = norm(step); length > 0.5 * fields.edge()) step *= 0.5 * fields.edge() / length;
+    if (const double length = norm(step); length > 0.5 * edge) step *= 0.5 * edge / length;
     p += step;
   }
   return left;

@@ -24,10 +24,12 @@ struct CreasePlanes {
   double value_a = 0.0, value_b = 0.0;  ///< distance from the planes, at the point [m]
 };
 
-CreasePlanes crease_planes(const RegionFields& fields, std::size_t k, const Vec3d& p, const CreaseSides& sides);
+/// @param edge  length of edges asked for there [m]; also below
+CreasePlanes crease_planes(const RegionFields& fields, std::size_t k, const Vec3d& p, double edge,
+                           const CreaseSides& sides);
 
 /// Moves p onto the crease; the sides turn with it. @return the distance left [m]
-double project_to_crease(const RegionFields& fields, std::size_t k, Vec3d& p, CreaseSides& sides);
+double project_to_crease(const RegionFields& fields, std::size_t k, Vec3d& p, double edge, CreaseSides& sides);
 
 struct Workspace;
 

@@ -54,15 +54,15 @@ class Follower {
     return static_cast<std::size_t>(std::countr_zero(s));
   }
 
-  Vec3d normal_at(std::size_t k, const Vec3d& p) const {
-    const Vec3d g = w_.fields.gradient(k, p);
+  Vec3d normal_at(std::size_t k, const Vec3d& p, double edge) const {
+    const Vec3d g = w_.fields.gradient(k, p, edge);
     return g * (1.0 / std::max(norm(g), 1e-9));
   }
 
   void find_normals() {
     normals_.assign(c_.points.size(), Vec3d{});
     for (std::uint32_t v = 0; v < c_.points.size(); ++v) {
-      if (const auto k = surface(v)) normals_[v] = normal_at(*k, c_.points[v]);
+      if (const auto k = surface(v)) normals_[v] = normal_at(*k, c_.points[v], w_.edge(v));
     }
   }
 
@@ -91,13 +91,14 @@ class Follower {
   std::optional<Place> crease_between(std::uint32_t u, std::uint32_t v) const {
     const std::size_t k = *surface(u);
     const Vec3d p = c_.points[u], q = c_.points[v];
+    const double edge = c_.edge_between(u, v);
     double a = 0.0, b = 1.0;
     Vec3d na = normals_[u], nb = normals_[v];
     for (int i = 0; i < 6; ++i) {
       const double m = 0.5 * (a + b);
       Vec3d at = p + (q - p) * m;
-      if (w_.fields.project(at, Mask{1} << k) > kSlack * w_.edge()) return {};
-      const Vec3d n = normal_at(k, at);
+      if (w_.fields.project(at, Mask{1} << k, edge) > kSlack * edge) return {};
+      const Vec3d n = normal_at(k, at, edge);
       const bool nearer_a = dot(n, na) > dot(n, nb);
       (nearer_a ? a : b) = m;
       (nearer_a ? na : nb) = n;
@@ -105,7 +106,7 @@ class Follower {
     if (dot(na, nb) > kStillParted) return {};
     const double t = 0.5 * (a + b);
     Vec3d at = p + (q - p) * t;
-    if (w_.fields.project(at, Mask{1} << k) > kSlack * w_.edge()) return {};
+    if (w_.fields.project(at, Mask{1} << k, edge) > kSlack * edge) return {};
     const Vec3d line = cross(na, nb), along = line * (1.0 / std::max(norm(line), 1e-9));
     const auto side = [&](const Vec3d& to, const Vec3d& n) {
       const Vec3d s = to - at - along * dot(along, to - at);
@@ -113,8 +114,8 @@ class Follower {
       return flat * (1.0 / std::max(norm(flat), 1e-9));
     };
     Place place{u, v, k, at, t, {side(p, na), side(q, nb)}};
-    const double left = project_to_crease(w_.fields, k, place.at, place.sides);
-    if (left > kSlack * w_.edge() || norm(place.at - at) > 0.3 * w_.edge()) return {};
+    const double left = project_to_crease(w_.fields, k, place.at, edge, place.sides);
+    if (left > kSlack * edge || norm(place.at - at) > 0.3 * edge) return {};
     return place;
   }
 
@@ -143,8 +144,8 @@ class Follower {
       const std::uint32_t near = x.t < 0.5 ? x.u : x.v;
       Vec3d at = c_.points[near];
       CreaseSides sides = x.sides;
-      const double left = project_to_crease(w_.fields, x.k, at, sides);
-      if (left < kSlack * w_.edge() && norm(at - c_.points[near]) < 0.45 * w_.edge() && try_move(near, at)) {
+      const double edge = w_.edge(near), left = project_to_crease(w_.fields, x.k, at, edge, sides);
+      if (left < kSlack * edge && norm(at - c_.points[near]) < 0.45 * edge && try_move(near, at)) {
         mark(near, sides);
       } else if (try_move(near, x.at)) {
         mark(near, x.sides);
@@ -195,8 +196,8 @@ class Follower {
   /// The plane at v that is least like those of a crease; its normal and a point of it.
   std::pair<Vec3d, Vec3d> third_plane(std::size_t k, std::uint32_t v, const CreasePlanes& crease) const {
     const Vec3d& q = c_.points[v];
-    if (!marked(v)) return {normal_at(k, q), q};
-    const CreasePlanes pv = crease_planes(w_.fields, k, q, w_.sides[v]);
+    if (!marked(v)) return {normal_at(k, q, w_.edge(v)), q};
+    const CreasePlanes pv = crease_planes(w_.fields, k, q, w_.edge(v), w_.sides[v]);
     const bool is_a = likeness(pv.normal_a, crease) < likeness(pv.normal_b, crease);
     return is_a ? std::pair(pv.normal_a, q - pv.normal_a * pv.value_a)
                 : std::pair(pv.normal_b, q - pv.normal_b * pv.value_b);
@@ -210,7 +211,7 @@ class Follower {
     const auto k = surface(u);
     if (!k || (c_.masks[v] & kCorner)) return false;
     const Vec3d& p = c_.points[u];
-    const CreasePlanes pu = crease_planes(w_.fields, *k, p, w_.sides[u]);
+    const CreasePlanes pu = crease_planes(w_.fields, *k, p, w_.edge(u), w_.sides[u]);
     const auto [third, q] = third_plane(*k, v, pu);
     if (likeness(third, pu) > 0.8) return false;
     Mat3d rows;
@@ -218,11 +219,11 @@ class Follower {
     if (std::abs(determinant(rows)) < 0.05) return false;
     const Vec3d corner =
         inverse(rows) * Vec3d{dot(pu.normal_a, p) - pu.value_a, dot(pu.normal_b, p) - pu.value_b, dot(third, q)};
-    if (w_.fields.off(corner, Mask{1} << *k) > kSlack * w_.edge()) return false;
+    if (w_.fields.off(corner, Mask{1} << *k) > kSlack * w_.edge(u)) return false;
     std::vector<std::pair<double, std::uint32_t>> order;
     for (const std::uint32_t x : near) {
       const double distance = norm(corner - c_.points[x]);
-      if (surface(x) != k || distance > kCornerReach * w_.edge()) continue;
+      if (surface(x) != k || distance > kCornerReach * w_.edge(x)) continue;
       if (c_.masks[x] & kCorner) return false;  // taken
       order.emplace_back(distance, x);
     }

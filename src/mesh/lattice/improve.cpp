@@ -88,7 +88,7 @@ class Improver {
         const Mask surfaces = surfaces_of(edge_mask(u, v));
         if (!surfaces) continue;
         const double off = w_.fields.off((c_.points[u] + c_.points[v]) * 0.5, surfaces);
-        if (off > kMostOff * w_.edge()) refined += insert_on(u, v, kMust);
+        if (off > kMostOff * c_.edge_between(u, v)) refined += insert_on(u, v, kMust);
       }
     }
     return refined;
@@ -169,7 +169,8 @@ class Improver {
     if (mask == 0) return false;
     Vec3d at = (c_.points[u] + c_.points[v]) * 0.5;
     if (const Mask s = surfaces_of(mask)) {
-      if (w_.fields.project(at, s) > kSlack * w_.edge()) return false;
+      const double edge = c_.edge_between(u, v);
+      if (w_.fields.project(at, s, edge) > kSlack * edge) return false;
     }
     c_.begin();
     const std::uint32_t m = c_.split_edge(u, v, at);

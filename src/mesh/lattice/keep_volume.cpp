@@ -41,14 +41,14 @@ void keep_volume(Workspace& w, double floor) {
     const Mask surfaces = surfaces_of(c.masks[v]);
     if (c.stars[v].empty() || std::popcount(surfaces) != 1 || (c.masks[v] & kMarks)) continue;
     const auto k = static_cast<std::size_t>(std::countr_zero(surfaces));
-    const Vec3d p = c.points[v], g = w.fields.gradient(k, p);
+    const Vec3d p = c.points[v], g = w.fields.gradient(k, p, w.edge(v));
     const double slope = norm(g);
     if (slope < 0.1) continue;
     interface_neighbours(c, v, around);
     double sum = 0.0;
     for (const std::uint32_t n : around) sum += w.fields.value(k, (p + c.points[n]) * 0.5);
     const double mean = sum / (slope * static_cast<double>(std::max<std::size_t>(1, around.size())));
-    const double most = kMostShift * w.edge();
+    const double most = kMostShift * w.edge(v);
     shifts.push_back({v, p - g * (std::clamp(mean, -most, most) / slope)});
   }
   for (const Shift& s : shifts) {

@@ -112,11 +112,21 @@ bool may_bend(const Workspace& w, std::uint32_t u, std::uint32_t v, std::uint32_
   };
   const Mask surface = surfaces_of(common);
   const double after = w.fields.off(middle(p, q), surface);
-  return after < 0.5 * kFlipSlack * w.edge() || after <= std::max(0.0, w.fields.off(middle(u, v), surface));
+  return after < 0.5 * kFlipSlack * w.complex.edge_between(u, v) ||
+         after <= std::max(0.0, w.fields.off(middle(u, v), surface));
 }
 
 bool joined(const TetComplex& c, std::uint32_t p, std::uint32_t q) {
   return std::any_of(c.stars[p].begin(), c.stars[p].end(), [&](std::uint32_t t) { return c.has(t, q); });
+}
+
+/// Whether a new tet of a ring has a face of three of its vertices that tets elsewhere have: where tets are turned inside out, these
+/// may lie over the ring. @param tets  each with its ring vertices first
+bool face_exists(const TetComplex& c, const std::vector<Tet>& tets) {
+  return std::any_of(tets.begin(), tets.end(), [&](const Tet& t) {
+    return std::any_of(c.stars[t[0]].begin(), c.stars[t[0]].end(),
+                       [&](std::uint32_t s) { return c.has(s, t[1]) && c.has(s, t[2]); });
+  });
 }
 
 }  // namespace
@@ -142,6 +152,7 @@ bool remove_edge(Workspace& w, std::uint32_t u, std::uint32_t v) {
   std::vector<Tet> new_first, new_second;
   first.tets(new_first);
   if (chains.second_label != kNone) second.tets(new_second);
+  if (face_exists(c, new_first) || face_exists(c, new_second)) return false;
   for (const std::uint32_t t : ring.tets) c.remove_tet(t);
   for (const Tet& t : new_first) c.add_tet(t, chains.first_label);
   for (const Tet& t : new_second) c.add_tet(t, chains.second_label);

@@ -27,8 +27,8 @@ Vec3d shortest_step(const double* f, const Vec3d* g, std::size_t n) {
 
 }  // namespace
 
-Vec3d RegionFields::gradient(std::size_t k, const Vec3d& p) const {
-  const double h = 1e-3 * edge_;
+Vec3d RegionFields::gradient(std::size_t k, const Vec3d& p, double edge) const {
+  const double h = 1e-3 * edge;
   const double a = value(k, p + Vec3d{h, -h, -h}), b = value(k, p + Vec3d{-h, -h, h});
   const double c = value(k, p + Vec3d{-h, h, -h}), d = value(k, p + Vec3d{h, h, h});
   return Vec3d{a - b - c + d, -a - b + c + d, -a + b - c + d} * (0.25 / h);
@@ -44,12 +44,35 @@ Label RegionFields::label(const Vec3d& p) const {
   return outside();
 }
 
-double RegionFields::project(Vec3d& p, Mask surfaces) const {
+Bounds RegionFields::bounds() const {
+  Bounds box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+  for (const BodyRegion& r : regions_) {
+    if (r.hole) continue;
+    for (std::size_t d = 0; d < 3; ++d) {
+      box.min[d] = std::min(box.min[d], r.bounds.min[d]);
+      box.max[d] = std::max(box.max[d], r.bounds.max[d]);
+    }
+  }
+  return box;
+}
+
+bool RegionFields::reached(const Vec3d& centre, double half) const {
+  for (std::size_t r = 0; r < count(); ++r) {
+    if (regions_[r].hole) continue;
+    const Bounds& b = regions_[r].bounds;
+    bool near = true;
+    for (std::size_t d = 0; d < 3; ++d) near = near && centre[d] + half >= b.min[d] && centre[d] - half <= b.max[d];
+    if (near && value(r, centre) <= 1.7321 * half) return true;
+  }
+  return false;
+}
+
+double RegionFields::project(Vec3d& p, Mask surfaces, double edge) const {
   std::size_t ks[kMostSurfaces], n = 0;
   for (Mask m = surfaces; m && n < kMostSurfaces; m &= m - 1) ks[n++] = static_cast<std::size_t>(std::countr_zero(m));
   double f[kMostSurfaces];
   Vec3d g[kMostSurfaces];
-  const double close = 1e-4 * edge_;
+  const double close = 1e-4 * edge;
   double left = 0.0, best = 1e300;
   Vec3d best_at = p;
   for (int i = 0; i < 8; ++i) {
@@ -64,11 +87,11 @@ double RegionFields::project(Vec3d& p, Mask surfaces) const {
     }
     if (left < close) break;
     if (i == 0 || n > 1 || i > 2) {
-      for (std::size_t j = 0; j < n; ++j) g[j] = gradient(ks[j], p);
+      for (std::size_t j = 0; j < n; ++j) g[j] = gradient(ks[j], p, edge);
     }
     Vec3d step = shortest_step(f, g, n);
     const double length = norm(step);
-    if (length > 0.5 * edge_) step *= 0.5 * edge_ / length;
+    if (length > 0.5 * edge) step *= 0.5 * edge / length;
     p += step;
   }
   p = best_at;
@@ -83,10 +106,10 @@ double RegionFields::off(const Vec3d& p, Mask surfaces) const {
   return most;
 }
 
-std::size_t RegionFields::normals(const Vec3d& p, Mask surfaces, Vec3d* out, std::size_t capacity) const {
+std::size_t RegionFields::normals(const Vec3d& p, Mask surfaces, double edge, Vec3d* out, std::size_t capacity) const {
   std::size_t n = 0;
   for (Mask m = surfaces; m && n < capacity; m &= m - 1) {
-    const Vec3d g = gradient(static_cast<std::size_t>(std::countr_zero(m)), p);
+    const Vec3d g = gradient(static_cast<std::size_t>(std::countr_zero(m)), p, edge);
     const double length = norm(g);
     if (length > 1e-6) out[n++] = g * (1.0 / length);
   }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "glisson/region_mesh.h"
+#include "mesh/lattice/size_field.h"
 #include "mesh/lattice/tet_complex.h"
 
 namespace glisson::lattice {
@@ -24,30 +25,39 @@ inline Mask surfaces_of(Mask labels) {
 
 class RegionFields {
  public:
-  RegionFields(const std::vector<BodyRegion>& regions, double edge) : regions_(regions), edge_(edge) {}
+  RegionFields(const std::vector<BodyRegion>& regions, const SizeField& sizes) : regions_(regions), sizes_(sizes) {}
 
   std::size_t count() const { return regions_.size(); }
   const BodyRegion& region(std::size_t k) const { return regions_[k]; }
-  double edge() const { return edge_; }
+  const SizeField& sizes() const { return sizes_; }
+  /// The longest edge asked for [m].
+  double edge() const { return sizes_.coarsest(); }
   /// Label of what is in no region.
   Label outside() const { return static_cast<Label>(regions_.size()); }
+  /// Whether tets of a label stay: it is a region's that is no hole.
+  bool filled(Label label) const { return label != outside() && !regions_[label].hole; }
+  /// The box of all regions that are no holes [m].
+  Bounds bounds() const;
+  /// Whether such a region may reach a cube, given by its centre and half its side [m].
+  bool reached(const Vec3d& centre, double half) const;
 
   double value(std::size_t k, const Vec3d& p) const { return regions_[k].distance(p); }
   /// By four points at the corners of a tetrahedron: of second order, and for a third of the cost of six.
-  Vec3d gradient(std::size_t k, const Vec3d& p) const;
+  /// @param edge  length of edges asked for there [m]; also below
+  Vec3d gradient(std::size_t k, const Vec3d& p, double edge) const;
   /// First region with p inside, or outside().
   Label label(const Vec3d& p) const;
 
   /// Moves p onto all the surfaces, by the shortest steps. @return the largest |value| left [m]
-  double project(Vec3d& p, Mask surfaces) const;
+  double project(Vec3d& p, Mask surfaces, double edge) const;
   /// Largest |value| of the surfaces at p [m].
   double off(const Vec3d& p, Mask surfaces) const;
   /// Unit normals of the surfaces at p. @return how many
-  std::size_t normals(const Vec3d& p, Mask surfaces, Vec3d* out, std::size_t capacity) const;
+  std::size_t normals(const Vec3d& p, Mask surfaces, double edge, Vec3d* out, std::size_t capacity) const;
 
  private:
   const std::vector<BodyRegion>& regions_;
-  double edge_;
+  const SizeField& sizes_;
 };
 
 }  // namespace glisson::lattice

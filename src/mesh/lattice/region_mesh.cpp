@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "mesh/lattice/body_lattice.h"
 #include "mesh/lattice/cleave.h"
+#include "mesh/lattice/graded_lattice.h"
 #include "mesh/lattice/improve.h"
 #include "mesh/lattice/keep_volume.h"
 
@@ -109,6 +110,20 @@ void require_tets_in_each(const std::vector<BodyRegion>& regions, double edge, c
 
 }  // namespace
 
+std::vector<double> edges_asked(const TetMesh& mesh, const std::vector<BodyRegion>& regions,
+                                const RegionMeshOptions& options) {
+  require_edge(options.edge);
+  const SizeField sizes(regions, options.edge, options.sizes, options.growth);
+  std::vector<double> edges;
+  edges.reserve(mesh.tets.size());
+  for (const Tet& t : mesh.tets) {
+    Vec3d centre{};
+    for (const std::uint32_t v : t) centre += mesh.vertices[v] * 0.25;
+    edges.push_back(sizes.at(centre));
+  }
+  return edges;
+}
+
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const auto go_on = [&](double part) {
@@ -117,9 +132,14 @@ RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMesh
   };
   require_regions(regions);
   require_edge(options.edge);
-  const RegionFields fields(regions, options.edge);
+  const SizeField sizes(regions, options.edge, options.sizes, options.growth);
+  const RegionFields fields(regions, sizes);
   TetComplex complex;
-  fill_lattice(fields, options.max_tets, complex);
+  if (sizes.uniform()) {
+    fill_lattice(fields, options.max_tets, complex);
+  } else {
+    fill_graded_lattice(fields, sizes, options.max_tets, complex);
+  }
   go_on(0.1);
   cleave(fields, complex);
   go_on(0.3);

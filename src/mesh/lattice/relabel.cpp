@@ -52,7 +52,7 @@ bool relabel(Workspace& w, std::uint32_t t) {
       middle += c.points[tet[j]] * (1.0 / 3.0);
       face &= c.masks[tet[j]];
     }
-    if (std::popcount(face) < 2 || w.fields.off(middle, surfaces_of(face)) > kFlipSlack * w.edge()) return false;
+    if (std::popcount(face) < 2 || w.fields.off(middle, surfaces_of(face)) > kFlipSlack * c.edge_in(tet)) return false;
   }
   Mask hollow = bit(w.fields.outside());
   for (std::size_t k = 0; k < w.fields.count(); ++k) hollow |= w.fields.region(k).hole ? bit(static_cast<Label>(k)) : 0;

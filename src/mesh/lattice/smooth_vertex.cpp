@@ -10,12 +10,14 @@ namespace {
 /// The face of a tet that the vertex sees, so that (vertex, a, b, c) has positive volume.
 struct SeenFace {
   Vec3d a, b, c;
+  double edge;  ///< asked for in the tet [m]
 };
 
 class Climb {
  public:
   Climb(Workspace& w, std::uint32_t vertex, double loose)
-      : w_(w), vertex_(vertex), loose_(loose > 0.0), surfaces_(surfaces_of(w.complex.masks[vertex])) {
+      : w_(w), vertex_(vertex), edge_(w.edge(vertex)), loose_(loose > 0.0),
+        surfaces_(surfaces_of(w.complex.masks[vertex])) {
     const Mask mask = w.complex.masks[vertex];
     crease_ = (mask & kCrease) && surfaces_ && !loose_;
     fixed_ = (mask & kCorner) || (std::popcount(surfaces_) > 2 && !loose_);
@@ -26,12 +28,12 @@ class Climb {
       const Tet& tet = w.complex.tets[t];
       const auto corner = static_cast<std::size_t>(std::find(tet.begin(), tet.end(), vertex) - tet.begin());
       const auto& s = kSeen[corner];
-      faces_.push_back({points[tet[s[0]]], points[tet[s[1]]], points[tet[s[2]]]});
+      faces_.push_back({points[tet[s[0]]], points[tet[s[1]]], points[tet[s[2]]], w.complex.edge_in(tet)});
     }
     quality_.resize(faces_.size());
     at_ = points[vertex];
     least_ = evaluate(at_, -1e300);
-    if (surfaces_) slack_ = std::max(std::max(loose, kSlack) * w.edge(), w.fields.off(at_, surfaces_));
+    if (surfaces_) slack_ = std::max(std::max(loose, kSlack) * edge_, w.fields.off(at_, surfaces_));
   }
 
   bool run() {
@@ -47,7 +49,7 @@ class Climb {
   }
 
  private:
-  double quality(const SeenFace& f, const Vec3d& p) const { return tet_quality(p, f.a, f.b, f.c, w_.edge()); }
+  double quality(const SeenFace& f, const Vec3d& p) const { return tet_quality(p, f.a, f.b, f.c, f.edge); }
 
   /// Least quality with the vertex at p; gives up below `floor`.
   double evaluate(const Vec3d& p, double floor) {
@@ -66,7 +68,7 @@ class Climb {
   }
 
   Vec3d gradient(const SeenFace& f, double q) const {
-    const double h = 1e-5 * w_.edge();
+    const double h = 1e-5 * edge_;
     const Vec3d g{quality(f, at_ + Vec3d{h, 0, 0}) - q, quality(f, at_ + Vec3d{0, h, 0}) - q,
                   quality(f, at_ + Vec3d{0, 0, h}) - q};
     return along(g * (1.0 / h));
@@ -96,8 +98,8 @@ class Climb {
     }
     const Vec3d direction = shortest(gradients_);
     const double steepness = norm(direction);
-    if (steepness * w_.edge() < 1e-3) return false;
-    for (double s = 0.25 * w_.edge(); s > 0.005 * w_.edge(); s *= 0.5) {
+    if (steepness * edge_ < 1e-3) return false;
+    for (double s = 0.25 * edge_; s > 0.005 * edge_; s *= 0.5) {
       if (try_at(at_ + direction * (s / steepness))) return true;
     }
     return false;
@@ -106,12 +108,12 @@ class Climb {
   void find_normals() {
     normals_ = 0;
     if (crease_) {
-      const CreasePlanes planes = crease_planes(w_.fields, surface(), at_, sides_);
+      const CreasePlanes planes = crease_planes(w_.fields, surface(), at_, edge_, sides_);
       normal_[0] = planes.normal_a;
       normal_[1] = planes.normal_b;
       normals_ = 2;
     } else if (surfaces_ && !loose_) {
-      normals_ = w_.fields.normals(at_, surfaces_, normal_, 2);
+      normals_ = w_.fields.normals(at_, surfaces_, edge_, normal_, 2);
     }
   }
   std::size_t surface() const { return static_cast<std::size_t>(std::countr_zero(surfaces_)); }
@@ -120,8 +122,8 @@ class Climb {
     CreaseSides sides = sides_;
     const double least_gain = 1e-4;
     if (crease_) {
-      if (project_to_crease(w_.fields, surface(), p, sides) > kSlack * w_.edge()) return false;
-    } else if (surfaces_ && !loose_ && w_.fields.project(p, surfaces_) > slack_) {
+      if (project_to_crease(w_.fields, surface(), p, edge_, sides) > kSlack * edge_) return false;
+    } else if (surfaces_ && !loose_ && w_.fields.project(p, surfaces_, edge_) > slack_) {
       return false;
     }
     const double q = evaluate(p, least_ + least_gain);
@@ -135,6 +137,7 @@ class Climb {
 
   Workspace& w_;
   std::uint32_t vertex_;
+  double edge_;  ///< asked for at the vertex [m]
   bool loose_;
   bool crease_ = false, fixed_ = false;
   CreaseSides sides_{};
@@ -169,10 +172,11 @@ bool centre_vertex(Workspace& w, std::uint32_t vertex, double floor) {
   }
   if (count < (surfaces ? 2.0 : 4.0)) return false;
   const Vec3d from = c.points[vertex], aim = sum * (1.0 / count) - from;
-  const double before = w.star_quality(vertex), slack = std::max(kSlack * w.edge(), w.fields.off(from, surfaces));
+  const double before = w.star_quality(vertex), edge = w.edge(vertex),
+               slack = std::max(kSlack * edge, w.fields.off(from, surfaces));
   for (const double part : {1.0, 0.5}) {
     Vec3d p = from + aim * part;
-    if (surfaces && w.fields.project(p, surfaces) > slack) continue;
+    if (surfaces && w.fields.project(p, surfaces, edge) > slack) continue;
     c.points[vertex] = p;
     const bool good = w.star_quality(vertex) >= std::min(before, floor);
     c.points[vertex] = from;

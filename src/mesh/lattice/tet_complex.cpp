@@ -12,10 +12,11 @@ std::size_t corner_of(const Tet& tet, std::uint32_t vertex) {
 
 }  // namespace
 
-std::uint32_t TetComplex::add_vertex(const Vec3d& point) {
+std::uint32_t TetComplex::add_vertex(const Vec3d& point, double edge) {
   points.push_back(point);
   stars.emplace_back();
   masks.push_back(0);
+  edges.push_back(edge);
   changed.push_back(0);
   const auto v = static_cast<std::uint32_t>(points.size() - 1);
   if (trying_) log_.push_back({Change::Kind::vertex, 0, v, {}, {}, 0});
@@ -157,7 +158,7 @@ std::uint32_t TetComplex::split_edge(std::uint32_t u, std::uint32_t v, const Vec
   for (const std::uint32_t t : stars[u]) {
     if (has(t, v)) around.push_back(t);
   }
-  const std::uint32_t m = add_vertex(at);
+  const std::uint32_t m = add_vertex(at, edge_between(u, v));
   for (const std::uint32_t t : around) {
     const Label label = labels[t];
     Tet low = tets[t], high = tets[t];
@@ -193,6 +194,7 @@ void TetComplex::take_back() {
         points.pop_back();
         stars.pop_back();
         masks.pop_back();
+        edges.pop_back();
         changed.pop_back();
         break;
       case Change::Kind::added:

@@ -33,8 +33,10 @@ class TetComplex {
   std::vector<Label> labels;                      ///< of tets
   std::vector<std::vector<std::uint32_t>> stars;  ///< tets at each vertex
   std::vector<Mask> masks;                        ///< labels that meet at each vertex, with those of what is empty
+  std::vector<double> edges;                      ///< length of edges asked for at each vertex [m]
 
-  std::uint32_t add_vertex(const Vec3d& point);
+  /// @param edge  length of edges asked for there [m]
+  std::uint32_t add_vertex(const Vec3d& point, double edge);
   std::uint32_t add_tet(const Tet& tet, Label label);
   void remove_tet(std::uint32_t tet);
   void move(std::uint32_t vertex, const Vec3d& to);
@@ -45,6 +47,10 @@ class TetComplex {
     const Tet& t = tets[tet];
     return t[0] == vertex || t[1] == vertex || t[2] == vertex || t[3] == vertex;
   }
+
+  /// Length of edges asked for in the middle of an edge, of a tet [m]. Exact where all are equal.
+  double edge_between(std::uint32_t u, std::uint32_t v) const { return 0.5 * (edges[u] + edges[v]); }
+  double edge_in(const Tet& t) const { return 0.25 * ((edges[t[0]] + edges[t[1]]) + (edges[t[2]] + edges[t[3]])); }
 
   /// The tet across the face opposite `corner`, or ~0u.
   std::uint32_t across(std::uint32_t tet, std::size_t corner) const;

@@ -19,14 +19,15 @@ struct Workspace {
   const RegionFields& fields;
   std::vector<CreaseSides> sides{};  ///< of vertices on creases
 
-  double edge() const { return fields.edge(); }
+  /// Length of edges asked for at a vertex [m].
+  double edge(std::uint32_t v) const { return complex.edges[v]; }
   double quality(std::uint32_t t) const {
     const Tet& x = complex.tets[t];
     return quality(x);
   }
   double quality(const Tet& x) const {
     const auto& p = complex.points;
-    return tet_quality(p[x[0]], p[x[1]], p[x[2]], p[x[3]], fields.edge());
+    return tet_quality(p[x[0]], p[x[1]], p[x[2]], p[x[3]], complex.edge_in(x));
   }
   double star_quality(std::uint32_t v) const {
     double least = 1.0;

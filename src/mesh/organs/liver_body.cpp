@@ -35,6 +35,12 @@ void add_outside(LiverParts& parts) {
 
 }  // namespace
 
+Fault LiverOptions::check() const {
+  const SizeFault fault = check_sizes(sizes, edge, {"tumour", "hepatic_veins", "portal_veins", "parenchyma"});
+  if (fault.what.empty()) return {};
+  return {"(" + fault.key + " of size " + std::to_string(fault.index) + "): " + fault.what, "sizes"};
+}
+
 ImplicitBody liver_body(const LiverOptions& options) {
   detail::require_fields("liver", options);
   LiverParts parts(options.scale);
@@ -43,11 +49,20 @@ ImplicitBody liver_body(const LiverOptions& options) {
     parts.ball("tumour_ball", options.tumour_center * 1e3, options.tumour_radius * 1e3);
     parts.region("tumour", "tumour_ball", "whole");
   }
-  if (options.vessels) detail::add_veins(parts, 1e3 * options.edge / options.scale);
+  const auto edge_near = [&](const std::string& region) {
+    double edge = options.edge;
+    for (const MeshSize& s : options.sizes) {
+      if (s.near == region || s.surface == region) edge = std::min(edge, s.edge);
+    }
+    return 1e3 * edge / options.scale;
+  };
+  if (options.vessels) detail::add_veins(parts, edge_near("hepatic_veins"), edge_near("portal_veins"));
   ImplicitBody body = parts.body();
   body.regions.push_back({"parenchyma", "whole", false});
   body.edge = options.edge;
   body.max_tets = options.max_tets;
+  body.sizes = options.sizes;
+  body.growth = options.growth;
   return body;
 }
 

@@ -56,7 +56,7 @@ class LiverParts {
   ImplicitBody body_;
 };
 
-/// The regions `hepatic_veins` and `portal_veins`, inside the shape `whole`. @param edge  of the mesh [mm]
-void add_veins(LiverParts& parts, double edge);
+/// The regions `hepatic_veins` and `portal_veins`, inside the shape `whole`, for edges of these lengths there [mm].
+void add_veins(LiverParts& parts, double hepatic_edge, double portal_edge);
 
 }  // namespace glisson::detail

@@ -50,7 +50,7 @@ void add_tree(LiverParts& parts, const std::string& name, const std::vector<Poin
 
 }  // namespace
 
-void add_veins(LiverParts& parts, double edge) {
+void add_veins(LiverParts& parts, double hepatic_edge, double portal_edge) {
   // Each line: from the stem outward, centre and radius.
   const std::vector<Points> hepatic{
       {{{2, 44, 56}, 5.5}, {{-26, 24, 40}, 5}, {{-58, 14, 12}, 4}, {{-72, 8, -22}, 2.5}},        // right
@@ -74,8 +74,8 @@ void add_veins(LiverParts& parts, double edge) {
       {{{-46, -14, 10}, 3}, {{-50, -26, -6}, 2.5}, {{-50, -30, -26}, 2}},                 // segment V
       {{{-52, 18, -4}, 3}, {{-66, 16, 12}, 2.5}, {{-76, 8, 24}, 2}},                      // segment VII
   };
-  add_tree(parts, "hepatic_veins", hepatic, edge);
-  add_tree(parts, "portal_veins", portal, edge);
+  add_tree(parts, "hepatic_veins", hepatic, hepatic_edge);
+  add_tree(parts, "portal_veins", portal, portal_edge);
 }
 
 }  // namespace glisson::detail

@@ -35,10 +35,12 @@ bool multiply_cells(MeshSource& mesh, double factor) {
   }
   if (auto* body = std::get_if<ImplicitBody>(&mesh)) {
     body->edge /= factor;
+    for (MeshSize& size : body->sizes) size.edge /= factor;
     return true;
   }
   if (auto* liver = std::get_if<LiverOptions>(&mesh)) {
     liver->edge /= factor;
+    for (MeshSize& size : liver->sizes) size.edge /= factor;
     return true;
   }
   auto* cylinder = std::get_if<CylinderOptions>(&mesh);

@@ -30,6 +30,8 @@ std::string scene_reference_markdown() {
   text += section_text(shape_section(), "`[[mesh.shape]]`");
   text += section_text(tube_point_section(), "`[[mesh.shape.points]]`");
   text += section_text(shape_region_section(), "`[[mesh.region]]`");
+  text += section_text(mesh_size_section(), "`[[mesh.size]]`");
+  text += section_text(path_point_section(), "`[[mesh.size.path]]`");
   text += section_text(selection_section(), "`[sets.NAME]`") + selection_parts();
   text += section_text(tissue_section(), "`[tissue]`");
   text += section_text(hyperelastic_section(), "`[tissue.hyperelastic]`");

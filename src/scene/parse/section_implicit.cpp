@@ -23,7 +23,7 @@ KindSpec surface_kind() {
           [](void* shape) -> void* { return &static_cast<NamedShape*>(shape)->what.emplace<SurfaceShape>(); }};
 }
 
-/// A fault between names, at the key of the shape or region that has it.
+/// A fault between names, at the key of the shape, region or size that has it.
 void complain_of_names(ImplicitBody& body, const Node& table, const Place& place) {
   for (const char* list : {"shape", "region"}) {
     if (!table.find(list) || table.find(list)->array()->empty()) {
@@ -33,7 +33,7 @@ void complain_of_names(ImplicitBody& body, const Node& table, const Place& place
   }
   const BodyFault fault = glisson::check_names(body);
   if (fault.what.empty()) return;
-  const std::string list = fault.in_region ? "region" : "shape";
+  const std::string list(fault.list);
   const Node& element = (*table.find(list)->array())[fault.index];
   const Node* given = element.find(fault.key);
   place.complain(given ? *given : element, list + "." + std::to_string(fault.index) + "." + fault.key, fault.what);
@@ -44,6 +44,21 @@ void complain_of_names(ImplicitBody& body, const Node& table, const Place& place
 const SectionSpec& tube_point_section() {
   static const SectionSpec section = described<TubePoint>(
       "mesh.shape.points", "A point of a tube: `points = [{ at_mm = [0, 0, 0], radius_mm = 3 }, ...]`.");
+  return section;
+}
+
+const SectionSpec& path_point_section() {
+  static const SectionSpec section =
+      described<PathPoint>("mesh.size.path", "A point of a line: `path = [{ at_mm = [0, 0, 0] }, ...]`.");
+  return section;
+}
+
+const SectionSpec& mesh_size_section() {
+  static const SectionSpec section =
+      described<MeshSize>("mesh.size",
+                          "Where the edges of a mesh of kind implicit or liver are shorter: near one region, its "
+                          "surface or a line. From there "
+                          "on they grow by `growth`; of several sizes the shortest counts (docs/implicit.md).");
   return section;
 }
 
@@ -88,6 +103,10 @@ SectionSpec implicit_body_kind() {
   s.key("max_tets", &ImplicitBody::max_tets, "a finer mesh is refused").within(between(1, 1e9));
   s.tables("shape", shape_section(), &ImplicitBody::shapes, "the shapes");
   s.tables("region", shape_region_section(), &ImplicitBody::regions, "the regions, by precedence");
+  s.tables("size", mesh_size_section(), &ImplicitBody::sizes, "where edges are shorter");
+  s.key("growth", &ImplicitBody::growth, "edge over distance at which edges grow away from these")
+      .in("-")
+      .within(kGrowthRange);
   s.finish(complain_of_names);
   return s.spec();
 }

@@ -12,6 +12,8 @@ const SectionSpec& mesh_section();               ///< fills MeshSource
 const SectionSpec& shape_section();              ///< fills NamedShape
 const SectionSpec& shape_region_section();       ///< fills ShapeRegion
 const SectionSpec& tube_point_section();         ///< fills TubePoint
+const SectionSpec& path_point_section();         ///< fills PathPoint
+const SectionSpec& mesh_size_section();          ///< fills MeshSize
 SectionSpec implicit_body_kind();                ///< of [mesh]; fills ImplicitBody
 const SectionSpec& box_section();                ///< fills Selection::Box
 const SectionSpec& sphere_section();             ///< fills Selection::Sphere
@@ -58,6 +60,8 @@ inline const SectionSpec& section_of(std::type_identity<TimeLaw>) { return time_
 inline const SectionSpec& section_of(std::type_identity<MaxwellBranch>) { return maxwell_section(); }
 inline const SectionSpec& section_of(std::type_identity<ImplicitOptions>) { return implicit_section(); }
 inline const SectionSpec& section_of(std::type_identity<TubePoint>) { return tube_point_section(); }
+inline const SectionSpec& section_of(std::type_identity<PathPoint>) { return path_point_section(); }
+inline const SectionSpec& section_of(std::type_identity<MeshSize>) { return mesh_size_section(); }
 inline const SectionSpec& section_of(std::type_identity<Rupture>) { return rupture_section(); }
 inline const SectionSpec& section_of(std::type_identity<TipResistance>) { return tip_section(); }
 inline const SectionSpec& section_of(std::type_identity<InnerMembrane>) { return inner_membrane_section(); }

@@ -1,0 +1,39 @@
+// size_field.h — the length of edges asked for at each point of a body (glisson/mesh_size.h).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "glisson/region_mesh.h"
+#include "mesh/lattice/curvature_sizes.h"
+
+namespace glisson::lattice {
+
+class SizeField {
+ public:
+  /// @throws std::invalid_argument  naming the size, its member and value, and the way out
+  SizeField(const std::vector<BodyRegion>& regions, double edge, const std::vector<MeshSize>& sizes, double growth);
+
+  /// Edge asked for at p [m].
+  double at(const Vec3d& p) const;
+  /// The same edge everywhere.
+  bool uniform() const { return places_.empty(); }
+  double coarsest() const { return edge_; }  ///< [m]
+  double finest() const { return finest_; }  ///< [m]
+
+ private:
+  /// A size whose names have been looked up.
+  struct Place {
+    const BodyRegion* region = nullptr;
+    bool surface = false;
+    std::vector<Vec3d> path;
+    std::optional<SizePoints> curvature;
+    double edge = 0.0, within = 0.0;  ///< [m]
+  };
+  static double distance(const Place& place, const Vec3d& p);
+
+  double edge_, finest_, growth_;
+  std::vector<Place> places_;
+};
+
+}  // namespace glisson::lattice
