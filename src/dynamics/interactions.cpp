@@ -118,6 +118,10 @@ void Interactions::constrain(std::span<const Vec3d> mobility, StepCompliance* co
   for (const std::shared_ptr<Interaction>& x : all_) x->constrain(step_);
 }
 
+bool Interactions::overshoot() {
+  return std::any_of(all_.begin(), all_.end(), [&](const auto& x) { return x->overshoots(step_); });
+}
+
 void Interactions::moved() {
   for (const std::shared_ptr<Interaction>& x : all_) x->moved(step_);
 }

@@ -45,6 +45,8 @@ class Interactions {
   void constrain(std::span<const Vec3d> mobility) { constrain(mobility, nullptr); }
   /// In a long step.
   void constrain(StepCompliance& compliance) { constrain({}, &compliance); }
+  /// Whether some say so of the step, with its end among the active vertices.
+  bool overshoot();
   void moved();
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins);
   void state_set();

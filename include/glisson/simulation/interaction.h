@@ -78,6 +78,12 @@ struct ToolVelocity {
   Vec3d after{};   ///< V₊, of this step
 };
 
+/// Stiffness between the corners of a triangle of the surface: a displacement of corner b adds −K(a, b) of it to the force on corner a.
+struct TriangleStiffness {
+  std::array<std::uint32_t, 3> corners{};
+  std::array<std::array<Mat3d, 3>, 3> blocks{};  ///< K, symmetric as a whole [N/m]
+};
+
 /// How far impulses move active vertices other than their own within a step that is long: one of `implicit` or `quasi_static`.
 class StepCompliance {
  public:
@@ -185,6 +191,17 @@ class Interaction {
   /// Whether it takes part in steps. Otherwise between_steps is called just once, when it is attached, to set up supports,
   /// motions and loads; then every integrator supports it, and it has no state for a checkpoint.
   virtual bool acts_in_steps() const { return true; }
+  /// In long steps, in place of add_forces: adds the forces that follow from the displacements of all vertices to those of the tissue
+  /// [N]. Newton's method asks at every trial.
+  virtual void add_forces_at(std::span<const Vec3d> /*displacement*/, std::span<Vec3d> /*force*/) {}
+  /// Adds the stiffness of these forces where add_forces_at() was asked last.
+  virtual void add_stiffness(std::vector<TriangleStiffness>&) const {}
+  /// Whether it acts by constrain() in long steps; otherwise by add_forces_at() alone.
+  virtual bool constrains_long_steps() const { return true; }
+  /// In a long step, before moved(), with displacements and velocities at its end: whether something has come about within it that is to
+  /// be dated, as a tear or a puncture. The step is then taken back and made in parts, until they are short.
+  virtual bool overshoots(const InteractionStep&) { return false; }
+
   /// Why it does not act in the long steps of `implicit` and `quasi_static`, as the end of a sentence with the way out; empty:
   /// it does. Its forces are then those at the end of the step, and constrain() is called in every iteration of Newton's method,
   /// with all as it was after reach().

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kDefaultStep = 0.01, kDefaultStaticStep = 0.05;  ///< [s]
 constexpr double kGrowth = 1.5;                                   ///< of an automatic step after an easy one
+constexpr int kMostEventCuts = 7;                                 ///< events are dated to 1/128 of a step
 constexpr int kEasy = 6;                                          ///< iterations up to which a step was easy
 
 std::span<const Vec3d> view(const std::vector<Vec3d>& field) { return field; }
@@ -43,7 +44,7 @@ void ImplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
   if (!state_.options.track_energies) return;
   double kinetic = 0.0;
   for (std::size_t i = 0; i < now_.v.size(); ++i) kinetic += 0.5 * state_.body.masses[i] * dot(now_.v[i], now_.v[i]);
-  ledger_.reset(kinetic, tissue_.energy(now_.u));
+  ledger_.reset(kinetic, tissue_.energy(now_.u) + solver_.contact().energy_at(now_.u));
 }
 
 void ImplicitScheme::take_over(const BodyChange& change) {
@@ -85,7 +86,9 @@ void ImplicitScheme::attach(std::shared_ptr<Interaction> interaction, const Body
     interaction->set_long_steps(false);
     throw;
   }
-  solver_.need_factor();
+  if (state_.options.track_energies) ledger_.bring_in(0.0, interaction->energy());
+  if (interaction->constrains_long_steps()) solver_.need_factor();
+  fresh_ = fresh_ || !interaction->constrains_long_steps();
   solver_.contact().add(std::move(interaction));
 }
 
@@ -105,6 +108,7 @@ void ImplicitScheme::start_fresh() {
   if (last_h_ == 0.0) last_change_.assign(state_.body.vertex_count, Vec3d{});
   tissue_.forces({now_.u, now_.v, statics_ ? std::numeric_limits<double>::infinity() : 0.0}, now_.elastic, now_.viscous,
                  watch());
+  solver_.contact().add_forces_at(now_.u, now_.elastic);
   const std::span<const Vec3d> loads = state_.loads_at(state_.time, now_.u);
   now_.external.assign(loads.begin(), loads.end());
   now_.gravity = state_.gravity_at(state_.time);
@@ -128,12 +132,16 @@ std::vector<char> ImplicitScheme::held_or_sprung() const {
   return held;
 }
 
-/// One part of a step, of h [s]; false where no balance is found: nothing has changed then.
-bool ImplicitScheme::part(double h) {
+/// One part of a step, of h [s]. Where it is not made, nothing has changed.
+ImplicitScheme::Part ImplicitScheme::part(double h, bool dates_events) {
   const TimeStep s = statics_ ? static_step(h) : time_step(state_.options.implicit, h);
-  if (!solver_.solve(s, last_change_, last_h_)) return false;
+  if (!solver_.solve(s, last_change_, last_h_)) return Part::no_balance;
+  if (dates_events && solver_.contact().overshoots(solver_.next().u, solver_.next().v)) {
+    solver_.give_up();
+    return Part::overshoots;
+  }
   finish(s);
-  return true;
+  return Part::made;
 }
 
 void ImplicitScheme::finish(const TimeStep& s) {
@@ -246,18 +254,25 @@ StepResult ImplicitScheme::step() {
   std::optional<Backup> backup;
   std::uint64_t left = 1;  // parts of h / 2^cuts
   int cuts = 0, most = 0;
+  bool dated = false;  // the cuts are those of an event
   while (left > 0) {
     const double length = std::ldexp(h, -cuts);
     if (left > 1 && !backup) {
       backup = Backup{now_, tissue_.memory(), ledger_, last_change_, state_.time, last_h_, solver_.contact().backup()};
     }
-    if (part(length)) {
+    const Part outcome = part(length, cuts < kMostEventCuts);
+    if (outcome == Part::made) {
       --left;
       state_.time = begin + (h - static_cast<double>(left) * length);
-      if (left > 0 && left % 2 == 0 && solver_.iterations() <= kEasy) left /= 2, --cuts;
+      if (left > 0 && left % 2 == 0 && (dated || solver_.iterations() <= kEasy)) left /= 2, --cuts;
       continue;
     }
-    if (cuts == state_.options.implicit.most_cuts) {
+    if (outcome == Part::overshoots) {
+      left *= 2, ++cuts, dated = true;
+      continue;
+    }
+    dated = false;
+    if (cuts >= state_.options.implicit.most_cuts) {
       if (backup) {
         now_ = std::move(backup->now);
         tissue_.set_memory(std::move(backup->memory));

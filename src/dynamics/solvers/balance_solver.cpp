@@ -51,20 +51,20 @@ void BalanceSolver::begin() {
 
 bool BalanceSolver::solve(const TimeStep& s, std::span<const Vec3d> last_change, double last_h) {
   load(s);
-  const ElementWatch before = watch_;
+  watch_before_ = watch_;
   prescribe(s);
-  if (!contact_.acts()) {
-    if (start(s, last_change, last_h) && newton(s)) return true;
-  } else {
-    contact_.begin(s.h, now_.u, !statics_);
-    if (start(s, last_change, last_h) && newton_in_contact(s)) {
-      next_.contact = contact_.forces();
-      return true;
-    }
-    contact_.give_up();
+  if (contact_.acts()) contact_.begin(s.h, now_.u, !statics_ && contact_.constrains());
+  if (start(s, last_change, last_h) && (contact_.constrains() ? newton_in_contact(s) : newton(s))) {
+    if (contact_.acts()) next_.contact = contact_.forces();
+    return true;
   }
-  watch_ = before;
+  give_up();
   return false;
+}
+
+void BalanceSolver::give_up() {
+  if (contact_.acts()) contact_.give_up();
+  watch_ = watch_before_;
 }
 
 /// What acts from outside, at the state that forces are asked at.
@@ -121,6 +121,7 @@ BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
   const double ahead = (1.0 - s.alpha_f) * s.h;
   tissue_.forces({at_u_, at_v_, statics_ ? std::numeric_limits<double>::infinity() : ahead}, next_.elastic,
                  next_.viscous, watch_);
+  contact_.add_forces_at(at_u_, next_.elastic);
   if (state_.loads.depends_on_state()) load(s);
   const Vec3d gravity = state_.gravity_at(state_.time + ahead);
   Balance b;
@@ -159,9 +160,10 @@ void BalanceSolver::linearise(const TimeStep& s, bool semidefinite) {
   }
   const double time = state_.time + (1.0 - s.alpha_f) * s.h;
   const double since = statics_ ? std::numeric_limits<double>::infinity() : (1.0 - s.alpha_f) * s.h;
-  system_.linearise({at_u_, at_v_, since},
-                    {s.v_rate, 1.0 - s.alpha_f, diagonal_, state_.loads.stiffness(time, state_.body, at_u_)},
-                    semidefinite);
+  system_.linearise(
+      {at_u_, at_v_, since},
+      {s.v_rate, 1.0 - s.alpha_f, diagonal_, state_.loads.stiffness(time, state_.body, at_u_), contact_.stiffness()},
+      semidefinite);
 }
 
 /// A first u⁺: the motion goes on as it was. Where that turns tets inside out, from where the body is, with the change

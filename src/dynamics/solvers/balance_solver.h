@@ -46,6 +46,8 @@ class BalanceSolver {
   /// Finds the moment after a step. @param last_change  of u in the last step, of last_h [s], which statics goes on with
   /// @return false where there is no balance
   bool solve(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
+  /// Takes the step that was solved for back.
+  void give_up();
   Moment& next() { return next_; }
   StepContact& contact() { return contact_; }
   const StepContact& contact() const { return contact_; }
@@ -87,7 +89,7 @@ class BalanceSolver {
   TangentSystem system_;
   StepContact contact_;
   Moment next_;
-  ElementWatch watch_;
+  ElementWatch watch_, watch_before_;  ///< now, and before the step
   std::vector<char> held_;
   std::vector<Vec3d> change_;         ///< u⁺ − u of held components [m]
   std::vector<Vec3d> held_velocity_;  ///< of held components at t + h [m/s]

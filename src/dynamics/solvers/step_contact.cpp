@@ -75,6 +75,33 @@ void StepContact::begin(double h, std::span<const Vec3d> u, bool mass_matters) {
   at_places_.clear();  // the order in which columns come is that of this step, whatever was before
   if (mass_matters && h != factor_h_) system_.renew();
   factor_h_ = h;
+  if (constrains()) return;  // correct() begins the step
+  interactions_.begin(state_.time, h_, active_, {}, state_.body.rest_positions, state_.options.track_energies);
+}
+
+bool StepContact::constrains() const {
+  const std::span<const std::shared_ptr<Interaction>> all = interactions_.all();
+  return std::any_of(all.begin(), all.end(), [](const auto& x) { return x->constrains_long_steps(); });
+}
+
+void StepContact::add_forces_at(std::span<const Vec3d> u, std::span<Vec3d> forces) const {
+  for (const std::shared_ptr<Interaction>& x : interactions_.all()) x->add_forces_at(u, forces);
+}
+
+double StepContact::energy_at(std::span<const Vec3d> u) const {
+  std::vector<Vec3d> unused(state_.body.vertex_count);
+  double sum = 0.0;
+  for (const std::shared_ptr<Interaction>& x : interactions_.all()) {
+    x->add_forces_at(u, unused);
+    sum += x->energy() + x->released_energy();
+  }
+  return sum;
+}
+
+std::span<const TriangleStiffness> StepContact::stiffness() {
+  stiffness_.clear();
+  for (const std::shared_ptr<Interaction>& x : interactions_.all()) x->add_stiffness(stiffness_);
+  return stiffness_;
 }
 
 bool StepContact::correct(std::span<Vec3d> u) {
@@ -112,8 +139,17 @@ bool StepContact::correct(std::span<Vec3d> u) {
   return true;
 }
 
-void StepContact::made(std::span<const Vec3d> u, std::span<const Vec3d> v) {
+void StepContact::put_at_end(std::span<const Vec3d> u, std::span<const Vec3d> v) {
   for (ActiveVertex& w : active_) w.displacement = u[w.vertex], w.velocity = v[w.vertex];
+}
+
+bool StepContact::overshoots(std::span<const Vec3d> u, std::span<const Vec3d> v) {
+  put_at_end(u, v);
+  return interactions_.overshoot();
+}
+
+void StepContact::made(std::span<const Vec3d> u, std::span<const Vec3d> v) {
+  put_at_end(u, v);
   interactions_.moved();
 }
 

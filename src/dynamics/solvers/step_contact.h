@@ -26,6 +26,8 @@ class StepContact final : public StepCompliance {
   StepContact(const BodyState& state, TangentSystem& system) : state_(state), system_(system) {}
 
   bool acts() const { return !interactions_.empty(); }
+  /// Whether some act by impulses, and not by forces of the displacements alone.
+  bool constrains() const;
   const Interactions& interactions() const { return interactions_; }
   void add(std::shared_ptr<Interaction> interaction);
   /// Body or state have changed from outside: nothing presses as yet.
@@ -45,11 +47,19 @@ class StepContact final : public StepCompliance {
 
   /// Begins a step of h from u at t. @param mass_matters  the factor depends on h: another one asks for it anew
   void begin(double h, std::span<const Vec3d> u, bool mass_matters);
-  /// Takes back what begin() did.
+  /// Takes back what begin() and what came after it did.
   void give_up() { restore(before_); }
+  /// Adds what follows from the displacements alone to the forces of the tissue [N].
+  void add_forces_at(std::span<const Vec3d> u, std::span<Vec3d> forces) const;
+  /// What they store there and have released [J].
+  double energy_at(std::span<const Vec3d> u) const;
+  /// The stiffness of that where it was asked last.
+  std::span<const TriangleStiffness> stiffness();
   /// Corrects u⁺ of a Newton iteration that was made with forces(), and finds these anew.
   /// @return false where there is no factor
   bool correct(std::span<Vec3d> u);
+  /// Whether something has come about within the step, which ends with u, v, that is to be dated.
+  bool overshoots(std::span<const Vec3d> u, std::span<const Vec3d> v);
   /// The step has been made, with u, v at its end.
   void made(std::span<const Vec3d> u, std::span<const Vec3d> v);
 
@@ -71,13 +81,15 @@ class StepContact final : public StepCompliance {
   void move(std::size_t by, const Vec3d& impulse, std::size_t place, ActiveVertex& vertex) const;
   void activate(std::span<const std::uint32_t> vertices);
   void put_at_start(std::span<const Vec3d> u);
+  void put_at_end(std::span<const Vec3d> u, std::span<const Vec3d> v);
 
   const BodyState& state_;
   TangentSystem& system_;
   Interactions interactions_;
   std::vector<ActiveVertex> active_;
   std::vector<Vec3d> forces_, start_;  ///< per vertex [N], u(t) [m]
-  Backup before_, reached_;            ///< before reach(), and after it
+  std::vector<TriangleStiffness> stiffness_;
+  Backup before_, reached_;  ///< before reach(), and after it
   double h_ = 0.0, factor_h_ = 0.0;
   std::uint64_t factor_ = 0;                 ///< that the columns are of
   std::map<std::uint32_t, Column> columns_;  ///< per vertex: displacement of all components by a unit force [m/N]
