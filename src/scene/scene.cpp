@@ -80,10 +80,12 @@ bool is_viscous(const Variant& variant) {
   return variant.tissue.viscosity > 0.0 || std::any_of(variant.regions.begin(), variant.regions.end(), viscous);
 }
 
-/// Whether it is a rigid tool in contact that follows a path, and rubs only as a plate (ContactTool::refuses_long_steps).
-bool follows_path_in_contact(const InstrumentSpec& x) {
+/// Whether it is a needle or a rigid tool in contact that follows a path, and rubs only as a plate (Interaction::refuses_long_steps).
+bool acts_in_long_steps(const InstrumentSpec& x) {
+  if (std::holds_alternative<PushSpec>(x.motion.how)) return false;
+  if (std::holds_alternative<NeedleOptions>(x.what)) return true;
   const auto* contact = std::get_if<ContactOptions>(&x.what);
-  return contact != nullptr && !contact->bonded && !std::holds_alternative<PushSpec>(x.motion.how) &&
+  return contact != nullptr && !contact->bonded &&
          (contact->friction == 0.0 || std::holds_alternative<Plate>(contact->shape));
 }
 
@@ -97,11 +99,10 @@ std::string unsupported(const Variant& variant) {
            : !variant.capsules.empty()  ? "[[capsule]]"
                                         : "";
   }
-  if (!std::all_of(variant.instruments.begin(), variant.instruments.end(), follows_path_in_contact)) {
-    return "[[instrument]] but rigid ones in contact that follow a path, not bonded, without friction where they are "
-           "no plates";
-  }
-  return variant.container ? "[container]" : "";
+  if (std::all_of(variant.instruments.begin(), variant.instruments.end(), acts_in_long_steps)) return "";
+  return "[[instrument]] but needles and rigid ones in contact that follow a path, not bonded, without friction where "
+         "they are no "
+         "plates";
 }
 
 /// Complains where what acts on the body beside supports and tools meets an integrator that does not support it.

@@ -51,6 +51,12 @@ struct BodyView {
   bool is_removed(std::size_t tet) const { return !removed.empty() && removed[tet] != 0; }
 };
 
+/// A vertex and its weight in a mean [-].
+struct VertexWeight {
+  std::uint32_t vertex = 0;
+  double weight = 0.0;
+};
+
 /// What becomes of the work of a tool that the tissue does not take.
 enum class WorkSink {
   contact,   ///< impulses along the normal: an impact, tissue that is pushed out
@@ -94,6 +100,12 @@ class StepCompliance {
   virtual void settle(std::span<ActiveVertex> vertices) = 0;
   /// Velocity per impulse of a place on itself, from above: the same in all components that are free, 0 in others [1/kg].
   virtual Vec3d mobility(std::size_t place) = 0;
+  /// Velocity that unit impulses on means of vertices, one an axis, give all of them: that of mean j by one on mean k at
+  /// j · size + k [1/kg]. Their vertices are active. Three solves a mean, kept while the tangent's factor is and the mean is asked for.
+  virtual std::vector<Mat3d> couple(std::span<const std::vector<VertexWeight>> means) = 0;
+  /// Adds to the velocities of all active vertices what impulses [N s] on means give them.
+  virtual void spread_means(std::span<const std::vector<VertexWeight>> means, std::span<const Vec3d> impulses,
+                            std::span<ActiveVertex> vertices) = 0;
 };
 
 /// The active vertices in a step.

@@ -88,8 +88,9 @@ void ImplicitScheme::attach(std::shared_ptr<Interaction> interaction, const Body
   }
   if (state_.options.track_energies) ledger_.bring_in(0.0, interaction->energy());
   if (interaction->constrains_long_steps()) solver_.need_factor();
-  fresh_ = fresh_ || !interaction->constrains_long_steps();
+  const bool adds_forces = !interaction->constrains_long_steps();
   solver_.contact().add(std::move(interaction));
+  fresh_ = fresh_ || adds_forces || !solver_.contact().interactions().held_still().empty();
 }
 
 void ImplicitScheme::tell_change(const BodyView& body, std::span<const std::uint32_t> origins) {
@@ -155,8 +156,23 @@ void ImplicitScheme::finish(const TimeStep& s) {
   for (std::size_t i = 0; i < next.u.size(); ++i) last_change_[i] = next.u[i] - now_.u[i];
   last_h_ = s.h;
   std::swap(now_, next);
-  if (solver_.contact().acts()) solver_.contact().made(now_.u, now_.v);
-  if (state_.options.track_energies) book(next);
+  if (solver_.contact().acts()) solver_.contact().made(now_.u, now_.v, resting());
+  if (!state_.options.track_energies) return;
+  book(next);
+  if (solver_.contact().acts()) ledger_.store_in_instruments(solver_.contact().interactions().tool_energy());
+}
+
+/// What interactions hold still, and what acts on it besides them, where no support holds it.
+std::vector<RestingVertex> ImplicitScheme::resting() const {
+  std::vector<RestingVertex> all;
+  const std::vector<char> supported = state_.held_components();
+  for (const std::uint32_t v : solver_.contact().interactions().held_still()) {
+    Vec3d force =
+        now_.elastic[v] + now_.viscous[v] + now_.external[v] + now_.contact[v] + now_.gravity * state_.body.masses[v];
+    for (std::size_t axis = 0; axis < 3; ++axis) force[axis] = supported[3 * v + axis] != 0 ? 0.0 : force[axis];
+    all.push_back({v, force});
+  }
+  return all;
 }
 
 /// Works of a part: with the forces at its end (backward Euler) or the mean of both ends.

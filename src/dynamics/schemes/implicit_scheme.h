@@ -71,6 +71,7 @@ class ImplicitScheme : public Scheme {
   enum class Part { made, no_balance, overshoots };
   Part part(double h, bool dates_events);
   void finish(const TimeStep& s);
+  std::vector<RestingVertex> resting() const;
   void book(const Moment& before);
   void adapt(double h, double smallest);
   ForceParts vertex_force(std::uint32_t vertex, const Axes& axes) const;

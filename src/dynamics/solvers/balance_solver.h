@@ -70,6 +70,7 @@ class BalanceSolver {
     bool met(double tolerance) const { return residual <= tolerance * scale + rounding; }
   };
 
+  void hold();
   void prescribe(const TimeStep& s);
   Balance evaluate(const TimeStep& s);
   void try_at(const TimeStep& s);
@@ -77,7 +78,7 @@ class BalanceSolver {
   bool start(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
   bool newton(const TimeStep& s);
   bool newton_in_contact(const TimeStep& s);
-  bool go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const std::vector<Vec3d>& forces, bool first,
+  bool go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const ExertedForces& forces, bool first,
                   Balance& balance);
   void linearise(const TimeStep& s, bool semidefinite);
   bool search_line(const TimeStep& s, const Eigen::VectorXd& direction, Balance& balance);
