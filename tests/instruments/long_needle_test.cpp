@@ -16,12 +16,12 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-test::Insertion insertion(Integrator integrator, double h, double speed = 0.01) {
+test::Insertion insertion(Integrator integrator, double h, double speed = 0.01, double sticking = 1.0) {
   test::Insertion o;
   o.options.integrator = integrator;
-  o.options.damping_rate = 100.0;                              // what rings after a puncture dies away
-  o.needle.friction.static_in = o.needle.friction.dynamic_in;  // or vibrations of a few ms would choose what sticks
-  o.needle.friction.static_out = o.needle.friction.dynamic_out;
+  o.options.damping_rate = 100.0;  // what rings after a puncture dies away
+  o.needle.friction.static_in = sticking * o.needle.friction.dynamic_in;
+  o.needle.friction.static_out = sticking * o.needle.friction.dynamic_out;
   if (capabilities(integrator).any_step_is_stable) {
     o.options.step = h;
   } else {
@@ -84,43 +84,53 @@ struct InAndOut {
   const char* name;
   Integrator integrator;
   double h, speed;
+  double sticking = 1.0;  ///< D over C
 };
 
 class LongNeedle : public testing::TestWithParam<InAndOut> {};
 
-// In by 15 mm, at rest, and out: outside the 60 ms in which tissue springs back after the puncture (90 in statics), the force is the explicit
-// scheme's within 2 % of the peak at every step; events come at the same time within 1.5 ms, the puncture at its force, and the
-// hand's work is accounted for.
+// In by 15 mm, at rest, and out: outside the 60 ms in which tissue springs back after the puncture (90 in statics), the force is the
+// explicit scheme's within 2 % of the peak at every step; events come at the same time within 1.5 ms or 15 µm, and the hand's work is
+// accounted for. Where D = 1.7 C, vibrations of a few ms that long steps do not have choose which rows stick again on the way out: there the
+// explicit force rises for moments by up to 9 % of the peak.
 TEST_P(LongNeedle, FollowsTheExplicitScheme) {
   const InAndOut& c = GetParam();
-  test::Inserted explicitly = test::insert(insertion(Integrator::central_difference, 0.0, c.speed));
+  const bool sticks = c.sticking > 1.0;
+  test::Inserted explicitly = test::insert(insertion(Integrator::central_difference, 0.0, c.speed, c.sticking));
   const std::vector<Sample> reference = curve(explicitly, explicitly.end);
-  test::Inserted run = test::insert(insertion(c.integrator, c.h, c.speed));
+  test::Inserted run = test::insert(insertion(c.integrator, c.h, c.speed, c.sticking));
   const std::vector<Sample> own = curve(run, run.end);
-  const double peak = peak_of(reference), error = apart(own, *run.needle, reference, *explicitly.needle,
-                                                        c.integrator == Integrator::implicit ? 0.06 : 0.09);
-  EXPECT_LT(error, 0.02 * peak);
+  const double quiet = c.integrator == Integrator::implicit ? 0.06 : 0.09, turns = 0.5 * run.end;
+  const auto in = std::partition_point(own.begin(), own.end(), [&](const Sample& s) { return s.time < turns; });
+  const double peak = peak_of(reference),
+               on_the_way_in = apart({own.begin(), in}, *run.needle, reference, *explicitly.needle, quiet),
+               on_the_way_out = apart({in, own.end()}, *run.needle, reference, *explicitly.needle, quiet);
+  EXPECT_LT(on_the_way_in, 0.02 * peak);
+  EXPECT_LT(on_the_way_out, (sticks ? 0.1 : 0.02) * peak);
   EXPECT_NEAR(peak_of(own), peak, 0.02 * peak);  // the largest force is within a step
   for (const std::string event : {"contact", "puncture", "withdrawal", "release"}) {
     const InstrumentEvent *there = test::event(*explicitly.needle, event), *here = test::event(*run.needle, event);
     ASSERT_TRUE(there != nullptr && here != nullptr) << event;
-    EXPECT_NEAR(here->time, there->time, std::max(1.5e-3, 1.5e-5 / c.speed)) << event;
+    const double within = std::max(1.5e-3, 1.5e-5 / c.speed) * (sticks && event == "withdrawal" ? 8.0 : 1.0);
+    EXPECT_NEAR(here->time, there->time, within) << event;
     RecordProperty(event + "_ms", std::to_string(1e3 * (here->time - there->time)));
   }
   const Energies e = run.simulation.energies(), f = explicitly.simulation.energies();
   EXPECT_NEAR(e.imbalance(), 0.0, 1e-6 * f.work_tools);
   if (c.integrator == Integrator::implicit) {  // in statics the tissue springs back without damping
     EXPECT_NEAR(e.work_tools, f.work_tools, 0.02 * f.work_tools);
-    EXPECT_NEAR(e.friction, f.friction, 0.03 * f.work_tools);
+    EXPECT_NEAR(e.friction, f.friction, 0.04 * f.work_tools);
     EXPECT_NEAR(e.fracture, f.fracture, 0.03 * f.work_tools);
   }
-  RecordProperty("percent_of_peak", std::to_string(100.0 * error / peak));
+  RecordProperty("in_percent_of_peak", std::to_string(100.0 * on_the_way_in / peak));
+  RecordProperty("out_percent_of_peak", std::to_string(100.0 * on_the_way_out / peak));
 }
 
 INSTANTIATE_TEST_SUITE_P(Steps, LongNeedle,
                          testing::Values(InAndOut{"Implicit5ms", Integrator::implicit, 0.005, 0.01},
                                          InAndOut{"Implicit20ms", Integrator::implicit, 0.02, 0.005},
-                                         InAndOut{"Static20ms", Integrator::quasi_static, 0.02, 0.005}),
+                                         InAndOut{"Static20ms", Integrator::quasi_static, 0.02, 0.005},
+                                         InAndOut{"Implicit20msSticking", Integrator::implicit, 0.02, 0.005, 1.7}),
                          [](const auto& p) { return std::string(p.param.name); });
 
 // In statics the support takes what the needle exerts, at every step; and a needle that rubs without a rate finds its balance after
