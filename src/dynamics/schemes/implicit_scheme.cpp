@@ -322,9 +322,9 @@ void ImplicitScheme::archive_motion(Archive& ar) {
   const std::size_t vertices = state_.body.vertex_count, tets = state_.body.elements.size();
   ar.check(last_change_.size() == vertices || (last_change_.empty() && fresh && last_h_ == 0.0));
   for (const std::uint32_t t : watch().inverted) ar.check(t < tets);
+  if (solver_.contact().acts()) ar(solver_.contact());  // first: what interactions hold still is held by the solver
   if (ar.reads() && !fresh) solver_.begin();
   if (!fresh) ar(solver_);
-  if (solver_.contact().acts()) ar(solver_.contact());
   fresh_ = fresh;
 }
 

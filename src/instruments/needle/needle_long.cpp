@@ -6,6 +6,7 @@
 // W_jk, a 3 × 3 block, is the velocity that a unit impulse at row k gives row j within the step, through the factor of the tangent;
 // P takes what is across the needle. Nothing is corrected later: both hold at the end of the step.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
