@@ -216,7 +216,7 @@ class Interaction {
 
   /// Why it does not act in the long steps of `implicit` and `quasi_static`, as the end of a sentence with the way out; empty:
   /// it does. Its forces are then those at the end of the step, and constrain() is called in every iteration of Newton's method,
-  /// with all as it was after reach().
+  /// where several act several times, with all as it was after reach().
   virtual std::string refuses_long_steps() const;
   /// Tells it, before `attached`, whether its steps will be long.
   virtual void set_long_steps(bool /*are_long*/) {}
