@@ -29,14 +29,29 @@ std::span<const std::uint32_t> Interactions::newcomers(double time, double h, st
   for (std::size_t k = 0; k < all_.size(); ++k) {
     name(k, all_[k]->reach(time, h), vertex_count);
     if (const auto kept = all_[k]->keeps(); kept && lets_go_) keep(k, *kept);
-    const auto rests = all_[k]->rests();
-    if (!rests) continue;
-    rests_[k].assign(rests->begin(), rests->end());
-    sort_out(rests_[k]);
-    rest_changed_ = true;
+    take_rests(k);
   }
   sort_out(newcomers_);
   return newcomers_;
+}
+
+void Interactions::take_rests(std::size_t interaction) {
+  const auto rests = all_[interaction]->rests();
+  if (!rests) return;
+  rests_[interaction].assign(rests->begin(), rests->end());
+  sort_out(rests_[interaction]);
+  rest_changed_ = true;
+}
+
+void Interactions::ask_rests() {
+  for (std::size_t k = 0; k < all_.size(); ++k) take_rests(k);
+}
+
+std::vector<std::uint32_t> Interactions::held_still() const {
+  std::vector<std::uint32_t> all;
+  for (const std::vector<std::uint32_t>& mine : rests_) all.insert(all.end(), mine.begin(), mine.end());
+  sort_out(all);
+  return all;
 }
 
 /// Adds what an interaction has named; those not active yet are newcomers.
@@ -67,9 +82,7 @@ std::vector<std::uint32_t> Interactions::named() const {
 }
 
 std::vector<std::uint32_t> Interactions::resting() const {
-  std::vector<std::uint32_t> all;
-  for (const std::vector<std::uint32_t>& mine : rests_) all.insert(all.end(), mine.begin(), mine.end());
-  sort_out(all);
+  std::vector<std::uint32_t> all = held_still();
   const std::vector<std::uint32_t> acted_on = named();
   std::erase_if(all, [&](std::uint32_t v) { return is_among(acted_on, v); });
   return all;
@@ -112,10 +125,32 @@ void Interactions::add_forces() {
   for (const std::shared_ptr<Interaction>& x : all_) x->add_forces(step_);
 }
 
-void Interactions::constrain(std::span<const Vec3d> mobility, StepCompliance* compliance) {
+void Interactions::constrain(std::span<const Vec3d> mobility) {
   step_.mobility = mobility;
-  step_.compliance = compliance;
+  step_.compliance = nullptr;
   for (const std::shared_ptr<Interaction>& x : all_) x->constrain(step_);
+}
+
+void Interactions::constrain(std::size_t interaction, StepCompliance& compliance) {
+  step_.mobility = {};
+  step_.compliance = &compliance;
+  all_[interaction]->constrain(step_);
+}
+
+void Interactions::clear_impulses() {
+  std::fill(impulses_.begin(), impulses_.end(), Vec3d{});
+  if (step_.interface_book != nullptr) book_.begin(step_.vertices.size());
+}
+
+void Interactions::restore(std::span<const std::string> archives) {
+  for (std::size_t k = 0; k < archives.size(); ++k) {
+    Archive ar(archives[k]);
+    all_[k]->archive(ar);
+  }
+}
+
+bool Interactions::overshoot() {
+  return std::any_of(all_.begin(), all_.end(), [&](const auto& x) { return x->overshoots(step_); });
 }
 
 void Interactions::moved() {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "dynamics/state/constraints.h"
@@ -31,6 +32,13 @@ class Interactions {
   std::vector<std::uint32_t> named() const;
   /// All vertices that some interaction holds still and none may act on; ascending.
   std::vector<std::uint32_t> resting() const;
+  /// All vertices that some interaction holds still, and those that each does, to go back to.
+  std::vector<std::uint32_t> held_still() const;
+  using Rests = std::vector<std::vector<std::uint32_t>>;
+  const Rests& rests() const { return rests_; }
+  void set_rests(const Rests& rests) { rests_ = rests; }
+  /// Asks what they hold still before the first step.
+  void ask_rests();
   /// New vertices, numbered on from `first_new`, are named by those that named the vertices they are copies of.
   void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new);
   /// The vertices at hand have become others.
@@ -42,9 +50,16 @@ class Interactions {
              std::span<const Vec3d> rest, bool accounted);
   void add_forces();
   /// @param held  per place and component: whether a support or motion holds it
-  void constrain(std::span<const Vec3d> mobility) { constrain(mobility, nullptr); }
+  void constrain(std::span<const Vec3d> mobility);
   /// In a long step.
-  void constrain(StepCompliance& compliance) { constrain({}, &compliance); }
+  void constrain(std::size_t interaction, StepCompliance& compliance);
+  void clear_impulses();
+  /// Takes them back to where their archives were written.
+  void restore(std::span<const std::string> archives);
+  /// What those held still stand against, for moved().
+  void set_resting(std::span<const RestingVertex> resting) { step_.resting = resting; }
+  /// Whether some say so of the step, with its end among the active vertices.
+  bool overshoot();
   void moved();
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins);
   void state_set();
@@ -59,13 +74,13 @@ class Interactions {
   void archive(Archive& ar);
 
  private:
-  void constrain(std::span<const Vec3d> mobility, StepCompliance* compliance);
+  void take_rests(std::size_t interaction);
   void name(std::size_t interaction, std::span<const std::uint32_t> vertices, std::size_t vertex_count);
   void keep(std::size_t interaction, std::span<const std::uint32_t> vertices);
 
   std::vector<std::shared_ptr<Interaction>> all_;
   std::vector<std::vector<std::uint32_t>> named_;  ///< by each interaction, ascending
-  std::vector<std::vector<std::uint32_t>> rests_;  ///< what each holds still, ascending
+  Rests rests_;                                    ///< what each holds still, ascending
   bool lets_go_ = true;
   bool left_ = false, rest_changed_ = false;
   std::vector<std::uint32_t> place_of_, newcomers_;

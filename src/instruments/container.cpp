@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -19,6 +20,7 @@ constexpr double kMostOut = 0.02;  ///< of the container's size: how far a body 
 constexpr double kTouch = 1e-6;    ///< of the vessel's size: tissue so near to a wall that holds it touches
 /// Of the vessel's size: tissue that moves no more than that in a step has come to rest.
 constexpr double kStill = 1e-12;
+constexpr int kMostLooks = 12;  ///< for points that come outside in a long step
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// A plate whose outward normal is n, through a point; all in the frame of the vessel.
@@ -50,7 +52,12 @@ struct Container::State {
   ContactBooks books;
   FoundInside found_inside;
   bool begun = false;
+  bool is_long = false;  ///< acts in long steps: bonds rest from the start, and no step lets go of what it has found
   std::vector<ContactRow> rows;
+  using Place = std::pair<std::uint32_t, std::uint32_t>;  ///< vertex and solid
+  std::set<Place> has_row;                                ///< in a long step
+  std::map<Place, double> last_pressing;                  ///< forces of the last long step, to begin the next with [N]
+  std::map<Place, std::pair<double, Vec3d>> trial;        ///< of a long step: impulses of the last iteration [N s]
   std::map<std::uint32_t, Bond> bonds;
   /// What a step needs of a bond. The vessel stands still.
   struct Hold {
@@ -83,6 +90,11 @@ struct Container::State {
                                                std::vector<std::uint32_t>& left) const;
   void look_for_rest(const InteractionStep& step);
   void add_rows(const InteractionStep& step);
+  Place place_of(const ContactRow& row, const InteractionStep& step) const;
+  void begin_row(ContactRow& row, const InteractionStep& step) const;
+  void solve_long(const InteractionStep& step);
+  void rest_bonds();
+  void bear_rest(const InteractionStep& step);
   void hold_bonds(const InteractionStep& step);
   void load(const ContactSolid& solid, const Vec3d& normal, const Vec3d& force);
 };
@@ -164,7 +176,15 @@ void Container::State::list_bonds() {
 
 /// Bonds are held by impulses until they are seen to rest.
 void Container::State::wake() {
+  if (is_long) return rest_bonds();
   still.assign(reach.surface().body_vertices(), 0);
+  still_changed = true;
+}
+
+/// In long steps bonds are supports, from where they are on.
+void Container::State::rest_bonds() {
+  still.assign(reach.surface().body_vertices(), 0);
+  for (const Hold& hold : holds) still[hold.vertex] = 1;
   still_changed = true;
 }
 
@@ -198,14 +218,52 @@ void Container::State::add_rows(const InteractionStep& step) {
     for (std::uint32_t k = 0; k < solids.size(); ++k) {
       const Vec3d start = to_frame(solids[k].before, x);
       if (distance_to(shapes[k], start).distance > norm(way) + solids[k].grip) continue;
+      if (is_long && has_row.count({v, k}) != 0) continue;
       ContactRow row;
       row.places[0] = place, row.solid = &solids[k];
       found_inside.mark(row, v, k, start, begun);
-      if (prepare(row, step)) rows.push_back(row);
+      if (prepare(row, step)) {
+        rows.push_back(row);
+        if (is_long) has_row.insert({v, k});
+      }
       found_inside.settle(row, v, k);
     }
   }
   begun = true;
+}
+
+Container::State::Place Container::State::place_of(const ContactRow& row, const InteractionStep& step) const {
+  return {step.vertices[row.places[0]].vertex, static_cast<std::uint32_t>(row.solid - solids.data())};
+}
+
+/// Begins with what the row had in the last iteration, or with the force of the last step.
+void Container::State::begin_row(ContactRow& row, const InteractionStep& step) const {
+  const Place place = place_of(row, step);
+  if (!trial.empty()) {
+    if (const auto at = trial.find(place); at != trial.end())
+      row.pressing = at->second.first, row.rubbing = at->second.second;
+  } else if (const auto at = last_pressing.find(place); at != last_pressing.end()) {
+    row.pressing = at->second * step.h;
+  }
+  if (row.pressing != 0.0) push(row, step, row.impulse());
+}
+
+/// Points move one another, so that those that come outside by it are looked for until there are none.
+void Container::State::solve_long(const InteractionStep& step) {
+  has_row.clear();
+  for (int look = 0; look < kMostLooks; ++look) {
+    const std::size_t known = rows.size();
+    add_rows(step);
+    if (rows.size() == known) break;
+    for (std::size_t k = known; k < rows.size(); ++k) begin_row(rows[k], step);
+    glisson::solve(rows, step);
+    step.compliance->settle(step.vertices);
+  }
+  trial.clear(), last_pressing.clear();
+  for (const ContactRow& row : rows) {
+    trial[place_of(row, step)] = {row.pressing, row.rubbing};
+    if (row.pressing != 0.0) last_pressing[place_of(row, step)] = row.pressing / step.h;
+  }
 }
 
 void Container::State::load(const ContactSolid& solid, const Vec3d& normal, const Vec3d& force) {
@@ -217,8 +275,23 @@ void Container::State::load(const ContactSolid& solid, const Vec3d& normal, cons
   }
 }
 
+/// In long steps: what bonds stand against at the end of the step.
+void Container::State::bear_rest(const InteractionStep& step) {
+  auto hold = holds.begin();
+  for (const RestingVertex& rest : step.resting) {
+    while (hold != holds.end() && hold->vertex < rest.vertex) ++hold;
+    if (hold == holds.end() || hold->vertex != rest.vertex) continue;
+    hold->force = -rest.force;
+    load(*hold->solid, hold->normal, hold->force);
+  }
+}
+
 /// A bond at rest bears what its tissue exerts; others are stopped by impulses.
 void Container::State::hold_bonds(const InteractionStep& step) {
+  if (is_long) {  // they rest, but for those that have come to be in this step, which have rows
+    for (Hold& hold : holds) hold.force = {};
+    return;
+  }
   auto resting = step.resting.begin();
   for (Hold& hold : holds) {
     const std::uint32_t place = step.place_of[hold.vertex];
@@ -254,7 +327,10 @@ void Container::attached(const BodyView& body, double) {
   state_->require_inside(body);
   if (state_->options.bonded) state_->bond_first(body);
   state_->list_bonds();
+  if (state_->is_long) state_->rest_bonds();
 }
+
+void Container::set_long_steps(bool are_long) { state_->is_long = are_long; }
 
 void Container::body_changed(const BodyView& body, std::span<const std::uint32_t> origins) {
   give_to_copies(state_->bonds, body.mesh.vertices.size(), origins);
@@ -268,6 +344,7 @@ void Container::state_set() { state_->wake(); }
 /// All bonds that do not rest are to be at hand.
 std::span<const std::uint32_t> Container::reach(double, double h) {
   State& s = *state_;
+  s.trial.clear();
   const std::span<const std::uint32_t> asked = s.without_still(s.reach.ask(s.solids, h), s.asked);
   if (!s.still_changed) return asked;
   for (const State::Hold& hold : s.holds) {
@@ -303,9 +380,13 @@ void Container::constrain(const InteractionStep& step) {
   State& s = *state_;
   s.loads = {}, s.bearing.clear();
   s.rows.clear();
-  s.add_rows(step);
-  if (!s.rows.empty()) s.books.solve(s.rows, step);
-  s.books.close(s.rows, step);
+  if (s.is_long) {
+    s.solve_long(step);
+  } else {
+    s.add_rows(step);
+    if (!s.rows.empty()) s.books.solve(s.rows, step);
+    s.books.close(s.rows, step);
+  }
   const std::size_t bonds_before = s.bonds.size();
   for (const ContactRow& row : s.rows) {
     if (row.impulse() == Vec3d{}) continue;
@@ -328,13 +409,17 @@ bool Container::add_contact(std::span<Vec3d> force, std::span<double> pressing) 
 }
 
 void Container::moved(const InteractionStep& step) {
-  state_->reach.look(step);
-  state_->look_for_rest(step);
+  State& s = *state_;
+  s.reach.look(step);
+  if (!s.is_long) return s.look_for_rest(step);
+  s.bear_rest(step);
+  if (std::any_of(s.holds.begin(), s.holds.end(), [&](const auto& hold) { return s.still[hold.vertex] == 0; }))
+    s.rest_bonds();
 }
 
 void Container::archive(Archive& ar) {
   State& s = *state_;
-  ar(s.begun, s.books, s.bonds, s.found_inside, s.reach, s.still_changed);
+  ar(s.begun, s.books, s.bonds, s.found_inside, s.reach, s.still_changed, s.last_pressing);
   ar.same_size(s.still);
   for (const auto& [v, bond] : s.bonds) ar.check(v < s.reach.surface().body_vertices() && bond.solid < s.solids.size());
   if (ar.reads()) s.list_bonds();

@@ -80,33 +80,40 @@ bool is_viscous(const Variant& variant) {
   return variant.tissue.viscosity > 0.0 || std::any_of(variant.regions.begin(), variant.regions.end(), viscous);
 }
 
-/// Whether it is a rigid tool in contact that follows a path, and rubs only as a plate (ContactTool::refuses_long_steps).
-bool follows_path_in_contact(const InstrumentSpec& x) {
+/// Whether it is a needle or a rigid tool in contact that follows a path, and rubs only as a plate (Interaction::refuses_long_steps).
+bool acts_in_long_steps(const InstrumentSpec& x) {
+  if (std::holds_alternative<PushSpec>(x.motion.how)) return false;
+  if (std::holds_alternative<NeedleOptions>(x.what)) return true;
   const auto* contact = std::get_if<ContactOptions>(&x.what);
-  return contact != nullptr && !contact->bonded && !std::holds_alternative<PushSpec>(x.motion.how) &&
+  return contact != nullptr && !contact->bonded &&
          (contact->friction == 0.0 || std::holds_alternative<Plate>(contact->shape));
+}
+
+/// What of a variant its integrator does not support, with what it does instead; empty: nothing.
+std::string unsupported(const Variant& variant) {
+  const Capabilities can = capabilities(variant.simulation.integrator);
+  if (can.supports(is_viscous(variant))) return "";
+  if (!can.supports_contact) {
+    return !variant.instruments.empty() ? "[[instrument]]"
+           : variant.container          ? "[container]"
+           : !variant.capsules.empty()  ? "[[capsule]]"
+                                        : "";
+  }
+  if (std::all_of(variant.instruments.begin(), variant.instruments.end(), acts_in_long_steps)) return "";
+  return "[[instrument]] but needles and rigid ones in contact that follow a path, not bonded, without friction where "
+         "they are no "
+         "plates";
 }
 
 /// Complains where what acts on the body beside supports and tools meets an integrator that does not support it.
 void check_integrator(const Variant& variant, const Node& experiment, Problems& problems) {
-  const Capabilities can = capabilities(variant.simulation.integrator);
-  const bool acts = !variant.instruments.empty() || !variant.capsules.empty() || variant.container;
-  if (can.supports(is_viscous(variant)) || !acts) return;
-  const bool only_contact =
-      variant.capsules.empty() && !variant.container &&
-      std::all_of(variant.instruments.begin(), variant.instruments.end(), follows_path_in_contact);
-  if (can.supports_contact && only_contact) return;
-  const std::string but =
-      !can.supports_contact || variant.instruments.empty()
-          ? ""
-          : " but rigid ones in contact that follow a path, not bonded, without friction where they are no plates";
-  const std::string what = !variant.instruments.empty() ? "[[instrument]]"
-                           : variant.container          ? "[container]"
-                                                        : "[[capsule]]";
+  const std::string what = unsupported(variant);
+  if (what.empty()) return;
   const Node& key = *experiment.find("motion")->find("integrator");
   problems.add(key.where, "motion.integrator",
-               "\"" + *key.text() + "\"" + (can.supports_interactions ? " with viscous tissue" : "") + " supports no " +
-                   what + but + "; take " + supporting_integrators() + " (Maxwell branches may stay)");
+               "\"" + *key.text() + "\"" +
+                   (capabilities(variant.simulation.integrator).supports_interactions ? " with viscous tissue" : "") +
+                   " supports no " + what + "; take " + supporting_integrators() + " (Maxwell branches may stay)");
 }
 
 /// Reads the file of a recorded motion along a direction.

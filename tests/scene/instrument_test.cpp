@@ -245,18 +245,23 @@ TEST(Instruments, MistakesAreTold) {
               HasSubstr("nothing says when the run ends"));
 }
 
-// Needles bear explicit steps only, rigid tools in contact that follow a path longer ones; another integrator is refused at its own
-// line, viscosity with semi_implicit, too.
+// Needles and rigid tools in contact that follow a path, containers and capsules bear long steps; others are refused at the
+// integrator's own line, and so is viscosity with semi_implicit.
 TEST(Instruments, AskForAnIntegratorThatBearsThem) {
   for (const std::string word : {"implicit", "quasi_static"}) {
-    EXPECT_EQ(complaint(kNeedle + "[motion]\nintegrator = \"" + word + "\"\n"),
-              "s.toml:14:14: motion.integrator: \"" + word +
-                  "\" supports no [[instrument]] but rigid ones in contact that follow a path, not bonded, without "
-                  "friction where they "
-                  "are no plates; take central_difference, or semi_implicit for tissue without `viscosity_Pa_s` "
-                  "(Maxwell branches may stay)");
-    const std::string ball = "[mesh]\nkind = \"box\"\n[[instrument]]\nkind = \"ball\"\ntip_m = [0, 0, 1]\n";
     const std::string implicit = "[motion]\nintegrator = \"" + word + "\"\n";
+    EXPECT_EQ(complaint(kNeedle + implicit), "");
+    EXPECT_EQ(
+        complaint(kNeedle + implicit + "[container]\nkind = \"box\"\nwidth_mm = 10\nlength_mm = 10\n[[capsule]]\n"),
+        "");
+    EXPECT_EQ(
+        complaint(changed(kNeedle, "\"press\", depth_mm = 10, velocity_mm_s = 50", "\"push\", duration_s = 1") +
+                  implicit),
+        "s.toml:14:14: motion.integrator: \"" + word +
+            "\" supports no [[instrument]] but needles and rigid ones in contact that follow a path, not bonded, "
+            "without friction where they are no plates; take central_difference, or semi_implicit for tissue without "
+            "`viscosity_Pa_s` (Maxwell branches may stay)");
+    const std::string ball = "[mesh]\nkind = \"box\"\n[[instrument]]\nkind = \"ball\"\ntip_m = [0, 0, 1]\n";
     EXPECT_EQ(complaint(ball + "motion = { kind = \"press\" }\n" + implicit), "");
     EXPECT_THAT(complaint(ball + "motion = { kind = \"push\", duration_s = 1 }\n" + implicit), HasSubstr("in contact"));
     EXPECT_THAT(complaint(ball + "bonded = true\nmotion = { kind = \"press\" }\n" + implicit), HasSubstr("not bonded"));

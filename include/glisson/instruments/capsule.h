@@ -121,6 +121,13 @@ class Capsule final : public Interaction {
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;
   void add_forces(const InteractionStep& step) override;
+  std::string refuses_long_steps() const override { return {}; }
+  void set_long_steps(bool are_long) override;
+  bool constrains_long_steps() const override { return false; }
+  void add_forces_at(std::span<const Vec3d> displacement, std::span<Vec3d> force) override;
+  void add_stiffness(std::vector<TriangleStiffness>& all) const override;
+  bool overshoots(const InteractionStep& step) override;
+  void moved(const InteractionStep& step) override;
   double squared_frequency() const override;
   void archive(Archive& ar) override;
 

@@ -95,6 +95,8 @@ class Container final : public Interaction {
   std::optional<std::span<const std::uint32_t>> keeps() override;
   std::optional<std::span<const std::uint32_t>> rests() override;
   void state_set() override;
+  std::string refuses_long_steps() const override { return {}; }
+  void set_long_steps(bool are_long) override;
   void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;

@@ -189,6 +189,8 @@ class Needle final : public Instrument {
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;
   std::optional<std::span<const std::uint32_t>> keeps() override;
+  std::string refuses_long_steps() const override;
+  bool overshoots(const InteractionStep& step) override;
   void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;

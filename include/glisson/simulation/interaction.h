@@ -51,6 +51,12 @@ struct BodyView {
   bool is_removed(std::size_t tet) const { return !removed.empty() && removed[tet] != 0; }
 };
 
+/// A vertex and its weight in a mean [-].
+struct VertexWeight {
+  std::uint32_t vertex = 0;
+  double weight = 0.0;
+};
+
 /// What becomes of the work of a tool that the tissue does not take.
 enum class WorkSink {
   contact,   ///< impulses along the normal: an impact, tissue that is pushed out
@@ -78,6 +84,12 @@ struct ToolVelocity {
   Vec3d after{};   ///< V₊, of this step
 };
 
+/// Stiffness between the corners of a triangle of the surface: a displacement of corner b adds −K(a, b) of it to the force on corner a.
+struct TriangleStiffness {
+  std::array<std::uint32_t, 3> corners{};
+  std::array<std::array<Mat3d, 3>, 3> blocks{};  ///< K, symmetric as a whole [N/m]
+};
+
 /// How far impulses move active vertices other than their own within a step that is long: one of `implicit` or `quasi_static`.
 class StepCompliance {
  public:
@@ -88,6 +100,12 @@ class StepCompliance {
   virtual void settle(std::span<ActiveVertex> vertices) = 0;
   /// Velocity per impulse of a place on itself, from above: the same in all components that are free, 0 in others [1/kg].
   virtual Vec3d mobility(std::size_t place) = 0;
+  /// Velocity that unit impulses on means of vertices, one an axis, give all of them: that of mean j by one on mean k at
+  /// j · size + k [1/kg]. Their vertices are active. Three solves a mean, kept while the tangent's factor is and the mean is asked for.
+  virtual std::vector<Mat3d> couple(std::span<const std::vector<VertexWeight>> means) = 0;
+  /// Adds to the velocities of all active vertices what impulses [N s] on means give them.
+  virtual void spread_means(std::span<const std::vector<VertexWeight>> means, std::span<const Vec3d> impulses,
+                            std::span<ActiveVertex> vertices) = 0;
 };
 
 /// The active vertices in a step.
@@ -185,9 +203,20 @@ class Interaction {
   /// Whether it takes part in steps. Otherwise between_steps is called just once, when it is attached, to set up supports,
   /// motions and loads; then every integrator supports it, and it has no state for a checkpoint.
   virtual bool acts_in_steps() const { return true; }
+  /// In long steps, in place of add_forces: adds the forces that follow from the displacements of all vertices to those of the tissue
+  /// [N]. Newton's method asks at every trial.
+  virtual void add_forces_at(std::span<const Vec3d> /*displacement*/, std::span<Vec3d> /*force*/) {}
+  /// Adds the stiffness of these forces where add_forces_at() was asked last.
+  virtual void add_stiffness(std::vector<TriangleStiffness>&) const {}
+  /// Whether it acts by constrain() in long steps; otherwise by add_forces_at() alone.
+  virtual bool constrains_long_steps() const { return true; }
+  /// In a long step, before moved(), with displacements and velocities at its end: whether something has come about within it that is to
+  /// be dated, as a tear or a puncture. The step is then taken back and made in parts, until they are short.
+  virtual bool overshoots(const InteractionStep&) { return false; }
+
   /// Why it does not act in the long steps of `implicit` and `quasi_static`, as the end of a sentence with the way out; empty:
   /// it does. Its forces are then those at the end of the step, and constrain() is called in every iteration of Newton's method,
-  /// with all as it was after reach().
+  /// where several act several times, with all as it was after reach().
   virtual std::string refuses_long_steps() const;
   /// Tells it, before `attached`, whether its steps will be long.
   virtual void set_long_steps(bool /*are_long*/) {}

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kDefaultStep = 0.01, kDefaultStaticStep = 0.05;  ///< [s]
 constexpr double kGrowth = 1.5;                                   ///< of an automatic step after an easy one
+constexpr int kMostEventCuts = 7;                                 ///< events are dated to 1/128 of a step
 constexpr int kEasy = 6;                                          ///< iterations up to which a step was easy
 
 std::span<const Vec3d> view(const std::vector<Vec3d>& field) { return field; }
@@ -43,7 +44,7 @@ void ImplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
   if (!state_.options.track_energies) return;
   double kinetic = 0.0;
   for (std::size_t i = 0; i < now_.v.size(); ++i) kinetic += 0.5 * state_.body.masses[i] * dot(now_.v[i], now_.v[i]);
-  ledger_.reset(kinetic, tissue_.energy(now_.u));
+  ledger_.reset(kinetic, tissue_.energy(now_.u) + solver_.contact().energy_at(now_.u));
 }
 
 void ImplicitScheme::take_over(const BodyChange& change) {
@@ -85,8 +86,11 @@ void ImplicitScheme::attach(std::shared_ptr<Interaction> interaction, const Body
     interaction->set_long_steps(false);
     throw;
   }
-  solver_.need_factor();
+  if (state_.options.track_energies) ledger_.bring_in(0.0, interaction->energy());
+  if (interaction->constrains_long_steps()) solver_.need_factor();
+  const bool adds_forces = !interaction->constrains_long_steps();
   solver_.contact().add(std::move(interaction));
+  fresh_ = fresh_ || adds_forces || !solver_.contact().interactions().held_still().empty();
 }
 
 void ImplicitScheme::tell_change(const BodyView& body, std::span<const std::uint32_t> origins) {
@@ -105,6 +109,7 @@ void ImplicitScheme::start_fresh() {
   if (last_h_ == 0.0) last_change_.assign(state_.body.vertex_count, Vec3d{});
   tissue_.forces({now_.u, now_.v, statics_ ? std::numeric_limits<double>::infinity() : 0.0}, now_.elastic, now_.viscous,
                  watch());
+  solver_.contact().add_forces_at(now_.u, now_.elastic);
   const std::span<const Vec3d> loads = state_.loads_at(state_.time, now_.u);
   now_.external.assign(loads.begin(), loads.end());
   now_.gravity = state_.gravity_at(state_.time);
@@ -128,12 +133,16 @@ std::vector<char> ImplicitScheme::held_or_sprung() const {
   return held;
 }
 
-/// One part of a step, of h [s]; false where no balance is found: nothing has changed then.
-bool ImplicitScheme::part(double h) {
+/// One part of a step, of h [s]. Where it is not made, nothing has changed.
+ImplicitScheme::Part ImplicitScheme::part(double h, bool dates_events) {
   const TimeStep s = statics_ ? static_step(h) : time_step(state_.options.implicit, h);
-  if (!solver_.solve(s, last_change_, last_h_)) return false;
+  if (!solver_.solve(s, last_change_, last_h_)) return Part::no_balance;
+  if (dates_events && solver_.contact().overshoots(solver_.next().u, solver_.next().v)) {
+    solver_.give_up();
+    return Part::overshoots;
+  }
   finish(s);
-  return true;
+  return Part::made;
 }
 
 void ImplicitScheme::finish(const TimeStep& s) {
@@ -147,8 +156,23 @@ void ImplicitScheme::finish(const TimeStep& s) {
   for (std::size_t i = 0; i < next.u.size(); ++i) last_change_[i] = next.u[i] - now_.u[i];
   last_h_ = s.h;
   std::swap(now_, next);
-  if (solver_.contact().acts()) solver_.contact().made(now_.u, now_.v);
-  if (state_.options.track_energies) book(next);
+  if (solver_.contact().acts()) solver_.contact().made(now_.u, now_.v, resting());
+  if (!state_.options.track_energies) return;
+  book(next);
+  if (solver_.contact().acts()) ledger_.store_in_instruments(solver_.contact().interactions().tool_energy());
+}
+
+/// What interactions hold still, and what acts on it besides them, where no support holds it.
+std::vector<RestingVertex> ImplicitScheme::resting() const {
+  std::vector<RestingVertex> all;
+  const std::vector<char> supported = state_.held_components();
+  for (const std::uint32_t v : solver_.contact().interactions().held_still()) {
+    Vec3d force =
+        now_.elastic[v] + now_.viscous[v] + now_.external[v] + now_.contact[v] + now_.gravity * state_.body.masses[v];
+    for (std::size_t axis = 0; axis < 3; ++axis) force[axis] = supported[3 * v + axis] != 0 ? 0.0 : force[axis];
+    all.push_back({v, force});
+  }
+  return all;
 }
 
 /// Works of a part: with the forces at its end (backward Euler) or the mean of both ends.
@@ -246,18 +270,25 @@ StepResult ImplicitScheme::step() {
   std::optional<Backup> backup;
   std::uint64_t left = 1;  // parts of h / 2^cuts
   int cuts = 0, most = 0;
+  bool dated = false;  // the cuts are those of an event
   while (left > 0) {
     const double length = std::ldexp(h, -cuts);
     if (left > 1 && !backup) {
       backup = Backup{now_, tissue_.memory(), ledger_, last_change_, state_.time, last_h_, solver_.contact().backup()};
     }
-    if (part(length)) {
+    const Part outcome = part(length, cuts < kMostEventCuts);
+    if (outcome == Part::made) {
       --left;
       state_.time = begin + (h - static_cast<double>(left) * length);
-      if (left > 0 && left % 2 == 0 && solver_.iterations() <= kEasy) left /= 2, --cuts;
+      if (left > 0 && left % 2 == 0 && (dated || solver_.iterations() <= kEasy)) left /= 2, --cuts;
       continue;
     }
-    if (cuts == state_.options.implicit.most_cuts) {
+    if (outcome == Part::overshoots) {
+      left *= 2, ++cuts, dated = true;
+      continue;
+    }
+    dated = false;
+    if (cuts >= state_.options.implicit.most_cuts) {
       if (backup) {
         now_ = std::move(backup->now);
         tissue_.set_memory(std::move(backup->memory));
@@ -291,9 +322,9 @@ void ImplicitScheme::archive_motion(Archive& ar) {
   const std::size_t vertices = state_.body.vertex_count, tets = state_.body.elements.size();
   ar.check(last_change_.size() == vertices || (last_change_.empty() && fresh && last_h_ == 0.0));
   for (const std::uint32_t t : watch().inverted) ar.check(t < tets);
+  if (solver_.contact().acts()) ar(solver_.contact());  // first: what interactions hold still is held by the solver
   if (ar.reads() && !fresh) solver_.begin();
   if (!fresh) ar(solver_);
-  if (solver_.contact().acts()) ar(solver_.contact());
   fresh_ = fresh;
 }
 

@@ -68,8 +68,10 @@ class ImplicitScheme : public Scheme {
   ElementWatch& watch() { return solver_.watch(); }
   void start_fresh();
   std::vector<char> held_or_sprung() const;
-  bool part(double h);
+  enum class Part { made, no_balance, overshoots };
+  Part part(double h, bool dates_events);
   void finish(const TimeStep& s);
+  std::vector<RestingVertex> resting() const;
   void book(const Moment& before);
   void adapt(double h, double smallest);
   ForceParts vertex_force(std::uint32_t vertex, const Axes& axes) const;

@@ -43,7 +43,14 @@ void BalanceSolver::begin() {
   diagonal_.assign(vertices, Vec3d{});
   next_ = now_;
   unit_force_ = unit_force(state_.body);
+  hold();
+}
+
+/// Takes what supports, motions and interactions hold.
+void BalanceSolver::hold() {
   held_ = state_.held_components();
+  for (const std::uint32_t v : contact_.interactions().held_still())
+    held_[3 * v] = held_[3 * v + 1] = held_[3 * v + 2] = 1;
   std::vector<char> free(held_.size());
   for (std::size_t i = 0; i < free.size(); ++i) free[i] = held_[i] == 0 ? 1 : 0;
   system_.set_free(std::move(free));
@@ -51,20 +58,20 @@ void BalanceSolver::begin() {
 
 bool BalanceSolver::solve(const TimeStep& s, std::span<const Vec3d> last_change, double last_h) {
   load(s);
-  const ElementWatch before = watch_;
+  watch_before_ = watch_;
   prescribe(s);
-  if (!contact_.acts()) {
-    if (start(s, last_change, last_h) && newton(s)) return true;
-  } else {
-    contact_.begin(s.h, now_.u, !statics_);
-    if (start(s, last_change, last_h) && newton_in_contact(s)) {
-      next_.contact = contact_.forces();
-      return true;
-    }
-    contact_.give_up();
+  if (contact_.acts() && contact_.begin(s.h, now_.u, !statics_ && contact_.constrains())) hold();
+  if (start(s, last_change, last_h) && (contact_.constrains() ? newton_in_contact(s) : newton(s))) {
+    if (contact_.acts()) next_.contact = contact_.forces();
+    return true;
   }
-  watch_ = before;
+  give_up();
   return false;
+}
+
+void BalanceSolver::give_up() {
+  if (contact_.acts()) contact_.give_up();
+  watch_ = watch_before_;
 }
 
 /// What acts from outside, at the state that forces are asked at.
@@ -121,6 +128,7 @@ BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
   const double ahead = (1.0 - s.alpha_f) * s.h;
   tissue_.forces({at_u_, at_v_, statics_ ? std::numeric_limits<double>::infinity() : ahead}, next_.elastic,
                  next_.viscous, watch_);
+  contact_.add_forces_at(at_u_, next_.elastic);
   if (state_.loads.depends_on_state()) load(s);
   const Vec3d gravity = state_.gravity_at(state_.time + ahead);
   Balance b;
@@ -159,9 +167,10 @@ void BalanceSolver::linearise(const TimeStep& s, bool semidefinite) {
   }
   const double time = state_.time + (1.0 - s.alpha_f) * s.h;
   const double since = statics_ ? std::numeric_limits<double>::infinity() : (1.0 - s.alpha_f) * s.h;
-  system_.linearise({at_u_, at_v_, since},
-                    {s.v_rate, 1.0 - s.alpha_f, diagonal_, state_.loads.stiffness(time, state_.body, at_u_)},
-                    semidefinite);
+  system_.linearise(
+      {at_u_, at_v_, since},
+      {s.v_rate, 1.0 - s.alpha_f, diagonal_, state_.loads.stiffness(time, state_.body, at_u_), contact_.stiffness()},
+      semidefinite);
 }
 
 /// A first u⁺: the motion goes on as it was. Where that turns tets inside out, from where the body is, with the change
@@ -217,9 +226,10 @@ bool BalanceSolver::search_line(const TimeStep& s, const Eigen::VectorXd& direct
 
 /// Takes u⁺ and forces of contact as an iteration has found them, or goes back towards where they were, `from` and `forces`,
 /// where that leads far away from balance. @return whether all was taken
-bool BalanceSolver::go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const std::vector<Vec3d>& forces,
+bool BalanceSolver::go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const ExertedForces& forces,
                                bool first, Balance& balance) {
-  const std::vector<Vec3d> to = next_.u, to_forces = contact_.forces();
+  const std::vector<Vec3d> to = next_.u;
+  const ExertedForces to_forces = contact_.exerted();
   const std::size_t inverted = watch_.inverted.size();
   const double before = balance.residual;
   double share = 1.0;
@@ -229,12 +239,8 @@ bool BalanceSolver::go_towards(const TimeStep& s, const std::vector<Vec3d>& from
     if (std::isfinite(balance.residual) && nearer && watch_.inverted.size() <= inverted) return share == 1.0;
     share *= 0.5;
     if (share < kLeastShare && std::isfinite(balance.residual)) break;
-    std::vector<Vec3d> between = to_forces;
-    for (std::size_t v = 0; v < to.size(); ++v) {
-      next_.u[v] = from[v] + (to[v] - from[v]) * share;
-      between[v] = forces[v] + (to_forces[v] - forces[v]) * share;
-    }
-    contact_.set_forces(std::move(between));
+    for (std::size_t v = 0; v < to.size(); ++v) next_.u[v] = from[v] + (to[v] - from[v]) * share;
+    contact_.set_forces(forces.towards(to_forces, share));
   }
   return false;
 }
@@ -262,12 +268,13 @@ bool BalanceSolver::newton_in_contact(const TimeStep& s) {
       semidefinite = solved.curved;
       if (!direction.allFinite()) return false;
     }
-    const std::vector<Vec3d> from = next_.u, forces = contact_.forces();
+    const std::vector<Vec3d> from = next_.u;
+    const ExertedForces forces = contact_.exerted();
     flat(std::span<Vec3d>(next_.u)) += direction;
     if (!contact_.correct(next_.u)) return false;
     last = balance.residual;
     const bool whole = go_towards(s, from, forces, iterations_ == 0, balance);
-    if (whole && balance.met(options.tolerance)) return true;
+    if (whole && contact_.agrees() && balance.met(options.tolerance)) return true;
     if (iterations_ == 0 || balance.residual < 0.5 * mark) {
       mark = balance.residual, deadline = iterations_ + 1 + options.most_iterations;
     }

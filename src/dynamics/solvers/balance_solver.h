@@ -46,6 +46,8 @@ class BalanceSolver {
   /// Finds the moment after a step. @param last_change  of u in the last step, of last_h [s], which statics goes on with
   /// @return false where there is no balance
   bool solve(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
+  /// Takes the step that was solved for back.
+  void give_up();
   Moment& next() { return next_; }
   StepContact& contact() { return contact_; }
   const StepContact& contact() const { return contact_; }
@@ -68,6 +70,7 @@ class BalanceSolver {
     bool met(double tolerance) const { return residual <= tolerance * scale + rounding; }
   };
 
+  void hold();
   void prescribe(const TimeStep& s);
   Balance evaluate(const TimeStep& s);
   void try_at(const TimeStep& s);
@@ -75,7 +78,7 @@ class BalanceSolver {
   bool start(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
   bool newton(const TimeStep& s);
   bool newton_in_contact(const TimeStep& s);
-  bool go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const std::vector<Vec3d>& forces, bool first,
+  bool go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const ExertedForces& forces, bool first,
                   Balance& balance);
   void linearise(const TimeStep& s, bool semidefinite);
   bool search_line(const TimeStep& s, const Eigen::VectorXd& direction, Balance& balance);
@@ -87,7 +90,7 @@ class BalanceSolver {
   TangentSystem system_;
   StepContact contact_;
   Moment next_;
-  ElementWatch watch_;
+  ElementWatch watch_, watch_before_;  ///< now, and before the step
   std::vector<char> held_;
   std::vector<Vec3d> change_;         ///< u⁺ − u of held components [m]
   std::vector<Vec3d> held_velocity_;  ///< of held components at t + h [m/s]

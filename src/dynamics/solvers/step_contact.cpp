@@ -5,23 +5,55 @@
 #include <numeric>
 
 namespace glisson {
+namespace {
+
+constexpr int kMostRounds = 10;   ///< of several interactions, each with the forces of the others
+constexpr double kAgreed = 1e-5;  ///< change of a force in a round, of the largest, at which they agree
+
+}  // namespace
+
+void ExertedForces::set_zero(std::size_t vertices) {
+  total.assign(vertices, Vec3d{});
+  for (std::vector<Vec3d>& of_one : own) of_one.assign(vertices, Vec3d{});
+}
+
+ExertedForces ExertedForces::towards(const ExertedForces& others, double share) const {
+  ExertedForces between = others;
+  const auto mix = [share](std::vector<Vec3d>& to, const std::vector<Vec3d>& from) {
+    for (std::size_t v = 0; v < to.size(); ++v) to[v] = from[v] + (to[v] - from[v]) * share;
+  };
+  mix(between.total, total);
+  for (std::size_t i = 0; i < own.size(); ++i) mix(between.own[i], own[i]);
+  return between;
+}
+
+void ExertedForces::archive(Archive& ar) {
+  ar.same_size(total);
+  for (std::vector<Vec3d>& of_one : own) ar.same_size(of_one);
+}
 
 void StepContact::add(std::shared_ptr<Interaction> interaction) {
   interactions_.add(std::move(interaction));
   interactions_.keep_all();
-  forces_.resize(state_.body.vertex_count);
+  forces_.own.emplace_back();
+  pushes_means_.push_back(0);
+  forces_.total.resize(state_.body.vertex_count);
+  for (std::vector<Vec3d>& of_one : forces_.own) of_one.resize(state_.body.vertex_count);
+  interactions_.ask_rests();
   activate({});
 }
 
 void StepContact::body_changed(const BodyView& body, std::span<const std::uint32_t> origins) {
-  forces_.assign(state_.body.vertex_count, Vec3d{});
+  forces_.set_zero(state_.body.vertex_count);
   activate({});
   interactions_.body_changed(body, origins);
+  interactions_.ask_rests();
 }
 
 void StepContact::state_set() {
-  std::fill(forces_.begin(), forces_.end(), Vec3d{});
+  forces_.set_zero(state_.body.vertex_count);
   interactions_.state_set();
+  interactions_.ask_rests();
 }
 
 /// Takes vertices to those that are at hand.
@@ -41,7 +73,7 @@ void StepContact::activate(std::span<const std::uint32_t> vertices) {
 }
 
 StepContact::Backup StepContact::backup() {
-  Backup b{.interactions = {}, .forces = forces_};
+  Backup b{.interactions = {}, .rests = interactions_.rests(), .forces = forces_};
   for (const std::shared_ptr<Interaction>& x : interactions_.all()) {
     Archive ar;
     x->archive(ar);
@@ -51,10 +83,8 @@ StepContact::Backup StepContact::backup() {
 }
 
 void StepContact::restore(const Backup& backup) {
-  for (std::size_t k = 0; k < backup.interactions.size(); ++k) {
-    Archive ar(backup.interactions[k]);
-    interactions_.all()[k]->archive(ar);
-  }
+  interactions_.restore(backup.interactions);
+  interactions_.set_rests(backup.rests);
   forces_ = backup.forces;
 }
 
@@ -65,56 +95,174 @@ void StepContact::put_at_start(std::span<const Vec3d> u) {
   }
 }
 
-void StepContact::begin(double h, std::span<const Vec3d> u, bool mass_matters) {
+bool StepContact::begin(double h, std::span<const Vec3d> u, bool mass_matters) {
   before_ = backup();
   h_ = h;
   start_.assign(u.begin(), u.end());
   const std::span<const std::uint32_t> newcomers = interactions_.newcomers(state_.time, h, state_.body.vertex_count);
+  const bool others_rest = interactions_.rest_changed();
   if (!newcomers.empty()) activate(newcomers);
   reached_ = backup();
   at_places_.clear();  // the order in which columns come is that of this step, whatever was before
+  std::erase_if(means_, [](const auto& mean) { return !mean.second.used; });
+  for (auto& [key, mean] : means_) mean.used = false;
   if (mass_matters && h != factor_h_) system_.renew();
   factor_h_ = h;
+  agrees_ = true;
+  if (!constrains()) {  // correct() begins the step otherwise
+    interactions_.begin(state_.time, h_, active_, {}, state_.body.rest_positions, state_.options.track_energies);
+  }
+  return others_rest;
+}
+
+bool StepContact::constrains() const {
+  const std::span<const std::shared_ptr<Interaction>> all = interactions_.all();
+  return std::any_of(all.begin(), all.end(), [](const auto& x) { return x->constrains_long_steps(); });
+}
+
+void StepContact::add_forces_at(std::span<const Vec3d> u, std::span<Vec3d> forces) const {
+  for (const std::shared_ptr<Interaction>& x : interactions_.all()) x->add_forces_at(u, forces);
+}
+
+double StepContact::energy_at(std::span<const Vec3d> u) const {
+  std::vector<Vec3d> unused(state_.body.vertex_count);
+  double sum = 0.0;
+  for (const std::shared_ptr<Interaction>& x : interactions_.all()) {
+    x->add_forces_at(u, unused);
+    sum += x->energy() + x->released_energy();
+  }
+  return sum;
+}
+
+std::span<const TriangleStiffness> StepContact::stiffness() {
+  stiffness_.clear();
+  for (const std::shared_ptr<Interaction>& x : interactions_.all()) x->add_stiffness(stiffness_);
+  return stiffness_;
+}
+
+void StepContact::forget_columns() {
+  factor_ = system_.factor_number();
+  columns_.clear(), at_places_.clear(), means_.clear();
+}
+
+/// P⁻¹ of forces on the vertices.
+Eigen::VectorXd StepContact::response(std::span<const Vec3d> forces) const {
+  Eigen::VectorXd load = flat(forces), moved;
+  for (Eigen::Index c = 0; c < load.size(); ++c) {
+    if (!system_.is_free(static_cast<std::size_t>(c))) load[c] = 0.0;
+  }
+  system_.factor_solve(load, moved);
+  return moved;
+}
+
+/// Moves the active vertices as if the forces of an interaction were not there.
+void StepContact::take_off(std::size_t interaction) {
+  const std::vector<Vec3d>& own = forces_.own[interaction];
+  if (pushes_means_[interaction] != 0) {
+    const Eigen::VectorXd moved = response(own);
+    for (ActiveVertex& w : active_) {
+      const Eigen::Index at = 3 * static_cast<Eigen::Index>(w.vertex);
+      w.velocity -= Vec3d{moved[at], moved[at + 1], moved[at + 2]} * (1.0 / h_);
+    }
+  } else {
+    for (std::size_t k = 0; k < active_.size(); ++k) {
+      const Vec3d& f = own[active_[k].vertex];
+      if (f != Vec3d{}) spread(k, f * -h_, active_);
+    }
+  }
+  settle(active_);
+}
+
+/// @return by how much a force has changed at most [N]
+double StepContact::find_forces_of(std::size_t interaction) {
+  acting_ = interaction;
+  take_off(interaction);
+  const std::vector<Vec3d> before(interactions_.impulses().begin(), interactions_.impulses().end());
+  interactions_.constrain(interaction, *this);
+  settle(active_);
+  std::vector<Vec3d>& own = forces_.own[interaction];
+  double change = 0.0;
+  std::vector<Vec3d> found(own.size());
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    found[active_[k].vertex] = (interactions_.impulses()[k] - before[k]) * (1.0 / h_);
+  }
+  for (std::size_t v = 0; v < own.size(); ++v) change = std::max(change, norm(found[v] - own[v]));
+  own = std::move(found);
+  return change;
+}
+
+/// All interactions in turn. @return by how much a force has changed at most, of the largest; 0 where one alone exerts any
+double StepContact::find_forces() {
+  interactions_.clear_impulses();
+  double change = 0.0, largest = 0.0;
+  int exerting = 0;
+  for (std::size_t i = 0; i < forces_.own.size(); ++i) {
+    if (interactions_.all()[i]->constrains_long_steps()) change = std::max(change, find_forces_of(i));
+    double own = 0.0;
+    for (const Vec3d& f : forces_.own[i]) own = std::max(own, norm(f));
+    largest = std::max(largest, own), exerting += own > 0.0 ? 1 : 0;
+  }
+  return exerting > 1 ? change / largest : 0.0;
+}
+
+/// Moves u⁺ by what the forces have changed.
+void StepContact::move_by_change(std::span<Vec3d> u, const ExertedForces& known) {
+  std::vector<Vec3d> of_means;
+  for (std::size_t i = 0; i < forces_.own.size(); ++i) {
+    if (pushes_means_[i] != 0) of_means.resize(u.size());
+    for (const ActiveVertex& w : active_) {
+      const Vec3d more = forces_.own[i][w.vertex] - known.own[i][w.vertex];
+      if (more == Vec3d{}) continue;
+      if (pushes_means_[i] != 0) {
+        of_means[w.vertex] += more;
+      } else {
+        flat(u) += column(w.vertex) * Eigen::Vector3d(more.x, more.y, more.z);
+      }
+    }
+  }
+  if (!of_means.empty()) flat(u) += response(of_means);
 }
 
 bool StepContact::correct(std::span<Vec3d> u) {
   if (system_.factor_number() == 0) return false;
-  if (system_.factor_number() != factor_) {
-    factor_ = system_.factor_number();
-    columns_.clear(), at_places_.clear();
-  }
+  if (system_.factor_number() != factor_) forget_columns();
   if (at_places_.empty()) {
     at_places_.resize(active_.size());
     near_.clear(), far_.resize(active_.size());
     std::iota(far_.begin(), far_.end(), 0U);
   }
   unsettled_.assign(active_.size(), Vec3d{});
-  const std::vector<Vec3d> known = forces_;
-  restore(reached_);
+  const ExertedForces known = forces_;
   put_at_start(u);
   interactions_.begin(state_.time, h_, active_, {}, state_.body.rest_positions, state_.options.track_energies);
-  interactions_.add_forces();
-  for (std::size_t k = 0; k < active_.size(); ++k) {
-    const Vec3d& f = known[active_[k].vertex];
-    if (f != Vec3d{}) spread(k, f * -h_, active_);
+  agrees_ = false;
+  for (int round = 0; round < kMostRounds && !agrees_; ++round) {
+    interactions_.restore(reached_.interactions);
+    if (round == 0) interactions_.add_forces();
+    agrees_ = find_forces() <= kAgreed;
   }
-  settle(active_);
-  interactions_.constrain(*this);
-  settle(active_);
-  std::fill(forces_.begin(), forces_.end(), Vec3d{});
-  for (std::size_t k = 0; k < active_.size(); ++k) {
-    const std::uint32_t v = active_[k].vertex;
-    forces_[v] = interactions_.impulses()[k] * (1.0 / h_);
-    const Vec3d more = forces_[v] - known[v];
-    if (more == Vec3d{}) continue;
-    flat(u) += column(v) * Eigen::Vector3d(more.x, more.y, more.z);
+  forces_.total.assign(u.size(), Vec3d{});
+  for (const ActiveVertex& w : active_) {
+    for (const std::vector<Vec3d>& own : forces_.own) forces_.total[w.vertex] += own[w.vertex];
   }
+  move_by_change(u, known);
   return true;
 }
 
-void StepContact::made(std::span<const Vec3d> u, std::span<const Vec3d> v) {
+void StepContact::put_at_end(std::span<const Vec3d> u, std::span<const Vec3d> v) {
   for (ActiveVertex& w : active_) w.displacement = u[w.vertex], w.velocity = v[w.vertex];
+}
+
+bool StepContact::overshoots(std::span<const Vec3d> u, std::span<const Vec3d> v) {
+  put_at_end(u, v);
+  return interactions_.overshoot();
+}
+
+void StepContact::made(std::span<const Vec3d> u, std::span<const Vec3d> v, std::span<const RestingVertex> resting) {
+  put_at_end(u, v);
+  interactions_.set_resting(resting);
   interactions_.moved();
+  interactions_.set_resting({});
 }
 
 std::array<double, 3> StepContact::lost() const {
@@ -146,6 +294,55 @@ const StepContact::Column& StepContact::column(std::uint32_t vertex) {
     unit[c] = 0.0;
   }
   return at->second;
+}
+
+/// Displacements by unit forces on a mean of vertices.
+const StepContact::Column& StepContact::column_of(const std::vector<VertexWeight>& mean) {
+  std::vector<std::pair<std::uint32_t, double>> key;
+  for (const VertexWeight& w : mean) key.emplace_back(w.vertex, w.weight);
+  const auto [at, fresh] = means_.try_emplace(std::move(key));
+  at->second.used = true;
+  if (!fresh) return at->second.moved;
+  at->second.moved.resize(static_cast<Eigen::Index>(3 * state_.body.vertex_count), 3);
+  std::vector<Vec3d> unit(state_.body.vertex_count);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const VertexWeight& w : mean) unit[w.vertex] = {}, unit[w.vertex][axis] = w.weight;
+    at->second.moved.col(static_cast<Eigen::Index>(axis)) = response(unit);
+  }
+  return at->second.moved;
+}
+
+std::vector<Mat3d> StepContact::couple(std::span<const std::vector<VertexWeight>> means) {
+  pushes_means_[acting_] = 1;
+  std::vector<Mat3d> W(means.size() * means.size());
+  const double scale = 1.0 / (h_ * h_);
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    const Column& c = column_of(means[k]);
+    for (std::size_t j = 0; j < means.size(); ++j) {
+      Mat3d& block = W[j * means.size() + k];
+      for (const VertexWeight& w : means[j]) {
+        for (std::size_t entry = 0; entry < 9; ++entry) {
+          block(entry / 3, entry % 3) +=
+              w.weight * scale *
+              c(static_cast<Eigen::Index>(3 * w.vertex + entry / 3), static_cast<Eigen::Index>(entry % 3));
+        }
+      }
+    }
+  }
+  return W;
+}
+
+void StepContact::spread_means(std::span<const std::vector<VertexWeight>> means, std::span<const Vec3d> impulses,
+                               std::span<ActiveVertex> vertices) {
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    if (impulses[k] == Vec3d{}) continue;
+    const Column& c = column_of(means[k]);
+    const Eigen::Vector3d f = Eigen::Vector3d(impulses[k].x, impulses[k].y, impulses[k].z) * (1.0 / (h_ * h_));
+    for (ActiveVertex& w : vertices) {
+      const Eigen::Vector3d v = c.middleRows<3>(3 * static_cast<Eigen::Index>(w.vertex)) * f;
+      w.velocity += Vec3d{v.x(), v.y(), v.z()};
+    }
+  }
 }
 
 const StepContact::Column& StepContact::column_at(std::size_t place) {
@@ -204,7 +401,8 @@ void StepContact::archive(Archive& ar) {
   ar.all_below(vertices, state_.body.vertex_count);
   if (ar.reads()) activate(vertices);
   interactions_.archive(ar);
-  ar.same_size(forces_);
+  ar(forces_);
+  ar.same_size(pushes_means_);
   ar(factor_h_);
 }
 

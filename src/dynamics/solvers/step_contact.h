@@ -1,17 +1,19 @@
 // step_contact.h — interactions within a long step: their forces at its end, by the factor of the tangent.
 //
-//   Newton's u⁺ with the forces so far ─▶ taken off by P⁻¹ ─▶ interactions constrain, all points moving one another by P⁻¹
-//                                                          ─▶ u⁺ with the forces they find
+//   Newton's u⁺ with the forces so far ─▶ for each interaction: its own taken off by P⁻¹, found anew with all points moving one
+//                                         another by P⁻¹, until no force of several interactions changes
+//                                      ─▶ u⁺ with the forces they find
 //
 // W = J P⁻¹ Jᵀ of contact is never formed: its columns P⁻¹ e are solved for where something is pushed for the first time,
-// and kept as long as the factor P. P is the tangent or near it; where it is not, Newton's method takes more iterations,
-// and ends at the same state.
+// and kept as long as the factor P; those of means of vertices, P⁻¹ w, likewise. P is the tangent or near it; where it is not,
+// Newton's method takes more iterations, and ends at the same state.
 #pragma once
 
 #include <Eigen/Core>
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dynamics/interactions.h"
@@ -20,12 +22,25 @@
 
 namespace glisson {
 
+/// Forces of interactions on the vertices of the body, at the end of a step [N].
+struct ExertedForces {
+  std::vector<Vec3d> total;             ///< per vertex
+  std::vector<std::vector<Vec3d>> own;  ///< of each interaction
+
+  void set_zero(std::size_t vertices);
+  /// Goes a share of the way to others.
+  ExertedForces towards(const ExertedForces& others, double share) const;
+  void archive(Archive& ar);
+};
+
 class StepContact final : public StepCompliance {
  public:
   /// Both must outlive this.
   StepContact(const BodyState& state, TangentSystem& system) : state_(state), system_(system) {}
 
   bool acts() const { return !interactions_.empty(); }
+  /// Whether some act by impulses, and not by forces of the displacements alone.
+  bool constrains() const;
   const Interactions& interactions() const { return interactions_; }
   void add(std::shared_ptr<Interaction> interaction);
   /// Body or state have changed from outside: nothing presses as yet.
@@ -38,52 +53,87 @@ class StepContact final : public StepCompliance {
   /// Where interactions were before a step, to go back to.
   struct Backup {
     std::vector<std::string> interactions;
-    std::vector<Vec3d> forces;
+    Interactions::Rests rests;
+    ExertedForces forces;
   };
   Backup backup();
   void restore(const Backup& backup);
 
   /// Begins a step of h from u at t. @param mass_matters  the factor depends on h: another one asks for it anew
-  void begin(double h, std::span<const Vec3d> u, bool mass_matters);
-  /// Takes back what begin() did.
+  /// @return whether interactions hold other vertices still than before: the factor has to follow
+  bool begin(double h, std::span<const Vec3d> u, bool mass_matters);
+  /// Takes back what begin() and what came after it did.
   void give_up() { restore(before_); }
+  /// Adds what follows from the displacements alone to the forces of the tissue [N].
+  void add_forces_at(std::span<const Vec3d> u, std::span<Vec3d> forces) const;
+  /// What they store there and have released [J].
+  double energy_at(std::span<const Vec3d> u) const;
+  /// The stiffness of that where it was asked last.
+  std::span<const TriangleStiffness> stiffness();
   /// Corrects u⁺ of a Newton iteration that was made with forces(), and finds these anew.
   /// @return false where there is no factor
   bool correct(std::span<Vec3d> u);
-  /// The step has been made, with u, v at its end.
-  void made(std::span<const Vec3d> u, std::span<const Vec3d> v);
+  /// Whether the last correct() found forces that all interactions agree on.
+  bool agrees() const { return agrees_; }
+  /// Whether something has come about within the step, which ends with u, v, that is to be dated.
+  bool overshoots(std::span<const Vec3d> u, std::span<const Vec3d> v);
+  /// The step has been made, with u, v at its end. @param resting  what interactions hold still stands against these forces
+  void made(std::span<const Vec3d> u, std::span<const Vec3d> v, std::span<const RestingVertex> resting);
 
   /// On the vertices of the body, at the end of the step [N].
-  const std::vector<Vec3d>& forces() const { return forces_; }
-  void set_forces(std::vector<Vec3d> forces) { forces_ = std::move(forces); }
+  const std::vector<Vec3d>& forces() const { return forces_.total; }
+  const ExertedForces& exerted() const { return forces_; }
+  void set_forces(ExertedForces forces) { forces_ = std::move(forces); }
   /// By WorkSink: what interactions took of the tools' work in the step [J].
   std::array<double, 3> lost() const;
 
   void spread(std::size_t place, const Vec3d& impulse, std::span<ActiveVertex> vertices) override;
   void settle(std::span<ActiveVertex> vertices) override;
   Vec3d mobility(std::size_t place) override;
+  std::vector<Mat3d> couple(std::span<const std::vector<VertexWeight>> means) override;
+  void spread_means(std::span<const std::vector<VertexWeight>> means, std::span<const Vec3d> impulses,
+                    std::span<ActiveVertex> vertices) override;
   void archive(Archive& ar);
 
  private:
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  /// Of a mean of vertices.
+  struct MeanColumn {
+    Column moved;
+    bool used = true;  ///< in this step
+  };
   const Column& column(std::uint32_t vertex);
   const Column& column_at(std::size_t place);
+  const Column& column_of(const std::vector<VertexWeight>& mean);
   void move(std::size_t by, const Vec3d& impulse, std::size_t place, ActiveVertex& vertex) const;
   void activate(std::span<const std::uint32_t> vertices);
   void put_at_start(std::span<const Vec3d> u);
+  void put_at_end(std::span<const Vec3d> u, std::span<const Vec3d> v);
+  void forget_columns();
+  double find_forces();
+  double find_forces_of(std::size_t interaction);
+  void take_off(std::size_t interaction);
+  void move_by_change(std::span<Vec3d> u, const ExertedForces& known);
+  Eigen::VectorXd response(std::span<const Vec3d> forces) const;
 
   const BodyState& state_;
   TangentSystem& system_;
   Interactions interactions_;
   std::vector<ActiveVertex> active_;
-  std::vector<Vec3d> forces_, start_;  ///< per vertex [N], u(t) [m]
-  Backup before_, reached_;            ///< before reach(), and after it
+  ExertedForces forces_;
+  std::vector<Vec3d> start_;  ///< u(t) [m]
+  std::vector<TriangleStiffness> stiffness_;
+  Backup before_, reached_;  ///< before reach(), and after it
   double h_ = 0.0, factor_h_ = 0.0;
+  bool agrees_ = true;
   std::uint64_t factor_ = 0;                 ///< that the columns are of
   std::map<std::uint32_t, Column> columns_;  ///< per vertex: displacement of all components by a unit force [m/N]
-  std::vector<Column> at_places_;            ///< the same per place, of active vertices; empty: not asked for yet
-  std::vector<std::uint32_t> near_, far_;    ///< places that have columns, and the others
-  std::vector<Vec3d> unsettled_;             ///< per place: impulses that the others have not got yet [N s]
+  std::map<std::vector<std::pair<std::uint32_t, double>>, MeanColumn> means_;  ///< the same by one on a mean
+  std::vector<char> pushes_means_;                                             ///< per interaction
+  std::size_t acting_ = 0;                                                     ///< whose turn it is
+  std::vector<Column> at_places_;          ///< columns_ per place, of active vertices; empty: not asked for yet
+  std::vector<std::uint32_t> near_, far_;  ///< places that have columns, and the others
+  std::vector<Vec3d> unsettled_;           ///< per place: impulses that the others have not got yet [N s]
 };
 
 }  // namespace glisson

@@ -81,13 +81,15 @@ void TangentSystem::set_free(std::vector<char> free) {
 
 void TangentSystem::linearise(const TissueState& state, const Terms& terms, bool semidefinite) {
   const bool same = linear_ && terms.rate == terms_.rate && state.since == state_.since;
-  current_ = current_ && same && terms.weight == terms_.weight &&
+  current_ = current_ && same && terms.weight == terms_.weight && terms.triangles.empty() && triangles_.empty() &&
              std::equal(diagonal_.begin(), diagonal_.end(), terms.diagonal.begin(), terms.diagonal.end());
   diagonal_.assign(terms.diagonal.begin(), terms.diagonal.end());
   terms_ = terms;
   terms_.diagonal = diagonal_;
   loads_.assign(terms.loads.begin(), terms.loads.end());
   terms_.loads = loads_;
+  triangles_.assign(terms.triangles.begin(), terms.triangles.end());
+  terms_.triangles = triangles_;
   state_ = state;
   if (same && known_) return;
   tissue_.linearise(state, terms.rate, semidefinite, tangent_);
@@ -102,7 +104,19 @@ void TangentSystem::apply(std::span<const Vec3d> x, std::span<Vec3d> y) const {
     for (std::size_t a = 0; a < 3; ++a) force += face.slope[a] * x[face.corners[a]];
     for (const std::uint32_t v : face.corners) y[v] -= force;
   }
+  for (const TriangleStiffness& t : triangles_) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; b < 3; ++b) y[t.corners[a]] += t.blocks[a][b] * x[t.corners[b]];
+    }
+  }
   for (std::size_t i = 0; i < x.size(); ++i) y[i] = y[i] * terms_.weight + component_product(diagonal_[i], x[i]);
+}
+
+/// Where an entry of the pattern is among the values.
+int TangentSystem::place_in(int row, int column) const {
+  const int* begin = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
+  const int* end = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
+  return static_cast<int>(std::lower_bound(begin, end, row) - matrix_.innerIndexPtr());
 }
 
 /// Which entries the lower triangle of A has on the free components, and where each element's go.
@@ -129,11 +143,7 @@ void TangentSystem::find_pattern() {
   for (int r = 0; r < rows; ++r) entries.emplace_back(r, r, 0.0);
   matrix_.resize(rows, rows);
   matrix_.setFromTriplets(entries.begin(), entries.end());
-  const auto place = [&](int row, int column) {
-    const int* begin = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
-    const int* end = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
-    return static_cast<int>(std::lower_bound(begin, end, row) - matrix_.innerIndexPtr());
-  };
+  const auto place = [&](int row, int column) { return place_in(row, column); };
   position_.resize(body.elements.size());
   visit([&](std::size_t e, std::size_t entry, int row, int column) {
     position_[e][entry] = column >= 0 && row >= column ? place(row, column) : -1;
@@ -168,8 +178,23 @@ void TangentSystem::assemble(const TissueTangent& tangent) {
   }
 }
 
+/// Triangles are faces of tets: the pattern has their entries.
+void TangentSystem::assemble_triangles() {
+  double* values = matrix_.valuePtr();
+  for (const TriangleStiffness& t : triangles_) {
+    for (std::size_t r = 0; r < 9; ++r) {
+      for (std::size_t c = 0; c < 9; ++c) {
+        const int row = number_[3 * t.corners[r / 3] + r % 3], column = number_[3 * t.corners[c / 3] + c % 3];
+        if (column < 0 || row < column) continue;
+        values[place_in(row, column)] += terms_.weight * t.blocks[r / 3][c / 3](r % 3, c % 3);
+      }
+    }
+  }
+}
+
 bool TangentSystem::factorise(const TissueTangent& tangent) {
   assemble(tangent);
+  assemble_triangles();
   factor_.factorize(matrix_);
   return factor_.info() == Eigen::Success;
 }
@@ -196,6 +221,14 @@ void TangentSystem::find_blocks() {
     for (std::size_t a = 0; a < 4; ++a) {
       const Eigen::Matrix3d K = block_of(C, body.rest[e].volume * terms_.weight, s[a], s[a]);
       sum[body.elements[e][a]] += 0.5 * (K + K.transpose());
+    }
+  }
+  for (const TriangleStiffness& t : triangles_) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t i = 0; i < 9; ++i) {
+        sum[t.corners[a]](static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) +=
+            terms_.weight * t.blocks[a][a](i / 3, i % 3);
+      }
     }
   }
   inverse_blocks_.resize(sum.size());

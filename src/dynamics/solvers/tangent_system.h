@@ -1,6 +1,7 @@
 // tangent_system.h — the linear system of a Newton iteration, on the components that are free to move.
 //
-//   A = k (K(u, rate) − L(u)) + diag(d)        K of element/tissue_operator.h, applied without being assembled; L of loads that follow
+//   A = k (K(u, rate) + T(u) − L(u)) + diag(d)   K of element/tissue_operator.h, applied without being assembled; T of triangles of the
+//                                                surface that interactions stiffen; L of loads that follow
 //
 // Only the preconditioner is assembled: a sparse Cholesky factor of A's symmetric part at some earlier state, kept
 // over iterations and steps until the iterations say that it has become bad; or the 3 × 3 blocks of A's diagonal.
@@ -15,6 +16,7 @@
 #include "dynamics/state/loads.h"
 #include "element/tissue_operator.h"
 #include "glisson/archive.h"
+#include "glisson/simulation/interaction.h"
 #include "glisson/simulation/simulation.h"
 
 namespace glisson {
@@ -32,10 +34,11 @@ class TangentSystem {
  public:
   /// What A is made of.
   struct Terms {
-    double rate = 0.0;                       ///< dv/du in K [1/s]
-    double weight = 1.0;                     ///< k
-    std::span<const Vec3d> diagonal;         ///< d of each component [kg/s²]
-    std::span<const FaceStiffness> loads{};  ///< L: not in the preconditioner
+    double rate = 0.0;                               ///< dv/du in K [1/s]
+    double weight = 1.0;                             ///< k
+    std::span<const Vec3d> diagonal;                 ///< d of each component [kg/s²]
+    std::span<const FaceStiffness> loads{};          ///< L: not in the preconditioner
+    std::span<const TriangleStiffness> triangles{};  ///< T
   };
 
   /// @param tissue  must outlive this
@@ -53,7 +56,7 @@ class TangentSystem {
   /// Read after set_free, with the same components as when it was written.
   void archive(Archive& ar);
   /// Whether A may be kept while its terms do not change: every tissue is linear.
-  bool is_linear() const { return linear_; }
+  bool is_linear() const { return linear_ && triangles_.empty(); }
 
   /// y = A x on all components, held ones included.
   void apply(std::span<const Vec3d> x, std::span<Vec3d> y) const;
@@ -71,7 +74,9 @@ class TangentSystem {
  private:
   using Matrix = Eigen::SparseMatrix<double>;
   void find_pattern();
+  int place_in(int row, int column) const;
   void assemble(const TissueTangent& tangent);
+  void assemble_triangles();
   bool factorise(const TissueTangent& tangent);
   void refresh();
   void find_blocks();
@@ -83,6 +88,7 @@ class TangentSystem {
   Terms terms_;
   std::vector<Vec3d> diagonal_;
   std::vector<FaceStiffness> loads_;
+  std::vector<TriangleStiffness> triangles_;
   TissueState state_;
   TissueTangent tangent_;
   mutable std::vector<Vec3d> x_, y_;

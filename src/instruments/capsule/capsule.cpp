@@ -121,6 +121,7 @@ double Capsule::open_at(const Vec3d& place, double radius) {
 
 void Capsule::attached(const BodyView& body, double time) {
   State fresh(state_->options);
+  fresh.is_long = state_->is_long;
   fresh.faces = capsule_faces(fresh.options, body);
   for (const TetFace& f : fresh.faces) fresh.triangles.push_back(corners_of(body.mesh, f));
   fresh.is_gone.assign(fresh.faces.size(), 0);
@@ -145,19 +146,45 @@ void Capsule::body_changed(const BodyView& body, std::span<const std::uint32_t>)
 }
 
 std::span<const std::uint32_t> Capsule::reach(double, double) {
-  if (state_->is_named) return {};
+  if (state_->is_named || state_->is_long) return {};
   state_->is_named = true;
   return state_->vertices;
 }
 
 void Capsule::add_forces(const InteractionStep& step) {
   State& s = *state_;
+  if (s.is_long) return;
   s.time = step.time;
   for (std::size_t k = 0; k < s.vertices.size(); ++k) s.now[k] = step.position(step.place_of[s.vertices[k]]);
   s.evaluate();
   for (std::size_t k = 0; k < s.vertices.size(); ++k)
     step.vertices[step.place_of[s.vertices[k]]].elastic += s.forces[k];
   s.tear_where_due();
+}
+
+void Capsule::set_long_steps(bool are_long) { state_->is_long = are_long; }
+
+void Capsule::add_forces_at(std::span<const Vec3d> displacement, std::span<Vec3d> force) {
+  State& s = *state_;
+  for (std::size_t k = 0; k < s.vertices.size(); ++k) s.now[k] = s.rest[k] + displacement[s.vertices[k]];
+  s.evaluate();
+  for (std::size_t k = 0; k < s.vertices.size(); ++k) force[s.vertices[k]] += s.forces[k];
+}
+
+void Capsule::add_stiffness(std::vector<TriangleStiffness>& all) const {
+  const State& s = *state_;
+  for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+    if (s.counts[t] != 0) all.push_back({s.triangles[t], s.membrane.stiffness(s.now, t)});
+  }
+}
+
+/// The sheet was evaluated last where the step has ended.
+bool Capsule::overshoots(const InteractionStep&) { return state_->due_to_tear() < state_->triangles.size(); }
+
+void Capsule::moved(const InteractionStep& step) {
+  if (!state_->is_long) return;
+  state_->time = step.time + step.h;
+  state_->tear_where_due();
 }
 
 /// Of the last forces, ahead by two steps as stiff as the last one has made it.

@@ -107,10 +107,9 @@ double Capsule::State::mean_tension(std::size_t triangle) {
   return area > 0.0 ? sum / area : 0.0;
 }
 
-/// Opens the triangle with the largest mean tension above the strength: one a step, so that a tear runs from
-/// neighbour to neighbour and a sheet under even tension does not vanish at once.
-void Capsule::State::tear_where_due() {
-  if (!options.strength || membrane.largest_tension() < *options.strength) return;
+/// The triangle with the largest mean tension above the strength; their number: none has.
+std::size_t Capsule::State::due_to_tear() {
+  if (!options.strength || membrane.largest_tension() < *options.strength) return triangles.size();
   std::size_t worst = triangles.size();
   double most = *options.strength;
   const std::vector<double>& of = tensions();
@@ -119,6 +118,13 @@ void Capsule::State::tear_where_due() {
     const double mean = mean_tension(t);
     if (mean >= most && (mean > most || worst == triangles.size())) most = mean, worst = t;
   }
+  return worst;
+}
+
+/// Opens that triangle: one a step, so that a tear runs from neighbour to neighbour and a sheet under even tension does not vanish at
+/// once.
+void Capsule::State::tear_where_due() {
+  const std::size_t worst = due_to_tear();
   if (worst == triangles.size()) return;
   events.push_back({time, CapsuleEvent::What::tear, centre(worst), membrane.rest_area(worst) * (1.0 - open[worst])});
   open_to(worst, 1.0);

@@ -30,6 +30,7 @@ struct Capsule::State {
   bool tension_is_current = false;
   Neighbours near;                                 ///< within half the averaging length; made when first needed
   std::size_t nearest = 0;                         ///< triangle that was nearest to the last place someone asked about
+  bool is_long = false;                            ///< acts in long steps
   bool is_named = false;                           ///< whether reach() has named the vertices
   double frequency = 0.0, frequency_before = 0.0;  ///< squared, of the last two steps [1/s²]
   double released = 0.0;                           ///< without work [J]
@@ -43,6 +44,7 @@ struct Capsule::State {
   const std::vector<double>& tensions();
   PointOnTriangle nearest_to(const Vec3d& place);
   void open_to(std::size_t triangle, double share);
+  std::size_t due_to_tear();
   void tear_where_due();
   double mean_tension(std::size_t triangle);
   Vec3d centre(std::size_t triangle) const;

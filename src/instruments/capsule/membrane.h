@@ -13,6 +13,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -59,6 +60,8 @@ class Membrane {
   void add_forces(std::span<const Vec3d> positions, std::span<Vec3d> forces);
   double energy(std::span<const Vec3d> positions) const;                        ///< [J]
   double energy(std::span<const Vec3d> positions, std::size_t triangle) const;  ///< as if whole: kept = 1 [J]
+  /// ∂²(kept W)/∂x² of a triangle, by pairs of its corners [N/m]; at rest that of a taut sheet.
+  std::array<std::array<Mat3d, 3>, 3> stiffness(std::span<const Vec3d> positions, std::size_t triangle) const;
   MembraneState state(std::span<const Vec3d> positions, std::size_t triangle) const;
 
   /// Of the last add_forces: force across a line per length of it at rest, in the direction where it is largest [N/m].

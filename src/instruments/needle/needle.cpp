@@ -6,7 +6,7 @@
 
 #include "base/require_fields.h"
 #include "instruments/needle/membranes.h"
-#include "instruments/needle/needle_state.h"
+#include "instruments/needle/needle_solver.h"
 
 namespace glisson {
 namespace {
@@ -15,9 +15,6 @@ constexpr double kPullBack = 0.2;  ///< share of an error of position that a ste
 constexpr double kSlack = 1e-3;    ///< compliance of a row over the mean of W: rows of one vertex would have no answer
 constexpr double kLeastMobility = 1e-30;  ///< [1/kg]: so that rows of held tissue have an answer, too
 constexpr double kReach = 1e-3;           ///< of the spacing: how far before the path's end the tip is there
-
-/// The part of a vector across a direction.
-Vec3d across(const Vec3d& a, const Vec3d& direction) { return a - direction * dot(a, direction); }
 
 }  // namespace
 
@@ -64,39 +61,11 @@ std::vector<Vec3d> Needle::centre_line() const {
   return line;
 }
 
-/// The rows that the needle acts on in a step, and what it does there.
-struct Needle::Solver {
-  State& s;
-  Vec3d d, before, after;  ///< the needle's direction; its tip at t and t + h, as if nothing bent it
-  double h;
-  std::vector<const shaft::Row*> all{};  ///< nodes behind the tip, then the tip if it acts
-  std::vector<std::size_t> node{};       ///< number of each among the nodes
-  std::vector<double> from_hand{};       ///< [m]
-  bool has_tip = false;
-  double tip_gap = 0.0;  ///< of the path's end before the tip [m]; negative: the tip is beyond it
-
-  Vec3d needle_velocity() const { return (after - before) * (1.0 / h); }
-  void find_rows(const InteractionStep& step);
-  std::vector<Vec3d> across_it(const Eigen::MatrixXd& W);
-  std::vector<double> along_it(const Eigen::MatrixXd& W);
-
- private:
-  double tip_slip() const;
-  Eigen::MatrixXd wanted_across(std::size_t held, const Vec3d& bevel, const Eigen::MatrixXd& W,
-                                const Eigen::MatrixXd& C) const;
-  void bend(std::span<const Vec3d> impulse, const Eigen::MatrixXd& C);
-  shaft::AxialLimit limit_of(std::size_t row) const;
-
- public:
-  void book(const InteractionStep& step, std::span<const Vec3d> sideways, std::span<const Vec3d> lengthways,
-            const ToolVelocity& needle) const;
-};
-
 void Needle::Solver::find_rows(const InteractionStep& step) {
   if (s.stage == NeedleStage::inside) {
     for (std::size_t j = 0; j < s.nodes.size(); ++j) {
       if (!shaft::read(step, s.nodes[j])) continue;
-      const double behind = dot(s.nodes[j].position - before, d);
+      const double behind = dot(s.nodes[j].position - before, d) - (step.compliance != nullptr ? way_past(j) : 0.0);
       if (behind >= 0.0) continue;
       all.push_back(&s.nodes[j]);
       node.push_back(j);
@@ -144,15 +113,20 @@ void Needle::Solver::bend(std::span<const Vec3d> impulse, const Eigen::MatrixXd&
   if (!has_tip && !node.empty()) s.bend_tip = s.bend[node.back()];
 }
 
+/// Of the tissue on a tip that cuts [N].
+Vec3d Needle::Solver::bevel_force() const {
+  const Vec3d side = across(s.options.bevel_side, d);
+  if (!(norm(side) > 0.0)) return {};
+  return side * (s.options.bevel_share * s.tip_along / (s.step_h * norm(side)));
+}
+
 /// Impulses across the needle, per row: the tissue stays on the bent needle, all but a tip that cuts.
 std::vector<Vec3d> Needle::Solver::across_it(const Eigen::MatrixXd& W) {
   const bool cuts = has_tip && s.tip_cuts;
   const std::size_t held = all.size() - (cuts ? 1 : 0);
   std::vector<Vec3d> impulse(all.size());
   const Eigen::MatrixXd C = shaft::cantilever(from_hand, s.bending_stiffness());
-  const Vec3d side = across(s.options.bevel_side, d);
-  Vec3d bevel;  // [N]
-  if (cuts && norm(side) > 0.0) bevel = side * (s.options.bevel_share * s.tip_along / (s.step_h * norm(side)));
+  const Vec3d bevel = cuts ? bevel_force() : Vec3d{};
   if (cuts) impulse.back() = bevel * -h;
   if (held > 0) {
     const auto n = static_cast<Eigen::Index>(held);
@@ -198,7 +172,12 @@ std::vector<double> Needle::Solver::along_it(const Eigen::MatrixXd& W) {
     limits.push_back(limit_of(j));
     p.push_back(again * (is_tip ? s.tip_along : s.along[node[j]]));
   }
-  const std::vector<char> slips = shaft::solve_along(W, speed, limits, s.options.friction, h, p);
+  keep_along(p, shaft::solve_along(W, speed, limits, s.options.friction, h, p));
+  return p;
+}
+
+/// Keeps impulses along the needle, and what slips, for the next step.
+void Needle::Solver::keep_along(std::span<const double> p, std::span<const char> slips) {
   std::fill(s.along.begin(), s.along.end(), 0.0);
   for (std::size_t j = 0; j < node.size(); ++j) {
     s.slips[node[j]] = slips[j];
@@ -206,7 +185,6 @@ std::vector<double> Needle::Solver::along_it(const Eigen::MatrixXd& W) {
   }
   s.tip_along = has_tip ? p.back() : 0.0;
   s.tip_cuts = has_tip && s.stage == NeedleStage::inside && slips.back() != 0;
-  return p;
 }
 
 /// Tells the ledger: slip of the shaft is friction, a tip in tissue cuts. Across, what the tissue does not take bends the needle,
@@ -226,7 +204,7 @@ void Needle::Solver::book(const InteractionStep& step, std::span<const Vec3d> si
 }
 
 double Needle::tool_energy() const { return state_->bending; }
-Vec3d Needle::handle() const { return before_.position - direction() * state_->options.length; }
+Vec3d Needle::handle() const { return force_pose().position - direction() * state_->options.length; }
 
 void Needle::add_forces(const InteractionStep& step) {
   State& s = *state_;
@@ -243,20 +221,28 @@ void Needle::constrain(const InteractionStep& step) {
     s.forget_forces(step.h);
     return;
   }
-  const Eigen::MatrixXd W = s.mobility.of(step, s.nodes, solver.node, solver.has_tip ? &s.tip : nullptr);
-  const std::vector<Vec3d> sideways = solver.across_it(W);
-  const std::vector<double> along = solver.along_it(W);
+  Solver::Impulses p;
+  if (step.compliance != nullptr) {
+    p = solver.solve_long(step);
+  } else {
+    const Eigen::MatrixXd W = s.mobility.of(step, s.nodes, solver.node, solver.has_tip ? &s.tip : nullptr);
+    p.across = solver.across_it(W);
+    p.along = solver.along_it(W);
+  }
   s.step_h = step.h;
+  const std::vector<Vec3d>& sideways = p.across;
   std::vector<Vec3d> booked;
   for (std::size_t j = 0; j < solver.all.size(); ++j) {
-    const Vec3d lengthways = direction() * along[j];
-    shaft::push(step, *solver.all[j], sideways[j] + lengthways);
+    const Vec3d lengthways = direction() * p.along[j];
+    if (step.compliance == nullptr) shaft::push(step, *solver.all[j], sideways[j] + lengthways);
     if (step.interface_book != nullptr) booked.push_back(lengthways);
     const bool is_tip = j >= solver.node.size();
     forces_.normal += sideways[j] * (1.0 / step.h);
     (is_tip ? (s.stage == NeedleStage::inside ? forces_.cutting : forces_.normal) : forces_.friction) +=
         lengthways * (1.0 / step.h);
-    forces_.torque += cross(solver.all[j]->position - before_.position, (sideways[j] + lengthways) * (1.0 / step.h));
+    const Vec3d at =
+        forces_at_end() ? solver.all[j]->position + solver.all[j]->velocity * step.h : solver.all[j]->position;
+    forces_.torque += cross(at - force_pose().position, (sideways[j] + lengthways) * (1.0 / step.h));
   }
   if (step.interface_book != nullptr) solver.book(step, sideways, booked, velocity_at(before_.position));
 }

@@ -101,6 +101,7 @@ void Needle::body_changed(const BodyView& body, std::span<const std::uint32_t>) 
 /// Before contact: the surface around the needle's line. Then: the tissue that path and tip act on, with some ahead.
 std::span<const std::uint32_t> Needle::reach(double, double) {
   State& s = *state_;
+  s.breaks.clear(), s.stuck.clear(), s.ways.clear();
   const double ahead = 2.0 * s.options.zone + 2.0 * s.options.spacing;
   const bool touches = s.stage != NeedleStage::outside;
   const Vec3d around = touches ? s.tip.rest : pose_.position;
@@ -151,6 +152,7 @@ void Needle::between_steps(Simulation& simulation) {
 void Needle::archive(Archive& ar) {
   State& s = *state_;
   archive_motion(ar);
+  const Vec3d tip_was = s.tip.rest;
   ar(s.stage, s.look, s.named_around, s.tip.rest, s.tip_along, s.bend_tip, s.tip_cuts, s.tip_out, s.withdraws);
   ar(s.region, s.next_region, s.step_h, s.wave_time, s.pressing, s.drop);
   ar(s.broken, s.at_membrane, s.cutting_beyond, s.bending);
@@ -163,14 +165,17 @@ void Needle::archive(Archive& ar) {
   const std::vector<int>& regions = s.mesh->regions;
   const bool known =
       regions.empty() ? s.region == 0 : std::find(regions.begin(), regions.end(), s.region) != regions.end();
-  ar.check(s.stage == NeedleStage::outside || (known && s.wave_time > 0.0));
+  ar.check(s.stage == NeedleStage::outside || (known && (s.wave_time > 0.0 || forces_at_end())));
   ar.check(s.slips.size() == path.size() && s.along.size() == path.size() && s.bend.size() <= path.size());
   s.mobility.forget();
-  s.nodes.assign(path.size(), {});
-  for (std::size_t j = 0; j < path.size(); ++j) {
+  s.nodes.resize(path.size());
+  for (std::size_t j = 0; j < path.size(); ++j) {  // weights follow from the place: those known stay
+    if (s.nodes[j].rest == path[j] && !s.nodes[j].weights.empty()) continue;
+    s.nodes[j] = {};
     if (!s.place(s.nodes[j], path[j])) s.nodes[j].rest = path[j];
   }
-  if (s.stage != NeedleStage::outside) s.place(s.tip, Vec3d(s.tip.rest));
+  const bool known_tip = s.tip.rest == tip_was && !s.tip.weights.empty();
+  if (s.stage != NeedleStage::outside && !known_tip) s.place(s.tip, Vec3d(s.tip.rest));
 }
 
 }  // namespace glisson

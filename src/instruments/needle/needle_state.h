@@ -63,7 +63,12 @@ struct Needle::State {
   std::vector<shaft::Row> nodes;  ///< from the surface on
   shaft::Row tip;                 ///< where the path ends
   std::vector<char> slips;        ///< per node
-  std::vector<double> along;      ///< per node: impulse along the needle in the last step [N s]
+  std::vector<int> breaks;  ///< per node: how often it came from sticking to slip while a long step was solved for
+  std::vector<char> stuck;  ///< per node: in the last iteration of a long step
+  std::vector<double>
+      ways;            ///< per node: by how much the needle passes it in a long step, as found last [m]; NaN: not found
+  bool tries = false;  ///< what comes after a long step is tried, and taken back
+  std::vector<double> along;  ///< per node: impulse along the needle in the last step [N s]
   shaft::MobilityMatrix mobility;
   double tip_along = 0.0;                ///< the same of the tip
   Vec3d tip_velocity{};                  ///< of the tissue at the tip before the step [m/s]

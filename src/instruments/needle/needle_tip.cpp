@@ -122,9 +122,9 @@ void Needle::pierce(const InteractionStep& step) {
   s.along.assign(1, 0.0);
   s.bend.assign(1, Vec3d{});
   const double force = tip_force();
-  s.drop = {true, force, force, force, step.time, depth()};
+  s.drop = {true, force, force, force, forces_at_end() ? step.time + step.h : step.time, depth()};
   add_event(step.time + step.h, depth(), "puncture");
-  tell_puncture(pose_.position, 0.5 * s.options.diameter);
+  if (!s.tries) tell_puncture(pose_.position, 0.5 * s.options.diameter);
 }
 
 /// The tip in the tissue: where it cut, the path ends where it is now.
@@ -246,7 +246,7 @@ void Needle::watch_drop(double time, double h) {
 }
 
 void Needle::moved(const InteractionStep& step) {
-  watch_drop(step.time, step.h);
+  watch_drop(forces_at_end() ? step.time + step.h : step.time, step.h);
   switch (state_->stage) {
     case NeedleStage::outside:
       look_for_contact(step);

@@ -6,9 +6,6 @@
 namespace glisson::shaft {
 namespace {
 
-constexpr int kMostSweeps = 40;
-constexpr double kEnough = 1e-6;  ///< change of an impulse over the largest at which sweeps end
-
 double largest(const Vec3d& a) { return std::max({a.x, a.y, a.z}); }
 
 std::uint32_t place_of(const InteractionStep& step, const VertexWeight& w) {
@@ -132,7 +129,7 @@ Eigen::MatrixXd cantilever(std::span<const double> distances, double bending_sti
 
 std::vector<char> solve_along(const Eigen::MatrixXd& W, std::span<const double> speed,
                               std::span<const AxialLimit> limits, const ShaftFriction& friction, double h,
-                              std::span<double> p) {
+                              std::span<double> p, const Effort& effort, std::span<int> breaks) {
   const std::size_t n = speed.size();
   const auto slip_of = [&](std::size_t j) {
     double rel = speed[j];
@@ -141,19 +138,24 @@ std::vector<char> solve_along(const Eigen::MatrixXd& W, std::span<const double> 
     }
     return rel;
   };
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+  std::vector<char> stuck(n, 0);  // in the last sweep
+  for (int sweep = 0; sweep < effort.most_sweeps; ++sweep) {
     double change = 0.0, top = 0.0;
     for (std::size_t j = 0; j < n; ++j) {
       const double own = W(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(j));
       if (!(own > 0.0)) continue;
       const double free = slip_of(j) + own * p[j], stop = free / own;
-      const double wanted = limits[j].is_tip ? std::clamp(stop, 0.0, h * limits[j].tip_limit)
-                                             : shaft_impulse(stop, free, own, limits[j], friction, h);
+      AxialLimit limit = limits[j];
+      if (!breaks.empty()) limit.slips = limit.slips || breaks[j] >= effort.most_breaks;
+      const double wanted = limit.is_tip ? std::clamp(stop, 0.0, h * limit.tip_limit)
+                                         : shaft_impulse(stop, free, own, limit, friction, h);
+      if (!breaks.empty() && stuck[j] != 0 && wanted != stop) ++breaks[j];
+      stuck[j] = wanted == stop;
       change = std::max(change, std::abs(wanted - p[j]));
       top = std::max(top, std::abs(wanted));
       p[j] = wanted;
     }
-    if (change <= kEnough * top) break;
+    if (change <= effort.enough * top) break;
   }
   std::vector<char> slips(n, 0);
   for (std::size_t j = 0; j < n; ++j) {

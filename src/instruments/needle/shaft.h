@@ -64,13 +64,21 @@ struct AxialLimit {
   double tip_limit = 0.0;  ///< most it pushes [N]; infinite: whatever it takes
 };
 
+/// How far Gauss–Seidel goes.
+struct Effort {
+  int most_sweeps = 40;
+  double enough = 1e-6;  ///< change of an impulse over the largest at which sweeps end
+  int most_breaks = 0;   ///< so often a row comes from sticking to slip: it slips from then on; 0: as often as it likes
+};
+
 /// Impulses along the needle.
 /// @param W      as mobility_matrix
 /// @param speed  of the needle over the tissue before it acts, positive inward; per row [m/s]
 /// @param p      start of the iteration, and its end [N s]
+/// @param breaks  per row: how often it has come from sticking to slip; empty: not counted
 /// @return per row: whether it slips
 std::vector<char> solve_along(const Eigen::MatrixXd& W, std::span<const double> speed,
                               std::span<const AxialLimit> limits, const ShaftFriction& friction, double h,
-                              std::span<double> p);
+                              std::span<double> p, const Effort& effort = {}, std::span<int> breaks = {});
 
 }  // namespace glisson::shaft

@@ -18,15 +18,10 @@
 #include <span>
 #include <vector>
 
+#include "glisson/simulation/interaction.h"
 #include "mesh/inspect/tet_locator.h"
 
 namespace glisson {
-
-/// A vertex and its weight [-].
-struct VertexWeight {
-  std::uint32_t vertex = 0;
-  double weight = 0.0;
-};
 
 class TissueZones {
  public:
