@@ -116,6 +116,18 @@ void check_integrator(const Variant& variant, const Node& experiment, Problems& 
                    " supports no " + what + "; take " + supporting_integrators() + " (Maxwell branches may stay)");
 }
 
+/// Complains where more stages are asked for than go together with what acts beside supports and tools.
+void check_stages(const Variant& variant, const Node& experiment, Problems& problems) {
+  const int stages = variant.simulation.drag_stages;
+  const bool acts = !variant.instruments.empty() || variant.container || !variant.capsules.empty();
+  if (!acts || stages <= kMostDragStagesBesideInstruments) return;
+  problems.add(experiment.find("motion")->find("drag_stages")->where, "motion.drag_stages",
+               std::to_string(stages) +
+                   " is outside the allowed range beside [[instrument]], [container] and [[capsule]], 1 to " +
+                   std::to_string(kMostDragStagesBesideInstruments) +
+                   ": stages know their forces from the last step, and a pressed body would yield to them");
+}
+
 /// Reads the file of a recorded motion along a direction.
 void complete_record(RecordSpec& record, const Vec3d& along, const std::filesystem::path& base) {
   if (record.path.is_relative()) record.path = base / record.path;
@@ -239,6 +251,7 @@ Variant scene::read_variant(const Node& experiment, const std::filesystem::path&
   if (const Node* probes = experiment.find("probe")) check_names(*probes->array(), "probe", problems);
   check_sets(variant, experiment, problems);
   check_integrator(variant, experiment, problems);
+  check_stages(variant, experiment, problems);
   check_end(variant, experiment, problems);
   return variant;
 }

@@ -94,6 +94,9 @@ struct ImplicitOptions {
 
 /// Most stages of the viscous force in a step: more would let rounding grow.
 inline constexpr int kMostDragStages = 8;
+/// The same beside instruments, containers and capsules, whose forces stages know from the last step: with more a pressed body yields to
+/// them.
+inline constexpr int kMostDragStagesBesideInstruments = 3;
 
 struct SimulationOptions {
   Integrator integrator = Integrator::central_difference;
@@ -110,7 +113,7 @@ struct SimulationOptions {
   MassScalingKind mass_scaling = MassScalingKind::fixed;
   /// central_difference: stages in which the viscous force is taken within a step, 1 … kMostDragStages. One is the paper's scheme. With
   /// n of them viscosity allows n²/2 times the step that it does with one, and stiffness 0.91 to 0.95 of what it does alone; a stage
-  /// more costs half a step. For tissue of small strain.
+  /// more costs half a step. For tissue of small strain; beside interactions kMostDragStagesBesideInstruments at most.
   int drag_stages = 1;
   ImplicitOptions implicit{};
   Precision precision = Precision::single_precision;
@@ -157,7 +160,8 @@ struct SimulationOptions {
         field(
             "drag_stages", &SimulationOptions::drag_stages, between(1, kMostDragStages),
             "stages in which the viscous force is taken within a step of central_difference: 2 or 3 make steps longer "
-            "where viscosity_Pa_s limits them (docs/integrators.md)"),
+            "where viscosity_Pa_s limits them (docs/integrators.md); 1 to 3 beside instruments, containers and "
+            "capsules"),
         field("implicit", &SimulationOptions::implicit, "options of the integrators implicit and quasi_static"),
         field("precision", &SimulationOptions::precision, "precision of the element arithmetic"),
         field("damping_rate", &SimulationOptions::damping_rate, "1/s", at_least(0),

@@ -133,6 +133,13 @@ void ExplicitScheme::constrain_interactions() {
 }
 
 void ExplicitScheme::attach(std::shared_ptr<Interaction> interaction, const BodyView& body) {
+  if (state_.options.drag_stages > kMostDragStagesBesideInstruments) {
+    throw std::invalid_argument(
+        "attach: " + interaction->label() + " acts on a body with drag_stages = " +
+        std::to_string(state_.options.drag_stages) + ", which is outside the allowed range beside interactions, 1 to " +
+        std::to_string(kMostDragStagesBesideInstruments) +
+        ": stages know their forces from the last step, and a pressed body would yield to them");
+  }
   interaction->attached(body, state_.time);
   if (state_.options.track_energies) ledger_.bring_in(0.0, interaction->energy());
   interactions_.add(std::move(interaction));
@@ -215,6 +222,7 @@ void ExplicitScheme::take_stiff_masses() {
 /// How fast tets change shape whose changes count.
 std::span<const ShapeRate> ExplicitScheme::shape_rates() {
   shape_rates_.clear();
+  if (!control_->may_be_violent()) return shape_rates_;
   for (const StiffElement& stiff : stiff_) {
     if (!control_->is_violent(stiff)) continue;
     const Tet& t = state_.body.elements[stiff.element];

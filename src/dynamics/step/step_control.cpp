@@ -89,8 +89,8 @@ std::string StepControl::too_large(double stable) const {
           "takes "
        << kSafety << " h*; the integrator ";
   if (drag_ == Drag::lags) {
-    text << "\"semi_implicit\", or drag_stages of 2 to " << kMostDragStages
-         << " beside instruments, where viscosity is what limits "
+    text << "\"semi_implicit\", or drag_stages of 2 to " << kMostDragStages << " (" << kMostDragStagesBesideInstruments
+         << " beside instruments), where viscosity is what limits "
          << "h*; ";
   }
   text << "\"implicit\", which is stable at any step; less viscosity or more nodal damping, which raise h*; a larger "

@@ -126,6 +126,11 @@ class StepControl : StepChoice {
 
   /// A state is set from outside: steps are chosen as if the body had been made in it.
   void state_set();
+  /// Whether is_violent() may be true of any.
+  bool may_be_violent() const {
+    return automatic_ && enforce_ &&
+           std::ranges::any_of(body_.blocks, [](const TissueBlock& b) { return !is_small(b); });
+  }
   /// Whether an automatic step depends on how fast an element changes shape: tissue of large strain that has stiffened.
   bool is_violent(const StiffElement& element) const;
   /// Keeps an automatic step so short that none of those is strained in it by more than a hundredth, or, where an element
@@ -201,7 +206,6 @@ class StepControl : StepChoice {
   std::vector<char> thickening() const;
   void choose_heavy(double wanted);
   bool follow_inertia();
-  double heavy_step() const { return std::min(step_, kSafety * drag_limit_); }
   void bear(std::span<const StiffElement> stiff);
   void list_from();
   AddedStiffness added_at(std::span<const double> level);

@@ -26,6 +26,8 @@ constexpr int kMostInVain = 8;                 ///< steps of that ladder without
 constexpr double kCostOfLevels = 2.0;          ///< of a tet with a level of its own, over that of a tet, a step
 constexpr double kMostRise = 1024.0;           ///< of stiffness that is looked at for a step
 constexpr double kMuchInertia = 0.05, kLittleInertia = 0.02;  ///< of added mass, of what acts on the body
+constexpr double kHeavyRoom = 1.1;                            ///< of a level for mass, over the stiffness seen
+constexpr std::uint64_t kHeavyWindow = 64;                    ///< [steps] after which levels for mass come down
 constexpr double kHeavyRegrowth = 1.1;            ///< of the step of variable mass scaling, in a short window
 constexpr double kLeastHeavyStep = 0.3;           ///< of what was asked for
 constexpr double kProbeDepth = 8.0;               ///< how far below the level of the blocks a probe looks
@@ -66,6 +68,9 @@ void StepControl::list_from() {
     }
   }
   list_above_ = usual_;
+  if (heavy_step_) {  // those that come close get levels when others do
+    for (double& level : list_above_) level /= kHeavyRoom;
+  }
   for (std::size_t b = 0; probes_ && b < usual_.size(); ++b) {
     list_above_[b] = std::min(usual_[b], std::max(rest_.level[b], now_.level[b] / kProbeDepth));
   }
@@ -94,6 +99,7 @@ void StepControl::choose_heavy(double wanted) {
     known.limits = bound_at(known.level);
     return known;
   };
+  wanted = std::min(wanted, kSafety * drag_limit_);
   now_ = rest_;
   double borne = 1.0, above = 1.0;
   while (above < kMostRise && kSafety * at(above).limits.pace >= wanted) borne = above, above *= 2.0;
@@ -111,11 +117,12 @@ bool StepControl::follow_inertia() {
   const double inertia = std::exchange(inertia_, 0.0);
   double wanted = step_;
   if (inertia > kMuchInertia) {
-    const double borne = kSafety * with_added(rest_.limits.pace, added_at(rest_.level));
+    const double borne = kSafety * bound_at(levels_.largest(rest_.level)).pace;
     wanted = std::min(step_, std::max(borne, kLeastHeavyStep * *heavy_step_));
   } else if (inertia < kLittleInertia && in_window_ % kShortWindow == 0) {
     wanted = std::min(kHeavyRegrowth * step_, *heavy_step_);
   }
+  wanted = std::min(wanted, kSafety * drag_limit_);
   if (wanted == step_) return false;
   choose_heavy(wanted);
   return true;
@@ -123,14 +130,16 @@ bool StepControl::follow_inertia() {
 
 /// Variable mass scaling: stiff tets take levels of their own, and their vertices mass in the place of a shorter step.
 void StepControl::bear(std::span<const StiffElement> stiff) {
-  const StiffnessLevels::Met met = levels_.meet(stiff, now_.level, usual_);
   unchecked_ = false;
-  if (met.above) levels_.raise(1.0);
-  const double rise = met.above ? met.rise : 1.0;
-  const bool settles = ++in_window_ % kShortWindow == 0 && !levels_.empty();
-  if (settles) levels_.settle();
-  if (follow_inertia() || met.above || settles) take_stiff();
-  be_cautious(rise);
+  const bool settles = ++in_window_ % kHeavyWindow == 0, above = !levels_.bear(stiff, now_.level);
+  double rise = 1.0;
+  if (above || settles) {
+    rise = levels_.meet(stiff, now_.level, usual_).rise;
+    levels_.raise_all(kHeavyRoom);
+    if (settles) levels_.settle(kHeavyRoom);
+  }
+  if (follow_inertia() || above || settles) take_stiff();
+  be_cautious(above ? rise : 1.0);
 }
 
 void StepControl::set_added(double squared_frequency) {
@@ -145,7 +154,7 @@ void StepControl::follow_added(double squared_frequency) {
 
 void StepControl::take_stiff() {
   if (heavy_step_) {
-    levels_.masses_for(now_.level, thickening(), heavy_step() / kSafety, weight_, stiff_masses_);
+    levels_.masses_for(now_.level, thickening(), step_ / kSafety, weight_, stiff_masses_);
     masses_are_new_ = true;
   } else {
     stiff_ = added_at(now_.level);

@@ -52,12 +52,16 @@ class StiffnessLevels {
   /// Gives those that the last meet() found above their level another, with room above the stiffness seen, more where a tet's
   /// own part in what all take was small, and times its rise within the last step, up to `most_ahead`.
   void raise(double most_ahead);
+  /// Whether none is above its level and that of its block: what a meeting would find, quicker.
+  bool bear(std::span<const StiffElement> stiff, std::span<const double> base) const;
+  /// Gives all that come close to theirs a level with room, so that it is long until one is above again. @param room  over what was seen
+  void raise_all(double room);
   /// Gives levels to all that the last meeting saw without or above one.
   void complete();
   /// The largest level per block, not below `base`.
   std::vector<double> largest(std::span<const double> base) const;
-  /// Lets levels come down to the stiffest moment since the last time, with room.
-  void settle();
+  /// Lets levels come down to the stiffest moment since the last time, with room. @param room  of all; 0: of each by its part
+  void settle(double room = 0.0);
   /// Forgets tets that the level of their block bears: they are told again where they rise above it.
   void forget_below(std::span<const double> base);
   /// What the tets above `base` take. @param viscous  per block, whether viscosity grows with them
@@ -88,7 +92,8 @@ class StiffnessLevels {
     double part = 1.0;                         ///< of what all took, at most; 1 until it is known
     std::uint64_t met = 0;                     ///< number of the last
     std::array<double, 4> squares{};           ///< |s_a|² [1/m²]
-    double spread = 0.0;                       ///< λ_max(Σ ŝ_a ŝ_aᵀ); 0: not asked for yet
+    double spread = 0.0;                       ///< λ_max(Σ ŝ_a ŝ_aᵀ)
+    double elastic = 0.0, viscous = 0.0;       ///< V x modulus at rest [J], [J s]
     void archive(Archive& ar) { ar(element, met, ratio, norm, seen_ratio, seen_norm, last, before, part); }
   };
   /// What a tet above the base asks of its vertices' masses.
@@ -101,7 +106,6 @@ class StiffnessLevels {
   Member& member(std::uint32_t element);
   void measure(Member& m) const;
   Asking ask(std::uint32_t place, std::span<const double> base, const std::vector<char>& viscous) const;
-  double spread(Member& m) const;
   void gather_asking(std::span<const double> base, const std::vector<char>& viscous);
   static bool is_above(const Member& m, double base);
   static double room_of(const Member& m);
@@ -112,6 +116,10 @@ class StiffnessLevels {
   std::vector<std::uint32_t> place_;  ///< per element: 1 + place among members, 0 where it is none; empty: none is
   std::vector<std::uint32_t> above_;  ///< members that the last meet() found above
   std::uint64_t meetings_ = 0;
+  struct Borne {
+    float ratio = 0.0F, norm = 0.0F;
+  };
+  std::vector<Borne> borne_;  ///< per element: the levels that masses were found for
   std::vector<Asking> asking_;
   std::vector<double> asked_;  ///< per vertex, 0 between calls
 };
