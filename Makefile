@@ -8,7 +8,7 @@ PROGRAM := $(BUILD)/bin/glisson
 OUT ?= out/reproduce
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check setup format clean citations figures pages layout lint sanitizers races fuzz fuzz-keep
+.PHONY: help run test verify check setup format clean citations figures pages layout lint sanitizers races fuzz fuzz-keep
 .NOTPARALLEL:
 
 help:  ## this list
@@ -29,7 +29,14 @@ test:  ## build with tests and run them: engine, consumer package, report page
 	@scripts/setup.sh test
 	@scripts/configure.sh release tests
 	@scripts/build.sh $(BUILD) $(JOBS)
-	@cd $(BUILD) && $(CTEST)
+	@cd $(BUILD) && $(CTEST) -LE verify
+
+# Not part of test: 300 random bodies, a thousand scenes and insertions, populations of fits; `test` has the first few of each.
+verify:  ## build with tests and run those of many random bodies, scenes and populations, an hour
+	@scripts/setup.sh test
+	@scripts/configure.sh release tests
+	@scripts/build.sh $(BUILD) $(JOBS)
+	@cd $(BUILD) && $(CTEST) -L verify
 
 check:  ## sanitizers, fuzz corpus, layout, lint, citations, figures, pages: all of them, even when one fails
 	@scripts/setup.sh check
@@ -59,7 +66,7 @@ lint:
 sanitizers:
 	@scripts/configure.sh asan-ubsan tests
 	@scripts/build.sh $(ASAN) $(JOBS)
-	@cd $(ASAN) && $(CTEST) -LE 'web|scripts|long'
+	@cd $(ASAN) && $(CTEST) -LE 'web|scripts|long|verify'
 
 # Not part of check: a third build. `races` finds what two threads touch without a word to each other.
 races:  ## the engine's tests under the thread sanitizer
