@@ -190,8 +190,9 @@ def test_wrong_options_are_refused():
             glisson.ContactOptions(shape=glisson.Ball(radius=0)), glisson.PathDriver(pose(), glisson.SteadyMotion())
         )
     body = glisson.Simulation(cylinder(), glisson.Tissue(), glisson.SimulationOptions(integrator="implicit"))
+    bonded = glisson.ContactOptions(shape=glisson.Ball(radius=0.005), bonded=True)
     with pytest.raises(ValueError, match="implicit"):
-        body.attach(glisson.Container(glisson.ContainerOptions()))
+        body.attach(glisson.ContactTool(bonded, glisson.PathDriver(pose(), glisson.SteadyMotion())))
 
 
 def test_a_blade_of_a_scene_cuts(scenes):
