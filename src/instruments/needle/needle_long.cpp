@@ -37,91 +37,105 @@ double Needle::Solver::way_past(std::size_t node_number) const {
   return s.slips[node_number] != 0 ? dot(after - before, d) : 0.0;
 }
 
-Needle::Solver::Impulses Needle::Solver::solve_long(const InteractionStep& step) {
-  const std::size_t n = all.size();
-  const bool cuts = has_tip && s.tip_cuts;
-  const std::size_t held = n - (cuts ? 1 : 0);
-  std::vector<std::vector<VertexWeight>> means;
-  for (const shaft::Row* row : all) means.push_back(row->weights);
-  const std::vector<Mat3d> W = step.compliance->couple(means);
-  const std::array<Vec3d, 2> e = two_across(d);
-  const auto w = [&](std::size_t j, const Vec3d& a, std::size_t k, const Vec3d& b) { return dot(a, W[j * n + k] * b); };
-  const auto at = [](std::size_t i) { return static_cast<Eigen::Index>(i); };
-  const Eigen::MatrixXd C = shaft::cantilever(from_hand, s.bending_stiffness());
-  const Vec3d bevel = cuts && s.step_h > 0.0 ? bevel_force() * -h : Vec3d{};
+/// What the rows of a long step want of each other. Rows across: two a held row; columns: the same, then one along a row.
+struct Needle::Solver::LongRows {
+  std::size_t n = 0, held = 0;
+  bool cuts = false;
+  std::vector<std::vector<VertexWeight>> means{};
+  std::vector<Mat3d> W{};
+  std::array<Vec3d, 2> e{};
+  Eigen::MatrixXd C{}, A{}, B{}, D{};
+  Eigen::VectorXd b{}, speed{};
+  Vec3d bevel{};
 
-  // rows across: two a held row; columns: the same, then one along a row
-  const auto size = at(2 * held);
-  Eigen::MatrixXd A(size, size), B(size, at(n));
-  Eigen::VectorXd b(size), speed(at(n));
-  double tissue = 0.0;  // trace of W across
-  for (std::size_t j = 0; j < held; ++j) {
+  static Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
+  double w(std::size_t j, const Vec3d& x, std::size_t k, const Vec3d& y) const { return dot(x, W[j * n + k] * y); }
+};
+
+/// Sets up what acts across, with the bent needle's compliance. @return the trace of W across
+double Needle::Solver::set_across(LongRows& r) const {
+  const auto at = LongRows::at;
+  double tissue = 0.0;
+  for (std::size_t j = 0; j < r.held; ++j) {
     const Vec3d off = (all[j]->position + all[j]->velocity * h - after) * (1.0 / h);
     for (std::size_t i = 0; i < 2; ++i) {
       const Eigen::Index row = at(2 * j + i);
-      tissue += w(j, e[i], j, e[i]);
-      b[row] = -dot(e[i], off);
-      if (cuts) b[row] -= dot(e[i], W[j * n + n - 1] * bevel) + C(at(j), at(n - 1)) * dot(e[i], bevel) / (h * h);
-      for (std::size_t k = 0; k < n; ++k) {
-        B(row, at(k)) = w(j, e[i], k, d);
-        for (std::size_t l = 0; l < 2 && k < held; ++l) {
-          A(row, at(2 * k + l)) = w(j, e[i], k, e[l]) + (i == l ? C(at(j), at(k)) / (h * h) : 0.0);
+      tissue += r.w(j, r.e[i], j, r.e[i]);
+      r.b[row] = -dot(r.e[i], off);
+      if (r.cuts) {
+        r.b[row] -=
+            dot(r.e[i], r.W[j * r.n + r.n - 1] * r.bevel) + r.C(at(j), at(r.n - 1)) * dot(r.e[i], r.bevel) / (h * h);
+      }
+      for (std::size_t k = 0; k < r.n; ++k) {
+        r.B(row, at(k)) = r.w(j, r.e[i], k, d);
+        for (std::size_t l = 0; l < 2 && k < r.held; ++l) {
+          r.A(row, at(2 * k + l)) = r.w(j, r.e[i], k, r.e[l]) + (i == l ? r.C(at(j), at(k)) / (h * h) : 0.0);
         }
       }
     }
   }
-  Eigen::MatrixXd D(at(n), at(n));
-  for (std::size_t j = 0; j < n; ++j) {
-    speed[at(j)] = dot(needle_velocity() - all[j]->velocity, d);
-    if (j >= node.size()) speed[at(j)] -= tip_gap / h;
-    if (cuts) speed[at(j)] -= dot(d, W[j * n + n - 1] * bevel);
-    for (std::size_t k = 0; k < n; ++k) D(at(j), at(k)) = w(j, d, k, d);
-  }
-  Eigen::LDLT<Eigen::MatrixXd> across_factor;
-  if (held > 0) {
-    A.diagonal().array() += kLongSlack * tissue / static_cast<double>(2 * held);
-    A = (0.5 * (A + A.transpose())).eval();
-    across_factor.compute(A);
-    const Eigen::MatrixXd solved = across_factor.solve(B);
-    D -= B.transpose() * solved;
-    speed -= solved.transpose() * b;
-  }
+  return tissue;
+}
 
+Needle::Solver::LongRows Needle::Solver::long_rows(const InteractionStep& step) {
+  const auto at = LongRows::at;
+  LongRows r{.n = all.size(), .cuts = has_tip && s.tip_cuts};
+  r.held = r.n - (r.cuts ? 1 : 0);
+  for (const shaft::Row* row : all) r.means.push_back(row->weights);
+  r.W = step.compliance->couple(r.means);
+  r.e = two_across(d);
+  r.C = shaft::cantilever(from_hand, s.bending_stiffness());
+  r.bevel = r.cuts && s.step_h > 0.0 ? bevel_force() * -h : Vec3d{};
+  const auto size = at(2 * r.held);
+  r.A.resize(size, size), r.B.resize(size, at(r.n)), r.b.resize(size);
+  r.D.resize(at(r.n), at(r.n)), r.speed.resize(at(r.n));
+  const double tissue = set_across(r);
+  for (std::size_t j = 0; j < r.n; ++j) {
+    r.speed[at(j)] = dot(needle_velocity() - all[j]->velocity, d);
+    if (j >= node.size()) r.speed[at(j)] -= tip_gap / h;
+    if (r.cuts) r.speed[at(j)] -= dot(d, r.W[j * r.n + r.n - 1] * r.bevel);
+    for (std::size_t k = 0; k < r.n; ++k) r.D(at(j), at(k)) = r.w(j, d, k, d);
+  }
+  if (r.held > 0) {
+    r.A.diagonal().array() += kLongSlack * tissue / static_cast<double>(2 * r.held);
+    r.A = (0.5 * (r.A + r.A.transpose())).eval();
+  }
+  return r;
+}
+
+/// Impulses along the needle, with those across eliminated.
+std::vector<double> Needle::Solver::along_in_long(const LongRows& r, const Eigen::MatrixXd& D,
+                                                  const Eigen::VectorXd& speed) {
   std::vector<shaft::AxialLimit> limits;
-  std::vector<double> start;
+  std::vector<double> p;
   const double again = s.step_h > 0.0 ? h / s.step_h : 0.0;
   s.breaks.resize(s.nodes.size(), 0);
   s.stuck.resize(s.nodes.size(), 0);
-  std::vector<int> in_sweeps(n, 0);
-  for (std::size_t j = 0; j < n; ++j) {
+  std::vector<int> in_sweeps(r.n, 0);
+  for (std::size_t j = 0; j < r.n; ++j) {
     const bool is_tip = j >= node.size();
     limits.push_back(limit_of(j));
     if (!is_tip && s.breaks[node[j]] >= kMostBreaks) limits.back().slips = true;
-    start.push_back(again * (is_tip ? s.tip_along : s.along[node[j]]));
+    p.push_back(again * (is_tip ? s.tip_along : s.along[node[j]]));
   }
-  Impulses p{std::vector<Vec3d>(n), std::move(start)};
   const std::vector<double> speeds(speed.begin(), speed.end());
   const std::vector<char> slips =
-      shaft::solve_along(D, speeds, limits, s.options.friction, h, p.along, kLongEffort, in_sweeps);
+      shaft::solve_along(D, speeds, limits, s.options.friction, h, p, kLongEffort, in_sweeps);
   for (std::size_t j = 0; j < node.size(); ++j) {
     if (s.stuck[node[j]] != 0 && slips[j] != 0) ++s.breaks[node[j]];
     s.stuck[node[j]] = slips[j] == 0;
   }
-  keep_along(p.along, slips);
+  keep_along(p, slips);
+  return p;
+}
 
-  Eigen::VectorXd across_p(size);
-  if (held > 0) {
-    const Eigen::Map<const Eigen::VectorXd> along(p.along.data(), at(n));
-    across_p = across_factor.solve(b - B * along);
-  }
-  for (std::size_t j = 0; j < held; ++j) p.across[j] = e[0] * across_p[at(2 * j)] + e[1] * across_p[at(2 * j + 1)];
-  if (cuts) p.across.back() = bevel;
-  bend(p.across, C);
+/// Gives the impulses to the tissue, and keeps how far the needle passes its nodes.
+void Needle::Solver::hand_out(const InteractionStep& step, const LongRows& r, const Impulses& p) {
   std::vector<Vec3d> whole;
-  for (std::size_t j = 0; j < n; ++j) whole.push_back(p.across[j] + d * p.along[j]);
-  step.compliance->spread_means(means, whole, step.vertices);
-  for (std::size_t j = 0; j < n; ++j) {
-    for (const VertexWeight& v : means[j]) step.impulses[step.place_of[v.vertex]] += whole[j] * v.weight;
+  for (std::size_t j = 0; j < r.n; ++j) whole.push_back(p.across[j] + d * p.along[j]);
+  step.compliance->spread_means(r.means, whole, step.vertices);
+  for (std::size_t j = 0; j < r.n; ++j) {
+    for (const VertexWeight& v : r.means[j]) step.impulses[step.place_of[v.vertex]] += whole[j] * v.weight;
   }
   s.ways.resize(s.nodes.size(), std::numeric_limits<double>::quiet_NaN());
   for (const std::size_t j : node) {
@@ -129,6 +143,30 @@ Needle::Solver::Impulses Needle::Solver::solve_long(const InteractionStep& step)
     s.ways[j] = dot(needle_velocity() - s.nodes[j].velocity, d) * h;
   }
   if (has_tip) shaft::read(step, s.tip);
+}
+
+Needle::Solver::Impulses Needle::Solver::solve_long(const InteractionStep& step) {
+  const LongRows r = long_rows(step);
+  Eigen::MatrixXd D = r.D;
+  Eigen::VectorXd speed = r.speed;
+  Eigen::LDLT<Eigen::MatrixXd> across_factor;
+  if (r.held > 0) {
+    across_factor.compute(r.A);
+    const Eigen::MatrixXd solved = across_factor.solve(r.B);
+    D -= r.B.transpose() * solved;
+    speed -= solved.transpose() * r.b;
+  }
+  Impulses p{std::vector<Vec3d>(r.n), along_in_long(r, D, speed)};
+  if (r.held > 0) {
+    const Eigen::Map<const Eigen::VectorXd> along(p.along.data(), LongRows::at(r.n));
+    const Eigen::VectorXd across_p = across_factor.solve(r.b - r.B * along);
+    for (std::size_t j = 0; j < r.held; ++j) {
+      p.across[j] = r.e[0] * across_p[LongRows::at(2 * j)] + r.e[1] * across_p[LongRows::at(2 * j + 1)];
+    }
+  }
+  if (r.cuts) p.across.back() = r.bevel;
+  bend(p.across, r.C);
+  hand_out(step, r, p);
   return p;
 }
 

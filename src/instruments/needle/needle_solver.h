@@ -37,6 +37,11 @@ struct Needle::Solver {
   Impulses solve_long(const InteractionStep& step);
 
  private:
+  struct LongRows;
+  LongRows long_rows(const InteractionStep& step);
+  double set_across(LongRows& rows) const;
+  std::vector<double> along_in_long(const LongRows& rows, const Eigen::MatrixXd& D, const Eigen::VectorXd& speed);
+  void hand_out(const InteractionStep& step, const LongRows& rows, const Impulses& p);
   double tip_slip() const;
   Eigen::MatrixXd wanted_across(std::size_t held, const Vec3d& bevel, const Eigen::MatrixXd& W,
                                 const Eigen::MatrixXd& C) const;
