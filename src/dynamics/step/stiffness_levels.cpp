@@ -39,9 +39,9 @@ void StiffnessLevels::measure(Member& m) const {
   Sym3<double> sum;
   for (std::size_t i = 0; i < 4; ++i) sum += outer_square(s[i]) * (1.0 / m.squares[i]);
   m.spread = largest_eigenvalue(sum);
-  const double volume = body_.rest[m.element].volume;
-  m.elastic = volume * modulus_bound(body_.blocks[m.block].elastic);
-  m.viscous = volume * modulus_bound(body_.blocks[m.block].viscous);
+  m.volume = body_.rest[m.element].volume;
+  m.elastic = modulus_bound(body_.blocks[m.block].elastic);
+  m.viscous = modulus_bound(body_.blocks[m.block].viscous);
 }
 
 StiffnessLevels::Member& StiffnessLevels::member(std::uint32_t element) {
@@ -159,10 +159,10 @@ StiffnessLevels::Asking StiffnessLevels::ask(std::uint32_t place, std::span<cons
                                              const std::vector<char>& viscous) const {
   const Member& m = members_[place];
   const std::size_t b = m.block;
-  if (!(m.ratio > base[b]) || !(m.elastic > 0.0)) return {};
+  if (!(m.ratio > base[b]) || !(m.volume > 0.0)) return {};
   const double more = m.ratio - base[b];
-  Asking a{place, std::min(more, m.norm) * m.elastic, 0.0, 0.0, {}};
-  if (viscous[b] != 0) a.c = more * m.viscous;
+  Asking a{place, m.volume * std::min(more, m.norm) * m.elastic, 0.0, 0.0, {}};
+  if (viscous[b] != 0) a.c = m.volume * more * m.viscous;
   for (std::size_t i = 0; i < 4; ++i) a.of[i] = a.k * m.squares[i];
   return a;
 }
@@ -260,7 +260,7 @@ void StiffnessLevels::archive(Archive& ar) {
       const Member fresh = member(m.element);
       Member& read = members_.back();
       read = m, read.block = fresh.block, read.squares = fresh.squares, read.spread = fresh.spread;
-      read.elastic = fresh.elastic, read.viscous = fresh.viscous;
+      read.volume = fresh.volume, read.elastic = fresh.elastic, read.viscous = fresh.viscous;
     }
   }
   ar(meetings_);

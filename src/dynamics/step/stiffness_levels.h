@@ -93,7 +93,8 @@ class StiffnessLevels {
     std::uint64_t met = 0;                     ///< number of the last
     std::array<double, 4> squares{};           ///< |s_a|² [1/m²]
     double spread = 0.0;                       ///< λ_max(Σ ŝ_a ŝ_aᵀ)
-    double elastic = 0.0, viscous = 0.0;       ///< V x modulus at rest [J], [J s]
+    double volume = 0.0;                       ///< at rest [m³]
+    double elastic = 0.0, viscous = 0.0;       ///< bounds of the moduli [Pa], [Pa s]
     void archive(Archive& ar) { ar(element, met, ratio, norm, seen_ratio, seen_norm, last, before, part); }
   };
   /// What a tet above the base asks of its vertices' masses.
