@@ -6,6 +6,7 @@
 #include <ostream>
 #include <random>
 
+#include "dynamics/press_deep.h"
 #include "dynamics/step/step_control.h"
 #include "glisson/instruments/motion.h"
 #include "support/bodies.h"
@@ -231,16 +232,7 @@ TEST_P(DeepPress, NeverBlowsUp) {
     o.integrator = integrator;
     o.precision = Precision::double_precision;
     o.damping_rate = 20.0;
-    const TetMesh mesh = test::paper_mesh();
-    Simulation s(mesh, {{0, GetParam().tissue}}, o);
-    s.fix(mesh.vertex_sets.at("z_min"));
-    s.drive(mesh.vertex_sets.at("z_max"), press({.velocity = 0.1, .depth = 0.048, .hold = 0.1}));
-    while (s.time() < 0.55) {
-      ASSERT_LE(s.step().status, StepStatus::inverted) << s.time();
-      ASSERT_LE(s.energies().kinetic, 1e-3 + std::abs(s.energies().work_tools)) << s.time();
-    }
-    for (const Vec3d& u : s.displacement()) EXPECT_LT(norm(u), 0.1);
-    EXPECT_LE(std::abs(s.energies().imbalance()), 1e-7 * s.energies().work_tools);
+    test::press_deep(GetParam().tissue, o);
   }
 }
 std::string law_name_of(const testing::TestParamInfo<Law>& law) { return law.param.name; }

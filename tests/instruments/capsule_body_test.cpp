@@ -10,6 +10,7 @@
 #include "glisson/archive.h"
 #include "glisson/instruments/capsule.h"
 #include "glisson/simulation/simulation.h"
+#include "instruments/capsule_sheets.h"
 
 namespace glisson {
 namespace {
@@ -192,12 +193,7 @@ TEST(CapsuleBody, WrappedStripPullsAsItsSkin) {
   CapsuleOptions o;
   o.youngs_modulus = 100.0 / o.thickness;
   o.poisson_ratio = 0.3;
-  for (const Triangle& t : boundary_triangles(mesh)) {
-    const auto on = [&](double x) {
-      return std::all_of(t.begin(), t.end(), [&](auto v) { return std::abs(mesh.vertices[v].x - x) < 1e-9; });
-    };
-    if (!on(0.0) && !on(0.05)) o.triangles.push_back(t);
-  }
+  o.triangles = skin_of_strip(mesh);
   const auto capsule = std::make_shared<Capsule>(o);
   s.attach(capsule);
   while (s.time() < 4 * end) ASSERT_EQ(s.step().status, StepStatus::ok);

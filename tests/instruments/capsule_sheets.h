@@ -20,6 +20,18 @@ struct Sheet {
   std::vector<char> is_rim;  ///< per vertex
 };
 
+/// The faces of a box along x, 5 cm long, but for its two ends.
+inline std::vector<Triangle> skin_of_strip(const TetMesh& mesh) {
+  std::vector<Triangle> skin;
+  for (const Triangle& t : boundary_triangles(mesh)) {
+    const auto on = [&](double x) {
+      return std::all_of(t.begin(), t.end(), [&](auto v) { return std::abs(mesh.vertices[v].x - x) < 1e-9; });
+    };
+    if (!on(0.0) && !on(0.05)) skin.push_back(t);
+  }
+  return skin;
+}
+
 /// A rectangle of n × m cells in the plane z = 0; inner vertices off their place by up to `jitter` cells, diagonals either way.
 inline Sheet patch(std::size_t n, std::size_t m, double width, double height, double jitter, unsigned seed = 1) {
   std::mt19937 random(seed);

@@ -39,6 +39,18 @@ inline Mat3d rotation(const Vec3d& k, double angle) {
 /// Turned over: what is drawn above the tissue lies below it.
 inline Mat3d upside_down() { return rotation({1.0, 0.0, 0.0}, std::acos(-1.0)); }
 
+/// An integrator in steps of h; the explicit one, to compare with, in double and in steps of its own.
+inline SimulationOptions in_steps_of(Integrator integrator, double h) {
+  SimulationOptions o;
+  o.integrator = integrator;
+  if (capabilities(integrator).any_step_is_stable) {
+    o.step = h;
+  } else {
+    o.precision = Precision::double_precision;
+  }
+  return o;
+}
+
 inline void advance_to(Simulation& s, double time) {
   while (s.time() < time) ASSERT_EQ(s.step().status, StepStatus::ok);
 }

@@ -5,12 +5,11 @@
 #include <sstream>
 
 #include "instruments/contact_scenes.h"
+#include "instruments/container_kinds.h"
 #include "support/must_step.h"
 
 namespace glisson::container_test {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 Tissue tissue(double nu = 0.4) {
   Tissue t;
@@ -81,29 +80,14 @@ TEST_P(StaticBalance, ToolBottomAndSides) {
   RecordProperty("side_share", std::to_string(-e.container->sensor_loads().side.z / force));
 }
 
-ContainerOptions with(double friction, bool holds, bool bonded) {
-  ContainerOptions o;
-  o.friction = friction, o.holds_floor = o.holds_wall = holds, o.bonded = bonded;
-  return o;
-}
-
-INSTANTIATE_TEST_SUITE_P(FreeToBonded, StaticBalance,
-                         testing::Values(with(0.0, false, false), with(0.3, false, false),
-                                         with(kInfinite, false, false), with(0.0, true, false), with(0.0, false, true)),
-                         [](const auto& p) {
-                           const ContainerOptions& o = p.param;
-                           return std::string(o.bonded            ? "bonded"
-                                              : o.holds_floor     ? "held"
-                                              : o.friction == 0.0 ? "free"
-                                              : o.friction > 1.0  ? "rough"
-                                                                  : "friction");
-                         });
+INSTANTIATE_TEST_SUITE_P(FreeToBonded, StaticBalance, testing::ValuesIn(test::container_kinds()), test::kind_of);
 
 // The wall bears none of the axial load without friction, the more the more friction, most when bonded; the tool's force
 // grows in the same order, and tissue presses outward.
 TEST(ContainerFriction, GoesFromFreeToBonded) {
   double side = -1e-9, force = 0.0;
-  for (ContainerOptions o : {with(0.0, false, false), with(0.2, false, false), with(0.0, false, true)}) {
+  for (ContainerOptions o :
+       {test::with(0.0, false, false), test::with(0.2, false, false), test::with(0.0, false, true)}) {
     o.vessel = CylinderVessel{.radius = 0.02};
     Experiment e(o);
     test::advance_to(e.body, 0.6);
@@ -119,7 +103,7 @@ TEST(ContainerFriction, GoesFromFreeToBonded) {
 
 // Bonded is what supports do that hold the same vertices: the same motion, and their forces.
 TEST(Container, BondedIsAsFixed) {
-  ContainerOptions o = with(0.0, false, true);
+  ContainerOptions o = test::with(0.0, false, true);
   o.vessel = CylinderVessel{.radius = 0.02};
   Experiment a(o, 1e-3);
   Experiment b(o, 1e-3);
@@ -202,7 +186,8 @@ TEST(Container, HoldsTheFloorIfTold) {
 
 // A run goes on from a checkpoint with the same bytes, whatever the walls do.
 TEST(Container, CheckpointGoesOn) {
-  for (ContainerOptions o : {with(0.3, false, false), with(0.0, true, false), with(0.0, false, true)}) {
+  for (ContainerOptions o :
+       {test::with(0.3, false, false), test::with(0.0, true, false), test::with(0.0, false, true)}) {
     o.vessel = CylinderVessel{.radius = 0.02};
     Experiment a(o), b(o);
     test::advance_to(a.body, 0.05);
@@ -232,7 +217,7 @@ class NamesAll : public Interaction {
 // pulled back to its place.
 TEST(Container, BondsThatRestBearTheSame) {
   const TetMesh mesh = cylinder_mesh({.radius = 0.02, .height = 0.03, .radial_cells = 4, .axial_cells = 5});
-  ContainerOptions o = with(0.0, false, true);
+  ContainerOptions o = test::with(0.0, false, true);
   o.vessel = CylinderVessel{.radius = 0.02};
   Tissue viscous = tissue();
   viscous.viscosity = 5.0;
@@ -288,7 +273,7 @@ TEST(Container, RefusesBadOptions) {
   refused([](ContainerOptions& o) { o.friction = -0.1; });
   refused([](ContainerOptions& o) { o.friction = std::nan(""); });
   refused([](ContainerOptions& o) { o.vessel = CylinderVessel{.radius = 0.0}; });
-  refused([](ContainerOptions& o) { o.vessel = BoxVessel{.width = kInfinite}; });
+  refused([](ContainerOptions& o) { o.vessel = BoxVessel{.width = test::kInfinite}; });
   refused([](ContainerOptions& o) { o.vessel = CylinderVessel{.height = -1.0}; });
   refused([](ContainerOptions& o) { o.pose.axes(0, 0) = 2.0; });
   refused([](ContainerOptions& o) { o.push_out_speed = 0.0; });

@@ -18,13 +18,8 @@ namespace glisson::long_capsule_test {
 namespace {
 
 SimulationOptions options(Integrator integrator, double h) {
-  SimulationOptions o;
-  o.integrator = integrator, o.damping_rate = 50.0;
-  if (capabilities(integrator).any_step_is_stable) {
-    o.step = h;
-  } else {
-    o.precision = Precision::double_precision;
-  }
+  SimulationOptions o = test::in_steps_of(integrator, h);
+  o.damping_rate = 50.0;
   return o;
 }
 
@@ -98,12 +93,7 @@ TEST(LongCapsule, WrappedStripPullsAsItsSkinInStatics) {
                                       {true, false, false});
   CapsuleOptions o;
   o.youngs_modulus = 100.0 / o.thickness, o.poisson_ratio = 0.3;
-  for (const Triangle& t : boundary_triangles(mesh)) {
-    const auto on = [&](double x) {
-      return std::all_of(t.begin(), t.end(), [&](auto v) { return std::abs(mesh.vertices[v].x - x) < 1e-9; });
-    };
-    if (!on(0.0) && !on(0.05)) o.triangles.push_back(t);
-  }
+  o.triangles = skin_of_strip(mesh);
   const auto capsule = std::make_shared<Capsule>(o);
   s.attach(capsule);
   for (int k = 0; k < 10; ++k) {

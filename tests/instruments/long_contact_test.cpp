@@ -17,17 +17,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-SimulationOptions options(Integrator integrator, double h) {
-  SimulationOptions o;
-  o.integrator = integrator;
-  if (!capabilities(integrator).any_step_is_stable) {
-    o.precision = Precision::double_precision;
-  } else {
-    o.step = h;
-  }
-  return o;
-}
-
 Tissue tissue() {
   Tissue t;
   t.youngs_modulus = 5000.0, t.poisson_ratio = 0.3;
@@ -44,7 +33,7 @@ struct Pressed {
           std::function<Vec3d(double)> path, int cells = 8)
       : body(
             box_mesh({.cells = {cells, cells, cells / 2}, .size = {0.04, 0.04, 0.02}, .origin = {-0.02, -0.02, -0.02}}),
-            {{0, t}}, damped(options(integrator, h))),
+            {{0, t}}, damped(test::in_steps_of(integrator, h))),
         bottom(body.fix("z_min")) {
     ContactOptions o;
     o.shape = shape, o.friction = friction;
@@ -215,7 +204,7 @@ TEST(LongContact, SticksAndSlipsAsTheExplicitScheme) {
 TEST(LongContact, ForceAndTorqueAreChangesOfMomentum) {
   Tissue turning = tissue();
   turning.kinematics = Kinematics::corotational;
-  SimulationOptions o = options(Integrator::implicit, 2e-3);
+  SimulationOptions o = test::in_steps_of(Integrator::implicit, 2e-3);
   o.implicit.tolerance = 1e-10;
   Simulation s(box_mesh({.cells = {4, 4, 2}, .size = {0.04, 0.04, 0.02}, .origin = {-0.02, -0.02, -0.02}}),
                {{0, turning}}, o);
@@ -293,7 +282,7 @@ TEST(LongContact, RefusesWhatItDoesNotDo) {
     Simulation s(box_mesh({.cells = {2, 2, 2}, .size = {0.01, 0.01, 0.01}}), {{0, tissue()}}, o);
     s.attach(std::make_shared<ContactTool>(c, std::move(driver)));
   };
-  const SimulationOptions o = options(Integrator::implicit, 0.01);
+  const SimulationOptions o = test::in_steps_of(Integrator::implicit, 0.01);
   ContactOptions ball{.name = "probe", .shape = Ball{0.003}};
   const Pose above{{0.005, 0.005, 0.0101}}, inside{{0.005, 0.005, 0.008}};
   EXPECT_NO_THROW(attached(o, ball, test::standing(above)));
@@ -355,7 +344,7 @@ TEST_P(RandomLongContact, SaysWhatItDoesNotDo) {
     const RandomPress c(seed);
     const Integrator integrator = seed % 2 == 0 ? Integrator::implicit : Integrator::quasi_static;
     const auto path = [&](double time) { return c.start + c.way * smooth(time, 0.0, 12.0 * c.h); };
-    SimulationOptions o = options(integrator, c.h);
+    SimulationOptions o = test::in_steps_of(integrator, c.h);
     o.implicit.most_cuts = 3;
     Simulation s(box_mesh({.cells = {4, 4, 2}, .size = {0.04, 0.04, 0.02}, .origin = {-0.02, -0.02, -0.02}}), c.tissues,
                  o);

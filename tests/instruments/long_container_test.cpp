@@ -7,11 +7,10 @@
 #include <sstream>
 
 #include "instruments/contact_scenes.h"
+#include "instruments/container_kinds.h"
 
 namespace glisson::long_container_test {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 Tissue tissue() {
   Tissue t;
@@ -20,13 +19,8 @@ Tissue tissue() {
 }
 
 SimulationOptions options(Integrator integrator, double h) {
-  SimulationOptions o;
-  o.integrator = integrator, o.damping_rate = 150.0;
-  if (capabilities(integrator).any_step_is_stable) {
-    o.step = h;
-  } else {
-    o.precision = Precision::double_precision;
-  }
+  SimulationOptions o = test::in_steps_of(integrator, h);
+  o.damping_rate = 150.0;
   return o;
 }
 
@@ -60,12 +54,6 @@ struct Experiment {
   const ContainerLoads& loads() const { return container->sensor_loads(); }
 };
 
-ContainerOptions with(double friction, bool holds, bool bonded) {
-  ContainerOptions o;
-  o.friction = friction, o.holds_floor = o.holds_wall = holds, o.bonded = bonded;
-  return o;
-}
-
 class LongContainer : public testing::TestWithParam<ContainerOptions> {};
 
 // At rest, after 20 steps of 20 ms: the tool's force and the loads on bottom and side are the explicit scheme's within 1 % of the force,
@@ -88,23 +76,13 @@ TEST_P(LongContainer, BearsAsInTheExplicitScheme) {
   RecordProperty("side_percent", std::to_string(100.0 * (e.loads().side.z - reference.loads().side.z) / force));
 }
 
-INSTANTIATE_TEST_SUITE_P(FreeToBonded, LongContainer,
-                         testing::Values(with(0.0, false, false), with(0.3, false, false),
-                                         with(kInfinite, false, false), with(0.0, true, false), with(0.0, false, true)),
-                         [](const auto& p) {
-                           const ContainerOptions& o = p.param;
-                           return std::string(o.bonded            ? "bonded"
-                                              : o.holds_floor     ? "held"
-                                              : o.friction == 0.0 ? "free"
-                                              : o.friction > 1.0  ? "rough"
-                                                                  : "friction");
-                         });
+INSTANTIATE_TEST_SUITE_P(FreeToBonded, LongContainer, testing::ValuesIn(test::container_kinds()), test::kind_of);
 
 // Bonded tissue is held as by supports: the same displacements to the bit, and the loads are the supports' forces. In statics
 // it needs no others.
 TEST(LongContainerBonds, AreSupports) {
   for (const Integrator integrator : {Integrator::implicit, Integrator::quasi_static}) {
-    ContainerOptions o = with(0.0, false, true);
+    ContainerOptions o = test::with(0.0, false, true);
     Experiment bonded(integrator, 0.02, o);
     const TetMesh& mesh = bonded.body.mesh();
     std::vector<std::uint32_t> bottom = mesh.vertex_sets.at("bottom"), wall;
@@ -159,7 +137,7 @@ TEST(LongContainerWeight, IsOnFloorAndWall) {
 TEST(LongContainerCheckpoint, GoesOn) {
   for (const bool bonded : {false, true}) {
     const auto made = [&] {
-      return Experiment(Integrator::implicit, 0.02, with(0.0, false, bonded), bonded ? 0.02002 : 0.02);
+      return Experiment(Integrator::implicit, 0.02, test::with(0.0, false, bonded), bonded ? 0.02002 : 0.02);
     };
     Experiment a = made(), b = made();
     a.run_to(bonded ? 0.2 : 0.08);

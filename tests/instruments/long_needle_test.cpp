@@ -18,15 +18,10 @@ using ::testing::ThrowsMessage;
 
 test::Insertion insertion(Integrator integrator, double h, double speed = 0.01, double sticking = 1.0) {
   test::Insertion o;
-  o.options.integrator = integrator;
+  o.options = test::in_steps_of(integrator, h);
   o.options.damping_rate = 100.0;  // what rings after a puncture dies away
   o.needle.friction.static_in = sticking * o.needle.friction.dynamic_in;
   o.needle.friction.static_out = sticking * o.needle.friction.dynamic_out;
-  if (capabilities(integrator).any_step_is_stable) {
-    o.options.step = h;
-  } else {
-    o.options.precision = Precision::double_precision;
-  }
   o.strokes = {{.to = {0, 0, -0.015}, .velocity = speed, .ramp = 0.05, .rest = 0.3},
                {.to = {0, 0, 0}, .velocity = speed, .ramp = 0.05, .rest = 0.0}};
   return o;

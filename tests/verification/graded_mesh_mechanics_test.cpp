@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "ball_series.h"
 #include "region_mesh_load.h"
 
 namespace glisson {
@@ -47,8 +48,7 @@ struct HertzCaps {
   }
 };
 
-/// What that pressure does work on, ∫ p u_r dA: the series of squeeze_work (region_mesh_mechanics_test.cpp) for a load of many
-/// terms of Legendre. [Lurie2005]
+/// What that pressure does work on: a load of many terms of Legendre.
 double caps_work(const HertzCaps& p, double R, const Tissue& t) {
   constexpr int kTerms = 600, kPoints = 4000;
   std::vector<double> coefficient(kTerms + 1, 0.0);  // (2n + 1) ∫ p P_n dx over one cap, n even
@@ -63,18 +63,8 @@ double caps_work(const HertzCaps& p, double R, const Tissue& t) {
       if (n % 2 == 0) coefficient[static_cast<std::size_t>(n)] += (2 * n + 1) * weight * at;
     }
   }
-  const double nu = t.poisson_ratio, mu = t.lame().mu;
-  double work = 0.0;
-  for (int n = 0; n <= kTerms; n += 2) {
-    const double traction = -coefficient[static_cast<std::size_t>(n)];
-    const double a1 = (n + 1.0) * (n * (n - 1.0) - 2 - 2 * nu), b1 = n * (n - 1.0);
-    const double a2 = n * (n + 2.0) - 1 + 2 * nu, b2 = n - 1.0, det = n == 0 ? 1.0 : a1 * b2 - b1 * a2;
-    const double A = n == 0 ? traction / (2 * mu) / a1 : traction / (2 * mu) * b2 / det;
-    const double B = n == 0 ? 0.0 : -traction / (2 * mu) * a2 / det;
-    const double u = R * (A * (n + 1) * (n - 2 + 4 * nu) + B * n);
-    work += traction * u * 4.0 * std::numbers::pi * R * R / (2 * n + 1);
-  }
-  return work;
+  for (double& c : coefficient) c = -c;
+  return ball_work(coefficient, R, t);
 }
 
 struct CapsError {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "ball_series.h"
 #include "region_mesh_load.h"
 
 namespace glisson {
@@ -53,13 +54,9 @@ double legendre(int n, double x) {
   return at;
 }
 
-/// What the load does work on: ∫ p u_r dA over the sphere. The traction −p x⁸, x = cos θ, has five terms of Legendre, each with
-///   u_r = [A (n + 1)(n − 2 + 4ν) r^{n+1} + B n r^{n−1}] P_n
-///   σ_rr = 2μ [A (n + 1)(n² − n − 2 − 2ν) rⁿ + B n (n − 1) r^{n−2}] P_n
-///   τ_rθ = 2μ [A (n² + 2n − 1 + 2ν) rⁿ + B (n − 1) r^{n−2}] dP_n/dθ = 0 at the surface                 [Lurie2005]
+/// What the load does work on: the traction −p x⁸, x = cos θ, has five terms of Legendre.
 double squeeze_work(double p, double R, const Tissue& t) {
-  const double nu = t.poisson_ratio, mu = t.lame().mu;
-  double work = 0.0;
+  std::vector<double> traction(9, 0.0);
   for (int n = 0; n <= 8; n += 2) {
     double coefficient = 0.0;  // of x⁸: (2n + 1)/2 ∫ x⁸ P_n dx
     const int steps = 20000;
@@ -67,16 +64,9 @@ double squeeze_work(double p, double R, const Tissue& t) {
       const double x = -1.0 + 2.0 * (i + 0.5) / steps;
       coefficient += 0.5 * (2 * n + 1) * std::pow(x, 8) * legendre(n, x) * 2.0 / steps;
     }
-    const double traction = -p * coefficient;
-    const double a1 = (n + 1) * (n * n - n - 2 - 2 * nu), b1 = n * (n - 1), a2 = n * n + 2 * n - 1 + 2 * nu, b2 = n - 1;
-    // n = 0 is a uniform pressure and has no B
-    const double det = n == 0 ? 1.0 : a1 * b2 - b1 * a2;
-    const double A = n == 0 ? traction / (2 * mu) / a1 : traction / (2 * mu) * b2 / det;
-    const double B = n == 0 ? 0.0 : -traction / (2 * mu) * a2 / det;
-    const double u = R * (A * (n + 1) * (n - 2 + 4 * nu) + B * n);
-    work += traction * u * 4.0 * std::numbers::pi * R * R / (2 * n + 1);
+    traction[static_cast<std::size_t>(n)] = -p * coefficient;
   }
-  return work;
+  return ball_work(traction, R, t);
 }
 
 struct SqueezeError {

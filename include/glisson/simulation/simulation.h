@@ -26,10 +26,10 @@
 #include "glisson/simulation/contact_fields.h"
 #include "glisson/simulation/integrator.h"
 #include "glisson/simulation/interaction.h"
-#include "glisson/simulation/mass_scaling.h"
 #include "glisson/simulation/precision.h"
 #include "glisson/simulation/surface_load.h"
 #include "glisson/simulation/tet_fields.h"
+#include "glisson/words.h"
 
 namespace glisson {
 
@@ -91,6 +91,14 @@ struct ImplicitOptions {
         field("preconditioner", &ImplicitOptions::preconditioner, "preconditioner of the linear solves"));
   }
 };
+
+/// When mass scaling adds mass.
+enum class MassScalingKind { fixed, variable };
+template <>
+inline constexpr Word<MassScalingKind> kWords<MassScalingKind>[] = {
+    {"fixed", MassScalingKind::fixed, "at rest, for good, to tets with a short element step bound"},
+    {"variable", MassScalingKind::variable,
+     "the same, and at vertices of tets that have stiffened, until they soften"}};
 
 /// Most stages of the viscous force in a step: more would let rounding grow.
 inline constexpr int kMostDragStages = 8;
