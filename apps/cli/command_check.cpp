@@ -365,11 +365,14 @@ bool in_single(const Variant& v, const Taste& taste) {
 void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, const Cost& cost,
                 const RunSummary& summary) {
   const bool explicit_steps = std::isfinite(taste.stable_step_s), automatic = !v.simulation.step;
+  const bool heavy = v.simulation.mass_scaling == MassScalingKind::variable;
   say("  step     {:.4g} s{}, {}\n", taste.step_s, automatic ? " (auto)" : " (given)",
-      explicit_steps ? fmt::format("stable below {:.4g} s at rest", taste.stable_step_s) : "stable at any step");
+      heavy            ? "kept by mass of tets that stiffen, shorter while that mass shows"
+      : explicit_steps ? fmt::format("stable below {:.4g} s at rest", taste.stable_step_s)
+                       : "stable at any step");
   print_limits(v, load, taste);
   if (explicit_steps) print_stages(v, load, taste);
-  const std::string shorter = automatic && explicit_steps ? shortens_step(v) : std::string{};
+  const std::string shorter = automatic && explicit_steps && !heavy ? shortens_step(v) : std::string{};
   say("  run      {:.6g} s simulated, {:.0f} steps{}, about {} ({:.0f} ns per tet and step, {})\n",
       std::min(run_duration(v), cost.steps * taste.step_s), cost.steps,
       shorter.empty() ? shorter
