@@ -24,7 +24,6 @@ fit::FitMemory some_memory() {
 class FitState : public ProgramTest {
  protected:
   void SetUp() override {
-    ProgramTest::SetUp();
     file_ = folder_ / "fit.state.json";
     write_fit_state(file_, kPrint, some_memory());
   }

@@ -5,7 +5,7 @@
 #include "glisson/archive.h"
 #include "report/instrument_json.h"
 #include "report/variant_recorder.h"
-#include "support/places.h"
+#include "support/folder.h"
 #include "view/engine/live_body.h"
 
 namespace glisson::test::own_instrument_test {
@@ -71,7 +71,8 @@ frames = 3
 
 // A run writes its columns after those that all have, and the page gets its form and its place.
 TEST(OwnInstrument, IsWrittenDown) {
-  const std::filesystem::path folder = written("own_instrument");
+  const test::Folder own;
+  const std::filesystem::path folder = own.path() / "run";
   std::atomic<bool> stop{false};
   const Variant variant = with_magnet();
   VariantRecorder recorder(variant, {.folder = folder, .scene = "s"}, stop);

@@ -62,22 +62,6 @@ Outcome Started::wait() {
   return {code, read_text(out_), read_text(err_)};
 }
 
-void ProgramTest::SetUp() {
-  std::string name = (std::filesystem::temp_directory_path() / "glisson-test-XXXXXX").string();
-  ASSERT_NE(mkdtemp(name.data()), nullptr);
-  folder_ = name;
-}
-
-void ProgramTest::TearDown() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
-
-std::string ProgramTest::write(const std::string& name, const std::string& text) const {
-  std::ofstream(folder_ / name) << text;
-  return (folder_ / name).string();
-}
-
 std::string read_text(const std::filesystem::path& file) {
   std::ostringstream text;
   text << std::ifstream(file, std::ios::binary).rdbuf();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/types.h>
 
 #include <filesystem>
@@ -11,6 +10,8 @@
 #include <ostream>
 #include <string>
 #include <vector>
+
+#include "support/folder.h"
 
 namespace glisson::test {
 
@@ -59,21 +60,15 @@ class Started {
   std::filesystem::path out_, err_;
 };
 
-/// A fresh folder for one test, removed after it.
-class ProgramTest : public ::testing::Test {
+/// A test that runs the program in its folder.
+class ProgramTest : public test::InFolder {
  protected:
-  void SetUp() override;
-  void TearDown() override;
-
   /// Runs the program in the test's folder.
   Outcome run(const std::vector<std::string>& arguments) { return Started(arguments, folder_).wait(); }
   Outcome run_in(const Surroundings& surroundings, const std::vector<std::string>& arguments) {
     return Started(arguments, folder_, surroundings).wait();
   }
   Started start(const std::vector<std::string>& arguments) { return {arguments, folder_}; }
-  /// Writes a file into the folder and returns its path.
-  std::string write(const std::string& name, const std::string& text) const;
-  std::filesystem::path folder_;
 };
 
 std::string read_text(const std::filesystem::path& file);

@@ -20,7 +20,6 @@ using ::testing::Not;
 class ViewOutside : public ProgramTest {
  protected:
   void SetUp() override {
-    ProgramTest::SetUp();
     ASSERT_THAT(run({"run", write("s.toml", small_scene()), "--out", "o", "--quiet", "--set", "output.frames=3"}),
                 Exits(0));
   }

@@ -38,8 +38,8 @@ Forces forces_built_anew(TetMesh mesh, const Tissues& tissues, const Body& chang
 
 TEST_P(RemovalFromLarge, LeavesTheForcesOfABodyBuiltAnew) {
   std::mt19937 random(11);
-  constexpr double kCell = 0.002;
-  const TetMesh mesh = jittered_box({20, 20, 40}, kCell, 0.2, random);
+  constexpr double kEdge = 0.002;
+  const TetMesh mesh = jittered_box({20, 20, 40}, kEdge, 0.2, random);
   ASSERT_EQ(mesh.tets.size(), 96000U);
   const Tissues tissues{{0, GetParam().tissue}};
   Body body = build_body(mesh, tissues);
@@ -47,7 +47,7 @@ TEST_P(RemovalFromLarge, LeavesTheForcesOfABodyBuiltAnew) {
   engine::SubmeshBody moving(body, damping);
   moving.watch(all_vertices(mesh), all_vertices(mesh));
   BodyChanger changer(body);
-  const State state = random_state(mesh, kCell, random);
+  const State state = random_state(mesh, kEdge, random);
   for (const std::size_t count : {1U, 5U, 20U, 100U}) {
     const BodyChange change = changer.remove(changer.living_elements(choose(count, mesh.tets.size(), random)));
     EXPECT_EQ(change.removed.size(), count);

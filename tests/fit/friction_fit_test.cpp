@@ -67,7 +67,7 @@ FitResult fit_of(const std::string& key, double high, Grip grip) {
     std::snprintf(row, sizeof row, "%.1f,%.6f,%.9f\n", curve.time[i], 1e3 * curve.displacement[i], made.force[i]);
     rows += row;
   }
-  const phantom::Folder folder("friction");
+  const phantom::Folder folder;
   folder.write("made.csv", rows);
   FitRun run;
   run.data_folder = folder.path();

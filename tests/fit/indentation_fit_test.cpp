@@ -236,7 +236,7 @@ std::string made(const Tissue& tissue, const Indenter& indenter, const Layer& la
 TEST(IndentationFit, FindsItsTwin) {
   Tissue truth = brain(600.0, -9.0);
   truth.maxwell = {{0.45, 8.0}};
-  const phantom::Folder folder("indentation");
+  const phantom::Folder folder;
   folder.write("hold.csv", made(truth, kBall, {.thickness = 10e-3}, ramp_and_hold(3e-3, 40.0), 1));
   folder.write("fit.toml", kFit);
   const std::clock_t begin = std::clock();
@@ -273,7 +273,7 @@ TEST(IndentationFit, FindsTheTwinOfACreep) {
   std::normal_distribution<double> noise(0.0, 0.005 * depths.back());
   for (double& d : depths) d = 1e3 * (d + noise(random));
   for (double& f : forces) f *= 1e3;
-  const phantom::Folder folder("indentation_creep");
+  const phantom::Folder folder;
   folder.write("hold.csv", table({"time (s)", "indentation (mm)", "force (mN)"}, {times, depths, forces}));
   std::string text = kFit;
   const auto change = [&](const std::string& from, const std::string& to) {
@@ -297,7 +297,7 @@ TEST(IndentationFit, FindsTheTwinOfACreep) {
 }
 
 std::string fault(std::string text, const std::string& from = "", const std::string& to = "") {
-  const phantom::Folder folder("indentation_faults");
+  const phantom::Folder folder;
   folder.write("hold.csv", "time (s),indentation (mm),force (mN)\n0,0,0\n1,0.5,2\n2,1,6\n3,1.5,12\n4,2,20\n5,2.5,30\n");
   if (!from.empty()) text.replace(text.find(from), from.size(), to);
   folder.write("fit.toml", text);

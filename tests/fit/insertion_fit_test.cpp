@@ -83,7 +83,7 @@ std::string curve_text(const InsertionRun& run) {
 // Depths within 0.2 mm, a step of the grid, and forces within 3 %, from a curve that the scene itself made; a scene reads
 // the text that comes out.
 TEST(InsertionFit, FindsTheMembranesOfItsOwnCurve) {
-  const Folder folder("insertion_fit");
+  const Folder folder;
   const std::filesystem::path scene = folder.write("scene.toml", kScene);
   const std::atomic<bool> never{false};
   const InsertionScene insertion(load_scene(scene).variants.front(), from_three(), {});
@@ -112,7 +112,7 @@ TEST(InsertionFit, FindsTheMembranesOfItsOwnCurve) {
 
 // A search that is stopped keeps the nearest run so far and says that it is not complete; before the second run there is nothing to keep.
 TEST(InsertionFit, KeepsWhatIsKnownWhenItIsStopped) {
-  const Folder folder("insertion_stop");
+  const Folder folder;
   const std::filesystem::path scene = folder.write("scene.toml", kScene);
   const std::atomic<bool> never{false};
   const InsertionScene insertion(load_scene(scene).variants.front(), from_three(), {});
@@ -136,7 +136,7 @@ TEST(InsertionFit, KeepsWhatIsKnownWhenItIsStopped) {
 
 // A drop is a fall by the stated force within the stated way; it begins at the highest point, in whatever order the points come.
 TEST(InsertionFit, FindsDropsByTheStatedRule) {
-  const Folder folder("insertion_drops");
+  const Folder folder;
   const auto file =
       folder.write("curve.csv",
                    "position_mm,force_N\n0,0\n9,1\n10,1.5\n10,1.0\n10,0.4\n10.2,0.3\n9.9,1.4\n12,0.9\n12.1,0.8\n"
@@ -183,7 +183,7 @@ TEST(InsertionFit, MistakesAreNamed) {
   EXPECT_THAT(complaint(kFit + "[[parameter]]\nkey = \"tissue.youngs_modulus_Pa\"\nlow = 1\nhigh = 2\n"),
               HasSubstr("[insertion] fits membranes alone"));
   EXPECT_THAT(complaint(kFit + "[[data]]\nfiles = [\"b.csv\"]\n"), HasSubstr("[insertion] asks for one curve"));
-  const Folder folder("insertion_mistakes");
+  const Folder folder;
   folder.write("scene.toml", kScene);
   folder.write("curve.csv", "position_mm,force_N\n0,0\n1,1\n2,2\n3,3\n4,4\n");
   try {

@@ -41,7 +41,7 @@ class Written : public testing::Test {
     }
     return "no fault";
   }
-  Folder folder_{"laboratory"};
+  Folder folder_;
 };
 
 const std::vector<double> kStretches{1.0, 1.02, 1.05, 1.1, 1.15, 1.2, 1.3};

@@ -133,7 +133,7 @@ TEST(LaboratoryFit, CortexPrefersOgden) {
 
 // A sweep of frequencies and a creep of the same tissue, together: its branch is found, and each file's columns with it.
 TEST(LaboratoryFit, ASweepAndACreepGiveTheBranch) {
-  const phantom::Folder folder("laboratory_fit");
+  const phantom::Folder folder;
   std::vector<double> hertz, storage, loss, time, stress, strain;
   for (int i = 0; i < 15; ++i) {
     hertz.push_back(std::pow(10.0, -2.0 + 0.2 * i));
@@ -193,7 +193,7 @@ bootstrap = 0
 // N = ½ π (c₁ + 2 c₂) R⁴ ψ² [Rivlin1949], ψ twist over height. The torque knows the sum of both coefficients alone.
 TEST(LaboratoryFit, TorqueAndNormalForcePartMooneysCoefficients) {
   constexpr double kC1 = 300.0, kC2 = 180.0, kRadius = 0.0125, kHeight = 0.01;
-  const phantom::Folder folder("laboratory_torsion");
+  const phantom::Folder folder;
   std::vector<double> angle, torque, normal;
   for (int i = 0; i <= 20; ++i) {
     angle.push_back(0.02 * i);

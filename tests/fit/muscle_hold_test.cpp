@@ -79,7 +79,7 @@ next = false
 
 TEST(MuscleHold, HasIntervalsThatTheCurvesEnd) {
   if (!std::filesystem::exists(kFolder)) GTEST_SKIP() << kFolder << " is not there";
-  const phantom::Folder folder("muscle_hold");
+  const phantom::Folder folder;
   for (const char* depth : {"10", "20"}) {
     const std::string name = std::string("hold_") + depth + ".csv";
     folder.write(name, as_forces(kFolder / ("muscle_" + name)));

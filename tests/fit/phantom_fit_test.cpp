@@ -130,7 +130,7 @@ std::string mean_table() {
 TEST(PublishedRange, ErrorsAreThePublishedOnes) {
   if (!phantom::have_phantoms())
     GTEST_SKIP() << kFolder << " is not there: the phantoms' curves are not part of this repository";
-  const phantom::Folder folder("phantom_mean");
+  const phantom::Folder folder;
   folder.write("mean.csv", mean_table());
   FitSpec spec = load_fit(test::shipped("scenes/fit/phantom_mean.toml"));
   DataSpec mean;

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <random>
 
-#include "support/places.h"
+#include "support/folder.h"
 
 namespace glisson::fit {
 namespace {
@@ -20,15 +20,9 @@ namespace fs = std::filesystem;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-class RunFit : public ::testing::Test {
+class RunFit : public test::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = test::written("run_fit_test") / ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::create_directories(folder_);
-  }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
   FitSpec spec(const std::string& text) const { return parse_fit(text, (folder_ / "fit.toml").string()); }
-  fs::path folder_;
 };
 
 const std::string kSpecimen = R"(

@@ -173,7 +173,7 @@ class Variants : public testing::Test {
   Curve load(const std::string& text, const std::filesystem::path& base) {
     return load_curves(section(text), kPhantomSize, base).front().curve;
   }
-  Folder folder_{"phantom_variants"};
+  Folder folder_;
   Curve original_;
 };
 
@@ -252,7 +252,7 @@ class BadFile : public testing::Test {
     folder_.write("t.csv", text);
     return phantom::complaint(section("files = [\"t.csv\"]\n" + keys), size, folder_.path());
   }
-  Folder folder_{"bad_files"};
+  Folder folder_;
 };
 
 TEST_F(BadFile, SoundOnesPass) { EXPECT_EQ(fault(rows()), ""); }

@@ -1,6 +1,5 @@
 // The C++ column of the table of the commonest tasks (docs/python.md) stands in this file, word for word, and runs.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <sstream>
@@ -17,6 +16,7 @@
 #include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 #include "glisson/torsion.h"
+#include "support/folder.h"
 #include "support/must_step.h"
 #include "support/places.h"
 
@@ -49,14 +49,11 @@ std::vector<std::string> cpp_column() {
 }
 
 /// What the lines below need beside themselves, in a folder of its own for each test: they run side by side.
-class Files : public testing::Test {
+class Files : public test::InFolder {
  protected:
-  std::filesystem::path before = std::filesystem::current_path(), folder;
+  std::filesystem::path before = std::filesystem::current_path();
   void SetUp() override {
-    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder = std::filesystem::path(testing::TempDir()) / ("glisson_" + name + "_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder);
-    std::filesystem::current_path(folder);
+    std::filesystem::current_path(folder_);
     write_vtu("liver.vtu", box_mesh({.size = {40, 40, 80}}));
     const auto fits = test::shipped("scenes/fit");
     std::filesystem::copy_file(fits / "phantom_mean.csv", "phantom_mean.csv",
@@ -64,10 +61,7 @@ class Files : public testing::Test {
     std::ofstream("fit.toml") << text_of(fits / "phantom_mean.toml")
                               << "\n[search]\nstarts = 2\n\n[proof]\nprofiles = false\nbootstrap = 0\n";
   }
-  void TearDown() override {
-    std::filesystem::current_path(before);
-    std::filesystem::remove_all(folder);
-  }
+  void TearDown() override { std::filesystem::current_path(before); }
 };
 
 TEST(SideBySide, ColumnStandsInThisFile) {

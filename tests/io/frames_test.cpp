@@ -7,23 +7,15 @@
 
 #include "glisson/io.h"
 #include "io/sample_meshes.h"
+#include "support/folder.h"
 
 namespace glisson {
 namespace {
 
 using ::testing::HasSubstr;
 
-class Frames : public ::testing::Test {
+class Frames : public test::InFolder {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) / (std::string("glisson_frames_") + test->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  void write(const char* name, const std::string& text) { std::ofstream(folder_ / name, std::ios::binary) << text; }
   std::string bytes(const char* name) {
     std::ifstream stream(folder_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -37,8 +29,6 @@ class Frames : public ::testing::Test {
     }
     return "nothing was refused";
   }
-
-  std::filesystem::path folder_;
 };
 
 TEST_F(Frames, ComeBackWithTheirFields) {

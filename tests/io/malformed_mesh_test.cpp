@@ -3,6 +3,7 @@
 
 #include "io/raw_mesh.h"
 #include "io/sample_meshes.h"
+#include "support/folder.h"
 
 namespace glisson {
 namespace {
@@ -237,7 +238,8 @@ TEST(MalformedMeshFile, IsRefused) {
     }
     return "accepted";
   };
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "glisson_folder.msh";
+  const test::Folder own;
+  const std::filesystem::path folder = own.path() / "folder.msh";
   std::filesystem::create_directories(folder);
   EXPECT_THAT(message("no/such/mesh.vtu"), ::testing::HasSubstr("no/such/mesh.vtu: there is no such file"));
   EXPECT_THAT(message(folder), ::testing::HasSubstr("is a folder; name a mesh file"));

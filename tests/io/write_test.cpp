@@ -9,6 +9,7 @@
 #include "glisson/io.h"
 #include "io/raw_mesh.h"
 #include "io/sample_meshes.h"
+#include "support/folder.h"
 
 namespace glisson {
 namespace {
@@ -21,16 +22,8 @@ std::string contents(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-class Write : public ::testing::Test {
+class Write : public test::InFolder {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) / (std::string("glisson_write_") + test->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   TetMesh round_trip(const TetMesh& mesh) {
     write_vtu(folder_ / "mesh.vtu", mesh);
     return read_mesh(folder_ / "mesh.vtu").mesh;
@@ -57,8 +50,6 @@ class Write : public ::testing::Test {
     other.join();
     return same == 2;
   }
-
-  std::filesystem::path folder_;
 };
 
 using WriteDeathTest = Write;  // by that name GoogleTest runs it first, before VTK has threads that a fork would lose
@@ -151,8 +142,10 @@ TEST_F(Write, PvdListsFrames) {
 }
 
 // A triangle of a point that is not there is refused by its number; a sound surface is a PolyData file.
-TEST(WriteVtp, RefusesWhatHasNoPoint) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "glisson_write_test.vtp";
+using WriteVtp = test::InFolder;
+
+TEST_F(WriteVtp, RefusesWhatHasNoPoint) {
+  const std::filesystem::path file = folder_ / "surface.vtp";
   const std::vector<Vec3d> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   try {
     write_vtp(file, points, std::vector<Triangle>{{0, 1, 3}});
@@ -162,7 +155,6 @@ TEST(WriteVtp, RefusesWhatHasNoPoint) {
   }
   write_vtp(file, points, std::vector<Triangle>{{0, 1, 2}});
   EXPECT_GT(std::filesystem::file_size(file), 100u);
-  std::filesystem::remove(file);
 }
 
 }  // namespace

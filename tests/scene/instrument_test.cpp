@@ -9,7 +9,7 @@
 
 #include "scene/every_instrument.h"
 #include "scene/scene_text.h"
-#include "support/places.h"
+#include "support/folder.h"
 
 namespace glisson {
 namespace {
@@ -348,10 +348,9 @@ TEST(Instruments, UnknownRegionIsToldWhenTheMeshIsKnown) {
 
 /// A file of a record that is gone with the test.
 struct RecordFile {
-  std::filesystem::path path = test::written(std::string("record_of_") +
-                                             ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv");
-  explicit RecordFile(const std::string& text) { std::ofstream(path) << text; }
-  ~RecordFile() { std::filesystem::remove(path); }
+  test::Folder folder;
+  std::filesystem::path path;
+  explicit RecordFile(const std::string& text) : path(folder.write("record.csv", text)) {}
   std::string complaint() const {
     try {
       load_record(path, {0, 0, -1});

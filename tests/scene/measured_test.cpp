@@ -2,31 +2,25 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "scene/scene_text.h"
-#include "support/places.h"
+#include "support/folder.h"
 
 namespace glisson {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-/// Of the test that runs.
-std::filesystem::path measured_file() {
-  return test::written(std::string("measured_of_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() +
-                       ".csv");
-}
+using ::testing::StartsWith;
 
 /// The small scene with a chart that shows points of a file of this text.
 Scene scene_with(const std::string& file, const std::string& keys) {
-  std::ofstream(measured_file()) << file;
+  const test::Folder folder;
+  folder.write("measured.csv", file);
   const std::string chart =
-      "[[chart]]\ntitle = \"f\"\nx = \"depth_m\"\ny = \"force_N\"\n[[chart.measured]]\npath = \"" +
-      measured_file().filename().string() + "\"\n";
-  return parse_scene(test::kSmallScene + chart + keys, "s.toml", measured_file().parent_path());
+      "[[chart]]\ntitle = \"f\"\nx = \"depth_m\"\ny = \"force_N\"\n[[chart.measured]]\npath = "
+      "\"measured.csv\"\n";
+  return parse_scene(test::kSmallScene + chart + keys, "s.toml", folder.path());
 }
 
 std::string complaint(const std::string& file, const std::string& keys) {
@@ -52,11 +46,10 @@ TEST(Measured, IsReadAndScaled) {
 // A file, column or number that is not there is told with the line of the scene, and that of the file.
 TEST(Measured, MistakesAreTold) {
   const std::string keys = "x = \"a\"\ny = \"b\"\n";
-  EXPECT_EQ(complaint("a,c\n1,2\n", keys),
-            "s.toml:20:1: chart.0.measured: " + measured_file().string() + ": no column \"b\"; it has: a, c");
+  EXPECT_THAT(complaint("a,c\n1,2\n", keys), AllOf(StartsWith("s.toml:20:1: chart.0.measured: "),
+                                                   HasSubstr("/measured.csv: no column \"b\"; it has: a, c")));
   EXPECT_THAT(complaint("a,b\n1,2\n3,x\n", keys), HasSubstr(":3: \"x\" in column 2 is no finite number"));
   EXPECT_THAT(complaint("a,b\n", "path = 3\n"), HasSubstr("path"));
-  std::filesystem::remove(measured_file());
   EXPECT_THAT(test::complaint(test::kSmallScene + "[[chart]]\ntitle = \"f\"\nx = \"depth_m\"\ny = \"force_N\"\n"
                                                   "measured = [{ path = \"none.csv\", x = \"a\", y = \"b\" }]\n"),
               HasSubstr("/scenes/none.csv: cannot be read"));

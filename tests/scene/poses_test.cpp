@@ -2,25 +2,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 
 #include "scene/scene_text.h"
+#include "support/folder.h"
 
 namespace glisson {
 namespace {
 
-class Poses : public ::testing::Test {
+class Poses : public test::InFolder {
  protected:
-  std::filesystem::path folder = std::filesystem::temp_directory_path() / "glisson_poses_test";
-  void SetUp() override { std::filesystem::create_directories(folder); }
-  void TearDown() override { std::filesystem::remove_all(folder); }
-
-  void write(const std::string& text) const { std::ofstream(folder / "hand.csv") << text; }
+  void write(const std::string& text) const { InFolder::write("hand.csv", text); }
   std::string refusal() const {
     try {
-      load_poses(folder / "hand.csv");
+      load_poses(folder_ / "hand.csv");
     } catch (const std::runtime_error& error) {
       return error.what();
     }
@@ -35,7 +30,7 @@ TEST_F(Poses, MoveATool) {
       "[mesh]\nkind = \"box\"\ncells = [2, 2, 2]\nsize_m = [0.02, 0.02, 0.02]\n[motion]\nintegrator = "
       "\"static\"\n[[fixed]]\nset = \"z_min\"\n[[tool]]\nset = \"z_max\"\nposes = { path = "
       "\"hand.csv\", start_s = 0.5 }\n";
-  const Variant v = parse_scene(text, "s.toml", folder).variants.at(0);
+  const Variant v = parse_scene(text, "s.toml", folder_).variants.at(0);
   EXPECT_EQ(run_duration(v), 1.5);
   const Pose pose = turning_path(v.tools.at(0))->pose(2.0);
   EXPECT_LE(norm(pose.to_space({0.02, 0.0, 0.02}) - Vec3d{0.01, 0.01, 0.022}), 1e-15);

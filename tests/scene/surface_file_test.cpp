@@ -11,6 +11,7 @@
 #include "glisson/surface_region.h"
 #include "scene/scene_text.h"
 #include "scene/surface/surface_source.h"
+#include "support/folder.h"
 #include "support/surface_files.h"
 
 namespace glisson {
@@ -112,18 +113,8 @@ TEST(SurfaceFile, SaysWhereAFileIsWrong) {
               AllOf(HasSubstr("a.ply, byte "), HasSubstr("face 11"), HasSubstr("cut off")));
 }
 
-class SurfaceScene : public testing::Test {
+class SurfaceScene : public test::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("glisson_surface_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-    return (folder_ / name).string();
-  }
   /// A mesh of shapes and regions.
   static RegionMesh meshed(const std::string& edge_mm, const std::string& shapes) {
     const Variant variant =
@@ -134,7 +125,6 @@ class SurfaceScene : public testing::Test {
   static std::string surface(const std::string& name, const std::string& path) {
     return "[[mesh.shape]]\nname = \"" + name + "\"\nkind = \"surface\"\npath = '" + path + "'\nscale = 0.001\n";
   }
-  std::filesystem::path folder_;
 };
 
 double p95(std::vector<double> distances) {

@@ -9,7 +9,7 @@
 #include "scene/parse/document.h"
 #include "scene/parse/tissue_file.h"
 #include "scene/scene_text.h"
-#include "support/places.h"
+#include "support/folder.h"
 
 namespace glisson {
 namespace {
@@ -17,13 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-class TissueFile : public ::testing::Test {
+class TissueFile : public test::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = test::written("tissue_file_test") / ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::create_directories(folder_);
-  }
-  void write(const std::string& text) { std::ofstream(folder_ / "tissue.toml") << text; }
+  void write(const std::string& text) { InFolder::write("tissue.toml", text); }
   Tissue tissue_of(const std::string& keys) {
     return parse_scene(test::kSmallScene + "[tissue]\n" + keys, "scene.toml", folder_).variants.at(0).tissue;
   }
@@ -35,7 +31,6 @@ class TissueFile : public ::testing::Test {
     }
     return "";
   }
-  fs::path folder_;
 };
 
 TEST_F(TissueFile, GivesTheSceneItsKeys) {

@@ -6,8 +6,4 @@ std::filesystem::path shipped(std::string_view relative) {
   return std::filesystem::path(GLISSON_SOURCE_DIR) / relative;
 }
 
-std::filesystem::path written(std::string_view relative) {
-  return std::filesystem::path(GLISSON_BINARY_DIR) / relative;
-}
-
 }  // namespace glisson::test
