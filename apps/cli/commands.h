@@ -13,6 +13,7 @@ using Action = std::function<int()>;
 void add_run(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_converge(CLI::App& program, Action& action);
+void add_compare(CLI::App& program, Action& action);
 void add_mesh(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
 void add_reproduce(CLI::App& program, Action& action);

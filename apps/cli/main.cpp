@@ -86,6 +86,7 @@ int run_program(int argc, char** argv) {
   add_run(program, action);
   add_check(program, action);
   add_converge(program, action);
+  add_compare(program, action);
   add_mesh(program, action);
   add_info(program, action);
   add_reproduce(program, action);

@@ -163,6 +163,13 @@ at_least = 0.5
 at_most = 2
 variants = ["only"]
 
+[compare]
+models = ["xpbd"]
+meshes = 3
+finer = 2
+stations = 7
+target = 0.02
+
 [[variant]]
 name = "only"
 label = "the only one"
@@ -190,6 +197,11 @@ TEST(EveryKey, OfTheSceneIsRead) {
   EXPECT_EQ(scene.checks[0].at_least, 0.5);
   EXPECT_EQ(scene.checks[0].at_most, 2.0);
   EXPECT_THAT(scene.checks[0].variants, ElementsAre("only"));
+  EXPECT_THAT(scene.compare.models, ElementsAre("xpbd"));
+  EXPECT_EQ(scene.compare.meshes, 3);
+  EXPECT_EQ(scene.compare.finer, 2);
+  EXPECT_EQ(scene.compare.stations, 7);
+  EXPECT_EQ(scene.compare.target, 0.02);
   EXPECT_EQ(scene.charts[0].title, "Force");
   EXPECT_EQ(scene.charts[0].x.column, "depth_m");
   EXPECT_EQ(scene.charts[0].x.scale, 1000.0);

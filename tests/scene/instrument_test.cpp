@@ -346,7 +346,7 @@ TEST(Instruments, UnknownRegionIsToldWhenTheMeshIsKnown) {
   }
 }
 
-/// A file of a record that is gone with the test.
+/// A file of a record that is gone with the test; what is said of it begins with its name alone.
 struct RecordFile {
   test::Folder folder;
   std::filesystem::path path;
@@ -355,7 +355,7 @@ struct RecordFile {
     try {
       load_record(path, {0, 0, -1});
     } catch (const std::runtime_error& error) {
-      return error.what();
+      return std::string(error.what()).substr(folder.path().string().size() + 1);
     }
     return {};
   }
@@ -369,7 +369,7 @@ TEST(Record, IsReadOrRefusedWithItsLine) {
   expect_near(record.positions.at(2), {0, 0, -0.01});
   const RecordFile places("z_m,x_m,time_s,y_m\n3,1,0,2\n6,4,1,5\n");
   expect_near(load_record(places.path, {0, 0, -1}).positions.at(1), {4, 5, 6});
-  const std::string name = depths.path.string();
+  const std::string name = "record.csv";
   EXPECT_EQ(RecordFile("t,depth_m\n0,1\n").complaint(),
             name + ":1: no column `time_s`; the first line names the columns: time_s, depth_m");
   EXPECT_THAT(RecordFile("time_s,x_m\n0,1\n").complaint(), HasSubstr(":1: neither `depth_m` nor"));

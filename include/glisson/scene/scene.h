@@ -354,6 +354,28 @@ inline constexpr Word<CheckSpec::At> kWords<CheckSpec::At>[] = {
     {"least", CheckSpec::At::least, "the least"},
     {"peak", CheckSpec::At::peak, "the largest size, without its sign"}};
 
+/// What `glisson compare` does with a scene.
+struct CompareSpec {
+  std::vector<std::string> models;  ///< names; empty: all
+  int meshes = 2, finer = 1, stations = 5;
+  double target = 0.01;
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using C = CompareSpec;
+    return take(
+        field("models", &C::models, "names of the models, as `glisson compare --list` prints them").otherwise("all"),
+        field("meshes", &C::meshes, between(1, 4),
+              "meshes that each model is run on: the scene's, and others, each twice as fine as the one before"),
+        field("finer", &C::finer, between(1, 3),
+              "how often the reference's mesh is twice as fine as the finest of them"),
+        field("stations", &C::stations, between(1, 100),
+              "times at which forces are compared, evenly spaced, the last at the end"),
+        field("target", &C::target, "-", strictly_between(0, 1),
+              "error of the force at which the models' times are compared"));
+  }
+};
+
 struct Scene {
   std::filesystem::path file;
   std::string title, description;
@@ -362,6 +384,7 @@ struct Scene {
   std::vector<Variant> variants;   ///< one or more
   std::vector<ChartSpec> charts;   ///< empty: the report's own choice
   std::vector<CheckSpec> checks;   ///< what its runs are expected to give
+  CompareSpec compare;             ///< how it is given to other models
 };
 
 /// `key=value` as given to --set: dotted key, TOML value (a bare word is taken as a string).

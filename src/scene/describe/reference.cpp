@@ -62,6 +62,7 @@ std::string scene_reference_markdown() {
   text += section_text(chart_section(), "`[[chart]]`");
   text += section_text(measured_section(), "`[[chart.measured]]`");
   text += section_text(check_section(), "`[[check]]`");
+  text += section_text(compare_section(), "`[compare]`");
   text += section_text(variant_section(), "`[[variant]]`");
   return text.append(kReferenceVariants).append(kReferenceOverrides).append(kReferenceRun);
 }

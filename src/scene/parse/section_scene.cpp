@@ -96,6 +96,13 @@ const SectionSpec& check_section() {
   return section;
 }
 
+const SectionSpec& compare_section() {
+  static const SectionSpec section = described<CompareSpec>(
+      "compare",
+      "What `glisson compare` does with the scene: the same experiment with other models, beside each other.");
+  return section;
+}
+
 const SectionSpec& variant_section() {
   static const SectionSpec section = [] {
     Section<Variant> s("variant", "One of several experiments in the same scene: its name and the keys that differ.");
@@ -138,6 +145,7 @@ const SectionSpec& scene_section() {
     s.key("notes", &Scene::notes, "choices made where the source gives no value, and the reasons").otherwise("[]");
     s.tables("chart", chart_section(), &Scene::charts, "charts of the report");
     s.tables("check", check_section(), &Scene::checks, "what its runs are expected to give");
+    s.table("compare", compare_section(), &Scene::compare, "how it is given to other models");
     s.bare({.name = "variant",
             .help = "experiments that differ in some keys",
             .type = ValueType::table,

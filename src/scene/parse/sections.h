@@ -49,6 +49,7 @@ const SectionSpec& output_section();             ///< fills OutputSpec
 const SectionSpec& measured_section();           ///< fills MeasuredSpec
 const SectionSpec& chart_section();              ///< fills ChartSpec
 const SectionSpec& check_section();              ///< fills CheckSpec
+const SectionSpec& compare_section();            ///< fills CompareSpec
 const SectionSpec& variant_section();            ///< one experiment, complete; fills Variant
 const SectionSpec& scene_section();              ///< what a scene says once; fills Scene
 

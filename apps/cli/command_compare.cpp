@@ -1,0 +1,91 @@
+// command_compare.cpp — glisson compare: one experiment, many models; error against time.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "bench/json_option.h"
+#include "cli/commands.h"
+#include "cli/exit_code.h"
+#include "cli/interrupt.h"
+#include "cli/mesh_cache.h"
+#include "cli/scene_options.h"
+#include "cli/standard_streams.h"
+#include "compare/comparison_report.h"
+#include "report/output_folder.h"
+
+namespace glisson::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCompareFooter =
+    "Gives a scene's body, [[fixed]], [[tool]] and gravity to spring-mass networks, linked volumes, finite elements, "
+    "position-based and\n"
+    "projective dynamics and the engine's own models, on the scene's mesh and on finer ones, one thread each, and "
+    "holds their forces\n"
+    "and surfaces against the scene's own tissue on a finer mesh still. The scene's [compare] says how many meshes and "
+    "times.\n"
+    "Writes DIR/report.html and DIR/compare.json. Ctrl-C keeps the models that are done.\n"
+    "\n"
+    "Examples:\n"
+    "  glisson compare scenes/compare/press.toml\n"
+    "  glisson compare scenes/compare/twist.toml --set compare.meshes=1 --json twist.json\n"
+    "  glisson compare --list";
+
+struct CompareOptions {
+  SceneOptions scene;
+  std::string out, json;
+  bool list = false, quiet = false;
+};
+
+int list_models() {
+  for (const models::Rival& rival : models::rivals()) {
+    say("{}\n  {} [{}]\n{}", rival.name, rival.what, rival.source,
+        rival.cannot.empty() ? "" : fmt::format("  cannot: {}\n", rival.cannot));
+  }
+  return kDone;
+}
+
+int run_comparison(const CompareOptions& options) {
+  if (options.list) return list_models();
+  if (options.scene.scene.empty())
+    throw std::invalid_argument("compare: give a scene, or --list for the models there are");
+  const Scene scene = open_scene(options.scene);
+  const fs::path folder =
+      options.out.empty() ? fs::path("out") / (scene.file.stem().string() + "_compare") : fs::path(options.out);
+  prepare_output_folder(folder);
+  catch_interrupts();
+  MeshCache meshes(options.quiet);
+  const auto progress = [&](const std::string& what) {
+    if (!options.quiet) tell("  {}\n", what);
+  };
+  const Comparison comparison = compare(scene, meshes.loader(), stop_flag(), progress);
+  if (comparison.reference.forces.size() == comparison.stations.size()) {
+    say("{}", comparison_table(comparison));
+    const nlohmann::ordered_json json = comparison_json(comparison, scene.file.stem().string());
+    write_json((folder / "compare.json").string(), json);
+    write_json(options.json, json);
+    write_whole(folder / "report.html", comparison_page(comparison));
+    say("{}{}\n", options.quiet ? "" : "report: ", (folder / "report.html").string());
+  }
+  return interrupted() ? kInterrupted : kDone;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("compare", "give a scene to many models: the errors and times of each");
+  const auto options = std::make_shared<CompareOptions>();
+  add_scene_options(*command, options->scene);
+  command->get_option("scene")->required(false);
+  command->add_option("--out", options->out, "folder of the results; default out/<scene name>_compare")
+      ->type_name("DIR");
+  add_json_option(*command, options->json);
+  command->add_flag("--list", options->list, "print the models and what each cannot do");
+  command->add_flag("--quiet", options->quiet, "print the table and the report's path alone");
+  command->footer(kCompareFooter);
+  command->callback([options, &action] { action = [options] { return run_comparison(*options); }; });
+}
+
+}  // namespace glisson::app

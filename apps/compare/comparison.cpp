@@ -1,0 +1,217 @@
+// comparison.cpp — see comparison.h.
+#include "compare/comparison.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "glisson/mesh_refinement.h"
+#include "scene/converge/grid_convergence.h"
+#include "scene/converge/refine_variant.h"
+
+namespace glisson::app {
+namespace {
+
+using models::Answer;
+using models::Problem;
+using models::Rival;
+
+constexpr double kMostTets = 4e6;  // of the reference: some 8 GB
+
+models::Tool tool_of(const ToolSpec& spec, const TetMesh& mesh) {
+  models::Tool tool{.vertices = mesh.vertex_set(spec.set), .axes = {}, .motion = Motion{}, .start = tool_start(spec)};
+  const Vec3d& d = spec.motion.direction;
+  if (spec.sideways_free) tool.axes = {d.x != 0.0, d.y != 0.0, d.z != 0.0};
+  if (auto turning = turning_path(spec)) {
+    const Vec3d axis = spec.rotation ? spec.rotation->axis : Vec3d{};
+    if (spec.axial_free) tool.axes = {axis.x == 0.0, axis.y == 0.0, axis.z == 0.0};
+    tool.motion = std::move(turning->pose);
+  } else {
+    tool.motion = tool_path(spec).displacement;
+  }
+  return tool;
+}
+
+void require_comparable(const Variant& v) {
+  std::vector<std::string> odd;
+  if (!v.instruments.empty()) odd.emplace_back("[[instrument]]");
+  if (!v.capsules.empty()) odd.emplace_back("[[capsule]]");
+  if (v.container) odd.emplace_back("[container]");
+  if (!v.loads.empty()) odd.emplace_back("[[load]]");
+  if (!odd.empty()) {
+    throw SceneError(
+        fmt::format("{}: variant {} has {}; other models are given a mesh, a tissue, [[fixed]], [[tool]] and gravity "
+                    "alone. Take these out, for example with a variant of the scene that has only a [[tool]]",
+                    v.scene_name, v.name, fmt::join(odd, ", ")));
+  }
+  if (!std::isfinite(run_duration(v)))
+    throw SceneError(fmt::format("{}: variant {} has no end; give motion.duration_s", v.scene_name, v.name));
+  if (v.fixed.empty() && v.tools.empty())
+    throw SceneError(fmt::format("{}: variant {} has no [[fixed]] and no [[tool]]; there is no force to compare",
+                                 v.scene_name, v.name));
+}
+
+/// The scene's mesh and others, each with the tets of the one before split in eight: vertices keep their numbers.
+std::vector<TetMesh> meshes_of(const Variant& variant, const MeshLoader& load, int count) {
+  std::vector<TetMesh> meshes{build_mesh(variant, load)};
+  const double finest = static_cast<double>(meshes.front().tets.size()) * std::pow(8.0, count - 1);
+  if (finest > kMostTets) {
+    throw SceneError(fmt::format(
+        "{}: compare: the reference would have {:.3g} tets; at most {:.3g}. Take a smaller compare.meshes or "
+        "compare.finer, or a coarser mesh",
+        variant.scene_name, finest, kMostTets));
+  }
+  while (meshes.size() < static_cast<std::size_t>(count)) meshes.push_back(refined(meshes.back()));
+  return meshes;
+}
+
+std::vector<const Rival*> chosen(const Scene& scene) {
+  std::vector<const Rival*> list;
+  for (const Rival& rival : models::rivals()) {
+    const auto& wanted = scene.compare.models;
+    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), rival.name) != wanted.end()) list.push_back(&rival);
+  }
+  for (const std::string& name : scene.compare.models) {
+    const auto has_name = [&](const Rival& rival) { return rival.name == name; };
+    if (std::any_of(models::rivals().begin(), models::rivals().end(), has_name)) continue;
+    std::vector<std::string_view> names;
+    for (const Rival& rival : models::rivals()) names.push_back(rival.name);
+    throw SceneError(fmt::format("{}: compare.models: there is no model \"{}\"; there are {}", scene.file.string(),
+                                 name, fmt::join(names, ", ")));
+  }
+  return list;
+}
+
+/// Vertices of the surface with a component that is free.
+std::vector<std::uint32_t> free_surface(const Problem& problem) {
+  std::set<std::uint32_t> vertices;
+  for (const Triangle& t : boundary_triangles(problem.mesh)) vertices.insert(t.begin(), t.end());
+  const auto leave_out = [&](const std::vector<std::uint32_t>& held, const Axes& axes) {
+    if (!axes.x || !axes.y || !axes.z) return;
+    for (const std::uint32_t v : held) vertices.erase(v);
+  };
+  for (const models::Support& s : problem.supports) leave_out(s.vertices, s.axes);
+  for (const models::Tool& t : problem.tools) leave_out(t.vertices, t.axes);
+  return {vertices.begin(), vertices.end()};
+}
+
+double largest(std::span<const Vec3d> vectors) {
+  double most = 0.0;
+  for (const Vec3d& v : vectors) most = std::max(most, norm(v));
+  return most;
+}
+
+void find_errors(ComparedRow& row, const Reference& reference, std::span<const std::uint32_t> surface) {
+  const Answer& a = row.answer;
+  if (!a.trouble.empty()) return;
+  if (a.forces.size() == reference.forces.size()) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.forces.size(); ++i) {
+      const Vec3d d = a.forces[i] - reference.forces[i];
+      sum += dot(d, d);
+    }
+    const double scale = largest(reference.forces);
+    if (scale > 0.0) row.error_force = std::sqrt(sum / static_cast<double>(a.forces.size())) / scale;
+  }
+  double sum = 0.0, scale = 0.0;
+  for (const std::uint32_t v : surface) {
+    const Vec3d d = a.displacement[v] - reference.displacement[v];
+    sum += dot(d, d);
+    scale = std::max(scale, norm(reference.displacement[v]));
+  }
+  if (scale > 0.0 && !surface.empty()) row.error_surface = std::sqrt(sum / static_cast<double>(surface.size())) / scale;
+}
+
+/// The scene's own tissue on all meshes: the finest is the reference, the others say how far it is from the limit of fine meshes.
+Reference make_reference(const std::vector<Problem>& problems, const std::atomic<bool>& stop,
+                         const std::function<void(const std::string&)>& say) {
+  std::vector<MeshResult> results;
+  Reference reference;
+  for (const Problem& problem : problems) {
+    say(fmt::format("reference, {} tets", problem.mesh.tets.size()));
+    Answer answer = models::own_tissue_at_rest(problem, {}, stop);
+    if (stop) return reference;
+    if (!answer.trouble.empty()) throw SceneError("the reference finds no equilibrium: " + answer.trouble);
+    results.push_back({cell_size(problem.mesh), norm(answer.forces.back())});
+    reference.tets = problem.mesh.tets.size();
+    reference.forces = std::move(answer.forces);
+    reference.displacement = std::move(answer.displacement);
+  }
+  const GridConvergence found = grid_convergence(results);
+  const double last = results.back().value;
+  if (found.extrapolates() && last > 0.0) {
+    reference.extrapolated = found.extrapolated / last - 1.0;
+    for (Vec3d& f : reference.forces) f *= 1.0 + reference.extrapolated;
+  }
+  reference.words = verdict_text(found);
+  return reference;
+}
+
+}  // namespace
+
+const ComparedRow* Comparison::quickest(std::string_view model) const {
+  const ComparedRow* best = nullptr;
+  for (const ComparedRow& row : rows) {
+    if (row.model != model || row.error_force < 0.0 || row.error_force > target) continue;
+    if (best == nullptr || row.wall_s() < best->wall_s()) best = &row;
+  }
+  return best;
+}
+
+models::Problem problem_of(const Variant& variant, TetMesh mesh, int stations) {
+  require_comparable(variant);
+  Problem problem;
+  problem.tissues = region_tissues(variant, mesh);
+  problem.gravity = variant.simulation.gravity;
+  problem.gravity_ramp = variant.simulation.gravity_ramp;
+  problem.damping_rate = variant.simulation.damping_rate;
+  for (const FixedSpec& f : variant.fixed) problem.supports.push_back({mesh.vertex_set(f.set), f.axes});
+  for (const ToolSpec& t : variant.tools) problem.tools.push_back(tool_of(t, mesh));
+  problem.duration = run_duration(variant);
+  for (int i = 1; i <= stations; ++i) problem.stations.push_back(problem.duration * i / stations);
+  if (!variant.tools.empty() && variant.tools.front().rotation) {
+    problem.moment_about = variant.tools.front().rotation->centre;
+  }
+  problem.mesh = std::move(mesh);
+  return problem;
+}
+
+Comparison compare(const Scene& scene, const MeshLoader& load, const std::atomic<bool>& stop,
+                   const std::function<void(const std::string&)>& say) {
+  const Variant& variant = scene.variants.front();
+  require_comparable(variant);
+  const std::vector<const Rival*> list = chosen(scene);
+  const auto meshes = static_cast<std::size_t>(scene.compare.meshes);
+  std::vector<Problem> problems;
+  for (TetMesh& mesh : meshes_of(variant, load, scene.compare.meshes + scene.compare.finer)) {
+    problems.push_back(problem_of(variant, std::move(mesh), scene.compare.stations));
+  }
+  Comparison result;
+  result.title = scene.title.empty() ? scene.file.stem().string() : scene.title;
+  result.description = scene.description;
+  result.moments = problems.front().moment_about.has_value();
+  result.target = scene.compare.target;
+  result.stations = problems.front().stations;
+  result.reference = make_reference(problems, stop, say);
+  const std::vector<std::uint32_t> surface = free_surface(problems.front());
+  for (const Rival* rival : list) {
+    for (std::size_t k = 0; k < meshes; ++k) {
+      for (const models::Effort& effort : rival->efforts) {
+        if (stop) return result;
+        const std::size_t tets = problems[k].mesh.tets.size();
+        say(fmt::format("{}, {} tets", rival->name, tets));
+        ComparedRow row{.model = std::string(rival->name), .effort = effort, .tets = tets, .answer = {}};
+        row.answer = rival->run(problems[k], effort, stop);
+        if (stop) return result;
+        find_errors(row, result.reference, surface);
+        result.rows.push_back(std::move(row));
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace glisson::app

@@ -1,0 +1,57 @@
+// comparison.h — one scene given to many models: the errors of each against a converged reference, and its time.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "glisson/scene/scene.h"
+#include "models/rival.h"
+
+namespace glisson::app {
+
+/// One run of one model.
+struct ComparedRow {
+  std::string model;
+  models::Effort effort;
+  std::size_t tets = 0;
+  models::Answer answer;
+  double error_force = -1.0;  ///< rms over the stations, over the largest force of the reference [-]; below 0: none
+  double error_surface =
+      -1.0;  ///< rms over the surface at the end, over the largest displacement there [-]; below 0: none
+
+  double wall_s() const { return answer.setup_s + answer.run_s; }
+};
+
+/// The scene's own tissue in equilibrium on a mesh finer than those compared.
+struct Reference {
+  std::size_t tets = 0;
+  std::vector<Vec3d> forces;        ///< at the stations, extrapolated to the limit of fine meshes [N or N m]
+  std::vector<Vec3d> displacement;  ///< of the vertices of its mesh at the end [m]
+  double extrapolated = 0.0;        ///< by how much its last force was changed for that [-]
+  std::string words;                ///< what its meshes say of it
+};
+
+struct Comparison {
+  std::string title, description;
+  bool moments = false;  ///< forces are moments [N m]
+  double target = 0.01;
+  std::vector<double> stations;  ///< [s]
+  Reference reference;
+  std::vector<ComparedRow> rows;
+
+  /// Of a model's rows that keep the error of the force below the target, the one that took the shortest; null: none.
+  const ComparedRow* quickest(std::string_view model) const;
+};
+
+/// The experiment of a variant on a mesh. @throws SceneError naming what other models cannot be given
+models::Problem problem_of(const Variant& variant, TetMesh mesh, int stations);
+
+/// Runs all models that the scene asks for; `say` is told of each before it runs.
+/// @throws SceneError, std::invalid_argument for a model that is not there, a scene that cannot be compared, a reference without
+///         equilibrium
+Comparison compare(const Scene& scene, const MeshLoader& load, const std::atomic<bool>& stop,
+                   const std::function<void(const std::string&)>& say);
+
+}  // namespace glisson::app

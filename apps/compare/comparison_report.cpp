@@ -1,0 +1,232 @@
+// comparison_report.cpp — see comparison_report.h.
+#include "compare/comparison_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/embedded.h"
+#include "report/report_page.h"
+
+namespace glisson::app {
+namespace {
+
+const models::Rival& rival_of(const std::string& name) {
+  const auto list = models::rivals();
+  return *std::find_if(list.begin(), list.end(), [&](const models::Rival& r) { return r.name == name; });
+}
+
+std::string effort_text(const ComparedRow& row) {
+  if (row.effort == models::Effort{}) return fmt::format("{}", row.answer.steps);
+  return row.effort.iterations > 0 ? fmt::format("{} x {}", row.effort.steps, row.effort.iterations)
+                                   : fmt::format("{}", row.effort.steps);
+}
+
+std::string percent(double share) { return share < 0.0 ? "-" : fmt::format("{:.3g} %", 100.0 * share); }
+
+/// "-" where it is not known.
+std::string megabytes(const ComparedRow& row) {
+  return row.answer.bytes == 0 ? "-" : fmt::format("{:.3g}", 1e-6 * static_cast<double>(row.answer.bytes));
+}
+
+std::string unit(const Comparison& c) { return c.moments ? "N m" : "N"; }
+
+std::string heading_of(const Comparison& c) { return c.moments ? "moment" : "force"; }
+
+std::string reference_text(const Comparison& c) {
+  return fmt::format(
+      "reference: the scene's own tissue in equilibrium, {} tets; {} of {:.4g} {} at the end, {:+.2g} % of it "
+      "extrapolated to "
+      "the limit of fine meshes{}{}\n",
+      c.reference.tets, heading_of(c), norm(c.reference.forces.back()), unit(c), 100.0 * c.reference.extrapolated,
+      c.reference.words.empty() ? "" : ". ", c.reference.words);
+}
+
+/// What the models that reach the target take, from the quickest; then those that do not, with their least error.
+std::string target_text(const Comparison& c) {
+  std::vector<const ComparedRow*> best;
+  std::string missed;
+  for (const models::Rival& rival : models::rivals()) {
+    if (const ComparedRow* row = c.quickest(rival.name)) {
+      best.push_back(row);
+      continue;
+    }
+    double least = -1.0;
+    bool ran = false;
+    for (const ComparedRow& row : c.rows) {
+      if (row.model != rival.name) continue;
+      ran = true;
+      if (row.error_force >= 0.0 && (least < 0.0 || row.error_force < least)) least = row.error_force;
+    }
+    if (ran)
+      missed += fmt::format("  {:<24} {:>10}\n", rival.name, least < 0.0 ? "no " + heading_of(c) : percent(least));
+  }
+  std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) { return a->wall_s() < b->wall_s(); });
+  std::string text = fmt::format("within {:.3g} % of the {}:\n", 100.0 * c.target, heading_of(c));
+  for (const ComparedRow* row : best) {
+    text += fmt::format("  {:<24} {:>10.3g} s  {:>6.3g} times the quickest\n", row->model, row->wall_s(),
+                        row->wall_s() / best.front()->wall_s());
+  }
+  if (best.empty()) text += "  none\n";
+  return missed.empty() ? text : text + "not within it; least error:\n" + missed;
+}
+
+nlohmann::json numbers(const std::vector<double>& values) { return values; }
+
+/// The rows of a model as a line of error over time, from the shortest.
+nlohmann::json error_line(const Comparison& c, std::string_view model) {
+  std::vector<const ComparedRow*> rows;
+  for (const ComparedRow& row : c.rows) {
+    if (row.model == model && row.error_force > 0.0) rows.push_back(&row);
+  }
+  if (rows.empty()) return nullptr;
+  std::stable_sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) { return a->wall_s() < b->wall_s(); });
+  std::vector<double> x, y;
+  for (const ComparedRow* row : rows) {
+    x.push_back(1e3 * row->wall_s());
+    y.push_back(std::log10(100.0 * row->error_force));
+  }
+  return {{"label", model}, {"x", numbers(x)}, {"y", numbers(y)}};
+}
+
+nlohmann::json axis(const std::string& name, const std::string& label) {
+  return {{"column", name}, {"label", label}, {"scale", 1.0}};
+}
+
+/// Of each model the row of least error.
+nlohmann::json force_chart(const Comparison& c) {
+  nlohmann::json lines = nlohmann::json::array();
+  const auto line = [&](const std::string& label, const std::vector<Vec3d>& forces) {
+    std::vector<double> x{0.0}, y{0.0};
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      x.push_back(c.stations[i]);
+      y.push_back(norm(forces[i]));
+    }
+    lines.push_back({{"label", label}, {"x", numbers(x)}, {"y", numbers(y)}});
+  };
+  line("reference", c.reference.forces);
+  for (const models::Rival& rival : models::rivals()) {
+    const ComparedRow* best = nullptr;
+    for (const ComparedRow& row : c.rows) {
+      if (row.model == rival.name && row.error_force >= 0.0 && (best == nullptr || row.error_force < best->error_force))
+        best = &row;
+    }
+    if (best != nullptr) line(best->model, best->answer.forces);
+  }
+  return {{"title", "The " + heading_of(c) + ", each model at its best"},
+          {"x", axis("time_s", "time [s]")},
+          {"y", axis("force", heading_of(c) + " [" + unit(c) + "]")},
+          {"variants", nlohmann::json::array()},
+          {"lines", std::move(lines)}};
+}
+
+nlohmann::json error_chart(const Comparison& c) {
+  nlohmann::json lines = nlohmann::json::array();
+  for (const models::Rival& rival : models::rivals()) {
+    if (nlohmann::json line = error_line(c, rival.name); !line.is_null()) lines.push_back(std::move(line));
+  }
+  return {{"title", "Error against time"},
+          {"x", axis("wall_ms", "time by the clock [ms]")},
+          {"y", axis("error", "error of the " + heading_of(c) + " [power of ten of a percent]")},
+          {"variants", nlohmann::json::array()},
+          {"lines", std::move(lines)},
+          {"log_x", true}};
+}
+
+nlohmann::json rows_table(const Comparison& c) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const ComparedRow& row : c.rows) {
+    rows.push_back({row.model, row.tets, effort_text(row), percent(row.error_force), percent(row.error_surface),
+                    fmt::format("{:.3g}", 1e3 * row.answer.setup_s), fmt::format("{:.3g}", 1e3 * row.answer.run_s),
+                    megabytes(row), note_of(row)});
+  }
+  return {{"title", "Each run"},
+          {"columns",
+           {"model", "tets", "steps", "error of the " + heading_of(c), "error of the surface", "set-up [ms]",
+            "run [ms]", "memory [MB]", "note"}},
+          {"rows", std::move(rows)},
+          {"note", reference_text(c)}};
+}
+
+nlohmann::json models_table(const Comparison& c) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const models::Rival& rival : models::rivals()) {
+    const auto of_it = [&](const ComparedRow& row) { return row.model == rival.name; };
+    if (std::none_of(c.rows.begin(), c.rows.end(), of_it)) continue;
+    rows.push_back({rival.name, rival.what, rival.source, rival.cannot});
+  }
+  return {{"title", "The models"},
+          {"columns", {"model", "what it is", "source", "what it cannot do"}},
+          {"rows", std::move(rows)},
+          {"note", ""}};
+}
+
+}  // namespace
+
+std::string note_of(const ComparedRow& row) {
+  if (!row.answer.trouble.empty()) return row.answer.trouble;
+  if (row.answer.forces.empty()) return fmt::format("no forces; cannot: {}", rival_of(row.model).cannot);
+  if (!std::isfinite(row.error_force)) return "its numbers are not finite";
+  return {};
+}
+
+std::string comparison_table(const Comparison& c) {
+  constexpr std::string_view kRow = "  {:<24} {:>7}  {:>10}  {:>10}  {:>10}  {:>10}  {:>10}  {:>8}  {}\n";
+  std::string text = reference_text(c);
+  text += fmt::format(fmt::runtime(kRow), "model", "tets", "steps", heading_of(c), "surface", "set-up [s]", "run [s]",
+                      "[MB]", "");
+  for (const ComparedRow& row : c.rows) {
+    text += fmt::format(fmt::runtime(kRow), row.model, row.tets, effort_text(row), percent(row.error_force),
+                        percent(row.error_surface), fmt::format("{:.3g}", row.answer.setup_s),
+                        fmt::format("{:.3g}", row.answer.run_s), megabytes(row), note_of(row));
+  }
+  return text + target_text(c);
+}
+
+nlohmann::ordered_json comparison_json(const Comparison& c, const std::string& scene) {
+  const auto or_null = [](double value) {
+    return value < 0.0 ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+  };
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const ComparedRow& row : c.rows) {
+    nlohmann::ordered_json forces = nlohmann::ordered_json::array();
+    for (const Vec3d& f : row.answer.forces) forces.push_back({f.x, f.y, f.z});
+    rows.push_back({{"model", row.model},
+                    {"tets", row.tets},
+                    {"steps", row.answer.steps},
+                    {"iterations", row.effort.iterations},
+                    {"error_force", or_null(row.error_force)},
+                    {"error_surface", or_null(row.error_surface)},
+                    {"wall_s", row.wall_s()},
+                    {"setup_s", row.answer.setup_s},
+                    {"bytes", row.answer.bytes},
+                    {"forces", forces},
+                    {"note", note_of(row)}});
+  }
+  nlohmann::ordered_json reference_forces = nlohmann::ordered_json::array();
+  for (const Vec3d& f : c.reference.forces) reference_forces.push_back({f.x, f.y, f.z});
+  return {{"scene", scene},
+          {"machine", machine_text()},
+          {"unit", unit(c)},
+          {"target", c.target},
+          {"stations_s", c.stations},
+          {"reference",
+           {{"tets", c.reference.tets}, {"forces", reference_forces}, {"extrapolated", c.reference.extrapolated}}},
+          {"rows", rows}};
+}
+
+std::string comparison_page(const Comparison& c) {
+  nlohmann::json scene{{"name", c.title},
+                       {"title", c.title},
+                       {"description", c.description},
+                       {"notes", nlohmann::json::array()},
+                       {"source", ""},
+                       {"variants", nlohmann::json::array()},
+                       {"charts", {force_chart(c), error_chart(c)}},
+                       {"tables", {rows_table(c), models_table(c)}},
+                       {"checks", nlohmann::json::array()}};
+  return report_page(report_template(), report_json(c.title, "many models, one experiment", {std::move(scene)}));
+}
+
+}  // namespace glisson::app

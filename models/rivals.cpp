@@ -1,0 +1,44 @@
+// rivals.cpp — the list of models.
+#include <array>
+
+#include "models/rival.h"
+
+namespace glisson::models {
+
+std::span<const Rival> rivals() {
+  static constexpr std::array kOnce{Effort{}};
+  static constexpr std::array kSweeps{Effort{10, 0}, Effort{10, 10}, Effort{10, 100}};
+  // Small steps with few sweeps, as its authors advise; with a tenth as many tets collapse between its two constraints.
+  static constexpr std::array kXpbd{Effort{1000, 1}, Effort{1000, 5}, Effort{2000, 1}, Effort{4000, 1},
+                                    Effort{8000, 1}};
+  static constexpr std::array kProjective{Effort{50, 1}, Effort{50, 5}, Effort{50, 20}};
+  constexpr std::string_view kNoTurn = "large rotation: forces grow with it";
+  constexpr std::string_view kNoViscosity = "viscosity, a law of its own";
+  static const std::array list{
+      Rival{"spring_mass_volume_rule", "springs along the edges, k = Σ E V/l²", "VanGelder1998",
+            "a Poisson's ratio other than 1/4, viscosity, a law", kOnce, spring_mass_by_volume},
+      Rival{"spring_mass_length_rule", "springs along the edges, k = Σ 2√2/25 E l", "Lloyd2007",
+            "a Poisson's ratio other than 1/4, viscosity, a law", kOnce, spring_mass_by_length},
+      Rival{"spring_mass_with_volume", "springs, and tets that resist a change of volume", "Teschner2004",
+            "viscosity, a law", kOnce, spring_mass_with_volume},
+      Rival{"chain_mail", "linked volumes, relaxed by averaging", "Gibson1999", "forces, true units, viscosity",
+            kSweeps, chain_mail},
+      Rival{"linear_fem", "linear finite elements, one factor for all", "BroNielsen1998",
+            "large rotation, a law, cutting without a new factor", kOnce, linear_fem},
+      Rival{"linear_tensor_mass", "linear tensor-mass, explicit", "Cotin2000", kNoTurn, kOnce, linear_tensor_mass},
+      Rival{"schwartz_tensor_mass", "tensor-mass with a law of stiffness, explicit", "Schwartz2002", kNoTurn, kOnce,
+            schwartz_tensor_mass},
+      Rival{"green_tensor_mass", "St Venant–Kirchhoff tensor-mass, explicit", "Picinbono2003",
+            "strong compression: the force falls below a stretch of 0.58", kOnce, green_tensor_mass},
+      Rival{"corotational", "linear in the frame of each tet, explicit", "MullerGross2004", "", kOnce, corotational},
+      Rival{"neo_hookean", "total Lagrangian neo-Hooke, explicit", "Miller2007", "", kOnce, neo_hookean},
+      Rival{"xpbd", "extended position-based dynamics, neo-Hooke", "MacklinMueller2021", kNoViscosity, kXpbd, xpbd},
+      Rival{"projective_dynamics", "projective dynamics, shape and volume", "Bouaziz2014", kNoViscosity, kProjective,
+            projective_dynamics},
+      Rival{"glisson", "the scene's own tissue, explicit", "Schwartz2002", "", kOnce, own_tissue},
+      Rival{"glisson_quasi_static", "the scene's own tissue, equilibria", "Schwartz2002", "inertia", kOnce,
+            own_tissue_at_rest}};
+  return list;
+}
+
+}  // namespace glisson::models

@@ -1,0 +1,83 @@
+// `glisson compare` gives one scene to many models: a row a run with errors and times, a page, and a word where a model or a scene cannot.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "app/program.h"
+
+namespace glisson::test {
+namespace {
+
+constexpr const char* kBlock = R"(
+title = "a block"
+[mesh]
+kind = "box"
+cells = [2, 2, 2]
+size_m = [0.02, 0.02, 0.02]
+[tissue]
+hyperelastic = { kind = "neo_hookean", mu_Pa = 1285.714, bulk_modulus_Pa = 6000 }
+[motion]
+damping_rate_per_s = 20
+[[fixed]]
+set = "z_min"
+[[tool]]
+set = "z_max"
+velocity_mm_s = 2
+depth_mm = 2
+ramp_s = 0.1
+[compare]
+meshes = 1
+stations = 2
+)";
+
+class Compare : public ProgramTest {};
+
+TEST_F(Compare, GivesARowToEachModel) {
+  const std::string scene = write("block.toml", kBlock);
+  const Outcome outcome =
+      run({"compare", scene, "--out", (folder_ / "o").string(), "--json", (folder_ / "c.json").string()});
+  ASSERT_THAT(outcome, Exits(0));
+  const nlohmann::json json = read_json(folder_ / "c.json");
+  EXPECT_EQ(json, read_json(folder_ / "o/compare.json"));
+  std::set<std::string> models;
+  double glisson = -1.0, springs = -1.0;
+  for (const nlohmann::json& row : json["rows"]) {
+    models.insert(row["model"].get<std::string>());
+    EXPECT_GT(row["wall_s"].get<double>() + (row["note"].get<std::string>().empty() ? 0.0 : 1.0), 0.0);
+    if (row["model"] == "glisson") glisson = row["error_force"].get<double>();
+    if (row["model"] == "spring_mass_volume_rule") springs = row["error_force"].get<double>();
+    if (row["model"] == "chain_mail") EXPECT_TRUE(row["error_force"].is_null());
+    if (row["model"] == "schwartz_tensor_mass")
+      EXPECT_THAT(row["note"].get<std::string>(), ::testing::HasSubstr("no stiffness law"));
+  }
+  EXPECT_GE(models.size(), 10U);
+  EXPECT_GT(glisson, 0.0);
+  EXPECT_LT(glisson, 0.15) << "two cells an edge";
+  EXPECT_GT(springs, 0.0);
+  EXPECT_GT(json["reference"]["tets"].get<int>(), 48);
+  const nlohmann::json page = report_data(folder_ / "o/report.html");
+  EXPECT_EQ(page["scenes"][0]["charts"].size(), 2U);
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("within 1 % of the force"));
+}
+
+TEST_F(Compare, SaysWhatItCannotGive) {
+  const std::string needle =
+      write("needle.toml", std::string(kBlock) + "[[instrument]]\nkind = \"needle\"\ntip_mm = [10, 10, 21]\n");
+  Outcome outcome = run({"compare", needle});
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("has [[instrument]]; other models are given a mesh, a tissue"));
+  const std::string scene = write("block.toml", kBlock);
+  outcome = run({"compare", scene, "--set", "compare.models=[\"magic\"]"});
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("there is no model \"magic\"; there are spring_mass_volume_rule"));
+  outcome = run({"compare", scene, "--set", "compare.finer=3", "--set", "mesh.cells=[40,40,40]"});
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("the reference would have"));
+  EXPECT_THAT(run({"compare"}), Exits(2));
+  outcome = run({"compare", "--list"});
+  EXPECT_THAT(outcome, Exits(0));
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("chain_mail\n  linked volumes"));
+}
+
+}  // namespace
+}  // namespace glisson::test

@@ -1,0 +1,166 @@
+// Each model beside the engine does what is published of it: its stiffness at rest, its Poisson's ratio, and what it does not converge to.
+#include "models/rival.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <set>
+
+#include "models/experiments.h"
+
+namespace glisson::models {
+namespace {
+
+const Stop kNever{false};
+constexpr double kArea = kEdge * kEdge;
+
+// Σ f·x over the vertices of a body that is dilated by e is twice its energy over e. Springs by volume store ½ E V Σ (n·εn)² a tet,
+// 3 E e² by volume: exactly what a body of ν = 1/4 stores, K = 2 E/3, on every mesh. Springs by length have no such measure.
+TEST(SpringMass, ByVolumeHasTheBulkModulusOfAQuarterOnEveryMesh) {
+  constexpr double kStrain = 1e-5;
+  const auto bulk = [&](Answer (*model)(const Problem&, const Effort&, const Stop&), BoxSplit split) {
+    double virial = 0.0;
+    const std::size_t n = cube({2, 2, 2}, split).mesh.vertices.size();
+    for (std::uint32_t v = 0; v < n; ++v) {
+      Problem p = dilated(kStrain, v, split);
+      p.stations = {p.duration};
+      virial += dot(model(p, {}, kNever).forces.back(), p.mesh.vertices[v]);
+    }
+    return virial / (9.0 * kStrain * kEdge * kEdge * kEdge);
+  };
+  EXPECT_NEAR(bulk(spring_mass_by_volume, BoxSplit::alternating) / (kYoung / 1.5), 1.0, 1e-4);
+  EXPECT_NEAR(bulk(spring_mass_by_volume, BoxSplit::kuhn) / (kYoung / 1.5), 1.0, 1e-4);
+  // what the springs lack of λ is given to the volumes: K = 2 E/3 + λ − 0.4 E
+  const double lambda = lame_from_young(kYoung, kPoisson).lambda;
+  EXPECT_NEAR(bulk(spring_mass_with_volume, BoxSplit::kuhn) / (kYoung / 1.5 + lambda - 0.4 * kYoung), 1.0, 1e-4);
+  EXPECT_GT(
+      std::abs(bulk(spring_mass_by_length, BoxSplit::alternating) / bulk(spring_mass_by_length, BoxSplit::kuhn) - 1.0),
+      0.05)
+      << "by length it depends on how the cells are split";
+}
+
+// Whatever ν is, a network of springs contracts by about a quarter; with volumes by more.
+TEST(SpringMass, ContractsByAQuarter) {
+  const Problem p = stretched(0.02);
+  const double springs = contraction(p, spring_mass_by_volume(p, {}, kNever), 0.02);
+  EXPECT_NEAR(springs, 0.25, 0.08);
+  EXPECT_GT(contraction(p, spring_mass_with_volume(p, {}, kNever), 0.02), springs + 0.05);
+}
+
+// A stretch that is uniform is exact: F = E A ε, and the sides come in by ν.
+TEST(LinearFem, StretchIsExact) {
+  const Problem p = stretched(0.1);
+  const Answer answer = linear_fem(p, {}, kNever);
+  ASSERT_EQ(answer.forces.size(), 2U);
+  EXPECT_NEAR(answer.forces[0].z, kYoung * kArea * 0.05, 1e-9);
+  EXPECT_NEAR(answer.forces[1].z, kYoung * kArea * 0.1, 1e-9);
+  EXPECT_NEAR(contraction(p, answer, 0.1), kPoisson, 1e-9);
+}
+
+// Explicit steps of the engine with the same linear tissue come to it.
+TEST(LinearFem, IsWhatTheTensorMassModelComesTo) {
+  Problem p = cube({3, 3, 3});
+  p.supports.push_back({p.mesh.vertex_set("z_min"), {}});
+  p.tools.push_back({p.mesh.vertex_set("z_max"), {}, ramp_to({0.002, 0, -0.002}, 1.0)});
+  const Answer statics = linear_fem(p, {}, kNever), steps = linear_tensor_mass(p, {}, kNever);
+  ASSERT_EQ(steps.forces.size(), 2U) << steps.trouble;
+  EXPECT_LE(norm(steps.forces[1] - statics.forces[1]), 2e-3 * norm(statics.forces[1]));
+}
+
+// Turned by a right angle as a whole, a linear body exerts forces; a corotational or neo-Hookean one does not.
+TEST(LinearFem, SwellsWhereItIsTurned) {
+  Problem p = cube();
+  p.supports.clear();
+  p.damping_rate = 0.0;
+  const auto quarter = [](double t) {
+    const double a = 0.5 * 3.14159265358979323846 * std::min(1.0, t);
+    Pose pose;
+    pose.axes = {{{{std::cos(a), -std::sin(a), 0}, {std::sin(a), std::cos(a), 0}, {0, 0, 1}}}};
+    return pose;
+  };
+  p.tools.push_back({p.mesh.vertex_set("z_max"), {}, PoseMotion(quarter)});
+  p.tools.push_back({p.mesh.vertex_set("z_min"), {}, PoseMotion(quarter)});
+  EXPECT_GT(norm(linear_fem(p, {}, kNever).forces[1]), 0.1 * kYoung * kArea);
+  EXPECT_LT(norm(corotational(p, {}, kNever).forces[1]), 0.002 * kYoung * kArea);
+  EXPECT_LT(norm(neo_hookean(p, {}, kNever).forces[1]), 0.002 * kYoung * kArea);
+  EXPECT_LT(norm(projective_dynamics(p, {200, 20}, kNever).forces[1]), 0.01 * kYoung * kArea);
+}
+
+/// Force per area of W = μ/2 (tr FᵀF − 3) + λ'/2 (J − 1 − μ/λ')², stretched to `z` with free sides.
+double macklin_stress(double z) {
+  const LameParameters lame = lame_from_young(kYoung, kPoisson);
+  const double mu = lame.mu, l = lame.lambda + lame.mu;
+  double x = 1.0;  // of the sides: μ x + λ' (J − 1 − μ/λ') x z = 0
+  for (int k = 0; k < 100; ++k) {
+    const double c = mu + l * (x * x * z - 1.0 - mu / l) * z;
+    x -= c / (2.0 * l * x * z * z);
+  }
+  return mu * z + l * (x * x * z - 1.0 - mu / l) * x * x;
+}
+
+// With many sweeps it is the neo-Hookean body whose moduli it was given; with few it is softer, and softer still on a finer mesh.
+TEST(Xpbd, StiffnessHangsOnSweepsAndMesh) {
+  const Problem coarse = stretched(0.1), fine = stretched(0.1, {6, 6, 6});
+  const double exact = macklin_stress(1.1) * kArea;
+  EXPECT_NEAR(macklin_stress(1.0001) / (1e-4 * kYoung), 1.0, 1e-3) << "its modulus at rest is E";
+  EXPECT_NEAR(xpbd(coarse, {100, 100}, kNever).forces[1].z / exact, 1.0, 0.01);
+  const double few = xpbd(coarse, {100, 2}, kNever).displacement[coarse.mesh.vertex_set("x_max")[4]].x;
+  const double many = xpbd(coarse, {100, 100}, kNever).displacement[coarse.mesh.vertex_set("x_max")[4]].x;
+  const double fine_few = xpbd(fine, {100, 2}, kNever).displacement[fine.mesh.vertex_set("x_max")[24]].x;
+  EXPECT_NE(few, many);
+  EXPECT_GT(std::abs(fine_few - many), std::abs(few - many)) << "two sweeps carry less far on a finer mesh";
+}
+
+// At small strain it comes to E A ε and to ν.
+TEST(ProjectiveDynamics, ComesToTheTissueAtSmallStrain) {
+  const Problem p = stretched(0.01);
+  const Answer answer = projective_dynamics(p, {100, 100}, kNever);
+  EXPECT_NEAR(answer.forces[1].z / (kYoung * kArea * 0.01), 1.0, 0.02);
+  EXPECT_NEAR(contraction(p, answer, 0.01), kPoisson, 0.02);
+}
+
+// A link gives way by a tenth of itself before it drags its neighbour, and no force is known.
+TEST(ChainMail, DragsWhereLinksAreTaut) {
+  Problem p = cube({1, 1, 4});
+  p.supports.push_back({p.mesh.vertex_set("z_min"), {}});
+  p.tools.push_back({p.mesh.vertex_set("z_max"), {}, ramp_to({0, 0, 0.001}, 2.0)});
+  const Answer answer = chain_mail(p, {1, 0}, kNever);
+  EXPECT_TRUE(answer.forces.empty());
+  for (std::uint32_t v = 0; v < p.mesh.vertices.size(); ++v) {
+    const double z = p.mesh.vertices[v].z;
+    if (z > 0.74 * kEdge && z < 0.76 * kEdge) EXPECT_NEAR(answer.displacement[v].z, 0.001 - 0.1 * 0.25 * kEdge, 1e-4);
+    if (z > 0.24 * kEdge && z < 0.26 * kEdge) EXPECT_EQ(answer.displacement[v].z, 0.0) << "it does not come as far";
+  }
+}
+
+// Whole bodies: the scene's own tissue in equilibrium and by steps, and the neo-Hookean one, agree where they are the same.
+TEST(Engine, OwnTissueIsTheSameInStepsAndAtRest) {
+  Problem p = cube({3, 3, 3});
+  p.tissues[0].hyperelastic = NeoHookean{1285.714, 6000.0};
+  p.supports.push_back({p.mesh.vertex_set("z_min"), {}});
+  p.tools.push_back({p.mesh.vertex_set("z_max"), {}, ramp_to({0, 0, -0.004}, 2.0)});
+  const Answer steps = own_tissue(p, {}, kNever), rest = own_tissue_at_rest(p, {}, kNever),
+               neo = neo_hookean(p, {}, kNever);
+  ASSERT_EQ(rest.forces.size(), 2U) << rest.trouble;
+  EXPECT_LE(norm(steps.forces[1] - rest.forces[1]), 5e-3 * norm(rest.forces[1]));
+  EXPECT_LE(norm(neo.forces[1] - steps.forces[1]), 1e-3 * norm(rest.forces[1]));
+  EXPECT_NE(schwartz_tensor_mass(p, {}, kNever).trouble.find("no stiffness law"), std::string::npos);
+}
+
+// Every model of the list has its own name, a source and an effort, and ends when it is stopped.
+TEST(Rivals, AreNamedAndStop) {
+  std::set<std::string_view> names;
+  const Stop at_once{true};
+  Problem p = stretched(0.1);
+  for (const Rival& rival : rivals()) {
+    EXPECT_TRUE(names.insert(rival.name).second) << rival.name;
+    EXPECT_FALSE(rival.source.empty()) << rival.name;
+    ASSERT_FALSE(rival.efforts.empty()) << rival.name;
+    EXPECT_TRUE(rival.run(p, rival.efforts.back(), at_once).forces.empty()) << rival.name;
+  }
+  EXPECT_GE(names.size(), 10U);
+}
+
+}  // namespace
+}  // namespace glisson::models
