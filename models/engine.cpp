@@ -100,7 +100,9 @@ Answer linear_tensor_mass(const Problem& problem, const Effort&, const Stop& sto
 
 Answer schwartz_tensor_mass(const Problem& problem, const Effort&, const Stop& stop) {
   if (!has_law(problem)) {
-    return {.trouble = "the scene's tissue has no stiffness law; without one it is the linear tensor-mass model"};
+    Answer answer;
+    answer.trouble = "the scene's tissue has no stiffness law; without one it is the linear tensor-mass model";
+    return answer;
   }
   return run_or_say_why(problem, changed(problem, [](Tissue& t) { t.kinematics = Kinematics::small; }), {}, stop);
 }

@@ -29,6 +29,29 @@ Eigen::Vector3d of_unit_product(const Eigen::Vector3d& sigma) {
   return sigma + d;
 }
 
+/// F = left diag(sigma) rightᵀ with two rotations; the least value is negative where F is inside out.
+struct Split {
+  Eigen::Matrix3d left, right;
+  Eigen::Vector3d sigma;
+};
+
+Split split_of(const Mat3d& f) {
+  Eigen::Matrix3d m;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) m(i, j) = f(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m.transpose() * m);
+  Split split;
+  split.right = solver.eigenvectors().rowwise().reverse();  // the largest first
+  if (split.right.determinant() < 0.0) split.right.col(2) *= -1.0;
+  const Eigen::Matrix3d turned = m * split.right;
+  split.left.col(0) = turned.col(0).normalized();
+  split.left.col(1) = (turned.col(1) - split.left.col(0) * split.left.col(0).dot(turned.col(1))).normalized();
+  split.left.col(2) = split.left.col(0).cross(split.left.col(1));
+  for (int k = 0; k < 3; ++k) split.sigma[k] = split.left.col(k).dot(turned.col(k));
+  return split;
+}
+
 class Projective {
  public:
   Projective(const Problem& problem, double h)
@@ -130,20 +153,10 @@ class Projective {
       const TetState& state = tets_[t];
       const Tet& tet = problem_.mesh.tets[t];
       const Mat3d f = deformation_gradient(state.rest, tet, u_);
-      Eigen::Matrix3d m;
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) m(i, j) = f(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
-      }
-      const Eigen::JacobiSVD<Eigen::Matrix3d, Eigen::NoQRPreconditioner> svd(m,
-                                                                             Eigen::ComputeFullU | Eigen::ComputeFullV);
-      Eigen::Matrix3d left = svd.matrixU();
-      Eigen::Vector3d sigma = svd.singularValues();
-      if ((left * svd.matrixV().transpose()).determinant() < 0.0) {
-        left.col(2) *= -1.0;
-        sigma[2] *= -1.0;
-      }
-      const Eigen::Vector3d wanted = Eigen::Vector3d::Constant(state.shape) + state.volume * of_unit_product(sigma);
-      const Eigen::Matrix3d p = left * wanted.asDiagonal() * svd.matrixV().transpose() -
+      const Split split = split_of(f);
+      const Eigen::Vector3d wanted =
+          Eigen::Vector3d::Constant(state.shape) + state.volume * of_unit_product(split.sigma);
+      const Eigen::Matrix3d p = split.left * wanted.asDiagonal() * split.right.transpose() -
                                 (state.shape + state.volume) * Eigen::Matrix3d::Identity();
       for (std::size_t a = 0; a < 4; ++a) {
         const Eigen::Vector3d g = p * Eigen::Vector3d(state.rest.s[a].x, state.rest.s[a].y, state.rest.s[a].z);

@@ -8,9 +8,9 @@ namespace glisson::models {
 inline constexpr double kYoung = 3600.0, kPoisson = 0.4, kEdge = 0.02;
 
 /// A cube of this edge and tissue, at rest: nothing is held.
-inline Problem cube(std::array<int, 3> cells = {2, 2, 2}, BoxSplit split = BoxSplit::alternating) {
+inline Problem cube(std::array<int, 3> cells = {2, 2, 2}) {
   Problem problem;
-  problem.mesh = box_mesh({.cells = cells, .size = {kEdge, kEdge, kEdge}, .split = split});
+  problem.mesh = box_mesh({.cells = cells, .size = {kEdge, kEdge, kEdge}, .split = BoxSplit::alternating});
   problem.tissues[0] = Tissue{.youngs_modulus = kYoung, .poisson_ratio = kPoisson};
   problem.damping_rate = 30.0;
   problem.duration = 2.0;
@@ -33,8 +33,8 @@ inline Problem stretched(double strain, std::array<int, 3> cells = {2, 2, 2}) {
 }
 
 /// Every vertex is moved to (1 + strain) x; the force of vertex `first` is read.
-inline Problem dilated(double strain, std::uint32_t first, BoxSplit split = BoxSplit::alternating) {
-  Problem p = cube({2, 2, 2}, split);
+inline Problem dilated(double strain, std::uint32_t first, std::array<int, 3> cells) {
+  Problem p = cube(cells);
   const auto add = [&](std::uint32_t v) {
     p.tools.push_back({{v}, {}, ramp_to(p.mesh.vertices[v] * strain, p.duration)});
   };
