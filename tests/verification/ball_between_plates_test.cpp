@@ -37,13 +37,13 @@ std::shared_ptr<ContactTool> plate(const Vec3d& z, double approach, const Lay& l
   const Vec3d x = unit(cross(std::abs(z.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}, z)), y = cross(z, x);
   Pose start{lay.middle + z * kRadius};
   for (std::size_t i = 0; i < 3; ++i) start.axes.m[i] = {x[i], y[i], z[i]};
-  const auto way = [=](double time) {
+  const auto path = [=](double time) {
     const double s = std::min(1.0, time / 0.1);
     return z * (-approach * s * s * (3.0 - 2.0 * s));
   };
   ContactOptions options;
   options.shape = Plate{}, options.direction = -z;
-  return std::make_shared<ContactTool>(options, std::make_shared<PathDriver>(start, ToolPath{way, std::nullopt}));
+  return std::make_shared<ContactTool>(options, std::make_shared<PathDriver>(start, ToolPath{path, std::nullopt}));
 }
 
 PlatesError press_between_plates(double angle, double edges, const Lay& lay) {
@@ -82,7 +82,9 @@ TEST(BallBetweenPlates, SmallContactsAreHertz) {
         EXPECT_GT(pressure, 0.0) << nu << " " << share << " " << at;
       }
       const double beyond = b.force / b.hertz - 1.0;
-      if (share > 0.025) EXPECT_NEAR(beyond / before, nu == 0.45 ? 2.0 : 2.2, nu == 0.45 ? 0.03 : 0.06) << share;
+      if (share > 0.025) {
+        EXPECT_NEAR(beyond / before, nu == 0.45 ? 2.0 : 2.2, nu == 0.45 ? 0.03 : 0.06) << share;
+      }
       before = beyond;
     }
     EXPECT_NEAR(before, nu == 0.45 ? 0.0465 : 0.0555, 0.0002);
