@@ -91,16 +91,14 @@ TEST(BallBetweenPlates, SmallContactsAreHertz) {
   }
 }
 
-// 3.3 and 4.2 % were measured with 22 400 and 21 700 tets.
+// 4.2 % was measured with 21 700 tets.
 TEST(BallBetweenPlates, CarriesTheForceOfTheSeries) {
-  for (const Lay& lay : {kLevel, kTurned}) {
-    const PlatesError e = press_between_plates(0.1, 2.5, lay);
-    record(lay.axis.x == 0.0 ? "level" : "turned", e.mean());
-    EXPECT_LT(e.tets, 23000u);
-    EXPECT_GT(e.mean(), 0.0);
-    EXPECT_LT(e.mean(), 0.05);
-    EXPECT_NEAR(e.plate[0], e.plate[1], 0.003) << "the plates balance";
-  }
+  const PlatesError e = press_between_plates(0.1, 2.5, kTurned);
+  record("turned", e.mean());
+  EXPECT_LT(e.tets, 23000u);
+  EXPECT_GT(e.mean(), 0.0);
+  EXPECT_LT(e.mean(), 0.05);
+  EXPECT_NEAR(e.plate[0], e.plate[1], 0.003) << "the plates balance";
 }
 
 // 1.74, 1.73 and 1.84 % were measured with 49 000, 48 800 and 49 200 tets, on three lattices turned against each other; Hertz's force is
