@@ -156,6 +156,23 @@ depth_mm = 25
   EXPECT_NEAR(cut[0], 24e-4, 0.02 * 24e-4);
 }
 
+// A capsule that is stretched beyond its strength is torn in the frames after, and in none before, as the run's own file says.
+TEST_F(ViewReplay, TellsWhereACapsuleIsTorn) {
+  const fs::path folder =
+      recorded("[[capsule]]\nset = \"x_min\"\nyoungs_modulus_Pa = 1e5\nstrength_N_m = 0.02\naveraging_length_mm = 1\n");
+  const view::RunFolder run = view::open_run(folder, "");
+  ASSERT_TRUE(run.frames.back().torn) << "nothing has torn";
+  ASSERT_FALSE(run.frames.back().torn->empty());
+  EXPECT_FALSE(run.frames.front().torn);
+  Watching watching(run);
+  const auto torn = [&](double time) {
+    const view::Surface surface(watching.at(time).shape);
+    return static_cast<std::size_t>(std::count(surface.kinds().begin(), surface.kinds().end(), 2));
+  };
+  EXPECT_EQ(torn(run.frames.back().time), run.frames.back().torn->size());
+  EXPECT_EQ(torn(0.0), 0u);
+}
+
 TEST_F(ViewReplay, TellsTheForcesOfTheTables) {
   const fs::path folder = recorded();
   auto table = read_csv(folder / "main/forces.csv");

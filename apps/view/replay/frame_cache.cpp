@@ -24,8 +24,8 @@ std::vector<Vec3d> displacement_of(const ReadFrame& frame, const std::string& fi
   return displacement;
 }
 
-bool same_body(const BodyShape& known, const TetMesh& mesh) {
-  return known.mesh.tets == mesh.tets && known.mesh.vertices == mesh.vertices;
+bool same_body(const BodyShape& known, const TetMesh& mesh, const std::vector<Triangle>& torn) {
+  return known.torn == torn && known.mesh.tets == mesh.tets && known.mesh.vertices == mesh.vertices;
 }
 
 /// The outer faces of a run's first frame; none of a mesh that is none, as someone else's may be.
@@ -37,7 +37,8 @@ std::shared_ptr<const SkinFaces> skin_of(const TetMesh& mesh) {
   }
 }
 
-std::shared_ptr<const BodyShape> shape_of(TetMesh mesh, const RunFolder& run, std::shared_ptr<const SkinFaces> skin) {
+std::shared_ptr<const BodyShape> shape_of(TetMesh mesh, const RunFolder& run, const std::vector<Triangle>& torn,
+                                          std::shared_ptr<const SkinFaces> skin) {
   auto shape = std::make_shared<BodyShape>();
   shape->marks.assign(mesh.vertices.size(), 0);
   const auto mark = [&](const std::vector<std::string>& sets, std::uint8_t value) {
@@ -50,6 +51,7 @@ std::shared_ptr<const BodyShape> shape_of(TetMesh mesh, const RunFolder& run, st
   mark(run.held, 1);
   mark(run.driven, 2);
   shape->mesh = std::move(mesh);
+  shape->torn = torn;
   shape->skin = std::move(skin);
   return shape;
 }
@@ -73,10 +75,12 @@ std::shared_ptr<const LoadedFrame> FrameCache::read(std::size_t number) {
   auto loaded = std::make_shared<LoadedFrame>();
   loaded->displacement = displacement_of(frame, file);
   if (number == 0 && !skin_) skin_ = skin_of(frame.mesh);
-  if (!shape_ || !same_body(*shape_, frame.mesh)) {
-    const auto known =
-        std::find_if(kept_.begin(), kept_.end(), [&](const Kept& x) { return same_body(*x.frame->shape, frame.mesh); });
-    shape_ = known != kept_.end() ? known->frame->shape : shape_of(std::move(frame.mesh), run_, skin_);
+  static const std::vector<Triangle> kNone;
+  const std::vector<Triangle>& torn = run_.frames[number].torn ? *run_.frames[number].torn : kNone;
+  if (!shape_ || !same_body(*shape_, frame.mesh, torn)) {
+    const auto known = std::find_if(kept_.begin(), kept_.end(),
+                                    [&](const Kept& x) { return same_body(*x.frame->shape, frame.mesh, torn); });
+    shape_ = known != kept_.end() ? known->frame->shape : shape_of(std::move(frame.mesh), run_, torn, skin_);
   }
   loaded->shape = shape_;
   ++reads_;
