@@ -13,6 +13,7 @@ struct LiverOptions {
   double edge = 0.008;                        ///< mean length of the tets' edges [m], > 0
   double scale = 1.0;                         ///< factor on all lengths [-]; 1: 21 × 16 × 11 cm
   bool vessels = true;                        ///< portal and hepatic veins as regions; else they are parenchyma
+  bool gallbladder = false;                   ///< the gallbladder in its bed, as a region; else the bed is empty
   Vec3d tumour_center{-0.035, -0.005, 0.01};  ///< [m], before scaling
   double tumour_radius = 0.012;               ///< [m], before scaling; 0: no tumour
   std::uint64_t max_tets = 5000000;           ///< more are refused
@@ -27,6 +28,7 @@ struct LiverOptions {
             .advise("15 gives some 5000 tets, 8 some 31 000, 2 some 1.9 million"),
         field("scale", &L::scale, "-", between(0.2, 3), "factor on all lengths"),
         field("vessels", &L::vessels, "portal and hepatic veins as regions of their own"),
+        field("gallbladder", &L::gallbladder, "the gallbladder in its bed, as a region `gallbladder`"),
         field("tumour_center", &L::tumour_center, "mm", "centre of the tumour, before scaling"),
         field("tumour_radius", &L::tumour_radius, "mm", at_least(0), "its radius, before scaling; 0: none"),
         field("max_tets", &L::max_tets, between(1, 1e9), "a finer mesh is refused"),
@@ -36,14 +38,16 @@ struct LiverOptions {
   Fault check() const;
 };
 
-/// The shapes and regions of a liver: `tumour`, `hepatic_veins`, `portal_veins` and `parenchyma`, in this order of precedence.
+/// The shapes and regions of a liver: `tumour`, `gallbladder` where it is asked for, `hepatic_veins`, `portal_veins` and `parenchyma`, in this order of precedence.
 /// A vein thinner than 1.2 edges is left out from there, a tree of less than three edges in all; the edge of a tree that a
 /// size names is that of the size.
 /// @throws std::invalid_argument naming the option, its value and the allowed range
 ImplicitBody liver_body(const LiverOptions& options);
 
-/// Its mesh, with the vertex sets `bare_area` (at the back, around the vena cava), `dome` (under the diaphragm) and
-/// `visceral_face` (below). @throws as liver_body and mesh_regions
+/// Its mesh, with vertex sets of its surface (docs/liver.md): `bare_area` (at the back, around the vena cava), `dome` (under the
+/// diaphragm), `visceral_face` (below), `vena_cava` (its groove), `coronary_ligament` (around the bare area),
+/// `right_triangular_ligament`, `left_triangular_ligament`, `falciform_ligament`, and with the gallbladder `gallbladder`.
+/// @throws as liver_body and mesh_regions
 RegionMesh liver_mesh(const LiverOptions& options, std::function<bool(double)> progress = {});
 
 }  // namespace glisson

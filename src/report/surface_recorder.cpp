@@ -79,21 +79,36 @@ void SurfaceRecorder::find_surface(const Simulation& simulation) {
   }
   kinds_.clear();
   for (const SurfaceKind kind : surface.kinds) kinds_.push_back(static_cast<std::uint8_t>(kind));
-  if (first) find_regions(surface, mesh);
+  if (first) return find_regions(surface, mesh);
+  for (Region& region : regions_) {
+    std::vector<std::uint32_t> triangles = region_triangles(surface, region.name, mesh);
+    regions_changed_ = regions_changed_ || triangles != region.triangles;
+    region.triangles = std::move(triangles);
+  }
 }
 
-/// Surfaces of inner regions, as they are at first: their vertices come after those of the boundary.
+/// Surfaces of inner regions as they are at first: their vertices come after those of the boundary.
 void SurfaceRecorder::find_regions(const BodySurface& surface, const TetMesh& mesh) {
   head_["tissue"] = surface.tissue;
   head_["regions"] = nlohmann::json::array();
   for (const RegionSurface& region : surface.regions) {
-    std::vector<std::uint32_t> triangles;
+    regions_.push_back({region.name, region_triangles(surface, region.name, mesh)});
+    head_["regions"].push_back(
+        {{"name", region.name}, {"triangles", base64_of(std::span<const std::uint32_t>(regions_.back().triangles))}});
+  }
+}
+
+/// Of the region of this name, in surface vertices; none where nothing is left of it.
+std::vector<std::uint32_t> SurfaceRecorder::region_triangles(const BodySurface& surface, const std::string& name,
+                                                             const TetMesh& mesh) {
+  std::vector<std::uint32_t> triangles;
+  for (const RegionSurface& region : surface.regions) {
+    if (region.name != name) continue;
     for (const Triangle& triangle : region.triangles) {
       for (const std::uint32_t v : triangle) triangles.push_back(number_of(v, mesh));
     }
-    head_["regions"].push_back(
-        {{"name", region.name}, {"triangles", base64_of(std::span<const std::uint32_t>(triangles))}});
   }
+  return triangles;
 }
 
 void SurfaceRecorder::find_new_surface(const Simulation& simulation) {
@@ -155,6 +170,8 @@ nlohmann::json SurfaceRecorder::frame(const Simulation& simulation, const TetFie
                       {"instruments", instrument_places_json(instruments_)}};
   if (changed_) json["triangles"] = base64_of(std::span<const std::uint32_t>(triangles_));
   if (kinds_changed_) json["kinds"] = base64_of(std::span<const std::uint8_t>(kinds_));
+  for (std::size_t i = 0; regions_changed_ && i < regions_.size(); ++i)
+    json["regions"].push_back(base64_of(std::span<const std::uint32_t>(regions_[i].triangles)));
   return json;
 }
 
@@ -169,7 +186,7 @@ void SurfaceRecorder::add(const Simulation& simulation, const TetFields& fields)
   if (seen_++ % stride_ != 0) return;
   frames_.push_back(std::move(*last_));
   last_.reset();
-  changed_ = kinds_changed_ = false;
+  changed_ = kinds_changed_ = regions_changed_ = false;
 }
 
 nlohmann::json SurfaceRecorder::json() const {

@@ -1,7 +1,7 @@
 // surface_recorder.h — the moving surface of a body, small enough to travel inside the report page.
 //
 // Only vertices of the boundary and of the surfaces of inner regions are kept, renumbered; a body that is cut, or loses
-// tets, gets a new boundary with its next frame, while inner regions keep theirs. A frame holds displacements as 16-bit
+// tets, gets new ones of both with its next frame. A frame holds displacements as 16-bit
 // fractions of the largest one and intensities as 8-bit fractions of the largest one: 7 bytes a vertex, an error of 3e-5
 // of the largest displacement, well below a pixel.
 #pragma once
@@ -11,6 +11,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "glisson/scene/scene.h"
@@ -38,6 +39,7 @@ class SurfaceRecorder {
  private:
   void find_surface(const Simulation& simulation);
   void find_regions(const BodySurface& surface, const TetMesh& mesh);
+  std::vector<std::uint32_t> region_triangles(const BodySurface& surface, const std::string& name, const TetMesh& mesh);
   std::uint32_t number_of(std::uint32_t vertex, const TetMesh& mesh);
   void find_new_surface(const Simulation& simulation);
   nlohmann::json frame(const Simulation& simulation, const TetFields& fields);
@@ -50,10 +52,16 @@ class SurfaceRecorder {
   std::vector<Vec3d> rest_;               // of each surface vertex, when it was first at the surface [m]
   std::vector<std::uint8_t> fixed_;       // constraint mark of each surface vertex
   std::vector<std::uint8_t> kinds_;       // SurfaceKind of each triangle
+  struct Region {
+    std::string name;
+    std::vector<std::uint32_t> triangles;  // in surface vertices
+  };
+  std::vector<Region> regions_;  // inner ones, as they were named at first
   SkinFaces skin_;
   std::size_t mesh_vertices_ = 0, removed_ = 0, torn_ = 0;
   bool changed_ = false;        // the surface, since the last frame that was kept
   bool kinds_changed_ = false;  // what its triangles are
+  bool regions_changed_ = false;
   std::vector<std::shared_ptr<Capsule>> capsules_;
   std::vector<std::shared_ptr<Instrument>> instruments_;
   nlohmann::json head_;

@@ -116,7 +116,10 @@ void VariantRecorder::on_built(const BuiltVariant& built) {
       probe_file_ = std::make_unique<LineFile>(options_.folder / "probes.csv");
       probe_file_->write(csv_head(probe_columns_));
     }
-    if (frames_) view_ = std::make_unique<ViewFile>(options_.folder, options_.scene, variant_, built.instruments);
+    if (frames_) {
+      view_ = std::make_unique<ViewFile>(options_.folder, options_.scene, variant_, built.instruments);
+      view_->set_capsules(built.capsules);
+    }
   });
 }
 

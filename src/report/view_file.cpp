@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "report/body_surface.h"
 #include "report/instrument_json.h"
 #include "report/json_text.h"
 
@@ -41,7 +42,15 @@ ViewFile::ViewFile(const std::filesystem::path& folder, const std::string& scene
 }
 
 void ViewFile::add(double time) {
-  file_.write(json_text(json{{"time_s", time}, {"instruments", instrument_places_json(instruments_)}}));
+  json line{{"time_s", time}, {"instruments", instrument_places_json(instruments_)}};
+  if (std::vector<Triangle> torn = torn_triangles(capsules_); torn != torn_) {
+    json& vertices = line["torn"] = json::array();
+    for (const Triangle& triangle : torn) {
+      for (const std::uint32_t v : triangle) vertices.push_back(v);
+    }
+    torn_ = std::move(torn);
+  }
+  file_.write(json_text(line));
 }
 
 }  // namespace glisson

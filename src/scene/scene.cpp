@@ -22,7 +22,18 @@ using namespace scene;
 std::vector<std::string> generated_sets(const MeshSource& mesh) {
   if (std::holds_alternative<BoxOptions>(mesh)) return {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
   if (std::holds_alternative<CylinderOptions>(mesh)) return {"bottom", "top", "wall", "axis"};
-  if (std::holds_alternative<LiverOptions>(mesh)) return {"bare_area", "dome", "visceral_face"};
+  if (const auto* liver = std::get_if<LiverOptions>(&mesh)) {
+    std::vector<std::string> sets{"bare_area",
+                                  "dome",
+                                  "visceral_face",
+                                  "vena_cava",
+                                  "coronary_ligament",
+                                  "right_triangular_ligament",
+                                  "left_triangular_ligament",
+                                  "falciform_ligament"};
+    if (liver->gallbladder) sets.emplace_back("gallbladder");
+    return sets;
+  }
   return {};
 }
 

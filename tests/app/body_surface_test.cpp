@@ -1,11 +1,13 @@
 // What of a body can be drawn: its outer faces are skin until something cuts them, and inner regions are closed.
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <map>
 
 #include "app/program.h"
 #include "glisson/scene/scene.h"
 #include "report/body_surface.h"
+#include "report/surface_recorder.h"
 #include "view/engine/live_body.h"
 #include "view/engine/surface.h"
 #include "view/protocol/messages.h"
@@ -116,6 +118,67 @@ TEST(BodySurface, KnowsBothFacesOfACut) {
   const std::array<double, 3> cut = areas();
   EXPECT_NEAR(cut[1], 2.0 * 9e-4, 0.02 * 2.0 * 9e-4) << "each side is the section of 9 cm²";
   EXPECT_NEAR(cut[0], skin, 0.01 * skin);
+}
+
+/// The numbers in the base64 that a report holds.
+template <class T>
+std::vector<T> numbers_in(const std::string& text) {
+  static const std::string kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  std::uint32_t held = 0, bits = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    held = held << 6 | static_cast<std::uint32_t>(kDigits.find(c));
+    if ((bits += 6) >= 8) bytes.push_back(static_cast<char>(held >> (bits -= 8) & 255u));
+  }
+  std::vector<T> numbers(bytes.size() / sizeof(T));
+  std::memcpy(numbers.data(), bytes.data(), sizeof(T) * numbers.size());
+  return numbers;
+}
+
+// In a report the nodule that a cut goes through has the triangles of both its halves from then on: closed, and of its volume.
+TEST(BodySurface, ReportKeepsInnerRegionsClosedThroughACut) {
+  view::LiveBody body(nodule_block(), {});
+  Simulation& simulation = body.built().simulation;
+  SurfaceRecorder recorder(body.variant(), simulation, 1'000'000);
+  recorder.add(simulation, simulation.tet_fields());
+  body.cut()->begin({{-0.1, -0.1, 0.0162}, {-0.1, 0.1, 0.0162}});
+  body.cut()->draw({{0.1, -0.1, 0.0162}, {0.1, 0.1, 0.0162}});
+  while (body.cut()->waits()) body.work_on_cut(view::HandCut::Clock::now());
+  recorder.add(simulation, simulation.tet_fields());
+  recorder.add(simulation, simulation.tet_fields());
+  const nlohmann::json surface = recorder.json();
+  EXPECT_FALSE(surface["frames"][0].contains("regions"));
+  EXPECT_FALSE(surface["frames"][2].contains("regions")) << "nothing has changed since";
+  const nlohmann::json& frame = surface["frames"][1];
+  ASSERT_TRUE(frame.contains("regions"));
+  ASSERT_EQ(frame["regions"].size(), 1u);
+
+  TetMesh drawn;  // places of the surface's vertices in that frame
+  const auto rest = numbers_in<float>(surface["rest"].get<std::string>());
+  const auto moved = numbers_in<std::int16_t>(frame["displacement"].get<std::string>());
+  const double scale = frame["displacement_scale_m"].get<double>() / 32767.0;
+  for (std::size_t i = 0; i + 2 < rest.size(); i += 3) {
+    Vec3d& x = drawn.vertices.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) x[k] = static_cast<double>(rest[i + k]) + scale * moved.at(i + k);
+  }
+  const auto enclosed_by = [&](const std::string& base64) {
+    std::vector<Triangle> triangles;
+    const auto corners = numbers_in<std::uint32_t>(base64);
+    for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+      triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    return enclosed(drawn, triangles);
+  };
+  const TetMesh& mesh = simulation.mesh();
+  double volume = 0.0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    volume += mesh.region_of(t) != 0 ? six_rest_volume(mesh, t) / 6.0 : 0.0;
+  const Enclosed now = enclosed_by(frame["regions"][0].get<std::string>());
+  EXPECT_TRUE(now.closed);
+  EXPECT_NEAR(now.volume, volume, 1e-4 * volume);
+  EXPECT_GT(numbers_in<std::uint32_t>(frame["regions"][0].get<std::string>()).size(),
+            numbers_in<std::uint32_t>(surface["regions"][0]["triangles"].get<std::string>()).size())
+      << "both faces of the cut";
 }
 
 // Skin under an opened triangle of a capsule is torn, that one alone, and the live view's shape becomes another.

@@ -1,4 +1,5 @@
 // The live engine keeps what its readers and writers rely on, and a tool led by hand meets what the scene's motion meets.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <deque>
@@ -169,6 +170,62 @@ TEST(LiveEngine, PushByHandGivesTheScenesForce) {
   EXPECT_NEAR(-watcher.last.tools.front().force.z, expected, 0.01 * std::abs(expected));
   EXPECT_NEAR(watcher.samples.back().force[0], expected, 0.01 * std::abs(expected));
   engine.stop();
+}
+
+// A palpation is played: the finger goes where the scene's run takes it, found on the same body, and meets it at each point.
+TEST(LiveEngine, PlaysAPalpation) {
+  const Variant variant = variant_of(R"([mesh]
+kind = "box"
+cells = [4, 4, 2]
+size_m = [0.04, 0.04, 0.02]
+[tissue]
+youngs_modulus_Pa = 3600
+poisson_ratio = 0.4
+[motion]
+damping_rate_per_s = 20
+[[fixed]]
+set = "z_min"
+[[instrument]]
+kind = "ball"
+name = "finger"
+tip_m = [0.02, 0.02, 0.03]
+direction = [0, 0, -1]
+radius_mm = 8
+[instrument.motion]
+kind = "palpation"
+columns = 2
+rows = 1
+spacing_mm = 16
+indentation_mm = 3
+velocity_mm_s = 100
+)");
+  LiveBody body(variant, no_files());
+  ASSERT_TRUE(body.tools().front().can_play);
+  const std::shared_ptr<ToolDriver> scene = make_driver(variant.instruments.front(), body.built().simulation.mesh());
+  LivePath& way = body.way(0);
+  way.play();
+  double deepest = 0.0;
+  for (double t = 0.0; t < *scene->end(); t += kFrame) {
+    way.plan(t, kFrame);
+    const Vec3d expected = scene->advance(t + kFrame, 0.0, {}).position - scene->start().position;
+    ASSERT_LT(norm(way.at(t + kFrame) - expected), 1e-9) << t;
+    deepest = std::max(deepest, -expected.z);
+    while (body.built().simulation.time() < t + kFrame) ASSERT_TRUE(body.built().simulation.step().made());
+  }
+  EXPECT_NEAR(deepest, 0.010 + 0.003, 1e-6) << "from 10 mm above the surface to 3 mm below it [m]";
+  way.plan(*scene->end() + kFrame, kFrame);
+  EXPECT_FALSE(way.playing()) << "it has ended";
+
+  Engine engine(variant, no_files());
+  engine.start();
+  Watcher watcher(engine);
+  engine.post({.kind = CommandKind::play, .sequence = 1});
+  ASSERT_TRUE(watcher.until([&] { return watcher.last.echo == 1 && watcher.last.time > *scene->end(); }));
+  engine.stop();
+  const auto pressed =
+      std::max_element(watcher.samples.begin(), watcher.samples.end(),
+                       [](const ForceSample& a, const ForceSample& b) { return a.force[0] < b.force[0]; });
+  EXPECT_GT(pressed->force[0], 0.05f) << "the finger meets the block [N]";
 }
 
 // Pause holds the clock, a step moves it by a frame, reset takes it back, and a tissue made stiffer under the tool answers

@@ -49,6 +49,9 @@ TEST_F(ViewOutside, WrongTypesAreToldByFileAndKey) {
       notice_with("view.jsonl",
                   kHead + std::string("[]}\n{\"time_s\":0,\"instruments\":[{\"points\":[null,1,2],\"axes\":[]}]}\n")),
       HasSubstr(line("2: instruments[0].points[0]: expected a number, found null")));
+  EXPECT_THAT(
+      notice_with("view.jsonl", kHead + std::string("[]}\n{\"time_s\":0,\"instruments\":[],\"torn\":[1,2,-3]}\n")),
+      HasSubstr(line("2: torn[2]: expected the number of a vertex")));
   EXPECT_THAT(notice_with("view.jsonl", std::string(100000, '[') + "\n"),
               HasSubstr(line("1: nested deeper than 64 levels")));
   const std::string deep = std::string(100000, '[') + std::string(100000, ']');

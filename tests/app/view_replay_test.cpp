@@ -1,11 +1,13 @@
 // A recorded run is shown as it was: at the times of its frames the bytes of its frames, between them straight lines; its
 // forces are those of its tables; what broke off is shown as far as it goes; memory stays within its bound.
+#include <array>
 #include <chrono>
 #include <fstream>
 #include <thread>
 
 #include "app/program.h"
 #include "glisson/io.h"
+#include "view/engine/surface.h"
 #include "view/protocol/force_lines.h"
 #include "view/replay/replay.h"
 #include "view/replay/run_folder.h"
@@ -103,6 +105,72 @@ TEST_F(ViewReplay, MarksWhatIsHeldAndDriven) {
   const auto& marks = state.shape->marks;
   EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), 9) << "the bottom";
   EXPECT_GT(std::count(marks.begin(), marks.end(), 2), 0) << "where the tool presses";
+}
+
+// A block that a blade has parted shows both faces of its section of 4 cm² as cut, from the frame of the cut on and not before, in
+// whatever order frames are asked for.
+TEST_F(ViewReplay, TellsCutFacesFromSkin) {
+  const Outcome outcome = run({"run", write("cut.toml", R"(title = "A block in two"
+[mesh]
+kind = "box"
+cells = [4, 4, 4]
+size_m = [0.02, 0.02, 0.02]
+[tissue]
+youngs_modulus_Pa = 3600
+poisson_ratio = 0.4
+[motion]
+damping_rate_per_s = 20
+[[fixed]]
+set = "z_min"
+[[instrument]]
+kind = "blade"
+name = "knife"
+tip_m = [-0.002, 0.01, 0.0137]
+direction = [1, 0, 0]
+side = [0, 1, 0]
+edge_from_mm = [-15, 0, 0]
+edge_to_mm = [15, 0, 0]
+toughness_J_m2 = 0
+[instrument.motion]
+kind = "press"
+velocity_mm_s = 200
+depth_mm = 25
+)"),
+                               "--out", "o", "--quiet", "--set", "output.frames=4"});
+  ASSERT_THAT(outcome, Exits(0));
+  const view::RunFolder run = view::open_run(folder_ / "o", "");
+  const auto areas = [](const view::Snapshot& state) {
+    const view::Surface surface(state.shape);
+    std::array<double, 3> area{};
+    for (std::size_t t = 0; t < surface.kinds().size(); ++t) {
+      const auto at = [&](std::size_t k) { return surface.rest(surface.triangles()[3 * t + k]); };
+      area[surface.kinds()[t]] += 0.5 * norm(cross(at(1) - at(0), at(2) - at(0)));
+    }
+    return area;
+  };
+  Watching watching(run);
+  const std::array<double, 3> cut = areas(watching.at(run.frames.back().time)), whole = areas(watching.at(0.0));
+  EXPECT_NEAR(whole[0], 24e-4, 1e-10);
+  EXPECT_EQ(whole[1], 0.0);
+  EXPECT_NEAR(cut[1], 8e-4, 0.05 * 8e-4);
+  EXPECT_NEAR(cut[0], 24e-4, 0.02 * 24e-4);
+}
+
+// A capsule that is stretched beyond its strength is torn in the frames after, and in none before, as the run's own file says.
+TEST_F(ViewReplay, TellsWhereACapsuleIsTorn) {
+  const fs::path folder =
+      recorded("[[capsule]]\nset = \"x_min\"\nyoungs_modulus_Pa = 1e5\nstrength_N_m = 0.02\naveraging_length_mm = 1\n");
+  const view::RunFolder run = view::open_run(folder, "");
+  ASSERT_TRUE(run.frames.back().torn) << "nothing has torn";
+  ASSERT_FALSE(run.frames.back().torn->empty());
+  EXPECT_FALSE(run.frames.front().torn);
+  Watching watching(run);
+  const auto torn = [&](double time) {
+    const view::Surface surface(watching.at(time).shape);
+    return static_cast<std::size_t>(std::count(surface.kinds().begin(), surface.kinds().end(), 2));
+  };
+  EXPECT_EQ(torn(run.frames.back().time), run.frames.back().torn->size());
+  EXPECT_EQ(torn(0.0), 0u);
 }
 
 TEST_F(ViewReplay, TellsTheForcesOfTheTables) {

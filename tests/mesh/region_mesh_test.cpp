@@ -304,7 +304,9 @@ TEST(Liver, HasTheSizeOfALiver) {
   EXPECT_NEAR(size.z, 0.16, 0.006);
   ASSERT_EQ(made.report.regions.size(), 4u);
   EXPECT_NEAR(made.report.regions[0].volume, 4.0 / 3.0 * kPi * std::pow(options.tumour_radius, 3), 0.2e-6);
-  for (const auto& [name, set] : made.mesh.vertex_sets) EXPECT_GT(set.size(), 50u) << name;
+  for (const char* name : {"bare_area", "dome", "visceral_face", "vena_cava"}) {
+    EXPECT_GT(made.mesh.vertex_sets.at(name).size(), 50u) << name;
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "support/places.h"
 #include "support/scene_runs.h"
@@ -23,6 +24,7 @@ class ProbedRecorder final : public RunObserver {
   void on_sample(const Sample& s) override {
     value.push_back(s.probes[at_]);
     time.push_back(s.time);
+    if (s.instruments.empty()) return;
     depth.push_back(s.instruments.front().depth);
     force.push_back(s.instruments.front().force.y);
   }
@@ -82,6 +84,29 @@ TEST(ShapesLiver, IsOpenedByABlade) {
   const auto cut = static_cast<std::size_t>(std::lower_bound(run.time.begin(), run.time.end(), 0.5) - run.time.begin());
   EXPECT_GT(run.value.back(), run.value.at(cut) + 0.004) << "beyond what the pull alone does [m]";
   EXPECT_NEAR(*std::max_element(run.force.begin(), run.force.end()), 20.0 * 0.064, 0.02) << "[N]";
+}
+
+// With gallbladder and supports it sags toward where it lies, on its front as far as on its back: without a capsule all is linear. The
+// capsule takes a part of the sag.
+TEST(ShapesLiver, SagsAsItsPostureHasIt) {
+  const Scene scene =
+      test::shipped_scene("organs/liver_postures.toml", {{"mesh.edge_mm", "17"}, {"output.frames", "0"}});
+  const auto right_lobe = [&](const char* posture, const char* axis, std::optional<Vec3d> gravity = {}) {
+    const auto found =
+        std::find_if(scene.variants.begin(), scene.variants.end(), [&](const Variant& v) { return v.name == posture; });
+    EXPECT_NE(found, scene.variants.end()) << posture;
+    Variant variant = *found;
+    if (gravity) variant.simulation.gravity = *gravity;
+    ProbedRecorder run(std::string("right_lobe_displacement_") + axis + "_m");
+    const std::atomic<bool> stop{false};
+    EXPECT_EQ(run_variant(variant, {}, run, stop).end, RunSummary::End::finished);
+    return run.value.back();
+  };
+  const double bare = right_lobe("supine_without_capsule", "y"), supine = right_lobe("supine", "y");
+  EXPECT_GT(supine, 0.003) << "[m]";
+  EXPECT_GT(bare, 1.05 * supine);
+  EXPECT_NEAR(right_lobe("supine_without_capsule", "y", Vec3d{0, -9.81, 0}), -bare, 1e-4 * bare);
+  EXPECT_GT(right_lobe("supine_without_capsule", "x", Vec3d{9.81, 0, 0}), 0.003) << "on the left side";
 }
 
 // Above the tumour the finger meets more force than beside it, and more than in sound tissue.

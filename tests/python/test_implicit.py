@@ -91,4 +91,11 @@ def test_the_liver_has_its_regions_and_sets():
     mesh, report = glisson.liver_mesh(edge=0.012, tumour_radius=0.015)
     assert [r.name for r in report.regions][0] == "tumour"
     assert mesh.volume == pytest.approx(1.5e-3, rel=0.05)
-    assert {"bare_area", "dome", "visceral_face"} <= set(mesh.vertex_sets)
+    assert {"bare_area", "dome", "visceral_face", "falciform_ligament"} <= set(mesh.vertex_sets)
+
+
+def test_the_liver_has_a_gallbladder_where_it_is_asked_for():
+    mesh, report = glisson.liver_mesh(edge=0.012, gallbladder=True)
+    volume = {r.name: r.volume for r in report.regions}
+    assert volume["gallbladder"] == pytest.approx(33e-6, rel=0.1)
+    assert "gallbladder" in mesh.vertex_sets

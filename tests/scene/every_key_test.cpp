@@ -443,6 +443,22 @@ TEST(EveryKey, OfCylinderAndFileIsRead) {
   EXPECT_EQ(std::get<MeshFile>(absolute.variants[0].mesh).path, "/data/liver.vtu");
 }
 
+// The liver's keys arrive as they are written.
+TEST(EveryKey, OfTheLiverIsRead) {
+  const Scene scene = parse(
+      "[mesh]\nkind = \"liver\"\nedge_mm = 9\nscale = 0.9\nvessels = false\ngallbladder = true\n"
+      "tumour_center_mm = [1, 2, 3]\ntumour_radius_mm = 4\nmax_tets = 5000\ngrowth = 0.2\n[motion]\nduration_s = 1\n");
+  const auto& l = std::get<LiverOptions>(scene.variants[0].mesh);
+  EXPECT_DOUBLE_EQ(l.edge, 0.009);
+  EXPECT_EQ(l.scale, 0.9);
+  EXPECT_FALSE(l.vessels);
+  EXPECT_TRUE(l.gallbladder);
+  EXPECT_NEAR(norm(l.tumour_center - Vec3d{0.001, 0.002, 0.003}), 0.0, 1e-15);
+  EXPECT_DOUBLE_EQ(l.tumour_radius, 0.004);
+  EXPECT_EQ(l.max_tets, 5000u);
+  EXPECT_EQ(l.growth, 0.2);
+}
+
 /// Every key of a section and of the sections in it.
 void collect(const scene::SectionSpec& section, std::set<std::string>& keys) {
   for (const scene::KeySpec& key : section.keys) {

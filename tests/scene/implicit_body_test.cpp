@@ -204,5 +204,20 @@ TEST(LiverScene, HasItsOptionsAndSets) {
               HasSubstr("\"tumor\" is no region of the mesh; did you mean \"tumour\"?"));
 }
 
+// The gallbladder is a key, a region and a set; without the key a scene that names it is told so.
+TEST(LiverScene, HasAGallbladderAndLigamentsToHold) {
+  const std::string head = "[mesh]\nkind = \"liver\"\nedge_mm = 16\n",
+                    rest = "[motion]\nduration_s = 1\n[[fixed]]\nset = \"left_triangular_ligament\"\n";
+  const Variant variant =
+      parse(head + "gallbladder = true\n" + rest + "[[load]]\nset = \"gallbladder\"\nspring_N_m = [1, 1, 1]\n")
+          .variants.at(0);
+  EXPECT_TRUE(std::get<LiverOptions>(variant.mesh).gallbladder);
+  EXPECT_FALSE(build_mesh(variant, {}).vertex_sets.at("gallbladder").empty());
+  EXPECT_THAT(complaint(head + rest + "[[load]]\nset = \"gallbladder\"\nspring_N_m = [1, 1, 1]\n"),
+              HasSubstr("gallbladder"));
+  EXPECT_THAT(complaint(head + rest + "[[mesh.size]]\nnear = \"gallbladder\"\nedge_mm = 8\n"),
+              HasSubstr("is no region of the mesh"));
+}
+
 }  // namespace
 }  // namespace glisson

@@ -72,7 +72,7 @@ export interface SurfaceData {
   frames: FrameData[]; // in time order, may be empty
 }
 
-/** The closed surface of a region of the body at rest. */
+/** The closed surface of a region of the body at first. */
 export interface RegionSurface {
   name: string;
   triangles: Base64; // u32, three per triangle, outward
@@ -105,6 +105,7 @@ export interface FrameData {
   // earlier frames
   kinds?: Base64; // u8 per triangle, from this frame on: 0 skin, 1 a face that was cut, 2 skin whose capsule is torn; a
   // frame with other triangles and no kinds has skin only
+  regions?: Base64[]; // u32, triangles of each of the surface's regions, from this frame on
 }
 
 export interface ChartSpec {

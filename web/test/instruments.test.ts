@@ -1,11 +1,14 @@
 // Instruments are drawn where they were, events stand where they happened, and a surface that is cut becomes another one.
+import * as THREE from "three";
 import { describe, expect, it } from "vitest";
 import { eventMarks, placeLabels } from "../src/charts/event_marks.ts";
 import { containerChart, partsChart } from "../src/charts/column_charts.ts";
 import { variantCharts } from "../src/charts/variant_charts.ts";
 import { parseReport } from "../src/data/read_report.ts";
+import { InnerRegions } from "../src/mesh3d/inner_regions.ts";
 import { placeBetween, tubePositions, tubeTriangles } from "../src/mesh3d/instrument_shape.ts";
 import { Timeline } from "../src/mesh3d/timeline.ts";
+import { regionTints } from "../src/mesh3d/tissue_colours.ts";
 import type { SurfaceData, VariantData } from "../src/report_data.ts";
 
 const base64 = (bytes: ArrayBufferView) =>
@@ -189,6 +192,40 @@ describe("a surface that is cut", () => {
     const told = new Timeline(parsed({ ...surface, tissue: "liver", regions }).variants[0]!.surface!);
     expect(told.tissue).toBe("liver");
     expect(told.regions.map(({ name, triangles }) => [name, ...triangles])).toEqual([["tumour", 0, 2, 1]]);
+  });
+
+  it("has those of regions that the cut goes through from its frame on", () => {
+    const regions = [
+      { name: "tumour", triangles: base64(Uint32Array.from([0, 2, 1])) },
+      { name: "vein", triangles: base64(Uint32Array.from([0, 1, 2])) },
+    ];
+    const frames = surface.frames.map((frame, i) =>
+      i === 2 ? { ...frame, regions: [base64(Uint32Array.from([3, 2, 1, 0, 1, 99])), ""] } : frame,
+    );
+    const told = new Timeline(parsed({ ...surface, regions, frames }).variants[0]!.surface!);
+    expect(told.regionsAt(1.9).map((triangles) => [...triangles])).toEqual([
+      [0, 2, 1],
+      [0, 1, 2],
+    ]);
+    expect(told.regionsAt(2).map((triangles) => [...triangles])).toEqual([[3, 2, 1], []]);
+    expect(told.regionsAt(0)[0]).toBe(told.regions[0]!.triangles);
+    const tint = regionTints("#000000", told)(Uint32Array.from([1, 2, 3, 0, 1, 3]));
+    expect(tint(0)).not.toEqual([0, 0, 0]); // a face of the tumour that only the cut has laid open
+    expect(tint(1)).toEqual([0, 0, 0]);
+  });
+
+  it("draws them so: each region has the triangles of the time", () => {
+    const told = new Timeline(
+      parsed({ ...surface, regions: [{ name: "tumour", triangles: base64(Uint32Array.from([0, 2, 1])) }] }).variants[0]!
+        .surface!,
+    );
+    const positions = new THREE.BufferAttribute(told.rest.slice(), 3);
+    const inner = new InnerRegions(told, positions, new THREE.Vector3(), 1);
+    const drawn = () => [...((inner.group.children[0] as THREE.Mesh).geometry.index!.array as Uint32Array)];
+    expect(drawn()).toEqual([0, 2, 1]);
+    inner.update([Uint32Array.from([3, 2, 1])]);
+    expect(drawn()).toEqual([3, 2, 1]);
+    inner.dispose();
   });
 
   it("comes with its instruments", () => {

@@ -30,17 +30,20 @@ struct Habit {
     speed = m.velocity;
     for (const StrokesSpec::One& s : m.strokes) depth = std::max(depth, s.depth);
   }
+  void operator()(const PalpationSpec& m) { speed = m.velocity; }
   template <class Other>
   void operator()(const Other&) {}
 };
 
-/// The scene's way of an instrument; none where it is pushed, or feels for the body.
-std::optional<ToolPath> scene_way(const InstrumentSpec& spec) {
-  if (std::holds_alternative<PushSpec>(spec.motion.how) || std::holds_alternative<PalpationSpec>(spec.motion.how))
-    return {};
-  const std::shared_ptr<ToolDriver> driver = make_driver(spec);
+ToolPath way_of(const std::shared_ptr<ToolDriver>& driver) {
   return ToolPath{[driver](double t) { return driver->advance(t, 0.0, {}).position - driver->start().position; },
                   driver->end()};
+}
+
+/// The scene's way of an instrument; none where it is pushed. That of a palpation is known with the body (feel_the_body).
+std::optional<ToolPath> scene_way(const InstrumentSpec& spec) {
+  if (std::holds_alternative<PushSpec>(spec.motion.how)) return {};
+  return way_of(make_driver(spec));
 }
 
 }  // namespace
@@ -67,6 +70,7 @@ LiveBody::LiveBody(const Variant& variant, const MeshLoader& load) : variant_(va
   lead_tools();
   lead_instruments();
   built_ = std::make_unique<BuiltVariant>(variant_, load);
+  feel_the_body(variant);
   skin_ = std::make_shared<const SkinFaces>(built_->simulation.mesh());
   tissues_ = std::make_shared<const std::map<int, Tissue>>(region_tissues(variant_, built_->simulation.mesh()));
   const double size = diagonal(built_->simulation.mesh());
@@ -110,6 +114,15 @@ void LiveBody::lead_instruments() {
     info.can_play = !turns && ways_.back()->can_play();
     if (!turns) x.motion.how = ToolPath{[way = ways_.back()](double t) { return way->at(t); }, {}};
     tools_.push_back(info);
+  }
+}
+
+/// Gives palpations their way: where they meet the body is known once there is one. @param scene  the variant as it was written
+void LiveBody::feel_the_body(const Variant& scene) {
+  for (std::size_t i = 0; i < scene.instruments.size(); ++i) {
+    const InstrumentSpec& x = scene.instruments[i];
+    if (!std::holds_alternative<PalpationSpec>(x.motion.how)) continue;
+    ways_[scene.tools.size() + i]->set_scene(way_of(make_driver(x, built_->simulation.mesh())));
   }
 }
 

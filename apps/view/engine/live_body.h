@@ -52,6 +52,7 @@ class LiveBody {
  private:
   void lead_tools();
   void lead_instruments();
+  void feel_the_body(const Variant& scene);
   void attach_grab();
   void take_blade();
 

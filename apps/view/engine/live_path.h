@@ -26,6 +26,7 @@ class LivePath {
   void set_target(const Vec3d& target);  ///< [m]; leaves the scene's motion
   void set_speed(double speed) { speed_ = speed; }
   double speed() const { return speed_; }
+  void set_scene(ToolPath scene) { scene_ = std::move(scene); }  ///< the scene's own motion, known later than the tool
   bool can_play() const { return scene_.has_value(); }
   bool playing() const { return playing_; }
   /// Follows the scene's motion from time 0 on; before the first frame.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "glisson/io.h"
 #include "view/engine/live_body.h"
@@ -23,11 +24,21 @@ std::vector<Vec3d> displacement_of(const ReadFrame& frame, const std::string& fi
   return displacement;
 }
 
-bool same_body(const BodyShape& known, const TetMesh& mesh) {
-  return known.mesh.tets == mesh.tets && known.mesh.vertices == mesh.vertices;
+bool same_body(const BodyShape& known, const TetMesh& mesh, const std::vector<Triangle>& torn) {
+  return known.torn == torn && known.mesh.tets == mesh.tets && known.mesh.vertices == mesh.vertices;
 }
 
-std::shared_ptr<const BodyShape> shape_of(TetMesh mesh, const RunFolder& run) {
+/// The outer faces of a run's first frame; none of a mesh that is none, as someone else's may be.
+std::shared_ptr<const SkinFaces> skin_of(const TetMesh& mesh) {
+  try {
+    return std::make_shared<const SkinFaces>(mesh);
+  } catch (const std::invalid_argument&) {
+    return nullptr;
+  }
+}
+
+std::shared_ptr<const BodyShape> shape_of(TetMesh mesh, const RunFolder& run, const std::vector<Triangle>& torn,
+                                          std::shared_ptr<const SkinFaces> skin) {
   auto shape = std::make_shared<BodyShape>();
   shape->marks.assign(mesh.vertices.size(), 0);
   const auto mark = [&](const std::vector<std::string>& sets, std::uint8_t value) {
@@ -40,6 +51,8 @@ std::shared_ptr<const BodyShape> shape_of(TetMesh mesh, const RunFolder& run) {
   mark(run.held, 1);
   mark(run.driven, 2);
   shape->mesh = std::move(mesh);
+  shape->torn = torn;
+  shape->skin = std::move(skin);
   return shape;
 }
 
@@ -61,10 +74,13 @@ std::shared_ptr<const LoadedFrame> FrameCache::read(std::size_t number) {
   ReadFrame frame = read_frame(file, kFields);
   auto loaded = std::make_shared<LoadedFrame>();
   loaded->displacement = displacement_of(frame, file);
-  if (!shape_ || !same_body(*shape_, frame.mesh)) {
-    const auto known =
-        std::find_if(kept_.begin(), kept_.end(), [&](const Kept& x) { return same_body(*x.frame->shape, frame.mesh); });
-    shape_ = known != kept_.end() ? known->frame->shape : shape_of(std::move(frame.mesh), run_);
+  if (number == 0 && !skin_) skin_ = skin_of(frame.mesh);
+  static const std::vector<Triangle> kNone;
+  const std::vector<Triangle>& torn = run_.frames[number].torn ? *run_.frames[number].torn : kNone;
+  if (!shape_ || !same_body(*shape_, frame.mesh, torn)) {
+    const auto known = std::find_if(kept_.begin(), kept_.end(),
+                                    [&](const Kept& x) { return same_body(*x.frame->shape, frame.mesh, torn); });
+    shape_ = known != kept_.end() ? known->frame->shape : shape_of(std::move(frame.mesh), run_, torn, skin_);
   }
   loaded->shape = shape_;
   ++reads_;

@@ -45,6 +45,8 @@ class FrameCache {
   std::list<Kept> kept_;                           ///< the last used first
   std::map<std::size_t, std::string> unreadable_;  ///< and why
   std::shared_ptr<const BodyShape> shape_;
+  std::shared_ptr<const SkinFaces>
+      skin_;  ///< of the first frame, once it has been read: what later ones show besides was cut
 };
 
 }  // namespace glisson::view

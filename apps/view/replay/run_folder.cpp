@@ -73,7 +73,7 @@ void take_frames(const fs::path& folder, RunFolder& run) {
     }
     for (const auto& [time, file] : frames) {
       if (!is_file(folder / file)) break;
-      if (run.frames.empty() || time > run.frames.back().time) run.frames.push_back({time, folder / file, {}});
+      if (run.frames.empty() || time > run.frames.back().time) run.frames.push_back({time, folder / file, {}, {}});
     }
     return frames.size();
   }();

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ namespace glisson::view {
 struct RunFrame {
   double time = 0.0;  ///< [s]
   std::filesystem::path file;
-  std::vector<ToolState> instruments;  ///< places, without depth and force
+  std::vector<ToolState> instruments;                   ///< places, without depth and force
+  std::shared_ptr<const std::vector<Triangle>> torn{};  ///< of capsules; none, or the same as that of the frame before
 };
 
 struct RunFolder {

@@ -59,6 +59,18 @@ ToolState place_of(const JsonField& place) {
   return state;
 }
 
+/// Triangles of three vertices each; numbers alone are compared with those of the surface, so that any will do.
+std::vector<Triangle> triangles_of(const JsonField& list) {
+  std::vector<Triangle> triangles(list.size() / 3);
+  for (std::size_t i = 0; i < 3 * triangles.size(); ++i) {
+    const double vertex = list.at(i).number();
+    if (!(vertex >= 0.0 && vertex < 4294967296.0))
+      throw JsonError("torn[" + std::to_string(i) + "]: expected the number of a vertex");
+    triangles[i / 3][i % 3] = static_cast<std::uint32_t>(vertex);
+  }
+  return triangles;
+}
+
 /// One line after the head. @param frame  that its time is looked for from; moves on
 void take_places(const JsonField& x, std::size_t& frame, RunFolder& run) {
   const double time = x.at("time_s").number();
@@ -68,6 +80,15 @@ void take_places(const JsonField& x, std::size_t& frame, RunFolder& run) {
   std::vector<ToolState> places;
   for (std::size_t i = 0; i < list.size(); ++i) places.push_back(place_of(list.at(i)));
   run.frames[frame].instruments = std::move(places);
+  if (const auto torn = x.find("torn"))
+    run.frames[frame].torn = std::make_shared<const std::vector<Triangle>>(triangles_of(*torn));
+}
+
+/// Frames whose line tells of no other tears have those of the frame before.
+void carry_tears_on(std::vector<RunFrame>& frames) {
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    if (!frames[i].torn) frames[i].torn = frames[i - 1].torn;
+  }
 }
 
 }  // namespace
@@ -84,6 +105,7 @@ void take_view_file(const std::filesystem::path& file, RunFolder& run) {
     run.notice += "view.jsonl, line " + std::to_string(number) + ": " + error.what() +
                   "; instruments are shown up to the line before it.\n";
   }
+  carry_tears_on(run.frames);
   if (run.tools.empty())
     run.notice +=
         "There is no view.jsonl: the run is from an older glisson, and forces.csv is shown as that of one tool. Run "

@@ -1,8 +1,7 @@
-// liver_body.cpp — the outside of the liver and its regions; the veins are in liver_veins.cpp.
+// liver_body.cpp — the outside of the liver and its regions; the veins are in liver_veins.cpp, its supports in liver_sets.cpp.
 //
 // All lengths here in millimetres: x to the left, y to the back, z to the head (docs/liver.md).
 #include <algorithm>
-#include <cmath>
 
 #include "base/require_fields.h"
 #include "glisson/liver.h"
@@ -26,7 +25,7 @@ void add_outside(LiverParts& parts) {
   parts.subtract("visceral", {"lobes", "stomach", "kidney", "colon"}, 14);
   parts.ellipsoid("caudate_lobe", {10, 30, 18}, {18, 16, 32}, 2.0);
   parts.unite("with_caudate", {"visceral", "caudate_lobe"}, 8);
-  parts.tube("vena_cava", {{{-2, 60, -100}, 12}, {{0, 54, 0}, 12}, {{4, 46, 100}, 12}});
+  parts.tube("vena_cava", detail::vena_cava());
   parts.ellipsoid("falciform_notch", {20, -52, 0}, {4, 24, 26}, 2.0);
   parts.tube("gallbladder_fossa", {{{-16, -46, -66}, 13}, {{-6, -14, -54}, 11}, {{0, 8, -38}, 6}});
   parts.ellipsoid("porta", {4, 14, -26}, {20, 6, 7}, 2.0);
@@ -36,7 +35,9 @@ void add_outside(LiverParts& parts) {
 }  // namespace
 
 Fault LiverOptions::check() const {
-  const SizeFault fault = check_sizes(sizes, edge, {"tumour", "hepatic_veins", "portal_veins", "parenchyma"});
+  std::vector<std::string> regions{"tumour", "hepatic_veins", "portal_veins", "parenchyma"};
+  if (gallbladder) regions.emplace_back("gallbladder");
+  const SizeFault fault = check_sizes(sizes, edge, regions);
   if (fault.what.empty()) return {};
   return {"(" + fault.key + " of size " + std::to_string(fault.index) + "): " + fault.what, "sizes"};
 }
@@ -48,6 +49,11 @@ ImplicitBody liver_body(const LiverOptions& options) {
   if (options.tumour_radius > 0.0) {
     parts.ball("tumour_ball", options.tumour_center * 1e3, options.tumour_radius * 1e3);
     parts.region("tumour", "tumour_ball", "whole");
+  }
+  if (options.gallbladder) {
+    // A millimetre wider than its bed, so that the two grow together wherever they meet.
+    parts.tube("gallbladder", {{{-16, -46, -66}, 14}, {{-6, -14, -54}, 12}, {{0, 8, -38}, 7}});
+    parts.region("gallbladder");
   }
   const auto edge_near = [&](const std::string& region) {
     double edge = options.edge;
@@ -68,26 +74,7 @@ ImplicitBody liver_body(const LiverOptions& options) {
 
 RegionMesh liver_mesh(const LiverOptions& options, std::function<bool(double)> progress) {
   RegionMesh made = implicit_mesh(liver_body(options), std::move(progress));
-  std::vector<char> seen(made.mesh.vertices.size(), 0);
-  auto& sets = made.mesh.vertex_sets;
-  for (const char* name : {"bare_area", "dome", "visceral_face"}) sets[name] = {};
-  std::vector<Vec3d> normals(made.mesh.vertices.size());
-  for (const Triangle& t : boundary_triangles(made.mesh)) {
-    const Vec3d &a = made.mesh.vertices[t[0]], &b = made.mesh.vertices[t[1]], &c = made.mesh.vertices[t[2]];
-    const Vec3d n = cross(b - a, c - a);
-    for (const std::uint32_t v : t) {
-      normals[v] += n;
-      seen[v] = 1;
-    }
-  }
-  for (std::uint32_t v = 0; v < seen.size(); ++v) {
-    if (!seen[v] || !(norm(normals[v]) > 0.0)) continue;
-    const Vec3d n = unit(normals[v]), p = made.mesh.vertices[v] * (1e3 / options.scale);
-    // Bare: the back of the right lobe and about the vena cava, above the kidney.
-    if (n.y > 0.5 && p.z > -20.0 && p.x > -75.0 && p.x < 25.0) sets["bare_area"].push_back(v);
-    if (n.z > 0.3) sets["dome"].push_back(v);
-    if (n.z < -0.3) sets["visceral_face"].push_back(v);
-  }
+  detail::add_liver_sets(made.mesh, options);
   return made;
 }
 

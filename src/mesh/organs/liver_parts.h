@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "glisson/implicit.h"
+#include "glisson/liver.h"
 
 namespace glisson::detail {
 
@@ -44,6 +45,9 @@ class LiverParts {
     body_.regions.push_back({name, name, false});
   }
 
+  /// A region: a whole shape of the same name.
+  void region(const std::string& name) { body_.regions.push_back({name, name, false}); }
+
   const ImplicitBody& body() const { return body_; }
 
  private:
@@ -58,5 +62,13 @@ class LiverParts {
 
 /// The regions `hepatic_veins` and `portal_veins`, inside the shape `whole`, for edges of these lengths there [mm].
 void add_veins(LiverParts& parts, double hepatic_edge, double portal_edge);
+
+/// The vena cava, which lies in its groove at the back.
+inline std::vector<LiverParts::Point> vena_cava() {
+  return {{{-2, 60, -100}, 12}, {{0, 54, 0}, 12}, {{4, 46, 100}, 12}};
+}
+
+/// The vertex sets of the liver's surface: where it is held, and what it faces.
+void add_liver_sets(TetMesh& mesh, const LiverOptions& options);
 
 }  // namespace glisson::detail

@@ -20,8 +20,10 @@ SectionSpec cylinder_kind() {
 
 SectionSpec liver_kind() {
   return described<LiverOptions>(
-      "A liver of shapes with the regions `parenchyma`, `portal_veins`, `hepatic_veins` and "
-      "`tumour`, and the vertex sets `bare_area`, `dome` and `visceral_face` (docs/liver.md).");
+      "A liver of shapes with the regions `parenchyma`, `portal_veins`, `hepatic_veins`, `tumour` and, where it is "
+      "asked for, "
+      "`gallbladder`, and the vertex sets `bare_area`, `dome`, `visceral_face`, `vena_cava`, `coronary_ligament`, "
+      "`right_triangular_ligament`, `left_triangular_ligament` and `falciform_ligament` (docs/liver.md).");
 }
 
 SectionSpec file_kind() {

@@ -151,6 +151,7 @@ function readFrame(raw: Raw): FrameData {
     instruments: list(raw["instruments"]).map((place) => readPlace(record(place))),
     ...(raw["triangles"] ? { triangles: text(raw["triangles"]) } : {}),
     ...(raw["kinds"] ? { kinds: text(raw["kinds"]) } : {}),
+    ...(Array.isArray(raw["regions"]) ? { regions: raw["regions"].map(text) } : {}),
   };
 }
 

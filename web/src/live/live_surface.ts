@@ -12,6 +12,7 @@ export class LiveSurface implements SurfaceMotion {
   readonly end = 0;
   readonly tissue: string;
   readonly regions: readonly { name: string; triangles: Uint32Array }[];
+  private readonly regionTriangles: readonly Uint32Array[];
   private readonly kinds: Uint8Array | null;
   private readonly newest: Frame;
   private readonly values: Float32Array;
@@ -24,6 +25,7 @@ export class LiveSurface implements SurfaceMotion {
   ) {
     this.tissue = keyframe.tissue;
     this.regions = keyframe.regions;
+    this.regionTriangles = keyframe.regions.map(({ triangles }) => triangles);
     this.kinds = keyframe.kinds;
     this.rest = keyframe.rest;
     this.vertices = keyframe.rest.length / 3;
@@ -35,6 +37,7 @@ export class LiveSurface implements SurfaceMotion {
       displacement: new Float32Array(3 * this.vertices),
       intensity: new Float32Array(this.vertices),
       triangles: this.triangles,
+      regions: this.regionTriangles,
       kinds: this.kinds,
       instruments: [],
     };
@@ -79,5 +82,9 @@ export class LiveSurface implements SurfaceMotion {
 
   kindsAt(): Uint8Array | null {
     return this.kinds;
+  }
+
+  regionsAt(): readonly Uint32Array[] {
+    return this.regionTriangles;
   }
 }

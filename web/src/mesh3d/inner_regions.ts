@@ -42,8 +42,12 @@ export class InnerRegions {
     for (const cap of this.caps) cap.hidden = coloured;
   }
 
-  /** Normals of the moved surface. */
-  update(): void {
+  /** Normals of the moved surface; a region that a cut goes through has other triangles from then on. */
+  update(triangles: readonly Uint32Array[]): void {
+    this.meshes.forEach(({ geometry }, i) => {
+      const now = triangles[i];
+      if (now && geometry.index?.array !== now) geometry.setIndex(new THREE.BufferAttribute(now, 1));
+    });
     if (!this.group.visible) return;
     for (const { geometry } of this.meshes) {
       geometry.computeVertexNormals();

@@ -89,7 +89,7 @@ export class SurfaceModel {
     const { tissue, raw } = coloursOf(timeline.tissue);
     material.raw = raw;
     const rest = timeline.rest.subarray(0, 3 * timeline.vertices);
-    const colourOf = regionTints(tissue, timeline.regions);
+    const colourOf = regionTints(tissue, timeline);
     this.body = new BodySkin(rest, colourOf, material, this.edgeMaterial, fine, time);
     this.body.build(this.shown, this.shownKinds);
     this.held = this.points(1, "square");
@@ -184,7 +184,7 @@ export class SurfaceModel {
     this.positions.needsUpdate = true;
     this.showTriangles(this.timeline.trianglesAt(time), this.timeline.kindsAt(time));
     this.body.update(this.positions.array as Float32Array, this.intensity);
-    this.inner.update();
+    this.inner.update(this.timeline.regionsAt(time));
     this.instruments.update(time);
     this.material.tools = this.instruments.near();
   }

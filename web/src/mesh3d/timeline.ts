@@ -7,6 +7,7 @@ export interface Frame {
   displacement: Float32Array; // xyz per vertex [m]
   intensity: Float32Array; // per vertex [-]
   triangles: Uint32Array; // of the surface from here on
+  regions: readonly Uint32Array[]; // triangles of each inner region, likewise
   kinds: Uint8Array | null; // of each of them: 0 skin, 1 a face that was cut, 2 skin whose capsule is torn; null: all skin
   instruments: readonly InstrumentPlace[];
 }
@@ -26,6 +27,7 @@ export interface SurfaceMotion {
   sample(time: number, exaggeration: number, positions: Float32Array, intensity: Float32Array): void;
   trianglesAt(time: number): Uint32Array;
   kindsAt(time: number): Uint8Array | null;
+  regionsAt(time: number): readonly Uint32Array[];
 }
 
 export class Timeline implements SurfaceMotion {
@@ -53,6 +55,10 @@ export class Timeline implements SurfaceMotion {
       triangles: wholeTriangles(decodeU32(triangles), this.vertices),
     }));
     let triangles = this.triangles;
+    let regions: readonly Uint32Array[] = this.regions.map((region) => region.triangles);
+    const firstRegions = regions;
+    const regionsOf = (lists: readonly string[] | undefined): readonly Uint32Array[] =>
+      lists ? this.regions.map((_, i) => wholeTriangles(decodeU32(lists[i] ?? ""), this.vertices)) : regions;
     let kinds: Uint8Array | null = null;
     const kindsOf = (bytes: string | undefined, changed: boolean): Uint8Array | null => {
       if (!bytes) return changed ? null : kinds;
@@ -61,6 +67,7 @@ export class Timeline implements SurfaceMotion {
     const frames = surface.frames.map((frame) => ({
       time: frame.time_s,
       triangles: (triangles = frame.triangles ? wholeTriangles(decodeU32(frame.triangles), this.vertices) : triangles),
+      regions: (regions = regionsOf(frame.regions)),
       kinds: (kinds = kindsOf(frame.kinds, frame.triangles !== undefined)),
       instruments: frame.instruments,
       displacement: fit(decodeI16Scaled(frame.displacement, frame.displacement_scale_m), this.zeros(3)),
@@ -72,6 +79,7 @@ export class Timeline implements SurfaceMotion {
       displacement: this.zeros(3),
       intensity: this.zeros(1),
       triangles: this.triangles,
+      regions: firstRegions,
       kinds: null,
       instruments: [],
     };
@@ -126,6 +134,12 @@ export class Timeline implements SurfaceMotion {
   kindsAt(time: number): Uint8Array | null {
     const { before, after, share } = this.at(time);
     return share < 1 ? before.kinds : after.kinds;
+  }
+
+  /** Triangles of the inner regions at a time. */
+  regionsAt(time: number): readonly Uint32Array[] {
+    const { before, after, share } = this.at(time);
+    return share < 1 ? before.regions : after.regions;
   }
 
   /** Largest intensity shown at a time. */

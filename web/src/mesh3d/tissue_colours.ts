@@ -39,10 +39,10 @@ export function regionColours(name: string, index: number): TissueColours {
 
 export type Tint = readonly [number, number, number];
 
-/** Colour of a triangle: of the region whose surface it is part of, else of the tissue. */
+/** Colour of a triangle: of the region whose surface it is part of at any time, else of the tissue. */
 export function regionTints(
   tissue: string,
-  regions: SurfaceMotion["regions"],
+  { regions, frames }: Pick<SurfaceMotion, "regions" | "frames">,
 ): (all: Uint32Array) => (t: number) => Tint {
   const tint = (colour: string): Tint => new THREE.Color(colour).toArray() as unknown as Tint;
   const key = (all: Uint32Array, at: number) => [all[at]!, all[at + 1]!, all[at + 2]!].sort((a, b) => a - b).join(" ");
@@ -50,7 +50,9 @@ export function regionTints(
   const known = new Map<string, Tint>();
   regions.forEach(({ name, triangles }, i) => {
     const colour = tint(regionColours(name, i).tissue);
-    for (let at = 0; at < triangles.length; at += 3) known.set(key(triangles, at), colour);
+    for (const each of new Set([triangles, ...frames.map((frame) => frame.regions[i] ?? triangles)])) {
+      for (let at = 0; at < each.length; at += 3) known.set(key(each, at), colour);
+    }
   });
   if (known.size === 0) return () => () => own;
   return (all) => (t) => known.get(key(all, 3 * t)) ?? own;
