@@ -3,39 +3,11 @@
 #include <Eigen/SparseCholesky>
 
 #include "models/boundary.h"
+#include "models/linear_stiffness.h"
 #include "models/stopwatch.h"
 
 namespace glisson::models {
 namespace {
-
-using Sparse = Eigen::SparseMatrix<double>;
-
-/// K_ab = V (λ s_a s_bᵀ + μ s_b s_aᵀ + μ (s_a·s_b) I).
-Sparse stiffness_matrix(const Problem& problem) {
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(144 * problem.mesh.tets.size());
-  for (std::size_t t = 0; t < problem.mesh.tets.size(); ++t) {
-    const RestTet rest = rest_tet(problem.mesh, t);
-    const LameParameters lame = problem.tissue_of(t).lame();
-    for (std::size_t a = 0; a < 4; ++a) {
-      for (std::size_t b = 0; b < 4; ++b) {
-        const double along = lame.mu * dot(rest.s[a], rest.s[b]);
-        for (std::size_t i = 0; i < 3; ++i) {
-          for (std::size_t j = 0; j < 3; ++j) {
-            const double k = lame.lambda * rest.s[a][i] * rest.s[b][j] + lame.mu * rest.s[b][i] * rest.s[a][j] +
-                             (i == j ? along : 0.0);
-            entries.emplace_back(static_cast<int>(3 * problem.mesh.tets[t][a] + i),
-                                 static_cast<int>(3 * problem.mesh.tets[t][b] + j), rest.volume * k);
-          }
-        }
-      }
-    }
-  }
-  const auto n = static_cast<Eigen::Index>(3 * problem.mesh.vertices.size());
-  Sparse matrix(n, n);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
 
 /// The matrix with rows and columns of prescribed components replaced by those of the identity.
 Sparse of_free_components(const Sparse& matrix, const Boundary& boundary) {
@@ -51,14 +23,6 @@ Sparse of_free_components(const Sparse& matrix, const Boundary& boundary) {
   return free;
 }
 
-Eigen::VectorXd flat(const std::vector<Vec3d>& vectors) {
-  Eigen::VectorXd out(static_cast<Eigen::Index>(3 * vectors.size()));
-  for (std::size_t v = 0; v < vectors.size(); ++v) {
-    for (std::size_t i = 0; i < 3; ++i) out[static_cast<Eigen::Index>(3 * v + i)] = vectors[v][i];
-  }
-  return out;
-}
-
 }  // namespace
 
 Answer linear_fem(const Problem& problem, const Effort&, const Stop& stop) {
@@ -66,7 +30,7 @@ Answer linear_fem(const Problem& problem, const Effort&, const Stop& stop) {
   Stopwatch watch;
   const Boundary boundary(problem);
   const std::size_t n = problem.mesh.vertices.size();
-  const Sparse matrix = stiffness_matrix(problem);
+  const Sparse matrix = stiffness_matrix(problem, [](std::size_t) { return true; });
   const Eigen::SimplicialLDLT<Sparse> factor(of_free_components(matrix, boundary));
   if (factor.info() != Eigen::Success) {
     answer.trouble = "the stiffness matrix is singular: supports and tools leave a rigid motion free";

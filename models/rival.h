@@ -92,6 +92,7 @@ Answer spring_mass_by_length(const Problem& problem, const Effort& effort, const
 Answer spring_mass_with_volume(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer chain_mail(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer linear_fem(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer hybrid(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer xpbd(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer projective_dynamics(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer linear_tensor_mass(const Problem& problem, const Effort& effort, const Stop& stop);

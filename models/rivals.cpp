@@ -26,6 +26,8 @@ std::span<const Rival> rivals() {
       Rival{"linear_fem", "linear finite elements, one factor for all", "BroNielsen1998",
             "large rotation, a law, cutting without a new factor", kOnce, linear_fem},
       Rival{"linear_tensor_mass", "linear tensor-mass, explicit", "Cotin2000", kNoTurn, kOnce, linear_tensor_mass},
+      Rival{"hybrid", "half condensed, half linear tensor-mass", "Cotin2000",
+            "large rotation, a law, cutting the condensed half", kOnce, hybrid},
       Rival{"schwartz_tensor_mass", "tensor-mass with a law of stiffness, explicit", "Schwartz2002", kNoTurn, kOnce,
             schwartz_tensor_mass},
       Rival{"green_tensor_mass", "St Venant–Kirchhoff tensor-mass, explicit", "Picinbono2003",

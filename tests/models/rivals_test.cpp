@@ -84,6 +84,20 @@ TEST(LinearFem, SwellsWhereItIsTurned) {
   EXPECT_LT(norm(projective_dynamics(p, {200, 20}, kNever).forces[1]), 0.01 * kYoung * kArea);
 }
 
+// Condensed or not, a linear body is the same: at the tool, where the halves meet and inside the condensed half.
+TEST(Hybrid, IsTheLinearBody) {
+  Problem p = cube({3, 3, 6});
+  p.gravity = {0, -2.0, 0};
+  p.supports.push_back({p.mesh.vertex_set("z_min"), {}});
+  p.tools.push_back({p.mesh.vertex_set("z_max"), {}, ramp_to({0.001, 0, -0.002}, 1.0)});
+  const Answer whole = linear_fem(p, {}, kNever), halves = hybrid(p, {}, kNever);
+  ASSERT_EQ(halves.forces.size(), 2U) << halves.trouble;
+  EXPECT_LE(norm(halves.forces[1] - whole.forces[1]), 2e-3 * norm(whole.forces[1]));
+  for (std::size_t v = 0; v < p.mesh.vertices.size(); ++v) {
+    EXPECT_LE(norm(halves.displacement[v] - whole.displacement[v]), 1e-5) << v;
+  }
+}
+
 /// Force per area of W = μ/2 (tr FᵀF − 3) + λ'/2 (J − 1 − μ/λ')², stretched to `z` with free sides.
 double macklin_stress(double z) {
   const LameParameters lame = lame_from_young(kYoung, kPoisson);

@@ -1,0 +1,49 @@
+#include "models/linear_stiffness.h"
+
+namespace glisson::models {
+
+Sparse stiffness_matrix(const Problem& problem, const std::function<bool(std::size_t)>& takes) {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(144 * problem.mesh.tets.size());
+  for (std::size_t t = 0; t < problem.mesh.tets.size(); ++t) {
+    if (!takes(t)) continue;
+    const RestTet rest = rest_tet(problem.mesh, t);
+    const LameParameters lame = problem.tissue_of(t).lame();
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b < 4; ++b) {
+        const double along = lame.mu * dot(rest.s[a], rest.s[b]);
+        for (std::size_t i = 0; i < 3; ++i) {
+          for (std::size_t j = 0; j < 3; ++j) {
+            const double k = lame.lambda * rest.s[a][i] * rest.s[b][j] + lame.mu * rest.s[b][i] * rest.s[a][j] +
+                             (i == j ? along : 0.0);
+            entries.emplace_back(static_cast<int>(3 * problem.mesh.tets[t][a] + i),
+                                 static_cast<int>(3 * problem.mesh.tets[t][b] + j), rest.volume * k);
+          }
+        }
+      }
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(3 * problem.mesh.vertices.size());
+  Sparse matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+Eigen::VectorXd flat(const std::vector<Vec3d>& vectors) {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(3 * vectors.size()));
+  for (std::size_t v = 0; v < vectors.size(); ++v) {
+    for (std::size_t i = 0; i < 3; ++i) out[static_cast<Eigen::Index>(3 * v + i)] = vectors[v][i];
+  }
+  return out;
+}
+
+std::vector<Vec3d> vectors_of(const Eigen::VectorXd& flat) {
+  std::vector<Vec3d> vectors(static_cast<std::size_t>(flat.size() / 3));
+  for (std::size_t v = 0; v < vectors.size(); ++v) {
+    const auto k = static_cast<Eigen::Index>(3 * v);
+    vectors[v] = {flat[k], flat[k + 1], flat[k + 2]};
+  }
+  return vectors;
+}
+
+}  // namespace glisson::models

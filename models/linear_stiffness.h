@@ -1,0 +1,22 @@
+// linear_stiffness.h — the sparse matrix of linear elasticity, for the models that solve with it.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <functional>
+#include <vector>
+
+#include "models/boundary.h"
+
+namespace glisson::models {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// K_ab = V (λ s_a s_bᵀ + μ s_b s_aᵀ + μ (s_a·s_b) I) of the tets that are taken, rows 3 v + axis.
+Sparse stiffness_matrix(const Problem& problem, const std::function<bool(std::size_t tet)>& takes);
+
+/// The components of all vertices, 3 v + axis.
+Eigen::VectorXd flat(const std::vector<Vec3d>& vectors);
+/// The same back.
+std::vector<Vec3d> vectors_of(const Eigen::VectorXd& flat);
+
+}  // namespace glisson::models
