@@ -12,6 +12,7 @@
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "compare/comparison_report.h"
+#include "report/output_file.h"
 #include "report/output_folder.h"
 
 namespace glisson::app {
@@ -55,6 +56,7 @@ int run_comparison(const CompareOptions& options) {
   const fs::path folder =
       options.out.empty() ? fs::path("out") / (scene.file.stem().string() + "_compare") : fs::path(options.out);
   prepare_output_folder(folder);
+  write_whole(folder / "scene.toml", scene.source);
   catch_interrupts();
   MeshCache meshes(options.quiet);
   const auto progress = [&](const std::string& what) {
@@ -64,7 +66,7 @@ int run_comparison(const CompareOptions& options) {
   if (comparison.reference.forces.size() == comparison.stations.size()) {
     say("{}", comparison_table(comparison));
     const nlohmann::ordered_json json = comparison_json(comparison, scene.file.stem().string());
-    write_json((folder / "compare.json").string(), json);
+    write_whole(folder / "compare.json", json.dump(2) + "\n");
     write_json(options.json, json);
     write_whole(folder / "report.html", comparison_page(comparison));
     say("{}{}\n", options.quiet ? "" : "report: ", (folder / "report.html").string());

@@ -59,6 +59,9 @@ TEST_F(Compare, GivesARowToEachModel) {
   EXPECT_NEAR(glisson, at_rest, 0.02) << "in steps and at rest";
   EXPECT_GT(springs, 0.0);
   EXPECT_GT(json["reference"]["tets"].get<int>(), 48);
+  EXPECT_THAT(run({"compare", scene, "--out", (folder_ / "o").string(), "--set", "compare.models=[\"linear_fem\"]"}),
+              Exits(0))
+      << "into the same folder again";
   const nlohmann::json page = report_data(folder_ / "o/report.html");
   EXPECT_EQ(page["scenes"][0]["charts"].size(), 2U);
   EXPECT_THAT(outcome.out, ::testing::HasSubstr("within 1 % of the force"));
