@@ -153,10 +153,18 @@ Reference make_reference(const std::vector<Problem>& problems, const std::atomic
 }  // namespace
 
 const ComparedRow* Comparison::quickest(std::string_view model) const {
+  const auto within = [&](const ComparedRow& row) {
+    return row.error_force >= 0.0 && row.error_force <= target && row.error_surface <= target;
+  };
   const ComparedRow* best = nullptr;
   for (const ComparedRow& row : rows) {
-    if (row.model != model || row.error_force < 0.0 || row.error_force > target) continue;
-    if (best == nullptr || row.wall_s() < best->wall_s()) best = &row;
+    if (row.model != model || (best != nullptr && best->wall_s() <= row.wall_s())) continue;
+    const bool stays = std::all_of(rows.begin(), rows.end(), [&](const ComparedRow& more) {
+      const bool spends_more = more.model == model && more.tets >= row.tets && more.effort.steps >= row.effort.steps &&
+                               more.effort.iterations >= row.effort.iterations;
+      return !spends_more || within(more);
+    });
+    if (stays) best = &row;
   }
   return best;
 }

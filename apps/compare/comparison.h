@@ -41,7 +41,8 @@ struct Comparison {
   Reference reference;
   std::vector<ComparedRow> rows;
 
-  /// Of a model's rows that keep the error of the force below the target, the one that took the shortest; null: none.
+  /// Of a model's rows that keep the errors of force and surface below the target, and keep them there on finer meshes and with more steps
+  /// and iterations, the one that took the shortest; null: none.
   const ComparedRow* quickest(std::string_view model) const;
 };
 

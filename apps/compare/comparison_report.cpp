@@ -63,7 +63,8 @@ std::string target_text(const Comparison& c) {
       missed += fmt::format("  {:<24} {:>10}\n", rival.name, least < 0.0 ? "no " + heading_of(c) : percent(least));
   }
   std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) { return a->wall_s() < b->wall_s(); });
-  std::string text = fmt::format("within {:.3g} % of the {}:\n", 100.0 * c.target, heading_of(c));
+  std::string text = fmt::format("within {:.3g} % of the {} and the surface, there and with all that is finer:\n",
+                                 100.0 * c.target, heading_of(c));
   for (const ComparedRow* row : best) {
     text += fmt::format("  {:<24} {:>10.3g} s  {:>6.3g} times the quickest\n", row->model, row->wall_s(),
                         row->wall_s() / best.front()->wall_s());

@@ -64,7 +64,7 @@ TEST_F(Compare, GivesARowToEachModel) {
       << "into the same folder again";
   const nlohmann::json page = report_data(folder_ / "o/report.html");
   EXPECT_EQ(page["scenes"][0]["charts"].size(), 2U);
-  EXPECT_THAT(outcome.out, ::testing::HasSubstr("within 1 % of the force"));
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("within 1 % of the force and the surface"));
 }
 
 TEST_F(Compare, SaysWhatItCannotGive) {
