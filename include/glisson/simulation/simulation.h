@@ -104,7 +104,7 @@ inline constexpr Word<MassScalingKind> kWords<MassScalingKind>[] = {
 inline constexpr int kMostDragStages = 8;
 /// The same beside needles, tools in contact and containers that are not bonded: what they hold comes and goes, and what is let go moves for
 /// a step with the lumped mass alone. With more the tissue yields to them.
-inline constexpr int kMostDragStagesBesideInstruments = 5;
+inline constexpr int kMostDragStagesBesideInstruments = 4;
 /// The same beside interactions that do not tell what they hold: blades, a program's own.
 inline constexpr int kMostDragStagesBesideOthers = 3;
 
@@ -169,7 +169,7 @@ struct SimulationOptions {
               "semi_implicit (docs/integrators.md)"),
         field("drag_stages", &SimulationOptions::drag_stages, between(1, kMostDragStages),
               "stages in which the viscous force is taken within a step of central_difference: they make steps longer "
-              "where viscosity_Pa_s limits them (docs/integrators.md); at most 5 beside instruments and containers "
+              "where viscosity_Pa_s limits them (docs/integrators.md); at most 4 beside instruments and containers "
               "that are not bonded, 3 beside blades"),
         field("implicit", &SimulationOptions::implicit, "options of the integrators implicit and quasi_static"),
         field("precision", &SimulationOptions::precision, "precision of the element arithmetic"),
