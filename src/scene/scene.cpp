@@ -240,7 +240,7 @@ int most_drag_stages(const Variant& variant) {
                  ? kMostDragStagesBesideInstruments
                  : kMostDragStages;
   for (const InstrumentSpec& x : variant.instruments) {
-    const bool tells = std::holds_alternative<NeedleOptions>(x.what) || std::holds_alternative<ContactOptions>(x.what);
+    const bool tells = std::holds_alternative<NeedleOptions>(x.what);
     most = std::min(most, tells ? kMostDragStagesBesideInstruments : kMostDragStagesBesideOthers);
   }
   return most;

@@ -182,7 +182,7 @@ void ContactTool::tell_held(const InteractionStep& step, std::vector<HeldRows>& 
   if (!mine.rows.empty()) held.push_back(std::move(mine));
 }
 
-int ContactTool::most_drag_stages() const { return kMostDragStagesBesideInstruments; }
+int ContactTool::most_drag_stages() const { return kMostDragStagesBesideOthers; }
 
 /// Tells the ledger of all impulses: what presses is contact's, what rubs friction's.
 void ContactTool::book(const InteractionStep& step) const {
