@@ -120,14 +120,14 @@ void check_integrator(const Variant& variant, const Node& experiment, Problems& 
 void check_stages(const Variant& variant, const Node& experiment, Problems& problems) {
   const int stages = variant.simulation.drag_stages, most = most_drag_stages(variant);
   if (stages <= most) return;
-  problems.add(experiment.find("motion")->find("drag_stages")->where, "motion.drag_stages",
-               std::to_string(stages) + " is outside the allowed range beside " +
-                   (most == kMostDragStagesBesideInstruments
-                        ? "needles, instruments in contact and containers that are not bonded"
-                        : "blades and a program's own instruments") +
-                   ", 1 to " + std::to_string(most) +
-                   ": with more the tissue would yield to them; take integrator = \"implicit\" "
-                   "for longer steps");
+  problems.add(
+      experiment.find("motion")->find("drag_stages")->where, "motion.drag_stages",
+      std::to_string(stages) + " is outside the allowed range beside " +
+          (most == kMostDragStagesBesideInstruments ? "needles and containers that are not bonded"
+                                                    : "tools in contact, blades and a program's own instruments") +
+          ", 1 to " + std::to_string(most) +
+          ": with more the tissue would yield to them; take integrator = \"implicit\" "
+          "for longer steps");
 }
 
 /// Reads the file of a recorded motion along a direction.
