@@ -337,13 +337,11 @@ bool can_drag_in_stages(const Variant& v) {
 
 /// Where viscosity keeps an explicit step short, the stages of the viscous force that make a simulated second cheapest.
 void print_stages(const Variant& v, const MeshLoader& load, const Taste& taste) {
-  constexpr double kCost = 0.5;               // of a stage, in steps
-  constexpr int kExactBesideInstruments = 2;  // stages that leave a tool's force as it is
+  constexpr double kCost = 0.5;  // of a stage, in steps
   if (!can_drag_in_stages(v)) return;
-  const bool acts = !v.instruments.empty() || v.container || !v.capsules.empty();
   int best = 1;
   double pace = 1.0, growth = 1.0;
-  for (int n = 2; n <= (acts ? kExactBesideInstruments : kMostDragStages); ++n) {
+  for (int n = 2; n <= most_drag_stages(v); ++n) {
     Variant staged = v;
     staged.simulation.step.reset();
     staged.simulation.drag_stages = n;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "glisson/simulation/integrator.h"
+#include "glisson/simulation/simulation.h"
 
 namespace glisson {
 
@@ -18,6 +19,28 @@ bool is_among(std::span<const std::uint32_t> ascending, std::uint32_t vertex) {
 }
 
 }  // namespace
+
+bool HeldRows::Row::operator==(const Row& o) const {
+  const auto same = [](const VertexWeight& a, const VertexWeight& b) {
+    return a.vertex == b.vertex && a.weight == b.weight;
+  };
+  return direction == o.direction && std::ranges::equal(mean, o.mean, same);
+}
+
+void HeldRows::Row::archive(Archive& ar) {
+  auto size = static_cast<std::uint32_t>(mean.size());
+  ar(size, direction);
+  ar.check(size <= ar.left());
+  mean.resize(size);
+  for (VertexWeight& w : mean) ar(w.vertex, w.weight);
+}
+
+void HeldRows::archive(Archive& ar) {
+  ar(rows, compliance);
+  ar.check(compliance.empty() || compliance.size() == rows.size() * rows.size());
+}
+
+int Interaction::most_drag_stages() const { return kMostDragStagesBesideOthers; }
 
 std::string Interaction::refuses_long_steps() const {
   return "acts in short steps; take integrator = " + supporting_integrators();
@@ -135,6 +158,11 @@ void Interactions::constrain(std::size_t interaction, StepCompliance& compliance
   step_.mobility = {};
   step_.compliance = &compliance;
   all_[interaction]->constrain(step_);
+}
+
+void Interactions::tell_held(std::vector<HeldRows>& held) const {
+  held.clear();
+  for (const std::shared_ptr<Interaction>& x : all_) x->tell_held(step_, held);
 }
 
 void Interactions::clear_impulses() {

@@ -53,6 +53,8 @@ class Interactions {
   void constrain(std::span<const Vec3d> mobility);
   /// In a long step.
   void constrain(std::size_t interaction, StepCompliance& compliance);
+  /// What impulses held in this step.
+  void tell_held(std::vector<HeldRows>& held) const;
   void clear_impulses();
   /// Takes them back to where their archives were written.
   void restore(std::span<const std::string> archives);

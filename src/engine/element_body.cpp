@@ -7,6 +7,7 @@
 #include "element/drag_stages.h"
 #include "element/flush_denormals.h"
 #include "engine/kernels/response_kernels.h"
+#include "engine/stage_holds.h"
 
 namespace glisson::engine {
 namespace {
@@ -50,6 +51,16 @@ void ElementBody::evaluate(bool moves) {
   since_memory_ = 0.0;
 }
 
+/// Takes what instruments hold from the changes of a stage.
+void ElementBody::hold_rows() {
+  if (holds_ == nullptr) return;
+  held_changes_.clear();
+  for (const std::uint32_t place : holds_->places()) held_changes_.push_back(stage_change_[active_[place].vertex]);
+  holds_->project(held_changes_);
+  std::size_t k = 0;
+  for (const std::uint32_t place : holds_->places()) stage_change_[active_[place].vertex] = held_changes_[k++];
+}
+
 /// The viscous force in stages (element/drag_stages.h), from that at v₋.
 void ElementBody::run_drag_stages(double h, const Vec3d& gravity) {
   drag_.clear();
@@ -71,6 +82,7 @@ void ElementBody::run_drag_stages(double h, const Vec3d& gravity) {
         if (3 * i < held_.size() && held_[3 * i + axis] != 0) stage_change_[i][axis] = 0.0;
       }
     }
+    hold_rows();
   }
   viscous_.swap(stage_sum_);
 }

@@ -42,6 +42,7 @@ class ElementBody final : public MovingBody {
   std::span<RestingVertex> resting() override { return resting_; }
   void hold_in_stages(std::span<const char> components) override { held_.assign(components.begin(), components.end()); }
   void push_in_stages(std::span<const Vec3d> outer) override { outer_.assign(outer.begin(), outer.end()); }
+  void project_stages(StageHolds* holds) override { holds_ = holds; }
   void place_active() override;
   void inertia_changed(std::span<const std::uint32_t>) override {}  // it asks the body
   void list_above(std::span<const double> stiffening) override;
@@ -51,6 +52,7 @@ class ElementBody final : public MovingBody {
   void make_operator();
   void evaluate(bool moves);
   void run_drag_stages(double h, const Vec3d& gravity);
+  void hold_rows();
   void bring_memory_up_to_date(double since);
   void book(std::size_t vertex, const Vec3d& before, const Vec3d& weight);
 
@@ -62,6 +64,8 @@ class ElementBody final : public MovingBody {
   std::vector<double> damping_, stages_;   ///< stages of drag, as shares of a step
   std::vector<LameParameters> drag_;       ///< per tissue block [Pa s]
   std::vector<Vec3d> stage_change_, stage_sum_, pull_, outer_;  ///< δ, A of submesh_drag.cpp; C δ; on active vertices
+  StageHolds* holds_ = nullptr;
+  std::vector<Vec3d> held_changes_;
   std::vector<Vec3d> u_, v_, elastic_, viscous_;
   std::vector<char> is_active_, rests_, held_;
   std::vector<ActiveVertex> active_;

@@ -23,6 +23,10 @@
 
 namespace glisson {
 
+namespace engine {
+class StageHolds;
+}
+
 /// Energies per unit time at a kick, with v₋ (before) and v₊ (after) [W]; kinetic is ½ Σ m v₋·v₊ [J].
 struct KickPower {
   double elastic = 0.0, viscous = 0.0, damping = 0.0, tools = 0.0, loads = 0.0;  ///< on the tissue
@@ -103,6 +107,8 @@ class MovingBody {
   virtual void hold_in_stages(std::span<const char> components) = 0;
   /// Forces from outside in the last step, which stages of drag go by, too. @param outer  per active vertex [N]
   virtual void push_in_stages(std::span<const Vec3d> outer) = 0;
+  /// What instruments hold, for the next advance(); null: nothing.
+  virtual void project_stages(engine::StageHolds* holds) = 0;
 
   /// Follows Body::stiff_mass where that has changed. @param vertices  where
   virtual void inertia_changed(std::span<const std::uint32_t> vertices) = 0;

@@ -53,6 +53,7 @@ class SubmeshBody final : public MovingBody {
   std::span<RestingVertex> resting() override { return resting_; }
   void hold_in_stages(std::span<const char> components) override;
   void push_in_stages(std::span<const Vec3d> outer) override { outer_.assign(outer.begin(), outer.end()); }
+  void project_stages(StageHolds* holds) override { holds_ = holds; }
   void place_active() override;
   void inertia_changed(std::span<const std::uint32_t> vertices) override;
   void list_above(std::span<const double> stiffening) override {
@@ -140,6 +141,7 @@ class SubmeshBody final : public MovingBody {
   void make_memory_explicit();
   void make_room_for_stages();
   void run_drag_stages(const Step& step);
+  void hold_rows();
   void drag_submesh(const Submesh& part, Scratch& scratch);
   void drag_elements(const Submesh& part, Scratch& scratch) const;
   void begin_stages(std::size_t first, std::size_t n, std::span<const Watch> active, const float* elastic,
@@ -205,6 +207,8 @@ class SubmeshBody final : public MovingBody {
   LaneVector<float> stage_elastic_, stage_viscous_;  ///< E and V of DragStage, a force record for each of the state
   LaneVector<float> stage_sums_;                     ///< A; empty: there is one stage
   std::vector<Vec3d> outer_;                         ///< on each active vertex, in the last step [N]
+  StageHolds* holds_ = nullptr;
+  std::vector<Vec3d> held_changes_;
   std::vector<ActiveVertex> active_;
   std::vector<RestingVertex> resting_;
   std::vector<char> rests_;           ///< per record

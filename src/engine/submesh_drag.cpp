@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "element/flush_denormals.h"
+#include "engine/stage_holds.h"
 #include "engine/submesh_scratch.h"
 
 namespace glisson::engine {
@@ -125,12 +126,29 @@ void SubmeshBody::drag_submesh(const Submesh& part, Scratch& scratch) {
               slots_viscous_.data() + part.first_slot * kForceFloats);
 }
 
+/// Takes what instruments hold from the changes of the last stage.
+void SubmeshBody::hold_rows() {
+  if (holds_ == nullptr) return;
+  const std::span<const std::uint32_t> places = holds_->places();
+  const auto change_at = [&](std::uint32_t place) {
+    return stage_changes_.data() + 4 * std::size_t{submeshes_.record_of_vertex[active_[place].vertex]};
+  };
+  held_changes_.clear();
+  for (const std::uint32_t place : places) {
+    const double* change = change_at(place);
+    held_changes_.push_back({change[0], change[1], change[2]});
+  }
+  holds_->project(held_changes_);
+  for (std::size_t k = 0; k < places.size(); ++k) put(held_changes_[k], change_at(places[k]));
+}
+
 /// All stages but the first, and the end of the step. Interior changes are read by their own submesh alone, and those of the
 /// interface are written when all submeshes are done.
 void SubmeshBody::run_drag_stages(const Step& step) {
   const Interface& shared = submeshes_.interface;
   for (std::size_t stage = 1; stage < stages_.size(); ++stage) {
     const bool last = stage + 1 == stages_.size();
+    hold_rows();
     pool_.run(submeshes_.parts.size(), [&](std::size_t s, std::size_t thread) {
       const Submesh& part = submeshes_.parts[s];
       const FlushDenormals flush;

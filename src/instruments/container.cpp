@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "base/require_fields.h"
+#include "glisson/simulation/simulation.h"
 #include "instruments/contact/contact_books.h"
 #include "instruments/contact/contact_reach.h"
 
@@ -400,6 +401,23 @@ void Container::constrain(const InteractionStep& step) {
   }
   if (s.bonds.size() > bonds_before) s.list_bonds();
   s.hold_bonds(step);
+}
+
+void Container::tell_held(const InteractionStep& step, std::vector<HeldRows>& held) const {
+  const State& s = *state_;
+  HeldRows mine;
+  for (const ContactRow& row : s.rows) glisson::tell_held(row, step, mine);
+  for (const State::Hold& hold : s.holds) {
+    const std::uint32_t place = step.place_of[hold.vertex];
+    if (place == InteractionStep::kNowhere) continue;
+    const Vec3d off = step.position(place) + step.vertices[place].velocity * step.h - hold.there;
+    if (norm(off) <= kStill * s.size) glisson::tell_held(place, step, mine);
+  }
+  if (!mine.rows.empty()) held.push_back(std::move(mine));
+}
+
+int Container::most_drag_stages() const {
+  return state_->options.bonded ? kMostDragStages : kMostDragStagesBesideInstruments;
 }
 
 bool Container::add_contact(std::span<Vec3d> force, std::span<double> pressing) const {

@@ -129,14 +129,16 @@ void check_integrator(const Variant& variant, const Node& experiment, Problems& 
 
 /// Complains where more stages are asked for than go together with what acts beside supports and tools.
 void check_stages(const Variant& variant, const Node& experiment, Problems& problems) {
-  const int stages = variant.simulation.drag_stages;
-  const bool acts = !variant.instruments.empty() || variant.container || !variant.capsules.empty();
-  if (!acts || stages <= kMostDragStagesBesideInstruments) return;
-  problems.add(experiment.find("motion")->find("drag_stages")->where, "motion.drag_stages",
-               std::to_string(stages) +
-                   " is outside the allowed range beside [[instrument]], [container] and [[capsule]], 1 to " +
-                   std::to_string(kMostDragStagesBesideInstruments) +
-                   ": stages know their forces from the last step, and a pressed body would yield to them");
+  const int stages = variant.simulation.drag_stages, most = most_drag_stages(variant);
+  if (stages <= most) return;
+  problems.add(
+      experiment.find("motion")->find("drag_stages")->where, "motion.drag_stages",
+      std::to_string(stages) + " is outside the allowed range beside " +
+          (most == kMostDragStagesBesideInstruments ? "needles and containers that are not bonded"
+                                                    : "tools in contact, blades and a program's own instruments") +
+          ", 1 to " + std::to_string(most) +
+          ": with more the tissue would yield to them; take integrator = \"implicit\" "
+          "for longer steps");
 }
 
 /// Reads the file of a recorded motion along a direction.
@@ -243,6 +245,17 @@ void load_measured(Scene& scene, const Node& node, const std::filesystem::path& 
 }
 
 }  // namespace
+
+int most_drag_stages(const Variant& variant) {
+  int most = variant.container && variant.container->hold != ContainerSpec::Hold::bonded
+                 ? kMostDragStagesBesideInstruments
+                 : kMostDragStages;
+  for (const InstrumentSpec& x : variant.instruments) {
+    const bool tells = std::holds_alternative<NeedleOptions>(x.what);
+    most = std::min(most, tells ? kMostDragStagesBesideInstruments : kMostDragStagesBesideOthers);
+  }
+  return most;
+}
 
 Variant scene::read_variant(const Node& experiment, const std::filesystem::path& base, Problems& problems) {
   Variant variant;

@@ -13,6 +13,7 @@ namespace glisson::test {
 struct Insertion {
   CylinderOptions mesh{.radius = 0.03, .height = 0.04, .radial_cells = 6, .axial_cells = 8, .grading = 3.0};
   double youngs_modulus = 5000.0;
+  double viscosity = 0.0;
   std::vector<MaxwellBranch> maxwell{};
   NeedleOptions needle{};
   std::vector<Stroke> strokes{{.to = {0, 0, -0.02}, .velocity = 0.01, .ramp = 0.0, .rest = 0.0}};
@@ -58,6 +59,7 @@ inline Inserted insert(const Insertion& o) {
   Tissue tissue;
   tissue.youngs_modulus = o.youngs_modulus;
   tissue.poisson_ratio = 0.45;
+  tissue.viscosity = o.viscosity;
   tissue.maxwell = o.maxwell;
   tissue.maxwell_part = MaxwellPart::all;
   std::vector<std::uint32_t> held = mesh.vertex_sets.at("bottom");

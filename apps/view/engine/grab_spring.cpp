@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "glisson/simulation/simulation.h"
+
 namespace glisson::view {
 namespace {
 
@@ -61,6 +63,8 @@ void GrabSpring::let_go() {
   way_ = force_ = {};
   squared_frequency_ = 0.0;
 }
+
+int GrabSpring::most_drag_stages() const { return kMostDragStages; }
 
 void GrabSpring::add_forces(const InteractionStep& step) {
   force_ = {};

@@ -28,6 +28,7 @@ class GrabSpring final : public Interaction {
   /// Holds copies of what it holds; springs go on in the ratio of the masses there are then.
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double, double) override { return vertices_; }
+  int most_drag_stages() const override;
   void add_forces(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;
   double squared_frequency() const override;

@@ -120,6 +120,7 @@ class Capsule final : public Interaction {
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;
+  int most_drag_stages() const override;
   void add_forces(const InteractionStep& step) override;
   std::string refuses_long_steps() const override { return {}; }
   void set_long_steps(bool are_long) override;

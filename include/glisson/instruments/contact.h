@@ -187,6 +187,8 @@ class ContactTool final : public Instrument {
   std::optional<std::span<const std::uint32_t>> keeps() override;
   void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
+  void tell_held(const InteractionStep& step, std::vector<HeldRows>& held) const override;
+  int most_drag_stages() const override;
   void moved(const InteractionStep& step) override;
   bool add_contact(std::span<Vec3d> force, std::span<double> pressing) const override;
   Vec3d handle() const override;

@@ -480,6 +480,9 @@ TetMesh build_mesh(const Variant& variant, const MeshLoader& load, const std::fu
 /// Tissue of each region number that occurs in a mesh made by build_mesh.
 std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh);
 
+/// So many stages of drag are right beside all that acts on a body (SimulationOptions::drag_stages).
+int most_drag_stages(const Variant& variant);
+
 /// The body of a variant with its supports, loads, instruments and probes, at rest.
 struct BuiltVariant {
   /// @throws SceneError if mesh, sets, tissues, step or constraints cannot be used

@@ -102,9 +102,11 @@ inline constexpr Word<MassScalingKind> kWords<MassScalingKind>[] = {
 
 /// Most stages of the viscous force in a step: more would let rounding grow.
 inline constexpr int kMostDragStages = 8;
-/// The same beside instruments, containers and capsules, whose forces stages know from the last step: with more a pressed body yields to
-/// them.
-inline constexpr int kMostDragStagesBesideInstruments = 3;
+/// The same beside needles, tools in contact and containers that are not bonded: what they hold comes and goes, and what is let go moves for
+/// a step with the lumped mass alone. With more the tissue yields to them.
+inline constexpr int kMostDragStagesBesideInstruments = 4;
+/// The same beside interactions that do not tell what they hold: blades, a program's own.
+inline constexpr int kMostDragStagesBesideOthers = 3;
 
 struct SimulationOptions {
   Integrator integrator = Integrator::central_difference;
@@ -120,8 +122,8 @@ struct SimulationOptions {
   /// is for central_difference with an automatic step, which then is mass_scaling_step.
   MassScalingKind mass_scaling = MassScalingKind::fixed;
   /// central_difference: stages in which the viscous force is taken within a step, 1 … kMostDragStages. One is the paper's scheme. With
-  /// n of them viscosity allows n²/2 times the step that it does with one, and stiffness 0.91 to 0.95 of what it does alone; a stage
-  /// more costs half a step. For tissue of small strain; beside interactions kMostDragStagesBesideInstruments at most.
+  /// n of them viscosity allows nearly n²/2 times the step that it does with one, and stiffness 0.91 to 0.95 of what it does alone; a
+  /// stage more costs half a step. For tissue of small strain; beside interactions Interaction::most_drag_stages at most.
   int drag_stages = 1;
   ImplicitOptions implicit{};
   Precision precision = Precision::single_precision;
@@ -165,11 +167,10 @@ struct SimulationOptions {
               "when mass is added for `mass_scaling_step`; variable: with an automatic step, which then is that one, "
               "and not beside "
               "semi_implicit (docs/integrators.md)"),
-        field(
-            "drag_stages", &SimulationOptions::drag_stages, between(1, kMostDragStages),
-            "stages in which the viscous force is taken within a step of central_difference: 2 or 3 make steps longer "
-            "where viscosity_Pa_s limits them (docs/integrators.md); 1 to 3 beside instruments, containers and "
-            "capsules"),
+        field("drag_stages", &SimulationOptions::drag_stages, between(1, kMostDragStages),
+              "stages in which the viscous force is taken within a step of central_difference: they make steps longer "
+              "where viscosity_Pa_s limits them (docs/integrators.md); at most 4 beside instruments and containers "
+              "that are not bonded, 3 beside blades"),
         field("implicit", &SimulationOptions::implicit, "options of the integrators implicit and quasi_static"),
         field("precision", &SimulationOptions::precision, "precision of the element arithmetic"),
         field("damping_rate", &SimulationOptions::damping_rate, "1/s", at_least(0),

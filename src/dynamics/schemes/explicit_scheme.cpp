@@ -92,6 +92,24 @@ void ExplicitScheme::hold_in_stages() {
   told_ = std::move(holding);
 }
 
+/// Tells the body what interactions held in the last step and forces from outside then, for stages of drag.
+void ExplicitScheme::hold_rows_in_stages() {
+  if (state_.options.drag_stages == 1) return;
+  moving_->push_in_stages(kick_.outer());
+  if (held_rows_.empty()) return moving_->project_stages(nullptr);
+  std::vector<Vec3d> inverse_mass;
+  const std::vector<char> held = state_.held_components();
+  for (const ActiveVertex& w : moving_->active()) {
+    const double m = state_.body.inertia(w.vertex);
+    Vec3d& inverse = inverse_mass.emplace_back();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      inverse[axis] = m > 0.0 && held[3 * w.vertex + axis] == 0 ? 1.0 / m : 0.0;
+    }
+  }
+  stage_holds_.set(held_rows_, moving_->active(), inverse_mass);
+  moving_->project_stages(stage_holds_.empty() ? nullptr : &stage_holds_);
+}
+
 std::vector<std::uint32_t> ExplicitScheme::active_vertices() const {
   std::vector<std::uint32_t> vertices;
   for (const ActiveVertex& w : moving_->active()) vertices.push_back(w.vertex);
@@ -102,6 +120,7 @@ void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
   moving_->set_state(displacement, velocity);
   interactions_.state_set();
   kick_.forget_outer();
+  held_rows_.clear();
   control_->state_set();
   take_stiff_masses();
   moving_->list_above(control_->list_above());
@@ -133,12 +152,12 @@ void ExplicitScheme::constrain_interactions() {
 }
 
 void ExplicitScheme::attach(std::shared_ptr<Interaction> interaction, const BodyView& body) {
-  if (state_.options.drag_stages > kMostDragStagesBesideInstruments) {
-    throw std::invalid_argument(
-        "attach: " + interaction->label() + " acts on a body with drag_stages = " +
-        std::to_string(state_.options.drag_stages) + ", which is outside the allowed range beside interactions, 1 to " +
-        std::to_string(kMostDragStagesBesideInstruments) +
-        ": stages know their forces from the last step, and a pressed body would yield to them");
+  if (const int most = interaction->most_drag_stages(); state_.options.drag_stages > most) {
+    throw std::invalid_argument("attach: " + interaction->label() +
+                                " acts on a body with drag_stages = " + std::to_string(state_.options.drag_stages) +
+                                ", which is outside the allowed range beside it, 1 to " + std::to_string(most) +
+                                ": tissue would yield to it, since stages do not know all of its forces; take fewer "
+                                "stages, or integrator = implicit");
   }
   interaction->attached(body, state_.time);
   if (state_.options.track_energies) ledger_.bring_in(0.0, interaction->energy());
@@ -274,7 +293,7 @@ StepResult ExplicitScheme::step() {
   take_hold(h);
   hold_in_stages();
   begin_interactions(h);
-  if (state_.options.drag_stages > 1) moving_->push_in_stages(kick_.outer());
+  hold_rows_in_stages();
   const Advance& seen = moving_->advance(h, state_.gravity_at(state_.time), state_.options.track_energies);
   take_stiffness(seen);
   copy_.current = false;
@@ -291,7 +310,7 @@ StepResult ExplicitScheme::step() {
   interactions_.add_forces();
   kick(h);
   constrain_interactions();
-  if (state_.options.drag_stages > 1) kick_.remember_outer(moving_->active());
+  if (state_.options.drag_stages > 1) kick_.remember_outer(moving_->active()), interactions_.tell_held(held_rows_);
   if (state_.options.track_energies) book(h, seen.work);
   for (ActiveVertex& w : moving_->active()) w.displacement += w.velocity * h;
   moving_->place_active();
@@ -364,6 +383,7 @@ void ExplicitScheme::archive_motion(Archive& ar) {
   ar(kick_, stiff_, ledger_);
   for (const StiffElement& s : stiff_) ar.check(s.element < state_.body.elements.size());
   ar(*control_, interactions_);
+  if (state_.options.drag_stages > 1) ar(held_rows_);
   if (!ar.reads()) return;
   bring_to_rest();
   const std::vector<std::uint32_t> named = interactions_.named();

@@ -22,6 +22,7 @@
 #include "dynamics/schemes/scheme.h"
 #include "dynamics/step/step_control.h"
 #include "engine/moving_body.h"
+#include "engine/stage_holds.h"
 
 namespace glisson {
 
@@ -73,6 +74,7 @@ class ExplicitScheme : public Scheme {
   void let_go();
   void bring_to_rest();
   void hold_in_stages();
+  void hold_rows_in_stages();
   void begin_interactions(double h);
   void constrain_interactions();
 
@@ -115,6 +117,8 @@ class ExplicitScheme : public Scheme {
   double last_step_ = 0.0;          ///< [s]
   /// Per constraint: whether stages of drag know that it holds; none: the body has to be told anew.
   std::optional<std::vector<char>> told_;
+  std::vector<HeldRows> held_rows_;  ///< what interactions held in the last step, for stages of drag
+  engine::StageHolds stage_holds_;
   std::unique_ptr<StepControl> control_;
   mutable StateCopy copy_;
   std::string message_;  ///< why the last step was not made

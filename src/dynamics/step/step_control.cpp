@@ -89,8 +89,9 @@ std::string StepControl::too_large(double stable) const {
           "takes "
        << kSafety << " h*; the integrator ";
   if (drag_ == Drag::lags) {
-    text << "\"semi_implicit\", or drag_stages of 2 to " << kMostDragStages << " (" << kMostDragStagesBesideInstruments
-         << " beside instruments), where viscosity is what limits "
+    text << "\"semi_implicit\", or drag_stages of 2 to " << kMostDragStages << " (beside instruments "
+         << kMostDragStagesBesideInstruments << ", beside blades " << kMostDragStagesBesideOthers
+         << " at most), where viscosity is what limits "
          << "h*; ";
   }
   text << "\"implicit\", which is stable at any step; less viscosity or more nodal damping, which raise h*; a larger "
@@ -118,9 +119,9 @@ std::vector<double> StepControl::weighed(std::span<const double> stiffening) con
   return level;
 }
 
-/// n stages bear eigenvalues of h M⁻¹ C up to n², where the explicit step of drag alone is that of 2.
+/// n stages bear eigenvalues of h M⁻¹ C up to nearly n², where the explicit step of drag alone is that of 2.
 double StepControl::drag_limit_of(double explicit_step) const {
-  return 0.5 * static_cast<double>(drag_stages_ * drag_stages_) * explicit_step;
+  return 0.5 * DragPolynomial(drag_stages_).end() * explicit_step;
 }
 
 /// It leaves no guess, since it looks for another mode than the searches after it.

@@ -6,6 +6,7 @@
 
 #include "base/require_fields.h"
 #include "glisson/archive.h"
+#include "glisson/simulation/simulation.h"
 #include "instruments/capsule/capsule_state.h"
 
 namespace glisson {
@@ -150,6 +151,8 @@ std::span<const std::uint32_t> Capsule::reach(double, double) {
   state_->is_named = true;
   return state_->vertices;
 }
+
+int Capsule::most_drag_stages() const { return kMostDragStages; }
 
 void Capsule::add_forces(const InteractionStep& step) {
   State& s = *state_;

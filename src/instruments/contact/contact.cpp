@@ -11,6 +11,7 @@
 
 #include "base/require_fields.h"
 #include "glisson/simulation/integrator.h"
+#include "glisson/simulation/simulation.h"
 #include "instruments/contact/contact_state.h"
 
 namespace glisson {
@@ -173,6 +174,15 @@ void ContactTool::constrain(const InteractionStep& step) {
     add_event(s.last_touch, s.last_depth, "release");
   }
 }
+
+void ContactTool::tell_held(const InteractionStep& step, std::vector<HeldRows>& held) const {
+  HeldRows mine;
+  for (const ContactRow& row : state_->rows) glisson::tell_held(row, step, mine);
+  for (const auto& [place, impulse] : state_->bond_impulses) glisson::tell_held(place, step, mine);
+  if (!mine.rows.empty()) held.push_back(std::move(mine));
+}
+
+int ContactTool::most_drag_stages() const { return kMostDragStagesBesideOthers; }
 
 /// Tells the ledger of all impulses: what presses is contact's, what rubs friction's.
 void ContactTool::book(const InteractionStep& step) const {

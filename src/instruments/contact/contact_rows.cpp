@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "instruments/two_across.h"
+
 namespace glisson {
 namespace {
 
@@ -14,10 +16,12 @@ constexpr int kMostCorrections = 8;
 constexpr double kAtEdge = 1e-3;  // a weight below it: the point is on an edge of its triangle
 constexpr double kAlike = 0.8;  // cosine between normals of solid and triangle that are one but for the triangle's size
 constexpr double kAway = -0.2;  // … below which they do not face each other
-constexpr int kMostProbes = 24;     // of a triangle
-constexpr double kSettling = 5e-3;  // tissue found inside a tool leaves by its depth over this time [s]
-constexpr double kFast = 0.25;      // of the thickness
-constexpr double kNear = 0.1;       // of its way: a point that ends so near takes part
+constexpr int kMostProbes = 24;         // of a triangle
+constexpr double kSettling = 5e-3;      // tissue found inside a tool leaves by its depth over this time [s]
+constexpr double kFast = 0.25;          // of the thickness
+constexpr double kHeld = 2000.0;        // tolerances: a point that ends so near is where its row wants it
+constexpr double kSticks = 1.0 - 1e-9;  // of its limit: friction below it holds a point
+constexpr double kNear = 0.1;           // of its way: a point that ends so near takes part
 
 using Corners = std::array<Vec3d, 3>;
 
@@ -225,6 +229,32 @@ void turn_to_triangle(ContactRow& row, const Corners& at) {
 
 void push(const ContactRow& row, const InteractionStep& step, const Vec3d& impulse) {
   for (std::uint32_t i = 0; i < row.count; ++i) step.push(row.places[i], impulse * row.weights[i]);
+}
+
+void tell_held(const ContactRow& row, const InteractionStep& step, HeldRows& held) {
+  if (row.pressing == 0.0) return;
+  const double close = kHeld * row.solid->tolerance();
+  const Vec3d end = end_of(row, step);
+  if (std::abs(phi(row, end) - row.level) > close) return;
+  HeldRows::Row point{.mean = {}, .direction = row.normal};
+  for (std::uint32_t i = 0; i < row.count; ++i) {
+    point.mean.push_back({step.vertices[row.places[i]].vertex, row.weights[i]});
+  }
+  held.rows.push_back(point);
+  const double limit = row.pressing > 0.0 ? row.solid->friction * row.pressing : 0.0;
+  if (!(norm(row.rubbing) < kSticks * limit)) return;
+  const Vec3d way = end - row.start;
+  if (norm(way - row.n * dot(way, row.n)) > close) return;
+  for (const Vec3d& e : two_across(row.normal)) {
+    point.direction = e;
+    held.rows.push_back(point);
+  }
+}
+
+void tell_held(std::size_t place, const InteractionStep& step, HeldRows& held) {
+  for (const Vec3d& axis : {Vec3d{1.0, 0.0, 0.0}, Vec3d{0.0, 1.0, 0.0}, Vec3d{0.0, 0.0, 1.0}}) {
+    held.rows.push_back({.mean = {{step.vertices[place].vertex, 1.0}}, .direction = axis});
+  }
 }
 
 Vec3d stopping(const InteractionStep& step, std::size_t place, const Vec3d& wanted) {

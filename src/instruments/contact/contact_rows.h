@@ -78,6 +78,13 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step);
 /// Gives the point an impulse [N s].
 void push(const ContactRow& row, const InteractionStep& step, const Vec3d& impulse);
 
+/// Adds what a row holds: its point along the normal, where it sticks in all directions. None if the point does not end where the row wants
+/// it, as where a bond moves a corner of its triangle afterwards.
+void tell_held(const ContactRow& row, const InteractionStep& step, HeldRows& held);
+
+/// Adds a vertex that is held as a whole.
+void tell_held(std::size_t place, const InteractionStep& step, HeldRows& held);
+
 /// The impulse that gives the vertex at a place the velocity wanted, in components that may move [N s].
 Vec3d stopping(const InteractionStep& step, std::size_t place, const Vec3d& wanted);
 

@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "base/require_fields.h"
+#include "glisson/simulation/simulation.h"
 #include "instruments/needle/membranes.h"
 #include "instruments/needle/needle_solver.h"
+#include "instruments/two_across.h"
 
 namespace glisson {
 namespace {
@@ -14,6 +16,7 @@ namespace {
 constexpr double kPullBack = 0.2;  ///< share of an error of position that a step takes back
 constexpr double kSlack = 1e-3;    ///< compliance of a row over the mean of W: rows of one vertex would have no answer
 constexpr double kLeastMobility = 1e-30;  ///< [1/kg]: so that rows of held tissue have an answer, too
+constexpr double kHeldSlip = 0.01;        ///< of the speed of sticking: a row that slips by less is held
 constexpr double kReach = 1e-3;           ///< of the spacing: how far before the path's end the tip is there
 
 }  // namespace
@@ -131,7 +134,8 @@ std::vector<Vec3d> Needle::Solver::across_it(const Eigen::MatrixXd& W) {
   if (held > 0) {
     const auto n = static_cast<Eigen::Index>(held);
     Eigen::MatrixXd A = W.topLeftCorner(n, n) + C.topLeftCorner(n, n) / (h * h);
-    A.diagonal().array() += kSlack * W.topLeftCorner(n, n).diagonal().mean() + kLeastMobility;
+    s.slack = kSlack * W.topLeftCorner(n, n).diagonal().mean() + kLeastMobility;
+    A.diagonal().array() += s.slack;
     const Eigen::MatrixXd p = A.ldlt().solve(wanted_across(held, bevel, W, C));
     for (Eigen::Index j = 0; j < n; ++j) impulse[static_cast<std::size_t>(j)] = across({p(j, 0), p(j, 1), p(j, 2)}, d);
   }
@@ -164,12 +168,14 @@ double Needle::Solver::tip_slip() const {
 std::vector<double> Needle::Solver::along_it(const Eigen::MatrixXd& W) {
   std::vector<double> speed, p;
   std::vector<shaft::AxialLimit> limits;
+  s.lengths.clear();
   const double again = s.step_h > 0.0 ? h / s.step_h : 0.0;  // the last step's forces are a good start
   for (std::size_t j = 0; j < all.size(); ++j) {
     const bool is_tip = j >= node.size();
     speed.push_back(dot(needle_velocity() - all[j]->velocity, d));
     if (is_tip) speed.back() -= tip_slip();
     limits.push_back(limit_of(j));
+    s.lengths.push_back(limits.back().length);
     p.push_back(again * (is_tip ? s.tip_along : s.along[node[j]]));
   }
   keep_along(p, shaft::solve_along(W, speed, limits, s.options.friction, h, p));
@@ -217,6 +223,7 @@ void Needle::constrain(const InteractionStep& step) {
   State& s = *state_;
   Solver solver{.s = s, .d = direction(), .before = before_.position, .after = pose_.position, .h = step.h};
   solver.find_rows(step);
+  s.acting = solver.node, s.from_hand = solver.from_hand;
   if (solver.all.empty()) {
     s.forget_forces(step.h);
     return;
@@ -246,5 +253,34 @@ void Needle::constrain(const InteractionStep& step) {
   }
   if (step.interface_book != nullptr) solver.book(step, sideways, booked, velocity_at(before_.position));
 }
+
+/// Across, tissue that is held bends the needle: c = C/h², and what the solve adds. Along, a row that sticks; and the viscous part of the
+/// friction of one that slips, c = 1/drag. A tip that cuts holds nothing.
+void Needle::tell_held(const InteractionStep& step, std::vector<HeldRows>& held) const {
+  const State& s = *state_;
+  const std::size_t acting = s.from_hand.size();
+  for (const Vec3d& e : two_across(direction())) {
+    HeldRows across{.rows = {}, .compliance = s.compliance_across(step.h)};
+    for (std::size_t j = 0; j < acting - (s.tip_cuts ? 1 : 0); ++j) {
+      across.rows.push_back({.mean = s.acting_row(j).weights, .direction = e});
+    }
+    if (!across.rows.empty()) held.push_back(std::move(across));
+  }
+  const Vec3d v = (pose_.position - before_.position) * (1.0 / step.h);
+  const ShaftFriction& f = s.options.friction;
+  for (std::size_t j = 0; j < acting; ++j) {
+    const bool is_tip = j >= s.acting.size();
+    shaft::Row row = s.acting_row(j);
+    if ((is_tip && (s.tip_cuts || s.tip_along == 0.0)) || !shaft::read(step, row)) continue;
+    const double slip = dot(v - row.velocity, direction());
+    const bool slips = !is_tip && std::abs(slip) > kHeldSlip * f.stick_speed;
+    const double drag = slips ? step.h * s.lengths[j] * (slip > 0.0 ? f.viscous_in : f.viscous_out) : 0.0;
+    if (slips && !(drag > 0.0)) continue;
+    held.push_back(
+        {.rows = {{.mean = row.weights, .direction = direction()}}, .compliance = {slips ? 1.0 / drag : s.slack}});
+  }
+}
+
+int Needle::most_drag_stages() const { return kMostDragStagesBesideInstruments; }
 
 }  // namespace glisson

@@ -13,6 +13,7 @@
 #include "glisson/archive.h"
 #include "glisson/simulation/integrator.h"
 #include "instruments/needle/needle_solver.h"
+#include "instruments/two_across.h"
 
 namespace glisson {
 namespace {
@@ -21,13 +22,6 @@ constexpr double kLongSlack = 1e-3;  ///< compliance of a row over the mean of W
 constexpr shaft::Effort kLongEffort{.most_sweeps = 4000, .enough = 1e-11, .most_breaks = 30};
 constexpr int kMostBreaks = 3;  ///< of a row from sticking to slip between iterations of a step: it slips from then on
 constexpr double kMostGrowth = 0.15;  ///< of the spacing: by how much a path grows in a step
-
-/// Two directions across a third.
-std::array<Vec3d, 2> two_across(const Vec3d& d) {
-  const Vec3d helper = std::abs(d.x) < 0.6 ? Vec3d{1.0, 0.0, 0.0} : Vec3d{0.0, 1.0, 0.0};
-  const Vec3d c = cross(d, helper), e = c * (1.0 / norm(c));
-  return {e, cross(d, e)};
-}
 
 }  // namespace
 

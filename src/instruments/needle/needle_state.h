@@ -90,9 +90,15 @@ struct Needle::State {
   std::vector<Vec3d> bend;  ///< of the needle at each node [m]
   double bending = 0.0;     ///< energy of that; kept where energies are tracked [J]
   double step_h = 0.0;
+  double slack = 0.0;               ///< compliance of rows across beside that of the needle [1/kg]
+  std::vector<std::size_t> acting;  ///< nodes that the needle acted on
+  std::vector<double> lengths;      ///< of shaft that each of them stands for [m]
+  std::vector<double> from_hand;    ///< of each, then of the tip if it acted: distance from the hand [m]
 
   void forget_forces(double h);
-  double bending_stiffness() const;  ///< E I [N m²]; 0: rigid
+  const shaft::Row& acting_row(std::size_t j) const { return j < acting.size() ? nodes[acting[j]] : tip; }
+  std::vector<double> compliance_across(double h) const;  ///< of the acting rows that are held, row by row [1/kg]
+  double bending_stiffness() const;                       ///< E I [N m²]; 0: rigid
   TipResistance resistance(int region_number) const;
   double cutting() const;    ///< where the tip is [N]
   double tip_limit() const;  ///< [N]
