@@ -53,7 +53,7 @@ struct RandomScene {
                         !tissue.hyperelastic && tissue.kinematics == Kinematics::small;
     if (staged) options.drag_stages = 1 + static_cast<int>(seed % 4);
     touched = (options.integrator == Integrator::central_difference || lagged) && random() % 2 == 0 && !wild;
-    if (touched) options.drag_stages = std::min(options.drag_stages, kMostDragStagesBesideInstruments);
+    if (touched) options.drag_stages = std::min(options.drag_stages, kMostDragStagesBesideOthers);
     heavy = options.integrator == Integrator::central_difference && seed % 5 == 0;
   }
   double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }

@@ -102,10 +102,11 @@ inline constexpr Word<MassScalingKind> kWords<MassScalingKind>[] = {
 
 /// Most stages of the viscous force in a step: more would let rounding grow.
 inline constexpr int kMostDragStages = 8;
-/// The same beside needles, tools in contact and containers that are not bonded: what they hold comes and goes, and what is let go moves for
-/// a step with the lumped mass alone. With more the tissue yields to them.
+/// The same beside needles and containers that are not bonded: what they hold comes and goes, and what is let go moves for a step with
+/// the lumped mass alone. With more the tissue yields to them.
 inline constexpr int kMostDragStagesBesideInstruments = 4;
-/// The same beside interactions that do not tell what they hold: blades, a program's own.
+/// The same beside tools in contact, whose surface of contact changes with each step, and beside interactions that do not tell what they
+/// hold: blades, a program's own.
 inline constexpr int kMostDragStagesBesideOthers = 3;
 
 struct SimulationOptions {
@@ -167,10 +168,11 @@ struct SimulationOptions {
               "when mass is added for `mass_scaling_step`; variable: with an automatic step, which then is that one, "
               "and not beside "
               "semi_implicit (docs/integrators.md)"),
-        field("drag_stages", &SimulationOptions::drag_stages, between(1, kMostDragStages),
-              "stages in which the viscous force is taken within a step of central_difference: they make steps longer "
-              "where viscosity_Pa_s limits them (docs/integrators.md); at most 4 beside instruments and containers "
-              "that are not bonded, 3 beside blades"),
+        field(
+            "drag_stages", &SimulationOptions::drag_stages, between(1, kMostDragStages),
+            "stages in which the viscous force is taken within a step of central_difference: they make steps longer "
+            "where viscosity_Pa_s limits them (docs/integrators.md); at most 4 beside needles and containers that are "
+            "not bonded, 3 beside tools in contact and blades"),
         field("implicit", &SimulationOptions::implicit, "options of the integrators implicit and quasi_static"),
         field("precision", &SimulationOptions::precision, "precision of the element arithmetic"),
         field("damping_rate", &SimulationOptions::damping_rate, "1/s", at_least(0),

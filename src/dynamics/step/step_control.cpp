@@ -89,8 +89,8 @@ std::string StepControl::too_large(double stable) const {
           "takes "
        << kSafety << " h*; the integrator ";
   if (drag_ == Drag::lags) {
-    text << "\"semi_implicit\", or drag_stages of 2 to " << kMostDragStages << " (beside instruments "
-         << kMostDragStagesBesideInstruments << ", beside blades " << kMostDragStagesBesideOthers
+    text << "\"semi_implicit\", or drag_stages of 2 to " << kMostDragStages << " (beside needles and containers "
+         << kMostDragStagesBesideInstruments << ", beside tools in contact and blades " << kMostDragStagesBesideOthers
          << " at most), where viscosity is what limits "
          << "h*; ";
   }
