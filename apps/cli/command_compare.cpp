@@ -12,6 +12,7 @@
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "compare/comparison_report.h"
+#include "report/json_text.h"
 #include "report/output_file.h"
 #include "report/output_folder.h"
 
@@ -66,7 +67,7 @@ int run_comparison(const CompareOptions& options) {
   if (comparison.reference.forces.size() == comparison.stations.size()) {
     say("{}", comparison_table(comparison));
     const nlohmann::ordered_json json = comparison_json(comparison, scene.file.stem().string());
-    write_whole(folder / "compare.json", json.dump(2) + "\n");
+    write_whole(folder / "compare.json", json_text(json, 2) + "\n");
     write_json(options.json, json);
     write_whole(folder / "report.html", comparison_page(comparison));
     say("{}{}\n", options.quiet ? "" : "report: ", (folder / "report.html").string());
