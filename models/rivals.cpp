@@ -11,7 +11,7 @@ std::span<const Rival> rivals() {
   // Small steps with few sweeps, as its authors advise; with a tenth as many tets collapse between its two constraints.
   static constexpr std::array kXpbd{Effort{1000, 1}, Effort{1000, 5}, Effort{2000, 1}, Effort{4000, 1},
                                     Effort{8000, 1}};
-  static constexpr std::array kProjective{Effort{50, 1}, Effort{50, 5}, Effort{50, 20}};
+  static constexpr std::array kProjective{Effort{50, 1}, Effort{50, 10}, Effort{400, 10}};
   constexpr std::string_view kNoTurn = "large rotation: forces grow with it";
   constexpr std::string_view kNoViscosity = "viscosity, a law of its own";
   static const std::array list{
