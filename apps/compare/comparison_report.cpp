@@ -19,11 +19,16 @@ const models::Rival& rival_of(const std::string& name) {
 
 std::string effort_text(const ComparedRow& row) {
   if (row.effort == models::Effort{}) return fmt::format("{}", row.answer.steps);
-  return row.effort.iterations > 0 ? fmt::format("{} x {}", row.effort.steps, row.effort.iterations)
+  return row.effort.iterations > 0 ? fmt::format("{}×{}", row.effort.steps, row.effort.iterations)
                                    : fmt::format("{}", row.effort.steps);
 }
 
 std::string percent(double share) { return share < 0.0 ? "-" : fmt::format("{:.3g} %", 100.0 * share); }
+
+/// Three digits, without a power of ten where it is large.
+std::string short_text(double value) {
+  return value < 1000.0 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
+}
 
 /// "-" where it is not known.
 std::string megabytes(const ComparedRow& row) {
@@ -139,8 +144,8 @@ nlohmann::json rows_table(const Comparison& c) {
   nlohmann::json rows = nlohmann::json::array();
   for (const ComparedRow& row : c.rows) {
     rows.push_back({row.model, row.tets, effort_text(row), percent(row.error_force), percent(row.error_surface),
-                    fmt::format("{:.3g}", 1e3 * row.answer.setup_s), fmt::format("{:.3g}", 1e3 * row.answer.run_s),
-                    megabytes(row), note_of(row)});
+                    short_text(1e3 * row.answer.setup_s), short_text(1e3 * row.answer.run_s), megabytes(row),
+                    note_of(row)});
   }
   return {{"title", "Each run"},
           {"columns",
