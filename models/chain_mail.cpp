@@ -64,7 +64,7 @@ class ChainMail {
   std::size_t bytes() const {
     std::size_t links = 0;
     for (const auto& l : links_) links += l.size();
-    return 4 * links + u_.size() * (sizeof(Vec3d) + sizeof(links_[0]));
+    return 4 * links + u_.size() * (sizeof(Vec3d) + sizeof(std::vector<std::uint32_t>));
   }
 
  private:
