@@ -28,9 +28,9 @@ std::vector<ConstraintId> hold_and_move(Simulation& simulation, const Problem& p
 Answer run(const Problem& problem, const std::map<int, Tissue>& tissues, SimulationOptions options, const Stop& stop) {
   Answer answer;
   Stopwatch watch;
-  options.gravity = problem.gravity;
-  options.gravity_ramp = problem.gravity_ramp;
-  options.damping_rate = problem.damping_rate;
+  options.gravity = problem.motion.gravity;
+  options.gravity_ramp = problem.motion.gravity_ramp;
+  options.damping_rate = problem.motion.damping_rate;
   options.threads = 1;
   options.track_energies = false;
   options.exact_steps = false;

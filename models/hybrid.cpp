@@ -65,7 +65,7 @@ class Hybrid {
     const Eigen::VectorXd force = elastic(u_) + loads(time);
     for (Eigen::Index i = 0; i < u_.size(); ++i) {
       if (!moves(i)) continue;
-      v_[i] = (v_[i] + h * force[i] / mass(i)) / (1.0 + problem_.damping_rate * h);
+      v_[i] = (v_[i] + h * force[i] / mass(i)) / (1.0 + problem_.motion.damping_rate * h);
       u_[i] += h * v_[i];
     }
     std::vector<Vec3d> now = vectors_of(u_);
@@ -178,7 +178,7 @@ class Hybrid {
   /// The weight, that of the inside as the vertices feel it where the halves meet.
   Eigen::VectorXd loads(double time) const {
     Eigen::VectorXd out = weight(time);
-    if (problem_.gravity == Vec3d{}) return out;
+    if (problem_.motion.gravity == Vec3d{}) return out;
     const Eigen::VectorXd condensed = coupling_.transpose() * factor_.solve(inside_loads(time));
     for (std::size_t k = 0; k < meets_.size(); ++k) out[meets_[k]] -= condensed[static_cast<Eigen::Index>(k)];
     return out;

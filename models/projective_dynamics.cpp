@@ -81,7 +81,7 @@ class Projective {
     std::vector<Vec3d> inertial(u_.size());
     const Vec3d gravity = problem_.gravity_at(time);
     for (std::size_t i = 0; i < u_.size(); ++i) {
-      v_[i] = (v_[i] + gravity * h_) * (1.0 / (1.0 + problem_.damping_rate * h_));
+      v_[i] = (v_[i] + gravity * h_) * (1.0 / (1.0 + problem_.motion.damping_rate * h_));
       inertial[i] = u_[i] + v_[i] * h_;
     }
     u_ = inertial;

@@ -38,9 +38,7 @@ struct Tool {
 struct Problem {
   TetMesh mesh;
   std::map<int, Tissue> tissues;  ///< by region
-  Vec3d gravity{};                ///< [m/s²]
-  double gravity_ramp = 0.0;      ///< time over which it grows from 0 [s]
-  double damping_rate = 0.0;      ///< nodal damping over mass [1/s]
+  SimulationOptions motion;       ///< of it gravity, its ramp and nodal damping are what a model is given
   std::vector<Support> supports;
   std::vector<Tool> tools;
   double duration = 0.0;         ///< [s]
@@ -49,7 +47,9 @@ struct Problem {
   std::optional<Vec3d> moment_about{};
 
   const Tissue& tissue_of(std::size_t tet) const { return tissues.at(mesh.region_of(tet)); }
-  Vec3d gravity_at(double time) const { return time < gravity_ramp ? gravity * (time / gravity_ramp) : gravity; }
+  Vec3d gravity_at(double time) const {
+    return time < motion.gravity_ramp ? motion.gravity * (time / motion.gravity_ramp) : motion.gravity;
+  }
 };
 
 /// What a model is given to spend. A model without steps or iterations of its own ignores it.

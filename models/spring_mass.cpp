@@ -70,7 +70,7 @@ class SpringMass {
     const Vec3d gravity = problem_.gravity_at(time);
     for (std::size_t i = 0; i < x_.size(); ++i) {
       const Vec3d a = f_[i] * (1.0 / masses_[i]) + gravity;
-      v_[i] = (v_[i] + a * h) * (1.0 / (1.0 + problem_.damping_rate * h));
+      v_[i] = (v_[i] + a * h) * (1.0 / (1.0 + problem_.motion.damping_rate * h));
       u_[i] += v_[i] * h;
     }
     const std::vector<Vec3d> free = u_;

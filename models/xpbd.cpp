@@ -43,7 +43,7 @@ class Xpbd {
     const std::vector<Vec3d> before = u_;
     const Vec3d gravity = problem_.gravity_at(time);
     for (std::size_t i = 0; i < u_.size(); ++i) {
-      v_[i] = (v_[i] + gravity * h) * (1.0 / (1.0 + problem_.damping_rate * h));
+      v_[i] = (v_[i] + gravity * h) * (1.0 / (1.0 + problem_.motion.damping_rate * h));
       u_[i] += v_[i] * h;
     }
     boundary_.set(time + h, u_);

@@ -173,9 +173,7 @@ models::Problem problem_of(const Variant& variant, TetMesh mesh, int stations) {
   require_comparable(variant);
   Problem problem;
   problem.tissues = region_tissues(variant, mesh);
-  problem.gravity = variant.simulation.gravity;
-  problem.gravity_ramp = variant.simulation.gravity_ramp;
-  problem.damping_rate = variant.simulation.damping_rate;
+  problem.motion = variant.simulation;
   for (const FixedSpec& f : variant.fixed) problem.supports.push_back({mesh.vertex_set(f.set), f.axes});
   for (const ToolSpec& t : variant.tools) problem.tools.push_back(tool_of(t, mesh));
   problem.duration = run_duration(variant);

@@ -12,7 +12,7 @@ inline Problem cube(std::array<int, 3> cells = {2, 2, 2}) {
   Problem problem;
   problem.mesh = box_mesh({.cells = cells, .size = {kEdge, kEdge, kEdge}, .split = BoxSplit::alternating});
   problem.tissues[0] = Tissue{.youngs_modulus = kYoung, .poisson_ratio = kPoisson};
-  problem.damping_rate = 30.0;
+  problem.motion.damping_rate = 30.0;
   problem.duration = 2.0;
   problem.stations = {1.0, 2.0};
   return problem;

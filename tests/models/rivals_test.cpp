@@ -87,7 +87,7 @@ TEST(LinearFem, SwellsWhereItIsTurned) {
 // Condensed or not, a linear body is the same: at the tool, where the halves meet and inside the condensed half.
 TEST(Hybrid, IsTheLinearBody) {
   Problem p = cube({3, 3, 6});
-  p.gravity = {0, -2.0, 0};
+  p.motion.gravity = {0, -2.0, 0};
   p.supports.push_back({p.mesh.vertex_set("z_min"), {}});
   p.tools.push_back({p.mesh.vertex_set("z_max"), {}, ramp_to({0.001, 0, -0.002}, 1.0)});
   const Answer whole = linear_fem(p, {}, kNever), halves = hybrid(p, {}, kNever);
