@@ -60,6 +60,10 @@ Vec3d Boundary::force(const std::vector<Vec3d>& own, const std::vector<Vec3d>& d
   return sum;
 }
 
+double youngs_modulus(const LameParameters& lame) {
+  return lame.mu * (3.0 * lame.lambda + 2.0 * lame.mu) / (lame.lambda + lame.mu);
+}
+
 std::vector<double> lumped_masses(const Problem& problem) {
   std::vector<double> masses(problem.mesh.vertices.size(), 0.0);
   for (std::size_t t = 0; t < problem.mesh.tets.size(); ++t) {

@@ -26,6 +26,8 @@ class Boundary {
   std::vector<bool> prescribed_;
 };
 
+double youngs_modulus(const LameParameters& lame);  ///< [Pa]
+
 /// A quarter of each tet's mass at each of its vertices [kg].
 std::vector<double> lumped_masses(const Problem& problem);
 

@@ -69,7 +69,7 @@ std::map<int, Tissue> changed(const Problem& problem, Change change) {
 void linearise(Tissue& tissue) {
   const LameParameters lame = tissue.lame();
   Tissue linear{.name = tissue.name, .density = tissue.density, .volume_change = tissue.volume_change};
-  linear.youngs_modulus = lame.mu * (3.0 * lame.lambda + 2.0 * lame.mu) / (lame.lambda + lame.mu);
+  linear.youngs_modulus = youngs_modulus(lame);
   linear.poisson_ratio = lame.lambda / (2.0 * (lame.lambda + lame.mu));
   tissue = linear;
 }

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "models/linear_stiffness.h"
-#include "models/stopwatch.h"
+#include "models/stepping.h"
 
 namespace glisson::models {
 namespace {
@@ -212,21 +212,7 @@ Answer hybrid(const Problem& problem, const Effort&, const Stop& stop) {
     return answer;
   }
   const auto steps = static_cast<std::size_t>(std::ceil(problem.duration / model.step()));
-  const double h = problem.duration / static_cast<double>(steps);
-  answer.setup_s = watch.lap();
-  std::size_t next = 0;
-  for (std::size_t n = 0; n < steps && !stop; ++n) {
-    model.advance(h * static_cast<double>(n), h);
-    while (next < problem.stations.size() && problem.stations[next] <= h * (static_cast<double>(n) + 1.5)) {
-      answer.forces.push_back(model.force(problem.stations[next]));
-      ++next;
-    }
-  }
-  answer.run_s = watch.lap();
-  answer.displacement = model.displacement();
-  answer.bytes = model.bytes();
-  answer.steps = steps;
-  return answer;
+  return run_in_steps(problem, stop, model, steps, watch);
 }
 
 }  // namespace glisson::models

@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "models/boundary.h"
-#include "models/stopwatch.h"
+#include "models/stepping.h"
 
 namespace glisson::models {
 namespace {
@@ -54,9 +54,10 @@ Split split_of(const Mat3d& f) {
 
 class Projective {
  public:
-  Projective(const Problem& problem, double h)
-      : problem_(problem), boundary_(problem), h_(h), masses_(lumped_masses(problem)), u_(masses_.size()),
-        v_(masses_.size()), f_(masses_.size()) {
+  /// @param h  of all steps: the matrix has it
+  Projective(const Problem& problem, double h, int iterations)
+      : problem_(problem), boundary_(problem), h_(h), iterations_(iterations), masses_(lumped_masses(problem)),
+        u_(masses_.size()), v_(masses_.size()), f_(masses_.size()) {
     const auto n = static_cast<Eigen::Index>(masses_.size());
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t t = 0; t < problem.mesh.tets.size(); ++t) {
@@ -76,7 +77,7 @@ class Projective {
     for (std::size_t axis = 0; axis < 3; ++axis) factorise(axis);
   }
 
-  void advance(double time, int iterations) {
+  void advance(double time, double /*h*/) {
     const std::vector<Vec3d> before = u_;
     std::vector<Vec3d> inertial(u_.size());
     const Vec3d gravity = problem_.gravity_at(time);
@@ -86,7 +87,7 @@ class Projective {
     }
     u_ = inertial;
     boundary_.set(time + h_, u_);
-    for (int k = 0; k < iterations; ++k) {
+    for (int k = 0; k < iterations_; ++k) {
       project();
       for (std::size_t axis = 0; axis < 3; ++axis) solve(axis, inertial);
     }
@@ -184,6 +185,7 @@ class Projective {
   const Problem& problem_;
   Boundary boundary_;
   double h_;
+  int iterations_;
   std::vector<double> masses_;
   std::vector<TetState> tets_;
   Sparse elastic_;
@@ -195,24 +197,9 @@ class Projective {
 }  // namespace
 
 Answer projective_dynamics(const Problem& problem, const Effort& effort, const Stop& stop) {
-  Answer answer;
   Stopwatch watch;
-  const double h = problem.duration / effort.steps;
-  Projective model(problem, h);
-  answer.setup_s = watch.lap();
-  std::size_t next = 0;
-  for (int n = 0; n < effort.steps && !stop; ++n) {
-    model.advance(h * n, effort.iterations);
-    while (next < problem.stations.size() && problem.stations[next] <= h * (n + 1.5)) {
-      answer.forces.push_back(model.force(problem.stations[next]));
-      ++next;
-    }
-  }
-  answer.run_s = watch.lap();
-  answer.displacement = model.displacement();
-  answer.bytes = model.bytes();
-  answer.steps = static_cast<std::size_t>(effort.steps);
-  return answer;
+  Projective model(problem, problem.duration / effort.steps, effort.iterations);
+  return run_in_steps(problem, stop, model, static_cast<std::size_t>(effort.steps), watch);
 }
 
 }  // namespace glisson::models

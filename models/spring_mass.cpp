@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "models/boundary.h"
-#include "models/stopwatch.h"
+#include "models/stepping.h"
 
 namespace glisson::models {
 namespace {
@@ -102,8 +102,7 @@ class SpringMass {
     for (std::size_t t = 0; t < problem_.mesh.tets.size(); ++t) {
       const Tet& tet = problem_.mesh.tets[t];
       const double volume = six_rest_volume(problem_.mesh, t) / 6.0;
-      const LameParameters lame = problem_.tissue_of(t).lame();
-      const double young = lame.mu * (3.0 * lame.lambda + 2.0 * lame.mu) / (lame.lambda + lame.mu);
+      const double young = youngs_modulus(problem_.tissue_of(t).lame());
       for (std::size_t a = 0; a < 4; ++a) {
         for (std::size_t b = a + 1; b < 4; ++b) {
           const std::array<std::uint32_t, 2> ends{std::min(tet[a], tet[b]), std::max(tet[a], tet[b])};
@@ -119,7 +118,7 @@ class SpringMass {
   void make_volume_springs() {
     for (std::size_t t = 0; t < problem_.mesh.tets.size(); ++t) {
       const LameParameters lame = problem_.tissue_of(t).lame();
-      const double young = lame.mu * (3.0 * lame.lambda + 2.0 * lame.mu) / (lame.lambda + lame.mu);
+      const double young = youngs_modulus(lame);
       const double lacks = lame.lambda - 0.4 * young;
       if (lacks > 0.0) volumes_.push_back({problem_.mesh.tets[t], six_rest_volume(problem_.mesh, t) / 6.0, lacks});
     }
@@ -151,25 +150,10 @@ class SpringMass {
 };
 
 Answer run(const Problem& problem, const Stop& stop, Rule rule, bool volumes) {
-  Answer answer;
   Stopwatch watch;
   SpringMass model(problem, rule, volumes);
   const auto steps = static_cast<std::size_t>(std::ceil(problem.duration / model.step()));
-  const double h = problem.duration / static_cast<double>(steps);
-  answer.setup_s = watch.lap();
-  std::size_t next = 0;
-  for (std::size_t n = 0; n < steps && !stop; ++n) {
-    model.advance(h * static_cast<double>(n), h);
-    while (next < problem.stations.size() && problem.stations[next] <= h * (static_cast<double>(n) + 1.5)) {
-      answer.forces.push_back(model.force(problem.stations[next]));
-      ++next;
-    }
-  }
-  answer.run_s = watch.lap();
-  answer.displacement = model.displacement();
-  answer.bytes = model.bytes();
-  answer.steps = steps;
-  return answer;
+  return run_in_steps(problem, stop, model, steps, watch);
 }
 
 }  // namespace

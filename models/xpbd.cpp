@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "models/boundary.h"
-#include "models/stopwatch.h"
+#include "models/stepping.h"
 
 namespace glisson::models {
 namespace {
@@ -27,9 +27,9 @@ Mat3d cofactors(const Mat3d& f) {
 
 class Xpbd {
  public:
-  explicit Xpbd(const Problem& problem)
-      : problem_(problem), boundary_(problem), masses_(lumped_masses(problem)), u_(masses_.size()), v_(masses_.size()),
-        f_(masses_.size()), w_(masses_.size()) {
+  Xpbd(const Problem& problem, int iterations)
+      : problem_(problem), iterations_(iterations), boundary_(problem), masses_(lumped_masses(problem)),
+        u_(masses_.size()), v_(masses_.size()), f_(masses_.size()), w_(masses_.size()) {
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       for (std::size_t k = 0; k < 3; ++k) w_[i][k] = boundary_.prescribes(i, k) ? 0.0 : 1.0 / masses_[i];
     }
@@ -39,7 +39,8 @@ class Xpbd {
     }
   }
 
-  void advance(double time, double h, int iterations) {
+  void advance(double time, double h) {
+    h_ = h;
     const std::vector<Vec3d> before = u_;
     const Vec3d gravity = problem_.gravity_at(time);
     for (std::size_t i = 0; i < u_.size(); ++i) {
@@ -48,14 +49,14 @@ class Xpbd {
     }
     boundary_.set(time + h, u_);
     for (TetState& t : tets_) t.shape = t.volume = 0.0;
-    for (int k = 0; k < iterations; ++k) {
+    for (int k = 0; k < iterations_; ++k) {
       for (std::size_t t = 0; t < tets_.size(); ++t) project(t, h);
     }
     for (std::size_t i = 0; i < u_.size(); ++i) v_[i] = (u_[i] - before[i]) * (1.0 / h);
   }
 
   /// The forces of the constraints' multipliers, λ ∇C/h².
-  Vec3d force(double time, double h) {
+  Vec3d force(double time) {
     for (std::size_t i = 0; i < f_.size(); ++i) f_[i] = problem_.gravity_at(time) * masses_[i];
     for (std::size_t t = 0; t < tets_.size(); ++t) {
       const TetState& state = tets_[t];
@@ -64,8 +65,8 @@ class Xpbd {
       const double size = shape_size(f);
       const Mat3d c = cofactors(f);
       for (std::size_t a = 0; a < 4; ++a) {
-        f_[tet[a]] +=
-            (f * state.rest.s[a]) * (state.shape / (size * h * h)) + (c * state.rest.s[a]) * (state.volume / (h * h));
+        f_[tet[a]] += (f * state.rest.s[a]) * (state.shape / (size * h_ * h_)) +
+                      (c * state.rest.s[a]) * (state.volume / (h_ * h_));
       }
     }
     return boundary_.force(f_, u_);
@@ -116,6 +117,8 @@ class Xpbd {
   }
 
   const Problem& problem_;
+  int iterations_;
+  double h_ = 0.0;  // of the last step
   Boundary boundary_;
   std::vector<double> masses_;
   std::vector<Vec3d> u_, v_, f_, w_;
@@ -125,24 +128,9 @@ class Xpbd {
 }  // namespace
 
 Answer xpbd(const Problem& problem, const Effort& effort, const Stop& stop) {
-  Answer answer;
   Stopwatch watch;
-  Xpbd model(problem);
-  answer.setup_s = watch.lap();
-  const double h = problem.duration / effort.steps;
-  std::size_t next = 0;
-  for (int n = 0; n < effort.steps && !stop; ++n) {
-    model.advance(h * n, h, effort.iterations);
-    while (next < problem.stations.size() && problem.stations[next] <= h * (n + 1.5)) {
-      answer.forces.push_back(model.force(problem.stations[next], h));
-      ++next;
-    }
-  }
-  answer.run_s = watch.lap();
-  answer.displacement = model.displacement();
-  answer.bytes = model.bytes();
-  answer.steps = static_cast<std::size_t>(effort.steps);
-  return answer;
+  Xpbd model(problem, effort.iterations);
+  return run_in_steps(problem, stop, model, static_cast<std::size_t>(effort.steps), watch);
 }
 
 }  // namespace glisson::models

@@ -26,6 +26,7 @@
 #include "glisson/liver.h"
 #include "glisson/material/tissue.h"
 #include "glisson/mesh.h"
+#include "glisson/scene/compare_spec.h"
 #include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 
@@ -353,28 +354,6 @@ inline constexpr Word<CheckSpec::At> kWords<CheckSpec::At>[] = {
     {"largest", CheckSpec::At::largest, "the largest"},
     {"least", CheckSpec::At::least, "the least"},
     {"peak", CheckSpec::At::peak, "the largest size, without its sign"}};
-
-/// What `glisson compare` does with a scene.
-struct CompareSpec {
-  std::vector<std::string> models;  ///< names; empty: all
-  int meshes = 2, finer = 1, stations = 5;
-  double target = 0.01;
-
-  template <class Take>
-  static constexpr auto fields(Take take) {
-    using C = CompareSpec;
-    return take(
-        field("models", &C::models, "names of the models, as `glisson compare --list` prints them").otherwise("all"),
-        field("meshes", &C::meshes, between(1, 4),
-              "meshes that each model is run on: the scene's, and others, each twice as fine as the one before"),
-        field("finer", &C::finer, between(1, 3),
-              "how often the reference's mesh is twice as fine as the finest of them"),
-        field("stations", &C::stations, between(1, 100),
-              "times at which forces are compared, evenly spaced, the last at the end"),
-        field("target", &C::target, "-", strictly_between(0, 1),
-              "error of the force at which the models' times are compared"));
-  }
-};
 
 struct Scene {
   std::filesystem::path file;

@@ -1,0 +1,33 @@
+// compare_spec.h — the table [compare] of a scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "glisson/field.h"
+
+namespace glisson {
+
+/// What `glisson compare` does with a scene.
+struct CompareSpec {
+  std::vector<std::string> models;  ///< names; empty: all
+  int meshes = 2, finer = 1, stations = 5;
+  double target = 0.01;
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using C = CompareSpec;
+    return take(
+        field("models", &C::models, "names of the models, as `glisson compare --list` prints them").otherwise("all"),
+        field("meshes", &C::meshes, between(1, 4),
+              "meshes that each model is run on: the scene's, and others, each twice as fine as the one before"),
+        field("finer", &C::finer, between(1, 3),
+              "how often the reference's mesh is twice as fine as the finest of them"),
+        field("stations", &C::stations, between(1, 100),
+              "times at which forces are compared, evenly spaced, the last at the end"),
+        field("target", &C::target, "-", strictly_between(0, 1),
+              "error of force and surface within which the models' times are compared"));
+  }
+};
+
+}  // namespace glisson
