@@ -20,26 +20,6 @@ bool is_among(std::span<const std::uint32_t> ascending, std::uint32_t vertex) {
 
 }  // namespace
 
-bool HeldRows::Row::operator==(const Row& o) const {
-  const auto same = [](const VertexWeight& a, const VertexWeight& b) {
-    return a.vertex == b.vertex && a.weight == b.weight;
-  };
-  return direction == o.direction && std::ranges::equal(mean, o.mean, same);
-}
-
-void HeldRows::Row::archive(Archive& ar) {
-  auto size = static_cast<std::uint32_t>(mean.size());
-  ar(size, direction);
-  ar.check(size <= ar.left());
-  mean.resize(size);
-  for (VertexWeight& w : mean) ar(w.vertex, w.weight);
-}
-
-void HeldRows::archive(Archive& ar) {
-  ar(rows, compliance);
-  ar.check(compliance.empty() || compliance.size() == rows.size() * rows.size());
-}
-
 int Interaction::most_drag_stages() const { return kMostDragStagesBesideOthers; }
 
 std::string Interaction::refuses_long_steps() const {
@@ -160,7 +140,7 @@ void Interactions::constrain(std::size_t interaction, StepCompliance& compliance
   all_[interaction]->constrain(step_);
 }
 
-void Interactions::tell_held(std::vector<HeldRows>& held) const {
+void Interactions::tell_held(HeldRows& held) const {
   held.clear();
   for (const std::shared_ptr<Interaction>& x : all_) x->tell_held(step_, held);
 }

@@ -54,7 +54,7 @@ class Interactions {
   /// In a long step.
   void constrain(std::size_t interaction, StepCompliance& compliance);
   /// What impulses held in this step.
-  void tell_held(std::vector<HeldRows>& held) const;
+  void tell_held(HeldRows& held) const;
   void clear_impulses();
   /// Takes them back to where their archives were written.
   void restore(std::span<const std::string> archives);

@@ -11,9 +11,11 @@
 // motion, so that the step is as stable as without.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
+#include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "glisson/simulation/interaction.h"
@@ -22,11 +24,11 @@ namespace glisson::engine {
 
 class StageHolds {
  public:
-  /// Rows of vertices that are not active are left out. Costs next to nothing where all is as it was.
+  /// Means and vertices that are not all active are left out. What is as it was is kept.
   /// @param active  ascending @param inverse_mass  of each, in components that may move [1/kg]
-  void set(std::span<const HeldRows> held, std::span<const ActiveVertex> active, std::span<const Vec3d> inverse_mass);
+  void set(const HeldRows& held, std::span<const ActiveVertex> active, std::span<const Vec3d> inverse_mass);
   bool empty() const { return places_.empty(); }
-  /// Places among the active vertices that some row has, ascending; project() is told of them in this order.
+  /// Places among the active vertices that are held or in a mean, ascending; project() is told of them in this order.
   std::span<const std::uint32_t> places() const { return places_; }
   /// Takes what moves the rows from changes of the velocities.
   void project(std::span<Vec3d> changes);
@@ -34,21 +36,53 @@ class StageHolds {
  private:
   struct Entry {
     std::uint32_t at = 0;  ///< in places_
-    Vec3d weight{};        ///< along x, y, z
+    double weight = 0.0;
   };
-  void add_row(const HeldRows::Row& row, std::span<const ActiveVertex> active);
-  void add_own(std::vector<Eigen::Triplet<double>>& W) const;
-  void factorise(std::span<const HeldRows> held, std::span<const std::size_t> source);
+  struct Pair {
+    std::uint32_t a = 0, b = 0;  ///< means, a ≥ b
+    Vec3d coupling{};            ///< Σ w_a w_b / m of the vertices they share, along x, y, z [1/kg]
+  };
+  std::uint32_t place_of(std::uint32_t vertex) const;
+  void take_active(std::span<const ActiveVertex> active);
+  void take_means(std::span<const Vec3d> inverse_mass);
+  void couple_means();
+  void take_rows();
+  void factorise();
+  template <class Add>
+  void add_own(const Add& add) const;
+  template <class Add>
+  void add_compliance(const Add& add) const;
 
-  std::vector<HeldRows> held_;         ///< that it was set to
-  std::vector<std::uint32_t> active_;  ///< vertices, then
-  std::vector<Vec3d> inverse_mass_;    ///< of each [1/kg]
-  std::vector<Entry> entries_;
-  std::vector<std::size_t> begin_{0};  ///< of each row among the entries, and the end
+  HeldRows held_;                               ///< that it was set to
+  std::vector<std::uint32_t> active_;           ///< vertices, then
+  std::vector<std::uint32_t> place_of_vertex_;  ///< of these, others are anything
+  std::vector<Vec3d> inverse_mass_;             ///< of each [1/kg]
   std::vector<std::uint32_t> places_;
-  std::vector<Vec3d> mobility_;  ///< per place
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
-  Eigen::VectorXd moved_, taken_;
+  std::vector<std::uint32_t> still_;  ///< those in places_ that are held as a whole
+  std::vector<Vec3d> mobility_;       ///< per place [1/kg]
+  std::vector<Entry> entries_;        ///< of the means
+  std::vector<std::size_t> begin_;    ///< of each mean among the entries, and the end; empty: left out
+  std::vector<Pair> pairs_;
+  std::vector<HeldRows::Row> rows_;      ///< of means that are not left out
+  std::vector<std::uint32_t> number_;    ///< of each row that was told among rows_, or kLeftOut
+  std::vector<std::uint32_t> of_mean_;   ///< rows, mean by mean
+  std::vector<std::size_t> rows_begin_;  ///< of each mean among them, and the end
+  bool sparse_ = false;
+  Eigen::MatrixXd W_;
+  Eigen::LLT<Eigen::MatrixXd> dense_factor_;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> sparse_factor_;
+  Eigen::VectorXd moved_;
+  std::vector<Vec3d> of_means_;  ///< their changes, then what is taken from them
+
+  /// Arrays that take_means() and couple_means() would else make anew in every step.
+  struct Scratch {
+    std::vector<std::uint32_t> local;                   ///< per active vertex: its place in places_
+    std::vector<std::size_t> begin, filled;             ///< per place: its means below the present one, in `here`
+    std::vector<std::pair<std::uint32_t, Vec3d>> here;  ///< mean b, w_b / m
+    std::vector<Vec3d> sum;                             ///< per mean
+    std::vector<char> shares;
+    std::vector<std::uint32_t> partners;
+  } scratch_;
 };
 
 }  // namespace glisson::engine

@@ -403,17 +403,15 @@ void Container::constrain(const InteractionStep& step) {
   s.hold_bonds(step);
 }
 
-void Container::tell_held(const InteractionStep& step, std::vector<HeldRows>& held) const {
+void Container::tell_held(const InteractionStep& step, HeldRows& held) const {
   const State& s = *state_;
-  HeldRows mine;
-  for (const ContactRow& row : s.rows) glisson::tell_held(row, step, mine);
+  for (const ContactRow& row : s.rows) glisson::tell_held(row, step, held);
   for (const State::Hold& hold : s.holds) {
     const std::uint32_t place = step.place_of[hold.vertex];
     if (place == InteractionStep::kNowhere) continue;
     const Vec3d off = step.position(place) + step.vertices[place].velocity * step.h - hold.there;
-    if (norm(off) <= kStill * s.size) glisson::tell_held(place, step, mine);
+    if (norm(off) <= kStill * s.size) held.add_vertex(hold.vertex);
   }
-  if (!mine.rows.empty()) held.push_back(std::move(mine));
 }
 
 int Container::most_drag_stages() const {

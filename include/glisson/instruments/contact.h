@@ -187,7 +187,7 @@ class ContactTool final : public Instrument {
   std::optional<std::span<const std::uint32_t>> keeps() override;
   void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
-  void tell_held(const InteractionStep& step, std::vector<HeldRows>& held) const override;
+  void tell_held(const InteractionStep& step, HeldRows& held) const override;
   int most_drag_stages() const override;
   void moved(const InteractionStep& step) override;
   bool add_contact(std::span<Vec3d> force, std::span<double> pressing) const override;

@@ -99,7 +99,7 @@ class Container final : public Interaction {
   void set_long_steps(bool are_long) override;
   void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
-  void tell_held(const InteractionStep& step, std::vector<HeldRows>& held) const override;
+  void tell_held(const InteractionStep& step, HeldRows& held) const override;
   int most_drag_stages() const override;
   void moved(const InteractionStep& step) override;
   bool add_contact(std::span<Vec3d> force, std::span<double> pressing) const override;

@@ -193,7 +193,7 @@ class Needle final : public Instrument {
   bool overshoots(const InteractionStep& step) override;
   void add_forces(const InteractionStep& step) override;
   void constrain(const InteractionStep& step) override;
-  void tell_held(const InteractionStep& step, std::vector<HeldRows>& held) const override;
+  void tell_held(const InteractionStep& step, HeldRows& held) const override;
   int most_drag_stages() const override;
   void moved(const InteractionStep& step) override;
   void between_steps(Simulation& simulation) override;

@@ -22,6 +22,7 @@
 
 #include "glisson/math.h"
 #include "glisson/mesh.h"
+#include "glisson/simulation/held_rows.h"
 
 namespace glisson {
 
@@ -49,27 +50,6 @@ struct BodyView {
   std::span<const double> masses;       ///< lumped, per vertex [kg]
   std::span<const Vec3d> displacement;  ///< per vertex [m]
   bool is_removed(std::size_t tet) const { return !removed.empty() && removed[tet] != 0; }
-};
-
-/// A vertex and its weight in a mean [-].
-struct VertexWeight {
-  std::uint32_t vertex = 0;
-  double weight = 0.0;
-};
-
-/// Means of vertices along directions whose velocities impulses hold: rigidly, or as an implicit force does. A force that would change
-/// the velocities of the rows by δ in a step then changes them by c (W + c)⁻¹ δ, W being that of the vertices alone.
-struct HeldRows {
-  struct Row {
-    std::vector<VertexWeight> mean;
-    Vec3d direction{};  ///< of length 1
-    bool operator==(const Row&) const;
-    void archive(Archive& ar);
-  };
-  std::vector<Row> rows;
-  std::vector<double> compliance;  ///< c, symmetric, row by row [1/kg]; empty: 0
-  bool operator==(const HeldRows&) const = default;
-  void archive(Archive& ar);
 };
 
 /// What becomes of the work of a tool that the tissue does not take.
@@ -211,7 +191,7 @@ class Interaction {
   virtual void constrain(const InteractionStep&) {}
   /// Adds what impulses held in this step, with all velocities at its end: stages of drag go by it in the next one
   /// (SimulationOptions::drag_stages). Called after all have constrained, where there are several stages.
-  virtual void tell_held(const InteractionStep&, std::vector<HeldRows>&) const {}
+  virtual void tell_held(const InteractionStep&, HeldRows&) const {}
   /// So many stages of drag are right beside it: kMostDragStagesBesideOthers, unless it tells what it holds or holds nothing.
   virtual int most_drag_stages() const;
   /// The step has been made: displacements are those at t + h.

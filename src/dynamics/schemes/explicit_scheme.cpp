@@ -88,7 +88,8 @@ void ExplicitScheme::hold_in_stages() {
   std::vector<char> holding;
   for (std::size_t c = 0; c < state_.base.size(); ++c) holding.push_back(state_.holds(c) ? 1 : 0);
   if (told_ == holding) return;
-  moving_->hold_in_stages(state_.held_components());
+  held_components_ = state_.held_components();
+  moving_->hold_in_stages(held_components_);
   told_ = std::move(holding);
 }
 
@@ -97,16 +98,15 @@ void ExplicitScheme::hold_rows_in_stages() {
   if (state_.options.drag_stages == 1) return;
   moving_->push_in_stages(kick_.outer());
   if (held_rows_.empty()) return moving_->project_stages(nullptr);
-  std::vector<Vec3d> inverse_mass;
-  const std::vector<char> held = state_.held_components();
+  inverse_mass_.clear();
   for (const ActiveVertex& w : moving_->active()) {
     const double m = state_.body.inertia(w.vertex);
-    Vec3d& inverse = inverse_mass.emplace_back();
+    Vec3d& inverse = inverse_mass_.emplace_back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      inverse[axis] = m > 0.0 && held[3 * w.vertex + axis] == 0 ? 1.0 / m : 0.0;
+      inverse[axis] = m > 0.0 && held_components_[3 * w.vertex + axis] == 0 ? 1.0 / m : 0.0;
     }
   }
-  stage_holds_.set(held_rows_, moving_->active(), inverse_mass);
+  stage_holds_.set(held_rows_, moving_->active(), inverse_mass_);
   moving_->project_stages(stage_holds_.empty() ? nullptr : &stage_holds_);
 }
 

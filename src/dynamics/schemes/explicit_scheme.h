@@ -117,7 +117,9 @@ class ExplicitScheme : public Scheme {
   double last_step_ = 0.0;          ///< [s]
   /// Per constraint: whether stages of drag know that it holds; none: the body has to be told anew.
   std::optional<std::vector<char>> told_;
-  std::vector<HeldRows> held_rows_;  ///< what interactions held in the last step, for stages of drag
+  std::vector<char> held_components_;  ///< 3 a vertex: as they know it
+  HeldRows held_rows_;                 ///< what interactions held in the last step, for stages of drag
+  std::vector<Vec3d> inverse_mass_;    ///< of the active vertices, for them [1/kg]
   engine::StageHolds stage_holds_;
   std::unique_ptr<StepControl> control_;
   mutable StateCopy copy_;

@@ -175,11 +175,9 @@ void ContactTool::constrain(const InteractionStep& step) {
   }
 }
 
-void ContactTool::tell_held(const InteractionStep& step, std::vector<HeldRows>& held) const {
-  HeldRows mine;
-  for (const ContactRow& row : state_->rows) glisson::tell_held(row, step, mine);
-  for (const auto& [place, impulse] : state_->bond_impulses) glisson::tell_held(place, step, mine);
-  if (!mine.rows.empty()) held.push_back(std::move(mine));
+void ContactTool::tell_held(const InteractionStep& step, HeldRows& held) const {
+  for (const ContactRow& row : state_->rows) glisson::tell_held(row, step, held);
+  for (const auto& [place, impulse] : state_->bond_impulses) held.add_vertex(step.vertices[place].vertex);
 }
 
 int ContactTool::most_drag_stages() const { return kMostDragStagesBesideOthers; }

@@ -236,25 +236,17 @@ void tell_held(const ContactRow& row, const InteractionStep& step, HeldRows& hel
   const double close = kHeld * row.solid->tolerance();
   const Vec3d end = end_of(row, step);
   if (std::abs(phi(row, end) - row.level) > close) return;
-  HeldRows::Row point{.mean = {}, .direction = row.normal};
+  std::array<VertexWeight, 3> corners;
   for (std::uint32_t i = 0; i < row.count; ++i) {
-    point.mean.push_back({step.vertices[row.places[i]].vertex, row.weights[i]});
+    corners[i] = {step.vertices[row.places[i]].vertex, row.weights[i]};
   }
-  held.rows.push_back(point);
+  const std::uint32_t point = held.add_mean(std::span(corners).first(row.count));
+  held.add_row(point, row.normal);
   const double limit = row.pressing > 0.0 ? row.solid->friction * row.pressing : 0.0;
   if (!(norm(row.rubbing) < kSticks * limit)) return;
   const Vec3d way = end - row.start;
   if (norm(way - row.n * dot(way, row.n)) > close) return;
-  for (const Vec3d& e : two_across(row.normal)) {
-    point.direction = e;
-    held.rows.push_back(point);
-  }
-}
-
-void tell_held(std::size_t place, const InteractionStep& step, HeldRows& held) {
-  for (const Vec3d& axis : {Vec3d{1.0, 0.0, 0.0}, Vec3d{0.0, 1.0, 0.0}, Vec3d{0.0, 0.0, 1.0}}) {
-    held.rows.push_back({.mean = {{step.vertices[place].vertex, 1.0}}, .direction = axis});
-  }
+  for (const Vec3d& e : two_across(row.normal)) held.add_row(point, e);
 }
 
 Vec3d stopping(const InteractionStep& step, std::size_t place, const Vec3d& wanted) {

@@ -82,9 +82,6 @@ void push(const ContactRow& row, const InteractionStep& step, const Vec3d& impul
 /// it, as where a bond moves a corner of its triangle afterwards.
 void tell_held(const ContactRow& row, const InteractionStep& step, HeldRows& held);
 
-/// Adds a vertex that is held as a whole.
-void tell_held(std::size_t place, const InteractionStep& step, HeldRows& held);
-
 /// The impulse that gives the vertex at a place the velocity wanted, in components that may move [N s].
 Vec3d stopping(const InteractionStep& step, std::size_t place, const Vec3d& wanted);
 

@@ -256,28 +256,34 @@ void Needle::constrain(const InteractionStep& step) {
 
 /// Across, tissue that is held bends the needle: c = C/h², and what the solve adds. Along, a row that sticks; and the viscous part of the
 /// friction of one that slips, c = 1/drag. A tip that cuts holds nothing.
-void Needle::tell_held(const InteractionStep& step, std::vector<HeldRows>& held) const {
+void Needle::tell_held(const InteractionStep& step, HeldRows& held) const {
   const State& s = *state_;
-  const std::size_t acting = s.from_hand.size();
+  const auto acting = static_cast<std::uint32_t>(s.from_hand.size());
+  if (acting == 0) return;
+  std::uint32_t first = 0;
+  for (std::uint32_t j = 0; j < acting; ++j) {
+    const std::uint32_t mean = held.add_mean(s.acting_row(j).weights);
+    if (j == 0) first = mean;
+  }
+  const std::vector<double> compliance = s.compliance_across(step.h);
   for (const Vec3d& e : two_across(direction())) {
-    HeldRows across{.rows = {}, .compliance = s.compliance_across(step.h)};
-    for (std::size_t j = 0; j < acting - (s.tip_cuts ? 1 : 0); ++j) {
-      across.rows.push_back({.mean = s.acting_row(j).weights, .direction = e});
-    }
-    if (!across.rows.empty()) held.push_back(std::move(across));
+    for (std::uint32_t j = 0; j < acting - (s.tip_cuts ? 1 : 0); ++j) held.add_row(first + j, e);
+    held.end_group(compliance);
   }
   const Vec3d v = (pose_.position - before_.position) * (1.0 / step.h);
   const ShaftFriction& f = s.options.friction;
-  for (std::size_t j = 0; j < acting; ++j) {
+  shaft::Row row;
+  for (std::uint32_t j = 0; j < acting; ++j) {
     const bool is_tip = j >= s.acting.size();
-    shaft::Row row = s.acting_row(j);
-    if ((is_tip && (s.tip_cuts || s.tip_along == 0.0)) || !shaft::read(step, row)) continue;
+    if (is_tip && (s.tip_cuts || s.tip_along == 0.0)) continue;
+    row = s.acting_row(j);
+    if (!shaft::read(step, row)) continue;
     const double slip = dot(v - row.velocity, direction());
     const bool slips = !is_tip && std::abs(slip) > kHeldSlip * f.stick_speed;
     const double drag = slips ? step.h * s.lengths[j] * (slip > 0.0 ? f.viscous_in : f.viscous_out) : 0.0;
     if (slips && !(drag > 0.0)) continue;
-    held.push_back(
-        {.rows = {{.mean = row.weights, .direction = direction()}}, .compliance = {slips ? 1.0 / drag : s.slack}});
+    held.add_row(first + j, direction());
+    held.end_group(std::array{slips ? 1.0 / drag : s.slack});
   }
 }
 
