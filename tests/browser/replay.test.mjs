@@ -86,6 +86,12 @@ describe("a recorded run", { skip: program() === null ? "the program is not buil
     await page.keyboard.press(" ");
   });
 
+  test("a picture that stands still has all pixels, however slow drawing is", async () => {
+    await page.waitForTimeout(2000);
+    const [drawn, shown] = await page.locator(".live-canvas").evaluate((c) => [c.width, c.clientWidth]);
+    assert.equal(drawn, Math.floor(shown * (await page.evaluate(() => Math.min(devicePixelRatio, 2)))));
+  });
+
   test("a second viewer sees the same moment and the whole curve, and moves nothing", async () => {
     const dark = await openBrowser({
       colorScheme: "dark",

@@ -40,6 +40,12 @@ type Drag =
   | { what: "tissue"; vertex: number; plane: THREE.Plane; offset: THREE.Vector3 }
   | { what: "tool"; tool: number; axis: THREE.Ray; from: number; depth: number };
 
+/** Whether a picture of one frame is that of the other. */
+function showsTheSame(a: LiveFrame, b: LiveFrame): boolean {
+  const numbers = ["keyframe", "epoch", "time", "field", "low", "high", "grabbing", "stopped"] as const;
+  return numbers.every((key) => a[key] === b[key]) && JSON.stringify(a.tools) === JSON.stringify(b.tools);
+}
+
 export class LiveView {
   readonly element: HTMLElement;
   readonly canvas = h("canvas", {
@@ -150,6 +156,7 @@ export class LiveView {
 
   /** The newest frame is drawn at the browser's own pace; those that come between are not. */
   takeFrame(frame: LiveFrame): void {
+    if (frame !== this.newest && this.frame && showsTheSame(frame, this.frame)) return; // stands still
     this.newest = frame;
     if (this.request === 0) this.request = requestAnimationFrame(() => this.drawNewest());
   }

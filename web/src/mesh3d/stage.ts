@@ -8,6 +8,7 @@ const HOME_DIRECTION = new THREE.Vector3(0.66, -1, 0.62).normalize();
 const FIELD_OF_VIEW = 28; // degrees
 const FILL = 0.92; // share of the picture that a fitted box may take
 const BAR_ROOM = 78; // CSS pixels at the right, taken by the colour scale
+const STILL_MS = 300; // a picture that has stood so long is drawn with all pixels
 
 export class Stage {
   readonly scene = new THREE.Scene();
@@ -17,7 +18,9 @@ export class Stage {
   private readonly stops: (() => void)[] = [];
   private visible = true;
   private request = 0;
-  private share = 1; // of the pixels in each direction
+  private share = 1; // of the pixels in each direction, while things move
+  private sharpening = 0; // timer
+  private isSharp = false; // all pixels although the share is less
   /** Called before each drawing: what follows the eye is set there. */
   beforeDrawing: () => void = () => {};
   /** Called after each drawing: what is written over the picture follows it. */
@@ -72,11 +75,16 @@ export class Stage {
     this.canvas.addEventListener("blur", () => claim(false));
   }
 
+  private setPixels(share: number): void {
+    this.renderer.setPixelRatio(share * Math.min(window.devicePixelRatio, 2));
+    this.renderer.setSize(this.canvas.clientWidth, this.canvas.clientHeight, false);
+    this.isSharp = share === 1;
+  }
+
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(this.share * Math.min(window.devicePixelRatio, 2));
-    this.renderer.setSize(width, height, false);
+    this.setPixels(this.share);
     this.camera.aspect = width / height;
     this.camera.setViewOffset(width, height, this.barRoom() / 2, 0, width, height);
     this.invalidate();
@@ -97,9 +105,25 @@ export class Stage {
   draw(): void {
     cancelAnimationFrame(this.request);
     this.request = 0;
+    if (this.share < 1) this.sharpenLater();
+    this.render();
+  }
+
+  private render(): void {
     this.beforeDrawing();
     this.renderer.render(this.scene, this.camera);
     this.afterDrawing();
+  }
+
+  /** Fewer pixels are for motion: once nothing has been drawn for a while, all are. */
+  private sharpenLater(): void {
+    if (this.isSharp) this.setPixels(this.share);
+    clearTimeout(this.sharpening);
+    this.sharpening = window.setTimeout(() => {
+      if (!this.isVisible || this.size.width === 0) return;
+      this.setPixels(1);
+      this.render();
+    }, STILL_MS);
   }
 
   /** Draws and waits until that is done [ms]; null where the canvas has no size. */
@@ -187,7 +211,7 @@ export class Stage {
     return this.camera.getWorldDirection(new THREE.Vector3());
   }
 
-  /** Draws with this share of the pixels in each direction: for what cannot keep up with all of them. */
+  /** Draws with this share of the pixels in each direction while things move: for what cannot keep up with all of them. */
   coarsen(share: number): void {
     this.share = share;
     this.resize();
@@ -224,6 +248,7 @@ export class Stage {
 
   dispose(): void {
     cancelAnimationFrame(this.request);
+    clearTimeout(this.sharpening);
     for (const stop of this.stops) stop();
     this.controls.dispose();
     this.renderer.dispose();
