@@ -1,5 +1,7 @@
 #include "models/linear_stiffness.h"
 
+#include "models/relaxation.h"
+
 namespace glisson::models {
 
 Sparse stiffness_matrix(const Problem& problem, const std::function<bool(std::size_t)>& takes) {
@@ -8,7 +10,7 @@ Sparse stiffness_matrix(const Problem& problem, const std::function<bool(std::si
   for (std::size_t t = 0; t < problem.mesh.tets.size(); ++t) {
     if (!takes(t)) continue;
     const RestTet rest = rest_tet(problem.mesh, t);
-    const LameParameters lame = problem.tissue_of(t).lame();
+    const LameParameters lame = test_moduli(problem, problem.tissue_of(t));
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = 0; b < 4; ++b) {
         const double along = lame.mu * dot(rest.s[a], rest.s[b]);

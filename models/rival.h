@@ -45,6 +45,9 @@ struct Problem {
   std::vector<double> stations;  ///< times at which the force is read [s], ascending; the last is the duration
   /// Where it is given, moments about this point are read in the place of forces [m].
   std::optional<Vec3d> moment_about{};
+  /// How long the test lasts by which models without viscosity are given the moduli of a tissue that relaxes [s]; 0: at once
+  /// (relaxation.h).
+  double test_time = 0.0;
 
   const Tissue& tissue_of(std::size_t tet) const { return tissues.at(mesh.region_of(tet)); }
   Vec3d gravity_at(double time) const {
@@ -102,5 +105,7 @@ Answer corotational(const Problem& problem, const Effort& effort, const Stop& st
 Answer neo_hookean(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer own_tissue(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer own_tissue_at_rest(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer own_tissue_in_double(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer own_tissue_implicit(const Problem& problem, const Effort& effort, const Stop& stop);
 
 }  // namespace glisson::models
