@@ -107,5 +107,10 @@ Answer own_tissue(const Problem& problem, const Effort& effort, const Stop& stop
 Answer own_tissue_at_rest(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer own_tissue_in_double(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer own_tissue_implicit(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer kelvin_voigt(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer linear_maxwell(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer miller_brain(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer pioletti_rate(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer pioletti_memory(const Problem& problem, const Effort& effort, const Stop& stop);
 
 }  // namespace glisson::models
