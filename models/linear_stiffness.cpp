@@ -31,6 +31,25 @@ Sparse stiffness_matrix(const Problem& problem, const std::function<bool(std::si
   return matrix;
 }
 
+Sparse of_free_components(const Sparse& matrix, const Boundary& boundary) {
+  const auto prescribed = [&](Eigen::Index i) {
+    return boundary.prescribes(static_cast<std::size_t>(i / 3), static_cast<std::size_t>(i % 3));
+  };
+  Sparse free = matrix;
+  free.prune([&](Eigen::Index i, Eigen::Index j, double) { return !prescribed(i) && !prescribed(j); });
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    if (prescribed(i)) free.coeffRef(i, i) = 1.0;
+  }
+  free.makeCompressed();
+  return free;
+}
+
+void clear_prescribed(Eigen::VectorXd& components, const Boundary& boundary) {
+  for (Eigen::Index i = 0; i < components.size(); ++i) {
+    if (boundary.prescribes(static_cast<std::size_t>(i / 3), static_cast<std::size_t>(i % 3))) components[i] = 0.0;
+  }
+}
+
 Eigen::VectorXd flat(const std::vector<Vec3d>& vectors) {
   Eigen::VectorXd out(static_cast<Eigen::Index>(3 * vectors.size()));
   for (std::size_t v = 0; v < vectors.size(); ++v) {

@@ -58,7 +58,7 @@ struct Problem {
 /// What a model is given to spend. A model without steps or iterations of its own ignores it.
 struct Effort {
   int steps = 0;       ///< over the whole experiment
-  int iterations = 0;  ///< of each step, or of the whole
+  int iterations = 0;  ///< of each step, or of the whole; of a model by modes their number
   bool operator==(const Effort&) const = default;
 };
 
@@ -95,6 +95,7 @@ Answer spring_mass_by_length(const Problem& problem, const Effort& effort, const
 Answer spring_mass_with_volume(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer chain_mail(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer linear_fem(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer linear_fem_modal(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer hybrid(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer xpbd(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer projective_dynamics(const Problem& problem, const Effort& effort, const Stop& stop);

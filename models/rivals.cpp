@@ -13,6 +13,7 @@ std::span<const Rival> rivals() {
                                     Effort{8000, 1}};
   static constexpr std::array kProjective{Effort{50, 1}, Effort{50, 10}, Effort{400, 10}};
   static constexpr std::array kImplicit{Effort{20, 0}};
+  static constexpr std::array kModes{Effort{0, 10}, Effort{0, 40}};
   constexpr std::string_view kNoTurn = "large rotation: forces grow with it; viscosity";
   constexpr std::string_view kNoViscosity = "viscosity, a law of its own";
   static const std::array list{
@@ -26,6 +27,8 @@ std::span<const Rival> rivals() {
             kSweeps, chain_mail},
       Rival{"linear_fem", "linear finite elements, one factor for all", "BroNielsen1998",
             "large rotation, a law, viscosity, cutting without a new factor", kOnce, linear_fem},
+      Rival{"linear_fem_modal", "linear finite elements in their lowest modes, corrected", "PentlandWilliams1989",
+            "large rotation, a law, viscosity, loads that its modes were not made for", kModes, linear_fem_modal},
       Rival{"linear_tensor_mass", "linear tensor-mass, explicit", "Cotin2000", kNoTurn, kOnce, linear_tensor_mass},
       Rival{"hybrid", "half condensed, half linear tensor-mass", "Cotin2000",
             "large rotation, a law, viscosity, cutting the condensed half", kOnce, hybrid},
