@@ -1,4 +1,8 @@
 // engine.cpp — the models that the engine has: the same body, supports and tools, other tissues and integrators.
+#include "models/engine.h"
+
+#include <algorithm>
+#include <cmath>
 #include <exception>
 
 #include "glisson/material/hyperelastic_law.h"
@@ -34,56 +38,35 @@ Answer run(const Problem& problem, const std::map<int, Tissue>& tissues, Simulat
   options.threads = 1;
   options.track_energies = false;
   options.exact_steps = false;
-  if (options.integrator == Integrator::quasi_static) options.step = problem.stations.front();
+  if (options.integrator == Integrator::quasi_static) options.step = common_step(problem.stations);
   Simulation simulation(problem.mesh, tissues, options);
   const std::vector<ConstraintId> read = hold_and_move(simulation, problem);
   answer.setup_s = watch.lap();
+  const auto advance = [&] {
+    const StepResult result = simulation.step();
+    ++answer.steps;
+    if (!result.made()) answer.trouble = std::string(result.message);
+    return result.made();
+  };
   for (const double time : problem.stations) {
     while (!stop && simulation.time() < time - 0.5 * simulation.step_size()) {
-      const StepResult result = simulation.step();
-      ++answer.steps;
-      if (result.made()) continue;
-      answer.trouble = std::string(result.message);
-      return answer;
+      if (!advance()) return answer;
     }
     if (stop) break;
+    answer.displacement.assign(simulation.displacement().begin(), simulation.displacement().end());
+    // explicit forces are those of a step's start: that at the station is known after one step more
+    if (!capabilities(options.integrator).forces_at_step_end && !advance()) return answer;
     answer.forces.push_back(problem.moment_about ? simulation.torque(read.front(), *problem.moment_about)
                                                  : simulation.force(read.front()).total());
   }
   answer.run_s = watch.lap();
-  answer.displacement.assign(simulation.displacement().begin(), simulation.displacement().end());
   answer.bytes =
       static_cast<std::size_t>(simulation.engine_info().bytes_per_tet * static_cast<double>(problem.mesh.tets.size()));
   return answer;
 }
 
-/// Every tissue of the problem, changed.
-template <class Change>
-std::map<int, Tissue> changed(const Problem& problem, Change change) {
-  std::map<int, Tissue> tissues = problem.tissues;
-  for (auto& [region, tissue] : tissues) change(tissue);
-  return tissues;
-}
-
-/// Linear elasticity of the tissue's moduli at rest.
-void linearise(Tissue& tissue) {
-  const LameParameters lame = tissue.lame();
-  Tissue linear{.name = tissue.name, .density = tissue.density, .volume_change = tissue.volume_change};
-  linear.youngs_modulus = youngs_modulus(lame);
-  linear.poisson_ratio = lame.lambda / (2.0 * (lame.lambda + lame.mu));
-  tissue = linear;
-}
-
-Answer run_or_say_why(const Problem& problem, const std::map<int, Tissue>& tissues, const SimulationOptions& options,
-                      const Stop& stop) {
-  try {
-    return run(problem, tissues, options, stop);
-  } catch (const std::exception& error) {
-    Answer answer;
-    answer.trouble = error.what();
-    return answer;
-  }
-}
+/// Linear elasticity of the moduli at rest that a test of the experiment's time finds.
+void linearise(const Problem& problem, Tissue& tissue) { tissue = linear_tissue(tissue, test_moduli(problem, tissue)); }
 
 bool has_law(const Problem& problem) {
   for (const auto& [region, tissue] : problem.tissues) {
@@ -94,8 +77,44 @@ bool has_law(const Problem& problem) {
 
 }  // namespace
 
+Answer run_engine(const Problem& problem, const std::map<int, Tissue>& tissues, const SimulationOptions& options,
+                  const Stop& stop) {
+  try {
+    return run(problem, tissues, options, stop);
+  } catch (const std::exception& error) {
+    Answer answer;
+    answer.trouble = error.what();
+    return answer;
+  }
+}
+
+Tissue linear_tissue(const Tissue& other, const LameParameters& lame) {
+  Tissue linear{.name = other.name, .density = other.density, .volume_change = other.volume_change};
+  linear.youngs_modulus = youngs_modulus(lame);
+  linear.poisson_ratio = lame.lambda / (2.0 * (lame.lambda + lame.mu));
+  return linear;
+}
+
+double common_step(std::span<const double> stations) {
+  constexpr int kMostParts = 64;
+  constexpr double kRounding = 1e-6;  // of a step
+  for (int parts = 1; parts < kMostParts; ++parts) {
+    const double step = stations.front() / parts;
+    if (std::all_of(stations.begin(), stations.end(),
+                    [&](double time) { return std::abs(time / step - std::round(time / step)) < kRounding; }))
+      return step;
+  }
+  return stations.front() / kMostParts;
+}
+
+Answer without_viscosity(std::string_view what_it_is) {
+  Answer answer;
+  answer.trouble = "the scene's tissue has no viscosity; without it this is " + std::string(what_it_is);
+  return answer;
+}
+
 Answer linear_tensor_mass(const Problem& problem, const Effort&, const Stop& stop) {
-  return run_or_say_why(problem, changed(problem, linearise), {}, stop);
+  return run_engine(problem, changed(problem, [&](Tissue& t) { linearise(problem, t); }), {}, stop);
 }
 
 Answer schwartz_tensor_mass(const Problem& problem, const Effort&, const Stop& stop) {
@@ -104,42 +123,56 @@ Answer schwartz_tensor_mass(const Problem& problem, const Effort&, const Stop& s
     answer.trouble = "the scene's tissue has no stiffness law; without one it is the linear tensor-mass model";
     return answer;
   }
-  return run_or_say_why(problem, changed(problem, [](Tissue& t) { t.kinematics = Kinematics::small; }), {}, stop);
+  return run_engine(problem, changed(problem, [](Tissue& t) { t.kinematics = Kinematics::small; }), {}, stop);
 }
 
 Answer green_tensor_mass(const Problem& problem, const Effort&, const Stop& stop) {
-  const auto green = [](Tissue& t) {
+  const auto green = [&](Tissue& t) {
     const std::optional<Fibres> fibres = t.fibres;
-    linearise(t);
+    linearise(problem, t);
     t.kinematics = Kinematics::green;
     t.fibres = fibres;
   };
-  return run_or_say_why(problem, changed(problem, green), {}, stop);
+  return run_engine(problem, changed(problem, green), {}, stop);
 }
 
 Answer corotational(const Problem& problem, const Effort&, const Stop& stop) {
-  const auto turning = [](Tissue& t) {
-    linearise(t);
+  const auto turning = [&](Tissue& t) {
+    linearise(problem, t);
     t.kinematics = Kinematics::corotational;
   };
-  return run_or_say_why(problem, changed(problem, turning), {}, stop);
+  return run_engine(problem, changed(problem, turning), {}, stop);
 }
 
 Answer neo_hookean(const Problem& problem, const Effort&, const Stop& stop) {
-  const auto large = [](Tissue& t) {
-    const LameParameters lame = t.lame();
-    linearise(t);
+  const auto large = [&](Tissue& t) {
+    const LameParameters lame = test_moduli(problem, t);
+    linearise(problem, t);
     t.hyperelastic = NeoHookean{lame.mu, lame.lambda + 2.0 / 3.0 * lame.mu};
   };
-  return run_or_say_why(problem, changed(problem, large), {}, stop);
+  return run_engine(problem, changed(problem, large), {}, stop);
 }
 
 Answer own_tissue(const Problem& problem, const Effort&, const Stop& stop) {
-  return run_or_say_why(problem, problem.tissues, {}, stop);
+  return run_engine(problem, problem.tissues, {}, stop);
+}
+
+Answer own_tissue_in_double(const Problem& problem, const Effort&, const Stop& stop) {
+  return run_engine(problem, problem.tissues, {.precision = Precision::double_precision}, stop);
+}
+
+Answer own_tissue_implicit(const Problem& problem, const Effort& effort, const Stop& stop) {
+  if (!is_viscous(problem)) return without_viscosity("glisson_quasi_static, and inertia");
+  const double common = common_step(problem.stations);
+  const double parts = std::ceil(effort.steps * common / problem.duration - 1e-9);
+  SimulationOptions options{.integrator = Integrator::implicit, .step = common / std::max(1.0, parts)};
+  options.implicit.preconditioner =
+      Preconditioner::factorised;  // a block's factor is small, and is kept from step to step
+  return run_engine(problem, problem.tissues, options, stop);
 }
 
 Answer own_tissue_at_rest(const Problem& problem, const Effort&, const Stop& stop) {
-  return run_or_say_why(problem, problem.tissues, {.integrator = Integrator::quasi_static}, stop);
+  return run_engine(problem, problem.tissues, {.integrator = Integrator::quasi_static}, stop);
 }
 
 }  // namespace glisson::models

@@ -7,24 +7,6 @@
 #include "models/stopwatch.h"
 
 namespace glisson::models {
-namespace {
-
-/// The matrix with rows and columns of prescribed components replaced by those of the identity.
-Sparse of_free_components(const Sparse& matrix, const Boundary& boundary) {
-  const auto prescribed = [&](Eigen::Index i) {
-    return boundary.prescribes(static_cast<std::size_t>(i / 3), static_cast<std::size_t>(i % 3));
-  };
-  Sparse free = matrix;
-  free.prune([&](Eigen::Index i, Eigen::Index j, double) { return !prescribed(i) && !prescribed(j); });
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    if (prescribed(i)) free.coeffRef(i, i) = 1.0;
-  }
-  free.makeCompressed();
-  return free;
-}
-
-}  // namespace
-
 Answer linear_fem(const Problem& problem, const Effort&, const Stop& stop) {
   Answer answer;
   Stopwatch watch;
@@ -46,10 +28,7 @@ Answer linear_fem(const Problem& problem, const Effort&, const Stop& stop) {
     boundary.set(time, u);
     const Eigen::VectorXd given = flat(u);
     Eigen::VectorXd right = flat(weight) - matrix * given;
-    for (Eigen::Index i = 0; i < right.size(); ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (boundary.prescribes(k / 3, k % 3)) right[i] = 0.0;
-    }
+    clear_prescribed(right, boundary);
     const Eigen::VectorXd solved = given + factor.solve(right);
     const Eigen::VectorXd own = flat(weight) - matrix * solved;
     std::vector<Vec3d> forces(n);

@@ -1,5 +1,7 @@
 #include "models/linear_stiffness.h"
 
+#include "models/relaxation.h"
+
 namespace glisson::models {
 
 Sparse stiffness_matrix(const Problem& problem, const std::function<bool(std::size_t)>& takes) {
@@ -8,7 +10,7 @@ Sparse stiffness_matrix(const Problem& problem, const std::function<bool(std::si
   for (std::size_t t = 0; t < problem.mesh.tets.size(); ++t) {
     if (!takes(t)) continue;
     const RestTet rest = rest_tet(problem.mesh, t);
-    const LameParameters lame = problem.tissue_of(t).lame();
+    const LameParameters lame = test_moduli(problem, problem.tissue_of(t));
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = 0; b < 4; ++b) {
         const double along = lame.mu * dot(rest.s[a], rest.s[b]);
@@ -27,6 +29,25 @@ Sparse stiffness_matrix(const Problem& problem, const std::function<bool(std::si
   Sparse matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
+}
+
+Sparse of_free_components(const Sparse& matrix, const Boundary& boundary) {
+  const auto prescribed = [&](Eigen::Index i) {
+    return boundary.prescribes(static_cast<std::size_t>(i / 3), static_cast<std::size_t>(i % 3));
+  };
+  Sparse free = matrix;
+  free.prune([&](Eigen::Index i, Eigen::Index j, double) { return !prescribed(i) && !prescribed(j); });
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    if (prescribed(i)) free.coeffRef(i, i) = 1.0;
+  }
+  free.makeCompressed();
+  return free;
+}
+
+void clear_prescribed(Eigen::VectorXd& components, const Boundary& boundary) {
+  for (Eigen::Index i = 0; i < components.size(); ++i) {
+    if (boundary.prescribes(static_cast<std::size_t>(i / 3), static_cast<std::size_t>(i % 3))) components[i] = 0.0;
+  }
 }
 
 Eigen::VectorXd flat(const std::vector<Vec3d>& vectors) {

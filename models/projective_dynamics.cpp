@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "models/boundary.h"
+#include "models/relaxation.h"
 #include "models/stepping.h"
 
 namespace glisson::models {
@@ -62,7 +63,7 @@ class Projective {
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t t = 0; t < problem.mesh.tets.size(); ++t) {
       const RestTet rest = rest_tet(problem.mesh, t);
-      const LameParameters lame = problem.tissue_of(t).lame();
+      const LameParameters lame = test_moduli(problem, problem.tissue_of(t));
       tets_.push_back({rest, 2.0 * lame.mu * rest.volume, 3.0 * lame.lambda * rest.volume});
       const double weight = tets_.back().shape + tets_.back().volume;
       for (std::size_t a = 0; a < 4; ++a) {

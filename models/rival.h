@@ -45,6 +45,9 @@ struct Problem {
   std::vector<double> stations;  ///< times at which the force is read [s], ascending; the last is the duration
   /// Where it is given, moments about this point are read in the place of forces [m].
   std::optional<Vec3d> moment_about{};
+  /// How long the test lasts by which models without viscosity are given the moduli of a tissue that relaxes [s]; 0: at once
+  /// (relaxation.h).
+  double test_time = 0.0;
 
   const Tissue& tissue_of(std::size_t tet) const { return tissues.at(mesh.region_of(tet)); }
   Vec3d gravity_at(double time) const {
@@ -55,7 +58,7 @@ struct Problem {
 /// What a model is given to spend. A model without steps or iterations of its own ignores it.
 struct Effort {
   int steps = 0;       ///< over the whole experiment
-  int iterations = 0;  ///< of each step, or of the whole
+  int iterations = 0;  ///< of each step, or of the whole; of a model by modes their number
   bool operator==(const Effort&) const = default;
 };
 
@@ -92,6 +95,7 @@ Answer spring_mass_by_length(const Problem& problem, const Effort& effort, const
 Answer spring_mass_with_volume(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer chain_mail(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer linear_fem(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer linear_fem_modal(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer hybrid(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer xpbd(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer projective_dynamics(const Problem& problem, const Effort& effort, const Stop& stop);
@@ -102,5 +106,12 @@ Answer corotational(const Problem& problem, const Effort& effort, const Stop& st
 Answer neo_hookean(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer own_tissue(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer own_tissue_at_rest(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer own_tissue_in_double(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer own_tissue_implicit(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer kelvin_voigt(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer linear_maxwell(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer miller_brain(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer pioletti_rate(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer pioletti_memory(const Problem& problem, const Effort& effort, const Stop& stop);
 
 }  // namespace glisson::models

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "models/boundary.h"
+#include "models/relaxation.h"
 #include "models/stepping.h"
 
 namespace glisson::models {
@@ -102,7 +103,7 @@ class SpringMass {
     for (std::size_t t = 0; t < problem_.mesh.tets.size(); ++t) {
       const Tet& tet = problem_.mesh.tets[t];
       const double volume = six_rest_volume(problem_.mesh, t) / 6.0;
-      const double young = youngs_modulus(problem_.tissue_of(t).lame());
+      const double young = youngs_modulus(test_moduli(problem_, problem_.tissue_of(t)));
       for (std::size_t a = 0; a < 4; ++a) {
         for (std::size_t b = a + 1; b < 4; ++b) {
           const std::array<std::uint32_t, 2> ends{std::min(tet[a], tet[b]), std::max(tet[a], tet[b])};
@@ -117,7 +118,7 @@ class SpringMass {
 
   void make_volume_springs() {
     for (std::size_t t = 0; t < problem_.mesh.tets.size(); ++t) {
-      const LameParameters lame = problem_.tissue_of(t).lame();
+      const LameParameters lame = test_moduli(problem_, problem_.tissue_of(t));
       const double young = youngs_modulus(lame);
       const double lacks = lame.lambda - 0.4 * young;
       if (lacks > 0.0) volumes_.push_back({problem_.mesh.tets[t], six_rest_volume(problem_.mesh, t) / 6.0, lacks});

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "models/boundary.h"
+#include "models/relaxation.h"
 #include "models/stepping.h"
 
 namespace glisson::models {
@@ -34,7 +35,7 @@ class Xpbd {
       for (std::size_t k = 0; k < 3; ++k) w_[i][k] = boundary_.prescribes(i, k) ? 0.0 : 1.0 / masses_[i];
     }
     for (std::size_t t = 0; t < problem.mesh.tets.size(); ++t) {
-      const LameParameters lame = problem.tissue_of(t).lame();
+      const LameParameters lame = test_moduli(problem, problem.tissue_of(t));
       tets_.push_back({rest_tet(problem.mesh, t), lame.mu, lame.lambda + lame.mu, 0.0, 0.0});
     }
   }

@@ -28,6 +28,9 @@ constexpr const char* kCompareFooter =
     "holds their forces\n"
     "and surfaces against the scene's own tissue on a finer mesh still. The scene's [compare] says how many meshes and "
     "times.\n"
+    "Of a scene with variants each is compared, and a last table has the errors of all. The reference of viscous "
+    "tissue "
+    "is in motion.\n"
     "Writes DIR/report.html and DIR/compare.json. Ctrl-C keeps the models that are done.\n"
     "\n"
     "Examples:\n"
@@ -63,13 +66,14 @@ int run_comparison(const CompareOptions& options) {
   const auto progress = [&](const std::string& what) {
     if (!options.quiet) tell("  {}\n", what);
   };
-  const Comparison comparison = compare(scene, meshes.loader(), stop_flag(), progress);
-  if (comparison.reference.forces.size() == comparison.stations.size()) {
-    say("{}", comparison_table(comparison));
-    const nlohmann::ordered_json json = comparison_json(comparison, scene.file.stem().string());
+  std::vector<Comparison> comparisons = compare(scene, meshes.loader(), stop_flag(), progress);
+  std::erase_if(comparisons, [](const Comparison& c) { return c.reference.forces.size() != c.stations.size(); });
+  if (!comparisons.empty()) {
+    say("{}", comparison_table(comparisons));
+    const nlohmann::ordered_json json = comparison_json(comparisons, scene.file.stem().string());
     write_whole(folder / "compare.json", json_text(json, 2) + "\n");
     write_json(options.json, json);
-    write_whole(folder / "report.html", comparison_page(comparison));
+    write_whole(folder / "report.html", comparison_page(comparisons));
     say("{}{}\n", options.quiet ? "" : "report: ", (folder / "report.html").string());
   }
   return interrupted() ? kInterrupted : kDone;

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <set>
 
+#include "compare/viscous_reference.h"
 #include "glisson/mesh_refinement.h"
+#include "models/relaxation.h"
 #include "scene/converge/grid_convergence.h"
 #include "scene/converge/refine_variant.h"
 
@@ -128,6 +130,7 @@ void find_errors(ComparedRow& row, const Reference& reference, std::span<const s
 /// The scene's own tissue on all meshes: the finest is the reference, the others say how far it is from the limit of fine meshes.
 Reference make_reference(const std::vector<Problem>& problems, const std::atomic<bool>& stop,
                          const std::function<void(const std::string&)>& say) {
+  if (models::is_viscous(problems.front())) return make_viscous_reference(problems, stop, say);
   std::vector<MeshResult> results;
   Reference reference;
   for (const Problem& problem : problems) {
@@ -150,6 +153,34 @@ Reference make_reference(const std::vector<Problem>& problems, const std::atomic
   return reference;
 }
 
+std::vector<double> stations_of(const Variant& variant, const CompareSpec& spec) {
+  const double end = run_duration(variant);
+  std::vector<double> stations;
+  for (int i = 1; spec.times.empty() && i <= spec.stations; ++i) stations.push_back(end * i / spec.stations);
+  for (const double time : spec.times) {
+    if (!stations.empty() && time <= stations.back()) {
+      throw SceneError(fmt::format("{}: compare.times_s: {} s comes after {} s; give the times in ascending order",
+                                   variant.scene_name, time, stations.back()));
+    }
+    if (time > end * (1.0 + 1e-9)) {
+      throw SceneError(fmt::format(
+          "{}: compare.times_s: {} s is beyond the end of variant {} at {} s; leave it out, or give motion.duration_s",
+          variant.scene_name, time, variant.name, end));
+    }
+    stations.push_back(std::min(time, end));
+  }
+  if (stations.back() < end) stations.push_back(end);
+  return stations;
+}
+
+/// How long the experiment of the middle variant lasts [s].
+double middle_duration(const Scene& scene) {
+  std::vector<double> durations;
+  for (const Variant& variant : scene.variants) durations.push_back(run_duration(variant));
+  std::sort(durations.begin(), durations.end());
+  return durations[durations.size() / 2];
+}
+
 }  // namespace
 
 const ComparedRow* Comparison::quickest(std::string_view model) const {
@@ -169,7 +200,7 @@ const ComparedRow* Comparison::quickest(std::string_view model) const {
   return best;
 }
 
-models::Problem problem_of(const Variant& variant, TetMesh mesh, int stations) {
+models::Problem problem_of(const Variant& variant, TetMesh mesh, const CompareSpec& spec) {
   require_comparable(variant);
   Problem problem;
   problem.tissues = region_tissues(variant, mesh);
@@ -177,7 +208,7 @@ models::Problem problem_of(const Variant& variant, TetMesh mesh, int stations) {
   for (const FixedSpec& f : variant.fixed) problem.supports.push_back({mesh.vertex_set(f.set), f.axes});
   for (const ToolSpec& t : variant.tools) problem.tools.push_back(tool_of(t, mesh));
   problem.duration = run_duration(variant);
-  for (int i = 1; i <= stations; ++i) problem.stations.push_back(problem.duration * i / stations);
+  problem.stations = stations_of(variant, spec);
   if (!variant.tools.empty() && variant.tools.front().rotation) {
     problem.moment_about = variant.tools.front().rotation->centre;
   }
@@ -185,19 +216,21 @@ models::Problem problem_of(const Variant& variant, TetMesh mesh, int stations) {
   return problem;
 }
 
-Comparison compare(const Scene& scene, const MeshLoader& load, const std::atomic<bool>& stop,
-                   const std::function<void(const std::string&)>& say) {
-  const Variant& variant = scene.variants.front();
-  require_comparable(variant);
+namespace {
+
+Comparison compare_variant(const Scene& scene, const Variant& variant, double test_time, const MeshLoader& load,
+                           const std::atomic<bool>& stop, const std::function<void(const std::string&)>& say) {
   const std::vector<const Rival*> list = chosen(scene);
   const auto meshes = static_cast<std::size_t>(scene.compare.meshes);
   std::vector<Problem> problems;
   for (TetMesh& mesh : meshes_of(variant, load, scene.compare.meshes + scene.compare.finer)) {
-    problems.push_back(problem_of(variant, std::move(mesh), scene.compare.stations));
+    problems.push_back(problem_of(variant, std::move(mesh), scene.compare));
+    problems.back().test_time = test_time;
   }
   Comparison result;
   result.title = scene.title.empty() ? scene.file.stem().string() : scene.title;
   result.description = scene.description;
+  if (scene.variants.size() > 1) result.variant = variant.label.empty() ? variant.name : variant.label;
   result.moments = problems.front().moment_about.has_value();
   result.target = scene.compare.target;
   result.stations = problems.front().stations;
@@ -218,6 +251,21 @@ Comparison compare(const Scene& scene, const MeshLoader& load, const std::atomic
     }
   }
   return result;
+}
+
+}  // namespace
+
+std::vector<Comparison> compare(const Scene& scene, const MeshLoader& load, const std::atomic<bool>& stop,
+                                const std::function<void(const std::string&)>& say) {
+  for (const Variant& variant : scene.variants) require_comparable(variant);
+  const double test_time = middle_duration(scene);
+  std::vector<Comparison> results;
+  for (const Variant& variant : scene.variants) {
+    if (stop) break;
+    if (scene.variants.size() > 1) say(fmt::format("variant {}", variant.name));
+    results.push_back(compare_variant(scene, variant, test_time, load, stop, say));
+  }
+  return results;
 }
 
 }  // namespace glisson::app

@@ -24,17 +24,19 @@ struct ComparedRow {
   double wall_s() const { return answer.setup_s + answer.run_s; }
 };
 
-/// The scene's own tissue in equilibrium on a mesh finer than those compared.
+/// The scene's own tissue on a mesh finer than those compared: in equilibrium, or where it is viscous in motion.
 struct Reference {
   std::size_t tets = 0;
   std::vector<Vec3d> forces;        ///< at the stations, extrapolated to the limit of fine meshes [N or N m]
   std::vector<Vec3d> displacement;  ///< of the vertices of its mesh at the end [m]
   double extrapolated = 0.0;        ///< by how much its last force was changed for that [-]
   std::string words;                ///< what its meshes say of it
+  std::string kind = "in equilibrium";
 };
 
 struct Comparison {
   std::string title, description;
+  std::string variant;   ///< label of the scene's variant; empty where there is one
   bool moments = false;  ///< forces are moments [N m]
   double target = 0.01;
   std::vector<double> stations;  ///< [s]
@@ -47,12 +49,13 @@ struct Comparison {
 };
 
 /// The experiment of a variant on a mesh. @throws SceneError naming what other models cannot be given
-models::Problem problem_of(const Variant& variant, TetMesh mesh, int stations);
+models::Problem problem_of(const Variant& variant, TetMesh mesh, const CompareSpec& spec);
 
-/// Runs all models that the scene asks for; `say` is told of each before it runs.
+/// Runs all models that the scene asks for, variant by variant; `say` is told of each before it runs. Where it is stopped, what is done is
+/// returned.
 /// @throws SceneError, std::invalid_argument for a model that is not there, a scene that cannot be compared, a reference without
 ///         equilibrium
-Comparison compare(const Scene& scene, const MeshLoader& load, const std::atomic<bool>& stop,
-                   const std::function<void(const std::string&)>& say);
+std::vector<Comparison> compare(const Scene& scene, const MeshLoader& load, const std::atomic<bool>& stop,
+                                const std::function<void(const std::string&)>& say);
 
 }  // namespace glisson::app

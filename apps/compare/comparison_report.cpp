@@ -41,11 +41,11 @@ std::string heading_of(const Comparison& c) { return c.moments ? "moment" : "for
 
 std::string reference_text(const Comparison& c) {
   return fmt::format(
-      "reference: the scene's own tissue in equilibrium, {} tets; {} of {:.4g} {} at the end, {:+.2g} % of it "
+      "reference: the scene's own tissue {}, {} tets; {} of {:.4g} {} at the end, {:+.2g} % of it "
       "extrapolated to "
       "the limit of fine meshes{}{}\n",
-      c.reference.tets, heading_of(c), norm(c.reference.forces.back()), unit(c), 100.0 * c.reference.extrapolated,
-      c.reference.words.empty() ? "" : ". ", c.reference.words);
+      c.reference.kind, c.reference.tets, heading_of(c), norm(c.reference.forces.back()), unit(c),
+      100.0 * c.reference.extrapolated, c.reference.words.empty() ? "" : ". ", c.reference.words);
 }
 
 /// What the models that reach the target take, from the quickest; then those that do not, with their least error.
@@ -168,18 +168,61 @@ nlohmann::json models_table(const Comparison& c) {
           {"note", ""}};
 }
 
-}  // namespace
-
-std::string note_of(const ComparedRow& row) {
-  if (!row.answer.trouble.empty()) return row.answer.trouble;
-  if (row.answer.forces.empty()) return fmt::format("no forces; cannot: {}", rival_of(row.model).cannot);
-  if (!std::isfinite(row.error_force)) return "its numbers are not finite";
-  return {};
+/// Of a model's rows the one on the finest mesh with the greatest effort; null: it has none.
+const ComparedRow* last_row(const Comparison& c, std::string_view model) {
+  const ComparedRow* last = nullptr;
+  for (const ComparedRow& row : c.rows) {
+    if (row.model == model) last = &row;
+  }
+  return last;
 }
 
-std::string comparison_table(const Comparison& c) {
+/// A row a model: the errors of its force in all variants, each on the finest mesh with the greatest effort.
+std::vector<std::vector<std::string>> summary_rows(std::span<const Comparison> all) {
+  std::vector<std::vector<std::string>> rows;
+  for (const models::Rival& rival : models::rivals()) {
+    std::vector<std::string> row{std::string(rival.name)};
+    double wall = 0.0;
+    bool ran = false;
+    for (const Comparison& c : all) {
+      const ComparedRow* last = last_row(c, rival.name);
+      ran = ran || (last != nullptr && last->answer.trouble.empty());
+      row.push_back(last == nullptr ? "-" : percent(last->error_force));
+      wall += last == nullptr ? 0.0 : last->wall_s();
+    }
+    row.push_back(fmt::format("{:.3g} s", wall));
+    if (ran) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string summary_text(std::span<const Comparison> all) {
+  std::string text = fmt::format("error of the {} by variant, finest mesh and greatest effort:\n  {:<24}",
+                                 heading_of(all.front()), "");
+  for (const Comparison& c : all) text += fmt::format("  {:>12}", c.variant);
+  text += fmt::format("  {:>12}\n", "time of all");
+  for (const auto& row : summary_rows(all)) {
+    text += fmt::format("  {:<24}", row.front());
+    for (std::size_t i = 1; i < row.size(); ++i) text += fmt::format("  {:>12}", row[i]);
+    text += "\n";
+  }
+  return text;
+}
+
+nlohmann::json summary_table(std::span<const Comparison> all) {
+  nlohmann::json columns{"model"};
+  for (const Comparison& c : all) columns.push_back(c.variant);
+  columns.push_back("time of all");
+  return {{"title", "Error of the " + heading_of(all.front()) + " by variant"},
+          {"columns", std::move(columns)},
+          {"rows", summary_rows(all)},
+          {"note", "Each on the finest mesh with the greatest effort."}};
+}
+
+std::string table_of(const Comparison& c) {
   constexpr std::string_view kRow = "  {:<24} {:>7}  {:>10}  {:>10}  {:>10}  {:>10}  {:>10}  {:>8}  {}\n";
-  std::string text = reference_text(c);
+  std::string text = c.variant.empty() ? "" : fmt::format("variant {}\n", c.variant);
+  text += reference_text(c);
   text += fmt::format(fmt::runtime(kRow), "model", "tets", "steps", heading_of(c), "surface", "set-up [s]", "run [s]",
                       "[MB]", "");
   for (const ComparedRow& row : c.rows) {
@@ -190,49 +233,88 @@ std::string comparison_table(const Comparison& c) {
   return text + target_text(c);
 }
 
-nlohmann::ordered_json comparison_json(const Comparison& c, const std::string& scene) {
+nlohmann::ordered_json forces_json(const std::vector<Vec3d>& forces) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Vec3d& f : forces) list.push_back({f.x, f.y, f.z});
+  return list;
+}
+
+nlohmann::ordered_json reference_json(const Comparison& c) {
+  return {{"tets", c.reference.tets},
+          {"forces", forces_json(c.reference.forces)},
+          {"extrapolated", c.reference.extrapolated}};
+}
+
+}  // namespace
+
+std::string note_of(const ComparedRow& row) {
+  if (!row.answer.trouble.empty()) return row.answer.trouble;
+  if (row.answer.forces.empty()) return fmt::format("no forces; cannot: {}", rival_of(row.model).cannot);
+  if (!std::isfinite(row.error_force)) return "its numbers are not finite";
+  return {};
+}
+
+std::string comparison_table(std::span<const Comparison> comparisons) {
+  std::string text;
+  for (const Comparison& c : comparisons) text += table_of(c);
+  return comparisons.size() > 1 ? text + summary_text(comparisons) : text;
+}
+
+nlohmann::ordered_json comparison_json(std::span<const Comparison> comparisons, const std::string& scene) {
   const auto or_null = [](double value) {
     return value < 0.0 ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
   };
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const ComparedRow& row : c.rows) {
-    nlohmann::ordered_json forces = nlohmann::ordered_json::array();
-    for (const Vec3d& f : row.answer.forces) forces.push_back({f.x, f.y, f.z});
-    rows.push_back({{"model", row.model},
-                    {"tets", row.tets},
-                    {"steps", row.answer.steps},
-                    {"iterations", row.effort.iterations},
-                    {"error_force", or_null(row.error_force)},
-                    {"error_surface", or_null(row.error_surface)},
-                    {"wall_s", row.wall_s()},
-                    {"setup_s", row.answer.setup_s},
-                    {"bytes", row.answer.bytes},
-                    {"forces", forces},
-                    {"note", note_of(row)}});
+  nlohmann::ordered_json variants = nlohmann::ordered_json::array();
+  for (const Comparison& c : comparisons) {
+    for (const ComparedRow& row : c.rows) {
+      rows.push_back({{"model", row.model},
+                      {"tets", row.tets},
+                      {"steps", row.answer.steps},
+                      {"iterations", row.effort.iterations},
+                      {"error_force", or_null(row.error_force)},
+                      {"error_surface", or_null(row.error_surface)},
+                      {"wall_s", row.wall_s()},
+                      {"setup_s", row.answer.setup_s},
+                      {"bytes", row.answer.bytes},
+                      {"forces", forces_json(row.answer.forces)},
+                      {"note", note_of(row)}});
+      if (!c.variant.empty()) rows.back()["variant"] = c.variant;
+    }
+    variants.push_back({{"variant", c.variant}, {"stations_s", c.stations}, {"reference", reference_json(c)}});
   }
-  nlohmann::ordered_json reference_forces = nlohmann::ordered_json::array();
-  for (const Vec3d& f : c.reference.forces) reference_forces.push_back({f.x, f.y, f.z});
-  return {{"scene", scene},
-          {"machine", machine_text()},
-          {"unit", unit(c)},
-          {"target", c.target},
-          {"stations_s", c.stations},
-          {"reference",
-           {{"tets", c.reference.tets}, {"forces", reference_forces}, {"extrapolated", c.reference.extrapolated}}},
-          {"rows", rows}};
+  const Comparison& first = comparisons.front();
+  nlohmann::ordered_json json{{"scene", scene},
+                              {"machine", machine_text()},
+                              {"unit", unit(first)},
+                              {"target", first.target},
+                              {"stations_s", first.stations},
+                              {"reference", reference_json(first)},
+                              {"rows", rows}};
+  if (comparisons.size() > 1) json["variants"] = variants;
+  return json;
 }
 
-std::string comparison_page(const Comparison& c) {
-  nlohmann::json scene{{"name", c.title},
-                       {"title", c.title},
-                       {"description", c.description},
-                       {"notes", nlohmann::json::array()},
-                       {"source", ""},
-                       {"variants", nlohmann::json::array()},
-                       {"charts", {force_chart(c), error_chart(c)}},
-                       {"tables", {rows_table(c), models_table(c)}},
-                       {"checks", nlohmann::json::array()}};
-  return report_page(report_template(), report_json(c.title, "many models, one experiment", {std::move(scene)}));
+std::string comparison_page(std::span<const Comparison> comparisons) {
+  std::vector<nlohmann::json> scenes;
+  for (const Comparison& c : comparisons) {
+    const std::string title = c.variant.empty() ? c.title : c.title + ": " + c.variant;
+    nlohmann::json tables = nlohmann::json::array();
+    if (comparisons.size() > 1 && &c == &comparisons.front()) tables.push_back(summary_table(comparisons));
+    tables.push_back(rows_table(c));
+    tables.push_back(models_table(c));
+    scenes.push_back({{"name", title},
+                      {"title", title},
+                      {"description", c.description},
+                      {"notes", nlohmann::json::array()},
+                      {"source", ""},
+                      {"variants", nlohmann::json::array()},
+                      {"charts", {force_chart(c), error_chart(c)}},
+                      {"tables", std::move(tables)},
+                      {"checks", nlohmann::json::array()}});
+  }
+  return report_page(report_template(),
+                     report_json(comparisons.front().title, "many models, one experiment", std::move(scenes)));
 }
 
 }  // namespace glisson::app

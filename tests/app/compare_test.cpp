@@ -1,6 +1,7 @@
 // `glisson compare` gives one scene to many models: a row a run with errors and times, a page, and a word where a model or a scene cannot.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "app/program.h"
@@ -65,6 +66,57 @@ TEST_F(Compare, GivesARowToEachModel) {
   const nlohmann::json page = report_data(folder_ / "o/report.html");
   EXPECT_EQ(page["scenes"][0]["charts"].size(), 2U);
   EXPECT_THAT(outcome.out, ::testing::HasSubstr("within 1 % of the force and the surface"));
+}
+
+// Viscous tissue: its reference is in motion, models without viscosity take part, and of several variants a last table has all.
+TEST_F(Compare, TakesVariantsOfAViscousScene) {
+  const std::string scene = write("viscous.toml", std::string(kBlock) + R"(
+models = ["linear_fem", "miller_brain", "glisson", "glisson_quasi_static"]
+[[variant]]
+name = "quick"
+tool.tool.velocity_mm_s = 20
+tool.tool.ramp_s = 0.02
+[[variant]]
+name = "held"
+motion.duration_s = 2
+)");
+  const std::vector<std::string> command{"compare", scene,
+                                         "--json",  (folder_ / "c.json").string(),
+                                         "--out",   (folder_ / "o").string(),
+                                         "--set",   "tissue.maxwell=[{share=0.5,time_s=0.3}]"};
+  const Outcome outcome = run(command);
+  ASSERT_THAT(outcome, Exits(0));
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("the scene's own tissue in motion"));
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("error of the force by variant"));
+  const nlohmann::json json = read_json(folder_ / "c.json");
+  ASSERT_EQ(json["variants"].size(), 2U);
+  std::map<std::string, double> quick;
+  for (const nlohmann::json& row : json["rows"]) {
+    if (row["variant"] == "quick" && !row["error_force"].is_null())
+      quick[row["model"].get<std::string>()] = row["error_force"].get<double>();
+  }
+  EXPECT_EQ(quick.size(), 4U);
+  EXPECT_GT(quick["glisson_quasi_static"], 2.0 * quick["glisson"])
+      << "its branches have relaxed, those of the block have not";
+  EXPECT_EQ(report_data(folder_ / "o/report.html")["scenes"].size(), 2U);
+}
+
+// Times of one's own: the end is added, and what is beyond it or out of order is refused.
+TEST_F(Compare, TakesTimes) {
+  const std::string scene = write("block.toml", kBlock);
+  const std::string json = (folder_ / "c.json").string(), out = (folder_ / "o").string();
+  const auto with = [&](const std::string& times) {
+    return run({"compare", scene, "--json", json, "--out", out, "--set", "compare.models=[\"linear_fem\"]", "--set",
+                "compare.times_s=" + times});
+  };
+  ASSERT_THAT(with("[0.25, 0.75]"), Exits(0));
+  EXPECT_EQ(read_json(folder_ / "c.json")["stations_s"].size(), 3U);
+  Outcome outcome = with("[0.5, 0.25]");
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("0.25 s comes after 0.5 s"));
+  outcome = with("[3]");
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("3 s is beyond the end of variant main"));
 }
 
 TEST_F(Compare, SaysWhatItCannotGive) {

@@ -168,6 +168,7 @@ models = ["xpbd"]
 meshes = 3
 finer = 2
 stations = 7
+times_s = [0.25, 0.5]
 target = 0.02
 
 [[variant]]
@@ -201,6 +202,7 @@ TEST(EveryKey, OfTheSceneIsRead) {
   EXPECT_EQ(scene.compare.meshes, 3);
   EXPECT_EQ(scene.compare.finer, 2);
   EXPECT_EQ(scene.compare.stations, 7);
+  EXPECT_THAT(scene.compare.times, ElementsAre(0.25, 0.5));
   EXPECT_EQ(scene.compare.target, 0.02);
   EXPECT_EQ(scene.charts[0].title, "Force");
   EXPECT_EQ(scene.charts[0].x.column, "depth_m");

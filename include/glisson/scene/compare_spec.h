@@ -12,6 +12,7 @@ namespace glisson {
 struct CompareSpec {
   std::vector<std::string> models;  ///< names; empty: all
   int meshes = 2, finer = 1, stations = 5;
+  std::vector<double> times;  ///< [s], ascending; empty: `stations` of them
   double target = 0.01;
 
   template <class Take>
@@ -25,6 +26,10 @@ struct CompareSpec {
               "how often the reference's mesh is twice as fine as the finest of them"),
         field("stations", &C::stations, between(1, 100),
               "times at which forces are compared, evenly spaced, the last at the end"),
+        field(
+            "times", &C::times, "s", above(0),
+            "times at which forces are compared, ascending, in the place of `stations`; the end is one of them anyway")
+            .otherwise("evenly spaced"),
         field("target", &C::target, "-", strictly_between(0, 1),
               "error of force and surface within which the models' times are compared"));
   }
