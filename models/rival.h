@@ -46,6 +46,7 @@ struct Problem {
   /// Where it is given, moments about this point are read in the place of forces [m].
   std::optional<Vec3d> moment_about{};
 
+  double damping() const { return motion.damping_rate; }  ///< of the vertices [1/s]
   const Tissue& tissue_of(std::size_t tet) const { return tissues.at(mesh.region_of(tet)); }
   Vec3d gravity_at(double time) const {
     return time < motion.gravity_ramp ? motion.gravity * (time / motion.gravity_ramp) : motion.gravity;

@@ -202,7 +202,7 @@ Comparison compare(const Scene& scene, const MeshLoader& load, const std::atomic
   result.target = scene.compare.target;
   result.stations = problems.front().stations;
   result.reference = make_reference(problems, stop, say);
-  const std::vector<std::uint32_t> surface = free_surface(problems.front());
+  result.surface = free_surface(problems.front());
   for (const Rival* rival : list) {
     for (std::size_t k = 0; k < meshes; ++k) {
       for (const models::Effort& effort : rival->efforts) {
@@ -212,11 +212,13 @@ Comparison compare(const Scene& scene, const MeshLoader& load, const std::atomic
         ComparedRow row{.model = std::string(rival->name), .effort = effort, .tets = tets, .answer = {}};
         row.answer = rival->run(problems[k], effort, stop);
         if (stop) return result;
-        find_errors(row, result.reference, surface);
+        find_errors(row, result.reference, result.surface);
         result.rows.push_back(std::move(row));
       }
     }
   }
+  problems.resize(meshes);
+  result.problems = std::move(problems);
   return result;
 }
 
