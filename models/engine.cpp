@@ -34,12 +34,20 @@ Answer run(const Problem& problem, const std::map<int, Tissue>& tissues, Simulat
   options.threads = 1;
   options.track_energies = false;
   options.exact_steps = false;
-  if (options.integrator == Integrator::quasi_static) options.step = problem.stations.front();
+  const bool at_rest = options.integrator == Integrator::quasi_static;
+  if (at_rest) options.step = problem.stations.front();
   Simulation simulation(problem.mesh, tissues, options);
   const std::vector<ConstraintId> read = hold_and_move(simulation, problem);
   answer.setup_s = watch.lap();
+  bool whole = problem.cut.has_value();
   for (const double time : problem.stations) {
     while (!stop && simulation.time() < time - 0.5 * simulation.step_size()) {
+      if (whole && (at_rest ? time : simulation.time()) >= problem.cut->time) {
+        whole = false;
+        Stopwatch knife;
+        simulation.remove_tets(problem.cut->tets);
+        answer.cut_s = knife.lap();
+      }
       const StepResult result = simulation.step();
       ++answer.steps;
       if (result.made()) continue;

@@ -34,6 +34,12 @@ struct Tool {
   double start = 0.0;  ///< [s]
 };
 
+/// Tets that are gone from a time on, with their stiffness; what is left of the body stays as it is.
+struct Cut {
+  double time = 0.0;  ///< [s]
+  std::vector<std::uint32_t> tets;
+};
+
 /// One experiment on one mesh.
 struct Problem {
   TetMesh mesh;
@@ -45,6 +51,7 @@ struct Problem {
   std::vector<double> stations;  ///< times at which the force is read [s], ascending; the last is the duration
   /// Where it is given, moments about this point are read in the place of forces [m].
   std::optional<Vec3d> moment_about{};
+  std::optional<Cut> cut{};
 
   double damping() const { return motion.damping_rate; }  ///< of the vertices [1/s]
   const Tissue& tissue_of(std::size_t tet) const { return tissues.at(mesh.region_of(tet)); }
@@ -69,6 +76,7 @@ struct Answer {
   double run_s = 0.0;               ///< from the first step to the end [s]
   std::size_t bytes = 0;            ///< of the model's own arrays
   std::size_t steps = 0;            ///< that it made
+  double cut_s = 0.0;               ///< of run_s, what the cut took [s]
   std::string trouble;              ///< why there is no answer; empty where there is one
 };
 

@@ -86,6 +86,7 @@ Json problem_json(const Comparison& c, const std::string& scene) {
           {"gravity_m_s2", list(first.motion.gravity)},
           {"gravity_ramp_s", first.motion.gravity_ramp},
           {"damping_per_s", first.damping()},
+          {"cut_at_s", first.cut ? Json(first.cut->time) : Json()},
           {"tissues", tissues_json(first)},
           {"meshes", std::move(meshes)},
           {"surface", c.surface},

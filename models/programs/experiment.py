@@ -188,8 +188,10 @@ def groups(entries: list[dict], times: int) -> list[Group]:
 
 
 def cases(file: Path) -> list[Case]:
-    """The experiment on each of its meshes, the coarsest first. @raises CannotRun for a body of several tissues"""
+    """The experiment on each of its meshes, the coarsest first. @raises CannotRun for a body of several tissues or one that is cut"""
     data = json.loads(Path(file).read_text(encoding="utf-8"))
+    if data["cut_at_s"] is not None:
+        raise CannotRun("programs are given no cut")
     if len(data["tissues"]) != 1:
         raise CannotRun(f"the body has {len(data['tissues'])} tissues; programs are given one")
     tissue = data["tissues"][0]

@@ -17,6 +17,7 @@ from programs.experiment import Answer, CannotRun, Case, Stopwatch, in_steps
 EFFORTS = {
     "StVK, 4 ms": (0, 0.004),
     "StVK, 1 ms": (0, 0.001),
+    "SNH, 50 ms": (1, 0.05),
     "SNH, 10 ms": (1, 0.01),
     "SNH, 4 ms": (1, 0.004),
     "SNH, 1 ms": (1, 0.001),

@@ -105,6 +105,30 @@ TEST_F(Compare, WritesTheExperimentForOtherPrograms) {
   for (const nlohmann::json& v : p["surface"]) EXPECT_LT(v.get<std::size_t>(), p["meshes"][0]["vertices_m"].size());
 }
 
+// A region is taken out while the body is loaded: rows say what that took, and what is no cut is refused.
+TEST_F(Compare, CutsARegionOutInMidRun) {
+  const std::string scene = write("notch.toml", std::string(kBlock) +
+                                                    "cut_at_s = 0.7\ncut = \"slot\"\n[[region]]\n"
+                                                    "name = \"slot\"\nbox_m = { min = [0, 0, 0.01], "
+                                                    "max = [0.01, 0.02, 0.02] }\n");
+  const auto cut = [&](const std::string& key, const std::string& value) {
+    return run({"compare", scene, "--out", (folder_ / "o").string(), "--json", (folder_ / "c.json").string(), "--set",
+                "compare.models=[\"linear_fem\", \"glisson\", \"hybrid\"]", "--set", "compare." + key + "=" + value});
+  };
+  ASSERT_THAT(cut("meshes", "1"), Exits(0));
+  for (const nlohmann::json& row : read_json(folder_ / "c.json")["rows"]) {
+    EXPECT_THAT(row["note"].get<std::string>(), ::testing::StartsWith("the cut took ")) << row["model"];
+    EXPECT_LE(row["error_force"].get<double>(), 0.2) << row["model"];
+  }
+  Outcome outcome = cut("cut", "\"none\"");
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err,
+              ::testing::HasSubstr("compare.cut: region \"none\" has 0 of the 48 tets; name a [[region]]"));
+  outcome = cut("cut_at_s", "5");
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("compare.cut_at_s: 5 s is not before the end of the run"));
+}
+
 TEST_F(Compare, SaysWhatItCannotGive) {
   const std::string needle = write("needle.toml", std::string(kBlock) +
                                                       "[[instrument]]\nkind = \"needle\"\ntip_m = [0.01, 0.01, 0.021]\n"

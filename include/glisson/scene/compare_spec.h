@@ -13,6 +13,8 @@ struct CompareSpec {
   std::vector<std::string> models;  ///< names; empty: all
   int meshes = 2, finer = 1, stations = 5;
   double target = 0.01;
+  std::string cut;      ///< name of a region that is taken out; empty: none
+  double cut_at = 0.0;  ///< when [s]
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -26,7 +28,10 @@ struct CompareSpec {
         field("stations", &C::stations, between(1, 100),
               "times at which forces are compared, evenly spaced, the last at the end"),
         field("target", &C::target, "-", strictly_between(0, 1),
-              "error of force and surface within which the models' times are compared"));
+              "error of force and surface within which the models' times are compared"),
+        field("cut", &C::cut, "name of a `[[region]]` whose tets are taken out during the run").otherwise("none"),
+        field("cut_at", &C::cut_at, "s", at_least(0),
+              "when they are taken out; stations before and after see the body whole and cut"));
   }
 };
 
