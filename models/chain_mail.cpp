@@ -15,12 +15,20 @@ constexpr double kStretch = 0.1, kShear = 0.1;  // share of a link by which its 
 
 class ChainMail {
  public:
-  explicit ChainMail(const Problem& problem)
-      : problem_(problem), boundary_(problem), links_(problem.mesh.vertices.size()), u_(links_.size()) {
-    for (const auto& [a, b] : mesh_edges(problem.mesh)) {
-      links_[a].push_back(b);
-      links_[b].push_back(a);
+  explicit ChainMail(const Problem& problem) : problem_(problem), boundary_(problem), u_(problem.mesh.vertices.size()) {
+    link(problem.mesh);
+  }
+
+  /// The links of the tets that are left.
+  void remove(const std::vector<std::uint32_t>& tets) {
+    TetMesh left;
+    left.vertices = problem_.mesh.vertices;
+    std::vector<bool> gone(problem_.mesh.tets.size(), false);
+    for (const std::uint32_t t : tets) gone[t] = true;
+    for (std::size_t t = 0; t < gone.size(); ++t) {
+      if (!gone[t]) left.tets.push_back(problem_.mesh.tets[t]);
     }
+    link(left);
   }
 
   /// The prescribed vertices move, the others follow where a link is taut.
@@ -52,6 +60,7 @@ class ChainMail {
       for (std::size_t v = 0; v < u_.size(); ++v) {
         Vec3d mean;
         for (const std::uint32_t n : links_[v]) mean += u_[n];
+        if (links_[v].empty()) continue;
         mean = mean * (1.0 / static_cast<double>(links_[v].size()));
         for (std::size_t i = 0; i < 3; ++i) {
           if (!boundary_.prescribes(v, i)) u_[v][i] = mean[i];
@@ -68,6 +77,14 @@ class ChainMail {
   }
 
  private:
+  void link(const TetMesh& mesh) {
+    links_.assign(mesh.vertices.size(), {});
+    for (const auto& [a, b] : mesh_edges(mesh)) {
+      links_[a].push_back(b);
+      links_[b].push_back(a);
+    }
+  }
+
   bool held(std::uint32_t v) const {
     return boundary_.prescribes(v, 0) && boundary_.prescribes(v, 1) && boundary_.prescribes(v, 2);
   }
@@ -100,7 +117,14 @@ Answer chain_mail(const Problem& problem, const Effort& effort, const Stop& stop
   Stopwatch watch;
   ChainMail model(problem);
   answer.setup_s = watch.lap();
+  bool whole = problem.cut.has_value();
   for (int n = 1; n <= effort.steps && !stop; ++n) {
+    if (whole && problem.duration * (n - 1) / effort.steps >= problem.cut->time) {
+      whole = false;
+      Stopwatch knife;
+      model.remove(problem.cut->tets);
+      answer.cut_s = knife.lap();
+    }
     model.pull(problem.duration * n / effort.steps);
     model.relax(effort.iterations);
   }

@@ -38,11 +38,20 @@ Answer run(const Problem& problem, const std::map<int, Tissue>& tissues, Simulat
   options.threads = 1;
   options.track_energies = false;
   options.exact_steps = false;
-  if (options.integrator == Integrator::quasi_static) options.step = common_step(problem.stations);
+  const bool at_rest = options.integrator == Integrator::quasi_static;
+  if (at_rest) options.step = common_step(problem.stations);
   Simulation simulation(problem.mesh, tissues, options);
   const std::vector<ConstraintId> read = hold_and_move(simulation, problem);
   answer.setup_s = watch.lap();
+  bool whole = problem.cut.has_value();
   const auto advance = [&] {
+    const double next = simulation.time() + (at_rest ? simulation.step_size() : 0.0);  // an equilibrium is that at a step's end
+    if (whole && next > problem.cut->time - 1e-9 * problem.duration) {
+      whole = false;
+      Stopwatch knife;
+      simulation.remove_tets(problem.cut->tets);
+      answer.cut_s = knife.lap();
+    }
     const StepResult result = simulation.step();
     ++answer.steps;
     if (!result.made()) answer.trouble = std::string(result.message);

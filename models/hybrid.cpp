@@ -7,6 +7,7 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "models/linear_stiffness.h"
 #include "models/stepping.h"
@@ -71,6 +72,18 @@ class Hybrid {
     std::vector<Vec3d> now = vectors_of(u_);
     boundary_.set(time + h, now);
     u_ = flat(now);
+  }
+
+  /// Of the part that is not condensed; the other is one matrix, which no tet can be taken out of. Their mass stays.
+  std::string remove(std::span<const std::uint32_t> tets) {
+    std::vector<bool> stays(condensed_.size());
+    for (std::size_t t = 0; t < stays.size(); ++t) stays[t] = !condensed_[t];
+    for (const std::uint32_t t : tets) {
+      if (condensed_[t]) return "the cut reaches into the condensed half";
+      stays[t] = false;
+    }
+    stepped_ = stiffness_matrix(problem_, [&](std::size_t t) { return stays[t]; });
+    return {};
   }
 
   Vec3d force(double time) const { return boundary_.force(vectors_of(elastic(u_) + loads(time)), vectors_of(u_)); }

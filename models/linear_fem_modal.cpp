@@ -144,6 +144,10 @@ class Modes {
 Answer linear_fem_modal(const Problem& problem, const Effort& effort, const Stop& stop) {
   Answer answer;
   if (stop) return answer;
+  if (problem.cut) {
+    answer.trouble = "its modes are those of the whole body; a cut asks for others, at the price of its set-up";
+    return answer;
+  }
   Stopwatch watch;
   const Modes modes(problem, effort.iterations);
   if (!modes.held()) {

@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
 #include <memory>
+#include <string>
 
 #include "models/boundary.h"
 #include "models/relaxation.h"
@@ -59,23 +60,20 @@ class Projective {
   Projective(const Problem& problem, double h, int iterations)
       : problem_(problem), boundary_(problem), h_(h), iterations_(iterations), masses_(lumped_masses(problem)),
         u_(masses_.size()), v_(masses_.size()), f_(masses_.size()) {
-    const auto n = static_cast<Eigen::Index>(masses_.size());
-    std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t t = 0; t < problem.mesh.tets.size(); ++t) {
       const RestTet rest = rest_tet(problem.mesh, t);
       const LameParameters lame = test_moduli(problem, problem.tissue_of(t));
       tets_.push_back({rest, 2.0 * lame.mu * rest.volume, 3.0 * lame.lambda * rest.volume});
-      const double weight = tets_.back().shape + tets_.back().volume;
-      for (std::size_t a = 0; a < 4; ++a) {
-        for (std::size_t b = 0; b < 4; ++b) {
-          entries.emplace_back(static_cast<int>(problem.mesh.tets[t][a]), static_cast<int>(problem.mesh.tets[t][b]),
-                               weight * dot(rest.s[a], rest.s[b]));
-        }
-      }
     }
-    elastic_.resize(n, n);
-    elastic_.setFromTriplets(entries.begin(), entries.end());
-    for (std::size_t axis = 0; axis < 3; ++axis) factorise(axis);
+    make_matrix();
+  }
+
+  /// The tets weigh nothing any more, and the matrix is factorised anew. Their mass stays.
+  std::string remove(std::span<const std::uint32_t> tets) {
+    for (const std::uint32_t t : tets) tets_[t].shape = tets_[t].volume = 0.0;
+    factors_.clear();
+    make_matrix();
+    return {};
   }
 
   void advance(double time, double /*h*/) {
@@ -114,6 +112,24 @@ class Projective {
   }
 
  private:
+  void make_matrix() {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t t = 0; t < tets_.size(); ++t) {
+      const auto& s = tets_[t].rest.s;
+      const double weight = tets_[t].shape + tets_[t].volume;
+      if (weight == 0.0) continue;
+      for (std::size_t a = 0; a < 4; ++a) {
+        for (std::size_t b = 0; b < 4; ++b) {
+          entries.emplace_back(static_cast<int>(problem_.mesh.tets[t][a]), static_cast<int>(problem_.mesh.tets[t][b]),
+                               weight * dot(s[a], s[b]));
+        }
+      }
+    }
+    elastic_.resize(index(masses_.size()), index(masses_.size()));
+    elastic_.setFromTriplets(entries.begin(), entries.end());
+    for (std::size_t axis = 0; axis < 3; ++axis) factorise(axis);
+  }
+
   struct TetState {
     RestTet rest;
     double shape, volume;  // weights
@@ -153,6 +169,7 @@ class Projective {
     std::fill(f_.begin(), f_.end(), Vec3d{});
     for (std::size_t t = 0; t < tets_.size(); ++t) {
       const TetState& state = tets_[t];
+      if (state.shape == 0.0) continue;
       const Tet& tet = problem_.mesh.tets[t];
       const Mat3d f = deformation_gradient(state.rest, tet, u_);
       const Split split = split_of(f);

@@ -34,6 +34,12 @@ struct Tool {
   double start = 0.0;  ///< [s]
 };
 
+/// Tets that are gone from a time on, with their stiffness; what is left of the body stays as it is.
+struct Cut {
+  double time = 0.0;  ///< [s]
+  std::vector<std::uint32_t> tets;
+};
+
 /// One experiment on one mesh.
 struct Problem {
   TetMesh mesh;
@@ -48,7 +54,9 @@ struct Problem {
   /// How long the test lasts by which models without viscosity are given the moduli of a tissue that relaxes [s]; 0: at once
   /// (relaxation.h).
   double test_time = 0.0;
+  std::optional<Cut> cut{};
 
+  double damping() const { return motion.damping_rate; }  ///< of the vertices [1/s]
   const Tissue& tissue_of(std::size_t tet) const { return tissues.at(mesh.region_of(tet)); }
   Vec3d gravity_at(double time) const {
     return time < motion.gravity_ramp ? motion.gravity * (time / motion.gravity_ramp) : motion.gravity;
@@ -71,6 +79,7 @@ struct Answer {
   double run_s = 0.0;               ///< from the first step to the end [s]
   std::size_t bytes = 0;            ///< of the model's own arrays
   std::size_t steps = 0;            ///< that it made
+  double cut_s = 0.0;               ///< of run_s, what the cut took [s]
   std::string trouble;              ///< why there is no answer; empty where there is one
 };
 

@@ -28,7 +28,7 @@ std::span<const Rival> rivals() {
       Rival{"linear_fem", "linear finite elements, one factor for all", "BroNielsen1998",
             "large rotation, a law, viscosity, cutting without a new factor", kOnce, linear_fem},
       Rival{"linear_fem_modal", "linear finite elements in their lowest modes, corrected", "PentlandWilliams1989",
-            "large rotation, a law, viscosity, loads that its modes were not made for", kModes, linear_fem_modal},
+            "large rotation, a law, viscosity, a cut, loads that its modes were not made for", kModes, linear_fem_modal},
       Rival{"linear_tensor_mass", "linear tensor-mass, explicit", "Cotin2000", kNoTurn, kOnce, linear_tensor_mass},
       Rival{"hybrid", "half condensed, half linear tensor-mass", "Cotin2000",
             "large rotation, a law, viscosity, cutting the condensed half", kOnce, hybrid},

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <string>
 
 #include "models/boundary.h"
 #include "models/relaxation.h"
@@ -25,6 +27,7 @@ struct Spring {
 
 /// What a tet resists a change of its volume with.
 struct VolumeSpring {
+  std::uint32_t of;
   Tet tet;
   double volume, modulus;  // [m³], [Pa]
 };
@@ -43,9 +46,9 @@ std::array<Vec3d, 4> volume_gradients(const Tet& t, const std::vector<Vec3d>& x)
 class SpringMass {
  public:
   SpringMass(const Problem& problem, Rule rule, bool volumes)
-      : problem_(problem), boundary_(problem), masses_(lumped_masses(problem)), x_(problem.mesh.vertices),
+      : problem_(problem), rule_(rule), boundary_(problem), masses_(lumped_masses(problem)), x_(problem.mesh.vertices),
         u_(x_.size()), v_(x_.size()), f_(x_.size()) {
-    make_springs(rule);
+    make_springs();
     if (volumes) make_volume_springs();
   }
 
@@ -88,6 +91,17 @@ class SpringMass {
     return boundary_.force(f_, u_);
   }
 
+  /// Springs lose the share that the tets gave them, and those of no tet are gone; so are the tets' volumes. Their mass stays.
+  std::string remove(std::span<const std::uint32_t> tets) {
+    const std::set<std::uint32_t> gone(tets.begin(), tets.end());
+    add_stiffness(-1.0, [&](std::uint32_t t) { return gone.contains(t); });
+    double most = 0.0;
+    for (const Spring& s : springs_) most = std::max(most, s.stiffness);
+    std::erase_if(springs_, [&](const Spring& s) { return s.stiffness <= 1e-9 * most; });
+    std::erase_if(volumes_, [&](const VolumeSpring& s) { return gone.contains(s.of); });
+    return {};
+  }
+
   const std::vector<Vec3d>& displacement() const { return u_; }
   std::size_t bytes() const {
     return springs_.size() * sizeof(Spring) + volumes_.size() * sizeof(VolumeSpring) +
@@ -95,33 +109,41 @@ class SpringMass {
   }
 
  private:
-  void make_springs(Rule rule) {
-    const auto edges = mesh_edges(problem_.mesh);
-    for (const auto& [a, b] : edges) {
+  void make_springs() {
+    for (const auto& [a, b] : mesh_edges(problem_.mesh)) {
       springs_.push_back({a, b, norm(problem_.mesh.vertices[b] - problem_.mesh.vertices[a]), 0.0});
     }
-    for (std::size_t t = 0; t < problem_.mesh.tets.size(); ++t) {
+    add_stiffness(1.0, [](std::uint32_t) { return true; });
+  }
+
+  /// What the tets that are taken give their springs, times a sign.
+  template <class Takes>
+  void add_stiffness(double sign, Takes takes) {
+    const auto before = [](const Spring& s, const std::array<std::uint32_t, 2>& ends) {
+      return s.a < ends[0] || (s.a == ends[0] && s.b < ends[1]);
+    };
+    for (std::uint32_t t = 0; t < problem_.mesh.tets.size(); ++t) {
+      if (!takes(t)) continue;
       const Tet& tet = problem_.mesh.tets[t];
       const double volume = six_rest_volume(problem_.mesh, t) / 6.0;
       const double young = youngs_modulus(test_moduli(problem_, problem_.tissue_of(t)));
       for (std::size_t a = 0; a < 4; ++a) {
         for (std::size_t b = a + 1; b < 4; ++b) {
           const std::array<std::uint32_t, 2> ends{std::min(tet[a], tet[b]), std::max(tet[a], tet[b])};
-          Spring& s =
-              springs_[static_cast<std::size_t>(std::lower_bound(edges.begin(), edges.end(), ends) - edges.begin())];
-          s.stiffness += rule == Rule::volume ? young * volume / (s.length * s.length)
-                                              : 2.0 * std::numbers::sqrt2 / 25.0 * young * s.length;
+          Spring& s = *std::lower_bound(springs_.begin(), springs_.end(), ends, before);
+          s.stiffness += sign * (rule_ == Rule::volume ? young * volume / (s.length * s.length)
+                                                       : 2.0 * std::numbers::sqrt2 / 25.0 * young * s.length);
         }
       }
     }
   }
 
   void make_volume_springs() {
-    for (std::size_t t = 0; t < problem_.mesh.tets.size(); ++t) {
+    for (std::uint32_t t = 0; t < problem_.mesh.tets.size(); ++t) {
       const LameParameters lame = test_moduli(problem_, problem_.tissue_of(t));
       const double young = youngs_modulus(lame);
       const double lacks = lame.lambda - 0.4 * young;
-      if (lacks > 0.0) volumes_.push_back({problem_.mesh.tets[t], six_rest_volume(problem_.mesh, t) / 6.0, lacks});
+      if (lacks > 0.0) volumes_.push_back({t, problem_.mesh.tets[t], six_rest_volume(problem_.mesh, t) / 6.0, lacks});
     }
   }
 
@@ -143,6 +165,7 @@ class SpringMass {
   }
 
   const Problem& problem_;
+  Rule rule_;
   Boundary boundary_;
   std::vector<double> masses_;
   std::vector<Spring> springs_;

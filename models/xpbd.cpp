@@ -6,6 +6,7 @@
 // λ' makes its stiffness at rest that of the tissue. Δλ = (− C − α̃ λ)/(Σ w |∇C|² + α̃), α̃ = α/h². As many sweeps as it is given: with
 // fewer than it takes to converge the body is softer, by how much depends on the step and the mesh.
 #include <cmath>
+#include <string>
 
 #include "models/boundary.h"
 #include "models/relaxation.h"
@@ -61,6 +62,7 @@ class Xpbd {
     for (std::size_t i = 0; i < f_.size(); ++i) f_[i] = problem_.gravity_at(time) * masses_[i];
     for (std::size_t t = 0; t < tets_.size(); ++t) {
       const TetState& state = tets_[t];
+      if (state.gone) continue;
       const Tet& tet = problem_.mesh.tets[t];
       const Mat3d f = deformation_gradient(state.rest, tet, u_);
       const double size = shape_size(f);
@@ -73,6 +75,12 @@ class Xpbd {
     return boundary_.force(f_, u_);
   }
 
+  /// The constraints of the tets are gone; their mass stays.
+  std::string remove(std::span<const std::uint32_t> tets) {
+    for (const std::uint32_t t : tets) tets_[t].gone = true;
+    return {};
+  }
+
   const std::vector<Vec3d>& displacement() const { return u_; }
   std::size_t bytes() const { return tets_.size() * sizeof(TetState) + u_.size() * (4 * sizeof(Vec3d) + 8); }
 
@@ -81,6 +89,7 @@ class Xpbd {
     RestTet rest;
     double mu, lambda;
     double shape, volume;  // multipliers of this step
+    bool gone = false;
   };
 
   static double shape_size(const Mat3d& f) {
@@ -104,6 +113,7 @@ class Xpbd {
 
   void project(std::size_t t, double h) {
     TetState& state = tets_[t];
+    if (state.gone) return;
     const Tet& tet = problem_.mesh.tets[t];
     Mat3d f = deformation_gradient(state.rest, tet, u_);
     const double size = shape_size(f);

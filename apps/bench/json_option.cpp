@@ -10,21 +10,17 @@
 #include "report/output_file.h"
 
 namespace glisson::app {
-namespace {
-
 namespace fs = std::filesystem;
 
-std::string check_place(const std::string& file) {
+std::string file_place(const std::string& file) {
   const fs::path folder = fs::path(file).parent_path();
   if (fs::is_directory(file)) return fmt::format("{} is a folder; name a file in it", file);
   if (folder.empty() || fs::is_directory(folder)) return {};
   return fmt::format("the folder {} does not exist; create it first", folder.string());
 }
 
-}  // namespace
-
 void add_json_option(CLI::App& command, std::string& file) {
-  command.add_option("--json", file, "write the result to this file too")->type_name("FILE")->check(check_place);
+  command.add_option("--json", file, "write the result to this file too")->type_name("FILE")->check(file_place);
 }
 
 void write_json(const std::string& file, const nlohmann::ordered_json& json) {

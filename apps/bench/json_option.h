@@ -10,6 +10,9 @@ namespace glisson::app {
 /// Adds the option; a folder that does not exist is an error of the command line.
 void add_json_option(CLI::App& command, std::string& file);
 
+/// Of a file that will be written: what is wrong with its place, or an empty text.
+std::string file_place(const std::string& file);
+
 /// Replaces the file in one move; nothing where `file` is empty. @throws OutputError
 void write_json(const std::string& file, const nlohmann::ordered_json& json);
 

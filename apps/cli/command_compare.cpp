@@ -12,6 +12,7 @@
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "compare/comparison_report.h"
+#include "compare/problem_json.h"
 #include "report/json_text.h"
 #include "report/output_file.h"
 #include "report/output_folder.h"
@@ -40,7 +41,7 @@ constexpr const char* kCompareFooter =
 
 struct CompareOptions {
   SceneOptions scene;
-  std::string out, json;
+  std::string out, json, problem;
   bool list = false, quiet = false;
 };
 
@@ -73,6 +74,7 @@ int run_comparison(const CompareOptions& options) {
     const nlohmann::ordered_json json = comparison_json(comparisons, scene.file.stem().string());
     write_whole(folder / "compare.json", json_text(json, 2) + "\n");
     write_json(options.json, json);
+    if (!interrupted()) write_json(options.problem, problem_json(comparisons.front(), scene.file.stem().string()));
     write_whole(folder / "report.html", comparison_page(comparisons));
     say("{}{}\n", options.quiet ? "" : "report: ", (folder / "report.html").string());
   }
@@ -89,6 +91,11 @@ void add_compare(CLI::App& program, Action& action) {
   command->add_option("--out", options->out, "folder of the results; default out/<scene name>_compare")
       ->type_name("DIR");
   add_json_option(*command, options->json);
+  command
+      ->add_option("--problem", options->problem,
+                   "write the meshes, moduli, supports, paths and reference to this JSON file")
+      ->type_name("FILE")
+      ->check(file_place);
   command->add_flag("--list", options->list, "print the models and what each cannot do");
   command->add_flag("--quiet", options->quiet, "print the table and the report's path alone");
   command->footer(kCompareFooter);

@@ -87,10 +87,39 @@ std::vector<const Rival*> chosen(const Scene& scene) {
   return list;
 }
 
-/// Vertices of the surface with a component that is free.
+/// Takes the tets of the region compare.cut out of the body when it says.
+void plan_cut(Problem& problem, const Scene& scene) {
+  const CompareSpec& spec = scene.compare;
+  if (spec.cut.empty()) return;
+  models::Cut cut{.time = spec.cut_at, .tets = {}};
+  for (std::uint32_t t = 0; t < problem.mesh.tets.size(); ++t) {
+    const auto name = problem.mesh.region_names.find(problem.mesh.region_of(t));
+    if (name != problem.mesh.region_names.end() && name->second == spec.cut) cut.tets.push_back(t);
+  }
+  if (cut.tets.empty() || cut.tets.size() == problem.mesh.tets.size()) {
+    throw SceneError(
+        fmt::format("{}: compare.cut: region \"{}\" has {} of the {} tets; name a [[region]] that has some",
+                    scene.file.string(), spec.cut, cut.tets.size(), problem.mesh.tets.size()));
+  }
+  if (spec.cut_at >= problem.duration) {
+    throw SceneError(fmt::format("{}: compare.cut_at_s: {} s is not before the end of the run, {} s",
+                                 scene.file.string(), spec.cut_at, problem.duration));
+  }
+  problem.cut = std::move(cut);
+}
+
+/// Vertices of the surface with a component that is free and a tet that stays.
 std::vector<std::uint32_t> free_surface(const Problem& problem) {
-  std::set<std::uint32_t> vertices;
+  std::set<std::uint32_t> vertices, kept;
   for (const Triangle& t : boundary_triangles(problem.mesh)) vertices.insert(t.begin(), t.end());
+  std::vector<bool> gone(problem.mesh.tets.size(), false);
+  if (problem.cut) {
+    for (const std::uint32_t t : problem.cut->tets) gone[t] = true;
+  }
+  for (std::size_t t = 0; t < gone.size(); ++t) {
+    if (!gone[t]) kept.insert(problem.mesh.tets[t].begin(), problem.mesh.tets[t].end());
+  }
+  std::erase_if(vertices, [&](std::uint32_t v) { return !kept.contains(v); });
   const auto leave_out = [&](const std::vector<std::uint32_t>& held, const Axes& axes) {
     if (!axes.x || !axes.y || !axes.z) return;
     for (const std::uint32_t v : held) vertices.erase(v);
@@ -226,6 +255,7 @@ Comparison compare_variant(const Scene& scene, const Variant& variant, double te
   for (TetMesh& mesh : meshes_of(variant, load, scene.compare.meshes + scene.compare.finer)) {
     problems.push_back(problem_of(variant, std::move(mesh), scene.compare));
     problems.back().test_time = test_time;
+    plan_cut(problems.back(), scene);
   }
   Comparison result;
   result.title = scene.title.empty() ? scene.file.stem().string() : scene.title;
@@ -235,7 +265,7 @@ Comparison compare_variant(const Scene& scene, const Variant& variant, double te
   result.target = scene.compare.target;
   result.stations = problems.front().stations;
   result.reference = make_reference(problems, stop, say);
-  const std::vector<std::uint32_t> surface = free_surface(problems.front());
+  result.surface = free_surface(problems.front());
   for (const Rival* rival : list) {
     for (std::size_t k = 0; k < meshes; ++k) {
       for (const models::Effort& effort : rival->efforts) {
@@ -245,11 +275,13 @@ Comparison compare_variant(const Scene& scene, const Variant& variant, double te
         ComparedRow row{.model = std::string(rival->name), .effort = effort, .tets = tets, .answer = {}};
         row.answer = rival->run(problems[k], effort, stop);
         if (stop) return result;
-        find_errors(row, result.reference, surface);
+        find_errors(row, result.reference, result.surface);
         result.rows.push_back(std::move(row));
       }
     }
   }
+  problems.resize(meshes);
+  result.problems = std::move(problems);
   return result;
 }
 

@@ -41,6 +41,8 @@ struct Comparison {
   double target = 0.01;
   std::vector<double> stations;  ///< [s]
   Reference reference;
+  std::vector<models::Problem> problems;  ///< a mesh each, the coarsest first
+  std::vector<std::uint32_t> surface;     ///< vertices of which the surface's error is taken
   std::vector<ComparedRow> rows;
 
   /// Of a model's rows that keep the errors of force and surface below the target, and keep them there on finer meshes and with more steps

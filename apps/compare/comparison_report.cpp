@@ -251,6 +251,7 @@ std::string note_of(const ComparedRow& row) {
   if (!row.answer.trouble.empty()) return row.answer.trouble;
   if (row.answer.forces.empty()) return fmt::format("no forces; cannot: {}", rival_of(row.model).cannot);
   if (!std::isfinite(row.error_force)) return "its numbers are not finite";
+  if (row.answer.cut_s > 0.0) return fmt::format("the cut took {} ms", short_text(1e3 * row.answer.cut_s));
   return {};
 }
 
@@ -276,6 +277,7 @@ nlohmann::ordered_json comparison_json(std::span<const Comparison> comparisons, 
                       {"error_surface", or_null(row.error_surface)},
                       {"wall_s", row.wall_s()},
                       {"setup_s", row.answer.setup_s},
+                      {"cut_s", row.answer.cut_s},
                       {"bytes", row.answer.bytes},
                       {"forces", forces_json(row.answer.forces)},
                       {"note", note_of(row)}});

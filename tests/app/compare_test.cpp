@@ -1,10 +1,12 @@
 // `glisson compare` gives one scene to many models: a row a run with errors and times, a page, and a word where a model or a scene cannot.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 #include <set>
 
 #include "app/program.h"
+#include "glisson/math.h"
 
 namespace glisson::test {
 namespace {
@@ -117,6 +119,64 @@ TEST_F(Compare, TakesTimes) {
   outcome = with("[3]");
   EXPECT_THAT(outcome, Exits(2));
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("3 s is beyond the end of variant main"));
+// What other programs are given is the scene: its block, its moduli, what holds and moves it, and the reference's shape.
+TEST_F(Compare, WritesTheExperimentForOtherPrograms) {
+  const std::string scene = write("block.toml", kBlock);
+  ASSERT_THAT(run({"compare", scene, "--out", (folder_ / "o").string(), "--problem", (folder_ / "p.json").string(),
+                   "--set", "compare.models=[\"linear_fem\"]", "--set", "compare.meshes=2"}),
+              Exits(0));
+  const nlohmann::json p = read_json(folder_ / "p.json");
+  EXPECT_NEAR(p["tissues"][0]["mu_Pa"].get<double>(), 1285.714, 1e-9);
+  EXPECT_NEAR(p["tissues"][0]["lambda_Pa"].get<double>(), 6000.0 - 2.0 / 3.0 * 1285.714, 1e-9);
+  EXPECT_EQ(p["tissues"][0]["law"], "neo_hookean");
+  EXPECT_EQ(p["damping_per_s"].get<double>(), 20.0);
+  ASSERT_EQ(p["meshes"].size(), 2U);
+  EXPECT_EQ(p["meshes"][1]["tets"].size(), 8 * p["meshes"][0]["tets"].size());
+  EXPECT_EQ(p["reference"]["displacement_m"].size(), p["meshes"][1]["vertices_m"].size());
+  const double duration = p["stations_s"].back().get<double>();
+  ASSERT_EQ(p["times_s"].size(), p["stations_s"].size() * p["times_per_station"].get<std::size_t>());
+  EXPECT_EQ(p["times_s"].back().get<double>(), duration);
+  for (const nlohmann::json& mesh : p["meshes"]) {
+    const nlohmann::json &x = mesh["vertices_m"], &held = mesh["supports"][0], &tool = mesh["tools"][0];
+    for (const nlohmann::json& v : held["vertices"]) EXPECT_EQ(x[v.get<std::size_t>()][2].get<double>(), 0.0);
+    for (const nlohmann::json& v : tool["vertices"]) EXPECT_NEAR(x[v.get<std::size_t>()][2].get<double>(), 0.02, 1e-15);
+    EXPECT_EQ(held["vertices"].size(), tool["vertices"].size());
+    ASSERT_EQ(tool["displacements_m"].size(), p["times_s"].size());
+    for (const nlohmann::json& u : tool["displacements_m"].back()) EXPECT_NEAR(u[2].get<double>(), -0.002, 1e-12);
+    double volume = 0.0;
+    for (const nlohmann::json& t : mesh["tets"]) {
+      const auto at = [&](std::size_t k) { return x[t[k].get<std::size_t>()].get<std::array<double, 3>>(); };
+      const std::array a{at(0), at(1), at(2), at(3)};
+      const auto edge = [&](std::size_t k) { return Vec3d{a[k][0] - a[0][0], a[k][1] - a[0][1], a[k][2] - a[0][2]}; };
+      volume += dot(edge(1), cross(edge(2), edge(3))) / 6.0;
+    }
+    EXPECT_NEAR(volume, 8e-6, 1e-15);
+  }
+  for (const nlohmann::json& v : p["surface"]) EXPECT_LT(v.get<std::size_t>(), p["meshes"][0]["vertices_m"].size());
+}
+
+// A region is taken out while the body is loaded: rows say what that took, and what is no cut is refused.
+TEST_F(Compare, CutsARegionOutInMidRun) {
+  const std::string scene = write("notch.toml", std::string(kBlock) +
+                                                    "cut_at_s = 0.7\ncut = \"slot\"\n[[region]]\n"
+                                                    "name = \"slot\"\nbox_m = { min = [0, 0, 0.01], "
+                                                    "max = [0.01, 0.02, 0.02] }\n");
+  const auto cut = [&](const std::string& key, const std::string& value) {
+    return run({"compare", scene, "--out", (folder_ / "o").string(), "--json", (folder_ / "c.json").string(), "--set",
+                "compare.models=[\"linear_fem\", \"glisson\", \"hybrid\"]", "--set", "compare." + key + "=" + value});
+  };
+  ASSERT_THAT(cut("meshes", "1"), Exits(0));
+  for (const nlohmann::json& row : read_json(folder_ / "c.json")["rows"]) {
+    EXPECT_THAT(row["note"].get<std::string>(), ::testing::StartsWith("the cut took ")) << row["model"];
+    EXPECT_LE(row["error_force"].get<double>(), 0.2) << row["model"];
+  }
+  Outcome outcome = cut("cut", "\"none\"");
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err,
+              ::testing::HasSubstr("compare.cut: region \"none\" has 0 of the 48 tets; name a [[region]]"));
+  outcome = cut("cut_at_s", "5");
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("compare.cut_at_s: 5 s is not before the end of the run"));
 }
 
 TEST_F(Compare, SaysWhatItCannotGive) {

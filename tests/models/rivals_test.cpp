@@ -165,6 +165,57 @@ TEST(Engine, OwnTissueIsTheSameInStepsAndAtRest) {
   EXPECT_NE(schwartz_tensor_mass(p, {}, kNever).trouble.find("no stiffness law"), std::string::npos);
 }
 
+/// A block that is stretched within 0.8 s and held, and the tets of a slot of it, from one side to the middle.
+Problem stretched_block(std::vector<std::uint32_t>& slot, int layer) {
+  Problem p = cube({2, 2, 4});
+  p.supports.push_back({p.mesh.vertex_set("z_min"), {}});
+  p.tools.push_back({p.mesh.vertex_set("z_max"), {}, ramp_to({0, 0, 0.1 * kEdge}, 0.8)});
+  for (std::uint32_t t = 0; t < p.mesh.tets.size(); ++t) {
+    Vec3d middle;
+    for (const std::uint32_t v : p.mesh.tets[t]) middle += p.mesh.vertices[v] * 0.25;
+    if (middle.x < 0.5 * kEdge && static_cast<int>(4.0 * middle.z / kEdge) == layer) slot.push_back(t);
+  }
+  return p;
+}
+
+// Elastic bodies forget their path: cut while they are stretched, they come to the force of one that never had the tets.
+TEST(Rivals, CutWhileLoadedComeToTheBodyWithoutTheTets) {
+  std::vector<std::uint32_t> slot;
+  const Problem whole = stretched_block(slot, 2);
+  ASSERT_EQ(slot.size(), 12U);
+  Problem cut = whole, without = whole;
+  cut.cut = Cut{1.2, slot};
+  for (auto t = slot.rbegin(); t != slot.rend(); ++t) without.mesh.tets.erase(without.mesh.tets.begin() + *t);
+  without.mesh.regions.clear();
+  for (const Rival& rival : rivals()) {
+    if (rival.name == "chain_mail" || rival.name == "schwartz_tensor_mass") continue;
+    // What XPBD lacks of its equilibrium falls with the step squared, and hangs on the masses, which a cut leaves.
+    const Effort effort = rival.name == "projective_dynamics" ? Effort{100, 40}
+                          : rival.name == "xpbd"              ? Effort{16000, 1}
+                                                              : rival.efforts.back();
+    const Answer of_whole = rival.run(whole, effort, kNever), of_cut = rival.run(cut, effort, kNever),
+                 of_less = rival.run(without, effort, kNever);
+    ASSERT_EQ(of_cut.forces.size(), 2U) << rival.name << of_cut.trouble;
+    const double before = of_whole.forces[0].z, after = of_less.forces[1].z;
+    EXPECT_EQ(of_cut.forces[0].z, before) << rival.name << ": not cut yet";
+    EXPECT_LT(after, 0.9 * before) << rival.name;
+    EXPECT_NEAR(of_cut.forces[1].z / after, 1.0, 2e-3) << rival.name;
+    EXPECT_GT(of_cut.cut_s, 0.0) << rival.name;
+  }
+  EXPECT_EQ(linear_fem(cut, {}, kNever).forces[1], linear_fem(without, {}, kNever).forces[1]) << "the same matrix";
+}
+
+// Links go with their last tet; a condensed half has no tets to take out.
+TEST(Rivals, SayWhereTheyCannotBeCut) {
+  std::vector<std::uint32_t> slot;
+  Problem p = stretched_block(slot, 0);
+  p.cut = Cut{1.2, slot};
+  EXPECT_NE(hybrid(p, {}, kNever).trouble.find("the cut reaches into the condensed half"), std::string::npos);
+  const Answer mail = chain_mail(p, {10, 10}, kNever);
+  EXPECT_GT(mail.cut_s, 0.0);
+  EXPECT_EQ(mail.displacement.size(), p.mesh.vertices.size());
+}
+
 // Every model of the list has its own name, a source and an effort, and ends when it is stopped.
 TEST(Rivals, AreNamedAndStop) {
   std::set<std::string_view> names;

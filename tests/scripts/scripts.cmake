@@ -3,3 +3,6 @@ find_package(Python 3.11 REQUIRED COMPONENTS Interpreter)
 add_test(NAME script_tests WORKING_DIRECTORY "${CMAKE_CURRENT_LIST_DIR}"
   COMMAND "${Python_EXECUTABLE}" -B -m unittest discover -p "test_*.py")
 set_tests_properties(script_tests PROPERTIES TIMEOUT 1200 LABELS scripts)
+if(TARGET glisson_program)
+  set_tests_properties(script_tests PROPERTIES ENVIRONMENT "GLISSON_PROGRAM=$<TARGET_FILE:glisson_program>")
+endif()

@@ -14,6 +14,8 @@ struct CompareSpec {
   int meshes = 2, finer = 1, stations = 5;
   std::vector<double> times;  ///< [s], ascending; empty: `stations` of them
   double target = 0.01;
+  std::string cut;      ///< name of a region that is taken out; empty: none
+  double cut_at = 0.0;  ///< when [s]
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -31,7 +33,10 @@ struct CompareSpec {
             "times at which forces are compared, ascending, in the place of `stations`; the end is one of them anyway")
             .otherwise("evenly spaced"),
         field("target", &C::target, "-", strictly_between(0, 1),
-              "error of force and surface within which the models' times are compared"));
+              "error of force and surface within which the models' times are compared"),
+        field("cut", &C::cut, "name of a `[[region]]` whose tets are taken out during the run").otherwise("none"),
+        field("cut_at", &C::cut_at, "s", at_least(0),
+              "when they are taken out; stations before and after see the body whole and cut"));
   }
 };
 
