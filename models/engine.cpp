@@ -57,16 +57,32 @@ Answer run(const Problem& problem, const std::map<int, Tissue>& tissues, Simulat
     if (!result.made()) answer.trouble = std::string(result.message);
     return result.made();
   };
+  const auto force = [&] {
+    return problem.moment_about ? simulation.torque(read.front(), *problem.moment_about)
+                                : simulation.force(read.front()).total();
+  };
+  // Explicit forces are those of a step's start. That at a station is known after one step more; at the end, where tools may stop at once,
+  // it is continued from the two before.
+  const bool at_start = !capabilities(options.integrator).forces_at_step_end;
   for (const double time : problem.stations) {
+    const bool ends = time == problem.stations.back();
+    Vec3d before{};
+    double before_time = 0.0;
     while (!stop && simulation.time() < time - 0.5 * simulation.step_size()) {
+      if (ends && at_start && answer.steps > 0 && simulation.time() > time - 2.5 * simulation.step_size()) {
+        before = force();
+        before_time = simulation.force_time();
+      }
       if (!advance()) return answer;
     }
     if (stop) break;
     answer.displacement.assign(simulation.displacement().begin(), simulation.displacement().end());
-    // explicit forces are those of a step's start: that at the station is known after one step more
-    if (!capabilities(options.integrator).forces_at_step_end && !advance()) return answer;
-    answer.forces.push_back(problem.moment_about ? simulation.torque(read.front(), *problem.moment_about)
-                                                 : simulation.force(read.front()).total());
+    if (!ends && at_start && !advance()) return answer;
+    Vec3d now = force();
+    const double since = simulation.force_time() - before_time;
+    if (ends && at_start && before_time > 0.0 && since > 0.0)
+      now += (now - before) * ((time - simulation.force_time()) / since);
+    answer.forces.push_back(now);
   }
   answer.run_s = watch.lap();
   answer.bytes =
