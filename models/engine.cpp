@@ -45,7 +45,8 @@ Answer run(const Problem& problem, const std::map<int, Tissue>& tissues, Simulat
   answer.setup_s = watch.lap();
   bool whole = problem.cut.has_value();
   const auto advance = [&] {
-    const double next = simulation.time() + (at_rest ? simulation.step_size() : 0.0);  // an equilibrium is that at a step's end
+    const double next =
+        simulation.time() + (at_rest ? simulation.step_size() : 0.0);  // an equilibrium is that at a step's end
     if (whole && next > problem.cut->time - 1e-9 * problem.duration) {
       whole = false;
       Stopwatch knife;

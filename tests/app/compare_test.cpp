@@ -119,6 +119,8 @@ TEST_F(Compare, TakesTimes) {
   outcome = with("[3]");
   EXPECT_THAT(outcome, Exits(2));
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("3 s is beyond the end of variant main"));
+}
+
 // What other programs are given is the scene: its block, its moduli, what holds and moves it, and the reference's shape.
 TEST_F(Compare, WritesTheExperimentForOtherPrograms) {
   const std::string scene = write("block.toml", kBlock);
