@@ -135,9 +135,31 @@ double largest(std::span<const Vec3d> vectors) {
   return most;
 }
 
-void find_errors(ComparedRow& row, const Reference& reference, std::span<const std::uint32_t> surface) {
+double error_of_sizes(std::span<const Vec3d> forces, std::span<const double> measured) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < measured.size(); ++i) sum += std::pow(norm(forces[i]) - measured[i], 2);
+  return std::sqrt(sum / static_cast<double>(measured.size())) / *std::max_element(measured.begin(), measured.end());
+}
+
+void require_measured(const Scene& scene, const Problem& problem) {
+  const std::vector<double>& measured = scene.compare.measured;
+  if (measured.empty()) return;
+  if (problem.moment_about) {
+    throw SceneError(scene.file.string() +
+                     ": compare.measured_N: the first tool turns, so that moments are compared; leave it out");
+  }
+  if (measured.size() != problem.stations.size() || *std::max_element(measured.begin(), measured.end()) <= 0.0) {
+    throw SceneError(
+        fmt::format("{}: compare.measured_N: {} forces; give one for each of the {} stations, the largest above 0",
+                    scene.file.string(), measured.size(), problem.stations.size()));
+  }
+}
+
+void find_errors(ComparedRow& row, const Reference& reference, std::span<const double> measured,
+                 std::span<const std::uint32_t> surface) {
   const Answer& a = row.answer;
   if (!a.trouble.empty()) return;
+  if (!measured.empty() && a.forces.size() == measured.size()) row.error_measured = error_of_sizes(a.forces, measured);
   if (a.forces.size() == reference.forces.size()) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.forces.size(); ++i) {
@@ -257,7 +279,9 @@ Comparison compare_variant(const Scene& scene, const Variant& variant, double te
     problems.back().test_time = test_time;
     plan_cut(problems.back(), scene);
   }
+  require_measured(scene, problems.front());
   Comparison result;
+  result.measured = scene.compare.measured;
   result.title = scene.title.empty() ? scene.file.stem().string() : scene.title;
   result.description = scene.description;
   if (scene.variants.size() > 1) result.variant = variant.label.empty() ? variant.name : variant.label;
@@ -275,7 +299,7 @@ Comparison compare_variant(const Scene& scene, const Variant& variant, double te
         ComparedRow row{.model = std::string(rival->name), .effort = effort, .tets = tets, .answer = {}};
         row.answer = rival->run(problems[k], effort, stop);
         if (stop) return result;
-        find_errors(row, result.reference, result.surface);
+        find_errors(row, result.reference, result.measured, result.surface);
         result.rows.push_back(std::move(row));
       }
     }

@@ -20,6 +20,8 @@ struct ComparedRow {
   double error_force = -1.0;  ///< rms over the stations, over the largest force of the reference [-]; below 0: none
   double error_surface =
       -1.0;  ///< rms over the surface at the end, over the largest displacement there [-]; below 0: none
+  double error_measured =
+      -1.0;  ///< of the force's size, against what was measured, over its largest [-]; below 0: none
 
   double wall_s() const { return answer.setup_s + answer.run_s; }
 };
@@ -40,6 +42,7 @@ struct Comparison {
   bool moments = false;  ///< forces are moments [N m]
   double target = 0.01;
   std::vector<double> stations;  ///< [s]
+  std::vector<double> measured;  ///< sizes of the force at the stations [N]; empty: none
   Reference reference;
   std::vector<models::Problem> problems;  ///< a mesh each, the coarsest first
   std::vector<std::uint32_t> surface;     ///< vertices of which the surface's error is taken

@@ -142,17 +142,17 @@ nlohmann::json error_chart(const Comparison& c) {
 
 nlohmann::json rows_table(const Comparison& c) {
   nlohmann::json rows = nlohmann::json::array();
+  std::vector<std::string> columns{
+      "model",    "tets",        "steps", "error of the " + heading_of(c), "error of the surface", "set-up [ms]",
+      "run [ms]", "memory [MB]", "note"};
+  if (!c.measured.empty()) columns.emplace_back("against the measurement");
   for (const ComparedRow& row : c.rows) {
     rows.push_back({row.model, row.tets, effort_text(row), percent(row.error_force), percent(row.error_surface),
                     short_text(1e3 * row.answer.setup_s), short_text(1e3 * row.answer.run_s), megabytes(row),
                     note_of(row)});
+    if (!c.measured.empty()) rows.back().push_back(percent(row.error_measured));
   }
-  return {{"title", "Each run"},
-          {"columns",
-           {"model", "tets", "steps", "error of the " + heading_of(c), "error of the surface", "set-up [ms]",
-            "run [ms]", "memory [MB]", "note"}},
-          {"rows", std::move(rows)},
-          {"note", reference_text(c)}};
+  return {{"title", "Each run"}, {"columns", columns}, {"rows", std::move(rows)}, {"note", reference_text(c)}};
 }
 
 nlohmann::json models_table(const Comparison& c) {
@@ -220,15 +220,19 @@ nlohmann::json summary_table(std::span<const Comparison> all) {
 }
 
 std::string table_of(const Comparison& c) {
-  constexpr std::string_view kRow = "  {:<24} {:>7}  {:>10}  {:>10}  {:>10}  {:>10}  {:>10}  {:>8}  {}\n";
+  constexpr std::string_view kRow = "  {:<24} {:>7}  {:>10}  {:>10}  {:>10}{}  {:>10}  {:>10}  {:>8}  {}\n";
+  const auto measured = [&](const std::string& cell) {
+    return c.measured.empty() ? std::string() : fmt::format("  {:>10}", cell);
+  };
   std::string text = c.variant.empty() ? "" : fmt::format("variant {}\n", c.variant);
   text += reference_text(c);
-  text += fmt::format(fmt::runtime(kRow), "model", "tets", "steps", heading_of(c), "surface", "set-up [s]", "run [s]",
-                      "[MB]", "");
+  text += fmt::format(fmt::runtime(kRow), "model", "tets", "steps", heading_of(c), "surface", measured("measured"),
+                      "set-up [s]", "run [s]", "[MB]", "");
   for (const ComparedRow& row : c.rows) {
     text += fmt::format(fmt::runtime(kRow), row.model, row.tets, effort_text(row), percent(row.error_force),
-                        percent(row.error_surface), fmt::format("{:.3g}", row.answer.setup_s),
-                        fmt::format("{:.3g}", row.answer.run_s), megabytes(row), note_of(row));
+                        percent(row.error_surface), measured(percent(row.error_measured)),
+                        fmt::format("{:.3g}", row.answer.setup_s), fmt::format("{:.3g}", row.answer.run_s),
+                        megabytes(row), note_of(row));
   }
   return text + target_text(c);
 }
@@ -275,6 +279,7 @@ nlohmann::ordered_json comparison_json(std::span<const Comparison> comparisons, 
                       {"iterations", row.effort.iterations},
                       {"error_force", or_null(row.error_force)},
                       {"error_surface", or_null(row.error_surface)},
+                      {"error_measured", or_null(row.error_measured)},
                       {"wall_s", row.wall_s()},
                       {"setup_s", row.answer.setup_s},
                       {"cut_s", row.answer.cut_s},

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -180,6 +181,33 @@ TEST_F(Compare, CutsARegionOutInMidRun) {
   outcome = cut("cut_at_s", "5");
   EXPECT_THAT(outcome, Exits(2));
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("compare.cut_at_s: 5 s is not before the end of the run"));
+}
+
+// Against a measurement, the error is that of the force's size at each station.
+TEST_F(Compare, HoldsForcesAgainstAMeasurement) {
+  const std::string scene = write("block.toml", kBlock);
+  const auto against = [&](const std::string& measured) {
+    return run({"compare", scene, "--out", (folder_ / "o").string(), "--json", (folder_ / "c.json").string(), "--set",
+                "compare.models=[\"linear_fem\", \"chain_mail\"]", "--set", "compare.measured_N=" + measured});
+  };
+  Outcome outcome = against("[0.1, 0.2]");
+  ASSERT_THAT(outcome, Exits(0));
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("measured"));
+  for (const nlohmann::json& row : read_json(folder_ / "c.json")["rows"]) {
+    if (row["model"] == "chain_mail") {
+      EXPECT_TRUE(row["error_measured"].is_null());
+      continue;
+    }
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto f = row["forces"][i].get<std::array<double, 3>>();
+      sum += std::pow(norm(Vec3d{f[0], f[1], f[2]}) - 0.1 * static_cast<double>(i + 1), 2);
+    }
+    EXPECT_NEAR(row["error_measured"].get<double>(), std::sqrt(sum / 2.0) / 0.2, 1e-9);
+  }
+  outcome = against("[0.1]");
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("compare.measured_N: 1 forces; give one for each of the 2 stations"));
 }
 
 TEST_F(Compare, SaysWhatItCannotGive) {

@@ -172,6 +172,7 @@ times_s = [0.25, 0.5]
 target = 0.02
 cut = "lobe"
 cut_at_s = 0.5
+measured_N = [0.5, 1.5]
 
 [[variant]]
 name = "only"
@@ -208,6 +209,7 @@ TEST(EveryKey, OfTheSceneIsRead) {
   EXPECT_EQ(scene.compare.target, 0.02);
   EXPECT_EQ(scene.compare.cut, "lobe");
   EXPECT_EQ(scene.compare.cut_at, 0.5);
+  EXPECT_THAT(scene.compare.measured, ElementsAre(0.5, 1.5));
   EXPECT_EQ(scene.charts[0].title, "Force");
   EXPECT_EQ(scene.charts[0].x.column, "depth_m");
   EXPECT_EQ(scene.charts[0].x.scale, 1000.0);

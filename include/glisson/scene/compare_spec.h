@@ -14,8 +14,9 @@ struct CompareSpec {
   int meshes = 2, finer = 1, stations = 5;
   std::vector<double> times;  ///< [s], ascending; empty: `stations` of them
   double target = 0.01;
-  std::string cut;      ///< name of a region that is taken out; empty: none
-  double cut_at = 0.0;  ///< when [s]
+  std::string cut;               ///< name of a region that is taken out; empty: none
+  double cut_at = 0.0;           ///< when [s]
+  std::vector<double> measured;  ///< sizes of the force at the stations [N]; empty: none were
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -36,7 +37,10 @@ struct CompareSpec {
               "error of force and surface within which the models' times are compared"),
         field("cut", &C::cut, "name of a `[[region]]` whose tets are taken out during the run").otherwise("none"),
         field("cut_at", &C::cut_at, "s", at_least(0),
-              "when they are taken out; stations before and after see the body whole and cut"));
+              "when they are taken out; stations before and after see the body whole and cut"),
+        field("measured", &C::measured, "N", at_least(0),
+              "size of the tool's force at each station as it was measured, which models are compared with, too")
+            .otherwise("none"));
   }
 };
 
