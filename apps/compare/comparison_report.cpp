@@ -91,7 +91,7 @@ nlohmann::json error_line(const Comparison& c, std::string_view model) {
   std::vector<double> x, y;
   for (const ComparedRow* row : rows) {
     x.push_back(1e3 * row->wall_s());
-    y.push_back(std::log10(100.0 * row->error_force));
+    y.push_back(100.0 * row->error_force);
   }
   return {{"label", model}, {"x", numbers(x)}, {"y", numbers(y)}};
 }
@@ -134,10 +134,11 @@ nlohmann::json error_chart(const Comparison& c) {
   }
   return {{"title", "Error against time"},
           {"x", axis("wall_ms", "time by the clock [ms]")},
-          {"y", axis("error", "error of the " + heading_of(c) + " [power of ten of a percent]")},
+          {"y", axis("error", "error of the " + heading_of(c) + " [%]")},
           {"variants", nlohmann::json::array()},
           {"lines", std::move(lines)},
-          {"log_x", true}};
+          {"log_x", true},
+          {"log_y", true}};
 }
 
 nlohmann::json rows_table(const Comparison& c) {

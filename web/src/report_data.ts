@@ -117,6 +117,7 @@ export interface ChartSpec {
   fits?: { label: string; x: number[]; y: number[] }[]; // extra lines, in the axes' display units, drawn dashed
   lines?: { label: string; x: number[]; y: number[] }[]; // the chart's own, in the axes' display units, as those of variants
   log_x?: boolean; // x by its logarithm; all x above 0
+  log_y?: boolean; // y likewise
   map?: MapData; // a map in place of lines
 }
 

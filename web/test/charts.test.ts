@@ -94,6 +94,9 @@ describe("default charts", () => {
       ],
       log_x: true,
     };
+    const [steep] = variantCharts(scene([], [{ ...spec, lines: [{ label: "error", x: [1, 10], y: [100, 0.1] }], log_y: true }]));
+    expect(steep!.logY).toBe(true);
+    expect([...steep!.lines[0]!.y]).toEqual([2, -1]);
     const [model] = variantCharts(scene([], [spec]));
     expect(model!.logX).toBe(true);
     expect(model!.lines.map((one) => one.label)).toEqual(["storage", "loss"]);

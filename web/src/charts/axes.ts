@@ -28,12 +28,18 @@ export function xAxis(label: string): uPlot.Axis {
 
 /** The same where the scale counts decades: a tick at each, and within them where less than two are shown. */
 export function logAxis(label: string): uPlot.Axis {
-  return {
-    ...xAxis(label),
-    incrs: (_plot, _axis, low, high) => (high - low > 2 ? [1, 2, 5, 10] : [0.05, 0.1, 0.25, 0.5, 1]),
-    values: (_plot, splits) =>
-      splits.map((decades) => formatSignificant(10 ** decades, Number.isInteger(decades) ? 1 : 2)),
-  };
+  return { ...xAxis(label), ...DECADES };
+}
+
+const DECADES: Pick<uPlot.Axis, "incrs" | "values"> = {
+  incrs: (_plot, _axis, low, high) => (high - low > 2 ? [1, 2, 5, 10] : [0.05, 0.1, 0.25, 0.5, 1]),
+  values: (_plot, splits) =>
+    splits.map((decades) => formatSignificant(10 ** decades, Number.isInteger(decades) ? 1 : 2)),
+};
+
+/** The same upwards. */
+export function logYAxis(): uPlot.Axis {
+  return { ...yAxis(), ...DECADES };
 }
 
 export function yAxis(): uPlot.Axis {

@@ -5,7 +5,7 @@ import { nameOfLabel, unitOfLabel } from "../format/units.ts";
 import { h } from "../page/dom.ts";
 import { currentTheme, isPrinting, onTheme } from "../page/theme.ts";
 import { whenVisible } from "../page/visibility.ts";
-import { logAxis, xAxis, yAxis } from "./axes.ts";
+import { logAxis, logYAxis, xAxis, yAxis } from "./axes.ts";
 import { drawLine } from "./draw_lines.ts";
 import { drawEvents } from "./event_marks.ts";
 import { Legend, entryOf } from "./legend.ts";
@@ -138,7 +138,7 @@ export class Chart {
         x: { time: false, auto: false, min: this.view.xMin, max: this.view.xMax, range: (_u, min, max) => [min, max] },
         y: { auto: false, min: this.view.yMin, max: this.view.yMax, range: (_u, min, max) => [min, max] },
       },
-      axes: [this.model.logX ? logAxis(this.model.xLabel) : xAxis(this.model.xLabel), yAxis()],
+      axes: [this.model.logX ? logAxis(this.model.xLabel) : xAxis(this.model.xLabel), this.model.logY ? logYAxis() : yAxis()],
       series: [{}, { paths: () => null, points: { show: false } }],
       cursor: {
         x: true,
@@ -247,7 +247,8 @@ export class Chart {
       const index = this.isHidden(line) ? -1 : this.indexAt(line, atX, atY, plot);
       if (index < 0) this.marks.hover(line.id, null, null);
       else {
-        values.set(entryOf(line), [...(values.get(entryOf(line)) ?? []), line.y[index]!]);
+        const y = this.model.logY ? 10 ** line.y[index]! : line.y[index]!;
+        values.set(entryOf(line), [...(values.get(entryOf(line)) ?? []), y]);
         this.marks.hover(line.id, ...this.place(line, index, plot));
       }
     }

@@ -22,6 +22,7 @@ export interface ChartModel {
   note: string;
   extent?: Extent; // to show first; without, that of its lines
   logX?: boolean; // x of the lines are decades: exponents of ten
+  logY?: boolean; // y likewise
 }
 
 /** A moment of a variant that is worth a mark: where on the x axis, and what it was. */

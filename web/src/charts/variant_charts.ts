@@ -66,7 +66,9 @@ function chartOf(spec: ChartSpec, scene: SceneData): ChartModel {
     });
   });
   const logX = spec.log_x === true;
+  const logY = spec.log_y === true;
   if (logX) lines.forEach((line) => (line.x = line.x.map(Math.log10)));
+  if (logY) lines.forEach((line) => (line.y = line.y.map(Math.log10)));
   return {
     title: spec.title || `${spec.y.label} against ${spec.x.label}`,
     xLabel: axisLabel(spec.x.label),
@@ -75,6 +77,7 @@ function chartOf(spec: ChartSpec, scene: SceneData): ChartModel {
     events: scene.variants.flatMap((variant) => eventMarks(variant, spec.x.column, spec.x.scale)),
     note: "",
     logX,
+    logY,
   };
 }
 

@@ -170,6 +170,7 @@ function readChart(raw: Raw): ChartSpec {
     fits: list(raw["fits"]).map((fit) => readCurve(record(fit))),
     lines: list(raw["lines"]).map((line) => readCurve(record(line))),
     log_x: raw["log_x"] === true,
+    log_y: raw["log_y"] === true,
     ...(isRecord(raw["map"]) ? { map: readMap(raw["map"]) } : {}),
   };
 }
