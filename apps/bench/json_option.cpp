@@ -23,10 +23,13 @@ void add_json_option(CLI::App& command, std::string& file) {
   command.add_option("--json", file, "write the result to this file too")->type_name("FILE")->check(file_place);
 }
 
+void keep_json(const std::string& file, const nlohmann::ordered_json& json) {
+  if (!file.empty()) write_whole(file, json_text(json, 2) + "\n");
+}
+
 void write_json(const std::string& file, const nlohmann::ordered_json& json) {
-  if (file.empty()) return;
-  write_whole(file, json_text(json, 2) + "\n");
-  say("written: {}\n", file);
+  keep_json(file, json);
+  if (!file.empty()) say("written: {}\n", file);
 }
 
 }  // namespace glisson::app

@@ -14,6 +14,8 @@ void add_json_option(CLI::App& command, std::string& file);
 std::string file_place(const std::string& file);
 
 /// Replaces the file in one move; nothing where `file` is empty. @throws OutputError
+void keep_json(const std::string& file, const nlohmann::ordered_json& json);
+/// The same, and says so.
 void write_json(const std::string& file, const nlohmann::ordered_json& json);
 
 }  // namespace glisson::app

@@ -130,7 +130,7 @@ int find(const Options& options, const Variant& variant) {
       say("{:>8}  {:>7}  {:>11.1f}  {:>8.0f}  {:>8.0f}  {:>8.0f}  {:>8}  {}\n", t.tets, n, f.steps_per_frame, f.p50_us,
           f.p99_us, f.max_us, f.missed + t.dropped, t.keeps ? "kept" : "not kept");
       json["trials"].push_back(trial_json(t));
-      write_json(options.json, json);
+      keep_json(options.json, json);
     };
     const std::optional<BodyTrial> best = largest_body(variant, n, pace, stop_flag(), tell_trial);
     if (stop_flag()) return kInterrupted;
