@@ -93,7 +93,7 @@ void add_compare(CLI::App& program, Action& action) {
   add_json_option(*command, options->json);
   command
       ->add_option("--problem", options->problem,
-                   "write the meshes, moduli, supports, paths and reference to this JSON file")
+                   "write the first variant's meshes, moduli, supports, paths and reference to this JSON file")
       ->type_name("FILE")
       ->check(file_place);
   command->add_flag("--list", options->list, "print the models and what each cannot do");

@@ -2,6 +2,7 @@
 #include "compare/problem_json.h"
 
 #include "models/boundary.h"
+#include "models/relaxation.h"
 
 namespace glisson::app {
 namespace {
@@ -62,6 +63,7 @@ Json tissues_json(const models::Problem& problem) {
     const LameParameters lame = tissue.lame();
     tissues.push_back({{"region", region},
                        {"law", tissue.hyperelastic ? law_name(*tissue.hyperelastic) : ""},
+                       {"viscous", models::is_viscous(tissue)},
                        {"density_kg_m3", tissue.density},
                        {"lambda_Pa", lame.lambda},
                        {"mu_Pa", lame.mu}});

@@ -187,14 +187,28 @@ def groups(entries: list[dict], times: int) -> list[Group]:
     return made
 
 
+def load_steps(case: Case, per_station: int) -> list[list[float]]:
+    """Times of the equilibria that are solved, a list for each station, which is the last of it [s]."""
+    starts = [0.0, *case.stations[:-1]]
+    return [
+        [start + (station - start) * k / per_station for k in range(1, per_station + 1)]
+        for start, station in zip(starts, case.stations)
+    ]
+
+
 def cases(file: Path) -> list[Case]:
-    """The experiment on each of its meshes, the coarsest first. @raises CannotRun for a body of several tissues or one that is cut"""
+    """The experiment on each of its meshes, the coarsest first.
+
+    @raises CannotRun for a body of several tissues, of one that is not neo-Hookean or is viscous, and for one that is cut
+    """
     data = json.loads(Path(file).read_text(encoding="utf-8"))
     if data["cut_at_s"] is not None:
         raise CannotRun("programs are given no cut")
     if len(data["tissues"]) != 1:
         raise CannotRun(f"the body has {len(data['tissues'])} tissues; programs are given one")
     tissue = data["tissues"][0]
+    if tissue["law"] != "neo_hookean" or tissue["viscous"]:
+        raise CannotRun("programs are given neo-Hookean tissue without viscosity; the scene has another")
     times = np.asarray([0.0, *data["times_s"]])
     about = data["moment_about_m"]
     return [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from programs.experiment import Answer, CannotRun, Case, Stopwatch
+from programs.experiment import Answer, CannotRun, Case, Stopwatch, load_steps
 
 EFFORTS = {"P1, 1": (1, 1), "P1, 4": (1, 4), "P2, 1": (2, 1), "P2, 4": (2, 4)}  # order, load steps between two stations
 
@@ -76,10 +76,9 @@ def run(case: Case, effort: str) -> Answer:
     watch = Stopwatch()
     body = Body(case, order)
     setup = watch.lap()
-    forces, sweeps, before = [], 0, 0.0
-    for station in case.stations:
-        for k in range(1, per_station + 1):
-            sweeps += body.move(before + (station - before) * k / per_station)
-        before = station
+    forces, sweeps = [], 0
+    for times in load_steps(case, per_station):
+        for now in times:
+            sweeps += body.move(now)
         forces.append(body.reaction())
     return Answer(np.asarray(forces), body.field[0].values[: body.count].copy(), setup, watch.lap(), f"{sweeps} sweeps of Newton")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from programs.experiment import Answer, CannotRun, Case, Stopwatch
+from programs.experiment import Answer, CannotRun, Case, Stopwatch, load_steps
 
 EFFORTS = {"P1, 1": (1, 1), "P1, 4": (1, 4), "P2, 1": (2, 1), "P2, 4": (2, 4)}  # order, load steps between two stations
 MOST_SWEEPS, TOLERANCE = 25, 1e-8
@@ -109,14 +109,12 @@ def run(case: Case, effort: str) -> Answer:
     watch = Stopwatch()
     body = Body(case, order)
     setup = watch.lap()
-    forces, sweeps, before = [], 0, 0.0
-    for station in case.stations:
-        for k in range(1, per_station + 1):
-            now = before + (station - before) * k / per_station
+    forces, sweeps = [], 0
+    for times in load_steps(case, per_station):
+        for now in times:
             body.load.Set(min(1.0, now / case.gravity_ramp) if case.gravity_ramp > 0.0 else 1.0)
             body.prescribe(case.given(now))
             residual, spent = body.equilibrium(now)
             sweeps += spent
-        before = station
         forces.append(case.force(-residual, body.at_vertices(body.u.vec)))
     return Answer(np.asarray(forces), body.at_vertices(body.u.vec), setup, watch.lap(), f"{sweeps} sweeps of Newton")

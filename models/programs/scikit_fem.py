@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from programs.experiment import Answer, CannotRun, Case, Stopwatch
+from programs.experiment import Answer, CannotRun, Case, Stopwatch, load_steps
 
 # order of the tets, load steps between two stations; order 0: linear elasticity
 EFFORTS = {"linear": (0, 1), "P1, 1": (1, 1), "P1, 4": (1, 4), "P2, 1": (2, 1), "P2, 4": (2, 4)}
@@ -106,10 +106,9 @@ def run(case: Case, effort: str) -> Answer:
     weight = weight_of.assemble(body.basis)
     stiffness = linear_of.assemble(body.basis) if order == 0 else None
     setup = watch.lap()
-    forces, sweeps, before = [], 0, 0.0
-    for station in case.stations:
-        for k in range(1, per_station + 1):
-            now = before + (station - before) * k / per_station
+    forces, sweeps = [], 0
+    for times in load_steps(case, per_station):
+        for now in times:
             load = weight * (case.gravity_at(now) @ case.gravity / max(case.gravity @ case.gravity, 1e-300))
             given = body.spread(case.given(now))
             if order == 0:
@@ -118,7 +117,6 @@ def run(case: Case, effort: str) -> Answer:
                 continue
             residual, spent = equilibrium(body, law, forces_of, tangent_of, load, given, now)
             sweeps += spent
-        before = station
         forces.append(body.reaction(residual))
     note = "" if order == 0 else f"{sweeps} sweeps of Newton"
     return Answer(np.asarray(forces), body.displacement(), setup, watch.lap(), note)

@@ -133,6 +133,7 @@ TEST_F(Compare, WritesTheExperimentForOtherPrograms) {
   EXPECT_NEAR(p["tissues"][0]["mu_Pa"].get<double>(), 1285.714, 1e-9);
   EXPECT_NEAR(p["tissues"][0]["lambda_Pa"].get<double>(), 6000.0 - 2.0 / 3.0 * 1285.714, 1e-9);
   EXPECT_EQ(p["tissues"][0]["law"], "neo_hookean");
+  EXPECT_EQ(p["tissues"][0]["viscous"], false);
   EXPECT_EQ(p["damping_per_s"].get<double>(), 20.0);
   ASSERT_EQ(p["meshes"].size(), 2U);
   EXPECT_EQ(p["meshes"][1]["tets"].size(), 8 * p["meshes"][0]["tets"].size());

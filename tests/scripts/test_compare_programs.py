@@ -110,6 +110,14 @@ class ComparePrograms(unittest.TestCase):
                 rows = list(script.answers_of_process(PROGRAMS[0], self.folder / "problem.json", [(6, "one")], 0, 0.5))
             self.assertEqual(rows, [note])
 
+    @unittest.skipUnless(experiment, "numpy is not there")
+    def test_tissue_that_programs_are_not_given_is_refused(self):
+        problem = self.folder / "problem.json"
+        for tissue in ({"law": "yeoh", "viscous": False}, {"law": "neo_hookean", "viscous": True}):
+            problem.write_text(json.dumps({"cut_at_s": None, "tissues": [tissue]}), encoding="utf-8")
+            with self.assertRaisesRegex(experiment.CannotRun, "neo-Hookean tissue without viscosity"):
+                experiment.cases(problem)
+
     # The same linear tets, assembled by another program: the same forces and shape to the last digits.
     @unittest.skipUnless(PROGRAMS[0].installed() and PROGRAM.exists(), "scikit-fem or Glisson's program is not there")
     def test_linear_tets_of_scikit_fem_are_those_of_linear_fem(self):
