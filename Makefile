@@ -59,7 +59,7 @@ layout:
 lint:
 	@scripts/configure.sh asan-ubsan tests
 	@cmake --build $(ASAN) --target glisson_build_info
-	@scripts/lint.sh $(ASAN) $(JOBS)
+	@scripts/lint $(ASAN) $(JOBS)
 
 # Address and undefined behaviour, over every test but those of the page and of scripts and the long physical runs (`long`,
 # tests/CMakeLists.txt), which were half of the time; the fuzz corpus is among them.
