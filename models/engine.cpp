@@ -29,7 +29,23 @@ std::vector<ConstraintId> hold_and_move(Simulation& simulation, const Problem& p
   return read;
 }
 
-Answer run(const Problem& problem, const std::map<int, Tissue>& tissues, SimulationOptions options, const Stop& stop) {
+/// Moves what is free to a shape; what is held or moved stays where it is.
+void approach(Simulation& simulation, const Boundary& boundary, const std::vector<Vec3d>& shape) {
+  std::vector<Vec3d> u(simulation.displacement().begin(), simulation.displacement().end());
+  for (std::size_t v = 0; v < u.size(); ++v) {
+    for (std::size_t axis = 0; axis < 3; ++axis) u[v][axis] = boundary.prescribes(v, axis) ? u[v][axis] : shape[v][axis];
+  }
+  simulation.set_state(u, std::vector<Vec3d>(u.size()));
+}
+
+/// Shapes that equilibria are near, where they are known, and those found.
+struct Shapes {
+  std::span<const std::vector<Vec3d>> near;
+  std::vector<std::vector<Vec3d>> found;
+};
+
+Answer run(const Problem& problem, const std::map<int, Tissue>& tissues, SimulationOptions options, Shapes* shapes,
+           const Stop& stop) {
   Answer answer;
   Stopwatch watch;
   options.gravity = problem.motion.gravity;
@@ -65,7 +81,9 @@ Answer run(const Problem& problem, const std::map<int, Tissue>& tissues, Simulat
   // Explicit forces are those of a step's start. That at a station is known after one step more; at the end, where tools may stop at once,
   // it is continued from the two before.
   const bool at_start = !capabilities(options.integrator).forces_at_step_end;
-  for (const double time : problem.stations) {
+  const Boundary boundary(problem);
+  for (std::size_t station = 0; station < problem.stations.size(); ++station) {
+    const double time = problem.stations[station];
     const bool ends = time == problem.stations.back();
     Vec3d before{};
     double before_time = 0.0;
@@ -74,10 +92,13 @@ Answer run(const Problem& problem, const std::map<int, Tissue>& tissues, Simulat
         before = force();
         before_time = simulation.force_time();
       }
+      if (shapes != nullptr && !shapes->near.empty() && simulation.time() > time - 1.5 * simulation.step_size())
+        approach(simulation, boundary, shapes->near[station]);
       if (!advance()) return answer;
     }
     if (stop) break;
     answer.displacement.assign(simulation.displacement().begin(), simulation.displacement().end());
+    if (shapes != nullptr) shapes->found.push_back(answer.displacement);
     if (!ends && at_start && !advance()) return answer;
     Vec3d now = force();
     const double since = simulation.force_time() - before_time;
@@ -101,17 +122,29 @@ bool has_law(const Problem& problem) {
   return false;
 }
 
-}  // namespace
-
-Answer run_engine(const Problem& problem, const std::map<int, Tissue>& tissues, const SimulationOptions& options,
-                  const Stop& stop) {
+/// What the engine refuses is the answer's trouble.
+Answer try_run(const Problem& problem, const std::map<int, Tissue>& tissues, const SimulationOptions& options,
+               Shapes* shapes, const Stop& stop) {
   try {
-    return run(problem, tissues, options, stop);
+    return run(problem, tissues, options, shapes, stop);
   } catch (const std::exception& error) {
     Answer answer;
     answer.trouble = error.what();
     return answer;
   }
+}
+
+}  // namespace
+
+Answer run_engine(const Problem& problem, const std::map<int, Tissue>& tissues, const SimulationOptions& options,
+                  const Stop& stop) {
+  return try_run(problem, tissues, options, nullptr, stop);
+}
+
+Equilibria equilibria(const Problem& problem, std::span<const std::vector<Vec3d>> near, const Stop& stop) {
+  Shapes shapes{near, {}};
+  Answer answer = try_run(problem, problem.tissues, {.integrator = Integrator::quasi_static}, &shapes, stop);
+  return {std::move(answer), std::move(shapes.found)};
 }
 
 Tissue linear_tissue(const Tissue& other, const LameParameters& lame) {

@@ -10,6 +10,14 @@ namespace glisson::models {
 Answer run_engine(const Problem& problem, const std::map<int, Tissue>& tissues, const SimulationOptions& options,
                   const Stop& stop);
 
+/// The scene's own tissue in equilibrium at each station.
+struct Equilibria {
+  Answer answer;
+  std::vector<std::vector<Vec3d>> shapes;  ///< displacement of every vertex at each station [m]
+};
+/// @param near  shapes near those of the stations, from which each is sought; none: each is from the one before
+Equilibria equilibria(const Problem& problem, std::span<const std::vector<Vec3d>> near, const Stop& stop);
+
 /// Every tissue of the problem, changed.
 template <class Change>
 std::map<int, Tissue> changed(const Problem& problem, Change change) {

@@ -104,6 +104,7 @@ Answer spring_mass_by_length(const Problem& problem, const Effort& effort, const
 Answer spring_mass_with_volume(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer chain_mail(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer linear_fem(const Problem& problem, const Effort& effort, const Stop& stop);
+Answer linear_fem_implicit(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer linear_fem_modal(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer hybrid(const Problem& problem, const Effort& effort, const Stop& stop);
 Answer xpbd(const Problem& problem, const Effort& effort, const Stop& stop);

@@ -13,6 +13,7 @@ std::span<const Rival> rivals() {
                                     Effort{8000, 1}};
   static constexpr std::array kProjective{Effort{50, 1}, Effort{50, 10}, Effort{400, 10}};
   static constexpr std::array kImplicit{Effort{20, 0}};
+  static constexpr std::array kLinearImplicit{Effort{40, 0}, Effort{400, 0}};
   static constexpr std::array kModes{Effort{0, 10}, Effort{0, 40}};
   constexpr std::string_view kNoTurn = "large rotation: forces grow with it; viscosity";
   constexpr std::string_view kNoViscosity = "viscosity, a law of its own";
@@ -27,6 +28,8 @@ std::span<const Rival> rivals() {
             kSweeps, chain_mail},
       Rival{"linear_fem", "linear finite elements, one factor for all", "BroNielsen1998",
             "large rotation, a law, viscosity, cutting without a new factor", kOnce, linear_fem},
+      Rival{"linear_fem_implicit", "linear finite elements in motion, backward Euler", "BaraffWitkin1998",
+            "large rotation, a law, viscosity, cutting without a new factor", kLinearImplicit, linear_fem_implicit},
       Rival{"linear_fem_modal", "linear finite elements in their lowest modes, corrected", "PentlandWilliams1989",
             "large rotation, a law, viscosity, a cut, loads that its modes were not made for", kModes,
             linear_fem_modal},

@@ -10,7 +10,7 @@
 
 #include "compare/viscous_reference.h"
 #include "glisson/mesh_refinement.h"
-#include "models/relaxation.h"
+#include "models/engine.h"
 #include "scene/converge/grid_convergence.h"
 #include "scene/converge/refine_variant.h"
 
@@ -184,10 +184,14 @@ Reference make_reference(const std::vector<Problem>& problems, const std::atomic
   if (models::is_viscous(problems.front())) return make_viscous_reference(problems, stop, say);
   std::vector<MeshResult> results;
   Reference reference;
-  for (const Problem& problem : problems) {
+  std::vector<std::vector<Vec3d>> shapes;  // of the mesh before; those of the next are near
+  for (std::size_t k = 0; k < problems.size(); ++k) {
+    const Problem& problem = problems[k];
     say(fmt::format("reference, {} tets", problem.mesh.tets.size()));
-    Answer answer = models::own_tissue_at_rest(problem, {}, stop);
+    for (std::vector<Vec3d>& shape : shapes) shape = refined(problems[k - 1].mesh, shape);
+    auto [answer, found] = models::equilibria(problem, shapes, stop);
     if (stop) return reference;
+    shapes = std::move(found);
     if (!answer.trouble.empty()) throw SceneError("the reference finds no equilibrium: " + answer.trouble);
     results.push_back({cell_size(problem.mesh), norm(answer.forces.back())});
     reference.tets = problem.mesh.tets.size();

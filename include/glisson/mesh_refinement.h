@@ -1,6 +1,9 @@
 // mesh_refinement.h — finer meshes of the same body, to see what the mesh adds to a result.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "glisson/mesh.h"
 
 namespace glisson {
@@ -13,5 +16,10 @@ namespace glisson {
 /// @throws std::invalid_argument as require_valid
 /// Cost: O(tets log tets).
 TetMesh refined(const TetMesh& mesh);
+
+/// A field of the vertices of refined(mesh), linear within the tets of the mesh: a new vertex has the mean of its edge's ends.
+/// @param field  one per vertex of the mesh
+/// @throws std::invalid_argument as require_valid, and where the field is of another size
+std::vector<Vec3d> refined(const TetMesh& mesh, std::span<const Vec3d> field);
 
 }  // namespace glisson

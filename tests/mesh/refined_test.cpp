@@ -49,6 +49,21 @@ TEST(Refined, IsTheSameBody) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) EXPECT_EQ(fine.vertices[v], mesh.vertices[v]);
 }
 
+// A field that is linear over the body stays so, to rounding.
+TEST(Refined, KeepsLinearFields) {
+  std::mt19937 random(11);
+  const TetMesh mesh = test::jittered_box({3, 2, 2}, 0.01, 0.3, random);
+  const auto linear = [](const TetMesh& m) {
+    std::vector<Vec3d> field;
+    for (const Vec3d& x : m.vertices) field.push_back({x.x + 2.0 * x.y, 3.0 * x.z, 0.01 - x.x});
+    return field;
+  };
+  const std::vector<Vec3d> fine = refined(mesh, linear(mesh)), exact = linear(refined(mesh));
+  ASSERT_EQ(fine.size(), exact.size());
+  for (std::size_t v = 0; v < fine.size(); ++v) EXPECT_LE(norm(fine[v] - exact[v]), 1e-16);
+  EXPECT_THROW(refined(mesh, exact), std::invalid_argument);
+}
+
 // Along the best diagonal the shapes of the children settle: after the first split none is worse by more than a third,
 // whatever the tet, four times over.
 TEST(Refined, KeepsShapes) {

@@ -4,6 +4,8 @@
 // best shapes. The cubes of a generated box, six tets each, become eight such cubes by this rule.
 #include <algorithm>
 #include <array>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "glisson/mesh_refinement.h"
@@ -132,6 +134,18 @@ TetMesh refined(const TetMesh& mesh) {
   fine.region_names = mesh.region_names;
   const std::vector<char> surface = on_surface(mesh, middles);
   for (const auto& [name, set] : mesh.vertex_sets) fine.vertex_sets[name] = refined_set(mesh, set, middles, surface);
+  return fine;
+}
+
+std::vector<Vec3d> refined(const TetMesh& mesh, std::span<const Vec3d> field) {
+  require_valid(mesh);
+  if (field.size() != mesh.vertices.size()) {
+    throw std::invalid_argument("refined: a field of " + std::to_string(field.size()) + " given, the mesh has " +
+                                std::to_string(mesh.vertices.size()) + " vertices");
+  }
+  std::vector<Vec3d> fine(field.begin(), field.end());
+  const MiddleVertices middles(mesh);
+  for (const auto& [a, b] : middles.edges()) fine.push_back((field[a] + field[b]) * 0.5);
   return fine;
 }
 
