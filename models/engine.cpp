@@ -33,7 +33,8 @@ std::vector<ConstraintId> hold_and_move(Simulation& simulation, const Problem& p
 void approach(Simulation& simulation, const Boundary& boundary, const std::vector<Vec3d>& shape) {
   std::vector<Vec3d> u(simulation.displacement().begin(), simulation.displacement().end());
   for (std::size_t v = 0; v < u.size(); ++v) {
-    for (std::size_t axis = 0; axis < 3; ++axis) u[v][axis] = boundary.prescribes(v, axis) ? u[v][axis] : shape[v][axis];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      u[v][axis] = boundary.prescribes(v, axis) ? u[v][axis] : shape[v][axis];
   }
   simulation.set_state(u, std::vector<Vec3d>(u.size()));
 }
