@@ -2,17 +2,15 @@
 
 #include <algorithm>
 
+#include "base/sort_out.h"
 #include "glisson/simulation/integrator.h"
 #include "glisson/simulation/simulation.h"
 
 namespace glisson {
 
-namespace {
+using detail::sort_out;
 
-void sort_out(std::vector<std::uint32_t>& vertices) {
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-}
+namespace {
 
 bool is_among(std::span<const std::uint32_t> ascending, std::uint32_t vertex) {
   return std::binary_search(ascending.begin(), ascending.end(), vertex);

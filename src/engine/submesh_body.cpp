@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/sort_out.h"
 #include "element/drag_stages.h"
 #include "engine/layout/response_batches.h"
 #include "engine/submesh_scratch.h"
@@ -124,14 +125,13 @@ void SubmeshBody::watch(std::span<const std::uint32_t> vertices, std::span<const
   apart_.assign(apart.begin(), apart.end());
   std::vector<std::uint32_t> all(vertices.begin(), vertices.end());
   for (const ActiveVertex& w : active_) all.push_back(w.vertex);
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
+  detail::sort_out(all);
   std::vector<ActiveVertex> now;
+  now.reserve(all.size());
+  std::size_t known = 0;
   for (const std::uint32_t v : all) {
-    const auto known = std::lower_bound(active_.begin(), active_.end(), v,
-                                        [](const ActiveVertex& w, std::uint32_t vertex) { return w.vertex < vertex; });
-    const bool was = known != active_.end() && known->vertex == v;
-    now.push_back(was ? *known : ActiveVertex{v, {}, {}, displacement_of(v), velocity_of(v)});
+    const bool was = known < active_.size() && active_[known].vertex == v;
+    now.push_back(was ? active_[known++] : ActiveVertex{v, {}, {}, displacement_of(v), velocity_of(v)});
   }
   active_ = std::move(now);
   find_watches();

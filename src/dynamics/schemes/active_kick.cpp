@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
 namespace glisson {
 
@@ -26,16 +27,20 @@ void add(KickPower& sum, const KickPower& p) {
 }
 
 void ActiveKick::follow(std::span<const std::uint32_t> before, std::span<const ActiveVertex> active) {
-  std::vector<Kicked> of_vertex(state_.body.vertex_count);
-  for (std::size_t k = 0; k < before.size(); ++k) of_vertex[before[k]] = kicked_[k];
-  kicked_.clear();
-  for (const ActiveVertex& w : active) kicked_.push_back(of_vertex[w.vertex]);
-  if (!outer_.empty()) {
-    std::vector<Vec3d> outer_of(state_.body.vertex_count);
-    for (std::size_t k = 0; k < std::min(before.size(), outer_.size()); ++k) outer_of[before[k]] = outer_[k];
-    outer_.clear();
-    for (const ActiveVertex& w : active) outer_.push_back(outer_of[w.vertex]);
-  }
+  const auto take_over = [&](auto& list) {
+    using T = typename std::remove_reference_t<decltype(list)>::value_type;
+    std::vector<T> now;
+    now.reserve(active.size());
+    std::size_t k = 0;
+    for (const ActiveVertex& w : active) {
+      while (k < before.size() && before[k] < w.vertex) ++k;
+      const bool known = k < std::min(before.size(), list.size()) && before[k] == w.vertex;
+      now.push_back(known ? list[k] : T{});
+    }
+    list = std::move(now);
+  };
+  take_over(kicked_);
+  if (!outer_.empty()) take_over(outer_);
   const std::span<const Constraint> constraints = state_.constraints.all();
   places_.assign(constraints.size(), {});
   for (std::size_t c = 0; c < places_.size(); ++c) {

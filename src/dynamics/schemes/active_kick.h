@@ -29,7 +29,7 @@ class ActiveKick {
   /// @param state  must outlive this
   explicit ActiveKick(BodyState& state) : state_(state) {}
 
-  /// The active vertices have become others. @param before  those it knew
+  /// The active vertices have become others. @param before  those it knew; both lists are ascending
   void follow(std::span<const std::uint32_t> before, std::span<const ActiveVertex> active);
   /// Begins a kick of h at the present time.
   void begin(double h);

@@ -129,6 +129,7 @@ TissueZones::TissueZones(const TetMesh& mesh, std::span<const char> removed, dou
   for (std::size_t v = 0; v < volumes.size(); ++v) {
     if (volumes[v] > 0.0) edge_squared_[v] /= volumes[v];
   }
+  rule_for(0.0);  // all rules are made at the first call, which is not to be that of a needle's first touch
 }
 
 /// Of the tets around X, linear within each; 0 where there is none.
