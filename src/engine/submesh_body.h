@@ -98,6 +98,15 @@ class SubmeshBody final : public MovingBody {
     std::vector<std::uint32_t> tets;
     std::vector<StiffElement> stiff;
     VertexWork work;
+
+    /// Forgets all; the lists keep their memory.
+    void clear() {
+      std::vector<std::uint32_t> no_tets = std::move(tets);
+      std::vector<StiffElement> none_stiff = std::move(stiff);
+      no_tets.clear(), none_stiff.clear();
+      *this = {};
+      tets = std::move(no_tets), stiff = std::move(none_stiff);
+    }
   };
   /// What the last look at a linear submesh for inverted tets told: gradients below 1, above, or J ≤ 0.
   enum class Looked : char { small, large, inverted };

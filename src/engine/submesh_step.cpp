@@ -83,15 +83,13 @@ void SubmeshBody::list_by_laws(const Submesh& part, std::size_t batch, std::size
   const double mu = 1.0 / double(plan.tissue.rest_mu), bulk = mu / (2.0 * double(plan.tissue.bulk_over_two_mu));
   const double limit = list_limit(part.block);
   const bool two = plan.laws == 2;
-  const auto low = static_cast<float>(limit * (1.0 - kFloatMargin));
-  std::array<char, kBlockTets> may{};  // which of them to look at: few
-  for (std::size_t i = 0; i < n * tets; ++i) {
-    const float left = low - block.value[0][i], rise = block.slope[0][i];
-    may[i] = static_cast<char>(two || left < 0.0F || rise * rise * block.y[i] > left * left);
-  }
+  std::array<std::uint16_t, kBlockTets> which;
+  const std::size_t few = kernels_.list_stiff(block, plan.tissue, plan.laws, n * tets,
+                                              static_cast<float>(limit * (1.0 - kFloatMargin)), which.data());
   const auto larger = [&](double l, double m) { return std::max(m * mu, (l + 2.0 / 3.0 * m) * bulk); };
-  for (std::size_t i = 0; i < n * tets; ++i) {
-    if (may[i] == 0 || element[i] == kNoElement) continue;
+  for (std::size_t k = 0; k < few; ++k) {
+    const std::size_t i = which[k];
+    if (element[i] == kNoElement) continue;
     const double first = double(block.value[0][i]), slope = std::abs(double(block.slope[0][i]));
     const double value = two ? larger(first, double(block.value[1][i])) : first;
     const double rise = two ? larger(slope, std::abs(double(block.slope[1][i]))) : slope;
@@ -211,7 +209,7 @@ void SubmeshBody::run_submesh(std::size_t s, const Step& step, Scratch& scratch)
   const FlushDenormals flush;
   const Submesh& part = submeshes_.parts[s];
   Findings& found = found_[s];
-  found = {};
+  found.clear();
   const bool split = splits(s, step.accounted);
   const std::size_t floats = force_floats(part.local_vertices());
   std::fill_n(scratch.elastic.data(), floats, 0.0F);

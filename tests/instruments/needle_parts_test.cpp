@@ -50,7 +50,7 @@ TEST(TissueZone, SmallZoneIsTheTet) {
 }
 
 TEST(TissueZone, HalfOutsideStillSumsToOne) {
-  const TissueZones zones(fine(), {}, 3e-3);
+  TissueZones zones(fine(), {}, 3e-3);
   EXPECT_NEAR(mean(zones.weights({0.012, 0.012, 0.024}), [](const Vec3d&) { return 1.0; }), 1.0, 1e-14);
   EXPECT_TRUE(zones.weights({0.012, 0.012, 0.03}).empty());
 }

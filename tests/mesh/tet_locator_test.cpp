@@ -36,6 +36,24 @@ RC_GTEST_PROP(TetLocator, WeightsGiveThePointBack, ()) {
   RC_ASSERT(norm(point_of(mesh, *found) - x) < 1e-15);
 }
 
+// Whatever tet is guessed, the answer is the same to the byte, on faces, edges and corners, too.
+RC_GTEST_PROP(TetLocator, GuessesDoNotChangeTheAnswer, ()) {
+  const TetMesh& mesh = cylinder();
+  static const TetLocator locator(mesh, {});
+  const Tet& t = mesh.tets[static_cast<std::size_t>(test::integer(0, static_cast<int>(mesh.tets.size())))];
+  std::array<double, 4> w;
+  double sum = 0.0;
+  for (double& a : w) sum += a = test::integer(0, 3) == 0 ? 0.0 : test::number(0.0, 1.0);
+  Vec3d x = mesh.vertices[t[0]];
+  for (std::size_t a = 0; a < 4 && sum > 0.0; ++a) x += (mesh.vertices[t[a]] - mesh.vertices[t[0]]) * (w[a] / sum);
+  const auto found = locator.locate(x);
+  for (std::uint32_t guess = 0; guess < mesh.tets.size(); ++guess) {
+    const auto guessed = locator.locate(x, guess);
+    RC_ASSERT(guessed.has_value() == found.has_value());
+    if (found) RC_ASSERT(guessed->tet == found->tet && guessed->weights == found->weights);
+  }
+}
+
 TEST(TetLocator, PointsOutsideAreNowhere) {
   const TetLocator locator(cylinder(), {});
   for (const Vec3d& x : {Vec3d{0, 0, -1e-6}, Vec3d{0, 0, 0.05001}, Vec3d{0.0301, 0, 0.02}, Vec3d{1, 1, 1},

@@ -35,6 +35,7 @@ const Kernels* kernels() {
       .law = store_laws(std::type_identity<StiffnessLaw>()),
       .watch_law = watch_laws(std::type_identity<StiffnessLaw>()),
       .watch_lame = watch_lame,
+      .list_stiff = list_stiff,
       .push_elastic = push<Push::elastic>,
       .push_viscous = push<Push::viscous>,
       .push_merged = push<Push::merged>,

@@ -138,6 +138,9 @@ struct Kernels {
   std::array<WatchLaw, std::variant_size_v<StiffnessLaw>> watch_law{};
   /// The same of laws on λ and μ, whose values and slopes are in the block.
   bool (*watch_lame)(const Block&, const LaneTissue&, std::size_t n, float limit, StiffnessSeen&) = nullptr;
+  /// Numbers of the tets of a block whose bound may be above the limit, from the values and slopes of one law or two. @return how many
+  std::size_t (*list_stiff)(const Block&, const LaneTissue&, std::size_t laws, std::size_t n, float limit,
+                            std::uint16_t* which) = nullptr;
   /// Stress and forces of a block, added to the force records: the elastic ones, the viscous ones (to theirs), or
   /// both as one.
   void (*push_elastic)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;

@@ -11,6 +11,8 @@
 #endif
 
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -114,20 +116,73 @@ constexpr std::array<Kernels::WatchLaw, sizeof...(Laws)> watch_laws(std::type_id
   return {watch_law<Laws>...};
 }
 
+/// Stiffness of a vector of tets over that at rest, and its slope.
+struct Rise {
+  F stiffness, slope;
+};
+
 /// A tensor λ A + μ B is at most max(μ/μ₀, K/K₀) times that at rest, K = λ + ⅔ μ; its slope likewise.
+class LameRise {
+ public:
+  HWY_INLINE LameRise(const Block& block, const LaneTissue& tissue)
+      : block_(block), per_mu_(hn::Set(Lanes(), 1.0F / tissue.rest_mu)),
+        per_bulk_(hn::Set(Lanes(), 1.0F / (tissue.bulk_over_two_mu * 2.0F * tissue.rest_mu))) {}
+  HWY_INLINE Rise operator()(std::size_t i) const {
+    const Lanes d;
+    const auto of = [&](F lambda, F mu) GLISSON_INLINED {
+      return hn::Max(mu * per_mu_, hn::MulAdd(hn::Set(d, 2.0F / 3.0F), mu, lambda) * per_bulk_);
+    };
+    return {of(hn::Load(d, block_.value[0] + i), hn::Load(d, block_.value[1] + i)),
+            of(hn::Abs(hn::Load(d, block_.slope[0] + i)), hn::Abs(hn::Load(d, block_.slope[1] + i)))};
+  }
+
+ private:
+  const Block& block_;
+  F per_mu_, per_bulk_;
+};
+
+/// The same of a law on E, whose value it is.
+struct YoungRise {
+  const Block& block;
+  HWY_INLINE Rise operator()(std::size_t i) const {
+    return {hn::Load(Lanes(), block.value[0] + i), hn::Load(Lanes(), block.slope[0] + i)};
+  }
+};
+
 inline bool watch_lame(const Block& block, const LaneTissue& tissue, std::size_t n, float limit, StiffnessSeen& seen) {
-  const Lanes d;
-  const float bulk = tissue.bulk_over_two_mu * 2.0F * tissue.rest_mu;
-  const F per_mu = hn::Set(d, 1.0F / tissue.rest_mu), per_bulk = hn::Set(d, 1.0F / bulk),
-          part = hn::Set(d, 2.0F / 3.0F);
+  const LameRise rise(block, tissue);
   Largest largest;
   for (std::size_t i = 0; i < n; i += kLanes) {
-    const F lambda = hn::Load(d, block.value[0] + i), mu = hn::Load(d, block.value[1] + i);
-    const F dl = hn::Abs(hn::Load(d, block.slope[0] + i)), dm = hn::Abs(hn::Load(d, block.slope[1] + i));
-    largest.take(hn::Max(mu * per_mu, hn::MulAdd(part, mu, lambda) * per_bulk),
-                 hn::Max(dm * per_mu, hn::MulAdd(part, dm, dl) * per_bulk), hn::Load(d, block.y + i));
+    const Rise r = rise(i);
+    largest.take(r.stiffness, r.slope, hn::Load(Lanes(), block.y + i));
   }
   return largest.add_to(seen, limit);
+}
+
+template <class RiseOf>
+HWY_INLINE std::size_t list_above(const Block& block, const RiseOf& rise, std::size_t n, float limit,
+                                  std::uint16_t* which) {
+  const Lanes d;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; i += kLanes) {
+    const Rise r = rise(i);
+    const F left = hn::Set(d, limit) - r.stiffness;
+    const auto above =
+        hn::Or(hn::Lt(left, hn::Zero(d)), hn::Gt(r.slope * r.slope * hn::Load(d, block.y + i), left * left));
+    if (hn::AllFalse(d, above)) continue;
+    std::array<std::uint8_t, sizeof(std::uint64_t)> bytes{};
+    hn::StoreMaskBits(d, above, bytes.data());
+    for (auto bits = std::bit_cast<std::uint64_t>(bytes); bits != 0; bits &= bits - 1) {
+      which[count++] = static_cast<std::uint16_t>(i + static_cast<std::size_t>(std::countr_zero(bits)));
+    }
+  }
+  return count;
+}
+
+inline std::size_t list_stiff(const Block& block, const LaneTissue& tissue, std::size_t laws, std::size_t n,
+                              float limit, std::uint16_t* which) {
+  return laws == 1 ? list_above(block, YoungRise{block}, n, limit, which)
+                   : list_above(block, LameRise(block, tissue), n, limit, which);
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

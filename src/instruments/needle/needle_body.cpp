@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/sort_out.h"
 #include "glisson/simulation/simulation.h"
 #include "instruments/needle/needle_state.h"
 
@@ -140,9 +141,18 @@ std::span<const std::uint32_t> Needle::reach(double, double) {
     }
     if (nearest > 2.0 * ahead + size) continue;
     s.entry_triangles.push_back(t);
-    s.wanted.insert(s.wanted.end(), s.surface[t].begin(), s.surface[t].end());
   }
+  s.take_entry_vertices();
+  s.wanted = s.entry_vertices;
   return s.wanted;
+}
+
+void Needle::State::take_entry_vertices() {
+  entry_vertices.clear();
+  for (const std::size_t t : entry_triangles) {
+    entry_vertices.insert(entry_vertices.end(), surface[t].begin(), surface[t].end());
+  }
+  detail::sort_out(entry_vertices);
 }
 
 /// Each list is complete: what path and tip have left is not in it.
@@ -171,6 +181,7 @@ void Needle::archive(Archive& ar) {
   for (const shaft::Row& node : s.nodes) path.push_back(node.rest);
   ar(path, s.slips, s.along, s.bend);
   ar.all_below(s.entry_triangles, s.surface.size());
+  if (ar.reads()) s.take_entry_vertices();
   if (!ar.reads()) return;
   const std::vector<int>& regions = s.mesh->regions;
   const bool known =

@@ -54,10 +54,12 @@ struct Needle::State {
   Mat3d zone_axes = identity<double>();
 
   // vertices at hand
-  std::vector<std::uint32_t> wanted;         ///< named by reach
-  bool look = true;                          ///< whether reach is to name some
-  Vec3d named_around{};                      ///< rest position that vertices were last named for
-  std::vector<std::size_t> entry_triangles;  ///< of the surface, that the needle may meet first
+  std::vector<std::uint32_t> wanted;          ///< named by reach
+  bool look = true;                           ///< whether reach is to name some
+  Vec3d named_around{};                       ///< rest position that vertices were last named for
+  std::vector<std::size_t> entry_triangles;   ///< of the surface, that the needle may meet first
+  std::vector<std::uint32_t> entry_vertices;  ///< theirs, ascending
+  void take_entry_vertices();
 
   // the path
   std::vector<shaft::Row> nodes;  ///< from the surface on

@@ -17,6 +17,7 @@ constexpr int kBisections = 12;  ///< of a region's boundary
 constexpr double kClose = 1e-7;  ///< of the rest position of the tip [m]
 constexpr double kTouch =
     1e-6;  ///< of the zone: nearer it touches, so that rounding does not choose the step of contact
+constexpr double kNear = 1e-6;        ///< [m]: so much farther than the tip reaches a vertex counts as near
 constexpr double kLetGo = 0.05;       ///< of the zone: a tip that far off the surface has let go of it
 constexpr double kRise = 0.02;        ///< of the force of puncture: a rise by this ends the drop
 constexpr double kSmoothing = 0.01;   ///< of the force for that [s]
@@ -53,6 +54,12 @@ double PressingWork::free_energy(double cutting) const {
 void Needle::look_for_contact(const InteractionStep& step) {
   State& s = *state_;
   const Vec3d from = pose_.position - direction() * s.options.length;
+  const double reach = s.options.length + kTouch * s.options.zone;
+  const auto near = [&](std::uint32_t v) {
+    const std::uint32_t place = step.place_of[v];
+    return place != InteractionStep::kNowhere && dot(step.position(place) - from, direction()) <= reach + kNear;
+  };
+  if (std::ranges::none_of(s.entry_vertices, near)) return;  // all lie beyond the tip, and triangles between them
   std::optional<Hit> first;
   for (const std::size_t t : s.entry_triangles) {
     std::array<Vec3d, 3> present, rest;
@@ -67,7 +74,7 @@ void Needle::look_for_contact(const InteractionStep& step) {
     if (hit && hit->way >= 0.0 && (!first || hit->way < first->way)) first = hit;
   }
   shaft::Row met;
-  if (!first || first->way > s.options.length + kTouch * s.options.zone || !s.place(met, first->rest)) return;
+  if (!first || first->way > reach || !s.place(met, first->rest)) return;
   s.look = true;
   const bool hole = !s.nodes.empty() && norm(s.nodes.front().rest - first->rest) < s.options.diameter;
   add_event(step.time + step.h, depth(), "contact");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "glisson/mesh.h"
@@ -14,6 +15,7 @@ namespace {
 constexpr double kFine = 0.6, kCoarse = 0.7;  ///< edges over R: up to here made up for, from there on not
 constexpr double kSpread = 1.05;              ///< of edges: the radius of the load that a single vertex spreads
 constexpr double kInside = 1e-3;              ///< of R: how far inside the body a point of its surface looks for edges
+constexpr std::uint32_t kNoGuess = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kFewest = 3, kMost = 12;  ///< radii of a rule for fine meshes
 
 struct RulePoint {
@@ -145,15 +147,21 @@ double TissueZones::edge_squared(const Vec3d& x) const {
   return 0.0;
 }
 
-std::vector<VertexWeight> TissueZones::weights(const Vec3d& x) const {
+std::vector<VertexWeight> TissueZones::weights(const Vec3d& x) {
   const double edge = std::sqrt(edge_squared(x)),
                share = std::clamp((kCoarse - edge / radius_) / (kCoarse - kFine), 0.0, 1.0);
   const double radius = std::sqrt(radius_ * radius_ - share * kSpread * edge * edge);
   std::vector<VertexWeight> weights;
   double sum = 0.0;
-  for (const RulePoint& point : rule_for(edge > 0.0 ? radius_ / edge : 0.0)) {
-    const auto found = locator_.locate(x + axes_ * point.at * radius);
+  const std::vector<RulePoint>& rule = rule_for(edge > 0.0 ? radius_ / edge : 0.0);
+  guesses_.resize(rule.size(), kNoGuess);
+  weights.reserve(4 * rule.size());
+  for (std::size_t k = 0; k < rule.size(); ++k) {
+    const RulePoint& point = rule[k];
+    const Vec3d at = x + axes_ * point.at * radius;
+    const auto found = guesses_[k] == kNoGuess ? locator_.locate(at) : locator_.locate(at, guesses_[k]);
     if (!found) continue;
+    guesses_[k] = found->tet;
     for (std::size_t a = 0; a < 4; ++a) {
       weights.push_back({mesh_->tets[found->tet][a], point.weight * found->weights[a]});
     }

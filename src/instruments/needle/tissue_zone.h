@@ -33,7 +33,7 @@ class TissueZones {
 
   /// Weights of the mean around X, ascending by vertex; empty where the ball does not meet the body.
   /// @param x  rest position [m]
-  std::vector<VertexWeight> weights(const Vec3d& x) const;
+  std::vector<VertexWeight> weights(const Vec3d& x);
 
  private:
   double edge_squared(const Vec3d& x) const;
@@ -43,6 +43,8 @@ class TissueZones {
   double radius_;
   Mat3d axes_;
   std::vector<double> edge_squared_;  ///< per vertex: mean over its tets, weighted by volume [m²]
+  std::vector<std::uint32_t>
+      guesses_;  ///< per point of the rule: the tet that held it last, where a needle that moves on finds it again
 };
 
 /// Axes for a needle along `direction`, a unit vector, which is the third; the first is across it along an edge of the mesh.

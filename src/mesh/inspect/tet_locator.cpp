@@ -8,8 +8,9 @@
 namespace glisson::detail {
 namespace {
 
-constexpr double kOutside = -1e-9;  ///< barycentric coordinates down to this count as inside
-constexpr int kMostCells = 256;     ///< along an axis
+constexpr double kOutside = -1e-9;    ///< barycentric coordinates down to this count as inside
+constexpr double kWellInside = 1e-6;  ///< of a point above this in all coordinates no other tet is asked
+constexpr int kMostCells = 256;       ///< along an axis
 /// Edge of a cell over that of a cube of six tets: some 20 tets reach into a cell, and a tet into some 27 cells.
 constexpr double kCell = 0.5;
 
@@ -72,6 +73,25 @@ std::array<int, 3> TetLocator::cell_of(const Vec3d& x) const {
   return cell;
 }
 
+/// The point by a tet, where its coordinates there are not below the least.
+std::optional<LocatedPoint> TetLocator::within(std::uint32_t tet, const Vec3d& x, double least) const {
+  const Tet& t = mesh_->tets[tet];
+  const Vec3d &a = mesh_->vertices[t[0]], &b = mesh_->vertices[t[1]], &c = mesh_->vertices[t[2]],
+              &d = mesh_->vertices[t[3]];
+  const double whole = 1.0 / six_volume(a, b, c, d);
+  std::array<double, 4> w;
+  if ((w[0] = six_volume(x, b, c, d) * whole) < least || (w[1] = six_volume(a, x, c, d) * whole) < least ||
+      (w[2] = six_volume(a, b, x, d) * whole) < least || (w[3] = six_volume(a, b, c, x) * whole) < least) {
+    return {};
+  }
+  return LocatedPoint{tet, w};
+}
+
+std::optional<LocatedPoint> TetLocator::locate(const Vec3d& x, std::uint32_t guess) const {
+  if (auto found = within(guess, x, kWellInside)) return found;
+  return locate(x);
+}
+
 std::optional<LocatedPoint> TetLocator::locate(const Vec3d& x) const {
   const double margin = 1e-6 * cell_;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -80,16 +100,7 @@ std::optional<LocatedPoint> TetLocator::locate(const Vec3d& x) const {
   const auto cell = cell_of(x);
   const std::size_t n = number(cell[0], cell[1], cell[2]);
   for (std::size_t k = begin_[n]; k < begin_[n + 1]; ++k) {
-    const Tet& t = mesh_->tets[tets_[k]];
-    const Vec3d &a = mesh_->vertices[t[0]], &b = mesh_->vertices[t[1]], &c = mesh_->vertices[t[2]],
-                &d = mesh_->vertices[t[3]];
-    const double whole = 1.0 / six_volume(a, b, c, d);
-    std::array<double, 4> w;
-    if ((w[0] = six_volume(x, b, c, d) * whole) < kOutside || (w[1] = six_volume(a, x, c, d) * whole) < kOutside ||
-        (w[2] = six_volume(a, b, x, d) * whole) < kOutside || (w[3] = six_volume(a, b, c, x) * whole) < kOutside) {
-      continue;
-    }
-    return LocatedPoint{tets_[k], w};
+    if (auto found = within(tets_[k], x, kOutside)) return found;
   }
   return {};
 }

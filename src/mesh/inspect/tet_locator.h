@@ -29,8 +29,11 @@ class TetLocator {
   /// @param x  rest position [m]
   /// @return none outside the body. Faces belong to it: coordinates down to −1e-9 count as inside
   std::optional<LocatedPoint> locate(const Vec3d& x) const;
+  /// The same, quicker where the guess is right. @param guess  a tet that is not removed
+  std::optional<LocatedPoint> locate(const Vec3d& x, std::uint32_t guess) const;
 
  private:
+  std::optional<LocatedPoint> within(std::uint32_t tet, const Vec3d& x, double least) const;
   std::array<int, 3> cell_of(const Vec3d& x) const;
   std::size_t number(int i, int j, int k) const {
     return (static_cast<std::size_t>(k) * static_cast<std::size_t>(cells_[1]) + static_cast<std::size_t>(j)) *
