@@ -160,7 +160,8 @@ TEST_F(Compare, WritesTheExperimentForOtherPrograms) {
   for (const nlohmann::json& v : p["surface"]) EXPECT_LT(v.get<std::size_t>(), p["meshes"][0]["vertices_m"].size());
 }
 
-// A region is taken out while the body is loaded: rows say what that took, and what is no cut is refused.
+// A region is taken out while the body is loaded: rows say what that took, forces before it are those of the whole block and those after it
+// smaller, and what is no cut is refused.
 TEST_F(Compare, CutsARegionOutInMidRun) {
   const std::string scene = write("notch.toml", std::string(kBlock) +
                                                     "cut_at_s = 0.7\ncut = \"slot\"\n[[region]]\n"
@@ -170,11 +171,23 @@ TEST_F(Compare, CutsARegionOutInMidRun) {
     return run({"compare", scene, "--out", (folder_ / "o").string(), "--json", (folder_ / "c.json").string(), "--set",
                 "compare.models=[\"linear_fem\", \"glisson\", \"hybrid\"]", "--set", "compare." + key + "=" + value});
   };
+  const std::string whole = write("whole.toml", kBlock);
+  ASSERT_THAT(run({"compare", whole, "--out", (folder_ / "w").string(), "--json", (folder_ / "w.json").string(),
+                   "--set", "compare.models=[\"linear_fem\", \"glisson\", \"hybrid\"]"}),
+              Exits(0));
   ASSERT_THAT(cut("meshes", "1"), Exits(0));
-  const nlohmann::json written = read_json(folder_ / "c.json");
-  for (const nlohmann::json& row : written["rows"]) {
+  const nlohmann::json of_cut = read_json(folder_ / "c.json"), of_whole = read_json(folder_ / "w.json");
+  ASSERT_EQ(of_cut["rows"].size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const nlohmann::json &row = of_cut["rows"][i], &before = of_whole["rows"][i];
     EXPECT_THAT(row["note"].get<std::string>(), ::testing::StartsWith("the cut took ")) << row["model"];
-    EXPECT_LE(row["error_force"].get<double>(), 0.2) << row["model"];
+    const auto kept = [&](std::size_t k) {
+      return row["forces"][k][2].get<double>() / before["forces"][k][2].get<double>();
+    };
+    EXPECT_NEAR(kept(0), 1.0, 1e-5) << row["model"];
+    const double left = kept(1);
+    EXPECT_GT(left, 0.4) << row["model"];  // half of the block's upper half is gone
+    EXPECT_LT(left, 0.8) << row["model"];
   }
   Outcome outcome = cut("cut", "\"none\"");
   EXPECT_THAT(outcome, Exits(2));
