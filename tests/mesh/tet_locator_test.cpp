@@ -59,6 +59,7 @@ TEST(TetLocator, PointsOutsideAreNowhere) {
   for (const Vec3d& x : {Vec3d{0, 0, -1e-6}, Vec3d{0, 0, 0.05001}, Vec3d{0.0301, 0, 0.02}, Vec3d{1, 1, 1},
                          Vec3d{0.0299, 0.0299, 0.02}, Vec3d{std::nan(""), 0, 0}}) {
     EXPECT_FALSE(locator.locate(x)) << x.x << ' ' << x.y << ' ' << x.z;
+    EXPECT_FALSE(locator.locate(x, 7)) << x.x << ' ' << x.y << ' ' << x.z;
   }
 }
 

@@ -54,10 +54,10 @@ double PressingWork::free_energy(double cutting) const {
 void Needle::look_for_contact(const InteractionStep& step) {
   State& s = *state_;
   const Vec3d from = pose_.position - direction() * s.options.length;
-  const double reach = s.options.length + kTouch * s.options.zone;
+  const double farthest = s.options.length + kTouch * s.options.zone;
   const auto near = [&](std::uint32_t v) {
     const std::uint32_t place = step.place_of[v];
-    return place != InteractionStep::kNowhere && dot(step.position(place) - from, direction()) <= reach + kNear;
+    return place != InteractionStep::kNowhere && dot(step.position(place) - from, direction()) <= farthest + kNear;
   };
   if (std::ranges::none_of(s.entry_vertices, near)) return;  // all lie beyond the tip, and triangles between them
   std::optional<Hit> first;
@@ -74,7 +74,7 @@ void Needle::look_for_contact(const InteractionStep& step) {
     if (hit && hit->way >= 0.0 && (!first || hit->way < first->way)) first = hit;
   }
   shaft::Row met;
-  if (!first || first->way > reach || !s.place(met, first->rest)) return;
+  if (!first || first->way > farthest || !s.place(met, first->rest)) return;
   s.look = true;
   const bool hole = !s.nodes.empty() && norm(s.nodes.front().rest - first->rest) < s.options.diameter;
   add_event(step.time + step.h, depth(), "contact");

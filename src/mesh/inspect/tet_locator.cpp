@@ -80,11 +80,11 @@ std::optional<LocatedPoint> TetLocator::within(std::uint32_t tet, const Vec3d& x
               &d = mesh_->vertices[t[3]];
   const double whole = 1.0 / six_volume(a, b, c, d);
   std::array<double, 4> w;
-  if ((w[0] = six_volume(x, b, c, d) * whole) < least || (w[1] = six_volume(a, x, c, d) * whole) < least ||
-      (w[2] = six_volume(a, b, x, d) * whole) < least || (w[3] = six_volume(a, b, c, x) * whole) < least) {
-    return {};
+  if ((w[0] = six_volume(x, b, c, d) * whole) >= least && (w[1] = six_volume(a, x, c, d) * whole) >= least &&
+      (w[2] = six_volume(a, b, x, d) * whole) >= least && (w[3] = six_volume(a, b, c, x) * whole) >= least) {
+    return LocatedPoint{tet, w};
   }
-  return LocatedPoint{tet, w};
+  return {};  // nor are points that are not finite in any tet
 }
 
 std::optional<LocatedPoint> TetLocator::locate(const Vec3d& x, std::uint32_t guess) const {
