@@ -78,12 +78,11 @@ Answer linear_fem(const Problem& problem, const Effort&, const Stop& stop) {
       body = std::make_unique<Factored>(problem, boundary, gone);
       answer.cut_s = knife.lap();
     }
-    std::vector<Vec3d> u(n), weight(n);
-    for (std::size_t v = 0; v < n; ++v) weight[v] = problem.gravity_at(time) * masses[v];
+    std::vector<Vec3d> u(n);
     boundary.set(time, u);
-    const Eigen::VectorXd solved = body->solve(flat(weight), flat(u));
+    const Eigen::VectorXd pull = weight(problem, masses, time), solved = body->solve(pull, flat(u));
     answer.displacement = vectors_of(solved);
-    answer.forces.push_back(boundary.force(vectors_of(flat(weight) - body->matrix() * solved), answer.displacement));
+    answer.forces.push_back(boundary.force(vectors_of(pull - body->matrix() * solved), answer.displacement));
   }
   answer.run_s = watch.lap();
   answer.steps = problem.stations.size();

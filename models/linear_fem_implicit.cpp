@@ -13,9 +13,11 @@ namespace {
 class ImplicitSteps {
  public:
   ImplicitSteps(const Problem& problem, double step)
-      : problem_(problem), step_(step), boundary_(problem), gone_(problem.mesh.tets.size(), false) {
-    for (const double mass : lumped_masses(problem)) masses_.push_back(Vec3d{mass, mass, mass});
-    mass_ = flat(masses_);
+      : problem_(problem), step_(step), boundary_(problem), gone_(problem.mesh.tets.size(), false),
+        masses_(lumped_masses(problem)), mass_(3 * masses_.size()) {
+    for (std::size_t v = 0; v < masses_.size(); ++v) {
+      mass_.segment<3>(static_cast<Eigen::Index>(3 * v)).setConstant(masses_[v]);
+    }
     u_ = v_ = change_of_speed_ = Eigen::VectorXd::Zero(mass_.size());
     factorise();
   }
@@ -24,7 +26,7 @@ class ImplicitSteps {
     std::vector<Vec3d> given(masses_.size());
     boundary_.set(time + h, given);
     const Eigen::VectorXd prescribed = flat(given);
-    Eigen::VectorXd right = weight(time + h) + mass_.cwiseProduct(u_ * inertia() + v_ / h);
+    Eigen::VectorXd right = weight(problem_, masses_, time + h) + mass_.cwiseProduct(u_ * inertia() + v_ / h);
     right -= matrix_ * prescribed + inertia() * mass_.cwiseProduct(prescribed);
     clear_prescribed(right, boundary_);
     const Eigen::VectorXd next = prescribed + factor_.solve(right);
@@ -35,7 +37,7 @@ class ImplicitSteps {
 
   Vec3d force(double time) const {
     const Eigen::VectorXd inertia = mass_.cwiseProduct(change_of_speed_ / step_ + problem_.damping() * v_);
-    return boundary_.force(vectors_of(weight(time) - matrix_ * u_ - inertia), displacement());
+    return boundary_.force(vectors_of(weight(problem_, masses_, time) - matrix_ * u_ - inertia), displacement());
   }
   std::vector<Vec3d> displacement() const { return vectors_of(u_); }
   std::size_t bytes() const {
@@ -50,11 +52,6 @@ class ImplicitSteps {
 
  private:
   double inertia() const { return 1.0 / (step_ * step_) + problem_.damping() / step_; }
-  Eigen::VectorXd weight(double time) const {
-    std::vector<Vec3d> pull(masses_.size());
-    for (std::size_t v = 0; v < pull.size(); ++v) pull[v] = problem_.gravity_at(time) * masses_[v].x;
-    return flat(pull);
-  }
   void factorise() {
     matrix_ = stiffness_matrix(problem_, [&](std::size_t t) { return !gone_[t]; });
     const Eigen::VectorXd diagonal = inertia() * mass_;
@@ -65,10 +62,11 @@ class ImplicitSteps {
   double step_;
   Boundary boundary_;
   std::vector<bool> gone_;
-  std::vector<Vec3d> masses_;  ///< the same along all axes
+  std::vector<double> masses_;
+  Eigen::VectorXd mass_;  ///< of each component [kg]
   Sparse matrix_;
   Eigen::SimplicialLDLT<Sparse> factor_;
-  Eigen::VectorXd mass_, u_, v_;
+  Eigen::VectorXd u_, v_;
   Eigen::VectorXd change_of_speed_;  ///< in the last step [m/s]
 };
 

@@ -84,7 +84,7 @@ class Modes {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (const Tool& tool : problem.tools) correct(translation(tool, axis));
     }
-    if (norm(problem.motion.gravity) > 0.0) correct(flat(weight(problem.duration)));
+    if (norm(problem.motion.gravity) > 0.0) correct(weight(problem, masses_, problem.duration));
   }
 
   bool held() const { return factor_.info() == Eigen::Success; }
@@ -105,7 +105,7 @@ class Modes {
   Vec3d solve(double time, std::vector<Vec3d>& displacement) const {
     std::vector<Vec3d> u(masses_.size());
     boundary_.set(time, u);
-    const Eigen::VectorXd given = flat(u), pull = flat(weight(time));
+    const Eigen::VectorXd given = flat(u), pull = weight(problem_, masses_, time);
     Eigen::VectorXd load = pull - matrix_ * given;
     clear_prescribed(load, boundary_);
     const Eigen::VectorXd solved = given + shapes_ * (shapes_.transpose() * load);
@@ -116,11 +116,6 @@ class Modes {
   std::size_t bytes() const { return static_cast<std::size_t>(shapes_.size()) * sizeof(double); }
 
  private:
-  std::vector<Vec3d> weight(double time) const {
-    std::vector<Vec3d> pull(masses_.size());
-    for (std::size_t v = 0; v < pull.size(); ++v) pull[v] = problem_.gravity_at(time) * masses_[v];
-    return pull;
-  }
   /// What a tool moved along an axis does to the free components.
   Eigen::VectorXd translation(const Tool& tool, std::size_t axis) const {
     Eigen::VectorXd moved = Eigen::VectorXd::Zero(matrix_.rows());

@@ -50,6 +50,12 @@ void clear_prescribed(Eigen::VectorXd& components, const Boundary& boundary) {
   }
 }
 
+Eigen::VectorXd weight(const Problem& problem, const std::vector<double>& masses, double time) {
+  std::vector<Vec3d> pull(masses.size());
+  for (std::size_t v = 0; v < pull.size(); ++v) pull[v] = problem.gravity_at(time) * masses[v];
+  return flat(pull);
+}
+
 Eigen::VectorXd flat(const std::vector<Vec3d>& vectors) {
   Eigen::VectorXd out(static_cast<Eigen::Index>(3 * vectors.size()));
   for (std::size_t v = 0; v < vectors.size(); ++v) {

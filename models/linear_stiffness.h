@@ -19,6 +19,9 @@ Sparse of_free_components(const Sparse& matrix, const Boundary& boundary);
 /// Sets the prescribed components to 0.
 void clear_prescribed(Eigen::VectorXd& components, const Boundary& boundary);
 
+/// The weight of all vertices at a time, components in the order of flat() [N].
+Eigen::VectorXd weight(const Problem& problem, const std::vector<double>& masses, double time);
+
 /// The components of all vertices, 3 v + axis.
 Eigen::VectorXd flat(const std::vector<Vec3d>& vectors);
 /// The same back.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "glisson/mesh_refinement.h"
 #include "models/engine.h"
 #include "models/experiments.h"
 
@@ -254,6 +255,33 @@ TEST(Rivals, CutWhileLoadedComeToTheBodyWithoutTheTets) {
   }
   const double after = linear_fem(without, {}, kNever).forces[1].z;
   EXPECT_NEAR(linear_fem(cut, {}, kNever).forces[1].z, after, 1e-12 * after);
+}
+
+// Equilibria that are sought from the shapes of a coarser mesh are those that each mesh finds on its own, a cut among them.
+TEST(Equilibria, DoNotDependOnWhereTheyAreSoughtFrom) {
+  std::vector<std::uint32_t> slot;
+  Problem coarse = stretched_block(slot, 2);
+  coarse.tissues[0] = Tissue{.hyperelastic = NeoHookean{1285.714, 6000.0}};
+  coarse.cut = Cut{1.2, slot};
+  Problem fine = coarse;
+  fine.mesh = refined(coarse.mesh);
+  fine.supports.front().vertices = fine.mesh.vertex_set("z_min");
+  fine.tools.front().vertices = fine.mesh.vertex_set("z_max");
+  fine.cut->tets.clear();
+  for (const std::uint32_t t : slot) {
+    for (std::uint32_t k = 0; k < 8; ++k) fine.cut->tets.push_back(8 * t + k);
+  }
+  std::vector<std::vector<Vec3d>> near = equilibria(coarse, {}, kNever).shapes;
+  ASSERT_EQ(near.size(), 2U);
+  for (std::vector<Vec3d>& shape : near) shape = refined(coarse.mesh, shape);
+  const Equilibria found = equilibria(fine, near, kNever);
+  const Answer alone = own_tissue_at_rest(fine, {}, kNever);
+  ASSERT_EQ(found.answer.forces.size(), 2U) << found.answer.trouble;
+  ASSERT_EQ(alone.forces.size(), 2U) << alone.trouble;
+  EXPECT_LT(alone.forces[1].z, 0.9 * alone.forces[0].z) << "the cut is felt";
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_LE(norm(found.answer.forces[i] - alone.forces[i]), 1e-6 * norm(alone.forces[i])) << i;
+  }
 }
 
 // Links go with their last tet; a condensed half has no tets to take out, and modes none at all.
