@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bench/percentile.h"
+#include "view/engine/kept_memory.h"
 
 namespace glisson::app {
 namespace {
@@ -55,6 +56,7 @@ RealtimeResult run_realtime(BuiltVariant& body, OnInversion on_inversion, const 
   const auto frames = static_cast<std::uint64_t>(std::max(1.0, std::round(options.seconds / options.frame_s)));
   RealtimeResult result;
   result.compute_s.reserve(frames);
+  keep_memory(memory_for_frames(body.simulation.mesh().tets.size()));
   Pace pace(body, on_inversion, options.frame_s, stop);
   const double simulated_from = body.simulation.time();
   const std::uint64_t steps_before = body.simulation.steps();
@@ -67,8 +69,9 @@ RealtimeResult run_realtime(BuiltVariant& body, OnInversion on_inversion, const 
     const WallClock::time_point begin = WallClock::now();
     const bool whole = pace.frame(result);
     const double spent = seconds_between(begin, WallClock::now());
+    const std::size_t frame = result.compute_s.size();
     if (whole) result.compute_s.push_back(spent);
-    if (std::string news = pace.news(); !news.empty()) result.eventful.push_back({std::move(news), spent});
+    if (std::string news = pace.news(); !news.empty()) result.eventful.push_back({std::move(news), frame, spent});
   }
   if (result.end.end == RunSummary::End::finished) wait_until(schedule.due(frames));
   result.wall_s = seconds_between(start, WallClock::now());

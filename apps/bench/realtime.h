@@ -25,7 +25,8 @@ struct RealtimeResult {
   double peak_force_N = 0.0;  ///< of the first tool or instrument, of those read once a frame
   /// Frames in which an instrument met something: a puncture is the dearest moment of a run.
   struct Eventful {
-    std::string events;  ///< separated by commas
+    std::string events;     ///< separated by commas
+    std::size_t frame = 0;  ///< among those that were computed
     double compute_s = 0.0;
   };
   std::vector<Eventful> eventful;

@@ -135,11 +135,13 @@ void Simulation::Impl::archive(Archive& ar) {
 
 std::size_t Simulation::Impl::block_of(int region) const {
   const Body& body = scheme->body();
+  const auto region_of = [&](const TissueBlock& block) { return mesh.region_of(body.mesh_tet[block.begin]); };
+  const auto found = std::ranges::find(body.blocks, region, region_of);
+  if (found != body.blocks.end()) return static_cast<std::size_t>(found - body.blocks.begin());
   std::ostringstream known;
-  for (std::size_t b = 0; b < body.blocks.size(); ++b) {
-    const int number = mesh.region_of(body.mesh_tet[body.blocks[b].begin]);
-    if (number == region) return b;
-    known << (b == 0 ? "" : ", ") << number;
+  for (const TissueBlock& block : body.blocks) {
+    const int number = region_of(block);
+    known << (&block == body.blocks.data() ? "" : ", ") << number;
     if (const auto name = mesh.region_names.find(number); name != mesh.region_names.end()) {
       known << " (\"" << name->second << "\")";
     }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -52,6 +53,39 @@ TEST(Needle, BreaksThroughAtTheStatedForce) {
   ASSERT_NE(event(*run.needle, "contact"), nullptr);
   EXPECT_NEAR(event(*run.needle, "contact")->depth, 0.0005, 1e-5);  // the tip starts half a mm above the surface
   EXPECT_EQ(run.needle->events().back().event, "puncture");
+}
+
+// A body carried aside under a needle that waits: the tip meets what has come under it, 15 mm from what was there at first, at the
+// surface's height. Named are only vertices near the needle's line, so they have to be named anew as the tissue moves.
+TEST(Needle, MeetsASurfaceThatIsCarriedAside) {
+  Insertion o;
+  o.start = {0.015, 0.0, 0.0405};
+  o.needle.rupture.force = 10.0;
+  const TetMesh mesh = mesh_of(o);
+  Tissue tissue;
+  tissue.youngs_modulus = o.youngs_modulus;
+  tissue.poisson_ratio = 0.45;
+  Simulation simulation(mesh, {{0, tissue}}, o.options);
+  std::vector<std::uint32_t> carried = mesh.vertex_sets.at("bottom");
+  carried.insert(carried.end(), mesh.vertex_sets.at("wall").begin(), mesh.vertex_sets.at("wall").end());
+  std::sort(carried.begin(), carried.end());
+  carried.erase(std::unique(carried.begin(), carried.end()), carried.end());
+  constexpr double kCarried = 0.4, kWaits = 0.7, kSpeed = 0.01;  // [s], [s], [m/s]
+  simulation.drive(carried, [](double t) {
+    const double share = std::clamp(t / kCarried, 0.0, 1.0);
+    return Vec3d{0.015 * share * share * (3.0 - 2.0 * share), 0.0, 0.0};
+  });
+  const ToolPath path{.displacement =
+                          [](double t) {
+                            return Vec3d{0.0, 0.0, -kSpeed * std::max(0.0, t - kWaits)};
+                          },
+                      .end = {}};
+  const auto needle = std::make_shared<Needle>(o.needle, std::make_shared<PathDriver>(Pose{o.start}, path));
+  simulation.attach(needle);
+  while (simulation.time() < 0.9) ASSERT_EQ(simulation.step().status, StepStatus::ok);
+  EXPECT_EQ(needle->stage(), NeedleStage::pressing);
+  ASSERT_NE(event(*needle, "contact"), nullptr);
+  EXPECT_NEAR(event(*needle, "contact")->depth, 0.0005, 5e-5);
 }
 
 // In steady cutting the tip bears the cutting force and the shaft C + b v per metre in tissue; the hand feels the sum, and

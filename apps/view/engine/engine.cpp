@@ -7,6 +7,7 @@
 
 #include "report/instrument_json.h"
 #include "report/json_text.h"
+#include "view/engine/kept_memory.h"
 
 namespace glisson::view {
 namespace {
@@ -65,6 +66,7 @@ void Engine::stop() {
 }
 
 void Engine::run() {
+  app::keep_memory(app::memory_for_frames(body_->built().simulation.mesh().tets.size()));
   publish();
   app::FrameSchedule schedule(kFrame);
   measured_ = WallClock::now();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <type_traits>
 
 namespace glisson {
 
@@ -27,23 +26,22 @@ void add(KickPower& sum, const KickPower& p) {
 }
 
 void ActiveKick::follow(std::span<const std::uint32_t> before, std::span<const ActiveVertex> active) {
-  const auto take_over = [&](auto& list) {
-    using T = typename std::remove_reference_t<decltype(list)>::value_type;
-    std::vector<T> now;
-    now.reserve(active.size());
+  const auto take_over = [&](auto& list, auto& now) {
+    now.clear();
     std::size_t k = 0;
     for (const ActiveVertex& w : active) {
       while (k < before.size() && before[k] < w.vertex) ++k;
       const bool known = k < std::min(before.size(), list.size()) && before[k] == w.vertex;
-      now.push_back(known ? list[k] : T{});
+      known ? now.push_back(list[k]) : now.push_back({});
     }
-    list = std::move(now);
+    std::swap(list, now);
   };
-  take_over(kicked_);
-  if (!outer_.empty()) take_over(outer_);
+  take_over(kicked_, kicked_before_);
+  if (!outer_.empty()) take_over(outer_, outer_before_);
   const std::span<const Constraint> constraints = state_.constraints.all();
-  places_.assign(constraints.size(), {});
+  places_.resize(constraints.size());
   for (std::size_t c = 0; c < places_.size(); ++c) {
+    places_[c].clear();
     for (const std::uint32_t v : constraints[c].vertices) {
       const auto at = std::lower_bound(active.begin(), active.end(), v,
                                        [](const ActiveVertex& w, std::uint32_t vertex) { return w.vertex < vertex; });

@@ -76,8 +76,9 @@ class ActiveKick {
 
   BodyState& state_;
   std::vector<Kicked> kicked_;                      ///< per active vertex
+  std::vector<Kicked> kicked_before_;               ///< memory for follow()
   std::vector<std::vector<std::uint32_t>> places_;  ///< per constraint: where its vertices are among those active
-  std::vector<Vec3d> mobility_, tissue_, outer_;
+  std::vector<Vec3d> mobility_, tissue_, outer_, outer_before_;
   std::vector<Vec3d> displacement_;  ///< of active vertices, by vertex, for loads that ask for it [m]
   Vec3d gravity_{};
   double step_ = 0.0, time_ = 0.0;

@@ -23,10 +23,13 @@ TetMesh living(const BodyView& body) {
 }
 
 constexpr double kAtSurface = 1e-6;  ///< how far in a tip may start [m]
+constexpr double kLeastAside = 0.5;  ///< of the zone: so far sideways a surface is taken to have gone at least
 
-double from_line(const Vec3d& x, const Vec3d& point, const Vec3d& direction) {
-  const Vec3d r = x - point;
-  return norm(r - direction * dot(r, direction));
+double squared(const Vec3d& a) { return dot(a, a); }
+
+double longest_edge(const TetMesh& mesh, const Triangle& t) {
+  const auto edge = [&](std::size_t a, std::size_t b) { return norm(mesh.vertices[t[a]] - mesh.vertices[t[b]]); };
+  return std::max({edge(0, 1), edge(1, 2), edge(2, 0)});
 }
 
 }  // namespace
@@ -101,6 +104,8 @@ void Needle::body_changed(const BodyView& body, std::span<const std::uint32_t>) 
   s.mesh = &body.mesh;
   s.zones = std::make_unique<TissueZones>(body.mesh, body.removed, s.options.zone, s.zone_axes);
   s.surface = body.removed.empty() ? boundary_triangles(body.mesh) : boundary_triangles(living(body));
+  s.surface_edges.clear();
+  for (const Triangle& t : s.surface) s.surface_edges.push_back(longest_edge(body.mesh, t));
   s.look = true;
   s.mobility.forget();
   for (shaft::Row& node : s.nodes) {
@@ -113,38 +118,43 @@ void Needle::body_changed(const BodyView& body, std::span<const std::uint32_t>) 
 std::span<const std::uint32_t> Needle::reach(double, double) {
   State& s = *state_;
   s.breaks.clear(), s.stuck.clear(), s.ways.clear();
-  const double ahead = 2.0 * s.options.zone + 2.0 * s.options.spacing;
   const bool touches = s.stage != NeedleStage::outside;
   const Vec3d around = touches ? s.tip.rest : pose_.position;
-  const double moved = touches ? norm(around - s.named_around) : from_line(around, s.named_around, direction());
+  const double moved = touches ? norm(around - s.named_around) : norm(across(around - s.named_around, direction()));
   s.wanted.clear();
   if (!s.look && moved < s.options.zone) return s.wanted;
   s.look = false;
   s.named_around = around;
-  if (touches) {
-    for (std::uint32_t v = 0; v < s.mesh->vertices.size(); ++v) {
-      if (norm(s.mesh->vertices[v] - around) < ahead) s.wanted.push_back(v);
-    }
-    for (const VertexWeight& w : s.tip.weights) s.wanted.push_back(w.vertex);
-    for (const shaft::Row& node : s.nodes) {
-      for (const VertexWeight& w : node.weights) s.wanted.push_back(w.vertex);
-    }
-    return s.wanted;
-  }
-  s.entry_triangles.clear();
-  for (std::size_t t = 0; t < s.surface.size(); ++t) {
-    double nearest = std::numeric_limits<double>::infinity(), size = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const Vec3d& x = s.mesh->vertices[s.surface[t][a]];
-      nearest = std::min(nearest, from_line(x, around, direction()));
-      size = std::max(size, norm(x - s.mesh->vertices[s.surface[t][(a + 1) % 3]]));
-    }
-    if (nearest > 2.0 * ahead + size) continue;
-    s.entry_triangles.push_back(t);
-  }
-  s.take_entry_vertices();
-  s.wanted = s.entry_vertices;
+  touches ? s.name_around_path() : s.name_surface(direction());
   return s.wanted;
+}
+
+void Needle::State::name_around_path() {
+  const double ahead = 2.0 * options.zone + 2.0 * options.spacing;
+  for (std::uint32_t v = 0; v < mesh->vertices.size(); ++v) {
+    if (squared(mesh->vertices[v] - named_around) < ahead * ahead) wanted.push_back(v);
+  }
+  for (const VertexWeight& w : tip.weights) wanted.push_back(w.vertex);
+  for (const shaft::Row& node : nodes) {
+    for (const VertexWeight& w : node.weights) wanted.push_back(w.vertex);
+  }
+}
+
+/// Of the surface at rest, what the line may meet: it moves by a zone before it is looked at anew, and tissue beside the
+/// vertices that are watched may have gone aside twice as far as they.
+void Needle::State::name_surface(const Vec3d& direction) {
+  aside_named = std::max(kLeastAside * options.zone, 2.0 * aside);
+  const double around = options.zone + 2.0 * aside_named;
+  entry_triangles.clear();
+  for (std::size_t t = 0; t < surface.size(); ++t) {
+    const double most = (around + surface_edges[t]) * (around + surface_edges[t]);
+    const auto within = [&](std::uint32_t v) {
+      return squared(across(mesh->vertices[v] - named_around, direction)) <= most;
+    };
+    if (std::ranges::any_of(surface[t], within)) entry_triangles.push_back(t);
+  }
+  take_entry_vertices();
+  wanted = entry_vertices;
 }
 
 void Needle::State::take_entry_vertices() {
@@ -173,7 +183,8 @@ void Needle::archive(Archive& ar) {
   State& s = *state_;
   archive_motion(ar);
   const Vec3d tip_was = s.tip.rest;
-  ar(s.stage, s.look, s.named_around, s.tip.rest, s.tip_along, s.bend_tip, s.tip_cuts, s.tip_out, s.withdraws);
+  ar(s.stage, s.look, s.named_around, s.aside, s.aside_named, s.tip.rest, s.tip_along, s.bend_tip, s.tip_cuts,
+     s.tip_out, s.withdraws);
   ar(s.region, s.next_region, s.step_h, s.wave_time, s.pressing, s.drop);
   ar(s.broken, s.at_membrane, s.cutting_beyond, s.bending);
   ar.check(s.broken + (s.at_membrane ? 1 : 0) <= s.membranes.size());

@@ -9,9 +9,6 @@
 
 namespace glisson {
 
-/// The part of a vector across a direction.
-inline Vec3d across(const Vec3d& a, const Vec3d& direction) { return a - direction * dot(a, direction); }
-
 /// The rows that the needle acts on in a step, and what it does there.
 struct Needle::Solver {
   State& s;

@@ -12,6 +12,9 @@
 
 namespace glisson {
 
+/// The part of a vector across a direction.
+inline Vec3d across(const Vec3d& a, const Vec3d& direction) { return a - direction * dot(a, direction); }
+
 /// Where a ray meets a triangle.
 struct Hit {
   double way = 0.0;  ///< along the ray [m]
@@ -51,6 +54,7 @@ struct Needle::State {
   const TetMesh* mesh = nullptr;
   std::unique_ptr<TissueZones> zones;
   std::vector<Triangle> surface;
+  std::vector<double> surface_edges;  ///< the longest of each triangle, at rest [m]
   Mat3d zone_axes = identity<double>();
 
   // vertices at hand
@@ -59,7 +63,11 @@ struct Needle::State {
   Vec3d named_around{};                       ///< rest position that vertices were last named for
   std::vector<std::size_t> entry_triangles;   ///< of the surface, that the needle may meet first
   std::vector<std::uint32_t> entry_vertices;  ///< theirs, ascending
+  double aside = 0.0;                         ///< how far across the needle the farthest of them is from its rest [m]
+  double aside_named = 0.0;                   ///< the list holds while it is no farther [m]
   void take_entry_vertices();
+  void name_surface(const Vec3d& direction);
+  void name_around_path();
 
   // the path
   std::vector<shaft::Row> nodes;  ///< from the surface on

@@ -55,11 +55,17 @@ void Needle::look_for_contact(const InteractionStep& step) {
   State& s = *state_;
   const Vec3d from = pose_.position - direction() * s.options.length;
   const double farthest = s.options.length + kTouch * s.options.zone;
-  const auto near = [&](std::uint32_t v) {
+  bool near = false;
+  s.aside = 0.0;
+  for (const std::uint32_t v : s.entry_vertices) {
     const std::uint32_t place = step.place_of[v];
-    return place != InteractionStep::kNowhere && dot(step.position(place) - from, direction()) <= farthest + kNear;
-  };
-  if (std::ranges::none_of(s.entry_vertices, near)) return;  // all lie beyond the tip, and triangles between them
+    if (place == InteractionStep::kNowhere) continue;
+    const Vec3d x = step.position(place);
+    near = near || dot(x - from, direction()) <= farthest + kNear;
+    s.aside = std::max(s.aside, norm(across(x - step.rest[v], direction())));
+  }
+  if (s.aside > s.aside_named) s.look = true;
+  if (!near) return;  // all lie beyond the tip, and triangles between them
   std::optional<Hit> first;
   for (const std::size_t t : s.entry_triangles) {
     std::array<Vec3d, 3> present, rest;
