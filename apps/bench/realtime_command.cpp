@@ -99,8 +99,8 @@ nlohmann::ordered_json realtime_json(const Variant& variant, const BuiltVariant&
   json["simulated_s"] = r.simulated_s;
   json["realtime_factor"] = f.realtime_factor;
   json["peak_force_N"] = r.peak_force_N;
-  json["compute_us"] = nlohmann::ordered_json::array();
-  for (const double s : r.compute_s) json["compute_us"].push_back(std::round(1e7 * s) * 0.1);
+  json["frames_us"] = nlohmann::ordered_json::array();
+  for (const double s : r.compute_s) json["frames_us"].push_back(std::round(1e7 * s) * 0.1);
   json["events"] = nlohmann::ordered_json::array();
   for (const RealtimeResult::Eventful& e : r.eventful) {
     json["events"].push_back({{"events", e.events}, {"frame", e.frame}, {"compute_us", 1e6 * e.compute_s}});

@@ -250,7 +250,7 @@ void print_body(const Variant& v, const Taste& taste) {
     if (tool.rotation || tool.poses) {
       say("  tool     \"{}\" on {}: {}, from {:.4g} s to {:.4g} s\n", tool.name, set_text(taste.mesh, tool.set),
           tool.rotation ? "turns about (" + vector_text(tool.rotation->axis) + ") through (" +
-                              vector_text(tool.rotation->centre) + ") m"
+                              vector_text(tool.rotation->center) + ") m"
                         : std::to_string(tool.poses->motion.times.size()) + " poses",
           tool_start(tool), tool_path(tool).end.value_or(0.0));
     } else if (tool.record) {

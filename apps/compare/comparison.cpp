@@ -265,7 +265,7 @@ models::Problem problem_of(const Variant& variant, TetMesh mesh, const CompareSp
   problem.duration = run_duration(variant);
   problem.stations = stations_of(variant, spec);
   if (!variant.tools.empty() && variant.tools.front().rotation) {
-    problem.moment_about = variant.tools.front().rotation->centre;
+    problem.moment_about = variant.tools.front().rotation->center;
   }
   problem.mesh = std::move(mesh);
   return problem;

@@ -174,9 +174,8 @@ TEST_F(Bench, RealtimeAccountsForEveryFrame) {
   EXPECT_LE(json["p99_us"], json["p99_9_us"]);
   EXPECT_LE(json["p99_9_us"], json["max_us"]);
   EXPECT_GT(json["peak_force_N"].get<double>(), 0.0) << "the tool presses";
-  ASSERT_EQ(json["compute_us"].size(), json["frames"]);
-  EXPECT_NEAR(*std::max_element(json["compute_us"].begin(), json["compute_us"].end()), json["max_us"].get<double>(),
-              0.1);
+  ASSERT_EQ(json["frames_us"].size(), json["frames"]);
+  EXPECT_NEAR(*std::max_element(json["frames_us"].begin(), json["frames_us"].end()), json["max_us"].get<double>(), 0.1);
 }
 
 // A scene too heavy for the pace falls behind and ends in time; it does not pile up work.

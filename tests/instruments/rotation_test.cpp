@@ -67,7 +67,7 @@ TEST(Rotation, TwistedBarHasItsTorque) {
 TEST(Rotation, MovesAsARigidBody) {
   const TetMesh mesh = box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}});
   const RotationMotion turn{
-      .axis = {1, 2, 3}, .centre = {0.1, 0.0, 0.0}, .angle_deg = 200.0, .rate_deg_s = 400.0, .ramp = 0.1};
+      .axis = {1, 2, 3}, .center = {0.1, 0.0, 0.0}, .angle_deg = 200.0, .rate_deg_s = 400.0, .ramp = 0.1};
   for (const Integrator integrator :
        {Integrator::central_difference, Integrator::semi_implicit, Integrator::implicit, Integrator::quasi_static}) {
     Tissue tissue;
@@ -131,7 +131,7 @@ TEST(Rotation, TablesAreFollowed) {
 
 // A contact tool turns with its driver: the pose at the end is the rotated start.
 TEST(Rotation, TurnsAnInstrument) {
-  const RotationMotion turn{.axis = {0, 0, 1}, .centre = {0.01, 0.01, 0}, .angle_deg = 90.0, .rate_deg_s = 900.0};
+  const RotationMotion turn{.axis = {0, 0, 1}, .center = {0.01, 0.01, 0}, .angle_deg = 90.0, .rate_deg_s = 900.0};
   Simulation s(box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}}), {{0, Tissue{}}});
   s.fix("z_min");
   const auto driver = std::make_shared<RigidDriver>(Pose{.position = {0.02, 0.01, 0.03}}, rotation_path(turn));

@@ -378,7 +378,7 @@ kind = "box"
 name = "speed"
 set = "z_max"
 axial = "free"
-rotation = { axis = [0, 0, 2], centre_m = [1, 2, 3], angle_deg = 30, rate_deg_s = 60, start_s = 0.1, ramp_s = 0.2, hold_s = 0.3, returns = true }
+rotation = { axis = [0, 0, 2], center_m = [1, 2, 3], angle_deg = 30, rate_deg_s = 60, start_s = 0.1, ramp_s = 0.2, hold_s = 0.3, returns = true }
 [[tool]]
 name = "table"
 set = "z_min"
@@ -392,7 +392,7 @@ TEST(EveryKey, OfRotationsIsRead) {
   EXPECT_TRUE(v.tools[0].axial_free);
   const RotationMotion& turn = v.tools[0].rotation.value();
   expect_equal(turn.axis, {0, 0, 2});
-  expect_equal(turn.centre, {1, 2, 3});
+  expect_equal(turn.center, {1, 2, 3});
   EXPECT_EQ(turn.angle_deg, 30.0);
   EXPECT_EQ(turn.rate_deg_s, 60.0);
   EXPECT_EQ(turn.start, 0.1);

@@ -11,7 +11,7 @@ FIGURE = Path(__file__).resolve().parents[2] / "scripts/realtime_figure"
 SVG = "{http://www.w3.org/2000/svg}"
 RUN = {
     "variant": "live", "tets": 768, "threads": 1, "frame_s": 1e-3, "simulated_s": 4e-3, "missed": 1,
-    "p50_us": 500.0, "p99_us": 1500.0, "max_us": 9000.0, "compute_us": [400.0, 500.0, 9000.0, 1500.0],
+    "p50_us": 500.0, "p99_us": 1500.0, "max_us": 9000.0, "frames_us": [400.0, 500.0, 9000.0, 1500.0],
     "events": [{"events": "contact", "frame": 1, "compute_us": 500.0}],
 }  # fmt: skip
 
@@ -60,7 +60,7 @@ class RealtimeFigure(unittest.TestCase):
     def test_refuses_other_results(self):
         run, _ = self.draw({"variant": "live"})
         self.assertNotEqual(run.returncode, 0)
-        self.assertIn("r.json: has neither trials nor compute_us", run.stderr)
+        self.assertIn("r.json: has neither trials nor frames_us", run.stderr)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ namespace glisson {
 struct RotationMotion {
   static constexpr std::string_view kName = "rotation";
   Vec3d axis{};              ///< of any length, not zero
-  Vec3d centre{};            ///< a point of the axis [m]
+  Vec3d center{};            ///< a point of the axis [m]
   double angle_deg = 90.0;   ///< [°], > 0
   double rate_deg_s = 90.0;  ///< angular speed [°/s], > 0
   double start = 0.0;        ///< [s], ≥ 0
@@ -32,7 +32,7 @@ struct RotationMotion {
         field("axis", &RotationMotion::axis, "-", "direction of the axis, of any length; positive by the right hand")
             .direction()
             .must(),
-        field("centre", &RotationMotion::centre, "m", "a point of the axis"),
+        field("center", &RotationMotion::center, "m", "a point of the axis"),
         field("angle_deg", &RotationMotion::angle_deg, "deg", above(0), "how far it turns").keyed("angle_deg"),
         field("rate_deg_s", &RotationMotion::rate_deg_s, "deg/s", above(0), "angular speed").keyed("rate_deg_s"),
         field("start", &RotationMotion::start, "s", at_least(0), "start of the motion"),

@@ -68,7 +68,7 @@ Vec3d DrivenSet::torque(const Vec3d& about) const {
 }
 
 double DrivenSet::axial_torque() const {
-  return rotation_ ? dot(torque(rotation_->centre), unit(rotation_->axis)) : 0.0;
+  return rotation_ ? dot(torque(rotation_->center), unit(rotation_->axis)) : 0.0;
 }
 
 double DrivenSet::angle() const {

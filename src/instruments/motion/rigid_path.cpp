@@ -109,7 +109,7 @@ RigidPath rotation_path(const RotationMotion& m) {
   const auto turned = [m, axis = unit(m.axis)](double time) {
     Pose pose;
     pose.axes = matrix_of(turn_about(axis, rotation_angle(m, time)));
-    pose.position = m.centre - pose.axes * m.centre;
+    pose.position = m.center - pose.axes * m.center;
     return pose;
   };
   return {turned, m.times.empty() ? press_end(as_press(m)) : m.times.back()};
