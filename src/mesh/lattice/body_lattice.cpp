@@ -33,7 +33,8 @@ class Lattice {
 
   void fill() {
     mark_inside();
-    refuse_too_many(fields_.sizes(), 6.0 * static_cast<double>(inside_), max_tets_);  // two vertices, 12 tets a cube
+    const double edge = fields_.edge();
+    refuse_too_many(edge, edge, 6.0 * static_cast<double>(inside_), max_tets_);  // two vertices, 12 tets a cube
     for (int k = 0; k < n_[2]; ++k) {
       for (int j = 0; j < n_[1]; ++j) {
         for (int i = 0; i < n_[0]; ++i) add_cube(i, j, k);
@@ -164,19 +165,26 @@ class Lattice {
   std::vector<char> used_inside_;  ///< of vertices that have a number
 };
 
+std::string edges_asked_text(double coarsest, double finest) {
+  const std::string edge = "edge [m] = " + detail::show(coarsest);
+  return edge + (finest >= coarsest ? " asks " : ", at the finest " + detail::show(finest) + ", asks ");
+}
+
 }  // namespace
 
-void refuse_too_many(const SizeField& sizes, double tets, std::size_t max_tets) {
-  const double edge = sizes.coarsest();
-  const std::string asks = (sizes.uniform() ? "edge [m] = " + detail::show(edge) + " asks"
-                                            : "edge [m] = " + detail::show(edge) + ", at the finest " +
-                                                  detail::show(sizes.finest()) + ", asks") +
-                           " for some " + detail::number_text(tets, 2) + " tets; ";
+void refuse_more_than(double coarsest, double finest, std::size_t max_tets) {
+  throw std::invalid_argument(edges_asked_text(coarsest, finest) + "for more than " + std::to_string(max_tets) +
+                              " tets, and no more are allowed: give longer edges, or fine ones less far, or raise the "
+                              "limit");
+}
+
+void refuse_too_many(double coarsest, double finest, double tets, std::size_t max_tets) {
+  const bool uniform = finest >= coarsest;
+  const std::string asks = edges_asked_text(coarsest, finest) + "for some " + detail::number_text(tets, 2) + " tets; ";
   const auto larger_edge = [&](double most) {
     const double factor = 1.02 * std::cbrt(tets / most);
-    if (!sizes.uniform())
-      return "give edges " + detail::number_text(factor, 2) + " times as long, or fine ones less far";
-    return "give an edge of " + detail::number_text(factor * edge, 2) + " m or more";
+    if (!uniform) return "give edges " + detail::number_text(factor, 2) + " times as long, or fine ones less far";
+    return "give an edge of " + detail::number_text(factor * coarsest, 2) + " m or more";
   };
   const auto allowed = static_cast<double>(max_tets);
   if (tets > allowed) {

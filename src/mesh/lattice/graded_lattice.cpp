@@ -45,7 +45,7 @@ class GradedLattice {
     const std::vector<std::uint32_t> leaves = tree_.leaves();
     std::size_t inside = 0;
     for (const std::uint32_t leaf : leaves) inside += mark_vertices(tree_.cell(leaf));
-    refuse_too_many(sizes_, 6.0 * static_cast<double>(inside), max_tets_);
+    refuse_too_many(sizes_.coarsest(), sizes_.finest(), 6.0 * static_cast<double>(inside), max_tets_);
     for (const std::uint32_t leaf : leaves) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         for (const int sign : {-1, 1}) add_face(tree_.cell(leaf), axis, sign);
@@ -120,7 +120,7 @@ class GradedLattice {
     }
     if (!fields_.filled(fields_.label(middle))) return;
     tets_ += 12.0;
-    if (tets_ > static_cast<double>(max_tets_)) refuse_too_many(sizes_, tets_, max_tets_);
+    if (tets_ > static_cast<double>(max_tets_)) refuse_more_than(sizes_.coarsest(), sizes_.finest(), max_tets_);
   }
 
   static std::uint64_t key(const Point& p) {

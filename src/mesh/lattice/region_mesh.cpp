@@ -113,7 +113,7 @@ void require_tets_in_each(const std::vector<BodyRegion>& regions, double edge, c
 std::vector<double> edges_asked(const TetMesh& mesh, const std::vector<BodyRegion>& regions,
                                 const RegionMeshOptions& options) {
   require_edge(options.edge);
-  const SizeField sizes(regions, options.edge, options.sizes, options.growth);
+  const SizeField sizes(regions, options);
   std::vector<double> edges;
   edges.reserve(mesh.tets.size());
   for (const Tet& t : mesh.tets) {
@@ -132,8 +132,9 @@ RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMesh
   };
   require_regions(regions);
   require_edge(options.edge);
-  const SizeField sizes(regions, options.edge, options.sizes, options.growth);
+  SizeField sizes(regions, options);
   const RegionFields fields(regions, sizes);
+  sizes.find_finest(fields, options.max_tets);
   TetComplex complex;
   if (sizes.uniform()) {
     fill_lattice(fields, options.max_tets, complex);
