@@ -123,7 +123,7 @@ TEST(FreeSize, RefusesValuesThatCannotBe) {
   EXPECT_THAT(refusal_of_size(std::numeric_limits<double>::infinity()), names("inf"));
   EXPECT_THAT(refusal_of_size(std::numeric_limits<double>::quiet_NaN()), HasSubstr("nan m at (0.03"));
   EXPECT_THAT(refusal_of_size(0.0005, 20000),
-              AllOf(HasSubstr("at the finest 5e-04"), HasSubstr("more than 20000 tets")));
+              AllOf(HasSubstr("at the finest 0.5 mm"), HasSubstr("more than 20000 tets")));
   EXPECT_EQ(refusal_of_size(0.02), "accepted");
 }
 

@@ -19,6 +19,8 @@ inline double expected_tets(double volume, double edge) {
   return 12.0 * volume / (side * side * side);
 }
 
+/// Refuses an edge that is far too short for a body of this extent [m]. @throws std::invalid_argument
+[[noreturn]] void refuse_short_edge(double edge, double extent);
 /// Refuses more tets than are allowed, or than there is memory for. @throws std::invalid_argument
 /// @param coarsest, finest  edges asked for [m]
 void refuse_too_many(double coarsest, double finest, double tets, std::size_t max_tets);

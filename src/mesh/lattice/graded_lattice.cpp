@@ -70,16 +70,14 @@ class GradedLattice {
     for (std::size_t d = 0; d < 3; ++d) {
       const double extent = box.max[d] - box.min[d], count = std::ceil(extent / root - 1e-9) + 2.0;
       if (!(count * (1 << level) < 1 << 19)) {
-        throw std::invalid_argument("edge [m] = " + detail::show(sizes_.finest()) + " is too small for a body of " +
-                                    detail::show(extent) + " m; give larger edges");
+        refuse_short_edge(sizes_.finest(), extent);
       }
       n[d] = static_cast<int>(count);
       origin_[d] = 0.5 * (box.min[d] + box.max[d]) - 0.5 * count * root;
     }
     if (static_cast<double>(n[0]) * n[1] * n[2] > kMostRoots) {
-      throw std::invalid_argument("edge [m] = " + detail::show(sizes_.coarsest()) +
-                                  " is too small for the body: the lattice would have more than 2e7 cubes of that "
-                                  "edge; give a larger edge");
+      refuse_short_edge(sizes_.coarsest(),
+                        std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z}));
     }
     return CellOctree(n, level);
   }
