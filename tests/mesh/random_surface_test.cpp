@@ -1,4 +1,4 @@
-// The surfaces of random bodies are in their meshes: of those between layers two edges thick, 95 % are within 0.12 edge of an interface.
+// The surfaces of random bodies are in their meshes: of those between layers two edges thick, 95 % are within 0.1 edge of an interface.
 //
 // The other direction, interfaces from surfaces, is in region_mesh_test.cpp. Layers that are thinner may be lost; how thick one is is
 // measured along the normal, up to the next change of region.
@@ -93,7 +93,7 @@ std::vector<double> surface_distances(const TetMesh& mesh, const std::vector<Bod
 
 class RandomSurfaces : public testing::TestWithParam<unsigned> {};
 
-// 0.115 and 0.110 edge were measured in bodies 196 and 294, 0.09 at most in the others.
+// 0.099 edge was measured in body 294, 0.084 at most in the others.
 TEST_P(RandomSurfaces, AreInTheirMeshes) {
   for (unsigned seed = 10 * GetParam(); seed < 10 * GetParam() + 10; ++seed) {
     const std::vector<BodyRegion> regions = RandomShapes(seed).body();
@@ -107,7 +107,7 @@ TEST_P(RandomSurfaces, AreInTheirMeshes) {
     ASSERT_GT(distances.size(), 100u) << "seed " << seed;
     const double p95 = distances[distances.size() * 95 / 100];
     RecordProperty("p95_" + std::to_string(seed), std::to_string(p95));
-    EXPECT_LT(p95, 0.12) << "seed " << seed;
+    EXPECT_LT(p95, 0.1) << "seed " << seed;
   }
 }
 INSTANTIATE_TEST_SUITE_P(First, RandomSurfaces, testing::Range(0u, 1u));
