@@ -107,8 +107,8 @@ PointsInside points_inside(const RegionFields& fields, std::size_t k) {
   const Vec3d step = size_of(box) * (1.0 / kAcross);
   PointsInside inside;
   for (int n = 0; n < kAcross * kAcross * kAcross; ++n) {
-    const Vec3d at{n % kAcross + 0.5, n / kAcross % kAcross + 0.5, n / (kAcross * kAcross) + 0.5};
-    const Vec3d p = box.min + Vec3d{at.x * step.x, at.y * step.y, at.z * step.z};
+    const int i = n % kAcross, j = n / kAcross % kAcross, k_up = n / (kAcross * kAcross);
+    const Vec3d p = box.min + Vec3d{(i + 0.5) * step.x, (j + 0.5) * step.y, (k_up + 0.5) * step.z};
     if (fields.value(k, p) >= 0.0) continue;
     ++inside.all;
     inside.own += fields.label(p) == k;
