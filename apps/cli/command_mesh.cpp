@@ -190,7 +190,7 @@ int mesh(const MeshOptions& options) {
                                                  : relative_stable_step(body, edges_asked(body, *asked));
   }
   write_vtu(options.out, body);
-  write_json(options.json, mesh_json(body, figures));
+  (options.quiet ? keep_json : write_json)(options.json, mesh_json(body, figures));
   if (options.quiet) return kDone;
   say("{}: {} tets, {} vertices, dihedral angles {:.1f}° to {:.1f}°, {:.2f} s\n", options.out, body.tets.size(),
       body.vertices.size(), figures.least_deg, figures.largest_deg, figures.seconds);
