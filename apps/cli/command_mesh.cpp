@@ -32,6 +32,8 @@ constexpr const char* kMeshFooter =
     "  glisson mesh organ.stl --scale 0.001 --edge-mm 4 --out organ.vtu\n"
     "  glisson mesh scene.toml --set mesh.edge_mm=3 --out fine.vtu --json figures.json";
 
+constexpr double kMostEdges = 1000.0;  ///< across a surface, from which on its unit is in doubt
+
 struct MeshOptions {
   SceneOptions scene;
   std::optional<double> edge_mm, scale;  ///< of a surface
@@ -136,7 +138,15 @@ Variant surface_variant(const MeshOptions& options) {
     refuse(fmt::format("--edge-mm {} is out of range; allowed: > 0", *options.edge_mm));
   ImplicitBody body;
   body.edge = 1e-3 * *options.edge_mm;
-  body.shapes.push_back({file.stem().string(), load_surface(file, options.scale.value_or(1.0))});
+  SurfaceShape surface = load_surface(file, options.scale.value_or(1.0));
+  const Bounds& box = surface.solid->bounds();
+  const double extent = std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z});
+  if (!options.scale && extent > kMostEdges * body.edge)
+    refuse(fmt::format(
+        "the surface is {:.3g} m across, and --edge-mm {} is a {:.0f}th of that; a file in millimetres takes "
+        "--scale 0.001, one in metres a longer edge",
+        extent, *options.edge_mm, extent / body.edge));
+  body.shapes.push_back({file.stem().string(), std::move(surface)});
   body.regions.push_back({file.stem().string(), "", false});
   Variant variant;
   variant.name = "main";
@@ -180,7 +190,7 @@ int mesh(const MeshOptions& options) {
                                                  : relative_stable_step(body, edges_asked(body, *asked));
   }
   write_vtu(options.out, body);
-  write_json(options.json, mesh_json(body, figures));
+  (options.quiet ? keep_json : write_json)(options.json, mesh_json(body, figures));
   if (options.quiet) return kDone;
   say("{}: {} tets, {} vertices, dihedral angles {:.1f}° to {:.1f}°, {:.2f} s\n", options.out, body.tets.size(),
       body.vertices.size(), figures.least_deg, figures.largest_deg, figures.seconds);
@@ -208,7 +218,7 @@ void add_mesh(CLI::App& program, Action& action) {
       ->add_option("--scale", options->scale,
                    "of a surface: factor on its coordinates, 0.001 for a file in millimetres")
       ->type_name("FACTOR");
-  command->add_option("--out", options->out, "the mesh, a .vtu file")->required()->type_name("FILE");
+  command->add_option("--out", options->out, "the mesh, a .vtu file")->required()->type_name("FILE")->check(file_place);
   add_json_option(*command, options->json);
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
   command->footer(kMeshFooter);

@@ -39,6 +39,9 @@ struct RegionMeshOptions {
   std::function<bool(double)> progress{};
   std::vector<MeshSize> sizes{};  ///< where edges are shorter; the shortest of them counts
   double growth = kGrowth;        ///< edge over distance at which edges grow away from these [-], 0.05 to 1
+  /// Edge asked for at a point [m]; the shortest of it, `sizes` and `edge` counts. Finite, and a 256th of `edge` or more; asked for in the
+  /// box of the body and up to two edges beyond. Called from one thread. Empty: `edge` and `sizes` alone.
+  std::function<double(const Vec3d&)> size_at{};
 };
 
 /// What came of a region.
@@ -75,13 +78,14 @@ class MeshingStopped : public std::runtime_error {
 /// Interfaces are shared: the tets of two regions meet in common faces. Parts thinner than two edges may be lost.
 /// Same input, same bytes.
 /// @throws std::invalid_argument  naming the region or option, its value and the way out: no region, an edge that is not
-///   positive or longer than a region is wide, regions that are empty, more than max_tets or than there is memory for
+///   positive or longer than a region is wide, regions that are empty, a value of `size_at` that is out of range, more than max_tets or
+///   than there is memory for
 /// @throws MeshingStopped  where `progress` asked for the end
 /// Cost: some 10 µs and 150 bytes a tet, up to 100 µs where many thin parts meet.
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options);
 
 /// The edge asked for in each tet of a mesh, at its centre [m].
-/// @throws std::invalid_argument  as mesh_regions, for edge, sizes and growth
+/// @throws std::invalid_argument  as mesh_regions, for edge, sizes, growth and size_at
 std::vector<double> edges_asked(const TetMesh& mesh, const std::vector<BodyRegion>& regions,
                                 const RegionMeshOptions& options);
 

@@ -91,6 +91,7 @@ void bind_surfaces(nb::module_& m) {
       "file"_a, "scale"_a = 1.0, doc("read_surface"));
 }
 
+using SizeAt = std::function<double(const Vec3d&)>;
 using Made = std::pair<TetMesh, RegionMeshReport>;
 
 Made made(RegionMesh mesh) { return {std::move(mesh.mesh), std::move(mesh.report)}; }
@@ -122,19 +123,21 @@ void bind_mesher(nb::module_& m) {
   m.def(
       "mesh_regions",
       [](const std::vector<BodyRegion>& regions, double edge, std::size_t max_tets, const std::vector<MeshSize>& sizes,
-         double growth) {
+         double growth, SizeAt size_at) {
         const auto go_on = [](double) { return PyErr_CheckSignals() == 0; };
-        return made(mesh_regions(regions, {edge, max_tets, go_on, sizes, growth}));
+        return made(mesh_regions(regions, {edge, max_tets, go_on, sizes, growth, std::move(size_at)}));
       },
       "regions"_a, "edge"_a, "max_tets"_a = RegionMeshOptions{}.max_tets, "sizes"_a = std::vector<MeshSize>{},
-      "growth"_a = kGrowth, doc("mesh_regions"));
+      "growth"_a = kGrowth, "size_at"_a = nb::none(), doc("mesh_regions"));
   m.def(
       "edges_asked",
       [](const TetMesh& mesh, const std::vector<BodyRegion>& regions, double edge, const std::vector<MeshSize>& sizes,
-         double growth) {
-        return scalars(edges_asked(mesh, regions, {.edge = edge, .sizes = sizes, .growth = growth}));
+         double growth, SizeAt size_at) {
+        return scalars(edges_asked(mesh, regions,
+                                   {.edge = edge, .sizes = sizes, .growth = growth, .size_at = std::move(size_at)}));
       },
-      "mesh"_a, "regions"_a, "edge"_a, "sizes"_a = std::vector<MeshSize>{}, "growth"_a = kGrowth, doc("edges_asked"));
+      "mesh"_a, "regions"_a, "edge"_a, "sizes"_a = std::vector<MeshSize>{}, "growth"_a = kGrowth,
+      "size_at"_a = nb::none(), doc("edges_asked"));
   m.def("relative_stable_step", nb::overload_cast<const TetMesh&, double>(relative_stable_step), "mesh"_a, "edge"_a,
         doc("relative_stable_step"));
   m.def(

@@ -74,6 +74,9 @@ TEST_F(MeshCommand, ExplainsWhatItRefuses) {
   const Outcome coarse = run({"mesh", scene, "--set", "mesh.edge_mm=80", "--out", (folder_ / "m.vtu").string()});
   EXPECT_THAT(coarse, Exits(2));
   EXPECT_THAT(coarse.err, HasSubstr("smaller edge"));
+  const Outcome place = run({"mesh", scene, "--out", (folder_ / "none" / "m.vtu").string()});
+  EXPECT_THAT(place, Exits(2));
+  EXPECT_THAT(place.err, HasSubstr("does not exist; create it first"));
   const Outcome fine = run({"mesh", scene, "--set", "mesh.edge_mm=0.1", "--out", (folder_ / "m.vtu").string()});
   EXPECT_THAT(fine, Exits(2));
   EXPECT_THAT(fine.err, HasSubstr("give an edge of"));
@@ -100,6 +103,7 @@ TEST_F(MeshCommand, MeshesSurfaces) {
     return refused.err;
   };
   EXPECT_THAT(refusal({ball}), HasSubstr("ball.stl: a surface needs --edge-mm E"));
+  EXPECT_THAT(refusal({ball, "--edge-mm", "6"}), HasSubstr("--scale 0.001"));
   EXPECT_THAT(refusal({ball, "--edge-mm", "0"}), HasSubstr("--edge-mm 0 is out of range; allowed: > 0"));
   EXPECT_THAT(refusal({ball, "--scale", "-1", "--edge-mm", "6"}),
               HasSubstr("scale = -1 is out of range; allowed: > 0"));

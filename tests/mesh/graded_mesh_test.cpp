@@ -56,7 +56,7 @@ TEST(GradedLattice, FitsTogetherBetweenLevels) {
   const std::vector<BodyRegion> regions{region_of("box", BoxShape{{}, {2, 2, 2}})};
   const std::vector<MeshSize> finer{{.edge = 0.03, .path = {{{-0.3, 0.1, 0.2}}, {{0.5, -0.4, 0.1}}}, .within = 0.02},
                                     {.edge = 0.06, .path = {{{0.1, 0.7, -0.6}}}}};
-  const SizeField sizes(regions, 0.25, finer, 0.8);
+  const SizeField sizes(regions, {.edge = 0.25, .sizes = finer, .growth = 0.8});
   TetComplex complex;
   fill_graded_lattice(RegionFields(regions, sizes), sizes, 1000000, complex);
   TetMesh mesh;
@@ -122,7 +122,7 @@ GradedBody random_graded_body(unsigned seed) {
 
 /// Distance of interfaces from the surfaces that they stand for, in edges asked for there, ascending.
 std::vector<double> interface_distances(const TetMesh& mesh, const GradedBody& body) {
-  const SizeField sizes(body.regions, body.options.edge, body.options.sizes, body.options.growth);
+  const SizeField sizes(body.regions, body.options);
   std::vector<double> distances;
   for (const Face& f : test::faces_of(mesh)) {
     if (f.regions.size() == 2 && f.regions[0] == f.regions[1]) continue;
@@ -268,7 +268,7 @@ TEST(GradedMesh, RefusesSizesThatCannotBe) {
   EXPECT_THAT(graded_refusal({.edge = 0.01, .sizes = {{.edge = 0.002, .near = "ball"}}, .growth = 3}),
               AllOf(HasSubstr("growth = 3"), HasSubstr("0.05 to 1")));
   EXPECT_THAT(graded_refusal({.edge = 0.01, .max_tets = 10000, .sizes = {{.edge = 0.001, .near = "ball"}}}),
-              AllOf(HasSubstr("at most 10000 are allowed"), HasSubstr("times as long")));
+              AllOf(HasSubstr("more than 10000 tets"), HasSubstr("longer edges")));
 }
 
 // The work can be stopped.
@@ -284,7 +284,7 @@ TEST(GradedMesh, FollowsCurvature) {
   const std::vector<BodyRegion> egg{region_of("egg", EllipsoidShape{{}, {0.05, 0.02, 0.02}})};
   const RegionMeshOptions options{
       .edge = 0.016, .sizes = {{.edge = 0.001, .surface = "egg", .per_radius = 2}}, .growth = 0.5};
-  const SizeField sizes(egg, options.edge, options.sizes, options.growth);
+  const SizeField sizes(egg, options);
   // The surface is sampled half an edge apart: the next sample is up to 1.4 mm away, and edges grow by half of that.
   EXPECT_GT(sizes.at({0.05, 0, 0}), 0.0039);
   EXPECT_LT(sizes.at({0.05, 0, 0}), 0.0050);
@@ -294,7 +294,8 @@ TEST(GradedMesh, FollowsCurvature) {
   EXPECT_TRUE(made.report.poor_tets.empty());
 
   const std::vector<BodyRegion> box{region_of("box", BoxShape{{}, {0.1, 0.08, 0.06}})};
-  const SizeField at_box(box, 0.01, {{.edge = 0.002, .surface = "box", .per_radius = 2}}, 0.5);
+  const SizeField at_box(box,
+                         {.edge = 0.01, .sizes = {{.edge = 0.002, .surface = "box", .per_radius = 2}}, .growth = 0.5});
   EXPECT_NEAR(at_box.at({0.05, 0.04, 0.01}), 0.002, 0.001);  // on an edge
   EXPECT_EQ(at_box.at({0.05, 0.0, 0.0}), 0.01);              // in the middle of a face
   EXPECT_EQ(at_box.at({0.0, 0.0, 0.0}), 0.01);

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "random_body.h"
 
 namespace glisson {
@@ -36,6 +38,65 @@ TEST(Solid, HasExactDistances) {
       least = std::min(least, norm(p - Vec3d{0, 0, 2 * t}) - (1 + t));
     }
     EXPECT_NEAR(tube.distance(p), least, 1e-7);
+  }
+}
+
+/// A shape, and its distance from a tree that leaves nothing out.
+struct WholeTree {
+  Solid solid;
+  std::function<double(const Vec3d&)> distance;
+};
+
+double blended_whole(double a, double b, double blend) {
+  const double h = blend - std::abs(a - b);
+  return std::min(a, b) - (h > 0.0 ? h * h / (4.0 * blend) : 0.0);
+}
+
+/// A distance, outside a box at least that from the box.
+double outside_box(const Bounds& box, const Vec3d& p, double value) {
+  Vec3d out{};
+  for (std::size_t d = 0; d < 3; ++d) out[d] = std::max({box.min[d] - p[d], p[d] - box.max[d], 0.0});
+  return value > 0.0 ? std::max(value, norm(out)) : value;
+}
+
+/// Two to five random trees combined, at the depth 0 a simple shape.
+WholeTree random_tree(RandomShapes& random, int depth) {
+  if (depth == 0) {
+    const Solid leaf = random.shape();
+    return {leaf, [leaf](const Vec3d& p) { return leaf.distance(p); }};
+  }
+  std::vector<WholeTree> parts;
+  for (int i = 2 + random.below(4); i > 0; --i) parts.push_back(random_tree(random, random.below(depth)));
+  const double blend = random.below(3) == 0 ? 0.0 : random.between(0, 0.4);
+  std::vector<Solid> solids;
+  for (const WholeTree& part : parts) solids.push_back(part.solid);
+  const int kind = random.below(3);
+  const Solid solid = kind == 0   ? unite(solids, blend)
+                      : kind == 1 ? intersect(solids, blend)
+                                  : subtract(solids[0], {solids.begin() + 1, solids.end()}, blend);
+  const Vec3d move = random.point(0.3);
+  const Solid placed = solid.placed({"", 1.0, {0, 0, 1}, 0.0, move});
+  return {placed, [=](const Vec3d& q) {
+            const Vec3d p = q - move;
+            double value = parts[0].distance(p);
+            for (std::size_t i = 1; i < parts.size(); ++i) {
+              const double other = parts[i].distance(p);
+              value = kind == 0 ? blended_whole(value, other, blend)
+                                : -blended_whole(-value, kind == 1 ? -other : other, blend);
+            }
+            return outside_box(placed.bounds(), q, outside_box(solid.bounds(), p, value));
+          }};
+}
+
+// What a tree leaves out, as too far off or too deep inside to matter, changes no bit of a distance.
+TEST(Solid, LeavesOutNothingThatMatters) {
+  RandomShapes random(11);
+  for (int i = 0; i < 300; ++i) {
+    const WholeTree tree = random_tree(random, 3);
+    for (int j = 0; j < 300; ++j) {
+      const Vec3d p = random.point(1.5);
+      ASSERT_EQ(tree.solid.distance(p), tree.distance(p)) << "tree " << i << ", point " << j;
+    }
   }
 }
 

@@ -1,4 +1,4 @@
-// The surfaces of random bodies are in their meshes: of those between layers two edges thick, 95 % are within 0.12 edge of an interface.
+// The surfaces of random bodies are in their meshes: of those between layers two edges thick, 95 % are within 0.1 edge of an interface.
 //
 // The other direction, interfaces from surfaces, is in region_mesh_test.cpp. Layers that are thinner may be lost; how thick one is is
 // measured along the normal, up to the next change of region.
@@ -18,7 +18,7 @@ namespace {
 using test::Face;
 using test::RandomShapes;
 
-constexpr double kEdge = 0.15;
+constexpr double kSurfaceEdge = 0.15;
 
 /// The first region at a point; none in a hole or outside.
 std::optional<std::size_t> region_at(const std::vector<BodyRegion>& regions, const Vec3d& p) {
@@ -54,7 +54,7 @@ std::optional<Vec3d> drawn_to(const BodyRegion& region, Vec3d p) {
 
 /// Whether different regions lie on both sides of a point, each for two edges along the normal.
 bool between_thick_layers(const std::vector<BodyRegion>& regions, const Vec3d& p, const Vec3d& normal) {
-  const auto at = [&](double edges) { return region_at(regions, p + normal * (edges * kEdge)); };
+  const auto at = [&](double edges) { return region_at(regions, p + normal * (edges * kSurfaceEdge)); };
   if (at(-0.03) == at(0.03)) return false;
   for (const double side : {-1.0, 1.0}) {
     for (double q = 0.06; q < 2.0; q += 0.06) {
@@ -84,7 +84,7 @@ std::vector<double> surface_distances(const TetMesh& mesh, const std::vector<Bod
       const bool hidden = std::any_of(regions.begin(), regions.begin() + static_cast<std::ptrdiff_t>(k),
                                       [&](const BodyRegion& earlier) { return earlier.distance(*p) < 0.0; });
       if (hidden || !between_thick_layers(regions, *p, unit(slope_at(regions[k], *p)))) continue;
-      distances.push_back(std::abs(interfaces.distance(*p)) / kEdge);
+      distances.push_back(std::abs(interfaces.distance(*p)) / kSurfaceEdge);
     }
   }
   std::sort(distances.begin(), distances.end());
@@ -93,13 +93,13 @@ std::vector<double> surface_distances(const TetMesh& mesh, const std::vector<Bod
 
 class RandomSurfaces : public testing::TestWithParam<unsigned> {};
 
-// 0.115 and 0.110 edge were measured in bodies 196 and 294, 0.09 at most in the others.
+// 0.099 edge was measured in body 294, 0.084 at most in the others.
 TEST_P(RandomSurfaces, AreInTheirMeshes) {
   for (unsigned seed = 10 * GetParam(); seed < 10 * GetParam() + 10; ++seed) {
     const std::vector<BodyRegion> regions = RandomShapes(seed).body();
     RegionMesh made;
     try {
-      made = mesh_regions(regions, {kEdge});
+      made = mesh_regions(regions, {kSurfaceEdge});
     } catch (const std::invalid_argument&) {  // a region that others cover
       continue;
     }
@@ -107,7 +107,7 @@ TEST_P(RandomSurfaces, AreInTheirMeshes) {
     ASSERT_GT(distances.size(), 100u) << "seed " << seed;
     const double p95 = distances[distances.size() * 95 / 100];
     RecordProperty("p95_" + std::to_string(seed), std::to_string(p95));
-    EXPECT_LT(p95, 0.12) << "seed " << seed;
+    EXPECT_LT(p95, 0.1) << "seed " << seed;
   }
 }
 INSTANTIATE_TEST_SUITE_P(First, RandomSurfaces, testing::Range(0u, 1u));

@@ -267,13 +267,18 @@ TEST(RegionMesh, RefusesWhatItCannotMesh) {
   EXPECT_THAT(refusal({}, {0.01}), HasSubstr("no region to fill"));
   EXPECT_THAT(refusal({ball}, {0.0}), AllOf(HasSubstr("edge [m] = 0"), HasSubstr("> 0")));
   EXPECT_THAT(refusal({ball}, {0.05}), AllOf(HasSubstr("\"ball\""), HasSubstr("smaller edge")));
-  EXPECT_THAT(refusal({ball}, {1e-9}), HasSubstr("larger edge"));
-  EXPECT_THAT(refusal({ball}, {0.0005, 1000}), AllOf(HasSubstr("at most 1000"), HasSubstr("give an edge of")));
+  EXPECT_THAT(refusal({ball}, {1e-9}), HasSubstr("longer edge"));
+  EXPECT_THAT(refusal({ball}, {0.0005, 1000}),
+              AllOf(HasSubstr("an edge of 0.5 mm asks for some 320000 tets"), HasSubstr("at most 1000"),
+                    HasSubstr("give an edge of"), HasSubstr("raise max_tets")));
   const Solid nothing = intersect({BallShape{{-1, 0, 0}, 0.1}, BallShape{{1, 0, 0}, 0.1}});
   EXPECT_THAT(refusal({region_of("nothing", nothing)}, {0.01}),
               AllOf(HasSubstr("\"nothing\""), HasSubstr("leave nothing")));
   EXPECT_THAT(refusal({ball, region_of("inner", BallShape{{}, 0.005})}, {0.002}),
-              HasSubstr("earlier regions cover it"));
+              HasSubstr("earlier regions cover it; name it before them"));
+  const Solid itself = subtract(BallShape{{}, 0.01}, {Solid(BallShape{{}, 0.01})});
+  EXPECT_THAT(refusal({region_of("itself", itself)}, {0.002}),
+              AllOf(HasSubstr("leave nothing"), HasSubstr("20 × 20 × 20 mm")));
 }
 
 // The work can be followed and stopped.

@@ -32,6 +32,24 @@ def test_a_mesh_is_finer_where_sizes_ask_for_it():
         glisson.mesh_regions(regions, edge=0.008, sizes=[glisson.MeshSize(edge=0.004, near="cor")])
 
 
+def test_a_size_is_any_function_of_a_point():
+    regions = [glisson.BodyRegion("ball", glisson.Solid(glisson.BallShape(radius=0.04)))]
+    asked = {"edge": 0.01, "size_at": lambda p: 0.004 if np.linalg.norm(p) < 0.012 else 0.01}
+    mesh, report = glisson.mesh_regions(regions, **asked)
+    assert report.min_dihedral_deg >= 10 and report.max_dihedral_deg <= 165
+    edges = glisson.edges_asked(mesh, regions, **asked)
+    assert set(np.unique(edges)) == {0.004, 0.01}
+    corners = mesh.vertices[mesh.tets]
+    pairs = [(i, j) for i in range(4) for j in range(i)]
+    lengths = np.mean([np.linalg.norm(corners[:, i] - corners[:, j], axis=1) for i, j in pairs], axis=0)
+    middle = np.linalg.norm(corners.mean(axis=1), axis=1) < 0.008
+    assert lengths[middle].mean() == pytest.approx(0.004, rel=0.05)
+    with pytest.raises(ValueError, match=r"size_at gives -1 m at \("):
+        glisson.mesh_regions(regions, edge=0.01, size_at=lambda p: -1.0)
+    with pytest.raises(ZeroDivisionError):
+        glisson.mesh_regions(regions, edge=0.01, size_at=lambda p: 1 / 0)
+
+
 def test_any_function_of_a_point_is_a_solid():
     wavy = glisson.Solid.from_function(lambda p: float(np.linalg.norm(p)) - 0.02, [-0.02] * 3, [0.02] * 3)
     assert wavy.distance([0.03, 0, 0]) == pytest.approx(0.01)

@@ -1,4 +1,8 @@
-// shape_node.h — a node of the tree of shapes: its distance and its box.
+// shape_node.h — a node of the tree of shapes: its distance, its box, and a cheap bound of its distance from above.
+//
+// A union, difference or intersection leaves out parts that cannot change its value: one side by the box of a part, which its distance
+// is never less than, the other by surely_below(). In a vein, `intersection of tree and whole` is the distance of the tree as long as
+// p is further inside the whole, which balls within its lobes tell for a tenth of the cost. What is left out changes no bit.
 #pragma once
 
 #include <algorithm>
@@ -50,10 +54,23 @@ class Solid::Node {
     return value > 0.0 ? std::max(value, detail::box_distance(bounds, p)) : value;
   }
 
+  /// Whether distance(p) ≤ bound, as far as that can be told for much less than the distance costs; false: it is not known.
+  bool surely_below(const Vec3d& p, double bound) const {
+    if (bound >= 0.0 && detail::box_distance(bounds, p) > 0.0) return false;
+    return below(p, bound);
+  }
+  /// The same for distance(p) ≥ bound.
+  bool surely_above(const Vec3d& p, double bound) const {
+    return detail::is_beyond(bounds, p, bound) || (cheap() && distance(p) >= bound);
+  }
+  /// Whether distance() costs no more than such a test.
+  virtual bool cheap() const { return false; }
+
   const Bounds bounds;
 
  protected:
   virtual double formula(const Vec3d& p) const = 0;
+  virtual bool below(const Vec3d& p, double bound) const { return cheap() && distance(p) <= bound; }
 };
 
 }  // namespace glisson

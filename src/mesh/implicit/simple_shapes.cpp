@@ -14,15 +14,18 @@ using namespace detail;
 template <class Function>
 class Formula final : public Solid::Node {
  public:
-  Formula(const Bounds& box, Function function) : Node(box), function_(std::move(function)) {}
+  Formula(const Bounds& box, Function function, bool cheap)
+      : Node(box), function_(std::move(function)), cheap_(cheap) {}
   double formula(const Vec3d& p) const override { return function_(p); }
+  bool cheap() const override { return cheap_; }
 
  private:
   Function function_;
+  bool cheap_;
 };
 template <class Function>
-std::shared_ptr<const Solid::Node> formula(const Bounds& box, Function function) {
-  return std::make_shared<Formula<Function>>(box, std::move(function));
+std::shared_ptr<const Solid::Node> formula(const Bounds& box, Function function, bool cheap = true) {
+  return std::make_shared<Formula<Function>>(box, std::move(function), cheap);
 }
 
 template <class S>
@@ -58,6 +61,36 @@ double ellipsoid_distance(const EllipsoidShape& s, const Vec3d& p) {
   const Vec3d gradient{of_flat * sx / s.semi_axes.x, of_flat * sy / s.semi_axes.y,
                        power(u.z / rho, n - 1.0) / s.semi_axes.z};
   return (rho - 1.0) / norm(gradient);
+}
+
+/// Ten powers a distance: the tree asks below() first.
+class Superellipsoid final : public Solid::Node {
+ public:
+  explicit Superellipsoid(const EllipsoidShape& s)
+      : Node({s.center - s.semi_axes, s.center + s.semi_axes}), shape_(s),
+        least_axis_(std::min({s.semi_axes.x, s.semi_axes.y, s.semi_axes.z})) {}
+
+  double formula(const Vec3d& p) const override { return ellipsoid_distance(shape_, p); }
+
+ private:
+  /// With exponents of 2 or more ρ is at most the Euclidean norm |u|, so that its gradient in u is no longer than 1 and
+  /// (ρ − 1)/|∇ρ| ≤ (|u| − 1) · the shortest semi-axis inside.
+  bool below(const Vec3d& p, double bound) const override {
+    constexpr double kRounding = 1e-9;
+    const Vec3d q = p - shape_.center;
+    const Vec3d u{q.x / shape_.semi_axes.x, q.y / shape_.semi_axes.y, q.z / shape_.semi_axes.z};
+    const double norm2 = dot(u, u);
+    return norm2 < 1.0 && (std::sqrt(norm2) - 1.0 + kRounding) * least_axis_ <= bound;
+  }
+
+  EllipsoidShape shape_;
+  double least_axis_;  ///< [m]
+};
+
+std::shared_ptr<const Solid::Node> ellipsoid_node(const EllipsoidShape& s) {
+  if (s.exponent_xy != 2.0 || s.exponent_z != 2.0) return std::make_shared<Superellipsoid>(s);
+  return formula({s.center - s.semi_axes, s.center + s.semi_axes},
+                 [s](const Vec3d& p) { return ellipsoid_distance(s, p); });
 }
 
 std::shared_ptr<const Solid::Node> box_node(const BoxShape& s) {
@@ -113,13 +146,10 @@ Fault CylinderShape::check() const {
 }
 
 Solid::Solid(const BallShape& shape) : node_(ball_node(checked(shape))) {}
+Solid::Solid(const EllipsoidShape& shape) : node_(ellipsoid_node(checked(shape))) {}
 Solid::Solid(const BoxShape& shape) : node_(box_node(checked(shape))) {}
 Solid::Solid(const CylinderShape& shape) : node_(cylinder_node(checked(shape))) {}
 Solid::Solid(const TorusShape& shape) : node_(torus_node(checked(shape))) {}
-
-Solid::Solid(const EllipsoidShape& shape)
-    : node_(formula({shape.center - checked(shape).semi_axes, shape.center + shape.semi_axes},
-                    [shape](const Vec3d& p) { return ellipsoid_distance(shape, p); })) {}
 
 Solid::Solid(const HalfSpaceShape& shape)
     : node_(formula(kEverywhere, [point = checked(shape).point, normal = unit(shape.normal)](const Vec3d& p) {
@@ -127,7 +157,7 @@ Solid::Solid(const HalfSpaceShape& shape)
       })) {}
 
 Solid::Solid(std::function<double(const Vec3d&)> distance, const Bounds& bounds)
-    : node_(formula(bounds, std::move(distance))) {}
+    : node_(formula(bounds, std::move(distance), false)) {}
 
 double Solid::distance(const Vec3d& point) const { return node_->distance(point); }
 const Bounds& Solid::bounds() const { return node_->bounds; }

@@ -33,7 +33,8 @@ class Lattice {
 
   void fill() {
     mark_inside();
-    refuse_too_many(fields_.sizes(), 6.0 * static_cast<double>(inside_), max_tets_);  // two vertices, 12 tets a cube
+    const double edge = fields_.edge();
+    refuse_too_many(edge, edge, 6.0 * static_cast<double>(inside_), max_tets_);  // two vertices, 12 tets a cube
     for (int k = 0; k < n_[2]; ++k) {
       for (int j = 0; j < n_[1]; ++j) {
         for (int i = 0; i < n_[0]; ++i) add_cube(i, j, k);
@@ -51,10 +52,7 @@ class Lattice {
       const double n = std::ceil((high[d] - low[d]) / side_ - 1e-9) + 4.0;
       cells *= n;
       if (!(cells <= kMaxCells)) {
-        throw std::invalid_argument("edge [m] = " + detail::show(fields_.edge()) + " is too small for a body of " +
-                                    detail::show(high[d] - low[d]) +
-                                    " m: the lattice would have more than 4e8 cubes; "
-                                    "give a larger edge");
+        refuse_short_edge(fields_.edge(), high[d] - low[d]);
       }
       n_[d] = static_cast<int>(n);
       origin_[d] = 0.5 * (low[d] + high[d]) - 0.5 * n * side_;
@@ -164,29 +162,52 @@ class Lattice {
   std::vector<char> used_inside_;  ///< of vertices that have a number
 };
 
+std::string millimetres(double length) { return detail::number_text(1e3 * length, 3) + " mm"; }
+
+std::string edges_asked_text(double coarsest, double finest) {
+  if (finest >= coarsest) return "an edge of " + millimetres(coarsest) + " asks ";
+  return "edges of " + millimetres(coarsest) + ", at the finest " + millimetres(finest) + ", ask ";
+}
+
+/// To two digits, without powers of ten.
+std::string rounded_text(double count) {
+  const double unit = std::pow(10.0, std::floor(std::log10(std::max(count, 10.0))) - 1.0);
+  const double rounded = std::round(count / unit) * unit;
+  return rounded < 1e6 ? detail::number_text(rounded, 9) : detail::number_text(1e-6 * rounded, 9) + " million";
+}
+
 }  // namespace
 
-void refuse_too_many(const SizeField& sizes, double tets, std::size_t max_tets) {
-  const double edge = sizes.coarsest();
-  const std::string asks = (sizes.uniform() ? "edge [m] = " + detail::show(edge) + " asks"
-                                            : "edge [m] = " + detail::show(edge) + ", at the finest " +
-                                                  detail::show(sizes.finest()) + ", asks") +
-                           " for some " + detail::number_text(tets, 2) + " tets; ";
+void refuse_short_edge(double edge, double extent) {
+  throw std::invalid_argument("an edge of " + millimetres(edge) + " is too short for a body of " +
+                              detail::number_text(extent, 3) +
+                              " m: its lattice would have hundreds of millions of cubes; give a longer edge, or see "
+                              "whether the body is in metres");
+}
+
+void refuse_more_than(double coarsest, double finest, std::size_t max_tets) {
+  throw std::invalid_argument(
+      edges_asked_text(coarsest, finest) + "for more than " + std::to_string(max_tets) +
+      " tets, and no more are allowed: give longer edges, or fine ones less far, or raise max_tets");
+}
+
+void refuse_too_many(double coarsest, double finest, double tets, std::size_t max_tets) {
+  const bool uniform = finest >= coarsest;
+  const std::string asks = edges_asked_text(coarsest, finest) + "for some " + rounded_text(tets) + " tets; ";
   const auto larger_edge = [&](double most) {
     const double factor = 1.02 * std::cbrt(tets / most);
-    if (!sizes.uniform())
-      return "give edges " + detail::number_text(factor, 2) + " times as long, or fine ones less far";
-    return "give an edge of " + detail::number_text(factor * edge, 2) + " m or more";
+    if (!uniform) return "give edges " + detail::number_text(factor, 2) + " times as long, or fine ones less far";
+    return "give an edge of " + detail::number_text(1e3 * factor * coarsest, 2) + " mm or more";
   };
   const auto allowed = static_cast<double>(max_tets);
   if (tets > allowed) {
     throw std::invalid_argument(asks + "at most " + std::to_string(max_tets) + " are allowed: " + larger_edge(allowed) +
-                                ", or raise the limit");
+                                ", or raise max_tets");
   }
   const std::optional<double> memory = detail::available_memory();
   if (memory && tets * kBytesATet > *memory) {
-    throw std::invalid_argument(asks + "that takes " + detail::number_text(1e-6 * tets * kBytesATet, 2) + " MB and " +
-                                detail::number_text(1e-6 * *memory, 2) +
+    throw std::invalid_argument(asks + "that takes " + rounded_text(1e-6 * tets * kBytesATet) + " MB and " +
+                                rounded_text(1e-6 * *memory) +
                                 " MB are available: " + larger_edge(std::max(1.0, *memory / kBytesATet)));
   }
 }

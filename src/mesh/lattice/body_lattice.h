@@ -19,8 +19,13 @@ inline double expected_tets(double volume, double edge) {
   return 12.0 * volume / (side * side * side);
 }
 
+/// Refuses an edge that is far too short for a body of this extent [m]. @throws std::invalid_argument
+[[noreturn]] void refuse_short_edge(double edge, double extent);
 /// Refuses more tets than are allowed, or than there is memory for. @throws std::invalid_argument
-void refuse_too_many(const SizeField& sizes, double tets, std::size_t max_tets);
+/// @param coarsest, finest  edges asked for [m]
+void refuse_too_many(double coarsest, double finest, double tets, std::size_t max_tets);
+/// Refuses them where they are not counted to the end. @throws std::invalid_argument
+[[noreturn]] void refuse_more_than(double coarsest, double finest, std::size_t max_tets);
 
 /// All lattice tets with a corner in a region, undecided.
 /// @throws std::invalid_argument  more than max_tets, or a lattice that is too large

@@ -34,6 +34,7 @@ double project_to_crease(const RegionFields& fields, std::size_t k, Vec3d& p, do
 struct Workspace;
 
 /// Draws vertices of interfaces onto creases, cuts edges of interfaces there, and draws vertices into corners.
-void follow_creases(Workspace& w);
+/// @param floor  quality that this leaves the tets it changes, or what they had; 0: what can be improved
+void follow_creases(Workspace& w, double floor = 0.0);
 
 }  // namespace glisson::lattice

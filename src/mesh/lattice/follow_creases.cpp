@@ -23,7 +23,7 @@ constexpr double kLeastDrawn = 0.03;
 
 class Follower {
  public:
-  explicit Follower(Workspace& w) : w_(w), c_(w.complex) {}
+  Follower(Workspace& w, double floor) : w_(w), c_(w.complex), floor_(floor) {}
 
   void run() {
     w_.sides.resize(c_.points.size());
@@ -123,7 +123,7 @@ class Follower {
     const Vec3d from = c_.points[v];
     const double before = w_.star_quality(v);
     c_.points[v] = to;
-    if (w_.star_quality(v) > std::min(before, kLeastDrawn)) return true;
+    if (w_.star_quality(v) > std::min(before, std::max(floor_, kLeastDrawn))) return true;
     c_.points[v] = from;
     return false;
   }
@@ -164,7 +164,7 @@ class Follower {
       c_.begin();
       const std::uint32_t m = c_.split_edge(x.u, x.v, x.at);
       c_.set_mask(m, mask);
-      if (w_.star_quality(m) > 0.0) {
+      if (w_.star_quality(m) > floor_) {
         c_.keep();
         mark(m, x.sides);
       } else {
@@ -239,11 +239,12 @@ class Follower {
 
   Workspace& w_;
   TetComplex& c_;
+  double floor_;
   std::vector<Vec3d> normals_;
 };
 
 }  // namespace
 
-void follow_creases(Workspace& w) { Follower(w).run(); }
+void follow_creases(Workspace& w, double floor) { Follower(w, floor).run(); }
 
 }  // namespace glisson::lattice

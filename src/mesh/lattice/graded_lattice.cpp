@@ -45,7 +45,7 @@ class GradedLattice {
     const std::vector<std::uint32_t> leaves = tree_.leaves();
     std::size_t inside = 0;
     for (const std::uint32_t leaf : leaves) inside += mark_vertices(tree_.cell(leaf));
-    refuse_too_many(sizes_, 6.0 * static_cast<double>(inside), max_tets_);
+    refuse_too_many(sizes_.coarsest(), sizes_.finest(), 6.0 * static_cast<double>(inside), max_tets_);
     for (const std::uint32_t leaf : leaves) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         for (const int sign : {-1, 1}) add_face(tree_.cell(leaf), axis, sign);
@@ -70,16 +70,14 @@ class GradedLattice {
     for (std::size_t d = 0; d < 3; ++d) {
       const double extent = box.max[d] - box.min[d], count = std::ceil(extent / root - 1e-9) + 2.0;
       if (!(count * (1 << level) < 1 << 19)) {
-        throw std::invalid_argument("edge [m] = " + detail::show(sizes_.finest()) + " is too small for a body of " +
-                                    detail::show(extent) + " m; give larger edges");
+        refuse_short_edge(sizes_.finest(), extent);
       }
       n[d] = static_cast<int>(count);
       origin_[d] = 0.5 * (box.min[d] + box.max[d]) - 0.5 * count * root;
     }
     if (static_cast<double>(n[0]) * n[1] * n[2] > kMostRoots) {
-      throw std::invalid_argument("edge [m] = " + detail::show(sizes_.coarsest()) +
-                                  " is too small for the body: the lattice would have more than 2e7 cubes of that "
-                                  "edge; give a larger edge");
+      refuse_short_edge(sizes_.coarsest(),
+                        std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z}));
     }
     return CellOctree(n, level);
   }
@@ -120,7 +118,7 @@ class GradedLattice {
     }
     if (!fields_.filled(fields_.label(middle))) return;
     tets_ += 12.0;
-    if (tets_ > static_cast<double>(max_tets_)) refuse_too_many(sizes_, tets_, max_tets_);
+    if (tets_ > static_cast<double>(max_tets_)) refuse_more_than(sizes_.coarsest(), sizes_.finest(), max_tets_);
   }
 
   static std::uint64_t key(const Point& p) {

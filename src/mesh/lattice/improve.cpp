@@ -21,8 +21,9 @@ constexpr int kSpreads = 3, kPasses = 12, kLastPasses = 4;
 constexpr double kLastSlack = 0.2;    ///< of the edge
 constexpr double kSpreadFloor = 0.3;  ///< quality that spreading vertices leaves
 constexpr double kTrialGain = 1e-3;
-constexpr double kMostOff = 0.12;  ///< of the edge: the middle of an interface's edge from its surface
-constexpr double kMust = 0.2;      ///< quality from which on no trials are made; 11.5° and 163.4°
+constexpr double kMostOff = 0.12;      ///< of the edge: the middle of an interface's edge from its surface
+constexpr double kCreaseFloor = 0.15;  ///< quality that following creases for the last time leaves
+constexpr double kMust = 0.2;          ///< quality from which on no trials are made; 11.5° and 163.4°
 
 constexpr std::array<std::array<std::size_t, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
@@ -263,6 +264,7 @@ bool improve(Workspace& w, double aim, const std::function<bool(double)>& go_on)
   passes(kPasses);
   follow_creases(w);
   improver.refine_curved();
+  follow_creases(w, kCreaseFloor);  // edges may have come to lie across a crease
   passes(kPasses);
   if (!stopped && improver.let_loose()) passes(kLastPasses);
   return !stopped;

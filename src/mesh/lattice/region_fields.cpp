@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdint>
 
 namespace glisson::lattice {
 namespace {
@@ -25,13 +26,25 @@ Vec3d shortest_step(const double* f, const Vec3d* g, std::size_t n) {
   return step;
 }
 
+std::size_t hash(std::size_t k, const Vec3d& p) {
+  std::uint64_t mixed = k;
+  for (const double x : {p.x, p.y, p.z}) {
+    mixed = (mixed ^ std::bit_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15u;
+    mixed ^= mixed >> 32;
+  }
+  return mixed;
+}
+
 }  // namespace
 
 Vec3d RegionFields::gradient(std::size_t k, const Vec3d& p, double edge) const {
+  Remembered& known = gradients_[hash(k, p) % kRemembered];
+  if (known.k == k && known.edge == edge && known.at == p) return known.gradient;
   const double h = 1e-3 * edge;
   const double a = value(k, p + Vec3d{h, -h, -h}), b = value(k, p + Vec3d{-h, -h, h});
   const double c = value(k, p + Vec3d{-h, h, -h}), d = value(k, p + Vec3d{h, h, h});
-  return Vec3d{a - b - c + d, -a - b + c + d, -a + b - c + d} * (0.25 / h);
+  known = {k, edge, p, Vec3d{a - b - c + d, -a - b + c + d, -a + b - c + d} * (0.25 / h)};
+  return known.gradient;
 }
 
 Label RegionFields::label(const Vec3d& p) const {

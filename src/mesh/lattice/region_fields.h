@@ -23,9 +23,11 @@ inline Mask surfaces_of(Mask labels) {
   return labels & ~last;
 }
 
+/// Used by one thread.
 class RegionFields {
  public:
-  RegionFields(const std::vector<BodyRegion>& regions, const SizeField& sizes) : regions_(regions), sizes_(sizes) {}
+  RegionFields(const std::vector<BodyRegion>& regions, const SizeField& sizes)
+      : regions_(regions), sizes_(sizes), gradients_(kRemembered) {}
 
   std::size_t count() const { return regions_.size(); }
   const BodyRegion& region(std::size_t k) const { return regions_[k]; }
@@ -43,6 +45,7 @@ class RegionFields {
 
   double value(std::size_t k, const Vec3d& p) const { return regions_[k].distance(p); }
   /// By four points at the corners of a tetrahedron: of second order, and for a third of the cost of six.
+  /// Those asked for lately are remembered: a vertex that does not move is asked about again.
   /// @param edge  length of edges asked for there [m]; also below
   Vec3d gradient(std::size_t k, const Vec3d& p, double edge) const;
   /// First region with p inside, or outside().
@@ -56,8 +59,16 @@ class RegionFields {
   std::size_t normals(const Vec3d& p, Mask surfaces, double edge, Vec3d* out, std::size_t capacity) const;
 
  private:
+  struct Remembered {
+    std::size_t k = ~std::size_t{0};
+    double edge = 0.0;
+    Vec3d at{}, gradient{};
+  };
+  static constexpr std::size_t kRemembered = 1 << 15;
+
   const std::vector<BodyRegion>& regions_;
   const SizeField& sizes_;
+  mutable std::vector<Remembered> gradients_;  ///< by the hash of place and region
 };
 
 }  // namespace glisson::lattice

@@ -97,14 +97,38 @@ void measure_regions(const TetMesh& mesh, const std::vector<BodyRegion>& regions
   }
 }
 
-void require_tets_in_each(const std::vector<BodyRegion>& regions, double edge, const RegionMeshReport& report) {
+/// Points of a grid in a region's box that are inside it, and those of them that no earlier region has.
+struct PointsInside {
+  std::size_t all = 0, own = 0;
+};
+PointsInside points_inside(const RegionFields& fields, std::size_t k) {
+  constexpr int kAcross = 40;
+  const Bounds& box = fields.region(k).bounds;
+  const Vec3d step = size_of(box) * (1.0 / kAcross);
+  PointsInside inside;
+  for (int n = 0; n < kAcross * kAcross * kAcross; ++n) {
+    const int i = n % kAcross, j = n / kAcross % kAcross, k_up = n / (kAcross * kAcross);
+    const Vec3d p = box.min + Vec3d{(i + 0.5) * step.x, (j + 0.5) * step.y, (k_up + 0.5) * step.z};
+    if (fields.value(k, p) >= 0.0) continue;
+    ++inside.all;
+    inside.own += fields.label(p) == k;
+  }
+  return inside;
+}
+
+void require_tets_in_each(const RegionFields& fields, const RegionMeshReport& report) {
   for (const RegionVolume& v : report.regions) {
     if (v.tets > 0) continue;
-    const Vec3d size = size_of(regions[static_cast<std::size_t>(v.number) - 1].bounds);
-    throw std::invalid_argument("region \"" + v.name + "\" is left without a tet: it is thinner than two edges of " +
-                                detail::number_text(edge, 3) + " m (its box is " + detail::number_text(size.x, 3) +
-                                " × " + detail::number_text(size.y, 3) + " × " + detail::number_text(size.z, 3) +
-                                " m), or earlier regions cover it; give a smaller edge or another order");
+    const auto k = static_cast<std::size_t>(v.number) - 1;
+    const Vec3d size = size_of(fields.region(k).bounds) * 1e3;
+    const PointsInside inside = points_inside(fields, k);
+    const std::string box = "its box of " + detail::number_text(size.x, 3) + " × " + detail::number_text(size.y, 3) +
+                            " × " + detail::number_text(size.z, 3) + " mm";
+    std::string why = "it is thinner than two edges of " + detail::number_text(1e3 * fields.edge(), 3) + " mm in " +
+                      box + ", or earlier regions cover it; give a smaller edge or another order";
+    if (inside.all == 0) why = "its shapes leave nothing in " + box + "; see whether they overlap as they should";
+    if (inside.all > 0 && inside.own == 0) why = "earlier regions cover it; name it before them";
+    throw std::invalid_argument("region \"" + v.name + "\" is left without a tet: " + why);
   }
 }
 
@@ -113,7 +137,7 @@ void require_tets_in_each(const std::vector<BodyRegion>& regions, double edge, c
 std::vector<double> edges_asked(const TetMesh& mesh, const std::vector<BodyRegion>& regions,
                                 const RegionMeshOptions& options) {
   require_edge(options.edge);
-  const SizeField sizes(regions, options.edge, options.sizes, options.growth);
+  const SizeField sizes(regions, options);
   std::vector<double> edges;
   edges.reserve(mesh.tets.size());
   for (const Tet& t : mesh.tets) {
@@ -132,8 +156,9 @@ RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMesh
   };
   require_regions(regions);
   require_edge(options.edge);
-  const SizeField sizes(regions, options.edge, options.sizes, options.growth);
+  SizeField sizes(regions, options);
   const RegionFields fields(regions, sizes);
+  sizes.find_finest(fields, options.max_tets);
   TetComplex complex;
   if (sizes.uniform()) {
     fill_lattice(fields, options.max_tets, complex);
@@ -150,7 +175,7 @@ RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMesh
   out.mesh = compact(complex, regions);
   measure_angles(out.mesh, out.report);
   measure_regions(out.mesh, regions, out.report);
-  require_tets_in_each(regions, options.edge, out.report);
+  require_tets_in_each(fields, out.report);
   out.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "base/nearest.h"
@@ -65,26 +66,26 @@ const BodyRegion& region_called(const std::string& name, const std::vector<BodyR
 
 }  // namespace
 
-SizeField::SizeField(const std::vector<BodyRegion>& regions, double edge, const std::vector<MeshSize>& sizes,
-                     double growth)
-    : edge_(edge), finest_(edge), growth_(growth) {
-  if (!kGrowthRange.contains(growth)) {
-    throw std::invalid_argument("growth = " + detail::show(growth) + " is outside the allowed range, " +
+SizeField::SizeField(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options)
+    : edge_(options.edge), finest_(options.edge), growth_(options.growth), free_(options.size_at) {
+  if (!kGrowthRange.contains(growth_)) {
+    throw std::invalid_argument("growth = " + detail::show(growth_) + " is outside the allowed range, " +
                                 kGrowthRange.text());
   }
+  const std::vector<MeshSize>& sizes = options.sizes;
   std::vector<std::string> names;
   for (const BodyRegion& r : regions) names.push_back(r.name);
   for (std::size_t i = 0; i < sizes.size(); ++i) detail::require_fields("size " + std::to_string(i), sizes[i]);
-  if (const SizeFault fault = check_sizes(sizes, edge, names); !fault.what.empty()) {
+  if (const SizeFault fault = check_sizes(sizes, edge_, names); !fault.what.empty()) {
     throw std::invalid_argument("size " + std::to_string(fault.index) + ": " + fault.key + " " + fault.what);
   }
   for (const MeshSize& size : sizes) {
-    if (size.edge >= edge) continue;  // the mesh is as fine
+    if (size.edge >= edge_) continue;  // the mesh is as fine
     Place place{nullptr, !size.surface.empty(), {}, {}, size.edge, size.within};
     if (!size.near.empty()) place.region = &region_called(size.near, regions);
     if (!size.surface.empty()) place.region = &region_called(size.surface, regions);
     if (size.per_radius > 0.0) {
-      place.curvature.emplace(curvature_sizes(*place.region, size.per_radius, size.edge, edge), growth, size.within);
+      place.curvature.emplace(curvature_sizes(*place.region, size.per_radius, size.edge, edge_), growth_, size.within);
     }
     for (const PathPoint& point : size.path) place.path.push_back(point.at);
     places_.push_back(std::move(place));
@@ -104,8 +105,19 @@ double SizeField::distance(const Place& place, const Vec3d& p) {
   return least;
 }
 
+double SizeField::free_size(const Vec3d& p) const {
+  const double size = free_(p);
+  if (size * kMostRatio >= edge_ && std::isfinite(size)) return size;
+  std::ostringstream text;
+  text << "size_at gives " << detail::number_text(size) << " m at (" << p.x << ", " << p.y << ", " << p.z
+       << ") m; allowed: finite and " << detail::number_text(edge_ / kMostRatio, 3) << " m or more, a "
+       << detail::number_text(kMostRatio) << "th of the edge of the mesh; return that edge, "
+       << detail::number_text(edge_) << " m, where none shorter is needed";
+  throw std::invalid_argument(text.str());
+}
+
 double SizeField::at(const Vec3d& p) const {
-  double edge = edge_;
+  double edge = free_ ? std::min(edge_, free_size(p)) : edge_;
   for (const Place& place : places_) {
     if (place.edge >= edge) continue;
     if (place.curvature) {
