@@ -55,11 +55,10 @@ TEST(Needle, BreaksThroughAtTheStatedForce) {
   EXPECT_EQ(run.needle->events().back().event, "puncture");
 }
 
-// A body carried aside under a needle that waits: the tip meets what has come under it, 15 mm from what was there at first, at the
-// surface's height. Named are only vertices near the needle's line, so they have to be named anew as the tissue moves.
-TEST(Needle, MeetsASurfaceThatIsCarriedAside) {
+/// Depth at which a waiting needle meets a body that is carried aside by so much until what was at its axis is under the tip [m].
+double contact_of_carried_body(double way) {
   Insertion o;
-  o.start = {0.015, 0.0, 0.0405};
+  o.start = {way, 0.0, 0.0405};
   o.needle.rupture.force = 10.0;
   const TetMesh mesh = mesh_of(o);
   Tissue tissue;
@@ -71,9 +70,9 @@ TEST(Needle, MeetsASurfaceThatIsCarriedAside) {
   std::sort(carried.begin(), carried.end());
   carried.erase(std::unique(carried.begin(), carried.end()), carried.end());
   constexpr double kCarried = 0.4, kWaits = 0.7, kSpeed = 0.01;  // [s], [s], [m/s]
-  simulation.drive(carried, [](double t) {
+  simulation.drive(carried, [way](double t) {
     const double share = std::clamp(t / kCarried, 0.0, 1.0);
-    return Vec3d{0.015 * share * share * (3.0 - 2.0 * share), 0.0, 0.0};
+    return Vec3d{way * share * share * (3.0 - 2.0 * share), 0.0, 0.0};
   });
   const ToolPath path{.displacement =
                           [](double t) {
@@ -82,10 +81,16 @@ TEST(Needle, MeetsASurfaceThatIsCarriedAside) {
                       .end = {}};
   const auto needle = std::make_shared<Needle>(o.needle, std::make_shared<PathDriver>(Pose{o.start}, path));
   simulation.attach(needle);
-  while (simulation.time() < 0.9) ASSERT_EQ(simulation.step().status, StepStatus::ok);
-  EXPECT_EQ(needle->stage(), NeedleStage::pressing);
-  ASSERT_NE(event(*needle, "contact"), nullptr);
-  EXPECT_NEAR(event(*needle, "contact")->depth, 0.0005, 5e-5);
+  while (simulation.time() < 0.9) EXPECT_TRUE(simulation.step().made());
+  const InstrumentEvent* contact = event(*needle, "contact");
+  return contact != nullptr && needle->stage() == NeedleStage::pressing ? contact->depth : -1.0;
+}
+
+// The tip meets what has come under it, 15 mm from what was there at first, and where nothing was, 40 mm beside the body, at the
+// surface's height. Named are only vertices near the needle's line, so they have to be named anew as the tissue moves.
+TEST(Needle, MeetsASurfaceThatIsCarriedAside) {
+  EXPECT_NEAR(contact_of_carried_body(0.015), 0.0005, 5e-5);
+  EXPECT_NEAR(contact_of_carried_body(0.07), 0.0005, 5e-5);
 }
 
 // In steady cutting the tip bears the cutting force and the shaft C + b v per metre in tissue; the hand feels the sum, and

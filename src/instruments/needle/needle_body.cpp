@@ -141,17 +141,24 @@ void Needle::State::name_around_path() {
 }
 
 /// Of the surface at rest, what the line may meet: it moves by a zone before it is looked at anew, and tissue beside the
-/// vertices that are watched may have gone aside twice as far as they.
+/// vertices that are watched may have gone aside twice as far as they. What is nearest is watched at any distance: a body may
+/// be carried under the needle.
 void Needle::State::name_surface(const Vec3d& direction) {
+  const auto squared_distance = [&](const Triangle& t) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t v : t) {
+      least = std::min(least, squared(across(mesh->vertices[v] - named_around, direction)));
+    }
+    return least;
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : surface) nearest = std::min(nearest, squared_distance(t));
   aside_named = std::max(kLeastAside * options.zone, 2.0 * aside);
-  const double around = options.zone + 2.0 * aside_named;
+  const double around = std::max(options.zone + 2.0 * aside_named, std::sqrt(nearest));
   entry_triangles.clear();
   for (std::size_t t = 0; t < surface.size(); ++t) {
-    const double most = (around + surface_edges[t]) * (around + surface_edges[t]);
-    const auto within = [&](std::uint32_t v) {
-      return squared(across(mesh->vertices[v] - named_around, direction)) <= most;
-    };
-    if (std::ranges::any_of(surface[t], within)) entry_triangles.push_back(t);
+    const double most = around + surface_edges[t];
+    if (squared_distance(surface[t]) <= most * most) entry_triangles.push_back(t);
   }
   take_entry_vertices();
   wanted = entry_vertices;
