@@ -12,4 +12,10 @@ struct StiffElement {
   void archive(auto& ar) { ar(element, ratio, norm); }
 };
 
+/// What an element may come to before it is listed, where that is more than the limit of its block.
+struct StiffLimit {
+  float ratio = 0.0F, norm = 0.0F;
+  bool covers(const StiffElement& s) const { return !(s.ratio > double(ratio) || s.norm > double(norm)); }
+};
+
 }  // namespace glisson

@@ -209,8 +209,9 @@ void ElementBody::book(std::size_t i, const Vec3d& before, const Vec3d& weight) 
   work.kinetic += 0.5 * body_.inertia(i) * dot(before, v_[i]);
 }
 
-void ElementBody::list_above(std::span<const double> stiffening) {
+void ElementBody::list_above(std::span<const double> stiffening, std::span<const StiffLimit> single) {
   watch_.list_above.assign(stiffening.begin(), stiffening.end());
+  single_limits_ = single;
 }
 
 const Advance& ElementBody::advance(double h, const Vec3d& gravity, bool accounted) {
@@ -219,6 +220,9 @@ const Advance& ElementBody::advance(double h, const Vec3d& gravity, bool account
   if (stages_.size() > 1) run_drag_stages(h, gravity);
   advance_.stiffening = watch_.stiffening;
   advance_.stiff = watch_.stiff;
+  if (!single_limits_.empty()) {
+    std::erase_if(advance_.stiff, [&](const StiffElement& s) { return single_limits_[s.element].covers(s); });
+  }
   advance_.inverted = watch_.inverted;
   advance_.work = {};
   double sum = 0.0;

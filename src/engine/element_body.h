@@ -45,7 +45,7 @@ class ElementBody final : public MovingBody {
   void project_stages(StageHolds* holds) override { holds_ = holds; }
   void place_active() override;
   void inertia_changed(std::span<const std::uint32_t>) override {}  // it asks the body
-  void list_above(std::span<const double> stiffening) override;
+  void list_above(std::span<const double> stiffening, std::span<const StiffLimit> single) override;
   const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;
 
  private:
@@ -71,6 +71,7 @@ class ElementBody final : public MovingBody {
   std::vector<ActiveVertex> active_;
   std::vector<RestingVertex> resting_;
   ElementWatch watch_;
+  std::span<const StiffLimit> single_limits_;
   Advance advance_;
 };
 

@@ -115,7 +115,8 @@ class MovingBody {
 
   /// Lets advance() list elements that are stiffer than this.
   /// @param stiffening  per tissue block [-]
-  virtual void list_above(std::span<const double> stiffening) = 0;
+  /// @param single  per element, which are above that; empty: none is. Must outlive the next advance()
+  virtual void list_above(std::span<const double> stiffening, std::span<const StiffLimit> single) = 0;
 
   /// One step of h [s] under `gravity` [m/s²]; h = 0 evaluates the forces and moves nothing.
   /// @param accounted  whether to fill `work`

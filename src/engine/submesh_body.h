@@ -56,8 +56,9 @@ class SubmeshBody final : public MovingBody {
   void project_stages(StageHolds* holds) override { holds_ = holds; }
   void place_active() override;
   void inertia_changed(std::span<const std::uint32_t> vertices) override;
-  void list_above(std::span<const double> stiffening) override {
+  void list_above(std::span<const double> stiffening, std::span<const StiffLimit> single) override {
     list_above_.assign(stiffening.begin(), stiffening.end());
+    single_limits_ = single;
   }
   const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;
 
@@ -173,6 +174,7 @@ class SubmeshBody final : public MovingBody {
   void run_laws(const Plan& plan, std::size_t values, Block& block) const;
   bool watch_laws(const Plan& plan, std::size_t values, float limit, Block& block, StiffnessSeen& seen) const;
   double list_limit(std::size_t block) const;
+  void list(Findings& found, const StiffElement& stiff) const;
   void list_by_laws(const Submesh& part, std::size_t batch, std::size_t n, const Plan& plan, Block& block,
                     Findings& found) const;
   void list_response(const Submesh& part, std::size_t batch, std::size_t n, const ResponseBlock& out,
@@ -228,6 +230,7 @@ class SubmeshBody final : public MovingBody {
   std::vector<Findings> found_, interface_found_;
   Advance advance_;
   std::vector<double> list_above_;              ///< per tissue block: stiffening; empty: no element is listed
+  std::span<const StiffLimit> single_limits_;   ///< per element, beside it; empty: none
   std::vector<std::uint32_t> part_of_element_;  ///< submesh of each element; empty until something changes
   bool as_built_ = true;                        ///< whether build_submeshes would lay the body out as it is
 };

@@ -40,7 +40,7 @@ void SubmeshBody::list_response(const Submesh& part, std::size_t batch, std::siz
   const double limit = list_limit(part.block);
   for (std::size_t i = 0; i < n * tets; ++i) {
     const double ratio = double(out.ratio[i]);
-    if (element[i] != kNoElement && ratio > limit) found.stiff.push_back({element[i], ratio, double(out.norm[i])});
+    if (element[i] != kNoElement && ratio > limit) list(found, {element[i], ratio, double(out.norm[i])});
   }
 }
 

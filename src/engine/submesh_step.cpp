@@ -14,7 +14,6 @@ namespace {
 constexpr std::size_t kPrefetchTets = 16384;  ///< rest data of more do not fit a second-level cache of 1 MiB
 /// A linear submesh with large gradients is looked over for inverted tets once in so many steps.
 constexpr std::uint64_t kInversionPeriod = 16;
-constexpr double kFloatMargin = 1e-5;  ///< of a limit in float, below that in double
 
 double largest(std::array<float, kMaxLanes> lanes) {
   for (std::size_t half = kMaxLanes / 2; half > 0; half /= 2) {
@@ -74,6 +73,11 @@ bool SubmeshBody::watch_laws(const Plan& plan, std::size_t values, float limit, 
   return kernels_.watch_lame(block, plan.tissue, values, limit, seen);
 }
 
+/// Lists an element, if it is above its own limit.
+void SubmeshBody::list(Findings& found, const StiffElement& stiff) const {
+  if (single_limits_.empty() || !single_limits_[stiff.element].covers(stiff)) found.stiff.push_back(stiff);
+}
+
 /// Lists elements of a block of batches that laws on moduli have made stiff.
 void SubmeshBody::list_by_laws(const Submesh& part, std::size_t batch, std::size_t n, const Plan& plan, Block& block,
                                Findings& found) const {
@@ -84,8 +88,8 @@ void SubmeshBody::list_by_laws(const Submesh& part, std::size_t batch, std::size
   const double limit = list_limit(part.block);
   const bool two = plan.laws == 2;
   std::array<std::uint16_t, kBlockTets> which;
-  const std::size_t few = kernels_.list_stiff(block, plan.tissue, plan.laws, n * tets,
-                                              static_cast<float>(limit * (1.0 - kFloatMargin)), which.data());
+  const ListLimits limits{static_cast<float>(limit * double(kBelowLimit)), single_limits_.data(), element};
+  const std::size_t few = kernels_.list_stiff(block, plan.tissue, plan.laws, n * tets, limits, which.data());
   const auto larger = [&](double l, double m) { return std::max(m * mu, (l + 2.0 / 3.0 * m) * bulk); };
   for (std::size_t k = 0; k < few; ++k) {
     const std::size_t i = which[k];
@@ -94,7 +98,7 @@ void SubmeshBody::list_by_laws(const Submesh& part, std::size_t batch, std::size
     const double value = two ? larger(first, double(block.value[1][i])) : first;
     const double rise = two ? larger(slope, std::abs(double(block.slope[1][i]))) : slope;
     const double r = value + rise * std::sqrt(std::max(0.0, double(block.y[i])));
-    if (r > limit) found.stiff.push_back({element[i], r, r});
+    if (r > limit) list(found, {element[i], r, r});
   }
 }
 
@@ -104,7 +108,7 @@ void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratc
   const auto gather = plan.viscous ? kernels_.gather_viscous : kernels_.gather_elastic;
   const auto push = plan.viscous && !split ? kernels_.push_merged : kernels_.push_elastic;
   const auto measure = kernels_.measure[plan.measure];
-  const auto limit = static_cast<float>(list_limit(part.block) * (1.0 - kFloatMargin));
+  const auto limit = static_cast<float>(list_limit(part.block) * double(kBelowLimit));
   Block& block = scratch.block;
   for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
     const std::size_t n = std::min(kBlockBatches, part.chains.count - b), values = kChainTets * n * kernels_.lanes;

@@ -11,9 +11,10 @@
 namespace glisson {
 namespace {
 
-std::map<std::uint32_t, StiffElement> listed(MovingBody& moving, std::span<const Vec3d> u, double limit) {
+std::map<std::uint32_t, StiffElement> listed(MovingBody& moving, std::span<const Vec3d> u, double limit,
+                                             std::span<const StiffLimit> single = {}) {
   moving.set_state(u, std::vector<Vec3d>(u.size()));
-  moving.list_above(std::vector<double>{limit});
+  moving.list_above(std::vector<double>{limit}, single);
   std::map<std::uint32_t, StiffElement> all;
   for (const StiffElement& s : moving.advance(0.0, {}, false).stiff) all[s.element] = s;
   return all;
@@ -30,9 +31,26 @@ struct Shaken {
   }
 };
 
+/// Limits of single elements: every third a little above what was told of it, every third a little below, the others 0.
+std::vector<StiffLimit> limits_about(const std::map<std::uint32_t, StiffElement>& told, std::size_t elements) {
+  std::vector<StiffLimit> limits(elements);
+  std::size_t k = 0;
+  for (const auto& [e, s] : told) {
+    const double share = k++ % 3 == 0 ? 1.01 : 0.99;
+    if (k % 3 != 0) limits[e] = {static_cast<float>(share * s.ratio), static_cast<float>(share * s.norm)};
+  }
+  return limits;
+}
+
+std::vector<std::uint32_t> keys(const std::map<std::uint32_t, StiffElement>& told) {
+  std::vector<std::uint32_t> all;
+  for (const auto& [e, s] : told) all.push_back(e);
+  return all;
+}
+
 // Every tissue with large strain or a law, in every instruction set: what is above the limit by more than rounding is listed, with
 // ratio and norm of the double loop, or up to twice those where lanes take both halves of a law's bound at the larger one; what is
-// below half the limit is not. Without a limit nothing is.
+// below half the limit is not. Without a limit nothing is. Of single elements with limits of their own only those above theirs are.
 TEST(StiffList, IsThatOfTheScalarLoop) {
   const Shaken shaken;
   std::vector<Tissue> tissues = test::hyperelastic_tissues();
@@ -58,6 +76,12 @@ TEST(StiffList, IsThatOfTheScalarLoop) {
         EXPECT_LE(s.ratio, below.at(e).ratio * 2.0 * (1.0 + kRounding));
         EXPECT_GE(s.norm, below.at(e).norm * (1.0 - kRounding));
       }
+      const std::vector<StiffLimit> single = limits_about(told, body.elements.size());
+      const auto left = listed(lanes, shaken.u, kLimit, single);
+      std::map<std::uint32_t, StiffElement> expected = told;
+      std::erase_if(expected, [&](const auto& s) { return single[s.first].covers(s.second); });
+      EXPECT_EQ(keys(left), keys(expected));
+      EXPECT_LT(left.size(), std::max<std::size_t>(1, told.size()));
     }
   }
 }

@@ -31,7 +31,7 @@ ExplicitScheme::ExplicitScheme(Body body, const SimulationOptions& options, Drag
       stiffening_(moving_->advance(0.0, {}, false).stiffening),
       control_(std::make_unique<StepControl>(state_.body, state_.gamma, drag, options, stiffening_)) {
   for (const TissueBlock& block : state_.body.blocks) require_stages_for(block.tissue, options.drag_stages);
-  moving_->list_above(control_->list_above());
+  moving_->list_above(control_->list_above(), control_->single_limits());
   if (!options.mesh_changes) return;
   moving_->apply({}, state_.changer().stars(), state_.gamma);
   control_->prepare_changes(state_.changer().stars());
@@ -123,7 +123,7 @@ void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
   held_rows_.clear();
   control_->state_set();
   take_stiff_masses();
-  moving_->list_above(control_->list_above());
+  moving_->list_above(control_->list_above(), control_->single_limits());
   take_stiffness(moving_->advance(0.0, {}, false));
   copy_.current = false;
   if (!state_.options.track_energies) return;
@@ -282,7 +282,7 @@ StepResult ExplicitScheme::step() {
   }
   take_stiff_masses();
   control_->limit_shape_change(shape_rates());
-  moving_->list_above(control_->list_above());
+  moving_->list_above(control_->list_above(), control_->single_limits());
   const double h = control_->step();
   if (!(state_.time + h > state_.time)) {
     return {StepStatus::step_too_large,
@@ -389,7 +389,7 @@ void ExplicitScheme::archive_motion(Archive& ar) {
   const std::vector<std::uint32_t> named = interactions_.named();
   ar.check(std::includes(active.begin(), active.end(), held_.begin(), held_.end()));
   ar.check(std::includes(active.begin(), active.end(), named.begin(), named.end()));
-  moving_->list_above(control_->list_above());
+  moving_->list_above(control_->list_above(), control_->single_limits());
   control_->set_added(added_frequency());
 }
 
@@ -433,7 +433,7 @@ void ExplicitScheme::follow_tissues(const TissueChange& change) {
     Archive past(change.past);
     moving_->archive_past(past);
   }
-  moving_->list_above(control_->list_above());
+  moving_->list_above(control_->list_above(), control_->single_limits());
   take_stiffness(moving_->advance(0.0, {}, false));
   std::copy(told.begin(), told.end(), moving_->active().begin());
   copy_.current = false;
@@ -456,7 +456,7 @@ void ExplicitScheme::take_tissues(const TissueChange& change) {
   const bool undeformed = std::all_of(u.begin(), u.end(), [](const Vec3d& d) { return d == Vec3d{}; });
   control_->tissues_changed(stiffening_, undeformed);
   stiff_.clear();  // the level of the blocks is above all of them now
-  moving_->list_above(control_->list_above());
+  moving_->list_above(control_->list_above(), control_->single_limits());
 }
 
 void ExplicitScheme::follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) {

@@ -25,6 +25,7 @@ StepControl::StepControl(const Body& body, const std::vector<double>& nodal_damp
       enforce_(options.enforce_stability), exact_asked_(options.exact_steps),
       scales_masses_(options.mass_scaling_step.has_value()), levels_(body) {
   if (options.mass_scaling == MassScalingKind::variable) heavy_step_ = options.mass_scaling_step;
+  if (heavy_step_) mass_levels_.emplace(body);
   look_at_body();
   search_drag_limit();
   rest_.level = at_least_one(stiffening);
@@ -253,6 +254,7 @@ void StepControl::mesh_changed(const BodyChange& change, const detail::VertexSta
   if (automatic_) step_ = std::min(step_, kSafety * now_.limits.pace);
   levels_.remove(change.removed);
   levels_.reshape(change.reshaped);
+  if (mass_levels_) mass_levels_->remove(change.removed), mass_levels_->reshape(change.reshaped);
   take_stiff();
   unchecked_ = enforce_ && step_ > (automatic_ ? now_.limits.stable : std::min(now_.limits.stable, drag_limit_));
 }
@@ -329,6 +331,7 @@ void StepControl::tissues_changed(std::span<const double> stiffening, bool undef
 
 void StepControl::body_read(const detail::VertexStars* stars) {
   look_at_body();
+  if (mass_levels_) mass_levels_->body_changed();
   element_bound_.reset();
   if (stars != nullptr) prepare_changes(*stars);
 }
@@ -345,6 +348,7 @@ void StepControl::archive(Archive& ar) {
   }
   ar(probe_, since_probe_, probes_, levels_, drag_part_, drag_searched_.limit);
   ar.same_size(drag_searched_.numbers);
+  if (mass_levels_) ar(*mass_levels_, listed_before_);
   if (element_bound_ != nullptr) ar(*element_bound_);
   if (!ar.reads()) return;
   searches_made_ = kSearchesKept;

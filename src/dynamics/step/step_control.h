@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "dynamics/step/element_step_bound.h"
+#include "dynamics/step/mass_levels.h"
 #include "dynamics/step/stable_step.h"
 #include "dynamics/step/step_rules.h"
 #include "dynamics/step/stiffness_levels.h"
@@ -104,6 +105,8 @@ class StepControl : StepChoice {
   bool accept(std::span<const double> stiffening, std::span<const StiffElement> stiff);
   /// Stiffness per block from which elements have to be listed for the next accept().
   std::span<const double> list_above() const { return list_above_; }
+  /// Per element, from which it has to be listed where that is more; empty: none is. Valid until the next accept() or change.
+  std::span<const StiffLimit> single_limits() const;
 
   /// Makes ready for mesh_changed, which does so the first time. @param stars  must outlive this
   void prepare_changes(const detail::VertexStars& stars);
@@ -245,7 +248,9 @@ class StepControl : StepChoice {
   std::vector<double> seen_, lately_;  ///< largest stiffening per block in this window, in the last few steps
   std::uint64_t window_ = kFirstWindow, in_window_ = 0;
   StiffnessLevels levels_;
+  std::optional<MassLevels> mass_levels_;   ///< with variable mass scaling
   std::vector<double> usual_, list_above_;  ///< stiffening per block from which elements are listed, and are now
+  std::vector<double> listed_before_;       ///< the same a step ago, with variable mass scaling
   std::uint64_t probe_ = kFirstProbe, since_probe_ = 0;  ///< [steps]
   bool probes_ = false;            ///< whether more than usual is listed, to choose the level of the blocks anew
   std::vector<StiffElement> few_;  ///< the stiffest of a crowd

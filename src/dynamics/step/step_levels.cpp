@@ -26,9 +26,9 @@ constexpr int kMostInVain = 8;                 ///< steps of that ladder without
 constexpr double kCostOfLevels = 2.0;          ///< of a tet with a level of its own, over that of a tet, a step
 constexpr double kMostRise = 1024.0;           ///< of stiffness that is looked at for a step
 constexpr double kMuchInertia = 0.05, kLittleInertia = 0.02;  ///< of added mass, of what acts on the body
-constexpr double kHeavyRoom = 1.1;                            ///< of a level for mass, over the stiffness seen
-constexpr std::uint64_t kHeavyWindow = 64;                    ///< [steps] after which levels for mass come down
-constexpr double kHeavyRegrowth = 1.1;            ///< of the step of variable mass scaling, in a short window
+constexpr double kCloseToHeavy = 1.1;             ///< so far below the level of a block tets are told, for mass
+constexpr std::uint64_t kHeavyWindow = 64;        ///< [steps] after which levels for mass come down
+constexpr double kHeavyRegrowth = 1.2;            ///< of the step of variable mass scaling, in a short window
 constexpr double kLeastHeavyStep = 0.3;           ///< of what was asked for
 constexpr double kProbeDepth = 8.0;               ///< how far below the level of the blocks a probe looks
 constexpr std::size_t kFewTets = 64, kFewOf = 4;  ///< tets with levels of their own: so many and this part of all
@@ -47,6 +47,7 @@ void StepControl::start_anew() {
   held_ = tools_;
   shape_step_ = std::numeric_limits<double>::infinity();
   levels_.clear();
+  if (mass_levels_) mass_levels_->clear();
   take_stiff();
 }
 
@@ -68,12 +69,19 @@ void StepControl::list_from() {
     }
   }
   list_above_ = usual_;
+  if (listed_before_.size() != usual_.size()) listed_before_ = usual_;
   if (heavy_step_) {  // those that come close get levels when others do
-    for (double& level : list_above_) level /= kHeavyRoom;
+    for (double& level : list_above_) level /= kCloseToHeavy;
   }
   for (std::size_t b = 0; probes_ && b < usual_.size(); ++b) {
     list_above_[b] = std::min(usual_[b], std::max(rest_.level[b], now_.level[b] / kProbeDepth));
   }
+}
+
+/// With variable mass scaling tets that are well below their levels need not be told, but where levels come down next.
+std::span<const StiffLimit> StepControl::single_limits() const {
+  const bool all = !heavy_step_ || (in_window_ + 1) % kHeavyWindow == 0;
+  return all ? std::span<const StiffLimit>() : mass_levels_->limits();
 }
 
 /// What single tets take off the step, which depends on the level of their blocks.
@@ -117,7 +125,7 @@ bool StepControl::follow_inertia() {
   const double inertia = std::exchange(inertia_, 0.0);
   double wanted = step_;
   if (inertia > kMuchInertia) {
-    const double borne = kSafety * bound_at(levels_.largest(rest_.level)).pace;
+    const double borne = kSafety * bound_at(mass_levels_->largest(rest_.level)).pace;
     wanted = std::min(step_, std::max(borne, kLeastHeavyStep * *heavy_step_));
   } else if (inertia < kLittleInertia && in_window_ % kShortWindow == 0) {
     wanted = std::min(kHeavyRegrowth * step_, *heavy_step_);
@@ -131,15 +139,16 @@ bool StepControl::follow_inertia() {
 /// Variable mass scaling: stiff tets take levels of their own, and their vertices mass in the place of a shorter step.
 void StepControl::bear(std::span<const StiffElement> stiff) {
   unchecked_ = false;
-  const bool settles = ++in_window_ % kHeavyWindow == 0, above = !levels_.bear(stiff, now_.level);
+  const std::vector<double> listed = list_above_;
+  const bool settles = ++in_window_ % kHeavyWindow == 0, above = !mass_levels_->bear(stiff, now_.level);
   double rise = 1.0;
   if (above || settles) {
-    rise = levels_.meet(stiff, now_.level, usual_).rise;
-    levels_.raise_all(kHeavyRoom);
-    if (settles) levels_.settle(kHeavyRoom);
+    rise = mass_levels_->raise(stiff, now_.level, listed_before_);
+    if (settles) mass_levels_->settle();
   }
   if (follow_inertia() || above || settles) take_stiff();
   be_cautious(above ? rise : 1.0);
+  listed_before_ = listed;
 }
 
 void StepControl::set_added(double squared_frequency) {
@@ -154,7 +163,7 @@ void StepControl::follow_added(double squared_frequency) {
 
 void StepControl::take_stiff() {
   if (heavy_step_) {
-    levels_.masses_for(now_.level, thickening(), step_ / kSafety, weight_, stiff_masses_);
+    mass_levels_->find_masses(now_.level, thickening(), step_ / kSafety, weight_, stiff_masses_);
     masses_are_new_ = true;
   } else {
     stiff_ = added_at(now_.level);

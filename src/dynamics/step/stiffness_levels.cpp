@@ -25,20 +25,11 @@ Sym3<double> over_shares(const Body& body, std::uint32_t element, const std::arr
   return sum;
 }
 
-/// The largest float that is no larger.
-float below(double x) {
-  const auto f = static_cast<float>(x);
-  return static_cast<double>(f) <= x ? f : std::nextafter(f, 0.0F);
-}
-
 }  // namespace
 
 void StiffnessLevels::measure(Member& m) const {
   const std::array<Vec3d, 4> s = shape_gradients(body_.rest[m.element]);
   for (std::size_t i = 0; i < 4; ++i) m.squares[i] = dot(s[i], s[i]);
-  Sym3<double> sum;
-  for (std::size_t i = 0; i < 4; ++i) sum += outer_square(s[i]) * (1.0 / m.squares[i]);
-  m.spread = largest_eigenvalue(sum);
   m.volume = body_.rest[m.element].volume;
   m.elastic = modulus_bound(body_.blocks[m.block].elastic);
   m.viscous = modulus_bound(body_.blocks[m.block].viscous);
@@ -88,24 +79,6 @@ void StiffnessLevels::raise(double most_ahead) {
   }
 }
 
-bool StiffnessLevels::bear(std::span<const StiffElement> stiff, std::span<const double> base) const {
-  const bool one = base.size() == 1;
-  for (const StiffElement& s : stiff) {
-    const Borne here = s.element < borne_.size() ? borne_[s.element] : Borne{};
-    if (s.ratio <= here.ratio && s.norm <= here.norm) continue;
-    if (s.ratio > base[one ? 0 : block_index(body_, s.element)]) return false;
-  }
-  return true;
-}
-
-void StiffnessLevels::raise_all(double room) {
-  for (Member& m : members_) {
-    if (m.met != meetings_) continue;
-    if (m.ratio < std::sqrt(room) * m.last) m.ratio = room * m.last;
-    if (m.norm < std::sqrt(room) * m.seen_norm) m.norm = room * m.seen_norm;
-  }
-}
-
 void StiffnessLevels::complete() {
   for (Member& m : members_) {
     if (m.met != meetings_) continue;
@@ -129,9 +102,9 @@ void StiffnessLevels::keep_ordered() {
   for (std::size_t i = 0; i < members_.size(); ++i) place_[members_[i].element] = static_cast<std::uint32_t>(i + 1);
 }
 
-void StiffnessLevels::settle(double room_of_all) {
+void StiffnessLevels::settle() {
   for (Member& m : members_) {
-    const double room = room_of_all > 0.0 ? room_of_all : room_of(m);
+    const double room = room_of(m);
     m.ratio = std::min(m.ratio, room * m.seen_ratio), m.norm = std::min(m.norm, room * m.seen_norm);
     if (m.seen_ratio == 0.0) place_[m.element] = 0;
     m.seen_ratio = m.seen_norm = 0.0;
@@ -165,28 +138,6 @@ StiffnessLevels::Asking StiffnessLevels::ask(std::uint32_t place, std::span<cons
   if (viscous[b] != 0) a.c = m.volume * more * m.viscous;
   for (std::size_t i = 0; i < 4; ++i) a.of[i] = a.k * m.squares[i];
   return a;
-}
-
-void StiffnessLevels::masses_for(std::span<const double> base, const std::vector<char>& viscous, double step,
-                                 double weight, std::vector<VertexMass>& masses) {
-  masses.clear();
-  if (asked_.size() != body_.vertex_count) asked_.assign(body_.vertex_count, 0.0);
-  std::vector<std::uint32_t> touched;
-  for (std::uint32_t place = 0; place < members_.size(); ++place) {
-    members_[place].part = 1.0;
-    const Asking a = ask(place, base, viscous);
-    if (!(a.k > 0.0)) continue;
-    const double per_square = 0.25 * step * (weight * a.k * step + 2.0 * a.c) * members_[place].spread;
-    const Tet& t = body_.elements[members_[place].element];
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (asked_[t[i]] == 0.0) touched.push_back(t[i]);
-      asked_[t[i]] += per_square * members_[place].squares[i];
-    }
-  }
-  std::ranges::sort(touched);
-  borne_.assign(body_.elements.size(), {});
-  for (const Member& m : members_) borne_[m.element] = {below(m.ratio), below(m.norm)};
-  for (const std::uint32_t v : touched) masses.push_back({v, std::exchange(asked_[v], 0.0)});
 }
 
 void StiffnessLevels::gather_asking(std::span<const double> base, const std::vector<char>& viscous) {
@@ -259,7 +210,7 @@ void StiffnessLevels::archive(Archive& ar) {
       ar.check(m.element < body_.elements.size() && (place_.empty() || place_[m.element] == 0));
       const Member fresh = member(m.element);
       Member& read = members_.back();
-      read = m, read.block = fresh.block, read.squares = fresh.squares, read.spread = fresh.spread;
+      read = m, read.block = fresh.block, read.squares = fresh.squares;
       read.volume = fresh.volume, read.elastic = fresh.elastic, read.viscous = fresh.viscous;
     }
   }

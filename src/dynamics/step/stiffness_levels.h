@@ -30,12 +30,6 @@ struct AddedStiffness {
   double c = 0.0;  ///< [1/s]
 };
 
-/// Mass of a vertex [kg].
-struct VertexMass {
-  std::uint32_t vertex = 0;
-  double mass = 0.0;
-};
-
 class StiffnessLevels {
  public:
   /// @param body  must outlive this
@@ -52,26 +46,17 @@ class StiffnessLevels {
   /// Gives those that the last meet() found above their level another, with room above the stiffness seen, more where a tet's
   /// own part in what all take was small, and times its rise within the last step, up to `most_ahead`.
   void raise(double most_ahead);
-  /// Whether none is above its level and that of its block: what a meeting would find, quicker.
-  bool bear(std::span<const StiffElement> stiff, std::span<const double> base) const;
-  /// Gives all that come close to theirs a level with room, so that it is long until one is above again. @param room  over what was seen
-  void raise_all(double room);
   /// Gives levels to all that the last meeting saw without or above one.
   void complete();
   /// The largest level per block, not below `base`.
   std::vector<double> largest(std::span<const double> base) const;
-  /// Lets levels come down to the stiffest moment since the last time, with room. @param room  of all; 0: of each by its part
-  void settle(double room = 0.0);
+  /// Lets levels come down to the stiffest moment since the last time, with room.
+  void settle();
   /// Forgets tets that the level of their block bears: they are told again where they rise above it.
   void forget_below(std::span<const double> base);
   /// What the tets above `base` take. @param viscous  per block, whether viscosity grows with them
   /// Cost: some 20 ns a tet above the base, and an eigenvalue for each that may be the worst.
   AddedStiffness added(std::span<const double> base, const std::vector<char>& viscous);
-  /// The mass that vertices of the tets above `base` need beside their own, so that what these tets take leaves a step as it
-  /// is: with w_a = ¼ (k h² + 2 c h) λ |s_a|² and λ that of Σ ŝ_a ŝ_aᵀ, h² K_e + 2 h C_e ≤ 4 Σ w_a |x_a|².
-  /// @param step  h [s]  @param weight  on stiffness  @param masses  [out] ascending by vertex
-  void masses_for(std::span<const double> base, const std::vector<char>& viscous, double step, double weight,
-                  std::vector<VertexMass>& masses);
   /// Tets above a base.
   std::size_t count_above(std::span<const double> base) const;
   bool empty() const { return members_.empty(); }
@@ -92,7 +77,6 @@ class StiffnessLevels {
     double part = 1.0;                         ///< of what all took, at most; 1 until it is known
     std::uint64_t met = 0;                     ///< number of the last
     std::array<double, 4> squares{};           ///< |s_a|² [1/m²]
-    double spread = 0.0;                       ///< λ_max(Σ ŝ_a ŝ_aᵀ)
     double volume = 0.0;                       ///< at rest [m³]
     double elastic = 0.0, viscous = 0.0;       ///< bounds of the moduli [Pa], [Pa s]
     void archive(Archive& ar) { ar(element, met, ratio, norm, seen_ratio, seen_norm, last, before, part); }
@@ -117,10 +101,6 @@ class StiffnessLevels {
   std::vector<std::uint32_t> place_;  ///< per element: 1 + place among members, 0 where it is none; empty: none is
   std::vector<std::uint32_t> above_;  ///< members that the last meet() found above
   std::uint64_t meetings_ = 0;
-  struct Borne {
-    float ratio = 0.0F, norm = 0.0F;
-  };
-  std::vector<Borne> borne_;  ///< per element: the levels that masses were found for
   std::vector<Asking> asking_;
   std::vector<double> asked_;  ///< per vertex, 0 between calls
 };

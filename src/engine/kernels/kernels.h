@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "element/stiff_element.h"
 #include "engine/layout/layout.h"
 #include "glisson/material/tissue.h"
 
@@ -19,6 +20,16 @@ namespace glisson::engine {
 
 /// What a stress is multiplied by to give forces from the products of edges: −V w.
 inline constexpr float kForceScale = -1.0F / 6.0F;
+
+/// Of a limit of stiffening, what lanes compare with: rounding lists no tet too few.
+inline constexpr float kBelowLimit = 1.0F - 1e-5F;
+
+/// From which stiffening on tets are listed.
+struct ListLimits {
+  float block = 0.0F;                      ///< times kBelowLimit
+  const StiffLimit* single = nullptr;      ///< per element; null: none
+  const std::uint32_t* element = nullptr;  ///< [item][lane]
+};
 
 /// Values of a block of batches between the stages, vectors of L lanes: item i = 3 batch + (0: A, 1: B, 2: C).
 struct Block {
@@ -138,8 +149,8 @@ struct Kernels {
   std::array<WatchLaw, std::variant_size_v<StiffnessLaw>> watch_law{};
   /// The same of laws on λ and μ, whose values and slopes are in the block.
   bool (*watch_lame)(const Block&, const LaneTissue&, std::size_t n, float limit, StiffnessSeen&) = nullptr;
-  /// Numbers of the tets of a block whose bound may be above the limit, from the values and slopes of one law or two. @return how many
-  std::size_t (*list_stiff)(const Block&, const LaneTissue&, std::size_t laws, std::size_t n, float limit,
+  /// Numbers of the tets of a block whose bound may be above their limits, from the values and slopes of one law or two. @return how many
+  std::size_t (*list_stiff)(const Block&, const LaneTissue&, std::size_t laws, std::size_t n, const ListLimits&,
                             std::uint16_t* which) = nullptr;
   /// Stress and forces of a block, added to the force records: the elastic ones, the viscous ones (to theirs), or
   /// both as one.

@@ -159,17 +159,33 @@ inline bool watch_lame(const Block& block, const LaneTissue& tissue, std::size_t
   return largest.add_to(seen, limit);
 }
 
+/// The limits of a vector of tets, each its own.
+HWY_INLINE F single_limits(const ListLimits& limits, std::size_t i) {
+  const Lanes d;
+  const hn::RebindToSigned<Lanes> whole;
+  const auto element = hn::BitCast(whole, hn::LoadU(hn::RebindToUnsigned<Lanes>(), limits.element + i));
+  const auto place = hn::Add(hn::Max(element, hn::Zero(whole)), hn::Max(element, hn::Zero(whole)));  // none is −1
+  static_assert(sizeof(StiffLimit) == 2 * sizeof(float));
+  const float* numbers = &limits.single->ratio;
+  const F least = hn::Min(hn::GatherIndex(d, numbers, place), hn::GatherIndex(d, numbers + 1, place));
+  return hn::Max(hn::Set(d, limits.block), least * hn::Set(d, kBelowLimit));
+}
+
 template <class RiseOf>
-HWY_INLINE std::size_t list_above(const Block& block, const RiseOf& rise, std::size_t n, float limit,
+HWY_INLINE std::size_t list_above(const Block& block, const RiseOf& rise, std::size_t n, const ListLimits& limits,
                                   std::uint16_t* which) {
   const Lanes d;
   std::size_t count = 0;
   for (std::size_t i = 0; i < n; i += kLanes) {
     const Rise r = rise(i);
-    const F left = hn::Set(d, limit) - r.stiffness;
-    const auto above =
-        hn::Or(hn::Lt(left, hn::Zero(d)), hn::Gt(r.slope * r.slope * hn::Load(d, block.y + i), left * left));
+    const F y = hn::Load(d, block.y + i);
+    const auto is_above = [&](F limit) GLISSON_INLINED {
+      const F left = limit - r.stiffness;
+      return hn::Or(hn::Lt(left, hn::Zero(d)), hn::Gt(r.slope * r.slope * y, left * left));
+    };
+    auto above = is_above(hn::Set(d, limits.block));
     if (hn::AllFalse(d, above)) continue;
+    if (limits.single != nullptr) above = is_above(single_limits(limits, i));
     std::array<std::uint8_t, sizeof(std::uint64_t)> bytes{};
     hn::StoreMaskBits(d, above, bytes.data());
     for (auto bits = std::bit_cast<std::uint64_t>(bytes); bits != 0; bits &= bits - 1) {
@@ -180,9 +196,9 @@ HWY_INLINE std::size_t list_above(const Block& block, const RiseOf& rise, std::s
 }
 
 inline std::size_t list_stiff(const Block& block, const LaneTissue& tissue, std::size_t laws, std::size_t n,
-                              float limit, std::uint16_t* which) {
-  return laws == 1 ? list_above(block, YoungRise{block}, n, limit, which)
-                   : list_above(block, LameRise(block, tissue), n, limit, which);
+                              const ListLimits& limits, std::uint16_t* which) {
+  return laws == 1 ? list_above(block, YoungRise{block}, n, limits, which)
+                   : list_above(block, LameRise(block, tissue), n, limits, which);
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

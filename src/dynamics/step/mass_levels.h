@@ -1,0 +1,79 @@
+// mass_levels.h — levels of stiffness per tet under variable mass scaling, and the mass that their vertices need for them.
+//
+// Tets above the level of their block give their vertices mass in the place of a shorter step. With K_e and C_e what a level of its
+// own leaves above that of the block, and w_a = ¼ (k h² + 2 c h) λ |s_a|², k and c the bounds of K_e and C_e, λ = λ_max(Σ ŝ_a ŝ_aᵀ),
+//   h² K_e + 2 h C_e ≤ 4 Σ w_a |x_a|²,
+// so that with masses w_a beside their own the step is as safe as without the tet.
+//
+// A level has room above what was seen, so that masses change seldom, and comes down to what was seen since the last time. As it is
+// usual that half of the tets have one, all are kept, in the order of the elements.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "element/body.h"
+#include "element/stiff_element.h"
+#include "glisson/archive.h"
+
+namespace glisson {
+
+/// Mass of a vertex [kg].
+struct VertexMass {
+  std::uint32_t vertex = 0;
+  double mass = 0.0;
+};
+
+class MassLevels {
+ public:
+  /// @param body  must outlive this
+  explicit MassLevels(const Body& body) : body_(body) { body_changed(); }
+
+  /// Whether no tet is above its level and that of its block.
+  bool bear(std::span<const StiffElement> stiff, std::span<const double> base) const;
+  /// Takes in what is stiff, and gives room to what comes close to its level.
+  /// @param base, unseen  per block: its level, and the stiffness up to which elements were not told before
+  /// @return how many times as stiff as when it was told last the worst of those above their levels is, at least 1; 1 at first
+  double raise(std::span<const StiffElement> stiff, std::span<const double> base, std::span<const double> unseen);
+  /// Lets levels come down to the stiffest moment since the last time, with room; tets that were not told lose theirs.
+  void settle();
+  /// The largest level per block, not below `base`.
+  std::vector<double> largest(std::span<const double> base) const;
+  /// Mass of the vertices of tets above `base`.
+  /// @param viscous  per block, whether viscosity grows with its tets  @param step  h [s]  @param weight  on stiffness
+  /// @param masses  [out] ascending by vertex
+  void find_masses(std::span<const double> base, const std::vector<char>& viscous, double step, double weight,
+                   std::vector<VertexMass>& masses);
+  /// Per element: from which it has to be told, a little below its level.
+  std::span<const StiffLimit> limits() const { return limits_; }
+
+  void clear();
+  /// Takes another body in, without levels.
+  void body_changed();
+  /// Forgets elements that are gone.
+  void remove(std::span<const std::uint32_t> elements);
+  /// Takes in that elements have another shape at rest.
+  void reshape(std::span<const std::uint32_t> elements);
+  void archive(Archive& ar);
+
+ private:
+  struct Tet {
+    StiffLimit level;   ///< 0: none
+    StiffLimit seen;    ///< largest since levels came down last
+    float last = 0.0F;  ///< ratio when it was told last; 0: not since then
+    void archive(Archive& ar) { ar(level.ratio, level.norm, seen.ratio, seen.norm, last); }
+  };
+  void measure(std::uint32_t element);
+  void limit(std::uint32_t element);
+
+  const Body& body_;
+  std::vector<Tet> tets_;
+  std::vector<StiffLimit> limits_;
+  std::vector<std::array<double, 4>> weights_;  ///< per element: ¼ V λ |s_a|² [m]
+  bool fresh_ = true;                           ///< nothing has been taken in yet
+  std::vector<double> asked_;                   ///< per vertex [kg]
+};
+
+}  // namespace glisson

@@ -1,0 +1,127 @@
+// The mass that stiff tets ask for in the place of a shorter step: enough by the dense spectrum, and only while they are stiff.
+#include "dynamics/step/mass_levels.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+#include <sstream>
+
+#include "dynamics/step/stable_step.h"
+#include "dynamics/stiff_tets.h"
+#include "glisson/archive.h"
+
+namespace glisson {
+namespace {
+
+using test::add_element, test::small_body, test::some_stiff, test::top_eigenvalue;
+
+// With the masses that stiff tets ask for, the dense spectrum of all of the body is as good as without stiff tets; a quarter of them is
+// not enough where one tet is far stiffer than its block.
+TEST(MassLevels, MassesLeaveTheStepAsItIs) {
+  int short_of_mass = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    std::mt19937 random(seed);
+    const Body body = small_body(random);
+    const std::vector<double> base{1.0, 2.5};
+    const std::vector<StiffElement> stiff = some_stiff(body, 1 + seed % 7, false, random);
+    MassLevels levels(body);
+    levels.raise(stiff, base, base);
+    const std::vector<double> none(body.vertex_count, 0.0);
+    const double h = stable_step(body, base, none).step;
+    std::vector<VertexMass> masses;
+    levels.find_masses(base, {0, 0}, h, 1.0, masses);
+    EXPECT_TRUE(std::ranges::is_sorted(masses, {}, &VertexMass::vertex));
+    const Eigen::Index n = static_cast<Eigen::Index>(3 * body.vertex_count);
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+    std::vector<double> ratio(body.elements.size());
+    for (std::uint32_t e = 0; e < body.elements.size(); ++e) {
+      ratio[e] = base[static_cast<std::size_t>(&body.block_of(e) - body.blocks.data())];
+    }
+    for (const StiffElement& s : stiff) ratio[s.element] = std::max(ratio[s.element], s.ratio);
+    for (std::uint32_t e = 0; e < body.elements.size(); ++e) {
+      add_element(body, e, body.block_of(e).elastic, ratio[e], false, K);
+    }
+    const auto step_with = [&](double share) {
+      Body heavy = body;
+      for (const VertexMass& m : masses) heavy.masses[m.vertex] += share * m.mass;
+      return 2.0 / std::sqrt(top_eigenvalue(heavy, K));
+    };
+    EXPECT_GE(step_with(1.0), h) << seed;
+    if (step_with(0.25) < h) ++short_of_mass;
+  }
+  EXPECT_GT(short_of_mass, 20);
+}
+
+struct OneTet {
+  std::mt19937 random{6};
+  Body body = small_body(random);
+  std::vector<double> base{1.0, 1.0};
+  MassLevels levels{body};
+  std::vector<StiffElement> told(double ratio, double norm = 0.0) const {
+    return {{7, ratio, norm > 0.0 ? norm : ratio}};
+  }
+  double mass() {
+    std::vector<VertexMass> masses;
+    levels.find_masses(base, {0, 0}, 1e-4, 1.0, masses);
+    double sum = 0.0;
+    for (const VertexMass& m : masses) sum += m.mass;
+    return sum;
+  }
+};
+
+// A level has a tenth of room above what was seen; a tet above it says how much it has risen since it was told last, and the first
+// time of all not at all. Once it has softened its mass follows down, and one that is not told any more has none.
+TEST(MassLevels, FollowATetUpAndDown) {
+  OneTet one;
+  EXPECT_FALSE(one.levels.bear(one.told(10.0), one.base));
+  EXPECT_EQ(one.levels.raise(one.told(10.0), one.base, one.base), 1.0);
+  EXPECT_TRUE(one.levels.bear(one.told(10.99), one.base));
+  EXPECT_FALSE(one.levels.bear(one.told(11.01), one.base));
+  EXPECT_FALSE(one.levels.bear(one.told(10.0, 11.01), one.base));
+  EXPECT_TRUE(one.levels.bear(std::vector<StiffElement>{{8, 0.99, 0.99}}, one.base));
+  EXPECT_NEAR(one.levels.raise(one.told(13.0), one.base, one.base), 1.3, 1e-6);
+  const std::vector<StiffElement> newcomer{{9, 3.0, 3.0}};
+  EXPECT_NEAR(one.levels.raise(newcomer, one.base, std::vector<double>{2.0, 2.0}), 1.5, 1e-6);
+  const double at_peak = one.mass();
+  one.levels.settle();
+  EXPECT_NEAR(one.mass(), at_peak, 1e-6 * at_peak);
+  one.levels.raise(one.told(2.0), one.base, one.base);
+  one.levels.settle();
+  EXPECT_LT(one.mass(), 0.15 * at_peak);
+  EXPECT_GT(one.mass(), 0.0);
+  one.levels.settle();
+  EXPECT_EQ(one.mass(), 0.0);
+}
+
+// A tet has to be told from just below its level on: every tet that bear() would refuse is above its limit.
+TEST(MassLevels, LimitWhatHasToBeTold) {
+  OneTet one;
+  EXPECT_EQ(one.levels.limits()[7].ratio, 0.0F);
+  one.levels.raise(one.told(10.0, 4.0), one.base, one.base);
+  EXPECT_TRUE(one.levels.limits()[7].covers(one.told(10.7, 4.2).front()));
+  EXPECT_FALSE(one.levels.limits()[7].covers(one.told(10.9, 4.0).front()));
+  EXPECT_FALSE(one.levels.limits()[7].covers(one.told(10.0, 4.39).front()));
+  EXPECT_FALSE(one.levels.limits()[8].covers({8, 1.01, 1.01}));
+}
+
+// Elements that are gone ask for nothing, one that is larger at rest asks for more; what is saved is read back.
+TEST(MassLevels, FollowTheMeshAndSurviveACheckpoint) {
+  OneTet one, read;
+  one.levels.raise(std::vector<StiffElement>{{30, 8.0, 5.0}, {7, 10.0, 10.0}, {2, 3.0, 3.0}}, one.base, one.base);
+  restore(read.levels, archived(one.levels));
+  const double before = one.mass();
+  EXPECT_EQ(read.mass(), before);
+  EXPECT_EQ(read.levels.limits()[30].norm, one.levels.limits()[30].norm);
+  one.body.rest[7].volume *= 2.0;
+  const std::vector<std::uint32_t> seven{7}, gone{7, 30};
+  one.levels.reshape(seven);
+  EXPECT_GT(one.mass(), before);
+  one.levels.remove(gone);
+  EXPECT_GT(one.mass(), 0.0);
+  EXPECT_LT(one.mass(), 0.5 * before);
+  EXPECT_EQ(one.levels.limits()[7].ratio, 0.0F);
+}
+
+}  // namespace
+}  // namespace glisson
