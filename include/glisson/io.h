@@ -44,6 +44,7 @@ struct Field {
   std::string name;  ///< with its unit, e.g. "displacement_m"
   int components = 1;
   std::vector<double> values;
+  bool single = false;  ///< whether files keep it in single precision
 };
 
 /// Writes a .vtu (binary, appended) with the mesh's regions and vertex sets and the given fields.

@@ -94,6 +94,7 @@ void FrameSeries::add(const Simulation& simulation, const TetFields& fields) {
   at_tets.push_back({.name = "q", .components = 1, .values = fields.q});
   at_tets.push_back({.name = "s", .components = 1, .values = fields.s});
   at_tets.push_back({.name = "jacobian", .components = 1, .values = fields.jacobian});
+  for (Field& field : at_tets) field.single = true;  // they follow from positions, which are kept in double
   TetMesh mesh = simulation.mesh();
   mesh.regions.resize(mesh.tets.size(), 0);
   try {
