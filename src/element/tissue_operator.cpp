@@ -153,6 +153,85 @@ double TissueOperator::energy(std::span<const Vec3d> u) const {
   return sum;
 }
 
+/// Whether the tangent of a block is linearise_closed(): small strain, moduli that follow a law or none, branches of constant times.
+bool TissueOperator::is_closed(std::size_t b) const {
+  const Response& response = responses_[b];
+  return response.has_small_tangent() && !response.paces().follows() &&
+         response.tissue().viscous_tensor != ViscousTensor::pioletti;
+}
+
+/// P = λ ϑ I + 2 μ ε, viscous stress, and branches that have taken the share w = Σ g `to` of S, all of P or its deviator.
+void TissueOperator::linearise_closed(std::size_t b, const TissueState& state, double rate,
+                                      std::span<const double> mean, TissueTangent& out) const {
+  const TissueBlock& block = body_.blocks[b];
+  const Response& response = responses_[b];
+  const bool shared = block.tissue.volume_change == VolumeChange::average_nodal;
+  double relaxed = 0.0;
+  for (const MaxwellBranch& branch : block.tissue.maxwell) {
+    relaxed += branch.share * branch_weights(state.since, branch.time).to;
+  }
+  const bool deviator = block.tissue.maxwell_part == MaxwellPart::deviator;
+  const double left = 1.0 - relaxed, volume_left = deviator ? 1.0 : left;
+  const LameParameters viscous = block.tissue.viscosity > 0.0 ? response.viscosity() : LameParameters{0.0, 0.0};
+  for (std::size_t e = block.begin; e < block.end; ++e) {
+    const Mat3d H = element_gradient(body_, e, state.u);
+    const SmallTangent t = response.small_tangent(H, shapes_[e], shared ? &mean[e] : nullptr);
+    const double volume = trace(t.rise) / 3.0 * (volume_left - left);
+    Sym3<double> rise = t.rise * left;
+    rise.xx += volume, rise.yy += volume, rise.zz += volume;
+    const double mu = left * t.mu + rate * viscous.mu;
+    const double lambda = volume_left * t.lambda + (volume_left - left) * 2.0 / 3.0 * t.mu + rate * viscous.lambda;
+    ElementTangent& C = out.local[e];
+    const Mat3d from = full(rise);
+    using Nine = Eigen::Map<const Eigen::Matrix<double, 9, 1>>;
+    C.noalias() = Nine(from.m[0].data()) * Nine(t.gradient.m[0].data()).transpose();
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        C(4 * i, 4 * k) += lambda;
+        C(3 * i + k, 3 * i + k) += mu;
+        C(3 * i + k, 3 * k + i) += mu;
+      }
+    }
+    if (!shared) continue;
+    const double bulk = response.volume_modulus(H, shapes_[e]);
+    out.volume[e] = identity<double>();
+    out.pressure[e] = scaled(identity<double>(), volume_left * bulk);
+    out.modulus[e] = bulk;
+  }
+}
+
+void TissueOperator::linearise_by_duals(std::size_t b, const TissueState& state, double rate,
+                                        std::span<const double> mean, TissueTangent& out) const {
+  const TissueBlock& block = body_.blocks[b];
+  const Response& response = responses_[b];
+  const bool dashpot = block.tissue.viscosity > 0.0, branches = !block.tissue.maxwell.empty();
+  const bool shared = block.tissue.volume_change == VolumeChange::average_nodal;
+  for (std::size_t e = block.begin; e < block.end; ++e) {
+    const Mat3d H0 = element_gradient(body_, e, state.u), R0 = element_gradient(body_, e, state.v);
+    Mat3<Dual> H = with_scalar<Dual>(H0), R = with_scalar<Dual>(R0);
+    const auto stress = [&](Dual theta) {
+      Mat3<Dual> P = response.elastic(H, shapes_[e], shared ? &theta : nullptr);
+      if (!branches) return P;
+      const Sym3<Dual> S = response.relaxing(H, P);
+      return sum(P, response.carry(H, overstress(b, e, state.since, H, S) - S * Dual(response.relaxing_share())));
+    };
+    const double fixed = shared ? mean[e] : 0.0;
+    for (std::size_t c = 0; c < 9; ++c) {
+      H(c / 3, c % 3).d = 1.0, R(c / 3, c % 3).d = rate;
+      Mat3<Dual> P = stress(fixed);
+      if (dashpot) P = sum(P, response.viscous(H, R));
+      for (std::size_t r = 0; r < 9; ++r) {
+        out.local[e](static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = P(r / 3, r % 3).d;
+      }
+      H(c / 3, c % 3).d = 0.0, R(c / 3, c % 3).d = 0.0;
+    }
+    if (!shared) continue;
+    out.volume[e] = response.volume_direction(H0);
+    out.pressure[e] = detail::derivatives_of(stress({fixed, 1.0}));
+    out.modulus[e] = response.volume_modulus(H0, shapes_[e]);
+  }
+}
+
 void TissueOperator::linearise(const TissueState& state, double rate, bool semidefinite, TissueTangent& out) const {
   const std::vector<double> mean = mean_volume_change(state.u);
   out.local.resize(body_.elements.size());
@@ -160,37 +239,10 @@ void TissueOperator::linearise(const TissueState& state, double rate, bool semid
   out.pressure.assign(out.volume.size(), Mat3d{});
   out.modulus.assign(out.volume.size(), 0.0);
   for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
-    const TissueBlock& block = body_.blocks[b];
-    const Response& response = responses_[b];
-    const bool dashpot = block.tissue.viscosity > 0.0, branches = !block.tissue.maxwell.empty();
-    const bool shared = block.tissue.volume_change == VolumeChange::average_nodal;
-    for (std::size_t e = block.begin; e < block.end; ++e) {
-      const Mat3d H0 = element_gradient(body_, e, state.u), R0 = element_gradient(body_, e, state.v);
-      Mat3<Dual> H = with_scalar<Dual>(H0), R = with_scalar<Dual>(R0);
-      const auto stress = [&](Dual theta) {
-        Mat3<Dual> P = response.elastic(H, shapes_[e], shared ? &theta : nullptr);
-        if (!branches) return P;
-        const Sym3<Dual> S = response.relaxing(H, P);
-        return sum(P, response.carry(H, overstress(b, e, state.since, H, S) - S * Dual(response.relaxing_share())));
-      };
-      const double fixed = shared ? mean[e] : 0.0;
-      for (std::size_t c = 0; c < 9; ++c) {
-        H(c / 3, c % 3).d = 1.0, R(c / 3, c % 3).d = rate;
-        Mat3<Dual> P = stress(fixed);
-        if (dashpot) P = sum(P, response.viscous(H, R));
-        for (std::size_t r = 0; r < 9; ++r) {
-          out.local[e](static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = P(r / 3, r % 3).d;
-        }
-        H(c / 3, c % 3).d = 0.0, R(c / 3, c % 3).d = 0.0;
-      }
-      if (semidefinite) make_semidefinite(out.local[e]);
-      if (shared) {
-        out.volume[e] = response.volume_direction(H0);
-        out.pressure[e] = detail::derivatives_of(stress({fixed, 1.0}));
-        out.modulus[e] = response.volume_modulus(H0, shapes_[e]);
-      }
-    }
+    is_closed(b) ? linearise_closed(b, state, rate, mean, out) : linearise_by_duals(b, state, rate, mean, out);
   }
+  if (!semidefinite) return;
+  for (ElementTangent& C : out.local) make_semidefinite(C);
 }
 
 void TissueOperator::apply(const TissueTangent& tangent, std::span<const Vec3d> x, std::span<Vec3d> y) const {

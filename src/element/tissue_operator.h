@@ -1,7 +1,7 @@
 // tissue_operator.h — forces, tangents and energy of a body of any tissue, in double, one element at a time.
 //
 //   f_a = −V P s_a                       P of material/response.h, at H and Ḣ of the element
-//   K = Σ V s_a ∂(P·s_b)/∂u, C likewise  exact, by numbers that carry their derivative
+//   K = Σ V s_a ∂(P·s_b)/∂u, C likewise  exact: of small strain in closed form, else by numbers that carry their derivative
 //
 // What the implicit schemes and statics run on, what runs in double precision, and what the submesh engine is compared
 // with. Tissues whose volume change is shared (VolumeChange::average_nodal) take a pass over the elements before.
@@ -94,6 +94,11 @@ class TissueOperator {
 
  private:
   std::vector<double> mean_volume_change(std::span<const Vec3d> u) const;
+  bool is_closed(std::size_t block) const;
+  void linearise_closed(std::size_t block, const TissueState& state, double rate, std::span<const double> mean,
+                        TissueTangent& out) const;
+  void linearise_by_duals(std::size_t block, const TissueState& state, double rate, std::span<const double> mean,
+                          TissueTangent& out) const;
   template <class T>
   Sym3<T> overstress(std::size_t block, std::size_t e, double since, const Mat3<T>& H, const Sym3<T>& S) const;
   template <class T>

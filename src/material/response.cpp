@@ -126,14 +126,26 @@ Mat3<T> Response::elastic(const Mat3<T>& H, const ElementShape& shape, const T* 
     const Mat3<T> cof = deformation_gradient(cofactor_change(H));
     P = sum(isochoric_piola(*tissue_.hyperelastic, H), scaled(cof, T(bulk_modulus(*tissue_.hyperelastic)) * theta));
   } else {
-    const T x = measure(H, shape);
+    const T x = measure_of_moduli(H, shape);
     const Moduli<T> m = laws_.at(x);
     P = tensor_mass(H, m, mean);
-    if (tissue_.law_form == LawForm::energy) {
+    if (tissue_.law_form == LawForm::energy && !has_constant_moduli()) {
       P = sum(P, scaled(measure_gradient(H, x, shape), mean_slope_energy(H, m)));
     }
   }
   return tissue_.fibres ? sum(P, fibre_piola(H, shape.fibre)) : P;
+}
+
+SmallTangent Response::small_tangent(const Mat3d& H, const ElementShape& shape, const double* mean) const {
+  const double x = measure_of_moduli(H, shape);
+  const Moduli<double> m = laws_.at(x);
+  const Sym3<double> e = symmetric(H);
+  SmallTangent t{
+      .lambda = mean != nullptr ? 0.0 : m.lambda, .mu = m.mu, .rise = e * (2.0 * m.mu_slope), .gradient = {}};
+  const double p = m.lambda_slope * (mean != nullptr ? *mean : trace(e));
+  t.rise.xx += p, t.rise.yy += p, t.rise.zz += p;
+  if (m.lambda_slope != 0.0 || m.mu_slope != 0.0) t.gradient = measure_gradient(H, x, shape);
+  return t;
 }
 
 double Response::energy(const Mat3d& H, const ElementShape& shape, const double* mean) const {
@@ -230,7 +242,7 @@ Mat3d Response::volume_direction(const Mat3d& H) const {
 }
 
 double Response::volume_modulus(const Mat3d& H, const ElementShape& shape) const {
-  return tissue_.hyperelastic ? bulk_modulus(*tissue_.hyperelastic) : laws_.at(measure(H, shape)).lambda;
+  return tissue_.hyperelastic ? bulk_modulus(*tissue_.hyperelastic) : laws_.at(measure_of_moduli(H, shape)).lambda;
 }
 
 /// Tensor-mass tissues: r C₀ bounds the tangent of σ(ε) as in element/local_stiffness.h. With the Green strain it is
@@ -261,9 +273,13 @@ Stiffening Response::elastic_stiffening(const Mat3d& H, const ElementShape& shap
 
 /// Viscous stress of large strain is carried by F on both sides.
 Stiffening Response::stiffening(const Mat3d& H, const ElementShape& shape) const {
+  Stiffening s = elastic_stiffening(H, shape);
+  if (small() && !tissue_.fibres && tissue_.viscous_tensor != ViscousTensor::pioletti) {
+    if (viscosity_.mu > 0.0) s.ratio = std::max(s.ratio, 1.0), s.norm = std::max(s.norm, 1.0);
+    return s;
+  }
   const Sym3<double> E = green_strain(H);
   const double stretch = 1.0 + 2.0 * std::sqrt(contract(E, E));  // ≥ ‖F‖²
-  Stiffening s = elastic_stiffening(H, shape);
   if (viscosity_.mu > 0.0) {
     const bool pioletti = tissue_.viscous_tensor == ViscousTensor::pioletti;
     const double drag = std::max(small() ? 1.0 : stretch, pioletti ? stretch * (1.0 + 2.0 * trace(E)) : 0.0);
@@ -280,9 +296,10 @@ Stiffening Response::stiffening(const Mat3d& H, const ElementShape& shape) const
 
 /// f + |f'| g ½ (e + √(e² + (K/2μ) t²)) of element/local_stiffness.h, with the larger of the two laws' ratios.
 double Response::tensor_mass_stiffening(const Mat3d& H, const ElementShape& shape) const {
-  const double x = measure(H, shape), bulk = lame_.lambda + 2.0 / 3.0 * lame_.mu;
+  const double x = measure_of_moduli(H, shape), bulk = lame_.lambda + 2.0 / 3.0 * lame_.mu;
   const Moduli<double> m = laws_.at(x);
   const double f = std::max(m.mu / lame_.mu, (m.lambda + 2.0 / 3.0 * m.mu) / bulk);
+  if (has_constant_moduli()) return f;
   const double mu_slope = std::abs(m.mu_slope), bulk_slope = std::abs(m.lambda_slope) + 2.0 / 3.0 * mu_slope;
   double g = 1.0;
   if (tissue_.measure == DeformationMeasure::one_minus_q) g = 4.0 / 3.0 * intensity_of(x);

@@ -29,6 +29,14 @@ struct Stiffening {
   double norm = 1.0;   ///< λ_max(C)/λ_max(C₀): says more of a tet that is stiff in one direction
 };
 
+/// Tangent of a stress σ = λ ϑ I + 2 μ ε of small strain whose moduli follow a measure x, ϑ held or tr ε:
+///   ∂σ/∂F = λ I ⊗ I + 2 μ 𝟙 + rise ⊗ ∂x/∂F,   rise = λ' ϑ I + 2 μ' ε
+struct SmallTangent {
+  double lambda = 0.0, mu = 0.0;  ///< [Pa]; λ is 0 where ϑ is held
+  Sym3<double> rise;              ///< [Pa]
+  Mat3d gradient;                 ///< ∂x/∂F [-]
+};
+
 class Response {
  public:
   explicit Response(const Tissue& tissue);
@@ -42,6 +50,9 @@ class Response {
   /// The part of it that is left when all Maxwell branches have relaxed; where those relax the deviator of a tissue
   /// without a hyperelastic law, exact for small strain.
   double relaxed_energy(const Mat3d& H, const ElementShape& shape, const double* mean = nullptr) const;
+  /// Whether small_tangent() is the tangent of elastic(): it is not with fibres and with laws in the form of an energy.
+  bool has_small_tangent() const { return small() && tissue_.law_form == LawForm::secant && !tissue_.fibres; }
+  SmallTangent small_tangent(const Mat3d& H, const ElementShape& shape, const double* mean = nullptr) const;
   /// Whether the elastic forces that are left after long times are the gradient of relaxed_energy.
   bool stores_energy() const;
 
@@ -79,10 +90,19 @@ class Response {
   const Tissue& tissue() const { return tissue_; }
   const LameParameters& viscosity() const { return viscosity_; }
   bool small() const { return !tissue_.hyperelastic && tissue_.kinematics == Kinematics::small; }
+  /// Whether moduli follow no law: no measure is needed then.
+  bool has_constant_moduli() const {
+    return std::holds_alternative<ConstantLaw>(tissue_.law) && !tissue_.lambda_law && !tissue_.mu_law;
+  }
   /// Σ g of the Maxwell branches.
   double relaxing_share() const { return relaxing_share_; }
 
  private:
+  /// The measure that the moduli follow; 0 where they follow none.
+  template <class T>
+  T measure_of_moduli(const Mat3<T>& H, const ElementShape& shape) const {
+    return has_constant_moduli() ? T(0.0) : measure(H, shape);
+  }
   double tensor_mass_stiffening(const Mat3d& H, const ElementShape& shape) const;
   template <class T>
   Mat3<T> tensor_mass(const Mat3<T>& H, const Moduli<T>& m, const T* mean) const;

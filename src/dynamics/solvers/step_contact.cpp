@@ -7,8 +7,16 @@
 namespace glisson {
 namespace {
 
-constexpr int kMostRounds = 10;   ///< of several interactions, each with the forces of the others
-constexpr double kAgreed = 1e-5;  ///< change of a force in a round, of the largest, at which they agree
+constexpr int kMostRounds = 10;      ///< of several interactions, each with the forces of the others
+constexpr std::size_t kAtATime = 8;  ///< means whose columns are found in one pass over the factor
+constexpr double kAgreed = 1e-5;     ///< change of a force in a round, of the largest, at which they agree
+
+/// What a mean is known by.
+auto key_of(const std::vector<VertexWeight>& mean) {
+  std::vector<std::pair<std::uint32_t, double>> key;
+  for (const VertexWeight& w : mean) key.emplace_back(w.vertex, w.weight);
+  return key;
+}
 
 }  // namespace
 
@@ -147,11 +155,8 @@ void StepContact::forget_columns() {
 
 /// P⁻¹ of forces on the vertices.
 Eigen::VectorXd StepContact::response(std::span<const Vec3d> forces) const {
-  Eigen::VectorXd load = flat(forces), moved;
-  for (Eigen::Index c = 0; c < load.size(); ++c) {
-    if (!system_.is_free(static_cast<std::size_t>(c))) load[c] = 0.0;
-  }
-  system_.factor_solve(load, moved);
+  Eigen::MatrixXd moved = flat(forces);
+  system_.factor_solve(moved);
   return moved;
 }
 
@@ -282,38 +287,44 @@ std::array<double, 3> StepContact::lost() const {
 const StepContact::Column& StepContact::column(std::uint32_t vertex) {
   const auto [at, fresh] = columns_.try_emplace(vertex);
   if (!fresh) return at->second;
-  const auto rows = static_cast<Eigen::Index>(3 * state_.body.vertex_count);
-  at->second = Column::Zero(rows, 3);
-  Eigen::VectorXd unit = Eigen::VectorXd::Zero(rows), moved;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const Eigen::Index c = 3 * static_cast<Eigen::Index>(vertex) + axis;
-    if (!system_.is_free(static_cast<std::size_t>(c))) continue;
-    unit[c] = 1.0;
-    system_.factor_solve(unit, moved);
-    at->second.col(axis) = moved;
-    unit[c] = 0.0;
-  }
-  return at->second;
+  Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(3 * state_.body.vertex_count), 3);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) moved(3 * static_cast<Eigen::Index>(vertex) + axis, axis) = 1.0;
+  system_.factor_solve(moved);
+  return at->second = moved;
 }
 
-/// Displacements by unit forces on a mean of vertices.
-const StepContact::Column& StepContact::column_of(const std::vector<VertexWeight>& mean) {
-  std::vector<std::pair<std::uint32_t, double>> key;
-  for (const VertexWeight& w : mean) key.emplace_back(w.vertex, w.weight);
-  const auto [at, fresh] = means_.try_emplace(std::move(key));
-  at->second.used = true;
-  if (!fresh) return at->second.moved;
-  at->second.moved.resize(static_cast<Eigen::Index>(3 * state_.body.vertex_count), 3);
-  std::vector<Vec3d> unit(state_.body.vertex_count);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const VertexWeight& w : mean) unit[w.vertex] = {}, unit[w.vertex][axis] = w.weight;
-    at->second.moved.col(static_cast<Eigen::Index>(axis)) = response(unit);
+/// Displacements by unit forces on a mean of vertices, once find_columns() has them.
+const StepContact::Column& StepContact::column_of(const std::vector<VertexWeight>& mean) const {
+  return means_.at(key_of(mean)).moved;
+}
+
+/// Finds those of means that are not known yet, several at a time: a pass over the factor then serves them all.
+void StepContact::find_columns(std::span<const std::vector<VertexWeight>> means) {
+  std::vector<std::pair<const std::vector<VertexWeight>*, Column*>> fresh;
+  for (const std::vector<VertexWeight>& mean : means) {
+    const auto [at, is_fresh] = means_.try_emplace(key_of(mean));
+    at->second.used = true;
+    if (is_fresh) fresh.emplace_back(&mean, &at->second.moved);
   }
-  return at->second.moved;
+  Eigen::MatrixXd moved;
+  for (std::size_t first = 0; first < fresh.size(); first += kAtATime) {
+    const std::size_t n = std::min(kAtATime, fresh.size() - first);
+    moved.setZero(static_cast<Eigen::Index>(3 * state_.body.vertex_count), static_cast<Eigen::Index>(3 * n));
+    const auto column = [&](std::size_t k, Eigen::Index axis) { return static_cast<Eigen::Index>(3 * k) + axis; };
+    for (std::size_t k = 0; k < n; ++k) {
+      for (const VertexWeight& w : *fresh[first + k].first) {
+        const auto row = static_cast<Eigen::Index>(3 * w.vertex);
+        for (Eigen::Index axis = 0; axis < 3; ++axis) moved(row + axis, column(k, axis)) = w.weight;
+      }
+    }
+    system_.factor_solve(moved);
+    for (std::size_t k = 0; k < n; ++k) *fresh[first + k].second = moved.middleCols<3>(column(k, 0));
+  }
 }
 
 std::vector<Mat3d> StepContact::couple(std::span<const std::vector<VertexWeight>> means) {
   pushes_means_[acting_] = 1;
+  find_columns(means);
   std::vector<Mat3d> W(means.size() * means.size());
   const double scale = 1.0 / (h_ * h_);
   for (std::size_t k = 0; k < means.size(); ++k) {
@@ -334,6 +345,7 @@ std::vector<Mat3d> StepContact::couple(std::span<const std::vector<VertexWeight>
 
 void StepContact::spread_means(std::span<const std::vector<VertexWeight>> means, std::span<const Vec3d> impulses,
                                std::span<ActiveVertex> vertices) {
+  find_columns(means);
   for (std::size_t k = 0; k < means.size(); ++k) {
     if (impulses[k] == Vec3d{}) continue;
     const Column& c = column_of(means[k]);

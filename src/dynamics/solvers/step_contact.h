@@ -104,7 +104,8 @@ class StepContact final : public StepCompliance {
   };
   const Column& column(std::uint32_t vertex);
   const Column& column_at(std::size_t place);
-  const Column& column_of(const std::vector<VertexWeight>& mean);
+  void find_columns(std::span<const std::vector<VertexWeight>> means);
+  const Column& column_of(const std::vector<VertexWeight>& mean) const;
   void move(std::size_t by, const Vec3d& impulse, std::size_t place, ActiveVertex& vertex) const;
   void activate(std::span<const std::uint32_t> vertices);
   void put_at_start(std::span<const Vec3d> u);

@@ -150,8 +150,7 @@ void TangentSystem::find_pattern() {
   });
   diagonal_position_.resize(static_cast<std::size_t>(rows));
   for (int r = 0; r < rows; ++r) diagonal_position_[static_cast<std::size_t>(r)] = place(r, r);
-  factor_.analyzePattern(matrix_);
-  packed_.resize(rows);
+  knows_entries_ = false;
   has_pattern_ = true;
 }
 
@@ -195,8 +194,12 @@ void TangentSystem::assemble_triangles() {
 bool TangentSystem::factorise(const TissueTangent& tangent) {
   assemble(tangent);
   assemble_triangles();
-  factor_.factorize(matrix_);
-  return factor_.info() == Eigen::Success;
+  return take_factor();
+}
+
+bool TangentSystem::take_factor() {
+  if (knows_entries_) return factor_.factorise_again(matrix_);
+  return knows_entries_ = factor_.factorise(matrix_);
 }
 
 void TangentSystem::refresh() {
@@ -251,22 +254,33 @@ void TangentSystem::find_blocks() {
 }
 
 void TangentSystem::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
-  z.setZero(r.size());
   if (has_factor_) {
-    for (std::size_t c = 0; c < number_.size(); ++c) {
-      if (number_[c] >= 0) packed_[number_[c]] = r[static_cast<Eigen::Index>(c)];
-    }
-    packed_ = factor_.solve(packed_).eval();
-    for (std::size_t c = 0; c < number_.size(); ++c) {
-      if (number_[c] >= 0) z[static_cast<Eigen::Index>(c)] = packed_[number_[c]];
-    }
+    moved_ = r;
+    factor_solve(moved_);
+    z = moved_.col(0);
     return;
   }
+  z.setZero(r.size());
   for (std::size_t i = 0; i < inverse_blocks_.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(3 * i);
     z.segment<3>(at) = inverse_blocks_[i] * r.segment<3>(at);
     for (Eigen::Index a = 0; a < 3; ++a) {
       if (free_[3 * i + static_cast<std::size_t>(a)] == 0) z[at + a] = 0.0;
+    }
+  }
+}
+
+void TangentSystem::factor_solve(Eigen::MatrixXd& x) const {
+  packed_.resize(matrix_.rows(), x.cols());
+  for (std::size_t c = 0; c < number_.size(); ++c) {
+    if (number_[c] >= 0) packed_.row(number_[c]) = x.row(static_cast<Eigen::Index>(c));
+  }
+  factor_.solve(packed_);
+  for (std::size_t c = 0; c < number_.size(); ++c) {
+    if (number_[c] >= 0) {
+      x.row(static_cast<Eigen::Index>(c)) = packed_.row(number_[c]);
+    } else {
+      x.row(static_cast<Eigen::Index>(c)).setZero();
     }
   }
 }
@@ -281,9 +295,8 @@ void TangentSystem::archive(Archive& ar) {
   ar.same_size(values);
   if (!ar.reads()) return;
   std::copy(values.begin(), values.end(), matrix_.valuePtr());
-  factor_.factorize(matrix_);
+  has_factor_ = take_factor();
   ++factor_number_;
-  has_factor_ = factor_.info() == Eigen::Success;
 }
 
 KrylovResult TangentSystem::solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& x) {

@@ -7,11 +7,11 @@
 // over iterations and steps until the iterations say that it has become bad; or the 3 × 3 blocks of A's diagonal.
 #pragma once
 
-#include <Eigen/SparseCholesky>
 #include <array>
 #include <span>
 #include <vector>
 
+#include "dynamics/solvers/factor_panels.h"
 #include "dynamics/solvers/krylov.h"
 #include "dynamics/state/loads.h"
 #include "element/tissue_operator.h"
@@ -66,8 +66,8 @@ class TangentSystem {
   void renew() { has_factor_ = current_ = false; }
   /// How often the factor has been made; 0 while there is none.
   std::uint64_t factor_number() const { return has_factor_ ? factor_number_ : 0; }
-  /// x = P⁻¹ b with the factorised matrix P, A at some earlier state; 0 on components that are held.
-  void factor_solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const { precondition(b, x); }
+  /// x ← P⁻¹ x column by column, with the factorised matrix P, A at some earlier state; held components neither act nor move.
+  void factor_solve(Eigen::MatrixXd& x) const;
   /// x ≈ A⁻¹ b on the free components, 0 on the others.
   KrylovResult solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& x);
 
@@ -78,6 +78,7 @@ class TangentSystem {
   void assemble(const TissueTangent& tangent);
   void assemble_triangles();
   bool factorise(const TissueTangent& tangent);
+  bool take_factor();
   void refresh();
   void find_blocks();
   void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
@@ -98,8 +99,9 @@ class TangentSystem {
   Matrix matrix_;                               ///< lower triangle
   std::vector<std::array<int, 144>> position_;  ///< per element: where its entries are in the matrix, −1
   std::vector<int> diagonal_position_;          ///< per row
-  Eigen::SimplicialLLT<Matrix> factor_;
-  mutable Eigen::VectorXd packed_;
+  FactorPanels factor_;
+  bool knows_entries_ = false;  ///< the factor has been made for this pattern
+  mutable Eigen::MatrixXd packed_, moved_;
   bool known_ = false;  ///< tangent_ is that of this body
   bool has_pattern_ = false, has_factor_ = false;
   bool current_ = false;  ///< the factor is that of A

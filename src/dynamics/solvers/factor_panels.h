@@ -1,0 +1,55 @@
+// factor_panels.h — a sparse Cholesky factor, L Lᵀ = Q A Qᵀ, in dense panels: neighbouring columns with the same rows below them, of
+// which finite elements have many, the three components of a vertex at least.
+//
+// Eigen finds the order Q and the entries of L. It goes entry by entry, and through the factor once for each right side; panels are
+// factorised (left-looking, as in [NgPeyton1993]) and solved with by products of dense matrices, for many right sides at once.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <vector>
+
+namespace glisson {
+
+class FactorPanels {
+ public:
+  using Matrix = Eigen::SparseMatrix<double>;
+
+  /// Factorises A. @param A  its lower triangle  @return whether it is positive definite
+  bool factorise(const Matrix& A);
+  /// The same for a matrix with the entries of the last one, of other values.
+  bool factorise_again(const Matrix& A);
+  /// x ← A⁻¹ x, column by column: the same bytes for a column, whatever it is solved beside. @param x  as many rows as A
+  void solve(Eigen::MatrixXd& x) const;
+
+ private:
+  using Block = Eigen::Map<Eigen::MatrixXd>;
+  using ConstBlock = Eigen::Map<const Eigen::MatrixXd>;
+  struct Panel {
+    Eigen::Index first = 0, width = 0;   ///< columns of L
+    Eigen::Index rows_at = 0, rows = 0;  ///< below the triangle, among rows_
+    std::size_t values_at = 0;           ///< triangle, width × width, then what is below it, rows × width
+  };
+  void find_panels(const Matrix& L);
+  void find_places(const Matrix& A);
+  void solve_one(double* x) const;
+  template <int N>
+  void solve_some(double* x) const;
+  void update(const Panel& by, Eigen::Index from, Eigen::Index columns, const Panel& panel);
+  Block triangle(const Panel& p) { return {values_.data() + p.values_at, p.width, p.width}; }
+  Block below(const Panel& p) { return {values_.data() + p.values_at + p.width * p.width, p.rows, p.width}; }
+  ConstBlock triangle(const Panel& p) const { return {values_.data() + p.values_at, p.width, p.width}; }
+  ConstBlock below(const Panel& p) const { return {values_.data() + p.values_at + p.width * p.width, p.rows, p.width}; }
+  int row(Eigen::Index at) const { return rows_[static_cast<std::size_t>(at)]; }
+
+  std::vector<Panel> panels_;
+  std::vector<int> rows_;
+  std::vector<double> values_;
+  std::vector<std::size_t> panel_of_;       ///< per column of L
+  std::vector<std::size_t> place_;          ///< among values_, per entry of A
+  std::vector<Eigen::Index> place_of_row_;  ///< in the panel at hand: of the triangle, then below
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order_;  ///< Q
+  Eigen::MatrixXd change_;
+  mutable std::vector<double> ordered_, gathered_;
+};
+
+}  // namespace glisson

@@ -1,0 +1,106 @@
+// Solves in panels are those of the factor they were taken from, for one right side and for many.
+#include "dynamics/solvers/factor_panels.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+namespace glisson {
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+
+/// A symmetric positive definite matrix of n blocks of three, each coupled to a few others.
+Matrix some_blocks(int n, int couplings, std::mt19937& random) {
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < 3; ++k) entries.emplace_back(3 * i + k, 3 * i + k, 1.0 + 6.0 * couplings);
+    for (int c = 0; c < couplings; ++c) {
+      const int j = static_cast<int>(random() % static_cast<unsigned>(n));
+      if (j == i) continue;
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) {
+          const double x = number(random);
+          entries.emplace_back(3 * i + a, 3 * j + b, x), entries.emplace_back(3 * j + b, 3 * i + a, x);
+        }
+      }
+    }
+  }
+  Matrix A(3 * n, 3 * n);
+  A.setFromTriplets(entries.begin(), entries.end());
+  return A;
+}
+
+/// Whether A x is what x was found for, for one right side and for many.
+void expect_solves(const FactorPanels& panels, const Matrix& A) {
+  for (const int columns : {1, 3, 25}) {
+    const Eigen::MatrixXd b = Eigen::MatrixXd::Random(A.rows(), columns);
+    Eigen::MatrixXd x = b;
+    panels.solve(x);
+    EXPECT_LT((A * x - b).norm(), 1e-13 * b.norm()) << A.rows() << " " << columns;
+  }
+}
+
+Matrix lower(const Matrix& A) { return A.triangularView<Eigen::Lower>(); }
+
+// A body of one vertex, of vertices without any coupling, with few and with many; and with other values at the same entries.
+TEST(FactorPanels, SolveForAllColumns) {
+  std::mt19937 random(3);
+  FactorPanels panels;
+  for (const auto& [n, couplings] : {std::pair{1, 0}, {40, 0}, {40, 1}, {200, 4}, {60, 30}}) {
+    Matrix A = some_blocks(n, couplings, random);
+    ASSERT_TRUE(panels.factorise(lower(A)));
+    expect_solves(panels, A);
+    A *= 3.0;
+    A.diagonal() *= 1.5;
+    ASSERT_TRUE(panels.factorise_again(lower(A)));
+    expect_solves(panels, A);
+  }
+}
+
+// What is not positive definite is refused, at once and again, and harms nothing.
+TEST(FactorPanels, RefuseWhatIsNotDefinite) {
+  std::mt19937 random(5);
+  const Matrix A = some_blocks(50, 4, random);
+  Matrix broken = A;
+  broken.coeffRef(77, 77) = -1.0;
+  FactorPanels panels;
+  EXPECT_FALSE(panels.factorise(lower(broken)));
+  ASSERT_TRUE(panels.factorise(lower(A)));
+  EXPECT_FALSE(panels.factorise_again(lower(broken)));
+  ASSERT_TRUE(panels.factorise_again(lower(A)));
+  expect_solves(panels, A);
+}
+
+// A column has the same bytes alone and among others.
+TEST(FactorPanels, SolveAColumnAloneAsAmongOthers) {
+  std::mt19937 random(9);
+  const Matrix A = some_blocks(150, 5, random);
+  FactorPanels panels;
+  ASSERT_TRUE(panels.factorise(lower(A)));
+  Eigen::MatrixXd together = Eigen::MatrixXd::Random(A.rows(), 13);
+  const Eigen::MatrixXd b = together;
+  panels.solve(together);
+  for (Eigen::Index k = 0; k < b.cols(); ++k) {
+    Eigen::MatrixXd x = b.col(k);
+    panels.solve(x);
+    EXPECT_EQ(x.col(0), together.col(k)) << k;
+  }
+}
+
+// The same bytes whether the entries were known or not.
+TEST(FactorPanels, GiveTheSameBytesAgain) {
+  std::mt19937 random(7);
+  const Matrix A = some_blocks(80, 5, random), other = 2.0 * A;
+  FactorPanels once, again;
+  ASSERT_TRUE(once.factorise(lower(A)));
+  ASSERT_TRUE(again.factorise(lower(other)) && again.factorise_again(lower(A)));
+  Eigen::MatrixXd x = Eigen::MatrixXd::Random(A.rows(), 2), y = x;
+  once.solve(x), again.solve(y);
+  EXPECT_EQ(x, y);
+}
+
+}  // namespace
+}  // namespace glisson
