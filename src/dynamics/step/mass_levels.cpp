@@ -62,7 +62,7 @@ double MassLevels::raise(std::span<const StiffElement> stiff, std::span<const do
     if (s.ratio > base[block] && !tet.level.covers(s)) rise = std::max(rise, s.ratio / std::max(1.0, before));
     tet.last = static_cast<float>(s.ratio);
     tet.seen = {std::max(tet.seen.ratio, tet.last), std::max(tet.seen.norm, static_cast<float>(s.norm))};
-    give_room(tet.level.ratio, tet.last);
+    give_room(tet.level.ratio, tet.seen.ratio);
     give_room(tet.level.norm, tet.seen.norm);
     limit(s.element);
   }

@@ -159,16 +159,15 @@ inline bool watch_lame(const Block& block, const LaneTissue& tissue, std::size_t
   return largest.add_to(seen, limit);
 }
 
-/// The limits of a vector of tets, each its own.
+/// The limits of a vector of tets, each its own: of laws on moduli ratio and norm are one.
 HWY_INLINE F single_limits(const ListLimits& limits, std::size_t i) {
   const Lanes d;
   const hn::RebindToSigned<Lanes> whole;
   const auto element = hn::BitCast(whole, hn::LoadU(hn::RebindToUnsigned<Lanes>(), limits.element + i));
   const auto place = hn::Add(hn::Max(element, hn::Zero(whole)), hn::Max(element, hn::Zero(whole)));  // none is −1
   static_assert(sizeof(StiffLimit) == 2 * sizeof(float));
-  const float* numbers = &limits.single->ratio;
-  const F least = hn::Min(hn::GatherIndex(d, numbers, place), hn::GatherIndex(d, numbers + 1, place));
-  return hn::Max(hn::Set(d, limits.block), least * hn::Set(d, kBelowLimit));
+  const F own = hn::GatherIndex(d, &limits.single->ratio, place);
+  return hn::Max(hn::Set(d, limits.block), own * hn::Set(d, kBelowLimit));
 }
 
 template <class RiseOf>
