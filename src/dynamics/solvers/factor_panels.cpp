@@ -1,6 +1,7 @@
 #include "dynamics/solvers/factor_panels.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -8,38 +9,57 @@
 namespace glisson {
 namespace {
 
-/// Whether the column after `column` has the same rows, but for `column` itself.
-bool goes_on(const FactorPanels::Matrix& L, Eigen::Index column) {
-  const int *begin = L.outerIndexPtr() + column, *rows = L.innerIndexPtr();
-  const int here = begin[1] - begin[0], next = begin[2] - begin[1];
-  return here == next + 1 && rows[begin[0] + 1] == column + 1;
+/// Rows of each column of L below its diagonal, ascending: those of A, and what columns leave to the one of their first row.
+std::vector<std::vector<int>> rows_of_factor(const FactorPanels::Matrix& A, const Eigen::VectorXi& place) {
+  std::vector<std::vector<int>> rows(static_cast<std::size_t>(A.cols()));
+  for (Eigen::Index k = 0; k < A.outerSize(); ++k) {
+    for (FactorPanels::Matrix::InnerIterator entry(A, k); entry; ++entry) {
+      const auto [column, row] = std::minmax(place[entry.row()], place[entry.col()]);
+      if (row > column) rows[static_cast<std::size_t>(column)].push_back(row);
+    }
+  }
+  for (std::vector<int>& own : rows) {
+    std::ranges::sort(own);  // with what earlier columns have left, each of them in order
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+    if (own.empty()) continue;
+    std::vector<int>& next = rows[static_cast<std::size_t>(own.front())];
+    next.insert(next.end(), own.begin() + 1, own.end());
+  }
+  return rows;
 }
 
 }  // namespace
 
 bool FactorPanels::factorise(const Matrix& A) {
-  const Eigen::SimplicialLLT<Matrix> factor(A);
-  if (factor.info() != Eigen::Success) return false;
-  order_ = factor.permutationP();
-  find_panels(factor.matrixL().nestedExpression());
+  const Matrix both = A.selfadjointView<Eigen::Lower>();
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> back;
+  if (A.cols() > 0) Eigen::AMDOrdering<int>()(both, back);
+  order_ = back.inverse();
+  find_panels(rows_of_factor(A, order_.indices()));
   find_places(A);
-  return factorise_again(A);  // its values: the same bytes whenever this matrix is factorised
+  return factorise_again(A);
 }
 
-void FactorPanels::find_panels(const Matrix& L) {
-  panels_.clear(), rows_.clear(), values_.clear();
-  panel_of_.resize(static_cast<std::size_t>(L.cols()));
-  for (Eigen::Index first = 0, next = 0; first < L.cols(); first = next) {
+void FactorPanels::find_panels(const std::vector<std::vector<int>>& rows) {
+  panels_.clear(), rows_.clear();
+  panel_of_.resize(rows.size());
+  std::size_t values = 0;
+  const auto goes_on = [&](std::size_t c) {  // the same rows in the next column, but for that one
+    return c + 1 < rows.size() && !rows[c].empty() && rows[c].front() == static_cast<int>(c + 1) &&
+           rows[c].size() == rows[c + 1].size() + 1;
+  };
+  for (std::size_t first = 0, next = 0; first < rows.size(); first = next) {
     next = first + 1;
-    while (next < L.cols() && goes_on(L, next - 1)) ++next;
-    const Eigen::Index width = next - first;
-    const int *begin = L.outerIndexPtr() + first, *row = L.innerIndexPtr() + begin[0];
-    const Eigen::Index rows = begin[1] - begin[0] - width;
-    std::fill_n(panel_of_.begin() + first, width, panels_.size());
-    panels_.push_back({first, width, static_cast<Eigen::Index>(rows_.size()), rows, values_.size()});
-    rows_.insert(rows_.end(), row + width, row + width + rows);
-    values_.resize(values_.size() + static_cast<std::size_t>(width * (width + rows)));
+    while (goes_on(next - 1)) ++next;
+    const std::vector<int>& below = rows[next - 1];
+    for (std::size_t c = first; c < next; ++c) panel_of_[c] = panels_.size();
+    const auto width = static_cast<Eigen::Index>(next - first), n = static_cast<Eigen::Index>(below.size());
+    panels_.push_back({static_cast<Eigen::Index>(first), width, static_cast<Eigen::Index>(rows_.size()), n, values});
+    rows_.insert(rows_.end(), below.begin(), below.end());
+    values += static_cast<std::size_t>(width * (width + n));
   }
+  values_.resize(values);
+  gathered_.resize(rows.size());
 }
 
 void FactorPanels::find_places(const Matrix& A) {
@@ -118,33 +138,40 @@ void FactorPanels::solve_one(double* x) const {
   for (const Panel& p : panels_) {
     double* own = x + p.first;
     const double *L = triangle(p).data(), *under = below(p).data();
-    gathered_.assign(static_cast<std::size_t>(p.rows), 0.0);
-    double* sum = gathered_.data();
     for (Eigen::Index c = 0; c < p.width; ++c) {
       const double now = own[c] /= L[c * p.width + c];
       for (Eigen::Index i = c + 1; i < p.width; ++i) own[i] -= L[c * p.width + i] * now;
-      for (Eigen::Index i = 0; i < p.rows; ++i) sum[i] += under[c * p.rows + i] * now;
+    }
+    double* sum = gathered_.data();
+    std::fill_n(sum, p.rows, 0.0);
+    Eigen::Index c = 0;
+    for (; c + 3 <= p.width; c += 3) {
+      const double *a = under + c * p.rows, *b = a + p.rows, *d = b + p.rows;
+      for (Eigen::Index i = 0; i < p.rows; ++i) sum[i] = sum[i] + a[i] * own[c] + b[i] * own[c + 1] + d[i] * own[c + 2];
+    }
+    for (; c < p.width; ++c) {
+      for (Eigen::Index i = 0; i < p.rows; ++i) sum[i] += under[c * p.rows + i] * own[c];
     }
     for (Eigen::Index i = 0; i < p.rows; ++i) x[row(p.rows_at + i)] -= sum[i];
   }
   for (auto p = panels_.rbegin(); p != panels_.rend(); ++p) {
     double* own = x + p->first;
     const double *L = triangle(*p).data(), *under = below(*p).data();
-    gathered_.resize(static_cast<std::size_t>(p->rows));
     double* at = gathered_.data();
     for (Eigen::Index i = 0; i < p->rows; ++i) at[i] = x[row(p->rows_at + i)];
-    constexpr Eigen::Index kSide = 4;  // sums side by side: none waits for its last addition
-    for (Eigen::Index c = 0; c < p->width; c += kSide) {
-      const Eigen::Index n = std::min(kSide, p->width - c);
-      std::array<double, kSide> sum{};
-      std::array<const double*, kSide> column;
-      for (Eigen::Index k = 0; k < kSide; ++k) column[k] = under + (c + std::min(k, n - 1)) * p->rows;
-      for (Eigen::Index i = 0; i < p->rows; ++i) {
-        for (Eigen::Index k = 0; k < kSide; ++k) sum[k] += column[k][i] * at[i];
-      }
-      for (Eigen::Index k = 0; k < n; ++k) own[c + k] -= sum[k];
+    Eigen::Index c = 0;
+    for (; c + 3 <= p->width; c += 3) {  // sums side by side: none waits for its last addition
+      const double *a = under + c * p->rows, *b = a + p->rows, *d = b + p->rows;
+      double of_a = 0.0, of_b = 0.0, of_d = 0.0;
+      for (Eigen::Index i = 0; i < p->rows; ++i) of_a += a[i] * at[i], of_b += b[i] * at[i], of_d += d[i] * at[i];
+      own[c] -= of_a, own[c + 1] -= of_b, own[c + 2] -= of_d;
     }
-    for (Eigen::Index c = p->width; c-- > 0;) {
+    for (; c < p->width; ++c) {
+      double sum = 0.0;
+      for (Eigen::Index i = 0; i < p->rows; ++i) sum += under[c * p->rows + i] * at[i];
+      own[c] -= sum;
+    }
+    for (c = p->width; c-- > 0;) {
       const double now = own[c] /= L[c * p->width + c];
       for (Eigen::Index i = 0; i < c; ++i) own[i] -= L[i * p->width + c] * now;
     }

@@ -1,11 +1,11 @@
 // factor_panels.h — a sparse Cholesky factor, L Lᵀ = Q A Qᵀ, in dense panels: neighbouring columns with the same rows below them, of
 // which finite elements have many, the three components of a vertex at least.
 //
-// Eigen finds the order Q and the entries of L. It goes entry by entry, and through the factor once for each right side; panels are
-// factorised (left-looking, as in [NgPeyton1993]) and solved with by products of dense matrices, for many right sides at once.
+// Eigen's sparse factor goes entry by entry, and through the factor once for each right side. Panels are factorised (left-looking, as
+// in [NgPeyton1993]) by products of dense matrices, and solved with for many right sides at once. Q is Eigen's minimum degree.
 #pragma once
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 #include <vector>
 
 namespace glisson {
@@ -29,7 +29,7 @@ class FactorPanels {
     Eigen::Index rows_at = 0, rows = 0;  ///< below the triangle, among rows_
     std::size_t values_at = 0;           ///< triangle, width × width, then what is below it, rows × width
   };
-  void find_panels(const Matrix& L);
+  void find_panels(const std::vector<std::vector<int>>& rows);
   void find_places(const Matrix& A);
   void solve_one(double* x) const;
   template <int N>

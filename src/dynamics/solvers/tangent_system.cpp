@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace glisson {
 namespace {
@@ -198,8 +199,8 @@ bool TangentSystem::factorise(const TissueTangent& tangent) {
 }
 
 bool TangentSystem::take_factor() {
-  if (knows_entries_) return factor_.factorise_again(matrix_);
-  return knows_entries_ = factor_.factorise(matrix_);
+  if (std::exchange(knows_entries_, true)) return factor_.factorise_again(matrix_);
+  return factor_.factorise(matrix_);
 }
 
 void TangentSystem::refresh() {

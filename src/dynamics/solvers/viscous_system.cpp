@@ -18,40 +18,22 @@ bool ViscousSystem::needed(const Body& body) {
                      [](const TissueBlock& b) { return b.tissue.viscosity > 0.0; });
 }
 
-/// Rows of the free components in an order in which neighbours are close; of the held ones as they come.
-void ViscousSystem::number(const Body& body) {
-  std::vector<std::vector<std::uint32_t>> neighbours(body.vertex_count);
-  for (std::size_t e = 0; e < body.elements.size(); ++e) {
-    if (body.rest[e].volume == 0.0) continue;
-    for (const std::uint32_t a : body.elements[e]) {
-      for (const std::uint32_t b : body.elements[e]) {
-        if (a != b) neighbours[a].push_back(b);
-      }
-    }
-  }
-  for (auto& list : neighbours) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-  const std::vector<std::uint32_t> place = close_order(neighbours);
-  std::vector<std::uint32_t> vertex(place.size());
-  for (std::uint32_t v = 0; v < place.size(); ++v) vertex[place[v]] = v;
+/// Rows of the free components, and of the held ones.
+void ViscousSystem::number() {
   row_.assign(held_.size(), 0);
   free_of_row_.clear(), held_of_row_.clear();
-  for (const std::uint32_t v : vertex) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::vector<std::size_t>& list = held_[3 * v + axis] != 0 ? held_of_row_ : free_of_row_;
-      row_[3 * v + axis] = static_cast<Eigen::Index>(list.size());
-      list.push_back(3 * v + axis);
-    }
+  for (std::size_t c = 0; c < held_.size(); ++c) {
+    std::vector<std::size_t>& list = held_[c] != 0 ? held_of_row_ : free_of_row_;
+    row_[c] = static_cast<Eigen::Index>(list.size());
+    list.push_back(c);
   }
 }
 
 bool ViscousSystem::build(const Body& body, std::span<const double> nodal_damping, double h, std::vector<char> held,
-                          std::span<const Vec3d> dashpots, std::size_t most_entries) {
+                          std::span<const Vec3d> dashpots, std::size_t most_tets) {
   h_ = h;
   held_ = std::move(held);
-  number(body);
+  number();
   const auto free = static_cast<Eigen::Index>(free_of_row_.size()),
              fixed = static_cast<Eigen::Index>(held_of_row_.size());
   std::vector<Eigen::Triplet<double>> inner, across, outer;
@@ -77,20 +59,20 @@ bool ViscousSystem::build(const Body& body, std::span<const double> nodal_dampin
   matrix_.setFromTriplets(inner.begin(), inner.end());
   coupling_.setFromTriplets(across.begin(), across.end());
   held_block_.setFromTriplets(outer.begin(), outer.end());
-  packed_.resize(free);
+  packed_.resize(free, 1);
   last_ = Eigen::VectorXd::Zero(free);
-  factorised_ = EnvelopeCholesky::entries(matrix_) <= most_entries;
-  if (factorised_) return factor_.factorise(matrix_);
+  factorised_ = body.elements.size() <= most_tets;
+  if (factorised_) return factor_.factorise(matrix_.triangularView<Eigen::Lower>());
   rows_ = matrix_;
   inverse_diagonal_ = matrix_.diagonal().cwiseInverse();
   return inverse_diagonal_.allFinite();
 }
 
-void ViscousSystem::iterate(Eigen::VectorXd& x) {
+void ViscousSystem::iterate(Eigen::MatrixXd& x) {
   const auto product = [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = rows_ * in; };
   const auto nearly = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { z = r.cwiseProduct(inverse_diagonal_); };
   const double size = x.norm();
-  const Eigen::VectorXd left = x - rows_ * last_;
+  const Eigen::VectorXd left = x.col(0) - rows_ * last_;
   Eigen::VectorXd more;
   const double rest = left.norm();
   if (rest > kTolerance * size) {
@@ -106,7 +88,7 @@ void ViscousSystem::solve(std::span<const Vec3d> b, std::span<Vec3d> x) {
     given[static_cast<Eigen::Index>(r)] = x[held_of_row_[r] / 3][held_of_row_[r] % 3];
   }
   for (std::size_t r = 0; r < free_of_row_.size(); ++r) {
-    packed_[static_cast<Eigen::Index>(r)] = b[free_of_row_[r] / 3][free_of_row_[r] % 3];
+    packed_(static_cast<Eigen::Index>(r), 0) = b[free_of_row_[r] / 3][free_of_row_[r] % 3];
   }
   if (given.squaredNorm() > 0.0) packed_.noalias() -= h_ * (coupling_.transpose() * given);
   if (factorised_) {
@@ -115,7 +97,7 @@ void ViscousSystem::solve(std::span<const Vec3d> b, std::span<Vec3d> x) {
     iterate(packed_);
   }
   for (std::size_t r = 0; r < free_of_row_.size(); ++r) {
-    x[free_of_row_[r] / 3][free_of_row_[r] % 3] = packed_[static_cast<Eigen::Index>(r)];
+    x[free_of_row_[r] / 3][free_of_row_[r] % 3] = packed_(static_cast<Eigen::Index>(r), 0);
   }
   last_ = packed_;
 }

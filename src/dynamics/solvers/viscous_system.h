@@ -1,6 +1,6 @@
 // viscous_system.h — (M + hγ + hC) x = b: the constant matrix of the semi-implicit scheme.
 //
-// C is the viscous matrix at rest. Small bodies are factorised once (envelope_cholesky.h); for large ones, whose factor is
+// C is the viscous matrix at rest. Small bodies are factorised once (factor_panels.h); for large ones, whose factor is
 // no longer read at the speed of a cache, conjugate gradients start from the last answer.
 #pragma once
 
@@ -8,15 +8,15 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/solvers/envelope_cholesky.h"
+#include "dynamics/solvers/factor_panels.h"
 #include "element/body.h"
 
 namespace glisson {
 
 class ViscousSystem {
  public:
-  /// Entries of a factor up to which it pays (docs/integrators.md): some 20 000 tets.
-  static constexpr std::size_t kMostEntries = 10000000;
+  /// Tets up to which a factor pays (docs/integrators.md).
+  static constexpr std::size_t kMostTets = 20000;
 
   /// Whether the body has any viscosity: without it the matrix is diagonal and this is not needed.
   static bool needed(const Body& body);
@@ -25,10 +25,10 @@ class ViscousSystem {
   /// @param h  step [s]
   /// @param held  per component: 1 where x is given
   /// @param dashpots  damping beside γ_i, per component [kg/s]; empty: none
-  /// @param most_entries  of a factor; a body that needs more iterates
+  /// @param most_tets  for a factor; a body of more iterates
   /// @return false where the matrix is not positive
   bool build(const Body& body, std::span<const double> nodal_damping, double h, std::vector<char> held,
-             std::span<const Vec3d> dashpots = {}, std::size_t most_entries = kMostEntries);
+             std::span<const Vec3d> dashpots = {}, std::size_t most_tets = kMostTets);
 
   /// Fills the free components of x.
   /// @param b  [kg m/s], @param x  [m/s]; its held components are given
@@ -45,8 +45,8 @@ class ViscousSystem {
 
  private:
   using Matrix = Eigen::SparseMatrix<double>;
-  void number(const Body& body);
-  void iterate(Eigen::VectorXd& x);
+  void number();
+  void iterate(Eigen::MatrixXd& x);
 
   double h_ = 0.0;
   std::vector<char> held_;
@@ -57,8 +57,9 @@ class ViscousSystem {
   Matrix coupling_;                                     ///< C, held × free
   Matrix held_block_;                                   ///< C, held × held
   bool factorised_ = false;
-  EnvelopeCholesky factor_;
-  Eigen::VectorXd packed_, last_, inverse_diagonal_;
+  FactorPanels factor_;
+  Eigen::MatrixXd packed_;  ///< one column
+  Eigen::VectorXd last_, inverse_diagonal_;
 };
 
 }  // namespace glisson
