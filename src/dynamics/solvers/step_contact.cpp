@@ -313,7 +313,7 @@ void StepContact::find_columns(std::span<const std::vector<VertexWeight>> means)
     const auto column = [&](std::size_t k, Eigen::Index axis) { return static_cast<Eigen::Index>(3 * k) + axis; };
     for (std::size_t k = 0; k < n; ++k) {
       for (const VertexWeight& w : *fresh[first + k].first) {
-        const auto row = static_cast<Eigen::Index>(3 * w.vertex);
+        const Eigen::Index row = 3 * static_cast<Eigen::Index>(w.vertex);
         for (Eigen::Index axis = 0; axis < 3; ++axis) moved(row + axis, column(k, axis)) = w.weight;
       }
     }
