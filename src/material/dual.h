@@ -1,7 +1,8 @@
 // dual.h — a number with its derivative in one direction: v + d ε, ε² = 0.
 //
 // The formulas of the tissue room are templates on their scalar. With this one they give ∂P/∂F : dF exactly, for
-// every law and without a second set of formulas that could contradict the first.
+// every law and without a second set of formulas that could contradict the first; small strain has one for its speed
+// (Response::small_tangent), which tests hold against the forces.
 #pragma once
 
 #include <cmath>

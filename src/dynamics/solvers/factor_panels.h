@@ -46,7 +46,7 @@ class FactorPanels {
   std::vector<double> values_;
   std::vector<std::size_t> panel_of_;       ///< per column of L
   std::vector<std::size_t> place_;          ///< among values_, per entry of A
-  std::vector<Eigen::Index> place_of_row_;  ///< in the panel at hand: of the triangle, then below
+  std::vector<Eigen::Index> place_of_row_;  ///< per row of L: below the panel at hand
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order_;  ///< Q
   Eigen::MatrixXd change_;
   mutable std::vector<double> ordered_, gathered_;

@@ -348,7 +348,7 @@ void StepControl::archive(Archive& ar) {
   }
   ar(probe_, since_probe_, probes_, levels_, drag_part_, drag_searched_.limit);
   ar.same_size(drag_searched_.numbers);
-  if (mass_levels_) ar(*mass_levels_, listed_before_);
+  if (mass_levels_) ar(*mass_levels_), ar.same_size(listed_before_);
   if (element_bound_ != nullptr) ar(*element_bound_);
   if (!ar.reads()) return;
   searches_made_ = kSearchesKept;
