@@ -44,9 +44,9 @@ class FactorPanels {
   std::vector<Panel> panels_;
   std::vector<int> rows_;
   std::vector<double> values_;
-  std::vector<std::size_t> panel_of_;       ///< per column of L
-  std::vector<std::size_t> place_;          ///< among values_, per entry of A
-  std::vector<Eigen::Index> place_of_row_;  ///< per row of L: below the panel at hand
+  std::vector<std::size_t> panel_of_;                                    ///< per column of L
+  std::vector<std::size_t> place_;                                       ///< among values_, per entry of A
+  std::vector<Eigen::Index> place_of_row_;                               ///< per row of L: below the panel at hand
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order_;  ///< Q
   Eigen::MatrixXd change_;
   mutable std::vector<double> ordered_, gathered_;
