@@ -39,8 +39,6 @@ class MassLevels {
   double raise(std::span<const StiffElement> stiff, std::span<const double> base, std::span<const double> unseen);
   /// Lets levels come down to the stiffest moment since the last time, with room; tets that were not told lose theirs.
   void settle();
-  /// The largest level per block, not below `base`.
-  std::vector<double> largest(std::span<const double> base) const;
   /// Mass of the vertices of tets above `base`.
   /// @param viscous  per block, whether viscosity grows with its tets  @param step  h [s]  @param weight  on stiffness
   /// @param masses  [out] ascending by vertex

@@ -361,7 +361,7 @@ bool StepControl::accept(std::span<const double> stiffening, std::span<const Sti
     if (!std::isfinite(r)) return true;  // the state is beyond repair; the step reports that it is not finite
   }
   if (heavy_step_) {
-    bear(stiff);
+    bear(stiffening, stiff);
     return true;
   }
   const std::span<const StiffElement> few = without_crowd(stiff);

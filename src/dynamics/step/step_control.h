@@ -208,8 +208,9 @@ class StepControl : StepChoice {
   // levels (step_levels.cpp)
   std::vector<char> thickening() const;
   void choose_heavy(double wanted);
-  bool follow_inertia();
-  void bear(std::span<const StiffElement> stiff);
+  double step_without_masses(std::span<const double> stiffening) const;
+  bool follow_inertia(std::span<const double> stiffening);
+  void bear(std::span<const double> stiffening, std::span<const StiffElement> stiff);
   void list_from();
   AddedStiffness added_at(std::span<const double> level);
   void take_stiff();

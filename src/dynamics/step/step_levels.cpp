@@ -25,12 +25,14 @@ constexpr double kLadder = 0.9;                ///< of one level that is tried t
 constexpr int kMostInVain = 8;                 ///< steps of that ladder without a better one
 constexpr double kCostOfLevels = 2.0;          ///< of a tet with a level of its own, over that of a tet, a step
 constexpr double kMostRise = 1024.0;           ///< of stiffness that is looked at for a step
-constexpr double kMuchInertia = 0.05, kLittleInertia = 0.02;  ///< of added mass, of what acts on the body
-constexpr double kCloseToHeavy = 1.1;             ///< so far below the level of a block tets are told, for mass
-constexpr std::uint64_t kHeavyWindow = 64;        ///< [steps] after which levels for mass come down
-constexpr double kHeavyRegrowth = 1.2;            ///< of the step of variable mass scaling, in a short window
-constexpr double kLeastHeavyStep = 0.3;           ///< of what was asked for
-constexpr double kProbeDepth = 8.0;               ///< how far below the level of the blocks a probe looks
+/// Of added mass, of what acts on the body: from where it is too much, what it is brought down to, below which there may be more.
+constexpr double kMuchInertia = 0.04, kBearableInertia = 0.025, kLittleInertia = 0.015;
+constexpr double kCloseToHeavy = 1.2;       ///< so far below the level of a block tets are told, for mass
+constexpr double kHeavyRoom = 1.1;          ///< of what tets bear without mass, over the stiffness seen
+constexpr std::uint64_t kHeavyWindow = 64;  ///< [steps] after which levels for mass come down
+constexpr double kHeavyRegrowth = 1.095;    ///< of the step of variable mass scaling, a step: below √kCloseToHeavy
+constexpr double kLeastHeavyStep = 0.3;     ///< of what was asked for
+constexpr double kProbeDepth = 8.0;         ///< how far below the level of the blocks a probe looks
 constexpr std::size_t kFewTets = 64, kFewOf = 4;  ///< tets with levels of their own: so many and this part of all
 
 }  // namespace
@@ -119,25 +121,36 @@ void StepControl::choose_heavy(double wanted) {
   step_ = std::min(wanted, kSafety * now_.limits.pace);
 }
 
-/// Where inertia of added mass shows, the step falls to what tets bear without it; it comes back slowly.
-/// @return whether it is another one
-bool StepControl::follow_inertia() {
-  const double inertia = std::exchange(inertia_, 0.0);
-  double wanted = step_;
-  if (inertia > kMuchInertia) {
-    const double borne = kSafety * bound_at(mass_levels_->largest(rest_.level)).pace;
-    wanted = std::min(step_, std::max(borne, kLeastHeavyStep * *heavy_step_));
-  } else if (inertia < kLittleInertia && in_window_ % kShortWindow == 0) {
-    wanted = std::min(kHeavyRegrowth * step_, *heavy_step_);
+/// What tets bear without added mass at the present stiffness [s].
+double StepControl::step_without_masses(std::span<const double> stiffening) const {
+  std::vector<double> level = rest_.level;
+  for (std::size_t b = 0; b < level.size(); ++b) {
+    if (!is_linear(body_.blocks[b])) level[b] = std::max(level[b], kHeavyRoom * stiffening[b]);
   }
-  wanted = std::min(wanted, kSafety * drag_limit_);
+  return kSafety * bound_at(level).pace;
+}
+
+/// Where inertia of added mass shows, the step falls to where it hardly does: mass goes with h² less what tets bear without it. The
+/// step comes back by as much as tets are told of before they need mass.
+/// @return whether it is another one
+bool StepControl::follow_inertia(std::span<const double> stiffening) {
+  const double inertia = std::exchange(inertia_, 0.0);
+  const double most = std::min(*heavy_step_, kSafety * std::min(drag_limit_, bound_at(rest_.level).pace));
+  double wanted = std::min(step_, most);
+  if (inertia > kMuchInertia) {
+    const double borne = std::min(step_, step_without_masses(stiffening)), share = kBearableInertia / inertia;
+    wanted = std::sqrt(share * step_ * step_ + (1.0 - share) * borne * borne);
+    wanted = std::min({step_, most, std::max(wanted, kLeastHeavyStep * *heavy_step_)});
+  } else if (inertia < kLittleInertia) {
+    wanted = std::min(kHeavyRegrowth * step_, most);
+  }
   if (wanted == step_) return false;
   choose_heavy(wanted);
   return true;
 }
 
 /// Variable mass scaling: stiff tets take levels of their own, and their vertices mass in the place of a shorter step.
-void StepControl::bear(std::span<const StiffElement> stiff) {
+void StepControl::bear(std::span<const double> stiffening, std::span<const StiffElement> stiff) {
   unchecked_ = false;
   const std::vector<double> listed = list_above_;
   const bool settles = ++in_window_ % kHeavyWindow == 0, above = !mass_levels_->bear(stiff, now_.level);
@@ -146,7 +159,7 @@ void StepControl::bear(std::span<const StiffElement> stiff) {
     rise = mass_levels_->raise(stiff, now_.level, listed_before_);
     if (settles) mass_levels_->settle();
   }
-  if (follow_inertia() || above || settles) take_stiff();
+  if (follow_inertia(stiffening) || above || settles) take_stiff();
   be_cautious(above ? rise : 1.0);
   listed_before_ = listed;
 }
