@@ -1,4 +1,7 @@
 // bind_implicit.cpp — bodies of shapes or of any function of a point, their mesher, and the liver.
+#include <sstream>
+#include <typeinfo>
+
 #include "bind.h"
 #include "glisson/implicit.h"
 #include "glisson/liver.h"
@@ -11,6 +14,22 @@ namespace glisson::python {
 namespace {
 
 using Shapes = std::vector<Solid>;
+using OfPoint = std::function<double(const Vec3d&)>;
+
+/// The function, with a message where it gives something else than a number. @param name  as the caller knows it
+OfPoint with_message(OfPoint f, const char* name) {
+  if (!f) return f;
+  return [f = std::move(f), name](const Vec3d& point) {
+    try {
+      return f(point);
+    } catch (const std::bad_cast&) {
+      std::ostringstream text;
+      text << name << ": gave no number at (" << point.x << ", " << point.y << ", " << point.z
+           << ") m; return a float in metres";
+      throw nb::type_error(text.str().c_str());
+    }
+  };
+}
 
 void bind_shapes(nb::module_& m) {
   Options<BallShape>(m, "BallShape");
@@ -34,8 +53,8 @@ void bind_solid(nb::module_& m) {
       .def(nb::init_implicit<HalfSpaceShape>(), "shape"_a)
       .def_static(
           "from_function",
-          [](std::function<double(const Vec3d&)> distance, const Vec3d& min, const Vec3d& max) {
-            return Solid(std::move(distance), {min, max});
+          [](OfPoint distance, const Vec3d& min, const Vec3d& max) {
+            return Solid(with_message(std::move(distance), "distance"), {min, max});
           },
           "distance"_a, "min"_a, "max"_a,
           "Any function of a point [m]: negative inside, outside at most the distance, of its size near the surface; "
@@ -91,7 +110,6 @@ void bind_surfaces(nb::module_& m) {
       "file"_a, "scale"_a = 1.0, doc("read_surface"));
 }
 
-using SizeAt = std::function<double(const Vec3d&)>;
 using Made = std::pair<TetMesh, RegionMeshReport>;
 
 Made made(RegionMesh mesh) { return {std::move(mesh.mesh), std::move(mesh.report)}; }
@@ -123,18 +141,20 @@ void bind_mesher(nb::module_& m) {
   m.def(
       "mesh_regions",
       [](const std::vector<BodyRegion>& regions, double edge, std::size_t max_tets, const std::vector<MeshSize>& sizes,
-         double growth, SizeAt size_at) {
+         double growth, OfPoint size_at) {
         const auto go_on = [](double) { return PyErr_CheckSignals() == 0; };
-        return made(mesh_regions(regions, {edge, max_tets, go_on, sizes, growth, std::move(size_at)}));
+        return made(
+            mesh_regions(regions, {edge, max_tets, go_on, sizes, growth, with_message(std::move(size_at), "size_at")}));
       },
       "regions"_a, "edge"_a, "max_tets"_a = RegionMeshOptions{}.max_tets, "sizes"_a = std::vector<MeshSize>{},
       "growth"_a = kGrowth, "size_at"_a = nb::none(), doc("mesh_regions"));
   m.def(
       "edges_asked",
       [](const TetMesh& mesh, const std::vector<BodyRegion>& regions, double edge, const std::vector<MeshSize>& sizes,
-         double growth, SizeAt size_at) {
-        return scalars(edges_asked(mesh, regions,
-                                   {.edge = edge, .sizes = sizes, .growth = growth, .size_at = std::move(size_at)}));
+         double growth, OfPoint size_at) {
+        return scalars(edges_asked(
+            mesh, regions,
+            {.edge = edge, .sizes = sizes, .growth = growth, .size_at = with_message(std::move(size_at), "size_at")}));
       },
       "mesh"_a, "regions"_a, "edge"_a, "sizes"_a = std::vector<MeshSize>{}, "growth"_a = kGrowth,
       "size_at"_a = nb::none(), doc("edges_asked"));

@@ -44,6 +44,8 @@ def test_a_size_is_any_function_of_a_point():
     lengths = np.mean([np.linalg.norm(corners[:, i] - corners[:, j], axis=1) for i, j in pairs], axis=0)
     middle = np.linalg.norm(corners.mean(axis=1), axis=1) < 0.008
     assert lengths[middle].mean() == pytest.approx(0.004, rel=0.05)
+    with pytest.raises(TypeError, match=r"size_at: gave no number at \(.*\) m; return a float in metres"):
+        glisson.mesh_regions(regions, edge=0.01, size_at=lambda p: "fine")
     with pytest.raises(ValueError, match=r"size_at gives -1 m at \("):
         glisson.mesh_regions(regions, edge=0.01, size_at=lambda p: -1.0)
     with pytest.raises(ZeroDivisionError):
