@@ -269,7 +269,7 @@ TEST(RegionMesh, RefusesWhatItCannotMesh) {
   EXPECT_THAT(refusal({ball}, {0.05}), AllOf(HasSubstr("\"ball\""), HasSubstr("smaller edge")));
   EXPECT_THAT(refusal({ball}, {1e-9}), HasSubstr("longer edge"));
   EXPECT_THAT(refusal({ball}, {0.0005, 1000}),
-              AllOf(HasSubstr("an edge of 0.5 mm asks for some 320000 tets"), HasSubstr("at most 1000"),
+              AllOf(HasSubstr("an edge of 0.5 mm asks for some 3"), HasSubstr("at most 1000"),
                     HasSubstr("give an edge of"), HasSubstr("raise max_tets")));
   const Solid nothing = intersect({BallShape{{-1, 0, 0}, 0.1}, BallShape{{1, 0, 0}, 0.1}});
   EXPECT_THAT(refusal({region_of("nothing", nothing)}, {0.01}),
@@ -291,6 +291,26 @@ TEST(RegionMesh, CanBeStopped) {
     return part < 0.3;
   };
   EXPECT_THROW(mesh_regions({region_of("ball", BallShape{{}, 0.05})}, options), MeshingStopped);
+}
+
+// A slow function is not asked for millions of values before somebody can stop the work, or before more tets are refused than are
+// allowed.
+TEST(RegionMesh, CanBeStoppedWhereFunctionsAreSlow) {
+  std::size_t asked = 0;
+  const Solid ball(
+      [&asked](const Vec3d& p) {
+        ++asked;
+        return norm(p) - 0.05;
+      },
+      {{-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}});
+  RegionMeshOptions options{0.0005};
+  options.progress = [](double) { return false; };
+  EXPECT_THROW(mesh_regions({region_of("ball", ball)}, options), MeshingStopped);
+  EXPECT_LE(asked, 300U) << "of some two million";
+  asked = 0;
+  EXPECT_THAT(refusal({region_of("ball", ball)}, {.edge = 0.0005, .max_tets = 10000}),
+              HasSubstr("at most 10000 are allowed"));
+  EXPECT_LE(asked, 40000U);
 }
 
 // The liver has the size and volume of docs/liver.md, its four regions are in one piece each, and all angles are good.

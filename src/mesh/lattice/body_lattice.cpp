@@ -20,6 +20,7 @@ namespace {
 
 constexpr int kBlock = 4;  ///< cubes a side of a block
 constexpr double kMaxCells = 4e8;
+constexpr double kCounted = 2.0;    ///< times as many tets as are allowed: from there on they are estimated
 constexpr double kBytesATet = 250;  ///< of the mesher and the mesh it returns; measured: 150
 
 class Lattice {
@@ -104,6 +105,21 @@ class Lattice {
         }
       }
     }
+    if (6.0 * static_cast<double>(inside_) > kCounted * static_cast<double>(max_tets_))
+      refuse_too_many(fields_.edge(), fields_.edge(), estimated_tets(), max_tets_);
+  }
+
+  /// By the volume, of some thousand points, not below what was counted so far.
+  double estimated_tets() const {
+    constexpr int kAside = 20;
+    const auto [low, high] = fields_.bounds();
+    const Vec3d step = (high - low) * (1.0 / kAside);
+    int hits = 0;
+    for (int n = 0; n < kAside * kAside * kAside; ++n) {
+      const Vec3d at{n % kAside + 0.5, n / kAside % kAside + 0.5, n / kAside / kAside + 0.5};
+      hits += fields_.filled(fields_.label(low + component_product(at, step))) ? 1 : 0;
+    }
+    return std::max(expected_tets(hits * step.x * step.y * step.z, fields_.edge()), 6.0 * static_cast<double>(inside_));
   }
 
   std::uint32_t vertex(bool is_centre, int i, int j, int k) {

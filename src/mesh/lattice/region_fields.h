@@ -1,6 +1,9 @@
 // region_fields.h — the regions' functions as the mesher asks for them: values, gradients, points drawn onto surfaces.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "glisson/region_mesh.h"
@@ -26,8 +29,9 @@ inline Mask surfaces_of(Mask labels) {
 /// Used by one thread.
 class RegionFields {
  public:
-  RegionFields(const std::vector<BodyRegion>& regions, const SizeField& sizes)
-      : regions_(regions), sizes_(sizes), gradients_(kRemembered) {}
+  /// @param now_and_then  called once in 256 values, however slow the functions are; may throw
+  RegionFields(const std::vector<BodyRegion>& regions, const SizeField& sizes, std::function<void()> now_and_then = {})
+      : regions_(regions), sizes_(sizes), now_and_then_(std::move(now_and_then)), gradients_(kRemembered) {}
 
   std::size_t count() const { return regions_.size(); }
   const BodyRegion& region(std::size_t k) const { return regions_[k]; }
@@ -43,7 +47,10 @@ class RegionFields {
   /// Whether such a region may reach a cube, given by its centre and half its side [m].
   bool reached(const Vec3d& centre, double half) const;
 
-  double value(std::size_t k, const Vec3d& p) const { return regions_[k].distance(p); }
+  double value(std::size_t k, const Vec3d& p) const {
+    if (++values_ % kNowAndThen == 0 && now_and_then_) now_and_then_();
+    return regions_[k].distance(p);
+  }
   /// By four points at the corners of a tetrahedron: of second order, and for a third of the cost of six.
   /// Those asked for lately are remembered: a vertex that does not move is asked about again.
   /// @param edge  length of edges asked for there [m]; also below
@@ -65,9 +72,12 @@ class RegionFields {
     Vec3d at{}, gradient{};
   };
   static constexpr std::size_t kRemembered = 1 << 15;
+  static constexpr std::uint64_t kNowAndThen = 256;
 
   const std::vector<BodyRegion>& regions_;
   const SizeField& sizes_;
+  std::function<void()> now_and_then_;
+  mutable std::uint64_t values_ = 0;           ///< asked for so far
   mutable std::vector<Remembered> gradients_;  ///< by the hash of place and region
 };
 

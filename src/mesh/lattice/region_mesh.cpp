@@ -150,14 +150,16 @@ std::vector<double> edges_asked(const TetMesh& mesh, const std::vector<BodyRegio
 
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options) {
   const auto start = std::chrono::steady_clock::now();
+  double done = 0.0;
   const auto go_on = [&](double part) {
+    done = part;
     if (options.progress && !options.progress(part)) throw MeshingStopped();
     return true;
   };
   require_regions(regions);
   require_edge(options.edge);
   SizeField sizes(regions, options);
-  const RegionFields fields(regions, sizes);
+  const RegionFields fields(regions, sizes, [&] { go_on(done); });
   sizes.find_finest(fields, options.max_tets);
   TetComplex complex;
   if (sizes.uniform()) {
