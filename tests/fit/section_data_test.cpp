@@ -184,6 +184,9 @@ TEST_F(Variants, OfUnitsAndMarksGiveTheSameCurve) {
                                           return with_comma(shown(v / (c == 0 ? 60.0 : c == 1 ? 10.0 : 1000.0)));
                                         }));
   expect_same(load("files = [\"german.csv\"]\n", folder_.path()), original_, 1e-7, 1e-10);
+  folder_.write("machine.csv", rewritten("Prüfzeit;Traversenweg;Standardkraft\ns;mm;N\n", ';', {0, 1, 2},
+                                         [](std::size_t, double v) { return with_comma(shown(v)); }));
+  expect_same(load("files = [\"machine.csv\"]\n", folder_.path()), original_, 1e-7, 1e-10);
   folder_.write("units.csv", rewritten("t\tx\tF\r\n(ms)\t(\xB5m)\t(mN)\r\n", '\t', {0, 1, 2},
                                        [](std::size_t, double v) { return shown(v * 1000.0); }));
   expect_same(load("files = [\"units.csv\"]\ncolumns.time.name = \"t\"\ncolumns.displacement.name = \"X\"\n"

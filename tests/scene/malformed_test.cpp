@@ -68,6 +68,8 @@ const std::vector<Mistake> kMistakes{
      "s.toml:9:1: fixed: expected a list of tables, each headed [[fixed]], got a table"},
     {"ListForTable", "", "[[tissue]]\nname = \"a\"\n", "s.toml:16:1: tissue: expected a table, got a list of 1"},
     {"NumberForTable", "[mesh]", "tissue = 5\n[mesh]", "s.toml:1:10: tissue: expected a table, got 5"},
+    {"KindForTable", "", "[tissue]\nlaw = \"linear\"\n",
+     "s.toml:17:7: tissue.law: expected a table, got text \"linear\"; write { kind = \"linear\" }"},
     {"Date", "", "start_s = 2024-01-01\n", "s.toml:16:11: tool.0.start_s: expected a number [s], got a date or time"},
     {"NotFinite", "", "[motion]\ngravity_m_s2 = [0, 0, -inf]\n",
      "s.toml:17:23: motion.gravity_m_s2.2: -inf m/s² is out of range; allowed: any finite number"},

@@ -255,8 +255,9 @@ const SectionSpec& columns_section() {
     Section<ColumnsSpec> s("data.columns",
                            "Meaning of the columns: one that is driven, one that answers, and the time. A column that "
                            "is not given is detected if exactly one name begins with a customary word: time; "
-                           "displacement, compression, extension, depth, …; force, load; stretch; strain; stress; "
-                           "shear; angle; torque; frequency. A file may hold several tests side by side: rows that "
+                           "displacement, compression, extension, depth, …; force, load (also in German, French or "
+                           "Spanish); stretch; strain; stress; shear; angle; torque; frequency. A file may hold "
+                           "several tests side by side: rows that "
                            "are empty in the columns of one are no rows of it.");
     s.table("time", column_section(), &ColumnsSpec::time, "time, in s, ms or min");
     s.table("displacement", column_section(), &ColumnsSpec::displacement,

@@ -6,10 +6,11 @@
 namespace glisson::fit {
 namespace {
 
-constexpr std::array<std::string_view, 3> kTimeWords{"time", "zeit", "temps"};
-constexpr std::array<std::string_view, 10> kDisplacementWords{"displacement", "compression", "extension", "position",
-                                                              "depth",        "indentation", "stroke",    "crosshead",
-                                                              "travel",       "weg"};
+constexpr std::array<std::string_view, 6> kTimeWords{"time", "test time", "zeit", "prüfzeit", "temps", "tiempo"};
+constexpr std::array<std::string_view, 17> kDisplacementWords{
+    "displacement", "compression", "extension",   "position",        "depth",         "indentation",
+    "stroke",       "crosshead",   "travel",      "standard travel", "weg",           "traversenweg",
+    "standardweg",  "verformung",  "deplacement", "déplacement",     "desplazamiento"};
 constexpr std::array<std::string_view, 3> kStrainWords{"strain", "engineering strain", "nominal strain"};
 constexpr std::array<std::string_view, 3> kStretchWords{"stretch", "lambda", "λ"};
 constexpr std::array<std::string_view, 4> kTrueStrainWords{"true strain", "true_strain", "log strain",
@@ -19,7 +20,8 @@ constexpr std::array<std::string_view, 6> kShearWords{"shear strain", "shear_str
                                                       "shear_amount", "gamma",        "γ"};
 constexpr std::array<std::string_view, 3> kAngleWords{"angle", "twist", "rotation"};
 constexpr std::array<std::string_view, 2> kFrequencyWords{"frequency", "freq"};
-constexpr std::array<std::string_view, 3> kForceWords{"force", "load", "kraft"};
+constexpr std::array<std::string_view, 7> kForceWords{"force",         "load",      "standard force", "kraft",
+                                                      "standardkraft", "prüfkraft", "fuerza"};
 constexpr std::array<std::string_view, 6> kStressWords{
     "stress", "nominal stress", "nominal_stress", "engineering stress", "engineering_stress", "shear stress"};
 constexpr std::array<std::string_view, 3> kCauchyWords{"cauchy", "true stress", "true_stress"};

@@ -146,7 +146,9 @@ void read_tables(const KeySpec& key, const Node& node, void* target, const Place
   const auto slot = [&](const std::string& name) { return target ? key.slot(target, name) : nullptr; };
   const bool right_type = key.shape == Shape::list ? node.array() != nullptr : node.table() != nullptr;
   if (!right_type) {
-    place.complain("expected " + expected(key) + ", got " + describe(node));
+    const bool names_kind = node.text() && key.shape == Shape::one && key.section && key.section->kind(*node.text());
+    place.complain("expected " + expected(key) + ", got " + describe(node) +
+                   (names_kind ? "; write { kind = \"" + *node.text() + "\" }" : ""));
   } else if (!key.section) {
     return;
   } else if (key.shape == Shape::one) {
