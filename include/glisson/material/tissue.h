@@ -86,18 +86,19 @@ struct Fibres {
 /// One branch of a generalised Maxwell body: μ(t) = μ₀ (1 − Σ g (1 − e^(−t/τ))). With a law of its time τ follows the
 /// tissue's measure of deformation, and the relaxation is no longer linear: dq/dt = (S − q)/τ(x) (docs/theory.md §7).
 struct MaxwellBranch {
-  double share = 0.0;                 ///< g, share of the instantaneous modulus that relaxes [-], > 0; sum < 1
+  double share = 0.0;                 ///< g, share of the instantaneous shear modulus that relaxes [-], > 0; sum < 1
   double time = 1.0;                  ///< τ [s], > 0
   std::optional<TimeLaw> time_law{};  ///< factor on τ as a function of the measure; none: constant
 
   template <class Take>
   static constexpr auto fields(Take take) {
-    return take(field("share", &MaxwellBranch::share, "-", strictly_between(0, 1),
-                      "g, share of the instantaneous modulus that relaxes; sum below 1")
-                    .must(),
-                field("time", &MaxwellBranch::time, "s", above(0), "τ, time constant").must(),
-                field("time_law", &MaxwellBranch::time_law, "law of τ, in the tissue's measure of deformation")
-                    .otherwise("τ constant"));
+    return take(
+        field("share", &MaxwellBranch::share, "-", strictly_between(0, 1),
+              "g, share of the instantaneous shear modulus that relaxes, of E with maxwell_part = \"all\"; sum below 1")
+            .must(),
+        field("time", &MaxwellBranch::time, "s", above(0), "τ, time constant").must(),
+        field("time_law", &MaxwellBranch::time_law, "law of τ, in the tissue's measure of deformation")
+            .otherwise("τ constant"));
   }
   bool operator==(const MaxwellBranch&) const = default;
 };
