@@ -14,6 +14,7 @@ namespace glisson::fit {
 struct Prediction {
   std::vector<double> force;  ///< [N]; as long as the curve, empty where the run failed
   std::string failure;        ///< why there is no force; empty: there is
+  bool reused = false;        ///< read from a run that was made before, for other values or another curve
 };
 
 /// A forward model of a set of curves. predict() may be called from many threads at once.

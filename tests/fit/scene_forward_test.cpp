@@ -9,6 +9,8 @@
 #include <numeric>
 
 #include "fit/data/curve_file.h"
+#include "fit/forward/offset_model.h"
+#include "fit/search/cached_model.h"
 #include "glisson/instruments/driven_set.h"
 #include "support/places.h"
 #include "support/scene_runs.h"
@@ -168,6 +170,102 @@ TEST(SceneModel, RunsSideBySide) {
   tbb::parallel_for(std::size_t{0}, all.size(),
                     [&](std::size_t i) { all[i] = model.predict(0, std::vector{5000.0}).force; });
   for (const auto& f : all) EXPECT_EQ(f, once);
+}
+
+/// A press that begins `first` into the file's displacements.
+Curve press_from(double first, double velocity, double depth, int points, const std::string& name = "press") {
+  Curve c = press(velocity, depth - first, points);
+  c.name = name;
+  for (double& d : c.displacement) d += first;
+  return c;
+}
+
+std::string quasi_static(const std::string& scene) {
+  const std::size_t at = scene.find("damping");
+  return scene.substr(0, at) + "integrator = \"quasi_static\"\nstep_s = 0.01\n" + scene.substr(scene.find("[[fixed]]"));
+}
+
+// A press at constant speed that meets the tissue elsewhere is read from one run. Equal steps of a static scheme are at the
+// same places in either run, so only the points between them and rounding are left; the explicit scheme samples ringing forces
+// elsewhere, and its means are over 1 % of another length of run.
+TEST(SceneModel, ReadsAnotherContactFromTheSameRun) {
+  const Curve curve = press_from(0.001, 0.01, 0.004, 31);
+  const std::vector<double> E{5000};
+  for (const bool still : {true, false}) {
+    const SceneText scene = made(still ? quasi_static(kBlock + kTool) : kBlock + kTool);
+    const std::vector<std::string> key{"tissue.youngs_modulus_Pa"};
+    const SceneModel shared(scene, key, {curve}, {.contacts = {{-0.001, 0.0008}}}), own(scene, key, {curve});
+    int runs = 0;
+    for (const double contact : {0.0, -0.001, -0.0003, 0.0008}) {
+      const Prediction read = shared.predict_from(0, E, contact);
+      ASSERT_EQ(read.failure, "");
+      if (!read.reused) ++runs;
+      const std::vector<double> made_for_it = force(own, E, contact);
+      for (std::size_t i = 0; i < made_for_it.size(); ++i)
+        EXPECT_NEAR(read.force[i], made_for_it[i], (still ? 1e-6 : 0.01) * largest(made_for_it)) << contact;
+    }
+    EXPECT_EQ(runs, 1);
+  }
+}
+
+// An instrument goes its approach first, in the shared run as in one of its own.
+TEST(SceneModel, ReadsAnotherContactAfterAnApproach) {
+  const Curve curve = press_from(0.001, 0.01, 0.004, 31);
+  const SceneModel shared(made(kBlock + kPunch), {}, {curve}, {.approach = 0.0005, .contacts = {{-0.001, 0.0008}}}),
+      own(made(kBlock + kPunch), {}, {curve}, {.approach = 0.0005});
+  const std::vector<double> made_for_it = force(own, {}, 0.0005), read = force(shared, {}, 0.0005);
+  EXPECT_GT(largest(read), 0.05);
+  for (std::size_t i = 0; i < read.size(); ++i) EXPECT_NEAR(read[i], made_for_it[i], 0.01 * largest(made_for_it));
+}
+
+// Zero of the force and contact are no runs of the scene; nor are repetitions that differ in them, whatever rows they have.
+TEST(SceneModel, RunsOnceForOffsetsAndRepetitions) {
+  const std::vector<Curve> curves{press_from(0.001, 0.01, 0.004, 31, "a"), press_from(0.0012, 0.01, 0.0039, 17, "b")};
+  const std::vector<Parameter> parameters{{.name = "tissue.youngs_modulus_Pa", .unit = {}, .low = 1e3, .high = 1e4},
+                                          {.name = "curve.a.contact_mm", .unit = {}, .low = -0.5, .high = 0.5},
+                                          {.name = "curve.b.contact_mm", .unit = {}, .low = -0.5, .high = 0.5},
+                                          {.name = "curve.force_offset_N", .unit = {}, .low = -1, .high = 1}};
+  std::vector<std::string> keys;
+  for (const Parameter& p : parameters) keys.push_back(p.name);
+  const std::vector<ContactRange> contacts = contact_ranges(parameters, curves);
+  EXPECT_DOUBLE_EQ(contacts[1].low, -0.0005);
+  const auto scene = std::make_shared<SceneModel>(made(kBlock + kTool), inner_keys(keys), curves,
+                                                  SceneModelOptions{.contacts = contacts});
+  const CachedModel model(std::make_shared<OffsetModel>(scene, keys), curves, {1, 1});
+  const std::vector<double> first = model.predict(0, std::vector{5000.0, 0.0, 0.0, 0.0}).force;
+  const std::vector<double> higher = model.predict(0, std::vector{5000.0, 0.0, 0.1, 0.25}).force;
+  ASSERT_EQ(first.size(), 31u);
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_DOUBLE_EQ(higher[i], first[i] + 0.25);
+  EXPECT_LT(model.predict(0, std::vector{5000.0, 0.5, 0.0, 0.0}).force.back(), first.back());
+  EXPECT_EQ(model.predict(1, std::vector{5000.0, 0.5, -0.5, 0.1}).force.size(), 17u);
+  EXPECT_EQ(model.runs(), 1u);
+  model.predict(1, std::vector{6000.0, 0.5, -0.5, 0.1});
+  EXPECT_EQ(model.runs(), 2u);
+}
+
+// What goes other than straight from rest has a run for each contact; a force offset is free there, too.
+TEST(SceneModel, RunsEachContactOfAHold) {
+  Curve held = press_from(0.001, 0.01, 0.004, 16);
+  held.time.push_back(held.time.back() + 0.1), held.displacement.push_back(0.004), held.force.push_back(0.0);
+  const SceneModel model(made(kBlock + kTool), {}, {held}, {.contacts = {{-0.001, 0.0005}}});
+  EXPECT_FALSE(model.predict_from(0, {}, 0.0).reused);
+  EXPECT_FALSE(model.predict_from(0, {}, 0.0002).reused);
+  EXPECT_TRUE(model.predict_from(0, {}, 0.0002).reused);
+}
+
+// A shared run that ends early serves the contacts that need no more of it; the others hear why.
+TEST(SceneModel, ReadsWhatARunLeftBeforeItFailed) {
+  const Curve deep = press_from(0.001, 0.1, 0.024, 24);
+  const std::string stops = "[motion]\non_inversion = \"stop\"\n", scene = quasi_static(kBlock + kTool);
+  const std::string careful =
+      scene.substr(0, scene.find("[motion]\n")) + stops + scene.substr(scene.find("integrator"));
+  const SceneModel model(made(careful), {}, {deep}, {.contacts = {{-0.008, 0.0008}}});  // the block is 30 mm high
+  const Prediction shallow = model.predict_from(0, {}, 0.0008), beyond = model.predict_from(0, {}, -0.008);
+  EXPECT_EQ(shallow.failure, "");
+  EXPECT_EQ(shallow.force.size(), deep.size());
+  EXPECT_TRUE(beyond.reused);
+  EXPECT_TRUE(beyond.force.empty());
+  EXPECT_THAT(beyond.failure, HasSubstr("curve \"press\": the run stopped at "));
 }
 
 /// A shipped file of the container's scene.

@@ -13,103 +13,16 @@
 #include <set>
 #include <stdexcept>
 
+#include "fit/forward/candidates.h"
 #include "fit/forward/indentation_model.h"
 #include "fit/forward/offset_model.h"
 
 namespace glisson::fit {
 namespace {
 
-using Adjust = std::function<void(Variant&, double)>;
 /// Runs that are shorter than this are not broken off [s].
 constexpr double kShortest = 0.02;
 constexpr double kEver = std::numeric_limits<double>::infinity();
-
-struct Candidate {
-  std::string name;
-  Adjust adjust;
-  double factor = 0.0;  ///< of density, for explicit steps that still have to be found; 0: complete
-  Integrator integrator{};
-  int steps = 0;  ///< as of Rung
-};
-
-bool is_viscous(const Tissue& t) { return t.viscosity > 0.0; }
-template <class Test>
-bool any_tissue(const Variant& v, Test test) {
-  return test(v.tissue) ||
-         std::any_of(v.regions.begin(), v.regions.end(), [&](const RegionSpec& r) { return test(r.tissue); });
-}
-bool supports_every_integrator(const Variant& v) { return v.instruments.empty() && v.capsules.empty() && !v.container; }
-
-Adjust stepping(Integrator integrator, int steps) {
-  return [=](Variant& v, double duration) {
-    v.simulation.integrator = integrator;
-    v.simulation.step = duration / steps;
-  };
-}
-Adjust own_step(Integrator integrator) {
-  return [=](Variant& v, double) {
-    v.simulation.integrator = integrator;
-    v.simulation.step.reset();
-    v.simulation.precision = Precision::single_precision;
-  };
-}
-/// Slow presses hardly move mass: ρ × factor lengthens the explicit step by √factor. Damping keeps its share of critical.
-/// @param step  [s], the same at all parameters: steps that follow the tissue make the force rough in them; 0: automatic
-Adjust heavier(double factor, double step) {
-  return [=](Variant& v, double) {
-    v.tissue.density *= factor;
-    for (RegionSpec& r : v.regions) r.tissue.density *= factor;
-    v.simulation.damping_rate /= std::sqrt(factor);
-    v.simulation.step.reset();
-    if (step > 0.0) v.simulation.step = step;
-    v.simulation.precision = Precision::single_precision;
-    v.simulation.exact_steps = false;
-  };
-}
-
-/// The scene as the reference: its own settings, or those of the integrator asked for. Implicit and static runs without a step
-/// of their own take 400, or 2000 where the past counts: backward Euler is of first order.
-Adjust reference(const ForwardSpec& spec) {
-  return [asked = spec.integrator](Variant& v, double duration) {
-    const Integrator integrator = asked.value_or(v.simulation.integrator);
-    const bool long_steps = capabilities(integrator).any_step_is_stable;
-    const bool own = !asked && (v.simulation.step || v.simulation.implicit.largest_step);
-    if (long_steps && !own) stepping(integrator, any_tissue(v, has_past) ? 2000 : 400)(v, duration);
-    if (!long_steps && asked) own_step(integrator)(v, duration);
-  };
-}
-
-Candidate equal_steps(const char* name, Integrator integrator, int steps) {
-  return {.name = std::string(name) + ", " + std::to_string(steps) + " steps",
-          .adjust = stepping(integrator, steps),
-          .integrator = integrator,
-          .steps = steps};
-}
-
-std::vector<Candidate> candidates(const Variant& v, const ForwardSpec& spec) {
-  std::vector<Candidate> list;
-  const bool viscous = any_tissue(v, is_viscous), past = any_tissue(v, has_past);
-  if (supports_every_integrator(v)) {
-    if (!past) {
-      for (const int steps : {10, 40}) list.push_back(equal_steps("static", Integrator::quasi_static, steps));
-    }
-    for (const int steps : {25, 100, 400}) list.push_back(equal_steps("implicit", Integrator::implicit, steps));
-  }
-  if (viscous && supports_every_integrator(v))
-    list.push_back({.name = "semi-implicit", .adjust = own_step(Integrator::semi_implicit)});
-  const Integrator own = spec.integrator.value_or(v.simulation.integrator);
-  const bool explicit_like = capabilities(own).supports(viscous);
-  if (!explicit_like) list.push_back({.name = "explicit", .adjust = own_step(Integrator::central_difference)});
-  if (explicit_like && !viscous) {
-    for (const double factor : {100.0, 10.0, 1.0}) {
-      char name[64];
-      std::snprintf(name, sizeof name, factor > 1.0 ? "explicit, %g times as heavy" : "explicit, steps of one size",
-                    factor);
-      list.push_back({.name = name, .adjust = {}, .factor = factor});
-    }
-  }
-  return list;
-}
 
 /// One curve of each group; of those without a group each.
 std::vector<std::size_t> one_of_each_group(std::span<const Curve> curves) {
@@ -165,26 +78,8 @@ double allowance(const Curve& curve, const std::vector<double>& force, double to
 
 using Forces = std::vector<std::vector<double>>;  ///< of each curve that is compared
 
-/// Forces at one place; empty with a failure where one of them does not run.
-Forces run(const Model& model, const std::vector<std::size_t>& curves, std::span<const double> values,
-           std::string& failure) {
-  Forces forces;
-  for (const std::size_t c : curves) {
-    Prediction p = model.predict(c, values);
-    if (p.force.empty()) {
-      failure = p.failure;
-      return {};
-    }
-    forces.push_back(std::move(p.force));
-  }
-  return forces;
-}
-
-/// The same with the curves side by side, where nobody looks at the clock.
-Forces run_side_by_side(const Model& model, const std::vector<std::size_t>& curves, std::span<const double> values,
-                        std::string& failure) {
-  std::vector<Prediction> runs(curves.size());
-  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t c) { runs[c] = model.predict(curves[c], values); });
+/// Those of some runs; empty with a failure where one of them has none.
+Forces forces_of(std::vector<Prediction> runs, std::string& failure) {
   Forces forces;
   for (Prediction& p : runs) {
     if (p.force.empty()) {
@@ -194,6 +89,23 @@ Forces run_side_by_side(const Model& model, const std::vector<std::size_t>& curv
     forces.push_back(std::move(p.force));
   }
   return forces;
+}
+
+/// At one place, up to the first that does not run.
+Forces run(const Model& model, const std::vector<std::size_t>& curves, std::span<const double> values,
+           std::string& failure) {
+  std::vector<Prediction> runs;
+  for (std::size_t c = 0; c < curves.size() && (c == 0 || !runs.back().force.empty()); ++c)
+    runs.push_back(model.predict(curves[c], values));
+  return forces_of(std::move(runs), failure);
+}
+
+/// The same with the curves side by side, where nobody looks at the clock.
+Forces run_side_by_side(const Model& model, const std::vector<std::size_t>& curves, std::span<const double> values,
+                        std::string& failure) {
+  std::vector<Prediction> runs(curves.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t c) { runs[c] = model.predict(curves[c], values); });
+  return forces_of(std::move(runs), failure);
 }
 
 /// Makes all models from one description.
@@ -212,7 +124,8 @@ struct Maker {
             .load = problem.load,
             .adjust = std::move(adjust),
             .stop = problem.stop,
-            .longest = longest};
+            .longest = longest,
+            .contacts = contact_ranges(problem.parameters, problem.curves)};
   }
   std::shared_ptr<const Model> with_offsets(std::shared_ptr<const MotionModel> model) const {
     if (inner.size() == keys.size()) return model;
@@ -266,15 +179,15 @@ struct Maker {
   }
   /// Three quarters of the smallest step that tissue 100 times as heavy ends with at any of the places, for ρ × 1.
   double explicit_step(std::size_t curve, const std::vector<std::vector<double>>& places) const {
-    const auto trial = scene(heavier(100.0, 0.0));
-    double least = 0.0;
-    for (const auto& place : places) {
+    const auto trial = scene(heavier_tissue(100.0, 0.0));
+    std::vector<double> steps(places.size(), kEver);
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
       try {
-        const double step = trial->last_step(curve, inner_values(place));
-        least = least > 0.0 ? std::min(least, step) : step;
+        steps[i] = trial->last_step(curve, inner_values(places[i]));
       } catch (const std::exception&) {  // a place where nothing runs says nothing
       }
-    }
+    });
+    const double found = *std::min_element(steps.begin(), steps.end()), least = std::isfinite(found) ? found : 0.0;
     return 0.75 * least / std::sqrt(100.0);
   }
 };
@@ -283,19 +196,23 @@ double seconds(std::chrono::steady_clock::time_point from) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
 }
 
+using Trial = std::function<std::shared_ptr<const Model>()>;
+
 /// What the scene itself gives at each place; empty where it does not run.
 struct Comparison {
   const ForwardProblem& problem;
   const Ladder& ladder;
   std::vector<Forces> truth;
 
-  /// Runs a model at a place; at the start short runs are made again, and the shortest is the cost.
-  Forces timed_run(Rung& rung, const Model& model, std::size_t place) const {
-    if (place != 0) return run_side_by_side(model, ladder.compared, ladder.places[place], rung.failure);
+  /// Runs a model at a place; at the start short runs are made again, by a model that has not made them yet, and the
+  /// shortest is the cost.
+  Forces timed_run(Rung& rung, const Trial& trial, std::shared_ptr<const Model>& model, std::size_t place) const {
+    if (place != 0) return run_side_by_side(*model, ladder.compared, ladder.places[place], rung.failure);
     Forces forces;
     for (int i = 0; i < 5; ++i) {
+      model = trial();
       const auto begin = std::chrono::steady_clock::now();
-      forces = run(model, ladder.compared, ladder.places[place], rung.failure);
+      forces = run(*model, ladder.compared, ladder.places[place], rung.failure);
       const double cost = seconds(begin);
       rung.cost = i == 0 ? cost : std::min(rung.cost, cost);
       if (cost > 0.02) break;
@@ -303,11 +220,12 @@ struct Comparison {
     return forces;
   }
   /// Runs a model at all places and notes cost and error; only at the start where one that serves costs less already. A
-  /// place where the scene fails says nothing. @param model  as the rung's, perhaps with an end to its patience
-  void measure(Rung& rung, const Model& model, double best_cost) const {
+  /// place where the scene fails says nothing. @param trial  makes the rung's model, perhaps with an end to its patience
+  void measure(Rung& rung, const Trial& trial, double best_cost) const {
+    std::shared_ptr<const Model> model;
     for (std::size_t place = 0; place < truth.size() && rung.failure.empty(); ++place) {
       if (truth[place].empty()) continue;
-      const Forces forces = timed_run(rung, model, place);
+      const Forces forces = timed_run(rung, trial, model, place);
       for (std::size_t c = 0; c < forces.size(); ++c) {
         const double error = rms(forces[c], truth[place][c]);
         const Curve& curve = problem.curves[ladder.compared[c]];
@@ -342,7 +260,7 @@ std::vector<Forces> true_forces(Ladder& ladder) {
   for (std::size_t place = 0; place < truth.size(); ++place) {
     for (std::size_t c = 0; c < curves; ++c) {
       Truth& one = runs[place * curves + c];
-      if (place == 0) ladder.rungs[0].cost += one.cost;
+      if (place == 0 && !one.prediction.reused) ladder.rungs[0].cost += one.cost;
       if (one.prediction.force.empty()) {
         if (place == 0)
           throw std::runtime_error("the scene does not run at the start of the parameters: " + one.prediction.failure);
@@ -386,7 +304,7 @@ Ladder choose_forward(const ForwardProblem& problem) {
   }
   ladder.compared = one_of_each_group(problem.curves);
   ladder.places = places_of(problem.parameters, problem.spec.points);
-  const std::shared_ptr<const SceneModel> scene = make.scene(reference(problem.spec));
+  const std::shared_ptr<const SceneModel> scene = make.scene(reference_run(problem.spec));
   const Variant variant = scene->variant(0, make.inner_values(ladder.places[0]));
   const std::optional<Specimen> size = homogeneous_specimen(variant, make.options({}, kEver));
   if (problem.spec.kind == ForwardKind::uniaxial) {
@@ -403,28 +321,29 @@ Ladder choose_forward(const ForwardProblem& problem) {
 
   const bool known = !problem.taken.empty();
   const auto wanted = [&](const std::string& name) { return !known || name == problem.taken; };
-  const auto try_out = [&](Rung rung, const Model& trial) {
+  const auto try_out = [&](Rung rung, const Trial& trial) {
     comparison.measure(rung, trial, known ? kEver : patience(ladder));
     ladder.rungs.push_back(std::move(rung));
     const Rung& last = ladder.rungs.back();
     if (last.serves() && (known || last.cost < patience(ladder))) ladder.chosen = ladder.rungs.size() - 1;
   };
   if (const auto specimen = size && wanted("specimen") ? make.specimen(*size) : nullptr)
-    try_out({.name = "specimen", .failure = {}, .model = specimen}, *specimen);
+    try_out({.name = "specimen", .failure = {}, .model = specimen}, [&] { return specimen; });
   double step = 0.0;
-  for (Candidate& c : candidates(variant, problem.spec)) {
-    if (!wanted(c.name)) continue;
+  bool heavier_serves = false;
+  for (ForwardCandidate& c : forward_candidates(variant, problem.spec)) {
     const bool own_steps = c.factor > 0.0;
+    if (!wanted(c.name) || (own_steps && heavier_serves)) continue;  // a lighter one takes shorter steps
     if (own_steps && step == 0.0) step = make.explicit_step(ladder.compared[0], ladder.places);
-    if (own_steps) c.adjust = heavier(c.factor, step * std::sqrt(c.factor));
+    if (own_steps) c.adjust = heavier_tissue(c.factor, step * std::sqrt(c.factor));
     const double longest = known ? kEver : std::max(kShortest, patience(ladder));
-    const auto trial = make.with_offsets(make.scene(c.adjust, longest, own_steps));
     try_out({.name = c.name,
              .failure = {},
              .model = make.with_offsets(make.scene(c.adjust, kEver, own_steps)),
              .integrator = c.integrator,
              .steps = c.steps},
-            *trial);
+            [&] { return make.with_offsets(make.scene(c.adjust, longest, own_steps)); });
+    heavier_serves = heavier_serves || (own_steps && ladder.rungs.back().serves());
   }
   if (known && ladder.taken().name != problem.taken)
     throw std::invalid_argument(
@@ -442,7 +361,7 @@ std::shared_ptr<const Model> model_for(const Ladder& ladder, const ForwardProble
     longest = std::max(longest, compared.curves[c].time.back() - compared.curves[c].time.front());
   const auto adjust = [integrator = taken.integrator, steps = taken.steps, longest](Variant& v, double duration) {
     const double share = longest > 0.0 ? std::max(1.0, duration / longest) : 1.0;
-    stepping(integrator, static_cast<int>(std::ceil(steps * share - 1e-9)))(v, duration);
+    equal_stepping(integrator, static_cast<int>(std::ceil(steps * share - 1e-9)))(v, duration);
   };
   const Maker make(other);
   return make.with_offsets(make.scene(adjust));

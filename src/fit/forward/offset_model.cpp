@@ -9,6 +9,21 @@ constexpr std::string_view kPrefix = "curve.", kContact = "contact_mm", kForce =
 
 bool ends_with(std::string_view text, std::string_view end) { return text.size() >= end.size() && text.ends_with(end); }
 
+/// A curve key taken apart.
+struct CurveKey {
+  bool force = false;
+  std::string curve;  ///< empty: all
+};
+
+CurveKey curve_key(const std::string& key) {
+  const bool force = ends_with(key, kForce);
+  const std::size_t last = key.size() - (force ? kForce : kContact).size() - 1;  // the dot before it
+  std::string name;
+  if (last >= kPrefix.size()) name = key.substr(kPrefix.size(), last - kPrefix.size());
+  if (name.size() >= 2 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
+  return {force, name};
+}
+
 }  // namespace
 
 bool is_curve_key(const std::string& key) {
@@ -24,6 +39,20 @@ std::vector<std::string> inner_keys(std::span<const std::string> keys) {
   return inner;
 }
 
+std::vector<ContactRange> contact_ranges(std::span<const Parameter> parameters, std::span<const Curve> curves) {
+  std::vector<ContactRange> ranges(curves.size());
+  for (const Parameter& p : parameters) {
+    if (!is_curve_key(p.name)) continue;
+    const auto [force, name] = curve_key(p.name);
+    for (std::size_t c = 0; c < curves.size() && !force; ++c) {
+      if (!name.empty() && curves[c].name != name) continue;
+      ranges[c].low += 1e-3 * p.low;
+      ranges[c].high += 1e-3 * p.high;
+    }
+  }
+  return ranges;
+}
+
 OffsetModel::OffsetModel(std::shared_ptr<const MotionModel> inner, std::span<const std::string> keys)
     : inner_(std::move(inner)) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -31,11 +60,7 @@ OffsetModel::OffsetModel(std::shared_ptr<const MotionModel> inner, std::span<con
       passed_.push_back(i);
       continue;
     }
-    const bool force = ends_with(keys[i], kForce);
-    const std::size_t last = keys[i].size() - (force ? kForce : kContact).size() - 1;  // the dot before it
-    std::string name;
-    if (last >= kPrefix.size()) name = keys[i].substr(kPrefix.size(), last - kPrefix.size());
-    if (name.size() >= 2 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
+    const auto [force, name] = curve_key(keys[i]);
     bool known = name.empty();
     std::string names;
     for (std::size_t c = 0; c < inner_->curves(); ++c) {

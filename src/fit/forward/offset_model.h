@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fit/forward/motion_model.h"
+#include "fit/forward/steady_press.h"
 
 namespace glisson::fit {
 
@@ -26,7 +27,6 @@ class OffsetModel final : public Model {
   Prediction predict(std::size_t curve, std::span<const double> values) const override;
 
  private:
-  /// A key taken apart.
   struct Offset {
     std::size_t parameter = 0;
     bool force = false;
@@ -36,6 +36,9 @@ class OffsetModel final : public Model {
   std::vector<Offset> offsets_;
   std::vector<std::size_t> passed_;
 };
+
+/// Where each curve may meet the tissue within the bounds of the parameters, whose names are keys [m].
+std::vector<ContactRange> contact_ranges(std::span<const Parameter> parameters, std::span<const Curve> curves);
 
 /// The keys that are not curve keys, in their order.
 std::vector<std::string> inner_keys(std::span<const std::string> keys);

@@ -82,38 +82,6 @@ class ForceRecorder final : public RunObserver {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// What a load cell shows of forces that ring: means over 1 % of the run before and after an instant, less near its ends, of
-/// straight lines between the samples.
-class ForceMeans {
- public:
-  ForceMeans(const std::vector<double>& times, const std::vector<double>& forces)
-      : times_(times), forces_(forces), sums_(times.size()) {
-    for (std::size_t i = 1; i < times.size(); ++i)
-      sums_[i] = sums_[i - 1] + 0.5 * (forces[i] + forces[i - 1]) * (times[i] - times[i - 1]);
-  }
-  double at(double time) const {
-    const double first = times_.front(), last = times_.back();
-    const double half = std::min({0.01 * (last - first), time - first, last - time});
-    if (half > 1e-9 * (last - first)) return (sum(time + half) - sum(time - half)) / (2.0 * half);
-    return time <= first ? forces_.front() : (time >= last ? forces_.back() : line(time, piece(time)));
-  }
-
- private:
-  std::size_t piece(double time) const {
-    const auto it = std::upper_bound(times_.begin() + 1, times_.end() - 1, time);
-    return static_cast<std::size_t>(it - times_.begin()) - 1;
-  }
-  double line(double time, std::size_t i) const {
-    return forces_[i] + (forces_[i + 1] - forces_[i]) * (time - times_[i]) / (times_[i + 1] - times_[i]);
-  }
-  double sum(double time) const {
-    const std::size_t i = piece(time);
-    return sums_[i] + 0.5 * (forces_[i] + line(time, i)) * (time - times_[i]);
-  }
-  const std::vector<double>&times_, &forces_;
-  std::vector<double> sums_;
-};
-
 bool rings(const Variant& v) { return !capabilities(v.simulation.integrator).any_step_is_stable; }
 
 const char* end_words(RunSummary::End end) {
@@ -135,6 +103,11 @@ const char* end_words(RunSummary::End end) {
       return "supports and tools leave a rigid motion free";
   }
   return "";
+}
+
+bool same_motion(const Curve& a, const Curve& b) {
+  return a.time == b.time && a.displacement == b.displacement && a.past_time == b.past_time &&
+         a.past_displacement == b.past_displacement && a.velocity == b.velocity && a.measurement == b.measurement;
 }
 
 bool is_viscous(const Variant& v) {
@@ -194,8 +167,17 @@ MeshLoader kept_meshes(MeshLoader load) {
 SceneModel::SceneModel(const SceneText& scene, std::span<const std::string> keys, std::vector<Curve> curves,
                        SceneModelOptions options)
     : MotionModel(std::move(curves)), scene_(scene.text, scene.name, scene.base, scene.overrides, scene.variant, keys),
-      options_(std::move(options)) {
-  for (std::size_t i = 0; i < this->curves(); ++i) require_curves({&curve(i), 1});
+      options_(std::move(options)), recordings_(options_.recordings) {
+  std::vector<Curve> all;
+  for (std::size_t i = 0; i < this->curves(); ++i) {
+    require_curves({&curve(i), 1});
+    all.push_back(curve(i));
+    same_motion_.push_back(i);
+    for (std::size_t k = 0; k < i && same_motion_[i] == i; ++k) {
+      if (same_motion(all[k], all[i])) same_motion_[i] = k;
+    }
+  }
+  steady_ = steady_presses(all, options_.contacts);
   options_.load = kept_meshes(std::move(options_.load));
 }
 
@@ -207,29 +189,47 @@ double SceneModel::approach_time(const Curve& c) const {
   return speed > 0.0 ? options_.approach / speed : c.time.back();
 }
 
+SceneModel::Motion SceneModel::motion(std::size_t index, double contact) const {
+  const Curve& c = curve(index);
+  if (const SteadyPress* press = press_of(index, contact)) {
+    Curve line;
+    line.name = c.name, line.velocity = press->speed;
+    line.time = {0.0, press->depth / press->speed};
+    line.displacement = {0.0, press->depth};
+    return {History(line), approach_time(line), press->duration + approach_time(line), press->points};
+  }
+  History history(c, contact);
+  const double before = approach_time(c), duration = history.end() - history.begin() + before;
+  return {std::move(history), before, duration, c.size()};
+}
+
+const SteadyPress* SceneModel::press_of(std::size_t index, double contact) const {
+  const bool within = options_.contacts.empty() ? contact == 0.0 : options_.contacts[index].holds(contact);
+  return within && steady_.of[index] ? &steady_.presses[*steady_.of[index]] : nullptr;
+}
+
 Variant SceneModel::variant(std::size_t index, std::span<const double> values, double contact) const {
   Variant v = scene_.with(values);
-  const Curve& c = curve(index);
-  const History history(c, contact);
-  const double before = approach_time(c), duration = history.end() - history.begin() + before;
+  const Motion m = motion(index, contact);
+  const double duration = m.way.end() - m.way.begin() + m.approach_time;
   const Part part = moving_part(v, options_.tool);
   if (part.index < v.tools.size()) {
     ToolSpec& tool = v.tools[part.index];
-    tool.record = record_of(history, unit(tool.motion.direction), 0.0, before);
+    tool.record = record_of(m.way, unit(tool.motion.direction), 0.0, m.approach_time);
   } else {
     InstrumentSpec& x = v.instruments[part.index - v.tools.size()];
-    x.motion.how = record_of(history, unit(x.motion.direction.value_or(x.direction)), options_.approach, before);
+    x.motion.how = record_of(m.way, unit(x.motion.direction.value_or(x.direction)), options_.approach, m.approach_time);
   }
   v.duration = duration;
   v.max_steps.reset();
-  const double samples = std::clamp(2.0 * static_cast<double>(c.size()), 200.0, 2000.0);
-  v.output = {.sample_rate = samples / duration, .frames = 0};
+  const double samples = std::clamp(2.0 * static_cast<double>(m.points), 200.0, 2000.0);
+  v.output = {.sample_rate = samples / m.duration, .frames = 0};
   v.simulation.track_energies = false;
   v.simulation.threads = 1;
-  if (options_.adjust) options_.adjust(v, duration);
+  if (options_.adjust) options_.adjust(v, m.duration);
   if (rings(v)) {
-    v.output.sample_rate = std::max(samples, 1000.0) / duration;
-    v.duration = duration + 0.5 * kBeyond * (history.end() - history.begin());  // for means about the last instants
+    v.output.sample_rate = std::max(samples, 1000.0) / m.duration;
+    v.duration = duration + 0.5 * kBeyond * (m.way.end() - m.way.begin());  // for means about the last instants
   }
   return v;
 }
@@ -257,37 +257,70 @@ double SceneModel::last_step(std::size_t index, std::span<const double> values) 
   return summary.step_s;
 }
 
-Prediction SceneModel::predict_from(std::size_t index, std::span<const double> values, double contact) const {
-  Prediction result;
+SceneModel::Recording SceneModel::record(std::size_t index, std::span<const double> values, double contact) const {
   try {
     Variant v = variant(index, values, contact);
-    const Curve& c = curve(index);
     ForceRecorder recorder(measured_part(v, options_), options_);
     recorder.halt = options_.stop != nullptr && options_.stop->load();
     const RunSummary summary = run(v, recorder, recorder.halt);
-    if (summary.end != RunSummary::End::finished || recorder.times.empty()) {
-      result.failure = "curve \"" + c.name + "\": the run stopped at " + std::to_string(summary.time_s) +
-                       " s: " + (recorder.late() ? "it takes too long" : end_words(summary.end)) +
-                       (summary.trouble.empty() ? "" : ": " + summary.trouble);
-      return result;
-    }
-    if (recorder.times.front() > 0.0 && !is_viscous(v)) {  // schemes that tell forces at the end of a step alone
+    Recording recording;
+    if (summary.end != RunSummary::End::finished || recorder.times.empty())
+      recording.stopped = "the run stopped at " + std::to_string(summary.time_s) +
+                          " s: " + (recorder.late() ? "it takes too long" : end_words(summary.end)) +
+                          (summary.trouble.empty() ? "" : ": " + summary.trouble);
+    recording.unwanted = options_.stop != nullptr && options_.stop->load();
+    if (!recorder.times.empty() && recorder.times.front() > 0.0 && !is_viscous(v)) {
+      // schemes that tell forces at the end of a step alone
       recorder.times.insert(recorder.times.begin(), 0.0);
       recorder.forces.insert(recorder.forces.begin(), 0.0);
     }
-    const MonotoneCubic<double> cubic(recorder.times, recorder.forces);
-    const ForceMeans means(recorder.times, recorder.forces);
-    const bool ringing = rings(v) && recorder.times.size() > 2;
-    const double shift = approach_time(c) - History(c, contact).begin();
-    for (const double t : c.time) {
-      result.force.push_back(ringing ? means.at(t + shift) : cubic.at(t + shift));
-      if (!std::isfinite(result.force.back()))
-        throw std::runtime_error("curve \"" + c.name + "\": the force is not finite");
-    }
+    recording.forces = {std::move(recorder.times), std::move(recorder.forces), rings(v)};
+    return recording;
   } catch (const std::exception& error) {
-    result.force.clear();
-    result.failure = error.what();
+    Recording recording;
+    recording.refused = error.what();
+    return recording;
   }
+}
+
+std::vector<double> SceneModel::instants(std::size_t index, double contact) const {
+  const Curve& c = curve(index);
+  std::vector<double> list;
+  if (const SteadyPress* press = press_of(index, contact)) {
+    for (const double d : c.displacement) list.push_back((options_.approach + d - contact) / press->speed);
+  } else {
+    const double shift = approach_time(c) - History(c, contact).begin();
+    for (const double t : c.time) list.push_back(t + shift);
+  }
+  return list;
+}
+
+/// A press is read as far as it goes, if need be; what a reading of it calls a run ends with the reading.
+Prediction SceneModel::read(const Recording& recording, std::size_t index, double contact) const {
+  const std::string name = "curve \"" + curve(index).name + "\": ";
+  if (!recording.refused.empty()) return {{}, recording.refused};
+  const std::vector<double> times = instants(index, contact);
+  const bool press = press_of(index, contact) != nullptr;
+  const bool enough =
+      recording.stopped.empty() || (press && !recording.unwanted && recording.forces.holds(times.back()));
+  if (!enough || recording.forces.empty()) return {{}, name + recording.stopped};
+  const double whole = press ? (1.0 + 0.5 * kBeyond) * times.back() : recording.forces.span();
+  Prediction result;
+  for (const double t : times) {
+    result.force.push_back(recording.forces.at(t, whole));
+    if (!std::isfinite(result.force.back())) return {{}, name + "the force is not finite"};
+  }
+  return result;
+}
+
+Prediction SceneModel::predict_from(std::size_t index, std::span<const double> values, double contact) const {
+  const bool press = press_of(index, contact) != nullptr;
+  std::vector<double> what(values.begin(), values.end());
+  if (!press) what.push_back(contact);
+  const std::size_t motion = press ? *steady_.of[index] : steady_.presses.size() + same_motion_[index];
+  const auto found = recordings_.get({motion, std::move(what)}, [&] { return record(index, values, contact); });
+  Prediction result = read(*found.result, index, contact);
+  result.reused = !found.made;
   return result;
 }
 

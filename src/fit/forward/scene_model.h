@@ -3,7 +3,8 @@
 //   values ──▶ ParametricVariant ──▶ Variant ── tool on the curve's History, nothing kept but forces ──▶ run_variant ──▶ F(t)
 //
 // The scene is read once; a run parses nothing, writes nothing and keeps no energies. Runs use one thread each, since a fit
-// runs many side by side.
+// runs many side by side. Recent runs are kept: another contact of a press at constant speed (steady_press.h) and another zero
+// of the force are read from a run that was made already.
 #pragma once
 
 #include <atomic>
@@ -13,7 +14,10 @@
 #include <string>
 #include <vector>
 
+#include "fit/forward/force_record.h"
 #include "fit/forward/motion_model.h"
+#include "fit/forward/steady_press.h"
+#include "fit/kept_results.h"
 #include "scene/build/parametric_variant.h"
 
 namespace glisson::fit {
@@ -39,6 +43,8 @@ struct SceneModelOptions {
   /// Halves a given step of the explicit schemes, five times at most, where it is above h*; else such a run fails.
   bool halves_step = false;
   double longest = std::numeric_limits<double>::infinity();  ///< a run that takes longer fails [s], wall clock
+  std::vector<ContactRange> contacts{};  ///< of each curve: between which it will be asked for; empty: at 0 alone
+  std::size_t recordings = 256;          ///< runs that are kept, ≥ 1
 };
 
 /// The force is that on the tissue along the tool's direction, positive when it presses: elastic, viscous, damping and what
@@ -52,19 +58,46 @@ class SceneModel final : public MotionModel {
   ///         with each run, or by variant()
   SceneModel(const SceneText& scene, std::span<const std::string> keys, std::vector<Curve> curves,
              SceneModelOptions options = {});
+  /// A press at constant speed is run as deep as any contact asks for; where that fails beyond what this curve needs of it,
+  /// its forces up to there are given.
   Prediction predict_from(std::size_t curve, std::span<const double> values, double contact) const override;
 
-  /// The experiment of a curve as it would run. @throws SceneError
+  /// The experiment of a curve as it would run; one and the same for all curves that one press serves. @throws SceneError
   Variant variant(std::size_t curve, std::span<const double> values, double contact = 0.0) const;
   /// The step with which a run at these values ends [s]. @throws std::runtime_error where it does not run
   double last_step(std::size_t curve, std::span<const double> values) const;
 
  private:
+  /// How the tool goes in a run.
+  struct Motion {
+    History way;
+    double approach_time = 0.0;  ///< before it touches the tissue [s]
+    double duration = 0.0;       ///< that steps and samples go by [s]; the run may be longer
+    std::size_t points = 0;      ///< that are read from it
+  };
+  /// A run that was made.
+  struct Recording {
+    ForceRecord forces;
+    std::string stopped;    ///< why it went no further than its forces; empty: it went to its end
+    std::string refused;    ///< why there was no run at all
+    bool unwanted = false;  ///< the fit is being stopped
+  };
+  Motion motion(std::size_t curve, double contact) const;
+  /// None where the curve's motion has a run of its own.
+  const SteadyPress* press_of(std::size_t curve, double contact) const;
+  Recording record(std::size_t curve, std::span<const double> values, double contact) const;
+  /// Instants of a run at which it is where the curve was [s].
+  std::vector<double> instants(std::size_t curve, double contact) const;
+  Prediction read(const Recording& recording, std::size_t curve, double contact) const;
   RunSummary run(Variant& variant, RunObserver& observer, const std::atomic<bool>& stop) const;
   double approach_time(const Curve& curve) const;
 
   scene::ParametricVariant scene_;
   SceneModelOptions options_;
+  SteadyPresses steady_;
+  std::vector<std::size_t> same_motion_;  ///< of each curve: the first that goes the same way
+  /// By the press or the motion, then the values, and the contact of what is no press.
+  mutable KeptResults<std::pair<std::size_t, std::vector<double>>, Recording> recordings_;
 };
 
 /// Keeps meshes read from files, for many runs at once.

@@ -1,14 +1,12 @@
 #include "fit/search/cached_model.h"
 
-#include <tbb/task_arena.h>
-
 #include <chrono>
 
 namespace glisson::fit {
 
 CachedModel::CachedModel(std::shared_ptr<const Model> inner, const std::vector<Curve>& curves,
                          std::vector<char> distinct, std::size_t most)
-    : inner_(std::move(inner)), most_(most) {
+    : inner_(std::move(inner)), known_(most) {
   distinct.resize(curves.size(), 0);
   for (std::size_t c = 0; c < curves.size(); ++c) {
     std::size_t same = c;
@@ -21,31 +19,17 @@ CachedModel::CachedModel(std::shared_ptr<const Model> inner, const std::vector<C
   }
 }
 
-std::shared_ptr<CachedModel::Entry> CachedModel::entry(const Key& key) const {
-  const std::lock_guard lock(mutex_);
-  std::shared_ptr<Entry>& found = known_[key];
-  if (found) return found;
-  found = std::make_shared<Entry>();
-  std::shared_ptr<Entry> made = found;
-  order_.push_back(key);
-  if (order_.size() > most_) {
-    known_.erase(order_.front());
-    order_.pop_front();
-  }
-  return made;
-}
-
 Prediction CachedModel::predict(std::size_t curve, std::span<const double> values) const {
   const std::size_t own = same_as_[curve];
-  const std::shared_ptr<Entry> e = entry({own, {values.begin(), values.end()}});
-  std::call_once(e->once, [&] {
+  const auto make = [&] {
     const auto begin = std::chrono::steady_clock::now();
-    // isolated: a thread that waits within a run must not take up another task that waits for this very run
-    tbb::this_task_arena::isolate([&] { e->result = inner_->predict(own, values); });
+    Prediction result = inner_->predict(own, values);
+    if (result.reused) return result;
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     ++runs_;
-  });
-  return e->result;
+    return result;
+  };
+  return *known_.get({own, {values.begin(), values.end()}}, make).result;
 }
 
 }  // namespace glisson::fit

@@ -3,12 +3,11 @@
 
 #include <atomic>
 #include <cstdint>
-#include <deque>
-#include <map>
 #include <memory>
-#include <mutex>
+#include <utility>
 #include <vector>
 
+#include "fit/kept_results.h"
 #include "fit/model.h"
 #include "glisson/fit.h"
 
@@ -23,23 +22,13 @@ class CachedModel final : public Model {
   std::size_t curves() const override { return inner_->curves(); }
   Prediction predict(std::size_t curve, std::span<const double> values) const override;
 
-  std::uint64_t runs() const { return runs_; }  ///< really made
+  std::uint64_t runs() const { return runs_; }  ///< really made: what is read from a run that was made before is none
   double seconds() const { return seconds_; }   ///< they took, one thread each
 
  private:
-  using Key = std::pair<std::size_t, std::vector<double>>;
-  struct Entry {
-    std::once_flag once;
-    Prediction result;
-  };
-  std::shared_ptr<Entry> entry(const Key& key) const;
-
   std::shared_ptr<const Model> inner_;
   std::vector<std::size_t> same_as_;  ///< the first curve of the same history
-  std::size_t most_;
-  mutable std::mutex mutex_;
-  mutable std::map<Key, std::shared_ptr<Entry>> known_;
-  mutable std::deque<Key> order_;
+  mutable KeptResults<std::pair<std::size_t, std::vector<double>>, Prediction> known_;
   mutable std::atomic<std::uint64_t> runs_{0};
   mutable std::atomic<double> seconds_{0.0};
 };
