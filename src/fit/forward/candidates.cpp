@@ -76,7 +76,7 @@ std::vector<ForwardCandidate> forward_candidates(const Variant& v, const Forward
   const bool explicit_like = capabilities(own).supports(viscous);
   if (!explicit_like) list.push_back({.name = "explicit", .adjust = own_step(Integrator::central_difference)});
   if (explicit_like && !viscous) {
-    for (const double factor : {100.0, 10.0, 1.0}) {
+    for (const double factor : {100.0, 30.0, 10.0, 1.0}) {
       char name[64];
       std::snprintf(name, sizeof name, factor > 1.0 ? "explicit, %g times as heavy" : "explicit, steps of one size",
                     factor);
