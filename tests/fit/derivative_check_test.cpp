@@ -66,5 +66,17 @@ TEST(DerivativeCheck, TakesWideStepsOfAGrainyModel) {
   EXPECT_LE(true_error(problem, 0.4), 2.0 * check.error);  // both neighbours carry rounding of the same size
 }
 
+// A dear model is not run for digits that nobody needs.
+TEST(DerivativeCheck, StopsWhereItIsEnough) {
+  const Grainy model(0.0);
+  Problem all = problem_of(model), few = problem_of(model);
+  check_derivatives(all, std::vector{0.4});
+  const DerivativeCheck check = check_derivatives(few, std::vector{0.4}, 2e-3);  // (4 x h)²/6 is 1.1e-3 for h = 1e-2
+  EXPECT_EQ(2 * few.forward_runs(), all.forward_runs());
+  EXPECT_EQ(check.step, 1e-3);
+  EXPECT_LT(check.error, 2e-3);
+  EXPECT_LE(true_error(few, 0.4), check.error);
+}
+
 }  // namespace
 }  // namespace glisson::fit

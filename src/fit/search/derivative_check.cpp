@@ -27,7 +27,7 @@ double difference(const std::vector<double>& a, const std::vector<double>& b, st
 
 }  // namespace
 
-DerivativeCheck check_derivatives(Problem& problem, std::span<const double> scaled) {
+DerivativeCheck check_derivatives(Problem& problem, std::span<const double> scaled, double enough) {
   const double before = problem.difference_step;
   DerivativeCheck best{0.0, std::numeric_limits<double>::infinity()};
   std::vector<double> wider;
@@ -39,6 +39,7 @@ DerivativeCheck check_derivatives(Problem& problem, std::span<const double> scal
       const double error = difference(wider, r.jacobian, problem.parameters().size());
       if (error < best.error) best = {step, error};
       if (error > 10.0 * best.error) break;  // from here on it is rounding
+      if (best.error <= enough) break;
     }
     wider = std::move(r.jacobian);
   }

@@ -23,8 +23,14 @@ std::vector<char> with_own_parameters(const std::vector<Curve>& curves, const La
   return own;
 }
 
-/// A descent need not go where its derivatives no longer lead: with them wrong by a part e, a cost is found to e² or so.
-double tolerance_of(const DerivativeCheck& check) { return std::clamp(0.01 * check.error * check.error, 1e-10, 1e-4); }
+/// A descent need not go where its derivatives no longer lead: with them wrong by a part e, a cost is found to e² or so. Of a
+/// dear model 1e-6 of the cost are enough: with n samples a parameter is then off by some √n thousandths of its deviation.
+double tolerance_of(const DerivativeCheck& check, bool dear) {
+  return std::clamp(0.01 * check.error * check.error, dear ? 1e-6 : 1e-10, 1e-4);
+}
+
+/// Differences of a dear model that agree to so much are narrow enough.
+constexpr double kAgree = 1e-3;
 
 /// Two digits, or whole.
 std::string rounded(double x) { return x >= 100.0 ? scene::show(std::round(x)) : brief(x, 2); }
@@ -115,11 +121,39 @@ void LawSearch::take_model(std::size_t rung) {
                                        spec_.search.loss);
 }
 
+bool LawSearch::dear() const { return !forward_.plates && !forward_.layer && ladder_.taken().name != "specimen"; }
+
+RunsAtOnce LawSearch::runs_at_once() const {
+  const std::vector<Curve>& fitted = problem_->curves();
+  std::vector<Parameter> keys = forward_.parameters;
+  SteadyPresses steady;
+  if (dear()) steady = steady_presses(fitted, contact_ranges(keys, fitted));
+  const auto press = [&](std::size_t c) { return steady.of.empty() ? std::nullopt : steady.of[c]; };
+  const auto same = [&](std::size_t a, std::size_t b) {
+    if (press(a) || press(b)) return press(a) == press(b);
+    return fitted[a].time == fitted[b].time && fitted[a].displacement == fitted[b].displacement;
+  };
+  RunsAtOnce runs;
+  bool all_steady = true;
+  for (std::size_t c = 0; c < fitted.size(); ++c) {
+    std::size_t first = 0;
+    while (!same(first, c)) ++first;
+    if (first == c) ++runs.motions;
+    all_steady = all_steady && press(c);
+  }
+  for (const Parameter& p : keys) {
+    const bool read = dear() && is_curve_key(p.name) && (all_steady || p.name.ends_with("force_offset_N"));
+    if (!read) ++runs.parameters;
+  }
+  return runs;
+}
+
 DescentOptions LawSearch::descent() const {
   DescentOptions options;
   options.most_iterations = spec_.search.most_iterations;
-  options.tolerance = tolerance_of(derivatives_);
+  options.tolerance = tolerance_of(derivatives_, dear());
   options.stop = options_.stop;
+  options.secant = dear();
   return options;
 }
 
@@ -134,7 +168,7 @@ void LawSearch::search(LawMemory& memory, const std::function<void(const MultiSt
   options.seed = spec_.search.seed;
   std::vector<double> own;
   for (const Parameter& p : problem_->parameters()) own.push_back(p.start);
-  derivatives_ = check_derivatives(*problem_, problem_->to_scaled(own));
+  derivatives_ = check_derivatives(*problem_, problem_->to_scaled(own), dear() ? kAgree : 0.0);
   options.descent = descent();
   found_ = find_optimum(*problem_, options, memory.starts, [&](const MultiStart& so_far) {
     memory.starts = so_far.starts;
@@ -200,7 +234,7 @@ void LawSearch::look_again_at_forward() {
   second_look_ += ladder_.taken().name + " finished the descent.";
   share_at_optimum_.reset();
   take_model(ladder_.chosen);
-  derivatives_ = check_derivatives(*problem_, start);
+  derivatives_ = check_derivatives(*problem_, start, dear() ? kAgree : 0.0);
   optimum_ = descend(*problem_, start, descent());
 }
 

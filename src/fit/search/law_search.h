@@ -19,6 +19,12 @@
 
 namespace glisson::fit {
 
+/// What derivatives ask for.
+struct RunsAtOnce {
+  std::size_t motions = 0;     ///< of the fitted curves that take a run of their own
+  std::size_t parameters = 0;  ///< whose differences are runs; contact and zero of the force may be read from one
+};
+
 class LawSearch {
  public:
   /// @param law  what it sets over the fit's own keys, and its free numbers
@@ -35,6 +41,9 @@ class LawSearch {
   const LawSpec& law() const { return law_; }
   const Problem& problem() const { return *problem_; }
   const Ladder& ladder() const { return ladder_; }
+  /// Whether a run is that of a scene, step by step: no closed form and no table.
+  bool dear() const;
+  RunsAtOnce runs_at_once() const;
   /// How descents of this problem go.
   DescentOptions descent() const;
   const DerivativeCheck& derivatives() const { return derivatives_; }

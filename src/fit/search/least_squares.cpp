@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "fit/search/secant_descent.h"
+
 namespace glisson::fit {
 namespace {
 
@@ -183,6 +185,7 @@ std::vector<char> held_at(const Problem& problem, const std::vector<double>& z, 
 }  // namespace
 
 Optimum descend(const Problem& problem, std::span<const double> start, const DescentOptions& options) {
+  if (options.secant) return secant_descent(problem, start, options);
   constexpr int kPasses = 4;
   DescentOptions left = options;
   std::vector<char> own = options.fixed;

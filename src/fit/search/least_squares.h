@@ -23,6 +23,7 @@ struct DescentOptions {
   std::vector<char> fixed;  ///< 1: this parameter stays where it starts; empty: all are free
   int most_iterations = 100;
   double tolerance = 1e-10;  ///< relative change of the cost
+  bool secant = false;       ///< spares runs of dear models: secant_descent.h in place of Ceres
   const std::atomic<bool>* stop = nullptr;
 };
 

@@ -16,23 +16,33 @@ struct Run {
   Prediction result;
 };
 
-/// The points at which a Jacobian needs the curves: the middle, then two for each free parameter.
+/// The points at which a Jacobian needs the curves: the middle, then one or two for each free parameter.
 struct Stencil {
+  struct Pair {
+    std::size_t low = 0, high = 0;  ///< numbers of points
+    double width = 0.0;             ///< z distance; 0: the parameter is held
+  };
   std::vector<std::vector<double>> points;
-  std::vector<double> widths;  ///< z distance of each pair; 0: the parameter is held
+  std::vector<Pair> pairs;  ///< of each parameter
 
-  Stencil(std::span<const double> z, double step, std::span<const char> skip, bool derivatives) {
+  Stencil(std::span<const double> z, double step, std::span<const char> skip, Differences differences) {
     points.emplace_back(z.begin(), z.end());
-    for (std::size_t p = 0; derivatives && p < z.size(); ++p) {
-      const bool held = !skip.empty() && skip[p] != 0;
-      const double low = std::max(0.0, z[p] - step), high = std::min(1.0, z[p] + step);
-      widths.push_back(held ? 0.0 : high - low);
-      if (held) continue;
-      for (const double at : {low, high}) {
-        points.push_back(points.front());
-        points.back()[p] = at;
-      }
+    for (std::size_t p = 0; p < z.size(); ++p) {
+      pairs.emplace_back();
+      if (!skip.empty() && skip[p] != 0) continue;
+      double low = std::max(0.0, z[p] - step), high = std::min(1.0, z[p] + step);
+      if (differences == Differences::one_sided) (z[p] + step <= 1.0 ? low : high) = z[p];
+      pairs.back() = {at(p, low), at(p, high), high - low};
     }
+  }
+
+ private:
+  /// The number of the point with another value of a parameter.
+  std::size_t at(std::size_t p, double value) {
+    if (value == points.front()[p]) return 0;
+    points.push_back(points.front());
+    points.back()[p] = value;
+    return points.size() - 1;
   }
 };
 
@@ -120,8 +130,10 @@ std::vector<double> Problem::value_slopes(std::span<const double> scaled) const 
   return slopes;
 }
 
-Residuals Problem::residuals(std::span<const double> scaled, bool derivatives, std::span<const char> skip) const {
-  const Stencil stencil(scaled, difference_step, skip, derivatives);
+Residuals Problem::residuals(std::span<const double> scaled, bool derivatives, std::span<const char> skip,
+                             Differences differences) const {
+  const std::vector<char> all(scaled.size(), 1);
+  const Stencil stencil(scaled, difference_step, derivatives ? skip : std::span(all), differences);
   std::vector<Run> runs;
   for (std::size_t point = 0; point < stencil.points.size(); ++point)
     for (std::size_t c = 0; c < curves_.size(); ++c) runs.push_back({c, point, {}});
@@ -146,12 +158,11 @@ Residuals Problem::residuals(std::span<const double> scaled, bool derivatives, s
     for (std::size_t i = 0; i < curve.size(); ++i) {
       const std::size_t row = offsets_[c] + i;
       out.values[row] = factor * (force(0, c)[i] - curve.force[i]);
-      std::size_t point = 1;
       for (std::size_t p = 0; derivatives && p < parameters_.size(); ++p) {
-        if (stencil.widths[p] == 0.0) continue;
-        const double difference = force(point + 1, c)[i] - force(point, c)[i];
-        out.jacobian[row * parameters_.size() + p] = factor * difference / stencil.widths[p];
-        point += 2;
+        const Stencil::Pair& pair = stencil.pairs[p];
+        if (pair.width == 0.0) continue;
+        const double difference = force(pair.high, c)[i] - force(pair.low, c)[i];
+        out.jacobian[row * parameters_.size() + p] = factor * difference / pair.width;
       }
     }
   }

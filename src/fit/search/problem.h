@@ -28,6 +28,8 @@ struct Residuals {
   std::string failure;
 };
 
+enum class Differences { central, one_sided };
+
 class Problem {
  public:
   /// @param curves  those that are fitted @param indices  their numbers in the model @param spread  s_c of each [N], > 0
@@ -54,10 +56,12 @@ class Problem {
   /// dvalue/dz of each parameter.
   std::vector<double> value_slopes(std::span<const double> scaled) const;
 
-  /// Residuals without the loss, with central or one-sided differences (at bounds) where derivatives are asked for; the
-  /// forward runs go side by side on all of oneTBB's threads. Same bytes on any number of threads.
+  /// Residuals without the loss, and their derivatives where these are asked for; the forward runs go side by side on all of
+  /// oneTBB's threads. Same bytes on any number of threads.
   /// @param skip  parameters whose derivatives are left 0 (held fast); may be empty
-  Residuals residuals(std::span<const double> scaled, bool derivatives, std::span<const char> skip = {}) const;
+  /// @param differences  central ones are one-sided at bounds; one-sided ones take half the runs and are of first order
+  Residuals residuals(std::span<const double> scaled, bool derivatives, std::span<const char> skip = {},
+                      Differences differences = Differences::central) const;
 
   /// ½ Σ ρ(r²).
   double cost(std::span<const double> residuals) const;
