@@ -22,7 +22,7 @@ struct Range {
 /// One descent. Where derivatives are carried along (secant_descent.h) it takes so many steps, with one-sided differences once
 /// or some times on the way and central ones at the end.
 Range descent_runs(bool dear, std::size_t p) {
-  constexpr std::size_t kFewSteps = 8, kManySteps = 20, kManyRenewals = 4;
+  constexpr std::size_t kFewSteps = 7, kManySteps = 20, kManyRenewals = 4;
   if (dear) return {kFewSteps + 3 * p, kManySteps + (kManyRenewals + 2) * p};
   return {kFewIterations * (2 * p + 2), kManyIterations * (2 * p + 2)};
 }
