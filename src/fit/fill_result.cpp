@@ -183,6 +183,7 @@ Profiles profiles_of(const LawSearch& search, const Covariance& covariance, cons
     if (stopped(options) || local->holds(found, search.optimum().cost)) return found;
     local.reset();
   }
+  if (search.dear()) how.secant = true, how.tolerance = search.descent().tolerance;
   return profiles(search.problem(), search.optimum(), covariance, how);
 }
 

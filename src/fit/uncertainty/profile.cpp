@@ -29,6 +29,8 @@ class Walk {
     descent_.fixed.assign(optimum.scaled.size(), 0);
     descent_.fixed[parameter] = 1;
     descent_.most_iterations = options.most_iterations;
+    descent_.tolerance = options.tolerance;
+    descent_.secant = options.secant;
     descent_.stop = options.stop;
   }
 

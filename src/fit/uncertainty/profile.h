@@ -45,6 +45,8 @@ struct Profiles {
 struct ProfileOptions {
   int most_iterations = 40;  ///< of each descent
   int most_points = 40;      ///< on each side
+  double tolerance = 1e-10;  ///< of each descent
+  bool secant = false;       ///< of each descent, where runs are dear
   double step = 0.35;        ///< aim of a step, as a part of the way to the threshold in √Δcost
   const std::atomic<bool>* stop = nullptr;
 };
