@@ -327,7 +327,7 @@ Ladder choose_forward(const ForwardProblem& problem) {
     const Rung& last = ladder.rungs.back();
     if (last.serves() && (known || last.cost < patience(ladder))) ladder.chosen = ladder.rungs.size() - 1;
   };
-  if (const auto specimen = size && wanted("specimen") ? make.specimen(*size) : nullptr)
+  if (auto specimen = size && wanted("specimen") ? make.specimen(*size) : nullptr)
     try_out({.name = "specimen", .failure = {}, .model = specimen}, [&] { return specimen; });
   double step = 0.0;
   bool heavier_serves = false;

@@ -116,7 +116,8 @@ class Lattice {
     const Vec3d step = (high - low) * (1.0 / kAside);
     int hits = 0;
     for (int n = 0; n < kAside * kAside * kAside; ++n) {
-      const Vec3d at{n % kAside + 0.5, n / kAside % kAside + 0.5, n / kAside / kAside + 0.5};
+      const int i = n % kAside, j = n / kAside % kAside, k = n / kAside / kAside;
+      const Vec3d at{i + 0.5, j + 0.5, k + 0.5};
       hits += fields_.filled(fields_.label(low + component_product(at, step))) ? 1 : 0;
     }
     return std::max(expected_tets(hits * step.x * step.y * step.z, fields_.edge()), 6.0 * static_cast<double>(inside_));
