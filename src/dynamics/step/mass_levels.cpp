@@ -88,7 +88,6 @@ void MassLevels::find_masses(std::span<const double> base, const std::vector<cha
     const double stiff = weight * step * step * modulus_bound(block.elastic),
                  drag = viscous[b] != 0 ? 2.0 * step * modulus_bound(block.viscous) : 0.0;
     for (std::size_t e = block.begin; e < block.end; ++e) {
-      if (double(limits_[e].ratio) < kTold * base[b]) continue;  // most, by a list of a third of the bytes
       const double more = double(tets_[e].level.ratio) - base[b];
       if (!(more > 0.0)) continue;
       const double per_weight = stiff * std::min(more, double(tets_[e].level.norm)) + drag * more;
