@@ -117,10 +117,8 @@ Answer run(const Problem& problem, const std::map<int, Tissue>& tissues, Simulat
 void linearise(const Problem& problem, Tissue& tissue) { tissue = linear_tissue(tissue, test_moduli(problem, tissue)); }
 
 bool has_law(const Problem& problem) {
-  for (const auto& [region, tissue] : problem.tissues) {
-    if (tissue.lambda_law || tissue.mu_law || !std::holds_alternative<ConstantLaw>(tissue.law)) return true;
-  }
-  return false;
+  return std::any_of(problem.tissues.begin(), problem.tissues.end(),
+                     [](const auto& t) { return !t.second.has_constant_moduli(); });
 }
 
 /// What the engine refuses is the answer's trouble.

@@ -275,8 +275,7 @@ Cost cost_of(const Variant& v, const Taste& taste, const RunSummary& summary) {
 }
 
 bool stiffens(const Tissue& t) {
-  const bool law = !std::holds_alternative<ConstantLaw>(t.law) || t.lambda_law || t.mu_law;
-  return law || t.hyperelastic || t.fibres || t.kinematics == Kinematics::green;
+  return !t.has_constant_moduli() || t.hyperelastic || t.fibres || t.kinematics == Kinematics::green;
 }
 
 /// What shortens an automatic step below that at rest; empty: nothing does.
@@ -328,9 +327,7 @@ bool can_drag_in_stages(const Variant& v) {
   std::vector<const Tissue*> tissues{&v.tissue};
   for (const auto& region : v.regions) tissues.push_back(&region.tissue);
   const auto drags = [](const Tissue* t) { return t->viscosity > 0.0; };
-  const auto is_large = [&](const Tissue* t) {
-    return drags(t) && (t->hyperelastic.has_value() || t->kinematics != Kinematics::small);
-  };
+  const auto is_large = [&](const Tissue* t) { return drags(t) && !t->has_small_strain(); };
   return v.simulation.integrator == Integrator::central_difference && v.simulation.drag_stages == 1 &&
          std::ranges::any_of(tissues, drags) && std::ranges::none_of(tissues, is_large);
 }

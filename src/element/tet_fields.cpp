@@ -46,7 +46,7 @@ TetFields empty_fields(std::size_t n) {
 template <class Place>
 void add_block(const Body& body, const TissueBlock& block, const ElementList& elements, std::span<const Vec3d> u,
                std::span<const Vec3d> v, const BranchMemory& memory, const Place& place, TetFields& f) {
-  const bool small = Response(block.tissue).small();
+  const bool small = block.tissue.has_small_strain();
   const std::vector<Mat3d> piola = BlockResponse(body, block, elements).piola(u, v, memory);
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const Mat3d H = element_gradient(body, elements[i], u), &P = piola[i];

@@ -61,12 +61,8 @@ bool has_lanes(const Tissue& t) {
   return known_measure && !raw_energy;
 }
 
-bool has_constant_moduli(const Tissue& t) {
-  return std::holds_alternative<ConstantLaw>(t.law) && !t.lambda_law && !t.mu_law;
-}
-
 bool in_one_pass(const Tissue& t) {
-  const bool small = !t.hyperelastic && t.kinematics == Kinematics::small && t.law_form == LawForm::secant;
+  const bool small = t.has_small_strain() && t.law_form == LawForm::secant;
   return small && !t.maxwell.empty() && !t.fibres && t.viscous_tensor != ViscousTensor::pioletti &&
          t.volume_change == VolumeChange::element && !t.relaxation_follows();
 }
@@ -75,7 +71,7 @@ LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::
   LaneResponse r;
   r.moduli = moduli;
   r.mu_law = mu_law;
-  r.small = !tissue.hyperelastic && tissue.kinematics == Kinematics::small;
+  r.small = tissue.has_small_strain();
   r.energy = !tissue.hyperelastic && tissue.law_form == LawForm::energy;
   r.measure = tissue.measure;
   r.volume = tissue.hyperelastic ? VolumeKind::hyperelastic

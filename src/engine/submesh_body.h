@@ -117,7 +117,7 @@ class SubmeshBody final : public MovingBody {
     LaneResponse lanes;
     RespondStage respond;
     MaxwellStep maxwell;
-    bool one_pass = false, constant = false;  ///< in_one_pass(), has_constant_moduli()
+    bool one_pass = false, constant = false;  ///< in_one_pass(), Tissue::has_constant_moduli()
   };
   /// Of a submesh whose tets share their volume change: one over the volume around each local vertex, and ϑ_a.
   struct SharedVolume {

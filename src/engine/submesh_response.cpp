@@ -15,7 +15,7 @@ std::unique_ptr<SubmeshBody::LargePlan> SubmeshBody::large_plan_of(const TissueB
                                                respond_stage(*kernels_.response, block.tissue),
                                                {},
                                                in_one_pass(block.tissue),
-                                               has_constant_moduli(block.tissue)});
+                                               block.tissue.has_constant_moduli()});
 }
 
 /// Weights of all branches for a step of h from the state that is asked for.

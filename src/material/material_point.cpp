@@ -281,10 +281,9 @@ void MaterialPoint::Parts::show(double time) {
 
 MaterialPoint::MaterialPoint(const Tissue& tissue) {
   require_valid(tissue);
-  const bool constant = std::holds_alternative<ConstantLaw>(tissue.law) && !tissue.lambda_law && !tissue.mu_law;
   const bool by_shear = tissue.measure == DeformationMeasure::equivalent_shear_strain ||
                         tissue.measure == DeformationMeasure::one_minus_q;
-  if (((!tissue.hyperelastic && !constant) || tissue.relaxation_follows()) && !by_shear) {
+  if (((!tissue.hyperelastic && !tissue.has_constant_moduli()) || tissue.relaxation_follows()) && !by_shear) {
     throw std::invalid_argument("material point: measure = \"" + std::string(word_of(tissue.measure)) +
                                 "\" depends on the shape of a tet, and a point has none; take " +
                                 "\"equivalent_shear_strain\" or \"one_minus_q\"");

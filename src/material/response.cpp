@@ -129,7 +129,7 @@ Mat3<T> Response::elastic(const Mat3<T>& H, const ElementShape& shape, const T* 
     const T x = measure_of_moduli(H, shape);
     const Moduli<T> m = laws_.at(x);
     P = tensor_mass(H, m, mean);
-    if (tissue_.law_form == LawForm::energy && !has_constant_moduli()) {
+    if (tissue_.law_form == LawForm::energy && !tissue_.has_constant_moduli()) {
       P = sum(P, scaled(measure_gradient(H, x, shape), mean_slope_energy(H, m)));
     }
   }
@@ -299,7 +299,7 @@ double Response::tensor_mass_stiffening(const Mat3d& H, const ElementShape& shap
   const double x = measure_of_moduli(H, shape), bulk = lame_.lambda + 2.0 / 3.0 * lame_.mu;
   const Moduli<double> m = laws_.at(x);
   const double f = std::max(m.mu / lame_.mu, (m.lambda + 2.0 / 3.0 * m.mu) / bulk);
-  if (has_constant_moduli()) return f;
+  if (tissue_.has_constant_moduli()) return f;
   const double mu_slope = std::abs(m.mu_slope), bulk_slope = std::abs(m.lambda_slope) + 2.0 / 3.0 * mu_slope;
   double g = 1.0;
   if (tissue_.measure == DeformationMeasure::one_minus_q) g = 4.0 / 3.0 * intensity_of(x);

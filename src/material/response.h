@@ -89,11 +89,7 @@ class Response {
 
   const Tissue& tissue() const { return tissue_; }
   const LameParameters& viscosity() const { return viscosity_; }
-  bool small() const { return !tissue_.hyperelastic && tissue_.kinematics == Kinematics::small; }
-  /// Whether moduli follow no law: no measure is needed then.
-  bool has_constant_moduli() const {
-    return std::holds_alternative<ConstantLaw>(tissue_.law) && !tissue_.lambda_law && !tissue_.mu_law;
-  }
+  bool small() const { return tissue_.has_small_strain(); }
   /// Σ g of the Maxwell branches.
   double relaxing_share() const { return relaxing_share_; }
 
@@ -101,7 +97,7 @@ class Response {
   /// The measure that the moduli follow; 0 where they follow none.
   template <class T>
   T measure_of_moduli(const Mat3<T>& H, const ElementShape& shape) const {
-    return has_constant_moduli() ? T(0.0) : measure(H, shape);
+    return tissue_.has_constant_moduli() ? T(0.0) : measure(H, shape);
   }
   double tensor_mass_stiffening(const Mat3d& H, const ElementShape& shape) const;
   template <class T>

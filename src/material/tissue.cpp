@@ -15,12 +15,11 @@ namespace {
 
 /// What must not stand beside a hyperelastic law, which takes the place of the stiffness laws, and what needs one.
 Fault check_laws(const Tissue& t) {
-  const bool with_constant = std::holds_alternative<ConstantLaw>(t.law);
   if (t.hyperelastic) {
-    if (with_constant && !t.lambda_law && !t.mu_law) return {};
+    if (t.has_constant_moduli()) return {};
     return {"it cannot be combined with a stiffness law; give one or the other", "hyperelastic"};
   }
-  if ((t.lambda_law || t.mu_law) && !with_constant)
+  if ((t.lambda_law || t.mu_law) && !std::holds_alternative<ConstantLaw>(t.law))
     return {"a law of E and one of λ or μ contradict each other; give one or the other", "law"};
   if (t.volume_change == VolumeChange::average_nodal && t.law_form == LawForm::energy) {
     return {
@@ -53,8 +52,7 @@ LameParameters Tissue::lame() const {
 
 bool Tissue::is_tensor_mass() const {
   if (measure == DeformationMeasure::radius_ratio || measure == DeformationMeasure::solid_angle) return false;
-  const bool paper = kinematics == Kinematics::small && law_form == LawForm::secant && !hyperelastic &&
-                     viscous_tensor != ViscousTensor::pioletti;
+  const bool paper = has_small_strain() && law_form == LawForm::secant && viscous_tensor != ViscousTensor::pioletti;
   return paper && !fibres && maxwell.empty() && volume_change == VolumeChange::element;
 }
 

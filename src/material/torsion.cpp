@@ -86,7 +86,7 @@ std::vector<TorsionState> torsion(const Tissue& tissue, double radius, std::span
   require_arguments(tissue, radius, twists, options);
   std::vector<TorsionState> states(times.size());
   for (std::size_t k = 0; k < times.size(); ++k) states[k].time = times[k], states[k].twist = twists[k];
-  const bool small = !tissue.hyperelastic && tissue.kinematics == Kinematics::small;
+  const bool small = tissue.has_small_strain();
   for (const Node& node : gauss_rule(options.radii)) {
     Shell shell(tissue, options.stretch);
     const double present = (small ? 1.0 : shell.side_stretch()) * radius, r = node.at * present;

@@ -188,6 +188,10 @@ struct Tissue {
   LameParameters lame() const;
   /// Whether the time of some Maxwell branch follows the measure.
   bool relaxation_follows() const;
+  /// Whether strain is linear in the displacement gradient.
+  bool has_small_strain() const { return !hyperelastic && kinematics == Kinematics::small; }
+  /// Whether no stiffness law changes the moduli.
+  bool has_constant_moduli() const { return std::holds_alternative<ConstantLaw>(law) && !lambda_law && !mu_law; }
   /// Whether the force is that of the paper's element: small strain, secant law, no fibres, no branches.
   bool is_tensor_mass() const;
   bool operator==(const Tissue&) const = default;

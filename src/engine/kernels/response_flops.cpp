@@ -206,7 +206,7 @@ ResponseFlops count_response_flops(const Tissue& tissue) {
   MaxwellStep step;
   step.moves = true;
   if (in_one_pass(tissue)) {
-    const bool constant = has_constant_moduli(tissue);
+    const bool constant = tissue.has_constant_moduli();
     const StressPass pass = constant ? traced::relaxing_small<false, false> : traced::relaxing_small<true, false>;
     pass(in, r, step, *block, *out);
   } else {

@@ -149,8 +149,6 @@ LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::
 LaneWeights lane_weights(double step, double time);
 /// Whether relaxing_small has all that a tissue asks for.
 bool in_one_pass(const Tissue& tissue);
-/// Whether no modulus of a tissue follows its deformation.
-bool has_constant_moduli(const Tissue& tissue);
 /// The elastic stage of a tissue.
 RespondStage respond_stage(const ResponseKernels& kernels, const Tissue& tissue);
 

@@ -105,10 +105,7 @@ std::size_t submesh_tets(std::size_t tets, bool changes) {
   return changes ? kLeastSubmesh : std::clamp(tets / kSubmeshes, kLeastSubmesh, kMost);
 }
 
-bool is_linear(const TissueBlock& block) {
-  return block.tissue.is_tensor_mass() && std::holds_alternative<ConstantLaw>(block.tissue.law) &&
-         !block.tissue.lambda_law && !block.tissue.mu_law;
-}
+bool is_linear(const TissueBlock& block) { return block.tissue.is_tensor_mass() && block.tissue.has_constant_moduli(); }
 
 std::uint32_t Submesh::local_of_record(std::uint32_t record) const {
   if (in_interior(*this, record)) return record - static_cast<std::uint32_t>(first_interior);

@@ -31,8 +31,6 @@ RealTensor symmetric_part(const RealTensor& a) { return (a + a.transpose()) / 2;
 RealTensor deviator(const RealTensor& a) { return a - a.trace() / 3 * RealTensor::Identity(); }
 Real contract(const RealTensor& a, const RealTensor& b) { return a.cwiseProduct(b).sum(); }
 
-bool is_small(const Tissue& t) { return !t.hyperelastic && t.kinematics == Kinematics::small; }
-
 RealTensor green(const RealTensor& F) { return (F.transpose() * F - RealTensor::Identity()) / 2; }
 /// ε of the tissue's kinematics.
 RealTensor strain(const Tissue& t, const RealTensor& F) {
@@ -258,7 +256,8 @@ Real isochoric_energy(const Ogden& law, const RealTensor& F) {
 }
 
 Real along_fibre(const MaterialPoint& point, const RealTensor& F) {
-  const RealTensor E = is_small(point.tissue) ? RealTensor(symmetric_part(F) - RealTensor::Identity()) : green(F);
+  const RealTensor E =
+      point.tissue.has_small_strain() ? RealTensor(symmetric_part(F) - RealTensor::Identity()) : green(F);
   return point.fibre.dot(E * point.fibre);
 }
 
@@ -326,12 +325,12 @@ RealTensor piola(const MaterialPoint& point, const RealTensor& F) {
   }
   if (!t.fibres) return P;
   const RealTensor S = Real(t.fibres->stiffness) * along_fibre(point, F) * point.fibre * point.fibre.transpose();
-  return P + (is_small(t) ? S : RealTensor(F * S));
+  return P + (t.has_small_strain() ? S : RealTensor(F * S));
 }
 
 RealTensor viscous_piola(const MaterialPoint& point, const RealTensor& F, const RealTensor& rate) {
   const Tissue& t = point.tissue;
-  const RealTensor e = is_small(t) ? symmetric_part(rate) : symmetric_part(F.transpose() * rate);
+  const RealTensor e = t.has_small_strain() ? symmetric_part(rate) : symmetric_part(F.transpose() * rate);
   const Real eta = t.viscosity;
   RealTensor S = 2 * eta * e;
   if (t.viscous_tensor == ViscousTensor::deviatoric) S = 2 * eta * deviator(e);
@@ -340,14 +339,14 @@ RealTensor viscous_piola(const MaterialPoint& point, const RealTensor& F, const 
     S = eta / Real(t.youngs_modulus) * (lame.lambda * e.trace() * RealTensor::Identity() + 2 * lame.mu * e);
   }
   if (t.viscous_tensor == ViscousTensor::pioletti) S *= std::max(Real(0), F.squaredNorm() - 3);  // I₁ − 3
-  return is_small(t) ? S : RealTensor(F * S);
+  return t.has_small_strain() ? S : RealTensor(F * S);
 }
 
 RealTensor relaxing_stress(const MaterialPoint& point, const RealTensor& F) {
   const Tissue& t = point.tissue;
   const bool all = t.maxwell_part == MaxwellPart::all;
   const RealTensor P = piola(point, F);
-  if (is_small(t)) return all ? symmetric_part(P) : deviator(symmetric_part(P));
+  if (t.has_small_strain()) return all ? symmetric_part(P) : deviator(symmetric_part(P));
   const RealTensor S = F.inverse() * P, C = F.transpose() * F;
   return symmetric_part(all ? S : RealTensor(S - contract(S, C) / 3 * C.inverse()));
 }
