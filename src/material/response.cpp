@@ -177,7 +177,7 @@ double Response::relaxed_energy(const Mat3d& H, const ElementShape& shape, const
 
 bool Response::stores_energy() const {
   if (tissue_.hyperelastic) return true;
-  const bool constant = std::holds_alternative<ConstantLaw>(tissue_.law);
+  const bool constant = tissue_.has_constant_moduli();
   const bool deviator_relaxes = relaxing_share_ > 0.0 && tissue_.maxwell_part == MaxwellPart::deviator;
   return deviator_relaxes ? constant && small() : constant || tissue_.law_form == LawForm::energy;
 }

@@ -80,6 +80,9 @@ TEST(StoredEnergy, LawWithoutEnergyHasNone) {
   const Pressed p(secant, 2e-4);
   EXPECT_FALSE(p.body.stored_energy().has_value());
   EXPECT_FALSE(p.body.energy_drift().has_value());
+  Tissue apart = soft();
+  apart.mu_law = LinearLaw{20000.0};
+  EXPECT_FALSE(Pressed(apart, 2e-4).body.stored_energy().has_value());
   Tissue deviator = soft();
   deviator.kinematics = Kinematics::green, deviator.maxwell = {{0.4, 0.02}};
   EXPECT_FALSE(Pressed(deviator, 2e-4).body.stored_energy().has_value());
