@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
@@ -12,11 +11,6 @@
 
 namespace glisson::app {
 namespace {
-
-constexpr std::array<std::string_view, 21> kModels{
-    "linear", "law",         "full",   "branches",   "law_branches",  "corotational", "green", "green_energy",
-    "fibres", "neo_hookean", "nodal",  "maxwell",    "mooney_rivlin", "yeoh",         "fung",  "veronda_westmann",
-    "ogden",  "gent",        "rivlin", "invariants", "following"};
 
 constexpr double kShear = 3600.0 / 2.8, kBulk = 6000.0;  ///< of E = 3.6 kPa and ν = 0.4 [Pa]
 
@@ -70,19 +64,9 @@ BoxOptions box_of(std::size_t tets) {
 
 }  // namespace
 
-std::vector<Model> every_model() {
-  std::vector<Model> all;
-  for (std::size_t i = 0; i < kModels.size(); ++i) all.push_back(static_cast<Model>(i));
-  return all;
-}
-
-std::string_view model_name(Model model) { return kModels[static_cast<std::size_t>(model)]; }
-
-std::vector<std::string> model_names() { return {kModels.begin(), kModels.end()}; }
-
 Tissue model_tissue(Model model) {
   Tissue tissue;
-  tissue.name = model_name(model);
+  tissue.name = word_of(model);
   const LinearLaw doubling{.slope = tissue.youngs_modulus / 0.5};
   const bool follows = model == Model::law || model == Model::full || model == Model::law_branches;
   if (follows || model == Model::green_energy) tissue.law = doubling;

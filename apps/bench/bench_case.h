@@ -8,6 +8,7 @@
 
 #include "glisson/material/tissue.h"
 #include "glisson/mesh.h"
+#include "glisson/words.h"
 
 namespace glisson::app {
 
@@ -37,10 +38,34 @@ enum class Model {
   following    ///< neo-Hookean, two branches whose times follow the deformation
 };
 
-/// All of them, in the order of Model.
-std::vector<Model> every_model();
-std::string_view model_name(Model model);
-std::vector<std::string> model_names();
+}  // namespace glisson::app
+
+namespace glisson {
+template <>
+inline constexpr Word<app::Model> kWords<app::Model>[] = {{"linear", app::Model::linear},
+                                                          {"law", app::Model::law},
+                                                          {"full", app::Model::full},
+                                                          {"branches", app::Model::branches},
+                                                          {"law_branches", app::Model::law_branches},
+                                                          {"corotational", app::Model::corotational},
+                                                          {"green", app::Model::green},
+                                                          {"green_energy", app::Model::green_energy},
+                                                          {"fibres", app::Model::fibres},
+                                                          {"neo_hookean", app::Model::neo_hookean},
+                                                          {"nodal", app::Model::nodal},
+                                                          {"maxwell", app::Model::maxwell},
+                                                          {"mooney_rivlin", app::Model::mooney_rivlin},
+                                                          {"yeoh", app::Model::yeoh},
+                                                          {"fung", app::Model::fung},
+                                                          {"veronda_westmann", app::Model::veronda_westmann},
+                                                          {"ogden", app::Model::ogden},
+                                                          {"gent", app::Model::gent},
+                                                          {"rivlin", app::Model::rivlin},
+                                                          {"invariants", app::Model::invariants},
+                                                          {"following", app::Model::following}};
+}  // namespace glisson
+
+namespace glisson::app {
 
 /// E = 3.6 kPa, ν = 0.4, or the same μ and κ; `law`: E doubles at s = 0.5; `full`: and η = 10 Pa·s, shear tensor.
 Tissue model_tissue(Model model);

@@ -47,7 +47,7 @@ std::string hash_mismatch(const std::vector<BenchRow>& rows) {
     const BenchRow& other = *first.try_emplace({row.mesh, row.what.model}, &row).first->second;
     if (other.state_hash == row.state_hash) continue;
     return fmt::format("{}, {}: the state after {} steps is {:016x} on {} and {:016x} on {}; they must be equal",
-                       row.mesh, model_name(row.what.model), kHashSteps, other.state_hash,
+                       row.mesh, word_of(row.what.model), kHashSteps, other.state_hash,
                        threads_text(other.what.threads), row.state_hash, threads_text(row.what.threads));
   }
   return {};
@@ -69,7 +69,7 @@ std::vector<BenchRatio> ratios(const BenchResult& result) {
   };
   for (const BenchRow& row : result.rows) {
     if (row.what.model > Model::full && row.what.threads == 1) {
-      add(fmt::format("{} / linear, {} tets", model_name(row.what.model), row.tets), &row, like(row, Model::linear, 1));
+      add(fmt::format("{} / linear, {} tets", word_of(row.what.model), row.tets), &row, like(row, Model::linear, 1));
     }
     if (row.what.model != Model::full) continue;
     const int threads = row.what.threads;

@@ -46,7 +46,7 @@ std::string roof_text(const cpu::MachinePeak& p) {
 
 std::string row_text(const BenchRow& row, const cpu::MachinePeak& peak, std::size_t width) {
   return fmt::format("{:<{}}  {:<16} {:>8} {:>7} {:>8.2f}{} {:>7.2f} {:>7} {:>7} {:>7} {:>8} {:>9}  {:016x}\n",
-                     row.mesh, width, model_name(row.what.model), row.tets, row.what.threads, row.ns_per_tet_step,
+                     row.mesh, width, word_of(row.what.model), row.tets, row.what.threads, row.ns_per_tet_step,
                      disturbed(row) ? "*" : " ", row.ns_p10, percent(row.spread), count(row.engine.flops_per_tet),
                      count(row.engine.bytes_per_tet), percent(fraction_of_fma_peak(row, peak)),
                      percent(fraction_of_bandwidth(row, peak)), row.state_hash);
@@ -54,7 +54,7 @@ std::string row_text(const BenchRow& row, const cpu::MachinePeak& peak, std::siz
 
 nlohmann::ordered_json row_json(const BenchRow& row, const cpu::MachinePeak& peak) {
   nlohmann::ordered_json json;
-  json["model"] = model_name(row.what.model);
+  json["model"] = word_of(row.what.model);
   json["tets"] = row.tets;
   json["threads"] = row.what.threads;
   json["ns_per_tet_step"] = row.ns_per_tet_step;

@@ -67,7 +67,7 @@ Trial::Trial(const BenchBody& body, const BenchCase& what)
 
 void Trial::fail(const std::string& what) const {
   throw std::runtime_error(
-      fmt::format("{}, {}, threads {}: {}", body_.name, model_name(case_.model), case_.threads, what));
+      fmt::format("{}, {}, threads {}: {}", body_.name, word_of(case_.model), case_.threads, what));
 }
 
 void Trial::steps(std::uint64_t count) {

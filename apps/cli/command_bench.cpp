@@ -90,10 +90,10 @@ std::vector<BenchBody> bodies_of(const BenchOptions& options) {
 
 std::vector<BenchCase> cases_of(const BenchOptions& options) {
   std::vector<BenchCase> cases;
-  for (const Model model : every_model()) {
+  for (const auto& [word, model, help] : kWords<Model>) {
     const auto& wanted = options.models;
     const bool all = std::find(wanted.begin(), wanted.end(), "all") != wanted.end();
-    if (!all && std::find(wanted.begin(), wanted.end(), model_name(model)) == wanted.end()) continue;
+    if (!all && std::find(wanted.begin(), wanted.end(), word) == wanted.end()) continue;
     for (const int threads : options.threads) cases.push_back({.model = model, .threads = threads});
   }
   return cases;
@@ -158,7 +158,8 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
       ->type_name("LIST")
       ->delimiter(',')
       ->check(CLI::Range(std::size_t{6}, std::size_t{50'000'000}));
-  std::vector<std::string> known = model_names();
+  std::vector<std::string> known;
+  for (const auto& w : kWords<Model>) known.emplace_back(w.word);
   known.emplace_back("all");
   command
       .add_option("--models", options.models,
