@@ -31,24 +31,36 @@ constexpr std::array<std::string_view, 4> kAxialWords{"axial force", "axial_forc
 constexpr std::array<std::string_view, 3> kStorageWords{"storage", "g'", "g′"};
 constexpr std::array<std::string_view, 3> kLossWords{"loss mod", "g''", "g″"};
 
+/// A column that some test takes, driven or answering.
+template <class Kind>
+struct ColumnRole {
+  Kind kind;
+  std::string_view key;  ///< in [data.columns]
+  ColumnSpec ColumnsSpec::*spec;
+  Quantity quantity;
+  std::span<const std::string_view> words;  ///< with which its name customarily begins, in small letters
+  bool needs_size = false;                  ///< to be converted, or to be of use: a point has none
+};
+
 using C = ColumnsSpec;
-const std::array<ColumnRole, 8> kDrives{{{"displacement", &C::displacement, Quantity::length, kDisplacementWords, true},
-                                         {"strain", &C::strain, Quantity::strain, kStrainWords},
-                                         {"stretch", &C::stretch, Quantity::stretch, kStretchWords},
-                                         {"true_strain", &C::true_strain, Quantity::strain, kTrueStrainWords},
-                                         {"green_strain", &C::green_strain, Quantity::strain, kGreenStrainWords},
-                                         {"shear", &C::shear, Quantity::strain, kShearWords},
-                                         {"angle", &C::angle, Quantity::angle, kAngleWords, true},
-                                         {"frequency", &C::frequency, Quantity::frequency, kFrequencyWords}}};
-const std::array<ColumnRole, 8> kAnswers{
-    {{"force", &C::force, Quantity::force, kForceWords, true},
-     {"stress", &C::stress, Quantity::stress, kStressWords},
-     {"cauchy_stress", &C::cauchy_stress, Quantity::stress, kCauchyWords},
-     {"second_piola_stress", &C::second_piola_stress, Quantity::stress, kPiolaWords},
-     {"torque", &C::torque, Quantity::torque, kTorqueWords, true},
-     {"axial_force", &C::axial_force, Quantity::force, kAxialWords, true},
-     {"storage_modulus", &C::storage_modulus, Quantity::stress, kStorageWords},
-     {"loss_modulus", &C::loss_modulus, Quantity::stress, kLossWords}}};
+const std::array<ColumnRole<Drive>, 8> kDrives{
+    {{Drive::displacement, "displacement", &C::displacement, Quantity::length, kDisplacementWords, true},
+     {Drive::strain, "strain", &C::strain, Quantity::strain, kStrainWords},
+     {Drive::stretch, "stretch", &C::stretch, Quantity::stretch, kStretchWords},
+     {Drive::true_strain, "true_strain", &C::true_strain, Quantity::strain, kTrueStrainWords},
+     {Drive::green_strain, "green_strain", &C::green_strain, Quantity::strain, kGreenStrainWords},
+     {Drive::shear, "shear", &C::shear, Quantity::strain, kShearWords},
+     {Drive::angle, "angle", &C::angle, Quantity::angle, kAngleWords, true},
+     {Drive::frequency, "frequency", &C::frequency, Quantity::frequency, kFrequencyWords}}};
+const std::array<ColumnRole<Answer>, 8> kAnswers{
+    {{Answer::force, "force", &C::force, Quantity::force, kForceWords, true},
+     {Answer::stress, "stress", &C::stress, Quantity::stress, kStressWords},
+     {Answer::cauchy_stress, "cauchy_stress", &C::cauchy_stress, Quantity::stress, kCauchyWords},
+     {Answer::second_piola_stress, "second_piola_stress", &C::second_piola_stress, Quantity::stress, kPiolaWords},
+     {Answer::torque, "torque", &C::torque, Quantity::torque, kTorqueWords, true},
+     {Answer::axial_force, "axial_force", &C::axial_force, Quantity::force, kAxialWords, true},
+     {Answer::storage_modulus, "storage_modulus", &C::storage_modulus, Quantity::stress, kStorageWords},
+     {Answer::loss_modulus, "loss_modulus", &C::loss_modulus, Quantity::stress, kLossWords}}};
 
 bool takes(const DataSpec& spec, Drive drive) {
   const bool sheared = spec.test == LabTest::simple_shear || spec.deforming == Deforming::simple_shear;
@@ -85,10 +97,10 @@ bool takes(const DataSpec& spec, Answer answer) {
   }
 }
 
-template <class Kind, std::size_t N>
+template <class Kind>
 class ColumnSearch {
  public:
-  ColumnSearch(const std::array<ColumnRole, N>& roles, const CurveFile& file, const DataSpec& spec,
+  ColumnSearch(std::span<const ColumnRole<Kind>> roles, const CurveFile& file, const DataSpec& spec,
                const SpecimenSize& size, scene::Problems& problems)
       : roles_(roles), file_(file), spec_(spec), size_(size), problems_(problems) {}
 
@@ -97,21 +109,21 @@ class ColumnSearch {
 
   /// The column that is given, else the first kind of which one has a customary name.
   std::optional<ChosenColumn> choose() {
-    for (std::size_t i = 0; i < N; ++i) {
-      const ColumnSpec& column = spec_.columns.*roles_[i].spec;
+    for (const ColumnRole<Kind>& role : roles_) {
+      const ColumnSpec& column = spec_.columns.*role.spec;
       if (!column.given) continue;
-      kind = static_cast<Kind>(i), sign = column.sign;
-      if (!fits(roles_[i])) return {};
-      return choose_column(file_, column, roles_[i].quantity, key_of(roles_[i]), problems_);
+      kind = role.kind, sign = column.sign;
+      if (!fits(role)) return {};
+      return choose_column(file_, column, role.quantity, key_of(role), problems_);
     }
-    const ColumnRole* first = nullptr;
-    for (std::size_t i = 0; i < N; ++i) {
-      if (!takes(spec_, static_cast<Kind>(i)) || (roles_[i].needs_size && size_.point)) continue;
-      if (!first) first = &roles_[i], kind = static_cast<Kind>(i);
-      if (!has_customary(file_, roles_[i].quantity, roles_[i].words)) continue;
-      kind = static_cast<Kind>(i);
-      if (!fits(roles_[i])) return {};
-      return guess_column(file_, roles_[i].quantity, roles_[i].words, key_of(roles_[i]), problems_);
+    const ColumnRole<Kind>* first = nullptr;
+    for (const ColumnRole<Kind>& role : roles_) {
+      if (!takes(spec_, role.kind) || (role.needs_size && size_.point)) continue;
+      if (!first) first = &role, kind = role.kind;
+      if (!has_customary(file_, role.quantity, role.words)) continue;
+      kind = role.kind;
+      if (!fits(role)) return {};
+      return guess_column(file_, role.quantity, role.words, key_of(role), problems_);
     }
     if (first) return guess_column(file_, first->quantity, first->words, key_of(*first), problems_);
     problems_.add({1, 1, {}}, "",
@@ -122,18 +134,18 @@ class ColumnSearch {
   }
 
  private:
-  static std::string key_of(const ColumnRole& role) { return "columns." + std::string(role.key); }
+  static std::string key_of(const ColumnRole<Kind>& role) { return "columns." + std::string(role.key); }
 
   std::string all_taken() const {
     std::string text;
-    for (std::size_t i = 0; i < N; ++i) {
-      if (takes(spec_, static_cast<Kind>(i)) && !(roles_[i].needs_size && size_.point))
-        text.append(text.empty() ? "columns." : ", columns.").append(roles_[i].key);
+    for (const ColumnRole<Kind>& role : roles_) {
+      if (takes(spec_, role.kind) && !(role.needs_size && size_.point))
+        text.append(text.empty() ? "columns." : ", columns.").append(role.key);
     }
     return text;
   }
 
-  bool fits(const ColumnRole& role) {
+  bool fits(const ColumnRole<Kind>& role) {
     const std::string test(word_of(spec_.test));
     if (!takes(spec_, kind)) {
       problems_.add({1, 1, {}}, key_of(role),
@@ -149,7 +161,7 @@ class ColumnSearch {
     return has_size(role);
   }
 
-  bool has_size(const ColumnRole& role) {
+  bool has_size(const ColumnRole<Kind>& role) {
     const bool stress = role.quantity == Quantity::stress && spec_.test != LabTest::oscillation;
     const bool strain = role.quantity == Quantity::strain || role.quantity == Quantity::stretch;
     if (stress && !size_.area)
@@ -164,7 +176,7 @@ class ColumnSearch {
            !(role.quantity == Quantity::angle && !size_.radius);
   }
 
-  const std::array<ColumnRole, N>& roles_;
+  std::span<const ColumnRole<Kind>> roles_;
   const CurveFile& file_;
   const DataSpec& spec_;
   const SpecimenSize& size_;
@@ -200,9 +212,9 @@ std::optional<TestColumns> test_columns(const CurveFile& file, const DataSpec& s
   const std::size_t before = problems.count();
   TestColumns found;
   found.time = time_column(file, spec, size, problems);
-  ColumnSearch<Drive, kDrives.size()> drives(kDrives, file, spec, size, problems);
+  ColumnSearch<Drive> drives(kDrives, file, spec, size, problems);
   const auto driven = drives.choose();
-  ColumnSearch<Answer, kAnswers.size()> answers(kAnswers, file, spec, size, problems);
+  ColumnSearch<Answer> answers(kAnswers, file, spec, size, problems);
   const auto answering = answers.choose();
   if (problems.count() > before || !driven || !answering) return {};
   found.drive = drives.kind, found.driven = *driven, found.driven_sign = drives.sign;

@@ -16,15 +16,6 @@
 
 namespace glisson::fit {
 
-/// A column that some test takes.
-struct ColumnRole {
-  std::string_view key;  ///< in [data.columns]
-  ColumnSpec ColumnsSpec::*spec;
-  Quantity quantity;
-  std::span<const std::string_view> words;  ///< with which its name customarily begins, in small letters
-  bool needs_size = false;                  ///< to be converted, or to be of use: a point has none
-};
-
 enum class Drive { displacement, strain, stretch, true_strain, green_strain, shear, angle, frequency };
 enum class Answer {
   force,
