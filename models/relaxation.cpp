@@ -19,12 +19,6 @@ double mean_share(const Tissue& tissue, double time) {
   return share;
 }
 
-double share_at(const Tissue& tissue, double time) {
-  double share = 1.0;
-  for (const MaxwellBranch& b : tissue.maxwell) share += b.share * std::expm1(-time / b.time);
-  return share;
-}
-
 LameParameters test_moduli(const Problem& problem, const Tissue& tissue) {
   LameParameters lame = tissue.lame();
   if (tissue.maxwell.empty()) return lame;

@@ -20,8 +20,6 @@ bool is_viscous(const Problem& problem);
 /// Share of the instantaneous modulus that is left, of its mean over `time` [s]; 1 without branches or time. A branch whose time follows the
 /// deformation counts with its own time.
 double mean_share(const Tissue& tissue, double time);
-/// The same at one time, G(t)/G(0).
-double share_at(const Tissue& tissue, double time);
 
 /// Moduli at rest that a test of Problem::test_time finds [Pa].
 LameParameters test_moduli(const Problem& problem, const Tissue& tissue);

@@ -74,7 +74,6 @@ class TissueOperator {
   const TissueMemory& memory() const { return memory_; }
   void set_memory(TissueMemory memory) { memory_ = std::move(memory); }
   void archive(auto& ar) { ar(memory_); }
-  bool has_memory() const { return has_memory_; }
 
   /// Follows elements and vertices that have changed in the body; memory of an element stays.
   void body_changed();

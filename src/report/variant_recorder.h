@@ -56,9 +56,6 @@ class VariantRecorder : public RunObserver {
   const std::vector<std::vector<double>>& data() const { return data_; }
   /// One column of forces.csv or probes.csv by name. @throws std::out_of_range naming it
   const std::vector<double>& column(const std::string& name) const;
-  /// Columns of probes.csv, time first, and their values, column by column; empty without probes.
-  const std::vector<std::string>& probe_columns() const { return probe_columns_; }
-  const std::vector<std::vector<double>>& probe_data() const { return probe_data_; }
   double intensity_max() const { return surface_ ? surface_->intensity_max() : 0.0; }
   /// VariantData of web/src/report_data.ts. @param law_reach  see law_data()
   nlohmann::json json(double law_reach) const;

@@ -269,7 +269,6 @@ TEST(Influence, IsTheSlopeOfTheCost) {
 
 TEST(Distribution, AgreesWithTables) {
   EXPECT_NEAR(student_quantile(0.975, 4.0), 2.7764451, 1e-7);
-  EXPECT_NEAR(chi_squared_quantile(0.95, 1.0), 3.8414588, 1e-7);
   EXPECT_NEAR(chi_squared_tail(18.307, 10.0), 0.05, 1e-5);
 }
 

@@ -32,6 +32,13 @@ Problem ramp_and_hold(double strain, const Tissue& tissue, std::array<int, 3> ce
   return p;
 }
 
+/// G(t)/G(0).
+double share_at(const Tissue& tissue, double time) {
+  double share = 1.0;
+  for (const MaxwellBranch& b : tissue.maxwell) share += b.share * std::expm1(-time / b.time);
+  return share;
+}
+
 /// ∫ (1 − Σ g (1 − e^(−(t − s)/τ))) ds-increments of a stress that grows over the ramp, by the trapezoidal rule in small parts.
 template <class Stress>
 double faded(const Tissue& tissue, double time, const Stress& stress) {

@@ -145,7 +145,6 @@ void Server::Impl::look() {
       send_frame(*viewer);
       continue;
     }
-    ++missed_;
     if (now - viewer->writing_since_ > kStuck) viewer->gone();
   }
 }
@@ -197,7 +196,6 @@ void Server::Impl::send_frame(Viewer& viewer) {
     viewer.samples_seen_ = samples_;
   }
   viewer.send(frame_with(viewer.field_), true);
-  ++sent_;
 }
 
 /// The newest state with a field, packed for the first viewer that wants it.
@@ -305,8 +303,5 @@ unsigned short Server::port() const { return impl_->place_.port; }
 std::string Server::url() const {
   return "http://" + impl_->place_.host + ":" + std::to_string(port()) + "/?token=" + impl_->options_.token;
 }
-
-std::uint64_t Server::frames_sent() const { return impl_->sent_; }
-std::uint64_t Server::frames_missed() const { return impl_->missed_; }
 
 }  // namespace glisson::view

@@ -43,9 +43,6 @@ class Server {
   void stop();
   unsigned short port() const;
   std::string url() const;  ///< with its token
-  /// Frames that went out, and that viewers missed, of all viewers so far.
-  std::uint64_t frames_sent() const;
-  std::uint64_t frames_missed() const;
 
   struct Impl;
 

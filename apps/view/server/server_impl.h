@@ -66,7 +66,6 @@ struct Server::Impl {
   std::string survived_;            ///< the last trouble told
   std::vector<double> parameters_;  ///< of the newest state
   std::uint64_t samples_ = 0;       ///< all there ever were
-  std::atomic<std::uint64_t> sent_{0}, missed_{0};
   bool stopping_ = false, led_ = false;
   bool resting_ = false;  ///< held because nobody watches
   Clock::time_point watched_ = Clock::now();

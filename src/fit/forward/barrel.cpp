@@ -60,7 +60,7 @@ void Barrel::put_on_plates() {
 /// False where an element is folded.
 bool Barrel::assemble() {
   if (!solid_.assemble(state_.body)) return false;
-  if (leans_ && state_.displacement > 0.0) lean();
+  if (state_.displacement > 0.0) lean();
   return true;
 }
 

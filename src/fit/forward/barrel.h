@@ -53,8 +53,6 @@ class Barrel {
   /// @param grip  with Faces::friction alone
   Barrel(std::shared_ptr<const BarrelMesh> mesh, const HyperelasticLaw& law, Faces faces, Grip grip = {});
 
-  /// Without plates beyond the edge: the side may bulge past them. For comparison with bodies without contact.
-  void free_side() { leans_ = false; }
   /// Goes on to a displacement of the plates towards each other beyond the last; below 0 they part [m].
   /// @param pressure  about that of the plate, by which it carries the side [Pa]
   /// @return the force of the plate [N], > 0 where it presses
@@ -89,7 +87,6 @@ class Barrel {
   MeridianSolid solid_;
   Faces faces_;
   Grip grip_;
-  bool leans_ = true;
   State state_;
   std::vector<State> past_;  ///< the last states, the newest at the end
   double pressure_ = 0.0;    ///< about that of the plate [Pa]

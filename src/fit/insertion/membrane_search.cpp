@@ -144,14 +144,6 @@ double simulated_force(const InsertionRun& run, double x) {
   return x < run.curve.position.front() ? 0.0 : run.curve.at(x);
 }
 
-double rms_between(const MembraneFit& fit, const MeasuredInsertion& measured, double from, double to) {
-  std::vector<double> part;
-  for (const double x : fit.grid) {
-    if (x >= from && x <= to) part.push_back(x);
-  }
-  return rms_of(fit.run, measured.curve, part);
-}
-
 MembraneFit fit_membranes(const MeasuredInsertion& measured, const InsertionSpec& spec, const InsertionScene& scene,
                           const std::atomic<bool>& stop, const std::function<void(int, double)>& progress) {
   const std::optional<InsertionRun> first = scene.run({scene.needle().tip.cutting, {}}, stop);

@@ -27,7 +27,4 @@ MembraneFit fit_membranes(const MeasuredInsertion& measured, const InsertionSpec
 /// Force of a run at a position; zero before it begins.
 double simulated_force(const InsertionRun& run, double x);
 
-/// √ of the mean of (simulated − measured)² over positions from `from` to `to` [N].
-double rms_between(const MembraneFit& fit, const MeasuredInsertion& measured, double from, double to);
-
 }  // namespace glisson::fit

@@ -10,10 +10,6 @@ double student_quantile(double probability, double freedom) {
   return boost::math::quantile(boost::math::students_t(freedom), probability);
 }
 
-double chi_squared_quantile(double probability, double freedom) {
-  return boost::math::quantile(boost::math::chi_squared(freedom), probability);
-}
-
 double chi_squared_tail(double x, double freedom) {
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), x));
 }

@@ -8,9 +8,6 @@ namespace glisson::fit {
 /// @param freedom  degrees of freedom, > 0, need not be whole
 double student_quantile(double probability, double freedom);
 
-/// x with P(X ≤ x) = probability, X of the χ² distribution.
-double chi_squared_quantile(double probability, double freedom);
-
 /// P(X > x), X of the χ² distribution.
 double chi_squared_tail(double x, double freedom);
 

@@ -74,7 +74,6 @@ class CutSheet {
 
   /// None where the blade has not reached the tet.
   const CutTet* find(std::uint32_t tet) const { return place_of_[tet] == kNone ? nullptr : &cut_[place_of_[tet]]; }
-  bool on_cut(std::uint32_t vertex) const { return on_cut_[vertex] != 0; }
 
   /// All that is kept. @throws std::runtime_error where what is read is not that of such a mesh
   void archive(Archive& ar);

@@ -72,7 +72,6 @@ class TetComplex {
   void begin();
   void keep();
   void take_back();
-  bool trying() const { return trying_; }
   /// Live tets that the open trial added or of which it moved a vertex; may hold one twice.
   void touched(std::vector<std::uint32_t>& out) const;
 
