@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <set>
 
 #include "base/input_file.h"
 #include "base/nearest.h"
 #include "glisson/scene/surface_file.h"
+#include "scene/build/build_instruments.h"
 #include "scene/parse/expand.h"
 #include "scene/parse/sections.h"
 #include "scene/parse/select.h"
@@ -91,54 +93,55 @@ bool is_viscous(const Variant& variant) {
   return variant.tissue.viscosity > 0.0 || std::any_of(variant.regions.begin(), variant.regions.end(), viscous);
 }
 
-/// Whether it is a needle or a rigid tool in contact that follows a path, and rubs only as a plate (Interaction::refuses_long_steps).
-bool acts_in_long_steps(const InstrumentSpec& x) {
-  if (std::holds_alternative<PushSpec>(x.motion.how)) return false;
-  if (std::holds_alternative<NeedleOptions>(x.what)) return true;
-  const auto* contact = std::get_if<ContactOptions>(&x.what);
-  return contact != nullptr && !contact->bonded &&
-         (contact->friction == 0.0 || std::holds_alternative<Plate>(contact->shape));
+/// What acts on the body besides supports, tools and loads; not attached.
+std::vector<std::shared_ptr<Interaction>> interactions_of(const Variant& variant) {
+  std::vector<std::shared_ptr<Interaction>> all;
+  for (const InstrumentSpec& x : variant.instruments) all.push_back(make_instrument(x));
+  if (variant.container) all.push_back(std::make_shared<Container>(variant.container->options));
+  for (const CapsuleSpec& x : variant.capsules) all.push_back(std::make_shared<Capsule>(x.options));
+  return all;
 }
 
-/// What of a variant its integrator does not support, with what it does instead; empty: nothing.
-std::string unsupported(const Variant& variant) {
+/// Why an integrator does not support the interactions of a variant, after its word; empty: it does.
+std::string refusal(const Variant& variant) {
   const Capabilities can = capabilities(variant.simulation.integrator);
   if (can.supports(is_viscous(variant))) return "";
-  if (!can.supports_contact) {
-    return !variant.instruments.empty() ? "[[instrument]]"
-           : variant.container          ? "[container]"
-           : !variant.capsules.empty()  ? "[[capsule]]"
-                                        : "";
+  if (can.supports_contact) {
+    for (const auto& x : interactions_of(variant)) {
+      if (const std::string why = x->refuses_long_steps(); !why.empty())
+        return " does not support " + x->label() + ", which " + why;
+    }
+    return "";
   }
-  if (std::all_of(variant.instruments.begin(), variant.instruments.end(), acts_in_long_steps)) return "";
-  return "[[instrument]] but needles and rigid ones in contact that follow a path, not bonded, without friction where "
-         "they are no "
-         "plates";
+  const std::string what = !variant.instruments.empty() ? "[[instrument]]"
+                           : variant.container          ? "[container]"
+                           : !variant.capsules.empty()  ? "[[capsule]]"
+                                                        : "";
+  if (what.empty()) return "";
+  return (can.supports_interactions ? " with viscous tissue supports no " : " supports no ") + what + "; take " +
+         supporting_integrators() + " (Maxwell branches may stay)";
 }
 
-/// Complains where what acts on the body beside supports and tools meets an integrator that does not support it.
+/// Complains about an integrator that does not support the interactions of a variant.
 void check_integrator(const Variant& variant, const Node& experiment, Problems& problems) {
-  const std::string what = unsupported(variant);
-  if (what.empty()) return;
+  const std::string why = refusal(variant);
+  if (why.empty()) return;
   const Node& key = *experiment.find("motion")->find("integrator");
-  problems.add(key.where, "motion.integrator",
-               "\"" + *key.text() + "\"" +
-                   (capabilities(variant.simulation.integrator).supports_interactions ? " with viscous tissue" : "") +
-                   " supports no " + what + "; take " + supporting_integrators() + " (Maxwell branches may stay)");
+  problems.add(key.where, "motion.integrator", "\"" + *key.text() + "\"" + why);
 }
 
-/// Complains where more stages are asked for than go together with what acts beside supports and tools.
+/// Complains about more stages of drag than an interaction supports.
 void check_stages(const Variant& variant, const Node& experiment, Problems& problems) {
-  const int stages = variant.simulation.drag_stages, most = most_drag_stages(variant);
-  if (stages <= most) return;
-  problems.add(
-      experiment.find("motion")->find("drag_stages")->where, "motion.drag_stages",
-      std::to_string(stages) + " is outside the allowed range beside " +
-          (most == kMostDragStagesBesideInstruments ? "needles and containers that are not bonded"
-                                                    : "tools in contact, blades and a program's own instruments") +
-          ", 1 to " + std::to_string(most) +
-          ": with more the tissue would yield to them; take integrator = \"implicit\" "
-          "for longer steps");
+  const int stages = variant.simulation.drag_stages;
+  if (stages == SimulationOptions{}.drag_stages) return;
+  for (const auto& x : interactions_of(variant)) {
+    const int most = x->most_drag_stages();
+    if (stages <= most) continue;
+    return problems.add(experiment.find("motion")->find("drag_stages")->where, "motion.drag_stages",
+                        std::to_string(stages) + " is outside the allowed range with " + x->label() + ", 1 to " +
+                            std::to_string(most) +
+                            ": tissue would yield to it; take fewer stages, or integrator = \"implicit\"");
+  }
 }
 
 /// Reads the file of a recorded motion along a direction.
@@ -152,7 +155,7 @@ void complete_poses(PosesSpec& poses, const std::filesystem::path& base) {
   poses.motion = load_poses(poses.path);
 }
 
-/// Reads the files of recorded motions, and tries the motions of all tools and instruments.
+/// Reads the files of recorded motions, and tries all tools and instruments with their motions.
 void complete_motions(Variant& variant, const Node& experiment, const std::filesystem::path& base, Problems& problems) {
   for (std::size_t i = 0; i < variant.tools.size(); ++i) {
     ToolSpec& x = variant.tools[i];
@@ -174,7 +177,7 @@ void complete_motions(Variant& variant, const Node& experiment, const std::files
       if (auto* record = std::get_if<RecordSpec>(&x.motion.how))
         complete_record(*record, x.motion.direction.value_or(x.direction), base);
       if (auto* poses = std::get_if<PosesSpec>(&x.motion.how)) complete_poses(*poses, base);
-      make_driver(x);
+      make_instrument(x);
     } catch (const std::exception& error) {
       problems.add(motion.where, path, error.what());
     }
@@ -247,13 +250,8 @@ void load_measured(Scene& scene, const Node& node, const std::filesystem::path& 
 }  // namespace
 
 int most_drag_stages(const Variant& variant) {
-  int most = variant.container && variant.container->hold != ContainerSpec::Hold::bonded
-                 ? kMostDragStagesBesideInstruments
-                 : kMostDragStages;
-  for (const InstrumentSpec& x : variant.instruments) {
-    const bool tells = std::holds_alternative<NeedleOptions>(x.what);
-    most = std::min(most, tells ? kMostDragStagesBesideInstruments : kMostDragStagesBesideOthers);
-  }
+  int most = kMostDragStages;
+  for (const auto& x : interactions_of(variant)) most = std::min(most, x->most_drag_stages());
   return most;
 }
 

@@ -254,19 +254,19 @@ TEST(Instruments, AskForAnIntegratorThatBearsThem) {
     EXPECT_EQ(
         complaint(kNeedle + implicit + "[container]\nkind = \"box\"\nwidth_mm = 10\nlength_mm = 10\n[[capsule]]\n"),
         "");
-    EXPECT_EQ(
-        complaint(changed(kNeedle, "\"press\", depth_mm = 10, velocity_mm_s = 50", "\"push\", duration_s = 1") +
-                  implicit),
-        "s.toml:14:14: motion.integrator: \"" + word +
-            "\" supports no [[instrument]] but needles and rigid ones in contact that follow a path, not bonded, "
-            "without friction where they are no plates; take central_difference, or semi_implicit for tissue without "
-            "`viscosity_Pa_s` (Maxwell branches may stay)");
+    EXPECT_EQ(complaint(changed(kNeedle, "\"press\", depth_mm = 10, velocity_mm_s = 50", "\"push\", duration_s = 1") +
+                        implicit),
+              "s.toml:14:14: motion.integrator: \"" + word +
+                  "\" does not support instrument \"needle\", which is moved by a force or a hand; give it a path "
+                  "in time, "
+                  "or take integrator = central_difference, or semi_implicit for tissue without `viscosity_Pa_s`");
     const std::string ball = "[mesh]\nkind = \"box\"\n[[instrument]]\nkind = \"ball\"\ntip_m = [0, 0, 1]\n";
     EXPECT_EQ(complaint(ball + "motion = { kind = \"press\" }\n" + implicit), "");
-    EXPECT_THAT(complaint(ball + "motion = { kind = \"push\", duration_s = 1 }\n" + implicit), HasSubstr("in contact"));
-    EXPECT_THAT(complaint(ball + "bonded = true\nmotion = { kind = \"press\" }\n" + implicit), HasSubstr("not bonded"));
+    EXPECT_THAT(complaint(ball + "motion = { kind = \"push\", duration_s = 1 }\n" + implicit),
+                HasSubstr("moved by a force"));
+    EXPECT_THAT(complaint(ball + "bonded = true\nmotion = { kind = \"press\" }\n" + implicit), HasSubstr("is bonded"));
     EXPECT_THAT(complaint(ball + "friction = 0.2\nmotion = { kind = \"press\" }\n" + implicit),
-                HasSubstr("without friction"));
+                HasSubstr("rubs and is no plate"));
   }
   const std::string semi = kNeedle + "[motion]\nintegrator = \"semi_implicit\"\n";
   EXPECT_EQ(complaint(semi), "");

@@ -30,8 +30,7 @@ inline constexpr Word<Integrator> kWords<Integrator>[] = {
 struct Capabilities {
   bool supports_interactions = false;           ///< instruments, capsules and containers: its steps are short
   bool supports_them_in_viscous_tissue = true;  ///< the same where some tissue has a Kelvin–Voigt viscosity
-  /// Of them those that act in long steps, in any tissue (Interaction::refuses_long_steps): needles and rigid tools in contact that
-  /// follow a path, containers, capsules.
+  /// Of them those that act in long steps, in any tissue (Interaction::refuses_long_steps).
   bool supports_contact = false;
   bool any_step_is_stable = false;     ///< it has no h*, needs no mass scaling and does not ring
   bool viscosity_limits_step = false;  ///< h* falls with viscosity

@@ -87,7 +87,9 @@ std::map<int, TipResistance> by_number(const InstrumentSpec& x, const TetMesh& m
 
 struct InstrumentMaker {
   const InstrumentSpec& spec;
-  const TetMesh& mesh;
+  const TetMesh* mesh;  ///< null: there is no body yet
+
+  std::shared_ptr<ToolDriver> driver() const { return mesh != nullptr ? make_driver(spec, *mesh) : make_driver(spec); }
 
   template <class Options>
   std::shared_ptr<Instrument> operator()(Options options) const {
@@ -95,13 +97,11 @@ struct InstrumentMaker {
     options.direction = spec.direction;
     if constexpr (std::is_same_v<Options, NeedleOptions>) {
       options.bevel_side = spec.side;
-      options.regions = by_number(spec, mesh);
+      if (mesh != nullptr) options.regions = by_number(spec, *mesh);
     }
-    return std::make_shared<typename Options::Instrument>(options, make_driver(spec, mesh));
+    return std::make_shared<typename Options::Instrument>(options, driver());
   }
-  std::shared_ptr<Instrument> operator()(const OwnInstrument& make) const {
-    return make(spec, make_driver(spec, mesh));
-  }
+  std::shared_ptr<Instrument> operator()(const OwnInstrument& make) const { return make(spec, driver()); }
 };
 
 }  // namespace
@@ -136,7 +136,11 @@ std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& x, const TetMesh& 
 namespace scene {
 
 std::shared_ptr<Instrument> make_instrument(const InstrumentSpec& spec, const TetMesh& mesh) {
-  return std::visit(InstrumentMaker{spec, mesh}, spec.what);
+  return std::visit(InstrumentMaker{spec, &mesh}, spec.what);
+}
+
+std::shared_ptr<Instrument> make_instrument(const InstrumentSpec& spec) {
+  return std::visit(InstrumentMaker{spec, nullptr}, spec.what);
 }
 
 std::shared_ptr<Instrument> make_tool(const ToolSpec& spec, std::vector<std::uint32_t> vertices) {

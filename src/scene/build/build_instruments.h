@@ -13,6 +13,9 @@ namespace glisson::scene {
 /// @param mesh  of the body @throws std::invalid_argument for options or regions that do not fit
 std::shared_ptr<Instrument> make_instrument(const InstrumentSpec& spec, const TetMesh& mesh);
 
+/// The same before there is a body: without regions, and a palpation moves as make_driver says. For what it says of itself.
+std::shared_ptr<Instrument> make_instrument(const InstrumentSpec& spec);
+
 /// The driven set of a tool. @throws std::invalid_argument
 std::shared_ptr<Instrument> make_tool(const ToolSpec& spec, std::vector<std::uint32_t> vertices);
 
