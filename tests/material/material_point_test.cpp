@@ -10,6 +10,7 @@
 
 #include "glisson/simulation/simulation.h"
 #include "material/every_tissue.h"
+#include "material/reference/reference_stress.h"
 #include "material/uniaxial_path.h"
 #include "support/must_step.h"
 
@@ -30,33 +31,14 @@ double sum_slope(const Exponents& e, double stretch, double n) {
   return sum;
 }
 
-/// ∂W/∂I₁ and ∂W/∂I₂ of the laws of two invariants [Pa].
-struct InvariantSlope {
-  double first, second;
-};
-InvariantSlope invariant_slopes(const NeoHookean& l, double, double) { return {0.5 * l.mu, 0.0}; }
-InvariantSlope invariant_slopes(const MooneyRivlin& l, double, double) { return {l.c10, l.c01}; }
-InvariantSlope invariant_slopes(const Yeoh& l, double x, double) {
-  return {l.c1 + 2.0 * l.c2 * x + 3.0 * l.c3 * x * x, 0.0};
-}
-InvariantSlope invariant_slopes(const Fung& l, double x, double) { return {0.5 * l.mu * std::exp(l.b * x), 0.0}; }
-InvariantSlope invariant_slopes(const VerondaWestmann& l, double x, double) {
-  return {l.c * l.b * std::exp(l.b * x), -0.5 * l.c * l.b};
-}
-InvariantSlope invariant_slopes(const Gent& l, double x, double) { return {0.5 * l.mu * l.limit / (l.limit - x), 0.0}; }
-InvariantSlope invariant_slopes(const Invariants& l, double x, double y) {
-  return {l.c10 + 2.0 * l.c20 * x + l.c11 * y + 3.0 * l.c30 * x * x + 0.5 * l.a1 * std::exp(l.b1 * x) +
-              l.q1 * x * std::exp(l.r1 * x * x),
-          l.c01 + l.c11 * x + 2.0 * l.c02 * y + 0.5 * l.a2 * std::exp(l.b2 * y) + l.q2 * y * std::exp(l.r2 * y * y)};
-}
-
 /// dW/dλ of an incompressible test [Pa].
 template <class Law>
 double incompressible(const Law& law, const Exponents& e, double stretch) {
   double x = -3.0, y = -3.0;  // I₁ − 3, I₂ − 3
   for (const double k : e) x += std::pow(stretch, 2.0 * k), y += std::pow(stretch, -2.0 * k);
-  const InvariantSlope s = invariant_slopes(law, x, y);
-  return s.first * sum_slope(e, stretch, 2.0) + s.second * sum_slope(e, stretch, -2.0);
+  const reference::InvariantEnergy w = reference::invariant_energy(law, x, y);
+  return static_cast<double>(w.first) * sum_slope(e, stretch, 2.0) +
+         static_cast<double>(w.second) * sum_slope(e, stretch, -2.0);
 }
 double incompressible(const Ogden& law, const Exponents& e, double stretch) {
   double P = 0.0;
@@ -69,8 +51,8 @@ double incompressible(const Ogden& law, const Exponents& e, double stretch) {
 /// P_xz of simple shear: I₁ − 3 = I₂ − 3 = γ², J = 1, whatever the bulk modulus [Pa].
 template <class Law>
 double sheared(const Law& law, double amount) {
-  const InvariantSlope s = invariant_slopes(law, amount * amount, amount * amount);
-  return 2.0 * amount * (s.first + s.second);
+  const reference::InvariantEnergy w = reference::invariant_energy(law, amount * amount, amount * amount);
+  return 2.0 * amount * static_cast<double>(w.first + w.second);
 }
 double sheared(const Ogden& law, double amount) {
   const double root = std::sqrt(amount * amount + 4.0), stretch = 0.5 * (amount + root);
