@@ -24,7 +24,7 @@ namespace glisson {
 struct BallShape {
   static constexpr std::string_view kName = "ball";
   Vec3d center{};        ///< [m]
-  double radius = 0.01;  ///< [m], > 0
+  double radius = 0.01;  ///< [m]
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -38,7 +38,7 @@ struct BallShape {
 struct EllipsoidShape {
   static constexpr std::string_view kName = "ellipsoid";
   Vec3d center{};                              ///< [m]
-  Vec3d semi_axes{0.02, 0.015, 0.01};          ///< a, b, c [m], > 0
+  Vec3d semi_axes{0.02, 0.015, 0.01};          ///< a, b, c [m]
   double exponent_xy = 2.0, exponent_z = 2.0;  ///< m and n [-], 2 or more: convex and without edges
 
   template <class Take>
@@ -56,7 +56,7 @@ struct EllipsoidShape {
 struct BoxShape {
   static constexpr std::string_view kName = "box";
   Vec3d center{};                ///< [m]
-  Vec3d size{0.02, 0.02, 0.02};  ///< edge lengths [m], > 0
+  Vec3d size{0.02, 0.02, 0.02};  ///< edge lengths [m]
   double rounding = 0.0;         ///< radius of its edges [m], at most half the shortest side
 
   template <class Take>
@@ -71,7 +71,7 @@ struct BoxShape {
 struct CylinderShape {
   static constexpr std::string_view kName = "cylinder";
   Vec3d from{}, to{0.0, 0.0, 0.02};  ///< centres of its ends [m]
-  double radius = 0.01;              ///< [m], > 0
+  double radius = 0.01;              ///< [m]
   double rounding = 0.0;             ///< radius of its edges [m], at most the radius and half the height
 
   template <class Take>
@@ -88,7 +88,7 @@ struct CylinderShape {
 /// A point of a tube's axis and the radius there.
 struct TubePoint {
   Vec3d at{};             ///< [m]
-  double radius = 0.002;  ///< [m], > 0
+  double radius = 0.002;  ///< [m]
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -114,8 +114,8 @@ struct TorusShape {
   static constexpr std::string_view kName = "torus";
   Vec3d center{};              ///< [m]
   Vec3d axis{0.0, 0.0, 1.0};   ///< of any length
-  double radius = 0.02;        ///< of its middle line [m], > 0
-  double tube_radius = 0.005;  ///< [m], > 0
+  double radius = 0.02;        ///< of its middle line [m]
+  double tube_radius = 0.005;  ///< [m]
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -184,7 +184,7 @@ struct DifferenceShape {
 struct PlacedShape {
   static constexpr std::string_view kName = "placed";
   std::string of;             ///< name of an earlier shape
-  double scale = 1.0;         ///< [-], > 0
+  double scale = 1.0;         ///< [-]
   Vec3d axis{0.0, 0.0, 1.0};  ///< of the rotation, of any length
   double angle_deg = 0.0;     ///< of the rotation, right-handed
   Vec3d move{};               ///< [m]

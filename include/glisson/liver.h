@@ -10,7 +10,7 @@ namespace glisson {
 
 struct LiverOptions {
   static constexpr std::string_view kName = "liver";
-  double edge = 0.008;                        ///< mean length of the tets' edges [m], > 0
+  double edge = 0.008;                        ///< mean length of the tets' edges [m]
   double scale = 1.0;                         ///< factor on all lengths [-]; 1: 21 × 16 × 11 cm
   bool vessels = true;                        ///< portal and hepatic veins as regions; else they are parenchyma
   bool gallbladder = false;                   ///< the gallbladder in its bed, as a region; else the bed is empty

@@ -66,7 +66,7 @@ inline constexpr Word<BoxSplit> kWords<BoxSplit>[] = {
 
 struct BoxOptions {
   std::array<int, 3> cells{4, 4, 8};  ///< cubes along x, y, z; 1 or more each
-  Vec3d size{0.04, 0.04, 0.08};       ///< edge lengths [m], > 0
+  Vec3d size{0.04, 0.04, 0.08};       ///< edge lengths [m]
   Vec3d origin{0.0, 0.0, 0.0};        ///< lowest corner [m]
   BoxSplit split = BoxSplit::kuhn;
 
@@ -86,11 +86,11 @@ struct BoxOptions {
 TetMesh box_mesh(const BoxOptions& options);
 
 struct CylinderOptions {
-  double radius = 0.05;  ///< [m], > 0
-  double height = 0.06;  ///< [m], > 0; axis along z from z = 0
+  double radius = 0.05;  ///< [m]
+  double height = 0.06;  ///< [m]; axis along z from z = 0
   int radial_cells = 8;  ///< rings of cells from axis to wall, 1 or more
   int axial_cells = 8;   ///< layers, 1 or more
-  double grading = 1.0;  ///< width of the outermost ring over that of the innermost, ≥ 1
+  double grading = 1.0;  ///< width of the outermost ring over that of the innermost
 
   template <class Take>
   static constexpr auto fields(Take take) {

@@ -33,11 +33,11 @@ struct PathPoint {
 /// A place and the edges there. One of `near`, `surface` and `path` names the place.
 struct MeshSize {
   static constexpr std::string_view kName = "size";
-  double edge = 0.002;            ///< mean length of the edges there [m], > 0; no effect where the mesh's is shorter
+  double edge = 0.002;            ///< mean length of the edges there [m]; no effect where the mesh's is shorter
   std::string near{};             ///< a region: in it and around it
   std::string surface{};          ///< a region: on both sides of its surface
   std::vector<PathPoint> path{};  ///< a line through points, or around one point
-  double within = 0.0;            ///< the reach of `edge` beyond the region, surface or line [m], ≥ 0
+  double within = 0.0;            ///< the reach of `edge` beyond the region, surface or line [m]
   /// Edges in the radius of curvature of `surface` [-]: the edge at each of its points is that share of the radius there, and no
   /// shorter than `edge`, which creases get. 0: `edge` all over the surface.
   double per_radius = 0.0;

@@ -14,13 +14,12 @@ const char* doc(const std::string& name) {
   return found == std::end(kDocstrings) ? "" : found->second;
 }
 
-std::string description(const FieldText& field) {
-  std::string text(field.help);
+std::string docstring(const std::string& comment, const FieldText& field) {
   const std::string unit = field.si_unit();
-  if (!unit.empty()) text += " [" + unit + "]";
+  std::string text = !comment.empty() ? comment : std::string(field.help) + (unit.empty() ? "" : " [" + unit + "]");
   Range range = field.range;
   range.min *= field.scale(), range.max *= field.scale();
-  return range.bounded() ? text + ", " + range.text() : text;
+  return range.bounded() ? text + "; allowed: " + range.text() : text;
 }
 
 void set_field(nb::handle self, const std::string& field, nb::handle value) {

@@ -85,8 +85,8 @@ void set_field(nb::handle self, const std::string& field, nb::handle value);
 /// Refuses a field that a class of options has not, naming the nearest that it has. @throws nb::type_error
 [[noreturn]] void no_such_field(nb::handle type, const std::string& field);
 
-/// Of a field without a comment of its own: meaning, unit and range from its description.
-std::string description(const FieldText& field);
+/// Docstring of a field: the comment at its member, else its meaning and unit; then its range.
+std::string docstring(const std::string& comment, const FieldText& field);
 
 /// Signatures of what pickle calls.
 inline constexpr const char* kGetState = "def __getstate__(self) -> tuple[typing.Any, ...]";
@@ -141,20 +141,22 @@ class Options : public nb::class_<T> {
       }
     });
     this->attr("_fields") = nb::tuple();
-    if constexpr (Described<T>) each_field<T>([&](const auto& f) { add(f.name.data(), f.member, description(f)); });
+    if constexpr (Described<T>) {
+      each_field<T>([&](const auto& f) { add(f.name.data(), f.member, f); });
+    }
   }
   template <class M>
   Options& field(const char* name, M member) {
-    add(name, member, "");
+    add(name, member, {});
     return *this;
   }
 
  private:
   template <class M>
-  void add(const char* name, M member, const std::string& description) {
-    const std::string comment = doc(of_ + "::" + name);
+  void add(const char* name, M member, const FieldText& field) {
+    const std::string text = docstring(doc(of_ + "::" + name), field);
     name = python_name(name);
-    this->def_rw(name, member, (comment.empty() ? description : comment).c_str());
+    this->def_rw(name, member, text.c_str());
     this->attr("_fields") = nb::object(this->attr("_fields")) + nb::make_tuple(name);
   }
 

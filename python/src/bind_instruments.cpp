@@ -38,11 +38,7 @@ void bind_motions(nb::module_& m) {
   Options<SineMotion>(m, "SineMotion");
   Options<RecordedMotion>(m, "RecordedMotion");
   Options<RotationMotion>(m, "RotationMotion");
-  Options<PosesMotion>(m, "PosesMotion")
-      .field("times", &PosesMotion::times)
-      .field("positions", &PosesMotion::positions)
-      .field("quaternions", &PosesMotion::quaternions)
-      .field("start", &PosesMotion::start);
+  Options<PosesMotion>(m, "PosesMotion");
   m.def("rotation_angle", &rotation_angle, "motion"_a, "time"_a, doc("rotation_angle"));
   Options<HandCoupling>(m, "HandCoupling");
   m.def("largest_passive_stiffness", &largest_passive_stiffness, "coupling"_a, doc("largest_passive_stiffness"));

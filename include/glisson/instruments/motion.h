@@ -10,11 +10,11 @@ namespace glisson {
 struct PressMotion {
   static constexpr std::string_view kName = "press";
   Vec3d direction{0.0, 0.0, -1.0};  ///< need not be a unit vector; not zero
-  double velocity = 0.01;           ///< speed [m/s], > 0
-  double depth = 0.01;              ///< [m], > 0
-  double start = 0.0;               ///< time at which the motion begins [s], ≥ 0; give it to drive() as `from` too
-  double ramp = 0.0;     ///< time of a linear rise of the speed from 0 [s], ≥ 0; 0: a sudden start, as in the paper
-  double hold = 0.0;     ///< rest at depth [s], ≥ 0
+  double velocity = 0.01;           ///< speed [m/s]
+  double depth = 0.01;              ///< [m]
+  double start = 0.0;               ///< time at which the motion begins [s]; give it to drive() as `from` too
+  double ramp = 0.0;     ///< time of a linear rise of the speed from 0 [s]; 0: a sudden start, as in the paper
+  double hold = 0.0;     ///< rest at depth [s]
   bool returns = false;  ///< withdraw at the same speed after the hold
 
   template <class Take>

@@ -16,11 +16,11 @@ struct RotationMotion {
   static constexpr std::string_view kName = "rotation";
   Vec3d axis{};              ///< of any length, not zero
   Vec3d center{};            ///< a point of the axis [m]
-  double angle_deg = 90.0;   ///< [°], > 0
-  double rate_deg_s = 90.0;  ///< angular speed [°/s], > 0
-  double start = 0.0;        ///< [s], ≥ 0
-  double ramp = 0.0;         ///< time over which the speed rises from 0 [s], ≥ 0
-  double hold = 0.0;         ///< rest at the angle [s], ≥ 0
+  double angle_deg = 90.0;   ///< [°]
+  double rate_deg_s = 90.0;  ///< angular speed [°/s]
+  double start = 0.0;        ///< [s]
+  double ramp = 0.0;         ///< time over which the speed rises from 0 [s]
+  double hold = 0.0;         ///< rest at the angle [s]
   bool returns = false;      ///< turns back at the same speed after the hold
   /// In place of angle, speed, start, ramp, hold and return: angles at times, cubic between them with a continuous speed, without
   /// overshoot; constant before and after. Two or more [s, °].
@@ -60,7 +60,15 @@ struct PosesMotion {
   std::vector<double> times;                       ///< ascending [s], two or more
   std::vector<Vec3d> positions;                    ///< of the tool's origin [m]
   std::vector<std::array<double, 4>> quaternions;  ///< w, x, y, z, of any length but 0; q and −q are the same rotation
-  double start = 0.0;                              ///< time of the run at which the first pose is taken [s], ≥ 0
+  double start = 0.0;                              ///< time of the run at which the first pose is taken [s]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using M = PosesMotion;
+    return take(no_key("times", &M::times), no_key("positions", &M::positions), no_key("quaternions", &M::quaternions),
+                no_key("start", &M::start, "s", at_least(0)));
+  }
+  Fault check() const;
 };
 /// The motion from the first pose: the tool's origin is at the first position then. @throws std::invalid_argument naming what is wrong
 RigidPath poses_path(const PosesMotion& motion);

@@ -42,9 +42,9 @@ ToolPath press_path(const PressMotion& motion);
 /// Motion at one speed without end.
 struct SteadyMotion {
   Vec3d direction{0.0, 0.0, -1.0};  ///< of any length, not zero
-  double velocity = 0.01;           ///< [m/s], > 0
-  double start = 0.0;               ///< [s], ≥ 0
-  double ramp = 0.0;                ///< time over which the speed rises from 0 [s], ≥ 0
+  double velocity = 0.01;           ///< [m/s]
+  double start = 0.0;               ///< [s]
+  double ramp = 0.0;                ///< time over which the speed rises from 0 [s]
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -59,9 +59,9 @@ ToolPath steady_path(const SteadyMotion& motion);
 /// A straight move to a point and a rest there; for example insert, rest, sideways, withdraw.
 struct Stroke {
   Vec3d to{};              ///< relative to the start of the tool, not of the stroke [m]
-  double velocity = 0.01;  ///< [m/s], > 0
-  double ramp = 0.0;       ///< time over which the speed rises, and falls, linearly [s], ≥ 0
-  double rest = 0.0;       ///< after the move [s], ≥ 0
+  double velocity = 0.01;  ///< [m/s]
+  double ramp = 0.0;       ///< time over which the speed rises, and falls, linearly [s]
+  double rest = 0.0;       ///< after the move [s]
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -70,7 +70,7 @@ struct Stroke {
   }
 };
 struct StrokeMotion {
-  double start = 0.0;           ///< [s], ≥ 0
+  double start = 0.0;           ///< [s]
   std::vector<Stroke> strokes;  ///< one or more
 
   template <class Take>
@@ -85,12 +85,12 @@ ToolPath stroke_path(const StrokeMotion& motion);
 struct SineMotion {
   static constexpr std::string_view kName = "sine";
   Vec3d direction{0.0, 0.0, -1.0};  ///< of any length, not zero
-  double amplitude = 0.001;         ///< [m], > 0
-  double frequency = 1.0;           ///< f [Hz], > 0
+  double amplitude = 0.001;         ///< [m]
+  double frequency = 1.0;           ///< f [Hz]
   double mean = 0.0;                ///< [m]
-  double start = 0.0;               ///< [s], ≥ 0
-  double ramp = 0.0;                ///< time over which it rises [s], ≥ 0
-  double duration = 1.0;            ///< from the start on [s], > 0; then the tool stays in place
+  double start = 0.0;               ///< [s]
+  double ramp = 0.0;                ///< time over which it rises [s]
+  double duration = 1.0;            ///< from the start on [s]; then the tool stays in place
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -109,7 +109,7 @@ ToolPath sine_path(const SineMotion& motion);
 struct RecordedMotion {
   std::vector<double> times;     ///< ascending [s], two or more
   std::vector<Vec3d> positions;  ///< at these times [m]; the tool moves relative to the first of them
-  double start = 0.0;            ///< time of the run at which the record begins [s], ≥ 0
+  double start = 0.0;            ///< time of the run at which the record begins [s]
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -128,10 +128,10 @@ ToolPath recorded_path(const RecordedMotion& motion);
 struct PushMotion {
   Vec3d direction{0.0, 0.0, -1.0};      ///< d, of any length, not zero
   std::function<double(double)> force;  ///< F at time t [N]; not none
-  double mass = 0.05;                   ///< m, of the tool and the hand behind it [kg], > 0
-  double damping = 5.0;                 ///< c [N s/m], ≥ 0
+  double mass = 0.05;                   ///< m, of the tool and the hand behind it [kg]
+  double damping = 5.0;                 ///< c [N s/m]
   bool guided = true;                   ///< moves along the direction only; otherwise also sideways
-  std::optional<double> stop{};         ///< largest travel along the direction [m], > 0
+  std::optional<double> stop{};         ///< largest travel along the direction [m]
   std::optional<double> end{};          ///< end of the push, for the end of the run [s]
 
   template <class Take>
@@ -174,11 +174,11 @@ class PushDriver final : public ToolDriver {
 /// and tool dissipate b Δx²/T and c Δy²/T or more. So no energy is created, for any tissue and hand, where b ≥ kT/2 and
 /// (b − kT/2) c ≥ (kT/2)². With the tool fixed (c → ∞) this is the bound of a sampled wall, b ≥ kT/2.
 struct HandCoupling {
-  double stiffness = 300.0;      ///< k [N/m], > 0
-  double damping = 2.0;          ///< c [N s/m], > 0
-  double mass = 0.02;            ///< m [kg], > 0
-  double period = 0.001;         ///< T: time from one set_target to the next [s], > 0
-  double device_damping = 0.25;  ///< b: damping of the device's own bearings and motors [N s/m], ≥ 0
+  double stiffness = 300.0;      ///< k [N/m]
+  double damping = 2.0;          ///< c [N s/m]
+  double mass = 0.02;            ///< m [kg]
+  double period = 0.001;         ///< T: time from one set_target to the next [s]
+  double device_damping = 0.25;  ///< b: damping of the device's own bearings and motors [N s/m]
 
   template <class Take>
   static constexpr auto fields(Take take) {

@@ -21,7 +21,7 @@ namespace glisson {
 /// φ(x) = exp(a x), between `least` and `most`.
 struct ExponentialTime {
   double rate = 0.0;     ///< a, per unit of the measure [-]; above 0 the branch slows down as the tissue deforms
-  double least = 1e-3;   ///< smallest φ [-], > 0
+  double least = 1e-3;   ///< smallest φ [-]
   double most = 1000.0;  ///< largest φ [-]
 
   static constexpr std::string_view kName = "exponential";
@@ -47,8 +47,8 @@ struct ExponentialTime {
 /// φ(x) = (x/x₀)ⁿ, between `least` and `most`: τ is the time at x = x₀.
 struct PowerTime {
   double exponent = 1.0;   ///< n [-]
-  double reference = 0.1;  ///< x₀, in units of the measure [-], > 0
-  double least = 1e-3;     ///< smallest φ [-], > 0
+  double reference = 0.1;  ///< x₀, in units of the measure [-]
+  double least = 1e-3;     ///< smallest φ [-]
   double most = 1000.0;    ///< largest φ [-]
 
   static constexpr std::string_view kName = "power";

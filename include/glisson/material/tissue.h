@@ -69,7 +69,7 @@ inline constexpr Word<LawForm> kWords<LawForm>[] = {
 /// With moduli λ_L, μ_L along and λ_T, μ_T across the fibres, c = λ_L − λ_T + 2 (μ_L − μ_T) [Picinbono2003].
 struct Fibres {
   Vec3d direction{0.0, 0.0, 1.0};  ///< a at rest, any length but 0; TetMesh::fibres override it
-  double stiffness = 0.0;          ///< c [Pa], ≥ 0
+  double stiffness = 0.0;          ///< c [Pa]
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -86,8 +86,8 @@ struct Fibres {
 /// One branch of a generalised Maxwell body: μ(t) = μ₀ (1 − Σ g (1 − e^(−t/τ))). With a law of its time τ follows the
 /// tissue's measure of deformation, and the relaxation is no longer linear: dq/dt = (S − q)/τ(x) (docs/theory.md §7).
 struct MaxwellBranch {
-  double share = 0.0;                 ///< g, share of the instantaneous shear modulus that relaxes [-], > 0; sum < 1
-  double time = 1.0;                  ///< τ [s], > 0
+  double share = 0.0;                 ///< g, share of the instantaneous shear modulus that relaxes [-]; sum < 1
+  double time = 1.0;                  ///< τ [s]
   std::optional<TimeLaw> time_law{};  ///< factor on τ as a function of the measure; none: constant
 
   template <class Take>
@@ -139,10 +139,10 @@ LameParameters lame_from_young(double youngs_modulus, double poisson_ratio);
 /// ∂W/∂F of that law instead; E, ν, kinematics and the stiffness laws are not used then.
 struct Tissue {
   std::string name = "tissue";
-  double youngs_modulus = 3600.0;  ///< E at rest [Pa], > 0
-  double poisson_ratio = 0.4;      ///< ν [-], −1 < ν < 0.5
-  double density = 1000.0;         ///< ρ [kg/m³], > 0
-  double viscosity = 0.0;          ///< η [Pa·s], ≥ 0
+  double youngs_modulus = 3600.0;  ///< E at rest [Pa]
+  double poisson_ratio = 0.4;      ///< ν [-]
+  double density = 1000.0;         ///< ρ [kg/m³]
+  double viscosity = 0.0;          ///< η [Pa·s]
   ViscousTensor viscous_tensor = ViscousTensor::shear;
   DeformationMeasure measure = DeformationMeasure::equivalent_shear_strain;
   StiffnessLaw law = ConstantLaw{};          ///< E(x)

@@ -274,7 +274,7 @@ struct ProbeSpec {
 };
 
 struct OutputSpec {
-  double sample_rate = 500.0;  ///< [Hz], > 0
+  double sample_rate = 500.0;  ///< [Hz]
   int frames = 60;             ///< frames of the whole run, 0 or more
   bool stored_energy = false;  ///< W(u) with every sample: a pass over the tets in double each
 

@@ -67,12 +67,12 @@ inline constexpr Word<Preconditioner> kWords<Preconditioner>[] = {
 /// Options of the integrators `implicit` and `quasi_static`.
 struct ImplicitOptions {
   TimeScheme scheme = TimeScheme::backward_euler;  ///< of `implicit`
-  double spectral_radius = 0.8;                    ///< ρ∞ of generalised_alpha [-], 0 … 1
-  /// First and largest automatic step [s], > 0; none: 10 ms, `quasi_static` 50 ms.
+  double spectral_radius = 0.8;                    ///< ρ∞ of generalised_alpha [-]
+  /// First and largest automatic step [s]; none: 10 ms, `quasi_static` 50 ms.
   std::optional<double> largest_step{};
-  double tolerance = 1e-8;   ///< of Newton's method: residual force over the largest force [-], 1e-13 … 1e-2
-  int most_iterations = 25;  ///< of Newton's method, before a step is halved, 1 … 1000
-  int most_cuts = 20;        ///< how often a step is halved before it fails, 0 … 40
+  double tolerance = 1e-8;   ///< of Newton's method: residual force over the largest force [-]
+  int most_iterations = 25;  ///< of Newton's method, before a step is halved
+  int most_cuts = 20;        ///< how often a step is halved before it fails
   Preconditioner preconditioner = Preconditioner::automatic;
 
   template <class Take>
@@ -111,29 +111,29 @@ inline constexpr int kMostDragStagesBesideOthers = 3;
 
 struct SimulationOptions {
   Integrator integrator = Integrator::central_difference;
-  /// h [s], > 0. Explicit and semi-implicit: ≤ h*; none: 0.9 h*, reduced as tissue stiffens and increased again as it
-  /// softens; semi-implicit 0.9 h* of the elastic body. Implicit and static: none: the longest that converges, up to
+  /// h [s]. Explicit and semi-implicit: ≤ h*; none: 0.9 h*, reduced as tissue stiffens and increased again as it
+  /// softens; semi-implicit 0.9 h* of the elastic body. Implicit and quasi-static: none: the longest that converges, up to
   /// ImplicitOptions::largest_step; a given one is subdivided internally where it does not converge.
   std::optional<double> step{};
   /// Explicit and semi-implicit: adds mass only to tets whose element step bound is below this step, until it equals it
-  /// [s], > 0; for meshes with a few tiny tets. The mass has inertia and weight; mass_scaling() reports it. None: no
+  /// [s]; for meshes with a few tiny tets. The mass has inertia and weight; mass_scaling() reports it. None: no
   /// mass is added.
   std::optional<double> mass_scaling_step{};
   /// When mass is added for that step: at rest and for good, or at vertices of tets that have stiffened, until they soften. The second
   /// is for central_difference with an automatic step, which then is mass_scaling_step.
   MassScalingKind mass_scaling = MassScalingKind::fixed;
-  /// central_difference: stages in which the viscous force is taken within a step, 1 … kMostDragStages. One is the paper's scheme. With
+  /// central_difference: stages in which the viscous force is taken within a step. One is the paper's scheme. With
   /// n of them viscosity allows nearly n²/2 times the step that it does with one, and stiffness 0.91 to 0.95 of what it does alone; a
   /// stage more costs half a step. For tissue of small strain; beside interactions Interaction::most_drag_stages at most.
   int drag_stages = 1;
   ImplicitOptions implicit{};
   Precision precision = Precision::single_precision;
-  double damping_rate = 0.0;      ///< mass-proportional nodal damping γ_i/m_i [1/s], ≥ 0
-  double nodal_damping = 0.0;     ///< additional nodal damping γ_i, equal at all vertices [kg/s], ≥ 0
+  double damping_rate = 0.0;      ///< mass-proportional nodal damping γ_i/m_i [1/s]
+  double nodal_damping = 0.0;     ///< additional nodal damping γ_i, equal at all vertices [kg/s]
   Vec3d gravity{};                ///< [m/s²]
-  double gravity_ramp = 0.0;      ///< gravity grows linearly from 0 over this time [s], ≥ 0
+  double gravity_ramp = 0.0;      ///< gravity grows linearly from 0 over this time [s]
   bool enforce_stability = true;  ///< false: any step is accepted, for studies of the instability itself
-  /// Threads for the element forces, 0 … 1024; 0: chosen by the size of the body. The result is the same bytes on any
+  /// Threads for the element forces; 0: chosen by the size of the body. The result is the same bytes on any
   /// number of threads. In double precision always one.
   int threads = 0;
   /// Whether energies() is computed. It makes a step up to half as long again; forces of constraints are available
@@ -154,25 +154,21 @@ struct SimulationOptions {
         field("integrator", &SimulationOptions::integrator, "how the body is advanced in time"),
         field("step", &SimulationOptions::step, "s", above(0),
               "time step h; \"auto\" takes 0.9 of the stable step and follows the tissue; for implicit and "
-              "quasi_static the "
-              "largest that converges")
+              "quasi_static the largest that converges")
             .or_auto()
             .otherwise("\"auto\"")
             .advise("\"auto\" chooses the largest safe step"),
         field("mass_scaling_step", &SimulationOptions::mass_scaling_step, "s", above(0),
               "adds mass only to tets whose element step bound is shorter, until it equals this step; "
-              "central_difference and "
-              "semi_implicit. `glisson check` reports the tets and the mass")
+              "central_difference and semi_implicit. `glisson check` reports the tets and the mass")
             .otherwise("no mass is added"),
         field("mass_scaling", &SimulationOptions::mass_scaling,
               "when mass is added for `mass_scaling_step`; variable: with an automatic step, which then is that one, "
-              "and not beside "
-              "semi_implicit (docs/integrators.md)"),
-        field(
-            "drag_stages", &SimulationOptions::drag_stages, between(1, kMostDragStages),
-            "stages in which the viscous force is taken within a step of central_difference: they make steps longer "
-            "where viscosity_Pa_s limits them (docs/integrators.md); at most 4 beside needles and containers that are "
-            "not bonded, 3 beside tools in contact and blades"),
+              "and not with semi_implicit (docs/integrators.md)"),
+        field("drag_stages", &SimulationOptions::drag_stages, between(1, kMostDragStages),
+              "stages in which the viscous force is taken within a step of central_difference: they make steps longer "
+              "where viscosity_Pa_s limits them (docs/integrators.md); at most 4 with needles and containers that are "
+              "not bonded, 3 with tools in contact and blades"),
         field("implicit", &SimulationOptions::implicit, "options of the integrators implicit and quasi_static"),
         field("precision", &SimulationOptions::precision, "precision of the element arithmetic"),
         field("damping_rate", &SimulationOptions::damping_rate, "1/s", at_least(0),
@@ -207,8 +203,8 @@ enum class StepStatus {
   /// a force is not finite and the run cannot continue. No vertex was moved by such a force: a finite state stays
   /// finite, but parts of the body may be one step ahead of others
   not_finite,
-  not_converged,  ///< implicit, static: no equilibrium was found with any step size; the step was not made
-  not_held        ///< static: supports and tools leave a rigid motion free; the step was not made
+  not_converged,  ///< implicit, quasi-static: no equilibrium was found with any step size; the step was not made
+  not_held        ///< quasi-static: supports and tools leave a rigid motion free; the step was not made
 };
 template <>
 inline constexpr Word<StepStatus> kWords<StepStatus>[] = {{"ok", StepStatus::ok},
@@ -268,7 +264,7 @@ struct Energies {
   double fracture = 0.0;     ///< work of tips and edges that cut, and what torn or opened capsules released
   double instruments = 0.0;  ///< stored in instruments: bending of needles
   /// By the time scheme of `implicit` itself. Backward Euler: ½ Σ m |Δv|² − ½ ΔF·Δu a step, F the elastic forces.
-  /// Newmark: 0. Static: ½ of the residual at the start, along Δu. Generalised-α: the remainder of the balance, which
+  /// Newmark: 0. Quasi-static: ½ of the residual at the start, along Δu. Generalised-α: the remainder of the balance, which
   /// then proves nothing.
   double numerical = 0.0;
   /// Of tools, instruments and supports: force on the tissue times the motion of the tool, torques included. An Interaction
@@ -438,7 +434,7 @@ class Simulation {
   const TetMesh& mesh() const;
   std::span<const double> masses() const;       ///< lumped, per vertex [kg]
   std::span<const Vec3d> displacement() const;  ///< u(t), per vertex [m]
-  /// Per vertex [m/s]: v(t − h/2), implicit: v(t), static: 0.
+  /// Per vertex [m/s]: v(t − h/2), implicit: v(t), quasi-static: 0.
   std::span<const Vec3d> velocity() const;
   std::vector<Vec3d> positions() const;  ///< rest + u, per vertex [m]
   /// Sets the state, for studies that do not start from rest; energies are counted from here.
@@ -449,7 +445,7 @@ class Simulation {
   ForceParts force(ConstraintId constraint) const;
   /// Torque of the same forces, with where the vertices are then [N m]: Σ (x − about) × f.
   Vec3d torque(ConstraintId constraint, const Vec3d& about) const;
-  /// Time of force() and energies() [s]: explicit, semi-implicit: start of the last step; implicit, static: its end.
+  /// Time of force() and energies() [s]: explicit, semi-implicit: start of the last step; implicit, quasi-static: its end.
   double force_time() const;
   /// All zero unless SimulationOptions::track_energies.
   Energies energies() const;

@@ -27,12 +27,12 @@ struct SurfaceLoad {
   /// and leaves the surface free to deform; a rigid patch is Simulation::drive_rigidly. Following: c and α from present positions.
   Vec3d moment{};
   bool follows = false;
-  /// Stiffness to the ground along x, y, z, of the whole set, divided equally among the vertices [N/m], ≥ 0: −k u on a vertex
+  /// Stiffness to the ground along x, y, z, of the whole set, divided equally among the vertices [N/m]: −k u on a vertex
   /// at its displacement u.
   Vec3d spring{};
-  Vec3d spring_per_area{};   ///< the same per area at rest [N/m³ = Pa/m], ≥ 0
-  Vec3d dashpot{};           ///< the same against velocity: −c v [N s/m], ≥ 0; none in statics
-  Vec3d dashpot_per_area{};  ///< the same per area at rest [Pa s/m], ≥ 0
+  Vec3d spring_per_area{};   ///< the same per area at rest [N/m³ = Pa/m]
+  Vec3d dashpot{};           ///< the same against velocity: −c v [N s/m]; none in quasi_static
+  Vec3d dashpot_per_area{};  ///< the same per area at rest [Pa s/m]
 
   template <class Take>
   static constexpr auto fields(Take take) {

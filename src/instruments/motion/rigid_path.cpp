@@ -1,6 +1,7 @@
 // rigid_path.cpp — see rigid_motion.h.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -56,33 +57,29 @@ PressMotion as_press(const RotationMotion& m) {
           .returns = m.returns};
 }
 
-std::string wrong_times(std::span<const double> times) {
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    if (!(times[i] > times[i - 1])) return "pose " + std::to_string(i + 1) + " is not later than the one before it";
-  }
-  return {};
-}
-
-void require_poses(const PosesMotion& m) {
-  const auto fail = [](const std::string& what) { throw std::invalid_argument("poses: " + what); };
-  const std::size_t n = m.times.size();
-  if (n < 2 || m.positions.size() != n || m.quaternions.size() != n) {
-    fail(std::to_string(n) + " times, " + std::to_string(m.positions.size()) + " positions and " +
-         std::to_string(m.quaternions.size()) + " quaternions; give as many of each, two or more");
-  }
-  if (const std::string wrong = wrong_times(m.times); !wrong.empty()) fail(wrong);
-  if (!(m.start >= 0.0)) fail("start [s] = " + std::to_string(m.start) + " is outside the allowed range, ≥ 0");
-  for (std::size_t i = 0; i < n; ++i) {
-    const double size = std::sqrt(dot4(m.quaternions[i], m.quaternions[i]));
-    if (std::isfinite(norm(m.positions[i])) && std::isfinite(m.times[i]) && size > 1e-9 && std::isfinite(size))
-      continue;
-    fail("pose " + std::to_string(i + 1) +
-         " has a number that is not finite or a quaternion of length 0; the rotation "
-         "by 0 is qw = 1, qx = qy = qz = 0");
-  }
+/// The place of the first time that is not later than the one before it, from 1 on; 0: they ascend.
+std::size_t not_later(std::span<const double> times) {
+  const auto at = std::adjacent_find(times.begin(), times.end(), std::not_fn(std::less<>()));
+  return at == times.end() ? 0 : static_cast<std::size_t>(at - times.begin()) + 2;
 }
 
 }  // namespace
+
+Fault PosesMotion::check() const {
+  const std::size_t n = times.size();
+  if (n < 2 || positions.size() != n || quaternions.size() != n) {
+    return {std::to_string(n) + " times, " + std::to_string(positions.size()) + " positions and " +
+            std::to_string(quaternions.size()) + " quaternions; give as many of each, two or more"};
+  }
+  if (const std::size_t k = not_later(times); k > 0)
+    return {"pose " + std::to_string(k) + " is not later than the one before it"};
+  for (std::size_t i = 0; i < n; ++i) {
+    if (dot4(quaternions[i], quaternions[i]) > 1e-18) continue;
+    return {"pose " + std::to_string(i + 1) +
+            " has a quaternion of length 0; the rotation by 0 is qw = 1, qx = qy = qz = 0"};
+  }
+  return {};
+}
 
 Fault RotationMotion::check() const {
   if (times.empty() && angles_deg.empty()) return {};
@@ -91,10 +88,8 @@ Fault RotationMotion::check() const {
                 " angles; give as many of both, two or more",
             "times"};
   }
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    if (times[i] > times[i - 1]) continue;
-    return {"number " + std::to_string(i + 1) + " is not later than the one before it", "times"};
-  }
+  if (const std::size_t k = not_later(times); k > 0)
+    return {"number " + std::to_string(k) + " is not later than the one before it", "times"};
   return {};
 }
 
@@ -116,7 +111,7 @@ RigidPath rotation_path(const RotationMotion& m) {
 }
 
 RigidPath poses_path(const PosesMotion& motion) {
-  require_poses(motion);
+  detail::require_fields("poses", motion);
   std::vector<Quaternion> q = motion.quaternions;
   for (std::size_t i = 0; i < q.size(); ++i) {
     const double size = std::sqrt(dot4(q[i], q[i]));

@@ -14,7 +14,7 @@ namespace glisson {
 /// scrambled find back, and sums of forces keep their digits (docs/integrators.md, "Far from rest").
 struct Fung {
   double mu = 0.0, b = 0.0;   ///< [Pa], [-]
-  double bulk_modulus = 0.0;  ///< κ [Pa], > 0
+  double bulk_modulus = 0.0;  ///< κ [Pa]
 
   static constexpr std::string_view kName = "fung";
   static constexpr std::string_view kHelp = "W = μ/(2b) (exp(b (Ī₁ − 3)) − 1) + κ/2 (J − 1)² (exponent at most 12)";

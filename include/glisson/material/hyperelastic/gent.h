@@ -15,7 +15,7 @@ namespace glisson {
 /// would lose nearly all of its stiffness at once, and a step that had been short enough would not be after the next.
 struct Gent {
   double mu = 0.0, limit = 0.0;  ///< μ [Pa], J_m [-]
-  double bulk_modulus = 0.0;     ///< κ [Pa], > 0
+  double bulk_modulus = 0.0;     ///< κ [Pa]
 
   static constexpr std::string_view kName = "gent";
   static constexpr std::string_view kHelp =

@@ -23,7 +23,7 @@ struct Invariants {
   double c10 = 0.0, c01 = 0.0, c20 = 0.0, c11 = 0.0, c02 = 0.0, c30 = 0.0;  ///< [Pa]
   double a1 = 0.0, b1 = 1.0, a2 = 0.0, b2 = 1.0;                            ///< [Pa], [-]
   double q1 = 0.0, r1 = 1.0, q2 = 0.0, r2 = 1.0;                            ///< [Pa], [-]
-  double bulk_modulus = 0.0;                                                ///< κ [Pa], > 0
+  double bulk_modulus = 0.0;                                                ///< κ [Pa]
 
   static constexpr std::string_view kName = "invariants";
   static constexpr std::string_view kHelp =

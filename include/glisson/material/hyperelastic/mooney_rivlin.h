@@ -12,7 +12,7 @@ namespace glisson {
 /// W = c₁₀ (Ī₁ − 3) + c₀₁ (Ī₂ − 3) + κ/2 (J − 1)²,  μ = 2 (c₁₀ + c₀₁)
 struct MooneyRivlin {
   double c10 = 0.0, c01 = 0.0;  ///< [Pa]
-  double bulk_modulus = 0.0;    ///< κ [Pa], > 0
+  double bulk_modulus = 0.0;    ///< κ [Pa]
 
   static constexpr std::string_view kName = "mooney_rivlin";
   static constexpr std::string_view kHelp = "W = c₁₀ (Ī₁ − 3) + c₀₁ (Ī₂ − 3) + κ/2 (J − 1)², μ = 2 (c₁₀ + c₀₁)";

@@ -10,8 +10,8 @@ namespace glisson {
 
 /// W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)²
 struct NeoHookean {
-  double mu = 1285.714;       ///< μ [Pa], > 0
-  double bulk_modulus = 0.0;  ///< κ [Pa], > 0
+  double mu = 1285.714;       ///< μ [Pa]
+  double bulk_modulus = 0.0;  ///< κ [Pa]
 
   static constexpr std::string_view kName = "neo_hookean";
   static constexpr std::string_view kHelp = "W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)²";

@@ -16,7 +16,7 @@ namespace glisson {
 struct Ogden {
   std::vector<double> mu;     ///< μ_k [Pa], one to three
   std::vector<double> alpha;  ///< α_k [-], not 0
-  double bulk_modulus = 0.0;  ///< κ [Pa], > 0
+  double bulk_modulus = 0.0;  ///< κ [Pa]
 
   static constexpr std::size_t kMostTerms = 3;
   static constexpr double kLargestExponent = 60.0;

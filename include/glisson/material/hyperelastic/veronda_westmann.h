@@ -14,7 +14,7 @@ namespace glisson {
 /// scrambled find back, and sums of forces keep their digits (docs/integrators.md, "Far from rest").
 struct VerondaWestmann {
   double c = 0.0, b = 0.0;    ///< [Pa], [-]
-  double bulk_modulus = 0.0;  ///< κ [Pa], > 0
+  double bulk_modulus = 0.0;  ///< κ [Pa]
 
   static constexpr std::string_view kName = "veronda_westmann";
   static constexpr std::string_view kHelp =

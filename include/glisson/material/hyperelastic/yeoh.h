@@ -11,7 +11,7 @@ namespace glisson {
 /// W = c₁ (Ī₁ − 3) + c₂ (Ī₁ − 3)² + c₃ (Ī₁ − 3)³ + κ/2 (J − 1)²,  μ = 2 c₁
 struct Yeoh {
   double c1 = 0.0, c2 = 0.0, c3 = 0.0;  ///< [Pa]
-  double bulk_modulus = 0.0;            ///< κ [Pa], > 0
+  double bulk_modulus = 0.0;            ///< κ [Pa]
 
   static constexpr std::string_view kName = "yeoh";
   static constexpr std::string_view kHelp = "W = c₁ (Ī₁ − 3) + c₂ (Ī₁ − 3)² + c₃ (Ī₁ − 3)³ + κ/2 (J − 1)², μ = 2 c₁";

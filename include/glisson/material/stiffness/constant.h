@@ -22,7 +22,6 @@ struct ConstantLaw {
   std::array<double, 1> numbers(double base) const { return {base}; }
   template <class C, class T>
   static ValueSlope<T> at(const C& numbers, T x);
-  /// Empty, or what is wrong with the parameters taken together.
 
   bool operator==(const ConstantLaw&) const = default;
 };

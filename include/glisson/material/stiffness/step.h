@@ -13,8 +13,8 @@ namespace glisson {
 /// law can be differentiated; width 0 is the sharp step of [Schwartz2002, fig. 2], tissue 1.
 struct StepLaw {
   double threshold = 0.1;  ///< middle of the step, in units of the measure [-]
-  double above = 7200.0;   ///< M₁ [Pa], ≥ 0
-  double width = 0.0;      ///< length of the smooth passage, in units of the measure [-], ≥ 0
+  double above = 7200.0;   ///< M₁ [Pa]
+  double width = 0.0;      ///< length of the smooth passage, in units of the measure [-]
 
   static constexpr std::string_view kName = "step";
   static constexpr std::string_view kHelp =

@@ -16,7 +16,7 @@ namespace glisson {
 /// The base modulus serves the viscous tensor and the stable step only.
 struct TableLaw {
   std::vector<double> arguments;  ///< x_i, strictly increasing [-]
-  std::vector<double> moduli;     ///< M_i [Pa], ≥ 0, as many
+  std::vector<double> moduli;     ///< M_i [Pa], as many
 
   static constexpr std::string_view kName = "table";
   static constexpr std::string_view kHelp = "M(x) by straight lines between points, constant outside them";
