@@ -44,13 +44,17 @@ GLISSON_FORMULA InvariantSlopes<T> Yeoh::slopes(T i1, T /*i2*/) const {
   return {mul_add(i1, mul_add(i1, three_c3, two_c2), T(c1)), T(0), mul_add(i1, three_c3 + three_c3, two_c2)};
 }
 
+/// e^x − 1, along its tangent beyond `most`.
+template <class T>
+inline T limited_expm1(T x, double most) {
+  using std::exp, std::expm1;
+  const T inside = x < T(most) ? x : T(most);
+  return expm1(inside) + exp(inside) * (x - inside);
+}
+
 template <class T>
 inline T Fung::energy(T i1, T /*i2*/) const {
-  using std::expm1;
-  const T e = T(b) * i1;
-  const double top = std::exp(kLargestExponent);
-  const T growth = e < T(kLargestExponent) ? expm1(e) : T(top - 1.0) + T(top) * (e - T(kLargestExponent));
-  return T(0.5 * mu / b) * growth;
+  return T(0.5 * mu / b) * limited_expm1(T(b) * i1, kLargestExponent);
 }
 
 template <class T>
@@ -62,11 +66,7 @@ GLISSON_FORMULA InvariantSlopes<T> Fung::slopes(T i1, T /*i2*/) const {
 
 template <class T>
 inline T VerondaWestmann::energy(T i1, T i2) const {
-  using std::expm1;
-  const T e = T(b) * i1;
-  const double top = std::exp(kLargestExponent);
-  const T growth = e < T(kLargestExponent) ? expm1(e) : T(top - 1.0) + T(top) * (e - T(kLargestExponent));
-  return T(c) * growth - T(0.5 * c * b) * i2;
+  return T(c) * limited_expm1(T(b) * i1, kLargestExponent) - T(0.5 * c * b) * i2;
 }
 
 template <class T>
@@ -114,9 +114,7 @@ GLISSON_FORMULA void add_square_exponential(double q, double r, T x, T& slope, T
 /// a/(2 b) (e^{b x} − 1).
 template <class T>
 inline T exponential_energy(double a, double b, T x) {
-  using std::exp, std::expm1;
-  const T e = T(b) * x, most(Invariants::kLargestExponent), inside = e < most ? e : most;
-  return T(0.5 * a / b) * (expm1(inside) + exp(inside) * (e - inside));
+  return T(0.5 * a / b) * limited_expm1(T(b) * x, Invariants::kLargestExponent);
 }
 /// q/(2 r) (e^{r x²} − 1).
 template <class T>
