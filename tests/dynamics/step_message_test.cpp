@@ -7,14 +7,12 @@
 
 #include "glisson/instruments/motion.h"
 #include "glisson/simulation/simulation.h"
+#include "support/integrators.h"
 
 namespace glisson {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr std::array kIntegrators{Integrator::central_difference, Integrator::semi_implicit, Integrator::implicit,
-                                  Integrator::quasi_static};
 
 TetMesh cube() { return box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}}); }
 
@@ -56,7 +54,7 @@ TEST(StepMessage, NamesTheStableStepThatTissueHasOutgrown) {
 
 // A state that is not finite: no integrator keeps silent.
 TEST(StepMessage, SaysWhatIsNotFinite) {
-  for (const Integrator integrator : kIntegrators) {
+  for (const Integrator integrator : test::every_integrator()) {
     const TetMesh mesh = cube();
     Simulation s(mesh, {{0, Tissue{}}}, {.integrator = integrator});
     s.fix(mesh.vertex_sets.at("z_min"));
@@ -80,7 +78,7 @@ TEST(StepMessage, SaysWhatIsNotHeld) {
 
 // Steps that are made have nothing to say, and end where they were asked to.
 TEST(StepMessage, IsEmptyWhereStepsAreMade) {
-  for (const Integrator integrator : kIntegrators) {
+  for (const Integrator integrator : test::every_integrator()) {
     const TetMesh mesh = cube();
     Simulation s(mesh, {{0, Tissue{}}}, {.integrator = integrator});
     s.fix(mesh.vertex_sets.at("z_min"));

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "glisson/simulation/simulation.h"
+#include "support/integrators.h"
 
 namespace glisson::driven_set_test {
 namespace {
@@ -54,9 +55,7 @@ TEST_P(DrivenSets, BelongToOneBody) {
   EXPECT_EQ(tool->force_depth(), 0.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DrivenSets,
-                         testing::Values(Integrator::central_difference, Integrator::semi_implicit,
-                                         Integrator::implicit, Integrator::quasi_static));
+INSTANTIATE_TEST_SUITE_P(All, DrivenSets, testing::ValuesIn(test::every_integrator()));
 
 }  // namespace
 }  // namespace glisson::driven_set_test

@@ -9,6 +9,7 @@
 #include "glisson/instruments/driven_set.h"
 #include "glisson/instruments/rigid_motion.h"
 #include "support/bodies.h"
+#include "support/integrators.h"
 #include "support/must_step.h"
 
 namespace glisson {
@@ -68,8 +69,7 @@ TEST(Rotation, MovesAsARigidBody) {
   const TetMesh mesh = box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}});
   const RotationMotion turn{
       .axis = {1, 2, 3}, .center = {0.1, 0.0, 0.0}, .angle_deg = 200.0, .rate_deg_s = 400.0, .ramp = 0.1};
-  for (const Integrator integrator :
-       {Integrator::central_difference, Integrator::semi_implicit, Integrator::implicit, Integrator::quasi_static}) {
+  for (const Integrator integrator : test::every_integrator()) {
     Tissue tissue;
     tissue.kinematics = Kinematics::corotational;
     Simulation s(mesh, {{0, tissue}}, with(integrator));

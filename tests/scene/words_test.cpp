@@ -8,7 +8,6 @@ namespace glisson::words_test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 Variant with(const std::string& motion, const std::string& tissue) {
   return test::parse("[mesh]\nkind = \"box\"\n[motion]\nmax_steps = 1\n" + motion + "[tissue]\n" + tissue)
@@ -25,8 +24,10 @@ TEST(Words, AliasesAreRead) {
 
 TEST(Words, AliasesAreNotNamedInMessages) {
   const std::string message = test::complaint("[mesh]\nkind = \"box\"\n[motion]\nintegrator = \"statics\"\n");
-  EXPECT_THAT(message, HasSubstr("\"central_difference\", \"semi_implicit\", \"implicit\", \"quasi_static\""));
-  EXPECT_THAT(message, Not(HasSubstr("\"explicit\"")));
+  const std::string known = message.substr(0, message.find("got"));
+  for (const Word<Integrator>& w : kWords<Integrator>) {
+    EXPECT_EQ(known.find("\"" + std::string(w.word) + "\"") == std::string::npos, is_alias(w)) << w.word;
+  }
 }
 
 TEST(Words, ReferenceNamesAliases) {
