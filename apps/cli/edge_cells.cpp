@@ -192,7 +192,7 @@ std::optional<EdgeCells> cells_under_edge(const TetMesh& mesh, const InstrumentS
 std::optional<ZoneEdges> edges_in_zone(const TetMesh& mesh, const InstrumentSpec& instrument) {
   const auto* needle = std::get_if<NeedleOptions>(&instrument.what);
   if (!needle) return {};
-  const Vec3d tip = start_pose(instrument).position, along = needle->direction * (1.0 / norm(needle->direction));
+  const Vec3d tip = start_pose(instrument).position, along = unit(needle->direction);
   double volume = 0.0, count = 0.0;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     Vec3d centre;

@@ -40,7 +40,7 @@ ElementShape element_shape(const Body& body, const Tissue& tissue, std::size_t e
   }
   if (tissue.fibres) {
     const Vec3d a = body.fibres.empty() ? tissue.fibres->direction : body.fibres[body.mesh_tet[e]];
-    shape.fibre = a * (1.0 / norm(a));
+    shape.fibre = unit(a);
   }
   return shape;
 }

@@ -119,7 +119,7 @@ Instrument::Instrument(std::string name, std::shared_ptr<ToolDriver> driver, con
     : name_(std::move(name)), driver_(std::move(driver)), direction_(direction) {
   if (driver_ == nullptr) throw std::invalid_argument("instrument " + name_ + ": no driver was given");
   if (!(norm(direction) > 0.0)) throw std::invalid_argument("instrument " + name_ + ": its direction is zero");
-  direction_ = direction * (1.0 / norm(direction));
+  direction_ = unit(direction);
   pose_ = before_ = driver_->start();
   start_ = pose_.position;
 }
@@ -154,8 +154,8 @@ void Instrument::drive(const InteractionStep& step) {
 ToolVelocity Instrument::velocity_at(const Vec3d& x) const {
   ToolVelocity velocity;
   if (at_end_) {
-    const Vec3d way = x - to_space(before_, to_frame(pose_, x));
-    if (step_ > 0.0) velocity.before = velocity.after = way * (1.0 / step_);
+    const Vec3d moved = x - to_space(before_, to_frame(pose_, x));
+    if (step_ > 0.0) velocity.before = velocity.after = moved * (1.0 / step_);
     return velocity;
   }
   const Vec3d own = to_frame(before_, x);

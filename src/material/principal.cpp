@@ -18,7 +18,7 @@ Vec3d perpendicular(const Vec3d& v, const Vec3d& a) {
   if (length > 1e-9) return rest * (1.0 / length);
   const Vec3d other = std::abs(a.x) < 0.6 ? Vec3d{1.0, 0.0, 0.0} : Vec3d{0.0, 1.0, 0.0};
   const Vec3d p = cross(a, other);
-  return p * (1.0 / norm(p));
+  return unit(p);
 }
 
 }  // namespace

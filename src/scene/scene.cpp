@@ -147,7 +147,7 @@ void check_stages(const Variant& variant, const Node& experiment, Problems& prob
 /// Reads the file of a recorded motion along a direction.
 void complete_record(RecordSpec& record, const Vec3d& along, const std::filesystem::path& base) {
   if (record.path.is_relative()) record.path = base / record.path;
-  record.motion = load_record(record.path, along * (1.0 / norm(along)));
+  record.motion = load_record(record.path, unit(along));
 }
 
 void complete_poses(PosesSpec& poses, const std::filesystem::path& base) {

@@ -23,8 +23,8 @@ struct Hole {
   Hole(const std::array<Vec3d, 3>& corner, const std::array<double, 3>& weights, double r)
       : middle(corner[0] * weights[0] + corner[1] * weights[1] + corner[2] * weights[2]), radius(r) {
     const Vec3d d1 = corner[1] - corner[0], n = cross(d1, corner[2] - corner[0]);
-    x = d1 * (1.0 / norm(d1));
-    normal = n * (1.0 / norm(n));
+    x = unit(d1);
+    normal = unit(n);
     y = cross(normal, x);
   }
 

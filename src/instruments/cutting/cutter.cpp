@@ -177,7 +177,7 @@ std::vector<VertexMove> Cutter::Impl::snap(const std::vector<std::uint32_t>& ver
         weight += area;
       }
       if (!(norm(normal) > 0.0)) continue;
-      const Vec3d n = normal * (1.0 / norm(normal)), p = middle * (1.0 / weight);
+      const Vec3d n = unit(normal), p = middle * (1.0 / weight);
       if (pass > 0 && left[i] == 0.0) continue;
       left[i] = options.snap ? snap.bring(vertices[i], p, n) : std::abs(dot(n, p - body.rest_positions[vertices[i]]));
     }

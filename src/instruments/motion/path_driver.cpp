@@ -46,11 +46,11 @@ ToolPath press_path(const PressMotion& motion) { return {press(motion), press_en
 ToolPath steady_path(const SteadyMotion& m) {
   detail::require_fields("steady motion", m);
   const Vec3d velocity = m.direction * (m.velocity / norm(m.direction));
-  const auto way = [m, velocity](double time) {
+  const auto displacement = [m, velocity](double time) {
     const double t = std::max(0.0, time - m.start);
     return velocity * (t < m.ramp ? 0.5 * t * t / m.ramp : t - 0.5 * m.ramp);
   };
-  return {way, {}};
+  return {displacement, {}};
 }
 
 Fault StrokeMotion::check() const { return {strokes.empty() ? "none were given; give one or more" : ""}; }
@@ -63,7 +63,7 @@ ToolPath stroke_path(const StrokeMotion& motion) {
     end += Move(norm(stroke.to - at), stroke).time() + stroke.rest;
     at = stroke.to;
   }
-  const auto way = [motion](double time) {
+  const auto displacement = [motion](double time) {
     double begin = motion.start;
     Vec3d from{};
     for (const Stroke& stroke : motion.strokes) {
@@ -75,19 +75,18 @@ ToolPath stroke_path(const StrokeMotion& motion) {
     }
     return from;
   };
-  return {way, end};
+  return {displacement, end};
 }
 
 ToolPath sine_path(const SineMotion& m) {
   detail::require_fields("sine motion", m);
-  const Vec3d unit = m.direction * (1.0 / norm(m.direction));
-  const auto way = [m, unit](double time) {
+  const auto displacement = [m, along = unit(m.direction)](double time) {
     const double t = std::clamp(time - m.start, 0.0, m.duration);
     const double x = m.ramp > 0.0 ? std::min(1.0, t / m.ramp) : (t > 0.0 ? 1.0 : 0.0);
     const double depth = m.mean + m.amplitude * std::sin(2.0 * std::numbers::pi * m.frequency * t);
-    return unit * (x * x * (3.0 - 2.0 * x) * depth);
+    return along * (x * x * (3.0 - 2.0 * x) * depth);
   };
-  return {way, m.start + m.duration};
+  return {displacement, m.start + m.duration};
 }
 
 }  // namespace glisson

@@ -38,8 +38,7 @@ double press_end(const PressMotion& m) {
 
 Motion press(const PressMotion& m) {
   detail::require_fields("press motion", m);
-  const Vec3d unit = m.direction * (1.0 / norm(m.direction));
-  return [m, unit](double time) { return unit * press_depth(m, time); };
+  return [m, along = unit(m.direction)](double time) { return along * press_depth(m, time); };
 }
 
 }  // namespace glisson

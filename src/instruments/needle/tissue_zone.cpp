@@ -181,7 +181,7 @@ Mat3d zone_axes(const TetMesh& mesh, const Vec3d& direction) {
     if (enough || norm(across) > norm(side)) side = across;
     if (enough) break;
   }
-  side = side * (1.0 / norm(side));
+  side = unit(side);
   const Vec3d third = cross(direction, side);
   Mat3d axes;
   for (std::size_t i = 0; i < 3; ++i) {
