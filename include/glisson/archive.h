@@ -1,11 +1,11 @@
-// archive.h — one function writes and reads a state: it names the parts, the archive knows which way they go.
+// archive.h — one function both writes and reads a state: it lists the parts, and the archive copies them out or in.
 //
 //   void archive(Archive& ar) { ar(position, velocity, events); }
 //
 // Parts are numbers, flags, enumerators that have words, strings, vectors, described structs (field.h), lists and variants of
-// them, and whatever has such a function, as a member or beside it. What is read may have been forged: it is refused by an
-// exception where bytes are missing, a list is longer than what is left, a flag is neither 0 nor 1, an enumerator has no word
-// or keys do not ascend. What else a number may be is known to its class, which checks it as it reads.
+// them, and types with such a function, member or free. The bytes may have been forged: reading throws where bytes are missing,
+// a list is longer than the rest, a flag is neither 0 nor 1, an enumerator has no word, or keys do not ascend. A class checks
+// the range of its own numbers as it reads.
 #pragma once
 
 #include <algorithm>
@@ -66,7 +66,7 @@ class Archive {
     part(numbers);
     check(std::all_of(numbers.begin(), numbers.end(), [end](const T& n) { return n < end; }));
   }
-  /// Refuses what has been read where it is not sound.
+  /// Refuses what has been read unless it is sound.
   void check(bool sound) const {
     if (reads_ && !sound) refuse();
   }

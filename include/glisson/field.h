@@ -8,9 +8,9 @@
 //     }
 //   };
 //
-// fields() hands all descriptions to a function; as a template it costs nothing where nobody asks.
+// fields() passes all descriptions to a function; as a template it costs nothing where it is not called.
 // A scene's key is name and unit, `amplitude_mm`; C++ and Python know the name. A member is in SI; where its key's unit
-// begins with mm, so is the range, and the key is a thousand times the member. What must hold between members is said by
+// begins with mm, so is the range, and the key is a thousand times the member. Conditions between members go into
 //   Fault check() const;   // or std::string
 // Every member is described, in the order of the struct: each_field() does not compile otherwise.
 #pragma once
@@ -39,7 +39,7 @@ constexpr Range at_least(double min) { return {.min = min}; }
 constexpr Range between(double min, double max) { return {.min = min, .max = max}; }
 constexpr Range strictly_between(double min, double max) { return {min, max, true, true}; }
 
-/// What a field says whatever its type.
+/// Description of a field, whatever its type.
 struct FieldText {
   std::string_view name{};  ///< of the member
   std::string_view unit{};  ///< of the key; empty: has none, "-": a pure number
@@ -47,7 +47,7 @@ struct FieldText {
   std::string_view help{};
   std::string_view own_key{};       ///< where the key is not name and unit
   std::string_view default_text{};  ///< in place of the member's first value
-  std::string_view advice{};        ///< the way out of a value that is not allowed
+  std::string_view advice{};        ///< what to do about a value that is not allowed
   std::string_view infinite{};      ///< what infinity means, where C++ may give it
   bool required = false;            ///< in scenes
   bool in_scenes = true;
@@ -61,7 +61,7 @@ struct FieldText {
   std::string si_unit() const;
 };
 
-/// A member of S and what is to be said of it.
+/// A member of S with its description.
 template <class S, class T>
 struct FieldOf : FieldText {
   T S::*member;
@@ -113,7 +113,7 @@ constexpr FieldOf<S, T> no_key(std::string_view name, T S::*member, Range range 
   return no_key(name, member, {}, range);
 }
 
-/// What is wrong between the members of a struct, and with which; nothing where `what` is empty.
+/// A contradiction between members of a struct, and the member to change; none if `what` is empty.
 struct Fault {
   std::string what{};
   std::string_view field{};

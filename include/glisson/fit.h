@@ -72,10 +72,10 @@ inline constexpr Word<fit::Deforming> kWords<fit::Deforming>[] = {
 }  // namespace glisson
 namespace glisson::fit {
 
-/// What of a test was measured; the forward model answers in the same measure.
+/// The measured quantity of a test; the forward model gives the same.
 enum class Measured { nominal, cauchy, second_piola, torque, axial, strain, storage, loss };
 
-/// What the numbers of a curve are. Without more it is a press or an insertion: a force over a displacement.
+/// Meaning of the numbers of a curve. By default a press or an insertion: force over displacement.
 struct Measurement {
   LabTest test = LabTest::compression;
   Deforming deforming = Deforming::compression;
@@ -125,7 +125,7 @@ struct Curve {
   std::vector<double> time;          ///< ascending, from 0 [s]
   std::vector<double> displacement;  ///< of the tool from the point of contact [m]
   std::vector<double> force;         ///< on the tool, along its motion [N]
-  /// What the specimen went through before the first instant, as cycles before the one that is fitted: ascending, before time[0] [s, m].
+  /// History of the specimen before the first instant, as the cycles before the fitted one: ascending, before time[0] [s, m].
   std::vector<double> past_time, past_displacement;
   double velocity = 0.0;  ///< mean speed while loading [m/s]
   double noise = 0.0;     ///< standard deviation of the force about a smooth curve [N]; 0: not known
@@ -145,13 +145,13 @@ struct Interval {
   bool holds(double value) const { return low <= value && value <= high; }
 };
 
-/// A fitted number and how sure it is.
+/// A fitted number and its uncertainty.
 struct ParameterResult {
   Parameter parameter;
   double value = 0.0;                                              ///< in the parameter's unit
   std::optional<double> sd;                                        ///< in the parameter's unit, by curvature
   std::optional<Interval> by_curvature, by_profile, by_bootstrap;  ///< of 95 %
-  std::optional<Interval> further;  ///< between which a further specimen's own value lies in 95 %; none: not known
+  std::optional<Interval> further;  ///< 95 % prediction interval of a further specimen's value; none: not known
   std::string verdict;              ///< identified, negligible, weak, not identifiable, at bound, read off
   std::string words;                ///< the verdict in two sentences
 
@@ -161,12 +161,12 @@ struct ParameterResult {
   }
 };
 
-/// A curve beside its fit.
+/// A curve and its fit.
 struct CurveResult {
   Curve curve;
   std::vector<double> fitted;  ///< force at its instants [N]; empty where the simulation failed
   double rms = 0.0;            ///< of fitted − measured [N]
-  /// Between which a further specimen's force lies in 95 %, at the same instants [N]; empty: not known.
+  /// 95 % prediction interval of a further specimen's force, at the same instants [N]; empty: not known.
   std::vector<double> further_low, further_high;
 };
 
@@ -224,7 +224,7 @@ struct LawResult {
   std::string words;
 };
 
-/// A law of the library of terms, fitted while looking for one of few terms.
+/// A law made of terms of the library, fitted in the search for a law with few terms.
 struct DiscoveredLaw {
   std::string name;
   int terms = 0, parameters = 0;
@@ -233,13 +233,13 @@ struct DiscoveredLaw {
   bool taken = false;  ///< compared with the others by data its fit has not seen
 };
 
-/// What a further test would narrow.
+/// A further test and the interval that it would narrow.
 struct DesignResult {
   std::string what, parameter;                ///< the test, and the parameter it narrows most
   double width_now = 0.0, width_after = 0.0;  ///< of its interval, in its unit
 };
 
-/// All that a fit found: fit.json and the page are made from it.
+/// Result of a fit: fit.json and the page are made from it.
 struct FitResult {
   std::string law;  ///< its name
   std::vector<ParameterResult> parameters;
@@ -272,7 +272,7 @@ struct FitResult {
   std::optional<double> area, height;       ///< of the specimen [m²], [m]
 };
 
-/// How far a fit is.
+/// Progress of a fit.
 struct FitProgress {
   std::string law;    ///< being fitted
   std::string stage;  ///< "forward models", "starts", "profiles", "bootstrap"
@@ -283,7 +283,7 @@ struct FitProgress {
   std::uint64_t forward_runs = 0;
 };
 
-/// What the fit of a law will cost; known once its forward model is chosen.
+/// Expected cost of the fit of a law; known once its forward model is chosen.
 struct FitForecast {
   std::string law, forward;  ///< the forward model's name
   std::uint64_t least_runs = 0,

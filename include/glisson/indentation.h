@@ -2,7 +2,7 @@
 //
 //   const Indenter ball{.shape = IndenterShape::sphere, .radius = 0.003};
 //   const std::vector<double> times{1.0, 2.0, 30.0}, depths{0.001, 0.002, 0.002};                 two seconds down, then held
-//   indentation(tissue, ball, {.thickness = 0.01}, times, depths)                                  [N], one a time
+//   indentation(tissue, ball, {.thickness = 0.01}, times, depths)                                  [N], one per time
 //   indentation_depths(tissue, ball, {.thickness = 0.01}, times, forces)                           [m], under forces
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace glisson::fit {
 
-/// What an indenter is.
+/// Shape of an indenter.
 enum class IndenterShape {
   flat,    ///< a face with a sharp edge, or a rounded one
   sphere,  ///< a ball, on a shaft as wide as itself
@@ -34,7 +34,7 @@ struct Indenter {
   bool operator==(const Indenter&) const = default;
 };
 
-/// What an indenter presses on, on a rigid floor.
+/// A layer of tissue on a rigid floor, which the indenter presses.
 struct Layer {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
   double thickness = kNone;  ///< at rest [m], > 0; infinite: a half-space
@@ -55,8 +55,8 @@ struct Layer {
 /// withdraws both are approximations. It does not pull.
 /// @param tissue  hyperelastic and isotropic
 /// @param times   [s], ascending, > 0; before them the indenter is at rest on the surface, at time 0
-/// @param depths  [m], one a time, below the thickness; in between they change smoothly, without overshoot
-/// @return [N], one a time
+/// @param depths  [m], one per time, below the thickness; in between they change smoothly, without overshoot
+/// @return [N], one per time
 /// @throws std::invalid_argument for arguments out of range; std::runtime_error where no equilibrium is found
 /// Costs some tens of solutions of 250 to 1000 unknowns: 0.05 to 0.5 s.
 std::vector<double> indentation(const Tissue& tissue, const Indenter& indenter, const Layer& layer,
@@ -65,11 +65,11 @@ std::vector<double> indentation(const Tissue& tissue, const Indenter& indenter, 
 /// The depth of an indenter under given forces: creep. Indentation solved for it, with its limits: the elastic force F₀ follows
 /// from F by the branches and viscosity, linearly, and the depth from F₀. Branches are exact while the contact grows or rests.
 /// @param times   [s], ascending, > 0; before them the indenter is at rest on the surface, at time 0
-/// @param forces  [N], one a time, > 0 where it presses; in between they change smoothly, without overshoot. A force that
+/// @param forces  [N], one per time, > 0 where it presses; in between they change smoothly, without overshoot. A force that
 ///                comes at once is one at a first time that is far below the others
-/// @return [m], one a time
-/// @throws as indentation; std::runtime_error where a layer does not bear the forces
-/// Costs some solutions for a law, one after the other until the mesh fits the depth.
+/// @return [m], one per time
+/// @throws as indentation; std::runtime_error if no depth balances the forces
+/// Costs several solutions, one after the other, until the mesh suits the depth.
 std::vector<double> indentation_depths(const Tissue& tissue, const Indenter& indenter, const Layer& layer,
                                        std::span<const double> times, std::span<const double> forces);
 

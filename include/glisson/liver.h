@@ -38,7 +38,8 @@ struct LiverOptions {
   Fault check() const;
 };
 
-/// The shapes and regions of a liver: `tumour`, `gallbladder` where it is asked for, `hepatic_veins`, `portal_veins` and `parenchyma`, in this order of precedence.
+/// The shapes and regions of a liver: `tumour`, `gallbladder` if requested, `hepatic_veins`, `portal_veins` and `parenchyma`, in this
+/// order of precedence.
 /// A vein thinner than 1.2 edges is left out from there, a tree of less than three edges in all; the edge of a tree that a
 /// size names is that of the size.
 /// @throws std::invalid_argument naming the option, its value and the allowed range

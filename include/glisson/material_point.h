@@ -1,4 +1,4 @@
-// material_point.h — a tissue without a body: what one point of it answers when stretch or stress is prescribed.
+// material_point.h — a point of tissue without a body: its response to prescribed stretch or stress.
 //
 //   MaterialPoint point(tissue);
 //   MaterialTargets pull;                        every stretch held as it is …
@@ -6,7 +6,7 @@
 //   pull(0, 0) = pull(1, 1) = {MaterialControl::nominal_stress, 0.0};     … but free sides
 //   point.advance(0.1, pull).cauchy(2, 2);       in a tenth of a second
 //
-// Each of the nine components is under control of its own: F_ij, or P_ij as the force of a testing machine gives it. The
+// Each of the nine components is controlled separately: by F_ij, or by P_ij as a testing machine measures it. The
 // formulas are those of the engine (material/response.h) in double precision, with viscosity and Maxwell branches.
 #pragma once
 
@@ -21,7 +21,7 @@
 
 namespace glisson {
 
-/// What is prescribed of a component.
+/// The prescribed quantity of a component.
 enum class MaterialControl {
   deformation,    ///< F_ij [-]
   nominal_stress  ///< P_ij, force over area at rest [Pa]
@@ -51,10 +51,10 @@ struct MaterialState {
   double time = 0.0;                       ///< [s]
   Mat3d deformation = identity<double>();  ///< F [-]
   Mat3d nominal{};  ///< P, first Piola–Kirchhoff: elastic, viscous and what branches still hold [Pa]
-  /// σ = P Fᵀ/J [Pa]; P itself for kinematics `small`, which does not tell the two apart.
+  /// σ = P Fᵀ/J [Pa]; P itself for kinematics `small`, where the two are the same.
   Mat3d cauchy{};
-  /// False: no deformation was found that carries the prescribed stress. The point has stayed at the step before, which this
-  /// state shows, and `message` says what to do.
+  /// False: no deformation with the prescribed stress was found. The state is that of the step before, and `message` says what to
+  /// do.
   bool converged = true;
   std::string message;
 };
@@ -74,7 +74,7 @@ class MaterialPoint {
   MaterialPoint& operator=(MaterialPoint&&) noexcept;
 
   const MaterialState& state() const;
-  /// Goes on by h. @param h  [s], > 0; with viscosity a fast change needs short steps
+  /// Advances by h. @param h  [s], > 0; with viscosity a fast change needs short steps
   /// @throws std::invalid_argument for an h that is not above 0, a target that is not finite, F_ii ≤ 0, or stress prescribed of
   ///         both P_ij and P_ji, which would leave the rotation free
   const MaterialState& advance(double h, const MaterialTargets& targets);
@@ -100,9 +100,9 @@ MaterialTargets test_targets(MaterialTest test, MaterialControl control, double 
 
 /// A test from rest at time 0: the state at each time. Between two times the driven value changes linearly.
 /// @param times   [s], ascending, > 0; with a first time of 0 the first value is applied within 10⁻⁹ of the second time
-/// @param values  as of test_targets, one a time
+/// @param values  as of test_targets, one per time
 /// @param between  steps from one time to the next, ≥ 1: more of them for a tissue with viscosity or branches
-/// @return one state a time; the last is not converged where the test ends early
+/// @return one state per time; the last is not converged if the test ends early
 /// @throws std::invalid_argument as MaterialPoint, and for lists of unequal lengths or times that do not ascend
 std::vector<MaterialState> material_test(const Tissue& tissue, MaterialTest test, MaterialControl control,
                                          std::span<const double> times, std::span<const double> values,

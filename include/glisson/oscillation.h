@@ -1,4 +1,4 @@
-// oscillation.h — the complex modulus of a tissue: what a rheometer measures of it in a small oscillation.
+// oscillation.h — the complex modulus of a tissue, as a rheometer measures it in a small oscillation.
 //
 //   const std::vector<double> frequencies{0.1, 1.0, 10.0};
 //   for (const ComplexModulus& g : oscillation(tissue, frequencies)) …  g.storage, g.loss
@@ -35,11 +35,11 @@ inline constexpr Word<OscillationMode> kWords<OscillationMode>[] = {
 ///   G* = dσ_xz/dγ = λ/(ab) dP_xz/dF_xz,   E* = λ/(ab) dP_zz/dF_zz,   a, b the stretches of the sides
 ///   dP = dP_elastic − dF Σ g_k S − F Σ g_k dS/(1 + iωτ_k) + iω P_viscous(dF)
 ///
-/// γ and the strain of E* are on the present height, the force is on the area at λ. Kinematics `small` tells no lengths apart: dP/dF
+/// γ and the strain of E* are on the present height, the force is on the area at λ. Kinematics `small` does not distinguish lengths: dP/dF
 /// itself. At rest, where s has no derivative, a stiffness law counts with its modulus at 0.
 /// @param frequencies  [Hz], ≥ 0; 0 gives the relaxed modulus
 /// @param stretch      λ [-], > 0
-/// @return one modulus a frequency
+/// @return one modulus per frequency
 /// @throws std::invalid_argument as MaterialPoint, for a frequency or stretch out of range, or a stretch at which no free sides
 ///         are found
 std::vector<ComplexModulus> oscillation(const Tissue& tissue, std::span<const double> frequencies, double stretch = 1.0,

@@ -44,7 +44,7 @@ struct RegionMeshOptions {
   std::function<double(const Vec3d&)> size_at{};
 };
 
-/// What came of a region.
+/// Result for a region.
 struct RegionVolume {
   std::string name;
   int number = 0;  ///< in TetMesh::regions: the place in the list of regions, from 1
@@ -66,7 +66,7 @@ struct RegionMesh {
   RegionMeshReport report;
 };
 
-/// `progress` asked for the end.
+/// Thrown when `progress` returns false.
 class MeshingStopped : public std::runtime_error {
  public:
   MeshingStopped() : std::runtime_error("the mesher was stopped") {}
@@ -80,7 +80,7 @@ class MeshingStopped : public std::runtime_error {
 /// @throws std::invalid_argument  naming the region or option, its value and the way out: no region, an edge that is not
 ///   positive or longer than a region is wide, regions that are empty, a value of `size_at` that is out of range, more than max_tets or
 ///   than there is memory for
-/// @throws MeshingStopped  where `progress` asked for the end
+/// @throws MeshingStopped  when `progress` returns false
 /// Cost: some 10 µs and 150 bytes a tet, up to 100 µs where many thin parts meet.
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options);
 

@@ -36,8 +36,8 @@ struct TorsionState {
 /// compressible neo-Hookean cylinder that part is 3κ/(3κ + μ) of what is returned, to second order in γ. Kinematics `small` has none.
 /// @param radius  R at rest [m], > 0
 /// @param times   [s], ascending, as of material_test: from rest at time 0, a first time of 0 applies the first twist at once
-/// @param twists  φ [rad/m], one a time; in between it changes linearly with time
-/// @return one state a time
+/// @param twists  φ [rad/m], one per time; in between it changes linearly with time
+/// @return one state per time
 /// @throws std::invalid_argument as material_test, for an argument out of range, and for fibres that are not along z
 /// Costs `radii` steps of a MaterialPoint for each step.
 std::vector<TorsionState> torsion(const Tissue& tissue, double radius, std::span<const double> times,

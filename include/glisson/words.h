@@ -1,4 +1,4 @@
-// words.h — the words that stand for enumerators in scenes, in Python and in messages: one table beside each enumeration.
+// words.h — the words of enumerators in scenes, Python and messages: one table next to each enumeration.
 #pragma once
 
 #include <string_view>
@@ -6,7 +6,7 @@
 
 namespace glisson {
 
-/// A word, the enumerator it stands for, and what that means.
+/// A word, its enumerator and its meaning.
 template <class E>
 struct Word {
   std::string_view word;
@@ -14,7 +14,7 @@ struct Word {
   std::string_view help{};
 };
 
-/// The table of an enumeration, an array; of others there is none.
+/// The table of an enumeration, an array; other types have none.
 template <class E>
 inline constexpr const Word<E>* kWords = nullptr;
 

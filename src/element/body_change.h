@@ -51,7 +51,7 @@ Located locate(const Body& body, std::span<const std::uint32_t> elements, const 
 /// Displacement and velocity of a vertex.
 using StateOf = std::function<std::pair<Vec3d, Vec3d>(std::uint32_t)>;
 
-/// Changes a body and keeps the tets around each vertex at hand for it.
+/// Changes a body and keeps a list of the tets around each vertex for it.
 class BodyChanger {
  public:
   /// @param body  must outlive this; changed by nobody else; elements without volume have been removed

@@ -342,7 +342,7 @@ void Container::body_changed(const BodyView& body, std::span<const std::uint32_t
 
 void Container::state_set() { state_->wake(); }
 
-/// All bonds that do not rest are to be at hand.
+/// All bonds that do not rest are to be active.
 std::span<const std::uint32_t> Container::reach(double, double h) {
   State& s = *state_;
   s.trial.clear();

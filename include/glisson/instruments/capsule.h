@@ -115,8 +115,8 @@ class Capsule final : public Interaction {
   /// @param radius  [m], > 0 @return opened area [m²] @throws std::invalid_argument
   double open_at(const Vec3d& place, double radius);
 
-  /// @throws std::invalid_argument for triangles that are not at the surface, or if none is left
   std::string label() const override { return "the capsule"; }
+  /// @throws std::invalid_argument for triangles that are not at the surface, or if none is left
   void attached(const BodyView& body, double time) override;
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;

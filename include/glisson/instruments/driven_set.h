@@ -57,10 +57,10 @@ class DrivenSet final : public Instrument {
 
  private:
   std::span<const InstrumentColumn> own_columns() const override;
-  Vec3d way_at(double time) const;
+  Vec3d displacement_at(double time) const;
 
   DrivenSetOptions options_;
-  Motion way_;
+  Motion displacement_;
   PoseMotion rigid_;                        ///< in place of it
   std::optional<RotationMotion> rotation_;  ///< what `rigid_` turns about
   Vec3d middle_{};                          ///< mean of the vertices at rest [m]

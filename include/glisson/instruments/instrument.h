@@ -58,7 +58,7 @@ class ToolDriver {
   virtual Pose advance(double time, double h, const Wrench& on_tool) = 0;
   /// Time at which the motion has ended [s]; none: it does not end by itself.
   virtual std::optional<double> end() const { return {}; }
-  /// Whether it goes where the force lets it: it has to be asked in short steps then.
+  /// Whether its path depends on the force; it then needs short steps.
   virtual bool yields() const { return false; }
   /// Writes or reads its state, as Interaction's.
   virtual void archive(Archive&) {}
@@ -66,14 +66,14 @@ class ToolDriver {
 
 class Instrument;
 
-/// A number that is read off an instrument with every sample: a column of forces.csv.
+/// A column of forces.csv: a number that is read from an instrument with every sample.
 struct InstrumentColumn {
   std::string_view name;  ///< with its unit: "depth_m"; of static storage
   double (*read)(const Instrument&);
 };
 
-/// What is moved and acts on the body: in contact with it, inside it, or fixed to vertices of it. Its force is that on the
-/// tissue, at Simulation::force_time(), and 0 before the first step.
+/// A moved object that acts on the body: in contact with it, inside it, or fixed to vertices of it. Its force is the force on
+/// the tissue at Simulation::force_time(), 0 before the first step.
 class Instrument : public Interaction {
  public:
   /// @param driver  not none @param direction  along which depth is measured, a unit vector
@@ -101,10 +101,10 @@ class Instrument : public Interaction {
   static std::span<const InstrumentColumn> common_columns();
   /// common_columns(), own_columns() and record_columns().
   std::vector<InstrumentColumn> columns() const;
-  /// Where it is and what it exerts, as vectors: position_x_m …, rotation_w …, torque_x_N_m …, handle_torque_x_N_m …, normal_x_N …,
+  /// Pose and forces by component: position_x_m …, rotation_w …, torque_x_N_m …, handle_torque_x_N_m …, normal_x_N …,
   /// friction_x_N …, cutting_x_N …, friction_size_N (docs/output.md).
   static std::span<const InstrumentColumn> pose_columns();
-  /// What forces.csv has of it behind all else: pose_columns(), of a contact tool its area and largest pressure, too.
+  /// Its last columns in forces.csv: pose_columns(); a contact tool adds its area and largest pressure.
   virtual std::span<const InstrumentColumn> record_columns() const { return pose_columns(); }
   /// The value of a column. @throws std::out_of_range naming it
   double read(std::string_view column) const;
@@ -112,16 +112,16 @@ class Instrument : public Interaction {
   void set_long_steps(bool are_long) override { at_end_ = are_long; }
   /// All events so far, in order.
   const std::vector<InstrumentEvent>& events() const { return events_; }
-  /// What a picture shows of it.
+  /// Its shape in pictures.
   virtual InstrumentForm form() const { return {}; }
-  /// From the hand to the tip, as bent [m]; of a rigid one its tip alone.
+  /// Points from the hand to the tip of the bent instrument [m]; of a rigid one its tip alone.
   virtual std::vector<Vec3d> centre_line() const { return {pose().position}; }
   /// Sets the callback for a puncture (position [m], radius [m]), for example to open a capsule.
   void on_puncture(std::function<void(const Vec3d& place, double radius)> told) { on_puncture_ = std::move(told); }
 
  protected:
-  /// What is read off instruments of this kind besides depth and force: here normal_N, friction_N and cutting_N, along the
-  /// direction. The list is of static storage.
+  /// Columns of this kind besides depth and force: here normal_N, friction_N and cutting_N, along the direction. The list
+  /// is of static storage.
   virtual std::span<const InstrumentColumn> own_columns() const;
   /// Moves the pose to the end of the step; the previous one is in `before_`. To be called once a step, in reach() or
   /// first in constrain().
@@ -131,7 +131,7 @@ class Instrument : public Interaction {
   /// Velocity of the tool's own material at a point of space at the time of the forces; after drive(). In long steps that of the
   /// step both before and after.
   ToolVelocity velocity_at(const Vec3d& x) const;
-  /// Tells of a puncture of the surface.
+  /// Reports a puncture of the surface.
   void tell_puncture(const Vec3d& place, double radius) const {
     if (on_puncture_) on_puncture_(place, radius);
   }

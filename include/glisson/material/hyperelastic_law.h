@@ -1,7 +1,7 @@
 // hyperelastic_law.h — the one list of laws that derive the stress from an energy of large deformation.
 //
 // Each is one file under hyperelastic/ with `kName`, `kHelp`, `fields` (its scene keys and messages), `check`,
-// `shear_modulus`, and its energy W beside κ/2 (J − 1)², as a function
+// `shear_modulus`, and its energy W without κ/2 (J − 1)², as a function
 //   of Ī₁ − 3 and Ī₂ − 3, Ī₁ = J^(−⅔) I₁ and Ī₂ = J^(−4/3) I₂:   energy(i1, i2), slopes(i1, i2)
 //   or of the logarithms of λ̄_i = J^(−⅓) λ_i (Ogden):            energy(l), slopes(l)
 // in a scalar T: double, or a number that carries a derivative (src/material/dual.h); the slopes of a law of the invariants

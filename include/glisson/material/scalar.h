@@ -1,16 +1,16 @@
-// scalar.h — the words in which the formula of a law is written, so that one text serves a number, a number that carries
-// a derivative (src/material/dual.h) and a vector of lanes (src/engine/kernels/lane_scalar-inl.h).
+// scalar.h — the operations in which a law is written, so that one formula serves a number, a number with a derivative
+// (src/material/dual.h) and a vector of lanes (src/engine/kernels/lane_scalar-inl.h).
 //
 //   + − * /   <  >  >=   select(choice, yes, no)   min  max   mul_add(a, b, c) = a b + c   exp  expm1  log   T(constant)
 //
-// A formula does not branch on its argument: lanes work out both sides and select. mul_add says where a vector rounds once.
+// A formula does not branch on its argument: lanes compute both sides and select. mul_add marks where a vector rounds once.
 #pragma once
 
 #include <cmath>
 #include <concepts>
 
-/// Before each formula. The compiler would otherwise make a function of it for the oldest processor, which cannot take
-/// the vectors of a newer one.
+/// Precedes each formula. Otherwise the compiler would emit a function for the oldest processor, which cannot take the
+/// vectors of a newer one.
 #define GLISSON_FORMULA [[gnu::always_inline]] inline
 
 namespace glisson {
@@ -21,8 +21,8 @@ struct ValueSlope {
   T value, slope;
 };
 
-/// How W of a law of the invariants takes Ī₂: not at all, in proportion, W = w(Ī₁ − 3) + c (Ī₂ − 3), or in any way. A law says
-/// it as `kSecond`; what it does not need, lanes do not work out.
+/// How W of a law of the invariants depends on Ī₂: not at all, in proportion, W = w(Ī₁ − 3) + c (Ī₂ − 3), or in any way. A law
+/// states it as `kSecond`; lanes do not compute what it does not need.
 enum class SecondInvariant { none, proportional, general };
 
 /// Slopes of W(Ī₁, Ī₂) [Pa].
@@ -38,7 +38,7 @@ namespace scalar {
 
 using std::exp, std::expm1, std::log;
 
-/// What compares to true or false; lanes have words of their own.
+/// Scalars that compare to true or false; lanes have their own overloads.
 template <class T>
 concept Single = requires(T a) {
   { a < a } -> std::same_as<bool>;  // NOLINT(misc-redundant-expression)
@@ -61,7 +61,7 @@ constexpr T max(T a, T b) {
   return a > b ? a : b;
 }
 
-/// A modulus below 0 is 0, and stays there.
+/// Clamps a modulus to 0 from below, with slope 0 there.
 template <class T>
 GLISSON_FORMULA constexpr ValueSlope<T> not_below_zero(T value, T slope) {
   const auto positive = value > T(0);

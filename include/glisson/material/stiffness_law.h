@@ -3,7 +3,7 @@
 // A law is one file under stiffness/ with `kName`, `kHelp`, `fields` (its parameters: the scene's schema, its
 // documentation, its error messages and its class in Python come from there), where parameters may contradict each other a
 // `check`, and
-//   numbers(base)   what its formula reads, worked out in double for the modulus `base` at rest
+//   numbers(base)   the coefficients of its formula, in double, for the modulus `base` at rest
 //   at(numbers, x)  M and dM/dx at measure x: a double, a number with a derivative, or a vector of lanes
 // The formula itself is in src/material/stiffness_formulas.h. Adding a law: write that file and the formula, add the type to
 // the list below (docs/adding_a_law.md).

@@ -181,7 +181,7 @@ struct Tissue {
         field("maxwell_part", &Tissue::maxwell_part, "stress that the branches relax"),
         field("volume_change", &Tissue::volume_change, "volume change that the bulk resists"));
   }
-  /// What its fields contradict in each other.
+  /// Contradictions between its fields.
   Fault check() const;
 
   /// Instantaneous λ and μ at rest; those of the hyperelastic law where there is one.

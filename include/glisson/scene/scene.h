@@ -60,7 +60,7 @@ struct Selection {
   struct Nearest {
     Vec3d point;
     int count = 1;
-  };  ///< the `count` nearest to a point [m], ≥ 1
+  };  ///< the `count` nearest to a point [m]
   struct Side {
     int axis;
     bool upper;
@@ -116,7 +116,7 @@ struct ToolSpec {
   PressMotion motion;
   std::optional<RecordSpec> record;  ///< a recorded path in place of the press, of which only `direction` is used then
   std::optional<ToolPath> path;      ///< a program's own path, in place of both; 0 at time 0
-  std::optional<RotationMotion> rotation;  ///< in place of the press or record; turns beside a path
+  std::optional<RotationMotion> rotation;  ///< in place of the press or record; with a path in addition to it
   std::optional<PosesSpec> poses;          ///< the same
   bool sideways_free = false;  ///< only the component along the direction is driven (direction along an axis)
   bool axial_free = false;     ///< of a rotation: the component along its axis is free (axis along x, y or z)
@@ -383,7 +383,7 @@ std::string scene_reference_markdown();
 /// Reads a mesh file; the io library's read_mesh, passed in so that scenes do not link VTK.
 using MeshLoader = std::function<TetMesh(const MeshFile&)>;
 
-/// What was read off an instrument at the time of a sample.
+/// Values of an instrument at the time of a sample.
 struct InstrumentSample {
   double depth = 0.0;          ///< along its direction, from its start [m]
   Vec3d force{};               ///< on the tissue [N]
@@ -459,7 +459,7 @@ TetMesh build_mesh(const Variant& variant, const MeshLoader& load, const std::fu
 /// Tissue of each region number that occurs in a mesh made by build_mesh.
 std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh);
 
-/// So many stages of drag are right beside all that acts on a body (SimulationOptions::drag_stages).
+/// The largest SimulationOptions::drag_stages with everything that acts on the body (Interaction::most_drag_stages).
 int most_drag_stages(const Variant& variant);
 
 /// The body of a variant with its supports, loads, instruments and probes, at rest.

@@ -1,4 +1,4 @@
-// held_rows.h — what interactions held in a step, as the next one's stages of drag are told (SimulationOptions::drag_stages).
+// held_rows.h — what interactions held in a step, for the stages of drag of the next one (SimulationOptions::drag_stages).
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ class HeldRows {
   void add_row(std::uint32_t mean, const Vec3d& direction) { rows_.push_back({mean, direction}); }
   /// Makes the last rows a group. Rows without one are held rigidly.
   /// @param compliance  c, symmetric, row by row: as many numbers as the square of the group's rows [1/kg]
-  /// @throws std::invalid_argument for another number of them
+  /// @throws std::invalid_argument if their number differs
   void end_group(std::span<const double> compliance);
   /// Holds a vertex in all directions.
   void add_vertex(std::uint32_t vertex) { vertices_.push_back(vertex); }

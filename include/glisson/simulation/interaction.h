@@ -52,7 +52,7 @@ struct BodyView {
   bool is_removed(std::size_t tet) const { return !removed.empty() && removed[tet] != 0; }
 };
 
-/// What becomes of the work of a tool that the tissue does not take.
+/// Where the work of a tool goes that the tissue does not take.
 enum class WorkSink {
   contact,   ///< impulses along the normal: an impact, tissue that is pushed out
   friction,  ///< slip
@@ -137,10 +137,10 @@ class InteractionStep {
     impulses[place] += impulse;
   }
 
-  /// Tells the ledger of energies what a tool exerted on the vertex at a place: to be called in constrain for impulses that
+  /// Books the impulse of a tool on the vertex at a place in the energy ledger: to be called in constrain for impulses that
   /// were pushed, once each. The work of the tool is J·(V₋ + V₊)/2, the tissue takes J·(v₋ + v₊)/2 of it, and the difference goes
-  /// to the sink. An impulse that is not told counts as a tool's that moves with the tissue. Costs nothing where energies are not
-  /// tracked.
+  /// to the sink. An impulse that is not booked counts as that of a tool that moves with the tissue. Costs nothing where energies
+  /// are not tracked.
   void book(WorkSink sink, std::size_t place, const Vec3d& impulse, const ToolVelocity& tool = {}) const {
     if (interface_book == nullptr) return;
     InterfaceBook::Page& page = interface_book->pages[static_cast<std::size_t>(sink)];
@@ -192,7 +192,7 @@ class Interaction {
   /// Adds what impulses held in this step, with all velocities at its end: stages of drag go by it in the next one
   /// (SimulationOptions::drag_stages). Called after all have constrained, where there are several stages.
   virtual void tell_held(const InteractionStep&, HeldRows&) const {}
-  /// So many stages of drag are right beside it: kMostDragStagesBesideOthers, unless it tells what it holds or holds nothing.
+  /// The largest SimulationOptions::drag_stages with it: kMostDragStagesBesideOthers, unless it tells what it holds or holds nothing.
   virtual int most_drag_stages() const;
   /// The step has been made: displacements are those at t + h.
   virtual void moved(const InteractionStep&) {}

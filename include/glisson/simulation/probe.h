@@ -1,12 +1,11 @@
-// probe.h — what is read at some places of a body while it moves: a point of the material, a vertex set, a region, a plane.
+// probe.h — results at places of a moving body: at a point of the material, a vertex set, a region, a plane.
 //
 //   Probes probes(simulation, {{.name = "tip", .where = ProbePoint{{0.02, 0.02, 0.05}}}});
 //   probes.columns()             tip_displacement_x_m, …, tip_stress_xx_Pa, …
 //   probes.read(simulation)      their values at the present state
 //
 // Places are given at rest and stay with the material. Stress is that of the forces (TetFields); it is computed for the tets
-// of the probes alone, and only when read() is called: a probe costs nothing in between, and the simulation does not know
-// of it.
+// of the probes alone, and only when read() is called: between these calls a probe costs nothing.
 #pragma once
 
 #include <cstddef>

@@ -102,10 +102,10 @@ inline constexpr Word<MassScalingKind> kWords<MassScalingKind>[] = {
 
 /// Most stages of the viscous force in a step: more would let rounding grow.
 inline constexpr int kMostDragStages = 8;
-/// The same beside needles and containers that are not bonded: what they hold comes and goes, and what is let go moves for a step with
-/// the lumped mass alone. With more the tissue yields to them.
+/// The same with needles and containers that are not bonded: what they hold changes, and tissue that they release moves for a step
+/// with the lumped mass alone. With more stages the tissue yields to them.
 inline constexpr int kMostDragStagesBesideInstruments = 4;
-/// The same beside tools in contact, whose surface of contact changes with each step, and beside interactions that do not tell what they
+/// The same with tools in contact, whose surface of contact changes with each step, and with interactions that do not tell what they
 /// hold: blades, a program's own.
 inline constexpr int kMostDragStagesBesideOthers = 3;
 
@@ -124,7 +124,7 @@ struct SimulationOptions {
   MassScalingKind mass_scaling = MassScalingKind::fixed;
   /// central_difference: stages in which the viscous force is taken within a step. One is the paper's scheme. With
   /// n of them viscosity allows nearly n²/2 times the step that it does with one, and stiffness 0.91 to 0.95 of what it does alone; a
-  /// stage more costs half a step. For tissue of small strain; beside interactions Interaction::most_drag_stages at most.
+  /// stage more costs half a step. For tissue of small strain; with interactions Interaction::most_drag_stages at most.
   int drag_stages = 1;
   ImplicitOptions implicit{};
   Precision precision = Precision::single_precision;
@@ -305,7 +305,7 @@ struct MassScaling {
   double added = 0.0;               ///< for good [kg]
   double share = 0.0;               ///< of the body's own mass [-]
   std::vector<std::uint32_t> tets;  ///< with mass added for good, ascending
-  double present = 0.0;             ///< variable: beside it, for tets that are stiff at present [kg]
+  double present = 0.0;             ///< variable: in addition, for tets that are stiff at present [kg]
   double largest = 0.0;             ///< the most that this has been [kg]
 };
 
@@ -354,8 +354,8 @@ class Simulation {
   /// Adds a force [N], SurfaceLoad::force alone; `scale(t)` multiplies it (none: 1).
   void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale = {});
   void add_load(std::string_view set, Vec3d force, std::function<double(double)> scale = {});
-  /// Adds force, traction, pressure, moment, springs and dashpots on a set and its faces. What tets that are removed had
-  /// of its faces is gone with them; faces that a cut opens bear nothing.
+  /// Adds force, traction, pressure, moment, springs and dashpots on a set and its faces. Removed tets take the load of their
+  /// faces with them; faces that a cut opens carry none.
   /// @param scale  multiplies force, traction, pressure and moment at time t (none: 1)
   /// @throws std::invalid_argument for a value outside its range, a set that spans no face where faces are needed, or springs too
   ///         stiff for a given explicit step

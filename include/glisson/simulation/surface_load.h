@@ -1,11 +1,10 @@
 // surface_load.h — what acts from outside on the faces or vertices of a set.
 //
 //   force, traction, pressure, moment   times a course in time         dead, or following the surface
-//   springs, dashpots to the ground     as long as the body is there
+//   springs, dashpots to the ground     at all times
 //
-// The faces of a set are the faces of the body's surface, when the load is added, all corners of which are in the set. What
-// acts on them is spread as the shape functions say (consistent): a uniform traction on flat faces strains a bar uniformly
-// on any mesh.
+// The faces of a set are those of the body's surface, when the load is added, with all corners in the set. Loads on faces are
+// distributed by the shape functions (consistent): a uniform traction on flat faces strains a bar uniformly on any mesh.
 #pragma once
 
 #include "glisson/field.h"
@@ -13,7 +12,7 @@
 
 namespace glisson {
 
-/// All that a set bears; parts that are given act together. A vertex that is named twice counts once.
+/// Everything that loads a set; the given parts act together. A vertex that is named twice counts once.
 ///
 /// Dead (`follows` false): per area at rest, of a direction fixed in space. Following: per present area; pressure stays normal to
 /// the surface, and a traction turns with its face: its part along the normal stays along it, that along the face stays along
@@ -56,7 +55,7 @@ struct SurfaceLoad {
             .keyed("dashpot_Pa_s_m"));
   }
   bool has_traction() const { return traction != Vec3d{} || pressure != 0.0 || moment != Vec3d{}; }
-  /// Whether something of it acts on faces.
+  /// Whether a part of it acts on faces.
   bool needs_faces() const { return has_traction() || spring_per_area != Vec3d{} || dashpot_per_area != Vec3d{}; }
   Fault check() const;
 };

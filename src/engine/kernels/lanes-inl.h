@@ -34,7 +34,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::ScalableTag<float>;
 using F = hn::Vec<Floats>;
-/// The same tag in this namespace, so that element_math.h finds the few functions below by its argument.
+/// The same tag in this namespace, so that element_math-inl.h finds the few functions below by its argument.
 struct Lanes : Floats {};
 inline constexpr std::size_t kLanes = HWY_TARGET == HWY_SCALAR ? 1 : HWY_MAX_BYTES / sizeof(float);
 

@@ -76,7 +76,7 @@ std::span<const std::uint32_t> Blade::reach(double, double) {
   return reached_;
 }
 
-/// Gives the tissue at a piece G l h along the edge's way through it, or as much less as takes it along.
+/// Gives the tissue at a piece G l h along the edge's path through it, or as much less as takes it along.
 /// @param velocity  of the edge there
 void Blade::resist(const InteractionStep& step, const EdgePiece& piece, const Vec3d& velocity, const Vec3d& along) {
   std::array<std::uint32_t, 4> places;

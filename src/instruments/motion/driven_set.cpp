@@ -44,11 +44,11 @@ DrivenSet::DrivenSet(DrivenSetOptions options, RigidPath path, std::optional<Rot
 
 DrivenSet::DrivenSet(DrivenSetOptions options, ToolPath path)
     : Instrument(options.name, std::make_shared<PathDriver>(Pose{}, path), options.direction),
-      options_(std::move(options)), way_(std::move(path.displacement)) {}
+      options_(std::move(options)), displacement_(std::move(path.displacement)) {}
 
 void DrivenSet::between_steps(Simulation& simulation) {
   constraint_ = rigid_ ? simulation.drive_rigidly(options_.vertices, rigid_, options_.axes, options_.from)
-                       : simulation.drive(options_.vertices, way_, options_.axes, options_.from);
+                       : simulation.drive(options_.vertices, displacement_, options_.axes, options_.from);
   middle_ = {};
   for (const std::uint32_t v : options_.vertices) {
     middle_ += simulation.mesh().vertices[v] * (1.0 / static_cast<double>(options_.vertices.size()));
@@ -77,7 +77,9 @@ double DrivenSet::angle() const {
 }
 
 /// Displacement at time t of the set, or of its middle.
-Vec3d DrivenSet::way_at(double time) const { return rigid_ ? rigid_(time).to_space(middle_) - middle_ : way_(time); }
+Vec3d DrivenSet::displacement_at(double time) const {
+  return rigid_ ? rigid_(time).to_space(middle_) - middle_ : displacement_(time);
+}
 
 ForceParts DrivenSet::parts() const {
   const auto scheme = scheme_.lock();
@@ -91,14 +93,14 @@ Vec3d DrivenSet::sensor_force() const {
 
 double DrivenSet::force_depth() const {
   const auto scheme = scheme_.lock();
-  return scheme ? dot(way_at(scheme->force_time()), direction()) : 0.0;
+  return scheme ? dot(displacement_at(scheme->force_time()), direction()) : 0.0;
 }
 
 Pose DrivenSet::pose() const {
   Pose pose;
   const auto scheme = scheme_.lock();
   if (!scheme) return pose;
-  pose.position = way_at(scheme->state().time);
+  pose.position = displacement_at(scheme->state().time);
   if (rigid_) pose.axes = rigid_(scheme->state().time).axes;
   return pose;
 }

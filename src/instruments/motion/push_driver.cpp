@@ -3,7 +3,7 @@
 //   (m + h c + h² k̂) v⁺ = m v + h (F + f),   y⁺ = y + h v⁺        f the tissue's answer of the last step
 //
 // An answer f = −k y is borne where h² k < 4 m + 2 h² k̂, a mass that is dragged along where it is lighter than m. Both show in
-// the change of the answer over the way, k̂ = −Δf·Δy/Δy²; it is used where h² k̂ > m only.
+// the change of the answer over the last displacement, k̂ = −Δf·Δy/Δy²; it is used where h² k̂ > m only.
 #include <algorithm>
 #include <cmath>
 
@@ -26,11 +26,11 @@ PushDriver::PushDriver(const Pose& start, PushMotion motion) : start_(start), mo
 }
 
 void PushDriver::learn_stiffness(const Vec3d& force) {
-  const Vec3d way = travel_ - last_travel_;
-  const double squared = dot(way, way);
+  const Vec3d moved = travel_ - last_travel_;
+  const double squared = dot(moved, moved);
   stiffness_ *= kForgets;
   if (squared > kLeastTravel * kLeastTravel) {
-    stiffness_ = std::max(stiffness_, -dot(force - last_force_, way) / squared);
+    stiffness_ = std::max(stiffness_, -dot(force - last_force_, moved) / squared);
   }
   last_travel_ = travel_;
   last_force_ = force;

@@ -1,4 +1,4 @@
-// recorded_motion.cpp — a measured way, joined by cubics that do not go beyond its points.
+// recorded_motion.cpp — a measured path, joined by cubics that do not go beyond its points.
 #include "base/require_fields.h"
 #include "glisson/instruments/tool_motion.h"
 #include "instruments/motion/monotone_cubic.h"
@@ -20,8 +20,10 @@ ToolPath recorded_path(const RecordedMotion& motion) {
   detail::require_fields("recorded motion", motion);
   const auto record = std::make_shared<const MonotoneCubic<Vec3d>>(motion.times, motion.positions);
   const double shift = motion.times.front() - motion.start;
-  const auto way = [record, shift](double time) { return record->at(time + shift) - record->points().front(); };
-  return {way, motion.times.back() - shift};
+  const auto displacement = [record, shift](double time) {
+    return record->at(time + shift) - record->points().front();
+  };
+  return {displacement, motion.times.back() - shift};
 }
 
 }  // namespace glisson

@@ -57,7 +57,7 @@ struct Needle::State {
   std::vector<double> surface_edges;  ///< the longest of each triangle, at rest [m]
   Mat3d zone_axes = identity<double>();
 
-  // vertices at hand
+  // active vertices
   std::vector<std::uint32_t> wanted;          ///< named by reach
   bool look = true;                           ///< whether reach is to name some
   Vec3d named_around{};                       ///< rest position that vertices were last named for

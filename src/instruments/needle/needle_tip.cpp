@@ -190,7 +190,7 @@ void Needle::State::cut_to(const InteractionStep& step, const Vec3d& at, const V
     const bool enters = there != region;
     shaft::Row moved;
     if (!place(moved, enters ? last_before(next, there) : next)) break;
-    if (!shaft::read(step, moved)) {  // tissue that is not at hand yet: the rest of the way in the next step
+    if (!shaft::read(step, moved)) {  // tissue that is not active yet: the rest of the way in the next step
       look = true;
       break;
     }

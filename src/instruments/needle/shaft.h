@@ -27,7 +27,7 @@ struct Row {
   Vec3d velocity{};  ///< and its velocity before the needle acts [m/s]
 };
 
-/// Mean position and velocity of a row. @return false where a vertex is not at hand
+/// Mean position and velocity of a row. @return false where a vertex is not active
 bool read(const InteractionStep& step, Row& row);
 /// Spreads an impulse [N s] over the vertices of a row.
 void push(const InteractionStep& step, const Row& row, const Vec3d& impulse);
@@ -50,7 +50,7 @@ class MobilityMatrix {
  private:
   void extend(const InteractionStep& step, std::span<const Row> nodes);
   Eigen::MatrixXd nodes_;
-  std::vector<double> reached_;  ///< per vertex at hand: mobility times weight of one row
+  std::vector<double> reached_;  ///< per active vertex: mobility times weight of one row
 };
 
 /// C of points at these distances from the hand [m/N]. @param bending_stiffness  E I [N m²]; 0: rigid
@@ -72,7 +72,7 @@ struct Effort {
 };
 
 /// Impulses along the needle.
-/// @param W      as mobility_matrix
+/// @param W      of MobilityMatrix::of [1/kg]
 /// @param speed  of the needle over the tissue before it acts, positive inward; per row [m/s]
 /// @param p      start of the iteration, and its end [N s]
 /// @param breaks  per row: how often it has come from sticking to slip; empty: not counted

@@ -2,7 +2,7 @@
 //
 //   preset_list.toml ─ text ─ trees ─┬─ the words of `tissue.preset`, before the tissue's section exists
 //                                    ├─ what a table that names one starts from (expand.cpp)
-//                                    └─ read by that section: tissue_presets() of glisson/material/tissue_presets.h
+//                                    └─ read by that section: tissue_presets() of glisson/scene/tissue_presets.h
 #pragma once
 
 #include <string_view>
