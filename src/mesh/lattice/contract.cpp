@@ -1,5 +1,5 @@
-// contract.cpp — see contract.h.
-#include "mesh/lattice/contract.h"
+// contract.cpp — takes a vertex out by drawing it into a neighbour.
+#include "mesh/lattice/operations.h"
 
 #include <algorithm>
 #include <bit>

@@ -9,10 +9,7 @@
 #include <algorithm>
 #include <array>
 
-#include "mesh/lattice/contract.h"
-#include "mesh/lattice/reconnect.h"
-#include "mesh/lattice/relabel.h"
-#include "mesh/lattice/smooth_vertex.h"
+#include "mesh/lattice/operations.h"
 
 namespace glisson::lattice {
 namespace {

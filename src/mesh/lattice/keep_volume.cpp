@@ -1,5 +1,5 @@
-// keep_volume.cpp — see keep_volume.h.
-#include "mesh/lattice/keep_volume.h"
+// keep_volume.cpp — moves vertices off curved surfaces by so much that the regions keep their volumes.
+#include "mesh/lattice/operations.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,11 +1,11 @@
-// reconnect.cpp — see reconnect.h.
+// reconnect.cpp — other tets in the place of those around an edge or at a face.
 //
 //          v                          v            A ring of four tets about the edge u–v: its polygon p₀ p₁ p₂ p₃ is cut
 //         /|\                        / \           into two triangles, each with a tet to u and one to v. Where the ring is
 //     p0 / | \ p2         p0 --------+-- p2        of two regions, the interface bends from the faces u–v–p, u–v–q to
 //        \ | /                        \ /          u–p–q, v–p–q: the line p–q is in both polygons.
 //          u                          u
-#include "mesh/lattice/reconnect.h"
+#include "mesh/lattice/operations.h"
 
 #include <algorithm>
 #include <bit>

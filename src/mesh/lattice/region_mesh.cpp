@@ -11,7 +11,7 @@
 #include "mesh/lattice/cleave.h"
 #include "mesh/lattice/graded_lattice.h"
 #include "mesh/lattice/improve.h"
-#include "mesh/lattice/keep_volume.h"
+#include "mesh/lattice/operations.h"
 
 namespace glisson {
 namespace {

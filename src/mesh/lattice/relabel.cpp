@@ -1,5 +1,5 @@
-// relabel.cpp — see relabel.h.
-#include "mesh/lattice/relabel.h"
+// relabel.cpp — gives a thin tet at an interface to the region, or the void, on the other side.
+#include "mesh/lattice/operations.h"
 
 #include <algorithm>
 #include <bit>

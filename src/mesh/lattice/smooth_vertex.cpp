@@ -1,5 +1,5 @@
-// smooth_vertex.cpp — see smooth_vertex.h.
-#include "mesh/lattice/smooth_vertex.h"
+// smooth_vertex.cpp — moves one vertex to where the worst of its tets is best.
+#include "mesh/lattice/operations.h"
 
 #include <algorithm>
 #include <bit>
