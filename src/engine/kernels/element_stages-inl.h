@@ -10,9 +10,8 @@
 
 #include <hwy/cache_control.h>
 
-#include "engine/kernels/element_math-inl.h"
 #include "engine/kernels/kernels.h"
-#include "engine/kernels/lanes-inl.h"
+#include "engine/kernels/tensor_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace glisson::engine::HWY_NAMESPACE {
@@ -45,24 +44,6 @@ inline constexpr std::size_t kVertexBehind[kChainTets] = {4, 2, 3}, kVertexAhead
 /// n of a vertex of a batch.
 HWY_INLINE const float* spoke(const float* rest, std::size_t vertex) { return rest + kRestSpoke[vertex] * kLanes; }
 
-HWY_INLINE void store_gradient(const Gradient<F>& g, float* out) {
-  for (std::size_t k = 0; k < 9; ++k) hn::Store(g.h[k / 3][k % 3], Lanes(), out + k * kLanes);
-}
-HWY_INLINE Gradient<F> load_gradient(const float* in) {
-  Gradient<F> g;
-  for (std::size_t k = 0; k < 9; ++k) g.h[k / 3][k % 3] = hn::Load(Lanes(), in + k * kLanes);
-  return g;
-}
-
-HWY_INLINE void store_stress(const Stress<F>& s, float* out) {
-  const Lanes d;
-  hn::Store(s.xx, d, out), hn::Store(s.yy, d, out + kLanes), hn::Store(s.zz, d, out + 2 * kLanes);
-  hn::Store(s.xy, d, out + 3 * kLanes), hn::Store(s.yz, d, out + 4 * kLanes), hn::Store(s.zx, d, out + 5 * kLanes);
-}
-HWY_INLINE Stress<F> load_stress(const float* in) {
-  const auto get = [&](std::size_t k) GLISSON_INLINED { return hn::Load(Lanes(), in + k * kLanes); };
-  return {get(0), get(1), get(2), get(3), get(4), get(5)};
-}
 HWY_INLINE Stress<F> sum(const Stress<F>& a, const Stress<F>& b) {
   return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.yz + b.yz, a.zx + b.zx};
 }
@@ -90,9 +71,9 @@ struct GatherTet {
   F lambda, mu;
 
   HWY_INLINE void operator()(const UV& d1, const UV& d2, const UV& d3, const F (&s)[3][3], std::size_t item) const {
-    store_gradient(gradient(d1.u, d2.u, d3.u, s), block.gradient + item * 9 * kLanes);
+    store_tensor(gradient(d1.u, d2.u, d3.u, s), block.gradient + item * 9 * kLanes);
     if constexpr (kViscous) {
-      store_stress(stress(gradient(d1.v, d2.v, d3.v, s), lambda, mu), block.viscous + item * 6 * kLanes);
+      store_symmetric(stress(gradient(d1.v, d2.v, d3.v, s), lambda, mu), block.viscous + item * 6 * kLanes);
     }
   }
 };
@@ -104,8 +85,8 @@ struct GatherTetRates {
   float* rate;
 
   HWY_INLINE void operator()(const UV& d1, const UV& d2, const UV& d3, const F (&s)[3][3], std::size_t item) const {
-    store_gradient(gradient(d1.u, d2.u, d3.u, s), block.gradient + item * 9 * kLanes);
-    store_gradient(gradient(d1.v, d2.v, d3.v, s), rate + item * 9 * kLanes);
+    store_tensor(gradient(d1.u, d2.u, d3.u, s), block.gradient + item * 9 * kLanes);
+    store_tensor(gradient(d1.v, d2.v, d3.v, s), rate + item * 9 * kLanes);
   }
 };
 
@@ -116,7 +97,7 @@ struct GatherTetDrag {
   F lambda, mu;
 
   HWY_INLINE void operator()(const UV& d1, const UV& d2, const UV& d3, const F (&s)[3][3], std::size_t item) const {
-    store_stress(stress(gradient(d1.u, d2.u, d3.u, s), lambda, mu), block.viscous + item * 6 * kLanes);
+    store_symmetric(stress(gradient(d1.u, d2.u, d3.u, s), lambda, mu), block.viscous + item * 6 * kLanes);
   }
 };
 
@@ -212,7 +193,7 @@ inline bool measure(const Elements& e, std::size_t begin, std::size_t n, Block& 
   const Lanes d;
   F lowest = hn::Set(d, 1.0F);
   for (std::size_t item = 0; item < kChainTets * n; ++item) {
-    const Gradient<F> g = load_gradient(block.gradient + item * 9 * kLanes);
+    const Gradient<F> g = load_tensor(block.gradient + item * 9 * kLanes);
     const Invariants<F> inv = invariants(d, g);
     Measured<F> m;
     if constexpr (M == DeformationMeasure::equivalent_shear_strain) {
@@ -335,12 +316,12 @@ struct ScaledStress {
 
   HWY_INLINE Stress<F> operator()(std::size_t item, F) const {
     const Lanes d;
-    if constexpr (P == Push::viscous) return load_stress(block.viscous + item * 6 * kLanes);
+    if constexpr (P == Push::viscous) return load_symmetric(block.viscous + item * 6 * kLanes);
     const F lambda = hn::Set(d, kForceScale * e.tissue.lambda) * hn::Load(d, block.value[0] + item * kLanes);
     const F mu = hn::Set(d, kForceScale * e.tissue.mu) * hn::Load(d, block.value[e.mu_law] + item * kLanes);
-    const Stress<F> elastic = stress(load_gradient(block.gradient + item * 9 * kLanes), lambda, mu);
+    const Stress<F> elastic = stress(load_tensor(block.gradient + item * 9 * kLanes), lambda, mu);
     if constexpr (P == Push::elastic) return elastic;
-    return sum(elastic, load_stress(block.viscous + item * 6 * kLanes));
+    return sum(elastic, load_symmetric(block.viscous + item * 6 * kLanes));
   }
 };
 

@@ -1,6 +1,6 @@
 // tensor_lanes-inl.h — 3 × 3 tensors in lanes, as src/material/strain.h has them for one tet.
 //
-// Included once per instruction set, never from outside response_kernels.cpp.
+// Included once per instruction set, never from outside kernels.cpp, response_kernels.cpp and response_flops.cpp.
 #if defined(GLISSON_TENSOR_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef GLISSON_TENSOR_LANES_INL_H_
 #undef GLISSON_TENSOR_LANES_INL_H_
