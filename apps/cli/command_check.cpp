@@ -281,9 +281,7 @@ bool stiffens(const Tissue& t) {
 /// What shortens an automatic step below that at rest; empty: nothing does.
 std::string shortens_step(const Variant& v) {
   std::vector<std::string> causes;
-  if (stiffens(v.tissue) ||
-      std::any_of(v.regions.begin(), v.regions.end(), [](const auto& r) { return stiffens(r.tissue); }))
-    causes.push_back("tissue stiffens");
+  if (any_tissue(v, stiffens)) causes.push_back("tissue stiffens");
   if (!v.capsules.empty()) causes.push_back("the capsule is stretched");
   if (!v.instruments.empty()) causes.push_back("instruments press or cut");
   return fmt::format("{}", fmt::join(causes, " and "));
@@ -324,12 +322,9 @@ void print_limits(const Variant& v, const MeshLoader& load, const Taste& taste) 
 
 /// Whether the viscous force can be taken in stages: some tissue has one, none at large strain.
 bool can_drag_in_stages(const Variant& v) {
-  std::vector<const Tissue*> tissues{&v.tissue};
-  for (const auto& region : v.regions) tissues.push_back(&region.tissue);
-  const auto drags = [](const Tissue* t) { return t->viscosity > 0.0; };
-  const auto is_large = [&](const Tissue* t) { return drags(t) && !t->has_small_strain(); };
-  return v.simulation.integrator == Integrator::central_difference && v.simulation.drag_stages == 1 &&
-         std::ranges::any_of(tissues, drags) && std::ranges::none_of(tissues, is_large);
+  const auto drags_at_large_strain = [](const Tissue& t) { return t.viscosity > 0.0 && !t.has_small_strain(); };
+  return v.simulation.integrator == Integrator::central_difference && v.simulation.drag_stages == 1 && is_viscous(v) &&
+         !any_tissue(v, drags_at_large_strain);
 }
 
 /// Where viscosity keeps an explicit step short, the stages of the viscous force that make a simulated second cheapest.

@@ -88,11 +88,6 @@ void check_end(const Variant& variant, const Node& experiment, Problems& problem
       "motion ends it");
 }
 
-bool is_viscous(const Variant& variant) {
-  const auto viscous = [](const RegionSpec& region) { return region.tissue.viscosity > 0.0; };
-  return variant.tissue.viscosity > 0.0 || std::any_of(variant.regions.begin(), variant.regions.end(), viscous);
-}
-
 /// What acts on the body besides supports, tools and loads; not attached.
 std::vector<std::shared_ptr<Interaction>> interactions_of(const Variant& variant) {
   std::vector<std::shared_ptr<Interaction>> all;

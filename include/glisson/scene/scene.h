@@ -1,6 +1,7 @@
 // scene.h — experiments as TOML files: reading, checking against the schema, running.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
@@ -313,6 +314,17 @@ struct Variant {
   OutputSpec output;
   std::string scene_name = "scene";  ///< the scene's file, for messages
 };
+
+/// Whether the tissue of the body or of some region passes a test.
+template <class Test>
+bool any_tissue(const Variant& variant, Test test) {
+  return test(variant.tissue) || std::any_of(variant.regions.begin(), variant.regions.end(),
+                                             [&](const RegionSpec& region) { return test(region.tissue); });
+}
+/// Whether a variant has Kelvin–Voigt viscosity.
+inline bool is_viscous(const Variant& variant) {
+  return any_tissue(variant, [](const Tissue& t) { return t.viscosity > 0.0; });
+}
 
 /// A column of forces.csv or probes.csv on an axis of a chart: display = value × scale.
 struct AxisSpec {

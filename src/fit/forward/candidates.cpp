@@ -7,12 +7,6 @@
 namespace glisson::fit {
 namespace {
 
-bool is_viscous(const Tissue& t) { return t.viscosity > 0.0; }
-template <class Test>
-bool any_tissue(const Variant& v, Test test) {
-  return test(v.tissue) ||
-         std::any_of(v.regions.begin(), v.regions.end(), [&](const RegionSpec& r) { return test(r.tissue); });
-}
 bool supports_every_integrator(const Variant& v) { return v.instruments.empty() && v.capsules.empty() && !v.container; }
 
 Adjust own_step(Integrator integrator) {
@@ -63,7 +57,7 @@ Adjust reference_run(const ForwardSpec& spec) {
 
 std::vector<ForwardCandidate> forward_candidates(const Variant& v, const ForwardSpec& spec) {
   std::vector<ForwardCandidate> list;
-  const bool viscous = any_tissue(v, is_viscous), past = any_tissue(v, has_past);
+  const bool viscous = is_viscous(v), past = any_tissue(v, has_past);
   if (supports_every_integrator(v)) {
     if (!past) {
       for (const int steps : {10, 40}) list.push_back(equal_steps("static", Integrator::quasi_static, steps));

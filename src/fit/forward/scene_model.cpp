@@ -110,11 +110,6 @@ bool same_motion(const Curve& a, const Curve& b) {
          a.past_displacement == b.past_displacement && a.velocity == b.velocity && a.measurement == b.measurement;
 }
 
-bool is_viscous(const Variant& v) {
-  const auto viscous = [](const RegionSpec& r) { return r.tissue.viscosity > 0.0; };
-  return v.tissue.viscosity > 0.0 || std::any_of(v.regions.begin(), v.regions.end(), viscous);
-}
-
 constexpr double kBeyond = 0.02;  ///< of the time of a record: how far it goes on
 
 /// A way in time along a direction, after an approach at the speed with which it goes on.
