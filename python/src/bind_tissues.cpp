@@ -1,7 +1,6 @@
 // bind_tissues.cpp — tissues, their laws, and those that have a source.
 //
-// The classes of laws are made from the laws' own description of their parameters: a new law needs no line here but its
-// name in Python.
+// The classes of laws are made from the laws' own description of their parameters: a new law needs no line here.
 #include <cctype>
 
 #include "bind.h"
