@@ -62,7 +62,7 @@ bool Tissue::relaxation_follows() const {
 
 Fault Tissue::check() const {
   if (maxwell.size() > kMostBranches)
-    return {std::to_string(maxwell.size()) + " branches; allowed: at most 8", "maxwell"};
+    return {std::to_string(maxwell.size()) + " branches; allowed: at most " + std::to_string(kMostBranches), "maxwell"};
   double sum = 0.0;
   for (const MaxwellBranch& b : maxwell) sum += b.share;
   if (!(sum < 1.0)) {
