@@ -86,7 +86,7 @@ Axial<T> AxialResponse::hyperelastic(Axial<T> h) const {
   const Axial<T> bulk{pressure * a * c, pressure * a * a};
   return bulk + std::visit(
                     [&]<class Law>(const Law& l) -> Axial<T> {
-                      if constexpr (std::is_same_v<Law, Ogden>) {
+                      if constexpr (StretchLaw<Law>) {
                         const T third = log1p((h.along - h.side) / a) * T(1.0 / 3.0);
                         const std::array<T, 3> t = l.slopes(std::array<T, 3>{-third, -third, third + third});
                         return {t[0] / a, t[2] / c};

@@ -90,8 +90,8 @@ IsochoricLogarithms<T> isochoric_logarithms(const std::array<T, 3>& b) {
   return {{ln[0].value - mean, ln[1].value - mean, ln[2].value - mean}, {ln[0].slope, ln[1].slope, ln[2].slope}};
 }
 
-template <class T>
-Mat3<T> ogden_piola(const Ogden& law, const Mat3<T>& H) {
+template <StretchLaw Law, class T>
+Mat3<T> stretch_piola(const Law& law, const Mat3<T>& H) {
   return isotropic_piola(H, [&](const std::array<T, 3>& b) {
     const IsochoricLogarithms<T> ln = isochoric_logarithms(b);
     const std::array<T, 3> t = law.slopes(ln.l);
@@ -104,8 +104,8 @@ template <class T>
 Mat3<T> isochoric_piola(const HyperelasticLaw& law, const Mat3<T>& H) {
   return std::visit(
       [&]<class Law>(const Law& l) {
-        if constexpr (std::is_same_v<Law, Ogden>) {
-          return ogden_piola(l, H);
+        if constexpr (StretchLaw<Law>) {
+          return stretch_piola(l, H);
         } else {
           return invariant_piola(l, H);
         }
@@ -116,7 +116,7 @@ Mat3<T> isochoric_piola(const HyperelasticLaw& law, const Mat3<T>& H) {
 inline double isochoric_energy(const HyperelasticLaw& law, const Mat3d& H) {
   return std::visit(
       [&]<class Law>(const Law& l) {
-        if constexpr (std::is_same_v<Law, Ogden>) {
+        if constexpr (StretchLaw<Law>) {
           return l.energy(isochoric_logarithms(principal_frame(H).b).l);
         } else {
           return invariant_energy(l, H);

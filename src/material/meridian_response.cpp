@@ -11,7 +11,7 @@ namespace {
 /// ∂W/∂ln λ_i of the isochoric part, of sum 0. @param l  ln λ̄_i, of sum 0
 template <class Law, class T>
 std::array<T, 3> logarithmic_slopes(const Law& law, const std::array<T, 3>& l) {
-  if constexpr (std::is_same_v<Law, Ogden>) {
+  if constexpr (StretchLaw<Law>) {
     return law.slopes(l);
   } else {
     using std::expm1;

@@ -151,7 +151,8 @@ double stiffest_of_isotropic(const std::array<double, 3>& b, const W& w) {
   return most;
 }
 
-inline double ogden_bound(const Ogden& law, const std::array<double, 3>& b) {
+template <StretchLaw Law>
+double stretch_bound(const Law& law, const std::array<double, 3>& b) {
   return stiffest_of_isotropic(b, [&](const std::array<Dual, 3>& at) {
     const IsochoricLogarithms<Dual> ln = isochoric_logarithms(at);
     const std::array<Dual, 3> t = law.slopes(ln.l);
@@ -167,8 +168,8 @@ inline HyperelasticBound hyperelastic_bound(const HyperelasticLaw& law, const Ma
   const BoundInvariants i = bound_invariants(H);
   const double isochoric = std::visit(
       [&]<class Law>(const Law& l) {
-        if constexpr (std::is_same_v<Law, Ogden>) {
-          return ogden_bound(l, principal_frame(H).b);
+        if constexpr (StretchLaw<Law>) {
+          return stretch_bound(l, principal_frame(H).b);
         } else {
           return i.J >= kSmallestVolume ? invariant_bound(l, i) : collapsed_bound(l, i);
         }

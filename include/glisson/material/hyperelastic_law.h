@@ -24,6 +24,12 @@ namespace glisson {
 
 using HyperelasticLaw = std::variant<NeoHookean, MooneyRivlin, Yeoh, Fung, VerondaWestmann, Ogden, Gent, Invariants>;
 
+/// A law of the stretches; the others are of the invariants.
+template <class Law>
+concept StretchLaw = !requires {
+  Law::kSecond;
+};
+
 inline std::string_view law_name(const HyperelasticLaw& law) {
   return std::visit([](const auto& l) { return l.kName; }, law);
 }

@@ -237,6 +237,7 @@ inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Resc
     exponents[k] = float(law.alpha[k]), factors[k] = float(2.0 * law.mu[k] / law.alpha[k]);
   }
   const F one = number(1.0F), two = number(2.0F), third = number(1.0F / 3.0F), zero = hn::Zero(d);
+  const F most = number(float(Ogden::kLargestExponent));
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState state = hyper_state(in.gradient + item * 9 * kLanes);
     const F j = state.inv.volume_change;
@@ -252,7 +253,7 @@ inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Resc
     for (std::size_t k = 0; k < terms; ++k) {
       const F alpha = number(exponents[k]), factor = number(factors[k]);
       F g[3];
-      for (std::size_t i = 0; i < 3; ++i) g[i] = hn::Expm1(d, hn::Min(alpha * (l[i] - mean), number(60.0F)));
+      for (std::size_t i = 0; i < 3; ++i) g[i] = hn::Expm1(d, hn::Min(alpha * (l[i] - mean), most));
       const F average = (g[0] + g[1] + g[2]) * third;
       for (std::size_t i = 0; i < 3; ++i) {
         const F rise = factor * alpha * (g[i] + one);

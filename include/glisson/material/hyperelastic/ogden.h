@@ -41,7 +41,8 @@ struct Ogden {
   template <class T>
   std::array<T, 3> slopes(const std::array<T, 3>& l) const;
   std::string check() const {
-    if (mu.empty() || mu.size() > kMostTerms) return "mu has " + std::to_string(mu.size()) + " terms; allowed: 1 to 3";
+    if (mu.empty() || mu.size() > kMostTerms)
+      return "mu has " + std::to_string(mu.size()) + " terms; allowed: 1 to " + std::to_string(kMostTerms);
     if (mu.size() != alpha.size()) {
       return "mu has " + std::to_string(mu.size()) + " terms and alpha " + std::to_string(alpha.size()) +
              "; they go in pairs";
