@@ -264,7 +264,7 @@ void add_fit(CLI::App& program, Action& action) {
       ->type_name("N")
       ->check(CLI::Range(1, 4))
       ->excludes("--laws");
-  command->add_flag("--list-laws", options->list_laws, "print the laws that --laws knows");
+  command->add_flag("--list-laws", options->list_laws, "print the laws that --laws accepts");
   command->add_option("--starts", options->starts, "largest number of descents")
       ->type_name("N")
       ->check(CLI::Range(1, 10000));

@@ -239,7 +239,7 @@ MaterialResult indented(const MaterialOptions& o, const Tissue& tissue) {
   fit::Layer layer;
   if (o.thickness_mm) layer.thickness = 1e-3 * above_zero("--thickness-mm", *o.thickness_mm);
   if (o.diameter_mm) layer.radius = 0.5e-3 * above_zero("--diameter-mm", *o.diameter_mm);
-  if (o.force && o.to.empty()) throw std::invalid_argument("--force asks for --to, the forces to go to [N]");
+  if (o.force && o.to.empty()) throw std::invalid_argument("--force needs --to, the forces to go to [N]");
   Timeline line =
       timeline(o, 0.0, o.to.empty() ? std::vector{kOwnDepth} : o.to, o.rate.value_or(o.force ? 0.0 : kOwnDepthRate));
   MaterialResult result;

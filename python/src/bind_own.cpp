@@ -282,7 +282,7 @@ void bind_own_driver(nb::module_& m) {
                   "collections.abc.Sequence[float] | numpy.typing.NDArray[typing.Any]"))
       .def(
           "past", [](const OwnDriver&) { return std::vector<double>{}; },
-          "Numbers that a checkpoint is to have beside the pose; to be overridden with restore()",
+          "Numbers that a checkpoint is to have besides the pose; to be overridden with restore()",
           nb::sig("def past(self) -> collections.abc.Sequence[float]"))
       .def(
           "restore", [](OwnDriver&, const std::vector<double>& past) { return past.empty(); }, "past"_a,
@@ -312,7 +312,7 @@ void bind_own_interaction(nb::module_& m) {
           "squared_frequency", [](const OwnInteraction&) { return 0.0; }, of("squared_frequency"))
       .def(
           "past", [](const OwnInteraction&) { return std::vector<double>{}; },
-          "What it knows of its past, as numbers for a checkpoint; to be overridden with restore()",
+          "Its history, as numbers for a checkpoint; to be overridden with restore()",
           nb::sig("def past(self) -> collections.abc.Sequence[float]"))
       .def(
           "restore", [](OwnInteraction&, const std::vector<double>& past) { return past.empty(); }, "past"_a,

@@ -109,7 +109,7 @@ std::vector<LawSpec> Run::discover(FitResult& result) {
   const SpecimenSize size = size_of(spec_);
   if (!size.area || plates_of(*spec_.specimen))
     throw std::invalid_argument(
-        "--discover asks for a [specimen] that deforms alike all over, no layer, with smooth faces: hundreds of laws "
+        "--discover needs a [specimen] that deforms alike all over, no layer, with smooth faces: hundreds of laws "
         "are fitted");
   const std::vector<TermLaw> all =
       term_laws(initial_modulus(curves_.chosen(curves_.indices(false)), *size.area, *size.height), options_.discover);

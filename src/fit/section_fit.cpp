@@ -69,7 +69,7 @@ void check_faces(const FitSpec& fit, const Place& place) {
   if (!fit.specimen) return;
   if (rubs && !freed && !(fit.specimen->grip.friction > 0.0 || fit.specimen->grip.adhesion > 0.0))
     place.complain(
-        "[specimen] faces = \"friction\" asks for `friction` or `adhesion_Pa` above 0, or for a "
+        "[specimen] faces = \"friction\" needs `friction` or `adhesion_Pa` above 0, or a "
         "[[parameter]] with the key `specimen.friction` or `specimen.adhesion_Pa`");
   if (layer_of(*fit.specimen) && fit.forward.kind != ForwardKind::automatic)
     place.complain("[forward] kind does not apply to a layer; remove it");
@@ -82,7 +82,7 @@ void check_layer(const FitSpec& fit, const DataSpec& data, const Node& own, cons
   if (!fit.specimen) return;
   const bool layer = layer_of(*fit.specimen).has_value();
   const char* key = own.find("test") ? "test" : "files";
-  if (data.indents() && !layer) here.complain(*own.find(key), key, "indentation asks for [specimen] kind = \"layer\"");
+  if (data.indents() && !layer) here.complain(*own.find(key), key, "indentation needs [specimen] kind = \"layer\"");
   if (!data.indents() && layer)
     here.complain(*own.find(key), key,
                   "test = \"" + std::string(word_of(data.test)) +
@@ -119,23 +119,23 @@ void check_tests(const FitSpec& fit, const Node& table, const Place& place) {
     const std::string fault = plates ? fault_of_plates(data, plates->faces) : std::string{};
     if (!fit.specimen)
       here.complain(*own.find("test"), "test",
-                    test + "asks for a [specimen]; a scene is driven by its tool, which is \"compression\"");
+                    test + "needs a [specimen]; a scene is driven by its tool, which is \"compression\"");
     else if (!fault.empty())
       here.complain(*own.find("test"), "test", test + fault);
     const bool twisted = data.test == LabTest::torsion || data.deforming == Deforming::torsion;
     if (fit.specimen && twisted && !round)
-      here.complain(*own.find("test"), "test", "torsion asks for [specimen] kind = \"cylinder\"");
+      here.complain(*own.find("test"), "test", "torsion needs [specimen] kind = \"cylinder\"");
   }
 }
 
 /// One needle, one curve, and nothing else that is free.
 void check_insertion(const FitSpec& fit, const Place& place) {
   if (!fit.insertion) return;
-  if (fit.scene.empty()) place.complain("[insertion] asks for a `scene` with a needle");
+  if (fit.scene.empty()) place.complain("[insertion] needs a `scene` with a needle");
   if (!fit.parameters.empty() || !fit.laws.empty())
     place.complain("[insertion] fits membranes alone; remove [[parameter]] and [[law]], or fit these first without it");
   if (fit.data.size() != 1 || fit.data.front().files.size() != 1)
-    place.complain("[insertion] asks for one curve: one [[data]] with one file");
+    place.complain("[insertion] needs one curve: one [[data]] with one file");
 }
 
 void finish_fit(FitSpec& fit, const Node& table, const Place& place) {

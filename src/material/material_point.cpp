@@ -321,7 +321,7 @@ const MaterialState& MaterialPoint::advance(double h, const MaterialTargets& tar
   }
   parts_->state.converged = false;
   parts_->state.message = "no deformation carries the prescribed stress at " + detail::number_text(time) +
-                          " s: it is beyond what the tissue bears, or the step is too long; prescribe less, take "
+                          " s: it is beyond what the tissue can carry, or the step is too long; prescribe less, take "
                           "shorter steps, or prescribe the stretch";
   return parts_->state;
 }

@@ -25,7 +25,7 @@ inline void stretch_for_long(MaterialPoint& point, double stretch, const std::st
   const MaterialTargets targets = test_targets(MaterialTest::uniaxial, MaterialControl::deformation, stretch);
   if (point.advance(kLongTime, targets).converged) return;
   throw std::invalid_argument(what + ": at stretch = " + detail::number_text(stretch) +
-                              " no free sides are found: it is beyond what the tissue bears; give one nearer to 1");
+                              " no free sides are found: it is beyond what the tissue can carry; give one nearer to 1");
 }
 
 }  // namespace glisson

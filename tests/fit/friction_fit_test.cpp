@@ -107,7 +107,7 @@ TEST(FrictionFit, RefusesWhatContradictsItself) {
   EXPECT_EQ(fault(rubs + "friction = 0.1\n" + kTissue + data("a.csv")), "");
   EXPECT_EQ(fault(rubs + "adhesion_Pa = 100\n" + kTissue + data("a.csv")), "");
   EXPECT_EQ(fault(rubs + kTissue + kFriction + data("a.csv")), "");
-  EXPECT_THAT(fault(rubs + kTissue + data("a.csv")), HasSubstr("asks for `friction` or `adhesion_Pa`"));
+  EXPECT_THAT(fault(rubs + kTissue + data("a.csv")), HasSubstr("needs `friction` or `adhesion_Pa`"));
   EXPECT_THAT(fault(kSpecimen + std::string(kTissue) + kFriction + data("a.csv")), HasSubstr("faces = \"friction\""));
   EXPECT_THAT(fault(rubs + "friction = -1\n" + kTissue + data("a.csv")), HasSubstr("friction: -1"));
   EXPECT_THAT(fault(rubs + "friction = 0.1\n" + kTissue + "[forward]\nkind = \"uniaxial\"\n" + data("a.csv")),

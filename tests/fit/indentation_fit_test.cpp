@@ -315,13 +315,13 @@ std::string fault(std::string text, const std::string& from = "", const std::str
 // What is missing or cannot be is named with the way out.
 TEST(IndentationFit, NamesWhatCannotBe) {
   const std::string indenter = "indenter = { kind = \"sphere\", radius_mm = 3 }";
-  EXPECT_THAT(fault(kFit, indenter, ""), HasSubstr("asks for an indenter; give indenter = {"));
+  EXPECT_THAT(fault(kFit, indenter, ""), HasSubstr("needs an indenter; give indenter = {"));
   EXPECT_THAT(fault(kFit, "radius_mm = 3", "radius_mm = 0"), HasSubstr("out of range; allowed: > 0"));
   EXPECT_THAT(fault(kFit, indenter, "indenter = { kind = \"cone\", half_angle_deg = 95 }"), HasSubstr("10 to 89"));
   EXPECT_THAT(fault(kFit, indenter, "indenter = { kind = \"flat\", radius_mm = 2, edge_radius_mm = 3 }"),
               HasSubstr("allowed: 0 to radius_mm = 2"));
   EXPECT_THAT(fault(kFit, "kind = \"layer\"\nthickness_mm = 10", "kind = \"point\""),
-              HasSubstr("indentation asks for [specimen] kind = \"layer\""));
+              HasSubstr("indentation needs [specimen] kind = \"layer\""));
   EXPECT_THAT(fault(kFit, "test = \"indentation\"", "test = \"tension\""),
               HasSubstr("belongs to test = \"indentation\""));
   EXPECT_THAT(fault(kFit, "test = \"indentation\"\n" + indenter, "test = \"tension\""),
@@ -336,7 +336,7 @@ TEST(IndentationFit, NamesWhatCannotBe) {
                     "test = \"indentation\"\ncolumns.force = { name = \"force\", unit = \"kN\" }"),
               HasSubstr("soft tissues have"));
   EXPECT_THAT(fault(kFit, "test = \"indentation\"", "test = \"creep\""),
-              HasSubstr("asks for mode = \"indentation\" in a test of creep"));
+              HasSubstr("needs mode = \"indentation\" in a test of creep"));
   const std::string creep = "test = \"creep\"\nmode = \"indentation\"\n";
   EXPECT_THAT(fault(kFit, "test = \"indentation\"", creep + "contact.kind = \"detect\""),
               HasSubstr("a creep is driven by its load"));

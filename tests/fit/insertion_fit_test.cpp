@@ -182,7 +182,7 @@ TEST(InsertionFit, MistakesAreNamed) {
   };
   EXPECT_THAT(complaint(kFit + "[[parameter]]\nkey = \"tissue.youngs_modulus_Pa\"\nlow = 1\nhigh = 2\n"),
               HasSubstr("[insertion] fits membranes alone"));
-  EXPECT_THAT(complaint(kFit + "[[data]]\nfiles = [\"b.csv\"]\n"), HasSubstr("[insertion] asks for one curve"));
+  EXPECT_THAT(complaint(kFit + "[[data]]\nfiles = [\"b.csv\"]\n"), HasSubstr("[insertion] needs one curve"));
   const Folder folder;
   folder.write("scene.toml", kScene);
   folder.write("curve.csv", "position_mm,force_N\n0,0\n1,1\n2,2\n3,3\n4,4\n");

@@ -152,7 +152,7 @@ TEST_F(Written, WhatCannotBeIsSaid) {
   EXPECT_THAT(fault("test = \"torsion\"\n", twisted, cylinder),
               AllOf(HasSubstr("a shear of 20 at the surface"),
                     HasSubstr("columns.angle = { name = \"angle (rad)\", unit = \"deg\" }")));
-  EXPECT_THAT(fault("test = \"torsion\"\n", twisted), HasSubstr("torsion asks for [specimen] kind = \"cylinder\""));
+  EXPECT_THAT(fault("test = \"torsion\"\n", twisted), HasSubstr("torsion needs [specimen] kind = \"cylinder\""));
   EXPECT_THAT(fault("test = \"creep\"\nmode = \"torsion\"\n", twisted, cylinder),
               HasSubstr("driven by its angle; give test = \"torsion\""));
   EXPECT_THAT(fault("test = \"stretching\"\n", good), HasSubstr("\"tension\""));
@@ -199,7 +199,7 @@ TEST(Laboratory, AScenesToolMakesNoTension) {
     parse_fit(text, "fit.toml");
     FAIL();
   } catch (const SceneError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("fit.toml:4:8: data.0.test"), HasSubstr("asks for a [specimen]")));
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("fit.toml:4:8: data.0.test"), HasSubstr("needs a [specimen]")));
   }
 }
 

@@ -104,7 +104,7 @@ const std::vector<Mistake> kMistakes{
      "s.toml:7:12: sets.top.sphere_m: missing key `radius`: a number [m] > 0; radius"},
     {"YoungAndLame", "", "[tissue]\nyoungs_modulus_Pa = 3600\nlambda_Pa = 1\nmu_Pa = 1\n",
      "s.toml:18:1: tissue.lambda_Pa: contradicts `youngs_modulus_Pa` (line 17); give one of the two"},
-    {"LameAlone", "", "[tissue]\nlambda_Pa = 1\n", "s.toml:17:13: tissue.lambda_Pa: needs `mu_Pa` beside it"},
+    {"LameAlone", "", "[tissue]\nlambda_Pa = 1\n", "s.toml:17:13: tissue.lambda_Pa: needs `mu_Pa` with it"},
     {"LameWithoutBulk", "", "[tissue]\nlambda_Pa = -3\nmu_Pa = 3\n",
      "s.toml:17:13: tissue.lambda_Pa: -3 Pa is out of range; allowed: > -2/3 mu_Pa = -2 Pa, so that the body resists "
      "compression"},

@@ -190,7 +190,7 @@ TEST(Overrides, SayWhichOneIsWrong) {
 TEST(Overrides, ReplaceWhatTheyExclude) {
   const std::string base = kSmallScene + "[tissue]\nyoungs_modulus_Pa = 5000\n";
   EXPECT_NEAR(only(base, {{"tissue.lambda_Pa", "6000"}, {"tissue.mu_Pa", "2000"}}).tissue.lame().lambda, 6000.0, 1e-9);
-  EXPECT_EQ(complaint(base, {{"tissue.mu_Pa", "2000"}}), "s.toml: --set tissue.mu_Pa: needs `lambda_Pa` beside it");
+  EXPECT_EQ(complaint(base, {{"tissue.mu_Pa", "2000"}}), "s.toml: --set tissue.mu_Pa: needs `lambda_Pa` with it");
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ std::string head_of(const Scene& scene, const Variant& variant, const Recording&
                      (variant.label.empty() ? variant.name : variant.label) +
                      ".\n`glisson run scene.toml` follows these paths again; the recorded forces are in forces.csv.\n";
   if (has_files(variant.mesh) && scene.file.has_filename())
-    head += "Its mesh is a file: put this beside " + scene.file.filename().string() + ", or give `--mesh FILE`.\n";
+    head += "Its mesh is a file: put this next to " + scene.file.filename().string() + ", or give `--mesh FILE`.\n";
   const std::string unsaid = recording.unsaid();
   if (!unsaid.empty())
     head += "\nNot part of this scene, because a scene cannot describe it; forces differ from then on:\n" + unsaid;

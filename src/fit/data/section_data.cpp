@@ -208,13 +208,13 @@ void finish_data(DataSpec& x, const Node& table, const Place& place) {
   if (x.indents() && !x.indenter)
     place.complain(*table.find(x.test == LabTest::indentation ? "test" : "mode"),
                    x.test == LabTest::indentation ? "test" : "mode",
-                   "indentation asks for an indenter; give indenter = { kind = \"sphere\", radius_mm = … }, "
+                   "indentation needs an indenter; give indenter = { kind = \"sphere\", radius_mm = … }, "
                    "{ kind = \"flat\", radius_mm = … } or { kind = \"cone\", half_angle_deg = … }");
   if (!x.indents() && x.indenter)
     place.complain(*table.find("indenter"), "indenter",
                    names_its_deformation(x.test)
                        ? "belongs to test = \"indentation\""
-                       : "asks for mode = \"indentation\" in a test of " + std::string(word_of(x.test)));
+                       : "needs mode = \"indentation\" in a test of " + std::string(word_of(x.test)));
   if (x.test == LabTest::creep && x.deforming == Deforming::torsion)
     place.complain(*table.find("mode"), "mode",
                    "a torsion is fitted as it is driven by its angle; give test = \"torsion\" with columns of angle, "
@@ -284,11 +284,11 @@ const SectionSpec& columns_section() {
     s.table("axial_force", column_section(), &ColumnsSpec::axial_force,
             "force along the axis of a torsion, positive where the specimen pushes the plates apart, as rheometers "
             "show it; "
-            "beside the torque it is a curve of its own");
+            "with the torque it is a curve of its own");
     s.table("storage_modulus", column_section(), &ColumnsSpec::storage_modulus,
             "G′ of an oscillation, in Pa, kPa or MPa");
     s.table("loss_modulus", column_section(), &ColumnsSpec::loss_modulus,
-            "G″ of an oscillation; beside G′ it is a curve of its own");
+            "G″ of an oscillation; with G′ it is a curve of its own");
     s.finish([](ColumnsSpec& x, const Node& table, const Place& place) {
       require_unit(x.time, table, "time", Quantity::time, place);
       require_unit(x.displacement, table, "displacement", Quantity::length, place);

@@ -92,7 +92,7 @@ std::vector<double> indentation_depths(const Tissue& tissue, const Indenter& ind
     const double next = std::min(1.02 * found, 0.5 * (deepest + kMostShare * layer.thickness));
     deepest = layer.thick() ? std::min(1.02 * found, 3.0 * deepest) : next;
   }
-  throw std::runtime_error("indentation: no depth within 0.9 of the layer bears a force of " +
+  throw std::runtime_error("indentation: no depth within 0.9 of the layer balances a force of " +
                            detail::number_text(most) + " N");
 }
 

@@ -161,7 +161,7 @@ struct Maker {
   std::shared_ptr<const Model> layer(IndentationOptions options) const {
     const TissueAt tissue = tissue_at(inner);
     if (!tissue)
-      throw std::invalid_argument("a layer under an indenter asks for parameters of [tissue] and `curve.…` alone");
+      throw std::invalid_argument("a layer under an indenter needs parameters of [tissue] and `curve.…` alone");
     std::vector<Parameter> parameters;
     for (const Parameter& p : problem.parameters) {
       if (!is_curve_key(p.name)) parameters.push_back(p);
@@ -293,9 +293,8 @@ Ladder choose_forward(const ForwardProblem& problem) {
     const auto specimen = size ? make.specimen(*size) : nullptr;
     if (!specimen)
       throw std::invalid_argument(
-          "[forward] kind = \"uniaxial\" asks for a block or cylinder of one tissue between smooth plates, and for "
-          "parameters "
-          "of [tissue] alone; take kind = \"scene\" or \"auto\"");
+          "[forward] kind = \"uniaxial\" needs a block or cylinder of one tissue between smooth plates, and "
+          "parameters of [tissue] alone; take kind = \"scene\" or \"auto\"");
     ladder.rungs.push_back({.name = "specimen", .failure = {}, .model = specimen});
   };
   if (problem.specimen) {

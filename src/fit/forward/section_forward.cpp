@@ -61,7 +61,7 @@ SectionSpec cylinder_kind() {
       .within(at_least(0));
   s.key(
        "adhesion_Pa", [](SpecimenSpec & x) -> auto& { return x.grip.adhesion; },
-       "shear stress that they bear without pressure, on the area at rest; `specimen.adhesion_Pa` may be a parameter")
+       "shear stress that they carry without pressure, on the area at rest; `specimen.adhesion_Pa` may be a parameter")
       .in("Pa")
       .within(at_least(0));
   return s.spec();

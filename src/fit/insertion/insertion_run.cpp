@@ -39,16 +39,17 @@ class InsertionRecorder final : public RunObserver {
 
 std::size_t index_of_needle(const Variant& v, const std::string& name) {
   if (name.empty() && v.instruments.size() != 1)
-    throw std::invalid_argument("[insertion] asks for a scene with one instrument, or for its name: `instrument`");
+    throw std::invalid_argument("[insertion] needs a scene with one instrument, or its name: `instrument`");
   for (std::size_t i = 0; i < v.instruments.size(); ++i) {
     const InstrumentSpec& x = v.instruments[i];
     if (!name.empty() && x.name != name) continue;
     if (!std::holds_alternative<NeedleOptions>(x.what)) break;
     const bool other = !x.regions.empty() || std::get<NeedleOptions>(x.what).drawn_membranes;
     if (!other) return i;
-    throw std::invalid_argument("the needle \"" + x.name +
-                                "\" has `regions` or `drawn_membranes`, which would hold the tip beside the membranes "
-                                "that are fitted; remove them");
+    throw std::invalid_argument(
+        "the needle \"" + x.name +
+        "\" has `regions` or `drawn_membranes`, which would hold the tip in addition to the membranes "
+        "that are fitted; remove them");
   }
   throw std::invalid_argument("the scene has no needle" + (name.empty() ? "" : " \"" + name + "\""));
 }
@@ -70,8 +71,7 @@ InsertionScene::InsertionScene(Variant variant, const InsertionSpec& spec, MeshL
 
 double InsertionScene::speed() const {
   const auto* press = std::get_if<PressMotion>(&variant_.instruments[index_].motion.how);
-  if (press == nullptr)
-    throw std::invalid_argument("[insertion] asks for a needle whose motion is of the kind \"press\"");
+  if (press == nullptr) throw std::invalid_argument("[insertion] needs a needle whose motion is of the kind \"press\"");
   return press->velocity;
 }
 

@@ -21,7 +21,7 @@ Fault ShaftFriction::check() const {
 }
 
 Fault Rupture::check() const {
-  return force && toughness ? Fault{"is given beside a force; one of the two decides", "toughness"} : Fault{};
+  return force && toughness ? Fault{"is given in addition to a force; give one of the two", "toughness"} : Fault{};
 }
 
 Fault NeedleOptions::check() const {

@@ -20,7 +20,7 @@ namespace {
 
 TetMesh source_mesh(const Variant& variant, const MeshLoader& load, const std::function<bool(double)>& progress) {
   if (const auto* file = std::get_if<MeshFile>(&variant.mesh)) {
-    if (!load) fail(variant, "", "no reader for mesh files was given, and [mesh] asks for " + file->path.string());
+    if (!load) fail(variant, "", "no reader for mesh files was given, and [mesh] needs " + file->path.string());
     return load(*file);
   }
   try {

@@ -98,8 +98,7 @@ const SectionSpec& check_section() {
 
 const SectionSpec& compare_section() {
   static const SectionSpec section = described<CompareSpec>(
-      "compare",
-      "What `glisson compare` does with the scene: the same experiment with other models, beside each other.");
+      "compare", "What `glisson compare` does with the scene: the same experiment with other models, side by side.");
   return section;
 }
 

@@ -28,7 +28,7 @@ void convert_lame(Tissue& tissue, const Node& table, const Place& place) {
   if (!lambda && !mu) return;
   if (!lambda || !mu) {
     place.complain(lambda ? *lambda : *mu, lambda ? "lambda_Pa" : "mu_Pa",
-                   std::string("needs `") + (lambda ? "mu_Pa" : "lambda_Pa") + "` beside it");
+                   std::string("needs `") + (lambda ? "mu_Pa" : "lambda_Pa") + "` with it");
     return;
   }
   const double l = number_of(*lambda), m = number_of(*mu);
