@@ -55,7 +55,7 @@ RealtimeResult run_realtime(BuiltVariant& body, OnInversion on_inversion, const 
                             const std::atomic<bool>& stop) {
   const auto frames = static_cast<std::uint64_t>(std::max(1.0, std::round(options.seconds / options.frame_s)));
   RealtimeResult result;
-  result.compute_s.reserve(frames);
+  result.compute_s.reserve(frames), result.frame_steps.reserve(frames);
   keep_memory(memory_for_frames(body.simulation.mesh().tets.size()));
   Pace pace(body, on_inversion, options.frame_s, stop);
   const double simulated_from = body.simulation.time();
@@ -66,11 +66,12 @@ RealtimeResult run_realtime(BuiltVariant& body, OnInversion on_inversion, const 
     result.dropped += schedule.skip_late(frames);
     if (schedule.next() >= frames) break;
     schedule.wait();
+    const std::uint64_t steps = body.simulation.steps();
     const WallClock::time_point begin = WallClock::now();
     const bool whole = pace.frame(result);
     const double spent = seconds_between(begin, WallClock::now());
     const std::size_t frame = result.compute_s.size();
-    if (whole) result.compute_s.push_back(spent);
+    if (whole) result.compute_s.push_back(spent), result.frame_steps.push_back(body.simulation.steps() - steps);
     if (std::string news = pace.news(); !news.empty()) result.eventful.push_back({std::move(news), frame, spent});
   }
   if (result.end.end == RunSummary::End::finished) wait_until(schedule.due(frames));
@@ -89,6 +90,7 @@ RealtimeFigures figures_of(const RealtimeResult& result, double frame_s) {
   f.max_us = 1e6 * percentile(result.compute_s, 100.0);
   f.missed = static_cast<std::size_t>(
       std::count_if(result.compute_s.begin(), result.compute_s.end(), [&](double s) { return s > frame_s; }));
+  f.most_steps = *std::ranges::max_element(result.frame_steps);
   f.steps_per_frame = static_cast<double>(result.steps) / static_cast<double>(f.frames);
   f.realtime_factor = result.simulated_s / result.wall_s;
   return f;

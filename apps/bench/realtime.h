@@ -18,8 +18,9 @@ struct RealtimeOptions {
 };
 
 struct RealtimeResult {
-  std::vector<double> compute_s;  ///< steps and force of each frame that was computed [s]
-  std::uint64_t dropped = 0;      ///< frames that were over before their turn
+  std::vector<double> compute_s;           ///< steps and force of each frame that was computed [s]
+  std::vector<std::uint64_t> frame_steps;  ///< of each of those
+  std::uint64_t dropped = 0;               ///< frames that were over before their turn
   std::uint64_t steps = 0;
   double wall_s = 0.0, simulated_s = 0.0;
   double peak_force_N = 0.0;  ///< of the first tool or instrument, of those read once a frame
@@ -38,6 +39,7 @@ struct RealtimeFigures {
   double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
   std::size_t frames = 0, missed = 0;  ///< those that took longer than a frame
   double steps_per_frame = 0.0, realtime_factor = 0.0;
+  std::uint64_t most_steps = 0;  ///< of a frame
 };
 
 RealtimeFigures figures_of(const RealtimeResult& result, double frame_s);

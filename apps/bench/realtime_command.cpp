@@ -62,9 +62,9 @@ Variant choose_variant(const Options& options) {
 void print_figures(const Variant& variant, const BuiltVariant& body, const RealtimeResult& r, const RealtimeFigures& f,
                    double frame_s) {
   const EngineInfo& engine = body.simulation.engine_info();
-  say("{}, {}: {} tets, h = {:.4g} s, {:.1f} steps a frame of {:g} ms, threads {}\n", variant.scene_name, variant.name,
-      body.simulation.mesh().tets.size(), body.simulation.step_size(), f.steps_per_frame, 1e3 * frame_s,
-      engine.threads);
+  say("{}, {}: {} tets, h = {:.4g} s, {:.1f} steps a frame of {:g} ms, {} at most, threads {}\n", variant.scene_name,
+      variant.name, body.simulation.mesh().tets.size(), body.simulation.step_size(), f.steps_per_frame, 1e3 * frame_s,
+      f.most_steps, engine.threads);
   say("  frames   {} computed in {:.3f} s, {} missed ({:.2f} %), {} dropped\n", f.frames, r.wall_s, f.missed,
       f.frames > 0 ? 100.0 * static_cast<double>(f.missed) / static_cast<double>(f.frames) : 0.0, r.dropped);
   say("  compute  p50 {:.1f} µs, p99 {:.1f} µs, p99.9 {:.1f} µs, max {:.1f} µs\n", f.p50_us, f.p99_us, f.p999_us,
@@ -94,6 +94,7 @@ nlohmann::ordered_json realtime_json(const Variant& variant, const BuiltVariant&
   json["dropped"] = r.dropped;
   json["steps"] = r.steps;
   json["steps_per_frame"] = f.steps_per_frame;
+  json["most_steps"] = f.most_steps;
   json["p50_us"] = f.p50_us, json["p99_us"] = f.p99_us, json["p99_9_us"] = f.p999_us, json["max_us"] = f.max_us;
   json["wall_s"] = r.wall_s;
   json["simulated_s"] = r.simulated_s;
@@ -101,6 +102,7 @@ nlohmann::ordered_json realtime_json(const Variant& variant, const BuiltVariant&
   json["peak_force_N"] = r.peak_force_N;
   json["frames_us"] = nlohmann::ordered_json::array();
   for (const double s : r.compute_s) json["frames_us"].push_back(std::round(1e7 * s) * 0.1);
+  json["frames_steps"] = r.frame_steps;
   json["events"] = nlohmann::ordered_json::array();
   for (const RealtimeResult::Eventful& e : r.eventful) {
     json["events"].push_back({{"events", e.events}, {"frame", e.frame}, {"compute_us", 1e6 * e.compute_s}});

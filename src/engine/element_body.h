@@ -44,6 +44,7 @@ class ElementBody final : public MovingBody {
   void push_in_stages(std::span<const Vec3d> outer) override { outer_.assign(outer.begin(), outer.end()); }
   void project_stages(StageHolds* holds) override { holds_ = holds; }
   void place_active() override;
+  void set_velocity(std::uint32_t vertex, const Vec3d& velocity) override { v_[vertex] = velocity; }
   void inertia_changed(std::span<const std::uint32_t>) override {}  // it asks the body
   void list_above(std::span<const double> stiffening, std::span<const StiffLimit> single) override;
   const Advance& advance(double h, const Vec3d& gravity, bool accounted) override;

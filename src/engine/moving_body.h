@@ -110,6 +110,8 @@ class MovingBody {
   /// What instruments hold, for the next advance(); null: nothing.
   virtual void project_stages(engine::StageHolds* holds) = 0;
 
+  /// @param vertex  whose copy among active(), where it has one, is to be given the same
+  virtual void set_velocity(std::uint32_t vertex, const Vec3d& velocity) = 0;
   /// Follows Body::stiff_mass where that has changed. @param vertices  where
   virtual void inertia_changed(std::span<const std::uint32_t> vertices) = 0;
 

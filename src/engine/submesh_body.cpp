@@ -216,6 +216,10 @@ void SubmeshBody::set_coefficients(std::size_t record) {
   state_[record * kStateDoubles + 7] = moves ? damping_[record] * step_ / denominator : 1.0;
 }
 
+void SubmeshBody::set_velocity(std::uint32_t vertex, const Vec3d& velocity) {
+  put(velocity, state_.data() + submeshes_.record_of_vertex[vertex] * kStateDoubles + 4);
+}
+
 void SubmeshBody::inertia_changed(std::span<const std::uint32_t> vertices) {
   for (const std::uint32_t v : vertices) {
     const std::uint32_t record = submeshes_.record_of_vertex[v];

@@ -55,6 +55,7 @@ class SubmeshBody final : public MovingBody {
   void push_in_stages(std::span<const Vec3d> outer) override { outer_.assign(outer.begin(), outer.end()); }
   void project_stages(StageHolds* holds) override { holds_ = holds; }
   void place_active() override;
+  void set_velocity(std::uint32_t vertex, const Vec3d& velocity) override;
   void inertia_changed(std::span<const std::uint32_t> vertices) override;
   void list_above(std::span<const double> stiffening, std::span<const StiffLimit> single) override {
     list_above_.assign(stiffening.begin(), stiffening.end());

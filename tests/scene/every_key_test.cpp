@@ -75,6 +75,7 @@ implicit = { scheme = "generalised_alpha", spectral_radius = 0.5, largest_step_s
 step_s = 1e-4
 mass_scaling_step_s = 2e-4
 mass_scaling = "variable"
+mass_scaling_inertia = 0.01
 drag_stages = 3
 precision = "double"
 damping_rate_per_s = 3
@@ -320,6 +321,7 @@ TEST(EveryKey, OfMotionToolsAndOutputIsRead) {
   EXPECT_EQ(v.simulation.precision, Precision::double_precision);
   EXPECT_EQ(v.simulation.mass_scaling_step, 2e-4);
   EXPECT_EQ(v.simulation.mass_scaling, MassScalingKind::variable);
+  EXPECT_EQ(v.simulation.mass_scaling_inertia, 0.01);
   EXPECT_EQ(v.simulation.damping_rate, 3.0);
   EXPECT_EQ(v.simulation.drag_stages, 3);
   EXPECT_EQ(v.simulation.nodal_damping, 0.002);

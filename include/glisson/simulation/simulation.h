@@ -119,9 +119,13 @@ struct SimulationOptions {
   /// [s]; for meshes with a few tiny tets. The mass has inertia and weight; mass_scaling() reports it. None: no
   /// mass is added.
   std::optional<double> mass_scaling_step{};
-  /// When mass is added for that step: at rest and for good, or at vertices of tets that have stiffened, until they soften. The second
-  /// is for central_difference with an automatic step, which then is mass_scaling_step.
+  /// When mass is added for that step: at rest and for good, or at vertices of tets that do not bear it as they are, and only while the
+  /// tissue moves so evenly that it has no effect. The second is for central_difference with an automatic step, which then is
+  /// mass_scaling_step at most, also above the stable step at rest.
   MassScalingKind mass_scaling = MassScalingKind::fixed;
+  /// Share of the forces on the body that the inertia of variable mass may have, Σ Δm |a| over Σ |F|, before steps become shorter so that
+  /// less mass is needed [-].
+  double mass_scaling_inertia = 0.025;
   /// central_difference: stages in which the viscous force is taken within a step. One is the paper's scheme. With
   /// n of them viscosity allows nearly n²/2 times the step that it does with one, and stiffness 0.91 to 0.95 of what it does alone; a
   /// stage more costs half a step. For tissue of small strain; with interactions Interaction::most_drag_stages at most.
@@ -162,9 +166,13 @@ struct SimulationOptions {
               "adds mass only to tets whose element step bound is shorter, until it equals this step; "
               "central_difference and semi_implicit. `glisson check` reports the tets and the mass")
             .otherwise("no mass is added"),
-        field("mass_scaling", &SimulationOptions::mass_scaling,
-              "when mass is added for `mass_scaling_step`; variable: with an automatic step, which then is that one, "
-              "and not with semi_implicit (docs/integrators.md)"),
+        field(
+            "mass_scaling", &SimulationOptions::mass_scaling,
+            "when mass is added for `mass_scaling_step`; variable: with an automatic step of central_difference, which "
+            "then is that one at most (docs/integrators.md)"),
+        field("mass_scaling_inertia", &SimulationOptions::mass_scaling_inertia, "-", between(1e-4, 0.5),
+              "share of the forces on the body that the inertia of variable mass may have; where it has more, steps "
+              "become shorter and need less mass. Small: accurate after a puncture; large: for real time"),
         field("drag_stages", &SimulationOptions::drag_stages, between(1, kMostDragStages),
               "stages in which the viscous force is taken within a step of central_difference: they make steps longer "
               "where viscosity_Pa_s limits them (docs/integrators.md); at most 4 with needles and containers that are "

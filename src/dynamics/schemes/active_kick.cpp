@@ -160,13 +160,18 @@ Vec3d ActiveKick::torque(std::span<const ActiveVertex> active, std::size_t const
   return sum;
 }
 
-double ActiveKick::force_scale(std::span<const ActiveVertex> active) const {
-  double sum = 0.0;
-  for (const Kicked& k : kicked_) sum += norm(k.contact) + norm(k.load);
+ActiveKick::Outer ActiveKick::outer_action(std::span<const ActiveVertex> active) const {
+  Outer sum;
+  for (std::size_t k = 0; k < kicked_.size(); ++k) {
+    sum.force += norm(kicked_[k].contact) + norm(kicked_[k].load);
+    sum.power += dot(kicked_[k].contact + kicked_[k].load, active[k].velocity);
+  }
   for (std::size_t c = 0; c < places_.size(); ++c) {
     if (!state_.holds(c)) continue;
     for (const std::uint32_t place : places_[c]) {
-      sum += norm(force_at(active[place], place, state_.constraints.all()[c].axes).total());
+      const Vec3d force = force_at(active[place], place, state_.constraints.all()[c].axes).total();
+      sum.force += norm(force);
+      sum.power += dot(force, active[place].velocity);
     }
   }
   return sum;

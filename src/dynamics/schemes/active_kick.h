@@ -63,8 +63,12 @@ class ActiveKick {
   /// Adds what of the work of tools the tissue did not take.
   void add_interface(std::span<const ActiveVertex> active, const InterfaceBook& book, KickWork& work) const;
 
-  /// Σ |F| of what supports, tools and loads exerted at the last kick [N].
-  double force_scale(std::span<const ActiveVertex> active) const;
+  /// What supports, tools and loads did at the last kick.
+  struct Outer {
+    double force = 0.0;  ///< Σ |F| [N]
+    double power = 0.0;  ///< Σ F·v₊ [W]
+  };
+  Outer outer_action(std::span<const ActiveVertex> active) const;
 
   double time() const { return time_; }  ///< of the last kick [s]
   const Vec3d& gravity() const { return gravity_; }

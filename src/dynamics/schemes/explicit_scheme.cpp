@@ -13,8 +13,6 @@
 namespace glisson {
 namespace {
 
-constexpr double kForceMemory = 0.999;  ///< a step, of the largest force that inertia of added mass is held against
-
 /// @throws std::invalid_argument where the tissue's viscous force cannot be taken in stages
 void require_stages_for(const Tissue& tissue, int stages) {
   if (stages == 1 || is_small(tissue) || !(tissue.viscosity > 0.0)) return;
@@ -27,7 +25,8 @@ void require_stages_for(const Tissue& tissue, int stages) {
 }  // namespace
 
 ExplicitScheme::ExplicitScheme(Body body, const SimulationOptions& options, Drag drag)
-    : Scheme(std::move(body), options), moving_(make_moving_body(state_.body, state_.gamma, options, info_)),
+    : Scheme(std::move(body), options), masses_(state_),
+      moving_(make_moving_body(state_.body, state_.gamma, options, info_)),
       stiffening_(moving_->advance(0.0, {}, false).stiffening),
       control_(std::make_unique<StepControl>(state_.body, state_.gamma, drag, options, stiffening_)) {
   for (const TissueBlock& block : state_.body.blocks) require_stages_for(block.tissue, options.drag_stages);
@@ -123,6 +122,7 @@ void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
   held_rows_.clear();
   control_->state_set();
   take_stiff_masses();
+  masses_.state_set();
   moving_->list_above(control_->list_above(), control_->single_limits());
   take_stiffness(moving_->advance(0.0, {}, false));
   copy_.current = false;
@@ -200,41 +200,11 @@ void ExplicitScheme::take_stiffness(const Advance& seen) {
   stiff_ = seen.stiff;
 }
 
-/// Gives vertices the mass that stiff tets need at the step of variable mass scaling. Velocities stay, so that kinetic energy changes
-/// by ½ Δm v², which is booked.
+/// Gives vertices the mass that stiff tets need at the step of variable mass scaling.
 void ExplicitScheme::take_stiff_masses() {
   const std::optional<std::span<const VertexMass>> wanted = control_->new_masses();
-  Body& body = state_.body;
-  if (!wanted || (wanted->empty() && heavy_.empty())) return;
-  body.stiff_mass.resize(body.vertex_count, 0.0);
-  std::vector<std::uint32_t> changed;
-  std::vector<HeavyVertex> heavy;
-  double kinetic = 0.0, present = 0.0;
-  const auto give = [&](std::uint32_t v, double mass) {
-    if (body.stiff_mass[v] == mass) return;
-    const Vec3d velocity = moving_->velocity_of(v);
-    const double before = body.inertia(v);
-    body.stiff_mass[v] = mass;
-    kinetic += 0.5 * (body.inertia(v) - before) * dot(velocity, velocity);
-    changed.push_back(v);
-  };
-  auto known = heavy_.begin();
-  const auto drop_below = [&](std::uint32_t vertex) {
-    for (; known != heavy_.end() && known->vertex < vertex; ++known) give(known->vertex, 0.0);
-  };
-  for (const VertexMass& m : *wanted) {
-    drop_below(m.vertex);
-    give(m.vertex, m.mass);
-    const bool was_heavy = known != heavy_.end() && known->vertex == m.vertex;
-    heavy.push_back({m.vertex, was_heavy ? known++->velocity : moving_->velocity_of(m.vertex)});
-    present += m.mass;
-  }
-  drop_below(std::numeric_limits<std::uint32_t>::max());
-  heavy_ = std::move(heavy);
-  if (changed.empty()) return;
-  state_.mass_scaling.present = present;
-  state_.mass_scaling.largest = std::max(state_.mass_scaling.largest, present);
-  moving_->inertia_changed(changed);
+  if (!wanted) return;
+  const double kinetic = masses_.take(*wanted, *moving_);
   if (state_.options.track_energies) ledger_.bring_in(kinetic, 0.0);
 }
 
@@ -259,23 +229,10 @@ void ExplicitScheme::kick(double) {
   kick_.impose_motions(moving_->active());
 }
 
-/// Tells the control how much of what acts on the body is inertia of the mass that stiff tets were given.
-void ExplicitScheme::weigh_stiff_masses() {
-  double inertia = 0.0;
-  for (std::size_t k = 0; k < heavy_.size(); ++k) {
-    HeavyVertex& heavy = heavy_[k];
-    const Vec3d velocity = moving_->velocity_of(heavy.vertex);
-    inertia += state_.body.stiff_mass[heavy.vertex] * norm(velocity - heavy.velocity);
-    heavy.velocity = velocity;
-  }
-  const double forces = kick_.force_scale(moving_->active());
-  largest_force_ = std::max(forces, kForceMemory * largest_force_);
-  const double impulse = largest_force_ * last_step_;
-  control_->take_inertia(impulse > 0.0 ? inertia / impulse : 0.0);
-}
-
 StepResult ExplicitScheme::step() {
-  if (!heavy_.empty()) weigh_stiff_masses();
+  if (state_.options.mass_scaling == MassScalingKind::variable) {
+    control_->take_inertia(masses_.weigh(kick_.outer_action(moving_->active()), *moving_));
+  }
   if (!control_->accept(stiffening_, stiff_)) {
     message_ = "tissue or tools have stiffened, and " + control_->too_large();
     return {StepStatus::step_too_large, {}, message_};
@@ -316,7 +273,7 @@ StepResult ExplicitScheme::step() {
   moving_->place_active();
   state_.time += h;
   ++state_.steps;
-  last_step_ = h;
+  masses_.step_made(h);
   if (!interactions_.empty()) interactions_.moved();
   if (!interactions_.empty() || state_.loads.depends_on_state()) control_->follow_added(added_frequency());
   return {seen.inverted.empty() ? StepStatus::ok : StepStatus::inverted, seen.inverted, {}};
@@ -349,24 +306,6 @@ void ExplicitScheme::take_body(Archive& ar) {
   control_->body_read(bounded ? &state_.changer().stars() : nullptr);
 }
 
-void ExplicitScheme::archive_stiff_masses(Archive& ar) {
-  const std::vector<HeavyVertex> here = heavy_;
-  auto heavy = static_cast<std::uint32_t>(state_.body.stiff_mass.size());
-  ar(heavy);
-  ar.check(heavy <= state_.body.vertex_count);
-  state_.body.stiff_mass.resize(heavy);
-  ar.same_size(state_.body.stiff_mass);
-  ar(heavy_, largest_force_, last_step_, state_.mass_scaling.present, state_.mass_scaling.largest);
-  if (!ar.reads()) return;
-  std::vector<std::uint32_t> touched;
-  for (const HeavyVertex& h : here) touched.push_back(h.vertex);
-  for (const HeavyVertex& h : heavy_) {
-    ar.check(h.vertex < heavy);
-    touched.push_back(h.vertex);
-  }
-  moving_->inertia_changed(touched);
-}
-
 void ExplicitScheme::archive_motion(Archive& ar) {
   told_.reset();
   std::vector<std::uint32_t> active = active_vertices();
@@ -378,7 +317,7 @@ void ExplicitScheme::archive_motion(Archive& ar) {
   moving_->archive_state(ar, state_.body.vertex_count);
   copy_.current = false;
   for (ActiveVertex& w : moving_->active()) ar(w.elastic, w.viscous);
-  archive_stiff_masses(ar);
+  masses_.archive(ar, *moving_);
   ar.same_size(stiffening_);
   ar(kick_, stiff_, ledger_);
   for (const StiffElement& s : stiff_) ar.check(s.element < state_.body.elements.size());

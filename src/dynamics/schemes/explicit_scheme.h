@@ -20,6 +20,7 @@
 #include "dynamics/interactions.h"
 #include "dynamics/schemes/active_kick.h"
 #include "dynamics/schemes/scheme.h"
+#include "dynamics/schemes/stiff_masses.h"
 #include "dynamics/step/step_control.h"
 #include "engine/moving_body.h"
 #include "engine/stage_holds.h"
@@ -89,21 +90,12 @@ class ExplicitScheme : public Scheme {
     bool current = false;
   };
 
-  /// A vertex that has mass for stiff tets, and its velocity when that was weighed last.
-  struct HeavyVertex {
-    std::uint32_t vertex = 0;
-    Vec3d velocity;
-    void archive(Archive& ar) { ar(vertex, velocity); }
-  };
-
   const StateCopy& read_state() const;
   void follow_tissues(const TissueChange& change);
   void build_anew(const TissueChange& change);
   std::span<const ShapeRate> shape_rates();
   void take_stiffness(const Advance& seen);
   void take_stiff_masses();
-  void weigh_stiff_masses();
-  void archive_stiff_masses(Archive& ar);
   std::vector<std::uint32_t> active_vertices() const;
   double added_frequency() const;
   void book(double h, const KickWork& free);
@@ -112,9 +104,7 @@ class ExplicitScheme : public Scheme {
   std::vector<double> stiffening_;   ///< per tissue block, at the last evaluation
   std::vector<StiffElement> stiff_;  ///< what was listed then
   std::vector<ShapeRate> shape_rates_;
-  std::vector<HeavyVertex> heavy_;  ///< ascending
-  double largest_force_ = 0.0;      ///< see weigh_stiff_masses [N]
-  double last_step_ = 0.0;          ///< [s]
+  StiffMasses masses_;
   /// Per constraint: whether stages of drag know that it holds; none: the body has to be told anew.
   std::optional<std::vector<char>> told_;
   std::vector<char> held_components_;  ///< 3 a vertex: as they know it

@@ -24,6 +24,7 @@ void MassLevels::body_changed() {
   limits_.assign(tets_.size(), {});
   fresh_ = true;
   weights_.resize(tets_.size());
+  rates_.clear();
   for (std::uint32_t e = 0; e < tets_.size(); ++e) measure(e);
 }
 
@@ -70,8 +71,12 @@ double MassLevels::raise(std::span<const StiffElement> stiff, std::span<const do
   return rise;
 }
 
-void MassLevels::settle() {
-  for (std::uint32_t e = 0; e < tets_.size(); ++e) {
+void MassLevels::tell(std::uint32_t part) {
+  std::fill(limits_.begin() + begin_of(part), limits_.begin() + begin_of(part + 1), StiffLimit{});
+}
+
+void MassLevels::settle(std::uint32_t part) {
+  for (std::uint32_t e = begin_of(part); e < begin_of(part + 1); ++e) {
     Tet& tet = tets_[e];
     tet.level = {std::min(tet.level.ratio, kRoom * tet.seen.ratio), std::min(tet.level.norm, kRoom * tet.seen.norm)};
     if (tet.seen.ratio == 0.0F) tet.last = 0.0F;
@@ -80,13 +85,43 @@ void MassLevels::settle() {
   }
 }
 
-void MassLevels::find_masses(std::span<const double> base, const std::vector<char>& viscous, double step, double weight,
+void MassLevels::find_rates() {
+  rates_.resize(tets_.size());
+  for (const TissueBlock& block : body_.blocks) {
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      if (!(body_.rest[e].volume > 0.0)) continue;
+      const double k = element_step(body_, block, e, 1.0, 0.0), c = element_step(body_, block, e, 0.0, 1.0),
+                   mass = body_.quarter_mass(block, e);
+      rates_[e] = {mass, mass * 4.0 / (k * k), mass * 2.0 / c};
+    }
+  }
+}
+
+/// What elements need at the level of their block beyond their own mass.
+void MassLevels::ask_for_blocks(std::span<const double> base, const std::vector<char>& viscous, const MassNeed& need) {
+  if (rates_.empty()) find_rates();
+  const double h = need.step, staged = need.drag_end > 0.0 ? h / need.drag_end : 0.0;
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const double stiff = need.at_level ? 0.25 * need.weight * h * h * base[b] : 0.0,
+                 drag = need.at_level && need.drags ? 0.5 * h * (viscous[b] != 0 ? base[b] : 1.0) : 0.0;
+    for (std::size_t e = body_.blocks[b].begin; e < body_.blocks[b].end; ++e) {
+      const Rates& own = rates_[e];
+      const double more = std::max(stiff * own.stiff + drag * own.drag, staged * own.drag) - own.mass;
+      if (!(more > 0.0)) continue;
+      for (const std::uint32_t v : body_.elements[e]) asked_[v] += more;
+    }
+  }
+}
+
+void MassLevels::find_masses(std::span<const double> base, const std::vector<char>& viscous, const MassNeed& need,
                              std::vector<VertexMass>& masses) {
   asked_.assign(body_.vertex_count, 0.0);
+  if (need.at_level || need.drag_end > 0.0) ask_for_blocks(base, viscous, need);
+  const double h = need.step;
   for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
     const TissueBlock& block = body_.blocks[b];
-    const double stiff = weight * step * step * modulus_bound(block.elastic),
-                 drag = viscous[b] != 0 ? 2.0 * step * modulus_bound(block.viscous) : 0.0;
+    const double stiff = need.weight * h * h * modulus_bound(block.elastic),
+                 drag = viscous[b] != 0 ? 2.0 * h * modulus_bound(block.viscous) : 0.0;
     for (std::size_t e = block.begin; e < block.end; ++e) {
       const double more = double(tets_[e].level.ratio) - base[b];
       if (!(more > 0.0)) continue;
@@ -108,9 +143,11 @@ void MassLevels::clear() {
 
 void MassLevels::remove(std::span<const std::uint32_t> elements) {
   for (const std::uint32_t e : elements) tets_[e] = {}, limits_[e] = {};
+  rates_.clear();
 }
 
 void MassLevels::reshape(std::span<const std::uint32_t> elements) {
+  rates_.clear();
   for (const std::uint32_t e : elements) measure(e);
 }
 

@@ -5,7 +5,11 @@
 //   h² K_e + 2 h C_e ≤ 4 Σ w_a |x_a|²,
 // so that with masses w_a beside their own the step is as safe as without the tet.
 //
-// A level has room above what was seen, so that masses change seldom, and comes down to what was seen since the last time. As it is
+// Where the body does not bear the level r of a block itself at h, each of its elements gets what its own mass m_e lacks,
+//   h² r K_e + 2 h C_e ≤ 4 (M_e + ΔM_e)    and, with drag in stages,    h C_e ≤ ζ (M_e + ΔM_e).
+//
+// A level has room above what was seen, so that masses change seldom, and comes down to what was seen since the last time, a part of
+// the tets after the other, so that no step has to look at all of them. As it is
 // usual that half of the tets have one, all are kept, in the order of the elements.
 #pragma once
 
@@ -26,6 +30,15 @@ struct VertexMass {
   double mass = 0.0;
 };
 
+/// What a step asks of the tets' masses beyond what the body is known to bear.
+struct MassNeed {
+  double step = 0.0;      ///< h [s]
+  double weight = 1.0;    ///< on stiffness
+  bool at_level = false;  ///< whether the body does not bear the levels of its blocks themselves at h
+  bool drags = false;     ///< then: whether viscosity counts beside stiffness
+  double drag_end = 0.0;  ///< ζ where h C ≤ ζ M has to hold beside, for drag in stages; 0: it does in any case
+};
+
 class MassLevels {
  public:
   /// @param body  must outlive this
@@ -37,12 +50,15 @@ class MassLevels {
   /// @param base, unseen  per block: its level, and the stiffness up to which elements were not told before
   /// @return how many times as stiff as when it was told last the worst of those above their levels is, at least 1; 1 at first
   double raise(std::span<const StiffElement> stiff, std::span<const double> base, std::span<const double> unseen);
-  /// Lets levels come down to the stiffest moment since the last time, with room; tets that were not told lose theirs.
-  void settle();
-  /// Mass of the vertices of tets above `base`.
-  /// @param viscous  per block, whether viscosity grows with its tets  @param step  h [s]  @param weight  on stiffness
+  static constexpr std::uint32_t kParts = 8;  ///< of the tets, that settle in turn
+  /// Has all tets of a part told, at any stiffness.
+  void tell(std::uint32_t part);
+  /// Lets levels of a part come down to the stiffest moment since the last time, with room; tets that were not told lose theirs.
+  void settle(std::uint32_t part);
+  /// Mass of the vertices of tets above `base`, and of those that do not bear that.
+  /// @param viscous  per block, whether viscosity grows with its tets
   /// @param masses  [out] ascending by vertex
-  void find_masses(std::span<const double> base, const std::vector<char>& viscous, double step, double weight,
+  void find_masses(std::span<const double> base, const std::vector<char>& viscous, const MassNeed& need,
                    std::vector<VertexMass>& masses);
   /// Per element: from which it has to be told, a little below its level.
   std::span<const StiffLimit> limits() const { return limits_; }
@@ -52,6 +68,8 @@ class MassLevels {
   void body_changed();
   /// Forgets elements that are gone.
   void remove(std::span<const std::uint32_t> elements);
+  /// Takes in that tissues are others.
+  void tissues_changed() { rates_.clear(); }
   /// Takes in that elements have another shape at rest.
   void reshape(std::span<const std::uint32_t> elements);
   void archive(Archive& ar);
@@ -65,11 +83,20 @@ class MassLevels {
   };
   void measure(std::uint32_t element);
   void limit(std::uint32_t element);
+  void find_rates();
+  void ask_for_blocks(std::span<const double> base, const std::vector<char>& viscous, const MassNeed& need);
+  std::uint32_t begin_of(std::uint32_t part) const { return static_cast<std::uint32_t>(tets_.size() * part / kParts); }
+
+  /// Of an element: what each of its vertices has of its mass, and that times the largest eigenvalues of M⁻¹ K and M⁻¹ C.
+  struct Rates {
+    double mass = 0.0, stiff = 0.0, drag = 0.0;  ///< [kg, kg/s², kg/s]
+  };
 
   const Body& body_;
   std::vector<Tet> tets_;
   std::vector<StiffLimit> limits_;
   std::vector<std::array<double, 4>> weights_;  ///< per element: ¼ V λ |s_a|² [m]
+  std::vector<Rates> rates_;                    ///< per element; empty: not found yet
   bool fresh_ = true;                           ///< nothing has been taken in yet
   std::vector<double> asked_;                   ///< per vertex [kg]
 };

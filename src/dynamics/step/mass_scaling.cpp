@@ -5,8 +5,6 @@
 #include <numeric>
 
 #include "dynamics/step/stable_step.h"
-#include "dynamics/step/step_rules.h"
-#include "element/drag_stages.h"
 
 namespace glisson {
 namespace {
@@ -40,36 +38,8 @@ MassScaling scale_masses(Body& body, double step, double viscosity) {
   return scaling;
 }
 
-namespace {
-
-/// The least mass for good, within a few percent of the step, with which the body bears the step of variable mass scaling at rest.
-MassScaling scale_to_begin(Body& body, const SimulationOptions& o) {
-  const bool in_stages = o.drag_stages > 1;
-  const double weight = in_stages ? 2.0 / drag_stage_room(o.drag_stages) : 1.0, drag = in_stages ? 0.0 : 1.0;
-  const std::vector<double> stiffness(body.blocks.size(), weight), viscosity(body.blocks.size(), drag),
-      undamped(body.vertex_count, 0.0);
-  const double wanted = *o.mass_scaling_step / kSafety;
-  const auto bears = [&] { return stable_step(body, stiffness, undamped, {}, nullptr, viscosity).step >= wanted; };
-  if (bears()) return {};
-  const std::vector<double> masses = body.masses, factors = body.mass_factor;
-  const auto scale = [&](double step) {
-    body.masses = masses, body.mass_factor = factors;
-    return scale_masses(body, step * std::sqrt(weight), drag);
-  };
-  double few = 0.1 * wanted, enough = wanted;  // of the single elements' bounds
-  for (int halving = 0; halving < 6; ++halving) {
-    const double middle = std::sqrt(few * enough);
-    scale(middle);
-    (bears() ? enough : few) = middle;
-  }
-  return scale(enough);
-}
-
-}  // namespace
-
 MassScaling scaled_masses(Body& body, const SimulationOptions& o) {
-  if (!o.mass_scaling_step) return {};
-  if (o.mass_scaling == MassScalingKind::variable) return scale_to_begin(body, o);
+  if (!o.mass_scaling_step || o.mass_scaling == MassScalingKind::variable) return {};
   return scale_masses(body, *o.mass_scaling_step, capabilities(o.integrator).viscosity_limits_step ? 1.0 : 0.0);
 }
 

@@ -23,7 +23,8 @@ StepControl::StepControl(const Body& body, const std::vector<double>& nodal_damp
     : body_(body), nodal_damping_(nodal_damping), drag_(drag), drag_stages_(options.drag_stages),
       weight_(drag == Drag::in_stages ? 2.0 / drag_stage_room(options.drag_stages) : 1.0), automatic_(!options.step),
       enforce_(options.enforce_stability), exact_asked_(options.exact_steps),
-      scales_masses_(options.mass_scaling_step.has_value()), levels_(body) {
+      scales_masses_(options.mass_scaling_step && options.mass_scaling == MassScalingKind::fixed), levels_(body),
+      bearable_inertia_(options.mass_scaling_inertia) {
   if (options.mass_scaling == MassScalingKind::variable) heavy_step_ = options.mass_scaling_step;
   if (heavy_step_) mass_levels_.emplace(body);
   look_at_body();
@@ -35,7 +36,7 @@ StepControl::StepControl(const Body& body, const std::vector<double>& nodal_damp
   remember_search();
   step_ = options.step.value_or(kSafety * now_.limits.pace);
   if (heavy_step_) choose_heavy(*heavy_step_);
-  const double stable = std::min(now_.limits.stable, drag_limit_);
+  const double stable = std::min(now_.limits.stable, drag_limit());
   if (enforce_ && !automatic_ && step_ > stable) refuse_above(stable);
   forget_searches();
   start_anew();
@@ -193,19 +194,21 @@ StepControl::Limits StepControl::search(std::span<const double> stiffening) {
   return {stable, std::min(stable, h(guess_.pace, std::vector<double>(body_.blocks.size(), 0.0)))};
 }
 
-/// h* at this level from that at the validated one or at rest, whichever gives more; from below. With G ≤ g M a step h that
+/// h* at this level from that at a known one, from below. With G ≤ g M a step h that
 /// the damped body bears has φ(h) of the undamped one ≤ 4 + 2 h g, which is shortened away; where g is large, h/r says more.
 /// Where C grows as K does, (h/r)² r K + 2 (h/r) r C ≤ h² K + 2 h C of the undamped one.
+double StepControl::pace_from(const Known& known, std::span<const double> stiffening) const {
+  double r = 1.0;
+  for (std::size_t b = 0; b < known.level.size(); ++b) r = std::max(r, stiffening[b] / known.level[b]);
+  const double pace = known.limits.pace, undamped = 1.0 + 0.5 * pace * damping_rate_;
+  if (drag_thickens()) return r > 1.0 ? pace / (r * undamped) : pace;
+  const double h = pace * std::max(1.0 / r, 1.0 / (std::sqrt(r) * undamped));
+  return undragged_ > 0.0 ? std::max(h, beside_drag(pace / undamped, r, known.level)) : h;
+}
+
+/// From the validated level or that at rest, whichever gives more.
 StepControl::Limits StepControl::bound_at(std::span<const double> stiffening) const {
-  const auto from = [&](const Known& known) {
-    double r = 1.0;
-    for (std::size_t b = 0; b < known.level.size(); ++b) r = std::max(r, stiffening[b] / known.level[b]);
-    const double pace = known.limits.pace, undamped = 1.0 + 0.5 * pace * damping_rate_;
-    if (drag_thickens()) return r > 1.0 ? pace / (r * undamped) : pace;
-    const double h = pace * std::max(1.0 / r, 1.0 / (std::sqrt(r) * undamped));
-    return undragged_ > 0.0 ? std::max(h, beside_drag(pace / undamped, r, known.level)) : h;
-  };
-  const double h = std::max(from(now_), from(rest_));
+  const double h = std::max(pace_from(now_, stiffening), pace_from(rest_, stiffening));
   return {h, h};
 }
 
@@ -251,12 +254,15 @@ void StepControl::mesh_changed(const BodyChange& change, const detail::VertexSta
     known->limits = {std::min(known->limits.stable, h), std::min(known->limits.pace, h)};
   }
   searched_ = {rest_, block_numbers()};
-  if (automatic_) step_ = std::min(step_, kSafety * now_.limits.pace);
+  if (automatic_ && !heavy_step_) step_ = std::min(step_, kSafety * now_.limits.pace);
   levels_.remove(change.removed);
   levels_.reshape(change.reshaped);
-  if (mass_levels_) mass_levels_->remove(change.removed), mass_levels_->reshape(change.reshaped);
+  if (mass_levels_) {
+    mass_levels_->remove(change.removed), mass_levels_->reshape(change.reshaped);
+    choose_heavy(step_);
+  }
   take_stiff();
-  unchecked_ = enforce_ && step_ > (automatic_ ? now_.limits.stable : std::min(now_.limits.stable, drag_limit_));
+  unchecked_ = enforce_ && step_ > (automatic_ ? now_.limits.stable : std::min(now_.limits.stable, drag_limit()));
 }
 
 std::vector<double> StepControl::block_numbers() const {
@@ -321,7 +327,7 @@ void StepControl::tissues_changed(std::span<const double> stiffening, bool undef
     }
   }
   if (automatic_) step_ = kSafety * now_.limits.pace;
-  if (heavy_step_) choose_heavy(*heavy_step_);
+  if (heavy_step_) mass_levels_->tissues_changed(), choose_heavy(*heavy_step_);
   element_bound_.reset();
   drag_part_ = 0.0;
   unchecked_ = false;
@@ -352,6 +358,7 @@ void StepControl::archive(Archive& ar) {
   if (element_bound_ != nullptr) ar(*element_bound_);
   if (!ar.reads()) return;
   searches_made_ = kSearchesKept;
+  tell_heavy();
   take_stiff();
 }
 

@@ -151,10 +151,10 @@ class StepControl : StepChoice {
     const double room = 1.0 / (kSafety * kSafety);
     const double h =
         std::min(caution_ * with_added(step_, {room * (stiff_.k + held_), stiff_.c / kSafety}), shape_step_);
-    return std::min(h, kSafety * drag_limit_);
+    return std::min(h, kSafety * drag_limit());
   }
   double stable_step() const {
-    return std::min(with_added(now_.limits.stable, {tools_ + stiff_.k, stiff_.c}), drag_limit_);
+    return std::min(with_added(now_.limits.stable, {tools_ + stiff_.k, stiff_.c}), drag_limit());
   }
   /// Variable mass scaling shortens its step where added mass has an effect. @param inertia  Σ Δm |a| over Σ |F| of what acts on the
   /// body, for the next accept() [-]
@@ -181,11 +181,15 @@ class StepControl : StepChoice {
   std::vector<double> viscosity_at(std::span<const double> stiffening) const;
   Limits limits_at(std::span<const double> stiffening);
   Limits search(std::span<const double> stiffening);
+  double pace_from(const Known& known, std::span<const double> stiffening) const;
   Limits bound_at(std::span<const double> stiffening) const;
   bool is_bounded() const;
   bool drag_thickens() const;
   std::vector<double> weighed(std::span<const double> stiffening) const;
   double drag_limit_of(double explicit_step) const;
+  /// With the mass that variable mass scaling gives.
+  double drag_limit() const { return heavy_step_ ? std::max(drag_limit_, step_ / kSafety) : drag_limit_; }
+  MassNeed mass_need() const;
   void search_drag_limit();
   void scale_drag_limit();
   void limit_drag_by_elements(std::span<const std::uint32_t> shapes);
@@ -210,6 +214,8 @@ class StepControl : StepChoice {
   void choose_heavy(double wanted);
   double step_without_masses(std::span<const double> stiffening) const;
   bool follow_inertia(std::span<const double> stiffening);
+  std::uint32_t heavy_part() const;
+  void tell_heavy();
   void bear(std::span<const double> stiffening, std::span<const StiffElement> stiff);
   void list_from();
   AddedStiffness added_at(std::span<const double> level);
@@ -258,6 +264,7 @@ class StepControl : StepChoice {
   std::vector<double> crowd_;      ///< per block, the stiffest of those left out; empty: none were
 
   std::optional<double> heavy_step_;      ///< of variable mass scaling [s]
+  double bearable_inertia_;               ///< SimulationOptions::mass_scaling_inertia
   std::vector<VertexMass> stiff_masses_;  ///< for that step
   bool masses_are_new_ = false;
   double inertia_ = 0.0;  ///< see take_inertia

@@ -7,6 +7,7 @@
 
 #include "dynamics/step/step_control.h"
 #include "dynamics/step/step_rules.h"
+#include "element/drag_stages.h"
 
 namespace glisson {
 namespace {
@@ -25,14 +26,16 @@ constexpr double kLadder = 0.9;                ///< of one level that is tried t
 constexpr int kMostInVain = 8;                 ///< steps of that ladder without a better one
 constexpr double kCostOfLevels = 2.0;          ///< of a tet with a level of its own, over that of a tet, a step
 constexpr double kMostRise = 1024.0;           ///< of stiffness that is looked at for a step
-/// Of added mass, of what acts on the body: from where it is too much, what it is brought down to, below which there may be more.
-constexpr double kMuchInertia = 0.04, kBearableInertia = 0.025, kLittleInertia = 0.015;
-constexpr double kCloseToHeavy = 1.2;       ///< so far below the level of a block tets are told, for mass
-constexpr double kHeavyRoom = 1.1;          ///< of what tets bear without mass, over the stiffness seen
-constexpr std::uint64_t kHeavyWindow = 64;  ///< [steps] after which levels for mass come down
-constexpr double kHeavyRegrowth = 1.095;    ///< of the step of variable mass scaling, a step: below √kCloseToHeavy
-constexpr double kLeastHeavyStep = 0.3;     ///< of what was asked for
-constexpr double kProbeDepth = 8.0;         ///< how far below the level of the blocks a probe looks
+/// Of the bearable inertia of added mass: from where it is too much, below which there may be more.
+constexpr double kMuchInertia = 1.6, kLittleInertia = 0.6;
+constexpr double kCloseToHeavy = 1.2;    ///< so far below the level of a block tets are told, for mass
+constexpr double kHeavyRoom = 1.1;       ///< of what tets bear without mass, over the stiffness seen
+constexpr std::uint64_t kHeavyTurn = 8;  ///< [steps] after which levels for mass come down in the next part of the tets
+constexpr double kHeavyRegrowth = 1.095;  ///< of the step of variable mass scaling, a step: below √kCloseToHeavy
+constexpr double kHeavyMemory = 40.0;     ///< time in which it grows by e, in steps asked for
+constexpr double kLeastHeavyLevel =
+    1.25;                            ///< of blocks, over rest: above kCloseToHeavy, so that tets at rest are not told
+constexpr double kProbeDepth = 8.0;  ///< how far below the level of the blocks a probe looks
 constexpr std::size_t kFewTets = 64, kFewOf = 4;  ///< tets with levels of their own: so many and this part of all
 
 }  // namespace
@@ -80,10 +83,19 @@ void StepControl::list_from() {
   }
 }
 
-/// With variable mass scaling tets that are well below their levels need not be told, but where levels come down next.
+/// With variable mass scaling tets that are well below their levels need not be told, but those whose levels come down next.
 std::span<const StiffLimit> StepControl::single_limits() const {
-  const bool all = !heavy_step_ || (in_window_ + 1) % kHeavyWindow == 0;
-  return all ? std::span<const StiffLimit>() : mass_levels_->limits();
+  return heavy_step_ ? mass_levels_->limits() : std::span<const StiffLimit>();
+}
+
+/// The part of the tets whose levels come down at the end of this turn.
+std::uint32_t StepControl::heavy_part() const {
+  return static_cast<std::uint32_t>(in_window_ / kHeavyTurn % MassLevels::kParts);
+}
+
+/// Has tets told whose levels come down in the next step.
+void StepControl::tell_heavy() {
+  if (mass_levels_ && (in_window_ + 1) % kHeavyTurn == 0) mass_levels_->tell(heavy_part());
 }
 
 /// What single tets take off the step, which depends on the level of their blocks.
@@ -99,18 +111,24 @@ std::vector<char> StepControl::thickening() const {
   return viscous;
 }
 
-/// The stiffness that bears a step without added mass: the largest, which leaves the least to add.
+/// The stiffness that the body bears at a step without added mass: the largest, which leaves the least to add. Where that is hardly more
+/// than at rest, elements get what they lack.
 void StepControl::choose_heavy(double wanted) {
   const auto at = [&](double rise) {
     Known known{{}, rest_.level};
     for (std::size_t b = 0; b < known.level.size(); ++b) {
       if (!is_linear(body_.blocks[b])) known.level[b] *= rise;
     }
-    known.limits = bound_at(known.level);
+    const double pace = pace_from(rest_, known.level);
+    known.limits = {pace, pace};
     return known;
   };
-  wanted = std::min(wanted, kSafety * drag_limit_);
-  now_ = rest_;
+  step_ = wanted;
+  if (kSafety * at(kLeastHeavyLevel).limits.pace < wanted) {
+    now_ = at(kLeastHeavyLevel);
+    now_.limits = {wanted / kSafety, wanted / kSafety};
+    return;
+  }
   double borne = 1.0, above = 1.0;
   while (above < kMostRise && kSafety * at(above).limits.pace >= wanted) borne = above, above *= 2.0;
   for (int halving = 0; halving < 20 && borne < above; ++halving) {
@@ -118,7 +136,15 @@ void StepControl::choose_heavy(double wanted) {
     (kSafety * at(middle).limits.pace >= wanted ? borne : above) = middle;
   }
   now_ = at(borne);
-  step_ = std::min(wanted, kSafety * now_.limits.pace);
+}
+
+/// What the present step asks of masses.
+MassNeed StepControl::mass_need() const {
+  return {.step = step_ / kSafety,
+          .weight = weight_,
+          .at_level = kSafety * pace_from(rest_, now_.level) < step_,
+          .drags = drag_ == Drag::lags,
+          .drag_end = kSafety * drag_limit_ < step_ ? DragPolynomial(drag_stages_).end() : 0.0};
 }
 
 /// What tets bear without added mass at the present stiffness [s].
@@ -127,22 +153,21 @@ double StepControl::step_without_masses(std::span<const double> stiffening) cons
   for (std::size_t b = 0; b < level.size(); ++b) {
     if (!is_linear(body_.blocks[b])) level[b] = std::max(level[b], kHeavyRoom * stiffening[b]);
   }
-  return kSafety * bound_at(level).pace;
+  return kSafety * pace_from(rest_, level);
 }
 
 /// Where inertia of added mass shows, the step falls to where it hardly does: mass goes with h² less what tets bear without it. The
-/// step comes back by as much as tets are told of before they need mass.
+/// step comes back by as much as tets are told of before they need mass, and not within a swing of the tissue.
 /// @return whether it is another one
 bool StepControl::follow_inertia(std::span<const double> stiffening) {
-  const double inertia = std::exchange(inertia_, 0.0);
-  const double most = std::min(*heavy_step_, kSafety * std::min(drag_limit_, bound_at(rest_.level).pace));
+  const double inertia = std::exchange(inertia_, 0.0) / bearable_inertia_, most = *heavy_step_;
   double wanted = std::min(step_, most);
   if (inertia > kMuchInertia) {
-    const double borne = std::min(step_, step_without_masses(stiffening)), share = kBearableInertia / inertia;
-    wanted = std::sqrt(share * step_ * step_ + (1.0 - share) * borne * borne);
-    wanted = std::min({step_, most, std::max(wanted, kLeastHeavyStep * *heavy_step_)});
+    const double borne = std::min({step_, step_without_masses(stiffening), kSafety * drag_limit_}),
+                 share = 1.0 / inertia;
+    wanted = std::min({step_, most, std::sqrt(share * step_ * step_ + (1.0 - share) * borne * borne)});
   } else if (inertia < kLittleInertia) {
-    wanted = std::min(kHeavyRegrowth * step_, most);
+    wanted = std::min(std::min(kHeavyRegrowth, std::exp(step_ / (kHeavyMemory * most))) * step_, most);
   }
   if (wanted == step_) return false;
   choose_heavy(wanted);
@@ -153,15 +178,17 @@ bool StepControl::follow_inertia(std::span<const double> stiffening) {
 void StepControl::bear(std::span<const double> stiffening, std::span<const StiffElement> stiff) {
   unchecked_ = false;
   const std::vector<double> listed = list_above_;
-  const bool settles = ++in_window_ % kHeavyWindow == 0, above = !mass_levels_->bear(stiff, now_.level);
+  const std::uint32_t part = heavy_part();
+  const bool settles = ++in_window_ % kHeavyTurn == 0, above = !mass_levels_->bear(stiff, now_.level);
   double rise = 1.0;
   if (above || settles) {
     rise = mass_levels_->raise(stiff, now_.level, listed_before_);
-    if (settles) mass_levels_->settle();
+    if (settles) mass_levels_->settle(part);
   }
   if (follow_inertia(stiffening) || above || settles) take_stiff();
   be_cautious(above ? rise : 1.0);
   listed_before_ = listed;
+  tell_heavy();
 }
 
 void StepControl::set_added(double squared_frequency) {
@@ -176,7 +203,7 @@ void StepControl::follow_added(double squared_frequency) {
 
 void StepControl::take_stiff() {
   if (heavy_step_) {
-    mass_levels_->find_masses(now_.level, thickening(), step_ / kSafety, weight_, stiff_masses_);
+    mass_levels_->find_masses(now_.level, thickening(), mass_need(), stiff_masses_);
     masses_are_new_ = true;
   } else {
     stiff_ = added_at(now_.level);
