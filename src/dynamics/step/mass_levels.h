@@ -50,7 +50,7 @@ class MassLevels {
   /// @param base, unseen  per block: its level, and the stiffness up to which elements were not told before
   /// @return how many times as stiff as when it was told last the worst of those above their levels is, at least 1; 1 at first
   double raise(std::span<const StiffElement> stiff, std::span<const double> base, std::span<const double> unseen);
-  static constexpr std::uint32_t kParts = 8;  ///< of the tets, that settle in turn
+  static constexpr std::uint32_t kParts = 32;  ///< of the tets, that settle in turn
   /// Has all tets of a part told, at any stiffness.
   void tell(std::uint32_t part);
   /// Lets levels of a part come down to the stiffest moment since the last time, with room; tets that were not told lose theirs.
