@@ -354,11 +354,13 @@ void StepControl::archive(Archive& ar) {
   }
   ar(probe_, since_probe_, probes_, levels_, drag_part_, drag_searched_.limit);
   ar.same_size(drag_searched_.numbers);
-  if (mass_levels_) ar(*mass_levels_), ar.same_size(listed_before_);
+  if (mass_levels_) ar(*mass_levels_, masses_are_new_), ar.same_size(listed_before_);
   if (element_bound_ != nullptr) ar(*element_bound_);
   if (!ar.reads()) return;
   searches_made_ = kSearchesKept;
   tell_heavy();
+  if (heavy_step_ && !masses_are_new_)
+    return list_from();  // the masses are the body's, from levels that have come down since
   take_stiff();
 }
 

@@ -30,8 +30,8 @@ constexpr double kMostRise = 1024.0;           ///< of stiffness that is looked 
 constexpr double kMuchInertia = 1.6, kLittleInertia = 0.6;
 constexpr double kCloseToHeavy = 1.2;    ///< so far below the level of a block tets are told, for mass
 constexpr double kHeavyRoom = 1.1;       ///< of what tets bear without mass, over the stiffness seen
-constexpr std::uint64_t kHeavyTurn = 2;     ///< [steps] after which levels for mass come down in the next part of the tets
-constexpr std::uint64_t kMassTurn = 16;     ///< [steps] after which mass follows what has come down
+constexpr std::uint64_t kHeavyTurn = 2;  ///< [steps] after which levels for mass come down in the next part of the tets
+constexpr std::uint64_t kMassTurn = 16;  ///< [steps] after which mass follows what has come down
 constexpr double kHeavyRegrowth = 1.095;  ///< of the step of variable mass scaling, a step: below √kCloseToHeavy
 constexpr double kHeavyMemory = 40.0;     ///< time in which it grows by e, in steps asked for
 constexpr double kLeastHeavyLevel =
