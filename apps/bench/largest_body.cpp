@@ -58,6 +58,7 @@ class Trials {
       if (pace.seconds < options_.frame_s) break;
       const RealtimeResult one = run_realtime(body, scaled.on_inversion, pace, stop_);
       all.compute_s.insert(all.compute_s.end(), one.compute_s.begin(), one.compute_s.end());
+      all.frame_steps.insert(all.frame_steps.end(), one.frame_steps.begin(), one.frame_steps.end());
       all.dropped += one.dropped, all.steps += one.steps, all.end = one.end;
       all.wall_s += one.wall_s, all.simulated_s += one.simulated_s;
     }

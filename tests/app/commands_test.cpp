@@ -209,7 +209,7 @@ depth_mm = 0.1
   EXPECT_NEAR(std::stod(found[2]), 5.0 / std::sqrt(2.0), 0.01);
   const std::string step = "motion.mass_scaling_step_s=" + found[3].str();
   EXPECT_NE(
-      run({"check", scene, "--set", step, "--set", "motion.mass_scaling=variable"}).out.find("kept by mass of tets"),
+      run({"check", scene, "--set", step, "--set", "motion.mass_scaling=variable"}).out.find("kept by mass for tets"),
       std::string::npos);
   const Outcome scaled = run({"check", scene, "--set", step});
   EXPECT_NE(scaled.out.find("% of the body's own) added to " + found[1].str() + " tets"), std::string::npos)

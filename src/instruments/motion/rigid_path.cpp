@@ -74,9 +74,11 @@ Fault PosesMotion::check() const {
   if (const std::size_t k = not_later(times); k > 0)
     return {"pose " + std::to_string(k) + " is not later than the one before it"};
   for (std::size_t i = 0; i < n; ++i) {
-    if (dot4(quaternions[i], quaternions[i]) > 1e-18) continue;
-    return {"pose " + std::to_string(i + 1) +
-            " has a quaternion of length 0; the rotation by 0 is qw = 1, qx = qy = qz = 0"};
+    const double size = std::sqrt(dot4(quaternions[i], quaternions[i]));
+    if (std::isfinite(times[i]) && std::isfinite(norm(positions[i])) && size > 1e-9 && std::isfinite(size)) continue;
+    return {
+        "pose " + std::to_string(i + 1) +
+        " has numbers that are too large or a quaternion of length 0; the rotation by 0 is qw = 1, qx = qy = qz = 0"};
   }
   return {};
 }
