@@ -175,6 +175,11 @@ TEST_F(Bench, RealtimeAccountsForEveryFrame) {
   EXPECT_LE(json["p99_9_us"], json["max_us"]);
   EXPECT_GT(json["peak_force_N"].get<double>(), 0.0) << "the tool presses";
   ASSERT_EQ(json["frames_us"].size(), json["frames"]);
+  ASSERT_EQ(json["frames_steps"].size(), json["frames"]);
+  std::uint64_t sum = 0, most = 0;
+  for (const std::uint64_t n : json["frames_steps"]) sum += n, most = std::max(most, n);
+  EXPECT_EQ(sum, json["steps"].get<std::uint64_t>());
+  EXPECT_EQ(most, json["most_steps"].get<std::uint64_t>());
   EXPECT_NEAR(*std::max_element(json["frames_us"].begin(), json["frames_us"].end()), json["max_us"].get<double>(), 0.1);
 }
 

@@ -200,7 +200,7 @@ void ExplicitScheme::take_stiffness(const Advance& seen) {
   stiff_ = seen.stiff;
 }
 
-/// Gives vertices the mass that stiff tets need at the step of variable mass scaling.
+/// Gives vertices the mass that their tets lack at the step of variable mass scaling.
 void ExplicitScheme::take_stiff_masses() {
   const std::optional<std::span<const VertexMass>> wanted = control_->new_masses();
   if (!wanted) return;

@@ -9,8 +9,8 @@
 //   h² r K_e + 2 h C_e ≤ 4 (M_e + ΔM_e)    and, with drag in stages,    h C_e ≤ ζ (M_e + ΔM_e).
 //
 // A level has room above what was seen, so that masses change seldom, and comes down to what was seen since the last time, a part of
-// the tets after the other, so that no step has to look at all of them. As it is
-// usual that half of the tets have one, all are kept, in the order of the elements.
+// the tets after the other, so that no step has to look at all of them. As it is usual that half of the tets have one, all are kept, in
+// the order of the elements.
 #pragma once
 
 #include <array>

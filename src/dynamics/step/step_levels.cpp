@@ -175,7 +175,7 @@ bool StepControl::follow_inertia(std::span<const double> stiffening) {
   return true;
 }
 
-/// Variable mass scaling: stiff tets take levels of their own, and their vertices mass in the place of a shorter step.
+/// Variable mass scaling: stiff tets take levels of their own, and vertices the mass that their tets lack.
 void StepControl::bear(std::span<const double> stiffening, std::span<const StiffElement> stiff) {
   unchecked_ = false;
   const std::vector<double> listed = list_above_;
