@@ -5,6 +5,7 @@ find_package(TBB REQUIRED CONFIG)
 find_package(tomlplusplus REQUIRED)
 if(GLISSON_BUILD_IO)
   find_package(VTK 9 REQUIRED COMPONENTS ${GLISSON_VTK_COMPONENTS})
+  find_library(GLISSON_DEFLATE deflate REQUIRED)  # it is linked by this name, here and by users of the installed package
 endif()
 if(GLISSON_BUILD_APPS OR GLISSON_BUILD_PYTHON)
   find_package(Ceres REQUIRED)

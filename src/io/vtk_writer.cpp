@@ -16,6 +16,7 @@
 #include <type_traits>
 
 #include "io/atomic_file.h"
+#include "io/quick_zlib.h"
 #include "io/raw_mesh.h"
 #include "io/vtk_log.h"
 #include "io/vtk_names.h"
@@ -140,8 +141,7 @@ std::string file_text(vtkUnstructuredGrid& grid, const std::filesystem::path& fi
   writer->SetInputData(&grid);
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOn();
-  writer->SetCompressorTypeToZLib();
-  writer->SetCompressionLevel(1);  // files 1 % larger than at 5, a fifth less time
+  writer->SetCompressor(vtkNew<detail::QuickZlib>());
   writer->SetHeaderTypeToUInt64();
   if (writer->Write() == 1 && writer->GetErrorCode() == 0 && log->first().empty()) return writer->GetOutputString();
   detail::fail(file.string(), "VTK cannot put it together: " + log->first());

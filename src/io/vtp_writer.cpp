@@ -7,6 +7,7 @@
 
 #include "glisson/io.h"
 #include "io/atomic_file.h"
+#include "io/quick_zlib.h"
 #include "io/raw_mesh.h"
 #include "io/vtk_log.h"
 #include "io/vtk_start.h"
@@ -37,6 +38,7 @@ void write_vtp(const std::filesystem::path& file, std::span<const Vec3d> points,
   writer->SetInputData(surface);
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOn();
+  writer->SetCompressor(vtkNew<detail::QuickZlib>());
   writer->SetHeaderTypeToUInt64();
   if (writer->Write() != 1 || writer->GetErrorCode() != 0 || !log->first().empty()) {
     detail::fail(file.string(), "VTK cannot put it together: " + log->first());

@@ -64,43 +64,61 @@ double extent_of(const TetMesh& mesh) {
 }  // namespace
 
 /// The tools where they are at this frame; one without a surface has no file.
-void FrameSeries::add_tools(const Simulation& simulation) {
+std::vector<FrameSeries::Tool> FrameSeries::tools_of(const Simulation& simulation) const {
   const double extent = instruments_.empty() ? 0.0 : extent_of(simulation.mesh());
+  std::vector<Tool> tools;
   for (const auto& tool : instruments_) {
-    const SurfaceMesh surface = tool_surface(*tool, extent);
-    if (surface.triangles.empty()) continue;
-    const std::filesystem::path file =
-        std::filesystem::path("frames") / fmt::format("tool_{}_{:04}.vtp", tool->name(), frames_.size());
-    write_vtp(folder_ / file, surface.points, surface.triangles);
-    Files& files = tools_[tool->name()];
-    files.emplace_back(simulation.time(), file);
-    write_pvd(folder_ / fmt::format("tool_{}.pvd", tool->name()), files);
+    SurfaceMesh surface = tool_surface(*tool, extent);
+    if (!surface.triangles.empty()) tools.push_back({tool->name(), std::move(surface)});
   }
+  return tools;
 }
 
 FrameSeries::FrameSeries(std::filesystem::path folder) : folder_(std::move(folder)) { make_folder(folder_ / "frames"); }
 
+FrameSeries::~FrameSeries() {
+  if (writing_.valid()) writing_.wait();
+}
+
+void FrameSeries::finish() {
+  if (writing_.valid()) writing_.get();
+}
+
 void FrameSeries::add(const Simulation& simulation, const TetFields& fields) {
-  const std::filesystem::path file = std::filesystem::path("frames") / fmt::format("frame_{:04}.vtu", frames_.size());
-  std::vector<Field> at_vertices{vector_field("displacement_m", simulation.displacement()),
-                                 vector_field("velocity_m_s", simulation.velocity())};
+  Frame frame{.time = simulation.time(),
+              .mesh = simulation.mesh(),
+              .at_vertices = {vector_field("displacement_m", simulation.displacement()),
+                              vector_field("velocity_m_s", simulation.velocity())},
+              .at_tets = stress_fields(fields.stress),
+              .tools = tools_of(simulation)};
+  frame.mesh.regions.resize(frame.mesh.tets.size(), 0);
   ContactFields contact = simulation.contact_fields();
   if (!contact.pressure.empty()) {
-    at_vertices.push_back({.name = "contact_pressure_Pa", .components = 1, .values = std::move(contact.pressure)});
-    at_vertices.push_back(vector_field("contact_traction_Pa", contact.traction));
+    frame.at_vertices.push_back(
+        {.name = "contact_pressure_Pa", .components = 1, .values = std::move(contact.pressure)});
+    frame.at_vertices.push_back(vector_field("contact_traction_Pa", contact.traction));
   }
-  std::vector<Field> at_tets = stress_fields(fields.stress);
-  at_tets.push_back(strain_field(simulation.mesh(), simulation.displacement()));
-  at_tets.push_back({.name = "q", .components = 1, .values = fields.q});
-  at_tets.push_back({.name = "s", .components = 1, .values = fields.s});
-  at_tets.push_back({.name = "jacobian", .components = 1, .values = fields.jacobian});
-  for (Field& field : at_tets) field.single = true;  // they follow from positions, which are kept in double
-  TetMesh mesh = simulation.mesh();
-  mesh.regions.resize(mesh.tets.size(), 0);
+  frame.at_tets.push_back(strain_field(simulation.mesh(), simulation.displacement()));
+  frame.at_tets.push_back({.name = "q", .components = 1, .values = fields.q});
+  frame.at_tets.push_back({.name = "s", .components = 1, .values = fields.s});
+  frame.at_tets.push_back({.name = "jacobian", .components = 1, .values = fields.jacobian});
+  for (Field& field : frame.at_tets) field.single = true;  // they follow from positions, which are kept in double
+  finish();
+  writing_ = std::async(std::launch::async, [this, frame = std::move(frame)] { write(frame); });
+}
+
+void FrameSeries::write(const Frame& frame) {
+  const std::filesystem::path folder = "frames", file = folder / fmt::format("frame_{:04}.vtu", frames_.size());
   try {
-    write_vtu(folder_ / file, mesh, {}, at_vertices, at_tets);
-    add_tools(simulation);
-    frames_.emplace_back(simulation.time(), file);
+    write_vtu(folder_ / file, frame.mesh, {}, frame.at_vertices, frame.at_tets);
+    for (const Tool& tool : frame.tools) {
+      const std::filesystem::path surface = folder / fmt::format("tool_{}_{:04}.vtp", tool.name, frames_.size());
+      write_vtp(folder_ / surface, tool.surface.points, tool.surface.triangles);
+      Files& files = tools_[tool.name];
+      files.emplace_back(frame.time, surface);
+      write_pvd(folder_ / fmt::format("tool_{}.pvd", tool.name), files);
+    }
+    frames_.emplace_back(frame.time, file);
     write_pvd(folder_ / "frames.pvd", frames_);
   } catch (const std::bad_alloc&) {
     throw;

@@ -164,6 +164,7 @@ void VariantRecorder::on_frame(const Simulation& simulation) {
 void VariantRecorder::on_end(const RunSummary& summary) {
   summary_ = summary;
   guarded([&] {
+    if (frames_) frames_->finish();
     const auto json = summary_json(summary_, variant_, options_.scene, options_.threads);
     write_whole(options_.folder / "summary.json", json_text(json, 2) + "\n");
   });
