@@ -35,10 +35,13 @@ void SubmeshBody::set_maxwell_step(double h) {
 
 void SubmeshBody::list_response(const Submesh& part, std::size_t batch, std::size_t n, const ResponseBlock& out,
                                 Findings& found) const {
-  const std::size_t tets = kernels_.lanes * kChainTets;
-  const std::uint32_t* element = part.chains.element.data() + batch * tets;
+  const std::uint32_t* element = part.chains.element.data() + batch * kernels_.lanes * kChainTets;
   const double limit = list_limit(part.block);
-  for (std::size_t i = 0; i < n * tets; ++i) {
+  std::array<std::uint16_t, kBlockTets> which;
+  const ListLimits limits{static_cast<float>(limit * double(kBelowLimit)), single_limits_.data(), element};
+  const std::size_t few = kernels_.response->list_above(n * kChainTets, out, limits, which.data());
+  for (std::size_t k = 0; k < few; ++k) {
+    const std::size_t i = which[k];
     const double ratio = double(out.ratio[i]);
     if (element[i] != kNoElement && ratio > limit) list(found, {element[i], ratio, double(out.norm[i])});
   }

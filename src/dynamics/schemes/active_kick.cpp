@@ -19,12 +19,6 @@ Vec3d inverse_inertia(const ActiveKick::Kicked& k, double h) {
 
 }  // namespace
 
-void add(KickPower& sum, const KickPower& p) {
-  sum.elastic += p.elastic, sum.viscous += p.viscous, sum.damping += p.damping;
-  sum.tools += p.tools, sum.loads += p.loads;
-  sum.contact += p.contact, sum.friction += p.friction, sum.fracture += p.fracture;
-}
-
 void ActiveKick::follow(std::span<const std::uint32_t> before, std::span<const ActiveVertex> active) {
   const auto take_over = [&](auto& list, auto& now) {
     now.clear();

@@ -89,6 +89,10 @@ class ActiveKick {
 };
 
 /// Adds the second to the first.
-void add(KickPower& sum, const KickPower& power);
+inline void add(KickPower& sum, const KickPower& p) {
+  sum.elastic += p.elastic, sum.viscous += p.viscous, sum.damping += p.damping;
+  sum.tools += p.tools, sum.loads += p.loads;
+  sum.contact += p.contact, sum.friction += p.friction, sum.fracture += p.fracture;
+}
 
 }  // namespace glisson

@@ -20,6 +20,7 @@
 
 #include "engine/kernels/kernels.h"
 #include "engine/kernels/lane_scalar-inl.h"
+#include "engine/kernels/stiff_list-inl.h"
 #include "material/stiffness_formulas.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -162,11 +163,7 @@ inline bool watch_lame(const Block& block, const LaneTissue& tissue, std::size_t
 /// The limits of a vector of tets, each its own: of laws on moduli ratio and norm are one.
 HWY_INLINE F single_limits(const ListLimits& limits, std::size_t i) {
   const Lanes d;
-  const hn::RebindToSigned<Lanes> whole;
-  const auto element = hn::BitCast(whole, hn::LoadU(hn::RebindToUnsigned<Lanes>(), limits.element + i));
-  const auto place = hn::Add(hn::Max(element, hn::Zero(whole)), hn::Max(element, hn::Zero(whole)));  // none is −1
-  static_assert(sizeof(StiffLimit) == 2 * sizeof(float));
-  const F own = hn::GatherIndex(d, &limits.single->ratio, place);
+  const F own = hn::GatherIndex(d, &limits.single->ratio, place_of_limits(limits, i));
   return hn::Max(hn::Set(d, limits.block), own * hn::Set(d, kBelowLimit));
 }
 
@@ -185,11 +182,7 @@ HWY_INLINE std::size_t list_above(const Block& block, const RiseOf& rise, std::s
     auto above = is_above(hn::Set(d, limits.block));
     if (hn::AllFalse(d, above)) continue;
     if (limits.single != nullptr) above = is_above(single_limits(limits, i));
-    std::array<std::uint8_t, sizeof(std::uint64_t)> bytes{};
-    hn::StoreMaskBits(d, above, bytes.data());
-    for (auto bits = std::bit_cast<std::uint64_t>(bytes); bits != 0; bits &= bits - 1) {
-      which[count++] = static_cast<std::uint16_t>(i + static_cast<std::size_t>(std::countr_zero(bits)));
-    }
+    count = put_places(above, i, which, count);
   }
   return count;
 }

@@ -11,6 +11,7 @@
 #include "engine/kernels/hyper_response-inl.h"
 #include "engine/kernels/relaxing_small-inl.h"
 #include "engine/kernels/response_kernels.h"
+#include "engine/kernels/stiff_list-inl.h"
 #include "engine/kernels/viscous_response-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -30,6 +31,7 @@ const ResponseKernels* response_table() {
                                      .relaxing_small = {{relaxing_small<false, false>, relaxing_small<false, true>},
                                                         {relaxing_small<true, false>, relaxing_small<true, true>}},
                                      .stiffest = stiffest,
+                                     .list_above = list_above,
                                      .volume_changes = volume_changes,
                                      .spread_to_vertices = spread_to_vertices,
                                      .mean_of_vertices = mean_of_vertices,

@@ -132,6 +132,9 @@ struct ResponseKernels {
   StressPass relaxing_small[2][2] = {};
   /// The largest of out.ratio.
   float (*stiffest)(std::size_t items, const ResponseBlock& out) = nullptr;
+  /// Numbers of the tets that may be above their limits. @return how many
+  std::size_t (*list_above)(std::size_t items, const ResponseBlock& out, const ListLimits&,
+                            std::uint16_t* which) = nullptr;
   /// For volume changes that are shared (average_nodal-inl.h).
   void (*volume_changes)(const float* gradient, const float* rest, std::size_t items, VolumeKind kind,
                          float* out) = nullptr;

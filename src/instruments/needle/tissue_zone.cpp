@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "glisson/mesh.h"
 
@@ -103,22 +104,11 @@ const std::vector<RulePoint>& rule_for(double edges) {
   return rules[static_cast<std::size_t>(std::clamp(1.0 + std::ceil(edges), double{kFewest}, double{kMost}))];
 }
 
-std::vector<VertexWeight> joined(std::vector<VertexWeight> weights, double sum) {
-  std::sort(weights.begin(), weights.end(), [](const VertexWeight& a, const VertexWeight& b) {
-    return a.vertex < b.vertex || (a.vertex == b.vertex && a.weight < b.weight);
-  });
-  std::vector<VertexWeight> joined;
-  for (const VertexWeight& w : weights) {
-    if (joined.empty() || joined.back().vertex != w.vertex) joined.push_back({w.vertex, 0.0});
-    joined.back().weight += w.weight / sum;
-  }
-  return joined;
-}
-
 }  // namespace
 
 TissueZones::TissueZones(const TetMesh& mesh, std::span<const char> removed, double radius, const Mat3d& axes)
-    : mesh_(&mesh), locator_(mesh, removed), radius_(radius), axes_(axes), edge_squared_(mesh.vertices.size()) {
+    : mesh_(&mesh), locator_(mesh, removed), radius_(radius), axes_(axes), edge_squared_(mesh.vertices.size()),
+      count_(mesh.vertices.size(), 0) {
   std::vector<double> volumes(mesh.vertices.size());
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     if (!removed.empty() && removed[t] != 0) continue;
@@ -167,7 +157,27 @@ std::vector<VertexWeight> TissueZones::weights(const Vec3d& x) {
     }
     sum += point.weight;
   }
-  return joined(std::move(weights), sum);
+  return joined(weights, sum);
+}
+
+/// One weight a vertex, ascending. They are summed in the order of their sizes, so that the sum is that of any order of the points.
+std::vector<VertexWeight> TissueZones::joined(std::span<const VertexWeight> weights, double sum) {
+  std::vector<VertexWeight> joined;
+  for (const VertexWeight& w : weights) {
+    if (count_[w.vertex]++ == 0) joined.push_back({w.vertex, 0.0});
+  }
+  std::ranges::sort(joined, {}, &VertexWeight::vertex);
+  std::uint32_t end = 0;
+  for (const VertexWeight& j : joined) end += std::exchange(count_[j.vertex], end);  // to where its weights begin
+  by_vertex_.resize(weights.size());
+  for (const VertexWeight& w : weights) by_vertex_[count_[w.vertex]++] = w.weight;
+  auto begin = by_vertex_.begin();
+  for (VertexWeight& j : joined) {
+    const auto last = by_vertex_.begin() + std::exchange(count_[j.vertex], 0);
+    std::sort(begin, last);
+    for (; begin != last; ++begin) j.weight += *begin / sum;
+  }
+  return joined;
 }
 
 Mat3d zone_axes(const TetMesh& mesh, const Vec3d& direction) {

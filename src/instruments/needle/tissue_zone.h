@@ -37,6 +37,7 @@ class TissueZones {
 
  private:
   double edge_squared(const Vec3d& x) const;
+  std::vector<VertexWeight> joined(std::span<const VertexWeight> weights, double sum);
 
   const TetMesh* mesh_;
   detail::TetLocator locator_;
@@ -45,6 +46,8 @@ class TissueZones {
   std::vector<double> edge_squared_;  ///< per vertex: mean over its tets, weighted by volume [m²]
   std::vector<std::uint32_t>
       guesses_;  ///< per point of the rule: the tet that held it last, where a needle that moves on finds it again
+  std::vector<std::uint32_t> count_;  ///< per vertex, for joined(): 0 between calls
+  std::vector<double> by_vertex_;
 };
 
 /// Axes for a needle along `direction`, a unit vector, which is the third; the first is across it along an edge of the mesh.
