@@ -167,13 +167,21 @@ void Interactions::body_changed(const BodyView& body, std::span<const std::uint3
   for (const std::shared_ptr<Interaction>& x : all_) x->body_changed(body, origins);
 }
 
-void Interactions::state_set() {
-  for (const std::shared_ptr<Interaction>& x : all_) x->state_set();
+void Interactions::state_set(std::span<const Vec3d> displacement) {
+  for (const std::shared_ptr<Interaction>& x : all_) x->state_set(displacement);
 }
 
 double Interactions::tool_energy() const {
   double sum = 0.0;
   for (const std::shared_ptr<Interaction>& x : all_) sum += x->tool_energy();
+  return sum;
+}
+
+Interactions::Frequency Interactions::find_frequency(std::vector<VertexStiffness>& bounds) const {
+  Frequency sum;
+  for (const std::shared_ptr<Interaction>& x : all_) {
+    (x->add_stiffness_bound(bounds) ? sum.of_bounded : sum.of_others) += x->squared_frequency();
+  }
   return sum;
 }
 

@@ -64,13 +64,19 @@ class Interactions {
   bool overshoot();
   void moved();
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins);
-  void state_set();
+  void state_set(std::span<const Vec3d> displacement);
 
   /// Per place, of the last step [N s].
   std::span<const Vec3d> impulses() const { return impulses_; }
   /// What they booked in the last step that was accounted.
   const InterfaceBook& book() const { return book_; }
   double tool_energy() const;
+  /// ω² of their stiffness [1/s²].
+  struct Frequency {
+    double of_bounded = 0.0, of_others = 0.0;
+  };
+  /// Appends the stiffness of those that bound it per vertex.
+  Frequency find_frequency(std::vector<VertexStiffness>& bounds) const;
   double squared_frequency() const;
 
   void archive(Archive& ar);

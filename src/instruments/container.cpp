@@ -340,7 +340,7 @@ void Container::body_changed(const BodyView& body, std::span<const std::uint32_t
   state_->wake();
 }
 
-void Container::state_set() { state_->wake(); }
+void Container::state_set(std::span<const Vec3d>) { state_->wake(); }
 
 /// All bonds that do not rest are to be active.
 std::span<const std::uint32_t> Container::reach(double, double h) {

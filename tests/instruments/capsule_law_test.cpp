@@ -230,5 +230,31 @@ TEST(CapsuleLaw, FrequencyIsBoundedAndTangentConvex) {
   }
 }
 
+// Stiffness per vertex bounds the tangent in every state: diag(d) − K is not negative, and a sixth of it is too little.
+TEST(CapsuleLaw, StiffnessIsBoundedPerVertex) {
+  const Sheet s = patch(4, 4, 4.0, 4.0, 0.3);
+  int needed = 0, states = 0;
+  for (const double stiffening : {0.0, 3.0}) {
+    MembraneLaw law = kLaw;
+    law.stiffening = stiffening, law.prestretch = 1.02;
+    Membrane m(s.triangles, s.vertices, law);
+    m.keep(5, 0.3), m.keep(7, 0.0);
+    for (unsigned seed = 0; seed < 60; ++seed) {
+      const double x = 0.7 + 0.03 * seed, y = 0.6 + 0.02 * ((7 * seed) % 60);
+      const std::vector<Vec3d> at = shaken(s, x, y, 0.05 * (seed % 4), seed);
+      forces_of(m, at);
+      std::vector<double> bound(at.size(), 0.0);
+      m.add_stiffness_bound(bound);
+      if (std::ranges::any_of(bound, [](double d) { return !(d > 0.0); })) continue;
+      ++states;
+      const double most = spectrum(m, at, bound)[0];  // of D^(−½) K D^(−½)
+      EXPECT_LE(most, 1.0 + 1e-6) << seed;
+      if (most > 1.0 / 6.0) ++needed;
+    }
+  }
+  EXPECT_GT(states, 100);
+  EXPECT_GT(needed, states / 2);
+}
+
 }  // namespace
 }  // namespace glisson

@@ -130,6 +130,8 @@ class Capsule final : public Interaction {
   bool overshoots(const InteractionStep& step) override;
   void moved(const InteractionStep& step) override;
   double squared_frequency() const override;
+  bool add_stiffness_bound(std::vector<VertexStiffness>& all) const override;
+  void state_set(std::span<const Vec3d> displacement) override;
   void archive(Archive& ar) override;
 
  private:

@@ -94,7 +94,7 @@ class Container final : public Interaction {
   std::span<const std::uint32_t> reach(double time, double h) override;
   std::optional<std::span<const std::uint32_t>> keeps() override;
   std::optional<std::span<const std::uint32_t>> rests() override;
-  void state_set() override;
+  void state_set(std::span<const Vec3d> displacement) override;
   std::string refuses_long_steps() const override { return {}; }
   void set_long_steps(bool are_long) override;
   void add_forces(const InteractionStep& step) override;

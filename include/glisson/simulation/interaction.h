@@ -43,6 +43,12 @@ struct RestingVertex {
   Vec3d force;  ///< of tissue and gravity on it at time t [N]
 };
 
+/// Stiffness of a vertex, the same in all directions [N/m].
+struct VertexStiffness {
+  std::uint32_t vertex = 0;
+  double stiffness = 0.0;
+};
+
 /// The present body, for interactions.
 struct BodyView {
   const TetMesh& mesh;                  ///< at rest, including removed tets, in present numbers
@@ -182,8 +188,9 @@ class Interaction {
   /// InteractionStep::resting. One that something else acts on is active as before, and has to be held by impulses.
   /// Valid until the next call. None: the same as before.
   virtual std::optional<std::span<const std::uint32_t>> rests() { return {}; }
-  /// The state was set from outside: what it holds still may be elsewhere, and is not at rest any more.
-  virtual void state_set() {}
+  /// The state was set from outside: what it holds still may be elsewhere, and is not at rest any more. @param displacement  of all
+  /// vertices [m]
+  virtual void state_set(std::span<const Vec3d> /*displacement*/) {}
 
   /// Adds forces that follow from the present state to `elastic` or `viscous` of active vertices.
   virtual void add_forces(const InteractionStep&) {}
@@ -228,6 +235,10 @@ class Interaction {
   /// shortens the stable step. Called after every step: a value that follows the state has to cover the next step.
   /// Constraints add no stiffness.
   virtual double squared_frequency() const { return 0.0; }
+  /// Appends stiffnesses d_v of vertices that bound the added stiffness K of the last add_forces, xᵀ K x ≤ Σ d_v |x_v|², at most one a
+  /// vertex. With them variable mass scaling gives these vertices mass, in place of the shorter step of squared_frequency().
+  /// @return whether it tells such; always the same until it is attached anew
+  virtual bool add_stiffness_bound(std::vector<VertexStiffness>&) const { return false; }
 
   /// Stored by its elastic forces (add_forces), at force_time() [J].
   virtual double energy() const { return 0.0; }

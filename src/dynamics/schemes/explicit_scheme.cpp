@@ -117,10 +117,11 @@ std::vector<std::uint32_t> ExplicitScheme::active_vertices() const {
 
 void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
   moving_->set_state(displacement, velocity);
-  interactions_.state_set();
+  interactions_.state_set(displacement);
   kick_.forget_outer();
   held_rows_.clear();
   control_->state_set();
+  control_->set_added(added());
   take_stiff_masses();
   masses_.state_set();
   moving_->list_above(control_->list_above(), control_->single_limits());
@@ -163,17 +164,23 @@ void ExplicitScheme::attach(std::shared_ptr<Interaction> interaction, const Body
   if (state_.options.track_energies) ledger_.bring_in(0.0, interaction->energy());
   interactions_.add(std::move(interaction));
   interactions_.find_places(moving_->active(), state_.body.vertex_count);
-  control_->set_added(added_frequency());
+  control_->set_added(added());
 }
 
-/// ω² of what acts beside the tissue: interactions, springs, surfaces that loads follow.
-double ExplicitScheme::added_frequency() const {
-  return interactions_.squared_frequency() + state_.loads.squared_frequency(state_.body);
+/// Interactions, springs, surfaces that loads follow.
+AddedBeside ExplicitScheme::added() {
+  const double loads = state_.loads.squared_frequency(state_.body);
+  if (state_.options.mass_scaling != MassScalingKind::variable) {
+    return {.squared_frequency = interactions_.squared_frequency() + loads, .with_mass = 0.0, .to_bear = {}};
+  }
+  to_bear_.clear();
+  const Interactions::Frequency seen = interactions_.find_frequency(to_bear_);
+  return {.squared_frequency = seen.of_others + loads, .with_mass = seen.of_bounded, .to_bear = to_bear_};
 }
 
 void ExplicitScheme::loads_changed(bool may_refuse) {
   if (state_.loads.follows()) static_cast<void>(state_.loads_at(state_.time, displacement()));
-  control_->set_added(added_frequency());
+  control_->set_added(added());
   const bool given = state_.options.step.has_value() && state_.options.enforce_stability;
   if (!may_refuse || !given || control_->step() <= control_->stable_step()) return;
   throw std::invalid_argument("load: with it, " + control_->too_large());
@@ -183,7 +190,7 @@ void ExplicitScheme::tell_change(const BodyView& body, std::span<const std::uint
   if (interactions_.empty()) return;
   interactions_.find_places(moving_->active(), state_.body.vertex_count);
   interactions_.body_changed(body, origins);
-  control_->set_added(added_frequency());
+  control_->set_added(added());
 }
 
 void ExplicitScheme::book(double h, const KickWork& free) {
@@ -275,7 +282,7 @@ StepResult ExplicitScheme::step() {
   ++state_.steps;
   masses_.step_made(h);
   if (!interactions_.empty()) interactions_.moved();
-  if (!interactions_.empty() || state_.loads.depends_on_state()) control_->follow_added(added_frequency());
+  if (!interactions_.empty() || state_.loads.depends_on_state()) control_->follow_added(added());
   return {seen.inverted.empty() ? StepStatus::ok : StepStatus::inverted, seen.inverted, {}};
 }
 
@@ -329,7 +336,7 @@ void ExplicitScheme::archive_motion(Archive& ar) {
   ar.check(std::includes(active.begin(), active.end(), held_.begin(), held_.end()));
   ar.check(std::includes(active.begin(), active.end(), named.begin(), named.end()));
   moving_->list_above(control_->list_above(), control_->single_limits());
-  control_->set_added(added_frequency());
+  control_->added_read(added());
 }
 
 void ExplicitScheme::take_over(const BodyChange& change) {

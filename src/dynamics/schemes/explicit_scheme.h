@@ -97,13 +97,14 @@ class ExplicitScheme : public Scheme {
   void take_stiffness(const Advance& seen);
   void take_stiff_masses();
   std::vector<std::uint32_t> active_vertices() const;
-  double added_frequency() const;
+  AddedBeside added();
   void book(double h, const KickWork& free);
 
   std::vector<std::uint32_t> held_;  ///< vertices of supports, motions and loads, ascending
   std::vector<double> stiffening_;   ///< per tissue block, at the last evaluation
   std::vector<StiffElement> stiff_;  ///< what was listed then
   std::vector<ShapeRate> shape_rates_;
+  std::vector<VertexStiffness> to_bear_;
   StiffMasses masses_;
   /// Per constraint: whether stages of drag know that it holds; none: the body has to be told anew.
   std::optional<std::vector<char>> told_;

@@ -39,7 +39,7 @@ void ImplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
   last_h_ = 0.0;
   fresh_ = true;
   std::fill(now_.contact.begin(), now_.contact.end(), Vec3d{});
-  solver_.contact().state_set();
+  solver_.contact().state_set(now_.u);
   tissue_.advance_memory({now_.u, now_.v, std::numeric_limits<double>::infinity()});  // a state that is set has relaxed
   if (!state_.options.track_energies) return;
   double kinetic = 0.0;

@@ -58,9 +58,9 @@ void StepContact::body_changed(const BodyView& body, std::span<const std::uint32
   interactions_.ask_rests();
 }
 
-void StepContact::state_set() {
+void StepContact::state_set(std::span<const Vec3d> displacement) {
   forces_.set_zero(state_.body.vertex_count);
-  interactions_.state_set();
+  interactions_.state_set(displacement);
   interactions_.ask_rests();
 }
 

@@ -48,7 +48,7 @@ class StepContact final : public StepCompliance {
   void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) {
     interactions_.follow(origins, first_new);
   }
-  void state_set();
+  void state_set(std::span<const Vec3d> displacement);
 
   /// Where interactions were before a step, to go back to.
   struct Backup {

@@ -129,6 +129,7 @@ void MassLevels::find_masses(std::span<const double> base, const std::vector<cha
       for (std::size_t a = 0; a < 4; ++a) asked_[body_.elements[e][a]] += per_weight * weights_[e][a];
     }
   }
+  if (need.beside != nullptr) need.beside->add_masses(0.25 * need.weight * h * h, asked_);
   masses.clear();
   for (std::uint32_t v = 0; v < asked_.size(); ++v) {
     if (asked_[v] > 0.0) masses.push_back({v, asked_[v]});

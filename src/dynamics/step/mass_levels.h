@@ -18,6 +18,7 @@
 #include <span>
 #include <vector>
 
+#include "dynamics/step/added_levels.h"
 #include "element/body.h"
 #include "element/stiff_element.h"
 #include "glisson/archive.h"
@@ -37,6 +38,7 @@ struct MassNeed {
   bool at_level = false;  ///< whether the body does not bear the levels of its blocks themselves at h
   bool drags = false;     ///< then: whether viscosity counts beside stiffness
   double drag_end = 0.0;  ///< ζ where h C ≤ ζ M has to hold beside, for drag in stages; 0: it does in any case
+  const AddedLevels* beside = nullptr;  ///< of what acts beside the tissue
 };
 
 class MassLevels {
@@ -55,7 +57,7 @@ class MassLevels {
   void tell(std::uint32_t part);
   /// Lets levels of a part come down to the stiffest moment since the last time, with room; tets that were not told lose theirs.
   void settle(std::uint32_t part);
-  /// Mass of the vertices of tets above `base`, and of those that do not bear that.
+  /// Mass of the vertices of tets above `base`, of those that do not bear that, and of what acts beside the tissue.
   /// @param viscous  per block, whether viscosity grows with its tets
   /// @param masses  [out] ascending by vertex
   void find_masses(std::span<const double> base, const std::vector<char>& viscous, const MassNeed& need,

@@ -29,6 +29,7 @@
 #include <utility>
 #include <vector>
 
+#include "dynamics/step/added_levels.h"
 #include "dynamics/step/element_step_bound.h"
 #include "dynamics/step/mass_levels.h"
 #include "dynamics/step/stable_step.h"
@@ -51,6 +52,13 @@ enum class Drag {
 struct ShapeRate {
   StiffElement stiff;
   double rate = 0.0;
+};
+
+/// Stiffness that acts beside the tissue.
+struct AddedBeside {
+  double squared_frequency = 0.0;            ///< ω² on the body's masses, from above: it shortens the step [1/s²]
+  double with_mass = 0.0;                    ///< the same of what gets mass in the place of a shorter step [1/s²]
+  std::span<const VertexStiffness> to_bear;  ///< what that mass is for
 };
 
 /// What a refused change of tissues leaves as it was.
@@ -140,11 +148,12 @@ class StepControl : StepChoice {
   /// could be stiffer before it asked for a shorter step, by what would make it so.
   void limit_shape_change(std::span<const ShapeRate> changes);
 
-  /// Stiffness that acts beside the tissue. @param squared_frequency  ω² on the body's masses, from above [1/s²]
-  void set_added(double squared_frequency);
+  void set_added(const AddedBeside& added);
   /// The same after a step. An automatic step grows again by no more than kRegrowth a step where this falls: a torn membrane
   /// that whips back is slack at one step and a hundred times as stiff at the next.
-  void follow_added(double squared_frequency);
+  void follow_added(const AddedBeside& added);
+  /// The same after archive() has read.
+  void added_read(const AddedBeside& added) { take_added(added); }
 
   double step() const {
     if (!automatic_) return step_;
@@ -169,7 +178,6 @@ class StepControl : StepChoice {
   std::string too_large() const { return too_large(stable_step()); }
 
  private:
-  static constexpr double kRegrowth = 1.015;                             ///< of a step that tools held short
   static constexpr std::uint64_t kFirstWindow = 1000, kFirstProbe = 64;  ///< [steps]
 
   /// A search since steps were chosen anew, and where it left the next one to begin.
@@ -218,6 +226,7 @@ class StepControl : StepChoice {
   void tell_heavy();
   void bear(std::span<const double> stiffening, std::span<const StiffElement> stiff);
   void list_from();
+  void take_added(const AddedBeside& added);
   AddedStiffness added_at(std::span<const double> level);
   void take_stiff();
   void take_base(Known base);
@@ -265,6 +274,9 @@ class StepControl : StepChoice {
 
   std::optional<double> heavy_step_;      ///< of variable mass scaling [s]
   double bearable_inertia_;               ///< SimulationOptions::mass_scaling_inertia
+  AddedLevels added_levels_;              ///< of what acts beside the tissue, for mass
+  bool bears_added_ = true;               ///< whether they are above it
+  double with_mass_ = 0.0;                ///< ω² of that without mass [1/s²]
   std::vector<VertexMass> stiff_masses_;  ///< for that step
   bool masses_are_new_ = false;
   double inertia_ = 0.0;  ///< see take_inertia

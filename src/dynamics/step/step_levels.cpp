@@ -58,6 +58,7 @@ void StepControl::start_anew() {
 }
 
 void StepControl::state_set() {
+  added_levels_.clear();
   if (!heavy_step_) {
     now_ = rest_;
     if (automatic_) step_ = kSafety * now_.limits.pace;
@@ -145,7 +146,8 @@ MassNeed StepControl::mass_need() const {
           .weight = weight_,
           .at_level = kSafety * pace_from(rest_, now_.level) < step_,
           .drags = drag_ == Drag::lags,
-          .drag_end = kSafety * drag_limit_ < step_ ? DragPolynomial(drag_stages_).end() : 0.0};
+          .drag_end = kSafety * drag_limit_ < step_ ? DragPolynomial(drag_stages_).end() : 0.0,
+          .beside = &added_levels_};
 }
 
 /// What tets bear without added mass at the present stiffness [s].
@@ -164,8 +166,8 @@ bool StepControl::follow_inertia(std::span<const double> stiffening) {
   const double inertia = std::exchange(inertia_, 0.0) / bearable_inertia_, most = *heavy_step_;
   double wanted = std::min(step_, most);
   if (inertia > kMuchInertia) {
-    const double borne = std::min({step_, step_without_masses(stiffening), kSafety * drag_limit_}),
-                 share = 1.0 / inertia;
+    const double tissue = std::min(step_without_masses(stiffening), kSafety * drag_limit_),
+                 borne = std::min(step_, with_added(tissue, {with_mass_, 0.0})), share = 1.0 / inertia;
     wanted = std::min({step_, most, std::sqrt(share * step_ * step_ + (1.0 - share) * borne * borne)});
   } else if (inertia < kLittleInertia) {
     wanted = std::min(std::min(kHeavyRegrowth, std::exp(step_ / (kHeavyMemory * most))) * step_, most);
@@ -186,24 +188,33 @@ void StepControl::bear(std::span<const double> stiffening, std::span<const Stiff
     rise = mass_levels_->raise(stiff, now_.level, listed_before_);
     if (settles) mass_levels_->settle(part);
   }
-  if (follow_inertia(stiffening) || above || in_window_ % kMassTurn == 0) take_stiff();
+  if (follow_inertia(stiffening) || above || !bears_added_ || in_window_ % kMassTurn == 0) take_stiff();
   be_cautious(above ? rise : 1.0);
   listed_before_ = listed;
   tell_heavy();
 }
 
-void StepControl::set_added(double squared_frequency) {
-  tools_ = squared_frequency;
+void StepControl::take_added(const AddedBeside& added) {
+  tools_ = added.squared_frequency;
   held_ = std::max(held_, tools_);
+  with_mass_ = added.with_mass;
 }
 
-void StepControl::follow_added(double squared_frequency) {
+void StepControl::set_added(const AddedBeside& added) {
+  take_added(added);
+  bears_added_ = added_levels_.meet(added.to_bear);
+  if (!bears_added_) take_stiff();
+}
+
+void StepControl::follow_added(const AddedBeside& added) {
   held_ /= kRegrowth * kRegrowth;
-  set_added(squared_frequency);
+  take_added(added);
+  bears_added_ = added_levels_.meet(added.to_bear);
 }
 
 void StepControl::take_stiff() {
   if (heavy_step_) {
+    if (!bears_added_ || in_window_ % kMassTurn == 0) added_levels_.settle(), bears_added_ = true;
     mass_levels_->find_masses(now_.level, thickening(), mass_need(), stiff_masses_);
     masses_are_new_ = true;
   } else {

@@ -12,6 +12,7 @@ namespace glisson {
 
 inline constexpr double kSafety = 0.9;            ///< automatic step over h*
 inline constexpr double kStiffeningMargin = 1.2;  ///< stiffening that a new h* allows for beyond the present one
+inline constexpr double kRegrowth = 1.015;        ///< a step, of one that tools held short
 
 inline std::size_t block_index(const Body& body, std::size_t element) {
   return static_cast<std::size_t>(&body.block_of(element) - body.blocks.data());

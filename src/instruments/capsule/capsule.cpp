@@ -198,6 +198,21 @@ double Capsule::squared_frequency() const {
   return s.frequency * rise * rise;
 }
 
+bool Capsule::add_stiffness_bound(std::vector<VertexStiffness>& all) const {
+  const State& s = *state_;
+  std::vector<double> bound(s.vertices.size(), 0.0);
+  s.membrane.add_stiffness_bound(bound);
+  for (std::size_t k = 0; k < bound.size(); ++k) all.push_back({s.vertices[k], bound[k]});
+  return true;
+}
+
+void Capsule::state_set(std::span<const Vec3d> displacement) {
+  State& s = *state_;
+  for (std::size_t k = 0; k < s.vertices.size(); ++k) s.now[k] = s.rest[k] + displacement[s.vertices[k]];
+  s.evaluate();
+  s.frequency_before = s.frequency;
+}
+
 void archive(Archive& ar, CapsuleEvent& event) { ar(event.time, event.place, event.area, event.what); }
 
 void Capsule::archive(Archive& ar) {

@@ -64,6 +64,10 @@ Membrane::Membrane(std::span<const Triangle> triangles, std::span<const Vec3d> r
     b.g00[k] = law.prestretch / length;
     b.g11[k] = law.prestretch * length / twice;
     b.g01[k] = -law.prestretch * dot(d1, d2) / (length * twice);
+    // natural edges; their scale does not matter
+    const double edge = 1.0 / b.g00[k], height = 1.0 / b.g11[k], foot = -b.g01[k] * edge * height;
+    const std::array<double, 3> above = diagonal_above(edge, foot, height);
+    for (std::size_t i = 0; i < 3; ++i) b.above[i][k] = above[i];
     keep(t, 1.0);
   }
 }
@@ -81,10 +85,7 @@ void Membrane::set_masses(std::span<const double> masses) {
     if (!(area_[t] > 0.0)) continue;
     const MembraneBlock& b = blocks_[t / kSize];
     const std::size_t k = t % kSize;
-    // natural edges; their scale does not matter
-    const double edge = 1.0 / b.g00[k], height = 1.0 / b.g11[k], foot = -b.g01[k] * edge * height;
-    const std::array<double, 3> above = diagonal_above(edge, foot, height);
-    for (std::size_t i = 0; i < 3; ++i) of_vertex[b.corner[i][k]] += above[i];
+    for (std::size_t i = 0; i < 3; ++i) of_vertex[b.corner[i][k]] += b.above[i][k];
   }
   for (std::size_t v = 0; v < masses.size(); ++v) of_vertex[v] = masses[v] > 0.0 ? of_vertex[v] / masses[v] : 0.0;
   for (std::size_t t = 0; t < size(); ++t) {
@@ -97,6 +98,14 @@ void Membrane::set_masses(std::span<const double> masses) {
 void Membrane::add_forces(std::span<const Vec3d> positions, std::span<Vec3d> forces) {
   if (blocks_.empty()) return;
   seen_ = forces_(factors_of(law_), blocks_.data(), blocks_.size(), positions.data(), forces.data());
+}
+
+void Membrane::add_stiffness_bound(std::span<double> per_vertex) const {
+  for (const MembraneBlock& b : blocks_) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < kSize; ++k) per_vertex[b.corner[i][k]] += b.modulus[k] * b.above[i][k];
+    }
+  }
 }
 
 Membrane::Strain Membrane::strain(std::span<const Vec3d> positions, std::size_t triangle) const {

@@ -77,6 +77,9 @@ class Membrane {
   ///   max over triangles k R,  R = max over corners i of (1/mᵢ) Σ over triangles Dᵢ, D diagonal and ≥ A ∇Nᵢ·∇Nⱼ, and
   ///   max over triangles k times what sharpen() has found.
   double squared_frequency() const { return std::min(seen_.frequency, sharp_rate_ * seen_.modulus); }
+  /// Adds stiffnesses d that bound the tangent K of the last add_forces, xᵀ K x ≤ Σ dᵢ |xᵢ|²: dᵢ = Σ over triangles k Dᵢ.
+  /// @param per_vertex  [N/m]
+  void add_stiffness_bound(std::span<double> per_vertex) const;
 
  private:
   static constexpr std::size_t kSize = MembraneBlock::kSize;

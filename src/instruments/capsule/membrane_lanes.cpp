@@ -92,6 +92,7 @@ HWY_INLINE void pull(const MembraneFactors& c, MembraneBlock& b, std::size_t i, 
   // |F D Fᵀ| + 2 |S|: across the sheet S acts alone, on modes that are up to 1 + ν times as fast for their modulus
   modulus = hn::IfThenElseZero(bears, mul(factor, add(mul(modulus, stretch), mul(two, s1))));
   hn::Store(squared, d, &b.squared_tension[i]);
+  hn::Store(modulus, d, &b.modulus[i]);
   largest.squared_tension = hn::Max(largest.squared_tension, squared);
   largest.modulus = hn::Max(largest.modulus, modulus);
   largest.frequency = hn::Max(largest.frequency, mul(modulus, hn::Load(d, &b.rate[i])));

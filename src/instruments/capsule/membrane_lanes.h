@@ -15,10 +15,12 @@ struct alignas(64) MembraneBlock {
   static constexpr std::size_t kSize = 8;
   using Lanes = std::array<double, kSize>;
 
-  Lanes g00{}, g01{}, g11{};  ///< [1/m]
-  Lanes area{};               ///< natural area times the share of stiffness kept [m²]
-  Lanes rate{};               ///< of MembraneSums::frequency [1/kg]
-  Lanes squared_tension{};    ///< of the largest principal value of |F S|, per natural width [N²/m²]
+  Lanes g00{}, g01{}, g11{};     ///< [1/m]
+  Lanes area{};                  ///< natural area times the share of stiffness kept [m²]
+  Lanes rate{};                  ///< of MembraneSums::frequency [1/kg]
+  Lanes modulus{};               ///< k of the last step; 0 where nothing is borne [N/m]
+  std::array<Lanes, 3> above{};  ///< per corner: D of k D, above the tangent [-]
+  Lanes squared_tension{};       ///< of the largest principal value of |F S|, per natural width [N²/m²]
   std::array<std::array<std::uint32_t, kSize>, 3> corner{};
 };
 
