@@ -36,12 +36,6 @@ void require_options(const SimulationOptions& o) {
         "simulation: mass_scaling = \"variable\" needs the integrator central_difference, step = \"auto\" and a "
         "mass_scaling_step [s], which is the longest step; take mass_scaling = \"fixed\", or set these");
   }
-  if (o.mass_scaling == MassScalingKind::variable && norm(o.gravity) > 0.0) {
-    throw std::invalid_argument(
-        "simulation: |gravity| [m/s²] = " + detail::show(norm(o.gravity)) +
-        " is outside the allowed range, 0 with mass_scaling = \"variable\": mass that comes and goes would have "
-        "weight; take mass_scaling = \"fixed\" or drag_stages for longer steps, or leave gravity out");
-  }
   if (!o.mass_scaling_step || !capabilities(o.integrator).any_step_is_stable) return;
   throw std::invalid_argument(
       "simulation: mass_scaling_step [s] = " + detail::show(*o.mass_scaling_step) +

@@ -75,7 +75,7 @@ void ElementBody::run_drag_stages(double h, const Vec3d& gravity) {
       const double m = body_.inertia(i);
       if (k > 0) viscous_[i] -= pull_[i];
       stage_sum_[i] += viscous_[i] * stages_[k];
-      const Vec3d force = elastic_[i] + viscous_[i] + pushed[i] + gravity * m - v_[i] * damping_[i];
+      const Vec3d force = elastic_[i] + viscous_[i] + pushed[i] + gravity * body_.masses[i] - v_[i] * damping_[i];
       const bool moves = m > 0.0 && rests_[i] == 0;
       stage_change_[i] = moves ? force * (stages_[k] * h / (m + damping_[i] * h)) : Vec3d{};
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -236,7 +236,7 @@ const Advance& ElementBody::advance(double h, const Vec3d& gravity, bool account
   for (std::size_t i = 0; i < u_.size(); ++i) {
     if (is_active_[i] != 0 || rests_[i] != 0) continue;
     const double m = body_.inertia(i);
-    const Vec3d before = v_[i], weight = gravity * m;
+    const Vec3d before = v_[i], weight = gravity * body_.masses[i];
     const Vec3d force = elastic_[i] + viscous_[i] + weight;
     v_[i] = m > 0.0 ? (before * m + force * h) * (1.0 / (m + damping_[i] * h)) : Vec3d{};
     if (accounted) book(i, before, weight);

@@ -49,6 +49,7 @@ void SubmeshBody::follow_layout(std::span<const double> nodal_damping) {
   state_.assign(body_.vertex_count * kStateDoubles, 0.0);
   masses_.assign(body_.vertex_count, 0.0), damping_.assign(body_.vertex_count, 0.0);
   rests_.assign(body_.vertex_count, 0), resting_.clear();
+  weighs_.clear();
   make_room_for_stages();
   holds_apart_.assign(submeshes_.parts.size(), 0);
   looked_.assign(submeshes_.parts.size(), Looked::small), found_.resize(submeshes_.parts.size());
@@ -65,7 +66,7 @@ void SubmeshBody::follow_layout(std::span<const double> nodal_damping) {
 /// Masses and damping of all vertices, and what follows from them and the tissues.
 void SubmeshBody::take_masses(std::span<const double> nodal_damping) {
   for (std::size_t v = 0; v < body_.vertex_count; ++v) {
-    masses_[submeshes_.record_of_vertex[v]] = body_.inertia(v);
+    take_mass(v);
     damping_[submeshes_.record_of_vertex[v]] = nodal_damping[v];
   }
   step_ = -1.0;  // coefficients of the records are made anew
@@ -208,6 +209,16 @@ void SubmeshBody::place_active() {
   }
 }
 
+/// A vertex's mass, of which Body::stiff_mass has no weight.
+void SubmeshBody::take_mass(std::size_t vertex) {
+  const std::uint32_t record = submeshes_.record_of_vertex[vertex];
+  const double own = body_.masses[vertex], mass = body_.inertia(vertex);
+  masses_[record] = mass;
+  if (weighs_.empty() && mass == own) return;
+  weighs_.resize(masses_.size(), 1.0);
+  weighs_[record] = mass > 0.0 ? own / mass : 1.0;
+}
+
 /// c = h/(m + γh) and d = γh/(m + γh) of a record; a vertex without mass, or at rest, does not move.
 void SubmeshBody::set_coefficients(std::size_t record) {
   const double denominator = masses_[record] + damping_[record] * step_;
@@ -222,9 +233,8 @@ void SubmeshBody::set_velocity(std::uint32_t vertex, const Vec3d& velocity) {
 
 void SubmeshBody::inertia_changed(std::span<const std::uint32_t> vertices) {
   for (const std::uint32_t v : vertices) {
-    const std::uint32_t record = submeshes_.record_of_vertex[v];
-    masses_[record] = body_.inertia(v);
-    set_coefficients(record);
+    take_mass(v);
+    set_coefficients(submeshes_.record_of_vertex[v]);
   }
 }
 

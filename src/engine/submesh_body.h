@@ -136,6 +136,7 @@ class SubmeshBody final : public MovingBody {
   std::unique_ptr<LargePlan> large_plan_of(const TissueBlock& block, const Plan& plan) const;
   void set_maxwell_step(double h);
   void set_step(double h);
+  void take_mass(std::size_t vertex);
   void set_coefficients(std::size_t record);
   void make_room();
   void find_watches();
@@ -187,6 +188,10 @@ class SubmeshBody final : public MovingBody {
   void take_active(std::span<const Watch> watches, std::size_t first_record, const float* elastic,
                    const float* viscous);
   void take_resting(std::span<const Watch> watches, const float* elastic, const float* viscous);
+  /// That of a run of records.
+  Kick kick_from(const Kick& kick, std::size_t record) const {
+    return {kick.step, kick.gravity, weighs_.empty() ? nullptr : weighs_.data() + record};
+  }
   void integrate(std::size_t first_record, std::size_t n, std::span<const Watch> watches, float* elastic,
                  float* viscous, const Step& step, VertexWork& work);
   void run_interface(std::size_t chunk, const Step& step, Scratch& scratch);
@@ -210,6 +215,7 @@ class SubmeshBody final : public MovingBody {
   std::vector<double> masses_, damping_;  ///< per record [kg], [kg/s]
   bool any_split_ = false;                ///< whether some submesh keeps viscous forces apart in this step
   double step_ = -1.0;                    ///< for which the records' coefficients hold
+  std::vector<double> weighs_;            ///< per record: share of its mass that has weight; empty: all of all
   std::uint64_t steps_ = 0;
 
   LaneVector<float> slots_elastic_, slots_viscous_;  ///< force records

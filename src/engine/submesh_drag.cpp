@@ -69,7 +69,7 @@ void SubmeshBody::run_stage(std::size_t first, std::size_t n, std::span<const Wa
   const std::size_t at = kForceFloats * first;
   double* changes = stage + 1 < stages_.size() ? stage_changes_.data() + 4 * first : nullptr;
   const double* state = state_.data() + first * kStateDoubles;
-  const DragStage here{.kick = step.kick,
+  const DragStage here{.kick = kick_from(step.kick, first),
                        .tau = stages_[stage],
                        .first = stage == 0,
                        .elastic = stage_elastic_.data() + at,

@@ -196,10 +196,11 @@ void SubmeshBody::integrate(std::size_t first_record, std::size_t n, std::span<c
   const auto run_to = [&](std::size_t end) {
     double* state = state_.data() + (first_record + from) * kStateDoubles;
     const float* f = elastic + from * kForceFloats;
+    const Kick kick = kick_from(step.kick, first_record + from);
     if (step.accounted) {
-      kernels_.integrate_accounted(state, f, viscous + from * kForceFloats, end - from, step.kick, work);
+      kernels_.integrate_accounted(state, f, viscous + from * kForceFloats, end - from, kick, work);
     } else {
-      kernels_.integrate(state, f, end - from, step.kick);
+      kernels_.integrate(state, f, end - from, kick);
     }
   };
   for (const Watch& watch : watches) {

@@ -57,7 +57,6 @@ struct RandomScene {
     touched = (options.integrator == Integrator::central_difference || lagged) && random() % 2 == 0 && !wild;
     if (touched) options.drag_stages = std::min(options.drag_stages, kMostDragStagesBesideOthers);
     heavy = options.integrator == Integrator::central_difference && seed % 5 == 0;
-    if (heavy) options.gravity = {};  // it is refused
   }
   double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
 

@@ -53,7 +53,14 @@ void ActiveKick::begin(double h) {
 Vec3d ActiveKick::keep(std::size_t k, const ActiveVertex& w, std::span<const Vec3d> loads) {
   const double m = state_.body.inertia(w.vertex);
   const Vec3d load = m > 0.0 ? loads[w.vertex] : Vec3d{};
-  kicked_[k] = {m, state_.gamma[w.vertex], w.velocity, load, {}, state_.loads.dashpot(w.vertex), {}};
+  kicked_[k] = {m,
+                state_.gamma[w.vertex],
+                gravity_ * state_.body.masses[w.vertex],
+                w.velocity,
+                load,
+                {},
+                state_.loads.dashpot(w.vertex),
+                {}};
   if (m > 0.0) kicked_[k].mobility = inverse_inertia(kicked_[k], step_);
   return load;
 }
@@ -72,7 +79,7 @@ void ActiveKick::kick(std::span<ActiveVertex> active) {
     ActiveVertex& w = active[k];
     const Vec3d load = keep(k, w, of_loads);
     const double m = kicked_[k].mass;
-    const Vec3d force = w.elastic + w.viscous + gravity_ * m + load;
+    const Vec3d force = w.elastic + w.viscous + kicked_[k].weight + load;
     w.velocity = m > 0.0 ? component_product(w.velocity * m + force * step_, kicked_[k].mobility) : Vec3d{};
   }
 }
@@ -130,8 +137,8 @@ void ActiveKick::push(std::span<const Vec3d> impulses) {
 ForceParts ActiveKick::force_at(const ActiveVertex& w, std::size_t place, const Axes& axes) const {
   const Kicked& k = kicked_[place];
   const Vec3d inertial = step_ > 0.0 ? (w.velocity - k.velocity_before) * (k.mass / step_) : Vec3d{};
-  return {masked(-w.elastic, axes), masked(-w.viscous, axes),         masked(k.drag(w.velocity), axes),
-          masked(inertial, axes),   masked(gravity_ * -k.mass, axes), masked(-k.load - k.contact, axes)};
+  return {masked(-w.elastic, axes), masked(-w.viscous, axes),      masked(k.drag(w.velocity), axes),
+          masked(inertial, axes),   masked(k.weight * -1.0, axes), masked(-k.load - k.contact, axes)};
 }
 
 ForceParts ActiveKick::force(std::span<const ActiveVertex> active, std::size_t constraint) const {
@@ -181,7 +188,7 @@ KickWork ActiveKick::work(std::span<const ActiveVertex> active) const {
                        .viscous = dot(w.viscous, v),
                        .damping = -at.damping * dot(w.velocity, v) - dot(component_product(w.velocity, at.dashpot), v),
                        .tools = dot(at.contact, v),
-                       .loads = dot(gravity_ * at.mass + at.load, v)};
+                       .loads = dot(at.weight + at.load, v)};
     };
     add(work.before, power(at.velocity_before));
     add(work.after, power(w.velocity));

@@ -18,10 +18,11 @@ class ActiveKick {
   /// What an active vertex had at the last kick; all 0 for one that was not active then.
   struct Kicked {
     double mass = 0.0, damping = 0.0;
+    Vec3d weight{};
     Vec3d velocity_before, load, contact;  ///< contact: force of the interactions
     Vec3d dashpot{};                       ///< to the ground, along x, y, z [kg/s]
     Vec3d mobility{};                      ///< 1/(m + γ h), 0 without mass [1/kg]
-    void archive(Archive& ar) { ar(mass, damping, velocity_before, load, contact, dashpot); }
+    void archive(Archive& ar) { ar(mass, damping, weight, velocity_before, load, contact, dashpot); }
     /// All that drags it [N].
     Vec3d drag(const Vec3d& v) const { return v * damping + component_product(dashpot, v); }
   };

@@ -90,7 +90,7 @@ void SemiImplicitScheme::kick(double h) {
     ActiveVertex& w = active[i];
     const Vec3d load = kick_.keep(i, w, loads);
     const ActiveKick::Kicked& at = kick_.all()[i];
-    impulse_[i] = (w.elastic + w.viscous + kick_.gravity() * at.mass + load - at.drag(w.velocity)) * h;
+    impulse_[i] = (w.elastic + w.viscous + at.weight + load - at.drag(w.velocity)) * h;
   }
   kick_.impose_motions(active);
   for (std::size_t i = 0; i < active.size(); ++i) {  // held components of the change are known now, others 0

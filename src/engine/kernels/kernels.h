@@ -89,6 +89,7 @@ struct VertexWork {
 struct Kick {
   double step = 0;                              ///< h [s]
   alignas(32) std::array<double, 4> gravity{};  ///< [m/s²], w = 0
+  const double* weighs = nullptr;               ///< per vertex: share of its mass that has weight; null: all of it
 };
 
 /// Force records of a run of vertices in a stage of drag.
@@ -179,7 +180,7 @@ struct Kernels {
   /// Forces on `n` interface vertices: out[v] = Σ slots[which[i]], i from begin[v] to begin[v + 1], in this order.
   void (*sum_slots)(const float* slots, const std::uint32_t* begin, const std::uint32_t* which, std::size_t n,
                     float* out) = nullptr;
-  /// Kick and drift of `n` vertices: v₊ = v₋ + c f − d v₋ + h (1 − d) g, u₊ = u + h v₊  [Schwartz2002, eq. 4].
+  /// Kick and drift of `n` vertices: v₊ = v₋ + c f − d v₋ + h (1 − d) w g, u₊ = u + h v₊  [Schwartz2002, eq. 4], w the share that weighs.
   void (*integrate)(double* state, const float* force, std::size_t n, const Kick&) = nullptr;
   /// The same with elastic and viscous forces apart; the work is added to `work`.
   void (*integrate_accounted)(double* state, const float* elastic, const float* viscous, std::size_t n, const Kick&,

@@ -106,6 +106,12 @@ HWY_INLINE D4 xyz_bits(std::size_t k) {
   return hn::VecFromMask(d, hn::FirstN(d, k < 3 ? 3 - k : 0));
 }
 
+/// h w g of a vertex, from h g.
+template <class V, class D>
+HWY_INLINE V fall_of(D d, V fall, const double* weighs, std::size_t vertex) {
+  return weighs == nullptr ? fall : hn::Mul(fall, hn::Set(d, weighs[vertex]));
+}
+
 inline void drag(const double* state, const DragStage& stage, std::size_t n, const float* force, double* delta) {
   const Doubles d;
   const Narrow narrow;
@@ -121,7 +127,8 @@ inline void drag(const double* state, const DragStage& stage, std::size_t n, con
       const auto part = hn::Mul(share, viscous);
       hn::Store(stage.first ? part : hn::Add(part, hn::Load(narrow, stage.sum + at)), narrow, stage.sum + at);
       if (delta == nullptr) continue;
-      const D4 fall = hn::Mul(hn::Set(d, stage.kick.step), hn::Load(d, stage.kick.gravity.data() + k));
+      const D4 fall = fall_of(d, hn::Mul(hn::Set(d, stage.kick.step), hn::Load(d, stage.kick.gravity.data() + k)),
+                              stage.kick.weighs, i);
       const D4 all = hn::PromoteTo(d, hn::Add(viscous, hn::Load(narrow, stage.elastic + at)));
       const D4 still = hn::NegMulAdd(hn::Set(d, state[7]), hn::Add(hn::Load(d, state + 4 + k), fall), fall);
       const D4 change = hn::MulAdd(hn::Set(d, state[3]), all, still);
@@ -159,14 +166,16 @@ struct WorkLanes {
   }
 };
 
-/// v₊ = v₋ + c f − d v₋ + h (1 − d) g, u₊ = u + h v₊, one vertex  [Schwartz2002, eq. 4].
+/// v₊ = v₋ + c f − d v₋ + h (1 − d) w g, u₊ = u + h v₊, one vertex  [Schwartz2002, eq. 4].
 template <bool kAccounted>
-HWY_INLINE void advance(double* state, const float* elastic, const float* viscous, const Kick& kick, WorkLanes& work) {
+HWY_INLINE void advance(double* state, const float* elastic, const float* viscous, const Kick& kick, std::size_t vertex,
+                        WorkLanes& work) {
   const Doubles d;
   const double c = state[3], damping = state[7];
   for (std::size_t k = 0; k < 4; k += kDoubles) {
     const D4 xyz = xyz_bits(k), h = hn::And(xyz, hn::Set(d, kick.step));
-    const D4 before = hn::Load(d, state + 4 + k), u = hn::Load(d, state + k), g = hn::Load(d, kick.gravity.data() + k);
+    const D4 before = hn::Load(d, state + 4 + k), u = hn::Load(d, state + k);
+    const D4 g = fall_of(d, hn::Load(d, kick.gravity.data() + k), kick.weighs, vertex);
     const D4 fall = hn::Mul(hn::Set(d, kick.step), g);
     const D4 fe = hn::PromoteTo(d, hn::Load(Narrow(), elastic + k));
     D4 force = fe;
@@ -198,7 +207,8 @@ inline void integrate(double* state, const float* force, std::size_t n, const Ki
   for (std::size_t i = 0; i < n; ++i, state += kStateDoubles, force += kForceFloats) {
     const auto record = hn::Load(d, state), before = hn::ConcatUpperUpper(d, record, record);
     const auto f = hn::PromoteTo(d, hn::LoadDup128(NarrowRecord(), force));
-    const auto drag = hn::NegMulAdd(hn::Set(d, state[7]), hn::Add(before, fall), fall);
+    const auto falls = fall_of(d, fall, kick.weighs, i);
+    const auto drag = hn::NegMulAdd(hn::Set(d, state[7]), hn::Add(before, falls), falls);
     const auto change = hn::MulAdd(hn::Set(d, state[3]), f, drag);
     const auto after = hn::Add(before, hn::And(xyz, change));
     hn::Store(hn::MulAdd(drift, after, hn::And(lower, record)), d, state);
@@ -210,7 +220,7 @@ inline void integrate(double* state, const float* force, std::size_t n, const Ki
 inline void integrate(double* state, const float* force, std::size_t n, const Kick& kick) {
   WorkLanes none;
   for (std::size_t i = 0; i < n; ++i) {
-    advance<false>(state + i * kStateDoubles, force + i * kForceFloats, nullptr, kick, none);
+    advance<false>(state + i * kStateDoubles, force + i * kForceFloats, nullptr, kick, i, none);
   }
 }
 
@@ -220,7 +230,7 @@ inline void integrate_accounted(double* state, const float* elastic, const float
                                 const Kick& kick, VertexWork& work) {
   WorkLanes sums;
   for (std::size_t i = 0; i < n; ++i) {
-    advance<true>(state + i * kStateDoubles, elastic + i * kForceFloats, viscous + i * kForceFloats, kick, sums);
+    advance<true>(state + i * kStateDoubles, elastic + i * kForceFloats, viscous + i * kForceFloats, kick, i, sums);
   }
   sums.add_to(work);
 }

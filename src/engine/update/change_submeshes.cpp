@@ -32,6 +32,7 @@ void SubmeshBody::add_records(std::span<const std::uint32_t> origins) {
                 state_.data() + record * kStateDoubles);
     submeshes_.record_of_vertex.push_back(record);
     masses_.push_back(0.0);
+    if (!weighs_.empty()) weighs_.push_back(1.0);
     damping_.push_back(0.0);
     rests_.push_back(0);
   }
@@ -87,7 +88,7 @@ void SubmeshBody::apply(const BodyChange& change, const detail::VertexStars& sta
   add_records(change.origins);
   for (const std::uint32_t v : change.touched) {
     const std::uint32_t record = submeshes_.record_of_vertex[v];
-    masses_[record] = body_.inertia(v);
+    take_mass(v);
     damping_[record] = nodal_damping[v];
     set_coefficients(record);
   }
