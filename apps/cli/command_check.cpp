@@ -323,7 +323,7 @@ void print_limits(const Variant& v, const MeshLoader& load, const Taste& taste) 
 /// Whether the viscous force can be taken in stages: some tissue has one, none at large strain.
 bool can_drag_in_stages(const Variant& v) {
   const auto drags_at_large_strain = [](const Tissue& t) { return t.viscosity > 0.0 && !t.has_small_strain(); };
-  return v.simulation.integrator == Integrator::central_difference && v.simulation.drag_stages == 1 && is_viscous(v) &&
+  return capabilities(v.simulation.integrator).supports_drag_stages && v.simulation.drag_stages == 1 && is_viscous(v) &&
          !any_tissue(v, drags_at_large_strain);
 }
 

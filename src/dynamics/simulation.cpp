@@ -23,20 +23,20 @@ namespace {
 
 void require_options(const SimulationOptions& o) {
   detail::require_fields("simulation", o);
-  if (o.drag_stages > 1 && o.integrator != Integrator::central_difference) {
+  const Capabilities can = capabilities(o.integrator);
+  if (o.drag_stages > 1 && !can.supports_drag_stages) {
     throw std::invalid_argument(
         "simulation: drag_stages = " + std::to_string(o.drag_stages) +
         " is outside the allowed range, 1 with "
         "every integrator but central_difference: semi_implicit and implicit take the viscous force at the "
         "end of the step");
   }
-  if (o.mass_scaling == MassScalingKind::variable &&
-      (o.integrator != Integrator::central_difference || o.step || !o.mass_scaling_step)) {
+  if (o.mass_scaling == MassScalingKind::variable && (!can.supports_variable_mass || o.step || !o.mass_scaling_step)) {
     throw std::invalid_argument(
         "simulation: mass_scaling = \"variable\" needs the integrator central_difference, step = \"auto\" and a "
         "mass_scaling_step [s], which is the longest step; take mass_scaling = \"fixed\", or set these");
   }
-  if (!o.mass_scaling_step || !capabilities(o.integrator).any_step_is_stable) return;
+  if (!o.mass_scaling_step || !can.any_step_is_stable) return;
   throw std::invalid_argument(
       "simulation: mass_scaling_step [s] = " + detail::show(*o.mass_scaling_step) +
       " is outside the allowed range, none with the integrators implicit and quasi_static, which need "

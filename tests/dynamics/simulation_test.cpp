@@ -44,6 +44,34 @@ TEST(Simulation, RefusesBadOptions) {
   expect_refusal(with([](auto& o) { o.gravity = {0.0, NAN, 0.0}; }), "gravity.y [m/s²] = nan");
 }
 
+// An integrator refuses the options that its capabilities lack, and takes those that they have; central_difference has most.
+TEST(Simulation, IntegratorsTakeWhatTheyAreCapableOf) {
+  const auto takes = [](const SimulationOptions& o) {
+    Tissue tissue;
+    tissue.viscosity = 1.0;
+    try {
+      const Simulation s(small_box(), {{0, tissue}}, o);
+      return true;
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+  };
+  for (const Word<Integrator>& w : kWords<Integrator>) {
+    SCOPED_TRACE(w.word);
+    const Capabilities can = capabilities(w.value);
+    SimulationOptions staged{.integrator = w.value}, fixed = staged;
+    staged.drag_stages = 2;
+    fixed.mass_scaling_step = 1e-6;
+    SimulationOptions variable = fixed;
+    variable.mass_scaling = MassScalingKind::variable;
+    EXPECT_EQ(takes(staged), can.supports_drag_stages);
+    EXPECT_EQ(takes(fixed), !can.any_step_is_stable);
+    EXPECT_EQ(takes(variable), can.supports_variable_mass);
+    EXPECT_EQ(can.supports_drag_stages, w.value == Integrator::central_difference);
+    EXPECT_EQ(can.supports_variable_mass, w.value == Integrator::central_difference);
+  }
+}
+
 // Sets that overlap, are empty or leave the mesh are refused, and a refused set leaves nothing held.
 TEST(Simulation, RefusesBadSets) {
   Simulation simulation = small_simulation();

@@ -34,7 +34,10 @@ struct Capabilities {
   bool supports_contact = false;
   bool any_step_is_stable = false;     ///< it has no h*, needs no mass scaling and does not ring
   bool viscosity_limits_step = false;  ///< h* falls with viscosity
-  bool forces_at_step_end = false;     ///< Simulation::force_time() is the end of a step, not its start
+  bool supports_drag_stages = false;   ///< SimulationOptions::drag_stages above 1
+  /// MassScalingKind::variable: mass that comes and goes with an automatic step.
+  bool supports_variable_mass = false;
+  bool forces_at_step_end = false;  ///< Simulation::force_time() is the end of a step, not its start
 
   /// Whether interactions may act on such tissue.
   constexpr bool supports(bool viscous_tissue) const {

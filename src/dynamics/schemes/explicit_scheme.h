@@ -30,7 +30,10 @@ namespace glisson {
 class ExplicitScheme : public Scheme {
  public:
   static constexpr IntegratorInfo kInfo{Integrator::central_difference,
-                                        {.supports_interactions = true, .viscosity_limits_step = true}};
+                                        {.supports_interactions = true,
+                                         .viscosity_limits_step = true,
+                                         .supports_drag_stages = true,
+                                         .supports_variable_mass = true}};
 
   /// @throws std::invalid_argument as Simulation's constructor
   ExplicitScheme(Body body, const SimulationOptions& options)
