@@ -49,7 +49,7 @@ struct Body {
   std::vector<double> masses;         ///< lumped: a quarter of ρV to each vertex [kg]
   std::vector<Vec3d> rest_positions;  ///< [m]
   std::vector<double> mass_factor;    ///< of each element, ≥ 1: mass that was added; empty: none
-  std::vector<double> stiff_mass;     ///< per vertex, for as long as tets around it are stiff [kg]; empty: none
+  std::vector<double> stiff_mass;     ///< per vertex, while tets around it do not bear the step [kg]; empty: none
   std::vector<Vec3d> fibres;          ///< of each tet of the mesh, any length; empty: those of the tissues
 
   const TissueBlock& block_of(std::size_t element) const;

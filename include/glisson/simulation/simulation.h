@@ -98,7 +98,7 @@ template <>
 inline constexpr Word<MassScalingKind> kWords<MassScalingKind>[] = {
     {"fixed", MassScalingKind::fixed, "at rest, for good, to tets with a short element step bound"},
     {"variable", MassScalingKind::variable,
-     "the same, and at vertices of tets that have stiffened, until they soften"}};
+     "the same, and at vertices of tets that do not bear the step, while the tissue moves evenly"}};
 
 /// Most stages of the viscous force in a step: more would let rounding grow.
 inline constexpr int kMostDragStages = 8;
@@ -313,7 +313,7 @@ struct MassScaling {
   double added = 0.0;               ///< for good [kg]
   double share = 0.0;               ///< of the body's own mass [-]
   std::vector<std::uint32_t> tets;  ///< with mass added for good, ascending
-  double present = 0.0;             ///< variable: in addition, for tets that are stiff at present [kg]
+  double present = 0.0;             ///< variable: in addition, for tets that do not bear the step now [kg]
   double largest = 0.0;             ///< the most that this has been [kg]
 };
 
