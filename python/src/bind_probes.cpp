@@ -59,10 +59,10 @@ nb::object probes_of(nb::handle simulation) {
 }
 
 void bind_probes(nb::module_& m) {
-  Options<ProbePoint>(m, "ProbePoint").field("position", &ProbePoint::position);
-  Options<ProbeSet>(m, "ProbeSet").field("set", &ProbeSet::set);
-  Options<ProbeRegion>(m, "ProbeRegion").field("region", &ProbeRegion::region);
-  Options<ProbePlane>(m, "ProbePlane").field("point", &ProbePlane::point).field("normal", &ProbePlane::normal);
+  Options<ProbePoint>(m, "ProbePoint");
+  Options<ProbeSet>(m, "ProbeSet");
+  Options<ProbeRegion>(m, "ProbeRegion");
+  Options<ProbePlane>(m, "ProbePlane");
   nb::class_<OwnProbes>(m, "Probes", doc("Probes"))
       .def(nb::init<LiveSimulation&, const nb::dict&>(), "simulation"_a, "places"_a, nb::keep_alive<1, 2>(),
            "Places by name: {\"tip\": ProbePoint(position=[0.02, 0.02, 0.05])}.\n:raises ValueError: for a place that "

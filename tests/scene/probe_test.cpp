@@ -442,6 +442,7 @@ TEST(Probes, RefuseWhatTheBodyDoesNotHave) {
   EXPECT_THAT(refusal(ProbeRegion{"vessel"}), AllOf(HasSubstr("vessel"), HasSubstr("it has 0")));
   EXPECT_THAT(refusal(ProbePlane{{0.0, 0.0, 0.04}}), AllOf(HasSubstr("does not cut"), HasSubstr("-0.04 to -0.01 m")));
   EXPECT_THAT(refusal(ProbePlane{{0.0, 0.0, 0.01}, {0.0, 0.0, 0.0}}), HasSubstr("normal"));
+  EXPECT_THAT(refusal(ProbePoint{{0.01, NAN, 0.03}}), HasSubstr("probe \"here\": position.y [m] = nan"));
   EXPECT_EQ(refusal(ProbePoint{{0.01, 0.02, 0.03}}), "") << "on the surface";
 }
 

@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "glisson/field.h"
 #include "glisson/math.h"
 #include "glisson/simulation/simulation.h"
 
@@ -23,6 +24,13 @@ namespace glisson {
 /// A point of the material: displacement, velocity, and stress and strain of the tet around it.
 struct ProbePoint {
   Vec3d position{};  ///< at rest [m]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(
+        field("position", &ProbePoint::position, "m", "a point of the material: displacement, velocity, stress, strain")
+            .keyed("point_m"));
+  }
 };
 /// A vertex set: mean displacement and velocity, and the resultant of the stress on it,
 ///   F = Σ_a Σ_e V P s_a  over the vertices a of the set,
@@ -30,10 +38,21 @@ struct ProbePoint {
 /// that the set spans, by their areas; of a set without such faces, over its vertices by the volumes around them.
 struct ProbeSet {
   std::string set;
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("set", &ProbeSet::set, "a vertex set: mean displacement and velocity, resultant of the stress"));
+  }
 };
 /// A region: means over the volume at rest, and the present volume.
 struct ProbeRegion {
   std::string region;  ///< name or number; 0 is the whole body where the mesh has no regions
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("region", &ProbeRegion::region,
+                      "a region by name or number, `\"0\"` for a body without regions: means over it, volume"));
+  }
 };
 /// A section through the whole body: force and moment that the part in front of it, to which the normal points, exerts
 /// on the part behind it, in tension along the normal.
@@ -47,11 +66,27 @@ struct ProbeRegion {
 struct ProbePlane {
   Vec3d point{};                ///< at rest [m]; moments are about it, fixed in space
   Vec3d normal{0.0, 0.0, 1.0};  ///< of any length but 0
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(
+        field("point", &ProbePlane::point, "m", "a point of it; moments are about this point, fixed in space")
+            .keyed("point")
+            .must(),
+        field("normal", &ProbePlane::normal, "from the part behind to the part in front, of any length").direction());
+  }
 };
 
 struct ProbeOptions {
   std::string name = "probe";
   std::variant<ProbePoint, ProbeSet, ProbeRegion, ProbePlane> where;
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("name", &ProbeOptions::name,
+                      "name, with which its columns begin; no two probes of an experiment share one"),
+                no_key("where", &ProbeOptions::where));
+  }
 };
 
 class ProbeReader;

@@ -102,11 +102,6 @@ class PlaneReader : public ProbeReader {
 }  // namespace
 
 std::unique_ptr<ProbeReader> make_reader(const Simulation& simulation, const ProbePlane& plane) {
-  if (!(norm(plane.normal) > 0.0)) {
-    throw std::invalid_argument(
-        "the normal of the plane is [0, 0, 0], which has no direction; [0, 0, 1] is a section "
-        "across z");
-  }
   auto reader = std::make_unique<PlaneReader>(plane);
   reader->follow(simulation);
   if (!reader->tets().empty()) return reader;

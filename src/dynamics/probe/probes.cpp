@@ -2,6 +2,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/require_fields.h"
 #include "dynamics/probe/probe_reader.h"
 #include "glisson/simulation/probe.h"
 
@@ -15,10 +16,12 @@ Probes& Probes::operator=(Probes&&) noexcept = default;
 Probes::Probes(const Simulation& simulation, std::vector<ProbeOptions> options)
     : options_(std::move(options)), changes_(changes_of(simulation)) {
   for (const ProbeOptions& o : options_) {
+    const std::string label = "probe \"" + o.name + "\"";
+    std::visit([&](const auto& where) { detail::require_fields(label, where); }, o.where);
     try {
       readers_.push_back(std::visit([&](const auto& where) { return make_reader(simulation, where); }, o.where));
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("probe \"" + o.name + "\": " + error.what());
+      throw std::invalid_argument(label + ": " + error.what());
     }
     for (const std::string& column : readers_.back()->columns()) columns_.push_back(o.name + "_" + column);
   }

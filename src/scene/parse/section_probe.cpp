@@ -12,17 +12,10 @@ Where& where_as(ProbeSpec& probe) {
   return probe.options.where.emplace<Where>();
 }
 
-SectionSpec plane_section() {
-  Section<ProbePlane> s("plane_m", "A section through the whole body at rest.");
-  s.key("point", &ProbePlane::point, "a point of it; moments are about this point, fixed in space").in("m").must();
-  s.key("normal", &ProbePlane::normal, "from the part behind to the part in front, of any length").direction();
-  return s.spec();
-}
-
 }  // namespace
 
 const SectionSpec& probe_plane_section() {
-  static const SectionSpec section = plane_section();
+  static const SectionSpec section = described<ProbePlane>("plane_m", "A section through the whole body at rest.");
   return section;
 }
 
@@ -31,22 +24,11 @@ const SectionSpec& probe_section() {
     Section<ProbeSpec> s("probe",
                          "Reads a place of the body with every sample, into probes.csv and curves of the report; the "
                          "columns are in output.md. The place is given at rest and follows the material.");
-    s.key(
-        "name", [](ProbeSpec & x) -> auto& { return x.options.name; },
-        "name, with which its columns begin; no two probes of an experiment share one");
-    s.key(
-         "point_m", [](ProbeSpec& x) -> Vec3d& { return where_as<ProbePoint>(x).position; },
-         "a point of the material: displacement, velocity, stress, strain")
-        .in("m")
-        .otherwise("");
-    s.key(
-         "set", [](ProbeSpec& x) -> std::string& { return where_as<ProbeSet>(x).set; },
-         "a vertex set: mean displacement and velocity, resultant of the stress")
-        .otherwise("");
-    s.key(
-         "region", [](ProbeSpec& x) -> std::string& { return where_as<ProbeRegion>(x).region; },
-         "a region by name or number, `\"0\"` for a body without regions: means over it, volume")
-        .otherwise("");
+    s.fields([](ProbeSpec & x) -> auto& { return x.options; });
+    s.fields([](ProbeSpec & x) -> auto& { return where_as<ProbePoint>(x); });
+    s.at("point_m").otherwise("");
+    s.fields([](ProbeSpec & x) -> auto& { return where_as<ProbeSet>(x); });
+    s.fields([](ProbeSpec & x) -> auto& { return where_as<ProbeRegion>(x); });
     s.table(
         "plane_m", probe_plane_section(), [](ProbeSpec & x) -> auto& { return where_as<ProbePlane>(x); },
         "a section: force, moment and mean traction that the part in front exerts on the part behind");
