@@ -280,6 +280,14 @@ struct ImplicitBody {
   std::uint64_t max_tets = 5000000;  ///< more are refused
   std::vector<MeshSize> sizes{};     ///< where edges are shorter
   double growth = kGrowth;           ///< edge over distance at which edges grow away from these [-]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using B = ImplicitBody;
+    return take(field("shapes", &B::shapes, "the shapes").keyed("shape"),
+                field("regions", &B::regions, "the regions, by precedence").keyed("region"), edge_field<B>(),
+                max_tets_field<B>(), sizes_field<B>(), growth_field<B>());
+  }
 };
 
 /// What is wrong with the names in a body, and in which shape, region or size; nothing where `what` is empty.

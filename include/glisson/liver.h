@@ -23,17 +23,14 @@ struct LiverOptions {
   template <class Take>
   static constexpr auto fields(Take take) {
     using L = LiverOptions;
-    return take(
-        field("edge", &L::edge, "mm", above(0), "mean length of the tets' edges")
-            .advise("15 gives some 5000 tets, 8 some 31 000, 2 some 1.9 million"),
-        field("scale", &L::scale, "-", between(0.2, 3), "factor on all lengths"),
-        field("vessels", &L::vessels, "portal and hepatic veins as regions of their own"),
-        field("gallbladder", &L::gallbladder, "the gallbladder in its bed, as a region `gallbladder`"),
-        field("tumour_center", &L::tumour_center, "mm", "centre of the tumour, before scaling"),
-        field("tumour_radius", &L::tumour_radius, "mm", at_least(0), "its radius, before scaling; 0: none"),
-        field("max_tets", &L::max_tets, between(1, 1e9), "a finer mesh is refused"),
-        field("sizes", &L::sizes, "where edges are shorter, in the scene's coordinates").keyed("size"),
-        field("growth", &L::growth, "-", kGrowthRange, "edge over distance at which edges grow away from these"));
+    return take(edge_field<L>().advise("15 gives some 5000 tets, 8 some 31 000, 2 some 1.9 million"),
+                field("scale", &L::scale, "-", between(0.2, 3), "factor on all lengths"),
+                field("vessels", &L::vessels, "portal and hepatic veins as regions of their own"),
+                field("gallbladder", &L::gallbladder, "the gallbladder in its bed, as a region `gallbladder`"),
+                field("tumour_center", &L::tumour_center, "mm", "centre of the tumour, before scaling"),
+                field("tumour_radius", &L::tumour_radius, "mm", at_least(0), "its radius, before scaling; 0: none"),
+                max_tets_field<L>(), sizes_field<L>("where edges are shorter, in the scene's coordinates"),
+                growth_field<L>());
   }
   Fault check() const;
 };

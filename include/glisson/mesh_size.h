@@ -70,4 +70,23 @@ SizeFault check_sizes(const std::vector<MeshSize>& sizes, double mesh_edge, cons
 inline constexpr double kGrowth = 0.3;
 inline constexpr Range kGrowthRange = between(0.05, 1.0);
 
+// The fields that say how fine a mesh of regions is, for each struct that has them.
+
+template <class S>
+constexpr auto edge_field() {
+  return field("edge", &S::edge, "mm", above(0), "mean length of the tets' edges");
+}
+template <class S>
+constexpr auto max_tets_field() {
+  return field("max_tets", &S::max_tets, between(1, 1e9), "a finer mesh is refused");
+}
+template <class S>
+constexpr auto sizes_field(std::string_view help = "where edges are shorter") {
+  return field("sizes", &S::sizes, help).keyed("size");
+}
+template <class S>
+constexpr auto growth_field() {
+  return field("growth", &S::growth, "-", kGrowthRange, "edge over distance at which edges grow away from these");
+}
+
 }  // namespace glisson

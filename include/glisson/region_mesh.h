@@ -34,7 +34,7 @@ struct BodyRegion {
 
 struct RegionMeshOptions {
   double edge = 0.005;              ///< mean length of the edges [m], > 0
-  std::size_t max_tets = 20000000;  ///< more are refused before any memory is taken
+  std::size_t max_tets = 20000000;  ///< more are refused before any memory is taken, 1 to 10⁹
   /// Called now and then with the part that is done, 0 to 1; false stops the work. Empty: nothing is called.
   std::function<bool(double)> progress{};
   std::vector<MeshSize> sizes{};  ///< where edges are shorter; the shortest of them counts
@@ -42,6 +42,13 @@ struct RegionMeshOptions {
   /// Edge asked for at a point [m]; the shortest of it, `sizes` and `edge` counts. Finite, and a 256th of `edge` or more; asked for in the
   /// box of the body and up to two edges beyond. Called from one thread. Empty: `edge` and `sizes` alone.
   std::function<double(const Vec3d&)> size_at{};
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using R = RegionMeshOptions;
+    return take(edge_field<R>(), max_tets_field<R>(), no_key("progress", &R::progress), sizes_field<R>(),
+                growth_field<R>(), no_key("size_at", &R::size_at));
+  }
 };
 
 /// Result for a region.

@@ -267,6 +267,7 @@ TEST(GradedMesh, RefusesSizesThatCannotBe) {
               AllOf(HasSubstr("within"), HasSubstr("≥ 0")));
   EXPECT_THAT(graded_refusal({.edge = 0.01, .sizes = {{.edge = 0.002, .near = "ball"}}, .growth = 3}),
               AllOf(HasSubstr("growth = 3"), HasSubstr("0.05 to 1")));
+  EXPECT_THAT(graded_refusal({.edge = 0.01, .max_tets = 0}), HasSubstr("max_tets = 0"));
   EXPECT_THAT(graded_refusal({.edge = 0.01, .max_tets = 10000, .sizes = {{.edge = 0.001, .near = "ball"}}}),
               AllOf(HasSubstr("more than 10000 tets"), HasSubstr("longer edges")));
 }

@@ -42,11 +42,6 @@ void require_regions(const std::vector<BodyRegion>& regions) {
   }
 }
 
-void require_edge(double edge) {
-  if (edge > 0.0 && std::isfinite(edge)) return;
-  throw std::invalid_argument("edge [m] = " + detail::show(edge) + " is outside the allowed range, > 0 and finite");
-}
-
 /// Tets and the vertices they use, numbered anew in their order.
 TetMesh compact(const TetComplex& c, const std::vector<BodyRegion>& regions) {
   TetMesh mesh;
@@ -136,7 +131,6 @@ void require_tets_in_each(const RegionFields& fields, const RegionMeshReport& re
 
 std::vector<double> edges_asked(const TetMesh& mesh, const std::vector<BodyRegion>& regions,
                                 const RegionMeshOptions& options) {
-  require_edge(options.edge);
   const SizeField sizes(regions, options);
   std::vector<double> edges;
   edges.reserve(mesh.tets.size());
@@ -157,7 +151,6 @@ RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMesh
     return true;
   };
   require_regions(regions);
-  require_edge(options.edge);
   SizeField sizes(regions, options);
   const RegionFields fields(regions, sizes, [&] { go_on(done); });
   sizes.find_finest(fields, options.max_tets);

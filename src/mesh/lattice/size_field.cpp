@@ -68,14 +68,10 @@ const BodyRegion& region_called(const std::string& name, const std::vector<BodyR
 
 SizeField::SizeField(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options)
     : edge_(options.edge), finest_(options.edge), growth_(options.growth), free_(options.size_at) {
-  if (!kGrowthRange.contains(growth_)) {
-    throw std::invalid_argument("growth = " + detail::show(growth_) + " is outside the allowed range, " +
-                                kGrowthRange.text());
-  }
+  detail::require_fields("mesh", options);
   const std::vector<MeshSize>& sizes = options.sizes;
   std::vector<std::string> names;
   for (const BodyRegion& r : regions) names.push_back(r.name);
-  for (std::size_t i = 0; i < sizes.size(); ++i) detail::require_fields("size " + std::to_string(i), sizes[i]);
   if (const SizeFault fault = check_sizes(sizes, edge_, names); !fault.what.empty()) {
     throw std::invalid_argument("size " + std::to_string(fault.index) + ": " + fault.key + " " + fault.what);
   }

@@ -99,14 +99,7 @@ SectionSpec implicit_body_kind() {
       "implicit",
       "A body of shapes with one or more regions, meshed conformingly: regions meet in common faces, "
       "and all dihedral angles lie between 10° and 165° (docs/implicit.md).");
-  s.key<Milli>("edge_mm", &ImplicitBody::edge, "mean length of the tets' edges").in("mm").within(above(0));
-  s.key("max_tets", &ImplicitBody::max_tets, "a finer mesh is refused").within(between(1, 1e9));
-  s.tables("shape", shape_section(), &ImplicitBody::shapes, "the shapes");
-  s.tables("region", shape_region_section(), &ImplicitBody::regions, "the regions, by precedence");
-  s.tables("size", mesh_size_section(), &ImplicitBody::sizes, "where edges are shorter");
-  s.key("growth", &ImplicitBody::growth, "edge over distance at which edges grow away from these")
-      .in("-")
-      .within(kGrowthRange);
+  s.fields();
   s.finish(complain_of_names);
   return s.spec();
 }

@@ -60,6 +60,8 @@ inline const SectionSpec& section_of(std::type_identity<Fibres>) { return fibres
 inline const SectionSpec& section_of(std::type_identity<TimeLaw>) { return time_law_section(); }
 inline const SectionSpec& section_of(std::type_identity<MaxwellBranch>) { return maxwell_section(); }
 inline const SectionSpec& section_of(std::type_identity<ImplicitOptions>) { return implicit_section(); }
+inline const SectionSpec& section_of(std::type_identity<NamedShape>) { return shape_section(); }
+inline const SectionSpec& section_of(std::type_identity<ShapeRegion>) { return shape_region_section(); }
 inline const SectionSpec& section_of(std::type_identity<TubePoint>) { return tube_point_section(); }
 inline const SectionSpec& section_of(std::type_identity<PathPoint>) { return path_point_section(); }
 inline const SectionSpec& section_of(std::type_identity<MeshSize>) { return mesh_size_section(); }
