@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "glisson/field.h"
 #include "glisson/material/tissue.h"
 
 namespace glisson {
@@ -18,6 +19,13 @@ struct TorsionOptions {
   double stretch = 1.0;
   std::size_t between = 1;  ///< steps from one time to the next, ≥ 1: more of them with viscosity or branches
   std::size_t radii = 12;   ///< Gauss points along the radius, 1 to 256: more of them for a law with a kink
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(no_key("stretch", &TorsionOptions::stretch, "-", above(0)),
+                no_key("between", &TorsionOptions::between, at_least(1)),
+                no_key("radii", &TorsionOptions::radii, glisson::between(1, 256)));
+  }
 };
 
 struct TorsionState {

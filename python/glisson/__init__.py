@@ -30,5 +30,5 @@ from .tissues import MaterialCurve, TorsionCurve, material_test, oscillation, ta
 
 __version__ = VERSION
 # What the functions above are made of.
-_INNER = {"annotations", "read_scene", "read_scene_text", "run_material_test", "run_oscillation", "run_torsion", "run_variant"}
+_INNER = {"annotations", "read_scene", "read_scene_text", "run_material_test", "run_oscillation", "run_torsion", "run_variant", "TorsionOptions"}
 __all__ = [name for name in dir() if not name.startswith("_") and name not in _INNER]

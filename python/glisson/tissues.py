@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ._core import TableLaw, Tissue, run_material_test, run_oscillation, run_torsion
+from ._core import TableLaw, Tissue, TorsionOptions, run_material_test, run_oscillation, run_torsion
 from .scenes import parse_scene, to_toml
 
 
@@ -131,15 +131,18 @@ class TorsionCurve:
     axial_force: np.ndarray  #: [N], (n,); below 0 the specimen pushes the plates apart
 
 
+_TORSION = TorsionOptions()
+
+
 def torsion(
     tissue: Tissue,
     radius: float,
     times: Any,
     twist: Any,
     *,
-    stretch: float = 1.0,
-    between: int = 1,
-    radii: int = 12,
+    stretch: float = _TORSION.stretch,
+    between: int = _TORSION.between,
+    radii: int = _TORSION.radii,
 ) -> TorsionCurve:
     """A cylinder of tissue between bonded plates that turn against each other at a fixed distance; its side is free.
 
@@ -160,6 +163,7 @@ def torsion(
     [7.854e-05, 0.00015708]
     """
     t, twists = (np.asarray(values, dtype=float).ravel() for values in (times, twist))
-    rows = run_torsion(tissue, radius, t.tolist(), twists.tolist(), stretch, between, radii)
+    options = TorsionOptions(stretch=stretch, between=between, radii=radii)
+    rows = run_torsion(tissue, radius, t.tolist(), twists.tolist(), options)
     forces = np.array(rows, dtype=float).reshape(-1, 2)
     return TorsionCurve(time=t, twist=twists, torque=forces[:, 0], axial_force=forces[:, 1])

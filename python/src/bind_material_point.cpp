@@ -51,11 +51,9 @@ std::vector<std::array<double, 2>> complex_moduli(const Tissue& tissue, const st
 
 /// Torque [N m] and axial force [N] at each time.
 std::vector<std::array<double, 2>> twisted(const Tissue& tissue, double radius, const std::vector<double>& times,
-                                           const std::vector<double>& twists, double stretch, std::size_t between,
-                                           std::size_t radii) {
+                                           const std::vector<double>& twists, const TorsionOptions& options) {
   std::vector<std::array<double, 2>> rows;
-  for (const TorsionState& s :
-       torsion(tissue, radius, times, twists, {.stretch = stretch, .between = between, .radii = radii})) {
+  for (const TorsionState& s : torsion(tissue, radius, times, twists, options)) {
     rows.push_back({s.torque, s.axial_force});
   }
   return rows;
@@ -86,8 +84,8 @@ void bind_material_point(nb::module_& m) {
   m.def("run_material_test", &test, "tissue"_a, "test"_a, "times"_a, "stretch"_a = nb::none(), "stress"_a = nb::none(),
         "between"_a = 1, doc("material_test"));
   m.def("run_oscillation", &complex_moduli, "tissue"_a, "frequencies"_a, "stretch"_a, "mode"_a, doc("oscillation"));
-  m.def("run_torsion", &twisted, "tissue"_a, "radius"_a, "times"_a, "twists"_a, "stretch"_a, "between"_a, "radii"_a,
-        doc("torsion"));
+  Options<TorsionOptions>(m, "TorsionOptions");
+  m.def("run_torsion", &twisted, "tissue"_a, "radius"_a, "times"_a, "twists"_a, "options"_a, doc("torsion"));
 }
 
 }  // namespace glisson::python

@@ -4,13 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/require_fields.h"
 #include "material/course.h"
 #include "material/static_stretch.h"
 
 namespace glisson {
 namespace {
-
-constexpr std::size_t kMostRadii = 256;
 
 /// A point of a rule for ∫₀¹.
 struct Node {
@@ -44,10 +43,7 @@ void require_arguments(const Tissue& tissue, double radius, std::span<const doub
   for (std::size_t k = 0; k < twists.size(); ++k) {
     if (!std::isfinite(twists[k])) fail("twist " + std::to_string(k + 1) + " is not finite");
   }
-  if (options.radii < 1 || options.radii > kMostRadii) {
-    fail("radii = " + std::to_string(options.radii) + " is outside the allowed range, 1 to " +
-         std::to_string(kMostRadii));
-  }
+  detail::require_fields("torsion", options);
   if (!tissue.fibres) return;
   const Vec3d a = unit(tissue.fibres->direction);
   if (std::hypot(a.x, a.y) > 1e-9)
