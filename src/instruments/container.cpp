@@ -28,7 +28,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 Pose plate(const Pose& vessel, const Vec3d& point, const Vec3d& n) {
   const Vec3d z = -n, x = std::abs(n.z) > 0.5 ? Vec3d{1.0, 0.0, 0.0} : Vec3d{0.0, 0.0, 1.0}, y = cross(z, x);
   const Vec3d columns[] = {vessel.axes * x, vessel.axes * y, vessel.axes * z};
-  Pose pose{to_space(vessel, point), {}};
+  Pose pose{vessel.to_space(point), {}};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) pose.axes(i, j) = columns[j][i];
   }
@@ -82,7 +82,7 @@ struct Container::State {
 
   void build();
   void add_solid(const Shape& shape, const Pose& pose);
-  bool holds_at(const Vec3d& x) const { return to_frame(options.pose, x).z <= height; }
+  bool holds_at(const Vec3d& x) const { return options.pose.to_own(x).z <= height; }
   void require_inside(const BodyView& body) const;
   void bond_first(const BodyView& body);
   void list_bonds();
@@ -139,7 +139,7 @@ void Container::State::require_inside(const BodyView& body) const {
     const Vec3d x = body.mesh.vertices[v] + body.displacement[v];
     if (!holds_at(x)) continue;
     for (std::size_t k = 0; k < solids.size(); ++k) {
-      const double beyond = -distance_to(shapes[k], to_frame(solids[k].after, x)).distance;
+      const double beyond = -distance_to(shapes[k], solids[k].after.to_own(x)).distance;
       if (beyond <= most) continue;
       most = beyond, where = x, out = true;
     }
@@ -157,7 +157,7 @@ void Container::State::bond_first(const BodyView& body) {
     const Vec3d x = body.mesh.vertices[v] + body.displacement[v];
     if (!holds_at(x)) continue;
     for (std::uint32_t k = 0; k < solids.size() && bonds.count(v) == 0; ++k) {
-      const Vec3d y = to_frame(solids[k].after, x);
+      const Vec3d y = solids[k].after.to_own(x);
       if (distance_to(shapes[k], y).distance <= solids[k].grip) bonds[v] = {k, y};
     }
   }
@@ -169,7 +169,7 @@ void Container::State::list_bonds() {
   for (const auto& [v, bond] : bonds) {
     const ContactSolid& solid = solids[bond.solid];
     const Vec3d normal = solid.after.axes * distance_to(*solid.shape, bond.place).normal;
-    holds.push_back({v, &solid, to_space(solid.after, bond.place), normal, {}});
+    holds.push_back({v, &solid, solid.after.to_space(bond.place), normal, {}});
     bonded[v] = 1;
   }
   still.resize(bonded.size(), 0);
@@ -217,7 +217,7 @@ void Container::State::add_rows(const InteractionStep& step) {
     const Vec3d x = step.position(place), way = step.vertices[place].velocity * step.h;
     if (!holds_at(x)) continue;
     for (std::uint32_t k = 0; k < solids.size(); ++k) {
-      const Vec3d start = to_frame(solids[k].before, x);
+      const Vec3d start = solids[k].before.to_own(x);
       if (distance_to(shapes[k], start).distance > norm(way) + solids[k].grip) continue;
       if (is_long && has_row.count({v, k}) != 0) continue;
       ContactRow row;

@@ -154,13 +154,13 @@ void Instrument::drive(const InteractionStep& step) {
 ToolVelocity Instrument::velocity_at(const Vec3d& x) const {
   ToolVelocity velocity;
   if (at_end_) {
-    const Vec3d moved = x - to_space(before_, to_frame(pose_, x));
+    const Vec3d moved = x - before_.to_space(pose_.to_own(x));
     if (step_ > 0.0) velocity.before = velocity.after = moved * (1.0 / step_);
     return velocity;
   }
-  const Vec3d own = to_frame(before_, x);
-  if (last_step_ > 0.0) velocity.before = (x - to_space(earlier_, own)) * (1.0 / last_step_);
-  if (step_ > 0.0) velocity.after = (to_space(pose_, own) - x) * (1.0 / step_);
+  const Vec3d own = before_.to_own(x);
+  if (last_step_ > 0.0) velocity.before = (x - earlier_.to_space(own)) * (1.0 / last_step_);
+  if (step_ > 0.0) velocity.after = (pose_.to_space(own) - x) * (1.0 / step_);
   return velocity;
 }
 

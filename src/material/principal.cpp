@@ -1,4 +1,5 @@
 #include "material/principal.h"
+#include "base/two_across.h"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -16,9 +17,7 @@ Vec3d perpendicular(const Vec3d& v, const Vec3d& a) {
   const Vec3d rest = v - a * dot(v, a);
   const double length = norm(rest);
   if (length > 1e-9) return rest * (1.0 / length);
-  const Vec3d other = std::abs(a.x) < 0.6 ? Vec3d{1.0, 0.0, 0.0} : Vec3d{0.0, 1.0, 0.0};
-  const Vec3d p = cross(a, other);
-  return unit(p);
+  return two_across(a)[0];
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // tool_surface.cpp — see tool_surface.h.
 #include "report/tool_surface.h"
+#include "base/two_across.h"
 
 #include <algorithm>
 #include <array>
@@ -100,9 +101,8 @@ SurfaceMesh tube(const std::vector<Vec3d>& line, double radius) {
   for (std::size_t i = 0; i < line.size(); ++i) {
     const Vec3d way = line[std::min(i + 1, line.size() - 1)] - line[i > 0 ? i - 1 : 0];
     if (!(norm(way) > 0.0)) continue;
-    const Vec3d z = unit(way), helper = std::abs(z.x) < 0.6 ? Vec3d{1.0, 0.0, 0.0} : Vec3d{0.0, 1.0, 0.0};
-    const Vec3d x = unit(cross(helper, z));
-    add_ring(mesh, line[i], x, cross(z, x), radius);
+    const auto [x, y] = two_across(unit(way));
+    add_ring(mesh, line[i], x, y, radius);
   }
   join_rings(mesh);
   if (mesh.points.empty()) return mesh;

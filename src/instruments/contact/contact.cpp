@@ -87,7 +87,7 @@ Vec3d ContactTool::handle() const {
   const double end = f.kind == InstrumentForm::Kind::ball    ? 2.0 * f.radius
                      : f.kind == InstrumentForm::Kind::block ? f.size.z
                                                              : f.length;
-  return to_space(force_pose(), {0.0, 0.0, end});
+  return force_pose().to_space({0.0, 0.0, end});
 }
 
 std::span<const InstrumentColumn> ContactTool::record_columns() const {
@@ -187,7 +187,7 @@ void ContactTool::book(const InteractionStep& step) const {
   for (const ContactRow& row : state_->rows) {
     if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
     const bool at_end = forces_at_end();
-    const ToolVelocity tool = velocity_at(at_end ? to_space(pose_, end_of(row, step)) : row.origin);
+    const ToolVelocity tool = velocity_at(at_end ? pose_.to_space(end_of(row, step)) : row.origin);
     for (std::uint32_t i = 0; i < row.count; ++i) {
       step.book(WorkSink::contact, row.places[i], row.normal * (row.pressing * row.weights[i]), tool);
       step.book(WorkSink::friction, row.places[i], row.rubbing * row.weights[i], tool);

@@ -27,7 +27,7 @@ void ContactReach::attach(const BodyView& body) {
 /// φ is never less along the way than half of what its ends have beyond that way.
 /// @param margin  how far the patch's vertices may be from its sentinel [m]
 bool ContactReach::may_reach(const ContactSolid& solid, double margin, const Sentinel& s, double h) const {
-  const Vec3d before = to_frame(solid.before, s.position), after = to_frame(solid.after, s.position);
+  const Vec3d before = solid.before.to_own(s.position), after = solid.after.to_own(s.position);
   const double apart = 0.5 * (distance_to(*solid.shape, before).distance + distance_to(*solid.shape, after).distance -
                               norm(after - before));
   return !(apart > margin + kHurry * h * norm(s.velocity));

@@ -1,10 +1,9 @@
 #include "instruments/contact/contact_rows.h"
+#include "base/two_across.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
-
-#include "instruments/two_across.h"
 
 namespace glisson {
 namespace {
@@ -41,12 +40,12 @@ Corners between(const Corners& a, const Corners& b, double share) {
 /// Where the vertices of a row are in the frame of the solid.
 Corners at_start(const ContactRow& row) {
   const Pose& p = row.solid->before;
-  return {to_frame(p, row.origins[0]), to_frame(p, row.origins[1]), to_frame(p, row.origins[2])};
+  return {p.to_own(row.origins[0]), p.to_own(row.origins[1]), p.to_own(row.origins[2])};
 }
 Corners at_end(const ContactRow& row, const InteractionStep& step) {
   Corners c{};
   for (std::uint32_t i = 0; i < row.count; ++i) {
-    c[i] = to_frame(row.solid->after, row.origins[i] + step.vertices[row.places[i]].velocity * step.h);
+    c[i] = row.solid->after.to_own(row.origins[i] + step.vertices[row.places[i]].velocity * step.h);
   }
   return c;
 }
@@ -137,8 +136,7 @@ double needed(const ContactRow& row, const Vec3d& base, const Vec3d& way, double
 Vec3d sticking(const ContactRow& row, const Vec3d& slip) {
   const Vec3d &w = row.response, &n = row.normal;
   if (w.x == w.y && w.y == w.z) return slip * (-1.0 / w.x);
-  const Vec3d helper = std::abs(n.x) < 0.6 ? Vec3d{1.0, 0.0, 0.0} : Vec3d{0.0, 1.0, 0.0};
-  const Vec3d c = cross(n, helper), s = c * (1.0 / norm(c)), t = cross(n, s);
+  const auto [s, t] = two_across(n);
   double ss = dot(s, scaled(w, s)), tt = dot(t, scaled(w, t));
   const double st = dot(s, scaled(w, t)), floor = 1e-9 * std::max({w.x, w.y, w.z});
   // a way that supports hold altogether: friction acts there up to its limit, where it has one
@@ -174,7 +172,7 @@ double rub(ContactRow& row, const InteractionStep& step) {
 }
 
 double press(ContactRow& row, const InteractionStep& step) {
-  const Vec3d way = direction_to_frame(row.solid->after, scaled(row.response, row.normal)) * step.h;
+  const Vec3d way = transposed(row.solid->after.axes) * scaled(row.response, row.normal) * step.h;
   const double per_impulse = row.along * step.h;
   double wanted = needed(row, end_of(row, step) - way * row.pressing, way, per_impulse);
   if (row.most) wanted = std::min(wanted, std::max(0.0, row.pressing + (*row.most - speed_off(row, step)) / row.along));
@@ -273,9 +271,9 @@ bool prepare(ContactRow& row, const InteractionStep& step, double share) {
   // in a long step other points of a triangle come to be its deepest: pushed out, they would bring energy in
   if (step.compliance != nullptr && row.count == 3) row.level = -row.inside;
   const ContactSolid& solid = *row.solid;
-  row.carried = (to_space(solid.after, row.start) - row.origin) * (1.0 / step.h);
+  row.carried = (solid.after.to_space(row.start) - row.origin) * (1.0 / step.h);
   row.carried_before = row.carried;
-  if (solid.last_h > 0.0) row.carried_before = (row.origin - to_space(solid.earlier, row.start)) * (1.0 / solid.last_h);
+  if (solid.last_h > 0.0) row.carried_before = (row.origin - solid.earlier.to_space(row.start)) * (1.0 / solid.last_h);
   if (row.comes_out) {
     const Vec3d growth = row.normal * ((row.inside + row.level) / step.h);
     row.carried += growth, row.carried_before += growth;

@@ -30,8 +30,8 @@ Triangle key_of(const ContactRow& row, const InteractionStep& step) {
 void ContactTool::State::measure(std::size_t i, const InteractionStep& step) {
   const std::uint32_t place = step.place_of[reach.vertices()[i]];
   const Vec3d x = step.position(place);
-  starts[i] = to_frame(solid.before, x);
-  ends[i] = to_frame(solid.after, x + step.vertices[place].velocity * step.h);
+  starts[i] = solid.before.to_own(x);
+  ends[i] = solid.after.to_own(x + step.vertices[place].velocity * step.h);
   at_ends[i] = distance_to(options.shape, ends[i]).distance;
 }
 
@@ -118,7 +118,7 @@ void ContactTool::State::require_outside(const BodyView& body, const Pose& pose,
   for (const std::uint32_t v : reach.surface().vertices()) {
     const Vec3d x = body.mesh.vertices[v] + body.displacement[v];
     size = std::max(size, norm(x - body.mesh.vertices[reach.surface().vertices().front()]));
-    deepest_phi = std::min(deepest_phi, distance_to(options.shape, to_frame(pose, x)).distance);
+    deepest_phi = std::min(deepest_phi, distance_to(options.shape, pose.to_own(x)).distance);
   }
   if (deepest_phi >= -kTouch * size) return;
   const Vec3d back = direction * deepest_phi + Vec3d{};  // no −0
@@ -203,7 +203,7 @@ void ContactTool::State::bond_first(const BodyView& body, const Pose& pose) {
   double size = 0.0;  // of the body, at most twice too large
   for (const Vec3d& x : body.mesh.vertices) size = std::max(size, norm(x - body.mesh.vertices.front()));
   for (const std::uint32_t v : reach.surface().vertices()) {
-    const Vec3d place = to_frame(pose, body.mesh.vertices[v] + body.displacement[v]);
+    const Vec3d place = pose.to_own(body.mesh.vertices[v] + body.displacement[v]);
     if (std::abs(distance_to(options.shape, place).distance) <= kTouch * size) bonds[v] = place;
   }
 }
@@ -213,7 +213,7 @@ void ContactTool::State::bond(const InteractionStep& step, ToolForces& forces) {
     const std::uint32_t place = step.place_of[vertex];
     if (place == InteractionStep::kNowhere) continue;
     const Vec3d x = step.position(place);
-    const Vec3d wanted = (to_space(solid.after, anchor) - x) * (1.0 / step.h);
+    const Vec3d wanted = (solid.after.to_space(anchor) - x) * (1.0 / step.h);
     const Vec3d impulse = stopping(step, place, wanted);
     step.push(place, impulse);
     bond_impulses.emplace_back(place, impulse);
@@ -246,7 +246,7 @@ void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces
     forces.normal += row.normal * (row.pressing * rate);
     forces.friction += row.rubbing * rate;
     const Vec3d arm =
-        is_long ? to_space(solid.after, end_of(row, step)) - solid.after.position : row.origin - solid.before.position;
+        is_long ? solid.after.to_space(end_of(row, step)) - solid.after.position : row.origin - solid.before.position;
     forces.torque += cross(arm, row.impulse()) * rate;
     for (std::uint32_t i = 0; i < row.count; ++i) {
       bear(step.vertices[row.places[i]].vertex, row.pressing * row.weights[i], row.impulse() * row.weights[i]);

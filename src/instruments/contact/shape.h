@@ -16,9 +16,4 @@ struct ShapeTraits {
 
 ShapeTraits traits_of(const Shape& shape);
 
-/// x in the frame of a pose, and back.
-inline Vec3d to_frame(const Pose& pose, const Vec3d& x) { return pose.to_own(x); }
-inline Vec3d direction_to_frame(const Pose& pose, const Vec3d& d) { return to_frame({{}, pose.axes}, d); }
-inline Vec3d to_space(const Pose& pose, const Vec3d& y) { return pose.to_space(y); }
-
 }  // namespace glisson

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "base/require_fields.h"
+#include "base/two_across.h"
 #include "glisson/simulation/simulation.h"
 #include "instruments/needle/membranes.h"
 #include "instruments/needle/needle_solver.h"
-#include "instruments/two_across.h"
 
 namespace glisson {
 namespace {

@@ -10,10 +10,10 @@
 #include <cmath>
 #include <limits>
 
+#include "base/two_across.h"
 #include "glisson/archive.h"
 #include "glisson/simulation/integrator.h"
 #include "instruments/needle/needle_solver.h"
-#include "instruments/two_across.h"
 
 namespace glisson {
 namespace {

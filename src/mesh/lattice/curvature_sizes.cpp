@@ -3,6 +3,7 @@
 // Cubes that the surface crosses are halved until the edge asked for in them is twice their side. Curvature is taken over a quarter of
 // the side to both sides, so that a bend or crease is seen from a coarse cube, and measured in a fine one.
 #include "mesh/lattice/curvature_sizes.h"
+#include "base/two_across.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,7 +78,7 @@ class CurvatureSampler {
   double curvature(const Vec3d& p, double side) const {
     const double step = kShareOfSide * side;
     const Vec3d n = normal(p, side);
-    const Vec3d a = unit(cross(n, std::abs(n.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})), b = cross(n, a);
+    const auto [a, b] = two_across(n);
     const Vec3d da = (normal(p + a * step, side) - normal(p - a * step, side)) * (0.5 / step);
     const Vec3d db = (normal(p + b * step, side) - normal(p - b * step, side)) * (0.5 / step);
     const double aa = dot(da, a), bb = dot(db, b), ab = 0.5 * (dot(da, b) + dot(db, a));
