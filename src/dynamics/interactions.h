@@ -44,12 +44,11 @@ class Interactions {
   /// The vertices at hand have become others.
   void find_places(std::span<const ActiveVertex> active, std::size_t vertex_count);
 
-  /// Begins a step. @param mobility  of each active vertex as if nothing held it, 1/(m + γh) [1/kg]
-  /// @param accounted  whether they are to book their work
+  /// Begins a step. @param accounted  whether they are to book their work
   void begin(double time, double h, std::span<ActiveVertex> active, std::span<const RestingVertex> resting,
              std::span<const Vec3d> rest, bool accounted);
   void add_forces();
-  /// @param held  per place and component: whether a support or motion holds it
+  /// @param mobility  per place, 1/(m + γh), 0 of components that a support or motion holds [1/kg]
   void constrain(std::span<const Vec3d> mobility);
   /// In a long step.
   void constrain(std::size_t interaction, StepCompliance& compliance);

@@ -80,6 +80,7 @@ void ActiveKick::kick(std::span<ActiveVertex> active) {
     const Vec3d load = keep(k, w, of_loads);
     const double m = kicked_[k].mass;
     const Vec3d force = w.elastic + w.viscous + kicked_[k].weight + load;
+    // v₊ = (m v₋ + h F) / (m + γ h) [Schwartz2002, eq. 4]
     w.velocity = m > 0.0 ? component_product(w.velocity * m + force * step_, kicked_[k].mobility) : Vec3d{};
   }
 }

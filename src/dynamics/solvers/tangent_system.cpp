@@ -14,9 +14,7 @@ constexpr int kMostIterations = 2000;
 constexpr double kAsymmetry = 1e-9;  ///< of an element's tangent, relative, up to which it counts as symmetric
 
 bool linear_tissue(const TissueBlock& block) {
-  const Tissue& t = block.tissue;
-  return !t.hyperelastic && t.kinematics == Kinematics::small && std::holds_alternative<ConstantLaw>(t.law) &&
-         !t.lambda_law && !t.mu_law;
+  return block.tissue.has_small_strain() && block.tissue.has_constant_moduli();
 }
 
 bool is_symmetric(const TissueTangent& tangent) {

@@ -23,13 +23,10 @@ inline Sym3<double> outer_square(const Vec3d& s) {
   return {s.x * s.x, s.y * s.y, s.z * s.z, s.x * s.y, s.y * s.z, s.z * s.x};
 }
 
-inline bool is_small(const Tissue& tissue) { return !tissue.hyperelastic && tissue.kinematics == Kinematics::small; }
+inline bool is_small(const Tissue& tissue) { return tissue.has_small_strain(); }
 inline bool is_small(const TissueBlock& block) { return is_small(block.tissue); }
 
-inline bool is_linear(const TissueBlock& block) {
-  const Tissue& t = block.tissue;
-  return is_small(block) && std::holds_alternative<ConstantLaw>(t.law) && !t.lambda_law && !t.mu_law;
-}
+inline bool is_linear(const TissueBlock& block) { return is_small(block) && block.tissue.has_constant_moduli(); }
 
 /// Whether its viscous matrix grows with what it is stretched by: its level of stiffness is above that, too.
 inline bool thickens(const TissueBlock& block) {
