@@ -83,10 +83,12 @@ void bind_drivers(nb::module_& m) {
             new (self) RigidDriver(start, turn ? rotation_path(*turn) : poses_path(std::get<PosesMotion>(motion)));
           },
           "start"_a, "motion"_a);
+  using ForceOverTime = nb::typed<nb::callable, double(double)>;
+  const PushMotion own;
   nb::class_<PushDriver, ToolDriver>(m, "PushDriver", doc("PushMotion"))
       .def(
           "__init__",
-          [](PushDriver* self, const Pose& start, const std::variant<double, nb::callable>& force,
+          [](PushDriver* self, const Pose& start, const std::variant<double, ForceOverTime>& force,
              const Vec3d& direction, double mass, double damping, bool guided, std::optional<double> stop,
              std::optional<double> end) {
             PushMotion motion{.direction = direction, .force = {}, .mass = mass, .damping = damping, .guided = guided};
@@ -94,18 +96,13 @@ void bind_drivers(nb::module_& m) {
             if (const double* steady = std::get_if<double>(&force)) {
               motion.force = [f = *steady](double) { return f; };
             } else {
-              motion.force = Callback<double>(std::get<nb::callable>(force));
+              motion.force = Callback<double>(std::get<ForceOverTime>(force));
             }
             new (self) PushDriver(start, std::move(motion));
           },
-          "start"_a, "force"_a, nb::kw_only(), "direction"_a = Vec3d{0, 0, -1}, "mass"_a = PushMotion{}.mass,
-          "damping"_a = PushMotion{}.damping, "guided"_a = true, "stop"_a = nb::none(), "end"_a = nb::none(),
-          "`force` is a number or a function of time [N].",
-          nb::sig(
-              "def __init__(self, start: Pose, force: float | collections.abc.Callable[[float], float], *, direction: "
-              "collections.abc.Sequence[float] | numpy.typing.NDArray[typing.Any] = (0.0, 0.0, -1.0), mass: float = "
-              "0.05, damping: float = 5.0, guided: bool = True, stop: float | None = None, end: float | None = None) "
-              "-> None"))
+          "start"_a, "force"_a, nb::kw_only(), "direction"_a = own.direction, "mass"_a = own.mass,
+          "damping"_a = own.damping, "guided"_a = own.guided, "stop"_a = own.stop, "end"_a = own.end,
+          "`force` is a number or a function of time [N].")
       .def_prop_ro("velocity", &PushDriver::velocity, doc("PushDriver::velocity"));
   nb::class_<HandDriver, ToolDriver>(m, "HandDriver", doc("HandCoupling"))
       .def(nb::init<const Pose&, const HandCoupling&>(), "start"_a, "coupling"_a = HandCoupling{},
