@@ -216,22 +216,22 @@ MaterialResult twisted(const MaterialOptions& o, const Tissue& tissue) {
 
 /// The indenter of the options, and words for it.
 std::pair<fit::Indenter, std::string> indenter_of(const MaterialOptions& o) {
-  const std::string shape = o.indenter.value_or("sphere");
-  fit::Indenter indenter{.bonded = o.bonded};
-  if (shape == "cone") {
+  using fit::Indenter, fit::IndenterShape;
+  const std::string word = o.indenter.value_or(std::string(word_of(Indenter{}.shape)));
+  Indenter indenter{.shape = by_word<IndenterShape>("--indenter", word, all_words<IndenterShape>()),
+                    .bonded = o.bonded};
+  if (Indenter::has(indenter.shape, "half_angle")) {
     const double degrees = o.half_angle_deg.value_or(kOwnHalfAngle);
-    if (!(degrees >= 10.0 && degrees <= 89.0))
-      throw std::invalid_argument(fmt::format("--half-angle-deg {:g}: outside the allowed range, 10 to 89", degrees));
-    indenter.shape = fit::IndenterShape::cone, indenter.half_angle = degrees * std::numbers::pi / 180.0;
+    if (!Indenter::kHalfAngles.contains(degrees))
+      throw std::invalid_argument(
+          fmt::format("--half-angle-deg {:g}: outside the allowed range, {}", degrees, Indenter::kHalfAngles.text()));
+    indenter.half_angle = degrees * Indenter::kDegree;
     return {indenter, fmt::format("a cone of {:g}° half angle", degrees)};
   }
-  if (shape != "sphere" && shape != "flat")
-    throw std::invalid_argument("--indenter " + shape + ": there is no such word; allowed: sphere, flat, cone");
-  indenter.shape = shape == "flat" ? fit::IndenterShape::flat : fit::IndenterShape::sphere;
   indenter.radius = 1e-3 * above_zero("--radius-mm", o.radius_mm.value_or(kOwnSize));
   indenter.edge_radius = 1e-3 * o.edge_radius_mm.value_or(0.0);
-  return {indenter,
-          fmt::format("a {} of {:g} mm radius", shape == "flat" ? "flat punch" : shape, 1e3 * indenter.radius)};
+  return {indenter, fmt::format("a {} of {:g} mm radius", indenter.shape == IndenterShape::flat ? "flat punch" : word,
+                                1e3 * indenter.radius)};
 }
 
 MaterialResult indented(const MaterialOptions& o, const Tissue& tissue) {

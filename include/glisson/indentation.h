@@ -7,10 +7,14 @@
 #pragma once
 
 #include <limits>
+#include <numbers>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include "glisson/field.h"
 #include "glisson/material/tissue.h"
+#include "glisson/words.h"
 
 namespace glisson::fit {
 
@@ -21,13 +25,44 @@ enum class IndenterShape {
   cone     ///< with a sharp tip
 };
 
+}  // namespace glisson::fit
+namespace glisson {
+template <>
+inline constexpr Word<fit::IndenterShape> kWords<fit::IndenterShape>[] = {
+    {"sphere", fit::IndenterShape::sphere, "A ball, on a shaft as wide as itself."},
+    {"flat", fit::IndenterShape::flat, "A flat-ended cylinder."},
+    {"cone", fit::IndenterShape::cone, "A cone with a sharp tip."}};
+}  // namespace glisson
+namespace glisson::fit {
+
 /// A rigid indenter. Without friction tissue slides along it; to a bonded one it sticks where it touches first.
 struct Indenter {
   IndenterShape shape = IndenterShape::sphere;
   double radius = 0.0;      ///< of a sphere or a flat punch [m], > 0
-  double half_angle = 0.0;  ///< of a cone, between its axis and its side, 0 to π/2 [rad]
+  double half_angle = 0.0;  ///< of a cone, between its axis and its side, 10° to 89° [rad]
   bool bonded = false;
   double edge_radius = 0.0;  ///< of a flat punch: of its rounded edge, 0 to `radius` [m]; 0: sharp
+
+  static constexpr double kDegree = std::numbers::pi / 180.0;
+  static constexpr Range kHalfAngles = between(10, 89);  ///< [°]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(
+        no_key("shape", &Indenter::shape),
+        field("radius", &Indenter::radius, "mm", above(0), "radius; of a flat one that of its face").must(),
+        no_key("half_angle", &Indenter::half_angle, "rad",
+               between(kHalfAngles.min * kDegree, kHalfAngles.max * kDegree)),
+        no_key("bonded", &Indenter::bonded),
+        field("edge_radius", &Indenter::edge_radius, "mm", at_least(0), "radius of its rounded edge; 0: sharp"));
+  }
+  /// Whether a shape has the member of this name; others are not looked at.
+  static constexpr bool has(IndenterShape shape, std::string_view member) {
+    if (member == "radius") return shape != IndenterShape::cone;
+    if (member == "half_angle") return shape == IndenterShape::cone;
+    return member != "edge_radius" || shape == IndenterShape::flat;
+  }
+  Fault check() const;
 
   /// A flat face with a sharp edge.
   bool sharp() const { return shape == IndenterShape::flat && !(edge_radius > 0.0); }
@@ -40,6 +75,13 @@ struct Layer {
   double thickness = kNone;  ///< at rest [m], > 0; infinite: a half-space
   double radius = kNone;     ///< of the specimen, whose side is free [m], > 0; infinite: it is wide
   bool bonded_floor = true;  ///< else it slides on the floor without friction
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(no_key("thickness", &Layer::thickness, "m", above(0)).or_infinite("a half-space"),
+                no_key("radius", &Layer::radius, "m", above(0)).or_infinite("a wide layer"),
+                no_key("bonded_floor", &Layer::bonded_floor));
+  }
 
   bool thick() const { return thickness == kNone; }
   bool wide() const { return radius == kNone; }

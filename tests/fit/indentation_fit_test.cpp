@@ -312,6 +312,26 @@ std::string fault(std::string text, const std::string& from = "", const std::str
   return "no fault";
 }
 
+// What a program gives is refused by the member, its value and range; members that a shape does not have are not looked at.
+TEST(IndentationFit, RefusesIndentersAndLayersThatCannotBe) {
+  const auto refusal = [](const Indenter& indenter, const Layer& layer) -> std::string {
+    try {
+      indentation(brain(600.0, -8.0), indenter, layer, std::vector{1.0}, std::vector{1e-4});
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const double five = 5.0 * Indenter::kDegree;
+  EXPECT_THAT(refusal({.shape = IndenterShape::sphere}, {}), HasSubstr("indenter: radius [m] = 0 is outside"));
+  EXPECT_THAT(refusal({.shape = IndenterShape::cone, .half_angle = five}, {}), HasSubstr("half_angle [rad] = 0.087"));
+  EXPECT_THAT(refusal({.shape = IndenterShape::flat, .radius = 2e-3, .edge_radius = 3e-3}, {}),
+              HasSubstr("edge_radius: 3 mm is above 2 mm"));
+  EXPECT_THAT(refusal(kBall, {.thickness = 0.0}), HasSubstr("layer: thickness [m] = 0 is outside"));
+  EXPECT_THAT(refusal(kBall, {.radius = -1.0}), HasSubstr("infinite: a wide layer"));
+  EXPECT_EQ(refusal({.shape = IndenterShape::sphere, .radius = 3e-3, .half_angle = five, .edge_radius = 4e-3}, {}), "");
+}
+
 // What is missing or cannot be is named with the way out.
 TEST(IndentationFit, NamesWhatCannotBe) {
   const std::string indenter = "indenter = { kind = \"sphere\", radius_mm = 3 }";
@@ -319,7 +339,7 @@ TEST(IndentationFit, NamesWhatCannotBe) {
   EXPECT_THAT(fault(kFit, "radius_mm = 3", "radius_mm = 0"), HasSubstr("out of range; allowed: > 0"));
   EXPECT_THAT(fault(kFit, indenter, "indenter = { kind = \"cone\", half_angle_deg = 95 }"), HasSubstr("10 to 89"));
   EXPECT_THAT(fault(kFit, indenter, "indenter = { kind = \"flat\", radius_mm = 2, edge_radius_mm = 3 }"),
-              HasSubstr("allowed: 0 to radius_mm = 2"));
+              HasSubstr("3 mm is above 2 mm, the radius of its face"));
   EXPECT_THAT(fault(kFit, "kind = \"layer\"\nthickness_mm = 10", "kind = \"point\""),
               HasSubstr("indentation needs [specimen] kind = \"layer\""));
   EXPECT_THAT(fault(kFit, "test = \"indentation\"", "test = \"tension\""),

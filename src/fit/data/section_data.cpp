@@ -97,40 +97,30 @@ SectionSpec given_kind() {
   return s.spec();
 }
 
-SectionSpec indenter_kind(IndenterShape shape, const char* name, const char* help) {
-  Section<Indenter> s(name, help);
-  const bool flat = shape == IndenterShape::flat;
-  if (shape == IndenterShape::cone)
+SectionSpec indenter_kind(const Word<IndenterShape>& word) {
+  const IndenterShape shape = word.value;
+  Section<Indenter> s(std::string(word.word), std::string(word.help));
+  std::vector<std::string_view> without;
+  each_field<Indenter>([&](const FieldText& f) {
+    if (!Indenter::has(shape, f.name)) without.push_back(f.name);
+  });
+  s.fields({}, without);
+  if (Indenter::has(shape, "half_angle"))
     s.key<Degrees>("half_angle_deg", &Indenter::half_angle, "angle between its axis and its side")
         .in("°")
-        .within(between(10, 89))
+        .within(Indenter::kHalfAngles)
         .must();
-  else
-    s.key<Milli>("radius_mm", &Indenter::radius, flat ? "radius of its face" : "radius")
-        .in("mm")
-        .within(above(0))
-        .must();
-  if (flat) {
-    s.key<Milli>("edge_radius_mm", &Indenter::edge_radius, "radius of its rounded edge; 0: sharp")
-        .in("mm")
-        .within(at_least(0));
-    s.finish([](Indenter& x, const Node& table, const Place& place) {
-      if (x.edge_radius > x.radius)
-        place.complain(*table.find("edge_radius_mm"), "edge_radius_mm",
-                       scene::show(1e3 * x.edge_radius) +
-                           " is out of range; allowed: 0 to radius_mm = " + scene::show(1e3 * x.radius));
-    });
-  }
   s.choice<bool>("contact", &Indenter::bonded,
                  {{"frictionless", false,
-                   flat ? "tissue slides along it; under a sharp edge for small depths" : "tissue slides along it"},
+                   shape == IndenterShape::flat ? "tissue slides along it; under a sharp edge for small depths"
+                                                : "tissue slides along it"},
                   {"bonded", true, "tissue stays where it touches first"}},
                  "how tissue meets it");
   return s.spec();
 }
 
-KindSpec indenter_of(IndenterShape shape, const char* name, const char* help) {
-  return {indenter_kind(shape, name, help), [shape](void* target) -> void* {
+KindSpec indenter_of(const Word<IndenterShape>& word) {
+  return {indenter_kind(word), [shape = word.value](void* target) -> void* {
             static_cast<Indenter*>(target)->shape = shape;
             return target;
           }};
@@ -341,9 +331,7 @@ const SectionSpec& contact_section() {
 const SectionSpec& indenter_section() {
   static const SectionSpec section = [] {
     Section<Indenter> s("data.indenter", "The rigid indenter of an indentation.");
-    s.spec().kinds = {indenter_of(IndenterShape::sphere, "sphere", "A ball, on a shaft as wide as itself."),
-                      indenter_of(IndenterShape::flat, "flat", "A flat-ended cylinder."),
-                      indenter_of(IndenterShape::cone, "cone", "A cone with a sharp tip.")};
+    for (const Word<IndenterShape>& word : kWords<IndenterShape>) s.spec().kinds.push_back(indenter_of(word));
     return s.spec();
   }();
   return section;

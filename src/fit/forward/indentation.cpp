@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "base/require_fields.h"
 #include "base/text.h"
 #include "fit/forward/indentation_model.h"
 #include "fit/forward/indenter.h"
@@ -12,29 +12,20 @@
 namespace glisson::fit {
 namespace {
 
-void require_above_zero(const char* name, double value, const char* unit) {
-  if (value > 0.0) return;
-  throw std::invalid_argument(std::string("indentation: ") + name + " = " + detail::number_text(value) + unit +
-                              " is outside the allowed range, > 0");
-}
-
-void require_shape(const Indenter& indenter) {
-  if (indenter.shape != IndenterShape::cone) require_above_zero("radius", indenter.radius, " m");
-  if (!(indenter.edge_radius >= 0.0 && indenter.edge_radius <= indenter.radius))
-    throw std::invalid_argument("indentation: edge_radius = " + detail::number_text(indenter.edge_radius) +
-                                " m is outside the allowed range, 0 to the punch's radius of " +
-                                detail::number_text(indenter.radius) + " m");
-  if (indenter.shape != IndenterShape::cone) return;
-  if (indenter.half_angle > 0.0 && indenter.half_angle < 0.5 * std::numbers::pi) return;
-  throw std::invalid_argument("indentation: half_angle = " + detail::number_text(indenter.half_angle) +
-                              " rad is outside the allowed range, 0 to π/2");
+void require_indenter(const Indenter& indenter) {
+  const std::string where = "indentation: indenter";
+  each_field<Indenter>([&](const auto& f) {
+    if (Indenter::has(indenter.shape, f.name))
+      detail::Requirement{where}.value(std::string(f.name), f, indenter.*f.member);
+  });
+  const Fault fault = indenter.check();
+  if (!fault.what.empty()) detail::refuse(where, std::string(fault.field), fault.what);
 }
 
 void require_arguments(const Indenter& indenter, const Layer& layer, std::span<const double> times,
                        std::span<const double> driven, const char* what) {
-  require_shape(indenter);
-  require_above_zero("thickness", layer.thickness, " m");
-  require_above_zero("radius of the layer", layer.radius, " m");
+  require_indenter(indenter);
+  detail::require_fields("indentation: layer", layer);
   if (times.size() != driven.size() || times.empty() || !(times.front() > 0.0))
     throw std::invalid_argument(std::string("indentation: as many ") + what +
                                 " as times are needed, and times above 0");

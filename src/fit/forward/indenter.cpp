@@ -8,6 +8,13 @@
 
 namespace glisson::fit {
 
+Fault Indenter::check() const {
+  if (shape != IndenterShape::flat || edge_radius <= radius) return {};
+  return {detail::number_text(1e3 * edge_radius) + " mm is above " + detail::number_text(1e3 * radius) +
+              " mm, the radius of its face; give a smaller one",
+          "edge_radius"};
+}
+
 double contact_radius(const Indenter& indenter, double depth) {
   switch (indenter.shape) {
     case IndenterShape::flat:
@@ -62,7 +69,7 @@ Entry entry_of(const Indenter& indenter, double tip, double r, double z) {
 
 std::string words_of(const Indenter& indenter) {
   if (indenter.shape == IndenterShape::cone)
-    return "a cone of " + detail::number_text(indenter.half_angle * 180.0 / std::numbers::pi) + "° half angle";
+    return "a cone of " + detail::number_text(indenter.half_angle / Indenter::kDegree) + "° half angle";
   return (indenter.shape == IndenterShape::flat ? "a flat punch of " : "a sphere of ") +
          detail::number_text(1e3 * indenter.radius) + " mm radius";
 }

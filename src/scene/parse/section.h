@@ -192,7 +192,7 @@ class Section {
 
   /// The keys of a described struct (glisson/field.h), in its order: of S, or of the part of it that `access` returns.
   template <class Access = std::identity>
-  void fields(Access access = {}, std::initializer_list<std::string_view> without = {}) {
+  void fields(Access access = {}, const std::vector<std::string_view>& without = {}) {
     using Part = std::remove_cvref_t<std::invoke_result_t<Access, S&>>;
     each_field<Part>([&](const auto& f) {
       const auto at = f.member;
