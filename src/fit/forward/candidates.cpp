@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "base/text.h"
 
 namespace glisson::fit {
 namespace {
@@ -17,8 +18,12 @@ Adjust own_step(Integrator integrator) {
   };
 }
 
-ForwardCandidate equal_steps(const char* name, Integrator integrator, int steps) {
-  return {.name = std::string(name) + ", " + std::to_string(steps) + " steps",
+ForwardCandidate own_stepping(Integrator integrator) {
+  return {.name = std::string(word_of(integrator)), .adjust = own_step(integrator)};
+}
+
+ForwardCandidate equal_steps(Integrator integrator, int steps) {
+  return {.name = std::string(word_of(integrator)) + ", " + std::to_string(steps) + " steps",
           .adjust = equal_stepping(integrator, steps),
           .integrator = integrator,
           .steps = steps};
@@ -60,21 +65,18 @@ std::vector<ForwardCandidate> forward_candidates(const Variant& v, const Forward
   const bool viscous = is_viscous(v), past = any_tissue(v, has_past);
   if (supports_every_integrator(v)) {
     if (!past) {
-      for (const int steps : {10, 40}) list.push_back(equal_steps("static", Integrator::quasi_static, steps));
+      for (const int steps : {10, 40}) list.push_back(equal_steps(Integrator::quasi_static, steps));
     }
-    for (const int steps : {25, 100, 400}) list.push_back(equal_steps("implicit", Integrator::implicit, steps));
+    for (const int steps : {25, 100, 400}) list.push_back(equal_steps(Integrator::implicit, steps));
   }
-  if (viscous && supports_every_integrator(v))
-    list.push_back({.name = "semi-implicit", .adjust = own_step(Integrator::semi_implicit)});
+  if (viscous && supports_every_integrator(v)) list.push_back(own_stepping(Integrator::semi_implicit));
   const Integrator own = spec.integrator.value_or(v.simulation.integrator);
   const bool explicit_like = capabilities(own).supports(viscous);
-  if (!explicit_like) list.push_back({.name = "explicit", .adjust = own_step(Integrator::central_difference)});
+  if (!explicit_like) list.push_back(own_stepping(Integrator::central_difference));
   if (explicit_like && !viscous) {
     for (const double factor : {100.0, 30.0, 10.0, 1.0}) {
-      char name[64];
-      std::snprintf(name, sizeof name, factor > 1.0 ? "explicit, %g times as heavy" : "explicit, steps of one size",
-                    factor);
-      list.push_back({.name = name, .adjust = {}, .factor = factor});
+      const std::string how = factor > 1.0 ? detail::number_text(factor) + " times as heavy" : "steps of one size";
+      list.push_back({.name = std::string(word_of(own)) + ", " + how, .adjust = {}, .factor = factor});
     }
   }
   return list;

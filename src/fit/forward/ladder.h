@@ -1,6 +1,6 @@
 // ladder.h — the cheapest forward model that keeps its error below the noise of the data.
 //
-//   specimen · static · implicit, long steps · semi-implicit · explicit, heavier tissue · …  ◀── compared ──▶  the scene itself
+//   specimen · quasi_static · implicit, long steps · semi_implicit · central_difference, heavier tissue · …  ◀── compared ──▶  the scene itself
 //   a cylinder between plates with friction, or a layer under an indenter, where [specimen] says so: by itself
 //
 // All are compared at the start of the parameters and at some places within their bounds, on one curve of each group (its
