@@ -1,14 +1,16 @@
 #include "fit/insertion/baseline.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+
+#include "fit/algebra/decompositions.h"
 
 namespace glisson::fit {
 namespace {
 
 double rms_left(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y) {
-  const Eigen::VectorXd left = columns * columns.colPivHouseholderQr().solve(y) - y;
+  const Eigen::VectorXd left = columns * least_squares(columns, y) - y;
   return std::sqrt(left.squaredNorm() / static_cast<double>(y.size()));
 }
 

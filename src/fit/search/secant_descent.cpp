@@ -1,11 +1,12 @@
 #include "fit/search/secant_descent.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "fit/algebra/decompositions.h"
 #include "fit/search/secant_jacobian.h"
 
 namespace glisson::fit {
@@ -63,7 +64,7 @@ Vector step_of(const LocalCost& cost, const std::vector<double>& z, const std::v
       stacked.col(k).head(cost.r.size()) = cost.jacobian.col(p);
       stacked(cost.r.size() + k, k) = std::sqrt(damping * std::max(weight[p], least));
     }
-    const Vector solved = stacked.colPivHouseholderQr().solve(aim);
+    const Vector solved = least_squares(stacked, aim);
     double furthest = 0.0;
     Eigen::Index leaves = -1;
     for (Eigen::Index k = 0; k < count; ++k) {

@@ -1,10 +1,11 @@
 #include "fit/uncertainty/covariance.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "fit/algebra/decompositions.h"
 #include "fit/uncertainty/distribution.h"
 #include "fit/uncertainty/noise.h"
 
@@ -34,14 +35,9 @@ struct Split {
   Eigen::Index weak = 0;  ///< the first so many are not determined
 
   Split(const Matrix& jacobian, double tolerance) {
-    // JᵀJ would lose half the digits: the triangle of J has its singular values
-    const Matrix r =
-        Eigen::HouseholderQR<Matrix>(jacobian).matrixQR().topRows(std::min(jacobian.rows(), jacobian.cols()));
-    Matrix square = Matrix::Zero(jacobian.cols(), jacobian.cols());
-    square.topRows(r.rows()) = r.triangularView<Eigen::Upper>();
-    const Eigen::JacobiSVD<Matrix> svd(square, Eigen::ComputeFullV);
-    vectors = svd.matrixV().rowwise().reverse();
-    singular = svd.singularValues().reverse();
+    const SingularDirections all = singular_directions(jacobian);
+    vectors = all.vectors.rowwise().reverse();
+    singular = all.values.reverse();
     const double least = tolerance * singular[singular.size() - 1];
     while (weak < singular.size() && (singular[weak] <= least || singular[weak] == 0.0)) ++weak;
   }

@@ -1,10 +1,11 @@
 #include "fit/uncertainty/design.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "fit/algebra/decompositions.h"
 #include "fit/uncertainty/combination.h"
 #include "fit/uncertainty/distribution.h"
 
@@ -24,12 +25,12 @@ struct Knowledge {
 
 /// Variance of each free parameter from an information matrix; infinite where it is part of a direction without weight.
 std::vector<double> variances(const Knowledge& k, const Matrix& information) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(information);
-  const double least = kUnseen * std::max(eigen.eigenvalues().maxCoeff(), 0.0);
+  const SymmetricEigen eigen = symmetric_eigen(information);
+  const double least = kUnseen * std::max(eigen.values.maxCoeff(), 0.0);
   std::vector<double> out(k.free.size(), 0.0);
   for (std::size_t i = 0; i < out.size(); ++i) {
     for (Eigen::Index d = 0; d < information.cols(); ++d) {
-      const double part = eigen.eigenvectors()(static_cast<Eigen::Index>(i), d), weight = eigen.eigenvalues()[d];
+      const double part = eigen.vectors(static_cast<Eigen::Index>(i), d), weight = eigen.values[d];
       if (weight > least)
         out[i] += k.inflation[i] * part * part / weight;
       else if (std::abs(part) > kTakesPart)

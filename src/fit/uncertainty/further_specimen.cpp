@@ -1,8 +1,9 @@
 #include "fit/uncertainty/further_specimen.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 
+#include "fit/algebra/decompositions.h"
 #include "fit/fit_curves.h"
 
 namespace glisson::fit {
@@ -20,9 +21,7 @@ Matrix rows_of(const Residuals& r, std::size_t first, std::size_t size, std::siz
 /// What a curve's own fit leaves of its residuals, to first order.
 Vector left_of(const Matrix& j, const Vector& r) {
   constexpr double kRank = 1e-5;
-  Eigen::ColPivHouseholderQR<Matrix> qr(j);
-  qr.setThreshold(kRank);
-  return r - j * qr.solve(r);
+  return r - j * least_squares(j, r, kRank);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <ranges>
 
+#include "fit/algebra/decompositions.h"
 #include "fit/fit_curves.h"
 #include "fit/uncertainty/autocorrelation.h"
 #include "fit/uncertainty/distribution.h"
@@ -77,8 +78,7 @@ bool NoiseStudy::stand_alone() const {
   const Vector root = inverse_.diagonal().array().sqrt();
   return std::ranges::all_of(curves_, [&](const Rows& curve) {
     const Matrix j = block(curve) * root.asDiagonal();
-    return Eigen::SelfAdjointEigenSolver<Matrix>(j.transpose() * j, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff() <
-           kOwnPart;
+    return largest_eigenvalue(j.transpose() * j) < kOwnPart;
   });
 }
 
@@ -169,7 +169,7 @@ Matrix NoiseStudy::by_curve() const {
   const auto curves = static_cast<double>(curves_.size());
   Matrix middle = Matrix::Zero(n, n);
   for (const Rows& curve : curves_) {
-    const Vector pull = rest_of(curve).partialPivLu().solve(block(curve).transpose() * of(curve));
+    const Vector pull = solve(rest_of(curve), block(curve).transpose() * of(curve));
     middle += pull * pull.transpose();
   }
   return inverse_ * middle * inverse_ * ((curves - 1.0) / curves);
@@ -195,8 +195,7 @@ double NoiseStudy::freedom_of(const Vector& combination) const {
   Matrix own(jacobian_.cols(), curves), parts = Matrix::Zero(curves, curves);
   for (Eigen::Index c = 0; c < curves; ++c) {
     const Matrix j = block(curves_[static_cast<std::size_t>(c)]), square = j.transpose() * j;
-    const Vector v =
-        rest_of(curves_[static_cast<std::size_t>(c)]).transpose().partialPivLu().solve(inverse_ * combination);
+    const Vector v = solve(rest_of(curves_[static_cast<std::size_t>(c)]).transpose(), inverse_ * combination);
     own.col(c) = square * v;
     parts(c, c) = v.dot(own.col(c));
   }

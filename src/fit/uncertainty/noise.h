@@ -3,7 +3,7 @@
 // All in the coordinates of the determined directions: J is the Jacobian along them, A = (JᵀJ)⁻¹ is diagonal.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <vector>
 
 #include "fit/uncertainty/covariance.h"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fit/algebra/decompositions.h"
+
 namespace glisson::fit {
 namespace {
 
@@ -84,10 +86,10 @@ double ResidualCorrelation::likelihood(const Matrix& columns, std::span<const Ro
   double squares = square(p, p);
   const double left = samples - static_cast<double>(p);
   if (p > 0) {
-    const Eigen::LLT<Matrix> information(square.topLeftCorner(p, p));
-    if (information.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
-    squares -= square.col(p).head(p).dot(information.solve(square.col(p).head(p)));
-    determinant += 2.0 * information.matrixLLT().diagonal().array().log().sum();
+    const auto projected = solve_definite(square.topLeftCorner(p, p), square.col(p).head(p));
+    if (!projected) return -std::numeric_limits<double>::infinity();
+    squares -= square.col(p).head(p).dot(projected->x);
+    determinant += projected->log_determinant;
   }
   variance = left > 0.0 ? std::max(squares, 0.0) / left : 0.0;
   return -determinant - left * std::log(std::max(variance, kLeast));

@@ -10,7 +10,7 @@
 // parameters is theirs: they are those with which the law comes nearest. Their process is a state of one number, so that V⁻¹ᐟ² is a pass of a Kalman filter.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <span>
 #include <vector>
 

@@ -1,0 +1,42 @@
+#include "fit/algebra/decompositions.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace glisson::fit {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+SymmetricEigen symmetric_eigen(const Matrix& a) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(a);
+  return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
+double largest_eigenvalue(const Matrix& a) {
+  return Eigen::SelfAdjointEigenSolver<Matrix>(a, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+}
+
+SingularDirections singular_directions(const Matrix& a) {
+  const Matrix r = Eigen::HouseholderQR<Matrix>(a).matrixQR().topRows(std::min(a.rows(), a.cols()));
+  Matrix square = Matrix::Zero(a.cols(), a.cols());
+  square.topRows(r.rows()) = r.triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Matrix> svd(square, Eigen::ComputeFullV);
+  return {svd.singularValues(), svd.matrixV()};
+}
+
+Vector least_squares(const Matrix& a, const Vector& b, std::optional<double> rank) {
+  Eigen::ColPivHouseholderQR<Matrix> qr(a);
+  if (rank) qr.setThreshold(*rank);
+  return qr.solve(b);
+}
+
+Vector solve(const Matrix& a, const Vector& b) { return a.partialPivLu().solve(b); }
+
+std::optional<DefiniteSolution> solve_definite(const Matrix& a, const Vector& b) {
+  const Eigen::LLT<Matrix> factor(a);
+  if (factor.info() != Eigen::Success) return {};
+  return DefiniteSolution{factor.solve(b), 2.0 * factor.matrixLLT().diagonal().array().log().sum()};
+}
+
+}  // namespace glisson::fit
