@@ -347,6 +347,49 @@ void print_stages(const Variant& v, const MeshLoader& load, const Taste& taste) 
       best, growth, 1.0 + kCost * (best - 1));
 }
 
+/// The largest speed of an instrument on its way [m/s]; 0 where that depends on forces, or it does not end.
+double largest_speed(const InstrumentSpec& instrument) {
+  constexpr int kLooks = 400;
+  const std::shared_ptr<ToolDriver> driver = make_driver(instrument);
+  const std::optional<double> end = driver->end();
+  if (driver->yields() || !end || !(*end > 0.0)) return 0.0;
+  const double h = *end / kLooks;
+  Vec3d before = driver->start().position;
+  double way = 0.0;
+  for (int i = 0; i < kLooks; ++i) {
+    const Vec3d now = driver->advance(i * h, h, {}).position;
+    way = std::max(way, norm(now - before));
+    before = now;
+  }
+  return way / h;
+}
+
+/// That of whatever is driven [m/s]; 0 where that is not known.
+double largest_speed(const Variant& v) {
+  std::vector<double> speeds;
+  for (const InstrumentSpec& x : v.instruments) speeds.push_back(largest_speed(x));
+  for (const ToolSpec& x : v.tools) {
+    speeds.push_back(x.record || x.path || x.rotation || x.poses ? 0.0 : x.motion.velocity);
+  }
+  if (std::ranges::any_of(speeds, [](double speed) { return !(speed > 0.0); })) return 0.0;
+  return speeds.empty() ? 0.0 : std::ranges::max(speeds);
+}
+
+/// Where tools move by next to nothing in a step, that mass while tissue moves evenly makes steps longer.
+void print_slow(const Variant& v, const Taste& taste) {
+  constexpr double kWay = 5e-6, kLongest = 5e-4;  // of a tool in a step [m], of a step [s]
+  constexpr double kWorthIt = 2.0;                // in steps at rest
+  const SimulationOptions& o = v.simulation;
+  const double fastest = largest_speed(v);
+  if (!capabilities(o.integrator).supports_variable_mass || o.step || o.mass_scaling_step || !(fastest > 0.0)) return;
+  const double step = two_digits_down(std::min(kLongest, kWay / fastest));
+  if (step < kWorthIt * taste.step_s) return;
+  say("  slow     tools move by {:.2g} µm a step at most; mass_scaling = \"variable\" with mass_scaling_step_s = "
+      "{:.2g} makes "
+      "steps\n           {:.2g} times as long while the tissue moves evenly (docs/integrators.md)\n",
+      1e6 * fastest * taste.step_s, step, step / taste.step_s);
+}
+
 /// The implicit integrators compute in double, whatever the scene says.
 bool in_single(const Variant& v, const Taste& taste) {
   return v.simulation.precision == Precision::single_precision && std::isfinite(taste.stable_step_s);
@@ -361,7 +404,7 @@ void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, co
       : explicit_steps ? fmt::format("stable below {:.4g} s at rest", taste.stable_step_s)
                        : "stable at any step");
   print_limits(v, load, taste);
-  if (explicit_steps) print_stages(v, load, taste);
+  if (explicit_steps) print_stages(v, load, taste), print_slow(v, taste);
   const std::string shorter = automatic && explicit_steps && !heavy ? shortens_step(v) : std::string{};
   say("  run      {:.6g} s simulated, {:.0f} steps{}, about {} ({:.0f} ns per tet and step, {})\n",
       std::min(run_duration(v), cost.steps * taste.step_s), cost.steps,

@@ -162,6 +162,25 @@ TEST_F(Commands, CheckSaysWhatTheTissueIs) {
   EXPECT_EQ(run({"check", scene}).out.find("corotational"), std::string::npos);
 }
 
+// Where tools hardly move in a step, check says which longer step mass would keep, and takes that itself; it says nothing where steps are
+// long enough, and of tools whose way depends on forces.
+TEST_F(Commands, CheckTellsWhereMassMakesStepsLonger) {
+  const std::string scene = write("s.toml", small_scene());
+  const std::vector<std::string> stiff{"check", scene, "--set", "tissue.youngs_modulus_Pa=1e7"};
+  const Outcome plain = run(stiff);
+  ASSERT_THAT(plain, Exits(0));
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(plain.out, found, std::regex(R"(mass_scaling_step_s = ([\d.e-]+) makes steps)")))
+      << plain.out;
+  std::vector<std::string> longer = stiff;
+  longer.insert(longer.end(), {"motion.mass_scaling=variable", "motion.mass_scaling_step_s=" + found[1].str()});
+  const Outcome heavy = run(longer);
+  EXPECT_THAT(heavy, Exits(0));
+  EXPECT_NE(heavy.out.find(found[1].str() + " s (auto), kept by mass"), std::string::npos) << heavy.out;
+  EXPECT_EQ(heavy.out.find("makes steps"), std::string::npos) << heavy.out;
+  EXPECT_EQ(run({"check", scene}).out.find("makes steps"), std::string::npos) << "steps are long enough";
+}
+
 // Where viscosity keeps the step short, check says how many stages of it pay and how long the step then is; it is that, and with them
 // nothing is left to say.
 TEST_F(Commands, CheckTellsWhereStagesOfViscosityPay) {
