@@ -31,6 +31,20 @@ Vector least_squares(const Matrix& a, const Vector& b, std::optional<double> ran
   return qr.solve(b);
 }
 
+struct QrFactor::Factor {
+  Eigen::HouseholderQR<Matrix> qr;
+};
+
+QrFactor::QrFactor(const Matrix& a) : factor_(new Factor{Eigen::HouseholderQR<Matrix>(a)}) {}
+QrFactor::~QrFactor() = default;
+Matrix QrFactor::thin() const {
+  const auto& qr = factor_->qr;
+  return qr.householderQ() * Matrix::Identity(qr.rows(), qr.cols());
+}
+Matrix QrFactor::solve(const Matrix& b) const { return factor_->qr.solve(b); }
+
+Matrix inverse_of(const Matrix& a) { return a.inverse(); }
+
 Vector solve(const Matrix& a, const Vector& b) { return a.partialPivLu().solve(b); }
 
 std::optional<DefiniteSolution> solve_definite(const Matrix& a, const Vector& b) {

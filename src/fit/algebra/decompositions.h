@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 
 namespace glisson::fit {
@@ -25,6 +26,23 @@ SingularDirections singular_directions(const Eigen::MatrixXd& a);
 /// @param rank  columns whose pivot is below this share of the largest do not count; none: to rounding
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, std::optional<double> rank = {});
 
+/// Q R of a matrix of full column rank, without pivots.
+class QrFactor {
+ public:
+  explicit QrFactor(const Eigen::MatrixXd& a);
+  ~QrFactor();
+  /// The columns of Q that span those of a.
+  Eigen::MatrixXd thin() const;
+  /// x of the least |a x − b|, column by column.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+
+ private:
+  struct Factor;
+  std::unique_ptr<Factor> factor_;
+};
+
+/// By LU with row pivots. @param a  square
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& a);
 /// a⁻¹ b, by LU with row pivots. @param a  square
 Eigen::VectorXd solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 

@@ -1,8 +1,10 @@
 #include "fit/data/smooth.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+
+#include "fit/algebra/decompositions.h"
 
 namespace glisson::fit {
 namespace {
@@ -17,8 +19,7 @@ Eigen::VectorXd weights(std::span<const double> x, std::size_t at, std::size_t d
     powers(i, 0) = 1.0;
     for (Eigen::Index k = 1; k < m; ++k) powers(i, k) = powers(i, k - 1) * u;
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(powers);
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(n, m);
+  const Eigen::MatrixXd q = QrFactor(powers).thin();
   return q * q.row(static_cast<Eigen::Index>(at)).transpose();
 }
 

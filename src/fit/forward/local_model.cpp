@@ -8,6 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "fit/algebra/decompositions.h"
+
 namespace glisson::fit {
 namespace {
 
@@ -56,7 +58,7 @@ LocalModel::LocalModel(const Model& inner, const std::vector<std::size_t>& curve
   Matrix axes(n, n);
   for (Eigen::Index k = 0; k < n; ++k)
     axes.col(k) = Eigen::Map<const Vector>(region_.axes[static_cast<std::size_t>(k)].data(), n);
-  to_unit_ = axes.inverse();
+  to_unit_ = inverse_of(axes);
   const Vector centre = Eigen::Map<const Vector>(region_.centre.data(), n);
   const Eigen::Index terms = terms_at(Vector::Zero(n)).size();
   points_ = runs_for(region_.centre.size());
@@ -74,8 +76,8 @@ LocalModel::LocalModel(const Model& inner, const std::vector<std::size_t>& curve
   const auto rows = static_cast<Eigen::Index>(points_) - 1;
   Matrix basis(rows, terms);
   for (Eigen::Index i = 0; i < rows; ++i) basis.row(i) = terms_at(at[static_cast<std::size_t>(i) + 1]).transpose();
-  const Eigen::HouseholderQR<Matrix> qr(basis);
-  const Matrix thin = qr.householderQ() * Matrix::Identity(rows, terms);
+  const QrFactor qr(basis);
+  const Matrix thin = qr.thin();
   const Vector left = (1.0 - thin.rowwise().squaredNorm().array()).max(1e-3).matrix();
   for (std::size_t c = 0; c < curves.size(); ++c) {
     Piece piece{runs[c].force, {}, 0.0};

@@ -9,7 +9,7 @@
 // centre. Outside the region, and for curves that it was not made of, the model itself is run.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <map>
 #include <string>
 #include <vector>
