@@ -55,7 +55,7 @@ struct Body {
   const TissueBlock& block_of(std::size_t element) const;
   /// What an element gives each of its vertices [kg].
   double quarter_mass(const TissueBlock& block, std::size_t element) const;
-  /// What forces accelerate at a vertex: its mass, and what is added while tets are stiff [kg].
+  /// What forces accelerate at a vertex: its mass and `stiff_mass` [kg].
   double inertia(std::size_t vertex) const {
     const double m = masses[vertex];
     return vertex < stiff_mass.size() && m > 0.0 ? m + stiff_mass[vertex] : m;
