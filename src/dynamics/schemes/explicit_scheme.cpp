@@ -25,9 +25,8 @@ void require_stages_for(const Tissue& tissue, int stages) {
 }  // namespace
 
 ExplicitScheme::ExplicitScheme(Body body, const SimulationOptions& options, Drag drag)
-    : Scheme(std::move(body), options), masses_(state_),
-      moving_(make_moving_body(state_.body, state_.gamma, options, info_)),
-      stiffening_(moving_->advance(0.0, {}, false).stiffening),
+    : Scheme(std::move(body), options), moving_(make_moving_body(state_.body, state_.gamma, options, info_)),
+      stiffening_(moving_->advance(0.0, {}, false).stiffening), masses_(state_),
       control_(std::make_unique<StepControl>(state_.body, state_.gamma, drag, options, stiffening_)) {
   for (const TissueBlock& block : state_.body.blocks) require_stages_for(block.tissue, options.drag_stages);
   moving_->list_above(control_->list_above(), control_->single_limits());
