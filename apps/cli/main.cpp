@@ -76,6 +76,18 @@ bool names_unknown_command(const CLI::App& program, int argc, char** argv) {
   return true;
 }
 
+/// Says so where a second value follows one --set, which the parser takes for a word too many.
+bool sets_twice(int argc, char** argv) {
+  const std::vector<std::string> words(argv, argv + argc);
+  for (std::size_t i = 3; i < words.size(); ++i) {
+    const bool value = words[i].find('=') != std::string::npos && !words[i].starts_with('-');
+    if (!value || words[i - 2] != "--set") continue;
+    tell("glisson: \"{}\" follows the value of a --set; each value takes its own: --set {}\n", words[i], words[i]);
+    return true;
+  }
+  return false;
+}
+
 int run_program(int argc, char** argv) {
   if (argc > 0) program_path() = argv[0];
   CLI::App program{"Simulation of non-linear, viscoelastic soft tissue touched by instruments.", "glisson"};
@@ -100,6 +112,8 @@ int run_program(int argc, char** argv) {
   if (names_unknown_command(program, argc, argv)) return kUserError;
   try {
     program.parse(argc, argv);
+  } catch (const CLI::ExtrasError& error) {
+    return sets_twice(argc, argv) ? kUserError : (program.exit(error), kUserError);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? kDone : kUserError;
   }

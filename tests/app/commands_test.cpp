@@ -162,6 +162,14 @@ TEST_F(Commands, CheckSaysWhatTheTissueIs) {
   EXPECT_EQ(run({"check", scene}).out.find("corotational"), std::string::npos);
 }
 
+// Two values after one --set are an error that says what to write.
+TEST_F(Commands, EachValueTakesItsOwnSet) {
+  const Outcome outcome =
+      run({"check", write("s.toml", small_scene()), "--set", "tissue.poisson_ratio=0.3", "mesh.cells=[3,3,3]"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("--set mesh.cells=[3,3,3]"), std::string::npos) << outcome.err;
+}
+
 // Where tools hardly move in a step, check says which longer step mass would keep, and takes that itself; it says nothing where steps are
 // long enough, and of tools whose way depends on forces.
 TEST_F(Commands, CheckTellsWhereMassMakesStepsLonger) {
@@ -173,7 +181,8 @@ TEST_F(Commands, CheckTellsWhereMassMakesStepsLonger) {
   ASSERT_TRUE(std::regex_search(plain.out, found, std::regex(R"(mass_scaling_step_s = ([\d.e-]+) makes steps)")))
       << plain.out;
   std::vector<std::string> longer = stiff;
-  longer.insert(longer.end(), {"motion.mass_scaling=variable", "motion.mass_scaling_step_s=" + found[1].str()});
+  longer.insert(longer.end(),
+                {"--set", "motion.mass_scaling=variable", "--set", "motion.mass_scaling_step_s=" + found[1].str()});
   const Outcome heavy = run(longer);
   EXPECT_THAT(heavy, Exits(0));
   EXPECT_NE(heavy.out.find(found[1].str() + " s (auto), kept by mass"), std::string::npos) << heavy.out;
