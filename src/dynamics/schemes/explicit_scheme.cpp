@@ -119,10 +119,9 @@ void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
   interactions_.state_set(displacement);
   kick_.forget_outer();
   held_rows_.clear();
-  control_->state_set();
-  control_->set_added(added());
-  take_stiff_masses();
+  control_->state_set(added());
   masses_.state_set();
+  take_stiff_masses();
   moving_->list_above(control_->list_above(), control_->single_limits());
   take_stiffness(moving_->advance(0.0, {}, false));
   copy_.current = false;

@@ -30,7 +30,7 @@ class StiffMasses {
   double weigh(const ActiveKick::Outer& outer, const MovingBody& moving);
   void step_made(double h) { last_step_ = h; }
   /// A state was set from outside.
-  void state_set() { energy_ = 0.0; }
+  void state_set() { largest_force_ = last_step_ = energy_ = 0.0; }
   void archive(Archive& ar, MovingBody& moving);
 
  private:

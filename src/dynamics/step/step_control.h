@@ -136,7 +136,7 @@ class StepControl : StepChoice {
   void archive(Archive& ar);
 
   /// A state is set from outside: steps are chosen as if the body had been made in it.
-  void state_set();
+  void state_set(const AddedBeside& added);
   /// Whether is_violent() may be true of any.
   bool may_be_violent() const {
     return automatic_ && enforce_ &&

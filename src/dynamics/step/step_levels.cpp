@@ -57,13 +57,19 @@ void StepControl::start_anew() {
   take_stiff();
 }
 
-void StepControl::state_set() {
+void StepControl::state_set(const AddedBeside& added) {
+  take_added(added);
   added_levels_.clear();
   if (!heavy_step_) {
     now_ = rest_;
     if (automatic_) step_ = kSafety * now_.limits.pace;
+  } else {
+    choose_heavy(*heavy_step_);
   }
+  inertia_ = 0.0;
+  listed_before_.clear();
   start_anew();
+  set_added(added);
 }
 
 /// Elements are listed from the level of their block on; where a tet's changes of shape may count, from below.
