@@ -43,10 +43,12 @@ TEST_F(Surrounded, FullStandardOutputIsTold) {
   EXPECT_EQ(read_json(folder_ / "o/main/summary.json")["end"], "finished");
 }
 
-// A frame that the disk refuses is told with file and reason, and without VTK's account of its pipeline.
+// A frame that the disk refuses is told with file and reason, and without VTK's account of its pipeline. It is written while the run
+// goes on, whose other files have few lines here.
 TEST_F(Surrounded, RefusedFrameIsToldPlainly) {
   const std::string scene = write("s.toml", small_scene());
-  const Outcome outcome = run_in({.file_bytes = 2000}, {"run", scene, "--out", "o"});
+  const Outcome outcome =
+      run_in({.file_bytes = 3000}, {"run", scene, "--out", "o", "--set", "output.sample_rate_hz=40"});
   EXPECT_THAT(outcome, Exits(1));
   EXPECT_THAT(outcome.err, HasSubstr("o/main/frames/frame_0000.vtu: it cannot be written: File too large"));
   EXPECT_THAT(outcome.err, Not(HasSubstr("vtk")));
