@@ -290,7 +290,7 @@ std::string shortens_step(const Variant& v) {
 /// Two digits, not rounded up: a step a little above the others' bound would give all of them mass.
 double two_digits_down(double x) {
   const double last = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
-  return last * std::floor(x / last);
+  return last * std::floor(x / last * (1.0 + 1e-12));  // 0.0005 is 50 of 0.00001, whatever their quotient rounds to
 }
 
 /// How many times as long the stable step at rest is with mass added to the tets below a step.
@@ -384,10 +384,11 @@ void print_slow(const Variant& v, const Taste& taste) {
   if (!capabilities(o.integrator).supports_variable_mass || o.step || o.mass_scaling_step || !(fastest > 0.0)) return;
   const double step = two_digits_down(std::min(kLongest, kWay / fastest));
   if (step < kWorthIt * taste.step_s) return;
+  const double times = step / taste.step_s;
   say("  slow     tools move by {:.2g} µm a step at most; mass_scaling = \"variable\" with mass_scaling_step_s = "
-      "{:.2g} makes "
-      "steps\n           {:.2g} times as long while the tissue moves evenly (docs/integrators.md)\n",
-      1e6 * fastest * taste.step_s, step, step / taste.step_s);
+      "{:.2g} "
+      "makes\n           steps {} times as long while the tissue moves evenly (docs/integrators.md)\n",
+      1e6 * fastest * taste.step_s, step, times < 10.0 ? fmt::format("{:.2g}", times) : fmt::format("{:.0f}", times));
 }
 
 /// The implicit integrators compute in double, whatever the scene says.
