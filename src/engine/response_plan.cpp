@@ -92,6 +92,7 @@ LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::
   const HyperelasticBound rest = hyperelastic_bound(*tissue.hyperelastic, Mat3d{});
   r.rest_isochoric = float(1.0 / rest.isochoric), r.rest_volume = float(1.0 / rest.volume);
   r.law = tissue.hyperelastic;
+  if (const Ogden* ogden = std::get_if<Ogden>(&*tissue.hyperelastic)) r.series = stretch_series(*ogden).rounded();
   return r;
 }
 

@@ -1,9 +1,9 @@
 // hyper_response-inl.h — hyperelastic laws in lanes: src/material/hyperelastic_response.h, and the bounds of
 // src/material/stiffness_bound.h.
 //
-// The slopes of a law of the invariants are its own (src/material/hyperelastic_formulas.h) on LaneScalar. Ogden's powers
-// need principal stretches, but not their directions: S is the polynomial in E that takes the right values at its
-// eigenvalues.
+// The slopes of a law of the invariants are its own (src/material/hyperelastic_formulas.h) on LaneScalar. Ogden's powers are
+// a series of the strain where stretches are close to each other (src/material/stretch_series.h). Else they need principal
+// stretches, but not their directions: S is the polynomial in E that takes the right values at its eigenvalues.
 //
 // Included once per instruction set, never from outside response_kernels.cpp.
 #if defined(GLISSON_HYPER_RESPONSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -227,59 +227,159 @@ HWY_INLINE F stiffest_direction(const Eigenvalues& at, const PrincipalStress (&s
   return most;
 }
 
-inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&,
-                      ResponseBlock& out) {
+/// The isochoric part of a law of stretches.
+struct IsochoricStress {
+  Tensor P;
+  F bound;     ///< of λ_max of ∂P/∂F
+  F thinnest;  ///< λ₃² where stretches may be beyond where logarithms go on otherwise, else 1
+};
+
+/// From the principal stretches, for any.
+HWY_INLINE IsochoricStress stress_of_stretches(const Ogden& law, const Tensor& H) {
   const Lanes d;
-  const Ogden& law = std::get<Ogden>(*r.law);
-  const std::size_t terms = law.mu.size();
-  float exponents[Ogden::kMostTerms], factors[Ogden::kMostTerms];
-  for (std::size_t k = 0; k < terms; ++k) {
-    exponents[k] = float(law.alpha[k]), factors[k] = float(2.0 * law.mu[k] / law.alpha[k]);
-  }
+  const Symmetric E = green_strain(H);
   const F one = number(1.0F), two = number(2.0F), third = number(1.0F / 3.0F), zero = hn::Zero(d);
   const F most = number(float(Ogden::kLargestExponent));
+  const Eigenvalues at = eigenvalues(E);
+  F l[3], c[3], t[3] = {zero, zero, zero}, slope[3] = {zero, zero, zero}, bend[3] = {zero, zero, zero};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const F twice = hn::Max(at.e[i] + at.e[i], number(-0.999F));
+    c[i] = twice + one;
+    l[i] = number(0.5F) * hn::Log1p(d, twice);
+  }
+  const F mean = (l[0] + l[1] + l[2]) * third;
+  for (std::size_t k = 0; k < law.mu.size(); ++k) {
+    const F alpha = number(float(law.alpha[k])), factor = number(float(2.0 * law.mu[k] / law.alpha[k]));
+    F g[3];
+    for (std::size_t i = 0; i < 3; ++i) g[i] = hn::Expm1(d, hn::Min(alpha * (l[i] - mean), most));
+    const F average = (g[0] + g[1] + g[2]) * third;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const F rise = factor * alpha * (g[i] + one);
+      t[i] = hn::MulAdd(factor, g[i] - average, t[i]);
+      slope[i] = slope[i] + rise;
+      bend[i] = hn::MulAdd(alpha, rise, bend[i]);
+    }
+  }
+  // g = τ/λ² and its derivatives by e, with dτ/d ln λ = slope, d²τ/d(ln λ)² = bend
+  PrincipalStress s[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const F inverse = one / c[i], square = inverse * inverse;
+    s[i].g = t[i] * inverse;
+    s[i].first = hn::NegMulAdd(two, t[i], slope[i]) * square;
+    s[i].second = hn::MulAdd(number(8.0F), t[i], hn::NegMulAdd(number(6.0F), slope[i], bend[i])) * square * inverse;
+  }
+  return {tensor_product(plus_identity(H, one), isotropic_function(E, at, s)), stiffest_direction(at, s, t, slope, c),
+          c[2]};
+}
+
+/// X of C = m (I + X) and its invariants (material/stretch_series.h).
+struct StretchDeviator {
+  Symmetric X, cof;
+  F J2, J3, per_mean;  ///< 1/m
+};
+HWY_INLINE StretchDeviator stretch_deviator(const Symmetric& E) {
+  StretchDeviator s;
+  const F mean = trace_of(E) * number(1.0F / 3.0F);
+  s.per_mean = number(1.0F) / hn::MulAdd(number(2.0F), mean, number(1.0F));
+  s.X = times(s.per_mean + s.per_mean, plus_identity(E, hn::Neg(mean)));
+  const SymmetricCofactors c = cofactors_of(s.X);
+  s.cof = c.cof, s.J3 = c.determinant;
+  s.J2 = number(0.5F) * contraction(s.X, s.X);
+  return s;
+}
+/// P = F⁻ᵀ (q₁ X + q₂ dev X²), dev X² = cof X + ⅓ J₂ I, where the series hold.
+HWY_INLINE IsochoricStress stress_of_series(const StretchSeries<float>& series, const StretchDeviator& s,
+                                            const HyperState& state) {
+  const LaneScalar J2(s.J2), J3(s.J3);
+  const F q1 = series_at(series.first, J2, J3).v, q2 = series_at(series.second, J2, J3).v;
+  const Symmetric T = plus(times(q1, s.X), q2, plus_identity(s.cof, s.J2 * number(1.0F / 3.0F)));
+  const F delta = hn::Sqrt(s.J2 * number(4.0F / 3.0F)), one = number(1.0F);
+  const F square = hn::MulAdd(delta, number(series.bound[2]), number(series.bound[1]));
+  const F shape = number(series.bound[3]) * s.J3 / hn::Max(delta, number(1e-12F));
+  const F bound = hn::MulAdd(delta, square, number(series.bound[0])) + shape;
+  const Tensor cof = plus_identity(state.K, one);
+  return {tensor_product(cof, times(one / state.J, T)), bound * s.per_mean, one};
+}
+
+/// Stores all that a stage says of an item. @param known  the tets whose stress this is
+template <class Known>
+HWY_INLINE void store_stretched(const ResponseItems& in, const LaneResponse& r, const Rescue& to, std::size_t item,
+                                const HyperState& state, const IsochoricStress& stress, Known known,
+                                ResponseBlock& out) {
+  const F one = number(1.0F), pressure = pressure_of(in, r, item, state.inv.volume_change);
+  const Tensor volumetric = plus_identity(times(pressure, state.K), pressure);
+  store_tensor(plus(volumetric, one, stress.P), out.piola + item * 9 * kLanes);
+  const LaneInvariants i{state.I1, state.I2, state.J};
+  see_parts(r, item, stress.bound, volume_bound(i, number(r.bulk)), out);
+  // a stretch below the limit where ln λ goes on otherwise counts as a lost volume
+  const F limit = number(float(kSmallestStretch * kSmallestStretch));
+  const F J = hn::IfThenElse(hn::Lt(stress.thinnest, limit), hn::Zero(Lanes()), state.inv.volume_change + one);
+  rescue_if_small(in, to, item, hn::IfThenElse(known, J, one), out);
+}
+
+/// Tets of a block whose stretches are apart, and their stresses, as many at a time as there are lanes.
+class FarTets {
+ public:
+  HWY_INLINE void list(std::size_t item, F J2, float largest) {
+    alignas(64) float of[kMaxLanes];
+    hn::Store(J2, Lanes(), of);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (!(of[lane] < largest)) which_[count_++] = static_cast<std::uint16_t>(item * kLanes + lane);
+    }
+  }
+  HWY_INLINE void respond(const ResponseItems& in, const LaneResponse& r, const Rescue& to, ResponseBlock& out) const {
+    for (std::size_t from = 0; from < count_; from += kLanes) {
+      respond(in, r, to, which_ + from, std::min(kLanes, count_ - from), out);
+    }
+  }
+
+ private:
+  /// Where the numbers of a tet begin that lie kLanes apart, `each` of them an item.
+  HWY_INLINE static std::size_t place(std::size_t tet, std::size_t each) {
+    return tet / kLanes * each * kLanes + tet % kLanes;
+  }
+  HWY_NOINLINE static void respond(const ResponseItems& in, const LaneResponse& r, const Rescue& to,
+                                   const std::uint16_t* which, std::size_t n, ResponseBlock& out) {
+    alignas(64) float gradient[9 * kMaxLanes], mean[kMaxLanes];
+    std::uint32_t element[kMaxLanes];
+    for (std::size_t l = 0; l < kLanes; ++l) {  // lanes that are left repeat the first tet
+      const std::size_t tet = which[l < n ? l : 0];
+      for (std::size_t k = 0; k < 9; ++k) gradient[k * kLanes + l] = in.gradient[place(tet, 9) + k * kLanes];
+      if (in.mean != nullptr) mean[l] = in.mean[tet];
+      element[l] = l < n && in.element != nullptr ? in.element[tet] : 0xFFFFFFFFU;
+    }
+    ResponseItems packed;
+    packed.gradient = gradient, packed.element = element, packed.items = 1;
+    if (in.mean != nullptr) packed.mean = mean;
+    const HyperState state = hyper_state(gradient);
+    const IsochoricStress stress = stress_of_stretches(std::get<Ogden>(*r.law), state.H);
+    ResponseBlock of;  // the first item of it
+    store_stretched(packed, r, to, 0, state, stress, hn::Gt(number(1.0F), hn::Zero(Lanes())), of);
+    for (std::size_t l = 0; l < n; ++l) {
+      const std::size_t tet = which[l];
+      for (std::size_t k = 0; k < 9; ++k) out.piola[place(tet, 9) + k * kLanes] = of.piola[k * kLanes + l];
+      out.ratio[tet] = of.ratio[l], out.norm[tet] = of.norm[l];
+    }
+  }
+
+  std::uint16_t which_[kBlockTets];
+  std::size_t count_ = 0;
+};
+
+/// A tet's own strain decides how its stress is found, not its neighbours'.
+inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&,
+                      ResponseBlock& out) {
+  const StretchSeries<float> series = *r.series;  // a copy, which stores cannot change
+  const float largest = series.largest_J2;
+  FarTets far;
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState state = hyper_state(in.gradient + item * 9 * kLanes);
-    const F j = state.inv.volume_change;
-    const Symmetric E = green_strain(state.H);
-    const Eigenvalues at = eigenvalues(E);
-    F l[3], c[3], t[3] = {zero, zero, zero}, slope[3] = {zero, zero, zero}, bend[3] = {zero, zero, zero};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const F twice = hn::Max(at.e[i] + at.e[i], number(-0.999F));
-      c[i] = twice + one;
-      l[i] = number(0.5F) * hn::Log1p(d, twice);
-    }
-    const F mean = (l[0] + l[1] + l[2]) * third;
-    for (std::size_t k = 0; k < terms; ++k) {
-      const F alpha = number(exponents[k]), factor = number(factors[k]);
-      F g[3];
-      for (std::size_t i = 0; i < 3; ++i) g[i] = hn::Expm1(d, hn::Min(alpha * (l[i] - mean), most));
-      const F average = (g[0] + g[1] + g[2]) * third;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const F rise = factor * alpha * (g[i] + one);
-        t[i] = hn::MulAdd(factor, g[i] - average, t[i]);
-        slope[i] = slope[i] + rise;
-        bend[i] = hn::MulAdd(alpha, rise, bend[i]);
-      }
-    }
-    // g = τ/λ² and its derivatives by e, with dτ/d ln λ = slope, d²τ/d(ln λ)² = bend
-    PrincipalStress s[3];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const F inverse = one / c[i], square = inverse * inverse;
-      s[i].g = t[i] * inverse;
-      s[i].first = hn::NegMulAdd(two, t[i], slope[i]) * square;
-      s[i].second = hn::MulAdd(number(8.0F), t[i], hn::NegMulAdd(number(6.0F), slope[i], bend[i])) * square * inverse;
-    }
-    const Symmetric S = isotropic_function(E, at, s);
-    const F pressure = pressure_of(in, r, item, j);
-    const Tensor volumetric = plus_identity(times(pressure, state.K), pressure);
-    store_tensor(plus(volumetric, one, tensor_product(plus_identity(state.H, one), S)), out.piola + item * 9 * kLanes);
-    const LaneInvariants i{state.I1, state.I2, state.J};
-    see_parts(r, item, stiffest_direction(at, s, t, slope, c), volume_bound(i, number(r.bulk)), out);
-    // a stretch below the limit where ln λ goes on otherwise counts as a lost volume
-    const F thinnest = number(float(kSmallestStretch * kSmallestStretch));
-    rescue_if_small(in, to, item, hn::IfThenElse(hn::Lt(c[2], thinnest), zero, j + one), out);
+    const StretchDeviator deviator = stretch_deviator(green_strain(state.H));
+    const auto close = hn::Lt(deviator.J2, number(largest));
+    store_stretched(in, r, to, item, state, stress_of_series(series, deviator, state), close, out);
+    if (!hn::AllTrue(Lanes(), close)) far.list(item, deviator.J2, largest);
   }
+  far.respond(in, r, to, out);
 }
 
 template <class Law>

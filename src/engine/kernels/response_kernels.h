@@ -17,6 +17,7 @@
 #include "engine/kernels/kernels.h"
 #include "material/branch_weights.h"
 #include "material/response.h"
+#include "material/stretch_series.h"
 
 namespace glisson::engine {
 
@@ -49,8 +50,9 @@ struct LaneResponse {
   float fibre = 0.0F;                               ///< c [Pa]
   float relaxing = 0.0F;                            ///< Σ g
   std::optional<HyperelasticLaw> law;
-  std::size_t mu_law = 0;    ///< which of the block's two laws scales μ
-  std::size_t branches = 0;  ///< of Maxwell
+  std::optional<StretchSeries<float>> series;  ///< of a law of stretches, for stretches that are close to each other
+  std::size_t mu_law = 0;                      ///< which of the block's two laws scales μ
+  std::size_t branches = 0;                    ///< of Maxwell
   std::array<float, kMostBranches> share{};
   std::vector<LanePace> pace;  ///< of each branch; empty where all times are constant
   bool small = false, deviator = true, viscous = false, pioletti = false, energy = false;
