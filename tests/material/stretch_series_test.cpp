@@ -60,9 +60,9 @@ TEST(StretchSeries, IsTheLaw) {
   }
 }
 
-// Strains of a needle's surroundings are inside: half of δ is about the largest strain.
+// Strains of a needle's surroundings are inside: half of δ is about the largest strain: 20, 7, 5 and 10 %.
 TEST(StretchSeries, HoldsForTheStrainsOfTissue) {
-  const std::array<double, 4> least{0.26, 0.06, 0.04, 0.15};
+  const std::array<double, 4> least{0.40, 0.14, 0.11, 0.20};
   for (std::size_t k = 0; k < least.size(); ++k) {
     EXPECT_GE(std::sqrt(4.0 / 3.0 * stretch_series(laws()[k]).largest_J2), least[k]) << k;
   }
