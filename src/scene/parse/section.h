@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -17,10 +18,10 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "glisson/math.h"
@@ -182,62 +183,155 @@ struct Choice {
   bool alias = false;  ///< as AllowedWord's
 };
 
-template <class S>
-class Section {
- public:
-  explicit Section(std::string name, std::string help = {}) {
-    spec_.name = std::move(name);
-    spec_.help = std::move(help);
+/// A value of some C++ type, the type erased: how a key reads and shows it.
+struct ValueCode {
+  ValueType type;
+  Shape shape;
+  double largest = 0.0;                           ///< of an integer; 0: no bound
+  std::vector<AllowedWord> (*words)() = nullptr;  ///< nullptr: any text
+  void (*read)(const Node& node, void* value);
+  std::string (*show)(const void* value);
+};
+
+template <class T, class Code = Codec<T>>
+ValueCode value_code() {
+  ValueCode code{.type = Code::kType,
+                 .shape = Code::kShape,
+                 .read = [](const Node& node, void* value) { *static_cast<T*>(value) = Code::read(node); },
+                 .show = [](const void* value) { return Code::show(*static_cast<const T*>(value)); }};
+  if constexpr (requires { Code::kLargest; }) code.largest = Code::kLargest;
+  if constexpr (HasWords<T>) {
+    code.words = [] {
+      std::vector<AllowedWord> words;
+      for (const Word<T>& w : kWords<T>) words.push_back({std::string(w.word), std::string(w.help), is_alias(w)});
+      return words;
+    };
   }
+  return code;
+}
+
+/// The struct that a table of the scene fills, within the member of that table; makes it where it is not yet.
+using Slot = void* (*)(void* member, const std::string& entry);
+
+/// A described member in a scene, its type erased: a value, or one or several tables.
+struct MemberKind {
+  ValueCode (*value)() = nullptr;             ///< nullptr: not a value
+  ValueCode (*thousandth)() = nullptr;        ///< of a key in thousandths
+  const SectionSpec& (*section)() = nullptr;  ///< of tables
+  Shape shape = Shape::one;                   ///< of tables
+  Slot slot = nullptr;                        ///< of tables
+};
+
+template <class T>
+constexpr MemberKind member_kind() {
+  if constexpr (HasSection<T>) {
+    return {.section = []() -> const SectionSpec& { return section_of(std::type_identity<T>()); },
+            .slot = [](void* member, const std::string&) { return member; }};
+  } else if constexpr (HoldsSection<T>) {
+    constexpr bool list = std::is_same_v<T, std::vector<typename T::value_type>>;
+    return {.section = []() -> const SectionSpec& { return section_of(std::type_identity<typename T::value_type>()); },
+            .shape = list ? Shape::list : Shape::one,
+            .slot = [](void* member, const std::string&) -> void* {
+              if constexpr (list)
+                return &static_cast<T*>(member)->emplace_back();
+              else
+                return &static_cast<T*>(member)->emplace();
+            }};
+  } else if constexpr (requires { Codec<T>::kType; }) {
+    return {.value = value_code<T>, .thousandth = value_code<T, Thousandth<T>>};
+  } else {
+    return {};
+  }
+}
+
+/// Finds a member in the struct of a section, both without their types: at an offset in that struct or in a part of it.
+struct MemberPlace {
+  std::function<void*(void* target)> part{};  ///< empty: the struct itself
+  std::ptrdiff_t offset = 0;
+
+  void* in(void* target) const { return static_cast<char*>(part ? part(target) : target) + offset; }
+};
+
+/// What Section does without the type of its struct: compiled once, not for each member.
+class SectionBuilder {
+ public:
+  /// A key that is there.
+  KeySpec& at(std::string_view name) { return const_cast<KeySpec&>(*spec_.find(name)); }
+  /// Puts keys that are only checked here behind another one; the section's finish() reads them.
+  void bare_after(std::string_view other, std::vector<KeySpec> keys);
+  /// A key that is only checked here; the section's finish() reads it.
+  KeySpec& bare(KeySpec key) { return push(std::move(key)); }
+  SectionSpec& spec() { return spec_; }
+
+ protected:
+  using Check = std::function<void(void* target, const Node& table, const Place& place)>;
+  /// Described members of a struct that are added: of which part, and the keys of them all.
+  struct Fields {
+    MemberPlace part;
+    void* initial;  ///< a part with its initial values
+    const std::vector<std::string_view>& without;
+    std::vector<std::pair<std::string_view, std::string>> keys{};  ///< by the member's name
+  };
+
+  SectionBuilder(std::string name, std::string help);
+  /// @param initial  the member's initial value
+  KeySpec& add_value(std::string name, const ValueCode& code, MemberPlace place, const void* initial, std::string help);
+  KeySpec& add_tables(std::string name, Shape shape, const SectionSpec& section, MemberPlace place, Slot slot,
+                      std::string help);
+  /// @param member  the field's member in the initial part
+  void add_field(Fields& fields, const FieldText& field, const MemberKind& kind, void* member);
+  /// A check between members of a part; a fault is reported at the key of the member that it names.
+  void check_part(std::function<Fault(void* target)> check, std::vector<std::pair<std::string_view, std::string>> keys);
+  void add_check(Check check);
+  KeySpec& push(KeySpec key);
+
+  SectionSpec spec_;
+};
+
+template <class S>
+class Section : public SectionBuilder {
+ public:
+  explicit Section(std::string name, std::string help = {}) : SectionBuilder(std::move(name), std::move(help)) {}
 
   /// The keys of a described struct (glisson/field.h), in its order: of S, or of the part of it that `access` returns.
   template <class Access = std::identity>
   void fields(Access access = {}, const std::vector<std::string_view>& without = {}) {
-    using Part = std::remove_cvref_t<std::invoke_result_t<Access, S&>>;
-    each_field<Part>([&](const auto& f) {
-      const auto at = f.member;
-      const auto member = [=](S & s) -> auto& { return std::invoke(at, std::invoke(access, s)); };
-      const bool left_out = std::find(without.begin(), without.end(), f.name) != without.end();
-      if (f.in_scenes && !left_out) add_field<std::remove_cvref_t<decltype(member(std::declval<S&>()))>>(f, member);
-    });
-    if constexpr (requires(const Part& part) { part.check(); }) {
-      finish([access](S& s, const Node& table, const Place& place) {
-        const Fault fault{std::invoke(access, s).check()};
-        if (!fault.what.empty()) complain<Part>(fault, table, place);
-      });
+    using Part = Member<Access>;
+    const std::unique_ptr<S> initial = made();
+    Part& part = std::invoke(access, *initial);
+    Fields fields{.part = place_of(access), .initial = &part, .without = without};
+    each_field<Part>(
+        [&]<class T>(const FieldOf<Part, T>& f) { add_field(fields, f, member_kind<T>(), &(part.*f.member)); });
+    if constexpr (requires { part.check(); }) {
+      check_part([access](void* target) { return Fault{std::invoke(access, *static_cast<S*>(target)).check()}; },
+                 std::move(fields.keys));
     }
-  }
-
-  /// A key that is there.
-  KeySpec& at(std::string_view name) { return const_cast<KeySpec&>(*spec_.find(name)); }
-
-  /// Puts keys that are only checked here behind another one; the section's finish() reads them.
-  void bare_after(std::string_view other, std::vector<KeySpec> keys) {
-    const auto is_it = [&](const KeySpec& key) { return key.name == other; };
-    const auto at = std::find_if(spec_.keys.begin(), spec_.keys.end(), is_it) + 1;
-    spec_.keys.insert(at, std::move_iterator(keys.begin()), std::move_iterator(keys.end()));
   }
 
   /// A value; `C` is the codec where it is not that of the member's type.
   template <class C = void, class Access>
   KeySpec& key(std::string name, Access access, std::string help) {
-    using T = std::remove_cvref_t<decltype(std::invoke(access, std::declval<S&>()))>;
-    using Code = std::conditional_t<std::is_void_v<C>, Codec<T>, std::type_identity<C>>;
-    return add_value<T, unwrapped<Code>>(std::move(name), access, std::move(help));
+    using T = Member<Access>;
+    using Code = typename std::conditional_t<std::is_void_v<C>, Wrapped<Codec<T>>, Wrapped<C>>::type;
+    const std::unique_ptr<S> initial = made();
+    return add_value(std::move(name), value_code<T, Code>(), place_of(access), &std::invoke(access, *initial),
+                     std::move(help));
   }
 
   /// A value that is one of some words: of types that have none of their own (glisson/words.h).
   template <class T, class Access>
   KeySpec& choice(std::string name, Access access, std::vector<Choice<T>> choices, std::string help) {
     KeySpec key{.name = std::move(name), .help = std::move(help), .type = ValueType::text};
-    S initial{};
+    const std::unique_ptr<S> initial = made();
     for (const Choice<T>& c : choices) {
       key.words.push_back({c.word, c.help, c.alias});
-      if (!c.alias && same(c.value, std::invoke(access, initial))) key.default_text = "\"" + c.word + "\"";
+      if constexpr (requires { c.value == c.value; }) {
+        if (!c.alias && c.value == std::invoke(access, *initial)) key.default_text = "\"" + c.word + "\"";
+      }
     }
-    key.store = [access, choices](void* target, const Node& node) {
+    key.store = [place = place_of(access), choices](void* target, const Node& node) {
       for (const Choice<T>& c : choices) {
-        if (c.word == *node.text()) std::invoke(access, *static_cast<S*>(target)) = c.value;
+        if (c.word == *node.text()) *static_cast<T*>(place.in(target)) = c.value;
       }
     };
     return push(std::move(key));
@@ -246,136 +340,56 @@ class Section {
   /// A table, filling what `access` returns.
   template <class Access>
   KeySpec& table(std::string name, const SectionSpec& section, Access access, std::string help) {
-    KeySpec key = table_key(std::move(name), std::move(help), Shape::one, &section);
-    key.slot = [access](void* target, const std::string&) -> void* {
-      return &std::invoke(access, *static_cast<S*>(target));
-    };
-    return push(std::move(key));
+    return add_tables(
+        std::move(name), Shape::one, section, place_of(access), [](void* member, const std::string&) { return member; },
+        std::move(help));
   }
 
   /// A list of tables `[[name]]`, each a new last element of the vector that `access` returns.
   template <class Access>
   KeySpec& tables(std::string name, const SectionSpec& section, Access access, std::string help) {
-    KeySpec key = table_key(std::move(name), std::move(help), Shape::list, &section);
-    key.slot = [access](void* target, const std::string&) -> void* {
-      return &std::invoke(access, *static_cast<S*>(target)).emplace_back();
+    const Slot added = [](void* member, const std::string&) -> void* {
+      return &static_cast<Member<Access>*>(member)->emplace_back();
     };
-    return push(std::move(key));
+    return add_tables(std::move(name), Shape::list, section, place_of(access), added, std::move(help));
   }
 
   /// A table for each name, filling the entries of the map that `access` returns.
   template <class Access>
   KeySpec& named_tables(std::string name, const SectionSpec& section, Access access, std::string help) {
-    KeySpec key = table_key(std::move(name), std::move(help), Shape::named, &section);
-    key.slot = [access](void* target, const std::string& entry) -> void* {
-      return &std::invoke(access, *static_cast<S*>(target))[entry];
+    const Slot entry = [](void* member, const std::string& named) -> void* {
+      return &(*static_cast<Member<Access>*>(member))[named];
     };
-    return push(std::move(key));
+    return add_tables(std::move(name), Shape::named, section, place_of(access), entry, std::move(help));
   }
 
-  /// A key that is only checked here; the section's finish() reads it.
-  KeySpec& bare(KeySpec key) { return push(std::move(key)); }
-
-  /// What must hold between keys; called once all keys of the table are right, the last that was given first.
-  void finish(std::function<void(S&, const Node&, const Place&)> check) {
-    const auto then = std::move(spec_.finish);
-    spec_.finish = [check, then](void* target, const Node& node, const Place& place) {
-      const std::size_t before = place.problems.count();
-      check(*static_cast<S*>(target), node, place);
-      if (then && place.problems.count() == before) then(target, node, place);
-    };
+  /// What must hold between keys: `check(S&, const Node& table, const Place&)`, called once all keys of the table are right,
+  /// the check that was given last first.
+  template <class CheckOfS>
+  void finish(CheckOfS check) {
+    add_check([check](void* target, const Node& table, const Place& place) {
+      check(*static_cast<S*>(target), table, place);
+    });
   }
-
-  SectionSpec& spec() { return spec_; }
 
  private:
-  /// A described member, as a table where its type is one.
-  template <class T, class Access>
-  void add_field(const FieldText& f, Access access) {
-    KeySpec* key = nullptr;
-    if constexpr (HasSection<T>) {
-      key = &table(f.key(), section_of(std::type_identity<T>()), access, std::string(f.help));
-    } else if constexpr (HoldsSection<T>) {
-      const SectionSpec& section = section_of(std::type_identity<typename T::value_type>());
-      if constexpr (std::is_same_v<T, std::vector<typename T::value_type>>) {
-        key = &tables(f.key(), section, access, std::string(f.help));
-      } else {
-        const auto made = [access](S & s) -> auto& { return std::invoke(access, s).emplace(); };
-        key = &table(f.key(), section, made, std::string(f.help));
-      }
-    } else if constexpr (requires { Codec<T>::kType; }) {
-      // NOLINTNEXTLINE(bugprone-branch-clone): the codecs differ
-      key = &(f.scale() == 1.0 ? add_value<T, Codec<T>>(f.key(), access, std::string(f.help))
-                               : add_value<T, Thousandth<T>>(f.key(), access, std::string(f.help)));
-    } else {
-      throw std::logic_error(f.key() + ": no scene can hold a value of its type; it is no_key()");
-    }
-    key->unit = f.unit;
-    if (f.range.bounded()) key->range = f.range;
-    key->advice = f.advice;
-    key->accepts_auto = f.accepts_auto;
-    key->is_direction = f.is_direction;
-    if (!f.default_text.empty()) key->default_text = f.default_text;
-    if (f.required) key->must();
-  }
-
-  /// A fault between members, at the key of the one that it names.
-  template <class Part>
-  static void complain(const Fault& fault, const Node& table, const Place& place) {
-    std::string key;
-    each_field<Part>([&](const FieldText& f) { key = f.name == fault.field ? f.key() : key; });
-    if (key.empty()) return place.complain(fault.what);
-    const Node* given = table.find(key);
-    place.complain(given ? *given : table, key, fault.what);
-  }
-
+  template <class Access>
+  using Member = std::remove_cvref_t<std::invoke_result_t<Access, S&>>;
   template <class Code>
-  struct Unwrap {
-    using type = Code;
-  };
-  template <class C>
-  struct Unwrap<std::type_identity<C>> {
-    using type = C;
-  };
-  template <class Code>
-  using unwrapped = typename Unwrap<Code>::type;
+  using Wrapped = std::type_identity<Code>;
 
-  template <class T, class Code, class Access>
-  KeySpec& add_value(std::string name, Access access, std::string help) {
-    KeySpec key{.name = std::move(name), .help = std::move(help), .type = Code::kType, .shape = Code::kShape};
-    if constexpr (requires { Code::kLargest; }) key.range = between(0.0, Code::kLargest);
-    if constexpr (HasWords<T>) {
-      for (const Word<T>& w : kWords<T>) key.words.push_back({std::string(w.word), std::string(w.help), is_alias(w)});
-    }
-    if constexpr (std::is_default_constructible_v<S>) {
-      const auto initial = std::make_unique<S>();
-      key.default_text = Code::show(std::invoke(access, *initial));
-    }
-    key.store = [access](void* target, const Node& node) {
-      std::invoke(access, *static_cast<S*>(target)) = Code::read(node);
-    };
-    return push(std::move(key));
+  static std::unique_ptr<S> made() { return std::make_unique<S>(); }
+
+  static MemberPlace place_of(std::identity) { return {}; }
+  template <class T, class Base>
+  static MemberPlace place_of(T Base::*member) {
+    const std::unique_ptr<S> any = made();
+    return {.offset = reinterpret_cast<char*>(&((*any).*member)) - reinterpret_cast<char*>(any.get())};
   }
-
-  template <class T>
-  static bool same(const T& a, const T& b) {
-    if constexpr (requires { a == b; })
-      return a == b;
-    else
-      return false;
+  template <class Access>
+  static MemberPlace place_of(Access access) {
+    return {.part = [access](void* target) -> void* { return &std::invoke(access, *static_cast<S*>(target)); }};
   }
-
-  static KeySpec table_key(std::string name, std::string help, Shape shape, const SectionSpec* section) {
-    return {
-        .name = std::move(name), .help = std::move(help), .type = ValueType::table, .shape = shape, .section = section};
-  }
-
-  KeySpec& push(KeySpec key) {
-    spec_.keys.push_back(std::move(key));
-    return spec_.keys.back();
-  }
-
-  SectionSpec spec_;
 };
 
 /// The section of a described struct.
