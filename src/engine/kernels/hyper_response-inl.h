@@ -317,6 +317,14 @@ HWY_INLINE void store_stretched(const ResponseItems& in, const LaneResponse& r, 
   rescue_if_small(in, to, item, hn::IfThenElse(known, J, one), out);
 }
 
+/// An item, whatever its stretches.
+HWY_NOINLINE void respond_by_stretches(const ResponseItems& in, const LaneResponse& r, const Rescue& to,
+                                       std::size_t item, ResponseBlock& out) {
+  const HyperState state = hyper_state(in.gradient + item * 9 * kLanes);
+  const auto all = hn::Gt(number(1.0F), hn::Zero(Lanes()));
+  store_stretched(in, r, to, item, state, stress_of_stretches(std::get<Ogden>(*r.law), state.H), all, out);
+}
+
 /// Tets of a block whose stretches are apart, and their stresses, as many at a time as there are lanes.
 class FarTets {
  public:
@@ -351,10 +359,8 @@ class FarTets {
     ResponseItems packed;
     packed.gradient = gradient, packed.element = element, packed.items = 1;
     if (in.mean != nullptr) packed.mean = mean;
-    const HyperState state = hyper_state(gradient);
-    const IsochoricStress stress = stress_of_stretches(std::get<Ogden>(*r.law), state.H);
     ResponseBlock of;  // the first item of it
-    store_stretched(packed, r, to, 0, state, stress, hn::Gt(number(1.0F), hn::Zero(Lanes())), of);
+    respond_by_stretches(packed, r, to, 0, of);
     for (std::size_t l = 0; l < n; ++l) {
       const std::size_t tet = which[l];
       for (std::size_t k = 0; k < 9; ++k) out.piola[place(tet, 9) + k * kLanes] = of.piola[k * kLanes + l];
@@ -376,6 +382,10 @@ inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Resc
     const HyperState state = hyper_state(in.gradient + item * 9 * kLanes);
     const StretchDeviator deviator = stretch_deviator(green_strain(state.H));
     const auto close = hn::Lt(deviator.J2, number(largest));
+    if (hn::AllFalse(Lanes(), close)) {
+      respond_by_stretches(in, r, to, item, out);
+      continue;
+    }
     store_stretched(in, r, to, item, state, stress_of_series(series, deviator, state), close, out);
     if (!hn::AllTrue(Lanes(), close)) far.list(item, deviator.J2, largest);
   }

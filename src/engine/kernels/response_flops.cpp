@@ -95,14 +95,15 @@ inline bool Lt(F a, F b) { return a.value < b.value; }
 inline bool Gt(F a, F b) { return a.value > b.value; }
 inline bool Ge(F a, F b) { return a.value >= b.value; }
 inline bool AllTrue(Lanes, bool all) { return all; }
+inline bool AllFalse(Lanes, bool any) { return !any; }
 /// Both are worked out in lanes.
 inline F IfThenElse(bool choice, F yes, F no) { return after(0, choice ? yes.value : no.value, yes, no); }
 inline F guess_inverse_cube_root(Lanes, F a) { return after(0, 1.0F / std::cbrt(a.value), a); }
 
 namespace hn {
-using N_TRACED::Abs, N_TRACED::AllTrue, N_TRACED::Ge, N_TRACED::Gt, N_TRACED::IfThenElse, N_TRACED::Lt, N_TRACED::Max,
-    N_TRACED::Min, N_TRACED::MulAdd, N_TRACED::MulSub, N_TRACED::Neg, N_TRACED::NegMulAdd, N_TRACED::Set,
-    N_TRACED::Sqrt;
+using N_TRACED::Abs, N_TRACED::AllFalse, N_TRACED::AllTrue, N_TRACED::Ge, N_TRACED::Gt, N_TRACED::IfThenElse,
+    N_TRACED::Lt, N_TRACED::Max, N_TRACED::Min, N_TRACED::MulAdd, N_TRACED::MulSub, N_TRACED::Neg, N_TRACED::NegMulAdd,
+    N_TRACED::Set, N_TRACED::Sqrt;
 inline F Zero(Lanes) { return {}; }
 inline F IfThenElseZero(bool choice, F yes) { return choice ? yes : F{}; }
 inline F IfThenZeroElse(bool choice, F no) { return choice ? F{} : no; }
