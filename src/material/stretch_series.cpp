@@ -71,9 +71,8 @@ void add_term(double mu, double alpha, StretchSeries<>& out) {
     two_back = one_back, one_back = at, at = next;
   }
   const Series isochoric = power(Series(J3).add(J2, -1.0), -a / 3.0);
-  Series sum[2] = {Series{out.first}.add(first.times(isochoric), 2.0 * mu / alpha),
-                   Series{out.second}.add(second.times(isochoric), 2.0 * mu / alpha)};
-  out.first = sum[0].c, out.second = sum[1].c;
+  out.first = Series{out.first}.add(first.times(isochoric), 2.0 * mu / alpha).c;
+  out.second = Series{out.second}.add(second.times(isochoric), 2.0 * mu / alpha).c;
 }
 
 /// Eigenvalues of X of all shapes, from one long axis to one short axis.
@@ -105,21 +104,22 @@ double error_at(const Ogden& law, const StretchSeries<>& series, double delta) {
   return most;
 }
 
-/// λ_max of the tangent of the isochoric part over that at rest, m = 1.
+/// λ_max of the tangent of the isochoric part where m = 1 [Pa].
 double stiffness_at(const Ogden& law, const std::array<double, 3>& x) {
   const auto stretch = [&](std::size_t i) { return std::sqrt(1.0 + x[i]) - 1.0; };
-  return stretch_bound(law, {stretch(0), stretch(1), stretch(2)}) / stretch_bound(law, {0.0, 0.0, 0.0});
+  return stretch_bound(law, {stretch(0), stretch(1), stretch(2)});
 }
 
 /// b₁ is the slope of the tangent's largest eigenvalue at rest, b₃ the difference of its bend between one long axis and one
 /// short axis, and b₂ what the states up to δ = `largest` need.
 /// @return how far the bound is above the eigenvalue, as a factor
 double set_bound(const Ogden& law, double largest, StretchSeries<>& out) {
+  const double rest = stiffness_at(law, {0.0, 0.0, 0.0});
   double mean = 0.0;
   for (std::size_t k = 0; k < law.mu.size(); ++k) mean += 0.5 * law.mu[k] * law.alpha[k] / law.shear_modulus();
   const double slope = 0.5 * std::abs(mean - 1.5), square = largest * largest;
-  const double along = stiffness_at(law, {largest, -0.5 * largest, -0.5 * largest});
-  const double across = stiffness_at(law, {0.5 * largest, 0.5 * largest, -largest});
+  const double along = stiffness_at(law, {largest, -0.5 * largest, -0.5 * largest}) / rest;
+  const double across = stiffness_at(law, {0.5 * largest, 0.5 * largest, -largest}) / rest;
   const double shape = 2.0 * (along - across) / square;  // J₃/δ is ±¼ δ² there
   const auto visit_states = [&](auto visit) {
     constexpr int kRadii = 16;
@@ -127,7 +127,7 @@ double set_bound(const Ogden& law, double largest, StretchSeries<>& out) {
       const double delta = largest * double(n) / double(kRadii);
       visit_shapes(delta, [&](const std::array<double, 3>& x) {
         const double known = 1.0 + slope * delta + shape * x[0] * x[1] * x[2] / delta;
-        visit(stiffness_at(law, x), known, delta * delta);
+        visit(stiffness_at(law, x) / rest, known, delta * delta);
       });
     }
   };
@@ -136,7 +136,6 @@ double set_bound(const Ogden& law, double largest, StretchSeries<>& out) {
   bend *= 1.05;  // for states between those
   visit_states(
       [&](double exact, double known, double squared) { most = std::max(most, (known + bend * squared) / exact); });
-  const double rest = stretch_bound(law, {0.0, 0.0, 0.0});
   out.bound = {rest, rest * slope, rest * bend, rest * shape};
   return most;
 }
@@ -159,10 +158,13 @@ StretchSeries<float> StretchSeries<>::rounded() const {
 StretchSeries<> stretch_series(const Ogden& law) {
   StretchSeries<> out;
   for (std::size_t k = 0; k < law.mu.size(); ++k) add_term(law.mu[k], law.alpha[k], out);
-  constexpr double kMostError = 1e-7, kLoosest = 1.2, kFarthest = 0.5, kCloser = 0.9;
-  double delta = kFarthest;
-  while (error_at(law, out, delta) > kMostError || set_bound(law, delta, out) > kLoosest) delta *= kCloser;
-  out.largest_J2 = 0.75 * delta * delta;
+  constexpr double kMostError = 1e-7, kLoosest = 1.2, kFarthest = 0.5, kNearest = 1e-3, kCloser = 0.9;
+  for (double delta = kFarthest; delta > kNearest; delta *= kCloser) {
+    if (error_at(law, out, delta) <= kMostError && set_bound(law, delta, out) <= kLoosest) {
+      out.largest_J2 = 0.75 * delta * delta;
+      return out;
+    }
+  }
   return out;
 }
 

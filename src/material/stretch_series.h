@@ -27,7 +27,7 @@ struct StretchSeries {
   using Coefficients = std::array<std::array<Number, kPowers[0]>, kPowers.size()>;  ///< [power of J₃][power of J₂]
 
   Coefficients first{}, second{};  ///< of q₁ and q₂ [Pa]
-  Number largest_J2 = 0;           ///< where the series hold
+  Number largest_J2 = 0;           ///< where the series hold; 0: nowhere
   /// λ_max of the tangent of the isochoric part is at most (b₀ + b₁ δ + b₂ δ² + b₃ J₃/δ)/m [Pa], and at least 1/1.2 of it;
   /// δ² = 4/3 J₂, for δ is the largest that an eigenvalue of X can be.
   std::array<Number, 4> bound{};

@@ -16,7 +16,8 @@ std::vector<Ogden> laws() {
   return {{.mu = {1000.0}, .alpha = {2.0}, .bulk_modulus = 2e4},
           {.mu = {1000.0}, .alpha = {-24.0}, .bulk_modulus = 2e4},
           {.mu = {900.0}, .alpha = {40.0}, .bulk_modulus = 2e4},
-          {.mu = {1500.0, -700.0, 200.0}, .alpha = {1.3, -2.5, 9.0}, .bulk_modulus = 2e4}};
+          {.mu = {1500.0, -700.0, 200.0}, .alpha = {1.3, -2.5, 9.0}, .bulk_modulus = 2e4},
+          {.mu = {1e6, -999'999.0}, .alpha = {-100.0, 100.0}, .bulk_modulus = 2e4}};
 }
 
 /// A state of three stretches at random, X of which has J₂ = share² of the largest.
