@@ -72,7 +72,8 @@ LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::
   r.moduli = moduli;
   r.mu_law = mu_law;
   r.small = tissue.has_small_strain();
-  r.energy = !tissue.hyperelastic && tissue.law_form == LawForm::energy;
+  r.constant = tissue.hyperelastic.has_value() || tissue.has_constant_moduli();
+  r.energy = !r.constant && tissue.law_form == LawForm::energy;
   r.measure = tissue.measure;
   r.volume = tissue.hyperelastic ? VolumeKind::hyperelastic
                                  : (tissue.kinematics == Kinematics::corotational ? VolumeKind::corotational
@@ -98,8 +99,7 @@ LaneResponse lane_response(const Tissue& tissue, const LaneTissue& moduli, std::
 
 RespondStage respond_stage(const ResponseKernels& kernels, const Tissue& tissue) {
   if (tissue.hyperelastic) return kernels.hyperelastic[tissue.hyperelastic->index()];
-  if (tissue.kinematics == Kinematics::corotational) return kernels.corotational;
-  return tissue.kinematics == Kinematics::green ? kernels.green : kernels.small;
+  return kernels.tensor_mass[tissue.has_constant_moduli() ? 0 : 1][static_cast<std::size_t>(tissue.kinematics)];
 }
 
 LaneWeights lane_weights(double step, double time) {

@@ -93,21 +93,21 @@ class SubmeshBody final : public MovingBody {
   };
   /// What a task found.
   struct Findings {
-    bool finite = true, inverted = false;
+    bool finite = true;
     StiffnessSeen seen;
     double stiffening = 0.0;
     float longest_edge_squared = 0.0F;
-    std::vector<std::uint32_t> tets;
+    std::vector<std::uint32_t> inverted;  ///< tets of the mesh with J ≤ 0
     std::vector<StiffElement> stiff;
     VertexWork work;
 
     /// Forgets all; the lists keep their memory.
     void clear() {
-      std::vector<std::uint32_t> no_tets = std::move(tets);
+      std::vector<std::uint32_t> none_inverted = std::move(inverted);
       std::vector<StiffElement> none_stiff = std::move(stiff);
-      no_tets.clear(), none_stiff.clear();
+      none_inverted.clear(), none_stiff.clear();
       *this = {};
-      tets = std::move(no_tets), stiff = std::move(none_stiff);
+      inverted = std::move(none_inverted), stiff = std::move(none_stiff);
     }
   };
   /// What the last look at a linear submesh for inverted tets told: gradients below 1, above, or J ≤ 0.
@@ -118,7 +118,7 @@ class SubmeshBody final : public MovingBody {
     LaneResponse lanes;
     RespondStage respond;
     MaxwellStep maxwell;
-    bool one_pass = false, constant = false;  ///< in_one_pass(), Tissue::has_constant_moduli()
+    bool one_pass = false, measured = false;  ///< in_one_pass(); whether a law or a branch's time reads the measure
   };
   /// Of a submesh whose tets share their volume change: one over the volume around each local vertex, and ϑ_a.
   struct SharedVolume {
@@ -183,7 +183,7 @@ class SubmeshBody final : public MovingBody {
                      Findings& found) const;
   void push_edges(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;
   bool must_look(std::size_t s, float longest_edge_squared, bool moves);
-  void list_inverted(const Submesh& part, Findings& found) const;
+  void list_inverted(std::span<const std::uint32_t> elements, Findings& found) const;
   void fill_slots(const Submesh& part, bool split, const Scratch& scratch);
   void take_active(std::span<const Watch> watches, std::size_t first_record, const float* elastic,
                    const float* viscous);

@@ -15,7 +15,7 @@ std::unique_ptr<SubmeshBody::LargePlan> SubmeshBody::large_plan_of(const TissueB
                                                respond_stage(*kernels_.response, block.tissue),
                                                {},
                                                in_one_pass(block.tissue),
-                                               block.tissue.has_constant_moduli()});
+                                               !lanes.constant || !lanes.pace.empty()});
 }
 
 /// Weights of all branches for a step of h from the state that is asked for.
@@ -52,25 +52,27 @@ void SubmeshBody::push_relaxing(std::size_t s, bool split, Scratch& scratch, Fin
   Submesh& part = submeshes_.parts[s];
   const Plan& plan = plans_[part.block];
   const LargePlan& large = *large_plans_[part.block];
+  const LaneResponse& lanes = large.lanes;
   const Elements elements = elements_of(part, scratch);
   const std::size_t tets = kernels_.lanes * kChainTets, numbers = memory_numbers(large.response.tissue());
-  const StressPass pass = kernels_.response->relaxing_small[large.constant ? 0 : 1][split ? 1 : 0];
-  const auto gather = large.lanes.viscous ? kernels_.gather_viscous : kernels_.gather_elastic;
+  const StressPass pass = kernels_.response->relaxing_small[lanes.constant ? 0 : 1][split ? 1 : 0];
+  const auto gather = lanes.viscous ? kernels_.gather_viscous : kernels_.gather_elastic;
   Block& block = scratch.block;
   ResponseBlock& out = scratch.response;
   for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
     const std::size_t n = std::min(kBlockBatches, part.chains.count - b);
     gather(elements, b, n, block);
-    if (!large.constant) {
-      if (kernels_.measure[plan.measure](elements, b, n, block)) found.inverted = true;
+    bool inverted = false;
+    if (large.measured) {
+      inverted = kernels_.measure[plan.measure](elements, b, n, block);
       run_laws(plan, n * tets, block);
     }
     const ResponseItems items{
         .gradient = block.gradient, .memory = part.memory.data() + b * tets * numbers, .items = n * kChainTets};
-    const PassFound here = pass(items, large.lanes, large.maxwell, block, out);
-    found.inverted = found.inverted || here.inverted;
+    const PassFound here = pass(items, lanes, large.maxwell, block, out);
+    if (inverted || here.inverted) list_inverted(part.chains.elements_of(b, n), found);
     found.stiffening = std::max(found.stiffening, double(here.stiffest));
-    if (!large.constant && double(here.stiffest) > list_limit(part.block)) list_response(part, b, n, out, found);
+    if (large.measured && double(here.stiffest) > list_limit(part.block)) list_response(part, b, n, out, found);
     kernels_.push_stress(elements, b, n, out.piola, scratch.elastic.data());
     if (split) kernels_.push_stress(elements, b, n, block.viscous, scratch.viscous.data());
   }
@@ -116,9 +118,11 @@ void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Fin
       const std::uint16_t* index = part.chains.index.data() + b * kChainVertices * kernels_.lanes;
       stages.mean_of_vertices(index, n, shared_volumes_[s].theta.data(), scratch.mean);
     }
-    if (kernels_.measure[plan.measure](elements, b, n, scratch.block)) found.inverted = true;
-    run_laws(plan, n * tets, scratch.block);
-    large.respond(items, lanes, to, scratch.block, out);
+    if (large.measured) {
+      kernels_.measure[plan.measure](elements, b, n, scratch.block);
+      run_laws(plan, n * tets, scratch.block);
+    }
+    if (large.respond(items, lanes, to, scratch.block, out)) list_inverted(part.chains.elements_of(b, n), found);
     if (lanes.fibre > 0.0F) stages.fibres(items, lanes, out);
     if (!lanes.pace.empty()) {
       run_paces(lanes, n * tets, scratch.block, out);

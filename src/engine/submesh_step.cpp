@@ -113,7 +113,7 @@ void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratc
   for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
     const std::size_t n = std::min(kBlockBatches, part.chains.count - b), values = kChainTets * n * kernels_.lanes;
     gather(elements, b, n, block);
-    if (measure(elements, b, n, block)) found.inverted = true;
+    if (measure(elements, b, n, block)) list_inverted(part.chains.elements_of(b, n), found);
     if (watch_laws(plan, values, limit, block, found.seen)) list_by_laws(part, b, n, plan, block, found);
     push(elements, b, n, block);
     if (split) kernels_.push_viscous(elements, b, n, block);
@@ -145,15 +145,17 @@ bool SubmeshBody::must_look(std::size_t s, float longest_edge_squared, bool move
   return look;
 }
 
-void SubmeshBody::list_inverted(const Submesh& part, Findings& found) const {
-  for (const std::uint32_t e : part.elements) {
+/// Lists those of some elements that have J ≤ 0.
+void SubmeshBody::list_inverted(std::span<const std::uint32_t> elements, Findings& found) const {
+  for (const std::uint32_t e : elements) {
+    if (e == kNoElement) continue;
     const Tet& t = body_.elements[e];
     std::array<Vec3d, 4> u;
     for (std::size_t a = 0; a < 4; ++a) {
       u[a] = vector_of(state_.data() + submeshes_.record_of_vertex[t[a]] * kStateDoubles);
     }
     const Mat3d H = displacement_gradient<double>(body_.rest[e].s, {u[1] - u[0], u[2] - u[0], u[3] - u[0]});
-    if (!(jacobian(H) > 0.0)) found.tets.push_back(body_.mesh_tet[e]);
+    if (!(jacobian(H) > 0.0)) found.inverted.push_back(body_.mesh_tet[e]);
   }
 }
 
@@ -223,14 +225,13 @@ void SubmeshBody::run_submesh(std::size_t s, const Step& step, Scratch& scratch)
   narrow(part, scratch);
   if (part.edges.count > 0) {
     push_edges(part, split, scratch, found);
-    found.inverted = must_look(s, found.longest_edge_squared, step.kick.step > 0.0);
+    if (must_look(s, found.longest_edge_squared, step.kick.step > 0.0)) list_inverted(part.elements, found);
   } else if (large_plans_[part.block] != nullptr) {
     push_response(s, split, scratch, found);
   } else {
     push_elements(part, split, scratch, found);
   }
-  if (found.inverted) list_inverted(part, found);
-  if (!found.tets.empty()) looked_[s] = Looked::inverted;
+  if (!found.inverted.empty()) looked_[s] = Looked::inverted;
 
   found.finite = kernels_.all_finite(scratch.elastic.data(), floats) &&
                  (!split || kernels_.all_finite(scratch.viscous.data(), floats));
@@ -288,7 +289,7 @@ void SubmeshBody::gather_findings(bool accounted) {
   for (std::size_t s = 0; s < found_.size(); ++s) {
     const Findings& found = found_[s];
     advance_.finite = advance_.finite && found.finite;
-    advance_.inverted.insert(advance_.inverted.end(), found.tets.begin(), found.tets.end());
+    advance_.inverted.insert(advance_.inverted.end(), found.inverted.begin(), found.inverted.end());
     double& r = advance_.stiffening[submeshes_.parts[s].block];
     r = std::max(r, found.stiffening);
     advance_.stiff.insert(advance_.stiff.end(), found.stiff.begin(), found.stiff.end());

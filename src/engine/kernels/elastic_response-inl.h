@@ -28,19 +28,38 @@ struct LaneModuli {
   F ratio, slope;  ///< over those at rest, the larger of shear and bulk
 };
 
+/// Without kLaw those at rest.
+template <bool kLaw>
 HWY_INLINE LaneModuli moduli_of(const LaneResponse& r, const Block& block, std::size_t item) {
   const Lanes d;
-  const auto at = [&](const float* values) GLISSON_INLINED { return hn::Load(d, values + item * kLanes); };
+  const auto at = [&](const float* values, float rest) GLISSON_INLINED {
+    if constexpr (kLaw) return hn::Load(d, values + item * kLanes);
+    return number(rest);
+  };
   const F l = number(r.moduli.lambda), m = number(r.moduli.mu), third = number(2.0F / 3.0F);
   LaneModuli k;
-  k.lambda = l * at(block.value[0]), k.mu = m * at(block.value[r.mu_law]);
-  k.lambda_slope = l * at(block.slope[0]), k.mu_slope = m * at(block.slope[r.mu_law]);
+  k.lambda = l * at(block.value[0], 1.0F), k.mu = m * at(block.value[r.mu_law], 1.0F);
+  k.lambda_slope = l * at(block.slope[0], 0.0F), k.mu_slope = m * at(block.slope[r.mu_law], 0.0F);
   const F per_mu = number(1.0F / r.moduli.rest_mu);
   const F per_bulk = number(1.0F / (2.0F * r.moduli.bulk_over_two_mu * r.moduli.rest_mu));
   const F dl = hn::Abs(k.lambda_slope), dm = hn::Abs(k.mu_slope);
   k.ratio = hn::Max(k.mu * per_mu, hn::MulAdd(third, k.mu, k.lambda) * per_bulk);
   k.slope = hn::Max(dm * per_mu, hn::MulAdd(third, dm, dl) * per_bulk);
   return k;
+}
+
+/// How stiff a tet of a law is over rest: its modulus, and its slope over the strain. @param squares  ‖ε‖²
+HWY_INLINE F law_bound(const LaneResponse& r, const LaneModuli& k, F trace, F squares, F x) {
+  F slope = k.slope;
+  if (r.measure == DeformationMeasure::one_minus_q) {
+    slope = slope * number(4.0F / 3.0F) * hn::Sqrt(x * number(1.5F));
+  } else if (r.measure != DeformationMeasure::equivalent_shear_strain) {
+    slope = slope * x * number(1.64F);
+  }
+  if (r.energy) slope = slope * number(6.0F);
+  const F square = trace * trace;
+  const F deviator = hn::Max(hn::MulAdd(square, number(-1.0F / 3.0F), squares), hn::Zero(Lanes()));
+  return hn::MulAdd(slope, hn::Sqrt(hn::MulAdd(square, number(r.moduli.bulk_over_two_mu), deviator)), k.ratio);
 }
 
 /// F − (I₁/3J) cof F = H − r K + (1 − r) I, 1 − r = (3 j − 2 tr H − ‖H‖²)/(3J).
@@ -118,16 +137,21 @@ HWY_INLINE void rescue_if_small(const ResponseItems& in, const Rescue& to, std::
   rescue_lanes(in, to, item, volume, out);
 }
 
-template <Kinematics K>
-void tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block& block,
+/// Whether a volume change of some tets is J ≤ 0.
+HWY_INLINE bool is_inverted(F lowest) { return !hn::AllTrue(Lanes(), hn::Gt(lowest, number(-1.0F))); }
+
+template <Kinematics K, bool kLaw>
+bool tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block& block,
                  ResponseBlock& out) {
   const Lanes d;
   const F one = number(1.0F), two = number(2.0F);
+  F lowest = one;
   for (std::size_t item = 0; item < in.items; ++item) {
     const Tensor H = load_tensor(in.gradient + item * 9 * kLanes);
     const Invariants<F> inv = invariants(d, H);
     const F J = inv.volume_change + one;
-    const LaneModuli k = moduli_of(r, block, item);
+    lowest = hn::Min(lowest, inv.volume_change);
+    const LaneModuli k = moduli_of<kLaw>(r, block, item);
     const auto volume_change = [&](const Symmetric& e) GLISSON_INLINED {
       return in.mean != nullptr ? hn::Load(d, in.mean + item * kLanes) : trace_of(e);
     };
@@ -155,14 +179,8 @@ void tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& t
       P = tensor_product(F1, S);
     }
     const F t = trace_of(strain), squares = contraction(strain, strain);
-    const F deviator = hn::Max(hn::MulAdd(t * t, number(-1.0F / 3.0F), squares), hn::Zero(d));
-    const F x = hn::Load(d, block.x + item * kLanes);
-    const F g = r.measure == DeformationMeasure::equivalent_shear_strain
-                    ? one
-                    : (r.measure == DeformationMeasure::one_minus_q ? number(4.0F / 3.0F) * hn::Sqrt(x * number(1.5F))
-                                                                    : x * number(1.64F));
-    const F reach = hn::Sqrt(hn::MulAdd(t * t, number(r.moduli.bulk_over_two_mu), deviator));
-    F bound = hn::MulAdd(k.slope * g * number(r.energy ? 6.0F : 1.0F), reach, k.ratio);
+    F bound = k.ratio;
+    if constexpr (kLaw) bound = law_bound(r, k, t, squares, hn::Load(d, block.x + item * kLanes));
     if constexpr (K == Kinematics::green) {
       bound = hn::MulAdd(bound, stretch, hn::Sqrt(contraction(S, S)) * number(r.rest_bound));
     } else if constexpr (K == Kinematics::corotational) {
@@ -173,15 +191,23 @@ void tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& t
       bound = hn::MulAdd(two * pull / pair, number(r.rest_bound), bound);
       if (r.viscous) bound = hn::Max(bound, stretch);
     }
-    bound = hn::IfThenZeroElse(hn::Lt(hn::Load(d, block.y + item * kLanes), hn::Zero(d)), bound);
+    if constexpr (kLaw) bound = hn::IfThenZeroElse(hn::Lt(hn::Load(d, block.y + item * kLanes), hn::Zero(d)), bound);
     see_stiffness(out, item, bound, bound);
-    if (r.energy) {
+    if (kLaw && r.energy) {
       const F work = hn::MulAdd(number(0.5F) * k.lambda_slope * t, t, k.mu_slope * squares);
-      P = plus(P, one, measure_gradient(r, H, inv, x, work));
+      P = plus(P, one, measure_gradient(r, H, inv, hn::Load(d, block.x + item * kLanes), work));
     }
     store_tensor(P, out.piola + item * 9 * kLanes);
-    if (K == Kinematics::corotational || r.energy) rescue_if_small(in, to, item, J, out);
+    if (K == Kinematics::corotational || (kLaw && r.energy)) rescue_if_small(in, to, item, J, out);
   }
+  return is_inverted(lowest);
+}
+
+/// By Kinematics.
+template <bool kLaw>
+constexpr TensorMassStages tensor_mass_stages() {
+  return {tensor_mass<Kinematics::small, kLaw>, tensor_mass<Kinematics::corotational, kLaw>,
+          tensor_mass<Kinematics::green, kLaw>};
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

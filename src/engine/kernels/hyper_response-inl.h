@@ -110,11 +110,13 @@ GLISSON_FORMULA InvariantSlopes<LaneScalar> lane_slopes(const Law& law, const Hy
 }
 
 template <class Law>
-void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&, ResponseBlock& out) {
+bool invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&, ResponseBlock& out) {
   const Law law = std::get<Law>(*r.law);  // a copy, which stores cannot change
+  F lowest = number(1.0F);
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState s = hyper_state(in.gradient + item * 9 * kLanes);
     const F j = s.inv.volume_change, one = number(1.0F), pressure = pressure_of(in, r, item, j);
+    lowest = hn::Min(lowest, j);
     const InvariantSlopes<LaneScalar> slopes = lane_slopes(law, s);
     const F first = slopes.first.v, second = slopes.second.v, bend = slopes.bend.v;
     Tensor P = times(number(2.0F) * first * s.power, deviatoric_direction(s.H, s.K, j, squares_of(s.H)));
@@ -145,6 +147,7 @@ void invariant_law(const ResponseItems& in, const LaneResponse& r, const Rescue&
     store_tensor(P, out.piola + item * 9 * kLanes);
     rescue_if_small(in, to, item, j + one, out);
   }
+  return is_inverted(lowest);
 }
 
 /// cos(⅓ arccos r) for −1 ≤ r ≤ 1, within 6e-8: with w = √(½(1 + r)), the cosine of half the angle, it is cos(⅔ arccos w), which
@@ -373,13 +376,15 @@ class FarTets {
 };
 
 /// A tet's own strain decides how its stress is found, not its neighbours'.
-inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&,
+inline bool ogden_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&,
                       ResponseBlock& out) {
   const StretchSeries<float> series = *r.series;  // a copy, which stores cannot change
   const float largest = series.largest_J2;
   FarTets far;
+  F lowest = number(1.0F);
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState state = hyper_state(in.gradient + item * 9 * kLanes);
+    lowest = hn::Min(lowest, state.inv.volume_change);
     const StretchDeviator deviator = stretch_deviator(green_strain(state.H));
     const auto close = hn::Lt(deviator.J2, number(largest));
     if (hn::AllFalse(Lanes(), close)) {
@@ -390,6 +395,7 @@ inline void ogden_law(const ResponseItems& in, const LaneResponse& r, const Resc
     if (!hn::AllTrue(Lanes(), close)) far.list(item, deviator.J2, largest);
   }
   far.respond(in, r, to, out);
+  return is_inverted(lowest);
 }
 
 template <class Law>

@@ -33,19 +33,6 @@ HWY_INLINE Symmetric relax(const LaneResponse& r, const MaxwellStep& step, float
   return relaxed;
 }
 
-/// How stiff a tet of a law is: its modulus, and its slope over the strain.
-HWY_INLINE F small_bound(const LaneResponse& r, const LaneModuli& k, const Symmetric& strain, F trace, F x) {
-  F slope = k.slope;
-  if (r.measure == DeformationMeasure::one_minus_q) {
-    slope = slope * number(4.0F / 3.0F) * hn::Sqrt(x * number(1.5F));
-  } else if (r.measure != DeformationMeasure::equivalent_shear_strain) {
-    slope = slope * x * number(1.64F);
-  }
-  const F squares = trace * trace;
-  const F deviator = hn::Max(hn::MulAdd(squares, number(-1.0F / 3.0F), contraction(strain, strain)), hn::Zero(Lanes()));
-  return hn::MulAdd(slope, hn::Sqrt(hn::MulAdd(squares, number(r.moduli.bulk_over_two_mu), deviator)), k.ratio);
-}
-
 /// The stages from H to the stresses: the elastic one into `out.piola`, six numbers an item, and the viscous one into
 /// `block.viscous`; without kSplit their sum into `out.piola`. `block.viscous` brings −⅙ σ_v along where there is viscosity.
 /// Without kLaw moduli are those at rest, and nobody has looked for inverted tets before.
@@ -61,8 +48,8 @@ PassFound relaxing_small(const ResponseItems& in, const LaneResponse& r, const M
     const F trace = trace_of(strain);
     F lambda = number(kForceScale * r.moduli.lambda), twice_mu = number(2.0F * kForceScale * r.moduli.mu);
     if constexpr (kLaw) {
-      const LaneModuli k = moduli_of(r, block, item);
-      F bound = small_bound(r, k, strain, trace, hn::Load(d, block.x + item * kLanes));
+      const LaneModuli k = moduli_of<true>(r, block, item);
+      F bound = law_bound(r, k, trace, contraction(strain, strain), hn::Load(d, block.x + item * kLanes));
       bound = hn::IfThenZeroElse(hn::Lt(hn::Load(d, block.y + item * kLanes), hn::Zero(d)), bound);
       see_stiffness(out, item, bound, bound);
       most = hn::Max(most, hn::Load(d, out.ratio + item * kLanes));
@@ -82,7 +69,7 @@ PassFound relaxing_small(const ResponseItems& in, const LaneResponse& r, const M
       store_symmetric(plus(S, number(1.0F), late), elastic);
     }
   }
-  return {hn::GetLane(hn::MaxOfLanes(d, most)), !hn::AllTrue(d, hn::Gt(lowest, number(-1.0F)))};
+  return {hn::GetLane(hn::MaxOfLanes(d, most)), is_inverted(lowest)};
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

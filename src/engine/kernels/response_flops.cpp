@@ -142,21 +142,16 @@ namespace {
 
 namespace traced = HWY_NAMESPACE;
 
-void respond(const Tissue& tissue, const ResponseItems& in, const LaneResponse& r, const Block& block,
+bool respond(const Tissue& tissue, const ResponseItems& in, const LaneResponse& r, const Block& block,
              ResponseBlock& out) {
   const Rescue none;
   if (tissue.hyperelastic) {
     constexpr HyperelasticStages kLaws = traced::hyperelastic_stages(std::type_identity<HyperelasticLaw>());
     return kLaws[tissue.hyperelastic->index()](in, r, none, block, out);
   }
-  switch (tissue.kinematics) {
-    case Kinematics::small:
-      return traced::tensor_mass<Kinematics::small>(in, r, none, block, out);
-    case Kinematics::corotational:
-      return traced::tensor_mass<Kinematics::corotational>(in, r, none, block, out);
-    case Kinematics::green:
-      return traced::tensor_mass<Kinematics::green>(in, r, none, block, out);
-  }
+  constexpr std::array<TensorMassStages, 2> kStages = {traced::tensor_mass_stages<false>(),
+                                                       traced::tensor_mass_stages<true>()};
+  return kStages[r.constant ? 0 : 1][static_cast<std::size_t>(tissue.kinematics)](in, r, none, block, out);
 }
 
 void relax(const ResponseItems& in, const LaneResponse& r, const MaxwellStep& step, const Block& block,

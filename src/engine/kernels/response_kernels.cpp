@@ -19,9 +19,7 @@ namespace glisson::engine::HWY_NAMESPACE {
 
 const ResponseKernels* response_table();
 const ResponseKernels* response_table() {
-  static const ResponseKernels table{.small = tensor_mass<Kinematics::small>,
-                                     .corotational = tensor_mass<Kinematics::corotational>,
-                                     .green = tensor_mass<Kinematics::green>,
+  static const ResponseKernels table{.tensor_mass = {tensor_mass_stages<false>(), tensor_mass_stages<true>()},
                                      .hyperelastic = hyperelastic_stages(std::type_identity<HyperelasticLaw>()),
                                      .fibres = fibres,
                                      .maxwell = maxwell,

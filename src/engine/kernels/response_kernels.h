@@ -55,6 +55,7 @@ struct LaneResponse {
   std::size_t branches = 0;                    ///< of Maxwell
   std::array<float, kMostBranches> share{};
   std::vector<LanePace> pace;  ///< of each branch; empty where all times are constant
+  bool constant = true;        ///< whether no law of stiffness reads the measure
   bool small = false, deviator = true, viscous = false, pioletti = false, energy = false;
   DeformationMeasure measure{};
   VolumeKind volume = VolumeKind::small;
@@ -101,8 +102,11 @@ struct MaxwellStep {
 };
 
 /// P of the elastic part into `out.piola`; what the tangent has come to into `out.ratio` and `out.norm`.
-using RespondStage = void (*)(const ResponseItems&, const LaneResponse&, const Rescue&, const Block&,
+/// @return whether a tet has J ≤ 0
+using RespondStage = bool (*)(const ResponseItems&, const LaneResponse&, const Rescue&, const Block&,
                               ResponseBlock& out);
+/// By Kinematics.
+using TensorMassStages = std::array<RespondStage, 3>;
 /// 1/τ of a branch at n measures.
 using PaceStage = void (*)(const LanePace&, const float* x, std::size_t n, float* pace);
 /// By index in TimeLaw; the last is for branches without a law.
@@ -121,7 +125,7 @@ using StressPass = PassFound (*)(const ResponseItems&, const LaneResponse&, cons
 
 /// The functions of one instruction set.
 struct ResponseKernels {
-  RespondStage small = nullptr, corotational = nullptr, green = nullptr;
+  std::array<TensorMassStages, 2> tensor_mass{};  ///< [moduli follow a law]
   HyperelasticStages hyperelastic{};
   /// Adds to `out.piola`; writes and adds to `out.viscous`.
   void (*fibres)(const ResponseItems&, const LaneResponse&, ResponseBlock& out) = nullptr;

@@ -37,6 +37,12 @@ struct ChainBatches {
   LaneVector<std::uint16_t> index;     ///< [batch][6][lane]
   LaneVector<float> rest;              ///< [batch][24][lane]: products of edges at rest [m²], 1/6V [1/m³]
   std::vector<std::uint32_t> element;  ///< [batch][3 tets][lane]: element of the body, kNoElement where none is
+
+  /// Elements of n batches.
+  std::span<const std::uint32_t> elements_of(std::size_t batch, std::size_t n) const {
+    const std::size_t each = element.size() / count;
+    return std::span(element).subspan(batch * each, n * each);
+  }
 };
 
 /// Edges of a linear tissue in batches (edge_stages-inl.h).
