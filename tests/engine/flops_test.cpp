@@ -12,18 +12,21 @@ Tissue with(HyperelasticLaw law) {
   return tissue;
 }
 
-// Small strain by hand: sym H 6, its trace 2, the moduli 2 and 2 μ 1, 2 μ ε 6, λ tr ε 1, its sum 3. The bound of the stable
-// step, which the same stage works out, has more than as many again and counts nothing.
+// Small strain by hand: sym H 6, its trace 2, 2 μ ε 6, λ tr ε 1, its sum 3; where a law gives the moduli, these 2 and 2 μ 1. The
+// bound of the stable step, which the same stage works out, has more than as many again and counts nothing.
 TEST(ResponseFlops, AreThoseOfTheFormulaCountedByHand) {
-  EXPECT_EQ(count_response_flops({}).tet, 21u);
+  EXPECT_EQ(count_response_flops({}).tet, 18u);
   EXPECT_EQ(count_response_flops({}).volume, 0u);
+  Tissue tissue;
+  tissue.law = LinearLaw{1000.0};
+  EXPECT_EQ(count_response_flops(tissue).tet, 21u);
 }
 
 // Fibres by hand, on small strain: H a 15, a·H a 5, and for each of nine components c times it, a_i a_k and a multiply-add.
 TEST(ResponseFlops, OfFibresComeOnTop) {
   Tissue tissue;
   tissue.fibres = Fibres{.direction = {1.0, 0.0, 0.0}, .stiffness = 1000.0};
-  EXPECT_EQ(count_response_flops(tissue).tet, 21u + 15u + 5u + 9u * (1u + 1u + 2u));
+  EXPECT_EQ(count_response_flops(tissue).tet, 18u + 15u + 5u + 9u * (1u + 1u + 2u));
 }
 
 // Laws by hand: a smooth step has x − x₀, t t, t + t, 3 − 2t, their product and two multiply-adds; a polynomial one

@@ -21,8 +21,16 @@ namespace glisson::engine::HWY_NAMESPACE {
 HWY_INLINE F stretch_sum(const Tensor& H, F volume_change, const float* gradient) {
   const Lanes d;
   const F J = volume_change + number(1.0F), limit = number(float(kSmallestVolume));
-  const Tensor cof = plus_identity(cofactor_change(H), number(1.0F));
-  const F sum = trace_of(stretch_of(green_strain(H), hn::Max(J, limit), squares_of(cof)).strain);
+  const RootSeries<float>& series = lane_root_series();
+  const Symmetric E = green_strain(H);
+  const MeanStretch m = mean_stretch(E);
+  const Symmetric X = stretch_deviator(E, m.third, m.per_root * m.per_root);
+  const LaneScalar J2(second_invariant(X)), J3(cofactors_of(X).determinant);
+  const auto close = hn::Lt(J2.v, number(series.largest_J2));
+  F sum = norms_by_series(m, series_at(series.trace, J2, J3).v).trace;
+  if (!hn::AllTrue(d, close)) {
+    sum = hn::IfThenElse(close, sum, trace_of(stretch_tensors(E, H, volume_change).strain));
+  }
   if (hn::AllTrue(d, hn::Gt(J, limit))) return sum;
   alignas(64) float values[kMaxLanes], volume[kMaxLanes];
   hn::Store(sum, d, values);

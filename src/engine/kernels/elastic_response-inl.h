@@ -1,11 +1,5 @@
 // elastic_response-inl.h — tensor-mass tissues of large deformation in lanes: P of their kinematics and laws.
 //
-// The corotational strain B = U − I without eigenvectors: the invariants x = tr U and y = ½ (x² − tr C) solve
-//   x² − 2 y = I₁,   y² − 2 J x = I₂
-// by Newton from x₀ = √(3 I₁), y₀ = √(3 I₂), which lie above them; four steps reach the last digit of a float for
-// stretches from 0.2 to 3.3. Then U = [ x J I + (x² − y) C − C² ] / (x y − J) [HogerCarlson1984], and B = 2 E (U + I)⁻¹ keeps
-// the digits of small strain.
-//
 // Included once per instruction set, never from outside response_kernels.cpp.
 #if defined(GLISSON_ELASTIC_RESPONSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef GLISSON_ELASTIC_RESPONSE_INL_H_
@@ -15,7 +9,7 @@
 #endif
 
 #include "engine/kernels/response_kernels.h"
-#include "engine/kernels/tensor_lanes-inl.h"
+#include "engine/kernels/stretch_lanes-inl.h"
 #include "material/stiffness_bound.h"
 #include "material/volume_powers.h"
 
@@ -81,28 +75,6 @@ HWY_INLINE Tensor measure_gradient(const LaneResponse& r, const Tensor& H, const
   return times(hn::IfThenElse(hn::Gt(x, number(1e-12F)), scale * factor, hn::Zero(Lanes())), D);
 }
 
-/// Tensors of a corotational tet.
-struct Stretch {
-  Symmetric strain, inverse;  ///< B = U − I, U⁻¹
-};
-HWY_INLINE Stretch stretch_of(const Symmetric& E, F J, F I2) {
-  const F I1 = hn::MulAdd(number(2.0F), trace_of(E), number(3.0F));
-  F x = hn::Sqrt(number(3.0F) * I1), y = hn::Sqrt(number(3.0F) * I2);
-  for (int k = 0; k < 4; ++k) {
-    const F f = hn::MulSub(x, x, hn::MulAdd(number(2.0F), y, I1)), g = hn::MulSub(y, y, hn::MulAdd(J + J, x, I2));
-    const F scale = number(0.5F) / hn::MulSub(x, y, J);
-    const F dx = hn::MulAdd(y, f, g) * scale, dy = hn::MulAdd(J, f, x * g) * scale;
-    x = x - dx, y = y - dy;
-  }
-  const Symmetric C = plus_identity(times(number(2.0F), E), number(1.0F)), C2 = commuting_product(C, C);
-  const F scale = number(1.0F) / hn::MulSub(x, y, J);
-  const Symmetric bend = plus(times(hn::MulSub(x, x, y), C), number(-1.0F), C2);
-  const Symmetric U = times(scale, plus_identity(bend, x * J));
-  const SymmetricCofactors of_u = cofactors_of(U), of_sum = cofactors_of(plus_identity(U, number(1.0F)));
-  const F twice = number(2.0F) / of_sum.determinant;
-  return {commuting_product(times(twice, E), of_sum.cof), times(number(1.0F) / of_u.determinant, of_u.cof)};
-}
-
 /// How stiff the tets of an item are; what is no number counts as without bound.
 HWY_INLINE void see_stiffness(ResponseBlock& out, std::size_t item, F ratio, F norm) {
   const F none = number(std::numeric_limits<float>::infinity());
@@ -140,74 +112,139 @@ HWY_INLINE void rescue_if_small(const ResponseItems& in, const Rescue& to, std::
 /// Whether a volume change of some tets is J ≤ 0.
 HWY_INLINE bool is_inverted(F lowest) { return !hn::AllTrue(Lanes(), hn::Gt(lowest, number(-1.0F))); }
 
+/// What the stages of an item share.
+struct TensorMass {
+  const Tensor& H;
+  const Invariants<F>& inv;
+  const LaneModuli& moduli;
+};
+/// The bound by the moduli alone.
+template <bool kLaw>
+HWY_INLINE F moduli_bound(const LaneResponse& r, const Block& block, std::size_t item, const LaneModuli& moduli,
+                          const StrainNorms& strain) {
+  if constexpr (!kLaw) return moduli.ratio;
+  return law_bound(r, moduli, strain.trace, strain.squares, hn::Load(Lanes(), block.x + item * kLanes));
+}
+/// The volume change that carries λ, its own or shared.
+HWY_INLINE F volume_change_of(const ResponseItems& in, std::size_t item, F own) {
+  return in.mean != nullptr ? hn::Load(Lanes(), in.mean + item * kLanes) : own;
+}
+template <bool kLaw>
+HWY_INLINE void store_tensor_mass(const LaneResponse& r, const Block& block, std::size_t item, const TensorMass& t,
+                                  const StrainNorms& strain, const Tensor& P, F bound, ResponseBlock& out) {
+  const Lanes d;
+  if constexpr (kLaw) bound = hn::IfThenZeroElse(hn::Lt(hn::Load(d, block.y + item * kLanes), hn::Zero(d)), bound);
+  see_stiffness(out, item, bound, bound);
+  float* piola = out.piola + item * 9 * kLanes;
+  if (!kLaw || !r.energy) return store_tensor(P, piola);
+  const LaneModuli& k = t.moduli;
+  const F work = hn::MulAdd(number(0.5F) * k.lambda_slope * strain.trace, strain.trace, k.mu_slope * strain.squares);
+  const F x = hn::Load(d, block.x + item * kLanes);
+  store_tensor(plus(P, number(1.0F), measure_gradient(r, t.H, t.inv, x, work)), piola);
+}
+
+/// Of small or Green strain.
 template <Kinematics K, bool kLaw>
 bool tensor_mass(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block& block,
                  ResponseBlock& out) {
-  const Lanes d;
   const F one = number(1.0F), two = number(2.0F);
   F lowest = one;
   for (std::size_t item = 0; item < in.items; ++item) {
     const Tensor H = load_tensor(in.gradient + item * 9 * kLanes);
-    const Invariants<F> inv = invariants(d, H);
-    const F J = inv.volume_change + one;
-    lowest = hn::Min(lowest, inv.volume_change);
+    const Invariants<F> inv = invariants(Lanes(), H);
     const LaneModuli k = moduli_of<kLaw>(r, block, item);
-    const auto volume_change = [&](const Symmetric& e) GLISSON_INLINED {
-      return in.mean != nullptr ? hn::Load(d, in.mean + item * kLanes) : trace_of(e);
-    };
-    Symmetric strain, S;
-    Tensor P;
-    F stretch = one;
-    if constexpr (K == Kinematics::small) {
-      strain = symmetric_part(H);
-      S = plus_identity(times(two * k.mu, strain), k.lambda * volume_change(strain));
-      P = full_tensor(S);
-    } else {
-      const Symmetric E = green_strain(H);
-      const Tensor F1 = plus_identity(H, one);
-      stretch = hn::MulAdd(two, hn::Sqrt(contraction(E, E)), one);
-      if constexpr (K == Kinematics::green) {
-        strain = E;
-        S = plus_identity(times(two * k.mu, strain), k.lambda * volume_change(strain));
-      } else {
-        const F safe = hn::Max(J, number(float(kSmallestVolume)));
-        const Tensor cof = plus_identity(cofactor_change(H), one);
-        const Stretch u = stretch_of(E, safe, squares_of(cof));
-        strain = u.strain;
-        S = commuting_product(u.inverse, plus_identity(times(two * k.mu, strain), k.lambda * volume_change(strain)));
-      }
-      P = tensor_product(F1, S);
-    }
-    const F t = trace_of(strain), squares = contraction(strain, strain);
-    F bound = k.ratio;
-    if constexpr (kLaw) bound = law_bound(r, k, t, squares, hn::Load(d, block.x + item * kLanes));
+    lowest = hn::Min(lowest, inv.volume_change);
+    const Symmetric strain = K == Kinematics::green ? green_strain(H) : symmetric_part(H);
+    const StrainNorms norms{trace_of(strain), contraction(strain, strain)};
+    const Symmetric S = plus_identity(times(two * k.mu, strain), k.lambda * volume_change_of(in, item, norms.trace));
+    F bound = moduli_bound<kLaw>(r, block, item, k, norms);
     if constexpr (K == Kinematics::green) {
+      const F stretch = hn::MulAdd(two, hn::Sqrt(norms.squares), one);
       bound = hn::MulAdd(bound, stretch, hn::Sqrt(contraction(S, S)) * number(r.rest_bound));
-    } else if constexpr (K == Kinematics::corotational) {
-      // turning_bound of material/stiffness_bound.h
-      const F pull = hn::Max(hn::MulSub(k.lambda, volume_change(strain), two * k.mu), hn::Zero(d));
-      const F length = hn::Sqrt(hn::Max(squares + hn::MulAdd(two, t, number(3.0F)), hn::Zero(d)));
-      const F pair = hn::Max(t + number(3.0F) - length, number(float(kSmallestFlip)));
-      bound = hn::MulAdd(two * pull / pair, number(r.rest_bound), bound);
-      if (r.viscous) bound = hn::Max(bound, stretch);
+      const Tensor P = tensor_product(plus_identity(H, one), S);
+      store_tensor_mass<kLaw>(r, block, item, {H, inv, k}, norms, P, bound, out);
+    } else {
+      store_tensor_mass<kLaw>(r, block, item, {H, inv, k}, norms, full_tensor(S), bound, out);
     }
-    if constexpr (kLaw) bound = hn::IfThenZeroElse(hn::Lt(hn::Load(d, block.y + item * kLanes), hn::Zero(d)), bound);
-    see_stiffness(out, item, bound, bound);
-    if (kLaw && r.energy) {
-      const F work = hn::MulAdd(number(0.5F) * k.lambda_slope * t, t, k.mu_slope * squares);
-      P = plus(P, one, measure_gradient(r, H, inv, hn::Load(d, block.x + item * kLanes), work));
-    }
-    store_tensor(P, out.piola + item * 9 * kLanes);
-    if (K == Kinematics::corotational || (kLaw && r.energy)) rescue_if_small(in, to, item, J, out);
+    if (kLaw && r.energy) rescue_if_small(in, to, item, inv.volume_change + one, out);
   }
+  return is_inverted(lowest);
+}
+
+/// An item from S = λ tr(B) U⁻¹ + 2 μ (I − U⁻¹). @param volumetric  λ tr B  @param known  the tets whose stress it is
+template <bool kLaw, class Known>
+HWY_INLINE void store_corotational(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block& block,
+                                   std::size_t item, const TensorMass& t, const Symmetric& E, const StrainNorms& norms,
+                                   F volumetric, const Symmetric& S, Known known, ResponseBlock& out) {
+  const F one = number(1.0F), two = number(2.0F), three = number(3.0F), zero = hn::Zero(Lanes());
+  const Tensor P = tensor_product(plus_identity(t.H, one), S);
+  F bound = moduli_bound<kLaw>(r, block, item, t.moduli, norms);
+  const F pull = hn::NegMulAdd(two, t.moduli.mu, volumetric);
+  if (!hn::AllFalse(Lanes(), hn::Gt(pull, zero))) {  // turning_bound of material/stiffness_bound.h
+    const F length = hn::Sqrt(hn::MulAdd(two, trace_of(E), three));
+    const F pair = hn::Max(norms.trace + three - length, number(float(kSmallestFlip)));
+    bound = hn::MulAdd(two * hn::Max(pull, zero) / pair, number(r.rest_bound), bound);
+  }
+  if (r.viscous) bound = hn::Max(bound, hn::MulAdd(two, hn::Sqrt(contraction(E, E)), one));
+  store_tensor_mass<kLaw>(r, block, item, t, norms, P, bound, out);
+  rescue_if_small(in, to, item, hn::IfThenElse(known, t.inv.volume_change + one, one), out);
+}
+
+/// An item, whatever its stretches.
+template <bool kLaw>
+HWY_NOINLINE void corotate_by_invariants(const ResponseItems& in, const LaneResponse& r, const Rescue& to,
+                                         const Block& block, std::size_t item, ResponseBlock& out) {
+  const Tensor H = load_tensor(in.gradient + item * 9 * kLanes);
+  const Invariants<F> inv = invariants(Lanes(), H);
+  const LaneModuli k = moduli_of<kLaw>(r, block, item);
+  const Symmetric E = green_strain(H);
+  const StretchTensors u = stretch_tensors(E, H, inv.volume_change);
+  const StrainNorms norms{trace_of(u.strain), contraction(u.strain, u.strain)};
+  const F volumetric = k.lambda * volume_change_of(in, item, norms.trace);
+  const Symmetric S = commuting_product(u.inverse, plus_identity(times(number(2.0F) * k.mu, u.strain), volumetric));
+  const auto all = hn::Gt(number(1.0F), hn::Zero(Lanes()));
+  store_corotational<kLaw>(in, r, to, block, item, {H, inv, k}, E, norms, volumetric, S, all, out);
+}
+
+/// A tet's own strain decides how its stretches are found, not its neighbours'.
+template <bool kLaw>
+bool corotational_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block& block,
+                      ResponseBlock& out) {
+  const RootSeries<float>& series = lane_root_series();
+  FarTets far;
+  F lowest = number(1.0F);
+  for (std::size_t item = 0; item < in.items; ++item) {
+    const Tensor H = load_tensor(in.gradient + item * 9 * kLanes);
+    const Invariants<F> inv = invariants(Lanes(), H);
+    lowest = hn::Min(lowest, inv.volume_change);
+    const Symmetric E = green_strain(H);
+    const MeanStretch m = mean_stretch(E);
+    const Symmetric X = stretch_deviator(E, m.third, m.per_root * m.per_root);
+    const LaneScalar J2(second_invariant(X));
+    const auto close = hn::Lt(J2.v, number(series.largest_J2));
+    if (hn::AllFalse(Lanes(), close)) {
+      corotate_by_invariants<kLaw>(in, r, to, block, item, out);
+      continue;
+    }
+    const LaneModuli k = moduli_of<kLaw>(r, block, item);
+    const SymmetricCofactors c = cofactors_of(X);
+    const LaneScalar J3(c.determinant);
+    const StrainNorms norms = norms_by_series(m, series_at(series.trace, J2, J3).v);
+    const F volumetric = k.lambda * volume_change_of(in, item, norms.trace);
+    const Symmetric S = stress_by_series(series, m, X, c.cof, J2, J3, volumetric, number(2.0F) * k.mu);
+    store_corotational<kLaw>(in, r, to, block, item, {H, inv, k}, E, norms, volumetric, S, close, out);
+    if (!hn::AllTrue(Lanes(), close)) far.list(item, J2.v, series.largest_J2);
+  }
+  far.respond<kLaw>(in, block, out,
+                    [&](const ResponseItems& some, const Block& of, ResponseBlock& found)
+                        GLISSON_INLINED { corotate_by_invariants<kLaw>(some, r, to, of, 0, found); });
   return is_inverted(lowest);
 }
 
 /// By Kinematics.
 template <bool kLaw>
 constexpr TensorMassStages tensor_mass_stages() {
-  return {tensor_mass<Kinematics::small, kLaw>, tensor_mass<Kinematics::corotational, kLaw>,
-          tensor_mass<Kinematics::green, kLaw>};
+  return {tensor_mass<Kinematics::small, kLaw>, corotational_law<kLaw>, tensor_mass<Kinematics::green, kLaw>};
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

@@ -275,33 +275,19 @@ HWY_INLINE IsochoricStress stress_of_stretches(const Ogden& law, const Tensor& H
           c[2]};
 }
 
-/// X of C = m (I + X) and its invariants (material/stretch_series.h).
-struct StretchDeviator {
-  Symmetric X, cof;
-  F J2, J3, per_mean;  ///< 1/m
-};
-HWY_INLINE StretchDeviator stretch_deviator(const Symmetric& E) {
-  StretchDeviator s;
-  const F mean = trace_of(E) * number(1.0F / 3.0F);
-  s.per_mean = number(1.0F) / hn::MulAdd(number(2.0F), mean, number(1.0F));
-  s.X = times(s.per_mean + s.per_mean, plus_identity(E, hn::Neg(mean)));
-  const SymmetricCofactors c = cofactors_of(s.X);
-  s.cof = c.cof, s.J3 = c.determinant;
-  s.J2 = number(0.5F) * contraction(s.X, s.X);
-  return s;
-}
-/// P = F⁻ᵀ (q₁ X + q₂ dev X²), dev X² = cof X + ⅓ J₂ I, where the series hold.
-HWY_INLINE IsochoricStress stress_of_series(const StretchSeries<float>& series, const StretchDeviator& s,
+/// P = F⁻ᵀ (q₁ X + q₂ dev X²), dev X² = cof X + ⅓ J₂ I, where the series hold. @param per_mean  1/m
+HWY_INLINE IsochoricStress stress_of_series(const StretchSeries<float>& series, const Symmetric& X, F J2, F per_mean,
                                             const HyperState& state) {
-  const LaneScalar J2(s.J2), J3(s.J3);
-  const F q1 = series_at(series.first, J2, J3).v, q2 = series_at(series.second, J2, J3).v;
-  const Symmetric T = plus(times(q1, s.X), q2, plus_identity(s.cof, s.J2 * number(1.0F / 3.0F)));
-  const F delta = hn::Sqrt(s.J2 * number(4.0F / 3.0F)), one = number(1.0F);
+  const SymmetricCofactors c = cofactors_of(X);
+  const LaneScalar second(J2), third(c.determinant);
+  const F q1 = series_at(series.first, second, third).v, q2 = series_at(series.second, second, third).v;
+  const Symmetric T = plus(times(q1, X), q2, plus_identity(c.cof, J2 * number(1.0F / 3.0F)));
+  const F delta = hn::Sqrt(J2 * number(4.0F / 3.0F)), one = number(1.0F);
   const F square = hn::MulAdd(delta, number(series.bound[2]), number(series.bound[1]));
-  const F shape = number(series.bound[3]) * s.J3 / hn::Max(delta, number(1e-12F));
+  const F shape = number(series.bound[3]) * third.v / hn::Max(delta, number(1e-12F));
   const F bound = hn::MulAdd(delta, square, number(series.bound[0])) + shape;
   const Tensor cof = plus_identity(state.K, one);
-  return {tensor_product(cof, times(one / state.J, T)), bound * s.per_mean, one};
+  return {tensor_product(cof, times(one / state.J, T)), bound * per_mean, one};
 }
 
 /// Stores all that a stage says of an item. @param known  the tets whose stress this is
@@ -328,73 +314,32 @@ HWY_NOINLINE void respond_by_stretches(const ResponseItems& in, const LaneRespon
   store_stretched(in, r, to, item, state, stress_of_stretches(std::get<Ogden>(*r.law), state.H), all, out);
 }
 
-/// Tets of a block whose stretches are apart, and their stresses, as many at a time as there are lanes.
-class FarTets {
- public:
-  HWY_INLINE void list(std::size_t item, F J2, float largest) {
-    alignas(64) float of[kMaxLanes];
-    hn::Store(J2, Lanes(), of);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      if (!(of[lane] < largest)) which_[count_++] = static_cast<std::uint16_t>(item * kLanes + lane);
-    }
-  }
-  HWY_INLINE void respond(const ResponseItems& in, const LaneResponse& r, const Rescue& to, ResponseBlock& out) const {
-    for (std::size_t from = 0; from < count_; from += kLanes) {
-      respond(in, r, to, which_ + from, std::min(kLanes, count_ - from), out);
-    }
-  }
-
- private:
-  /// Where the numbers of a tet begin that lie kLanes apart, `each` of them an item.
-  HWY_INLINE static std::size_t place(std::size_t tet, std::size_t each) {
-    return tet / kLanes * each * kLanes + tet % kLanes;
-  }
-  HWY_NOINLINE static void respond(const ResponseItems& in, const LaneResponse& r, const Rescue& to,
-                                   const std::uint16_t* which, std::size_t n, ResponseBlock& out) {
-    alignas(64) float gradient[9 * kMaxLanes], mean[kMaxLanes];
-    std::uint32_t element[kMaxLanes];
-    for (std::size_t l = 0; l < kLanes; ++l) {  // lanes that are left repeat the first tet
-      const std::size_t tet = which[l < n ? l : 0];
-      for (std::size_t k = 0; k < 9; ++k) gradient[k * kLanes + l] = in.gradient[place(tet, 9) + k * kLanes];
-      if (in.mean != nullptr) mean[l] = in.mean[tet];
-      element[l] = l < n && in.element != nullptr ? in.element[tet] : 0xFFFFFFFFU;
-    }
-    ResponseItems packed;
-    packed.gradient = gradient, packed.element = element, packed.items = 1;
-    if (in.mean != nullptr) packed.mean = mean;
-    ResponseBlock of;  // the first item of it
-    respond_by_stretches(packed, r, to, 0, of);
-    for (std::size_t l = 0; l < n; ++l) {
-      const std::size_t tet = which[l];
-      for (std::size_t k = 0; k < 9; ++k) out.piola[place(tet, 9) + k * kLanes] = of.piola[k * kLanes + l];
-      out.ratio[tet] = of.ratio[l], out.norm[tet] = of.norm[l];
-    }
-  }
-
-  std::uint16_t which_[kBlockTets];
-  std::size_t count_ = 0;
-};
-
 /// A tet's own strain decides how its stress is found, not its neighbours'.
-inline bool ogden_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block&,
+inline bool ogden_law(const ResponseItems& in, const LaneResponse& r, const Rescue& to, const Block& block,
                       ResponseBlock& out) {
-  const StretchSeries<float> series = *r.series;  // a copy, which stores cannot change
+  const StretchSeries<float>& series = *r.series;
   const float largest = series.largest_J2;
   FarTets far;
-  F lowest = number(1.0F);
+  const F one = number(1.0F);
+  F lowest = one;
   for (std::size_t item = 0; item < in.items; ++item) {
     const HyperState state = hyper_state(in.gradient + item * 9 * kLanes);
     lowest = hn::Min(lowest, state.inv.volume_change);
-    const StretchDeviator deviator = stretch_deviator(green_strain(state.H));
-    const auto close = hn::Lt(deviator.J2, number(largest));
+    const Symmetric E = green_strain(state.H);
+    const F mean = trace_of(E) * number(1.0F / 3.0F), per_mean = one / hn::MulAdd(number(2.0F), mean, one);
+    const Symmetric X = stretch_deviator(E, mean, per_mean);
+    const F J2 = second_invariant(X);
+    const auto close = hn::Lt(J2, number(largest));
     if (hn::AllFalse(Lanes(), close)) {
       respond_by_stretches(in, r, to, item, out);
       continue;
     }
-    store_stretched(in, r, to, item, state, stress_of_series(series, deviator, state), close, out);
-    if (!hn::AllTrue(Lanes(), close)) far.list(item, deviator.J2, largest);
+    store_stretched(in, r, to, item, state, stress_of_series(series, X, J2, per_mean, state), close, out);
+    if (!hn::AllTrue(Lanes(), close)) far.list(item, J2, largest);
   }
-  far.respond(in, r, to, out);
+  far.respond<false>(in, block, out,
+                     [&](const ResponseItems& some, const Block&, ResponseBlock& found)
+                         GLISSON_INLINED { respond_by_stretches(some, r, to, 0, found); });
   return is_inverted(lowest);
 }
 
