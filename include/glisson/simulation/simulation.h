@@ -373,8 +373,8 @@ class Simulation {
 
   /// Attaches an instrument, needle, membrane or other interaction; it acts after those attached before. Keep the
   /// pointer to read and control it between steps.
-  /// @throws std::invalid_argument if it is already attached to a simulation; for the integrators implicit and quasi_static,
-  ///         and semi_implicit with viscous tissue; or if the interaction does not support this body
+  /// @throws std::invalid_argument if it is already attached to a simulation; if it does not act under
+  ///         implicit and quasi_static, or semi_implicit in viscous tissue, which its message says; or if it does not support this body
   void attach(std::shared_ptr<Interaction> interaction);
 
   /// Removes tets at once, with their stiffness, viscosity and mass; nothing else changes. Numbers of tets and vertices
@@ -406,8 +406,8 @@ class Simulation {
   /// last h*.
   /// force() refers to the last step's tissue until the next step.
   /// @param region  number of a region of the mesh
-  /// @throws std::invalid_argument for a region that no tet has, an invalid tissue, viscous tissue for semi_implicit
-  ///         with interactions, or where a given step is above the new h*; nothing is changed then
+  /// @throws std::invalid_argument for a region that no tet has, an invalid tissue, the first viscous tissue for
+  ///         semi_implicit beside interactions, or where a given step is above the new h*; nothing is changed then
   /// Cost: docs/integrators.md.
   void set_tissue(int region, const Tissue& tissue);
   /// The same for several regions, at the cost of one.

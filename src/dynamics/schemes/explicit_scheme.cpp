@@ -143,7 +143,6 @@ void ExplicitScheme::begin_interactions(double h) {
   if (interactions_.has_left()) let_go();
 }
 
-/// Lets interactions correct v₊, and keeps what they exerted.
 void ExplicitScheme::constrain_interactions() {
   if (interactions_.empty()) return;
   interactions_.constrain(kick_.mobility());
@@ -169,7 +168,7 @@ void ExplicitScheme::attach(std::shared_ptr<Interaction> interaction, const Body
 AddedBeside ExplicitScheme::added() {
   const double loads = state_.loads.squared_frequency(state_.body);
   if (state_.options.mass_scaling != MassScalingKind::variable) {
-    return {.squared_frequency = interactions_.squared_frequency() + loads, .with_mass = 0.0, .to_bear = {}};
+    return {.squared_frequency = added_frequency() + loads, .with_mass = 0.0, .to_bear = {}};
   }
   to_bear_.clear();
   const Interactions::Frequency seen = interactions_.find_frequency(to_bear_);
@@ -195,9 +194,17 @@ void ExplicitScheme::book(double h, const KickWork& free) {
   KickWork work = kick_.work(moving_->active());
   add(work.before, free.before);
   add(work.after, free.after);
-  if (!interactions_.empty()) kick_.add_interface(moving_->active(), interactions_.book(), work);
+  add_interface(work);
   ledger_.book(h, work.before, work.after, work.kinetic + free.kinetic, only_relaxes(state_.body));
-  if (!interactions_.empty()) ledger_.store_in_instruments(interactions_.tool_energy());
+  if (!interactions().empty()) ledger_.store_in_instruments(tool_energy());
+}
+
+void ExplicitScheme::add_interface(KickWork& work) const {
+  if (!interactions_.empty()) kick_.add_interface(moving_->active(), interactions_.book(), work);
+}
+
+void ExplicitScheme::tell_moved() {
+  if (!interactions_.empty()) interactions_.moved();
 }
 
 void ExplicitScheme::take_stiffness(const Advance& seen) {
@@ -245,7 +252,7 @@ StepResult ExplicitScheme::step() {
   take_stiff_masses();
   control_->limit_shape_change(shape_rates());
   moving_->list_above(control_->list_above(), control_->single_limits());
-  const double h = control_->step();
+  const double h = choose_step(control_->step());
   if (!(state_.time + h > state_.time)) {
     return {StepStatus::step_too_large,
             {},
@@ -279,8 +286,8 @@ StepResult ExplicitScheme::step() {
   state_.time += h;
   ++state_.steps;
   masses_.step_made(h);
-  if (!interactions_.empty()) interactions_.moved();
-  if (!interactions_.empty() || state_.loads.depends_on_state()) control_->follow_added(added());
+  tell_moved();
+  if (!interactions().empty() || state_.loads.depends_on_state()) control_->follow_added(added());
   return {seen.inverted.empty() ? StepStatus::ok : StepStatus::inverted, seen.inverted, {}};
 }
 

@@ -61,6 +61,17 @@ class ExplicitScheme : public Scheme {
 
   /// v₊ of the active vertices: as if they were free, then what motions ask for.
   virtual void kick(double h);
+  /// Lets interactions correct v₊, and keeps what they exerted.
+  virtual void constrain_interactions();
+  /// Adds to the work of a kick what interactions took of the tools'.
+  virtual void add_interface(KickWork& work) const;
+  virtual double tool_energy() const { return interactions_.tool_energy(); }
+  /// The step has been made.
+  virtual void tell_moved();
+  /// Where several steps are equally good: the one to take. @param h  the longest that is stable
+  virtual double choose_step(double h) const { return h; }
+  /// ω² of interactions, as Interaction::squared_frequency.
+  virtual double added_frequency() const { return interactions_.squared_frequency(); }
 
   void acts_on(std::span<const std::uint32_t> vertices) override;
   void take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) override;
@@ -80,7 +91,8 @@ class ExplicitScheme : public Scheme {
   void hold_in_stages();
   void hold_rows_in_stages();
   void begin_interactions(double h);
-  void constrain_interactions();
+  /// Interactions are others now.
+  void follow_interactions() { control_->set_added(added()); }
 
   std::unique_ptr<MovingBody> moving_;
   ActiveKick kick_{state_};

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "dynamics/solvers/tangent_system.h"
+
 namespace glisson {
 namespace {
 
@@ -270,17 +272,25 @@ void StepContact::made(std::span<const Vec3d> u, std::span<const Vec3d> v, std::
   interactions_.set_resting({});
 }
 
-std::array<double, 3> StepContact::lost() const {
+/// @param velocity  (k): of the k-th active vertex
+template <class Velocity>
+std::array<double, 3> StepContact::lost_by(double InterfaceBook::Page::*tools, const Velocity& velocity) const {
   std::array<double, 3> sinks{};
   for (std::size_t sink = 0; sink < sinks.size(); ++sink) {
     const InterfaceBook::Page& page = interactions_.book().pages[sink];
-    sinks[sink] = page.tools_after;
-    for (std::size_t k = 0; k < page.impulses.size(); ++k) {
-      const std::uint32_t v = active_[k].vertex;
-      sinks[sink] -= dot(page.impulses[k], (active_[k].displacement - start_[v]) * (1.0 / h_));
-    }
+    sinks[sink] = page.*tools;
+    for (std::size_t k = 0; k < page.impulses.size(); ++k) sinks[sink] -= dot(page.impulses[k], velocity(k));
   }
   return sinks;
+}
+
+std::array<double, 3> StepContact::lost() const {
+  return lost_by(&InterfaceBook::Page::tools_after,
+                 [&](std::size_t k) { return (active_[k].displacement - start_[active_[k].vertex]) * (1.0 / h_); });
+}
+
+std::array<double, 3> StepContact::lost_at(std::span<const Vec3d> v, double InterfaceBook::Page::*tools) const {
+  return lost_by(tools, [&](std::size_t k) { return v[active_[k].vertex]; });
 }
 
 /// Displacements by unit forces at a vertex, 0 where it is held.

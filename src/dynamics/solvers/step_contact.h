@@ -1,15 +1,16 @@
-// step_contact.h — interactions within a long step: their forces at its end, by the factor of the tangent.
+// step_contact.h — interactions within a step whose vertices move one another: their forces at its end, by a factor of the step.
 //
 //   Newton's u⁺ with the forces so far ─▶ for each interaction: its own taken off by P⁻¹, found anew with all points moving one
 //                                         another by P⁻¹, until no force of several interactions changes
 //                                      ─▶ u⁺ with the forces they find
 //
 // W = J P⁻¹ Jᵀ of contact is never formed: its columns P⁻¹ e are solved for where something is pushed for the first time,
-// and kept as long as the factor P; those of means of vertices, P⁻¹ w, likewise. P is the tangent or near it; where it is not,
-// Newton's method takes more iterations, and ends at the same state.
+// and kept as long as the factor P; those of means of vertices, P⁻¹ w, likewise. In a long step P is the tangent or near it; where it is
+// not, Newton's method takes more iterations, and ends at the same state. In a step of `semi_implicit` P is exact, and one correction is all.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <map>
 #include <memory>
 #include <string>
@@ -17,7 +18,7 @@
 #include <vector>
 
 #include "dynamics/interactions.h"
-#include "dynamics/solvers/tangent_system.h"
+#include "dynamics/solvers/step_factor.h"
 #include "dynamics/state/body_state.h"
 
 namespace glisson {
@@ -36,7 +37,7 @@ struct ExertedForces {
 class StepContact final : public StepCompliance {
  public:
   /// Both must outlive this.
-  StepContact(const BodyState& state, TangentSystem& system) : state_(state), system_(system) {}
+  StepContact(const BodyState& state, StepFactor& system) : state_(state), system_(system) {}
 
   bool acts() const { return !interactions_.empty(); }
   /// Whether some act by impulses, and not by forces of the displacements alone.
@@ -86,6 +87,8 @@ class StepContact final : public StepCompliance {
   void set_forces(ExertedForces forces) { forces_ = std::move(forces); }
   /// By WorkSink: what interactions took of the tools' work in the step [J].
   std::array<double, 3> lost() const;
+  /// The same, that the velocities v of the vertices would have taken with those of the tools before or after the step [J].
+  std::array<double, 3> lost_at(std::span<const Vec3d> v, double InterfaceBook::Page::*tools) const;
 
   void spread(std::size_t place, const Vec3d& impulse, std::span<ActiveVertex> vertices) override;
   void settle(std::span<ActiveVertex> vertices) override;
@@ -110,6 +113,8 @@ class StepContact final : public StepCompliance {
   void activate(std::span<const std::uint32_t> vertices);
   void put_at_start(std::span<const Vec3d> u);
   void put_at_end(std::span<const Vec3d> u, std::span<const Vec3d> v);
+  template <class Velocity>
+  std::array<double, 3> lost_by(double InterfaceBook::Page::*tools, const Velocity& velocity) const;
   void forget_columns();
   double find_forces();
   double find_forces_of(std::size_t interaction);
@@ -118,7 +123,7 @@ class StepContact final : public StepCompliance {
   Eigen::VectorXd response(std::span<const Vec3d> forces) const;
 
   const BodyState& state_;
-  TangentSystem& system_;
+  StepFactor& system_;
   Interactions interactions_;
   std::vector<ActiveVertex> active_;
   ExertedForces forces_;

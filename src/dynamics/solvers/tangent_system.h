@@ -13,6 +13,7 @@
 
 #include "dynamics/solvers/factor_panels.h"
 #include "dynamics/solvers/krylov.h"
+#include "dynamics/solvers/step_factor.h"
 #include "dynamics/state/loads.h"
 #include "element/tissue_operator.h"
 #include "glisson/archive.h"
@@ -30,7 +31,7 @@ inline Eigen::Map<const Eigen::VectorXd> flat(std::span<const Vec3d> field) {
   return {&field.front().x, static_cast<Eigen::Index>(3 * field.size())};
 }
 
-class TangentSystem {
+class TangentSystem final : public StepFactor {
  public:
   /// What A is made of.
   struct Terms {
@@ -48,7 +49,7 @@ class TangentSystem {
   void set_free(std::vector<char> free);
   /// The tissues have changed; set_free comes next.
   void tissues_changed();
-  bool is_free(std::size_t component) const { return free_[component] != 0; }
+  bool is_free(std::size_t component) const override { return free_[component] != 0; }
 
   /// Takes A at a state.
   /// @param semidefinite  as TissueOperator::linearise
@@ -62,12 +63,11 @@ class TangentSystem {
   void apply(std::span<const Vec3d> x, std::span<Vec3d> y) const;
   /// Factorises from now on, however large the body is: for factor_solve().
   void need_factor() { factorises_ = true; }
-  /// Lets the next solve() make the factor anew.
-  void renew() { has_factor_ = current_ = false; }
-  /// How often the factor has been made; 0 while there is none.
-  std::uint64_t factor_number() const { return has_factor_ ? factor_number_ : 0; }
-  /// x ← P⁻¹ x column by column, with the factorised matrix P, A at some earlier state; held components neither act nor move.
-  void factor_solve(Eigen::MatrixXd& x) const;
+  /// The next solve() makes the factor anew.
+  void renew() override { has_factor_ = current_ = false; }
+  std::uint64_t factor_number() const override { return has_factor_ ? factor_number_ : 0; }
+  /// P is A at some earlier state.
+  void factor_solve(Eigen::MatrixXd& x) const override;
   /// x ≈ A⁻¹ b on the free components, 0 on the others.
   KrylovResult solve(const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& x);
 

@@ -62,6 +62,7 @@ bool ViscousSystem::build(const Body& body, std::span<const double> nodal_dampin
   packed_.resize(free, 1);
   last_ = Eigen::VectorXd::Zero(free);
   factorised_ = body.elements.size() <= most_tets;
+  ++factor_number_;
   if (factorised_) return factor_.factorise(matrix_.triangularView<Eigen::Lower>());
   rows_ = matrix_;
   inverse_diagonal_ = matrix_.diagonal().cwiseInverse();
@@ -108,12 +109,27 @@ bool ViscousSystem::set_last(std::span<const double> last) {
   return true;
 }
 
-void ViscousSystem::held_drag(std::span<const Vec3d> x, std::span<Vec3d> drag) const {
-  Eigen::VectorXd given(static_cast<Eigen::Index>(held_of_row_.size()));
-  for (std::size_t r = 0; r < held_of_row_.size(); ++r) {
-    given[static_cast<Eigen::Index>(r)] = x[held_of_row_[r] / 3][held_of_row_[r] % 3];
+void ViscousSystem::factor_solve(Eigen::MatrixXd& x) const {
+  Eigen::MatrixXd packed(static_cast<Eigen::Index>(free_of_row_.size()), x.cols());
+  for (std::size_t r = 0; r < free_of_row_.size(); ++r) {
+    packed.row(static_cast<Eigen::Index>(r)) = x.row(static_cast<Eigen::Index>(free_of_row_[r]));
   }
-  const Eigen::VectorXd pull = coupling_ * last_ + held_block_ * given;
+  factor_.solve(packed);
+  x.setZero();
+  for (std::size_t r = 0; r < free_of_row_.size(); ++r) {
+    x.row(static_cast<Eigen::Index>(free_of_row_[r])) = h_ * h_ * packed.row(static_cast<Eigen::Index>(r));
+  }
+}
+
+void ViscousSystem::held_drag(std::span<const Vec3d> x, std::span<Vec3d> drag) const {
+  const auto gather = [&](const std::vector<std::size_t>& components) {
+    Eigen::VectorXd of(static_cast<Eigen::Index>(components.size()));
+    for (std::size_t r = 0; r < components.size(); ++r) {
+      of[static_cast<Eigen::Index>(r)] = x[components[r] / 3][components[r] % 3];
+    }
+    return of;
+  };
+  const Eigen::VectorXd pull = coupling_ * gather(free_of_row_) + held_block_ * gather(held_of_row_);
   std::fill(drag.begin(), drag.end(), Vec3d{});
   for (std::size_t r = 0; r < held_of_row_.size(); ++r) {
     drag[held_of_row_[r] / 3][held_of_row_[r] % 3] = pull[static_cast<Eigen::Index>(r)];

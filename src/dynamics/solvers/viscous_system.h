@@ -1,7 +1,7 @@
 // viscous_system.h — (M + hγ + hC) x = b: the constant matrix of the semi-implicit scheme.
 //
 // C is the viscous matrix at rest. Small bodies are factorised once (factor_panels.h); for large ones, whose factor is
-// no longer read at the speed of a cache, conjugate gradients start from the last answer.
+// no longer read at the speed of a cache, conjugate gradients start from the last answer. Interactions need a factor.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "dynamics/solvers/factor_panels.h"
+#include "dynamics/solvers/step_factor.h"
 #include "element/body.h"
 
 namespace glisson {
 
-class ViscousSystem {
+class ViscousSystem final : public StepFactor {
  public:
   /// Tets up to which a factor pays (docs/integrators.md).
   static constexpr std::size_t kMostTets = 20000;
@@ -33,6 +34,11 @@ class ViscousSystem {
   /// Fills the free components of x.
   /// @param b  [kg m/s], @param x  [m/s]; its held components are given
   void solve(std::span<const Vec3d> b, std::span<Vec3d> x);
+  /// P = (M + hγ + hC)/h².
+  void factor_solve(Eigen::MatrixXd& x) const override;
+  std::uint64_t factor_number() const override { return factorised_ ? factor_number_ : 0; }
+  void renew() override {}  // build() does
+
   /// C x of the held components [N]; 0 for the others.
   void held_drag(std::span<const Vec3d> x, std::span<Vec3d> drag) const;
 
@@ -40,7 +46,7 @@ class ViscousSystem {
   std::vector<double> last() const { return {last_.begin(), last_.end()}; }
   /// @return false where it has another size
   bool set_last(std::span<const double> last);
-  bool is_free(std::size_t component) const { return held_[component] == 0; }
+  bool is_free(std::size_t component) const override { return held_[component] == 0; }
   bool is_factorised() const { return factorised_; }
 
  private:
@@ -58,6 +64,7 @@ class ViscousSystem {
   Matrix held_block_;                                   ///< C, held × held
   bool factorised_ = false;
   FactorPanels factor_;
+  std::uint64_t factor_number_ = 0;
   Eigen::MatrixXd packed_;  ///< one column
   Eigen::VectorXd last_, inverse_diagonal_;
 };

@@ -117,7 +117,8 @@ const SectionSpec& instrument_section() {
                               "pierces it. Needs the integrator " +
                                   supporting_integrators() +
                                   "; a rigid one in contact that follows a path, not bonded, without friction where it "
-                                  "is no plate, acts under implicit (with backward Euler) and quasi_static too.");
+                                  "is no plate, acts under implicit (with backward Euler) and "
+                                  "quasi_static too, and in viscous tissue under semi_implicit.");
     s.key("name", &InstrumentSpec::name, "name; no two tools or instruments of an experiment share one");
     s.key("tip_m", &InstrumentSpec::tip, "position of its tip at the start").in("m").must();
     s.key("direction", &InstrumentSpec::direction, "direction of its tip, of any length").in("-").direction();
