@@ -3,8 +3,6 @@
 // the modes left out; a load that is made of them is answered exactly. A station costs a product with each shape, no solve.
 //
 //   u = Σ v (vᵀ r),   r = weight − K u_prescribed,   vᵀ K v' = δ
-#include <Spectra/SymEigsSolver.h>
-
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -13,20 +11,18 @@
 
 #include "models/linear_stiffness.h"
 #include "models/stopwatch.h"
+#include "src/base/symmetric_eigen.h"
 
 namespace glisson::models {
 namespace {
 
 using Factor = Eigen::SimplicialLDLT<Sparse>;
 
-/// M^½ K⁻¹ M^½ of the free components, as Spectra sees it; its largest eigenvalues are 1/ω² of the lowest modes.
+/// M^½ K⁻¹ M^½ of the free components; its largest eigenvalues are 1/ω² of the lowest modes.
 class Softness {
  public:
-  using Scalar = double;
-
   Softness(const Factor& factor, Eigen::VectorXd root_masses) : factor_(factor), root_(std::move(root_masses)) {}
   Eigen::Index rows() const { return root_.size(); }
-  Eigen::Index cols() const { return root_.size(); }
   void perform_op(const double* in, double* out) const {
     const Eigen::Map<const Eigen::VectorXd> x(in, rows());
     Eigen::Map<Eigen::VectorXd>(out, rows()) = root_.cwiseProduct(factor_.solve(root_.cwiseProduct(x)));
@@ -38,25 +34,25 @@ class Softness {
 };
 
 /// The lowest modes, each with vᵀ K v = 1. A mode has φ = M^(−½) z and ω² = 1/θ, z of unit length.
-Eigen::MatrixXd lowest_modes(Softness& softness, const Eigen::VectorXd& root, Eigen::Index free, int count) {
+Eigen::MatrixXd lowest_modes(const Softness& softness, const Eigen::VectorXd& root, Eigen::Index free, int count) {
   Eigen::MatrixXd z;
   Eigen::VectorXd theta;
   if (3 * count < free) {
-    Spectra::SymEigsSolver<Softness> solver(softness, count, 2 * count + 20);
-    solver.init();
-    solver.compute(Spectra::SortRule::LargestAlge, 200, 1e-10);
-    z = solver.eigenvectors();
-    theta = solver.eigenvalues();
+    const auto apply = [&](const double* in, double* out) { softness.perform_op(in, out); };
+    const SymmetricEigen lowest =
+        largest_eigenpairs(apply, softness.rows(), {count, 2 * count + 20, 200, 1e-10, {}}).pairs;
+    z = lowest.vectors;
+    theta = lowest.values;
   } else {
-    Eigen::MatrixXd dense(softness.rows(), softness.cols());
+    Eigen::MatrixXd dense(softness.rows(), softness.rows());
     for (Eigen::Index c = 0; c < dense.cols(); ++c) {
       const Eigen::VectorXd unit = Eigen::VectorXd::Unit(dense.rows(), c);
       softness.perform_op(unit.data(), dense.col(c).data());
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(dense);
+    const SymmetricEigen all = symmetric_eigen(dense);
     const Eigen::Index taken = std::min<Eigen::Index>(count, free);
-    z = all.eigenvectors().rightCols(taken);
-    theta = all.eigenvalues().tail(taken);
+    z = all.vectors.rightCols(taken);
+    theta = all.values.tail(taken);
   }
   for (Eigen::Index k = 0; k < z.cols(); ++k) {
     for (Eigen::Index i = 0; i < z.rows(); ++i) z(i, k) = root[i] > 0.0 ? z(i, k) * std::sqrt(theta[k]) / root[i] : 0.0;
@@ -79,7 +75,7 @@ class Modes {
       root[i] = boundary_.prescribes(v, axis) ? 0.0 : std::sqrt(masses_[v]);
       free += boundary_.prescribes(v, axis) ? 0 : 1;
     }
-    Softness softness(factor_, root);
+    const Softness softness(factor_, root);
     shapes_ = lowest_modes(softness, root, free, count);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (const Tool& tool : problem.tools) correct(translation(tool, axis));

@@ -1,10 +1,12 @@
 #include "dynamics/step/rigid_motions.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <map>
 #include <numeric>
 #include <sstream>
 #include <vector>
+
+#include "base/symmetric_eigen.h"
 
 namespace glisson {
 namespace {
@@ -84,10 +86,8 @@ std::string free_rigid_motion(const Body& body, std::span<const char> held) {
     }
   }
   for (const auto& [root, piece] : all) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(piece.resistance);
-    if (solver.eigenvalues()[0] <= kFree * std::max(1.0, solver.eigenvalues()[5])) {
-      return describe(piece, solver.eigenvectors().col(0));
-    }
+    const SymmetricEigen eigen = symmetric_eigen(piece.resistance);
+    if (eigen.values[0] <= kFree * std::max(1.0, eigen.values[5])) return describe(piece, eigen.vectors.col(0));
   }
   return {};
 }

@@ -1,7 +1,6 @@
 #include "dynamics/step/stable_step.h"
 
-#include <Spectra/SymEigsSolver.h>
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -9,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "base/symmetric_eigen.h"
 #include "dynamics/step/step_rules.h"
 #include "element/force_operator.h"
 
@@ -21,11 +21,9 @@ constexpr int kRestarts = 100;
 constexpr double kRitzTolerance = 1e-4;  ///< residual over eigenvalue; it is added, so h* loses half of it at most
 constexpr double kStepTolerance = 1e-5;  ///< of the Newton search; what is left over is taken off h*
 
-/// M^(−½) [ Σ_blocks K(lame) + diag ] M^(−½) as Spectra sees it.
+/// M^(−½) [ Σ_blocks K(lame) + diag ] M^(−½).
 class ScaledOperator {
  public:
-  using Scalar = double;
-
   ScaledOperator(const Body& body, std::span<const LameParameters> lame, std::span<const double> diagonal,
                  std::span<const char> held)
       : body_(body), lame_(lame), diagonal_(diagonal), x_(body.vertex_count), y_(body.vertex_count),
@@ -38,7 +36,6 @@ class ScaledOperator {
   }
 
   Eigen::Index rows() const { return static_cast<Eigen::Index>(scale_.size()); }
-  Eigen::Index cols() const { return rows(); }
 
   void perform_op(const double* in, double* out) const {
     for (std::size_t i = 0; i < scale_.size(); ++i) x_[i / 3][i % 3] = in[i] * scale_[i];
@@ -73,30 +70,26 @@ Eigen::VectorXd with_noise(const std::vector<double>& mode) {
 
 /// A small body's vector of the largest eigenvalue, from the whole matrix.
 Eigen::VectorXd dense_top_vector(const ScaledOperator& op) {
-  Eigen::MatrixXd matrix(op.rows(), op.cols());
+  Eigen::MatrixXd matrix(op.rows(), op.rows());
   for (Eigen::Index c = 0; c < matrix.cols(); ++c) {
     const Eigen::VectorXd unit = Eigen::VectorXd::Unit(op.rows(), c);
     op.perform_op(unit.data(), matrix.col(c).data());
   }
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvectors().rightCols<1>();
+  return symmetric_eigen(matrix).vectors.rightCols<1>();
 }
 
 /// The same by Lanczos; empty where it does not converge.
 /// @param mode  a unit vector near the answer, or empty
-Eigen::VectorXd lanczos_top_vector(ScaledOperator op, const std::vector<double>& mode) {
-  Spectra::SymEigsSolver<ScaledOperator> solver(op, 1, kKrylovSize);
+Eigen::VectorXd lanczos_top_vector(const ScaledOperator& op, const std::vector<double>& mode) {
+  LanczosOptions options{1, kKrylovSize, kRestarts, kRitzTolerance, {}};
+  if (!mode.empty()) options.start = with_noise(mode);
+  const auto apply = [&op](const double* in, double* out) { op.perform_op(in, out); };
   try {
-    if (mode.empty()) {
-      solver.init();
-    } else {
-      solver.init(with_noise(mode).data());
-    }
-    solver.compute(Spectra::SortRule::LargestAlge, kRestarts, kRitzTolerance);
+    const LanczosResult top = largest_eigenpairs(apply, op.rows(), options);
+    return top.converged ? Eigen::VectorXd(top.pairs.vectors.col(0)) : Eigen::VectorXd();
   } catch (const std::exception&) {  // an inner decomposition failed: the caller falls back to the element bound
     return {};
   }
-  return solver.info() == Spectra::CompInfo::Successful ? Eigen::VectorXd(solver.eigenvectors().col(0))
-                                                        : Eigen::VectorXd();
 }
 
 TopPair top_pair(const ScaledOperator& op, const std::vector<double>& mode) {

@@ -8,15 +8,6 @@ namespace glisson::fit {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-SymmetricEigen symmetric_eigen(const Matrix& a) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(a);
-  return {eigen.eigenvalues(), eigen.eigenvectors()};
-}
-
-double largest_eigenvalue(const Matrix& a) {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(a, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
-}
-
 SingularDirections singular_directions(const Matrix& a) {
   const Matrix r = Eigen::HouseholderQR<Matrix>(a).matrixQR().topRows(std::min(a.rows(), a.cols()));
   Matrix square = Matrix::Zero(a.cols(), a.cols());

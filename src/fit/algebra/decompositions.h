@@ -7,14 +7,6 @@
 
 namespace glisson::fit {
 
-struct SymmetricEigen {
-  Eigen::VectorXd values;   ///< ascending
-  Eigen::MatrixXd vectors;  ///< columns of length 1, in that order
-};
-/// @param a  symmetric
-SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
-double largest_eigenvalue(const Eigen::MatrixXd& a);
-
 struct SingularDirections {
   Eigen::VectorXd values;   ///< descending, one a column of the matrix
   Eigen::MatrixXd vectors;  ///< right ones: columns of length 1, in that order

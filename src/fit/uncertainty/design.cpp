@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/symmetric_eigen.h"
 #include "fit/algebra/decompositions.h"
 #include "fit/uncertainty/combination.h"
 #include "fit/uncertainty/distribution.h"

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <ranges>
 
+#include "base/symmetric_eigen.h"
 #include "fit/algebra/decompositions.h"
 #include "fit/fit_curves.h"
 #include "fit/uncertainty/autocorrelation.h"
@@ -78,7 +79,7 @@ bool NoiseStudy::stand_alone() const {
   const Vector root = inverse_.diagonal().array().sqrt();
   return std::ranges::all_of(curves_, [&](const Rows& curve) {
     const Matrix j = block(curve) * root.asDiagonal();
-    return largest_eigenvalue(j.transpose() * j) < kOwnPart;
+    return symmetric_eigen(j.transpose() * j).values.maxCoeff() < kOwnPart;
   });
 }
 
