@@ -1,9 +1,10 @@
 #include "cli/tissue_text.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <regex>
+#include <algorithm>
+#include <cctype>
+#include <string_view>
 #include <vector>
 
 #include "glisson/scene/scene.h"
@@ -12,7 +13,11 @@ namespace glisson::app {
 namespace {
 
 std::string value_text(double x) { return fmt::format("{:g}", x); }
-std::string value_text(const std::vector<double>& list) { return fmt::format("[{:g}]", fmt::join(list, ", ")); }
+std::string value_text(const std::vector<double>& list) {
+  std::string text;
+  for (const double x : list) text += (text.empty() ? "" : ", ") + value_text(x);
+  return "[" + text + "]";
+}
 
 /// The law's word and its keys as a scene has them.
 template <class Laws>
@@ -45,6 +50,24 @@ std::string kinematics_text(const Tissue& t) {
   return text;
 }
 
+/// Whether a line of a scene opens the section `mesh`, sets a key of it or sets it whole.
+bool has_mesh(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t", kKey = "mesh";
+  const auto skip = [&text](std::string_view blanks) {
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  };
+  const auto is_of_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  while (!text.empty()) {
+    skip(kBlanks);
+    if (text.starts_with('[')) text.remove_prefix(1);
+    skip(kBlanks);
+    if (text.starts_with(kKey) && (text.size() == kKey.size() || !is_of_word(text[kKey.size()]))) return true;
+    const std::size_t end = text.find('\n');
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string law_text(const Tissue& t) {
@@ -61,8 +84,7 @@ std::string law_text(const Tissue& t) {
 }
 
 Tissue tissue_of_toml(std::string text, const std::string& name, const std::filesystem::path& folder) {
-  const std::regex mesh(R"((^|\n)[ \t]*\[?[ \t]*mesh\b)");
-  if (!std::regex_search(text, mesh)) text += "\n[mesh]\nkind = \"box\"\n[motion]\nmax_steps = 1\n";
+  if (!has_mesh(text)) text += "\n[mesh]\nkind = \"box\"\n[motion]\nmax_steps = 1\n";
   return parse_scene(text, name, folder).variants.front().tissue;
 }
 
