@@ -21,6 +21,10 @@ target_compile_features(glisson_options INTERFACE cxx_std_20)
 target_compile_options(glisson_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off)
 # GCC 12 and 13 see overlaps in std::string that are not there (GCC bug 105651).
 target_compile_options(glisson_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+# GCC looks for garbage in its memory from 128 MiB on, again and again in a file of a GiB: a tenth of the time to compile. From
+# 1 GiB on it costs little; the largest file takes 0.4 GiB more.
+target_compile_options(glisson_options INTERFACE
+  $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:--param=ggc-min-heapsize=1048576>)
 # __FILE__, which every check of GoogleTest has, without the folder of this clone: else the cache knows no test of another one.
 target_compile_options(glisson_options INTERFACE "-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=")
 if(GLISSON_SANITIZE)
