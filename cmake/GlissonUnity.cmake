@@ -3,9 +3,11 @@
 # file by file: shorter waits where one file is edited over and over.
 option(GLISSON_UNITY "Compile the files of a folder together" ON)
 
-# glisson_unity(target [APART files...]): files under APART keep a translation unit of their own.
+# glisson_unity(target [APART files...] [TOGETHER regexes...]): files under APART keep a translation unit of their own; the
+# folders that one regex matches share one, because a small folder spends most of its time on headers. Names of a file's own
+# are then unique in all of them.
 function(glisson_unity target)
-  cmake_parse_arguments(arg "" "" "APART" ${ARGN})
+  cmake_parse_arguments(arg "" "" "APART;TOGETHER" ${ARGN})
   if(NOT GLISSON_UNITY)
     return()
   endif()
@@ -20,6 +22,11 @@ function(glisson_unity target)
       continue()
     endif()
     cmake_path(GET name PARENT_PATH room)
+    foreach(shared IN LISTS arg_TOGETHER)
+      if(room MATCHES "${shared}")
+        string(REGEX REPLACE "[^a-z]+" "_" room "${shared}")
+      endif()
+    endforeach()
     string(REPLACE "/" "_" room "${room}")
     set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${target}_${room}")
   endforeach()

@@ -23,7 +23,7 @@ std::string effort_text(const ComparedRow& row) {
                                    : fmt::format("{}", row.effort.steps);
 }
 
-std::string percent(double share) { return share < 0.0 ? "-" : fmt::format("{:.3g} %", 100.0 * share); }
+std::string share_text(double share) { return share < 0.0 ? "-" : fmt::format("{:.3g} %", 100.0 * share); }
 
 /// Three digits, without a power of ten where it is large.
 std::string short_text(double value) {
@@ -65,7 +65,7 @@ std::string target_text(const Comparison& c) {
       if (row.error_force >= 0.0 && (least < 0.0 || row.error_force < least)) least = row.error_force;
     }
     if (ran)
-      missed += fmt::format("  {:<24} {:>10}\n", rival.name, least < 0.0 ? "no " + heading_of(c) : percent(least));
+      missed += fmt::format("  {:<24} {:>10}\n", rival.name, least < 0.0 ? "no " + heading_of(c) : share_text(least));
   }
   std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) { return a->wall_s() < b->wall_s(); });
   std::string text = fmt::format("within {:.3g} % of the {} and the surface, there and with all that is finer:\n",
@@ -148,10 +148,10 @@ nlohmann::json rows_table(const Comparison& c) {
       "run [ms]", "memory [MB]", "note"};
   if (!c.measured.empty()) columns.emplace_back("against the measurement");
   for (const ComparedRow& row : c.rows) {
-    rows.push_back({row.model, row.tets, effort_text(row), percent(row.error_force), percent(row.error_surface),
+    rows.push_back({row.model, row.tets, effort_text(row), share_text(row.error_force), share_text(row.error_surface),
                     short_text(1e3 * row.answer.setup_s), short_text(1e3 * row.answer.run_s), megabytes(row),
                     note_of(row)});
-    if (!c.measured.empty()) rows.back().push_back(percent(row.error_measured));
+    if (!c.measured.empty()) rows.back().push_back(share_text(row.error_measured));
   }
   return {{"title", "Each run"}, {"columns", columns}, {"rows", std::move(rows)}, {"note", reference_text(c)}};
 }
@@ -188,7 +188,7 @@ std::vector<std::vector<std::string>> summary_rows(std::span<const Comparison> a
     for (const Comparison& c : all) {
       const ComparedRow* last = last_row(c, rival.name);
       ran = ran || (last != nullptr && last->answer.trouble.empty());
-      row.push_back(last == nullptr ? "-" : percent(last->error_force));
+      row.push_back(last == nullptr ? "-" : share_text(last->error_force));
       wall += last == nullptr ? 0.0 : last->wall_s();
     }
     row.push_back(fmt::format("{:.3g} s", wall));
@@ -230,8 +230,8 @@ std::string table_of(const Comparison& c) {
   text += fmt::format(fmt::runtime(kRow), "model", "tets", "steps", heading_of(c), "surface", measured("measured"),
                       "set-up [s]", "run [s]", "[MB]", "");
   for (const ComparedRow& row : c.rows) {
-    text += fmt::format(fmt::runtime(kRow), row.model, row.tets, effort_text(row), percent(row.error_force),
-                        percent(row.error_surface), measured(percent(row.error_measured)),
+    text += fmt::format(fmt::runtime(kRow), row.model, row.tets, effort_text(row), share_text(row.error_force),
+                        share_text(row.error_surface), measured(share_text(row.error_measured)),
                         fmt::format("{:.3g}", row.answer.setup_s), fmt::format("{:.3g}", row.answer.run_s),
                         megabytes(row), note_of(row));
   }

@@ -15,13 +15,11 @@ namespace {
 using app::WallClock;
 
 constexpr auto kPublishEvery = std::chrono::milliseconds(8);
-constexpr auto kPublishAtRest = std::chrono::milliseconds(200);
 constexpr auto kShapeEvery = std::chrono::milliseconds(100);  // of a body that is being cut
 constexpr double kHandSpeed = 0.5;                            // of what is drawn, at most [m/s]
 constexpr double kHandReach = 0.5;                            // of the body's size
 constexpr double kPatch = 0.05;                               // radius of what is grabbed, of the body's size
 constexpr double kHandStiffness = 4.0;  // of E times the patch's radius: stiffer than the tissue below it, 2 E a
-constexpr std::size_t kEventsTold = 32;
 
 Vec3d shortened(const Vec3d& v, double most) {
   const double length = norm(v);

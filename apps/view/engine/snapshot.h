@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -16,6 +17,10 @@ namespace glisson::view {
 
 /// Tools and instruments that can be led; a scene has few.
 inline constexpr std::size_t kMostTools = 4;
+/// Between snapshots of a body at rest.
+inline constexpr auto kPublishAtRest = std::chrono::milliseconds(200);
+/// Of the latest events of a simulation, how many a snapshot tells.
+inline constexpr std::size_t kEventsTold = 32;
 
 /// What can be said of a tool before anything moves.
 struct ToolInfo {

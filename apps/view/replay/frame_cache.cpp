@@ -69,9 +69,9 @@ bool FrameCache::has(std::size_t number) const {
 }
 
 std::shared_ptr<const LoadedFrame> FrameCache::read(std::size_t number) {
-  static const std::array<std::string, 2> kFields{"displacement_m", "stress_xx_Pa"};
+  static const std::array<std::string, 2> kColumns{"displacement_m", "stress_xx_Pa"};
   const std::string file = run_.frames[number].file.string();
-  ReadFrame frame = read_frame(file, kFields);
+  ReadFrame frame = read_frame(file, kColumns);
   auto loaded = std::make_shared<LoadedFrame>();
   loaded->displacement = displacement_of(frame, file);
   if (number == 0 && !skin_) skin_ = skin_of(frame.mesh);

@@ -14,8 +14,6 @@ namespace {
 using app::WallClock;
 
 constexpr auto kTurn = std::chrono::milliseconds(12);
-constexpr auto kPublishAtRest = std::chrono::milliseconds(200);
-constexpr std::size_t kEventsTold = 32;
 
 /// The speed at which a run lasts nearest to four seconds; 1 where it lasts a few anyway. The page offers the same ones.
 double preferred_rate(double duration) {

@@ -22,7 +22,7 @@
 namespace glisson {
 namespace {
 
-constexpr double kMaxCells = 1e8;
+constexpr double kMaxBoxCells = 1e8;
 
 /// Axis orders of the six paths; the first three are even permutations (positive orientation).
 constexpr std::array<std::array<int, 3>, 6> kPaths{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
@@ -101,7 +101,7 @@ void add_sides(const Grid& grid, TetMesh& mesh) {
 
 Fault BoxOptions::check() const {
   const double all = 1.0 * cells[0] * cells[1] * cells[2];
-  if (all <= kMaxCells) return {};
+  if (all <= kMaxBoxCells) return {};
   return {detail::show(all) + " cubes in all are too many; allowed: at most 1e8", "cells"};
 }
 

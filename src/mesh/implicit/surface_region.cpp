@@ -27,7 +27,7 @@ class SurfaceNode final : public Solid::Node {
   SurfaceTree tree_;
 };
 
-[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
+[[noreturn]] void refuse_surface(const std::string& what) { throw std::invalid_argument(what); }
 
 std::string place_text(const Vec3d& x) {
   std::ostringstream text;
@@ -43,8 +43,8 @@ std::vector<std::uint32_t> welded(std::span<const Vec3d> points) {
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const Vec3d& x = points[i];
     if (!(std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}) <= kLargest) || std::isnan(x.x + x.y + x.z))
-      refuse("has point " + std::to_string(i) +
-             " that is not finite, or beyond 1e30 m; repair the file that it is from");
+      refuse_surface("has point " + std::to_string(i) +
+                     " that is not finite, or beyond 1e30 m; repair the file that it is from");
     same.push_back(places.try_emplace({x.x, x.y, x.z}, i).first->second);
   }
   return same;
@@ -58,13 +58,13 @@ std::vector<Triangle> distinct(std::span<const Vec3d> points, std::span<const Tr
     Triangle corners{};
     for (std::size_t i = 0; i < 3; ++i) {
       if (triangles[t][i] >= points.size())
-        refuse("has triangle " + std::to_string(t) + " of point " + std::to_string(triangles[t][i]) + "; there are " +
-               std::to_string(points.size()) + ", counted from 0");
+        refuse_surface("has triangle " + std::to_string(t) + " of point " + std::to_string(triangles[t][i]) +
+                       "; there are " + std::to_string(points.size()) + ", counted from 0");
       corners[i] = same[triangles[t][i]];
     }
     if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]) kept.push_back(corners);
   }
-  if (kept.empty()) refuse("has no triangles; give a closed surface");
+  if (kept.empty()) refuse_surface("has no triangles; give a closed surface");
   return kept;
 }
 
@@ -99,14 +99,15 @@ void require_closed(std::span<const Vec3d> points, const std::vector<Triangle>& 
     kind.add((points[ends[0]] + points[ends[1]]) * 0.5);
   }
   if (open.count > 0)
-    refuse("is open at " + open.text() +
-           "; close its holes in the program that it is from, and join points that should be one");
+    refuse_surface("is open at " + open.text() +
+                   "; close its holes in the program that it is from, and join points that should be one");
   if (crowded.count > 0)
-    refuse("has three or more triangles that bound nothing at " + crowded.text() +
-           " (non-manifold); remove sheets within the body, or what is there twice, in the program that it is from");
+    refuse_surface(
+        "has three or more triangles that bound nothing at " + crowded.text() +
+        " (non-manifold); remove sheets within the body, or what is there twice, in the program that it is from");
   if (turned.count > 0)
-    refuse("has triangles that turn against their neighbours at " + turned.text() +
-           "; orient its triangles alike in the program that it is from");
+    refuse_surface("has triangles that turn against their neighbours at " + turned.text() +
+                   "; orient its triangles alike in the program that it is from");
 }
 
 /// The corners of triangles with an area, their normals outward.
@@ -121,7 +122,7 @@ std::vector<Corners> outward(std::span<const Vec3d> points, const std::vector<Tr
     if (squared(area_of(c)) > 0.0) placed.push_back(c);
   }
   if (!(std::abs(volume) > 1e-12 * extent * extent * extent) || placed.empty())
-    refuse("has no volume within; give one that bounds a body");
+    refuse_surface("has no volume within; give one that bounds a body");
   if (volume < 0.0) {
     for (Corners& c : placed) std::swap(c[1], c[2]);
   }

@@ -13,18 +13,18 @@ namespace {
 constexpr std::size_t kOrdered = 16;    // runs this short are left in the order of the mesh
 constexpr double kNearlyLargest = 0.9;  // share of the largest variance from which on an axis is preferred
 
-struct Placed {
+struct PlacedTet {
   Vec3d centroid;  // [m]
   double along;    // centroid in the direction of the last cut [m]
   std::uint32_t tet;
 };
 
 /// The chosen tets in ascending order, whatever order they come in: sums over them must not depend on it.
-std::vector<Placed> place(std::span<const Vec3d> vertices, std::span<const Tet> tets,
-                          std::span<const std::uint32_t> chosen) {
+std::vector<PlacedTet> place(std::span<const Vec3d> vertices, std::span<const Tet> tets,
+                             std::span<const std::uint32_t> chosen) {
   std::vector<std::uint32_t> numbers(chosen.begin(), chosen.end());
   std::sort(numbers.begin(), numbers.end());
-  std::vector<Placed> placed;
+  std::vector<PlacedTet> placed;
   placed.reserve(numbers.size());
   for (const std::uint32_t t : numbers) {
     const auto& [a, b, c, d] = tets[t];
@@ -34,12 +34,12 @@ std::vector<Placed> place(std::span<const Vec3d> vertices, std::span<const Tet> 
 }
 
 /// Second moments of the centroids about their mean [m²], not divided by their number.
-Eigen::Matrix3d moments(std::span<const Placed> placed) {
+Eigen::Matrix3d moments(std::span<const PlacedTet> placed) {
   Vec3d mean{};
-  for (const Placed& p : placed) mean = mean + p.centroid;
+  for (const PlacedTet& p : placed) mean = mean + p.centroid;
   mean = mean * (1.0 / static_cast<double>(placed.size()));
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-  for (const Placed& p : placed) {
+  for (const PlacedTet& p : placed) {
     const Vec3d d = p.centroid - mean;
     xx += d.x * d.x, xy += d.x * d.y, xz += d.x * d.z;
     yy += d.y * d.y, yz += d.y * d.z, zz += d.z * d.z;
@@ -49,7 +49,7 @@ Eigen::Matrix3d moments(std::span<const Placed> placed) {
 
 /// The direction in which the centroids spread most. A coordinate axis is taken where it is nearly as good:
 /// generated meshes have their layers across the axes, and on a cube every direction is the largest.
-Vec3d spread(std::span<const Placed> placed) {
+Vec3d spread(std::span<const PlacedTet> placed) {
   const Eigen::Matrix3d m = moments(placed);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m);
   Eigen::Index axis = 0;
@@ -62,19 +62,20 @@ Vec3d spread(std::span<const Placed> placed) {
 
 /// Moves the `left` tets lowest along the spread to the front. Ties are broken by number, so the two sets depend
 /// on nothing else.
-void cut(std::span<Placed> placed, std::size_t left) {
+void cut(std::span<PlacedTet> placed, std::size_t left) {
   const Vec3d direction = spread(placed);
-  for (Placed& p : placed) p.along = dot(p.centroid, direction);
-  std::nth_element(
-      placed.begin(), placed.begin() + static_cast<std::ptrdiff_t>(left), placed.end(),
-      [](const Placed& a, const Placed& b) { return a.along < b.along || (a.along == b.along && a.tet < b.tet); });
+  for (PlacedTet& p : placed) p.along = dot(p.centroid, direction);
+  std::nth_element(placed.begin(), placed.begin() + static_cast<std::ptrdiff_t>(left), placed.end(),
+                   [](const PlacedTet& a, const PlacedTet& b) {
+                     return a.along < b.along || (a.along == b.along && a.tet < b.tet);
+                   });
 }
 
 /// Cuts into `parts` parts and appends their sizes; within a part goes on halving, for the order alone.
-void bisect(std::span<Placed> placed, std::size_t parts, std::vector<std::size_t>& sizes) {
+void bisect(std::span<PlacedTet> placed, std::size_t parts, std::vector<std::size_t>& sizes) {
   if (parts == 1) sizes.push_back(placed.size());
   if (parts <= 1 && placed.size() <= kOrdered) {
-    std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.tet < b.tet; });
+    std::sort(placed.begin(), placed.end(), [](const PlacedTet& a, const PlacedTet& b) { return a.tet < b.tet; });
     return;
   }
   const std::size_t left_parts = parts / 2;
@@ -90,12 +91,12 @@ struct Renumbered {
   std::uint32_t count = 0;
 };
 
-Renumbered renumber(std::span<const Placed> placed, std::span<const Tet> tets, std::size_t vertices) {
+Renumbered renumber(std::span<const PlacedTet> placed, std::span<const Tet> tets, std::size_t vertices) {
   constexpr std::uint32_t kNone = ~0u;
   Renumbered result;
   result.tets.reserve(placed.size());
   std::vector<std::uint32_t> number(vertices, kNone);
-  for (const Placed& p : placed) {
+  for (const PlacedTet& p : placed) {
     Tet tet = tets[p.tet];
     for (std::uint32_t& v : tet) {
       if (number[v] == kNone) number[v] = result.count++;
@@ -118,7 +119,7 @@ TetPartition partition_tets(std::span<const Vec3d> vertices, std::span<const Tet
                             std::span<const std::uint32_t> chosen, std::size_t target_tets) {
   if (target_tets == 0) throw std::invalid_argument("target_tets = 0 is out of range: it must be 1 or more");
   if (chosen.empty()) return {{}, {0}};
-  std::vector<Placed> placed = place(vertices, tets, chosen);
+  std::vector<PlacedTet> placed = place(vertices, tets, chosen);
   std::vector<std::size_t> sizes;
   bisect(placed, (placed.size() + target_tets - 1) / target_tets, sizes);
 

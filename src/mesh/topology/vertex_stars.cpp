@@ -12,16 +12,16 @@ namespace {
 constexpr std::size_t kMostTets = std::size_t{1} << 30;  // four corners each, counted in 32 bits
 constexpr std::size_t kSpare = 16;                       // a cut through a vertex leaves about 12 of 24 tets on a side
 
-[[noreturn]] void refuse(const std::string& fault) { throw std::invalid_argument("vertex stars: " + fault); }
+[[noreturn]] void refuse_star(const std::string& fault) { throw std::invalid_argument("vertex stars: " + fault); }
 
 void require_vertex(std::uint32_t vertex, std::size_t vertices) {
   if (vertex < vertices) return;
-  refuse("there is no vertex " + std::to_string(vertex) + " among " + count_text(vertices, "vertex", "vertices") +
-         ", numbered from 0");
+  refuse_star("there is no vertex " + std::to_string(vertex) + " among " + count_text(vertices, "vertex", "vertices") +
+              ", numbered from 0");
 }
 
 void check(std::span<const Tet> tets, std::size_t vertices) {
-  if (tets.size() >= kMostTets) refuse(std::to_string(tets.size()) + " tets; fewer than 2³⁰ can be numbered");
+  if (tets.size() >= kMostTets) refuse_star(std::to_string(tets.size()) + " tets; fewer than 2³⁰ can be numbered");
   for (const Tet& tet : tets) {
     for (const std::uint32_t v : tet) require_vertex(v, vertices);
   }
@@ -48,8 +48,8 @@ void VertexStars::require_held(std::uint32_t tet, std::uint32_t vertex) const {
   require_vertex(vertex, vertices());
   const auto star = tets_at(vertex);
   if (std::binary_search(star.begin(), star.end(), tet)) return;
-  refuse("tet " + std::to_string(tet) + " does not hold vertex " + std::to_string(vertex) +
-         "; it was removed, or its corner was moved before");
+  refuse_star("tet " + std::to_string(tet) + " does not hold vertex " + std::to_string(vertex) +
+              "; it was removed, or its corner was moved before");
 }
 
 void VertexStars::remove(std::uint32_t tet, const Tet& corners) {
@@ -62,7 +62,8 @@ void VertexStars::move(std::uint32_t tet, std::uint32_t from, std::uint32_t to) 
   require_vertex(to, vertices());
   const auto star = tets_at(to);
   if (std::binary_search(star.begin(), star.end(), tet)) {
-    refuse("tet " + std::to_string(tet) + " holds vertex " + std::to_string(to) + " already; its corners must differ");
+    refuse_star("tet " + std::to_string(tet) + " holds vertex " + std::to_string(to) +
+                " already; its corners must differ");
   }
   erase(tet, from);
   insert(tet, to);
