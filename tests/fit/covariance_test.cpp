@@ -11,7 +11,6 @@
 
 #include "fit/search/least_squares.h"
 #include "fit/uncertainty/distribution.h"
-#include "fit/uncertainty/influence.h"
 #include "fit/uncertainty/residual_correlation.h"
 #include "small_models.h"
 

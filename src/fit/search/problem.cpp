@@ -46,21 +46,6 @@ struct Stencil {
   }
 };
 
-double robust(const Loss& loss, double s) {
-  const double c = loss.scale * loss.scale, x = s / c;
-  switch (loss.kind) {
-    case LossKind::squares:
-      return s;
-    case LossKind::huber:
-      return x <= 1.0 ? s : c * (2.0 * std::sqrt(x) - 1.0);
-    case LossKind::soft_l1:
-      return 2.0 * c * (std::sqrt(1.0 + x) - 1.0);
-    case LossKind::cauchy:
-      return c * std::log1p(x);
-  }
-  return s;
-}
-
 }  // namespace
 
 Problem::Problem(std::vector<Parameter> parameters, std::vector<Curve> curves, std::vector<std::size_t> indices,
@@ -171,23 +156,10 @@ Residuals Problem::residuals(std::span<const double> scaled, bool derivatives, s
 
 double Problem::cost(std::span<const double> residuals) const {
   double sum = 0.0;
-  for (const double r : residuals) sum += robust(loss_, r * r);
+  for (const double r : residuals) sum += loss_of(loss_, r * r);
   return 0.5 * sum;
 }
 
-double Problem::weight(double residual) const {
-  const double c = loss_.scale * loss_.scale, x = residual * residual / c;
-  switch (loss_.kind) {
-    case LossKind::squares:
-      return 1.0;
-    case LossKind::huber:
-      return x <= 1.0 ? 1.0 : 1.0 / std::sqrt(x);
-    case LossKind::soft_l1:
-      return 1.0 / std::sqrt(1.0 + x);
-    case LossKind::cauchy:
-      return 1.0 / (1.0 + x);
-  }
-  return 1.0;
-}
+double Problem::weight(double residual) const { return influence(loss_, residual).weight; }
 
 }  // namespace glisson::fit

@@ -11,15 +11,10 @@
 #include <vector>
 
 #include "fit/model.h"
+#include "fit/search/loss.h"
 #include "glisson/fit.h"
 
 namespace glisson::fit {
-
-enum class LossKind { squares, huber, soft_l1, cauchy };
-struct Loss {
-  LossKind kind = LossKind::squares;
-  double scale = 1.0;  ///< residuals far above it count less; in standard deviations of the noise, > 0
-};
 
 /// Residuals of all curves, one after the other, and their derivatives by z.
 struct Residuals {

@@ -10,7 +10,6 @@
 #include "fit/fit_curves.h"
 #include "fit/uncertainty/autocorrelation.h"
 #include "fit/uncertainty/distribution.h"
-#include "fit/uncertainty/influence.h"
 
 namespace glisson::fit {
 namespace {
