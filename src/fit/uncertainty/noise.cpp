@@ -8,7 +8,6 @@
 #include "base/symmetric_eigen.h"
 #include "fit/algebra/decompositions.h"
 #include "fit/fit_curves.h"
-#include "fit/uncertainty/autocorrelation.h"
 #include "fit/uncertainty/distribution.h"
 
 namespace glisson::fit {

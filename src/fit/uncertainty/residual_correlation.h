@@ -46,4 +46,11 @@ class ResidualCorrelation {
   double white_ = 1.0, phi_ = 0.0, variance_ = 0.0;
 };
 
+/// Probability that independent samples show autocorrelations at least as large: small where they are not independent.
+///
+///   Q = n (n + 2) Σ_k ρ_k² / (n − k), χ² with as many degrees of freedom as lags            [LjungBox1978]
+///
+/// summed over the series, with up to ten lags of each.
+double independence_probability(const std::vector<std::vector<double>>& series);
+
 }  // namespace glisson::fit
