@@ -12,7 +12,8 @@ endif()
 find_program(GLISSON_CCACHE ccache)
 if(GLISSON_CCACHE)
   # Paths below the source folder are made relative before they are hashed, so that a second clone finds what the first compiled.
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}" CCACHE_NOHASHDIR=1 "${GLISSON_CCACHE}")
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}" CCACHE_NOHASHDIR=1
+    "CCACHE_IGNOREOPTIONS=--param=ggc-min-heapsize=*" "${GLISSON_CCACHE}")  # an option of memory alone
 endif()
 
 add_library(glisson_options INTERFACE)
