@@ -184,6 +184,7 @@ class SubmeshBody final : public MovingBody {
   void push_edges(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;
   bool must_look(std::size_t s, float longest_edge_squared, bool moves);
   void list_inverted(std::span<const std::uint32_t> elements, Findings& found) const;
+  void list_inverted(const Submesh& part, std::size_t batch, std::size_t n, const Block& block, Findings& found) const;
   void fill_slots(const Submesh& part, bool split, const Scratch& scratch);
   void take_active(std::span<const Watch> watches, std::size_t first_record, const float* elastic,
                    const float* viscous);

@@ -70,7 +70,7 @@ void SubmeshBody::push_relaxing(std::size_t s, bool split, Scratch& scratch, Fin
     const ResponseItems items{
         .gradient = block.gradient, .memory = part.memory.data() + b * tets * numbers, .items = n * kChainTets};
     const PassFound here = pass(items, lanes, large.maxwell, block, out);
-    if (inverted || here.inverted) list_inverted(part.chains.elements_of(b, n), found);
+    if (inverted || here.inverted) list_inverted(part, b, n, block, found);
     found.stiffening = std::max(found.stiffening, double(here.stiffest));
     if (large.measured && double(here.stiffest) > list_limit(part.block)) list_response(part, b, n, out, found);
     kernels_.push_stress(elements, b, n, out.piola, scratch.elastic.data());
@@ -122,7 +122,7 @@ void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Fin
       kernels_.measure[plan.measure](elements, b, n, scratch.block);
       run_laws(plan, n * tets, scratch.block);
     }
-    if (large.respond(items, lanes, to, scratch.block, out)) list_inverted(part.chains.elements_of(b, n), found);
+    if (large.respond(items, lanes, to, scratch.block, out)) list_inverted(part, b, n, scratch.block, found);
     if (lanes.fibre > 0.0F) stages.fibres(items, lanes, out);
     if (!lanes.pace.empty()) {
       run_paces(lanes, n * tets, scratch.block, out);

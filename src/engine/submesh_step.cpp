@@ -113,7 +113,7 @@ void SubmeshBody::push_elements(const Submesh& part, bool split, Scratch& scratc
   for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
     const std::size_t n = std::min(kBlockBatches, part.chains.count - b), values = kChainTets * n * kernels_.lanes;
     gather(elements, b, n, block);
-    if (measure(elements, b, n, block)) list_inverted(part.chains.elements_of(b, n), found);
+    if (measure(elements, b, n, block)) list_inverted(part, b, n, block, found);
     if (watch_laws(plan, values, limit, block, found.seen)) list_by_laws(part, b, n, plan, block, found);
     push(elements, b, n, block);
     if (split) kernels_.push_viscous(elements, b, n, block);
@@ -156,6 +156,20 @@ void SubmeshBody::list_inverted(std::span<const std::uint32_t> elements, Finding
     }
     const Mat3d H = displacement_gradient<double>(body_.rest[e].s, {u[1] - u[0], u[2] - u[0], u[3] - u[0]});
     if (!(jacobian(H) > 0.0)) found.inverted.push_back(body_.mesh_tet[e]);
+  }
+}
+
+/// The same of a block of batches whose lanes have found some. Floats tell the few from which they cannot be told.
+void SubmeshBody::list_inverted(const Submesh& part, std::size_t batch, std::size_t n, const Block& block,
+                                Findings& found) const {
+  constexpr float kUnsure = 1e-4F;  // J of floats is off by some 1e-6 (1 + ‖H‖²)^(3/2)
+  const std::span<const std::uint32_t> elements = part.chains.elements_of(batch, n);
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const float* at = block.gradient + i / kernels_.lanes * 9 * kernels_.lanes + i % kernels_.lanes;
+    Mat3<float> H;
+    for (std::size_t k = 0; k < 9; ++k) H(k / 3, k % 3) = at[k * kernels_.lanes];
+    const float size = 1.0F + squared_norm(H);
+    if (!(jacobian(H) > kUnsure * size * std::sqrt(size))) list_inverted(elements.subspan(i, 1), found);
   }
 }
 
