@@ -72,6 +72,44 @@ TEST(RunVariant, SamplesAtTheChosenRate) {
   EXPECT_NEAR(seen.samples.back().time, s.time_s - s.step_s, 1e-12);
 }
 
+/// Times of the samples that a run has to take: of the first step whose forces are at most half of that step before one is due.
+std::vector<double> sample_times(const Variant& variant, std::uint64_t steps) {
+  BuiltVariant built = build_variant(variant, {});
+  Simulation& simulation = built.simulation;
+  const double rate = variant.output.sample_rate;
+  std::vector<double> times;
+  double last = 0.0;
+  for (std::uint64_t k = 0, due = 0; k < steps; ++k) {
+    EXPECT_TRUE(simulation.step().made());
+    last = simulation.force_time();
+    const double middle = last + 0.5 * simulation.step_size();
+    if (!(static_cast<double>(due) / rate < middle)) continue;
+    times.push_back(last);
+    due = std::max(due + 1, static_cast<std::uint64_t>(std::ceil(middle * rate)));
+  }
+  if (times.back() != last) times.push_back(last);
+  return times;
+}
+
+// Where steps become shorter and longer, as under a needle that goes in and out: steps say which is sampled, not the clock.
+TEST(RunVariant, SamplesTheNearestStepWhateverItsLength) {
+  for (int rate = 300; rate < 700; rate += 4) {
+    const std::string text =
+        "[mesh]\nkind = \"cylinder\"\nradius_m = 0.02\nheight_m = 0.03\nradial_cells = 3\naxial_cells = 4\n"
+        "[tissue]\nhyperelastic = { kind = \"ogden\", mu_Pa = [1724], alpha = [4], bulk_modulus_Pa = 16667 }\n"
+        "[[fixed]]\nset = \"bottom\"\n[[instrument]]\nkind = \"needle\"\ndiameter_mm = 1.27\ntip_m = [0, 0, 0.0301]\n"
+        "rupture.force_N = 0.2\nmotion = { kind = \"press\", depth_mm = 8, velocity_mm_s = 200, returns = true }\n"
+        "[output]\nsample_rate_hz = " +
+        std::to_string(rate) + "\n";
+    const Variant variant = parse(text).variants.at(0);
+    Recorder seen;
+    const RunSummary summary = run_variant(variant, {}, seen, kGoOn);
+    std::vector<double> times;
+    for (const Sample& s : seen.samples) times.push_back(s.time);
+    EXPECT_EQ(times, sample_times(variant, summary.steps)) << rate << " Hz";
+  }
+}
+
 // A rate above that of the steps gives every step once.
 TEST(RunVariant, NeverSamplesAStepTwice) {
   Recorder seen;

@@ -25,7 +25,10 @@ class Run {
  private:
   bool finished() const;
   double fraction(double time, std::uint64_t steps) const;
-  bool sample_due() const { return next_sample_ < next_force_time() + 0.5 * simulation_.step_size(); }
+  /// Whether the last step's forces are those nearest to when a sample is due: by this step, which says the same whatever the clock.
+  bool sample_due() const { return next_sample_ < force_time_ + 0.5 * summary_.step_s; }
+  /// Whether the coming step's may be; with a margin, as the step may change.
+  bool sample_near() const { return next_sample_ < next_force_time() + simulation_.step_size(); }
   /// Time that the forces after the next step are of: its start, or its end for the schemes that solve for it.
   double next_force_time() const { return simulation_.time() + (forces_at_end_ ? simulation_.step_size() : 0.0); }
   bool frame_due() const;
@@ -95,12 +98,11 @@ bool Run::frame_due() const {
   return now >= static_cast<double>(frames_taken_) / (variant_.output.frames - 1);
 }
 
-/// Whether a sample takes the forces of the coming step, which belong to the state before it. The last step's may be taken too:
-/// asked for with a margin, as the step may change.
+/// Whether a sample takes the forces of the coming step, which belong to the state before it. The last step's may be taken too.
 bool Run::probe_now() const {
   if (built_.probes.empty() || forces_at_end_) return false;
   const double left = duration_ - simulation_.time();
-  return sample_due() || left <= 2.0 * simulation_.step_size() || simulation_.steps() + 1 >= most_steps_;
+  return sample_near() || left <= 2.0 * simulation_.step_size() || simulation_.steps() + 1 >= most_steps_;
 }
 
 void Run::read_probes() {
@@ -139,10 +141,9 @@ void Run::stretch() {
       ended_ = true;
       break;
     }
-    due = sample_due();
     if (probe_now()) read_probes();
     if (!step()) break;
-    due = due || frame_due();
+    due = sample_due() || frame_due();
   }
   stepping_s_ += seconds_since(begin);
   const auto steps = static_cast<double>(simulation_.steps());
@@ -236,7 +237,7 @@ RunSummary Run::to_end() {
     const std::uint64_t before = simulation_.steps();
     stretch();
     const bool stepped = simulation_.steps() > before && forces_current_;
-    if (stepped && (next_sample_ < force_time_ + 0.5 * summary_.step_s)) take_sample();
+    if (stepped && sample_due()) take_sample();
     if (stepped && frame_due()) take_frame();
     show_progress();
   }
