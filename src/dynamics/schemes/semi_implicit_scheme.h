@@ -55,8 +55,8 @@ class SemiImplicitScheme final : public ExplicitScheme {
   void solve(double h);
   std::vector<RestingVertex> resting() const;
 
-  bool
-      viscous_;  ///< whether C is not 0, or was when interactions were attached; the kick is the explicit one where it is not
+  /// Whether C is not 0, or was not when interactions were attached; the kick is the explicit one otherwise.
+  bool viscous_;
   ViscousSystem system_;
   StepContact contact_{state_, system_};                    ///< of what acts by impulses in viscous tissue
   std::vector<std::shared_ptr<Interaction>> all_;           ///< in the order in which they were attached
