@@ -69,24 +69,14 @@ void ImplicitScheme::take_tissues(const TissueChange& change) {
 }
 
 void ImplicitScheme::attach(std::shared_ptr<Interaction> interaction, const BodyView& body) {
-  if (const std::string why = interaction->refuses_long_steps(); !why.empty()) {
-    throw std::invalid_argument("attach: integrator = " + std::string(word_of(state_.options.integrator)) +
-                                " does not support " + interaction->label() + ", which " + why);
-  }
+  require_long_steps(*interaction);
   if (!statics_ && state_.options.implicit.scheme != TimeScheme::backward_euler) {
     throw std::invalid_argument(
         "attach: " + interaction->label() + " needs scheme = backward_euler under implicit; " +
         std::string(word_of(state_.options.implicit.scheme)) +
         " lets tissue that meets a tool ring. Or take integrator = " + supporting_integrators());
   }
-  interaction->set_long_steps(true);
-  try {
-    interaction->attached(body, state_.time);
-  } catch (...) {
-    interaction->set_long_steps(false);
-    throw;
-  }
-  if (state_.options.track_energies) ledger_.bring_in(0.0, interaction->energy());
+  attach_for_long_steps(*interaction, body);
   if (interaction->constrains_long_steps()) solver_.need_factor();
   const bool adds_forces = !interaction->constrains_long_steps();
   solver_.contact().add(std::move(interaction));

@@ -43,6 +43,24 @@ std::string Scheme::not_finite_at(double time) {
          "slowly, soften the law, precision = \"double\", or integrator = \"implicit\"";
 }
 
+void Scheme::require_long_steps(const Interaction& interaction) const {
+  const std::string why = interaction.refuses_long_steps();
+  if (why.empty()) return;
+  throw std::invalid_argument("attach: integrator = " + std::string(word_of(state_.options.integrator)) +
+                              " does not support " + interaction.label() + ", which " + why);
+}
+
+void Scheme::attach_for_long_steps(Interaction& interaction, const BodyView& body) {
+  interaction.set_long_steps(true);
+  try {
+    interaction.attached(body, state_.time);
+  } catch (...) {
+    interaction.set_long_steps(false);
+    throw;
+  }
+  if (state_.options.track_energies) ledger_.bring_in(0.0, interaction.energy());
+}
+
 void Scheme::refuse_interactions() {
   throw std::invalid_argument(
       "attach: instruments, needles and membranes need integrator = " + supporting_integrators() +

@@ -113,6 +113,10 @@ class Scheme {
 
   /// Why a step from `time` is not made where a force is not finite, and what to do.
   static std::string not_finite_at(double time);
+  /// @throws std::invalid_argument saying why an interaction does not act in steps whose vertices move one another (step_contact.h)
+  void require_long_steps(const Interaction& interaction) const;
+  /// Attaches it for such steps.
+  void attach_for_long_steps(Interaction& interaction, const BodyView& body);
   /// @throws std::invalid_argument saying which integrators support interactions
   [[noreturn]] static void refuse_interactions();
   /// Lets those constraints take hold whose time has come by the middle of a step of h.

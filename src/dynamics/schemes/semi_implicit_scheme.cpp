@@ -33,18 +33,8 @@ void SemiImplicitScheme::attach(std::shared_ptr<Interaction> interaction, const 
     all_.push_back(std::move(interaction));
     return;
   }
-  if (const std::string why = interaction->refuses_long_steps(); !why.empty()) {
-    throw std::invalid_argument("attach: integrator = semi_implicit does not support " + interaction->label() +
-                                " beside viscous tissue, which " + why);
-  }
-  interaction->set_long_steps(true);
-  try {
-    interaction->attached(body, state_.time);
-  } catch (...) {
-    interaction->set_long_steps(false);
-    throw;
-  }
-  if (state_.options.track_energies) ledger_.bring_in(0.0, interaction->energy());
+  require_long_steps(*interaction);
+  attach_for_long_steps(*interaction, body);
   all_.push_back(interaction);
   contact_.add(std::move(interaction));
   follow_interactions();
