@@ -202,11 +202,13 @@ TEST(SemiImplicitCapsule, PullsAsInTheExplicitScheme) {
     p.body.attach(capsule);
     std::vector<double> force = sampled(
         0.12, [&] { return made(p.body); }, [&] { return p.force(); });
-    EXPECT_NEAR(p.body.energies().imbalance(), 0.0, 1e-9 * p.body.energies().work_tools);
+    const double balanced = integrator == Integrator::implicit ? 1e-5 : 1e-9;  // to what Newton's method leaves
+    EXPECT_NEAR(p.body.energies().imbalance(), 0.0, balanced * p.body.energies().work_tools);
     EXPECT_GT(capsule->energy(), 0.0);
     return force;
   };
   const std::vector<double> exact = curve(Integrator::central_difference), found = curve(Integrator::semi_implicit);
+  EXPECT_LT(apart(curve(Integrator::implicit), found).rms, 0.01 * peak_of(found));
   EXPECT_LT(apart(exact, found).rms, 0.04 * peak_of(exact));
   EXPECT_NEAR(found.back(), exact.back(), 0.015 * exact.back());
 }
