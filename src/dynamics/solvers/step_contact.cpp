@@ -46,7 +46,7 @@ void StepContact::add(std::shared_ptr<Interaction> interaction) {
   interactions_.add(std::move(interaction));
   interactions_.keep_all();
   forces_.own.emplace_back();
-  pushes_means_.push_back(0);
+  pushes_means_.push_back(0), responses_.emplace_back();
   forces_.total.resize(state_.body.vertex_count);
   for (std::vector<Vec3d>& of_one : forces_.own) of_one.resize(state_.body.vertex_count);
   interactions_.ask_rests();
@@ -153,20 +153,25 @@ std::span<const TriangleStiffness> StepContact::stiffness() {
 void StepContact::forget_columns() {
   factor_ = system_.factor_number();
   columns_.clear(), at_places_.clear(), means_.clear();
+  responses_.assign(responses_.size(), {});
 }
 
-/// P⁻¹ of forces on the vertices.
-Eigen::VectorXd StepContact::response(std::span<const Vec3d> forces) const {
-  Eigen::MatrixXd moved = flat(forces);
-  system_.factor_solve(moved);
-  return moved;
+/// P⁻¹ of forces that an interaction exerts. A correction takes off what the last one has put on: one solve serves both.
+const Eigen::VectorXd& StepContact::response(std::size_t interaction, const std::vector<Vec3d>& forces) {
+  Response& last = responses_[interaction];
+  if (last.forces != forces) {
+    Eigen::MatrixXd moved = flat(std::span<const Vec3d>(forces));
+    system_.factor_solve(moved);
+    last = {forces, moved};
+  }
+  return last.moved;
 }
 
 /// Moves the active vertices as if the forces of an interaction were not there.
 void StepContact::take_off(std::size_t interaction) {
   const std::vector<Vec3d>& own = forces_.own[interaction];
   if (pushes_means_[interaction] != 0) {
-    const Eigen::VectorXd moved = response(own);
+    const Eigen::VectorXd& moved = response(interaction, own);
     for (ActiveVertex& w : active_) {
       const Eigen::Index at = 3 * static_cast<Eigen::Index>(w.vertex);
       w.velocity -= Vec3d{moved[at], moved[at + 1], moved[at + 2]} * (1.0 / h_);
@@ -212,22 +217,19 @@ double StepContact::find_forces() {
   return exerting > 1 ? change / largest : 0.0;
 }
 
-/// Moves u⁺ by what the forces have changed.
-void StepContact::move_by_change(std::span<Vec3d> u, const ExertedForces& known) {
-  std::vector<Vec3d> of_means;
+/// Moves u⁺ by what the forces have changed. @param moved  per interaction: P⁻¹ of the forces known; empty: not asked for
+void StepContact::move_by_change(std::span<Vec3d> u, const ExertedForces& known, std::span<Eigen::VectorXd> moved) {
   for (std::size_t i = 0; i < forces_.own.size(); ++i) {
-    if (pushes_means_[i] != 0) of_means.resize(u.size());
+    if (pushes_means_[i] != 0) {
+      if (moved[i].size() == 0) moved[i] = response(i, known.own[i]);
+      flat(u) += response(i, forces_.own[i]) - moved[i];
+      continue;
+    }
     for (const ActiveVertex& w : active_) {
       const Vec3d more = forces_.own[i][w.vertex] - known.own[i][w.vertex];
-      if (more == Vec3d{}) continue;
-      if (pushes_means_[i] != 0) {
-        of_means[w.vertex] += more;
-      } else {
-        flat(u) += column(w.vertex) * Eigen::Vector3d(more.x, more.y, more.z);
-      }
+      if (more != Vec3d{}) flat(u) += column(w.vertex) * Eigen::Vector3d(more.x, more.y, more.z);
     }
   }
-  if (!of_means.empty()) flat(u) += response(of_means);
 }
 
 bool StepContact::correct(std::span<Vec3d> u) {
@@ -240,6 +242,10 @@ bool StepContact::correct(std::span<Vec3d> u) {
   }
   unsettled_.assign(active_.size(), Vec3d{});
   const ExertedForces known = forces_;
+  std::vector<Eigen::VectorXd> moved(known.own.size());
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    if (pushes_means_[i] != 0) moved[i] = response(i, known.own[i]);
+  }
   put_at_start(u);
   interactions_.begin(state_.time, h_, active_, {}, state_.body.rest_positions, state_.options.track_energies);
   agrees_ = false;
@@ -252,7 +258,7 @@ bool StepContact::correct(std::span<Vec3d> u) {
   for (const ActiveVertex& w : active_) {
     for (const std::vector<Vec3d>& own : forces_.own) forces_.total[w.vertex] += own[w.vertex];
   }
-  move_by_change(u, known);
+  move_by_change(u, known, moved);
   return true;
 }
 

@@ -105,6 +105,11 @@ class StepContact final : public StepCompliance {
     Column moved;
     bool used = true;  ///< in this step
   };
+  /// Of all forces of an interaction.
+  struct Response {
+    std::vector<Vec3d> forces;
+    Eigen::VectorXd moved;  ///< P⁻¹ of them [m]
+  };
   const Column& column(std::uint32_t vertex);
   const Column& column_at(std::size_t place);
   void find_columns(std::span<const std::vector<VertexWeight>> means);
@@ -119,8 +124,8 @@ class StepContact final : public StepCompliance {
   double find_forces();
   double find_forces_of(std::size_t interaction);
   void take_off(std::size_t interaction);
-  void move_by_change(std::span<Vec3d> u, const ExertedForces& known);
-  Eigen::VectorXd response(std::span<const Vec3d> forces) const;
+  void move_by_change(std::span<Vec3d> u, const ExertedForces& known, std::span<Eigen::VectorXd> moved);
+  const Eigen::VectorXd& response(std::size_t interaction, const std::vector<Vec3d>& forces);
 
   const BodyState& state_;
   StepFactor& system_;
@@ -136,6 +141,7 @@ class StepContact final : public StepCompliance {
   std::map<std::uint32_t, Column> columns_;  ///< per vertex: displacement of all components by a unit force [m/N]
   std::map<std::vector<std::pair<std::uint32_t, double>>, MeanColumn> means_;  ///< the same by one on a mean
   std::vector<char> pushes_means_;                                             ///< per interaction
+  std::vector<Response> responses_;                                            ///< per interaction, as last asked for
   std::size_t acting_ = 0;                                                     ///< whose turn it is
   std::vector<Column> at_places_;          ///< columns_ per place, of active vertices; empty: not asked for yet
   std::vector<std::uint32_t> near_, far_;  ///< places that have columns, and the others
