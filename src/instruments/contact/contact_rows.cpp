@@ -182,6 +182,15 @@ double press(ContactRow& row, const InteractionStep& step) {
   return std::abs(change) * per_impulse;
 }
 
+/// Takes off what the row exerts. @return by how much the point was moved [m]
+double release(ContactRow& row, const InteractionStep& step) {
+  const Vec3d impulse = row.impulse();
+  if (impulse == Vec3d{}) return 0.0;
+  push(row, step, -impulse);
+  row.pressing = 0.0, row.rubbing = {};
+  return norm(scaled(row.response, impulse)) * step.h;
+}
+
 /// The point of a triangle nearest to the centre of a ball: by the regions of corners, edges and face.
 std::array<double, 3> nearest_to(const Ball& ball, const Corners& c, double& depth) {
   const Vec3d p{0.0, 0.0, ball.radius}, ab = c[1] - c[0], ac = c[2] - c[0], ap = p - c[0], bp = p - c[1], cp = p - c[2];
@@ -289,6 +298,9 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step) {
   std::vector<std::uint32_t> pushed(step.vertices.size(), clock), seen(rows.size(), 0);
   const bool is_long = step.compliance != nullptr;
   const int most = is_long ? kMostLongSweeps : kMostSweeps;
+  // A vertex in a corner that one rough wall holds needs nothing of the other: they could only press and pull it against each other,
+  // as far as they happen to. In a short step the first one's impulse leaves the other nothing to do.
+  std::vector<std::size_t> holder(is_long ? step.vertices.size() : 0, rows.size());
   for (int sweep = 1; sweep <= most; ++sweep) {
     double change = 0.0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -297,7 +309,10 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step) {
       for (std::uint32_t i = 0; i < row.count; ++i) latest = std::max(latest, pushed[row.places[i]]);
       if (latest <= seen[k] && !is_long) continue;
       const bool alone = row.response.x == row.response.y && row.response.y == row.response.z;
-      const double pressed = press(row, step), rubbed = rub(row, step);
+      const bool rough = is_long && row.count == 1 && std::isinf(row.solid->friction);
+      const bool spare = rough && holder[row.places[0]] < rows.size() && holder[row.places[0]] != k;
+      const double pressed = spare ? release(row, step) : press(row, step), rubbed = spare ? 0.0 : rub(row, step);
+      if (rough && !spare) holder[row.places[0]] = row.pressing > 0.0 ? k : rows.size();
       change = std::max({change, pressed, rubbed});
       if (pressed > 0.0 || rubbed > 0.0) {
         ++clock;
