@@ -2,6 +2,7 @@
 #include "engine/submesh_body.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -38,7 +39,7 @@ SubmeshBody::Plan SubmeshBody::plan_of(const TissueBlock& block) {
 
 SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping, const SubmeshOptions& options)
     : body_(body), kernels_(options.kernels != nullptr ? *options.kernels : best_kernels()),
-      submeshes_(build_submeshes(body, kernels_.lanes, options.submesh_tets)),
+      submeshes_(build_submeshes(body, kernels_.lanes, options.submesh_tets)), changer_(body, submeshes_, kernels_.lanes),
       pool_(options.threads > 0 ? options.threads : threads_for(body.elements.size())),
       stages_(drag_stages(options.drag_stages)) {
   follow_layout(nodal_damping);
@@ -242,6 +243,82 @@ void SubmeshBody::set_step(double h) {
   if (h == step_) return;
   step_ = h;
   for (std::size_t record = 0; record < masses_.size(); ++record) set_coefficients(record);
+}
+
+/// Appends the records of new vertices, with the state of those they are copies of.
+void SubmeshBody::add_records(std::span<const std::uint32_t> origins) {
+  for (const std::uint32_t origin : origins) {
+    const auto record = static_cast<std::uint32_t>(masses_.size());
+    state_.resize(state_.size() + kStateDoubles);
+    std::copy_n(state_.data() + submeshes_.record_of_vertex[origin] * kStateDoubles, kStateDoubles,
+                state_.data() + record * kStateDoubles);
+    submeshes_.record_of_vertex.push_back(record);
+    masses_.push_back(0.0);
+    if (!weighs_.empty()) weighs_.push_back(1.0);
+    damping_.push_back(0.0);
+    rests_.push_back(0);
+  }
+  make_room_for_stages();
+}
+
+/// Takes over the state of vertices that are other points of the material now.
+void SubmeshBody::take_states(std::span<const MovedVertex> moved) {
+  for (const MovedVertex& m : moved) {
+    double* record = state_.data() + submeshes_.record_of_vertex[m.vertex] * kStateDoubles;
+    put(m.displacement, record);
+    put(m.velocity, record + 4);
+    const auto w = std::lower_bound(active_.begin(), active_.end(), m.vertex,
+                                    [](const ActiveVertex& a, std::uint32_t vertex) { return a.vertex < vertex; });
+    if (w != active_.end() && w->vertex == m.vertex) w->displacement = m.displacement, w->velocity = m.velocity;
+  }
+}
+
+void SubmeshBody::apply(const BodyChange& change, const detail::VertexStars& stars,
+                        std::span<const double> nodal_damping) {
+  as_built_ = as_built_ && change.touched.empty();
+  take_states(change.moved);
+  add_records(change.origins);
+  for (const std::uint32_t v : change.touched) {
+    const std::uint32_t record = submeshes_.record_of_vertex[v];
+    take_mass(v);
+    damping_[record] = nodal_damping[v];
+    set_coefficients(record);
+  }
+  if (changer_.apply(change, stars)) {
+    make_room();
+    find_watches();
+  }
+  if (any_shared_) weigh_vertices();
+}
+
+bool SubmeshBody::supports_tissues() const {
+  return std::all_of(body_.blocks.begin(), body_.blocks.end(),
+                     [](const TissueBlock& block) { return has_lanes(block.tissue); });
+}
+
+void SubmeshBody::tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) {
+  std::vector<char> changed(body_.blocks.size(), 0), stays(body_.blocks.size(), 0);
+  for (const std::size_t b : blocks) {
+    const bool was_viscous = plans_[b].viscous;
+    plans_[b] = plan_of(body_.blocks[b]);
+    large_plans_[b] = large_plan_of(body_.blocks[b], plans_[b]);
+    changed[b] = 1;
+    stays[b] = was_viscous && plans_[b].viscous && is_linear(body_.blocks[b]) ? 1 : 0;
+  }
+  std::atomic<bool> moved = false;
+  pool_.run(submeshes_.parts.size(), [&](std::size_t s, std::size_t) {
+    Submesh& part = submeshes_.parts[s];
+    const bool same_edges = stays[part.block] != 0 && part.edges.count > 0;
+    if (changed[part.block] != 0 && !same_edges && changer_.refit(part)) moved = true;
+  });
+  if (moved) {
+    connect(submeshes_);
+    make_room();
+    find_watches();
+  }
+  as_built_ = false;
+  make_room_for_stages();
+  take_masses(nodal_damping);
 }
 
 }  // namespace glisson::engine

@@ -16,6 +16,7 @@
 #include "engine/layout/submesh.h"
 #include "engine/moving_body.h"
 #include "engine/task_pool.h"
+#include "engine/update/submesh_changer.h"
 
 namespace glisson::engine {
 
@@ -141,12 +142,8 @@ class SubmeshBody final : public MovingBody {
   void make_room();
   void find_watches();
   void find_watches(std::span<const std::uint32_t> records, Watches& watches) const;
-  void find_parts();
   void add_records(std::span<const std::uint32_t> origins);
-  void take_out(std::uint32_t element, const detail::VertexStars& stars);
   void take_states(std::span<const MovedVertex> moved);
-  void lay_out_touched(const BodyChange& change);
-  bool refit(Submesh& part) const;
   std::vector<Sym3<double>> relaxing_stresses(std::size_t block) const;
   std::vector<double> measures(std::size_t block) const;
   void follow_branches(std::size_t block, BranchMemory& memory) const;
@@ -202,6 +199,7 @@ class SubmeshBody final : public MovingBody {
   const Body& body_;
   const Kernels& kernels_;
   Submeshes submeshes_;
+  SubmeshChanger changer_;
   std::vector<Plan> plans_;
   std::vector<std::unique_ptr<LargePlan>> large_plans_;  ///< per tissue block; none where it is the paper's
   bool any_shared_ = false;                              ///< whether some tissue's tets share their volume change
@@ -239,7 +237,6 @@ class SubmeshBody final : public MovingBody {
   Advance advance_;
   std::vector<double> list_above_;              ///< per tissue block: stiffening; empty: no element is listed
   std::span<const StiffLimit> single_limits_;   ///< per element, beside it; empty: none
-  std::vector<std::uint32_t> part_of_element_;  ///< submesh of each element; empty until something changes
   bool as_built_ = true;                        ///< whether build_submeshes would lay the body out as it is
 };
 

@@ -1,12 +1,5 @@
-// change_tissues.cpp — other tissues in the submeshes of a moving body.
-//
-// Where the elements are, in records, submeshes and lanes, does not depend on what they are made of, but for one thing: a
-// linear tissue is held by its edges, any other by its tets. So a tissue is exchanged as
-//   tets → tets     moduli and laws of the block; fibre directions and room for branches
-//   edges → edges   tensors of elastic edges are assembled anew; viscous ones hold none but shapes and stay
-//   edges ↔ tets    the submesh is laid out anew, without the elements that are gone
+// change_tissues.cpp — what the Maxwell branches of submeshes hold, as seen from outside.
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "element/block_response.h"
@@ -29,53 +22,6 @@ void put_tensor(const Sym3<double>& a, const auto& number, std::size_t i) {
 }
 
 }  // namespace
-
-bool SubmeshBody::supports_tissues() const {
-  return std::all_of(body_.blocks.begin(), body_.blocks.end(),
-                     [](const TissueBlock& block) { return has_lanes(block.tissue); });
-}
-
-/// Gives a submesh what it holds of its tissue. @return whether its elements lie elsewhere now
-bool SubmeshBody::refit(Submesh& part) const {
-  const TissueBlock& block = body_.blocks[part.block];
-  const bool by_edges = part.edges.count > 0, turns = by_edges != is_linear(block);
-  part.fibre.clear(), part.memory.clear();
-  if (!turns && !by_edges) {
-    lay_out_response(body_, block.tissue, {}, part, kernels_.lanes);
-    return false;
-  }
-  if (turns) {
-    part.edges = {}, part.chains = {};
-    std::erase_if(part.elements, [&](std::uint32_t e) { return body_.rest[e].volume == 0.0; });
-  }
-  lay_out(body_, submeshes_.record_of_vertex, part, kernels_.lanes);
-  return turns;
-}
-
-void SubmeshBody::tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) {
-  std::vector<char> changed(body_.blocks.size(), 0), stays(body_.blocks.size(), 0);
-  for (const std::size_t b : blocks) {
-    const bool was_viscous = plans_[b].viscous;
-    plans_[b] = plan_of(body_.blocks[b]);
-    large_plans_[b] = large_plan_of(body_.blocks[b], plans_[b]);
-    changed[b] = 1;
-    stays[b] = was_viscous && plans_[b].viscous && is_linear(body_.blocks[b]) ? 1 : 0;
-  }
-  std::atomic<bool> moved = false;
-  pool_.run(submeshes_.parts.size(), [&](std::size_t s, std::size_t) {
-    Submesh& part = submeshes_.parts[s];
-    const bool same_edges = stays[part.block] != 0 && part.edges.count > 0;
-    if (changed[part.block] != 0 && !same_edges && refit(part)) moved = true;
-  });
-  if (moved) {
-    connect(submeshes_);
-    make_room();
-    find_watches();
-  }
-  as_built_ = false;
-  make_room_for_stages();
-  take_masses(nodal_damping);
-}
 
 /// The tissue's measure of each element of a block.
 std::vector<double> SubmeshBody::measures(std::size_t b) const {
