@@ -11,12 +11,14 @@
 
 #include <memory>
 
+#include "engine/active_vertices.h"
 #include "engine/kernels/kernels.h"
 #include "engine/kernels/response_kernels.h"
 #include "engine/layout/submesh.h"
 #include "engine/moving_body.h"
 #include "engine/task_pool.h"
 #include "engine/update/submesh_changer.h"
+#include "engine/vertex_records.h"
 
 namespace glisson::engine {
 
@@ -38,8 +40,8 @@ class SubmeshBody final : public MovingBody {
   void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const override;
   void archive_past(Archive& ar) override;
   void archive_layout(Archive& ar, std::span<const double> nodal_damping) override;
-  Vec3d displacement_of(std::uint32_t vertex) const override;
-  Vec3d velocity_of(std::uint32_t vertex) const override;
+  Vec3d displacement_of(std::uint32_t vertex) const override { return records_.displacement(record_of(vertex)); }
+  Vec3d velocity_of(std::uint32_t vertex) const override { return records_.velocity(record_of(vertex)); }
   void apply(const BodyChange& change, const detail::VertexStars& stars,
              std::span<const double> nodal_damping) override;
   bool supports_tissues() const override;
@@ -47,16 +49,20 @@ class SubmeshBody final : public MovingBody {
   BranchMemory branch_memory(std::size_t block) const override;
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override;
   void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) override;
-  void watch(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> apart) override;
-  void watch_only(std::span<const std::uint32_t> vertices) override;
-  std::span<ActiveVertex> active() override { return active_; }
+  void watch(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> apart) override {
+    active_.add(vertices, apart);
+  }
+  void watch_only(std::span<const std::uint32_t> vertices) override { active_.keep(vertices); }
+  std::span<ActiveVertex> active() override { return active_.active(); }
   void rest(std::span<const std::uint32_t> vertices) override;
-  std::span<RestingVertex> resting() override { return resting_; }
+  std::span<RestingVertex> resting() override { return active_.resting(); }
   void hold_in_stages(std::span<const char> components) override;
   void push_in_stages(std::span<const Vec3d> outer) override { outer_.assign(outer.begin(), outer.end()); }
   void project_stages(StageHolds* holds) override { holds_ = holds; }
   void place_active() override;
-  void set_velocity(std::uint32_t vertex, const Vec3d& velocity) override;
+  void set_velocity(std::uint32_t vertex, const Vec3d& velocity) override {
+    records_.set_velocity(record_of(vertex), velocity);
+  }
   void inertia_changed(std::span<const std::uint32_t> vertices) override;
   void list_above(std::span<const double> stiffening, std::span<const StiffLimit> single) override {
     list_above_.assign(stiffening.begin(), stiffening.end());
@@ -78,14 +84,6 @@ class SubmeshBody final : public MovingBody {
     std::size_t laws = 1;  ///< 2: apart on λ and μ
     std::size_t measure = 0;
     bool viscous = false, drags = false;  ///< drags: it has a Kelvin–Voigt viscosity
-  };
-  /// An active or resting vertex as its submesh or the interface sees it: position in their range, place among all of these.
-  struct Watch {
-    std::uint32_t local, place;
-  };
-  struct Watches {
-    std::vector<std::vector<Watch>> interior;   ///< per submesh, of its interior
-    std::vector<std::vector<Watch>> interface;  ///< per chunk of the interface
   };
   /// A record of which stages of drag leave components as they are.
   struct HeldRecord {
@@ -133,16 +131,11 @@ class SubmeshBody final : public MovingBody {
 
   void follow_layout(std::span<const double> nodal_damping);
   void take_masses(std::span<const double> nodal_damping);
+  void take_mass(std::uint32_t vertex);
   static Plan plan_of(const TissueBlock& block);
   std::unique_ptr<LargePlan> large_plan_of(const TissueBlock& block, const Plan& plan) const;
   void set_maxwell_step(double h);
-  void set_step(double h);
-  void take_mass(std::size_t vertex);
-  void set_coefficients(std::size_t record);
   void make_room();
-  void find_watches();
-  void find_watches(std::span<const std::uint32_t> records, Watches& watches) const;
-  void add_records(std::span<const std::uint32_t> origins);
   void take_states(std::span<const MovedVertex> moved);
   std::vector<Sym3<double>> relaxing_stresses(std::size_t block) const;
   std::vector<double> measures(std::size_t block) const;
@@ -153,12 +146,9 @@ class SubmeshBody final : public MovingBody {
   void hold_rows();
   void drag_submesh(const Submesh& part, Scratch& scratch);
   void drag_elements(const Submesh& part, Scratch& scratch) const;
-  void begin_stages(std::size_t first, std::size_t n, std::span<const Watch> active, const float* elastic,
-                    const float* viscous, const Step& step);
-  void run_stage(std::size_t first, std::size_t n, std::span<const Watch> active, std::size_t stage, const Step& step,
-                 const float* force);
-  void end_stages(std::size_t first, std::size_t n, std::span<const Watch> active, std::span<const Watch> resting,
-                  bool split, const Step& step, VertexWork& work);
+  void begin_stages(const RecordRun& run, const float* elastic, const float* viscous, const Step& step);
+  void run_stage(const RecordRun& run, std::size_t stage, const Step& step, const float* force);
+  void end_stages(const RecordRun& run, bool split, const Step& step, VertexWork& work);
   void run_submesh(std::size_t s, const Step& step, Scratch& scratch);
   void narrow(const Submesh& part, Scratch& scratch) const;
   void push_elements(const Submesh& part, bool split, Scratch& scratch, Findings& found) const;
@@ -183,18 +173,11 @@ class SubmeshBody final : public MovingBody {
   void list_inverted(std::span<const std::uint32_t> elements, Findings& found) const;
   void list_inverted(const Submesh& part, std::size_t batch, std::size_t n, const Block& block, Findings& found) const;
   void fill_slots(const Submesh& part, bool split, const Scratch& scratch);
-  void take_active(std::span<const Watch> watches, std::size_t first_record, const float* elastic,
-                   const float* viscous);
-  void take_resting(std::span<const Watch> watches, const float* elastic, const float* viscous);
-  /// That of a run of records.
-  Kick kick_from(const Kick& kick, std::size_t record) const {
-    return {kick.step, kick.gravity, weighs_.empty() ? nullptr : weighs_.data() + record};
-  }
-  void integrate(std::size_t first_record, std::size_t n, std::span<const Watch> watches, float* elastic,
-                 float* viscous, const Step& step, VertexWork& work);
+  void integrate(const RecordRun& run, float* elastic, float* viscous, const Step& step, VertexWork& work);
   void run_interface(std::size_t chunk, const Step& step, Scratch& scratch);
   void gather_findings(bool accounted);
   bool splits(std::size_t s, bool accounted) const;
+  std::uint32_t record_of(std::uint32_t vertex) const { return submeshes_.record_of_vertex[vertex]; }
 
   const Body& body_;
   const Kernels& kernels_;
@@ -210,11 +193,9 @@ class SubmeshBody final : public MovingBody {
   TaskPool pool_;
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
 
-  LaneVector<double> state_;
-  std::vector<double> masses_, damping_;  ///< per record [kg], [kg/s]
+  VertexRecords records_;
+  ActiveVertices active_;
   bool any_split_ = false;                ///< whether some submesh keeps viscous forces apart in this step
-  double step_ = -1.0;                    ///< for which the records' coefficients hold
-  std::vector<double> weighs_;            ///< per record: share of its mass that has weight; empty: all of all
   std::uint64_t steps_ = 0;
 
   LaneVector<float> slots_elastic_, slots_viscous_;  ///< force records
@@ -226,12 +207,6 @@ class SubmeshBody final : public MovingBody {
   std::vector<Vec3d> outer_;                         ///< on each active vertex, in the last step [N]
   StageHolds* holds_ = nullptr;
   std::vector<Vec3d> held_changes_;
-  std::vector<ActiveVertex> active_;
-  std::vector<RestingVertex> resting_;
-  std::vector<char> rests_;           ///< per record
-  Watches watches_, rest_watches_;    ///< of those active and of those at rest
-  std::vector<std::uint32_t> apart_;  ///< vertices whose forces are asked for one by one, ascending
-  std::vector<char> holds_apart_;     ///< per submesh: it has one of them
   std::vector<Looked> looked_;        ///< per submesh
   std::vector<Findings> found_, interface_found_;
   Advance advance_;

@@ -64,36 +64,34 @@ void SubmeshBody::drag_elements(const Submesh& part, Scratch& scratch) const {
 }
 
 /// A stage of a run of records. @param force  what the last one has added to V
-void SubmeshBody::run_stage(std::size_t first, std::size_t n, std::span<const Watch> active, std::size_t stage,
-                            const Step& step, const float* force) {
-  const std::size_t at = kForceFloats * first;
-  double* changes = stage + 1 < stages_.size() ? stage_changes_.data() + 4 * first : nullptr;
-  const double* state = state_.data() + first * kStateDoubles;
-  const DragStage here{.kick = kick_from(step.kick, first),
+void SubmeshBody::run_stage(const RecordRun& run, std::size_t stage, const Step& step, const float* force) {
+  const std::size_t at = kForceFloats * run.first;
+  double* changes = stage + 1 < stages_.size() ? stage_changes_.data() + 4 * run.first : nullptr;
+  const double* state = records_.at(run.first);
+  const DragStage here{.kick = records_.kick_from(step.kick, run.first),
                        .tau = stages_[stage],
                        .first = stage == 0,
                        .elastic = stage_elastic_.data() + at,
                        .viscous = stage_viscous_.data() + at,
                        .sum = stage_sums_.data() + at};
-  kernels_.drag(state, here, n, force, changes);
+  kernels_.drag(state, here, run.size, force, changes);
   if (changes == nullptr) return;
-  for (const Watch& w : active) {
+  for (const LocalVertex& w : run.active) {
     if (w.place >= outer_.size()) continue;
     const Vec3d push = outer_[w.place] * (stages_[stage] * state[kStateDoubles * w.local + 3]);
     for (std::size_t axis = 0; axis < 3; ++axis) changes[4 * w.local + axis] += push[axis];
   }
-  for (auto held = std::ranges::lower_bound(held_, first, {}, &HeldRecord::record);
-       held != held_.end() && held->record < first + n; ++held) {
+  for (auto held = std::ranges::lower_bound(held_, run.first, {}, &HeldRecord::record);
+       held != held_.end() && held->record < run.first + run.size; ++held) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (held->axes[axis]) changes[4 * (held->record - first) + axis] = 0.0;
+      if (held->axes[axis]) changes[4 * (held->record - run.first) + axis] = 0.0;
     }
   }
 }
 
 /// The first stage, from the forces at v₋. @param viscous  null: `elastic` has both
-void SubmeshBody::begin_stages(std::size_t first, std::size_t n, std::span<const Watch> active, const float* elastic,
-                               const float* viscous, const Step& step) {
-  const std::size_t at = kForceFloats * first, floats = kForceFloats * n;
+void SubmeshBody::begin_stages(const RecordRun& run, const float* elastic, const float* viscous, const Step& step) {
+  const std::size_t at = kForceFloats * run.first, floats = kForceFloats * run.size;
   if (viscous != nullptr) {
     std::copy_n(elastic, floats, stage_elastic_.data() + at);
     std::copy_n(viscous, floats, stage_viscous_.data() + at);
@@ -101,21 +99,19 @@ void SubmeshBody::begin_stages(std::size_t first, std::size_t n, std::span<const
     std::fill_n(stage_elastic_.data() + at, floats, 0.0F);
     std::copy_n(elastic, floats, stage_viscous_.data() + at);
   }
-  run_stage(first, n, active, 0, step, nullptr);
+  run_stage(run, 0, step, nullptr);
 }
 
 /// Hands out the forces of all stages and moves the vertices that are not active.
-void SubmeshBody::end_stages(std::size_t first, std::size_t n, std::span<const Watch> active,
-                             std::span<const Watch> resting, bool split, const Step& step, VertexWork& work) {
-  float* elastic = stage_elastic_.data() + kForceFloats * first;
-  float* viscous = stage_sums_.data() + kForceFloats * first;
+void SubmeshBody::end_stages(const RecordRun& run, bool split, const Step& step, VertexWork& work) {
+  float* elastic = stage_elastic_.data() + kForceFloats * run.first;
+  float* viscous = stage_sums_.data() + kForceFloats * run.first;
   if (!split) std::swap(elastic, viscous);
-  take_active(active, first, elastic, split ? viscous : nullptr);
-  take_resting(resting, elastic, split ? viscous : nullptr);
+  active_.take_forces(run, elastic, split ? viscous : nullptr);
   if (split && !step.accounted) {
-    for (std::size_t i = 0; i < kForceFloats * n; ++i) elastic[i] += viscous[i];
+    for (std::size_t i = 0; i < kForceFloats * run.size; ++i) elastic[i] += viscous[i];
   }
-  integrate(first, n, active, elastic, viscous, step, work);
+  integrate(run, elastic, viscous, step, work);
 }
 
 /// What the last changes of the velocities add to the viscous forces: of interior vertices in the scratch, of others in the slots.
@@ -131,7 +127,7 @@ void SubmeshBody::hold_rows() {
   if (holds_ == nullptr) return;
   const std::span<const std::uint32_t> places = holds_->places();
   const auto change_at = [&](std::uint32_t place) {
-    return stage_changes_.data() + 4 * std::size_t{submeshes_.record_of_vertex[active_[place].vertex]};
+    return stage_changes_.data() + 4 * std::size_t{record_of(active_.active()[place].vertex)};
   };
   held_changes_.clear();
   for (const std::uint32_t place : places) {
@@ -150,25 +146,20 @@ void SubmeshBody::run_drag_stages(const Step& step) {
     const bool last = stage + 1 == stages_.size();
     hold_rows();
     pool_.run(submeshes_.parts.size(), [&](std::size_t s, std::size_t thread) {
-      const Submesh& part = submeshes_.parts[s];
       const FlushDenormals flush;
-      drag_submesh(part, *scratch_[thread]);
-      run_stage(part.first_interior, part.interior_count, watches_.interior[s], stage, step,
-                scratch_[thread]->viscous.data());
-      if (!last) return;
-      end_stages(part.first_interior, part.interior_count, watches_.interior[s], rest_watches_.interior[s],
-                 splits(s, step.accounted), step, found_[s].work);
+      const RecordRun run = active_.interior(s);
+      drag_submesh(submeshes_.parts[s], *scratch_[thread]);
+      run_stage(run, stage, step, scratch_[thread]->viscous.data());
+      if (last) end_stages(run, splits(s, step.accounted), step, found_[s].work);
     });
-    pool_.run(interface_found_.size(), [&](std::size_t chunk, std::size_t thread) {
+    pool_.run(active_.chunks(), [&](std::size_t chunk, std::size_t thread) {
       const FlushDenormals flush;
+      const RecordRun run = active_.interface(chunk);
       float* force = scratch_[thread]->viscous.data();
-      const std::size_t begin = chunk * kInterfaceChunk, n = std::min(kInterfaceChunk, shared.size() - begin);
-      const std::size_t first = shared.first_record + begin;
-      kernels_.sum_slots(slots_viscous_.data(), shared.slot_begin.data() + begin, shared.slots.data(), n, force);
-      run_stage(first, n, watches_.interface[chunk], stage, step, force);
-      if (!last) return;
-      end_stages(first, n, watches_.interface[chunk], rest_watches_.interface[chunk], any_split_, step,
-                 interface_found_[chunk].work);
+      kernels_.sum_slots(slots_viscous_.data(), shared.slot_begin.data() + chunk * kInterfaceChunk, shared.slots.data(),
+                         run.size, force);
+      run_stage(run, stage, step, force);
+      if (last) end_stages(run, any_split_, step, interface_found_[chunk].work);
     });
   }
 }

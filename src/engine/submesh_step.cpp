@@ -33,15 +33,15 @@ double SubmeshBody::list_limit(std::size_t block) const {
 
 /// Whether elastic and viscous forces of a submesh are kept apart.
 bool SubmeshBody::splits(std::size_t s, bool accounted) const {
-  return plans_[submeshes_.parts[s].block].viscous && (accounted || holds_apart_[s] != 0);
+  return plans_[submeshes_.parts[s].block].viscous && (accounted || active_.asks_apart(s));
 }
 
 void SubmeshBody::narrow(const Submesh& part, Scratch& scratch) const {
   if (part.local_vertices() == 0) return;
-  const double* own = state_.data() + part.first_interior * kStateDoubles;
-  const double* origin = part.interior_count > 0 ? own : state_.data() + part.shared[0] * kStateDoubles;
+  const double* own = records_.at(part.first_interior);
+  const double* origin = part.interior_count > 0 ? own : records_.at(part.shared[0]);
   kernels_.narrow(own, origin, part.interior_count, scratch.states.data());
-  kernels_.narrow_chosen(state_.data(), part.shared.data(), origin, part.shared.size(),
+  kernels_.narrow_chosen(records_.at(0), part.shared.data(), origin, part.shared.size(),
                          scratch.states.data() + part.interior_count * kStateFloats);
 }
 
@@ -151,9 +151,7 @@ void SubmeshBody::list_inverted(std::span<const std::uint32_t> elements, Finding
     if (e == kNoElement) continue;
     const Tet& t = body_.elements[e];
     std::array<Vec3d, 4> u;
-    for (std::size_t a = 0; a < 4; ++a) {
-      u[a] = vector_of(state_.data() + submeshes_.record_of_vertex[t[a]] * kStateDoubles);
-    }
+    for (std::size_t a = 0; a < 4; ++a) u[a] = displacement_of(t[a]);
     const Mat3d H = displacement_gradient<double>(body_.rest[e].s, {u[1] - u[0], u[2] - u[0], u[3] - u[0]});
     if (!(jacobian(H) > 0.0)) found.inverted.push_back(body_.mesh_tet[e]);
   }
@@ -185,45 +183,24 @@ void SubmeshBody::fill_slots(const Submesh& part, bool split, const Scratch& scr
   }
 }
 
-void SubmeshBody::take_active(std::span<const Watch> watches, std::size_t first_record, const float* elastic,
-                              const float* viscous) {
-  for (const Watch& watch : watches) {
-    ActiveVertex& w = active_[watch.place];
-    const double* record = state_.data() + (first_record + watch.local) * kStateDoubles;
-    w.elastic = vector_of(elastic + watch.local * kForceFloats);
-    w.viscous = viscous != nullptr ? vector_of(viscous + watch.local * kForceFloats) : Vec3d{};
-    w.displacement = vector_of(record);
-    w.velocity = vector_of(record + 4);
-  }
-}
-
-void SubmeshBody::take_resting(std::span<const Watch> watches, const float* elastic, const float* viscous) {
-  for (const Watch& watch : watches) {
-    Vec3d& force = resting_[watch.place].force;
-    force = vector_of(elastic + watch.local * kForceFloats);
-    if (viscous != nullptr) force += vector_of(viscous + watch.local * kForceFloats);
-  }
-}
-
 /// Kick and drift of the vertices between those active. Without `viscous`, `elastic` is the whole force.
-void SubmeshBody::integrate(std::size_t first_record, std::size_t n, std::span<const Watch> watches, float* elastic,
-                            float* viscous, const Step& step, VertexWork& work) {
+void SubmeshBody::integrate(const RecordRun& run, float* elastic, float* viscous, const Step& step, VertexWork& work) {
   std::size_t from = 0;
   const auto run_to = [&](std::size_t end) {
-    double* state = state_.data() + (first_record + from) * kStateDoubles;
+    double* state = records_.at(run.first + from);
     const float* f = elastic + from * kForceFloats;
-    const Kick kick = kick_from(step.kick, first_record + from);
+    const Kick kick = records_.kick_from(step.kick, run.first + from);
     if (step.accounted) {
       kernels_.integrate_accounted(state, f, viscous + from * kForceFloats, end - from, kick, work);
     } else {
       kernels_.integrate(state, f, end - from, kick);
     }
   };
-  for (const Watch& watch : watches) {
-    run_to(watch.local);
-    from = watch.local + 1;
+  for (const LocalVertex& active : run.active) {
+    run_to(active.local);
+    from = active.local + 1;
   }
-  run_to(n);
+  run_to(run.size);
 }
 
 void SubmeshBody::run_submesh(std::size_t s, const Step& step, Scratch& scratch) {
@@ -252,38 +229,30 @@ void SubmeshBody::run_submesh(std::size_t s, const Step& step, Scratch& scratch)
   if (!found.finite) return;
   fill_slots(part, split, scratch);
   const float* viscous = split ? scratch.viscous.data() : nullptr;
-  if (in_stages()) {
-    return begin_stages(part.first_interior, part.interior_count, watches_.interior[s], scratch.elastic.data(), viscous,
-                        step);
-  }
-  take_active(watches_.interior[s], part.first_interior, scratch.elastic.data(), viscous);
-  take_resting(rest_watches_.interior[s], scratch.elastic.data(), viscous);
+  const RecordRun run = active_.interior(s);
+  if (in_stages()) return begin_stages(run, scratch.elastic.data(), viscous, step);
+  active_.take_forces(run, scratch.elastic.data(), viscous);
   if (split && !step.accounted) kernels_.add(scratch.elastic.data(), scratch.viscous.data(), floats);
-  integrate(part.first_interior, part.interior_count, watches_.interior[s], scratch.elastic.data(),
-            scratch.viscous.data(), step, found.work);
+  integrate(run, scratch.elastic.data(), scratch.viscous.data(), step, found.work);
 }
 
 void SubmeshBody::run_interface(std::size_t chunk, const Step& step, Scratch& scratch) {
   const FlushDenormals flush;
   const Interface& shared = submeshes_.interface;
-  const std::size_t begin = chunk * kInterfaceChunk, n = std::min(kInterfaceChunk, shared.size() - begin);
+  const RecordRun run = active_.interface(chunk);
+  const std::uint32_t* slot_begin = shared.slot_begin.data() + chunk * kInterfaceChunk;
   float *elastic = scratch.elastic.data(), *viscous = scratch.viscous.data();
-  const std::uint32_t* slot_begin = shared.slot_begin.data() + begin;
-  kernels_.sum_slots(slots_elastic_.data(), slot_begin, shared.slots.data(), n, elastic);
+  kernels_.sum_slots(slots_elastic_.data(), slot_begin, shared.slots.data(), run.size, elastic);
   if (any_split_) {
-    kernels_.sum_slots(slots_viscous_.data(), slot_begin, shared.slots.data(), n, viscous);
+    kernels_.sum_slots(slots_viscous_.data(), slot_begin, shared.slots.data(), run.size, viscous);
   } else {
-    std::fill_n(viscous, n * kForceFloats, 0.0F);
+    std::fill_n(viscous, run.size * kForceFloats, 0.0F);
   }
   interface_found_[chunk] = {};
-  const std::size_t first = shared.first_record + begin;
-  if (in_stages()) {
-    return begin_stages(first, n, watches_.interface[chunk], elastic, any_split_ ? viscous : nullptr, step);
-  }
-  take_active(watches_.interface[chunk], first, elastic, viscous);
-  take_resting(rest_watches_.interface[chunk], elastic, viscous);
-  if (!step.accounted && any_split_) kernels_.add(elastic, viscous, force_floats(n));
-  integrate(first, n, watches_.interface[chunk], elastic, viscous, step, interface_found_[chunk].work);
+  if (in_stages()) return begin_stages(run, elastic, any_split_ ? viscous : nullptr, step);
+  active_.take_forces(run, elastic, viscous);
+  if (!step.accounted && any_split_) kernels_.add(elastic, viscous, force_floats(run.size));
+  integrate(run, elastic, viscous, step, interface_found_[chunk].work);
 }
 
 /// Adds up what the tasks found, in their order.
@@ -316,7 +285,7 @@ void SubmeshBody::gather_findings(bool accounted) {
 }
 
 const Advance& SubmeshBody::advance(double h, const Vec3d& gravity, bool accounted) {
-  set_step(h);
+  records_.set_step(h);
   set_maxwell_step(h);
   any_split_ = false;
   for (std::size_t s = 0; s < submeshes_.parts.size(); ++s) any_split_ = any_split_ || splits(s, accounted);
