@@ -79,9 +79,9 @@ void ActiveVertices::locate() {
     const Submesh& part = submeshes_.parts[p];
     const std::vector<LocalVertex>& own = active_in_.interior[p];
     const auto asked = [&](std::size_t record) { return is_apart[record] != 0; };
-    holds_apart_[p] =
-        std::any_of(own.begin(), own.end(), [&](const LocalVertex& w) { return asked(part.first_interior + w.local); }) ||
-        std::any_of(part.shared.begin(), part.shared.end(), asked);
+    holds_apart_[p] = std::any_of(own.begin(), own.end(),
+                                  [&](const LocalVertex& w) { return asked(part.first_interior + w.local); }) ||
+                      std::any_of(part.shared.begin(), part.shared.end(), asked);
   }
 }
 

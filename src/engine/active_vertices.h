@@ -37,7 +37,6 @@ class ActiveVertices {
   void locate();
 
   std::span<ActiveVertex> active() { return active_; }
-  std::span<const ActiveVertex> active() const { return active_; }
   std::span<RestingVertex> resting() { return resting_; }
   /// A vertex that is active; null: it is not.
   ActiveVertex* find(std::uint32_t vertex);

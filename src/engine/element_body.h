@@ -64,7 +64,8 @@ class ElementBody final : public MovingBody {
   double since_memory_ = 0.0;              ///< time since the tissue's memory was brought up to date [s]
   std::vector<double> damping_, stages_;   ///< stages of drag, as shares of a step
   std::vector<LameParameters> drag_;       ///< per tissue block [Pa s]
-  std::vector<Vec3d> stage_change_, stage_sum_, pull_, outer_;  ///< δ, A of submesh_drag.cpp; C δ; on active vertices
+  std::vector<Vec3d> stage_change_, stage_sum_, pull_,
+      outer_;  ///< δ, A of drag_stage_records.h; C δ; on active vertices
   StageHolds* holds_ = nullptr;
   std::vector<Vec3d> held_changes_;
   std::vector<Vec3d> u_, v_, elastic_, viscous_;

@@ -1,62 +1,56 @@
-// submesh_body.cpp — what a body of submeshes is and holds; how it makes a step is in submesh_step.cpp.
+// submesh_body.cpp — what a body of submeshes is and how it changes; how it makes a step is in submesh_step.cpp.
 #include "engine/submesh_body.h"
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <limits>
 
-#include "element/drag_stages.h"
-#include "engine/layout/response_batches.h"
-#include "engine/submesh_scratch.h"
+#include "engine/layout/archive_submeshes.h"
 
 namespace glisson::engine {
 
-SubmeshBody::Plan SubmeshBody::plan_of(const TissueBlock& block) {
-  const Tissue& tissue = block.tissue;
-  const double lambda = block.elastic.lambda, mu = block.elastic.mu;
-  Plan plan;
-  plan.tissue = {.lambda = float(lambda),
-                 .mu = float(mu),
-                 .viscous_lambda = float(block.viscous.lambda),
-                 .viscous_mu = float(block.viscous.mu),
-                 .bulk_over_two_mu = float((lambda + 2.0 / 3.0 * mu) / (2.0 * mu)),
-                 .rest_mu = float(mu)};
-  plan.measure = static_cast<std::size_t>(tissue.measure);
-  plan.viscous = tissue.viscosity > 0.0 || !tissue.maxwell.empty();
-  plan.drags = tissue.viscosity > 0.0;
-  if (tissue.lambda_law || tissue.mu_law) {
-    plan.laws = 2;
-    plan.law = {lane_law(tissue.lambda_law.value_or(ConstantLaw{}), lambda, 1.0),
-                lane_law(tissue.mu_law.value_or(ConstantLaw{}), mu, 1.0)};
-    plan.tissue.lambda = plan.tissue.mu = 1.0F;
-  } else {
-    plan.law[0] = lane_law(tissue.law, tissue.youngs_modulus, tissue.youngs_modulus);
-  }
-  return plan;
-}
-
 SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping, const SubmeshOptions& options)
     : body_(body), kernels_(options.kernels != nullptr ? *options.kernels : best_kernels()),
-      submeshes_(build_submeshes(body, kernels_.lanes, options.submesh_tets)), changer_(body, submeshes_, kernels_.lanes),
-      pool_(options.threads > 0 ? options.threads : threads_for(body.elements.size())),
-      active_(submeshes_, records_), stages_(drag_stages(options.drag_stages)) {
+      submeshes_(build_submeshes(body, kernels_.lanes, options.submesh_tets)), active_(submeshes_, records_),
+      changer_(body, submeshes_, kernels_.lanes), forces_(body, submeshes_, records_, kernels_),
+      volumes_(body, submeshes_), memory_(body, submeshes_, records_, kernels_.lanes),
+      stages_(options.drag_stages, submeshes_, records_, kernels_),
+      pool_(options.threads > 0 ? options.threads : threads_for(body.elements.size())) {
   follow_layout(nodal_damping);
 }
+
+SubmeshBody::~SubmeshBody() = default;
 
 /// Room, plans and masses for the submeshes there are.
 void SubmeshBody::follow_layout(std::span<const double> nodal_damping) {
   records_.reset(body_.vertex_count);
   active_.rest({});
-  make_room_for_stages();
-  looked_.assign(submeshes_.parts.size(), Looked::small), found_.resize(submeshes_.parts.size());
-  plans_.clear(), large_plans_.clear();
-  for (const TissueBlock& block : body_.blocks) {
-    plans_.push_back(plan_of(block));
-    large_plans_.push_back(large_plan_of(block, plans_.back()));
-  }
+  forces_.reset();
   make_room();
+  make_room_for_stages();
   take_masses(nodal_damping);
+}
+
+/// Finds active vertices, and makes room for what depends on the sizes of submeshes and interface.
+void SubmeshBody::make_room() {
+  active_.locate();
+  slots_elastic_.resize(submeshes_.interface.slot_count * kForceFloats);
+  slots_viscous_.resize(slots_elastic_.size());
+  found_.resize(submeshes_.parts.size());
+  work_.resize(submeshes_.parts.size() + active_.chunks());
+  std::size_t largest = kInterfaceChunk;
+  for (const Submesh& part : submeshes_.parts) largest = std::max(largest, part.local_vertices());
+  scratch_.resize(static_cast<std::size_t>(pool_.threads()));
+  for (auto& scratch : scratch_) {
+    if (scratch == nullptr) scratch = std::make_unique<SubmeshScratch>();
+    scratch->make_room(largest);
+  }
+}
+
+/// Stages of drag, where something drags.
+void SubmeshBody::make_room_for_stages() {
+  const bool any = std::any_of(body_.blocks.begin(), body_.blocks.end(),
+                               [](const TissueBlock& b) { return b.tissue.viscosity > 0.0; });
+  stages_.make_room(any ? body_.vertex_count : 0);
 }
 
 /// Masses and damping of all vertices, and what follows from them and the tissues.
@@ -65,25 +59,16 @@ void SubmeshBody::take_masses(std::span<const double> nodal_damping) {
     take_mass(v);
     records_.set_damping(record_of(v), nodal_damping[v]);
   }
-  any_shared_ = std::any_of(submeshes_.parts.begin(), submeshes_.parts.end(),
-                            [&](const Submesh& part) { return shares_volume(part); });
-  if (any_shared_) weigh_vertices();
+  volumes_.weigh();
 }
 
-SubmeshBody::~SubmeshBody() = default;
+/// A vertex's mass, of which Body::stiff_mass has no weight.
+void SubmeshBody::take_mass(std::uint32_t vertex) {
+  records_.set_mass(record_of(vertex), body_.inertia(vertex), body_.masses[vertex]);
+}
 
-/// Memory for what depends on the sizes of submeshes and interface.
-void SubmeshBody::make_room() {
-  slots_elastic_.resize(submeshes_.interface.slot_count * kForceFloats);
-  slots_viscous_.resize(slots_elastic_.size());
-  interface_found_.resize(active_.chunks());
-  std::size_t largest = kInterfaceChunk;
-  for (const Submesh& part : submeshes_.parts) largest = std::max(largest, part.local_vertices());
-  scratch_.resize(static_cast<std::size_t>(pool_.threads()));
-  for (auto& scratch : scratch_) {
-    if (scratch == nullptr) scratch = std::make_unique<Scratch>();
-    scratch->make_room(largest);
-  }
+void SubmeshBody::inertia_changed(std::span<const std::uint32_t> vertices) {
+  for (const std::uint32_t v : vertices) take_mass(v);
 }
 
 void SubmeshBody::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
@@ -91,8 +76,8 @@ void SubmeshBody::set_state(std::span<const Vec3d> displacement, std::span<const
     records_.set_state(record_of(v), displacement[v], velocity[v]);
   }
   for (ActiveVertex& w : active_.active()) w.displacement = displacement[w.vertex], w.velocity = velocity[w.vertex];
-  std::fill(looked_.begin(), looked_.end(), Looked::small);
-  since_memory_ = std::numeric_limits<double>::infinity();  // a state that is set has relaxed
+  forces_.inversions().reset();
+  memory_.relax();
 }
 
 void SubmeshBody::read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const {
@@ -111,15 +96,6 @@ void SubmeshBody::rest(std::span<const std::uint32_t> vertices) {
 
 void SubmeshBody::place_active() {
   for (const ActiveVertex& w : active_.active()) records_.set_state(record_of(w.vertex), w.displacement, w.velocity);
-}
-
-/// A vertex's mass, of which Body::stiff_mass has no weight.
-void SubmeshBody::take_mass(std::uint32_t vertex) {
-  records_.set_mass(record_of(vertex), body_.inertia(vertex), body_.masses[vertex]);
-}
-
-void SubmeshBody::inertia_changed(std::span<const std::uint32_t> vertices) {
-  for (const std::uint32_t v : vertices) take_mass(v);
 }
 
 /// Takes over the state of vertices that are other points of the material now.
@@ -143,11 +119,8 @@ void SubmeshBody::apply(const BodyChange& change, const detail::VertexStars& sta
     take_mass(v);
     records_.set_damping(record_of(v), nodal_damping[v]);
   }
-  if (changer_.apply(change, stars)) {
-    active_.locate();
-    make_room();
-  }
-  if (any_shared_) weigh_vertices();
+  if (changer_.apply(change, stars)) make_room();
+  volumes_.weigh();
 }
 
 bool SubmeshBody::supports_tissues() const {
@@ -158,11 +131,10 @@ bool SubmeshBody::supports_tissues() const {
 void SubmeshBody::tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) {
   std::vector<char> changed(body_.blocks.size(), 0), stays(body_.blocks.size(), 0);
   for (const std::size_t b : blocks) {
-    const bool was_viscous = plans_[b].viscous;
-    plans_[b] = plan_of(body_.blocks[b]);
-    large_plans_[b] = large_plan_of(body_.blocks[b], plans_[b]);
+    const bool was_viscous = forces_.plan(b).viscous;
+    forces_.take_tissue(b);
     changed[b] = 1;
-    stays[b] = was_viscous && plans_[b].viscous && is_linear(body_.blocks[b]) ? 1 : 0;
+    stays[b] = was_viscous && forces_.plan(b).viscous && is_linear(body_.blocks[b]) ? 1 : 0;
   }
   std::atomic<bool> moved = false;
   pool_.run(submeshes_.parts.size(), [&](std::size_t s, std::size_t) {
@@ -172,12 +144,34 @@ void SubmeshBody::tissues_changed(std::span<const std::size_t> blocks, std::span
   });
   if (moved) {
     connect(submeshes_);
-    active_.locate();
     make_room();
   }
   as_built_ = false;
   make_room_for_stages();
   take_masses(nodal_damping);
+}
+
+void SubmeshBody::archive_layout(Archive& ar, std::span<const double> nodal_damping) {
+  bool as_built = as_built_;
+  auto lanes = static_cast<std::uint32_t>(kernels_.lanes);
+  ar(as_built, lanes);
+  if (as_built) {  // else what has changed here would have to go back; copies of vertices come from changes alone
+    return ar.check(as_built_ && submeshes_.record_of_vertex.size() == body_.vertex_count);
+  }
+  ar.check(lanes > 0 && lanes <= kMaxLanes);
+  if (!ar.reads()) return write_submeshes(ar, submeshes_, body_, lanes);
+  submeshes_ = read_submeshes(ar, body_, lanes, kernels_.lanes);
+  as_built_ = false;
+  changer_.forget();
+  follow_layout(nodal_damping);
+}
+
+/// Steps made, when the branches were kept last, where to look for inverted tets, and the branches in the order of elements.
+void SubmeshBody::archive_past(Archive& ar) {
+  ar(steps_);
+  memory_.archive_time(ar);
+  forces_.inversions().archive(ar);
+  memory_.archive_numbers(ar);
 }
 
 }  // namespace glisson::engine

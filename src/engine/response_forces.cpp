@@ -1,40 +1,13 @@
-// submesh_response.cpp — the elements of a submesh whose tissue is more than the paper's: H → P → forces.
+// response_forces.cpp — the elements of a submesh whose tissue is more than the paper's: H → P → forces.
 #include <algorithm>
-#include <cmath>
 
+#include "engine/element_forces.h"
 #include "engine/layout/response_batches.h"
-#include "engine/submesh_scratch.h"
 
 namespace glisson::engine {
 
-std::unique_ptr<SubmeshBody::LargePlan> SubmeshBody::large_plan_of(const TissueBlock& block, const Plan& plan) const {
-  if (block.tissue.is_tensor_mass()) return nullptr;
-  const LaneResponse lanes = lane_response(block.tissue, plan.tissue, plan.laws - 1);
-  return std::make_unique<LargePlan>(LargePlan{Response(block.tissue),
-                                               lanes,
-                                               respond_stage(*kernels_.response, block.tissue),
-                                               {},
-                                               in_one_pass(block.tissue),
-                                               !lanes.constant || !lanes.pace.empty()});
-}
-
-/// Weights of all branches for a step of h from the state that is asked for.
-void SubmeshBody::set_maxwell_step(double h) {
-  for (const auto& plan : large_plans_) {
-    if (plan == nullptr) continue;
-    const std::vector<MaxwellBranch>& branches = plan->response.tissue().maxwell;
-    for (std::size_t k = 0; k < branches.size(); ++k) {
-      plan->maxwell.previous[k] = lane_weights(since_memory_, branches[k].time);
-      plan->maxwell.next[k] = lane_weights(h, branches[k].time);
-    }
-    plan->maxwell.since = float(since_memory_);
-    plan->maxwell.relaxed = std::isinf(since_memory_);
-    plan->maxwell.moves = h > 0.0;
-  }
-}
-
-void SubmeshBody::list_response(const Submesh& part, std::size_t batch, std::size_t n, const ResponseBlock& out,
-                                Findings& found) const {
+void ElementForces::list_response(const Submesh& part, std::size_t batch, std::size_t n, const ResponseBlock& out,
+                                  ElementFindings& found) const {
   const std::uint32_t* element = part.chains.element.data() + batch * kernels_.lanes * kChainTets;
   const double limit = list_limit(part.block);
   std::array<std::uint16_t, kBlockTets> which;
@@ -48,10 +21,9 @@ void SubmeshBody::list_response(const Submesh& part, std::size_t batch, std::siz
 }
 
 /// Tissue of small strain with branches, its stresses in one pass.
-void SubmeshBody::push_relaxing(std::size_t s, bool split, Scratch& scratch, Findings& found) {
-  Submesh& part = submeshes_.parts[s];
-  const Plan& plan = plans_[part.block];
-  const LargePlan& large = *large_plans_[part.block];
+void ElementForces::push_relaxing(Submesh& part, bool split, SubmeshScratch& scratch, ElementFindings& found) const {
+  const TissuePlan& plan = plans_[part.block];
+  const ResponsePlan& large = *plan.response;
   const LaneResponse& lanes = large.lanes;
   const Elements elements = elements_of(part, scratch);
   const std::size_t tets = kernels_.lanes * kChainTets, numbers = memory_numbers(large.response.tissue());
@@ -70,7 +42,7 @@ void SubmeshBody::push_relaxing(std::size_t s, bool split, Scratch& scratch, Fin
     const ResponseItems items{
         .gradient = block.gradient, .memory = part.memory.data() + b * tets * numbers, .items = n * kChainTets};
     const PassFound here = pass(items, lanes, large.maxwell, block, out);
-    if (inverted || here.inverted) list_inverted(part, b, n, block, found);
+    if (inverted || here.inverted) inversions_.list(part.chains, b, n, block, found.inverted);
     found.stiffening = std::max(found.stiffening, double(here.stiffest));
     if (large.measured && double(here.stiffest) > list_limit(part.block)) list_response(part, b, n, out, found);
     kernels_.push_stress(elements, b, n, out.piola, scratch.elastic.data());
@@ -79,32 +51,30 @@ void SubmeshBody::push_relaxing(std::size_t s, bool split, Scratch& scratch, Fin
 }
 
 /// 1/τ of each branch at the measures of a block.
-void SubmeshBody::run_paces(const LaneResponse& lanes, std::size_t values, const Block& block,
-                            ResponseBlock& out) const {
+void ElementForces::run_paces(const LaneResponse& lanes, std::size_t values, const Block& block,
+                              ResponseBlock& out) const {
   for (std::size_t k = 0; k < lanes.branches; ++k) {
     const LanePace& pace = lanes.pace[k];
     kernels_.response->pace[pace.kind](pace, block.x, values, out.pace[k]);
   }
 }
 
-void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Findings& found) {
-  Submesh& part = submeshes_.parts[s];
-  const Plan& plan = plans_[part.block];
-  const LargePlan& large = *large_plans_[part.block];
-  if (large.one_pass && !large.maxwell.relaxed) return push_relaxing(s, split, scratch, found);
+void ElementForces::push_response(Submesh& part, bool split, const float* theta, SubmeshScratch& scratch,
+                                  ElementFindings& found) const {
+  const TissuePlan& plan = plans_[part.block];
+  const ResponsePlan& large = *plan.response;
+  if (large.one_pass && !large.maxwell.relaxed) return push_relaxing(part, split, scratch, found);
   const LaneResponse& lanes = large.lanes;
   const ResponseKernels& stages = *kernels_.response;
   const Elements elements = elements_of(part, scratch);
   const Rescue to{&body_, &large.response};
   const std::size_t tets = kernels_.lanes * kChainTets, numbers = memory_numbers(large.response.tissue());
-  const bool shared = shares_volume(part);
-  if (shared) join_volume(s);
   ResponseBlock& out = scratch.response;
   for (std::size_t b = 0; b < part.chains.count; b += kBlockBatches) {
     const std::size_t n = std::min(kBlockBatches, part.chains.count - b);
     const ResponseItems items{.gradient = scratch.block.gradient,
                               .rate = scratch.rate,
-                              .mean = shared ? scratch.mean : nullptr,
+                              .mean = theta != nullptr ? scratch.mean : nullptr,
                               .fibre = part.fibre.data() + (part.fibre.empty() ? 0 : b * tets * 3),
                               .memory = part.memory.data() + b * tets * numbers,
                               .element = part.chains.element.data() + b * tets,
@@ -114,15 +84,16 @@ void SubmeshBody::push_response(std::size_t s, bool split, Scratch& scratch, Fin
     } else {
       kernels_.gather_elastic(elements, b, n, scratch.block);
     }
-    if (shared) {
+    if (theta != nullptr) {
       const std::uint16_t* index = part.chains.index.data() + b * kChainVertices * kernels_.lanes;
-      stages.mean_of_vertices(index, n, shared_volumes_[s].theta.data(), scratch.mean);
+      stages.mean_of_vertices(index, n, theta, scratch.mean);
     }
     if (large.measured) {
       kernels_.measure[plan.measure](elements, b, n, scratch.block);
       run_laws(plan, n * tets, scratch.block);
     }
-    if (large.respond(items, lanes, to, scratch.block, out)) list_inverted(part, b, n, scratch.block, found);
+    if (large.respond(items, lanes, to, scratch.block, out))
+      inversions_.list(part.chains, b, n, scratch.block, found.inverted);
     if (lanes.fibre > 0.0F) stages.fibres(items, lanes, out);
     if (!lanes.pace.empty()) {
       run_paces(lanes, n * tets, scratch.block, out);
