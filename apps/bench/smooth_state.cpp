@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "mesh/inspect/nearest_point.h"
+
 namespace glisson::app {
 namespace {
 
@@ -37,18 +39,6 @@ struct Wave {
   double phase = 0.0;
 };
 
-struct Extent {
-  Vec3d min, size;
-};
-
-Extent extent_of(const TetMesh& mesh) {
-  Vec3d min = mesh.vertices.at(0), max = min;
-  for (const Vec3d& x : mesh.vertices) {
-    for (std::size_t i = 0; i < 3; ++i) min[i] = std::min(min[i], x[i]), max[i] = std::max(max[i], x[i]);
-  }
-  return {min, max - min};
-}
-
 /// At most one and a half wavelengths along an axis; the gradient of the wave alone has the given root mean square.
 Wave random_wave(Sequence& random, const Vec3d& size, double gradient) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -60,13 +50,13 @@ Wave random_wave(Sequence& random, const Vec3d& size, double gradient) {
 }
 
 std::vector<Vec3d> waves(const TetMesh& mesh, double gradient, std::uint64_t seed) {
-  const Extent extent = extent_of(mesh);
+  const auto [low, high] = detail::box_of(mesh);
   Sequence random(seed);
   std::array<Wave, kWaves> all;
-  for (Wave& wave : all) wave = random_wave(random, extent.size, gradient / std::sqrt(double{kWaves}));
+  for (Wave& wave : all) wave = random_wave(random, high - low, gradient / std::sqrt(double{kWaves}));
   std::vector<Vec3d> field(mesh.vertices.size());
   for (std::size_t v = 0; v < field.size(); ++v) {
-    const Vec3d x = mesh.vertices[v] - extent.min;
+    const Vec3d x = mesh.vertices[v] - low;
     for (const Wave& wave : all) field[v] += std::sin(dot(wave.number, x) + wave.phase) * wave.amplitude;
   }
   return field;

@@ -25,6 +25,17 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
+std::vector<RuleNode> gauss_rule(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside) {
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(diagonal, beside);
+  std::vector<RuleNode> rule;
+  for (Eigen::Index k = 0; k < diagonal.size(); ++k) {
+    const double first = solver.eigenvectors()(0, k);
+    rule.push_back({0.5 * (1.0 + solver.eigenvalues()[k]), first * first});
+  }
+  return rule;
+}
+
 LanczosResult largest_eigenpairs(const SymmetricOperator& apply, Eigen::Index n, const LanczosOptions& options) {
   SpectraOperator op{apply, n};
   Spectra::SymEigsSolver<SpectraOperator> solver(op, options.count, options.krylov_size);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <vector>
 
 namespace glisson {
 
@@ -14,6 +15,15 @@ struct SymmetricEigen {
 
 /// All eigenvalues, ascending. @param a  symmetric
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
+
+/// A point of a rule for the mean of a function over (0, 1).
+struct RuleNode {
+  double at, weight;
+};
+
+/// Gauss's rule of polynomials orthogonal on (0, 1), from their recurrence on (-1, 1) [GolubWelsch1969].
+/// @param diagonal  n numbers @param beside  n - 1 numbers next to it @return n nodes; the weights' sum is 1
+std::vector<RuleNode> gauss_rule(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside);
 
 /// Writes A x for an n-vector x. It keeps neither pointer.
 using SymmetricOperator = std::function<void(const double* x, double* image)>;

@@ -31,6 +31,12 @@ std::string_view trimmed(std::string_view text) {
                                          : text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
+std::string lower_case(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
+
 std::string index_list(std::span<const std::uint32_t> indices, std::size_t shown) {
   std::string text;
   const std::size_t n = std::min(shown, indices.size());

@@ -21,6 +21,9 @@ std::string count_text(std::size_t count, const std::string& singular, const std
 /// Without blanks (space, tab, \\r, \\v, \\f) at both ends.
 std::string_view trimmed(std::string_view text);
 
+/// A to Z in small letters; all other bytes as they are.
+std::string lower_case(std::string_view text);
+
 /// The first indices and how many more there are: "3, 17, 20 and 5 more".
 std::string index_list(std::span<const std::uint32_t> indices, std::size_t shown = 8);
 

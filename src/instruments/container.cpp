@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "base/require_fields.h"
+#include "base/two_across.h"
 #include "glisson/simulation/simulation.h"
 #include "instruments/contact/contact_books.h"
 #include "instruments/contact/contact_reach.h"
@@ -26,8 +27,8 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// A plate whose outward normal is n, through a point; all in the frame of the vessel.
 Pose plate(const Pose& vessel, const Vec3d& point, const Vec3d& n) {
-  const Vec3d z = -n, x = std::abs(n.z) > 0.5 ? Vec3d{1.0, 0.0, 0.0} : Vec3d{0.0, 0.0, 1.0}, y = cross(z, x);
-  const Vec3d columns[] = {vessel.axes * x, vessel.axes * y, vessel.axes * z};
+  const auto [x, y] = two_across(-n);
+  const Vec3d columns[] = {vessel.axes * x, vessel.axes * y, vessel.axes * -n};
   Pose pose{vessel.to_space(point), {}};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) pose.axes(i, j) = columns[j][i];

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/text.h"
 #include "io/legacy_vtk_source.h"
 #include "io/vtk_grid.h"
 #include "io/vtk_names.h"

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/text.h"
 #include "io/raw_mesh.h"
 
 namespace glisson::detail {
@@ -69,12 +70,6 @@ double number_item(std::string_view block, std::uint64_t index, const ValueType&
 }
 
 }  // namespace
-
-std::string lower_case(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
 
 void LegacyVtkSource::refuse(const std::string& what) const {
   const std::string place = binary_ ? ", byte " + std::to_string(position_) : ":" + std::to_string(item_line_);

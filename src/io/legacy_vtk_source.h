@@ -47,6 +47,4 @@ class LegacyVtkSource {
   bool binary_ = false;
 };
 
-std::string lower_case(std::string_view text);
-
 }  // namespace glisson::detail

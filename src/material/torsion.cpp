@@ -1,37 +1,26 @@
 #include "glisson/torsion.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 
 #include "base/require_fields.h"
+#include "base/symmetric_eigen.h"
 #include "material/course.h"
 #include "material/static_stretch.h"
 
 namespace glisson {
 namespace {
 
-/// A point of a rule for ∫₀¹.
-struct Node {
-  double at, weight;
-};
-
-/// Gauss's rule on (0, 1) from the recurrence of Legendre's polynomials [GolubWelsch1969].
-std::vector<Node> gauss_rule(std::size_t points) {
+/// Gauss's rule for ∫₀¹, from the recurrence of Legendre's polynomials.
+std::vector<RuleNode> legendre_rule(std::size_t points) {
   const auto n = static_cast<Eigen::Index>(points);
   Eigen::VectorXd beside(n - 1);
   for (Eigen::Index k = 1; k < n; ++k) {
     const auto i = static_cast<double>(k);
     beside[k - 1] = i / std::sqrt(4.0 * i * i - 1.0);
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(Eigen::VectorXd::Zero(n), beside);
-  std::vector<Node> rule;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const double first = solver.eigenvectors()(0, k);
-    rule.push_back({0.5 * (1.0 + solver.eigenvalues()[k]), first * first});
-  }
-  return rule;
+  return gauss_rule(Eigen::VectorXd::Zero(n), beside);
 }
 
 void require_arguments(const Tissue& tissue, double radius, std::span<const double> twists,
@@ -83,7 +72,7 @@ std::vector<TorsionState> torsion(const Tissue& tissue, double radius, std::span
   std::vector<TorsionState> states(times.size());
   for (std::size_t k = 0; k < times.size(); ++k) states[k].time = times[k], states[k].twist = twists[k];
   const bool small = tissue.has_small_strain();
-  for (const Node& node : gauss_rule(options.radii)) {
+  for (const RuleNode& node : legendre_rule(options.radii)) {
     Shell shell(tissue, options.stretch);
     const double present = (small ? 1.0 : shell.side_stretch()) * radius, r = node.at * present;
     const double ring = std::numbers::pi * r * node.weight * present;  // π r dr

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "report/base64.h"
+#include "report/fractions.h"
 #include "report/instrument_json.h"
 
 namespace glisson {
@@ -25,16 +26,6 @@ std::vector<std::uint8_t> constraint_marks(const Variant& variant, const TetMesh
   for (const FixedSpec& fixed : variant.fixed) mark(fixed.set, 1);
   for (const ToolSpec& tool : variant.tools) mark(tool.set, 2);
   return marks;
-}
-
-std::int16_t fraction16(double value, double scale) {
-  const double f = value / scale * 32767.0;
-  return std::isfinite(f) ? static_cast<std::int16_t>(std::lround(std::clamp(f, -32767.0, 32767.0))) : std::int16_t{0};
-}
-
-std::uint8_t fraction8(double value, double scale) {
-  const double f = value / scale * 255.0;
-  return std::isfinite(f) ? static_cast<std::uint8_t>(std::lround(std::clamp(f, 0.0, 255.0))) : std::uint8_t{255};
 }
 
 }  // namespace
@@ -160,7 +151,7 @@ nlohmann::json SurfaceRecorder::frame(const Simulation& simulation, const TetFie
   std::vector<std::uint8_t> colour;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) moved.push_back(fraction16(displacement[i][k], reach));
-    colour.push_back(strongest > 0.0 ? fraction8(intensity[i], strongest) : std::uint8_t{0});
+    colour.push_back(fraction8(intensity[i], strongest));
   }
   nlohmann::json json{{"time_s", simulation.time()},
                       {"displacement_scale_m", reach},

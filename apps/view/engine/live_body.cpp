@@ -5,16 +5,13 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/two_across.h"
 #include "dynamics/simulation_parts.h"
 
 namespace glisson::view {
 namespace {
 
 constexpr double kShortestRamp = 0.002;  // over which a tool gathers speed [s]
-
-Vec3d any_across(const Vec3d& along) {
-  return unit(cross(along, std::abs(along.z) < 0.9 ? Vec3d{0.0, 0.0, 1.0} : Vec3d{1.0, 0.0, 0.0}));
-}
 
 /// Speed, ramp and farthest depth that a motion of the scene suggests.
 struct Habit {
@@ -88,7 +85,7 @@ void LiveBody::lead_tools() {
     habit(x.motion);
     if (x.record) habit.depth = 0.0;
     ToolInfo info{.name = x.name, .direction = unit(x.motion.direction), .speed = habit.speed, .can_play = true};
-    info.side = any_across(info.direction);
+    info.side = two_across(info.direction)[0];
     info.third = cross(info.direction, info.side);
     info.most_depth = 1.25 * habit.depth;
     ways_.push_back(std::make_shared<LivePath>(habit.speed, habit.ramp, tool_path(x)));

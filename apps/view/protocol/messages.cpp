@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "report/fractions.h"
 #include "report/json_text.h"
 
 namespace glisson::view {
@@ -47,17 +48,6 @@ class Bytes {
   }
   std::string text_;
 };
-
-std::uint16_t fraction16(double value, double scale) {
-  const double f = scale > 0.0 ? value / scale * 32767.0 : 0.0;
-  const auto x = std::isfinite(f) ? static_cast<std::int16_t>(std::lround(std::clamp(f, -32767.0, 32767.0))) : 0;
-  return static_cast<std::uint16_t>(x);
-}
-
-std::uint8_t fraction8(double value, double scale) {
-  const double f = scale > 0.0 ? value / scale * 255.0 : 0.0;
-  return std::isfinite(f) ? static_cast<std::uint8_t>(std::lround(std::clamp(f, 0.0, 255.0))) : std::uint8_t{255};
-}
 
 std::uint8_t flags_of(const Snapshot& state) {
   unsigned flags = 0;
@@ -152,7 +142,7 @@ std::string frame_message(const Snapshot& state, const Surface& surface, std::ui
   for (const ToolState& tool : state.tools) put_tool(out, tool);
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const Vec3d u = shown(state.displacement[surface.mesh_vertex(i)], surface);
-    for (std::size_t k = 0; k < 3; ++k) out.u16(fraction16(u[k], reach));
+    for (std::size_t k = 0; k < 3; ++k) out.u16(static_cast<std::uint16_t>(fraction16(u[k], reach)));
   }
   return out.take();
 }

@@ -11,6 +11,7 @@
 
 #include "element/body.h"
 #include "glisson/simulation/surface_load.h"
+#include "mesh/topology/faces.h"
 
 namespace glisson {
 
@@ -28,8 +29,7 @@ inline bool is_there(const Body& body, const LoadedFace& face) { return body.res
 
 /// A triangle in space.
 using Corners = std::array<Vec3d, 3>;
-/// Half the cross product of its edges: area times outward normal [m²].
-inline Vec3d area_vector(const Corners& x) { return cross(x[1] - x[0], x[2] - x[0]) * 0.5; }
+using detail::area_vector;
 
 /// A traction that turns with its face, in parts that a face at rest gives it.
 struct TurningTraction {

@@ -5,14 +5,10 @@
 #include <functional>
 
 #include "base/nearest.h"
+#include "base/text.h"
 
 namespace glisson::fit {
 namespace {
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
-  return text;
-}
 
 std::string in_quotes(const std::string& text) { return "\"" + text + "\""; }
 
@@ -35,9 +31,10 @@ std::vector<std::size_t> matching(const CurveFile& file, const std::function<boo
 /// Exactly, else but for case, else but for the unit.
 std::vector<std::size_t> named(const CurveFile& file, const std::string& name) {
   auto found = matching(file, [&](const std::string& n) { return n == name; });
-  if (found.empty()) found = matching(file, [&](const std::string& n) { return lower(n) == lower(name); });
-  const auto bare = [](const std::string& n) { return lower(split_title(n).name); };
-  if (found.empty()) found = matching(file, [&](const std::string& n) { return bare(n) == lower(name); });
+  if (found.empty())
+    found = matching(file, [&](const std::string& n) { return detail::lower_case(n) == detail::lower_case(name); });
+  const auto bare = [](const std::string& n) { return detail::lower_case(split_title(n).name); };
+  if (found.empty()) found = matching(file, [&](const std::string& n) { return bare(n) == detail::lower_case(name); });
   return found;
 }
 
@@ -101,7 +98,7 @@ const Unit* unit_of(const CurveFile& file, std::size_t column, const std::string
 bool is_customary(const CurveFile& file, std::size_t column, Quantity quantity,
                   std::span<const std::string_view> words) {
   if (!file.units[column].empty() && !find_unit(quantity, file.units[column])) return false;
-  const std::string name = lower(file.names[column]);
+  const std::string name = detail::lower_case(file.names[column]);
   return std::any_of(words.begin(), words.end(), [&](std::string_view w) { return name.starts_with(w); });
 }
 
@@ -151,7 +148,7 @@ std::vector<ChosenColumn> check_columns(const CurveFile& file) {
     for (const auto& [quantity, word] :
          {std::pair{Quantity::stress, "stress"}, std::pair{Quantity::strain, "strain"}}) {
       const Unit* unit = find_unit(quantity, file.units[i]);
-      if (unit && lower(file.names[i]).find(word) != std::string::npos)
+      if (unit && detail::lower_case(file.names[i]).find(word) != std::string::npos)
         found.push_back({i, {file.title(i), quantity, unit, "columns." + std::string(word)}});
     }
   }

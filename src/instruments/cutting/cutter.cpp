@@ -13,6 +13,7 @@
 #include "glisson/instruments/cutting.h"
 #include "instruments/cutting/blade_view.h"
 #include "mesh/cut/cut_snap.h"
+#include "mesh/topology/faces.h"
 
 namespace glisson {
 namespace {
@@ -26,8 +27,6 @@ void require_finite(const BladeEdge& edge) {
   if (std::isfinite(norm(edge.from)) && std::isfinite(norm(edge.to))) return;
   throw std::invalid_argument("cutter: an end of the blade's edge is not finite; give two points in metres");
 }
-
-Vec3d area_vector(const Vec3d& a, const Vec3d& b, const Vec3d& c) { return cross(b - a, c - a) * 0.5; }
 
 /// The part of the path within a tet: a triangle or quadrilateral.
 struct PathPiece {
@@ -118,11 +117,11 @@ PathPiece Cutter::Impl::piece_in(std::uint32_t tet) const {
   if (here.size() == 2) {
     const Vec3d a = point(here[0], there[0]), b = point(here[0], there[1]), c = point(here[1], there[1]),
                 d = point(here[1], there[0]);
-    return {area_vector(a, b, c) + area_vector(a, c, d), (a + b + c + d) * 0.25};
+    return {detail::area_vector({a, b, c}) + detail::area_vector({a, c, d}), (a + b + c + d) * 0.25};
   }
   if (here.size() > 2) std::swap(here, there);
   const Vec3d a = point(here[0], there[0]), b = point(here[0], there[1]), c = point(here[0], there[2]);
-  return {area_vector(a, b, c), (a + b + c) * (1.0 / 3.0)};
+  return {detail::area_vector({a, b, c}), (a + b + c) * (1.0 / 3.0)};
 }
 
 /// A vertex that is held or in a named set stays among vertices that are so, too.
@@ -211,7 +210,7 @@ void Cutter::Impl::open(const detail::CutFaces& cut, CutReport& report) {
   report.new_vertices = SimulationParts::split_faces(simulation, parted, moves).origins.size();
   report.faces = parted.size();
   const std::vector<Vec3d>& x = SimulationParts::mesh(simulation).vertices;
-  for (const Triangle& f : parted) report.faces_area += norm(area_vector(x[f[0]], x[f[1]], x[f[2]]));
+  for (const Triangle& f : parted) report.faces_area += norm(detail::area_vector({x[f[0]], x[f[1]], x[f[2]]}));
   follow();
 }
 

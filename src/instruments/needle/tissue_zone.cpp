@@ -1,6 +1,5 @@
 #include "instruments/needle/tissue_zone.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/symmetric_eigen.h"
 #include "glisson/mesh.h"
 
 namespace glisson {
@@ -22,10 +22,6 @@ constexpr std::size_t kFewest = 3, kMost = 12;  ///< radii of a rule for fine me
 struct RulePoint {
   Vec3d at;  ///< in units of r
   double weight;
-};
-
-struct Node {
-  double at, weight;
 };
 
 /// For coarse meshes: Gauss's rule for ∫ r² (1 − r²)² f(r²) dr on two radii, times Lebedev's of 14 points on the sphere
@@ -52,8 +48,8 @@ std::vector<RulePoint> coarse_rule() {
   return rule;
 }
 
-/// Gauss's rule for the mean of f(t) over (0, 1) by the weight (1 − t)² √t, from its recurrence [GolubWelsch1969].
-std::vector<Node> radial_rule(std::size_t points) {
+/// Gauss's rule for the mean of f(t) over (0, 1) by the weight (1 − t)² √t.
+std::vector<RuleNode> radial_rule(std::size_t points) {
   constexpr double a = 2.0, b = 0.5;  // (1 − t)^a t^b
   const auto n = static_cast<Eigen::Index>(points);
   Eigen::VectorXd diagonal(n), beside(n - 1);
@@ -64,14 +60,7 @@ std::vector<Node> radial_rule(std::size_t points) {
     if (k == 0) continue;
     beside[k - 1] = std::sqrt(4.0 * i * (i + a) * (i + b) * (i + a + b) / (sum * sum * (sum + 1.0) * (sum - 1.0)));
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(diagonal, beside);
-  std::vector<Node> rule;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const double first = solver.eigenvectors()(0, k);
-    rule.push_back({0.5 * (1.0 + solver.eigenvalues()[k]), first * first});
-  }
-  return rule;
+  return gauss_rule(diagonal, beside);
 }
 
 /// s² ds = ½ √t dt with t = s². On each sphere a spiral of points over one half, and their mirror images through X.
@@ -80,7 +69,7 @@ std::vector<RulePoint> fine_rule(std::size_t radii) {
   const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
   std::vector<RulePoint> rule;
   double turn = 0.0;
-  for (const Node& square : radial_rule(radii)) {
+  for (const RuleNode& square : radial_rule(radii)) {
     const double r = std::sqrt(square.at), weight = square.weight / (2.0 * static_cast<double>(half));
     for (std::size_t k = 0; k < half; ++k, turn += golden) {
       const double z = (static_cast<double>(k) + 0.5) / static_cast<double>(half), across = std::sqrt(1.0 - z * z);

@@ -18,8 +18,6 @@ constexpr std::array<double, 4> kParts{1.0, 0.75, 0.5, 0.25};
 
 double six_volume(const std::array<Vec3d, 4>& x) { return dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0])); }
 
-Vec3d area_vector(const Vec3d& a, const Vec3d& b, const Vec3d& c) { return cross(b - a, c - a) * 0.5; }
-
 std::array<double, 4> weights_in(const std::array<Vec3d, 4>& x, const Vec3d& p) {
   const double whole = six_volume(x);
   std::array<double, 4> w;
@@ -63,7 +61,7 @@ double spread_of(const std::array<Vec3d, 4>& x) {
   if (!(volume > 0.0)) return std::numeric_limits<double>::infinity();
   Mat3d m;  // of the faces' area vectors, −3 V s
   for (const auto& f : kFaceCorners) {
-    const Vec3d a = area_vector(x[f[0]], x[f[1]], x[f[2]]);
+    const Vec3d a = area_vector({x[f[0]], x[f[1]], x[f[2]]});
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) m(i, j) += a[i] * a[j];
     }
@@ -104,7 +102,7 @@ std::vector<Vec3d> CutSnap::normals(std::uint32_t vertex) const {
     const std::size_t tissue = mesh_.tissue(t);
     for (std::size_t c = 0; c < 4; ++c) {
       const auto& f = kFaceCorners[c];
-      const Vec3d area = area_vector(x[f[0]], x[f[1]], x[f[2]]);
+      const Vec3d area = area_vector({x[f[0]], x[f[1]], x[f[2]]});
       if (tet[c] == vertex) {
         growth[tissue] += area;
         around += norm(area);

@@ -24,10 +24,6 @@ struct Crack {
   bool open = false;                   // some vertex differs between its sides
 };
 
-std::uint8_t corner_of(const Tet& tet, std::uint32_t vertex) {
-  return static_cast<std::uint8_t>(std::find(tet.begin(), tet.end(), vertex) - tet.begin());
-}
-
 /// The first two tets that hold a face and how many there are.
 struct Sides {
   std::array<std::uint32_t, 2> tets{};

@@ -119,7 +119,7 @@ std::vector<Corners> outward(std::span<const Vec3d> points, const std::vector<Tr
     const Corners c{points[t[0]], points[t[1]], points[t[2]]};
     for (const Vec3d& x : c) extent = std::max(extent, norm(x - from));
     volume += dot(c[0] - from, cross(c[1] - from, c[2] - from)) / 6.0;
-    if (squared(area_of(c)) > 0.0) placed.push_back(c);
+    if (squared(area_vector(c)) > 0.0) placed.push_back(c);
   }
   if (!(std::abs(volume) > 1e-12 * extent * extent * extent) || placed.empty())
     refuse_surface("has no volume within; give one that bounds a body");

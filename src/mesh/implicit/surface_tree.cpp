@@ -84,7 +84,7 @@ SurfaceTree::Node SurfaceTree::node_of(std::size_t first, std::size_t count) con
       .box = {triangles_[first][0], triangles_[first][0]}, .area = {}, .middle = {}, .first = first, .count = count};
   double weight = 0.0;
   for (std::size_t i = first; i < first + count; ++i) {
-    const Vec3d area = area_of(triangles_[i]);
+    const Vec3d area = area_vector(triangles_[i]);
     node.area += area;
     node.middle += middle_of(triangles_[i]) * norm(area);
     weight += norm(area);

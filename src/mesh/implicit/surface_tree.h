@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "glisson/region_mesh.h"
+#include "mesh/topology/faces.h"
 
 namespace glisson::detail {
 
 using Corners = std::array<Vec3d, 3>;
 
-inline Vec3d area_of(const Corners& t) { return cross(t[1] - t[0], t[2] - t[0]) * 0.5; }
 inline Vec3d middle_of(const Corners& t) { return (t[0] + t[1] + t[2]) * (1.0 / 3.0); }
 inline double squared(const Vec3d& x) { return dot(x, x); }
 

@@ -3,14 +3,11 @@
 
 #include <algorithm>
 
+#include "mesh/topology/faces.h"
+
 namespace glisson::lattice {
-namespace {
 
-std::size_t corner_of(const Tet& tet, std::uint32_t vertex) {
-  return static_cast<std::size_t>(std::find(tet.begin(), tet.end(), vertex) - tet.begin());
-}
-
-}  // namespace
+using detail::corner_of;
 
 std::uint32_t TetComplex::add_vertex(const Vec3d& point, double edge) {
   points.push_back(point);

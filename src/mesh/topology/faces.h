@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -17,6 +19,14 @@ inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kFaceCorners{{{1, 2,
 inline bool holds(const Tet& tet, std::uint32_t vertex) {
   return std::find(tet.begin(), tet.end(), vertex) != tet.end();
 }
+
+/// The corner at which a tet has the vertex; 4 where it has not.
+inline std::uint8_t corner_of(const Tet& tet, std::uint32_t vertex) {
+  return static_cast<std::uint8_t>(std::find(tet.begin(), tet.end(), vertex) - tet.begin());
+}
+
+/// Half the cross product of a triangle's edges: area times normal [m²].
+inline Vec3d area_vector(const std::array<Vec3d, 3>& x) { return cross(x[1] - x[0], x[2] - x[0]) * 0.5; }
 
 /// One side of a face: the tet and its corner opposite to it.
 struct FaceSide {

@@ -20,7 +20,7 @@ struct Format {
 constexpr Format kFormats[] = {{".stl", read_stl}, {".obj", read_obj}, {".ply", read_ply}};
 
 const Format* format_of(const std::filesystem::path& file) {
-  const std::string ending = lower_case(file.extension().string());
+  const std::string ending = detail::lower_case(file.extension().string());
   const auto* found =
       std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& f) { return ending == f.ending; });
   return found == std::end(kFormats) ? nullptr : found;

@@ -14,7 +14,7 @@ constexpr std::size_t kTitle = 80, kHead = 84, kRecord = 50;  // bytes
 
 bool looks_like_text(std::string_view bytes) {
   std::string_view rest = bytes;
-  if (lower_case(first_word(rest)) != "solid") return false;
+  if (detail::lower_case(first_word(rest)) != "solid") return false;
   const std::string_view start = bytes.substr(0, 512);
   return std::none_of(start.begin(), start.end(), [](char c) { return c == '\0'; });
 }
@@ -41,7 +41,7 @@ TriangleSurface read_text(Source& source) {
   std::string_view rest;
   while (true) {
     const std::string_view word = source.word();
-    const std::string keyword = lower_case(word);
+    const std::string keyword = detail::lower_case(word);
     if (word.empty()) break;
     if (keyword == "facet" && in_solid) {
       read_facet(source, surface);

@@ -32,12 +32,6 @@ std::string shown(std::string_view text) {
   return out + (text.size() > kLongest ? "…\"" : "\"");
 }
 
-std::string lower_case(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return out;
-}
-
 std::string_view first_word(std::string_view& line) {
   const auto begin = std::find_if_not(line.begin(), line.end(), is_blank);
   const auto end = std::find_if(begin, line.end(), is_blank);
@@ -75,7 +69,7 @@ std::string_view Source::word() {
 
 void Source::expect(std::string_view wanted, const char* within) {
   const std::string_view found = word();
-  if (lower_case(found) == wanted) return;
+  if (detail::lower_case(found) == wanted) return;
   const std::string expected = "expected \"" + std::string(wanted) + "\" in " + within;
   if (left() == 0) fail(expected + ", but the file ends: it is cut off; write it again");
   fail(expected + ", found " + shown(found));

@@ -52,7 +52,6 @@ std::string_view first_word(std::string_view& line);
 double real_in(const Source& source, std::string_view word, const char* what);
 /// Printable and short, in quotes.
 std::string shown(std::string_view text);
-std::string lower_case(std::string_view text);
 
 /// The reader of each format. @throws std::invalid_argument
 TriangleSurface read_stl(Source& source);
