@@ -219,7 +219,7 @@ std::pair<fit::Indenter, std::string> indenter_of(const MaterialOptions& o) {
   using fit::Indenter, fit::IndenterShape;
   const std::string word = o.indenter.value_or(std::string(word_of(Indenter{}.shape)));
   Indenter indenter{.shape = by_word<IndenterShape>("--indenter", word, all_words<IndenterShape>()),
-                    .bonded = o.bonded};
+                    .contact = o.bonded ? fit::IndenterContact::bonded : fit::IndenterContact::frictionless};
   if (Indenter::has(indenter.shape, "half_angle")) {
     const double degrees = o.half_angle_deg.value_or(kOwnHalfAngle);
     if (!Indenter::kHalfAngles.contains(degrees))

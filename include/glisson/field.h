@@ -9,13 +9,14 @@
 //   };
 //
 // fields() passes all descriptions to a function; as a template it costs nothing where it is not called.
-// A scene's key is name and unit, `amplitude_mm`; C++ and Python know the name. A member is in SI; where its key's unit
-// begins with mm, so is the range, and the key is a thousand times the member. Conditions between members go into
+// A scene's key is name and unit, `amplitude_mm`; C++ and Python know the name. A member is in SI; its range and key are in
+// the unit given here, of which mm (and mm/s …) and ° (radians of the member) differ from SI. Conditions between members go into
 //   Fault check() const;   // or std::string
 // Every member is described, in the order of the struct: each_field() does not compile otherwise.
 #pragma once
 
 #include <limits>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -57,7 +58,10 @@ struct FieldText {
   /// Of a scene: "density_kg_m3".
   std::string key() const;
   /// The member's number over the key's.
-  constexpr double scale() const { return unit.starts_with("mm") ? 1e-3 : 1.0; }
+  constexpr double scale() const {
+    if (unit == "°") return std::numbers::pi / 180.0;
+    return unit.starts_with("mm") ? 1e-3 : 1.0;
+  }
   std::string si_unit() const;
 };
 

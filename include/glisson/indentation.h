@@ -25,8 +25,16 @@ enum class IndenterShape {
   cone     ///< with a sharp tip
 };
 
+/// How tissue meets an indenter.
+enum class IndenterContact { frictionless, bonded };
+
 }  // namespace glisson::fit
 namespace glisson {
+template <>
+inline constexpr Word<fit::IndenterContact> kWords<fit::IndenterContact>[] = {
+    {"frictionless", fit::IndenterContact::frictionless,
+     "tissue slides along it; under a punch with a sharp edge for small depths only"},
+    {"bonded", fit::IndenterContact::bonded, "tissue stays where it touches first"}};
 template <>
 inline constexpr Word<fit::IndenterShape> kWords<fit::IndenterShape>[] = {
     {"sphere", fit::IndenterShape::sphere, "A ball, on a shaft as wide as itself."},
@@ -40,7 +48,7 @@ struct Indenter {
   IndenterShape shape = IndenterShape::sphere;
   double radius = 0.0;      ///< of a sphere or a flat punch [m], > 0
   double half_angle = 0.0;  ///< of a cone, between its axis and its side, 10° to 89° [rad]
-  bool bonded = false;
+  IndenterContact contact = IndenterContact::frictionless;
   double edge_radius = 0.0;  ///< of a flat punch: of its rounded edge, 0 to `radius` [m]; 0: sharp
 
   static constexpr double kDegree = std::numbers::pi / 180.0;
@@ -51,9 +59,8 @@ struct Indenter {
     return take(
         no_key("shape", &Indenter::shape),
         field("radius", &Indenter::radius, "mm", above(0), "radius; of a flat one that of its face").must(),
-        no_key("half_angle", &Indenter::half_angle, "rad",
-               between(kHalfAngles.min * kDegree, kHalfAngles.max * kDegree)),
-        no_key("bonded", &Indenter::bonded),
+        field("half_angle", &Indenter::half_angle, "°", kHalfAngles, "angle between its axis and its side").must(),
+        field("contact", &Indenter::contact, "how tissue meets it"),
         field("edge_radius", &Indenter::edge_radius, "mm", at_least(0), "radius of its rounded edge; 0: sharp"));
   }
   /// Whether a shape has the member of this name; others are not looked at.
@@ -64,6 +71,7 @@ struct Indenter {
   }
   Fault check() const;
 
+  bool bonded() const { return contact == IndenterContact::bonded; }
   /// A flat face with a sharp edge.
   bool sharp() const { return shape == IndenterShape::flat && !(edge_radius > 0.0); }
   bool operator==(const Indenter&) const = default;
@@ -87,7 +95,7 @@ struct Layer {
   bool wide() const { return radius == kNone; }
 };
 
-/// The force of an indenter, in statics but for what the tissue's branches and viscosity remember.
+/// The quasi-static force of an indenter; the tissue's Maxwell branches and viscosity depend on its history.
 ///
 /// At little strain and depth it is Hertz's, Boussinesq's and Sneddon's [Sneddon1965] within 1 %, on thin bonded layers those of
 /// [Hayes1972], for every Poisson ratio. Strains are finite. A sharp flat punch without friction can be followed while tissue slides by less

@@ -9,6 +9,7 @@ namespace {
 std::string key_of_unit(std::string_view unit) {
   if (unit == "1/s") return "per_s";
   if (unit == "Hz") return "hz";
+  if (unit == "°") return "deg";
   std::string key;
   for (std::size_t i = 0; i < unit.size(); ++i) {
     const std::string_view two = unit.substr(i, 2);
@@ -46,6 +47,9 @@ std::string FieldText::key() const {
   return key;
 }
 
-std::string FieldText::si_unit() const { return std::string(unit.substr(unit.starts_with("mm") ? 1 : 0)); }
+std::string FieldText::si_unit() const {
+  if (unit == "°") return "rad";
+  return std::string(unit.substr(unit.starts_with("mm") ? 1 : 0));
+}
 
 }  // namespace glisson

@@ -128,10 +128,10 @@ TEST(IndentedLayer, ScalesAndJoinsTheHalfSpace) {
 TEST(IndentedLayer, IsConvergedInItsMesh) {
   const Layer layer{.thickness = 2e-3};
   const std::vector<HyperelasticLaw> laws{NeoHookean{kMu, 1e6}, Ogden{{kMu}, {-10.0}, 1e6}, Yeoh{500, 300, 300, 1e6}};
-  const std::vector<Indenter> indenters{{IndenterShape::sphere, kRadius, 0.0, false},
-                                        {IndenterShape::sphere, kRadius, 0.0, true},
-                                        {IndenterShape::cone, 0.0, 60.0 * kDegree, false},
-                                        {IndenterShape::flat, kRadius, 0.0, true}};
+  const std::vector<Indenter> indenters{{IndenterShape::sphere, kRadius, 0.0, IndenterContact::frictionless},
+                                        {IndenterShape::sphere, kRadius, 0.0, IndenterContact::bonded},
+                                        {IndenterShape::cone, 0.0, 60.0 * kDegree, IndenterContact::frictionless},
+                                        {IndenterShape::flat, kRadius, 0.0, IndenterContact::bonded}};
   for (const HyperelasticLaw& law : laws) {
     for (const Indenter& indenter : indenters) {
       IndentedLayer coarse(layer, indenter, law, 6e-4), fine(layer, indenter, law, 6e-4, 1.5);
@@ -148,8 +148,8 @@ TEST(IndentedLayer, GoesFar) {
   const Layer layer{.thickness = 2e-3};
   for (const HyperelasticLaw& law : std::initializer_list<HyperelasticLaw>{
            NeoHookean{kMu, 1e6}, Ogden{{kMu}, {-10.0}, 1e6}, Yeoh{500, 300, 300, 1e6}}) {
-    IndentedLayer slides(layer, {IndenterShape::sphere, kRadius, 0.0, false}, law, 1.2e-3);
-    IndentedLayer sticks(layer, {IndenterShape::sphere, kRadius, 0.0, true}, law, 1.2e-3);
+    IndentedLayer slides(layer, {IndenterShape::sphere, kRadius, 0.0, IndenterContact::frictionless}, law, 1.2e-3);
+    IndentedLayer sticks(layer, {IndenterShape::sphere, kRadius, 0.0, IndenterContact::bonded}, law, 1.2e-3);
     double less = 0.0;
     for (const double d : {3e-4, 6e-4, 9e-4, 1.2e-3}) {
       const double force = slides.press(d);

@@ -1,7 +1,5 @@
 #include "fit/data/section_data.h"
 
-#include <numbers>
-
 #include "fit/data/test_columns.h"
 #include "fit/data/units.h"
 #include "scene/parse/section.h"
@@ -23,14 +21,6 @@ struct OptionalSquareMilli {
   static constexpr scene::Shape kShape = scene::Shape::one;
   static std::optional<double> read(const Node& n) { return scene::number_of(n) * 1e-6; }
   static std::string show(const std::optional<double>& x) { return x ? scene::show(*x * 1e6) : ""; }
-};
-
-/// Degrees of the file, radians of the struct.
-struct Degrees {
-  static constexpr scene::ValueType kType = scene::ValueType::number;
-  static constexpr scene::Shape kShape = scene::Shape::one;
-  static double read(const Node& n) { return scene::number_of(n) * std::numbers::pi / 180.0; }
-  static std::string show(double x) { return scene::show(x * 180.0 / std::numbers::pi); }
 };
 
 /// A kind that says which word was chosen and fills the struct itself.
@@ -105,17 +95,6 @@ SectionSpec indenter_kind(const Word<IndenterShape>& word) {
     if (!Indenter::has(shape, f.name)) without.push_back(f.name);
   });
   s.fields({}, without);
-  if (Indenter::has(shape, "half_angle"))
-    s.key<Degrees>("half_angle_deg", &Indenter::half_angle, "angle between its axis and its side")
-        .in("°")
-        .within(Indenter::kHalfAngles)
-        .must();
-  s.choice<bool>("contact", &Indenter::bonded,
-                 {{"frictionless", false,
-                   shape == IndenterShape::flat ? "tissue slides along it; under a sharp edge for small depths"
-                                                : "tissue slides along it"},
-                  {"bonded", true, "tissue stays where it touches first"}},
-                 "how tissue meets it");
   return s.spec();
 }
 

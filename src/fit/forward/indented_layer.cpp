@@ -116,7 +116,7 @@ void IndentedLayer::hold_vertices() {
   }
   for (std::size_t c = 0; c < under_punch_; ++c) {
     hold(2 * surface_vertex(c) + 1);
-    if (indenter_.bonded) hold(2 * surface_vertex(c));
+    if (indenter_.bonded()) hold(2 * surface_vertex(c));
   }
   for (std::size_t k = 0; layer_.wide() && k < rows; ++k) {
     hold(2 * ((columns - 1) * rows + k));
@@ -126,7 +126,7 @@ void IndentedLayer::hold_vertices() {
 
 /// Points that a bonded indenter has come to touch stay where they are.
 void IndentedLayer::stick() {
-  if (!indenter_.bonded) return;
+  if (!indenter_.bonded()) return;
   for (SurfacePoint& p : surface_) {
     const Place at = place_of(p);
     const bool touches = entry_of(indenter_, tip(), at.r, at.z).depth > 0.0;
@@ -173,7 +173,7 @@ bool IndentedLayer::advance(double to) {
 }
 
 void IndentedLayer::require_edge() const {
-  if (under_punch_ == 0 || indenter_.bonded) return;
+  if (under_punch_ == 0 || indenter_.bonded()) return;
   if (std::abs(state_.body.u[2 * surface_vertex(under_punch_ - 1)]) < kSlides * indenter_.radius) return;
   throw std::runtime_error("at a depth of " + millimetres(state_.depth) +
                            " tissue slides past the sharp edge of the flat punch, where strain has no bound; give "

@@ -44,13 +44,13 @@ void SectionBuilder::add_field(Fields& fields, const FieldText& field, const Mem
   if (!field.in_scenes || std::find(without.begin(), without.end(), field.name) != without.end()) return;
   const auto in_part = static_cast<char*>(member) - static_cast<char*>(fields.initial);
   const MemberPlace place{fields.part.part, fields.part.offset + in_part};
-  if (!kind.section && !kind.value) {
+  const auto code = field.scale() == 1.0 ? kind.value : field.unit == "°" ? kind.degrees : kind.thousandth;
+  if (!kind.section && !code) {
     throw std::logic_error(field.key() + ": no scene can hold a value of its type; it is no_key()");
   }
   KeySpec& key = kind.section
                      ? add_tables(field.key(), kind.shape, kind.section(), place, kind.slot, std::string(field.help))
-                     : add_value(field.key(), field.scale() == 1.0 ? kind.value() : kind.thousandth(), place, member,
-                                 std::string(field.help));
+                     : add_value(field.key(), code(), place, member, std::string(field.help));
   key.unit = field.unit;
   if (field.range.bounded()) key.range = field.range;
   key.advice = field.advice;

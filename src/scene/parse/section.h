@@ -17,6 +17,7 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -55,6 +56,14 @@ struct Milli {
   static constexpr Shape kShape = Shape::one;
   static double read(const Node& n) { return number_of(n) / 1000.0; }
   static std::string show(double x) { return scene::show(x * 1000.0); }
+};
+
+/// An angle in radians whose key is in degrees.
+struct Degrees {
+  static constexpr ValueType kType = ValueType::number;
+  static constexpr Shape kShape = Shape::one;
+  static double read(const Node& n) { return number_of(n) * std::numbers::pi / 180.0; }
+  static std::string show(double x) { return scene::show(x * 180.0 / std::numbers::pi); }
 };
 
 struct OptionalMilli {
@@ -217,6 +226,7 @@ using Slot = void* (*)(void* member, const std::string& entry);
 struct MemberKind {
   ValueCode (*value)() = nullptr;             ///< nullptr: not a value
   ValueCode (*thousandth)() = nullptr;        ///< of a key in thousandths
+  ValueCode (*degrees)() = nullptr;           ///< of a key in degrees
   const SectionSpec& (*section)() = nullptr;  ///< of tables
   Shape shape = Shape::one;                   ///< of tables
   Slot slot = nullptr;                        ///< of tables
@@ -238,7 +248,9 @@ constexpr MemberKind member_kind() {
                 return &static_cast<T*>(member)->emplace();
             }};
   } else if constexpr (requires { Codec<T>::kType; }) {
-    return {.value = value_code<T>, .thousandth = value_code<T, Thousandth<T>>};
+    MemberKind kind{.value = value_code<T>, .thousandth = value_code<T, Thousandth<T>>};
+    if constexpr (std::is_same_v<T, double>) kind.degrees = value_code<double, Degrees>;
+    return kind;
   } else {
     return {};
   }
