@@ -83,7 +83,7 @@ nlohmann::ordered_json realtime_json(const Variant& variant, const BuiltVariant&
   nlohmann::ordered_json json = machine_json();
   json["scene"] = variant.scene_name;
   json["variant"] = variant.name;
-  json["end"] = end_text(r.end.end);
+  json["end"] = word_of(r.end.end);
   json["tets"] = body.simulation.mesh().tets.size();
   json["threads"] = engine.threads;
   json["h_s"] = body.simulation.step_size();

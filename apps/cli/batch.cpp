@@ -47,7 +47,7 @@ class Fan : public RunObserver {
   void on_end(const RunSummary& summary) override {
     recorder_.on_end(summary);
     if (also_ != nullptr) also_->on_end(summary);
-    progress_.ended(index_, std::string(end_text(summary.end)));
+    progress_.ended(index_, std::string(word_of(summary.end)));
   }
 
  private:

@@ -42,7 +42,7 @@ void print_results(const std::vector<const VariantRecorder*>& variants) {
   for (std::size_t i = 0; i < variants.size(); ++i) {
     const RunSummary& s = variants[i]->summary();
     say("{:<{}}  {:>8}  {:>9}  {:>10.3e}  {:>8.2f}  {:>11.1f}  {:>12.5g}  {}", names[i], width, s.tets, s.steps,
-        s.step_s, s.wall_s, s.ns_per_tet_step, s.peak_force_N, end_text(s.end));
+        s.step_s, s.wall_s, s.ns_per_tet_step, s.peak_force_N, word_of(s.end));
     if (s.inverted_tets_most > 0) {
       say(" (up to {} inverted tets, from {:.4g} s on)", s.inverted_tets_most, s.first_inversion_s);
     }

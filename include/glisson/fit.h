@@ -97,6 +97,14 @@ struct Measurement {
 
 /// How a parameter is searched between its bounds.
 enum class Scale { linear, logarithmic };
+}  // namespace glisson::fit
+namespace glisson {
+template <>
+inline constexpr Word<fit::Scale> kWords<fit::Scale>[] = {
+    {"log", fit::Scale::logarithmic, "by factors: for numbers of unknown size; bounds > 0"},
+    {"linear", fit::Scale::linear, "by differences"}};
+}  // namespace glisson
+namespace glisson::fit {
 
 /// A number that the fit is free to choose, in the unit of its key.
 struct Parameter {
@@ -294,18 +302,18 @@ struct FitForecast {
 /// Options of run_fit. Callbacks are called one at a time.
 struct FitOptions {
   std::vector<std::string> laws;  ///< further laws to compare, besides those of the file: names of `glisson fit --laws`
-  /// Looks for a law of at most so many terms among all subsets of a library, 1 to 4; 0: does not. The best of each size are
+  /// Searches all subsets of a library of terms for a law with at most this many, 1 to 4; 0: no search. The best of each size are
   /// compared in place of the file's law. For a [specimen] with smooth faces.
   int discover = 0;
   std::filesystem::path data_folder;  ///< that files of curves are relative to; empty: the folder of FIT.toml
   MeshLoader load;                    ///< reads mesh files of the scene; none: a scene with a mesh file is an error
-  const std::atomic<bool>* stop = nullptr;  ///< set it to end the fit with what is known
+  const std::atomic<bool>* stop = nullptr;  ///< set it to end the fit early with an incomplete result
   std::function<void(const FitProgress&)> progress;
   std::function<void(const FitForecast&)> forecast;  ///< called once per law
 };
 
-/// Runs the fit that a FIT.toml describes (docs/fit_file.md). A fit that is stopped returns what is known, marked as not
-/// complete.
+/// Runs the fit that a FIT.toml describes (docs/fit_file.md). A fit that is stopped returns an incomplete
+/// result, marked as such.
 /// @throws SceneError, std::invalid_argument, std::runtime_error for descriptions, scenes and files that cannot be used
 FitResult run_fit(const std::filesystem::path& file, const FitOptions& options = {});
 /// The same from text; `name` stands for the file in messages, and its folder is that of the scene and the curves.

@@ -30,6 +30,15 @@ constexpr std::string_view word_of(E value) {
   return {};
 }
 
+/// The meaning of an enumerator.
+template <HasWords E>
+constexpr std::string_view meaning_of(E value) {
+  for (const Word<E>& w : kWords<E>) {
+    if (w.value == value) return w.help;
+  }
+  return {};
+}
+
 /// Whether it is another word of the same enumerator: read, but never written.
 template <HasWords E>
 constexpr bool is_alias(const Word<E>& w) {

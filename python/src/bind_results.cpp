@@ -119,7 +119,7 @@ class Recorder : public RunObserver {
     const Variant& variant = *result_.variant;
     result_.summary =
         json_text(summary_json(summary, variant, std::filesystem::path(variant.scene_name).stem().string(), 1));
-    result_.end = end_text(summary.end);
+    result_.end = word_of(summary.end);
     result_.trouble = trouble_text(summary);
   }
 

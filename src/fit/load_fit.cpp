@@ -1,7 +1,5 @@
 // load_fit.cpp — FIT.toml in, checked FitSpec out.
-#include <array>
 #include <cmath>
-#include <utility>
 
 #include "base/input_file.h"
 #include "fit/fit_spec.h"
@@ -12,19 +10,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The end of a key and the unit it means; the longest first.
-constexpr std::array kUnits{std::pair{"_N_s_m2", "N·s/m²"}, std::pair{"_kg_m3", "kg/m³"}, std::pair{"_Pa_s", "Pa·s"},
-                            std::pair{"_mm_s", "mm/s"},     std::pair{"_per_s", "1/s"},   std::pair{"_N_m", "N/m"},
-                            std::pair{"_J_m2", "J/m²"},     std::pair{"_deg", "°"},       std::pair{"_mm", "mm"},
-                            std::pair{"_Pa", "Pa"},         std::pair{"_Hz", "Hz"},       std::pair{"_hz", "Hz"},
-                            std::pair{"_m", "m"},           std::pair{"_s", "s"},         std::pair{"_N", "N"}};
+/// Units that keys end with; those of the longest ends first.
+constexpr const char* kUnits[]{"N·s/m²", "kg/m³", "Pa·s", "mm/s", "1/s", "N/m", "J/m²",
+                               "°",      "mm",    "Pa",   "Hz",   "m",   "s",   "N"};
 
 }  // namespace
 
 std::string unit_of_key(const std::string& key) {
   const std::string plain = key.substr(0, key.find('['));
-  for (const auto& [end, unit] : kUnits) {
-    if (plain.ends_with(end)) return unit;
+  for (const char* unit : kUnits) {
+    if (plain.ends_with(FieldText{.unit = unit}.key())) return unit;
   }
   return {};
 }

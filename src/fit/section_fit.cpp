@@ -64,8 +64,7 @@ void check_faces(const FitSpec& fit, const Place& place) {
   const auto any = [&](const auto& list) { return std::any_of(list.begin(), list.end(), frees); };
   const bool freed = any(fit.parameters) ||
                      std::any_of(fit.laws.begin(), fit.laws.end(), [&](const LawSpec& l) { return any(l.parameters); });
-  if (freed && !rubs)
-    place.complain("parameters `specimen.…` ask for a cylinder with faces = \"friction\" in [specimen]");
+  if (freed && !rubs) place.complain("parameters `specimen.…` need a cylinder with faces = \"friction\" in [specimen]");
   if (!fit.specimen) return;
   if (rubs && !freed && !(fit.specimen->grip.friction > 0.0 || fit.specimen->grip.adhesion > 0.0))
     place.complain(
@@ -175,10 +174,7 @@ const SectionSpec& parameter_section() {
     s.key("low", &ParameterSpec::low, "lower bound, in the key's unit").must();
     s.key("high", &ParameterSpec::high, "upper bound").must();
     s.key("start", &ParameterSpec::start, "value of the first start").otherwise("the middle of the bounds");
-    s.choice<Scale>("scale", &ParameterSpec::scale,
-                    {{"log", Scale::logarithmic, "by factors: for numbers of unknown size; bounds > 0"},
-                     {"linear", Scale::linear, "by differences"}},
-                    "how the range between the bounds is divided");
+    s.key("scale", &ParameterSpec::scale, "how the range between the bounds is divided");
     s.finish(check_bounds);
     return s.spec();
   }();
@@ -253,7 +249,8 @@ const SectionSpec& fit_law_section() {
 
 const SectionSpec& experiment_section() {
   static const SectionSpec section = [] {
-    Section<ExperimentSpec> s("experiment", "A candidate for the next test; the fit reports how much it would tell.");
+    Section<ExperimentSpec> s(
+        "experiment", "A candidate for the next test; the fit reports how much it would narrow the parameters.");
     s.key("name", &ExperimentSpec::name, "name in tables").otherwise("its velocity and depth");
     s.key<scene::Milli>("velocity_mm_s", &ExperimentSpec::velocity, "speed").in("mm/s").within(above(0)).must();
     s.key<scene::Milli>("depth_mm", &ExperimentSpec::depth, "depth").in("mm").within(above(0)).must();

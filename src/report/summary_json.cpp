@@ -7,26 +7,6 @@
 
 namespace glisson {
 
-std::string_view end_text(RunSummary::End end) {
-  switch (end) {
-    case RunSummary::End::finished:
-      return "finished";
-    case RunSummary::End::interrupted:
-      return "interrupted";
-    case RunSummary::End::stopped_inverted:
-      return "stopped_inverted";
-    case RunSummary::End::stopped_unstable:
-      return "stopped_unstable";
-    case RunSummary::End::stopped_not_finite:
-      return "stopped_not_finite";
-    case RunSummary::End::stopped_not_converged:
-      return "stopped_not_converged";
-    case RunSummary::End::stopped_not_held:
-      return "stopped_not_held";
-  }
-  return "unknown";
-}
-
 std::string trouble_text(const RunSummary& s) {
   if (!s.trouble.empty()) return fmt::format("stopped at {:.6g} s: {}", s.time_s, s.trouble);
   if (s.end != RunSummary::End::stopped_inverted) return {};
@@ -42,7 +22,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
   json["scene"] = scene;
   json["variant"] = variant.name;
   json["tissue"] = variant.tissue.name;
-  json["end"] = end_text(s.end);
+  json["end"] = word_of(s.end);
   json["vertices"] = s.vertices;
   json["tets"] = s.tets;
   json["steps"] = s.steps;

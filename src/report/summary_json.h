@@ -3,14 +3,10 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 
 #include "glisson/scene/scene.h"
 
 namespace glisson {
-
-/// How a run ended, as summary.json and messages say it: finished, interrupted, stopped_inverted, …
-std::string_view end_text(RunSummary::End end);
 
 /// A sentence on an end that is the numbers' doing, with the way out; empty for finished and interrupted.
 std::string trouble_text(const RunSummary& summary);

@@ -146,6 +146,16 @@ struct RunSummary {
   std::string trouble;  ///< why the last step was not made and what to do; empty if all were
 };
 
+template <>
+inline constexpr Word<RunSummary::End> kWords<RunSummary::End>[] = {
+    {"finished", RunSummary::End::finished},
+    {"interrupted", RunSummary::End::interrupted, "interrupted"},
+    {"stopped_inverted", RunSummary::End::stopped_inverted, "a tetrahedron inverted"},
+    {"stopped_unstable", RunSummary::End::stopped_unstable, "the step has become too large; leave out step_s"},
+    {"stopped_not_finite", RunSummary::End::stopped_not_finite, "a force is not finite"},
+    {"stopped_not_converged", RunSummary::End::stopped_not_converged, "no equilibrium was found"},
+    {"stopped_not_held", RunSummary::End::stopped_not_held, "supports and tools leave a rigid motion free"}};
+
 /// The end of a run whose step had this status; `finished` if the run continues.
 RunSummary::End end_of(StepStatus status, OnInversion on_inversion);
 

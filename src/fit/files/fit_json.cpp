@@ -36,7 +36,7 @@ Json open_interval(const std::optional<Interval>& x) {
 Json parameter_json(const fit::ParameterResult& p) {
   return {{"name", p.parameter.name},
           {"unit", p.parameter.unit},
-          {"scale", p.parameter.scale == fit::Scale::linear ? "linear" : "log"},
+          {"scale", word_of(p.parameter.scale)},
           {"low", p.parameter.low},
           {"high", p.parameter.high},
           {"value", number(p.value)},

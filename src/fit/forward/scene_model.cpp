@@ -84,27 +84,6 @@ class ForceRecorder final : public RunObserver {
 
 bool rings(const Variant& v) { return !capabilities(v.simulation.integrator).any_step_is_stable; }
 
-const char* end_words(RunSummary::End end) {
-  using End = RunSummary::End;
-  switch (end) {
-    case End::finished:
-      return "";
-    case End::interrupted:
-      return "interrupted";
-    case End::stopped_inverted:
-      return "a tetrahedron inverted";
-    case End::stopped_unstable:
-      return "the step has become too large; leave out step_s";
-    case End::stopped_not_finite:
-      return "a force is not finite";
-    case End::stopped_not_converged:
-      return "no equilibrium was found";
-    case End::stopped_not_held:
-      return "supports and tools leave a rigid motion free";
-  }
-  return "";
-}
-
 bool same_motion(const Curve& a, const Curve& b) {
   return a.time == b.time && a.displacement == b.displacement && a.past_time == b.past_time &&
          a.past_displacement == b.past_displacement && a.velocity == b.velocity && a.measurement == b.measurement;
@@ -248,7 +227,7 @@ double SceneModel::last_step(std::size_t index, std::span<const double> values) 
   Variant v = variant(index, values);
   const std::atomic<bool> never{false};
   const RunSummary summary = run(v, nothing, options_.stop ? *options_.stop : never);
-  if (summary.end != RunSummary::End::finished) throw std::runtime_error(end_words(summary.end));
+  if (summary.end != RunSummary::End::finished) throw std::runtime_error(std::string(meaning_of(summary.end)));
   return summary.step_s;
 }
 
@@ -261,7 +240,7 @@ SceneModel::Recording SceneModel::record(std::size_t index, std::span<const doub
     Recording recording;
     if (summary.end != RunSummary::End::finished || recorder.times.empty())
       recording.stopped = "the run stopped at " + std::to_string(summary.time_s) +
-                          " s: " + (recorder.late() ? "it takes too long" : end_words(summary.end)) +
+                          " s: " + std::string(recorder.late() ? "it takes too long" : meaning_of(summary.end)) +
                           (summary.trouble.empty() ? "" : ": " + summary.trouble);
     recording.unwanted = options_.stop != nullptr && options_.stop->load();
     if (!recorder.times.empty() && recorder.times.front() > 0.0 && !is_viscous(v)) {
