@@ -36,6 +36,24 @@ void set_field(nb::handle self, const std::string& field, nb::handle value) {
   }
 }
 
+std::string members_text(nb::handle self, const char* list) {
+  const nb::object shown = nb::module_::import_("reprlib").attr("repr");  // a long list by its first numbers
+  std::string text = nb::cast<std::string>(self.type().attr("__name__")) + "(";
+  const char* comma = "";
+  for (nb::handle name : self.type().attr(list)) {
+    const nb::object value = self.attr(name);
+    const bool is_long = nb::isinstance<nb::list>(value) && nb::len(value) > 20;
+    const nb::object words = is_long ? shown(value) : nb::object(nb::repr(value));
+    text += comma + nb::cast<std::string>(name) + "=" + nb::cast<std::string>(words);
+    comma = ", ";
+  }
+  return text + ")";
+}
+
+void add_member(nb::handle type, const char* list, const char* name) {
+  type.attr(list) = nb::object(type.attr(list)) + nb::make_tuple(name);
+}
+
 Doubles vectors(std::vector<Vec3d> values) {
   const std::size_t n = values.size();
   return owned<Doubles>(std::move(values), {n, 3});

@@ -95,6 +95,11 @@ inline constexpr const char* kSetState = "def __setstate__(self, state: tuple[ty
 /// A field's name; one that is a word of Python has an underscore behind it, as the language's style asks.
 inline const char* python_name(const char* name) { return std::string_view(name) == "from" ? "from_" : name; }
 
+/// repr() of an object whose class lists members: "Name(field=value, …)". @param list  the attribute with their names
+std::string members_text(nb::handle self, const char* list);
+/// Appends to that list of a class.
+void add_member(nb::handle type, const char* list, const char* name);
+
 /// A class of options: every field by name in its constructor, readable and writable, shown by repr(). Those of a
 /// described struct (glisson/field.h) are all there. It pickles.
 template <class T>
@@ -110,15 +115,8 @@ class Options : public nb::class_<T> {
         set_field(self.h, name, value);
       }
     });
-    this->def("__repr__", [](nb::handle self) {
-      std::string text = nb::cast<std::string>(self.type().attr("__name__")) + "(";
-      const char* comma = "";
-      for (nb::handle field : self.type().attr("_fields")) {
-        text += comma + nb::cast<std::string>(field) + "=" + nb::cast<std::string>(nb::repr(self.attr(field)));
-        comma = ", ";
-      }
-      return text + ")";
-    });
+    this->def("__repr__", [](nb::handle self) { return members_text(self, "_fields"); });
+    this->attr("_fields") = nb::tuple();
     const auto reduce = [](nb::handle self) {  // pickles by the fields, through the constructor
       nb::dict fields;
       for (nb::handle field : self.type().attr("_fields")) fields[field] = self.attr(field);
@@ -140,7 +138,6 @@ class Options : public nb::class_<T> {
         return true;
       }
     });
-    this->attr("_fields") = nb::tuple();
     if constexpr (Described<T>) {
       each_field<T>([&](const auto& f) { add(f.name.data(), f.member, f); });
     }
@@ -157,9 +154,28 @@ class Options : public nb::class_<T> {
     const std::string text = docstring(doc(of_ + "::" + name), field);
     name = python_name(name);
     this->def_rw(name, member, text.c_str());
-    this->attr("_fields") = nb::object(this->attr("_fields")) + nb::make_tuple(name);
+    add_member(*this, "_fields", name);
   }
 
+  std::string of_;
+};
+
+/// A class of results: its members are read, and shown by repr().
+template <class T>
+class Results : public nb::class_<T> {
+ public:
+  Results(nb::handle scope, const char* name) : nb::class_<T>(scope, name, doc(name)), of_(name) {
+    this->def("__repr__", [](nb::handle self) { return members_text(self, "_members"); });
+    this->attr("_members") = nb::tuple();
+  }
+  template <class M>
+  Results& read(const char* name, M member) {
+    this->def_ro(name, member, doc(of_ + "::" + name));
+    add_member(*this, "_members", name);
+    return *this;
+  }
+
+ private:
   std::string of_;
 };
 

@@ -51,20 +51,19 @@ void load(OwnCutter& self, const nb::bytes& checkpoint) {
 }  // namespace
 
 void bind_cutting(nb::module_& m) {
-  const auto report = [](const char* field) { return doc(std::string("CutReport::") + field); };
-  nb::class_<CutReport>(m, "CutReport", doc("CutReport"))
-      .def_ro("area", &CutReport::area, report("area"))
-      .def_ro("faces_area", &CutReport::faces_area, report("faces_area"))
-      .def_ro("tets", &CutReport::tets, report("tets"))
-      .def_ro("faces", &CutReport::faces, report("faces"))
-      .def_ro("new_vertices", &CutReport::new_vertices)
-      .def_ro("moved_vertices", &CutReport::moved_vertices)
-      .def_ro("held_back", &CutReport::held_back, report("held_back"))
-      .def_ro("largest_offset", &CutReport::largest_offset, report("largest_offset"));
-  nb::class_<EdgePiece>(m, "EdgePiece", doc("EdgePiece"))
-      .def_ro("tet", &EdgePiece::tet)
-      .def_ro("length", &EdgePiece::length, doc("EdgePiece::length"))
-      .def_ro("weights", &EdgePiece::weights, doc("EdgePiece::weights"));
+  Results<CutReport>(m, "CutReport")
+      .read("area", &CutReport::area)
+      .read("faces_area", &CutReport::faces_area)
+      .read("tets", &CutReport::tets)
+      .read("faces", &CutReport::faces)
+      .read("new_vertices", &CutReport::new_vertices)
+      .read("moved_vertices", &CutReport::moved_vertices)
+      .read("held_back", &CutReport::held_back)
+      .read("largest_offset", &CutReport::largest_offset);
+  Results<EdgePiece>(m, "EdgePiece")
+      .read("tet", &EdgePiece::tet)
+      .read("length", &EdgePiece::length)
+      .read("weights", &EdgePiece::weights);
   const auto of = [](const char* member) { return doc(std::string("Cutter::") + member); };
   nb::class_<OwnCutter>(m, "Cutter", doc("Cutter"))
       .def(nb::init<LiveSimulation&, const CutOptions&>(), "simulation"_a, "options"_a = CutOptions{},

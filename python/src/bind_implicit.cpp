@@ -126,18 +126,18 @@ void bind_mesher(nb::module_& m) {
           "name"_a, "solid"_a, "hole"_a = false)
       .def_ro("name", &BodyRegion::name)
       .def_ro("hole", &BodyRegion::hole, doc("BodyRegion::hole"));
-  nb::class_<RegionVolume>(m, "RegionVolume", doc("RegionVolume"))
-      .def_ro("name", &RegionVolume::name)
-      .def_ro("number", &RegionVolume::number, doc("RegionVolume::number"))
-      .def_ro("tets", &RegionVolume::tets)
-      .def_ro("volume", &RegionVolume::volume, doc("RegionVolume::volume"));
-  nb::class_<RegionMeshReport>(m, "RegionMeshReport", doc("RegionMeshReport"))
-      .def_ro("min_dihedral_deg", &RegionMeshReport::min_dihedral_deg)
-      .def_ro("max_dihedral_deg", &RegionMeshReport::max_dihedral_deg)
-      .def_ro("seconds", &RegionMeshReport::seconds)
-      .def_ro("regions", &RegionMeshReport::regions, doc("RegionMeshReport::regions"))
-      .def_ro("poor_tets", &RegionMeshReport::poor_tets, doc("RegionMeshReport::poor_tets"))
-      .def_ro("warnings", &RegionMeshReport::warnings, doc("RegionMeshReport::warnings"));
+  Results<RegionVolume>(m, "RegionVolume")
+      .read("name", &RegionVolume::name)
+      .read("number", &RegionVolume::number)
+      .read("tets", &RegionVolume::tets)
+      .read("volume", &RegionVolume::volume);
+  Results<RegionMeshReport>(m, "RegionMeshReport")
+      .read("min_dihedral_deg", &RegionMeshReport::min_dihedral_deg)
+      .read("max_dihedral_deg", &RegionMeshReport::max_dihedral_deg)
+      .read("seconds", &RegionMeshReport::seconds)
+      .read("regions", &RegionMeshReport::regions)
+      .read("poor_tets", &RegionMeshReport::poor_tets)
+      .read("warnings", &RegionMeshReport::warnings);
   m.def(
       "mesh_regions",
       [](const std::vector<BodyRegion>& regions, double edge, std::size_t max_tets, const std::vector<MeshSize>& sizes,

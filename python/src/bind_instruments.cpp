@@ -113,11 +113,11 @@ void bind_drivers(nb::module_& m) {
 }
 
 void bind_common(nb::module_& m) {
-  nb::class_<ToolForces>(m, "ToolForces", doc("ToolForces"))
-      .def_ro("normal", &ToolForces::normal, doc("ToolForces::normal"))
-      .def_ro("friction", &ToolForces::friction, doc("ToolForces::friction"))
-      .def_ro("cutting", &ToolForces::cutting, doc("ToolForces::cutting"))
-      .def_ro("torque", &ToolForces::torque, doc("ToolForces::torque"))
+  Results<ToolForces>(m, "ToolForces")
+      .read("normal", &ToolForces::normal)
+      .read("friction", &ToolForces::friction)
+      .read("cutting", &ToolForces::cutting)
+      .read("torque", &ToolForces::torque)
       .def_prop_ro("total", &ToolForces::total, "Sum of the parts [N]");
   nb::class_<InstrumentEvent>(m, "InstrumentEvent", doc("InstrumentEvent"))
       .def_ro("time", &InstrumentEvent::time, doc("InstrumentEvent::time"))
@@ -214,10 +214,10 @@ void bind_contact(nb::module_& m) {
 
 void bind_vessels(nb::module_& m) {
   Options<ContainerOptions>(m, "ContainerOptions");
-  nb::class_<ContainerLoads>(m, "ContainerLoads", doc("ContainerLoads"))
-      .def_ro("bottom", &ContainerLoads::bottom, doc("ContainerLoads::bottom"))
-      .def_ro("side", &ContainerLoads::side, doc("ContainerLoads::side"))
-      .def_ro("side_radial", &ContainerLoads::side_radial, doc("ContainerLoads::side_radial"))
+  Results<ContainerLoads>(m, "ContainerLoads")
+      .read("bottom", &ContainerLoads::bottom)
+      .read("side", &ContainerLoads::side)
+      .read("side_radial", &ContainerLoads::side_radial)
       .def_prop_ro("total", &ContainerLoads::total, "Sum of both [N]");
   nb::class_<Container, Interaction>(m, "Container", doc("Container"))
       .def(nb::init<const ContainerOptions&>(), "options"_a, doc("Container::Container"))

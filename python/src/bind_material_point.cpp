@@ -62,14 +62,13 @@ std::vector<std::array<double, 2>> twisted(const Tissue& tissue, double radius, 
 }  // namespace
 
 void bind_material_point(nb::module_& m) {
-  const auto of = [](const char* field) { return doc(std::string("MaterialState::") + field); };
-  nb::class_<MaterialState>(m, "MaterialState", doc("MaterialState"))
-      .def_ro("time", &MaterialState::time, of("time"))
-      .def_ro("deformation", &MaterialState::deformation, of("deformation"))
-      .def_ro("nominal", &MaterialState::nominal, of("nominal"))
-      .def_ro("cauchy", &MaterialState::cauchy, of("cauchy"))
-      .def_ro("converged", &MaterialState::converged, of("converged"))
-      .def_ro("message", &MaterialState::message, of("message"));
+  Results<MaterialState>(m, "MaterialState")
+      .read("time", &MaterialState::time)
+      .read("deformation", &MaterialState::deformation)
+      .read("nominal", &MaterialState::nominal)
+      .read("cauchy", &MaterialState::cauchy)
+      .read("converged", &MaterialState::converged)
+      .read("message", &MaterialState::message);
   nb::class_<MaterialPoint>(m, "MaterialPoint", doc("MaterialPoint"))
       .def(nb::init<const Tissue&>(), "tissue"_a)
       .def_prop_ro(

@@ -99,24 +99,23 @@ void set_mesh_state(TetMesh& self, const nb::tuple& state) {
 }
 
 void bind_report(nb::module_& m) {
-  const auto of = [](const char* field) { return doc(std::string("MeshReport::") + field); };
-  nb::class_<MeshReport>(m, "MeshReport", doc("MeshReport"))
-      .def_ro("vertices", &MeshReport::vertices, of("vertices"))
-      .def_ro("tets", &MeshReport::tets, of("tets"))
-      .def_ro("boundary_triangles", &MeshReport::boundary_triangles, of("boundary_triangles"))
-      .def_ro("box_min", &MeshReport::box_min, of("box_min"))
-      .def_ro("box_max", &MeshReport::box_max, of("box_max"))
-      .def_ro("volume", &MeshReport::volume, of("volume"))
-      .def_ro("worst_mean_ratio", &MeshReport::worst_mean_ratio, of("worst_mean_ratio"))
-      .def_ro("median_mean_ratio", &MeshReport::median_mean_ratio, of("median_mean_ratio"))
-      .def_ro("worst_tet", &MeshReport::worst_tet, of("worst_tet"))
-      .def_ro("reoriented_tets", &MeshReport::reoriented_tets, of("reoriented_tets"))
-      .def_ro("duplicate_tets", &MeshReport::duplicate_tets, of("duplicate_tets"))
-      .def_ro("degenerate_tets", &MeshReport::degenerate_tets, of("degenerate_tets"))
-      .def_ro("unused_vertices", &MeshReport::unused_vertices, of("unused_vertices"))
-      .def_ro("non_manifold_faces", &MeshReport::non_manifold_faces, of("non_manifold_faces"))
-      .def_ro("pieces", &MeshReport::pieces, of("pieces"))
-      .def_ro("warnings", &MeshReport::warnings, of("warnings"));
+  Results<MeshReport>(m, "MeshReport")
+      .read("vertices", &MeshReport::vertices)
+      .read("tets", &MeshReport::tets)
+      .read("boundary_triangles", &MeshReport::boundary_triangles)
+      .read("box_min", &MeshReport::box_min)
+      .read("box_max", &MeshReport::box_max)
+      .read("volume", &MeshReport::volume)
+      .read("worst_mean_ratio", &MeshReport::worst_mean_ratio)
+      .read("median_mean_ratio", &MeshReport::median_mean_ratio)
+      .read("worst_tet", &MeshReport::worst_tet)
+      .read("reoriented_tets", &MeshReport::reoriented_tets)
+      .read("duplicate_tets", &MeshReport::duplicate_tets)
+      .read("degenerate_tets", &MeshReport::degenerate_tets)
+      .read("unused_vertices", &MeshReport::unused_vertices)
+      .read("non_manifold_faces", &MeshReport::non_manifold_faces)
+      .read("pieces", &MeshReport::pieces)
+      .read("warnings", &MeshReport::warnings);
 }
 
 /// Keeps a copy of the options given by name: box_mesh(cells=…, size=…).

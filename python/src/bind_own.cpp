@@ -260,9 +260,7 @@ constexpr const char* kInteraction =
 }  // namespace
 
 void bind_own_driver(nb::module_& m) {
-  nb::class_<Wrench>(m, "Wrench", doc("Wrench"))
-      .def_ro("force", &Wrench::force, doc("Wrench::force"))
-      .def_ro("torque", &Wrench::torque, doc("Wrench::torque"));
+  Results<Wrench>(m, "Wrench").read("force", &Wrench::force).read("torque", &Wrench::torque);
   nb::class_<OwnDriver, ToolDriver>(
       m, "OwnDriver",
       "Moves a tool by your own code: subclass it and override advance(); for a function use FunctionDriver.\n\n"

@@ -71,10 +71,10 @@ void bind_variant(nb::module_& m) {
 }
 
 void bind_charts(nb::module_& m) {
-  nb::class_<AxisSpec>(m, "AxisSpec", doc("AxisSpec"))
-      .def_ro("column", &AxisSpec::column)
-      .def_ro("label", &AxisSpec::label, doc("AxisSpec::label"))
-      .def_ro("scale", &AxisSpec::scale);
+  Results<AxisSpec>(m, "AxisSpec")
+      .read("column", &AxisSpec::column)
+      .read("label", &AxisSpec::label)
+      .read("scale", &AxisSpec::scale);
   nb::class_<MeasuredSpec>(m, "MeasuredSpec", doc("MeasuredSpec"))
       .def_ro("label", &MeasuredSpec::label)
       .def_prop_ro(

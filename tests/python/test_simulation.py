@@ -284,6 +284,7 @@ def test_readings_of_the_engine():
     assert body.step_size <= body.stable_step and body.engine_info.threads >= 1 and body.engine_info.submeshes >= 1
     assert body.limiting_tets(3)[0].step <= body.limiting_tets(3)[2].step
     assert body.mass_scaling.added > 0 and len(body.mass_scaling.tets) > 0
+    assert repr(body.mass_scaling).startswith(f"MassScaling(added={body.mass_scaling.added!r}, share=")
     assert body.step() == "ok" and len(body.inverted_tets) == 0
 
 
