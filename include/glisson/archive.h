@@ -35,14 +35,14 @@ class Archive {
  public:
   /// Writes.
   Archive() = default;
-  /// Reads what another one has written.
+  /// Reads the bytes that another archive has written.
   explicit Archive(std::string bytes) : bytes_(std::move(bytes)), reads_(true) {}
 
   bool reads() const { return reads_; }
   const std::string& bytes() const { return bytes_; }
   std::size_t left() const { return bytes_.size() - at_; }
 
-  /// Writes the parts, or replaces them by what is read. @throws std::runtime_error where they do not fit
+  /// Writes the parts, or reads them. @throws std::runtime_error if the bytes do not fit them
   template <class... Parts>
   void operator()(Parts&... parts) {
     (part(parts), ...);
@@ -66,7 +66,7 @@ class Archive {
     part(numbers);
     check(std::all_of(numbers.begin(), numbers.end(), [end](const T& n) { return n < end; }));
   }
-  /// Refuses what has been read unless it is sound.
+  /// Rejects the bytes unless a condition on them holds.
   void check(bool sound) const {
     if (reads_ && !sound) refuse();
   }
@@ -184,7 +184,7 @@ class Archive {
   static void order(std::array<char, N>& bytes) {
     if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
   }
-  /// How many parts follow, of so many bytes at least.
+  /// The number of parts that follow. @param least_bytes  smallest size of each
   std::size_t count(std::size_t size, std::size_t least_bytes) {
     auto number = static_cast<std::uint64_t>(size);
     part(number);
@@ -203,14 +203,14 @@ class Archive {
   bool reads_ = false;
 };
 
-/// What an object writes.
+/// The bytes that an object writes.
 template <class T>
 std::string archived(T& object) {
   Archive out;
   object.archive(out);
   return out.bytes();
 }
-/// Lets an object read what archived() gave, all of it. @throws std::runtime_error where it does not fit
+/// Reads an object from the bytes of archived(). @throws std::runtime_error if they do not fit it or are left over
 template <class T>
 void restore(T& object, std::string bytes) {
   Archive in(std::move(bytes));

@@ -3,8 +3,8 @@
 //   Solid liver = unite({ellipsoid, lobe}, 0.01);          // blended over 10 mm
 //   RegionMesh made = mesh_regions({{"tumour", ball}, {"parenchyma", liver}}, {.edge = 0.004});
 //
-// A shape is its signed distance: negative inside, positive outside. Outside it is never more than the true distance and near
-// the surface it is that distance, so that a mesher may skip what it says is far away.
+// A shape is its signed distance: negative inside, positive outside. Outside it never exceeds the true distance, and near the
+// surface it equals it, so that a mesher can skip the space that is farther away.
 #pragma once
 
 #include <filesystem>

@@ -50,7 +50,7 @@ class MaterialTargets {
 struct MaterialState {
   double time = 0.0;                       ///< [s]
   Mat3d deformation = identity<double>();  ///< F [-]
-  Mat3d nominal{};  ///< P, first Piola–Kirchhoff: elastic, viscous and what branches still hold [Pa]
+  Mat3d nominal{};  ///< P, first Piola–Kirchhoff: elastic, viscous and of the Maxwell branches [Pa]
   /// σ = P Fᵀ/J [Pa]; P itself for kinematics `small`, where the two are the same.
   Mat3d cauchy{};
   /// False: no deformation with the prescribed stress was found. The state is that of the step before, and `message` says what to

@@ -1,4 +1,4 @@
-// mesh_refinement.h — finer meshes of the same body, to see what the mesh adds to a result.
+// mesh_refinement.h — finer meshes of the same body, to estimate the error of the mesh.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace glisson {
 
-/// The mesh with every tet split into eight: at the middles of its edges, the octahedron inside along the
-/// diagonal that leaves the best shapes [Bey1995]; there the diagonal goes by the numbers of the corners. Vertices keep their numbers, new ones follow; the children of tet t are 8 t … 8 t + 7.
+/// The mesh with every tet split into eight at the middles of its edges; the inner octahedron is split along the diagonal that gives
+/// the best shapes (in [Bey1995] by the corners' numbers). Vertices keep their numbers; the children of tet t are 8 t … 8 t + 7.
 ///
 /// Regions and fibres are those of the parent. A new vertex belongs to a set if both ends of its edge do; where all the set
 /// lies on the surface, the edge has to lie there, too. Planes stay planes: a curved surface stays the polyhedron it is.

@@ -35,12 +35,12 @@ struct BodyRegion {
 struct RegionMeshOptions {
   double edge = 0.005;              ///< mean length of the edges [m], > 0
   std::size_t max_tets = 20000000;  ///< more are refused before any memory is taken, 1 to 10⁹
-  /// Called now and then with the part that is done, 0 to 1; false stops the work. Empty: nothing is called.
+  /// Called repeatedly with the fraction done, 0 to 1; returning false stops the work.
   std::function<bool(double)> progress{};
-  std::vector<MeshSize> sizes{};  ///< where edges are shorter; the shortest of them counts
+  std::vector<MeshSize> sizes{};  ///< places with shorter edges; where they overlap, the shortest counts
   double growth = kGrowth;        ///< edge over distance at which edges grow away from these [-], 0.05 to 1
-  /// Edge asked for at a point [m]; the shortest of it, `sizes` and `edge` counts. Finite, and a 256th of `edge` or more; asked for in the
-  /// box of the body and up to two edges beyond. Called from one thread. Empty: `edge` and `sizes` alone.
+  /// Wanted edge at a point [m]; the shortest of it, `sizes` and `edge` counts. Finite, at least 1/256 of `edge`. Called for points in
+  /// the box of the body and up to two edges beyond, from one thread. Empty: `edge` and `sizes` alone.
   std::function<double(const Vec3d&)> size_at{};
 
   template <class Take>
@@ -91,7 +91,7 @@ class MeshingStopped : public std::runtime_error {
 /// Cost: some 10 µs and 150 bytes a tet, up to 100 µs where many thin parts meet.
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options);
 
-/// The edge asked for in each tet of a mesh, at its centre [m].
+/// The wanted edge at the centre of each tet of a mesh [m].
 /// @throws std::invalid_argument  as mesh_regions, for edge, sizes, growth and size_at
 std::vector<double> edges_asked(const TetMesh& mesh, const std::vector<BodyRegion>& regions,
                                 const RegionMeshOptions& options);

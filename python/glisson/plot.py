@@ -142,7 +142,7 @@ def profiles(result: FitResult, *, axes: Any = None) -> Any:
     """
     rows = result.to_dict()["profiles"]
     if not rows:
-        raise ValueError("the fit has no profiles; ask for them in [proof]")
+        raise ValueError("the fit has no profiles; enable them in [proof]")
     if axes is None:
         pyplot = need("matplotlib.pyplot", "matplotlib", "plot")
         with style():

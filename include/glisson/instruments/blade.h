@@ -18,7 +18,7 @@ namespace glisson {
 class Blade;
 
 struct BladeOptions {
-  using Instrument = Blade;  ///< that is made of it
+  using Instrument = Blade;  ///< constructed from these options
   static constexpr std::string_view kName = "blade";
   std::string name = "blade";
   Vec3d direction{0, 0, -1};                                  ///< direction of the depth; any length

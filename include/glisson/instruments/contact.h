@@ -129,7 +129,7 @@ ShapeDistance distance_to(const Shape& shape, const Vec3d& x);
 class ContactTool;
 
 struct ContactOptions {
-  using Instrument = ContactTool;  ///< that is made of it
+  using Instrument = ContactTool;  ///< constructed from these options
   std::string name = "tool";
   Shape shape = FlatPunch{};
   double friction = 0.0;         ///< Coulomb's μ [-]; ∞: never slips while it presses

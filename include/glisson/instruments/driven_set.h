@@ -24,16 +24,16 @@ class DrivenSet final : public Instrument {
   /// @param path  of the vertices, 0 at the start
   DrivenSet(DrivenSetOptions options, ToolPath path);
   /// @param path  of the set as a rigid body, from where it is at the start
-  /// @param rotation  what the path turns about, if it does: gives it the columns angle_deg and torque_N_m
+  /// @param rotation  the rotation that the path describes, if any: adds the columns angle_deg and torque_N_m
   DrivenSet(DrivenSetOptions options, RigidPath path, std::optional<RotationMotion> rotation = {});
 
   ConstraintId constraint() const { return constraint_; }
-  /// The force on the tissue by component; 0 where the simulation is no more.
+  /// The force on the tissue by component; 0 after the simulation was destroyed.
   ForceParts parts() const;
   /// Columns of its kind: elastic_N, viscous_N, damping_N, inertial_N, gravity_N, load_N, along the direction.
   static std::span<const InstrumentColumn> part_columns();
 
-  /// Torque on the tissue at force_time(), about a place [N m]; 0 where the simulation is no more.
+  /// Torque on the tissue at force_time() about a point [N m]; 0 after the simulation was destroyed.
   Vec3d torque(const Vec3d& about) const;
   /// Of a set that turns about an axis: the same along that axis [N m], and the angle at force_time() [rad].
   double axial_torque() const;
@@ -61,8 +61,8 @@ class DrivenSet final : public Instrument {
 
   DrivenSetOptions options_;
   Motion displacement_;
-  PoseMotion rigid_;                        ///< in place of it
-  std::optional<RotationMotion> rotation_;  ///< what `rigid_` turns about
+  PoseMotion rigid_;                        ///< replaces displacement_
+  std::optional<RotationMotion> rotation_;  ///< the rotation of `rigid_`
   Vec3d middle_{};                          ///< mean of the vertices at rest [m]
   std::weak_ptr<const Scheme> scheme_;      ///< of the simulation it is attached to
   ConstraintId constraint_;

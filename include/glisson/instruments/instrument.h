@@ -117,7 +117,9 @@ class Instrument : public Interaction {
   /// Points from the hand to the tip of the bent instrument [m]; of a rigid one its tip alone.
   virtual std::vector<Vec3d> centre_line() const { return {pose().position}; }
   /// Sets the callback for a puncture (position [m], radius [m]), for example to open a capsule.
-  void on_puncture(std::function<void(const Vec3d& place, double radius)> told) { on_puncture_ = std::move(told); }
+  void on_puncture(std::function<void(const Vec3d& place, double radius)> callback) {
+    on_puncture_ = std::move(callback);
+  }
 
  protected:
   /// Columns of this kind besides depth and force: here normal_N, friction_N and cutting_N, along the direction. The list

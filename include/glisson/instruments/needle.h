@@ -112,7 +112,7 @@ struct Rupture {
 class Needle;
 
 struct NeedleOptions {
-  using Instrument = Needle;  ///< that is made of it
+  using Instrument = Needle;  ///< constructed from these options
   static constexpr std::string_view kName = "needle";
   std::string name = "needle";
   double diameter = 1.27e-3;  ///< [m]; 18 G

@@ -1,4 +1,4 @@
-// contact_fields.h — what tools and containers exert on the surface of a body, per vertex.
+// contact_fields.h — traction and pressure of tools and containers on the surface of a body, per vertex.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace glisson {
 /// surface around a vertex. Traction times nodal area, summed over the vertices, is the force of the tools and containers.
 struct ContactFields {
   std::vector<Vec3d> traction;   ///< contact force on the tissue over the nodal area [Pa]
-  std::vector<double> pressure;  ///< of it what presses along the normals of contact, ≥ 0 but where a bond pulls [Pa]
+  std::vector<double> pressure;  ///< its part along the normals of contact, ≥ 0 except where a bond pulls [Pa]
 };
 
 }  // namespace glisson

@@ -1,4 +1,4 @@
-// held_rows.h — what interactions held in a step, for the stages of drag of the next one (SimulationOptions::drag_stages).
+// held_rows.h — the constraints of interactions in a step, for the drag stages of the next one (SimulationOptions::drag_stages).
 #pragma once
 
 #include <array>
@@ -21,9 +21,9 @@ struct VertexWeight {
   void archive(Archive& ar);
 };
 
-/// What impulses hold: means of vertices along directions, and vertices as a whole. Rows are held rigidly or as an implicit force does,
-/// in groups: a force that would change the velocities of a group by δ in a step then changes them by c (W + c)⁻¹ δ, W being that of
-/// the vertices alone.
+/// Constraints held by impulses: means of vertices along directions (rows), and whole vertices. A group of rows is rigid or, as an
+/// implicit force, compliant: a force that would change its velocities by δ in a step changes them by c (W + c)⁻¹ δ, with c the
+/// compliance of the group and W that of the vertices alone.
 class HeldRows {
  public:
   /// A mean [-], for add_row.
@@ -55,7 +55,7 @@ class HeldRows {
   std::size_t group_count() const { return groups_.size(); }
   Group group(std::size_t k) const;
   std::span<const std::uint32_t> vertices() const { return vertices_; }
-  /// Whether the means and vertices are those of the other, whatever rows hold them.
+  /// Whether means and vertices are equal to those of the other; the rows may differ.
   bool has_means_of(const HeldRows& other) const;
   bool operator==(const HeldRows&) const = default;
   void archive(Archive& ar);

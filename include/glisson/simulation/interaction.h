@@ -58,14 +58,14 @@ struct BodyView {
   bool is_removed(std::size_t tet) const { return !removed.empty() && removed[tet] != 0; }
 };
 
-/// Where the work of a tool goes that the tissue does not take.
+/// Where the part of a tool's work goes that the tissue does not receive.
 enum class WorkSink {
   contact,   ///< impulses along the normal: an impact, tissue that is pushed out
   friction,  ///< slip
   fracture   ///< cutting
 };
 
-/// Impulses between tools and tissue in a step, by what becomes of their work: InteractionStep::book fills it.
+/// Impulses between tools and tissue in a step, by WorkSink: filled by InteractionStep::book.
 struct InterfaceBook {
   struct Page {
     std::vector<Vec3d> impulses;                   ///< per place, on the tissue [N s]
@@ -91,20 +91,20 @@ struct TriangleStiffness {
   std::array<std::array<Mat3d, 3>, 3> blocks{};  ///< K, symmetric as a whole [N/m]
 };
 
-/// How far impulses move active vertices other than their own within a step that is long: one of `implicit` or `quasi_static`.
+/// The velocities that impulses give to all active vertices within a long step: one of `implicit` or `quasi_static`.
 class StepCompliance {
  public:
   virtual ~StepCompliance() = default;
-  /// Adds to the velocities of active vertices what an impulse [N s] at a place gives them: at once to those that were pushed or
-  /// asked for their mobility before, to the others at the next settle().
+  /// Adds the velocities due to an impulse [N s] at a place: at once at places that were pushed before or whose mobility was
+  /// computed, at the others in the next settle().
   virtual void spread(std::size_t place, const Vec3d& impulse, std::span<ActiveVertex> vertices) = 0;
   virtual void settle(std::span<ActiveVertex> vertices) = 0;
-  /// Velocity per impulse of a place on itself, from above: the same in all components that are free, 0 in others [1/kg].
+  /// Upper bound of a place's velocity per impulse on it: the same in all free components, 0 in the others [1/kg].
   virtual Vec3d mobility(std::size_t place) = 0;
-  /// Velocity that unit impulses on means of vertices, one an axis, give all of them: that of mean j by one on mean k at
-  /// j · size + k [1/kg]. Their vertices are active. Three solves a mean, kept while the tangent's factor is and the mean is asked for.
+  /// Velocities of means of active vertices per unit impulse on each of them along each axis: that of mean j by mean k at
+  /// j · size + k [1/kg]. Cost: three solves per mean; results are reused as long as the tangent's factor is kept.
   virtual std::vector<Mat3d> couple(std::span<const std::vector<VertexWeight>> means) = 0;
-  /// Adds to the velocities of all active vertices what impulses [N s] on means give them.
+  /// Adds the velocities of all active vertices due to impulses [N s] on means.
   virtual void spread_means(std::span<const std::vector<VertexWeight>> means, std::span<const Vec3d> impulses,
                             std::span<ActiveVertex> vertices) = 0;
 };
@@ -119,13 +119,13 @@ class InteractionStep {
   std::span<ActiveVertex> vertices;  ///< ascending by vertex; `velocity` is v₋ in add_forces, v₊ in constrain
   std::span<const std::uint32_t> place_of;  ///< per vertex of the mesh: its place in `vertices`, or kNowhere
   std::span<const Vec3d> rest;              ///< per vertex of the mesh: rest position [m]
-  /// Ascending by vertex: what interactions hold still; none of them has a place.
+  /// Vertices that interactions hold at rest, ascending by vertex; they have no place.
   std::span<const RestingVertex> resting;
   /// Per place: velocity per impulse, 1/(m + γh), in each component; 0 where a support or motion holds it [1/kg].
   std::span<const Vec3d> mobility;
   std::span<Vec3d> impulses;                ///< per place: sum of the impulses of this step [N s]
   InterfaceBook* interface_book = nullptr;  ///< where book() writes; null where energies are not tracked
-  /// Where the step is long: in place of `mobility`, which is empty then. `velocity` is (u(t + h) − u(t))/h. Null otherwise.
+  /// In long steps it replaces `mobility`, which is empty, and `velocity` is (u(t + h) − u(t))/h. Null in other steps.
   StepCompliance* compliance = nullptr;
 
   /// Position of the vertex at a place at time t, or at t + h after moved() [m].
@@ -143,10 +143,10 @@ class InteractionStep {
     impulses[place] += impulse;
   }
 
-  /// Books the impulse of a tool on the vertex at a place in the energy ledger: to be called in constrain for impulses that
-  /// were pushed, once each. The work of the tool is J·(V₋ + V₊)/2, the tissue takes J·(v₋ + v₊)/2 of it, and the difference goes
-  /// to the sink. An impulse that is not booked counts as that of a tool that moves with the tissue. Costs nothing where energies
-  /// are not tracked.
+  /// Records the impulse of a tool on the vertex at a place in the energy ledger. Call it in constrain(), once for each impulse
+  /// passed to push(). The work of the tool is J·(V₋ + V₊)/2, the tissue receives J·(v₋ + v₊)/2 of it, and the difference goes
+  /// to the sink. An impulse that is not recorded counts as that of a tool that moves with the tissue. No cost if energies are
+  /// not tracked.
   void book(WorkSink sink, std::size_t place, const Vec3d& impulse, const ToolVelocity& tool = {}) const {
     if (interface_book == nullptr) return;
     InterfaceBook::Page& page = interface_book->pages[static_cast<std::size_t>(sink)];
@@ -169,26 +169,26 @@ class Interaction {
   /// Its name in messages.
   virtual std::string label() const { return "this interaction"; }
 
-  /// Called once with the body it acts on. @throws std::invalid_argument if the body does not suit it
+  /// Called once with the body it acts on. @throws std::invalid_argument if it cannot act on this body
   virtual void attached(const BodyView& body, double time) = 0;
   /// Tets were removed, faces split, vertices moved or masses changed. Vertices and tets keep their numbers; new
   /// vertices come last.
   /// @param origins  the last vertices are copies of these
   virtual void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) = 0;
 
-  /// Vertices it may act on in the step from `time` to `time` + h, besides those named before, which stay active (see keeps()).
+  /// Vertices it may act on in the step from `time` to `time` + h, in addition to earlier ones, which stay active (see keeps()).
   /// Valid until the next call. Cost: naming none is free; naming some takes a pass over the vertices of the body.
   virtual std::span<const std::uint32_t> reach(double time, double h) = 0;
-  /// Called after each reach(): all vertices that it may still act on, where these have become fewer; the rest is let go, unless
-  /// something else acts on it. None: it keeps all that it has named. Valid until the next call.
+  /// Called after each reach(): all vertices that it may still act on, if there are fewer now; the others become inactive unless
+  /// something else acts on them. None: all earlier vertices stay active. Valid until the next call.
   virtual std::optional<std::span<const std::uint32_t>> keeps() { return {}; }
 
-  /// Called after each reach(): all vertices that it holds still from this step on, with no velocity where they are, where these have
-  /// become others. They cost next to nothing: they are not active (it need not name them), and what they stand against is in
-  /// InteractionStep::resting. One that something else acts on is active as before, and has to be held by impulses.
-  /// Valid until the next call. None: the same as before.
+  /// Called after each reach(): all vertices that it holds at rest in place from this step on, if the list has changed.
+  /// Such vertices cost almost nothing: they are not active (reach() need not name them), and the forces on them are in
+  /// InteractionStep::resting. A vertex on which something else acts stays active and has to be held by impulses.
+  /// Valid until the next call. None: the list has not changed.
   virtual std::optional<std::span<const std::uint32_t>> rests() { return {}; }
-  /// The state was set from outside: what it holds still may be elsewhere, and is not at rest any more. @param displacement  of all
+  /// The state was set by set_state: vertices that it holds at rest may have moved. @param displacement  of all
   /// vertices [m]
   virtual void state_set(std::span<const Vec3d> /*displacement*/) {}
 
@@ -196,10 +196,10 @@ class Interaction {
   virtual void add_forces(const InteractionStep&) {}
   /// Corrects v₊ by impulses.
   virtual void constrain(const InteractionStep&) {}
-  /// Adds what impulses held in this step, with all velocities at its end: stages of drag go by it in the next one
-  /// (SimulationOptions::drag_stages). Called after all have constrained, where there are several stages.
+  /// Adds the rows that impulses held in this step. The stages of the viscous force hold them, too, in the next step
+  /// (SimulationOptions::drag_stages). Called after all constrain(), only with several stages; velocities are those at the end.
   virtual void tell_held(const InteractionStep&, HeldRows&) const {}
-  /// The largest SimulationOptions::drag_stages with it: kMostDragStagesBesideOthers, unless it tells what it holds or holds nothing.
+  /// The largest SimulationOptions::drag_stages allowed with it: kMostDragStagesBesideOthers, unless overridden with tell_held().
   virtual int most_drag_stages() const;
   /// The step has been made: displacements are those at t + h.
   virtual void moved(const InteractionStep&) {}
@@ -210,22 +210,22 @@ class Interaction {
   /// Whether it takes part in steps. Otherwise between_steps is called just once, when it is attached, to set up supports,
   /// motions and loads; then every integrator supports it, and it has no state for a checkpoint.
   virtual bool acts_in_steps() const { return true; }
-  /// In long steps, in place of add_forces: adds the forces that follow from the displacements of all vertices to those of the tissue
-  /// [N]. Newton's method asks at every trial.
+  /// In long steps, in place of add_forces: adds its forces as a function of the displacements of all vertices to those of the
+  /// tissue [N]. Called at every trial of Newton's method.
   virtual void add_forces_at(std::span<const Vec3d> /*displacement*/, std::span<Vec3d> /*force*/) {}
-  /// Adds the stiffness of these forces where add_forces_at() was asked last.
+  /// Adds the stiffness of these forces at the displacements of the last add_forces_at().
   virtual void add_stiffness(std::vector<TriangleStiffness>&) const {}
   /// Whether it acts by constrain() in long steps; otherwise by add_forces_at() alone.
   virtual bool constrains_long_steps() const { return true; }
-  /// In a long step, before moved(), with displacements and velocities at its end: whether something has come about within it that is to
-  /// be dated, as a tear or a puncture. The step is then taken back and made in parts, until they are short.
+  /// In a long step, before moved(), with displacements and velocities at its end: whether an event such as a tear or a puncture
+  /// happened within it, whose time is to be found. The step is then undone and repeated in shorter parts.
   virtual bool overshoots(const InteractionStep&) { return false; }
 
-  /// Why it does not act in the long steps of `implicit` and `quasi_static`, as the end of a sentence with the way out; empty:
-  /// it does. Its forces are then those at the end of the step, and constrain() is called in every iteration of Newton's method,
-  /// where several act several times, with all as it was after reach().
+  /// The reason why it does not support the long steps of `implicit` and `quasi_static`, as the end of a sentence with a remedy;
+  /// empty if it does. Its forces are then those at the end of the step, and constrain() is called in every iteration of Newton's
+  /// method, several times if several interactions act, always from the state after reach().
   virtual std::string refuses_long_steps() const;
-  /// Tells it, before `attached`, whether its steps will be long.
+  /// Called before `attached`: whether its steps will be long.
   virtual void set_long_steps(bool /*are_long*/) {}
 
   /// Whether between_steps may add vertices: the arrays of the state may then move in memory at any step.
@@ -235,9 +235,9 @@ class Interaction {
   /// shortens the stable step. Called after every step: a value that follows the state has to cover the next step.
   /// Constraints add no stiffness.
   virtual double squared_frequency() const { return 0.0; }
-  /// Appends stiffnesses d_v of vertices that bound the added stiffness K of the last add_forces, xᵀ K x ≤ Σ d_v |x_v|², at most one a
-  /// vertex. With them variable mass scaling gives these vertices mass, in place of the shorter step of squared_frequency().
-  /// @return whether it tells such; always the same until it is attached anew
+  /// Appends stiffnesses d_v of vertices, at most one each, that bound the added stiffness K of the last add_forces:
+  /// xᵀ K x ≤ Σ d_v |x_v|². Variable mass scaling then adds mass there instead of the shorter step of squared_frequency().
+  /// @return whether it provides them; constant while it is attached
   virtual bool add_stiffness_bound(std::vector<VertexStiffness>&) const { return false; }
 
   /// Stored by its elastic forces (add_forces), at force_time() [J].
@@ -247,8 +247,8 @@ class Interaction {
   /// Stored in the tool itself at force_time(), as in a bent needle: Energies::instruments [J]. Kept where energies are tracked.
   virtual double tool_energy() const { return 0.0; }
 
-  /// Adds what it exerted on the surface of the body in the last step, per vertex of the mesh [N]: the force on the tissue, and of it
-  /// what presses, along the inward normals of contact. @return whether it is of a kind that presses on the surface
+  /// Adds its force on the surface of the body in the last step, per vertex of the mesh [N]: the whole force on the tissue, and
+  /// its part along the inward normals of contact. @return whether it is of a kind that presses on the surface
   virtual bool add_contact(std::span<Vec3d> /*force*/, std::span<double> /*pressing*/) const { return false; }
 
   /// Writes or reads its state for a checkpoint, to the last bit (glisson/archive.h), without what follows from the body and

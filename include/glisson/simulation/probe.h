@@ -59,8 +59,8 @@ struct ProbeRegion {
 ///
 ///   F = Σ_a Σ_e V P s_a,  M = Σ_a Σ_e (x_a − point) × V P s_a    over the vertices a in front, of the tets that are cut
 ///
-/// By these numbers the body moves: in equilibrium F is the force of whatever acts on the part in front, to rounding, on any
-/// mesh. Under motion it differs from it by the inertia of that part. The mean traction is the stress over the section itself,
+/// F and M are consistent with the discrete equations of motion: in equilibrium F equals the external force on the part in front,
+/// to rounding, on any mesh; in motion the two differ by the inertia of that part. The mean traction is the stress over the section,
 /// Σ P n A / Σ A; it is exact in uniform stress and otherwise has the error of the mesh. Vertices on the plane count as
 /// behind it.
 struct ProbePlane {

@@ -96,17 +96,17 @@ struct ImplicitOptions {
 enum class MassScalingKind { fixed, variable };
 template <>
 inline constexpr Word<MassScalingKind> kWords<MassScalingKind>[] = {
-    {"fixed", MassScalingKind::fixed, "at rest, for good, to tets with a short element step bound"},
+    {"fixed", MassScalingKind::fixed, "at rest, permanently, to tets with a short element step bound"},
     {"variable", MassScalingKind::variable,
-     "the same, and at vertices of tets that do not bear the step, while the tissue moves evenly"}};
+     "the same, and at vertices of tets whose bound is below the step, while the tissue moves evenly"}};
 
-/// Most stages of the viscous force in a step: more would let rounding grow.
+/// Largest number of stages of the viscous force in a step: with more, rounding errors would grow.
 inline constexpr int kMostDragStages = 8;
-/// The same with needles and containers that are not bonded: what they hold changes, and tissue that they release moves for a step
-/// with the lumped mass alone. With more stages the tissue yields to them.
+/// The same with needles and containers that are not bonded: they hold other vertices in each step, and a released vertex moves
+/// for one step with its lumped mass alone. With more stages the tissue would be too soft there.
 inline constexpr int kMostDragStagesBesideInstruments = 4;
-/// The same with tools in contact, whose surface of contact changes with each step, and with interactions that do not tell what they
-/// hold: blades, a program's own.
+/// The same with tools in contact, whose surface of contact changes with each step, and with interactions without
+/// tell_held(): blades, a program's own.
 inline constexpr int kMostDragStagesBesideOthers = 3;
 
 struct SimulationOptions {
@@ -119,16 +119,16 @@ struct SimulationOptions {
   /// [s]; for meshes with a few tiny tets. The mass has inertia and weight; mass_scaling() reports it. None: no
   /// mass is added.
   std::optional<double> mass_scaling_step{};
-  /// When mass is added for that step: at rest and for good, or at vertices of tets that do not bear it as they are, and only while the
-  /// tissue moves so evenly that it has no effect. The second is for central_difference with an automatic step, which then is
-  /// mass_scaling_step at most, also above the stable step at rest.
+  /// When mass is added for that step: `fixed`: at rest, permanently; `variable`: at vertices of tets whose present bound is below
+  /// the step, and only while the tissue moves so evenly that the mass has no effect. `variable` needs central_difference with an
+  /// automatic step, which then is at most mass_scaling_step, also above the stable step at rest.
   MassScalingKind mass_scaling = MassScalingKind::fixed;
-  /// Share of the forces on the body that the inertia of variable mass may have, Σ Δm |a| over Σ |F|, before steps become shorter so that
-  /// less mass is needed [-].
+  /// Largest inertia force of variable mass relative to the forces on the body, Σ Δm |a| over Σ |F|; above it steps become shorter,
+  /// so that less mass is needed [-].
   double mass_scaling_inertia = 0.025;
-  /// central_difference: stages in which the viscous force is taken within a step. One is the paper's scheme. With
-  /// n of them viscosity allows nearly n²/2 times the step that it does with one, and stiffness 0.91 to 0.95 of what it does alone; a
-  /// stage more costs half a step. For tissue of small strain; with interactions Interaction::most_drag_stages at most.
+  /// central_difference: stages in which the viscous force is applied within a step. One is the paper's scheme. With n stages the
+  /// bound of viscosity on the step is nearly n²/2 times that of one stage, the bound of stiffness 0.91 to 0.95 of that without
+  /// viscosity; each further stage costs half a step. For tissue of small strain; at most Interaction::most_drag_stages.
   int drag_stages = 1;
   ImplicitOptions implicit{};
   Precision precision = Precision::single_precision;
@@ -255,21 +255,21 @@ struct ForceParts {
 /// Energies at force_time() [J]. Exact identity of the schemes, up to rounding and the tolerance of Newton's method:
 ///   kinetic + elastic + dissipated + friction + contact + fracture + instruments + numerical + removed
 ///     = initial + work_tools + work_loads + changed.
-/// What goes on between a tool and the tissue: J the impulse of a step on the tissue, V and v the velocities of tool and tissue
-/// where it acts, before (−) and after (+); the tool's work is ½ J·(V₋ + V₊), the tissue takes ½ J·(v₋ + v₊), and friction,
+/// Between tool and tissue, with J the impulse of a step on the tissue, V and v the velocities of tool and tissue where it acts,
+/// before (−) and after (+): the work of the tool is ½ J·(V₋ + V₊), the tissue receives ½ J·(v₋ + v₊), and friction,
 /// contact or fracture the difference.
 struct Energies {
   double elastic = 0.0;  ///< − work of the elastic forces; the stored energy but for Simulation::energy_drift()
   double kinetic = 0.0;  ///< explicit, semi-implicit: ½ Σ m v(t−h/2)·v(t+h/2), the scheme's own; implicit: ½ Σ m v²
   double dissipated = 0.0;  ///< by viscosity, Maxwell branches, nodal damping and dashpots: viscous + maxwell + damping
-  double viscous = 0.0;     ///< of it by Kelvin–Voigt viscosity; of a body that has Maxwell branches too, both
-  double maxwell = 0.0;     ///< of it by Maxwell branches, with what they still hold
-  double damping = 0.0;     ///< of it by nodal damping and dashpots
-  double friction = 0.0;    ///< by slip along tools, shafts and containers
-  /// By impulses across a surface: impacts, and what the model of a bent needle leaves. Below 0 where tissue that was inside
-  /// a tool at the start is pushed out.
+  double viscous = 0.0;  ///< part of `dissipated` by Kelvin–Voigt viscosity; in a body with Maxwell branches, by both
+  double maxwell = 0.0;  ///< part of `dissipated` by Maxwell branches, including the energy they still store
+  double damping = 0.0;  ///< part of `dissipated` by nodal damping and dashpots
+  double friction = 0.0;  ///< by slip along tools, shafts and containers
+  /// By impulses across a surface: impacts, and the remainder of the model of a bent needle. Negative where tissue that was
+  /// inside a tool at the start is pushed out.
   double contact = 0.0;
-  double fracture = 0.0;     ///< work of tips and edges that cut, and what torn or opened capsules released
+  double fracture = 0.0;     ///< work of cutting tips and edges, and the energy released by torn or opened capsules
   double instruments = 0.0;  ///< stored in instruments: bending of needles
   /// By the time scheme of `implicit` itself. Backward Euler: ½ Σ m |Δv|² − ½ ΔF·Δu a step, F the elastic forces.
   /// Newmark: 0. Quasi-static: ½ of the residual at the start, along Δu. Generalised-α: the remainder of the balance, which
@@ -283,8 +283,8 @@ struct Energies {
   double initial = 0.0;  ///< kinetic and elastic energy of the state given by set_state
   /// Kinetic and elastic energy lost with removed tets, or by moves of vertices at rest.
   double removed = 0.0;
-  /// Added by changes of tissues: stored energy at the deformation of that moment, and kinetic energy of mass. And what
-  /// capsules stored when they were attached.
+  /// Added by changes of tissues: stored energy at the present deformation, and kinetic energy of added mass. Also the energy
+  /// stored in capsules when they were attached.
   double changed = 0.0;
   double imbalance() const {
     return kinetic + elastic + dissipated + friction + contact + fracture + instruments + numerical + removed -
@@ -310,11 +310,11 @@ struct SplitReport {
 
 /// Mass added by mass scaling.
 struct MassScaling {
-  double added = 0.0;               ///< for good [kg]
+  double added = 0.0;               ///< permanently [kg]
   double share = 0.0;               ///< of the body's own mass [-]
-  std::vector<std::uint32_t> tets;  ///< with mass added for good, ascending
-  double present = 0.0;             ///< variable: in addition, for tets that do not bear the step now [kg]
-  double largest = 0.0;             ///< the most that this has been [kg]
+  std::vector<std::uint32_t> tets;  ///< with permanently added mass, ascending
+  double present = 0.0;             ///< variable: in addition, for tets whose present bound is below the step [kg]
+  double largest = 0.0;             ///< largest value of `present` so far [kg]
 };
 
 /// A tet that may limit the step.
@@ -407,7 +407,7 @@ class Simulation {
   /// force() refers to the last step's tissue until the next step.
   /// @param region  number of a region of the mesh
   /// @throws std::invalid_argument for a region that no tet has, an invalid tissue, the first viscous tissue for
-  ///         semi_implicit beside interactions, or where a given step is above the new h*; nothing is changed then
+  ///         semi_implicit with interactions, or where a given step is above the new h*; nothing is changed then
   /// Cost: docs/integrators.md.
   void set_tissue(int region, const Tissue& tissue);
   /// The same for several regions, at the cost of one.
@@ -461,8 +461,8 @@ class Simulation {
   /// constant nor in energy form, or Maxwell branches that relax its deviator in large strain.
   /// Cost: a pass over the elements in double.
   std::optional<double> stored_energy() const;
-  /// Energies::elastic, which is work summed over the steps, less the stored energy that it stands for [J]: the drift of the time
-  /// integration, and half a step's work of tets that were removed. None without stored_energy(). Needs track_energies.
+  /// Energies::elastic, the work summed over the steps, minus the stored energy W(u) [J]: the drift of the time integration, and
+  /// half a step's work of removed tets. None without stored_energy(). Needs track_energies.
   std::optional<double> energy_drift() const;
   const EngineInfo& engine_info() const;
 
