@@ -198,7 +198,7 @@ RawMesh read_vtu_with(std::string_view bytes, const std::string& name, std::span
   try {
     return parse_and_read(bytes, name, fields);
   } catch (const std::bad_alloc&) {
-    fail(name, "its counts ask for more memory than there is: they are wrong, or the file is too large");
+    fail(name, "its counts need more memory than there is: they are wrong, or the file is too large");
   } catch (const std::length_error&) {
     fail(name, "its counts are larger than any memory: they are wrong");
   }

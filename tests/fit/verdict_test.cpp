@@ -129,7 +129,7 @@ TEST(Verdict, SaysWhichBoundIsInTheWay) {
   const Twin twin({{"E", "Pa", 0.1, 4.0, Scale::logarithmic, 1.0}}, curves, 0.1, line);
   const Verdicts v = verdicts(twin.problem, {1.0});
   EXPECT_EQ(v.of[0].verdict, Verdict::at_bound);
-  EXPECT_THAT(v.of[0].words, AllOf(HasSubstr("at its upper bound, 4 Pa"), HasSubstr("ask for more")));
+  EXPECT_THAT(v.of[0].words, AllOf(HasSubstr("at its upper bound, 4 Pa"), HasSubstr("fit better with more")));
 }
 
 // Ogden's μ and α over a large range are known both; over a small one they make up for each other.

@@ -269,7 +269,7 @@ TEST(RegionMesh, RefusesWhatItCannotMesh) {
   EXPECT_THAT(refusal({ball}, {0.05}), AllOf(HasSubstr("\"ball\""), HasSubstr("smaller edge")));
   EXPECT_THAT(refusal({ball}, {1e-9}), HasSubstr("longer edge"));
   EXPECT_THAT(refusal({ball}, {0.0005, 1000}),
-              AllOf(HasSubstr("an edge of 0.5 mm asks for some 320000 tets"), HasSubstr("at most 1000"),
+              AllOf(HasSubstr("an edge of 0.5 mm makes some 320000 tets"), HasSubstr("at most 1000"),
                     HasSubstr("give an edge of"), HasSubstr("raise max_tets")));
   const Solid nothing = intersect({BallShape{{-1, 0, 0}, 0.1}, BallShape{{1, 0, 0}, 0.1}});
   EXPECT_THAT(refusal({region_of("nothing", nothing)}, {0.01}),

@@ -50,7 +50,7 @@ std::string no_face(std::size_t vertices) {
   return "load: the set of " + std::to_string(vertices) + (vertices == 1 ? " vertex" : " vertices") +
          " spans no face of the body's surface: no face has all three corners in it. Traction, pressure, moment, "
          "spring_Pa_m and dashpot_Pa_s_m act on faces; choose a set that has whole faces, or give a force, a spring "
-         "[N/m] or a dashpot [N s/m], which single vertices bear too";
+         "[N/m] or a dashpot [N s/m], which act on single vertices, too";
 }
 
 }  // namespace

@@ -179,7 +179,7 @@ class Preparation {
     if (!can_resample()) return std::nullopt;
     const Resampled points = resampled(rows_, spec_.resample);
     rows_ = points.rows;
-    if (!enough("what resampling leaves", "ask for more resample.points")) return std::nullopt;
+    if (!enough("the resampled curve", "raise resample.points")) return std::nullopt;
     account_.points = rows_.size();
     return PreparedCurve{curve(velocity, account_.row_noise / std::sqrt(points.rows_a_point)), account_};
   }

@@ -155,7 +155,8 @@ struct Maker {
     const TissueAt tissue = tissue_at(of_tissue);
     if (!tissue)
       throw std::invalid_argument(
-          "[specimen] faces that stick or rub ask for parameters of [tissue], `specimen.…` and `curve.…` alone");
+          "[specimen] with faces = \"bonded\" or \"friction\" allows parameters of [tissue], `specimen.…` and "
+          "`curve.…` alone");
     return with_offsets(std::make_shared<BarrelModel>(problem.curves, *problem.plates, tissue, inner, grid));
   }
   std::shared_ptr<const Model> layer(IndentationOptions options) const {

@@ -111,10 +111,11 @@ std::string write(const LawRanking& ranking, std::span<const LawFit> laws, bool 
   s += text;
   if (ranking.chosen == ranking.best) return s + ", the least of all; no simpler law is as good";
   if (heldout)
-    std::snprintf(text, sizeof text,
-                  ", rank %zu of %zu; the best, %s with %zu, errs by %s, and %zu curves do not tell them apart (%s)",
-                  place_of(ranking, ranking.chosen), laws.size(), best.name.c_str(), best.parameters,
-                  measured_text(b.heldout, unit).c_str(), chosen.heldout_rms.size(), difference_text(c, unit).c_str());
+    std::snprintf(
+        text, sizeof text,
+        ", rank %zu of %zu; the best, %s with %zu, errs by %s, and %zu curves do not distinguish the two (%s)",
+        place_of(ranking, ranking.chosen), laws.size(), best.name.c_str(), best.parameters,
+        measured_text(b.heldout, unit).c_str(), chosen.heldout_rms.size(), difference_text(c, unit).c_str());
   else
     std::snprintf(text, sizeof text, ", too little to prefer %s with %zu", best.name.c_str(), best.parameters);
   return s + text;

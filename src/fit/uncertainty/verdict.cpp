@@ -94,7 +94,7 @@ std::string flat_words(const Problem& problem, const Profiles* profiled, std::si
 std::string bound_words(const Parameter& x, Hold hold, const Ends& e) {
   const bool low = hold == Hold::at_low;
   std::string s = "at its " + std::string(low ? "lower" : "upper") + " bound, " + number(low ? x.low : x.high, x.unit) +
-                  ": the curves ask for " + (low ? "less" : "more");
+                  ": the curves fit better with " + (low ? "less" : "more");
   return s + "; anything " +
          (low ? "up to " + number(e.interval.high, x.unit) : "down to " + number(e.interval.low, x.unit)) +
          " is nearly as good";

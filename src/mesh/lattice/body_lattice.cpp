@@ -182,8 +182,8 @@ class Lattice {
 std::string millimetres(double length) { return detail::number_text(1e3 * length, 3) + " mm"; }
 
 std::string edges_asked_text(double coarsest, double finest) {
-  if (finest >= coarsest) return "an edge of " + millimetres(coarsest) + " asks ";
-  return "edges of " + millimetres(coarsest) + ", at the finest " + millimetres(finest) + ", ask ";
+  if (finest >= coarsest) return "an edge of " + millimetres(coarsest) + " makes ";
+  return "edges of " + millimetres(coarsest) + ", at the finest " + millimetres(finest) + ", make ";
 }
 
 /// To two digits, without powers of ten.
@@ -204,13 +204,13 @@ void refuse_short_edge(double edge, double extent) {
 
 void refuse_more_than(double coarsest, double finest, std::size_t max_tets) {
   throw std::invalid_argument(
-      edges_asked_text(coarsest, finest) + "for more than " + std::to_string(max_tets) +
+      edges_asked_text(coarsest, finest) + "more than " + std::to_string(max_tets) +
       " tets, and no more are allowed: give longer edges, or fine ones less far, or raise max_tets");
 }
 
 void refuse_too_many(double coarsest, double finest, double tets, std::size_t max_tets) {
   const bool uniform = finest >= coarsest;
-  const std::string asks = edges_asked_text(coarsest, finest) + "for some " + rounded_text(tets) + " tets; ";
+  const std::string asks = edges_asked_text(coarsest, finest) + "some " + rounded_text(tets) + " tets; ";
   const auto larger_edge = [&](double most) {
     const double factor = 1.02 * std::cbrt(tets / most);
     if (!uniform) return "give edges " + detail::number_text(factor, 2) + " times as long, or fine ones less far";

@@ -54,7 +54,7 @@ class CurvatureSampler {
       points_.push_back({p, edge});
       if (points_.size() > kMostPoints) {
         throw std::invalid_argument("the curvature of the surface of region \"" + region_.name +
-                                    "\" asks for more than two million places; give its size a larger edge");
+                                    "\" needs more than two million places; give its size a larger edge");
       }
     }
   }
