@@ -153,9 +153,9 @@ void ExplicitScheme::attach(std::shared_ptr<Interaction> interaction, const Body
   if (const int most = interaction->most_drag_stages(); state_.options.drag_stages > most) {
     throw std::invalid_argument("attach: " + interaction->label() +
                                 " acts on a body with drag_stages = " + std::to_string(state_.options.drag_stages) +
-                                ", which is outside the allowed range beside it, 1 to " + std::to_string(most) +
-                                ": tissue would yield to it, since stages do not know all of its forces; take fewer "
-                                "stages, or integrator = implicit");
+                                ", which is outside the allowed range with it, 1 to " + std::to_string(most) +
+                                ": tissue would be too soft under it, since the stages do not have all of its forces; "
+                                "take fewer stages, or integrator = implicit");
   }
   interaction->attached(body, state_.time);
   if (state_.options.track_energies) ledger_.bring_in(0.0, interaction->energy());

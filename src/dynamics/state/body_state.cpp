@@ -31,16 +31,18 @@ BodyChanger& BodyState::changer() {
   return *changer_;
 }
 
+double BodyState::damping_of(std::size_t vertex) const {
+  return options.damping_rate * body.masses[vertex] + options.nodal_damping;
+}
+
 void BodyState::damp(std::span<const std::uint32_t> vertices) {
   gamma.resize(body.vertex_count);
-  for (const std::uint32_t v : vertices) gamma[v] = options.damping_rate * body.masses[v] + options.nodal_damping;
+  for (const std::uint32_t v : vertices) gamma[v] = damping_of(v);
 }
 
 void BodyState::masses_changed() {
   gamma.resize(body.vertex_count);
-  for (std::size_t v = 0; v < gamma.size(); ++v) {
-    gamma[v] = options.damping_rate * body.masses[v] + options.nodal_damping;
-  }
+  for (std::size_t v = 0; v < gamma.size(); ++v) gamma[v] = damping_of(v);
   if (changer_ != nullptr) changer_->masses_changed();
 }
 

@@ -54,6 +54,7 @@ struct BodyState {
   void archive(Archive& ar);
 
  private:
+  double damping_of(std::size_t vertex) const;  ///< without dashpots [kg/s]
   void archive_changes(Archive& ar, bool as_here);
   void archive_tissues(Archive& ar);
   void check_corners(const Archive& ar, const std::vector<Tet>& before) const;
