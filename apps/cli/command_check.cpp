@@ -201,7 +201,7 @@ void print_interactions(const Variant& v, const Taste& taste) {
   }
   for (const InstrumentSpec& x : v.instruments) {
     const std::optional<double> end = make_driver(x)->end();
-    say("  tool     \"{}\", a {}: {}{}\n", x.name, kind_word(x.what), kind_word(x.motion.how),
+    say("  tool     \"{}\", {}: {}{}\n", x.name, kind_word(x.what), kind_word(x.motion.how),
         end ? fmt::format(", until {:.4g} s", *end) : "");
     print_membranes(x);
     print_edge(v, x, taste.mesh);
