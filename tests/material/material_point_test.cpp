@@ -165,7 +165,8 @@ TEST(MaterialPoint, StiffnessLawsFollowTheShape) {
 bool has_point(const Tissue& t) { return !test::has_directions(t); }
 
 // Stress that was read can be prescribed: every tissue comes back to its stretch, in every test. 1e-8: the roots of both are
-// found to 1e-12 of the stress.
+// found to 1e-12 of the stress. Where only the volume changes, s is the root of a rounding error, 1e-8, and a law's modulus errs by
+// that times its slope: 1e-7.
 TEST(MaterialPoint, StressAndStretchAreInverse) {
   int tissues = 0;
   for (const Tissue& tissue : test::every_tissue()) {
@@ -180,9 +181,11 @@ TEST(MaterialPoint, StressAndStretchAreInverse) {
       const MaterialState there = after(tissue, word.value, kStretch, value);
       const MaterialState back = after(tissue, word.value, kStress, there.nominal(i, j));
       const bool same = tissue.viscosity == 0.0 && tissue.maxwell.empty();  // else the way there is another
-      EXPECT_NEAR(back.nominal(i, j), there.nominal(i, j), 1e-8 * std::abs(there.nominal(i, j))) << tissue.name;
+      const double within = word.value == MaterialTest::volumetric ? 1e-7 : 1e-8;
+      EXPECT_NEAR(back.nominal(i, j), there.nominal(i, j), within * std::abs(there.nominal(i, j)))
+          << tissue.name << ", " << word.word;
       if (same) {
-        EXPECT_NEAR(back.deformation(i, j), value, 1e-8) << tissue.name << ", " << word.word;
+        EXPECT_NEAR(back.deformation(i, j), value, within) << tissue.name << ", " << word.word;
       }
     }
   }

@@ -245,9 +245,9 @@ TEST(Instruments, MistakesAreTold) {
               HasSubstr("nothing says when the run ends"));
 }
 
-// Needles and rigid tools in contact that follow a path, containers and capsules bear long steps; others are refused at the
+// Needles and rigid tools in contact that follow a path, containers and capsules support long steps; others are refused at the
 // integrator's own line, and so they are by semi_implicit in viscous tissue.
-TEST(Instruments, AskForAnIntegratorThatBearsThem) {
+TEST(Instruments, NeedAnIntegratorThatSupportsThem) {
   for (const std::string word : {"implicit", "quasi_static"}) {
     const std::string implicit = "[motion]\nintegrator = \"" + word + "\"\n";
     EXPECT_EQ(complaint(kNeedle + implicit), "");
@@ -258,8 +258,8 @@ TEST(Instruments, AskForAnIntegratorThatBearsThem) {
                         implicit),
               "s.toml:14:14: motion.integrator: \"" + word +
                   "\" does not support instrument \"needle\", which is moved by a force or a hand; give it a path "
-                  "in time, "
-                  "or take integrator = central_difference, or semi_implicit for tissue without `viscosity_Pa_s`");
+                  "in time, or take integrator = " +
+                  supporting_integrators());
     const std::string ball = "[mesh]\nkind = \"box\"\n[[instrument]]\nkind = \"ball\"\ntip_m = [0, 0, 1]\n";
     EXPECT_EQ(complaint(ball + "motion = { kind = \"press\" }\n" + implicit), "");
     EXPECT_THAT(complaint(ball + "motion = { kind = \"push\", duration_s = 1 }\n" + implicit),
