@@ -401,7 +401,7 @@ void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, co
   const bool explicit_steps = std::isfinite(taste.stable_step_s), automatic = !v.simulation.step;
   const bool heavy = v.simulation.mass_scaling == MassScalingKind::variable;
   say("  step     {:.4g} s{}, {}\n", taste.step_s, automatic ? " (auto)" : " (given)",
-      heavy            ? "kept by adding mass where tets need a shorter step, shorter while that mass has an effect"
+      heavy            ? "kept by mass for tets that need a shorter step, shorter while that mass has an effect"
       : explicit_steps ? fmt::format("stable below {:.4g} s at rest", taste.stable_step_s)
                        : "stable at any step");
   print_limits(v, load, taste);

@@ -19,9 +19,9 @@ TEST_F(Commands, CheckNamesInstrumentsByTheirKind) {
   for (std::sregex_iterator k(kEveryInstrument.begin(), kEveryInstrument.end(), kind), end; k != end; ++k) {
     kinds.push_back((*k)[1]);
   }
-  ASSERT_EQ(kinds.size(), 16U);
+  ASSERT_GE(kinds.size(), 16U);
   for (std::size_t i = 1; i + 1 < kinds.size(); i += 2) {
-    EXPECT_NE(outcome.out.find("a " + kinds[i] + ": " + kinds[i + 1]), std::string::npos) << kinds[i] << outcome.out;
+    EXPECT_NE(outcome.out.find(", " + kinds[i] + ": " + kinds[i + 1]), std::string::npos) << kinds[i] << outcome.out;
   }
   EXPECT_NE(outcome.out.find("vessel   " + kinds.back() + ", "), std::string::npos) << outcome.out;
 }
