@@ -10,7 +10,10 @@ namespace {
 
 constexpr int kMostSweeps = 60;
 constexpr int kMostLongSweeps = 1000;  // in a long step, where all points move one another
-constexpr double kEnough = 1000.0;     // tolerances: rows that move by less have been solved
+// Friction from which on two walls at right angles can hold a point by pressing and pulling it.
+constexpr double kJams = 1.0;
+constexpr char kMostReleases = 3;   // of a row: a corner in which it is let go and wanted again in turn needs both
+constexpr double kEnough = 1000.0;  // tolerances: rows that move by less have been solved
 constexpr int kMostCorrections = 8;
 constexpr double kAtEdge = 1e-3;  // a weight below it: the point is on an edge of its triangle
 constexpr double kAlike = 0.8;  // cosine between normals of solid and triangle that are one but for the triangle's size
@@ -182,6 +185,12 @@ double press(ContactRow& row, const InteractionStep& step) {
   return std::abs(change) * per_impulse;
 }
 
+/// Whether friction holds the point with something to spare.
+bool sticks(const ContactRow& row) {
+  return row.pressing > 0.0 && row.solid->friction > 0.0 &&
+         norm(row.rubbing) < kSticks * row.solid->friction * row.pressing;
+}
+
 /// Takes off what the row exerts. @return by how much the point was moved [m]
 double release(ContactRow& row, const InteractionStep& step) {
   const Vec3d impulse = row.impulse();
@@ -249,8 +258,7 @@ void tell_held(const ContactRow& row, const InteractionStep& step, HeldRows& hel
   }
   const std::uint32_t point = held.add_mean(std::span(corners).first(row.count));
   held.add_row(point, row.normal);
-  const double limit = row.pressing > 0.0 ? row.solid->friction * row.pressing : 0.0;
-  if (!(norm(row.rubbing) < kSticks * limit)) return;
+  if (!sticks(row)) return;
   const Vec3d way = end - row.start;
   if (norm(way - row.n * dot(way, row.n)) > close) return;
   for (const Vec3d& e : two_across(row.normal)) held.add_row(point, e);
@@ -298,9 +306,10 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step) {
   std::vector<std::uint32_t> pushed(step.vertices.size(), clock), seen(rows.size(), 0);
   const bool is_long = step.compliance != nullptr;
   const int most = is_long ? kMostLongSweeps : kMostSweeps;
-  // A vertex in a corner that one rough wall holds needs nothing of the other: they could only press and pull it against each other,
-  // as far as they happen to. In a short step the first one's impulse leaves the other nothing to do.
+  // A vertex in a corner that sticks to one wall needs nothing of another: they could only press and pull it against each other, as
+  // far as they happen to. In a short step the first one's impulse leaves the other nothing to do.
   std::vector<std::size_t> holder(is_long ? step.vertices.size() : 0, rows.size());
+  std::vector<char> releases(is_long ? rows.size() : 0, 0);
   for (int sweep = 1; sweep <= most; ++sweep) {
     double change = 0.0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -309,10 +318,12 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step) {
       for (std::uint32_t i = 0; i < row.count; ++i) latest = std::max(latest, pushed[row.places[i]]);
       if (latest <= seen[k] && !is_long) continue;
       const bool alone = row.response.x == row.response.y && row.response.y == row.response.z;
-      const bool rough = is_long && row.count == 1 && std::isinf(row.solid->friction);
-      const bool spare = rough && holder[row.places[0]] < rows.size() && holder[row.places[0]] != k;
+      const bool vertex = is_long && row.count == 1 && row.solid->friction >= kJams;
+      const std::size_t by = vertex ? holder[row.places[0]] : rows.size();
+      const bool spare = by < rows.size() && by != k && releases[k] < kMostReleases;
+      if (spare && row.impulse() != Vec3d{}) ++releases[k];
       const double pressed = spare ? release(row, step) : press(row, step), rubbed = spare ? 0.0 : rub(row, step);
-      if (rough && !spare) holder[row.places[0]] = row.pressing > 0.0 ? k : rows.size();
+      if (vertex && !spare) holder[row.places[0]] = sticks(row) ? k : rows.size();
       change = std::max({change, pressed, rubbed});
       if (pressed > 0.0 || rubbed > 0.0) {
         ++clock;
