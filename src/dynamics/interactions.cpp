@@ -149,10 +149,18 @@ void Interactions::clear_impulses() {
 }
 
 void Interactions::restore(std::span<const std::string> archives) {
-  for (std::size_t k = 0; k < archives.size(); ++k) {
-    Archive ar(archives[k]);
-    all_[k]->archive(ar);
-  }
+  for (std::size_t k = 0; k < archives.size(); ++k) restore(k, archives[k]);
+}
+
+void Interactions::restore(std::size_t interaction, const std::string& archive) {
+  Archive ar(archive);
+  all_[interaction]->archive(ar);
+}
+
+/// The vectors that a step looks at stay where they are.
+void Interactions::go_back(const Found& found) {
+  std::copy(found.impulses.begin(), found.impulses.end(), impulses_.begin());
+  book_ = found.book;
 }
 
 bool Interactions::overshoot() {

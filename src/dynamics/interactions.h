@@ -52,11 +52,19 @@ class Interactions {
   void constrain(std::span<const Vec3d> mobility);
   /// In a long step.
   void constrain(std::size_t interaction, StepCompliance& compliance);
+  /// Impulses and books of a step, to go back to.
+  struct Found {
+    std::vector<Vec3d> impulses;
+    InterfaceBook book;
+  };
+  Found found() const { return {impulses_, book_}; }
+  void go_back(const Found& found);
   /// What impulses held in this step.
   void tell_held(HeldRows& held) const;
   void clear_impulses();
   /// Takes them back to where their archives were written.
   void restore(std::span<const std::string> archives);
+  void restore(std::size_t interaction, const std::string& archive);
   /// What those held still stand against, for moved().
   void set_resting(std::span<const RestingVertex> resting) { step_.resting = resting; }
   /// Whether some say so of the step, with its end among the active vertices.

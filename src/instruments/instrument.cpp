@@ -6,7 +6,9 @@
 #include <stdexcept>
 
 #include "glisson/archive.h"
+#include "glisson/simulation/integrator.h"
 #include "instruments/contact/shape.h"
+#include "instruments/motion/end_search.h"
 
 namespace glisson {
 namespace {
@@ -148,7 +150,42 @@ void Instrument::drive(const InteractionStep& step) {
   force_depth_ = depth();
   earlier_ = before_, last_step_ = step_;
   before_ = pose_, step_ = step.h;
+  time_ = step.time;
   pose_ = driver_->advance(step.time, step.h, {-forces_.total(), -forces_.torque});
+  if (search_ == nullptr) return;
+  if (!search_->begun()) {
+    search_->begin(before_.position, pose_.position, driver_->advance_under(step.time, step.h, {}).position);
+  }
+  take_trial();
+}
+
+void Instrument::begin_step() {
+  if (search_ != nullptr) search_->forget();
+}
+
+void Instrument::take_trial() {
+  if (search_ != nullptr) pose_.position = search_->trial();
+}
+
+std::optional<Vec3d> Instrument::free_end() const {
+  if (search_ == nullptr) return {};
+  return search_->free();
+}
+
+void Instrument::set_long_steps(bool are_long) {
+  at_end_ = are_long;
+  if (are_long && driver_->yields()) search_ = std::make_shared<EndSearch>();
+}
+
+bool Instrument::tries_again() {
+  if (search_ == nullptr) return false;
+  return search_->goes_on(driver_->advance_under(time_, step_, {-forces_.total(), -forces_.torque}).position);
+}
+
+std::string Instrument::driver_refuses_long_steps() const {
+  if (!driver_->yields() || driver_->yields_in_long_steps()) return {};
+  return "is moved by a force in short steps only; give it a path in time, or take integrator = " +
+         supporting_integrators();
 }
 
 ToolVelocity Instrument::velocity_at(const Vec3d& x) const {
@@ -171,6 +208,7 @@ void Instrument::archive_motion(Archive& ar) {
   ar(pose_, before_, earlier_, step_, last_step_, forces_.normal, forces_.friction, forces_.cutting, forces_.torque,
      force_depth_, events_);
   driver_->archive(ar);
+  if (search_ != nullptr) ar(*search_);
 }
 
 }  // namespace glisson

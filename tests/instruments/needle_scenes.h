@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "glisson/instruments/needle.h"
@@ -17,6 +18,7 @@ struct Insertion {
   std::vector<MaxwellBranch> maxwell{};
   NeedleOptions needle{};
   std::vector<Stroke> strokes{{.to = {0, 0, -0.02}, .velocity = 0.01, .ramp = 0.0, .rest = 0.0}};
+  std::optional<PushMotion> push{};  ///< in the place of the strokes
   Vec3d start{0.0, 0.0, 0.0405};
   double inner_boundary = -1.0;  ///< height below which the tissue is of region 1 [m]; −1: none
   SimulationOptions options{};
@@ -77,7 +79,9 @@ inline Inserted insert(const Insertion& o) {
   const ConstraintId support = simulation.fix(held);
   const ToolPath path = stroke_path({.start = 0.0, .strokes = strokes});
   const Pose start{turned(o.start) + o.frame.position};
-  auto needle = std::make_shared<Needle>(options, std::make_shared<PathDriver>(start, path));
+  std::shared_ptr<ToolDriver> driver = std::make_shared<PathDriver>(start, path);
+  if (o.push) driver = std::make_shared<PushDriver>(start, *o.push);
+  auto needle = std::make_shared<Needle>(options, driver);
   simulation.attach(needle);
   return {std::move(simulation), std::move(needle), support, *path.end};
 }

@@ -58,12 +58,18 @@ class ToolDriver {
   virtual Pose advance(double time, double h, const Wrench& on_tool) = 0;
   /// Time at which the motion has ended [s]; none: it does not end by itself.
   virtual std::optional<double> end() const { return {}; }
-  /// Whether its path depends on the force; it then needs short steps.
+  /// Whether its path depends on the force.
   virtual bool yields() const { return false; }
+  /// Whether it does so in long steps, too, by advance_under().
+  virtual bool yields_in_long_steps() const { return false; }
+  /// As advance(), from where the last one began, with the force on the tool at the end of the step: asked as often as it takes to
+  /// find that.
+  virtual Pose advance_under(double time, double h, const Wrench& at_end) { return advance(time, h, at_end); }
   /// Writes or reads its state, as Interaction's.
   virtual void archive(Archive&) {}
 };
 
+class EndSearch;
 class Instrument;
 
 /// A column of forces.csv: a number that is read from an instrument with every sample.
@@ -109,7 +115,9 @@ class Instrument : public Interaction {
   /// The value of a column. @throws std::out_of_range naming it
   double read(std::string_view column) const;
   const ToolDriver& driver() const { return *driver_; }
-  void set_long_steps(bool are_long) override { at_end_ = are_long; }
+  void set_long_steps(bool are_long) override;
+  /// Whether a driver that yields takes the tool elsewhere by the force found than where it was tried.
+  bool tries_again() final;
   /// All events so far, in order.
   const std::vector<InstrumentEvent>& events() const { return events_; }
   /// Its shape in pictures.
@@ -128,6 +136,14 @@ class Instrument : public Interaction {
   /// Moves the pose to the end of the step; the previous one is in `before_`. To be called once a step, in reach() or
   /// first in constrain().
   void drive(const InteractionStep& step);
+  /// Why its driver does not support long steps, for refuses_long_steps().
+  std::string driver_refuses_long_steps() const;
+  /// Begins a step; to be called first in reach().
+  void begin_step();
+  /// In constrain(), by those that drive() in reach(): moves the pose to where a driver that yields is tried.
+  void take_trial();
+  /// Where a driver that yields would end without the tissue, in a long step; after drive().
+  std::optional<Vec3d> free_end() const;
   /// Whether its forces are those at the end of a step.
   bool forces_at_end() const { return at_end_; }
   /// Velocity of the tool's own material at a point of space at the time of the forces; after drive(). In long steps that of the
@@ -151,7 +167,9 @@ class Instrument : public Interaction {
   Pose earlier_;                         ///< a step before t
   double step_ = 0.0, last_step_ = 0.0;  ///< h and that of the step before t; 0: there was none [s]
   double force_depth_ = 0.0;
-  bool at_end_ = false;  ///< its steps are long
+  bool at_end_ = false;                ///< its steps are long
+  double time_ = 0.0;                  ///< at which the last began [s]
+  std::shared_ptr<EndSearch> search_;  ///< of a driver that yields, in long steps
   std::vector<InstrumentEvent> events_;
   std::function<void(const Vec3d&, double)> on_puncture_;
 };

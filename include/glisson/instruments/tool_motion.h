@@ -124,7 +124,8 @@ ToolPath recorded_path(const RecordedMotion& motion);
 ///
 /// The force of the tissue is that of the last step. If the contact is stiff or heavy for the step and the mass (h² k >
 /// m), the change of force over the last displacement is used as a stiffness in the coming step: no contact, however
-/// stiff, throws the tool back. A tool lighter than the tissue it carries along only creeps.
+/// stiff, throws the tool back. A tool lighter than the tissue it carries along only creeps. In long steps the force is that at the
+/// end of the step, F too, and found together with where the tool ends.
 struct PushMotion {
   Vec3d direction{0.0, 0.0, -1.0};      ///< d, of any length, not zero
   std::function<double(double)> force;  ///< F at time t [N]; not none
@@ -152,16 +153,21 @@ class PushDriver final : public ToolDriver {
   Pose advance(double time, double h, const Wrench& on_tool) override;
   std::optional<double> end() const override { return motion_.end; }
   bool yields() const override { return true; }
+  bool yields_in_long_steps() const override { return true; }
+  Pose advance_under(double time, double h, const Wrench& at_end) override;
   void archive(Archive& ar) override;
 
   Vec3d velocity() const { return velocity_; }  ///< [m/s]
 
  private:
   void learn_stiffness(const Vec3d& force);
+  Vec3d along(const Vec3d& force) const;
+  Pose go(double push, double h, const Vec3d& answer, double stiff);
 
   Pose start_;
   PushMotion motion_;
   Vec3d travel_{}, velocity_{}, last_travel_{}, last_force_{};
+  Vec3d first_travel_{}, first_velocity_{};  ///< at the start of the step
   double stiffness_ = 0.0;
 };
 
@@ -209,12 +215,15 @@ class HandDriver final : public ToolDriver {
   Pose start() const override { return start_; }
   Pose advance(double time, double h, const Wrench& on_tool) override;
   bool yields() const override { return true; }
+  bool yields_in_long_steps() const override { return true; }
+  Pose advance_under(double time, double h, const Wrench& at_end) override;
   void archive(Archive& ar) override;
 
  private:
   Pose start_, target_;
   HandCoupling coupling_;
   Vec3d position_, velocity_{};
+  Vec3d first_position_{}, first_velocity_{};  ///< at the start of the step
 };
 
 }  // namespace glisson

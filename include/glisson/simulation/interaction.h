@@ -196,6 +196,9 @@ class Interaction {
   virtual void add_forces(const InteractionStep&) {}
   /// Corrects v₊ by impulses.
   virtual void constrain(const InteractionStep&) {}
+  /// In a long step, after constrain(): whether what it has found takes itself elsewhere, as a tool that a force moves. Its impulses are
+  /// then taken back, its state is again that after reach(), and constrain() is called anew.
+  virtual bool tries_again() { return false; }
   /// Adds the rows that impulses held in this step. The stages of the viscous force hold them, too, in the next step
   /// (SimulationOptions::drag_stages). Called after all constrain(), only with several stages; velocities are those at the end.
   virtual void tell_held(const InteractionStep&, HeldRows&) const {}

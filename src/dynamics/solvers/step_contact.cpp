@@ -189,8 +189,17 @@ void StepContact::take_off(std::size_t interaction) {
 double StepContact::find_forces_of(std::size_t interaction) {
   acting_ = interaction;
   take_off(interaction);
-  const std::vector<Vec3d> before(interactions_.impulses().begin(), interactions_.impulses().end());
+  const Interactions::Found others = interactions_.found();
+  const std::vector<Vec3d>& before = others.impulses;
+  const std::vector<ActiveVertex> free = active_;
   interactions_.constrain(interaction, *this);
+  while (interactions_.all()[interaction]->tries_again()) {
+    active_ = free;
+    unsettled_.assign(active_.size(), Vec3d{});
+    interactions_.go_back(others);
+    interactions_.restore(interaction, reached_.interactions[interaction]);
+    interactions_.constrain(interaction, *this);
+  }
   settle(active_);
   std::vector<Vec3d>& own = forces_.own[interaction];
   double change = 0.0;

@@ -102,18 +102,7 @@ std::span<const InstrumentColumn> ContactTool::record_columns() const {
   return columns;
 }
 
-std::string ContactTool::refuses_long_steps() const {
-  const ContactOptions& o = state_->options;
-  if (o.bonded) return "is bonded; take integrator = " + supporting_integrators();
-  if (o.friction > 0.0 && !std::holds_alternative<Plate>(o.shape)) {
-    return "rubs and is no plate: its friction would be up to 8 % of the largest force off in steps so long; give "
-           "friction = 0, or "
-           "take integrator = " +
-           supporting_integrators();
-  }
-  if (!driver().yields()) return {};
-  return "is moved by a force or a hand; give it a path in time, or take integrator = " + supporting_integrators();
-}
+std::string ContactTool::refuses_long_steps() const { return driver_refuses_long_steps(); }
 
 void ContactTool::attached(const BodyView& body, double) {
   state_->reach.attach(body);
@@ -129,6 +118,7 @@ void ContactTool::body_changed(const BodyView& body, std::span<const std::uint32
 std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
   State& s = *state_;
   if (s.lost) return {};
+  begin_step();
   InteractionStep step;
   step.time = time, step.h = h;
   drive(step);
@@ -141,7 +131,11 @@ std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
   s.solid.before = before_, s.solid.after = pose_;
   s.last_h = h;
   s.trial.clear();
-  return s.reach.ask({&s.solid, 1}, h);
+  const std::optional<Vec3d> free = free_end();
+  if (!free) return s.reach.ask({&s.solid, 1}, h);
+  std::array<ContactSolid, 2> ways{s.solid, s.solid};
+  ways[1].after.position = *free;
+  return s.reach.ask(ways, h);
 }
 
 std::optional<std::span<const std::uint32_t>> ContactTool::keeps() {
@@ -157,6 +151,8 @@ void ContactTool::constrain(const InteractionStep& step) {
   s.rows.clear(), s.bond_impulses.clear(), s.pressed.clear(), s.exerted.clear(), s.effort = {};
   if (s.lost) return;
   if (step.compliance != nullptr) {
+    take_trial();
+    s.solid.after = pose_;
     s.effort.sweeps = s.solve_long(step);
   } else {
     s.solve_short(step);
@@ -207,9 +203,10 @@ void ContactTool::archive(Archive& ar) {
   State& s = *state_;
   archive_motion(ar);
   ar(s.lost, s.in_contact, s.begun, s.last_touch, s.last_depth, s.books, s.last_h, s.solid.before, s.found_inside);
-  ar(s.bonds, s.last_pressing, s.reach);
+  ar(s.bonds, s.last_pressing, s.last_bonds, s.reach);
   const std::size_t vertices = s.reach.surface().body_vertices();
   for (const auto& [v, place] : s.bonds) ar.check(v < vertices);
+  for (const auto& [v, force] : s.last_bonds) ar.check(v < vertices);
   for (const auto& [t, force] : s.last_pressing) ar.check(std::max({t[0], t[1], t[2]}) < vertices);
 }
 

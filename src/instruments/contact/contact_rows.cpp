@@ -185,6 +185,15 @@ double press(ContactRow& row, const InteractionStep& step) {
   return std::abs(change) * per_impulse;
 }
 
+/// Takes a bonded point to where it is held. @return by how much it was moved [m]
+double hold(ContactRow& row, const InteractionStep& step) {
+  const Vec3d off = row.solid->after.axes * (row.face - end_of(row, step)) * (1.0 / step.h), &w = row.response;
+  const Vec3d change{w.x > 0.0 ? off.x / w.x : 0.0, w.y > 0.0 ? off.y / w.y : 0.0, w.z > 0.0 ? off.z / w.z : 0.0};
+  row.take(row.impulse() + change);
+  push(row, step, change);
+  return norm(scaled(w, change)) * step.h;
+}
+
 /// Whether friction holds the point with something to spare.
 bool sticks(const ContactRow& row) {
   return row.pressing > 0.0 && row.solid->friction > 0.0 &&
@@ -298,6 +307,15 @@ bool prepare(ContactRow& row, const InteractionStep& step, double share) {
   return row.along > 1e-9 * std::max({row.response.x, row.response.y, row.response.z});
 }
 
+void prepare_bond(ContactRow& row, const Vec3d& anchor, const InteractionStep& step) {
+  row.bonded = true;
+  row.origin = row.origins[0] = step.position(row.places[0]);
+  row.start = row.solid->before.to_own(row.origin);
+  row.face = anchor, row.n = distance_to(*row.solid->shape, anchor).normal;
+  row.normal = row.solid->after.axes * row.n;
+  row.response = response_of(row, step);
+}
+
 int solve(std::span<ContactRow> rows, const InteractionStep& step) {
   double enough = 0.0;
   for (const ContactRow& row : rows) enough = std::max(enough, kEnough * row.solid->tolerance());
@@ -318,6 +336,10 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step) {
       for (std::uint32_t i = 0; i < row.count; ++i) latest = std::max(latest, pushed[row.places[i]]);
       if (latest <= seen[k] && !is_long) continue;
       const bool alone = row.response.x == row.response.y && row.response.y == row.response.z;
+      if (row.bonded) {
+        change = std::max(change, hold(row, step));
+        continue;
+      }
       const bool vertex = is_long && row.count == 1 && row.solid->friction >= kJams;
       const std::size_t by = vertex ? holder[row.places[0]] : rows.size();
       const bool spare = by < rows.size() && by != k && releases[k] < kMostReleases;

@@ -52,6 +52,7 @@ struct ContactRow {
   bool comes_out = false;  ///< it was inside when the tool was attached: the solid is taken to grow to its size there
   double inside = 0.0;     ///< how deep it was in the solid at the start [m]
   double level = 0.0;      ///< φ asked for at the end [m], ≤ 0: less than 0 where the point was inside already
+  bool bonded = false;     ///< it is held at `face`, pulled or pressed
   bool fast = false;       ///< it passes through more than a part of the solid in this step
   Vec3d response;          ///< velocity per impulse at the point, per component [1/kg]
   double along = 0.0;      ///< n·response·n
@@ -62,6 +63,8 @@ struct ContactRow {
   Vec3d rubbing{};        ///< impulse across it
 
   Vec3d impulse() const { return normal * pressing + rubbing; }
+  /// Takes an impulse in parts along and across the normal.
+  void take(const Vec3d& impulse) { pressing = dot(impulse, normal), rubbing = impulse - normal * pressing; }
 };
 
 /// Where the point is in the frame of the solid at the end of the step, with the present velocities.
@@ -71,6 +74,9 @@ Vec3d end_of(const ContactRow& row, const InteractionStep& step);
 /// @param share  of the way at which a triangle's deepest point is taken; 1: at the end
 /// @return false where it does not come near, or cannot be moved
 bool prepare(ContactRow& row, const InteractionStep& step, double share = 1.0);
+
+/// Holds a vertex at a place in the frame of the solid.
+void prepare_bond(ContactRow& row, const Vec3d& anchor, const InteractionStep& step);
 
 /// Solves for all impulses and pushes. @return sweeps
 int solve(std::span<ContactRow> rows, const InteractionStep& step);

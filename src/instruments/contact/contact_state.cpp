@@ -75,6 +75,18 @@ void ContactTool::State::solve_short(const InteractionStep& step) {
   books.close(rows, step);
 }
 
+/// Rows of what is bonded: they move and are moved by all others in a long step.
+void ContactTool::State::add_bonds(const InteractionStep& step) {
+  for (const auto& [vertex, anchor] : bonds) {
+    if (step.place_of[vertex] == InteractionStep::kNowhere) continue;
+    ContactRow row;
+    row.places[0] = step.place_of[vertex];
+    row.solid = &solid;
+    prepare_bond(row, anchor, step);
+    rows.push_back(row);
+  }
+}
+
 /// Begins with what the row had in the last iteration, or with the force of the last step.
 void ContactTool::State::begin_row(ContactRow& row, const InteractionStep& step) const {
   const Triangle key = key_of(row, step);
@@ -83,8 +95,10 @@ void ContactTool::State::begin_row(ContactRow& row, const InteractionStep& step)
       row.pressing = at->second.first, row.rubbing = at->second.second;
   } else if (const auto at = last_pressing.find(key); at != last_pressing.end()) {
     row.pressing = at->second * step.h;
+  } else if (const auto bond = last_bonds.find(key[0]); row.bonded && bond != last_bonds.end()) {
+    row.take(bond->second * step.h);
   }
-  if (row.pressing > 0.0) push(row, step, row.impulse());
+  if (row.pressing > 0.0 || row.bonded) push(row, step, row.impulse());
 }
 
 /// All rows of a long step. Points move one another, so that those that come inside by it are looked for until there are
@@ -93,7 +107,8 @@ int ContactTool::State::solve_long(const InteractionStep& step) {
   begin_vertices(step);
   triangle_has_row.assign(reach.triangles().size(), 0);
   int sweeps = 0;
-  std::size_t fresh = add_vertices(step);
+  add_bonds(step);
+  std::size_t fresh = rows.size() + add_vertices(step);
   effort.vertices = fresh;
   for (int round = 0; round < kMostRounds && (fresh > 0 || round == 0); ++round) {
     for (std::size_t k = rows.size() - fresh; k < rows.size(); ++k) begin_row(rows[k], step);
@@ -135,8 +150,8 @@ void ContactTool::State::add_triangles(const InteractionStep& step) {
     for (const std::uint32_t i : touched) measure(i, step);
   }
   for (std::size_t k = 0; k < reach.triangles().size(); ++k) {
-    if (is_long && triangle_has_row[k] != 0) continue;
     const Triangle& t = reach.triangles()[k];
+    if (is_long && (triangle_has_row[k] != 0 || is_bonded_at(t))) continue;
     double longest = 0.0, farthest = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3d edge = ends[t[(i + 1) % 3]] - ends[t[i]], way = ends[t[i]] - starts[t[i]];
@@ -152,6 +167,13 @@ void ContactTool::State::add_triangles(const InteractionStep& step) {
         add_triangle(static_cast<std::uint32_t>(std::clamp(strides, 1.0, double(kMostStrides))), t, allowance, step);
     if (is_long) triangle_has_row[k] = added ? 1 : 0;
   }
+}
+
+/// Whether a corner is bonded. In a long step all rows hold at once: such a triangle would widen the tool by its free corners, which in a
+/// short step the bonds undo for the most part.
+bool ContactTool::State::is_bonded_at(const Triangle& corners) const {
+  return std::any_of(corners.begin(), corners.end(),
+                     [&](std::uint32_t i) { return bonds.count(reach.vertices()[i]) != 0; });
 }
 
 /// A bound of φ over a triangle from below: φ is convex, so that it is nowhere below its tangent at the middle.
@@ -211,7 +233,7 @@ void ContactTool::State::bond_first(const BodyView& body, const Pose& pose) {
 void ContactTool::State::bond(const InteractionStep& step, ToolForces& forces) {
   for (const auto& [vertex, anchor] : bonds) {
     const std::uint32_t place = step.place_of[vertex];
-    if (place == InteractionStep::kNowhere) continue;
+    if (place == InteractionStep::kNowhere || step.compliance != nullptr) continue;
     const Vec3d x = step.position(place);
     const Vec3d wanted = (solid.after.to_space(anchor) - x) * (1.0 / step.h);
     const Vec3d impulse = stopping(step, place, wanted);
@@ -224,7 +246,9 @@ void ContactTool::State::bond(const InteractionStep& step, ToolForces& forces) {
     bear(vertex, dot(impulse, n), impulse);
   }
   for (const ContactRow& row : rows) {
-    if (row.count == 1 && row.pressing > 0.0) bonds[step.vertices[row.places[0]].vertex] = end_of(row, step);
+    if (row.count == 1 && row.pressing > 0.0 && !row.bonded) {
+      bonds[step.vertices[row.places[0]].vertex] = end_of(row, step);
+    }
   }
 }
 
@@ -239,9 +263,13 @@ void ContactTool::State::bear(std::uint32_t vertex, double pressing, const Vec3d
 void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces) {
   const double rate = 1.0 / step.h;
   const bool is_long = step.compliance != nullptr;
-  last_pressing.clear();
+  last_pressing.clear(), last_bonds.clear();
   for (const ContactRow& row : rows) {
-    if ((row.count == 3 || is_long) && row.pressing > 0.0) last_pressing[key_of(row, step)] = row.pressing * rate;
+    if (row.bonded) {
+      last_bonds[step.vertices[row.places[0]].vertex] = row.impulse() * rate;
+    } else if ((row.count == 3 || is_long) && row.pressing > 0.0) {
+      last_pressing[key_of(row, step)] = row.pressing * rate;
+    }
     if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
     forces.normal += row.normal * (row.pressing * rate);
     forces.friction += row.rubbing * rate;

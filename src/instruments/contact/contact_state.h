@@ -37,6 +37,7 @@ struct ContactTool::State {
   FoundInside found_inside;
   /// Forces on triangles in the last step, to begin the next with [N]; in long steps on vertices too, three times the same.
   std::map<Triangle, double> last_pressing;
+  std::map<std::uint32_t, Vec3d> last_bonds;  ///< the same of bonds, in long steps [N]
   std::map<Triangle, std::pair<double, Vec3d>>
       trial;                                    ///< of a long step: pressing and rubbing of the last iteration [N s]
   std::vector<char> has_row, triangle_has_row;  ///< per vertex and triangle of the reach
@@ -47,6 +48,7 @@ struct ContactTool::State {
   std::size_t add_vertices(const InteractionStep& step);
   void solve_short(const InteractionStep& step);
   int solve_long(const InteractionStep& step);
+  void add_bonds(const InteractionStep& step);
   void begin_row(ContactRow& row, const InteractionStep& step) const;
   void require_outside(const BodyView& body, const Pose& pose, const Vec3d& direction) const;
   void measure(std::size_t i, const InteractionStep& step);
@@ -54,6 +56,7 @@ struct ContactTool::State {
   void bear(std::uint32_t vertex, double pressing, const Vec3d& impulse);
   void add_triangles(const InteractionStep& step);
   bool add_triangle(std::uint32_t strides, const Triangle& corners, double allowance, const InteractionStep& step);
+  bool is_bonded_at(const Triangle& corners) const;
   void begin_triangles(const InteractionStep& step);
   void bond_first(const BodyView& body, const Pose& pose);
   void bond(const InteractionStep& step, ToolForces& forces);

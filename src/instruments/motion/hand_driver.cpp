@@ -33,14 +33,19 @@ Fault HandCoupling::check() const {
 
 Vec3d HandDriver::device_force() const { return (position_ - target_.position) * coupling_.stiffness; }
 
-Pose HandDriver::advance(double, double h, const Wrench& on_tool) {
+Pose HandDriver::advance(double time, double h, const Wrench& on_tool) {
+  first_position_ = position_, first_velocity_ = velocity_;
+  return advance_under(time, h, on_tool);
+}
+
+Pose HandDriver::advance_under(double, double h, const Wrench& on_tool) {
   const auto& [k, c, m, period, device] = coupling_;
-  const Vec3d impulse = ((target_.position - position_) * k + on_tool.force) * h;
-  velocity_ = (velocity_ * m + impulse) * (1.0 / (m + h * c + h * h * k));
-  position_ += velocity_ * h;
+  const Vec3d impulse = ((target_.position - first_position_) * k + on_tool.force) * h;
+  velocity_ = (first_velocity_ * m + impulse) * (1.0 / (m + h * c + h * h * k));
+  position_ = first_position_ + velocity_ * h;
   return {position_, target_.axes};
 }
 
-void HandDriver::archive(Archive& ar) { ar(position_, velocity_, target_); }
+void HandDriver::archive(Archive& ar) { ar(position_, velocity_, target_, first_position_, first_velocity_); }
 
 }  // namespace glisson

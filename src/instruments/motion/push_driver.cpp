@@ -3,7 +3,8 @@
 //   (m + h c + h² k̂) v⁺ = m v + h (F + f),   y⁺ = y + h v⁺        f the tissue's answer of the last step
 //
 // An answer f = −k y is borne where h² k < 4 m + 2 h² k̂, a mass that is dragged along where it is lighter than m. Both show in
-// the change of the answer over the last displacement, k̂ = −Δf·Δy/Δy²; it is used where h² k̂ > m only.
+// the change of the answer over the last displacement, k̂ = −Δf·Δy/Δy²; it is used where h² k̂ > m only. In a long step f is the answer
+// at its end, which end_search.h finds, and k̂ serves the first guess alone.
 #include <algorithm>
 #include <cmath>
 
@@ -36,14 +37,30 @@ void PushDriver::learn_stiffness(const Vec3d& force) {
   last_force_ = force;
 }
 
-Pose PushDriver::advance(double time, double h, const Wrench& on_tool) {
+/// What of a force moves the tool.
+Vec3d PushDriver::along(const Vec3d& force) const {
   const Vec3d& d = motion_.direction;
-  const Vec3d answer = motion_.guided ? d * dot(on_tool.force, d) : on_tool.force;
+  return motion_.guided ? d * dot(force, d) : force;
+}
+
+Pose PushDriver::advance(double time, double h, const Wrench& on_tool) {
+  const Vec3d answer = along(on_tool.force);
   learn_stiffness(answer);
+  first_travel_ = travel_, first_velocity_ = velocity_;
   const double stiff = h * h * stiffness_ > motion_.mass ? h * h * stiffness_ : 0.0;
-  const Vec3d impulse = (d * motion_.force(time) + answer) * h;
-  velocity_ = (velocity_ * motion_.mass + impulse) * (1.0 / (motion_.mass + h * motion_.damping + stiff));
-  travel_ += velocity_ * h;
+  return go(motion_.force(time), h, answer, stiff);
+}
+
+Pose PushDriver::advance_under(double time, double h, const Wrench& at_end) {
+  return go(motion_.force(time + h), h, along(at_end.force), 0.0);
+}
+
+/// From the start of the step.
+Pose PushDriver::go(double push, double h, const Vec3d& answer, double stiff) {
+  const Vec3d& d = motion_.direction;
+  const Vec3d impulse = (d * push + answer) * h;
+  velocity_ = (first_velocity_ * motion_.mass + impulse) * (1.0 / (motion_.mass + h * motion_.damping + stiff));
+  travel_ = first_travel_ + velocity_ * h;
   const double beyond = motion_.stop ? dot(travel_, d) - *motion_.stop : 0.0;
   if (beyond > 0.0) {
     travel_ = travel_ - d * beyond;
@@ -52,6 +69,8 @@ Pose PushDriver::advance(double time, double h, const Wrench& on_tool) {
   return {start_.position + travel_, start_.axes};
 }
 
-void PushDriver::archive(Archive& ar) { ar(travel_, velocity_, last_travel_, last_force_, stiffness_); }
+void PushDriver::archive(Archive& ar) {
+  ar(travel_, velocity_, last_travel_, last_force_, stiffness_, first_travel_, first_velocity_);
+}
 
 }  // namespace glisson

@@ -116,6 +116,7 @@ void Needle::body_changed(const BodyView& body, std::span<const std::uint32_t>) 
 
 /// Before contact: the surface around the needle's line. Then: the tissue that path and tip act on, with some ahead.
 std::span<const std::uint32_t> Needle::reach(double, double) {
+  begin_step();
   State& s = *state_;
   s.breaks.clear(), s.stuck.clear(), s.ways.clear();
   const bool touches = s.stage != NeedleStage::outside;

@@ -12,7 +12,6 @@
 
 #include "base/two_across.h"
 #include "glisson/archive.h"
-#include "glisson/simulation/integrator.h"
 #include "instruments/needle/needle_solver.h"
 
 namespace glisson {
@@ -164,10 +163,7 @@ Needle::Solver::Impulses Needle::Solver::solve_long(const InteractionStep& step)
   return p;
 }
 
-std::string Needle::refuses_long_steps() const {
-  if (!driver().yields()) return {};
-  return "is moved by a force or a hand; give it a path in time, or take integrator = " + supporting_integrators();
-}
+std::string Needle::refuses_long_steps() const { return driver_refuses_long_steps(); }
 
 /// Tries what comes after the step: events that are to be dated, and a path that grows past what its friction was found for.
 bool Needle::overshoots(const InteractionStep& step) {

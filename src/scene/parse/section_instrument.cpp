@@ -116,8 +116,7 @@ const SectionSpec& instrument_section() {
                               "A rigid or bending tool, selected by `kind`: it touches the surface in contact, or "
                               "pierces it. Needs the integrator " +
                                   supporting_integrators() +
-                                  "; a rigid one in contact that follows a path, not bonded, without friction where it "
-                                  "is no plate, acts under implicit (with backward Euler) and "
+                                  "; needles and rigid tools in contact act under implicit (with backward Euler) and "
                                   "quasi_static too, and in viscous tissue under semi_implicit.");
     s.key("name", &InstrumentSpec::name, "name; no two tools or instruments of an experiment share one");
     s.key("tip_m", &InstrumentSpec::tip, "position of its tip at the start").in("m").must();
