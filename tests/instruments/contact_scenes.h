@@ -24,6 +24,15 @@ struct GivenPath final : ToolDriver {
   }
 };
 
+/// A driver that yields to the force, in short steps only.
+struct YieldsInShortSteps final : ToolDriver {
+  Pose at;
+  explicit YieldsInShortSteps(const Pose& start) : at(start) {}
+  Pose start() const override { return at; }
+  Pose advance(double, double, const Wrench&) override { return at; }
+  bool yields() const override { return true; }
+};
+
 inline std::shared_ptr<GivenPath> standing(const Pose& pose) {
   return std::make_shared<GivenPath>([pose](double) { return pose; });
 }

@@ -349,13 +349,8 @@ TEST(LongContact, RefusesWhatItDoesNotDo) {
   EXPECT_THAT([&] { attached(o, ball, test::standing(inside)); },
               ThrowsMessage<std::invalid_argument>(::testing::AllOf(
                   HasSubstr("\"probe\""), HasSubstr("starts inside the body, 2 mm deep"), HasSubstr("(0, 0, 2) mm"))));
-  struct OwnPush final : ToolDriver {
-    Pose start() const override { return {{0.005, 0.005, 0.0101}}; }
-    Pose advance(double, double, const Wrench&) override { return start(); }
-    bool yields() const override { return true; }
-  };
   EXPECT_THAT(
-      [&] { attached(o, ball, std::make_shared<OwnPush>()); },
+      [&] { attached(o, ball, std::make_shared<test::YieldsInShortSteps>(above)); },
       ThrowsMessage<std::invalid_argument>(HasSubstr("\"probe\", which is moved by a force in short steps only")));
   SimulationOptions newmark = o;
   newmark.implicit.scheme = TimeScheme::newmark;

@@ -263,11 +263,11 @@ TEST(SemiImplicitInstruments, ActWhenTheViscosityGoes) {
 TEST(SemiImplicitInstruments, RefuseWhatTheyDoNotDo) {
   Pressed p(Integrator::semi_implicit, test::with(0.0, false, true));
   ContactOptions c;
-  c.shape = Ball{0.003}, c.friction = 0.3;
-  const auto ball = std::make_shared<ContactTool>(c, std::make_shared<test::GivenPath>([](double) {
-                                                    return Pose{{0.0, 0.0, 0.05}};
-                                                  }));
-  EXPECT_THAT([&] { p.body.attach(ball); }, ThrowsMessage<std::invalid_argument>(HasSubstr("rubs and is no plate")));
+  c.shape = Ball{0.003};
+  const auto ball =
+      std::make_shared<ContactTool>(c, std::make_shared<test::YieldsInShortSteps>(Pose{{0.0, 0.0, 0.05}}));
+  EXPECT_THAT([&] { p.body.attach(ball); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("moved by a force in short steps only")));
 }
 
 }  // namespace

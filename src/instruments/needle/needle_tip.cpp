@@ -94,6 +94,8 @@ void Needle::look_for_contact(const InteractionStep& step) {
   s.mobility.forget();
   s.slips.clear();
   s.along.clear();
+  s.bend.clear();
+  s.bend_tip = {};
   s.stage = NeedleStage::pressing;
   s.tip_out = s.withdraws = s.at_membrane = false;
   s.next_region.reset();
