@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <iosfwd>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "glisson/field.h"
@@ -88,6 +89,10 @@ class Cutter {
   /// The pieces of the edge in uncut tissue.
   /// Cost: a pass over the tets.
   std::vector<EdgePiece> contact() const;
+  /// The same of an edge at another place, which nothing has cut on its way there.
+  /// @param moved  vertices that are elsewhere than in the present body
+  /// @throws std::invalid_argument for a position that is not finite
+  std::vector<EdgePiece> contact(const BladeEdge& edge, std::span<const ActiveVertex> moved = {}) const;
 
   const BladeEdge& edge() const;
 

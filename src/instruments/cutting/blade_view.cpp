@@ -98,9 +98,8 @@ void BladeView::find_near(const Vec3d& low, const Vec3d& high) {
   }
 }
 
-void BladeView::look(const BladeEdge& from, const BladeEdge& to) {
+void BladeView::look(const BladeEdge& from, const BladeEdge& to, std::span<const Vec3d> u) {
   const Body& body = scheme_.body();
-  const std::span<const Vec3d> u = scheme_.displacement();
   Vec3d low = from.from, high = from.from;
   for (const Vec3d& p : {from.to, to.from, to.to}) widen(low, high, p);
   const double margin = kMargin * longest_edge_;

@@ -24,8 +24,8 @@ class BladeView {
   void follow_copies();
   /// The present positions become those before.
   void step_on() { before_ = now_; }
-  /// Finds the present positions.
-  void look(const BladeEdge& from, const BladeEdge& to);
+  /// Finds the positions at displacements of the vertices [m]: the present ones.
+  void look(const BladeEdge& from, const BladeEdge& to, std::span<const Vec3d> u);
 
   /// Edges of the mesh that the blade crosses on its way, while the body goes from its positions before to the present.
   std::vector<detail::EdgeCrossing> crossings(const BladeEdge& from, const BladeEdge& to);

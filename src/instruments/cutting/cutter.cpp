@@ -73,6 +73,7 @@ struct Cutter::Impl {
   bool may_become(std::uint32_t vertex, const Tet& tet, const std::array<double, 4>& weights) const;
   std::vector<VertexMove> snap(const std::vector<std::uint32_t>& vertices, CutReport& report) const;
   void open(const detail::CutFaces& cut, CutReport& report);
+  std::vector<EdgePiece> pieces(const BladeEdge& at, const BladeView& seen) const;
 };
 
 /// Finds how spread the gradients of a tet of each tissue may be, so that its bound of the step is least_step times that
@@ -231,7 +232,7 @@ void Cutter::place(const BladeEdge& edge) {
   std::fill(me.doubled.begin(), me.doubled.end(), char{0});
   me.edge = edge;
   me.placed = true;
-  me.view.look(edge, edge);
+  me.view.look(edge, edge, me.scheme.displacement());
   me.view.step_on();
 }
 
@@ -241,7 +242,7 @@ CutReport Cutter::advance(const BladeEdge& edge) {
   if (!me.placed) throw std::invalid_argument("cutter: the blade is nowhere yet; call place() before advance()");
   me.follow();
   me.view.step_on();
-  me.view.look(me.edge, edge);
+  me.view.look(me.edge, edge, me.scheme.displacement());
   const Body& body = me.scheme.body();
   CutReport report;
   me.open(me.sheet.take(body.elements, me.scheme.stars(), me.view.crossings(me.edge, edge)), report);
@@ -249,18 +250,18 @@ CutReport Cutter::advance(const BladeEdge& edge) {
   return report;
 }
 
-std::vector<EdgePiece> Cutter::contact() const {
-  const Impl& me = *impl_;
-  const Body& body = me.scheme.body();
-  const Vec3d a = me.edge.from, d = me.edge.to - a;
+/// The pieces of an edge in tissue that has not been cut through, in the body as it is seen.
+std::vector<EdgePiece> Cutter::Impl::pieces(const BladeEdge& at, const BladeView& seen) const {
+  const Body& body = scheme.body();
+  const Vec3d a = at.from, d = at.to - a;
   const double length = norm(d);
-  std::vector<EdgePiece> pieces;
-  if (!me.placed || !(length > 0.0)) return pieces;
-  for (const std::uint32_t e : me.view.near()) {
-    const detail::CutTet* cut = me.sheet.find(e);
+  std::vector<EdgePiece> all;
+  if (!placed || !(length > 0.0)) return all;
+  for (const std::uint32_t e : seen.near()) {
+    const detail::CutTet* cut = sheet.find(e);
     if (cut != nullptr && cut->through) continue;
     std::array<Vec3d, 4> x;
-    for (std::size_t c = 0; c < 4; ++c) x[c] = me.view.now()[body.elements[e][c]];
+    for (std::size_t c = 0; c < 4; ++c) x[c] = seen.now()[body.elements[e][c]];
     const ElementRest shape = element_rest(x);
     if (!(shape.volume > 0.0)) continue;
     std::array<double, 4> start{1.0}, rate{};
@@ -273,9 +274,22 @@ std::vector<EdgePiece> Cutter::contact() const {
     if (high <= low) continue;
     EdgePiece piece{body.mesh_tet[e], (high - low) * length, {}};
     for (std::size_t c = 0; c < 4; ++c) piece.weights[c] = start[c] + 0.5 * (low + high) * rate[c];
-    pieces.push_back(piece);
+    all.push_back(piece);
   }
-  return pieces;
+  return all;
+}
+
+std::vector<EdgePiece> Cutter::contact() const { return impl_->pieces(impl_->edge, impl_->view); }
+
+std::vector<EdgePiece> Cutter::contact(const BladeEdge& edge, std::span<const ActiveVertex> moved) const {
+  require_finite(edge);
+  const std::span<const Vec3d> present = impl_->scheme.displacement();
+  std::vector<Vec3d> u(present.begin(), present.end());
+  for (const ActiveVertex& w : moved) u[w.vertex] = w.displacement;
+  BladeView seen = impl_->view;
+  seen.follow_copies();
+  seen.look(edge, edge, u);
+  return impl_->pieces(edge, seen);
 }
 
 const BladeEdge& Cutter::edge() const { return impl_->edge; }
