@@ -8,6 +8,8 @@
 #pragma once
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "glisson/field.h"
 #include "glisson/instruments/cutting.h"
@@ -65,12 +67,20 @@ class Blade final : public Instrument {
   void constrain(const InteractionStep& step) override;
   void between_steps(Simulation& simulation) override;
   bool changes_body() const override { return true; }
+  void moved(const InteractionStep& step) override;
+  bool overshoots(const InteractionStep& step) override;
+  std::string refuses_long_steps() const override;
   void archive(Archive& ar) override;
 
  private:
+  struct LongPieces;
   void cut(double time, const BladeEdge& to);
   const Tet& vertices_of(const EdgePiece& piece) const { return mesh_->tets[piece.tet]; }
   void resist(const InteractionStep& step, const EdgePiece& piece, const Vec3d& velocity, const Vec3d& along);
+  LongPieces long_pieces(const InteractionStep& step, const BladeEdge& before, const BladeEdge& after) const;
+  Vec3d last_force(const EdgePiece& piece) const;
+  void solve_long(const InteractionStep& step, const LongPieces& r);
+  void resist_long(const InteractionStep& step, const BladeEdge& before, const BladeEdge& after);
 
   BladeOptions options_;
   std::optional<Cutter> cutter_;   ///< of the body it is attached to
@@ -78,6 +88,9 @@ class Blade final : public Instrument {
   std::span<const char> removed_;  ///< its tets, as in BodyView
   double area_ = 0.0, next_cut_ = 0.0;
   std::vector<EdgePiece> pieces_;
+  std::vector<Vec3d> trial_;  ///< per piece: its impulse in a long step, which the next iteration begins with [N s]
+  /// In long steps: force on the piece in a tet at the end of the last one, ascending by tet [N].
+  std::vector<std::pair<std::uint32_t, Vec3d>> last_;
   std::vector<std::uint32_t> reached_;
 };
 

@@ -10,7 +10,16 @@
 namespace glisson {
 namespace {
 
-constexpr int kSweeps = 3;  ///< over the pieces of the edge, which share vertices
+constexpr int kSweeps = 3;           ///< over the pieces of the edge, which share vertices
+constexpr double kMostChange = 0.5;  ///< of the longer: by how much the length in tissue changes in a long step
+
+bool is_finite(const BladeEdge& edge) { return std::isfinite(norm(edge.from)) && std::isfinite(norm(edge.to)); }
+
+double length_of(std::span<const EdgePiece> pieces) {
+  double sum = 0.0;
+  for (const EdgePiece& piece : pieces) sum += piece.length;
+  return sum;
+}
 
 /// The part of a vector across a line.
 Vec3d across(const Vec3d& v, const Vec3d& line) { return v - line * (dot(line, v) / dot(line, line)); }
@@ -41,7 +50,7 @@ void Blade::body_changed(const BodyView& body, std::span<const std::uint32_t>) {
 
 void Blade::between_steps(Simulation& simulation) {
   const BladeEdge now = edge();
-  if (!std::isfinite(norm(now.from)) || !std::isfinite(norm(now.to))) return;  // nor does it push then
+  if (!is_finite(now)) return;  // nor does it push then
   if (!cutter_) {
     cutter_.emplace(simulation, options_.cutting).place(now);
   } else {
@@ -62,14 +71,14 @@ void Blade::cut(double time, const BladeEdge& to) {
   }
 }
 
-double Blade::length_in_tissue() const {
-  double sum = 0.0;
-  for (const EdgePiece& piece : pieces_) sum += piece.length;
-  return sum;
-}
+double Blade::length_in_tissue() const { return length_of(pieces_); }
 
 std::span<const std::uint32_t> Blade::reach(double, double) {
-  reached_.clear();
+  begin_step();
+  const BladeEdge now = edge();
+  const bool has_gone_on = cutter_ && (now.from != cutter_->edge().from || now.to != cutter_->edge().to);
+  if (forces_at_end() && has_gone_on && is_finite(now)) pieces_ = cutter_->contact(now);  // a part of a long step
+  reached_.clear(), trial_.clear();
   for (const EdgePiece& piece : pieces_) {
     reached_.insert(reached_.end(), vertices_of(piece).begin(), vertices_of(piece).end());
   }
@@ -108,6 +117,7 @@ void Blade::constrain(const InteractionStep& step) {
   drive(step);
   const BladeEdge after = edge();
   forces_ = {};
+  if (step.compliance != nullptr) return resist_long(step, before, after);
   const Vec3d along = after.to - after.from;
   const Vec3d from = (after.from - before.from) * (1.0 / step.h), to = (after.to - before.to) * (1.0 / step.h);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
@@ -123,12 +133,20 @@ void Blade::constrain(const InteractionStep& step) {
   }
 }
 
+/// The edge enters tissue or leaves it: G l holds from there on.
+bool Blade::overshoots(const InteractionStep& step) {
+  if (!cutter_ || !(options_.toughness > 0.0) || !is_finite(edge())) return false;
+  const double before = length_in_tissue(), after = length_of(cutter_->contact(edge(), step.vertices));
+  return std::abs(after - before) > kMostChange * std::max(after, before);
+}
+
 void EdgePiece::archive(Archive& ar) { ar(tet, length, weights); }
 
 void Blade::archive(Archive& ar) {
   archive_motion(ar);
   std::vector<EdgePiece> pieces = pieces_;
   ar(area_, next_cut_, pieces);
+  if (forces_at_end()) ar(last_);
   for (const EdgePiece& piece : pieces) {
     ar.check(mesh_ != nullptr && piece.tet < mesh_->tets.size() && (removed_.empty() || removed_[piece.tet] == 0));
   }

@@ -112,12 +112,13 @@ const SectionSpec& shaft_friction_section() {
 
 const SectionSpec& instrument_section() {
   static const SectionSpec section = [] {
-    Section<InstrumentSpec> s("instrument",
-                              "A rigid or bending tool, selected by `kind`: it touches the surface in contact, or "
-                              "pierces it. Needs the integrator " +
-                                  supporting_integrators() +
-                                  "; needles and rigid tools in contact act under implicit (with backward Euler) and "
-                                  "quasi_static too, and in viscous tissue under semi_implicit.");
+    Section<InstrumentSpec> s(
+        "instrument",
+        "A rigid or bending tool, selected by `kind`: it touches the surface in contact, or "
+        "pierces it. Needs the integrator " +
+            supporting_integrators() +
+            "; needles, blades and rigid tools in contact act under implicit (with backward Euler) and "
+            "quasi_static too, and in viscous tissue under semi_implicit.");
     s.key("name", &InstrumentSpec::name, "name; no two tools or instruments of an experiment share one");
     s.key("tip_m", &InstrumentSpec::tip, "position of its tip at the start").in("m").must();
     s.key("direction", &InstrumentSpec::direction, "direction of its tip, of any length").in("-").direction();
