@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/bench_text.h"
+#include "bench/isa_option.h"
 #include "bench/json_option.h"
 #include "bench/largest_body.h"
 #include "bench/realtime.h"
@@ -42,7 +43,7 @@ struct Options {
   double seconds = 10.0, frame_ms = 1.0;
   int threads = 0;
   bool find = false;
-  std::string json;
+  std::string isa, json;
 };
 
 /// The one variant that is run.
@@ -151,6 +152,7 @@ int find(const Options& options, const Variant& variant) {
 }
 
 int realtime(const Options& options) {
+  take_isa(options.isa);
   const Variant variant = choose_variant(options);
   catch_interrupts();
   if (options.find) return find(options, variant);
@@ -185,6 +187,7 @@ CLI::App* add_realtime(CLI::App& bench, Action& action) {
       ->capture_default_str();
   command->add_flag("--find", options->find,
                     "look for the largest body, by the cells of the scene's mesh, that keeps the pace for --seconds");
+  add_isa_option(*command, options->isa, "kernels");
   add_json_option(*command, options->json);
   command->footer(kFooter);
   command->callback([options, &action] { action = [options] { return realtime(*options); }; });

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bench/bench_text.h"
+#include "bench/isa_option.h"
 #include "bench/json_option.h"
 #include "bench/measure.h"
 #include "bench/realtime_command.h"
@@ -18,7 +19,6 @@
 #include "cli/exit_code.h"
 #include "cli/mesh_cache.h"
 #include "cli/standard_streams.h"
-#include "engine/kernels/instruction_set.h"
 
 namespace glisson::app {
 namespace {
@@ -127,7 +127,7 @@ void measure_body(const BenchBody& body, std::vector<BenchCase> cases, const Mea
 }
 
 int bench(const BenchOptions& given) {
-  if (!given.isa.empty()) cpu::use_instruction_set(given.isa);
+  take_isa(given.isa);
   const BenchOptions options = completed(given);
   const MeasureOptions how = options.quick ? MeasureOptions{5, 0.03} : MeasureOptions{};
   const std::vector<BenchCase> cases = cases_of(options);
@@ -169,10 +169,7 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
       ->check(CLI::IsMember(known))
       ->capture_default_str();
   command.add_option("--mesh", options.meshes, "measure these meshes too (.vtu, .vtk, .msh)")->type_name("FILE…");
-  command
-      .add_option("--isa", options.isa, "instruction set of kernels and peak: avx512, avx2, sse4; default: the best")
-      ->type_name("NAME")
-      ->check(CLI::IsMember(cpu::instruction_sets()));
+  add_isa_option(command, options.isa, "kernels and peak");
   command.add_flag("--quick", options.quick, "fewer and shorter repetitions, without the million tets");
   add_json_option(command, options.json);
 }

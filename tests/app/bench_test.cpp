@@ -155,6 +155,7 @@ TEST_F(Bench, WrongOptionsAreErrors) {
   const std::string scene = write("s.toml", small_scene());
   expect_error({"bench", "realtime", scene, "--frame-ms", "0"}, "--frame-ms: Value 0 not in range");
   expect_error({"bench", "realtime", scene, "--variant", "hard"}, "--variant hard");
+  expect_error({"bench", "realtime", scene, "--isa", "mmx"}, "--isa: mmx not in");
 }
 
 // 0.3 s in frames of 1 ms: each is computed or dropped, and what is simulated is what was computed. That a loaded
