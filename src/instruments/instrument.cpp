@@ -150,10 +150,11 @@ void Instrument::drive(const InteractionStep& step) {
   force_depth_ = depth();
   earlier_ = before_, last_step_ = step_;
   before_ = pose_, step_ = step.h;
+  const bool is_other_step = step.time != time_;
   time_ = step.time;
   pose_ = driver_->advance(step.time, step.h, {-forces_.total(), -forces_.torque});
   if (search_ == nullptr) return;
-  if (!search_->begun()) {
+  if (!search_->begun() || is_other_step) {
     search_->begin(before_.position, pose_.position, driver_->advance_under(step.time, step.h, {}).position);
   }
   take_trial();

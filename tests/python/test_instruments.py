@@ -189,10 +189,12 @@ def test_wrong_options_are_refused():
         glisson.ContactTool(
             glisson.ContactOptions(shape=glisson.Ball(radius=0)), glisson.PathDriver(pose(), glisson.SteadyMotion())
         )
-    body = glisson.Simulation(cylinder(), glisson.Tissue(), glisson.SimulationOptions(integrator="implicit"))
-    bonded = glisson.ContactOptions(shape=glisson.Ball(radius=0.005), bonded=True)
-    with pytest.raises(ValueError, match="implicit"):
-        body.attach(glisson.ContactTool(bonded, glisson.PathDriver(pose(), glisson.SteadyMotion())))
+    newmark = glisson.ImplicitOptions(scheme="newmark")
+    options = glisson.SimulationOptions(integrator="implicit", implicit=newmark)
+    body = glisson.Simulation(cylinder(), glisson.Tissue(), options)
+    ball = glisson.ContactOptions(shape=glisson.Ball(radius=0.005))
+    with pytest.raises(ValueError, match="needs scheme = backward_euler under implicit"):
+        body.attach(glisson.ContactTool(ball, glisson.PathDriver(pose(), glisson.SteadyMotion())))
 
 
 def test_a_blade_of_a_scene_cuts(scenes):
