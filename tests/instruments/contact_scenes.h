@@ -70,6 +70,14 @@ inline Vec3d momentum(const Simulation& s) {
   return p;
 }
 
+/// About the origin [N m s].
+inline Vec3d angular_momentum(const Simulation& s) {
+  Vec3d L;
+  const std::vector<Vec3d> x = s.positions();
+  for (std::size_t i = 0; i < x.size(); ++i) L += cross(x[i], s.velocity()[i] * s.masses()[i]);
+  return L;
+}
+
 inline double mass(const Simulation& s) {
   double m = 0.0;
   for (const double mi : s.masses()) m += mi;

@@ -171,13 +171,7 @@ TEST(LongBladeForce, ForceAndTorqueAreChangesOfMomentum) {
         return Pose{{0.003 + 0.1 * time, 0.004, -2e-3 - 0.4 * time}, test::rotation({0.0, 0.6, 0.8}, 3.0 * time)};
       }));
   s.attach(blade);
-  const auto turn = [&] {
-    Vec3d L;
-    const std::vector<Vec3d> x = s.positions();
-    for (std::size_t i = 0; i < x.size(); ++i) L += cross(x[i], s.velocity()[i] * s.masses()[i]);
-    return L;
-  };
-  Vec3d p = test::momentum(s), L = turn();
+  Vec3d p = test::momentum(s), L = test::angular_momentum(s);
   double largest = 0.0, torque = 0.0;
   for (int k = 0; k < 30; ++k) {
     const std::vector<Vec3d> before(s.velocity().begin(), s.velocity().end()), start = s.positions();
@@ -187,7 +181,7 @@ TEST(LongBladeForce, ForceAndTorqueAreChangesOfMomentum) {
     const double h = s.step_size();
     const Vec3d force = blade->forces().cutting,
                 about_zero = blade->forces().torque + cross(blade->pose().position, force);
-    const Vec3d p_after = test::momentum(s), L_after = turn();
+    const Vec3d p_after = test::momentum(s), L_after = test::angular_momentum(s);
     EXPECT_NEAR(norm((p_after - p) * (1.0 / h) - force), 0.0, 1e-6 * (norm(force) + 0.1));
     // x⁺ × m v⁺ − x × m v = x⁺ × m (v⁺ − v) + h m v⁺ × v, with x⁺ = x + h v⁺; vertices that the step has split have one v⁺
     Vec3d twist;

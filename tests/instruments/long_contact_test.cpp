@@ -275,13 +275,7 @@ TEST(LongContact, ForceAndTorqueAreChangesOfMomentum) {
         return Pose{{0.006 + 0.1 * time, 0.003, 1e-3 - 0.1 * time}, test::rotation({0.6, 0.0, 0.8}, 2.0 * time)};
       }));
   s.attach(tool);
-  const auto turn = [&] {
-    Vec3d L;
-    const std::vector<Vec3d> x = s.positions();
-    for (std::size_t i = 0; i < x.size(); ++i) L += cross(x[i], s.velocity()[i] * s.masses()[i]);
-    return L;
-  };
-  Vec3d p = test::momentum(s), L = turn();
+  Vec3d p = test::momentum(s), L = test::angular_momentum(s);
   double largest = 0.0, torque = 0.0;
   for (int k = 0; k < 60; ++k) {
     const std::vector<Vec3d> before(s.velocity().begin(), s.velocity().end());
@@ -290,7 +284,7 @@ TEST(LongContact, ForceAndTorqueAreChangesOfMomentum) {
     const double h = s.step_size();
     const Vec3d force = tool->forces().total(),
                 about_zero = tool->forces().torque + cross(tool->pose().position, force);
-    const Vec3d p_after = test::momentum(s), L_after = turn();
+    const Vec3d p_after = test::momentum(s), L_after = test::angular_momentum(s);
     EXPECT_NEAR(norm((p_after - p) * (1.0 / h) - force), 0.0, 1e-6 * (norm(force) + 0.1));
     // x⁺ = x + h v⁺: x⁺ × m v⁺ − x × m v = x⁺ × m (v⁺ − v) + h m v⁺ × v, and the first is the torque about 0 over h
     Vec3d twist;
