@@ -108,7 +108,8 @@ int ContactTool::State::solve_long(const InteractionStep& step) {
   triangle_has_row.assign(reach.triangles().size(), 0);
   int sweeps = 0;
   add_bonds(step);
-  std::size_t fresh = rows.size() + add_vertices(step);
+  add_vertices(step);
+  std::size_t fresh = rows.size();
   effort.vertices = fresh;
   for (int round = 0; round < kMostRounds && (fresh > 0 || round == 0); ++round) {
     for (std::size_t k = rows.size() - fresh; k < rows.size(); ++k) begin_row(rows[k], step);

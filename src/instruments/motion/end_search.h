@@ -15,7 +15,7 @@ class EndSearch {
   /// The coming step has not begun.
   void forget() { begun_ = false; }
   bool begun() const { return begun_; }
-  /// Begins a step. @param guess  of where the tool ends @param free  where it would end without the tissue [m]
+  /// Begins a step. @param before  where the tool is @param guess  of where it ends @param free  where it would end without the tissue [m]
   void begin(const Vec3d& before, const Vec3d& guess, const Vec3d& free);
   /// Where the tool is to be tried next [m].
   const Vec3d& trial() const { return trial_; }
