@@ -2,7 +2,11 @@
 #include "base/two_across.h"
 
 #include <Eigen/Dense>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
 
 namespace glisson {
 namespace {
@@ -20,9 +24,7 @@ Vec3d perpendicular(const Vec3d& v, const Vec3d& a) {
   return two_across(a)[0];
 }
 
-}  // namespace
-
-PrincipalFrame principal_frame(const Mat3d& H) {
+PrincipalFrame found_frame(const Mat3d& H) {
   const Sym3<double> E = green_strain(H);
   Eigen::Matrix3d strain;
   strain << E.xx, E.xy, E.zx, E.xy, E.yy, E.yz, E.zx, E.yz, E.zz;
@@ -44,6 +46,16 @@ PrincipalFrame principal_frame(const Mat3d& H) {
   put_column(f.u, 0, u0), put_column(f.u, 1, u1), put_column(f.u, 2, u2);
   if (dot(u2, z) < 0.0) f.b[2] = -2.0 - f.b[2];  // λ₃ → −λ₃
   return f;
+}
+
+}  // namespace
+
+PrincipalFrame principal_frame(const Mat3d& H) {
+  using Bits = std::array<std::uint64_t, 9>;
+  thread_local std::optional<std::pair<Bits, PrincipalFrame>> last;  // a tangent asks nine times for the same
+  const Bits asked = std::bit_cast<Bits>(H);
+  if (!last || last->first != asked) last = {asked, found_frame(H)};
+  return last->second;
 }
 
 }  // namespace glisson
