@@ -91,6 +91,60 @@ TEST(FactorPanels, SolveAColumnAloneAsAmongOthers) {
   }
 }
 
+/// Vertices of four unknowns, the fourth a pressure: −D on its diagonal, coupled with the other three of the vertices around it.
+Matrix some_pressures(int n, std::mt19937& random) {
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  const Matrix blocks = some_blocks(n, 4, random);
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto both = [&](int row, int column, double x) {
+    entries.emplace_back(row, column, x), entries.emplace_back(column, row, x);
+  };
+  for (int k = 0; k < blocks.outerSize(); ++k) {
+    for (Matrix::InnerIterator x(blocks, k); x; ++x) {
+      entries.emplace_back(static_cast<int>(x.row()), static_cast<int>(x.col()), x.value());
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    entries.emplace_back(3 * n + i, 3 * n + i, -0.02);
+    for (int j : {i, (i + 1) % n, static_cast<int>(random() % static_cast<unsigned>(n))}) {
+      for (int a = 0; a < 3; ++a) both(3 * n + i, 3 * j + a, number(random));
+    }
+  }
+  Matrix A(4 * n, 4 * n);
+  A.setFromTriplets(entries.begin(), entries.end());
+  return A;
+}
+
+// A matrix that is negative definite on some unknowns; panels of few columns and of many.
+TEST(FactorPanels, SolveWithPressures) {
+  std::mt19937 random(11);
+  FactorPanels panels;
+  for (const int n : {1, 40, 300}) {
+    Matrix A = some_pressures(n, random);
+    ASSERT_TRUE(panels.factorise(lower(A), n)) << n;
+    expect_solves(panels, A);
+    A *= 3.0;
+    ASSERT_TRUE(panels.factorise_again(lower(A))) << n;
+    expect_solves(panels, A);
+  }
+}
+
+// Other signs than those it is said to have are refused: as many as there are, and no pivot that is rounding alone.
+TEST(FactorPanels, RefuseOtherSigns) {
+  std::mt19937 random(13);
+  const Matrix A = some_pressures(50, random);
+  FactorPanels panels;
+  EXPECT_FALSE(panels.factorise(lower(A)));
+  EXPECT_FALSE(panels.factorise(lower(A), 49));
+  EXPECT_FALSE(panels.factorise(lower(A), 51));
+  Matrix singular = A;
+  for (int i = 0; i < 200; ++i) singular.coeffRef(199, i) = singular.coeffRef(i, 199) = A.coeff(198, i);
+  singular.coeffRef(199, 199) = singular.coeffRef(198, 199) = singular.coeffRef(199, 198) = A.coeff(198, 198);
+  EXPECT_FALSE(panels.factorise(lower(singular), 50));
+  ASSERT_TRUE(panels.factorise(lower(A), 50));
+  expect_solves(panels, A);
+}
+
 // The same bytes whether the entries were known or not.
 TEST(FactorPanels, GiveTheSameBytesAgain) {
   std::mt19937 random(7);

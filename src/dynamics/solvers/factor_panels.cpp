@@ -4,10 +4,14 @@
 #include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace glisson {
 namespace {
+
+constexpr Eigen::Index kColumnsAtOnce = 24;  ///< of a triangle with signs that are factorised one by one
+constexpr double kLeastPivot = 1e-12;  ///< of the diagonal that it comes from: below it there is no factor with signs
 
 /// Rows of each column of L below its diagonal, ascending: those of A, and what columns leave to the one of their first row.
 std::vector<std::vector<int>> rows_of_factor(const FactorPanels::Matrix& A, const Eigen::VectorXi& place) {
@@ -30,13 +34,14 @@ std::vector<std::vector<int>> rows_of_factor(const FactorPanels::Matrix& A, cons
 
 }  // namespace
 
-bool FactorPanels::factorise(const Matrix& A) {
+bool FactorPanels::factorise(const Matrix& A, Eigen::Index negative) {
   const Matrix both = A.selfadjointView<Eigen::Lower>();
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> back;
   if (A.cols() > 0) Eigen::AMDOrdering<int>()(both, back);
   order_ = back.inverse();
   find_panels(rows_of_factor(A, order_.indices()));
   find_places(A);
+  negative_ = negative;
   return factorise_again(A);
 }
 
@@ -83,7 +88,12 @@ void FactorPanels::update(const Panel& by, Eigen::Index from, Eigen::Index colum
   const Eigen::Index n = by.rows - from;
   const auto rows = below(by).middleRows(from, n);
   change_.resize(n, columns);
-  change_.noalias() = rows * rows.topRows(columns).transpose();
+  if (negative_ == 0) {
+    change_.noalias() = rows * rows.topRows(columns).transpose();
+  } else {
+    scaled_ = rows.topRows(columns) * sign_.segment(by.first, by.width).asDiagonal();
+    change_.noalias() = rows * scaled_.transpose();
+  }
   double *own = triangle(panel).data(), *under = below(panel).data();
   for (Eigen::Index k = 0; k < columns; ++k) {
     const Eigen::Index c = row(by.rows_at + from + k) - panel.first;
@@ -96,7 +106,48 @@ void FactorPanels::update(const Panel& by, Eigen::Index from, Eigen::Index colum
   }
 }
 
+/// The columns from begin to end of a panel's triangle, one by one, and the rows of the triangle below them.
+bool FactorPanels::factorise_signed(const Panel& panel, Eigen::Index begin, Eigen::Index end) {
+  Block L = triangle(panel);
+  for (Eigen::Index c = begin; c < end; ++c) {
+    const double pivot = L(c, c);
+    if (!(std::abs(pivot) > kLeastPivot * diagonal_[panel.first + c])) return false;
+    const double sign = sign_[panel.first + c] = pivot > 0.0 ? 1.0 : -1.0;
+    L(c, c) = std::sqrt(sign * pivot);
+    L.col(c).tail(panel.width - c - 1) *= sign / L(c, c);
+    for (Eigen::Index k = c + 1; k < end; ++k) {
+      L.col(k).tail(panel.width - k) -= (sign * L(k, c)) * L.col(c).tail(panel.width - k);
+    }
+  }
+  return true;
+}
+
+/// Of a panel: L S Lᵀ in the place of what its triangle has left, and below it L.
+bool FactorPanels::factorise_triangle(const Panel& panel) {
+  Block own = triangle(panel);
+  if (negative_ == 0) {
+    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(own);  // in place
+    if (factor.info() != Eigen::Success) return false;
+  }
+  for (Eigen::Index begin = 0; negative_ > 0 && begin < panel.width; begin += kColumnsAtOnce) {
+    const Eigen::Index end = std::min(begin + kColumnsAtOnce, panel.width), left = panel.width - end;
+    if (!factorise_signed(panel, begin, end)) return false;
+    if (left == 0) break;
+    const auto done = own.block(end, begin, left, end - begin);
+    scaled_ = sign_.segment(panel.first + begin, end - begin).asDiagonal() * done.transpose();
+    own.bottomRightCorner(left, left).triangularView<Eigen::Lower>() -= done * scaled_;
+  }
+  if (panel.rows == 0) return true;
+  Block under = below(panel);
+  own.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(under);
+  if (negative_ > 0) under *= sign_.segment(panel.first, panel.width).asDiagonal();
+  return true;
+}
+
 bool FactorPanels::factorise_again(const Matrix& A) {
+  diagonal_.setZero(negative_ > 0 ? A.rows() : 0);
+  for (Eigen::Index i = 0; i < diagonal_.size(); ++i) diagonal_[order_.indices()[i]] = std::abs(A.coeff(i, i));
+  sign_.setOnes(diagonal_.size());
   std::ranges::fill(values_, 0.0);
   for (std::size_t k = 0; k < place_.size(); ++k) values_[place_[k]] += A.valuePtr()[k];
   constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -121,15 +172,10 @@ bool FactorPanels::factorise_again(const Matrix& A) {
       from[by] += columns;
       acts_next(by);
     }
-    Block own = triangle(panel);
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(own);  // in place
-    if (factor.info() != Eigen::Success) return false;
-    if (panel.rows == 0) continue;
-    Block under = below(panel);
-    own.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(under);
+    if (!factorise_triangle(panel)) return false;
     acts_next(p);
   }
-  return true;
+  return (sign_.array() < 0.0).count() == negative_;
 }
 
 /// One right side. Each number comes from the same operations in the same order as in solve_some(), so that it does not matter
@@ -154,6 +200,7 @@ void FactorPanels::solve_one(double* x) const {
     }
     for (Eigen::Index i = 0; i < p.rows; ++i) x[row(p.rows_at + i)] -= sum[i];
   }
+  for (Eigen::Index i = 0; i < sign_.size(); ++i) x[i] *= sign_[i];
   for (auto p = panels_.rbegin(); p != panels_.rend(); ++p) {
     double* own = x + p->first;
     const double *L = triangle(*p).data(), *under = below(*p).data();
@@ -196,6 +243,7 @@ void FactorPanels::solve_some(double* x) const {
       row_of(x, row(p.rows_at + i)) -= sum;
     }
   }
+  for (Eigen::Index i = 0; i < sign_.size(); ++i) row_of(x, i) *= sign_[i];
   for (auto p = panels_.rbegin(); p != panels_.rend(); ++p) {
     double* own = x + N * p->first;
     const double *L = triangle(*p).data(), *under = below(*p).data();

@@ -1,8 +1,10 @@
-// factor_panels.h — a sparse Cholesky factor, L Lᵀ = Q A Qᵀ, in dense panels: neighbouring columns with the same rows below them, of
+// factor_panels.h — a sparse Cholesky factor, L S Lᵀ = Q A Qᵀ, in dense panels: neighbouring columns with the same rows below them, of
 // which finite elements have many, the three components of a vertex at least.
 //
 // Eigen's sparse factor goes entry by entry, and through the factor once for each right side. Panels are factorised (left-looking, as
 // in [NgPeyton1993]) by products of dense matrices, and solved with for many right sides at once. Q is Eigen's minimum degree.
+// S is 1, or of signs where A has some unknowns it is negative definite on (pressures beside displacements): such a matrix has a factor
+// in any order [Vanderbei1995].
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -14,8 +16,9 @@ class FactorPanels {
  public:
   using Matrix = Eigen::SparseMatrix<double>;
 
-  /// Factorises A. @param A  its lower triangle  @return whether it is positive definite
-  bool factorise(const Matrix& A);
+  /// Factorises A. @param A  its lower triangle  @param negative  how many of its eigenvalues are negative
+  /// @return whether so many are, and the others positive
+  bool factorise(const Matrix& A, Eigen::Index negative = 0);
   /// The same for a matrix with the entries of the last one, of other values.
   bool factorise_again(const Matrix& A);
   /// x ← A⁻¹ x, column by column: the same bytes for a column, whatever it is solved beside. @param x  as many rows as A
@@ -34,6 +37,8 @@ class FactorPanels {
   void solve_one(double* x) const;
   template <int N>
   void solve_some(double* x) const;
+  bool factorise_triangle(const Panel& panel);
+  bool factorise_signed(const Panel& panel, Eigen::Index begin, Eigen::Index end);
   void update(const Panel& by, Eigen::Index from, Eigen::Index columns, const Panel& panel);
   Block triangle(const Panel& p) { return {values_.data() + p.values_at, p.width, p.width}; }
   Block below(const Panel& p) { return {values_.data() + p.values_at + p.width * p.width, p.rows, p.width}; }
@@ -48,7 +53,9 @@ class FactorPanels {
   std::vector<std::size_t> place_;                                       ///< among values_, per entry of A
   std::vector<Eigen::Index> place_of_row_;                               ///< per row of L: below the panel at hand
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order_;  ///< Q
-  Eigen::MatrixXd change_;
+  Eigen::Index negative_ = 0;                                            ///< of S
+  Eigen::VectorXd sign_, diagonal_;                                      ///< S and Q |diag A|; empty: S is 1
+  Eigen::MatrixXd change_, scaled_;
   mutable std::vector<double> ordered_, gathered_;
 };
 

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace glisson {
@@ -11,7 +12,8 @@ namespace {
 constexpr std::size_t kMostFactorised = 20000;  ///< tets up to which `automatic` factorises (docs/integrators.md)
 constexpr int kWornOut = 15;                    ///< iterations after which the factor is made anew
 constexpr int kMostIterations = 2000;
-constexpr double kAsymmetry = 1e-9;  ///< of an element's tangent, relative, up to which it counts as symmetric
+constexpr double kLeastModulus = 1e-9;  ///< of the largest at a vertex: one that is not positive counts as that
+constexpr double kAsymmetry = 1e-9;     ///< of an element's tangent, relative, up to which it counts as symmetric
 
 bool linear_tissue(const TissueBlock& block) {
   return block.tissue.has_small_strain() && block.tissue.has_constant_moduli();
@@ -118,12 +120,33 @@ int TangentSystem::place_in(int row, int column) const {
   return static_cast<int>(std::lower_bound(begin, end, row) - matrix_.innerIndexPtr());
 }
 
+/// Rows of the pressures, one for each vertex of each tissue that shares its volume changes.
+void TangentSystem::find_pressures() {
+  const Body& body = tissue_.body();
+  pressures_ = 0;
+  pressure_.clear();
+  for (const TissueBlock& block : body.blocks) {
+    if (block.tissue.volume_change != VolumeChange::average_nodal) continue;
+    pressure_.resize(body.elements.size(), {-1, -1, -1, -1});
+    std::vector<int> of_vertex(body.vertex_count, -1);
+    for (std::size_t e = block.begin; e < block.end; ++e) {
+      for (std::size_t a = 0; a < 4; ++a) {
+        int& row = of_vertex[body.elements[e][a]];
+        if (row < 0) row = unknowns_ + pressures_++;
+        pressure_[e][a] = row;
+      }
+    }
+  }
+}
+
 /// Which entries the lower triangle of A has on the free components, and where each element's go.
 void TangentSystem::find_pattern() {
   const Body& body = tissue_.body();
   number_.assign(free_.size(), -1);
-  int rows = 0;
-  for (std::size_t c = 0; c < free_.size(); ++c) number_[c] = free_[c] != 0 ? rows++ : -1;
+  unknowns_ = 0;
+  for (std::size_t c = 0; c < free_.size(); ++c) number_[c] = free_[c] != 0 ? unknowns_++ : -1;
+  find_pressures();
+  const int rows = unknowns_ + pressures_;
   std::vector<Eigen::Triplet<double>> entries;
   const auto visit = [&](auto&& act) {
     for (std::size_t e = 0; e < body.elements.size(); ++e) {
@@ -136,9 +159,18 @@ void TangentSystem::find_pattern() {
       }
     }
   };
-  visit([&](std::size_t, std::size_t, int row, int column) {
+  const auto visit_pressures = [&](auto&& act) {
+    for (std::size_t e = 0; e < pressure_.size(); ++e) {
+      for (std::size_t entry = 0; entry < 48; ++entry) {
+        const std::size_t c = entry % 12;
+        act(e, entry, pressure_[e][entry / 12], number_[3 * body.elements[e][c / 3] + c % 3]);
+      }
+    }
+  };
+  const auto take = [&](std::size_t, std::size_t, int row, int column) {
     if (column >= 0 && row >= column) entries.emplace_back(row, column, 0.0);
-  });
+  };
+  visit(take), visit_pressures(take);
   for (int r = 0; r < rows; ++r) entries.emplace_back(r, r, 0.0);
   matrix_.resize(rows, rows);
   matrix_.setFromTriplets(entries.begin(), entries.end());
@@ -146,6 +178,10 @@ void TangentSystem::find_pattern() {
   position_.resize(body.elements.size());
   visit([&](std::size_t e, std::size_t entry, int row, int column) {
     position_[e][entry] = column >= 0 && row >= column ? place(row, column) : -1;
+  });
+  pressure_position_.resize(pressure_.size());
+  visit_pressures([&](std::size_t e, std::size_t entry, int row, int column) {
+    pressure_position_[e][entry] = column >= 0 && row >= column ? place(row, column) : -1;
   });
   diagonal_position_.resize(static_cast<std::size_t>(rows));
   for (int r = 0; r < rows; ++r) diagonal_position_[static_cast<std::size_t>(r)] = place(r, r);
@@ -158,7 +194,7 @@ void TangentSystem::assemble(const TissueTangent& tangent) {
   double* values = matrix_.valuePtr();
   std::fill_n(values, matrix_.nonZeros(), 0.0);
   for (std::size_t e = 0; e < body.elements.size(); ++e) {
-    ElementTangent C = whole_tangent(tangent, e);
+    ElementTangent C = tangent.local[e];
     C = (0.5 * terms_.weight * (C + C.transpose())).eval();
     const std::array<Vec3d, 4> s = shape_gradients(body.rest[e]);
     for (std::size_t a = 0; a < 4; ++a) {
@@ -173,6 +209,38 @@ void TangentSystem::assemble(const TissueTangent& tangent) {
   }
   for (std::size_t c = 0; c < number_.size(); ++c) {
     if (number_[c] >= 0) values[diagonal_position_[static_cast<std::size_t>(number_[c])]] += diagonal_[c / 3][c % 3];
+  }
+}
+
+/// What couples displacements by pressures. A modulus that is not the same in all tets at a vertex is taken as their mean.
+void TangentSystem::assemble_pressures(const TissueTangent& tangent) {
+  const Body& body = tissue_.body();
+  double* values = matrix_.valuePtr();
+  std::vector<double> volume(static_cast<std::size_t>(pressures_)), along(volume.size()), square(volume.size());
+  for (std::size_t e = 0; e < pressure_.size(); ++e) {
+    if (pressure_[e][0] < 0) continue;
+    const Mat3d& rise = tangent.volume[e];
+    const double V = body.rest[e].volume;
+    const std::array<Vec3d, 4> s = shape_gradients(body.rest[e]);
+    std::array<Vec3d, 4> b;
+    for (std::size_t a = 0; a < 4; ++a) b[a] = (rise * s[a]) * (0.25 * V * terms_.weight);
+    for (std::size_t entry = 0; entry < 48; ++entry) {
+      const int at = pressure_position_[e][entry];
+      if (at >= 0) values[at] += b[entry % 12 / 3][entry % 3];
+    }
+    for (const int row : pressure_[e]) {
+      const auto at = static_cast<std::size_t>(row - unknowns_);
+      volume[at] += V;
+      along[at] += V * trace(transposed_product(tangent.pressure[e], rise));
+      square[at] += V * trace(transposed_product(rise, rise));
+    }
+  }
+  double largest = std::numeric_limits<float>::min();  // ν = 0: the pressures do nothing
+  for (std::size_t at = 0; at < volume.size(); ++at) largest = std::max(largest, along[at] / square[at]);
+  for (std::size_t at = 0; at < volume.size(); ++at) {
+    const double modulus = std::max(along[at] / square[at], kLeastModulus * largest);
+    values[diagonal_position_[static_cast<std::size_t>(unknowns_) + at]] -=
+        terms_.weight * volume[at] / (4.0 * modulus);
   }
 }
 
@@ -192,13 +260,14 @@ void TangentSystem::assemble_triangles() {
 
 bool TangentSystem::factorise(const TissueTangent& tangent) {
   assemble(tangent);
+  assemble_pressures(tangent);
   assemble_triangles();
   return take_factor();
 }
 
 bool TangentSystem::take_factor() {
   if (std::exchange(knows_entries_, true)) return factor_.factorise_again(matrix_);
-  return factor_.factorise(matrix_);
+  return factor_.factorise(matrix_, pressures_);
 }
 
 void TangentSystem::refresh() {
@@ -270,7 +339,7 @@ void TangentSystem::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) c
 }
 
 void TangentSystem::factor_solve(Eigen::MatrixXd& x) const {
-  packed_.resize(matrix_.rows(), x.cols());
+  packed_.setZero(matrix_.rows(), x.cols());
   for (std::size_t c = 0; c < number_.size(); ++c) {
     if (number_[c] >= 0) packed_.row(number_[c]) = x.row(static_cast<Eigen::Index>(c));
   }

@@ -5,6 +5,12 @@
 //
 // Only the preconditioner is assembled: a sparse Cholesky factor of A's symmetric part at some earlier state, kept
 // over iterations and steps until the iterations say that it has become bad; or the 3 × 3 blocks of A's diagonal.
+//
+// Tissue that shares its volume changes couples each vertex with its neighbours' neighbours. Its factor has the pressure q of each
+// vertex a as an unknown instead, which couples neighbours alone: with b_a = Σ ¼ V ∂ϑ/∂u, W_a = Σ V over its tets,
+//
+//   [ k K_own + diag(d)    k bᵀ       ] [ u ]   [ f ]
+//   [ k b               −k W/(4 κ)    ] [ q ] = [ 0 ]
 #pragma once
 
 #include <array>
@@ -75,7 +81,9 @@ class TangentSystem final : public StepFactor {
   using Matrix = Eigen::SparseMatrix<double>;
   void find_pattern();
   int place_in(int row, int column) const;
+  void find_pressures();
   void assemble(const TissueTangent& tangent);
+  void assemble_pressures(const TissueTangent& tangent);
   void assemble_triangles();
   bool factorise(const TissueTangent& tangent);
   bool take_factor();
@@ -95,10 +103,13 @@ class TangentSystem final : public StepFactor {
   mutable std::vector<Vec3d> x_, y_;
 
   // factorised
-  std::vector<int> number_;                     ///< per component: its row among the free ones, −1
-  Matrix matrix_;                               ///< lower triangle
-  std::vector<std::array<int, 144>> position_;  ///< per element: where its entries are in the matrix, −1
-  std::vector<int> diagonal_position_;          ///< per row
+  std::vector<int> number_;                   ///< per component: its row among the free ones, −1
+  std::vector<std::array<int, 4>> pressure_;  ///< per element: rows of its vertices' pressures; empty: no tissue shares
+  int unknowns_ = 0, pressures_ = 0;          ///< rows of displacements, and of pressures after them
+  Matrix matrix_;                             ///< lower triangle
+  std::vector<std::array<int, 144>> position_;          ///< per element: where its entries are in the matrix, −1
+  std::vector<std::array<int, 48>> pressure_position_;  ///< those of pressures; empty where pressure_ is
+  std::vector<int> diagonal_position_;                  ///< per row
   FactorPanels factor_;
   bool knows_entries_ = false;  ///< the factor has been made for this pattern
   mutable Eigen::MatrixXd packed_, moved_;
