@@ -10,7 +10,7 @@ namespace glisson {
 namespace {
 
 constexpr int kMostRounds = 10;      ///< of several interactions, each with the forces of the others
-constexpr std::size_t kAtATime = 8;  ///< means whose columns are found in one pass over the factor
+constexpr std::size_t kAtATime = 8;  ///< vertices or means whose columns are found in one go
 constexpr double kAgreed = 1e-5;     ///< change of a force in a round, of the largest, at which they agree
 
 /// What a mean is known by.
@@ -114,6 +114,7 @@ bool StepContact::begin(double h, std::span<const Vec3d> u, bool mass_matters) {
   if (!newcomers.empty()) activate(newcomers);
   reached_ = backup();
   at_places_.clear();  // the order in which columns come is that of this step, whatever was before
+  asked_before_.swap(asked_), asked_.clear();
   std::erase_if(means_, [](const auto& mean) { return !mean.second.used; });
   for (auto& [key, mean] : means_) mean.used = false;
   if (mass_matters && h != factor_h_) system_.renew();
@@ -153,6 +154,7 @@ std::span<const TriangleStiffness> StepContact::stiffness() {
 void StepContact::forget_columns() {
   factor_ = system_.factor_number();
   columns_.clear(), at_places_.clear(), means_.clear();
+  asked_before_.swap(asked_), asked_.clear();
   responses_.assign(responses_.size(), {});
 }
 
@@ -308,14 +310,25 @@ std::array<double, 3> StepContact::lost_at(std::span<const Vec3d> v, double Inte
   return lost_by(tools, [&](std::size_t k) { return v[active_[k].vertex]; });
 }
 
-/// Displacements by unit forces at a vertex, 0 where it is held.
+/// Displacements by unit forces at a vertex, 0 where it is held. With one that is not known others are found that the last factor
+/// was asked for: a pass over the factor then serves several.
 const StepContact::Column& StepContact::column(std::uint32_t vertex) {
-  const auto [at, fresh] = columns_.try_emplace(vertex);
-  if (!fresh) return at->second;
-  Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(3 * state_.body.vertex_count), 3);
-  for (Eigen::Index axis = 0; axis < 3; ++axis) moved(3 * static_cast<Eigen::Index>(vertex) + axis, axis) = 1.0;
+  asked_.insert(vertex);
+  if (const auto at = columns_.find(vertex); at != columns_.end()) return at->second;
+  std::vector<std::uint32_t> fresh{vertex};
+  for (const std::uint32_t v : asked_before_) {
+    if (fresh.size() == kAtATime) break;
+    if (v != vertex && columns_.count(v) == 0) fresh.push_back(v);
+  }
+  Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(3 * state_.body.vertex_count),
+                                                static_cast<Eigen::Index>(3 * fresh.size()));
+  for (std::size_t k = 0; k < 3 * fresh.size(); ++k) {
+    moved(static_cast<Eigen::Index>(3 * fresh[k / 3] + k % 3), static_cast<Eigen::Index>(k)) = 1.0;
+  }
   system_.factor_solve(moved);
-  return at->second = moved;
+  for (std::size_t k = 0; k < fresh.size(); ++k)
+    columns_[fresh[k]] = moved.middleCols<3>(static_cast<Eigen::Index>(3 * k));
+  return columns_[vertex];
 }
 
 /// Displacements by unit forces on a mean of vertices, once find_columns() has them.

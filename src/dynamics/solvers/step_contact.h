@@ -13,6 +13,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -139,6 +140,8 @@ class StepContact final : public StepCompliance {
   bool agrees_ = true;
   std::uint64_t factor_ = 0;                 ///< that the columns are of
   std::map<std::uint32_t, Column> columns_;  ///< per vertex: displacement of all components by a unit force [m/N]
+  std::set<std::uint32_t> asked_,
+      asked_before_;  ///< vertices whose columns were wanted with this factor in this step, and before that
   std::map<std::vector<std::pair<std::uint32_t, double>>, MeanColumn> means_;  ///< the same by one on a mean
   std::vector<char> pushes_means_;                                             ///< per interaction
   std::vector<Response> responses_;                                            ///< per interaction, as last asked for
