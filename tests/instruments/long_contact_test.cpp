@@ -154,6 +154,26 @@ INSTANTIATE_TEST_SUITE_P(
                     Press{"PlateOnRubber", Plate{}, 0.006, 0.2, true, 8}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
+// Nearly incompressible tissue whose vertices share their volume changes: the force of the explicit scheme at rest, within 1 %. On cells
+// of 5 mm the two kinds of step are 4 % apart, implicit and quasi_static 0.05 %.
+TEST(LongContact, PressesTissueOfAveragedVolumeChanges) {
+  Tissue t = tissue();
+  t.poisson_ratio = 0.49, t.volume_change = VolumeChange::average_nodal;
+  const auto path = down(0.004, 0.2);
+  Pressed explicitly(Integrator::central_difference, 0.0, t, Ball{0.01}, 0.0, path, 12);
+  test::advance_to(explicitly.body, 0.5);
+  EXPECT_LT(explicitly.force().z, -0.1);
+  for (const Integrator integrator : {Integrator::implicit, Integrator::quasi_static}) {
+    Pressed p(integrator, 0.04, t, Ball{0.01}, 0.0, path, 12);
+    while (p.body.time() < 0.5) {
+      const StepResult r = p.body.step();
+      ASSERT_TRUE(r.made()) << r.message;
+    }
+    EXPECT_NEAR(p.force().z, explicitly.force().z, 0.01 * norm(explicitly.force())) << word_of(integrator);
+    EXPECT_NEAR(p.body.energies().imbalance(), 0.0, 1e-6 * p.body.energies().work_tools) << word_of(integrator);
+  }
+}
+
 // A punch that stands brings no energy in, however many steps it stands: triangles that come to bear in turn are not pushed out.
 // They were, and contact had given 1.1 times the tools' work after 50 steps of 10 ms.
 TEST(LongContact, CreatesNoEnergyAtRest) {

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostFactorised = 20000;  ///< tets up to which `automatic` factorises (docs/integrators.md)
 constexpr int kWornOut = 15;                    ///< iterations after which the factor is made anew
 constexpr int kMostIterations = 2000;
-constexpr double kLeastModulus = 1e-9;  ///< of the largest at a vertex: one that is not positive counts as that
+constexpr double kLeastModulus = 1e-9;  ///< of the largest of all vertices: one that is not positive counts as that
 constexpr double kAsymmetry = 1e-9;     ///< of an element's tangent, relative, up to which it counts as symmetric
 
 bool linear_tissue(const TissueBlock& block) {
