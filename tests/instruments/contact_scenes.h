@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <memory>
 
@@ -48,20 +49,34 @@ inline Mat3d rotation(const Vec3d& k, double angle) {
 /// Turned over: what is drawn above the tissue lies below it.
 inline Mat3d upside_down() { return rotation({1.0, 0.0, 0.0}, std::acos(-1.0)); }
 
-/// An integrator in steps of h; the explicit one, to compare with, in double and in steps of its own.
+/// A step of the explicit scheme in which triangles come to bear one after the other as they do in the limit: in its own, up to twelve times
+/// as long on coarse cells, contact is up to 2 % softer [s].
+inline constexpr double kShortStep = 1e-4;
+
+/// An integrator in steps of h; the explicit one, to compare with, in double and in steps of its own, or in short ones.
 inline SimulationOptions in_steps_of(Integrator integrator, double h) {
   SimulationOptions o;
   o.integrator = integrator;
-  if (capabilities(integrator).any_step_is_stable) {
-    o.step = h;
-  } else {
-    o.precision = Precision::double_precision;
-  }
+  const bool any = capabilities(integrator).any_step_is_stable;
+  if (any || h == kShortStep) o.step = h;
+  if (!any) o.precision = Precision::double_precision;
   return o;
 }
 
 inline void advance_to(Simulation& s, double time) {
   while (s.time() < time) ASSERT_EQ(s.step().status, StepStatus::ok);
+}
+
+/// Mean of what is asked in the steps up to a time: in short steps tissue at rest trembles under triangles that bear in turn.
+template <class Asked>
+auto mean_up_to(double time, Simulation& s, const Asked& asked) {
+  auto sum = asked();
+  int count = 1;
+  for (; s.time() < time; ++count) {
+    advance_to(s, std::nextafter(s.time(), time));
+    sum = sum + asked();
+  }
+  return sum * (1.0 / count);
 }
 
 inline Vec3d momentum(const Simulation& s) {

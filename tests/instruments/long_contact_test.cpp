@@ -107,17 +107,17 @@ void PrintTo(const Press& p, std::ostream* out) { *out << p.name; }
 
 class LongPress : public testing::TestWithParam<Press> {};
 
-// By 0.3 of the slab's height: the force of a tool that has come to rest under the explicit scheme, in 25 steps of `implicit` and in 12 of
-// statics, within 1 %. On cells of 5 mm a ball, which rests on a few triangles there, is 1.5 % off in linear tissue and 2.4 % in rubber. The
-// ledger closes, contact takes no more than 5 % of the tools' work, and in statics the support takes what the tool exerts.
+// By 0.3 of the slab's height: the force of a tool that has come to rest under the explicit scheme in short steps, in 25 steps of `implicit`
+// and in 12 of statics, within 2 %. The ledger closes, contact takes no more than 5 % of the tools' work, and in statics the support takes
+// what the tool exerts.
 TEST_P(LongPress, HasTheForceOfTheExplicitScheme) {
   const Press& c = GetParam();
   Tissue t = tissue();
   if (c.hyperelastic) t.hyperelastic = NeoHookean{.mu = 2000.0, .bulk_modulus = 8000.0};
   const auto path = down(c.depth, 0.5);
-  Pressed explicitly(Integrator::central_difference, 0.0, t, c.shape, c.friction, path, c.cells);
-  test::advance_to(explicitly.body, 1.0);
-  const Vec3d reference = explicitly.force();
+  Pressed explicitly(Integrator::central_difference, test::kShortStep, t, c.shape, c.friction, path, c.cells);
+  test::advance_to(explicitly.body, 0.65);
+  const Vec3d reference = test::mean_up_to(0.75, explicitly.body, [&] { return explicitly.force(); });
   EXPECT_LT(reference.z, -0.1);
   for (const Integrator integrator : {Integrator::implicit, Integrator::quasi_static}) {
     Pressed p(integrator, integrator == Integrator::implicit ? 0.04 : 0.05, t, c.shape, c.friction, path, c.cells);
@@ -127,7 +127,7 @@ TEST_P(LongPress, HasTheForceOfTheExplicitScheme) {
       ASSERT_TRUE(r.made()) << r.message;
     }
     const double error = p.force().z / reference.z - 1.0;
-    EXPECT_LT(std::abs(error), 0.01) << word_of(integrator);
+    EXPECT_LT(std::abs(error), 0.02) << word_of(integrator);
     RecordProperty(std::string(word_of(integrator)) + "_percent", std::to_string(100.0 * error));
     const Energies e = p.body.energies();
     EXPECT_GT(e.work_tools, 0.0);

@@ -56,18 +56,18 @@ struct Experiment {
 
 class LongContainer : public testing::TestWithParam<ContainerOptions> {};
 
-// At rest, after 20 steps of 20 ms: the tool's force and the loads on bottom and side are the explicit scheme's within 1 % of the force,
-// and balance within 0.1 %. The ledger closes.
+// At rest, after 20 steps of 20 ms: the tool's force and the loads on bottom and side are the explicit scheme's in short steps within 1.5 % of
+// the force, and balance within 0.1 %. The ledger closes.
 TEST_P(LongContainer, BearsAsInTheExplicitScheme) {
-  Experiment reference(Integrator::central_difference, 0.0, GetParam());
+  Experiment reference(Integrator::central_difference, test::kShortStep, GetParam());
   reference.run_to(0.4);
   const double force = -reference.force();
   EXPECT_GT(force, 0.1);
   Experiment e(Integrator::implicit, 0.02, GetParam());
   e.run_to(0.4);
-  EXPECT_NEAR(e.force(), -force, 0.01 * force);
-  EXPECT_NEAR(e.loads().bottom.z, reference.loads().bottom.z, 0.01 * force);
-  EXPECT_NEAR(e.loads().side.z, reference.loads().side.z, 0.01 * force);
+  EXPECT_NEAR(e.force(), -force, 0.015 * force);
+  EXPECT_NEAR(e.loads().bottom.z, reference.loads().bottom.z, 0.015 * force);
+  EXPECT_NEAR(e.loads().side.z, reference.loads().side.z, 0.015 * force);
   EXPECT_NEAR(e.loads().side_radial, reference.loads().side_radial, 0.02 * std::abs(reference.loads().side_radial));
   EXPECT_NEAR(e.force(), e.loads().total().z, 1e-3 * force);
   EXPECT_NEAR(e.body.energies().imbalance(), 0.0, 1e-6 * e.body.energies().work_tools);
