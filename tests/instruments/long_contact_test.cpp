@@ -101,7 +101,6 @@ struct Press {
   double depth, friction;
   bool hyperelastic;
   int cells;  ///< along the slab
-  double within = 0.01;
 };
 
 void PrintTo(const Press& p, std::ostream* out) { *out << p.name; }
@@ -109,7 +108,8 @@ void PrintTo(const Press& p, std::ostream* out) { *out << p.name; }
 class LongPress : public testing::TestWithParam<Press> {};
 
 // By 0.3 of the slab's height: the force of a tool that has come to rest under the explicit scheme in short steps, in 25 steps of `implicit`
-// and in 12 of statics, within 1 %; tools that rub, and a punch, within 2 %. The ledger closes, contact takes no more than 5 % of the tools' work, and in statics the support takes
+// and in 12 of statics, and of the explicit scheme in its own step, within 1 %; held at one point a triangle, an edge of a fifth of a cell
+// was 7 to 18 % too soft. Under the block sweeps do not end, and statics found no balance while its forces went on changing. The ledger closes, contact takes no more than 5 % of the tools' work, and in statics the support takes
 // what the tool exerts.
 TEST_P(LongPress, HasTheForceOfTheExplicitScheme) {
   const Press& c = GetParam();
@@ -120,6 +120,11 @@ TEST_P(LongPress, HasTheForceOfTheExplicitScheme) {
   test::advance_to(explicitly.body, 0.65);
   const Vec3d reference = test::mean_up_to(0.75, explicitly.body, [&] { return explicitly.force(); });
   EXPECT_LT(reference.z, -0.1);
+  Pressed own(Integrator::central_difference, 0.0, t, c.shape, c.friction, path, c.cells);
+  test::advance_to(own.body, 0.65);
+  const Vec3d in_own_steps = test::mean_up_to(0.75, own.body, [&] { return own.force(); });
+  EXPECT_LT(std::abs(in_own_steps.z / reference.z - 1.0), 0.01);
+  RecordProperty("own_step_percent", std::to_string(100.0 * (in_own_steps.z / reference.z - 1.0)));
   for (const Integrator integrator : {Integrator::implicit, Integrator::quasi_static}) {
     Pressed p(integrator, integrator == Integrator::implicit ? 0.04 : 0.05, t, c.shape, c.friction, path, c.cells);
     const double end = integrator == Integrator::implicit ? 1.0 : 0.6;
@@ -128,7 +133,7 @@ TEST_P(LongPress, HasTheForceOfTheExplicitScheme) {
       ASSERT_TRUE(r.made()) << r.message;
     }
     const double error = p.force().z / reference.z - 1.0;
-    EXPECT_LT(std::abs(error), c.within) << word_of(integrator);
+    EXPECT_LT(std::abs(error), 0.01) << word_of(integrator);
     RecordProperty(std::string(word_of(integrator)) + "_percent", std::to_string(100.0 * error));
     const Energies e = p.body.energies();
     EXPECT_GT(e.work_tools, 0.0);
@@ -145,13 +150,15 @@ TEST_P(LongPress, HasTheForceOfTheExplicitScheme) {
 
 INSTANTIATE_TEST_SUITE_P(
     Tools, LongPress,
-    testing::Values(
-        Press{"Punch", FlatPunch{.radius = 0.008, .edge_radius = 0.002}, 0.006, 0.0, false, 8, 0.02},
-        Press{"Ball", Ball{0.01}, 0.007, 0.0, false, 12}, Press{"BallOnRubber", Ball{0.01}, 0.007, 0.0, true, 12},
-        Press{"BlockOnRubber", Block{.size = {0.015, 0.015, 0.02}, .edge_radius = 0.003}, 0.006, 0.0, true, 8},
-        Press{"RubbingBall", Ball{0.01}, 0.007, 0.3, false, 12, 0.02},
-        Press{"RubbingPunch", FlatPunch{.radius = 0.008, .edge_radius = 0.002}, 0.006, 0.3, false, 12, 0.02},
-        Press{"PlateOnRubber", Plate{}, 0.006, 0.2, true, 8}),
+    testing::Values(Press{"Punch", FlatPunch{.radius = 0.008, .edge_radius = 0.002}, 0.006, 0.0, false, 8},
+                    Press{"Edge", FlatPunch{.radius = 0.006, .edge_radius = 0.001}, 0.006, 0.0, false, 8},
+                    Press{"Ball", Ball{0.01}, 0.007, 0.0, false, 12},
+                    Press{"BallOnRubber", Ball{0.01}, 0.007, 0.0, true, 12},
+                    Press{"BlockOnRubber", Block{.size = {0.015, 0.015, 0.02}, .edge_radius = 0.003}, 0.006, 0.0, true,
+                          12},
+                    Press{"RubbingBall", Ball{0.01}, 0.007, 0.3, false, 12},
+                    Press{"RubbingPunch", FlatPunch{.radius = 0.008, .edge_radius = 0.002}, 0.006, 0.3, false, 12},
+                    Press{"PlateOnRubber", Plate{}, 0.006, 0.2, true, 8}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 // Nearly incompressible tissue whose vertices share their volume changes: the force of the explicit scheme at rest, within 1 %. On cells

@@ -130,7 +130,7 @@ std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
   s.solid.earlier = s.solid.before, s.solid.last_h = s.last_h;
   s.solid.before = before_, s.solid.after = pose_;
   s.last_h = h;
-  s.trial.clear();
+  s.trial.clear(), s.unsettled = 0;
   const std::optional<Vec3d> free = free_end();
   if (!free) return s.reach.ask({&s.solid, 1}, h);
   std::array<ContactSolid, 2> ways{s.solid, s.solid};
@@ -148,10 +148,11 @@ void ContactTool::add_forces(const InteractionStep& step) { state_->books.begin(
 void ContactTool::constrain(const InteractionStep& step) {
   State& s = *state_;
   forces_ = {};
-  s.rows.clear(), s.bond_impulses.clear(), s.pressed.clear(), s.exerted.clear(), s.effort = {};
-  if (s.lost) return;
+  s.bond_impulses.clear();
+  if (s.lost) return s.bear_nothing();
   if (step.compliance != nullptr) {
     take_trial();
+    if (s.solid.after.position != pose_.position) s.unsettled = 0;
     s.solid.after = pose_;
     s.effort.sweeps = s.solve_long(step);
   } else {

@@ -9,7 +9,7 @@ namespace glisson {
 namespace {
 
 constexpr int kMostSweeps = 60;
-constexpr int kMostLongSweeps = 1000;  // in a long step, where all points move one another
+constexpr int kMostSweepsBetween = 45;  // with triangles, whose points are looked for up to three times
 // Friction from which on two walls at right angles can hold a point by pressing and pulling it.
 constexpr double kJams = 1.0;
 constexpr char kMostReleases = 3;   // of a row: a corner in which it is let go and wanted again in turn needs both
@@ -35,10 +35,6 @@ ShapeDistance distance_of(const ContactRow& row, const Vec3d& y) {
 }
 
 double phi(const ContactRow& row, const Vec3d& y) { return distance_of(row, y).distance; }
-
-Corners between(const Corners& a, const Corners& b, double share) {
-  return {a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share, a[2] + (b[2] - a[2]) * share};
-}
 
 /// Where the vertices of a row are in the frame of the solid.
 Corners at_start(const ContactRow& row) {
@@ -105,12 +101,6 @@ bool meets(ContactRow& row, const Vec3d& end) {
   const ShapeDistance d = distance_of(row, y);
   row.n = d.normal, row.face = y - row.n * d.distance;
   return d.distance <= reach;
-}
-
-/// The weights of the point of a triangle that is to be held: its deepest at the end, or where a fast one first enters.
-void choose_point(ContactRow& row, const Corners& start, const Corners& end, double share) {
-  double depth = 0.0;
-  row.weights = deepest(*row.solid->shape, share < 1.0 ? between(start, end, share) : end, depth);
 }
 
 /// Impulse along the normal that the point needs if it is to end at `level`, and no less than none.
@@ -282,10 +272,9 @@ double ContactSolid::tolerance() const { return std::isfinite(traits.thickness) 
 
 Vec3d end_of(const ContactRow& row, const InteractionStep& step) { return mean(row, at_end(row, step)); }
 
-bool prepare(ContactRow& row, const InteractionStep& step, double share) {
+bool prepare(ContactRow& row, const InteractionStep& step) {
   for (std::uint32_t i = 0; i < row.count; ++i) row.origins[i] = step.position(row.places[i]);
   const Corners start = at_start(row), end = at_end(row, step);
-  if (row.count == 3) choose_point(row, start, end, share);
   row.start = mean(row, start);
   row.origin = mean(row, row.origins);
   if (!meets(row, mean(row, end))) return false;
@@ -323,7 +312,8 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step) {
   std::uint32_t clock = 1;
   std::vector<std::uint32_t> pushed(step.vertices.size(), clock), seen(rows.size(), 0);
   const bool is_long = step.compliance != nullptr;
-  const int most = is_long ? kMostLongSweeps : kMostSweeps;
+  const bool between = !rows.empty() && rows.back().count == 3;  // triangles come last
+  const int most = is_long ? kMostLongSweeps : between ? kMostSweepsBetween : kMostSweeps;
   // A vertex in a corner that sticks to one wall needs nothing of another: they could only press and pull it against each other, as
   // far as they happen to. In a short step the first one's impulse leaves the other nothing to do.
   std::vector<std::size_t> holder(is_long ? step.vertices.size() : 0, rows.size());

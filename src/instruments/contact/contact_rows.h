@@ -22,6 +22,9 @@
 
 namespace glisson {
 
+/// Sweeps of a long step at most: all points move one another there.
+inline constexpr int kMostLongSweeps = 1000;
+
 /// A rigid solid during a step.
 struct ContactSolid {
   const Shape* shape = nullptr;
@@ -42,6 +45,7 @@ struct ContactRow {
   std::array<std::uint32_t, 3> places{};  ///< among the vertices at hand
   std::array<double, 3> weights{1.0, 0.0, 0.0};
   std::uint32_t count = 1;  ///< 1: a vertex, 3: a point of a triangle
+  bool again = false;       ///< its triangle has another row before it
   const ContactSolid* solid = nullptr;
 
   std::array<Vec3d, 3> origins{};  ///< of the vertices at time t, in space [m]
@@ -70,10 +74,9 @@ struct ContactRow {
 /// Where the point is in the frame of the solid at the end of the step, with the present velocities.
 Vec3d end_of(const ContactRow& row, const InteractionStep& step);
 
-/// Looks where a vertex, or the deepest point of a triangle, meets the solid.
-/// @param share  of the way at which a triangle's deepest point is taken; 1: at the end
+/// Looks where a vertex, or a point of a triangle, meets the solid.
 /// @return false where it does not come near, or cannot be moved
-bool prepare(ContactRow& row, const InteractionStep& step, double share = 1.0);
+bool prepare(ContactRow& row, const InteractionStep& step);
 
 /// Holds a vertex at a place in the frame of the solid.
 void prepare_bond(ContactRow& row, const Vec3d& anchor, const InteractionStep& step);

@@ -15,14 +15,26 @@ namespace {
 constexpr double kTouch = 1e-6;       // of the body's size: tissue so near to a tool that bonds touches
 constexpr double kAllowance = 0.01;   // of its longest edge: a triangle may be so deep inside between its corners …
 constexpr double kMostAllowed = 0.1;  // … and so much of the thickness
-constexpr int kMostRounds = 12;       // of looking for points that come inside in a long step
-constexpr double kStride = 0.25;      // of the thickness: a fast triangle is looked at so often on its way
+constexpr double kDeeper = 0.02;      // of that: a point so much deeper than those held is held, too …
+constexpr double kLongDeeper = 0.1;   // … in a long step, where points that are close give each other their load …
+constexpr std::uint32_t kMostPoints = 3;  // … up to so many of a triangle
+constexpr int kMostRounds = 12;           // of looking for points that come inside in a long step …
+constexpr int kMostShortRounds = 3;       // … and for those of triangles in a short one
+constexpr int kMostUnsettled = 5;         // iterations of a long step whose sweeps come to their limit
+constexpr double kStride = 0.25;          // of the thickness: a fast triangle is looked at so often on its way
 constexpr int kMostStrides = 200;
 
 /// What a row is known by from one step or iteration to the next: the corners of its triangle, or three times its vertex.
 Triangle key_of(const ContactRow& row, const InteractionStep& step) {
   const auto vertex = [&](std::size_t i) { return step.vertices[row.places[row.count == 3 ? i : 0]].vertex; };
   return {vertex(0), vertex(1), vertex(2)};
+}
+
+/// The point of these weights; null where there is none.
+template <class Points>
+auto* find(Points& points, const std::array<double, 3>& weights) {
+  const auto at = std::find_if(points.begin(), points.end(), [&](const auto& p) { return p.weights == weights; });
+  return at != points.end() ? &*at : nullptr;
 }
 
 }  // namespace
@@ -36,10 +48,17 @@ void ContactTool::State::measure(std::size_t i, const InteractionStep& step) {
 }
 
 void ContactTool::State::begin_vertices(const InteractionStep&) {
+  rows.clear(), effort = {};
   const std::size_t count = reach.vertices().size();
   starts.resize(count), ends.resize(count), at_ends.resize(count);
-  pressed.assign(count, 0.0), exerted.assign(count, Vec3d{}), has_row.assign(count, 0);
+  pressed.assign(count, 0.0), exerted.assign(count, Vec3d{}), has_row.assign(count, 0), moves.assign(count, 0);
   touched.clear();
+  held.assign(reach.triangles().size(), {});
+}
+
+void ContactTool::State::bear_nothing() {
+  rows.clear(), pressed.clear(), exerted.clear();
+  effort = {};
 }
 
 /// Finds the vertices that meet the tool and have no row yet. @return how many
@@ -55,22 +74,33 @@ std::size_t ContactTool::State::add_vertices(const InteractionStep& step) {
     row.places[0] = step.place_of[mine[i]];
     row.solid = &solid;
     found_inside.mark(row, mine[i], 0, starts[i], begun);
-    if (prepare(row, step)) rows.push_back(row), touched.push_back(i), has_row[i] = 1;
+    if (prepare(row, step)) rows.push_back(row), touch(i), has_row[i] = 1;
     found_inside.settle(row, mine[i], 0);
   }
   begun = true;
   return rows.size() - before;
 }
 
+/// A row moves the vertex.
+void ContactTool::State::touch(std::uint32_t i) {
+  if (moves[i] == 0) touched.push_back(i), moves[i] = 1;
+}
+
+/// Vertices first, then triangles that are inside between them, then other points of these: held at one point alone a triangle under an edge
+/// would tilt, and be held at the next point only in the next step.
 void ContactTool::State::solve_short(const InteractionStep& step) {
   begin_vertices(step);
   add_vertices(step);
   effort.vertices = rows.size();
   if (!rows.empty()) effort.sweeps = books.solve(rows, step);
-  if (solid.traits.presses_between) add_triangles(step);
+  for (int round = 0; round < kMostShortRounds && solid.traits.presses_between; ++round) {
+    const std::size_t before = rows.size();
+    add_triangles(round > 0, step);
+    if (rows.size() == before) break;
+    begin_rows(before, step);
+    effort.sweeps += books.solve(rows, step);
+  }
   effort.triangles = rows.size() - effort.vertices;
-  begin_triangles(step);
-  if (effort.triangles > 0) effort.sweeps += books.solve(rows, step);
   effort.corrected = books.corrected();
   books.close(rows, step);
 }
@@ -87,45 +117,104 @@ void ContactTool::State::add_bonds(const InteractionStep& step) {
   }
 }
 
-/// Begins with what the row had in the last iteration, or with the force of the last step.
-void ContactTool::State::begin_row(ContactRow& row, const InteractionStep& step) const {
-  const Triangle key = key_of(row, step);
-  if (!trial.empty()) {
-    if (const auto at = trial.find(key); at != trial.end())
-      row.pressing = at->second.first, row.rubbing = at->second.second;
-  } else if (const auto at = last_pressing.find(key); at != last_pressing.end()) {
-    row.pressing = at->second * step.h;
-  } else if (const auto bond = last_bonds.find(key[0]); row.bonded && bond != last_bonds.end()) {
-    row.take(bond->second * step.h);
+/// Rows begin with what they had in the last iteration; in the first with the force of the last step, a triangle's all at its first point.
+/// Only when all rows have been found, as they look at where the free way ends.
+void ContactTool::State::begin_rows(std::size_t first, const InteractionStep& step) {
+  for (ContactRow& row : std::span(rows).subspan(first)) {
+    const Triangle key = key_of(row, step);
+    if (!trial.empty()) {
+      const auto known = trial.find(key);
+      const BearingPoint* point = known != trial.end() ? find(known->second, row.weights) : nullptr;
+      if (point != nullptr) row.pressing = point->pressing, row.rubbing = point->rubbing;
+    } else if (row.bonded) {
+      if (const auto bond = last_bonds.find(key[0]); bond != last_bonds.end()) row.take(bond->second * step.h);
+    } else if (const auto last = last_pressing.find(key); last != last_pressing.end() && !row.again) {
+      row.pressing = last->second * step.h;
+    }
+    if (row.impulse() != Vec3d{}) push(row, step, row.impulse());
   }
-  if (row.pressing > 0.0 || row.bonded) push(row, step, row.impulse());
+}
+
+/// Points of triangles that earlier iterations of this step have found: were they found anew in each, their rows would come and go, and
+/// iterations not end.
+void ContactTool::State::hold_again(const InteractionStep& step) {
+  const std::span<const std::uint32_t> mine = reach.vertices();
+  for (std::size_t k = 0; k < reach.triangles().size() && !trial.empty(); ++k) {
+    const Triangle& t = reach.triangles()[k];
+    const auto known = trial.find({mine[t[0]], mine[t[1]], mine[t[2]]});
+    if (known == trial.end() || is_bonded_at(t)) continue;
+    const double allowance = allowance_of(longest_of(t));
+    for (const BearingPoint& point : known->second) hold(k, point.weights, allowance, step);
+  }
+}
+
+/// Holds a point of a triangle. @return whether the tool meets it
+bool ContactTool::State::hold(std::size_t triangle, const std::array<double, 3>& weights, double allowance,
+                              const InteractionStep& step) {
+  const Triangle& t = reach.triangles()[triangle];
+  HeldTriangle& h = held[triangle];
+  ContactRow row;
+  for (std::size_t i = 0; i < 3; ++i) row.places[i] = step.place_of[reach.vertices()[t[i]]];
+  row.count = 3, row.solid = &solid, row.allowance = allowance, row.weights = weights, row.again = h.points > 0;
+  if (!prepare(row, step)) return false;
+  rows.push_back(row);
+  ++h.points, h.level = std::min(h.level, row.level);
+  for (const std::uint32_t i : t) touch(i);
+  return true;
 }
 
 /// All rows of a long step. Points move one another, so that those that come inside by it are looked for until there are
 /// none: vertices first, as in a short step. @return sweeps
 int ContactTool::State::solve_long(const InteractionStep& step) {
+  if (unsettled == kMostUnsettled) {
+    exert_again(step);
+    return effort.sweeps;
+  }
   begin_vertices(step);
-  triangle_has_row.assign(reach.triangles().size(), 0);
-  int sweeps = 0;
+  int sweeps = 0, last = 0;
   add_bonds(step);
   add_vertices(step);
+  effort.vertices = rows.size();
+  if (solid.traits.presses_between) hold_again(step);
+  effort.triangles = rows.size() - effort.vertices;
   std::size_t fresh = rows.size();
-  effort.vertices = fresh;
   for (int round = 0; round < kMostRounds && (fresh > 0 || round == 0); ++round) {
-    for (std::size_t k = rows.size() - fresh; k < rows.size(); ++k) begin_row(rows[k], step);
-    if (!rows.empty()) sweeps += glisson::solve(rows, step);
+    begin_rows(rows.size() - fresh, step);
+    last = rows.empty() ? 0 : glisson::solve(rows, step);
+    sweeps += last;
     step.compliance->settle(step.vertices);
     fresh = add_vertices(step);
     effort.vertices += fresh;
     if (fresh > 0 || !solid.traits.presses_between) continue;
     const std::size_t before = rows.size();
-    add_triangles(step);
+    add_triangles(false, step);
     fresh = rows.size() - before;
     effort.triangles += fresh;
   }
-  trial.clear();
-  for (const ContactRow& row : rows) trial[key_of(row, step)] = {row.pressing, row.rubbing};
+  remember(step);
+  if (last == kMostLongSweeps) ++unsettled;
   return sweeps;
+}
+
+/// The same impulses again. Points close to each other may go on giving their load to one another, while the force changes by some 1e-4 of
+/// itself: with forces that change no balance would be found. With these it is, and points are off by what the last sweep moved them.
+void ContactTool::State::exert_again(const InteractionStep& step) {
+  pressed.assign(pressed.size(), 0.0), exerted.assign(exerted.size(), Vec3d{});
+  for (const ContactRow& row : rows) push(row, step, row.impulse());
+  step.compliance->settle(step.vertices);
+}
+
+/// Keeps what the rows of an iteration had for the next. Points that were not met this time stay.
+void ContactTool::State::remember(const InteractionStep& step) {
+  for (auto& [key, points] : trial) {
+    for (BearingPoint& point : points) point.pressing = 0.0, point.rubbing = {};
+  }
+  for (const ContactRow& row : rows) {
+    std::vector<BearingPoint>& points = trial[key_of(row, step)];
+    BearingPoint* point = find(points, row.weights);
+    if (point == nullptr) point = &points.emplace_back(BearingPoint{.weights = row.weights});
+    point->pressing = row.pressing, point->rubbing = row.rubbing;
+  }
 }
 
 /// @throws std::invalid_argument naming how deep the tool is inside the body
@@ -145,29 +234,46 @@ void ContactTool::State::require_outside(const BodyView& body, const Pose& pose,
       detail::number_text(1e3 * back.z) + ") mm or more, or take integrator = " + supporting_integrators());
 }
 
-void ContactTool::State::add_triangles(const InteractionStep& step) {
+/// Looks for triangles that the tool enters between their corners, deeper than where they are held already.
+/// @param moved  only among those that rows move
+void ContactTool::State::add_triangles(bool moved, const InteractionStep& step) {
   const bool is_long = step.compliance != nullptr;
   if (!is_long) {  // in a long step all have just been measured
     for (const std::uint32_t i : touched) measure(i, step);
   }
   for (std::size_t k = 0; k < reach.triangles().size(); ++k) {
     const Triangle& t = reach.triangles()[k];
-    if (is_long && (triangle_has_row[k] != 0 || is_bonded_at(t))) continue;
-    double longest = 0.0, farthest = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3d edge = ends[t[(i + 1) % 3]] - ends[t[i]], way = ends[t[i]] - starts[t[i]];
-      longest = std::max(longest, dot(edge, edge)), farthest = std::max(farthest, dot(way, way));
+    if (moved && (moves[t[0]] | moves[t[1]] | moves[t[2]]) == 0) continue;
+    if (held[k].points >= kMostPoints || (is_long && is_bonded_at(t))) continue;
+    const double longest = longest_of(t);
+    double farthest = 0.0;
+    for (const std::uint32_t i : t) {
+      const Vec3d way = ends[i] - starts[i];
+      farthest = std::max(farthest, dot(way, way));
     }
     const double apart = std::max({at_ends[t[0]], at_ends[t[1]], at_ends[t[2]]});
     // no point of it is farther from a corner than the longest edge; (a + b)² ≤ 2 a² + 2 b²
     if (apart > 0.0 && apart * apart > 2.0 * (longest + farthest)) continue;
-    const double allowance = std::min(kAllowance * std::sqrt(longest), kMostAllowed * solid.traits.thickness);
+    const double allowance = allowance_of(longest);
     const double strides = std::ceil(std::sqrt(farthest) / (kStride * solid.traits.thickness));
     if (strides <= 1.0 && least_of({ends[t[0]], ends[t[1]], ends[t[2]]}) > -allowance) continue;
-    const bool added =
-        add_triangle(static_cast<std::uint32_t>(std::clamp(strides, 1.0, double(kMostStrides))), t, allowance, step);
-    if (is_long) triangle_has_row[k] = added ? 1 : 0;
+    add_triangle(k, static_cast<int>(std::clamp(strides, 1.0, double(kMostStrides))), allowance, step);
   }
+}
+
+/// The longest edge of a triangle at the end of the step, squared [m²].
+double ContactTool::State::longest_of(const Triangle& t) const {
+  double longest = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3d edge = ends[t[(i + 1) % 3]] - ends[t[i]];
+    longest = std::max(longest, dot(edge, edge));
+  }
+  return longest;
+}
+
+/// How deep a triangle may be inside between its corners [m]. @param longest  of its edges, squared
+double ContactTool::State::allowance_of(double longest) const {
+  return std::min(kAllowance * std::sqrt(longest), kMostAllowed * solid.traits.thickness);
 }
 
 /// Whether a corner is bonded. In a long step all rows hold at once: such a triangle would widen the tool by its free corners, which in a
@@ -185,38 +291,24 @@ double ContactTool::State::least_of(const std::array<Vec3d, 3>& x) const {
          std::min({dot(d.normal, x[0] - middle), dot(d.normal, x[1] - middle), dot(d.normal, x[2] - middle)});
 }
 
-/// Holds a triangle out that comes to be inside between its corners; a fast one is held where it first enters.
-/// @return whether there is a row of it
-bool ContactTool::State::add_triangle(std::uint32_t strides, const Triangle& t, double allowance,
+/// Holds a triangle out that comes to be inside between its corners, at its deepest point; a fast one where it first enters.
+void ContactTool::State::add_triangle(std::size_t triangle, int strides, double allowance,
                                       const InteractionStep& step) {
-  for (std::uint32_t k = 1; k <= strides; ++k) {
+  const Triangle& t = reach.triangles()[triangle];
+  const double deeper = step.compliance != nullptr ? kLongDeeper : kDeeper;
+  const double let = held[triangle].points > 0 ? (1.0 + deeper) * allowance - held[triangle].level : allowance;
+  for (int k = 1; k <= strides; ++k) {
     const double share = static_cast<double>(k) / strides;
     std::array<Vec3d, 3> at{};
     double corner = std::numeric_limits<double>::infinity(), depth = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
-      at[i] = starts[t[i]] + (ends[t[i]] - starts[t[i]]) * share;
+      at[i] = k == strides ? ends[t[i]] : starts[t[i]] + (ends[t[i]] - starts[t[i]]) * share;
       corner = std::min(corner, k == strides ? at_ends[t[i]] : distance_to(options.shape, at[i]).distance);
     }
-    deepest(options.shape, at, depth);
-    if (depth > -allowance || depth > corner - solid.tolerance()) continue;
-    ContactRow row;
-    for (std::size_t i = 0; i < 3; ++i) row.places[i] = step.place_of[reach.vertices()[t[i]]];
-    row.count = 3, row.solid = &solid, row.allowance = allowance;
-    if (!prepare(row, step, share)) return false;
-    rows.push_back(row);
-    return true;
-  }
-  return false;
-}
-
-/// Begins with the forces of the last step: when all rows have been found, as they look at where the free way ends.
-void ContactTool::State::begin_triangles(const InteractionStep& step) {
-  for (ContactRow& row : rows) {
-    if (row.count != 3) continue;
-    const auto last = last_pressing.find(key_of(row, step));
-    if (last == last_pressing.end()) continue;
-    row.pressing = last->second * step.h;
-    push(row, step, row.normal * row.pressing);
+    const std::array<double, 3> weights = deepest(options.shape, at, depth);
+    if (depth > -let || depth > corner - solid.tolerance()) continue;
+    hold(triangle, weights, allowance, step);
+    return;
   }
 }
 
@@ -269,7 +361,7 @@ void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces
     if (row.bonded) {
       last_bonds[step.vertices[row.places[0]].vertex] = row.impulse() * rate;
     } else if ((row.count == 3 || is_long) && row.pressing > 0.0) {
-      last_pressing[key_of(row, step)] = row.pressing * rate;
+      last_pressing[key_of(row, step)] += row.pressing * rate;
     }
     if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
     forces.normal += row.normal * (row.pressing * rate);

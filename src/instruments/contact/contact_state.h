@@ -10,6 +10,19 @@
 
 namespace glisson {
 
+/// A vertex (1, 0, 0) or a point of a triangle, with its impulses in an iteration of a long step [N s].
+struct BearingPoint {
+  std::array<double, 3> weights{};
+  double pressing = 0.0;
+  Vec3d rubbing{};
+};
+
+/// Rows of a triangle in a step.
+struct HeldTriangle {
+  std::uint32_t points = 0;
+  double level = 0.0;  ///< the deepest that they ask for [m], ≤ 0
+};
+
 struct ContactTool::State {
   ContactOptions options;
   ContactSolid solid;
@@ -17,14 +30,15 @@ struct ContactTool::State {
   double last_h = 0.0;
   bool lost = false;  ///< its pose made no sense: it has left
 
-  std::vector<ContactRow> rows;
+  std::vector<ContactRow> rows;          ///< of a long step: of its last iteration
+  int unsettled = 0;                     ///< iterations of a long step whose sweeps came to their limit
   std::vector<Vec3d> starts, ends;       ///< per vertex of the reach, in the frame of the tool
   std::vector<double> at_ends;           ///< φ there
   std::map<std::uint32_t, Vec3d> bonds;  ///< vertex → place in the frame of the tool
   std::vector<std::pair<std::uint32_t, Vec3d>>
       bond_impulses;                   ///< place at hand → impulse of its bond in this step [N s]
   std::vector<double> pressed;         ///< per vertex of the reach: impulse along its normal in this step [N s]
-  std::vector<std::uint32_t> touched;  ///< vertices of the reach that have rows, as places there
+  std::vector<std::uint32_t> touched;  ///< vertices of the reach that rows move, as places there
   std::vector<Vec3d> exerted;          ///< per vertex of the reach: whole impulse in this step [N s]
   std::vector<std::uint32_t> bearing_vertices;
   std::vector<double> pressures, bearing_normal;  ///< of each [Pa], [N]
@@ -35,29 +49,36 @@ struct ContactTool::State {
   ContactBooks books;
   bool begun = false;  ///< a step has been made since the tool was attached
   FoundInside found_inside;
-  /// Forces on triangles in the last step, to begin the next with [N]; in long steps on vertices too, three times the same.
+  /// Forces on triangles in the last step, of all their points, to begin the next with [N]; in long steps on vertices too, three times the same.
   std::map<Triangle, double> last_pressing;
-  std::map<std::uint32_t, Vec3d> last_bonds;  ///< the same of bonds, in long steps [N]
-  std::map<Triangle, std::pair<double, Vec3d>>
-      trial;                                    ///< of a long step: pressing and rubbing of the last iteration [N s]
-  std::vector<char> has_row, triangle_has_row;  ///< per vertex and triangle of the reach
+  std::map<std::uint32_t, Vec3d> last_bonds;            ///< the same of bonds, in long steps [N]
+  std::map<Triangle, std::vector<BearingPoint>> trial;  ///< of a long step: what its iterations have found
+  std::vector<char> has_row, moves;                     ///< per vertex of the reach: has a row of its own; is in a row
+  std::vector<HeldTriangle> held;                       ///< per triangle of the reach
   bool in_contact = false;
   double last_touch = 0.0, last_depth = 0.0;
 
+  void bear_nothing();
   void begin_vertices(const InteractionStep& step);
   std::size_t add_vertices(const InteractionStep& step);
   void solve_short(const InteractionStep& step);
   int solve_long(const InteractionStep& step);
   void add_bonds(const InteractionStep& step);
-  void begin_row(ContactRow& row, const InteractionStep& step) const;
+  void begin_rows(std::size_t first, const InteractionStep& step);
+  void touch(std::uint32_t i);
+  void hold_again(const InteractionStep& step);
+  bool hold(std::size_t triangle, const std::array<double, 3>& weights, double allowance, const InteractionStep& step);
+  void remember(const InteractionStep& step);
+  void exert_again(const InteractionStep& step);
   void require_outside(const BodyView& body, const Pose& pose, const Vec3d& direction) const;
   void measure(std::size_t i, const InteractionStep& step);
   double least_of(const std::array<Vec3d, 3>& corners) const;
   void bear(std::uint32_t vertex, double pressing, const Vec3d& impulse);
-  void add_triangles(const InteractionStep& step);
-  bool add_triangle(std::uint32_t strides, const Triangle& corners, double allowance, const InteractionStep& step);
+  void add_triangles(bool moved, const InteractionStep& step);
+  void add_triangle(std::size_t triangle, int strides, double allowance, const InteractionStep& step);
+  double longest_of(const Triangle& corners) const;
+  double allowance_of(double longest) const;
   bool is_bonded_at(const Triangle& corners) const;
-  void begin_triangles(const InteractionStep& step);
   void bond_first(const BodyView& body, const Pose& pose);
   void bond(const InteractionStep& step, ToolForces& forces);
   void collect(const InteractionStep& step, ToolForces& forces);

@@ -9,14 +9,16 @@ namespace {
 constexpr double kEnough = 1e-5;  // of what the tissue holds the tool back in the step …
 constexpr double kLeast = 1e-12;  // … and so much [m]
 constexpr int kMostTrials = 40;
-constexpr double kNoise = 1e-3;  // of the same: forces found by sweeps may be no more exact than to less than that
-constexpr double kShort = 1e-5;  // of the longest way: a shorter one teaches nothing
-constexpr double kProbe = 0.1;   // of a step that led to a worse place: so far from there slopes are learnt
+constexpr double kNoise = 1e-3;   // of the same: forces found by sweeps may be no more exact than to less than that …
+constexpr int kMostStalls = 8;    // … which so many trials show that come no nearer
+constexpr int kMostRestarts = 3;  // with the slopes known at first, where those learnt since lead nowhere
+constexpr double kShort = 1e-5;   // of the longest way: a shorter one teaches nothing
+constexpr double kProbe = 0.1;    // of a step that led to a worse place: so far from there slopes are learnt
 
 }  // namespace
 
 void EndSearch::begin(const Vec3d& before, const Vec3d& guess, const Vec3d& free) {
-  begun_ = true, goes_ = false, tries_ = 0;
+  begun_ = true, goes_ = false, tries_ = 0, stalls_ = 0, restarts_ = 0;
   trial_ = guess, free_ = free;
   farthest_ = std::max(norm(free - before), norm(guess - before));
   slope_ = kept_;
@@ -48,16 +50,21 @@ bool EndSearch::goes_on(const Vec3d& end) {
       learn(outer(last_r_ - r - slope_ * way, way * (1.0 / squared)));
   }
   const double held_back = norm(free_ - end), off = norm(r);
-  const bool stalls = goes_ && off <= kNoise * held_back && off > 0.5 * norm(last_r_);
-  if (off <= kEnough * held_back + kLeast || stalls || ++tries_ >= kMostTrials) {
-    goes_ = false, tries_ = 0;
+  if (goes_ && off <= kNoise * held_back && off > 0.5 * norm(last_r_)) ++stalls_;
+  if (off <= kEnough * held_back + kLeast || stalls_ == kMostStalls || ++tries_ >= kMostTrials) {
+    goes_ = false, tries_ = 0, stalls_ = 0, restarts_ = 0;
     kept_ = slope_;
     return false;
   }
   // From a place that is worse, as deep in what the last one did not touch, a short step shows how stiff it is; from there the way back
   // is found at once, while from the other side it would be missed again and again.
   const bool worse = goes_ && off > norm(last_r_);
-  const Vec3d way = forward(r, worse ? kProbe * norm(trial_ - last_trial_) : farthest_);
+  Vec3d way = forward(r, worse ? kProbe * norm(trial_ - last_trial_) : farthest_);
+  if (worse && norm(way) < kShort * farthest_ && restarts_ < kMostRestarts) {
+    ++restarts_;
+    slope_ = kept_;
+    way = forward(r, farthest_);
+  }
   goes_ = true;
   last_trial_ = trial_, last_r_ = r;
   trial_ += way;

@@ -31,7 +31,7 @@ class EndSearch {
   void learn(const Mat3d& change);
 
   bool begun_ = false, goes_ = false;  ///< in a step; in a row of trials
-  int tries_ = 0;
+  int tries_ = 0, stalls_ = 0, restarts_ = 0;
   double farthest_ = 0.0;  ///< that a trial goes from the last [m]
   Vec3d trial_, free_, last_trial_, last_r_;
   Mat3d slope_ = identity<double>(), kept_ = identity<double>();
