@@ -130,7 +130,7 @@ std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
   s.solid.earlier = s.solid.before, s.solid.last_h = s.last_h;
   s.solid.before = before_, s.solid.after = pose_;
   s.last_h = h;
-  s.trial.clear(), s.unsettled = 0;
+  s.trial.clear(), s.unsettled = 0, s.settled = true;
   const std::optional<Vec3d> free = free_end();
   if (!free) return s.reach.ask({&s.solid, 1}, h);
   std::array<ContactSolid, 2> ways{s.solid, s.solid};
@@ -143,7 +143,13 @@ std::optional<std::span<const std::uint32_t>> ContactTool::keeps() {
   return state_->reach.keeps();
 }
 
-void ContactTool::add_forces(const InteractionStep& step) { state_->books.begin(step); }
+/// Begins a short step, or an iteration of a long one: several tools act in turn in it, and are solved for more than once.
+void ContactTool::add_forces(const InteractionStep& step) {
+  State& s = *state_;
+  s.books.begin(step);
+  s.unsettled += s.settled ? 0 : 1;
+  s.settled = true;
+}
 
 void ContactTool::constrain(const InteractionStep& step) {
   State& s = *state_;

@@ -148,19 +148,18 @@ void ContactTool::State::hold_again(const InteractionStep& step) {
   }
 }
 
-/// Holds a point of a triangle. @return whether the tool meets it
-bool ContactTool::State::hold(std::size_t triangle, const std::array<double, 3>& weights, double allowance,
+/// Holds a point of a triangle where the tool meets it.
+void ContactTool::State::hold(std::size_t triangle, const std::array<double, 3>& weights, double allowance,
                               const InteractionStep& step) {
   const Triangle& t = reach.triangles()[triangle];
   HeldTriangle& h = held[triangle];
   ContactRow row;
   for (std::size_t i = 0; i < 3; ++i) row.places[i] = step.place_of[reach.vertices()[t[i]]];
   row.count = 3, row.solid = &solid, row.allowance = allowance, row.weights = weights, row.again = h.points > 0;
-  if (!prepare(row, step)) return false;
+  if (!prepare(row, step)) return;
   rows.push_back(row);
   ++h.points, h.level = std::min(h.level, row.level);
   for (const std::uint32_t i : t) touch(i);
-  return true;
 }
 
 /// All rows of a long step. Points move one another, so that those that come inside by it are looked for until there are
@@ -192,7 +191,7 @@ int ContactTool::State::solve_long(const InteractionStep& step) {
     effort.triangles += fresh;
   }
   remember(step);
-  if (last == kMostLongSweeps) ++unsettled;
+  settled = last < kMostLongSweeps;
   return sweeps;
 }
 

@@ -31,7 +31,8 @@ struct ContactTool::State {
   bool lost = false;  ///< its pose made no sense: it has left
 
   std::vector<ContactRow> rows;          ///< of a long step: of its last iteration
-  int unsettled = 0;                     ///< iterations of a long step whose sweeps came to their limit
+  bool settled = true;                   ///< the last sweeps of a long step did not come to their limit
+  int unsettled = 0;                     ///< iterations of it in which they did
   std::vector<Vec3d> starts, ends;       ///< per vertex of the reach, in the frame of the tool
   std::vector<double> at_ends;           ///< φ there
   std::map<std::uint32_t, Vec3d> bonds;  ///< vertex → place in the frame of the tool
@@ -67,7 +68,7 @@ struct ContactTool::State {
   void begin_rows(std::size_t first, const InteractionStep& step);
   void touch(std::uint32_t i);
   void hold_again(const InteractionStep& step);
-  bool hold(std::size_t triangle, const std::array<double, 3>& weights, double allowance, const InteractionStep& step);
+  void hold(std::size_t triangle, const std::array<double, 3>& weights, double allowance, const InteractionStep& step);
   void remember(const InteractionStep& step);
   void exert_again(const InteractionStep& step);
   void require_outside(const BodyView& body, const Pose& pose, const Vec3d& direction) const;
