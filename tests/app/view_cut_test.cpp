@@ -87,9 +87,14 @@ TEST(LiveCut, PartsABlockUnderAPull) {
   const std::uint32_t before = last.shape_number;
 
   engine.post(cut(blade(-0.005, 0.0162), true));
-  for (int i = 1; i <= 15; ++i) engine.post(cut(blade(-0.005 + 0.002 * i, 0.0162), false));
-  const double then = last.time;
-  ASSERT_TRUE(until(engine, last, [&] { return last.shape_number > before && last.time > then + 2.0; }));
+  for (std::uint32_t i = 1; i <= 15; ++i) {
+    Command command = cut(blade(-0.005 + 0.002 * i, 0.0162), false);
+    command.sequence = i + 1;
+    engine.post(command);
+  }
+  ASSERT_TRUE(until(engine, last, [&] { return last.echo == 16; }));
+  const double done = last.time;
+  ASSERT_TRUE(until(engine, last, [&] { return last.shape_number > before && last.time > done + 2.0; }));
   EXPECT_EQ(Surface(last.shape).pieces(), 2u);
   // The section is 4 cm²; what is pulled is waisted by some 4 % across, which the cut's area at rest is free of.
   EXPECT_NEAR(last.cut_area, 4e-4, 0.02 * 4e-4);
