@@ -1,5 +1,5 @@
 // report_under_test.mjs — the page the tests open: GLISSON_REPORT, or one of the fixture's data.
-import { existsSync, mkdtempSync } from "node:fs";
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -9,10 +9,15 @@ import { writeReport } from "./template.mjs";
 
 const template = join(WEB_DIR, "dist/report.html");
 
-/** URL of a page with the given data in the built template. */
+const folders = [];
+process.on("exit", () => folders.forEach((folder) => rmSync(folder, { recursive: true, force: true })));
+
+/** URL of a page with the given data in the built template; the page is there until the tests end. */
 export function pageWith(data, name = "report") {
   if (!existsSync(template)) throw new Error(`${template} does not exist: run npm run build in ${WEB_DIR} first`);
-  const file = join(mkdtempSync(join(tmpdir(), "glisson-report-")), `${name}.html`);
+  const folder = mkdtempSync(join(tmpdir(), "glisson-report-"));
+  folders.push(folder);
+  const file = join(folder, `${name}.html`);
   writeReport(template, data, file);
   return pathToFileURL(file).href;
 }
