@@ -26,6 +26,9 @@ class ElementBody final : public MovingBody {
   void archive_layout(Archive& ar, std::span<const double> nodal_damping) override;
   Vec3d displacement_of(std::uint32_t vertex) const override { return u_[vertex]; }
   Vec3d velocity_of(std::uint32_t vertex) const override { return v_[vertex]; }
+  void read_velocities(std::span<const std::uint32_t> vertices, std::span<Vec3d> velocities) const override {
+    for (std::size_t k = 0; k < vertices.size(); ++k) velocities[k] = v_[vertices[k]];
+  }
   /// Cost: one pass over the elements.
   void apply(const BodyChange& change, const detail::VertexStars& stars,
              std::span<const double> nodal_damping) override;

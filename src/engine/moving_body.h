@@ -56,6 +56,8 @@ class MovingBody {
 
   virtual Vec3d displacement_of(std::uint32_t vertex) const = 0;
   virtual Vec3d velocity_of(std::uint32_t vertex) const = 0;
+  /// The same of several. @param velocities  as many as vertices
+  virtual void read_velocities(std::span<const std::uint32_t> vertices, std::span<Vec3d> velocities) const = 0;
 
   /// What the body knows of its past beside the state.
   virtual void archive_past(Archive& ar) = 0;

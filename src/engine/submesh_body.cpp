@@ -87,6 +87,10 @@ void SubmeshBody::read_state(std::span<Vec3d> displacement, std::span<Vec3d> vel
   }
 }
 
+void SubmeshBody::read_velocities(std::span<const std::uint32_t> vertices, std::span<Vec3d> velocities) const {
+  for (std::size_t k = 0; k < vertices.size(); ++k) velocities[k] = velocity_of(vertices[k]);
+}
+
 void SubmeshBody::rest(std::span<const std::uint32_t> vertices) {
   std::vector<std::uint32_t> records;
   for (const std::uint32_t v : vertices) records.push_back(record_of(v));

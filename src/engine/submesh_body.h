@@ -47,6 +47,7 @@ class SubmeshBody final : public MovingBody {
   void archive_layout(Archive& ar, std::span<const double> nodal_damping) override;
   Vec3d displacement_of(std::uint32_t vertex) const override { return records_.displacement(record_of(vertex)); }
   Vec3d velocity_of(std::uint32_t vertex) const override { return records_.velocity(record_of(vertex)); }
+  void read_velocities(std::span<const std::uint32_t> vertices, std::span<Vec3d> velocities) const override;
   void apply(const BodyChange& change, const detail::VertexStars& stars,
              std::span<const double> nodal_damping) override;
   bool supports_tissues() const override;

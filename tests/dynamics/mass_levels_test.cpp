@@ -92,6 +92,50 @@ TEST(MassLevels, ElementsGetWhatTheyLack) {
   EXPECT_GT(short_of_mass, 30);
 }
 
+// What elements lack is kept while step and levels stay as they are: after another step, another level, another shape or other tissue
+// it is what levels give that have kept nothing.
+TEST(MassLevels, AskAnewWhereTheStepOrTheBodyIsAnother) {
+  std::mt19937 random(11);
+  Body body = small_body(random, 4.0);
+  const std::vector<double> low{1.25, 2.5}, high{2.0, 2.5};
+  const std::vector<StiffElement> stiff = some_stiff(body, 3, false, random);
+  const std::vector<double> none(body.vertex_count, 0.0);
+  const double h = 3.0 * stable_step(body, low, none).step;
+  const auto masses_of = [&](MassLevels& levels, std::span<const double> base, const MassNeed& need) {
+    std::vector<VertexMass> masses;
+    levels.find_masses(base, {0, 0}, need, masses);
+    std::vector<double> all(body.vertex_count, 0.0);
+    for (const VertexMass& m : masses) all[m.vertex] = m.mass;
+    return all;
+  };
+  MassLevels levels(body);
+  levels.raise(stiff, low, low);
+  const auto expect_as_fresh = [&](std::span<const double> base, const MassNeed& need) {
+    MassLevels fresh(body);
+    fresh.raise(stiff, low, low);
+    const std::vector<double> masses = masses_of(levels, base, need);
+    EXPECT_EQ(masses, masses_of(fresh, base, need));
+    return masses;
+  };
+  const MassNeed need{.step = h, .at_level = true, .drag_end = 0.5},
+      longer{.step = 1.1 * h, .at_level = true, .drag_end = 0.5};
+  const std::vector<double> first = expect_as_fresh(low, need);
+  EXPECT_EQ(expect_as_fresh(low, need), first);
+  EXPECT_NE(expect_as_fresh(low, longer), first);
+  EXPECT_NE(expect_as_fresh(high, need), first);
+  EXPECT_NE(expect_as_fresh(low, {.step = h, .drag_end = 0.5}), first);
+  EXPECT_NE(expect_as_fresh(low, {.step = 0.1 * h}), first) << "where elements lack nothing";
+  EXPECT_EQ(expect_as_fresh(low, need), first);
+  const std::vector<std::uint32_t> seven{7};
+  body.rest[7].volume *= 2.0;
+  levels.reshape(seven);
+  const std::vector<double> reshaped = expect_as_fresh(low, need);
+  EXPECT_NE(reshaped, first);
+  for (TissueBlock& block : body.blocks) block.viscous.mu *= 3.0, block.viscous.lambda *= 3.0;
+  levels.tissues_changed();
+  EXPECT_NE(expect_as_fresh(low, need), reshaped);
+}
+
 struct OneTet {
   std::mt19937 random{6};
   Body body = small_body(random);

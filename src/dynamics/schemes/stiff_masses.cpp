@@ -16,29 +16,30 @@ double StiffMasses::take(std::span<const VertexMass> wanted, MovingBody& moving)
   Body& body = state_.body;
   if (wanted.empty() && heavy_.empty()) return 0.0;
   body.stiff_mass.resize(body.vertex_count, 0.0);
-  std::vector<Heavy> heavy;
-  changes_.clear();
+  changed_.clear(), changes_.clear();
   double present = 0.0;
   const auto give = [&](std::uint32_t v, double mass) {
     if (body.stiff_mass[v] == mass) return;
-    changes_.push_back({v, mass - body.stiff_mass[v]});
+    changed_.push_back(v), changes_.push_back(mass - body.stiff_mass[v]);
     body.stiff_mass[v] = mass;
   };
-  auto known = heavy_.begin();
+  known_.swap(heavy_);
+  heavy_.clear();
+  auto known = known_.begin();
   const auto drop_below = [&](std::uint32_t vertex) {
-    for (; known != heavy_.end() && known->vertex < vertex; ++known) give(known->vertex, 0.0);
+    for (; known != known_.end() && *known < vertex; ++known) give(*known, 0.0);
   };
   for (const VertexMass& m : wanted) {
     drop_below(m.vertex);
-    if (known != heavy_.end() && known->vertex == m.vertex) ++known;
+    if (known != known_.end() && *known == m.vertex) ++known;
     give(m.vertex, m.mass);
-    heavy.push_back({m.vertex, {}});
+    heavy_.push_back(m.vertex);
     present += m.mass;
   }
   drop_below(std::numeric_limits<std::uint32_t>::max());
-  heavy_ = std::move(heavy);
-  const double kinetic = changes_.empty() ? 0.0 : change(moving);
-  for (Heavy& h : heavy_) h.velocity = moving.velocity_of(h.vertex);
+  const double kinetic = changed_.empty() ? 0.0 : change(moving);
+  velocities_.resize(heavy_.size());
+  moving.read_velocities(heavy_, velocities_);
   state_.mass_scaling.present = present;
   state_.mass_scaling.largest = std::max(state_.mass_scaling.largest, present);
   return kinetic;
@@ -46,34 +47,35 @@ double StiffMasses::take(std::span<const VertexMass> wanted, MovingBody& moving)
 
 /// Lets the body follow the changes of mass. @return what its kinetic energy changes by
 double StiffMasses::change(MovingBody& moving) {
+  now_.resize(changed_.size());
+  moving.read_velocities(changed_, now_);
   double comes = 0.0, goes = 0.0;
-  for (const VertexMass& m : changes_) {
-    const Vec3d velocity = moving.velocity_of(m.vertex);
-    const double change = 0.5 * m.mass * dot(velocity, velocity);
+  for (std::size_t k = 0; k < changed_.size(); ++k) {
+    const double change = 0.5 * changes_[k] * dot(now_[k], now_[k]);
     (change > 0.0 ? comes : goes) += std::abs(change);
   }
   energy_ += goes;
   const bool paid = comes <= energy_;
   if (paid) energy_ -= comes;
-  std::vector<std::uint32_t> changed;
-  for (const VertexMass& m : changes_) {
-    changed.push_back(m.vertex);
-    if (paid || !(m.mass > 0.0)) continue;
-    const double after = state_.body.inertia(m.vertex);
-    moving.set_velocity(m.vertex, moving.velocity_of(m.vertex) * std::sqrt((after - m.mass) / after));
+  for (std::size_t k = 0; !paid && k < changed_.size(); ++k) {
+    if (!(changes_[k] > 0.0)) continue;
+    const double after = state_.body.inertia(changed_[k]);
+    moving.set_velocity(changed_[k], now_[k] * std::sqrt((after - changes_[k]) / after));
   }
-  moving.inertia_changed(changed);
+  moving.inertia_changed(changed_);
+  if (paid) return comes - goes;
   for (ActiveVertex& w : moving.active()) w.velocity = moving.velocity_of(w.vertex);
-  return (paid ? comes : 0.0) - goes;
+  return -goes;
 }
 
 double StiffMasses::weigh(const ActiveKick::Outer& outer, const MovingBody& moving) {
+  now_.resize(heavy_.size());
+  moving.read_velocities(heavy_, now_);
   double inertia = 0.0;
-  for (Heavy& heavy : heavy_) {
-    const Vec3d velocity = moving.velocity_of(heavy.vertex);
-    inertia += state_.body.stiff_mass[heavy.vertex] * norm(velocity - heavy.velocity);
-    heavy.velocity = velocity;
+  for (std::size_t k = 0; k < heavy_.size(); ++k) {
+    inertia += state_.body.stiff_mass[heavy_[k]] * norm(now_[k] - velocities_[k]);
   }
+  velocities_.swap(now_);
   largest_force_ = std::max(outer.force, kForceMemory * largest_force_);
   energy_ += kEnergyForMass * std::max(0.0, outer.power * last_step_);
   const double impulse = largest_force_ * last_step_;
@@ -81,21 +83,19 @@ double StiffMasses::weigh(const ActiveKick::Outer& outer, const MovingBody& movi
 }
 
 void StiffMasses::archive(Archive& ar, MovingBody& moving) {
-  const std::vector<Heavy> here = heavy_;
+  std::vector<std::uint32_t> touched = heavy_;
   std::vector<double>& masses = state_.body.stiff_mass;
   auto count = static_cast<std::uint32_t>(masses.size());
   ar(count);
   ar.check(count <= state_.body.vertex_count);
   masses.resize(count);
   ar.same_size(masses);
-  ar(heavy_, largest_force_, last_step_, energy_, state_.mass_scaling.present, state_.mass_scaling.largest);
+  ar(heavy_, velocities_, largest_force_, last_step_, energy_, state_.mass_scaling.present,
+     state_.mass_scaling.largest);
   if (!ar.reads()) return;
-  std::vector<std::uint32_t> touched;
-  for (const Heavy& h : here) touched.push_back(h.vertex);
-  for (const Heavy& h : heavy_) {
-    ar.check(h.vertex < count);
-    touched.push_back(h.vertex);
-  }
+  ar.check(velocities_.size() == heavy_.size());
+  for (const std::uint32_t v : heavy_) ar.check(v < count);
+  touched.insert(touched.end(), heavy_.begin(), heavy_.end());
   moving.inertia_changed(touched);
 }
 

@@ -36,19 +36,15 @@ class StiffMasses {
  private:
   double change(MovingBody& moving);
 
-  /// A vertex with such mass, and its velocity when that was weighed last.
-  struct Heavy {
-    std::uint32_t vertex = 0;
-    Vec3d velocity;
-    void archive(Archive& ar) { ar(vertex, velocity); }
-  };
-
   BodyState& state_;
-  std::vector<Heavy> heavy_;         ///< ascending
-  std::vector<VertexMass> changes_;  ///< of the present take()
-  double largest_force_ = 0.0;       ///< [N]
-  double last_step_ = 0.0;           ///< [s]
-  double energy_ = 0.0;              ///< that mass may bring [J]
+  std::vector<std::uint32_t> heavy_;            ///< vertices with such mass, ascending
+  std::vector<Vec3d> velocities_;               ///< theirs, when they were weighed last
+  std::vector<Vec3d> now_;                      ///< of the present weigh() or take()
+  std::vector<std::uint32_t> known_, changed_;  ///< of the present take()
+  std::vector<double> changes_;                 ///< of the mass of those changed [kg]
+  double largest_force_ = 0.0;                  ///< [N]
+  double last_step_ = 0.0;                      ///< [s]
+  double energy_ = 0.0;                         ///< that mass may bring [J]
 };
 
 }  // namespace glisson

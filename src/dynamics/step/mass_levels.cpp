@@ -97,9 +97,13 @@ void MassLevels::find_rates() {
   }
 }
 
-/// What elements need at the level of their block beyond their own mass.
+/// What elements need at the level of their block beyond their own mass; known, unless the step or a level is another one.
 void MassLevels::ask_for_blocks(std::span<const double> base, const std::vector<char>& viscous, const MassNeed& need) {
+  if (!rates_.empty() && need.asks_the_same(known_) && std::ranges::equal(base, known_base_)) return;
   if (rates_.empty()) find_rates();
+  known_ = need;
+  known_base_.assign(base.begin(), base.end());
+  asked_for_blocks_.assign(body_.vertex_count, 0.0);
   const double h = need.step, staged = need.drag_end > 0.0 ? h / need.drag_end : 0.0;
   for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
     const double stiff = need.at_level ? 0.25 * need.weight * h * h * base[b] : 0.0,
@@ -108,15 +112,19 @@ void MassLevels::ask_for_blocks(std::span<const double> base, const std::vector<
       const Rates& own = rates_[e];
       const double more = std::max(stiff * own.stiff + drag * own.drag, staged * own.drag) - own.mass;
       if (!(more > 0.0)) continue;
-      for (const std::uint32_t v : body_.elements[e]) asked_[v] += more;
+      for (const std::uint32_t v : body_.elements[e]) asked_for_blocks_[v] += more;
     }
   }
 }
 
 void MassLevels::find_masses(std::span<const double> base, const std::vector<char>& viscous, const MassNeed& need,
                              std::vector<VertexMass>& masses) {
-  asked_.assign(body_.vertex_count, 0.0);
-  if (need.at_level || need.drag_end > 0.0) ask_for_blocks(base, viscous, need);
+  if (need.at_level || need.drag_end > 0.0) {
+    ask_for_blocks(base, viscous, need);
+    asked_ = asked_for_blocks_;
+  } else {
+    asked_.assign(body_.vertex_count, 0.0);
+  }
   const double h = need.step;
   for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
     const TissueBlock& block = body_.blocks[b];

@@ -39,6 +39,11 @@ struct MassNeed {
   bool drags = false;     ///< then: whether viscosity counts beside stiffness
   double drag_end = 0.0;  ///< ζ where h C ≤ ζ M has to hold beside, for drag in stages; 0: it does in any case
   const AddedLevels* beside = nullptr;  ///< of what acts beside the tissue
+  /// Whether elements lack the same as by another one.
+  bool asks_the_same(const MassNeed& other) const {
+    return step == other.step && weight == other.weight && at_level == other.at_level && drags == other.drags &&
+           drag_end == other.drag_end;
+  }
 };
 
 class MassLevels {
@@ -100,6 +105,9 @@ class MassLevels {
   std::vector<std::array<double, 4>> weights_;  ///< per element: ¼ V λ |s_a|² [m]
   std::vector<Rates> rates_;                    ///< per element; empty: not found yet
   bool fresh_ = true;                           ///< nothing has been taken in yet
+  MassNeed known_;                              ///< what asked_for_blocks_ was found for, where rates_ are known
+  std::vector<double> known_base_;              ///< the same
+  std::vector<double> asked_for_blocks_;        ///< per vertex, by elements at the level of their block [kg]
   std::vector<double> asked_;                   ///< per vertex [kg]
 };
 
