@@ -279,7 +279,8 @@ class StepControl : StepChoice {
   double with_mass_ = 0.0;                ///< ω² of that without mass [1/s²]
   std::vector<VertexMass> stiff_masses_;  ///< for that step
   bool masses_are_new_ = false;
-  double inertia_ = 0.0;  ///< see take_inertia
+  double inertia_ = 0.0;       ///< see take_inertia
+  double heavy_growth_ = 0.0;  ///< of the step, ln, that is still to be made
 
   double tools_ = 0.0;    ///< ω² of what acts beside the tissue [1/s²]
   double held_ = 0.0;     ///< the same that an automatic step is chosen for: at least as much

@@ -32,8 +32,12 @@ constexpr double kCloseToHeavy = 1.2;    ///< so far below the level of a block 
 constexpr double kHeavyRoom = 1.1;       ///< of what tets bear without mass, over the stiffness seen
 constexpr std::uint64_t kHeavyTurn = 2;  ///< [steps] after which levels for mass come down in the next part of the tets
 constexpr std::uint64_t kMassTurn = 16;  ///< [steps] after which mass follows what has come down
-constexpr double kHeavyRegrowth = 1.095;  ///< of the step of variable mass scaling, a step: below √kCloseToHeavy
-constexpr double kHeavyMemory = 40.0;     ///< time in which it grows by e, in steps asked for
+constexpr double kHeavyRegrowth = 1.095;   ///< of the step of variable mass scaling, a step: below √kCloseToHeavy
+constexpr double kHeavyTurnOfStep = 0.02;  ///< growth of it by e that is made in one change of masses
+constexpr double kHeavyMemory = 40.0;      ///< time in which it grows by e, in steps asked for
+constexpr double kQuickMemory = 4.0;       ///< the same where inertia is hardly any
+constexpr double kHardlyInertia = 0.1;     ///< of the bearable inertia
+constexpr double kNearlyBorne = 1.02;      ///< of what tets bear without mass, from where the step falls to that
 constexpr double kLeastHeavyLevel =
     1.25;                            ///< of blocks, over rest: above kCloseToHeavy, so that tets at rest are not told
 constexpr double kProbeDepth = 8.0;  ///< how far below the level of the blocks a probe looks
@@ -66,7 +70,7 @@ void StepControl::state_set(const AddedBeside& added) {
   } else {
     choose_heavy(*heavy_step_);
   }
-  inertia_ = 0.0;
+  inertia_ = heavy_growth_ = 0.0;
   listed_before_.clear();
   start_anew();
   set_added(added);
@@ -166,7 +170,8 @@ double StepControl::step_without_masses(std::span<const double> stiffening) cons
 }
 
 /// Where inertia of added mass shows, the step falls to where it hardly does: mass goes with h² less what tets bear without it. The
-/// step comes back by as much as tets are told of before they need mass, and not within a swing of the tissue.
+/// step comes back by as much as tets are told of before they need mass, slowly within a swing of the tissue, and in few changes,
+/// since each asks for the masses of all vertices.
 /// @return whether it is another one
 bool StepControl::follow_inertia(std::span<const double> stiffening) {
   const double inertia = std::exchange(inertia_, 0.0) / bearable_inertia_, most = *heavy_step_;
@@ -175,8 +180,14 @@ bool StepControl::follow_inertia(std::span<const double> stiffening) {
     const double tissue = std::min(step_without_masses(stiffening), kSafety * drag_limit_),
                  borne = std::min(step_, with_added(tissue, {with_mass_, 0.0})), share = 1.0 / inertia;
     wanted = std::min({step_, most, std::sqrt(share * step_ * step_ + (1.0 - share) * borne * borne)});
-  } else if (inertia < kLittleInertia) {
-    wanted = std::min(std::min(kHeavyRegrowth, std::exp(step_ / (kHeavyMemory * most))) * step_, most);
+    if (wanted < kNearlyBorne * borne) wanted = std::min(borne, most);
+    heavy_growth_ = 0.0;
+  } else if (inertia < kLittleInertia && step_ < most) {
+    heavy_growth_ += step_ / ((inertia < kHardlyInertia ? kQuickMemory : kHeavyMemory) * most);
+    if (heavy_growth_ >= kHeavyTurnOfStep) {
+      wanted = std::min(std::min(kHeavyRegrowth, std::exp(heavy_growth_)) * step_, most);
+      heavy_growth_ = 0.0;
+    }
   }
   if (wanted == step_) return false;
   choose_heavy(wanted);
