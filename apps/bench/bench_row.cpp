@@ -82,7 +82,10 @@ std::vector<BenchRatio> ratios(const BenchResult& result) {
     }
   }
   for (const BenchRow& row : result.accounting) {
-    add(fmt::format("energies kept / not, full, {} tets", row.tets), &row, like(row, Model::full, row.what.threads));
+    const int threads = row.what.threads;
+    const std::string on = threads > 1 ? ", " + threads_text(threads) : "";
+    add(fmt::format("energies kept / not, {}, {} tets{}", word_of(row.what.model), row.tets, on), &row,
+        like(row, row.what.model, threads));
   }
   return all;
 }

@@ -39,7 +39,7 @@ struct BenchResult {
   double load_average = 0.0;            ///< programs that were running in the minute before
   std::vector<cpu::MachinePeak> peaks;  ///< per number of threads
   std::vector<BenchRow> rows;           ///< without accounting, by body, model, threads
-  std::vector<BenchRow> accounting;     ///< the same measured with energies kept: none or one
+  std::vector<BenchRow> accounting;     ///< some of them measured with energies kept
 
   /// The roofs of a number of threads. @throws std::out_of_range where it was not measured
   const cpu::MachinePeak& peak(int threads) const;

@@ -41,7 +41,7 @@ struct BenchOptions {
   std::vector<std::string> models{"linear", "law", "full"};
   std::vector<std::string> meshes;
   std::string isa, json;
-  bool quick = false;
+  bool quick = false, energies = false;
 };
 
 /// 1, 2, 4, … and the number of cores.
@@ -110,17 +110,22 @@ void measure_peaks(const BenchOptions& options, std::vector<cpu::MachinePeak>& p
   }
 }
 
-/// The full model on the fewest threads is measured a second time with its energies kept.
-bool wants_accounting(const BenchBody& body, const std::vector<BenchCase>& cases) {
-  const auto full = [](const BenchCase& c) { return c.model == Model::full; };
-  return body.mesh.tets.size() == 96'000 && std::any_of(cases.begin(), cases.end(), full);
+/// Cases that are measured a second time with their energies kept: of 96 000 tets the full model, on the fewest threads.
+std::vector<BenchCase> with_energies(const BenchBody& body, const std::vector<BenchCase>& cases, bool all) {
+  std::vector<BenchCase> kept;
+  for (BenchCase again : cases) {
+    const bool usual = again.model == Model::full && body.mesh.tets.size() == 96'000 && kept.empty();
+    again.accounting = true;
+    if (all || usual) kept.push_back(again);
+  }
+  return kept;
 }
 
-void measure_body(const BenchBody& body, std::vector<BenchCase> cases, const MeasureOptions& how, BenchResult& result) {
+void measure_body(const BenchBody& body, std::vector<BenchCase> cases, const MeasureOptions& how, bool energies,
+                  BenchResult& result) {
   tell("bench: {}, {} tets\n", body.name, body.mesh.tets.size());
-  if (wants_accounting(body, cases)) {
-    cases.push_back({.model = Model::full, .threads = cases.front().threads, .accounting = true});
-  }
+  const std::vector<BenchCase> kept = with_energies(body, cases, energies);
+  cases.insert(cases.end(), kept.begin(), kept.end());
   for (BenchRow& row : measure(body, cases, how)) {
     (row.what.accounting ? result.accounting : result.rows).push_back(std::move(row));
   }
@@ -136,7 +141,7 @@ int bench(const BenchOptions& given) {
   getloadavg(&result.load_average, 1);
   for (const BenchBody& body : bodies) {
     measure_peaks(options, result.peaks);  // several times in a run: the best is nearest to what the machine can do
-    measure_body(body, cases, how, result);
+    measure_body(body, cases, how, options.energies, result);
   }
   measure_peaks(options, result.peaks);
   say("{}", bench_table(result, how));
@@ -170,6 +175,8 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
       ->capture_default_str();
   command.add_option("--mesh", options.meshes, "measure these meshes too (.vtu, .vtk, .msh)")->type_name("FILE…");
   add_isa_option(command, options.isa, "kernels and peak");
+  command.add_flag("--energies", options.energies,
+                   "measure all a second time with energies kept, as scenes do unless told otherwise");
   command.add_flag("--quick", options.quick, "fewer and shorter repetitions, without the million tets");
   add_json_option(command, options.json);
 }

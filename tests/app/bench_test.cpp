@@ -102,6 +102,23 @@ TEST_F(Bench, TakesAnySizes) {
   EXPECT_EQ(tets, (std::vector{96, 324, 1200})) << "2×2×4, 3×3×6, 5×5×8";
 }
 
+// Asked for, energies are kept in a second measurement of each model, which moves as the first: same state, and what it costs.
+TEST_F(Bench, EnergiesAreMeasuredBesideEachModel) {
+  ASSERT_THAT(run({"bench", "--quick", "--energies", "--sizes", "768", "--threads", "1", "--models",
+                   "linear,neo_hookean", "--json", "b.json"}),
+              Exits(0));
+  const nlohmann::json json = read_json(folder_ / "b.json");
+  ASSERT_EQ(json["rows"].size(), 2u);
+  ASSERT_EQ(json["accounting"].size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(json["accounting"][i]["model"], json["rows"][i]["model"]);
+    EXPECT_EQ(json["accounting"][i]["energies_kept"], true);
+    EXPECT_EQ(json["accounting"][i]["state_hash"], json["rows"][i]["state_hash"]);
+  }
+  EXPECT_GT(json["ratios"]["energies kept / not, linear, 768 tets"].get<double>(), 0.0);
+  EXPECT_GT(json["ratios"]["energies kept / not, neo_hookean, 768 tets"].get<double>(), 0.0);
+}
+
 // An instruction set that is asked for is that of the kernels and of the peak they are held against, in every row; all reach
 // the same state to rounding, and the hash may differ.
 TEST_F(Bench, AForcedInstructionSetIsThatOfKernelsAndPeak) {
