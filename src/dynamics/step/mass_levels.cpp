@@ -101,7 +101,7 @@ void MassLevels::find_rates() {
 void MassLevels::ask_for_blocks(std::span<const double> base, const std::vector<char>& viscous, const MassNeed& need) {
   if (!rates_.empty() && need.asks_the_same(known_) && std::ranges::equal(base, known_base_)) return;
   if (rates_.empty()) find_rates();
-  known_ = need;
+  known_ = need, known_.beside = nullptr;
   known_base_.assign(base.begin(), base.end());
   asked_for_blocks_.assign(body_.vertex_count, 0.0);
   const double h = need.step, staged = need.drag_end > 0.0 ? h / need.drag_end : 0.0;

@@ -53,7 +53,7 @@ void StepControl::start_anew() {
   lately_ = seen_;
   window_ = kFirstWindow, in_window_ = 0;
   probe_ = kFirstProbe, since_probe_ = 0, probes_ = false;
-  caution_ = 1.0;
+  caution_ = 1.0, heavy_growth_ = 0.0;
   held_ = tools_;
   shape_step_ = std::numeric_limits<double>::infinity();
   levels_.clear();
@@ -70,7 +70,7 @@ void StepControl::state_set(const AddedBeside& added) {
   } else {
     choose_heavy(*heavy_step_);
   }
-  inertia_ = heavy_growth_ = 0.0;
+  inertia_ = 0.0;
   listed_before_.clear();
   start_anew();
   set_added(added);
