@@ -186,6 +186,7 @@ TEST_F(Commands, CheckTellsWhereMassMakesStepsLonger) {
   const Outcome heavy = run(longer);
   EXPECT_THAT(heavy, Exits(0));
   EXPECT_NE(heavy.out.find(found[1].str() + " s (auto), kept by mass"), std::string::npos) << heavy.out;
+  EXPECT_NE(heavy.out.find(" steps at the step asked for, more where that mass has an effect"), std::string::npos);
   EXPECT_EQ(heavy.out.find("  slow  "), std::string::npos) << heavy.out;
   EXPECT_EQ(run({"check", scene}).out.find("  slow  "), std::string::npos) << "steps are long enough";
 }
