@@ -100,7 +100,7 @@ class SubmeshBody final : public MovingBody {
   void run_submesh(std::size_t s, const Step& step, SubmeshScratch& scratch);
   void fill_slots(const Submesh& part, bool split, const SubmeshScratch& scratch);
   void run_interface(std::size_t chunk, const Step& step, SubmeshScratch& scratch);
-  void integrate(const RecordRun& run, float* elastic, float* viscous, const Step& step, VertexWork& work);
+  void integrate(const RecordRun& run, const float* elastic, const float* viscous, const Step& step, VertexWork& work);
   void run_drag_stages(const Step& step);
   void end_stages(const RecordRun& run, bool split, const Step& step, VertexWork& work);
   void gather_findings(bool accounted);

@@ -30,15 +30,17 @@ void SubmeshBody::fill_slots(const Submesh& part, bool split, const SubmeshScrat
   }
 }
 
-/// Kick and drift of the vertices between those active. Without `viscous`, `elastic` is the whole force.
-void SubmeshBody::integrate(const RecordRun& run, float* elastic, float* viscous, const Step& step, VertexWork& work) {
+/// Kick and drift of the vertices between those active. @param viscous  null: `elastic` is the whole force
+void SubmeshBody::integrate(const RecordRun& run, const float* elastic, const float* viscous, const Step& step,
+                            VertexWork& work) {
   std::size_t from = 0;
   const auto run_to = [&](std::size_t end) {
     double* state = records_.at(run.first + from);
     const float* f = elastic + from * kForceFloats;
     const Kick kick = records_.kick_from(step.kick, run.first + from);
     if (step.accounted) {
-      kernels_.integrate_accounted(state, f, viscous + from * kForceFloats, end - from, kick, work);
+      const float* beside = viscous != nullptr ? viscous + from * kForceFloats : nullptr;
+      kernels_.integrate_accounted(state, f, beside, end - from, kick, work);
     } else {
       kernels_.integrate(state, f, end - from, kick);
     }
@@ -57,13 +59,13 @@ void SubmeshBody::run_submesh(std::size_t s, const Step& step, SubmeshScratch& s
   const bool split = splits(s, step.accounted);
   float *elastic = scratch.elastic.data(), *viscous = scratch.viscous.data();
   work_[s] = {};
-  if (step.accounted && !split) std::fill_n(viscous, floats, 0.0F);
   forces_.evaluate(s, split, volumes_.shares(part) ? volumes_.join(s) : nullptr, scratch, found_[s]);
   if (!found_[s].finite) return;
   fill_slots(part, split, scratch);
   const RecordRun run = active_.interior(s);
-  if (in_stages()) return stages_.begin(run, elastic, split ? viscous : nullptr, step.kick);
-  active_.take_forces(run, elastic, split ? viscous : nullptr);
+  if (!split) viscous = nullptr;
+  if (in_stages()) return stages_.begin(run, elastic, viscous, step.kick);
+  active_.take_forces(run, elastic, viscous);
   if (split && !step.accounted) kernels_.add(elastic, viscous, floats);
   integrate(run, elastic, viscous, step, work_[s]);
 }
@@ -78,11 +80,11 @@ void SubmeshBody::run_interface(std::size_t chunk, const Step& step, SubmeshScra
   if (any_split_) {
     kernels_.sum_slots(slots_viscous_.data(), slot_begin, shared.slots.data(), run.size, viscous);
   } else {
-    std::fill_n(viscous, run.size * kForceFloats, 0.0F);
+    viscous = nullptr;
   }
   VertexWork& work = work_of_chunk(chunk);
   work = {};
-  if (in_stages()) return stages_.begin(run, elastic, any_split_ ? viscous : nullptr, step.kick);
+  if (in_stages()) return stages_.begin(run, elastic, viscous, step.kick);
   active_.take_forces(run, elastic, viscous);
   if (!step.accounted && any_split_) kernels_.add(elastic, viscous, force_floats(run.size));
   integrate(run, elastic, viscous, step, work);
@@ -90,9 +92,9 @@ void SubmeshBody::run_interface(std::size_t chunk, const Step& step, SubmeshScra
 
 /// Hands out the forces of all stages and moves the vertices that are not active.
 void SubmeshBody::end_stages(const RecordRun& run, bool split, const Step& step, VertexWork& work) {
-  float *elastic = stages_.elastic(run.first), *viscous = stages_.sums(run.first);
-  if (!split) std::swap(elastic, viscous);
-  active_.take_forces(run, elastic, split ? viscous : nullptr);
+  float *elastic = split ? stages_.elastic(run.first) : stages_.sums(run.first),
+        *viscous = split ? stages_.sums(run.first) : nullptr;
+  active_.take_forces(run, elastic, viscous);
   if (split && !step.accounted) {
     for (std::size_t i = 0; i < kForceFloats * run.size; ++i) elastic[i] += viscous[i];
   }

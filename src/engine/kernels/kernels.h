@@ -182,7 +182,7 @@ struct Kernels {
                     float* out) = nullptr;
   /// Kick and drift of `n` vertices: v₊ = v₋ + c f − d v₋ + h (1 − d) w g, u₊ = u + h v₊  [Schwartz2002, eq. 4], w the share that weighs.
   void (*integrate)(double* state, const float* force, std::size_t n, const Kick&) = nullptr;
-  /// The same with elastic and viscous forces apart; the work is added to `work`.
+  /// The same with elastic and viscous forces apart; the work is added to `work`. @param viscous  null: there are none
   void (*integrate_accounted)(double* state, const float* elastic, const float* viscous, std::size_t n, const Kick&,
                               VertexWork& work) = nullptr;
 };

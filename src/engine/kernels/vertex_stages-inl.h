@@ -147,14 +147,16 @@ struct WorkLanes {
     elastic_before = elastic_after = viscous_before = viscous_after = zero;
     damping_before = damping_after = loads_before = loads_after = kinetic = zero;
   }
-  HWY_INLINE void book(D4 elastic, D4 viscous, D4 drag, D4 weight, double half_mass, D4 before, D4 after) {
+  HWY_INLINE void book(D4 elastic, D4 drag, D4 weight, double half_mass, D4 before, D4 after) {
     elastic_before = hn::MulAdd(elastic, before, elastic_before),
     elastic_after = hn::MulAdd(elastic, after, elastic_after);
-    viscous_before = hn::MulAdd(viscous, before, viscous_before),
-    viscous_after = hn::MulAdd(viscous, after, viscous_after);
     damping_before = hn::MulAdd(drag, before, damping_before), damping_after = hn::MulAdd(drag, after, damping_after);
     loads_before = hn::MulAdd(weight, before, loads_before), loads_after = hn::MulAdd(weight, after, loads_after);
     kinetic = hn::MulAdd(hn::Mul(hn::Set(Doubles(), half_mass), before), after, kinetic);
+  }
+  HWY_INLINE void book_viscous(D4 viscous, D4 before, D4 after) {
+    viscous_before = hn::MulAdd(viscous, before, viscous_before),
+    viscous_after = hn::MulAdd(viscous, after, viscous_after);
   }
   HWY_INLINE void add_to(VertexWork& work) const {
     const auto sum = [](D4 v) GLISSON_INLINED { return hn::GetLane(hn::SumOfLanes(Doubles(), v)); };
@@ -166,8 +168,11 @@ struct WorkLanes {
   }
 };
 
+/// What of a kick is booked.
+enum class Booked { nothing, elastic, elastic_and_viscous };
+
 /// v₊ = v₋ + c f − d v₋ + h (1 − d) w g, u₊ = u + h v₊, one vertex  [Schwartz2002, eq. 4].
-template <bool kAccounted>
+template <Booked B>
 HWY_INLINE void advance(double* state, const float* elastic, const float* viscous, const Kick& kick, std::size_t vertex,
                         WorkLanes& work) {
   const Doubles d;
@@ -179,16 +184,19 @@ HWY_INLINE void advance(double* state, const float* elastic, const float* viscou
     const D4 fall = hn::Mul(hn::Set(d, kick.step), g);
     const D4 fe = hn::PromoteTo(d, hn::Load(Narrow(), elastic + k));
     D4 force = fe;
-    if constexpr (kAccounted) force = hn::Add(fe, hn::PromoteTo(d, hn::Load(Narrow(), viscous + k)));
+    if constexpr (B == Booked::elastic_and_viscous) {
+      force = hn::Add(fe, hn::PromoteTo(d, hn::Load(Narrow(), viscous + k)));
+    }
     const D4 change = hn::MulAdd(hn::Set(d, c), force, hn::NegMulAdd(hn::Set(d, damping), hn::Add(before, fall), fall));
     const D4 after = hn::Add(before, hn::And(xyz, change));
     hn::Store(after, d, state + 4 + k);
     hn::Store(hn::MulAdd(h, after, u), d, state + k);
-    if constexpr (kAccounted) {
+    if constexpr (B != Booked::nothing) {
       const D4 v0 = hn::And(xyz, before), v1 = hn::And(xyz, after);
       const double inverse = c > 0.0 ? 1.0 / c : 0.0, mass = kick.step * (1.0 - damping) * inverse;
       const D4 drag = hn::Mul(hn::Set(d, -damping * inverse), v1);
-      work.book(fe, hn::Sub(force, fe), drag, hn::Mul(hn::Set(d, mass), g), 0.5 * mass, v0, v1);
+      work.book(fe, drag, hn::Mul(hn::Set(d, mass), g), 0.5 * mass, v0, v1);
+      if constexpr (B == Booked::elastic_and_viscous) work.book_viscous(hn::Sub(force, fe), v0, v1);
     }
   }
 }
@@ -220,19 +228,27 @@ inline void integrate(double* state, const float* force, std::size_t n, const Ki
 inline void integrate(double* state, const float* force, std::size_t n, const Kick& kick) {
   WorkLanes none;
   for (std::size_t i = 0; i < n; ++i) {
-    advance<false>(state + i * kStateDoubles, force + i * kForceFloats, nullptr, kick, i, none);
+    advance<Booked::nothing>(state + i * kStateDoubles, force + i * kForceFloats, nullptr, kick, i, none);
   }
 }
 
 #endif
 
-inline void integrate_accounted(double* state, const float* elastic, const float* viscous, std::size_t n,
-                                const Kick& kick, VertexWork& work) {
+template <Booked B>
+HWY_INLINE void integrate_booked(double* state, const float* elastic, const float* viscous, std::size_t n,
+                                 const Kick& kick, VertexWork& work) {
   WorkLanes sums;
   for (std::size_t i = 0; i < n; ++i) {
-    advance<true>(state + i * kStateDoubles, elastic + i * kForceFloats, viscous + i * kForceFloats, kick, i, sums);
+    const float* beside = B == Booked::elastic_and_viscous ? viscous + i * kForceFloats : nullptr;
+    advance<B>(state + i * kStateDoubles, elastic + i * kForceFloats, beside, kick, i, sums);
   }
   sums.add_to(work);
+}
+
+inline void integrate_accounted(double* state, const float* elastic, const float* viscous, std::size_t n,
+                                const Kick& kick, VertexWork& work) {
+  if (viscous == nullptr) return integrate_booked<Booked::elastic>(state, elastic, nullptr, n, kick, work);
+  integrate_booked<Booked::elastic_and_viscous>(state, elastic, viscous, n, kick, work);
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE
