@@ -32,7 +32,7 @@ test:  ## build with tests and run them: engine, consumer package, report page
 	@cd $(BUILD) && $(CTEST) -LE verify
 
 # Not part of test: 300 random bodies, a thousand scenes and insertions, populations of fits; `test` has the first few of each.
-verify:  ## build with tests and run those of many random bodies, scenes and populations, an hour
+verify:  ## build with tests and run those of many random bodies, scenes and populations, half an hour
 	@scripts/setup.sh test
 	@scripts/configure.sh release tests
 	@scripts/build.sh $(BUILD) $(JOBS)
