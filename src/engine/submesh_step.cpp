@@ -30,7 +30,8 @@ void SubmeshBody::fill_slots(const Submesh& part, bool split, const SubmeshScrat
   }
 }
 
-/// Kick and drift of the vertices between those active. @param viscous  null: `elastic` is the whole force
+/// Kick and drift of the vertices between those active. @param viscous  what is to be booked apart from `elastic` where the step is
+/// accounted; else `elastic` is the whole force. Null: there is none
 void SubmeshBody::integrate(const RecordRun& run, const float* elastic, const float* viscous, const Step& step,
                             VertexWork& work) {
   std::size_t from = 0;
