@@ -355,7 +355,8 @@ void StepControl::archive(Archive& ar) {
   ar(probe_, since_probe_, probes_, levels_, drag_part_, drag_searched_.limit);
   ar.same_size(drag_searched_.numbers);
   if (mass_levels_) {
-    ar(*mass_levels_, masses_are_new_, bears_added_, heavy_growth_), ar.same_size(listed_before_);
+    ar(*mass_levels_, masses_are_new_, bears_added_, heavy_growth_, pause_, since_came_, since_gone_),
+        ar.same_size(listed_before_);
     added_levels_.archive(ar, body_.vertex_count);
   }
   if (element_bound_ != nullptr) ar(*element_bound_);

@@ -221,6 +221,8 @@ class StepControl : StepChoice {
   std::vector<char> thickening() const;
   void choose_heavy(double wanted);
   double step_without_masses(std::span<const double> stiffening) const;
+  bool needs_mass() const;
+  bool change_heavy(double wanted);
   bool follow_inertia(std::span<const double> stiffening);
   std::uint32_t heavy_part() const;
   void tell_heavy();
@@ -281,6 +283,8 @@ class StepControl : StepChoice {
   bool masses_are_new_ = false;
   double inertia_ = 0.0;       ///< see take_inertia
   double heavy_growth_ = 0.0;  ///< of the step, ln, that is still to be made
+  /// Of mass that elements lack at rest: how long it has to wait after it went, since when it is there, and gone [steps].
+  std::uint64_t pause_ = 0, since_came_ = 0, since_gone_ = 0;
 
   double tools_ = 0.0;    ///< ω² of what acts beside the tissue [1/s²]
   double held_ = 0.0;     ///< the same that an automatic step is chosen for: at least as much

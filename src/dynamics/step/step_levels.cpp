@@ -37,7 +37,9 @@ constexpr double kHeavyTurnOfStep = 0.02;  ///< growth of it by e that is made i
 constexpr double kHeavyMemory = 40.0;      ///< time in which it grows by e, in steps asked for
 constexpr double kQuickMemory = 4.0;       ///< the same where inertia is hardly any
 constexpr double kHardlyInertia = 0.1;     ///< of the bearable inertia
-constexpr double kNearlyBorne = 1.02;      ///< of what tets bear without mass, from where the step falls to that
+constexpr std::uint64_t kSoonBack = 16;    ///< steps in which mass that came goes again too soon
+constexpr std::uint64_t kShortPause = 8, kLongPause = 1024;  ///< [steps] before mass may come again after that
+constexpr double kNearlyBorne = 1.02;  ///< of what tets bear without mass, from where the step falls to that
 constexpr double kLeastHeavyLevel =
     1.25;                            ///< of blocks, over rest: above kCloseToHeavy, so that tets at rest are not told
 constexpr double kProbeDepth = 8.0;  ///< how far below the level of the blocks a probe looks
@@ -54,6 +56,7 @@ void StepControl::start_anew() {
   window_ = kFirstWindow, in_window_ = 0;
   probe_ = kFirstProbe, since_probe_ = 0, probes_ = false;
   caution_ = 1.0, heavy_growth_ = 0.0;
+  pause_ = since_came_ = since_gone_ = 0;
   held_ = tools_;
   shape_step_ = std::numeric_limits<double>::infinity();
   levels_.clear();
@@ -169,12 +172,43 @@ double StepControl::step_without_masses(std::span<const double> stiffening) cons
   return kSafety * pace_from(rest_, level);
 }
 
+/// Whether elements get mass that they lack at rest at the present step.
+bool StepControl::needs_mass() const {
+  const MassNeed need = mass_need();
+  return need.at_level || need.drag_end > 0.0;
+}
+
+/// Takes another step of variable mass scaling. At the step that the body bears without mass elements lack much at once, since their
+/// own bounds are below it. Motions near the stability limit grow where such mass comes and goes in turn, however safe each step is: with
+/// θ² = h² k/m in (0, 4), two steps in turn are stable only where both θ² are on the same side of 2. So mass that had to go again at once
+/// comes back later and later.
+/// @return whether it is taken
+bool StepControl::change_heavy(double wanted) {
+  const Known before = now_;
+  const double step = step_;
+  const bool had = needs_mass();
+  choose_heavy(wanted);
+  const bool has = needs_mass();
+  if (has && !had) {
+    if (since_gone_ < pause_) {
+      now_ = before, step_ = step;
+      return false;
+    }
+    since_came_ = 0;
+  } else if (had && !has) {
+    pause_ = since_came_ < kSoonBack ? std::clamp(2 * pause_, kShortPause, kLongPause) : pause_ / 2;
+    since_gone_ = 0;
+  }
+  return true;
+}
+
 /// Where inertia of added mass shows, the step falls to where it hardly does: mass goes with h² less what tets bear without it. The
 /// step comes back by as much as tets are told of before they need mass, slowly within a swing of the tissue, and in few changes,
 /// since each asks for the masses of all vertices.
 /// @return whether it is another one
 bool StepControl::follow_inertia(std::span<const double> stiffening) {
   const double inertia = std::exchange(inertia_, 0.0) / bearable_inertia_, most = *heavy_step_;
+  ++since_came_, ++since_gone_;
   double wanted = std::min(step_, most);
   if (inertia > kMuchInertia) {
     const double tissue = std::min(step_without_masses(stiffening), kSafety * drag_limit_),
@@ -189,9 +223,7 @@ bool StepControl::follow_inertia(std::span<const double> stiffening) {
       heavy_growth_ = 0.0;
     }
   }
-  if (wanted == step_) return false;
-  choose_heavy(wanted);
-  return true;
+  return wanted != step_ && change_heavy(wanted);
 }
 
 /// Variable mass scaling: stiff tets take levels of their own, and vertices the mass that their tets lack.
