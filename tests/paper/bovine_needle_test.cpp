@@ -194,7 +194,7 @@ TEST(BovineNeedle, FollowsTheMeasuredCurve) {
   const RunSummary summary = run_variant(variant, {}, curve, stop);
   ASSERT_EQ(summary.end, RunSummary::End::finished);
   // as `glisson check` says of shipped scenes with variable mass scaling
-  EXPECT_LT(static_cast<double>(summary.steps), 2.5 * summary.time_s / *variant.simulation.mass_scaling_step);
+  EXPECT_LT(static_cast<double>(summary.steps), 2.0 * summary.time_s / *variant.simulation.mass_scaling_step);
   expect_surface_and_plateau(curve);
   expect_inner_punctures(curve);
   const auto path = test::shipped("../shared/data/needle/bovine_liver.csv");
