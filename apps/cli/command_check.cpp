@@ -20,6 +20,7 @@
 #include "cli/standard_streams.h"
 #include "cli/tissue_text.h"
 #include "instruments/needle/membranes.h"
+#include "material/linear_law.h"
 
 namespace glisson::app {
 namespace {
@@ -391,9 +392,24 @@ void print_slow(const Variant& v, const Taste& taste) {
       1e6 * fastest * taste.step_s, step, times < 10.0 ? fmt::format("{:.2g}", times) : fmt::format("{:.0f}", times));
 }
 
+/// The tissues for which adaptive precision can do nothing.
+void print_precision(const Variant& v) {
+  if (v.simulation.precision != Precision::adaptive) return;
+  std::vector<std::string> own;
+  const auto look = [&](const Tissue& tissue) {
+    if (!has_linear_law(tissue)) own.push_back("\"" + tissue.name + "\"");
+  };
+  look(v.tissue);
+  for (const RegionSpec& region : v.regions) look(region.tissue);
+  if (own.empty()) return;
+  say("  adaptive no linear law stands in for {}: it is linear, or has fibres, averaged volumes, pioletti's viscosity, "
+      "branches\n           in large strain or times that follow the deformation\n",
+      fmt::join(own, ", "));
+}
+
 /// The implicit integrators compute in double, whatever the scene says.
 bool in_single(const Variant& v, const Taste& taste) {
-  return v.simulation.precision == Precision::single_precision && std::isfinite(taste.stable_step_s);
+  return v.simulation.precision != Precision::double_precision && std::isfinite(taste.stable_step_s);
 }
 
 void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, const Cost& cost,
@@ -406,6 +422,7 @@ void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, co
                        : "stable at any step");
   print_limits(v, load, taste);
   if (explicit_steps) print_stages(v, load, taste), print_slow(v, taste);
+  print_precision(v);
   const std::string shorter = automatic && explicit_steps && !heavy ? shortens_step(v) : std::string{};
   const std::string more =
       heavy ? " at the step asked for, more where that mass has an effect (the shipped scenes: up to twice as many)"

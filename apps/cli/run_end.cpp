@@ -46,6 +46,7 @@ void print_results(const std::vector<const VariantRecorder*>& variants) {
     if (s.inverted_tets_most > 0) {
       say(" (up to {} inverted tets, from {:.4g} s on)", s.inverted_tets_most, s.first_inversion_s);
     }
+    if (s.linear_share_mean) say(" ({:.0f} % of the tets linear in the mean)", 100.0 * *s.linear_share_mean);
     say("\n");
   }
 }

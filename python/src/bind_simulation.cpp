@@ -159,6 +159,7 @@ nb::dict tet_fields(const Live& live) {
   out["jacobian"] = scalars(std::move(fields.jacobian));
   out["stress"] = owned<Doubles>(std::move(fields.stress), {n, 6});
   out["piola"] = owned<Doubles>(std::move(fields.piola), {n, 3, 3});
+  out["linear"] = scalars(std::move(fields.linear));
   return out;
 }
 
@@ -347,6 +348,8 @@ void bind_reading(nb::class_<Live>& c) {
           "stored_energy", [](const Live& l) { return l.get().stored_energy(); }, doc(of("stored_energy")))
       .def_prop_ro(
           "energy_drift", [](const Live& l) { return l.get().energy_drift(); }, doc(of("energy_drift")))
+      .def_prop_ro(
+          "linear_share", [](const Live& l) { return l.get().linear_share(); }, doc(of("linear_share")))
       .def_prop_ro(
           "engine_info", [](const Live& l) { return l.get().engine_info(); }, "How it is evaluated")
       .def_prop_ro(

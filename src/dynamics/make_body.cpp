@@ -18,10 +18,13 @@ std::unique_ptr<MovingBody> make_moving_body(const Body& body, std::span<const d
     info = info_of(*moving, body);
     return moving;
   }
+  const bool adaptive = options.precision == Precision::adaptive;
   const engine::SubmeshOptions submeshes{
       .threads = options.threads,
-      .submesh_tets = engine::submesh_tets(body.elements.size(), options.mesh_changes),
-      .drag_stages = options.drag_stages};
+      .submesh_tets =
+          adaptive ? engine::kAdaptiveSubmesh : engine::submesh_tets(body.elements.size(), options.mesh_changes),
+      .drag_stages = options.drag_stages,
+      .precision_error = adaptive ? options.precision_error : 0.0};
   auto moving = std::make_unique<engine::SubmeshBody>(body, nodal_damping, submeshes);
   info = info_of(*moving, body);
   return moving;

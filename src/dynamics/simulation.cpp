@@ -36,6 +36,11 @@ void require_options(const SimulationOptions& o) {
         "simulation: mass_scaling = \"variable\" needs the integrator central_difference, step = \"auto\" and a "
         "mass_scaling_step [s], which is the longest step; take mass_scaling = \"fixed\", or set these");
   }
+  if (o.precision == Precision::adaptive && !can.supports_adaptive_precision) {
+    throw std::invalid_argument("simulation: precision = \"adaptive\" is not supported by the integrator " +
+                                std::string(word_of(o.integrator)) +
+                                "; take central_difference, or precision = \"single\" or \"double\"");
+  }
   if (!o.mass_scaling_step || !can.any_step_is_stable) return;
   throw std::invalid_argument(
       "simulation: mass_scaling_step [s] = " + detail::show(*o.mass_scaling_step) +
@@ -328,6 +333,8 @@ std::vector<LimitingTet> Simulation::limiting_tets(std::size_t most) const {
 
 double Simulation::force_time() const { return impl_->scheme->force_time(); }
 
+double Simulation::linear_share() const { return impl_->scheme->linear_share(); }
+
 const EngineInfo& Simulation::engine_info() const { return impl_->scheme->info(); }
 
 Energies Simulation::energies() const {
@@ -346,10 +353,11 @@ std::optional<double> Simulation::stored_energy() const {
   std::vector<Vec3d> u(displacement().begin(), displacement().end());
   for (std::size_t i = 0; i < u.size(); ++i) u[i] -= velocity()[i] * ahead;
   double sum = 0.0;
-  for (const TissueBlock& block : scheme.body().blocks) {
-    const BlockResponse response(scheme.body(), block);
+  for (std::size_t b = 0; b < scheme.body().blocks.size(); ++b) {
+    const BlockResponse response(scheme.body(), scheme.body().blocks[b]);
     if (!response.stores_energy()) return {};
-    sum += response.energy(u);
+    const BranchMemory memory = scheme.branch_memory(b);
+    sum += response.energy(u, &memory);
   }
   for (const auto& interaction : scheme.interactions()) sum += interaction->energy();
   return sum;

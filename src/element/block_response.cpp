@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "element/element_shape.h"
+#include "material/linear_law.h"
 
 namespace glisson {
 
@@ -30,6 +31,7 @@ void average(const Body& body, const TissueBlock& block, std::vector<double>& pe
 
 BlockResponse::BlockResponse(const Body& body, const TissueBlock& block, const ElementList& wanted)
     : body_(body), block_(block), response_(block.tissue), wanted_(wanted) {
+  if (has_linear_law(block.tissue)) linear_.emplace(linear_law(block.tissue));
   if (!shared() || wanted.size() == block.end - block.begin) return;
   std::vector<char> near(body.vertex_count, 0);
   for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -52,7 +54,7 @@ std::vector<double> BlockResponse::volume_changes(std::span<const Vec3d> u) cons
   return theta;
 }
 
-double BlockResponse::energy(std::span<const Vec3d> u) const {
+double BlockResponse::energy(std::span<const Vec3d> u, const BranchMemory* memory) const {
   const std::vector<double> at =
       shared() ? vertex_means(body_, around(), volume_changes(u)) : std::vector<double>{};  // ϑ_a of each vertex
   double sum = 0.0;
@@ -63,10 +65,12 @@ double BlockResponse::energy(std::span<const Vec3d> u) const {
     if (shared()) {
       for (const std::uint32_t v : body_.elements[e]) square += 0.25 * at[v] * at[v];
     }
-    const double root = std::sqrt(square);
-    sum += body_.rest[e].volume * response_.relaxed_energy(element_gradient(body_, e, u),
-                                                           element_shape(body_, block_.tissue, e),
-                                                           shared() ? &root : nullptr);
+    const double root = std::sqrt(square), share = memory != nullptr ? memory->linear_share(e - block_.begin) : 0.0;
+    const Mat3d H = element_gradient(body_, e, u);
+    const ElementShape shape = element_shape(body_, block_.tissue, e);
+    double energy = response_.relaxed_energy(H, shape, shared() ? &root : nullptr);
+    if (share > 0.0) energy += share * (linear_->energy(H, shape) - energy);
+    sum += body_.rest[e].volume * energy;
   }
   return sum;
 }
@@ -99,8 +103,15 @@ std::vector<Mat3d> BlockResponse::piola(std::span<const Vec3d> u, std::span<cons
         sum += memory.stress(branches[k], e - block_.begin, k, S);
       P = glisson::sum(P, response_.carry(H, sum));
     }
-    if (block_.tissue.viscosity > 0.0) P = sum(P, response_.viscous(H, element_gradient(body_, e, v)));
+    const bool drags = block_.tissue.viscosity > 0.0;
+    const Mat3d rate = drags ? element_gradient(body_, e, v) : Mat3d{};
+    if (drags) P = sum(P, response_.viscous(H, rate));
     stress[i] = P;
+    const double share = memory.linear_share(e - block_.begin);
+    if (share == 0.0) return;
+    Mat3d L = linear_->elastic(H, element_shape(body_, block_.tissue, e));
+    if (drags) L = sum(L, linear_->viscous(H, rate));
+    stress[i] = sum(scaled(P, 1.0 - share), scaled(L, share));
   });
   return stress;
 }

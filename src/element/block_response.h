@@ -5,6 +5,7 @@
 // step have their own.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,11 +43,12 @@ class BlockResponse {
   BlockResponse(const Body& body, const TissueBlock& block, const ElementList& wanted);
 
   /// P of every wanted element [Pa], of which the forces follow: f_a = −V P s_a. Elastic, Kelvin–Voigt's and what
-  /// the Maxwell branches have not relaxed, with the shared volume change where the tissue has one.
+  /// the Maxwell branches have not relaxed, with the shared volume change where the tissue has one; of the linear law its share.
   /// @param v  velocity [m/s]
   std::vector<Mat3d> piola(std::span<const Vec3d> u, std::span<const Vec3d> v, const BranchMemory& memory) const;
-  /// Energy of the elastic forces [J], Response::relaxed_energy over the wanted elements.
-  double energy(std::span<const Vec3d> u) const;
+  /// Energy of the elastic forces [J], Response::relaxed_energy over the wanted elements. @param memory  none: of the tissue's own
+  /// law alone
+  double energy(std::span<const Vec3d> u, const BranchMemory* memory = nullptr) const;
   bool stores_energy() const { return response_.stores_energy(); }
   /// S, of which each branch relaxes its share, of every wanted element [Pa].
   std::vector<Sym3<double>> relaxing(std::span<const Vec3d> u) const;
@@ -61,6 +63,7 @@ class BlockResponse {
   const Body& body_;
   const TissueBlock& block_;
   Response response_;
+  std::optional<Response> linear_;  ///< of the linear law, where there is one
   ElementList wanted_;
   std::vector<std::uint32_t>
       around_;  ///< of part of a block with shared volume change: all that share a vertex with it

@@ -38,8 +38,8 @@ Sym3<double> cauchy_stress(bool small, const Mat3d& H, const Mat3d& P) {
 }
 
 TetFields empty_fields(std::size_t n) {
-  return {std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), std::vector<double>(6 * n),
-          std::vector<double>(9 * n)};
+  return {std::vector<double>(n),     std::vector<double>(n),     std::vector<double>(n),
+          std::vector<double>(6 * n), std::vector<double>(9 * n), std::vector<double>(n)};
 }
 
 /// Writes the fields of some elements of a block. @param place  of an element in the fields
@@ -54,6 +54,7 @@ void add_block(const Body& body, const TissueBlock& block, const ElementList& el
     f.q[t] = mean_ratio(H);
     f.s[t] = intensity_of(one_minus_q(H));
     f.jacobian[t] = jacobian(H);
+    f.linear[t] = memory.linear_share(elements[i] - block.begin);
     const Sym3<double> a = cauchy_stress(small, H, P);
     const std::array<double, 6> stress{a.xx, a.yy, a.zz, a.xy, a.yz, a.zx};
     std::copy(stress.begin(), stress.end(), f.stress.begin() + static_cast<std::ptrdiff_t>(6 * t));
@@ -64,7 +65,7 @@ void add_block(const Body& body, const TissueBlock& block, const ElementList& el
 /// Gives tet `to` of the fields what tet `from` has.
 void copy_tet(TetFields& f, std::size_t from, std::size_t to) {
   if (from == to) return;
-  f.q[to] = f.q[from], f.s[to] = f.s[from], f.jacobian[to] = f.jacobian[from];
+  f.q[to] = f.q[from], f.s[to] = f.s[from], f.jacobian[to] = f.jacobian[from], f.linear[to] = f.linear[from];
   std::copy_n(f.stress.begin() + static_cast<std::ptrdiff_t>(6 * from), 6,
               f.stress.begin() + static_cast<std::ptrdiff_t>(6 * to));
   std::copy_n(f.piola.begin() + static_cast<std::ptrdiff_t>(9 * from), 9,

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "material/linear_law.h"
+
 namespace glisson::engine {
 namespace {
 
@@ -22,18 +24,24 @@ double bound_of(const StiffnessSeen& seen) { return largest(seen.stiffness) + st
 }  // namespace
 
 ElementForces::ElementForces(const Body& body, Submeshes& submeshes, const VertexRecords& records,
-                             const Kernels& kernels)
+                             const Kernels& kernels, double precision_error)
     : body_(body), submeshes_(submeshes), records_(records), kernels_(kernels),
-      inversions_(body, submeshes, records, kernels.lanes) {}
+      inversions_(body, submeshes, records, kernels.lanes), precision_(submeshes, precision_error) {}
 
 void ElementForces::reset() {
-  plans_.clear();
-  for (const TissueBlock& block : body_.blocks) plans_.push_back(tissue_plan(block, *kernels_.response));
+  plans_.clear(), plans_.resize(body_.blocks.size());
+  twins_.clear(), twins_.resize(precision_.on() ? body_.blocks.size() : 0);
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) take_tissue(b);
   inversions_.reset();
+  precision_.reset();
 }
 
-void ElementForces::take_tissue(std::size_t block) {
-  plans_[block] = tissue_plan(body_.blocks[block], *kernels_.response);
+void ElementForces::take_tissue(std::size_t b) {
+  const TissueBlock& block = body_.blocks[b];
+  plans_[b] = tissue_plan(block, *kernels_.response);
+  if (!precision_.on()) return;
+  twins_[b].reset();
+  if (has_linear_law(block.tissue)) twins_[b] = linear_twin(block, plans_[b], *kernels_.response);
 }
 
 void ElementForces::list_above(std::span<const double> stiffening, std::span<const StiffLimit> single) {
@@ -41,11 +49,13 @@ void ElementForces::list_above(std::span<const double> stiffening, std::span<con
   single_limits_ = single;
 }
 
-void ElementForces::begin_step(double h, std::uint64_t steps, double since_memory) {
+void ElementForces::begin_step(double h, std::uint64_t steps, double since_memory, bool accounted) {
   for (TissuePlan& plan : plans_) {
     if (plan.response != nullptr) plan.response->set_step(h, since_memory);
   }
-  steps_ = steps, moves_ = h > 0.0;
+  last_step_ = std::isinf(since_memory) ? 0.0 : since_memory;
+  steps_ = steps, moves_ = h > 0.0, accounted_ = accounted;
+  precision_.begin_step(moves_);
 }
 
 /// Stiffening from which elements of a block are listed.
@@ -140,19 +150,17 @@ void ElementForces::push_elements(const Submesh& part, bool split, SubmeshScratc
 }
 
 /// @return the largest squared displacement difference of an edge [m²]
-float ElementForces::push_edges(const Submesh& part, bool split, SubmeshScratch& scratch,
-                                ElementFindings& found) const {
-  const TissuePlan& plan = plans_[part.block];
+float ElementForces::push_edges(const EdgeBatches& batches, const TissuePlan& plan, bool split,
+                                SubmeshScratch& scratch) const {
   const Edges edges{.states = scratch.states.data(),
-                    .index = part.edges.index.data(),
-                    .tensor = part.edges.tensor.data(),
-                    .batches = part.edges.count,
+                    .index = batches.index.data(),
+                    .tensor = batches.tensor.data(),
+                    .batches = batches.count,
                     .elastic = scratch.elastic.data(),
                     .viscous = scratch.viscous.data(),
                     .tissue = plan.tissue};
-  const auto push = split ? kernels_.edges_split : (plan.viscous ? kernels_.edges_merged : kernels_.edges_elastic);
-  found.stiffening = 1.0;
-  return push(edges);
+  const bool apart = split && plan.viscous;
+  return (apart ? kernels_.edges_split : (plan.viscous ? kernels_.edges_merged : kernels_.edges_elastic))(edges);
 }
 
 void ElementForces::spread_volume_changes(const Submesh& part, SubmeshScratch& scratch, float* sums) const {
@@ -173,7 +181,8 @@ void ElementForces::spread_volume_changes(const Submesh& part, SubmeshScratch& s
 void ElementForces::drag(const Submesh& part, const double* velocities, SubmeshScratch& scratch) const {
   std::fill_n(scratch.viscous.data(), force_floats(part.local_vertices()), 0.0F);
   if (!plans_[part.block].drags || part.local_vertices() == 0) return;
-  const bool by_edges = part.edges.count > 0;
+  const EdgeBatches& edges = part.linear.alone() ? part.linear.edges : part.edges;
+  const bool by_edges = edges.count > 0;
   if (by_edges) std::fill_n(scratch.states.data(), part.local_vertices() * kStateFloats, 0.0F);
   const double* own = velocities + 4 * part.first_interior;
   const double* origin = part.interior_count > 0 ? own : velocities + 4 * std::size_t{part.shared[0]};
@@ -183,9 +192,9 @@ void ElementForces::drag(const Submesh& part, const double* velocities, SubmeshS
   const LaneTissue& tissue = plans_[part.block].tissue;
   if (by_edges) {
     kernels_.edges_merged({.states = scratch.states.data(),
-                           .index = part.edges.index.data(),
-                           .tensor = part.edges.tensor.data(),
-                           .batches = part.edges.count,
+                           .index = edges.index.data(),
+                           .tensor = edges.tensor.data(),
+                           .batches = edges.count,
                            .elastic = scratch.viscous.data(),
                            .tissue = {.lambda = tissue.viscous_lambda, .mu = tissue.viscous_mu}});
     return;
@@ -198,6 +207,33 @@ void ElementForces::drag(const Submesh& part, const double* velocities, SubmeshS
   }
 }
 
+/// Σ f·v of the elastic forces of a submesh in a scratch [W]; forces and velocities may be counted from any motion of the whole.
+double ElementForces::power(const Submesh& part, const SubmeshScratch& scratch) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < part.local_vertices(); ++i) {
+    const float *v = scratch.states.data() + i * kStateFloats + 4, *f = scratch.elastic.data() + i * kForceFloats;
+    for (std::size_t k = 0; k < 3; ++k) sum += double(f[k]) * double(v[k]);
+  }
+  return sum;
+}
+
+/// Adds the forces of a submesh's linear form to its own, each by its share.
+void ElementForces::mix_in(std::size_t s, bool split, SubmeshScratch& scratch) {
+  const Submesh& part = submeshes_.parts[s];
+  const auto share = static_cast<float>(part.linear.share);
+  const std::size_t floats = force_floats(part.local_vertices());
+  const auto scale = [&](float factor) {
+    for (std::size_t i = 0; i < floats; ++i) scratch.elastic[i] *= factor;
+    for (std::size_t i = 0; split && i < floats; ++i) scratch.viscous[i] *= factor;
+  };
+  const double own = accounted_ ? power(part, scratch) : 0.0;
+  scale((1.0F - share) / share);
+  precision_.moved(s, push_edges(part.linear.edges, twins_[part.block]->plan, split, scratch));
+  scale(share);
+  if (!accounted_ || !moves_) return;
+  precision_.worked(s, last_step_ * (power(part, scratch) - own) / part.linear.share);
+}
+
 void ElementForces::evaluate(std::size_t s, bool split, const float* theta, SubmeshScratch& scratch,
                              ElementFindings& found) {
   Submesh& part = submeshes_.parts[s];
@@ -206,14 +242,21 @@ void ElementForces::evaluate(std::size_t s, bool split, const float* theta, Subm
   std::fill_n(scratch.elastic.data(), floats, 0.0F);
   if (split) std::fill_n(scratch.viscous.data(), floats, 0.0F);
   narrow(part, scratch);
-  if (part.edges.count > 0) {
-    const float longest = push_edges(part, split, scratch, found);
+  const bool examines = precision_.examines(s), linear = part.linear.alone();
+  if (examines && has_twin(part.block)) examine(s, scratch);
+  if (part.edges.count > 0 || linear) {
+    const TissuePlan& plan = linear ? twins_[part.block]->plan : plans_[part.block];
+    const float longest = push_edges(linear ? part.linear.edges : part.edges, plan, split, scratch);
+    found.stiffening = linear ? precision_.stiffening(s) : 1.0;
+    if (linear) precision_.moved(s, longest);
     if (inversions_.is_due(s, longest, steps_, moves_)) inversions_.list(part.elements, found.inverted);
   } else if (plans_[part.block].response != nullptr) {
     push_response(part, split, theta, scratch, found);
   } else {
     push_elements(part, split, scratch, found);
   }
+  if (part.linear.share > 0.0 && !linear) mix_in(s, split, scratch);
+  if (examines && !has_twin(part.block)) examine_forces(s, split, scratch);
   if (!found.inverted.empty()) inversions_.found_in(s);
   found.finite = kernels_.all_finite(scratch.elastic.data(), floats) &&
                  (!split || kernels_.all_finite(scratch.viscous.data(), floats));

@@ -22,17 +22,11 @@ void put_tensor(const Sym3<double>& a, const auto& number, std::size_t i) {
 
 }  // namespace
 
-std::vector<Vec3d> MaxwellMemory::displacements() const {
-  std::vector<Vec3d> u;
-  for (const std::uint32_t record : submeshes_.record_of_vertex) u.push_back(records_.displacement(record));
-  return u;
-}
-
 /// The tissue's measure of each element of a block.
 std::vector<double> MaxwellMemory::measures(std::size_t b) const {
   const TissueBlock& block = body_.blocks[b];
   const Response response(block.tissue);
-  const std::vector<Vec3d> u = displacements();
+  const std::vector<Vec3d> u = records_.displacements(submeshes_.record_of_vertex);
   std::vector<double> x;
   for (std::size_t e = block.begin; e < block.end; ++e) {
     x.push_back(
@@ -42,7 +36,7 @@ std::vector<double> MaxwellMemory::measures(std::size_t b) const {
 }
 
 std::vector<Sym3<double>> MaxwellMemory::relaxing_stresses(std::size_t block) const {
-  return BlockResponse(body_, body_.blocks[block]).relaxing(displacements());
+  return BlockResponse(body_, body_.blocks[block]).relaxing(records_.displacements(submeshes_.record_of_vertex));
 }
 
 /// Of a body whose branches have relaxed, which it knows without numbers, writes those down.
@@ -82,6 +76,7 @@ BranchMemory MaxwellMemory::of_block(std::size_t b) const {
   const TissueBlock& block = body_.blocks[b];
   const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
   BranchMemory memory;
+  list_linear(b, memory);
   if (branches.empty() || std::isinf(since_)) return memory;
   const std::size_t n = branches.size();
   memory.branches = n;
@@ -96,6 +91,10 @@ BranchMemory MaxwellMemory::of_block(std::size_t b) const {
   }
   for (const Submesh& part : submeshes_.parts) {
     if (part.block != b) continue;
+    if (part.linear.alone()) {
+      hold_linear(part, memory);
+      continue;
+    }
     for_memory(part, block.tissue, lanes_, [&](std::uint32_t e, const auto& number) {
       for (std::size_t k = 0; k < n; ++k) {
         memory.held[(e - block.begin) * n + k] = tensor_at(number, 6 * k);
@@ -104,6 +103,38 @@ BranchMemory MaxwellMemory::of_block(std::size_t b) const {
     });
   }
   return memory;
+}
+
+/// Says which elements of a block are linear.
+void MaxwellMemory::list_linear(std::size_t b, BranchMemory& memory) const {
+  const TissueBlock& block = body_.blocks[b];
+  for (const Submesh& part : submeshes_.parts) {
+    if (part.block != b || part.linear.share == 0.0) continue;
+    memory.linear.resize(block.end - block.begin, 0.0);
+    for (const std::uint32_t e : part.elements) memory.linear[e - block.begin] = part.linear.share;
+  }
+}
+
+/// What the branches of a linear submesh hold: q = decay q₀ + from S₀ + to S.
+void MaxwellMemory::hold_linear(const Submesh& part, BranchMemory& memory) const {
+  const TissueBlock& block = body_.blocks[part.block];
+  const std::vector<LaneWeights> w = weights_of(part, part.linear.since);
+  for_linear_memory(part, block.tissue, lanes_, [&](std::uint32_t e, const auto& number, const auto& stress) {
+    for (std::size_t k = 0; k < w.size(); ++k) {
+      const std::size_t at = (e - block.begin) * w.size() + k;
+      memory.held[at] = tensor_at(number, 6 * k) * double(w[k].decay) + tensor_at(stress, 0) * double(w[k].from);
+      memory.left[at] = 1.0 - double(w[k].to);
+    }
+  });
+}
+
+/// Weights of a submesh's branches over a time [s].
+std::vector<LaneWeights> MaxwellMemory::weights_of(const Submesh& part, double time) const {
+  std::vector<LaneWeights> weights;
+  for (const MaxwellBranch& branch : body_.blocks[part.block].tissue.maxwell) {
+    weights.push_back(lane_weights(time, branch.time));
+  }
+  return weights;
 }
 
 std::vector<Sym3<double>> MaxwellMemory::stresses(std::size_t b) const {
@@ -152,6 +183,74 @@ void MaxwellMemory::set_stresses(std::size_t b, std::span<const Sym3<double>> st
       if (follows) put_tensor(S[at], number, 6 * n);
     });
   }
+}
+
+/// Calls `visit(number of the memory, of S)` for all numbers of a submesh's branches.
+template <class Visit>
+void MaxwellMemory::for_branches(Submesh& part, const Visit& visit) const {
+  const std::size_t n = body_.blocks[part.block].tissue.maxwell.size(), each = 6 * lanes_;
+  for (std::size_t i = 0; n > 0 && i < part.chains.element.size() / lanes_; ++i) {
+    for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t j = 0; j < each; ++j) {
+        visit(k, part.memory[(i * n + k) * each + j], part.linear.stress[i * each + j]);
+      }
+    }
+  }
+}
+
+/// m = decay q + from S, backward.
+void MaxwellMemory::enter_linear(Submesh& part, double h) const {
+  constexpr float kGone = 1e-3F;  // of a step so long q is all but S
+  part.linear.since = h;
+  const std::vector<LaneWeights> w = weights_of(part, h);
+  for_branches(
+      part, [&](std::size_t k, float& m, float S) { m = w[k].decay > kGone ? (m - w[k].from * S) / w[k].decay : S; });
+}
+
+void MaxwellMemory::leave_linear(Submesh& part, double h) const {
+  const std::vector<LaneWeights> w = weights_of(part, h);
+  for_branches(part, [&](std::size_t k, float& m, float S) { m = w[k].decay * m + w[k].from * S; });
+}
+
+/// m = q − to S with q, S of now.
+void MaxwellMemory::leave_linear(Submesh& part, std::span<const std::uint32_t> elements) const {
+  const TissueBlock& block = body_.blocks[part.block];
+  const std::size_t n = block.tissue.maxwell.size();
+  if (n == 0) return;
+  const std::vector<Sym3<double>> now =
+      BlockResponse(body_, block, ElementList(elements)).relaxing(records_.displacements(submeshes_.record_of_vertex));
+  const std::vector<LaneWeights> on = weights_of(part, part.linear.since), to = weights_of(part, since_);
+  for_linear_memory(part, block.tissue, lanes_, [&](std::uint32_t e, const auto& number, const auto& stress) {
+    const auto at = std::lower_bound(elements.begin(), elements.end(), e);
+    if (at == elements.end() || *at != e) return;
+    const Sym3<double>& S = now[static_cast<std::size_t>(at - elements.begin())];
+    const Sym3<double> then = tensor_at(stress, 0);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Sym3<double> q =
+          tensor_at(number, 6 * k) * double(on[k].decay) + then * double(on[k].from) + S * double(on[k].to);
+      put_tensor(q - S * double(to[k].to), number, 6 * k);
+    }
+  });
+}
+
+void MaxwellMemory::archive_stresses(Archive& ar) {
+  std::vector<std::vector<float>> stress;
+  for (const TissueBlock& block : body_.blocks) {
+    stress.emplace_back(block.tissue.maxwell.empty() ? 0 : 6 * (block.end - block.begin), 0.0F);
+  }
+  const auto for_all = [&](const auto& visit) {
+    for (Submesh& part : submeshes_.parts) {
+      const TissueBlock& block = body_.blocks[part.block];
+      if (block.tissue.maxwell.empty()) continue;
+      part.linear.stress.resize(part.chains.element.size() * 6, 0.0F);
+      for_linear_memory(part, block.tissue, lanes_, [&](std::uint32_t e, const auto&, const auto& number) {
+        for (std::size_t i = 0; i < 6; ++i) visit(*number(i), stress[part.block][(e - block.begin) * 6 + i]);
+      });
+    }
+  };
+  if (!ar.reads()) for_all([](float here, float& kept) { kept = here; });
+  for (std::vector<float>& numbers : stress) ar.same_size(numbers);
+  if (ar.reads()) for_all([](float& here, float kept) { here = kept; });
 }
 
 void MaxwellMemory::archive_numbers(Archive& ar) {

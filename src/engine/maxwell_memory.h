@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "element/branch_memory.h"
+#include "engine/kernels/response_kernels.h"
 #include "engine/layout/submesh.h"
 #include "engine/vertex_records.h"
 #include "glisson/archive.h"
@@ -31,12 +32,25 @@ class MaxwellMemory {
   std::vector<Sym3<double>> stresses(std::size_t block) const;
   void set_stresses(std::size_t block, std::span<const Sym3<double>> stresses);
 
+  /// A submesh becomes linear after a step of h [s]: from then on its memory holds q, of the beginning of that step.
+  void enter_linear(Submesh& part, double h) const;
+  /// One that was linear and was looked at in that step is so no more.
+  void leave_linear(Submesh& part, double h) const;
+  /// The same at any time, of some elements of one. @param elements  ascending
+  void leave_linear(Submesh& part, std::span<const std::uint32_t> elements) const;
+
   void archive_time(Archive& ar) { ar(since_); }
   /// The numbers of all elements, in their order.
   void archive_numbers(Archive& ar);
+  /// S of the last look, of adaptive precision, likewise.
+  void archive_stresses(Archive& ar);
 
  private:
-  std::vector<Vec3d> displacements() const;
+  template <class Visit>
+  void for_branches(Submesh& part, const Visit& visit) const;
+  std::vector<LaneWeights> weights_of(const Submesh& part, double time) const;
+  void list_linear(std::size_t block, BranchMemory& memory) const;
+  void hold_linear(const Submesh& part, BranchMemory& memory) const;
   std::vector<double> measures(std::size_t block) const;
   std::vector<Sym3<double>> relaxing_stresses(std::size_t block) const;
   void follow_branches(std::size_t block, BranchMemory& memory) const;

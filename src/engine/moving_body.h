@@ -45,6 +45,7 @@ struct Advance {
   std::vector<StiffElement> stiff;      ///< elements above what list_above() was told, in no order but always the same
   std::vector<std::uint32_t> inverted;  ///< tets of the mesh with J ≤ 0, ascending
   KickWork work;                        ///< of the vertices that are not active; only where accounted
+  double brought_in = 0.0;              ///< energy of the elastic forces that a change of law has brought in [J]
 };
 
 class MovingBody {
@@ -83,6 +84,8 @@ class MovingBody {
   virtual void tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) = 0;
   /// What the Maxwell branches of a block hold for the forces of the present state.
   virtual BranchMemory branch_memory(std::size_t block) const = 0;
+  /// Share of the tets that go by the linear law of adaptive precision; where that has a share, so much of a tet [-].
+  virtual double linear_share() const { return 0.0; }
   /// Stress of each element and Maxwell branch of a block at the present state: what is not relaxed yet [Pa].
   virtual std::vector<Sym3<double>> branch_stresses(std::size_t block) = 0;
   virtual void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) = 0;

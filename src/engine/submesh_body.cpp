@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <iterator>
 
+#include "element/block_response.h"
 #include "engine/layout/archive_submeshes.h"
 
 namespace glisson::engine {
@@ -11,9 +14,9 @@ namespace glisson::engine {
 SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping, const SubmeshOptions& options)
     : body_(body), kernels_(options.kernels != nullptr ? *options.kernels : best_kernels()),
       submeshes_(build_submeshes(body, kernels_.lanes, options.submesh_tets)), active_(submeshes_, records_),
-      changer_(body, submeshes_, kernels_.lanes), forces_(body, submeshes_, records_, kernels_),
-      volumes_(body, submeshes_), memory_(body, submeshes_, records_, kernels_.lanes),
-      stages_(options.drag_stages, submeshes_, records_, kernels_),
+      changer_(body, submeshes_, kernels_.lanes),
+      forces_(body, submeshes_, records_, kernels_, options.precision_error), volumes_(body, submeshes_),
+      memory_(body, submeshes_, records_, kernels_.lanes), stages_(options.drag_stages, submeshes_, records_, kernels_),
       pool_(options.threads > 0 ? options.threads : threads_for(body.elements.size())) {
   follow_layout(nodal_damping);
 }
@@ -28,6 +31,16 @@ void SubmeshBody::follow_layout(std::span<const double> nodal_damping) {
   make_room();
   make_room_for_stages();
   take_masses(nodal_damping);
+  prepare_linear();
+}
+
+/// Assembles the linear forms of all submeshes that may need one, so that no step has to.
+void SubmeshBody::prepare_linear() {
+  if (!forces_.precision().on()) return;
+  pool_.run(submeshes_.parts.size(), [&](std::size_t s, std::size_t) {
+    Submesh& part = submeshes_.parts[s];
+    if (forces_.has_twin(part.block)) forces_.prepare_linear(part);
+  });
 }
 
 /// Finds active vertices, and makes room for what depends on the sizes of submeshes and interface.
@@ -77,6 +90,7 @@ void SubmeshBody::set_state(std::span<const Vec3d> displacement, std::span<const
   }
   for (ActiveVertex& w : active_.active()) w.displacement = displacement[w.vertex], w.velocity = velocity[w.vertex];
   forces_.inversions().reset();
+  forces_.precision().reset();
   memory_.relax();
 }
 
@@ -123,8 +137,29 @@ void SubmeshBody::apply(const BodyChange& change, const detail::VertexStars& sta
     take_mass(v);
     records_.set_damping(record_of(v), nodal_damping[v]);
   }
+  if (forces_.precision().on()) {
+    for (const std::size_t s : changer_.parts_of(change)) leave_linear(s);
+  }
   if (changer_.apply(change, stars)) make_room();
   volumes_.weigh();
+}
+
+/// A submesh goes by its own law from now on.
+void SubmeshBody::leave_linear(std::size_t s) {
+  Submesh& part = submeshes_.parts[s];
+  std::vector<std::uint32_t> elements = part.elements;
+  std::sort(elements.begin(), elements.end());
+  if (part.linear.alone()) memory_.leave_linear(part, elements);
+  if (part.linear.share > 0.0 && forces_.accounted()) {
+    const TissueBlock& block = body_.blocks[part.block];
+    const BlockResponse response(body_, block, ElementList(elements));
+    const std::vector<Vec3d> u = records_.displacements(submeshes_.record_of_vertex);
+    BranchMemory mixed;
+    mixed.linear.assign(block.end - block.begin, part.linear.share);
+    brought_in_ += response.energy(u) - response.energy(u, &mixed);
+  }
+  forces_.precision().leave(s);
+  part.linear.edges = {};
 }
 
 bool SubmeshBody::supports_tissues() const {
@@ -141,6 +176,11 @@ void SubmeshBody::tissues_changed(std::span<const std::size_t> blocks, std::span
     stays[b] = was_viscous && forces_.plan(b).viscous && is_linear(body_.blocks[b]) ? 1 : 0;
   }
   std::atomic<bool> moved = false;
+  for (std::size_t s = 0; s < submeshes_.parts.size(); ++s) {
+    if (changed[submeshes_.parts[s].block] == 0) continue;
+    forces_.precision().leave(s);
+    submeshes_.parts[s].linear = {};
+  }
   pool_.run(submeshes_.parts.size(), [&](std::size_t s, std::size_t) {
     Submesh& part = submeshes_.parts[s];
     const bool same_edges = stays[part.block] != 0 && part.edges.count > 0;
@@ -153,6 +193,7 @@ void SubmeshBody::tissues_changed(std::span<const std::size_t> blocks, std::span
   as_built_ = false;
   make_room_for_stages();
   take_masses(nodal_damping);
+  prepare_linear();
 }
 
 void SubmeshBody::archive_layout(Archive& ar, std::span<const double> nodal_damping) {
@@ -176,6 +217,50 @@ void SubmeshBody::archive_past(Archive& ar) {
   memory_.archive_time(ar);
   forces_.inversions().archive(ar);
   memory_.archive_numbers(ar);
+  if (forces_.precision().on()) archive_precision(ar);
+}
+
+/// Which elements are linear, and what their branches go on from. Submeshes that are others now, laid out for other lanes, go by
+/// their own law unless all of their elements agree.
+void SubmeshBody::archive_precision(Archive& ar) {
+  std::vector<double> share(body_.elements.size(), 0.0);
+  std::vector<std::uint8_t> wanted(share.size(), 0);
+  double since = 0.0;
+  for (const Submesh& part : submeshes_.parts) {
+    for (const std::uint32_t e : part.elements) share[e] = part.linear.share, wanted[e] = part.linear.wanted ? 1 : 0;
+    if (part.linear.alone()) since = part.linear.since;
+  }
+  ar.same_size(share), ar.same_size(wanted);
+  bool accounted = forces_.accounted();
+  ar(since, brought_in_, accounted);
+  forces_.set_accounted(accounted);
+  ar.check(since >= 0.0);
+  memory_.archive_stresses(ar);
+  if (ar.reads()) {
+    for (Submesh& part : submeshes_.parts) take_linear({share, wanted, since}, part, ar);
+  }
+  ar(forces_.precision());
+}
+
+void SubmeshBody::take_linear(const LinearElements& read, Submesh& part, const Archive& ar) {
+  const auto same = [&](std::uint32_t e) {
+    const std::uint32_t first = part.elements.front();
+    return read.share[e] == read.share[first] && read.wanted[e] == read.wanted[first];
+  };
+  part.linear.wanted = false, part.linear.share = 0.0, part.linear.since = read.since;
+  if (std::all_of(part.elements.begin(), part.elements.end(), same)) {
+    part.linear.share = read.share[part.elements.front()], part.linear.wanted = read.wanted[part.elements.front()] != 0;
+    const double steps = part.linear.share / kShareStep;
+    ar.check(steps >= 0.0 && part.linear.share <= 1.0 && steps == std::floor(steps));
+    ar.check(forces_.has_twin(part.block) || (part.linear.share == 0.0 && !part.linear.wanted));
+    if (part.linear.share > 0.0) forces_.prepare_linear(part);
+    return;
+  }
+  std::vector<std::uint32_t> alone;
+  std::copy_if(part.elements.begin(), part.elements.end(), std::back_inserter(alone),
+               [&](std::uint32_t e) { return read.share[e] == 1.0; });
+  std::sort(alone.begin(), alone.end());
+  if (!alone.empty() && forces_.has_twin(part.block)) memory_.leave_linear(part, alone);
 }
 
 }  // namespace glisson::engine

@@ -14,6 +14,8 @@
 //   ActiveVertices     those driven from outside, by task               SharedVolumes      average_nodal, before the forces
 //   SubmeshChanger     cuts and other tissues in the layout             DragStageRecords   stages of the viscous force, after them
 //   MaxwellMemory      the branches' past, as seen from outside
+//
+// With adaptive precision a submesh may go by its tissue's linear law: PrecisionChoice, in ElementForces, says which.
 #pragma once
 
 #include "engine/active_vertices.h"
@@ -31,7 +33,8 @@ struct SubmeshOptions {
   int threads = 0;                   ///< 0: as many as pay for this size of body
   const Kernels* kernels = nullptr;  ///< none: those of the best instruction set
   std::size_t submesh_tets = kLeastSubmesh;
-  int drag_stages = 1;  ///< SimulationOptions::drag_stages
+  int drag_stages = 1;           ///< SimulationOptions::drag_stages
+  double precision_error = 0.0;  ///< SimulationOptions::precision_error where precision is adaptive; else 0
 };
 
 class SubmeshBody final : public MovingBody {
@@ -53,6 +56,7 @@ class SubmeshBody final : public MovingBody {
   bool supports_tissues() const override;
   void tissues_changed(std::span<const std::size_t> blocks, std::span<const double> nodal_damping) override;
   BranchMemory branch_memory(std::size_t block) const override { return memory_.of_block(block); }
+  double linear_share() const override { return forces_.precision().share_of_tets(); }
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override { return memory_.stresses(block); }
   void set_branch_stresses(std::size_t block, std::span<const Sym3<double>> stresses) override {
     memory_.set_stresses(block, stresses);
@@ -89,6 +93,13 @@ class SubmeshBody final : public MovingBody {
     bool accounted;
   };
 
+  /// Of a checkpoint, per element.
+  struct LinearElements {
+    std::span<const double> share;
+    std::span<const std::uint8_t> wanted;
+    double since;
+  };
+
   void follow_layout(std::span<const double> nodal_damping);
   void make_room();
   void make_room_for_stages();
@@ -104,6 +115,11 @@ class SubmeshBody final : public MovingBody {
   void run_drag_stages(const Step& step);
   void end_stages(const RecordRun& run, bool split, const Step& step, VertexWork& work);
   void gather_findings(bool accounted);
+  void change_laws(double h);
+  void prepare_linear();
+  void leave_linear(std::size_t submesh);
+  void archive_precision(Archive& ar);
+  void take_linear(const LinearElements& read, Submesh& part, const Archive& ar);
   std::uint32_t record_of(std::uint32_t vertex) const { return submeshes_.record_of_vertex[vertex]; }
   VertexWork& work_of_chunk(std::size_t chunk) { return work_[submeshes_.parts.size() + chunk]; }
 
@@ -125,6 +141,7 @@ class SubmeshBody final : public MovingBody {
   std::uint64_t steps_ = 0;
   std::vector<ElementFindings> found_;  ///< per submesh
   std::vector<VertexWork> work_;        ///< per submesh, then per chunk of the interface
+  double brought_in_ = 0.0;             ///< energy of submeshes that left their linear law between steps [J]
   Advance advance_;
   bool as_built_ = true;  ///< whether build_submeshes would lay the body out as it is
 };

@@ -1,5 +1,6 @@
 // submesh_step.cpp — one step of a body of submeshes: the tasks drawn in submesh_body.h.
 #include <algorithm>
+#include <utility>
 
 #include "element/flush_denormals.h"
 #include "engine/submesh_body.h"
@@ -158,9 +159,23 @@ void SubmeshBody::gather_findings(bool accounted) {
   std::sort(advance_.inverted.begin(), advance_.inverted.end());
 }
 
+/// Ends a step of adaptive precision: with the next one some submeshes go by their linear law, others by their own again.
+void SubmeshBody::change_laws(double h) {
+  PrecisionChoice& precision = forces_.precision();
+  for (Submesh& part : submeshes_.parts) part.linear.since += h;
+  const std::vector<std::size_t>& changed = precision.end_step();
+  pool_.run(changed.size(), [&](std::size_t i, std::size_t) {
+    Submesh& part = submeshes_.parts[changed[i]];
+    forces_.prepare_linear(part);
+    if (part.linear.alone()) memory_.enter_linear(part, h);
+    if (!part.linear.wanted) memory_.leave_linear(part, h);
+  });
+  advance_.brought_in = precision.brought_in() + std::exchange(brought_in_, 0.0);
+}
+
 const Advance& SubmeshBody::advance(double h, const Vec3d& gravity, bool accounted) {
   records_.set_step(h);
-  forces_.begin_step(h, steps_, memory_.since());
+  forces_.begin_step(h, steps_, memory_.since(), accounted);
   any_split_ = false;
   for (std::size_t s = 0; s < submeshes_.parts.size(); ++s) any_split_ = any_split_ || splits(s, accounted);
   if (volumes_.any()) {
@@ -177,6 +192,7 @@ const Advance& SubmeshBody::advance(double h, const Vec3d& gravity, bool account
   ++steps_;
   if (h > 0.0) memory_.passed(h);
   gather_findings(accounted);
+  if (finite) change_laws(h);
   return advance_;
 }
 

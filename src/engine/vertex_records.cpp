@@ -60,4 +60,11 @@ void VertexRecords::set_coefficients(std::size_t record) {
   at(record)[7] = moves ? damping_[record] * step_ / denominator : 1.0;
 }
 
+std::vector<Vec3d> VertexRecords::displacements(std::span<const std::uint32_t> records) const {
+  std::vector<Vec3d> u;
+  u.reserve(records.size());
+  for (const std::uint32_t r : records) u.push_back(displacement(r));
+  return u;
+}
+
 }  // namespace glisson::engine

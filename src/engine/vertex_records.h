@@ -29,6 +29,8 @@ class VertexRecords {
   double* at(std::size_t record) { return state_.data() + record * kStateDoubles; }
   const double* at(std::size_t record) const { return state_.data() + record * kStateDoubles; }
   Vec3d displacement(std::size_t record) const { return vector_of(at(record)); }
+  /// Of the records with these numbers.
+  std::vector<Vec3d> displacements(std::span<const std::uint32_t> records) const;
   Vec3d velocity(std::size_t record) const { return vector_of(at(record) + 4); }
   void set_state(std::size_t record, const Vec3d& displacement, const Vec3d& velocity) {
     put(displacement, at(record));

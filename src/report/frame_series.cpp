@@ -74,7 +74,9 @@ std::vector<FrameSeries::Tool> FrameSeries::tools_of(const Simulation& simulatio
   return tools;
 }
 
-FrameSeries::FrameSeries(std::filesystem::path folder) : folder_(std::move(folder)) { make_folder(folder_ / "frames"); }
+FrameSeries::FrameSeries(std::filesystem::path folder, bool linear) : folder_(std::move(folder)), linear_(linear) {
+  make_folder(folder_ / "frames");
+}
 
 FrameSeries::~FrameSeries() {
   if (writing_.valid()) writing_.wait();
@@ -102,6 +104,7 @@ void FrameSeries::add(const Simulation& simulation, const TetFields& fields) {
   frame.at_tets.push_back({.name = "q", .components = 1, .values = fields.q});
   frame.at_tets.push_back({.name = "s", .components = 1, .values = fields.s});
   frame.at_tets.push_back({.name = "jacobian", .components = 1, .values = fields.jacobian});
+  if (linear_) frame.at_tets.push_back({.name = "linear", .components = 1, .values = fields.linear});
   for (Field& field : frame.at_tets) field.single = true;  // they follow from positions, which are kept in double
   finish();
   writing_ = std::async(std::launch::async, [this, frame = std::move(frame)] { write(frame); });

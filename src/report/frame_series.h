@@ -21,15 +21,16 @@ namespace glisson {
 /// Writes frames one by one; the collection lists those that are whole.
 class FrameSeries {
  public:
-  /// @param folder  of the variant @throws OutputError where the folder of frames cannot be made
-  explicit FrameSeries(std::filesystem::path folder);
+  /// @param folder  of the variant @param linear  whether to write TetFields::linear
+  /// @throws OutputError where the folder of frames cannot be made
+  explicit FrameSeries(std::filesystem::path folder, bool linear = false);
   /// Waits for the last frame; what is wrong with it then, only finish() says.
   ~FrameSeries();
   FrameSeries(const FrameSeries&) = delete;
   FrameSeries& operator=(const FrameSeries&) = delete;
 
   /// Writes the mesh at rest; displacement and velocity at the vertices; stress and strain (nine components), pressure,
-  /// von Mises stress, q, s, jacobian and region at the tets; pressure and traction of contact at the vertices where tools or a
+  /// von Mises stress, q, s, jacobian, the linear law's share and region at the tets; pressure and traction of contact at the vertices where tools or a
   /// container are attached (docs/output.md).
   /// Beside it the surface of each instrument as frames/tool_NAME_0000.vtp, listed in tool_NAME.pvd.
   /// @throws OutputError where the frame before could not be written
@@ -56,6 +57,7 @@ class FrameSeries {
   void write(const Frame& frame);
 
   std::filesystem::path folder_;
+  bool linear_;
   std::vector<std::shared_ptr<Instrument>> instruments_;
   std::map<std::string, Files> tools_;  ///< by name
   Files frames_;

@@ -51,13 +51,14 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
   json["work_tools_J"] = s.energies.work_tools;
   json["work_loads_J"] = s.energies.work_loads;
   json["energy_imbalance_J"] = s.energies.imbalance();
+  if (s.linear_share_mean) json["linear_share_mean"] = *s.linear_share_mean;
   json["inverted_tets_most"] = s.inverted_tets_most;
   if (s.inverted_tets_most > 0)
     json["first_inversion_s"] = s.first_inversion_s;
   else
     json["first_inversion_s"] = nullptr;
   json["integrator"] = word_of(variant.simulation.integrator);
-  json["precision"] = variant.simulation.precision == Precision::single_precision ? "single" : "double";
+  json["precision"] = word_of(variant.simulation.precision);
   json["threads"] = threads;
   json["state_hash"] = fmt::format("{:016x}", s.state_hash);
   json["version"] = GLISSON_VERSION;

@@ -90,7 +90,10 @@ void VariantRecorder::on_start(const Variant&, const Simulation& simulation) {
       event_file_ = std::make_unique<LineFile>(options_.folder / "events.csv");
       event_file_->write("time_s,depth_m,event,instrument");
     }
-    if (variant_.output.frames > 0) frames_ = std::make_unique<FrameSeries>(options_.folder);
+    if (variant_.output.frames > 0) {
+      const bool linear = variant_.simulation.precision == Precision::adaptive;
+      frames_ = std::make_unique<FrameSeries>(options_.folder, linear);
+    }
   });
 }
 

@@ -1,5 +1,6 @@
 // What `glisson run` leaves behind: the files, their columns and keys, and that they agree with each other.
 #include <algorithm>
+#include <cmath>
 #include <regex>
 #include <sstream>
 
@@ -97,6 +98,26 @@ TEST_F(Outputs, FramesAreThereAsTheCollectionSays) {
     }
   }
   EXPECT_EQ(pvd.find("frame_0003"), std::string::npos);
+}
+
+// Adaptive precision says where the linear law is in force, and how much: an array of the frames, a figure of the summary, and the
+// closing table. Without it there is none of them. `glisson check` names the tissues for which it does nothing.
+TEST_F(Outputs, AdaptivePrecisionSaysWhereAndHowMuch) {
+  const std::string scene = write("s.toml", small_scene());
+  ASSERT_THAT(run({"run", scene, "--out", "single", "--set", "tissue.kinematics=corotational"}), Exits(0));
+  EXPECT_FALSE(read_json(folder_ / "single/main/summary.json").contains("linear_share_mean"));
+  EXPECT_EQ(read_text(folder_ / "single/main/frames/frame_0002.vtu").find("\"linear\""), std::string::npos);
+  const Outcome outcome = run({"run", scene, "--out", "o", "--set", "tissue.kinematics=corotational", "--set",
+                               "motion.precision=adaptive", "--set", "motion.precision_error=0.5"});
+  ASSERT_THAT(outcome, Exits(0));
+  const double share = read_json(folder_ / "o/main/summary.json")["linear_share_mean"];
+  EXPECT_GT(share, 0.1) << "the linear law comes over 64 steps, of which this run has few";
+  EXPECT_LE(share, 1.0);
+  const std::string told = std::to_string(static_cast<int>(std::lround(100.0 * share))) + " % of the tets linear";
+  EXPECT_NE(outcome.out.find(told), std::string::npos) << outcome.out;
+  EXPECT_NE(read_text(folder_ / "o/main/frames/frame_0002.vtu").find("\"linear\""), std::string::npos);
+  const Outcome checked = run({"check", scene, "--set", "motion.precision=adaptive"});
+  EXPECT_NE(checked.out.find("no linear law stands in for"), std::string::npos) << checked.out;
 }
 
 // A frame is as ParaView takes it: points at rest, so that its warp by displacement_m shows the shape once; tensors of nine

@@ -66,7 +66,11 @@ TEST(Simulation, IntegratorsTakeWhatTheyAreCapableOf) {
     variable.mass_scaling = MassScalingKind::variable;
     EXPECT_EQ(takes(staged), can.supports_drag_stages);
     EXPECT_EQ(takes(fixed), !can.any_step_is_stable);
+    SimulationOptions adaptive{.integrator = w.value};
+    adaptive.precision = Precision::adaptive;
     EXPECT_EQ(takes(variable), can.supports_variable_mass);
+    EXPECT_EQ(takes(adaptive), can.supports_adaptive_precision);
+    EXPECT_EQ(can.supports_adaptive_precision, w.value == Integrator::central_difference);
     EXPECT_EQ(can.supports_drag_stages, w.value == Integrator::central_difference);
     EXPECT_EQ(can.supports_variable_mass, w.value == Integrator::central_difference);
   }

@@ -266,6 +266,21 @@ def test_tet_fields_of_a_uniform_stretch():
     assert np.allclose(fields["s"], np.sqrt(1.5 * (1 - fields["q"])), rtol=1e-6)
 
 
+def test_adaptive_precision():
+    """At rest the linear law comes into force everywhere; the share says how much of it there is, the field where."""
+    mesh = glisson.box_mesh(cells=[2, 2, 2])
+    tissue = glisson.Tissue(kinematics="corotational")
+    body = glisson.Simulation(mesh, tissue, glisson.SimulationOptions(precision="adaptive", precision_error=0.01))
+    assert body.linear_share == 0
+    for _ in range(200):
+        body.step()
+    assert body.linear_share == 1 and np.all(body.tet_fields()["linear"] == 1)
+    with pytest.raises(ValueError, match="precision_error"):
+        glisson.Simulation(mesh, tissue, glisson.SimulationOptions(precision="adaptive", precision_error=2))
+    with pytest.raises(ValueError, match="adaptive.*not supported by the integrator implicit"):
+        glisson.Simulation(mesh, tissue, glisson.SimulationOptions(precision="adaptive", integrator="implicit"))
+
+
 def test_tissues_by_region():
     """Regions take their tissues by number or name; a name that the mesh does not know is refused."""
     box = glisson.box_mesh(cells=[2, 2, 2])

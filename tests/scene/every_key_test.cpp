@@ -78,6 +78,7 @@ mass_scaling = "variable"
 mass_scaling_inertia = 0.01
 drag_stages = 3
 precision = "double"
+precision_error = 0.01
 damping_rate_per_s = 3
 nodal_damping_kg_per_s = 0.002
 gravity_m_s2 = [0, 0, -9.81]
@@ -319,6 +320,7 @@ TEST(EveryKey, OfMotionToolsAndOutputIsRead) {
   EXPECT_EQ(implicit.most_cuts, 5);
   EXPECT_EQ(implicit.preconditioner, Preconditioner::block_diagonal);
   EXPECT_EQ(v.simulation.precision, Precision::double_precision);
+  EXPECT_EQ(v.simulation.precision_error, 0.01);
   EXPECT_EQ(v.simulation.mass_scaling_step, 2e-4);
   EXPECT_EQ(v.simulation.mass_scaling, MassScalingKind::variable);
   EXPECT_EQ(v.simulation.mass_scaling_inertia, 0.01);

@@ -84,7 +84,8 @@ const std::vector<Mistake> kMistakes{
     {"StepInAnotherWord", "", "[motion]\nstep_s = \"automatic\"\n",
      "s.toml:17:10: motion.step_s: expected a number [s] or \"auto\", got text \"automatic\""},
     {"UnknownWord", "", "[motion]\nprecision = \"singel\"\n",
-     "s.toml:17:13: motion.precision: expected one of \"single\", \"double\", got \"singel\"; did you mean "
+     "s.toml:17:13: motion.precision: expected one of \"single\", \"double\", \"adaptive\", got \"singel\"; did you "
+     "mean "
      "\"single\"?"},
     {"UnknownKind", "\"box\"", "\"ball\"",
      "s.toml:2:8: mesh.kind: expected one of \"box\", \"cylinder\", \"implicit\", \"liver\", \"file\", got \"ball\""},
@@ -249,7 +250,7 @@ TEST(MalformedScene, SaysEverythingOnceAndInOrder) {
   EXPECT_EQ(complaint(text),
             "s.toml:17:17: tissue.density_kg_m3: 0 kg/m³ is out of range; allowed: > 0 kg/m³\n"
             "s.toml:18:18: tissue.viscosity_Pa_s: -1 Pa·s is out of range; allowed: ≥ 0 Pa·s\n"
-            "s.toml:23:20: motion.precision: expected one of \"single\", \"double\", got 3");
+            "s.toml:23:20: motion.precision: expected one of \"single\", \"double\", \"adaptive\", got 3");
 }
 
 // A scene with hundreds of mistakes shows the first twenty and counts the rest.

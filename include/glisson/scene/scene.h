@@ -131,8 +131,10 @@ struct RunSummary {
   std::optional<double> stored_energy_J{};  ///< at the end; none where a tissue's forces have no energy
   double energy_drift_most_J = 0.0;         ///< largest |energy_drift()| of the frames and the end; 0 where none
   double mass_added_kg = 0.0;               ///< by mass scaling
-  std::size_t inverted_tets_most = 0;       ///< largest number of tets inverted in one step
-  double first_inversion_s = -1.0;          ///< time of it; −1: none
+  std::optional<double>
+      linear_share_mean{};             ///< Simulation::linear_share() over the steps; none unless precision is adaptive
+  std::size_t inverted_tets_most = 0;  ///< largest number of tets inverted in one step
+  double first_inversion_s = -1.0;     ///< time of it; −1: none
   std::uint64_t state_hash = 0;
   enum class End {
     finished,

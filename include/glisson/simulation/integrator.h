@@ -37,7 +37,8 @@ struct Capabilities {
   bool supports_drag_stages = false;   ///< SimulationOptions::drag_stages above 1
   /// MassScalingKind::variable: mass is added and removed during the run.
   bool supports_variable_mass = false;
-  bool forces_at_step_end = false;  ///< Simulation::force_time() is the end of a step, not its start
+  bool supports_adaptive_precision = false;  ///< Precision::adaptive
+  bool forces_at_step_end = false;           ///< Simulation::force_time() is the end of a step, not its start
 
   /// Whether it supports interactions with viscous or inviscid tissue.
   constexpr bool supports(bool viscous_tissue) const {

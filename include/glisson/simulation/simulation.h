@@ -131,7 +131,12 @@ struct SimulationOptions {
   /// viscosity; each further stage costs half a step. For tissue of small strain; at most Interaction::most_drag_stages.
   int drag_stages = 1;
   ImplicitOptions implicit{};
+  /// `adaptive` needs central_difference and a tissue that is not linear, isotropic, without pioletti's viscosity, averaged volume
+  /// changes and branches whose times follow the deformation, and of small strain where it has branches; others keep their law.
   Precision precision = Precision::single_precision;
+  /// With adaptive precision: what linear parts may get wrong of the virtual work of the tissue's forces in the displacement, each
+  /// taken by its absolute value, as share of that work [-].
+  double precision_error = 0.005;
   double damping_rate = 0.0;      ///< mass-proportional nodal damping γ_i/m_i [1/s]
   double nodal_damping = 0.0;     ///< additional nodal damping γ_i, equal at all vertices [kg/s]
   Vec3d gravity{};                ///< [m/s²]
@@ -179,6 +184,10 @@ struct SimulationOptions {
               "not bonded, 3 with tools in contact and blades"),
         field("implicit", &SimulationOptions::implicit, "options of the integrators implicit and quasi_static"),
         field("precision", &SimulationOptions::precision, "precision of the element arithmetic"),
+        field(
+            "precision_error", &SimulationOptions::precision_error, "-", between(1e-6, 0.5),
+            "with precision = \"adaptive\": share of the virtual work of the tissue's forces that linear parts may get "
+            "wrong"),
         field("damping_rate", &SimulationOptions::damping_rate, "1/s", at_least(0),
               "nodal damping in proportion to mass, γ/m"),
         field("nodal_damping", &SimulationOptions::nodal_damping, "kg/s", at_least(0),
@@ -464,6 +473,9 @@ class Simulation {
   /// Energies::elastic, the work summed over the steps, minus the stored energy W(u) [J]: the drift of the time integration, and
   /// half a step's work of removed tets. None without stored_energy(). Needs track_energies.
   std::optional<double> energy_drift() const;
+  /// With adaptive precision: share of the tets that go by the linear law at present; in a tet where the laws are mixed, the linear
+  /// one's share counts. TetFields::linear says where. Else 0 [-].
+  double linear_share() const;
   const EngineInfo& engine_info() const;
 
   /// Writes the state that a continued run needs besides the initial mesh, tissues, options, constraints and loads,

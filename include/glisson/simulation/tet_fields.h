@@ -16,6 +16,8 @@ struct TetFields {
   /// Elastic part with averaged volume change, Kelvin–Voigt part, and unrelaxed part of Maxwell branches. With a law in
   /// energy form and small strain it is not symmetric.
   std::vector<double> piola;
+  /// Share of the linear law in the tissue's forces, 0 unless precision is adaptive [-].
+  std::vector<double> linear;
 };
 
 }  // namespace glisson

@@ -149,17 +149,20 @@ Changer::Split Changer::split(std::span<const Triangle> faces, std::span<const V
 /// back: the work of the forces at u over that half is booked with those that come. For a quadratic energy
 ///   W(u) − ¼ [W(u + hv) − W(u − hv)] = W(u) − ½ h v·∂W(u)
 /// is what makes its elastic energy that of the new tissue from there on, to rounding.
-std::array<double, 2> Changer::energy_of_blocks(std::span<const std::size_t> blocks) const {
+/// @param memory  of the blocks, of which the linear law has its share; empty: it has none
+std::array<double, 2> Changer::energy_of_blocks(std::span<const std::size_t> blocks,
+                                                std::span<const BranchMemory> memory) const {
   const std::span<const Vec3d> u = scheme_.displacement(), v = scheme_.velocity();
   const double h = ledger_.pending_step();
   std::vector<Vec3d> ahead(u.begin(), u.end()), back = ahead;
   for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] += v[i] * h, back[i] -= v[i] * h;
   std::array<double, 2> sum{};
   for (std::size_t i = 0; i < v.size(); ++i) sum[0] += 0.5 * state_.body.masses[i] * dot(v[i], v[i]);
-  for (const std::size_t b : blocks) {
-    const BlockResponse response(state_.body, state_.body.blocks[b]);
-    sum[1] += response.energy(u);
-    if (h > 0.0) sum[1] -= 0.25 * (response.energy(ahead) - response.energy(back));
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const BlockResponse response(state_.body, state_.body.blocks[blocks[k]]);
+    const BranchMemory* of = memory.empty() ? nullptr : &memory[k];
+    sum[1] += response.energy(u, of);
+    if (h > 0.0) sum[1] -= 0.25 * (response.energy(ahead, of) - response.energy(back, of));
   }
   return sum;
 }
@@ -192,11 +195,13 @@ bool Changer::set_tissues(const BlockTissues& to) {
   }
   if (state_.options.step) back.past = scheme_.past();
   const bool booked = state_.options.track_energies;
-  const std::array<double, 2> before = booked ? energy_of_blocks(change.blocks) : std::array<double, 2>{};
+  std::vector<BranchMemory> memory;
+  for (const std::size_t b : change.blocks) memory.push_back(scheme_.branch_memory(b));
+  const std::array<double, 2> before = booked ? energy_of_blocks(change.blocks, memory) : std::array<double, 2>{};
   put_tissues(to);
   state_.masses_changed();
   const bool heavier = body.masses != former.masses;
-  const std::array<double, 2> after = booked ? energy_of_blocks(change.blocks) : std::array<double, 2>{};
+  const std::array<double, 2> after = booked ? energy_of_blocks(change.blocks, {}) : std::array<double, 2>{};
   try {
     scheme_.take_tissues(change);
   } catch (...) {

@@ -35,7 +35,8 @@ class Changer {
   void hold_copies(std::span<const std::uint32_t> origins);
   void put_tissues(const BlockTissues& to);
   std::array<double, 2> energy_of(std::span<const std::uint32_t> elements) const;
-  std::array<double, 2> energy_of_blocks(std::span<const std::size_t> blocks) const;
+  std::array<double, 2> energy_of_blocks(std::span<const std::size_t> blocks,
+                                         std::span<const BranchMemory> memory) const;
 
   Scheme& scheme_;
   BodyState& state_;

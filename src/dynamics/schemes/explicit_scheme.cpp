@@ -281,6 +281,7 @@ StepResult ExplicitScheme::step() {
   constrain_interactions();
   if (state_.options.drag_stages > 1) kick_.remember_outer(moving_->active()), interactions_.tell_held(held_rows_);
   if (state_.options.track_energies) book(h, seen.work);
+  if (state_.options.track_energies && seen.brought_in != 0.0) ledger_.bring_in(0.0, seen.brought_in);
   for (ActiveVertex& w : moving_->active()) w.displacement += w.velocity * h;
   moving_->place_active();
   state_.time += h;

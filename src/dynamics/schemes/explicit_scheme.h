@@ -33,7 +33,8 @@ class ExplicitScheme : public Scheme {
                                         {.supports_interactions = true,
                                          .viscosity_limits_step = true,
                                          .supports_drag_stages = true,
-                                         .supports_variable_mass = true}};
+                                         .supports_variable_mass = true,
+                                         .supports_adaptive_precision = true}};
 
   /// @throws std::invalid_argument as Simulation's constructor
   ExplicitScheme(Body body, const SimulationOptions& options)
@@ -45,6 +46,7 @@ class ExplicitScheme : public Scheme {
   double force_time() const override { return kick_.time(); }
   std::span<const Vec3d> displacement() const override { return read_state().displacement; }
   std::span<const Vec3d> velocity() const override { return read_state().velocity; }
+  double linear_share() const override { return moving_->linear_share(); }
   BranchMemory branch_memory(std::size_t block) const override { return moving_->branch_memory(block); }
   /// What the constraint exerted on the tissue at the last kick.
   ForceParts force(ConstraintId constraint) const override;

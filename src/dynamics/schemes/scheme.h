@@ -75,6 +75,8 @@ class Scheme {
   virtual Vec3d velocity_of(std::uint32_t vertex) const = 0;
   virtual ForceParts force(ConstraintId constraint) const = 0;
   virtual Vec3d torque(ConstraintId constraint, const Vec3d& about) const = 0;
+  /// Share of the tets that go by a linear law in the place of their own [-].
+  virtual double linear_share() const { return 0.0; }
   /// What the Maxwell branches of a block hold at the present state.
   virtual BranchMemory branch_memory(std::size_t block) const = 0;
 

@@ -8,6 +8,7 @@
 
 #include "engine/kernels/average_nodal-inl.h"
 #include "engine/kernels/branch_pace-inl.h"
+#include "engine/kernels/compare_linear-inl.h"
 #include "engine/kernels/hyper_response-inl.h"
 #include "engine/kernels/relaxing_small-inl.h"
 #include "engine/kernels/response_kernels.h"
@@ -33,6 +34,9 @@ const ResponseKernels* response_table() {
                                      .volume_changes = volume_changes,
                                      .spread_to_vertices = spread_to_vertices,
                                      .mean_of_vertices = mean_of_vertices,
+                                     .follow_branches = follow_branches,
+                                     .relax_all = relax_all,
+                                     .compare_linear = compare_linear,
                                      .merge = merge};
   return &table;
 }

@@ -123,6 +123,13 @@ struct PassFound {
 using StressPass = PassFound (*)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, Block&,
                                  ResponseBlock& out);
 
+/// Virtual work of the displacement, lane by lane [J]: of a tissue's stress, and what its linear twin adds to it.
+struct WorkSeen {
+  alignas(64) std::array<float, kMaxLanes> work{};
+  alignas(64) std::array<float, kMaxLanes> error{};    ///< of the whole stress
+  alignas(64) std::array<float, kMaxLanes> elastic{};  ///< of the elastic one
+};
+
 /// The functions of one instruction set.
 struct ResponseKernels {
   std::array<TensorMassStages, 2> tensor_mass{};  ///< [moduli follow a law]
@@ -148,6 +155,15 @@ struct ResponseKernels {
                              float* vertices) = nullptr;
   void (*mean_of_vertices)(const std::uint16_t* index, std::size_t batches, const float* vertices,
                            float* values) = nullptr;
+  /// For the choice of precision (compare_linear-inl.h), small strain: the branches at the state that is asked for. @param linear
+  /// whether the tets are linear, so that the memory holds q, and `previous` leads there from `stress`, S of then
+  void (*follow_branches)(const ResponseItems&, const LaneResponse&, const MaxwellStep&, bool linear, float* stress,
+                          ResponseBlock& out) = nullptr;
+  /// P of small strain as it is once all branches have relaxed.
+  void (*relax_all)(const ResponseItems&, const LaneResponse&, ResponseBlock& out) = nullptr;
+  /// Adds to what was seen. @param rest  of the items' chains @param late  whether `out.viscous` is part of the stress
+  void (*compare_linear)(const ResponseItems&, const float* rest, const LaneTissue& twin, bool late,
+                         const ResponseBlock& out, WorkSeen& seen) = nullptr;
   /// out.piola += out.viscous
   void (*merge)(std::size_t items, ResponseBlock& out) = nullptr;
 };

@@ -29,4 +29,15 @@ void for_memory(Part& part, const Tissue& tissue, std::size_t lanes, const Visit
   }
 }
 
+/// The same of a submesh that is linear (LinearForm): `visit(element, numbers, stress)`, `stress` where the six of S lie.
+template <class Part, class Visit>
+void for_linear_memory(Part& part, const Tissue& tissue, std::size_t lanes, const Visit& visit) {
+  std::size_t k = 0;
+  for_memory(part, tissue, lanes, [&](std::uint32_t e, const auto& number) {
+    while (part.chains.element[k] != e) ++k;
+    auto* first = part.linear.stress.data() + k / lanes * 6 * lanes + k % lanes;
+    visit(e, number, [=](std::size_t i) { return first + i * lanes; });
+  });
+}
+
 }  // namespace glisson::engine

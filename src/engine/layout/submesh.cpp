@@ -77,8 +77,8 @@ bool in_interior(const Submesh& part, std::uint32_t record) {
   return record >= part.first_interior && record < part.first_interior + part.interior_count;
 }
 
-/// Local vertices of a submesh's elements; its list of shared records is made on the way.
-std::vector<Tet> number_locally(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, Submesh& part) {
+/// Lists the records of a submesh's elements that are not in its interior.
+void list_shared(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, Submesh& part) {
   part.shared.clear();
   for (const std::uint32_t e : part.elements) {
     for (const std::uint32_t v : body.elements[e]) {
@@ -87,6 +87,10 @@ std::vector<Tet> number_locally(const Body& body, const std::vector<std::uint32_
   }
   std::sort(part.shared.begin(), part.shared.end());
   part.shared.erase(std::unique(part.shared.begin(), part.shared.end()), part.shared.end());
+}
+
+/// Local vertices of a submesh's elements.
+std::vector<Tet> local_tets(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, const Submesh& part) {
   std::vector<Tet> local;
   for (const std::uint32_t e : part.elements) {
     const Tet& t = body.elements[e];
@@ -114,13 +118,15 @@ std::uint32_t Submesh::local_of_record(std::uint32_t record) const {
 }
 
 void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, Submesh& part, std::size_t lanes) {
-  const std::vector<Tet> local = number_locally(body, record_of_vertex, part);
+  list_shared(body, record_of_vertex, part);
+  const std::vector<Tet> local = local_tets(body, record_of_vertex, part);
   if (part.local_vertices() > kMaxLocalVertices) {
     throw std::invalid_argument("submesh: " + std::to_string(part.local_vertices()) + " vertices, above " +
                                 std::to_string(kMaxLocalVertices) + " that can be numbered; aim at fewer tets");
   }
   const TissueBlock& block = body.blocks[part.block];
   part.gradient_reach = gradient_reach(body, part.elements);
+  part.linear = {};
   if (is_linear(block)) {
     part.edges = make_edge_batches(body, block, part.elements, local, lanes);
   } else {
@@ -129,6 +135,12 @@ void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_verte
     part.laid_out = part.chains.count;
     lay_out_response(body, block.tissue, before, part, lanes);
   }
+}
+
+void assemble_linear(const Body& body, const TissueBlock& twin, const std::vector<std::uint32_t>& record_of_vertex,
+                     Submesh& part, std::size_t lanes) {
+  if (part.linear.edges.count > 0) return;
+  part.linear.edges = make_edge_batches(body, twin, part.elements, local_tets(body, record_of_vertex, part), lanes);
 }
 
 void connect(Submeshes& out) {

@@ -52,6 +52,18 @@ struct EdgeBatches {
   LaneVector<float> tensor;         ///< [batch][9][lane]
 };
 
+/// The linear law of a submesh of another tissue, by which it moves while its deformation is small (precision_choice.h).
+struct LinearForm {
+  bool wanted = false;       ///< whether its share grows, else it falls
+  double share = 0.0;        ///< of the linear law in the forces, the rest is of the tissue's own [-]
+  EdgeBatches edges;         ///< empty until it is used first, and after each change of the submesh
+  LaneVector<float> stress;  ///< S of each tet when the submesh was looked at last, [batch][3 tets][6][lane] [Pa]
+  double since = 0.0;        ///< time since then; while it is alone, the branches' memory holds their q of then [s]
+
+  /// Whether there is nothing of the tissue's own law in the forces.
+  bool alone() const { return share == 1.0; }
+};
+
 struct Submesh {
   std::size_t block = 0;                ///< tissue block of the body
   std::size_t first_interior = 0;       ///< its first record of the state
@@ -63,6 +75,7 @@ struct Submesh {
   EdgeBatches edges;                    ///< for a linear tissue
   LaneVector<float> fibre;              ///< unit directions, [batch][3 tets][3][lane]; of a tissue with fibres
   LaneVector<float> memory;             ///< of Maxwell branches, [batch][3 tets][branch][6][lane] [Pa]
+  LinearForm linear;                    ///< in place of the chains, where precision is adaptive
   std::size_t laid_out = 0;     ///< batches of chains when it was laid out; those after hold what has changed since
   float gradient_reach = 0.0F;  ///< largest Σ |s_a| of a tet [1/m]: |H| is at most this times the longest |δu|
 
@@ -99,6 +112,9 @@ Submeshes build_submeshes(const Body& body, std::size_t lanes, std::size_t targe
 
 /// Lays the elements of one submesh out anew; its interior range and its elements are given.
 void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, Submesh& part, std::size_t lanes);
+/// Assembles the edges of a submesh's linear form, where it has none. @param twin  the block with its linear law
+void assemble_linear(const Body& body, const TissueBlock& twin, const std::vector<std::uint32_t>& record_of_vertex,
+                     Submesh& part, std::size_t lanes);
 /// Gives the submeshes their slots and the interface vertices the lists of them.
 void connect(Submeshes& submeshes);
 

@@ -42,6 +42,17 @@ void SubmeshChanger::lay_out_touched(const BodyChange& change) {
   }
 }
 
+std::vector<std::size_t> SubmeshChanger::parts_of(const BodyChange& change) {
+  if (part_of_element_.empty()) find_parts();
+  std::vector<std::size_t> parts;
+  for (const std::uint32_t e : change.removed) parts.push_back(part_of_element_[e]);
+  for (const std::uint32_t e : change.reshaped) parts.push_back(part_of_element_[e]);
+  for (const detail::CornerChange& c : change.corners) parts.push_back(part_of_element_[c.tet]);
+  std::sort(parts.begin(), parts.end());
+  parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
+  return parts;
+}
+
 bool SubmeshChanger::apply(const BodyChange& change, const detail::VertexStars& stars) {
   if (part_of_element_.empty()) find_parts();
   for (const std::uint32_t e : change.removed) take_out(e, stars);

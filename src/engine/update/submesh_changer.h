@@ -24,6 +24,8 @@ class SubmeshChanger {
   SubmeshChanger(const Body& body, Submeshes& submeshes, std::size_t lanes)
       : body_(body), submeshes_(submeshes), lanes_(lanes) {}
 
+  /// The submeshes of the elements that a change is about, ascending.
+  std::vector<std::size_t> parts_of(const BodyChange& change);
   /// Follows a change of the body's elements, whose new vertices have records already.
   /// @return whether shared vertices and slots are others now
   bool apply(const BodyChange& change, const detail::VertexStars& stars);

@@ -40,6 +40,7 @@ class Run {
   void tell_lost_probes();
   void tell_events();
   void see_drift();
+  void see_linear_share();
   void take_frame();
   void show_progress();
   void summarise();
@@ -64,7 +65,7 @@ class Run {
   std::vector<std::size_t> events_told_;                ///< per instrument
   std::vector<std::vector<InstrumentColumn>> columns_;  ///< per instrument
   bool ended_ = false, sampled_ = true, framed_ = false, forces_current_ = false;
-  double stepping_s_ = 0.0;
+  double stepping_s_ = 0.0, linear_sum_ = 0.0;
   std::uint64_t stretch_steps_ = 1;
   Clock::time_point begin_ = Clock::now(), last_progress_ = begin_;
 };
@@ -125,9 +126,15 @@ bool Run::step() {
   forces_current_ = made;
   if (!made) return false;
   force_time_ = simulation_.force_time();
+  if (variant_.simulation.precision == Precision::adaptive) see_linear_share();
   summary_.step_s = simulation_.step_size();  // of this step: it may have become smaller within it
   sampled_ = framed_ = false;
   return true;
+}
+
+void Run::see_linear_share() {
+  linear_sum_ += simulation_.linear_share();
+  summary_.linear_share_mean = linear_sum_ / static_cast<double>(simulation_.steps());
 }
 
 /// Steps until something is due. Only this is timed.
