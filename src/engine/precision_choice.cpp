@@ -78,7 +78,7 @@ void PrecisionChoice::choose() {
                                       [](double sum, const Examined& seen) { return sum + seen.work; });
   const double room = share_ * std::max(body, 0.0);
   const auto wrong_per_tet = [&](std::size_t s) {
-    return wrong(seen_[s]) / static_cast<double>(submeshes_.parts[s].elements.size());
+    return wrong(seen_[s]) / std::max(1.0, static_cast<double>(submeshes_.parts[s].elements.size()));
   };
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -248,6 +248,7 @@ void SubmeshBody::take_linear(const LinearElements& read, Submesh& part, const A
     return read.share[e] == read.share[first] && read.wanted[e] == read.wanted[first];
   };
   part.linear.wanted = false, part.linear.share = 0.0, part.linear.since = read.since;
+  if (part.elements.empty()) return;
   if (std::all_of(part.elements.begin(), part.elements.end(), same)) {
     part.linear.share = read.share[part.elements.front()], part.linear.wanted = read.wanted[part.elements.front()] != 0;
     const double steps = part.linear.share / kShareStep;

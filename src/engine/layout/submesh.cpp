@@ -89,10 +89,11 @@ void list_shared(const Body& body, const std::vector<std::uint32_t>& record_of_v
   part.shared.erase(std::unique(part.shared.begin(), part.shared.end()), part.shared.end());
 }
 
-/// Local vertices of a submesh's elements.
-std::vector<Tet> local_tets(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, const Submesh& part) {
+/// Local vertices of some elements of a submesh.
+std::vector<Tet> local_tets(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, const Submesh& part,
+                            std::span<const std::uint32_t> elements) {
   std::vector<Tet> local;
-  for (const std::uint32_t e : part.elements) {
+  for (const std::uint32_t e : elements) {
     const Tet& t = body.elements[e];
     local.push_back({part.local_of_record(record_of_vertex[t[0]]), part.local_of_record(record_of_vertex[t[1]]),
                      part.local_of_record(record_of_vertex[t[2]]), part.local_of_record(record_of_vertex[t[3]])});
@@ -119,7 +120,7 @@ std::uint32_t Submesh::local_of_record(std::uint32_t record) const {
 
 void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_vertex, Submesh& part, std::size_t lanes) {
   list_shared(body, record_of_vertex, part);
-  const std::vector<Tet> local = local_tets(body, record_of_vertex, part);
+  const std::vector<Tet> local = local_tets(body, record_of_vertex, part, part.elements);
   if (part.local_vertices() > kMaxLocalVertices) {
     throw std::invalid_argument("submesh: " + std::to_string(part.local_vertices()) + " vertices, above " +
                                 std::to_string(kMaxLocalVertices) + " that can be numbered; aim at fewer tets");
@@ -140,7 +141,9 @@ void lay_out(const Body& body, const std::vector<std::uint32_t>& record_of_verte
 void assemble_linear(const Body& body, const TissueBlock& twin, const std::vector<std::uint32_t>& record_of_vertex,
                      Submesh& part, std::size_t lanes) {
   if (part.linear.edges.count > 0) return;
-  part.linear.edges = make_edge_batches(body, twin, part.elements, local_tets(body, record_of_vertex, part), lanes);
+  std::vector<std::uint32_t> there = part.elements;
+  std::erase_if(there, [&](std::uint32_t e) { return body.rest[e].volume == 0.0; });
+  part.linear.edges = make_edge_batches(body, twin, there, local_tets(body, record_of_vertex, part, there), lanes);
 }
 
 void connect(Submeshes& out) {
