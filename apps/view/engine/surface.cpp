@@ -164,7 +164,7 @@ std::vector<BranchMemory> Surface::near_branches(const Snapshot& state) const {
       };
       take(all.held, memory[b].held);
       take(all.left, memory[b].left);
-      if (!all.linear.empty()) memory[b].linear.push_back(all.linear[at.element]);
+      memory[b].linear.push_back(all.linear_share(at.element));
     }
   }
   return memory;
