@@ -192,7 +192,8 @@ const Advance& SubmeshBody::advance(double h, const Vec3d& gravity, bool account
   ++steps_;
   if (h > 0.0) memory_.passed(h);
   gather_findings(accounted);
-  if (finite) change_laws(h);
+  advance_.brought_in = 0.0;
+  if (finite && h > 0.0 && forces_.precision().on()) change_laws(h);
   return advance_;
 }
 

@@ -52,13 +52,14 @@ Tissue dragging() {
 struct Case {
   const char* name;
   Tissue tissue;
+  double apart;  ///< how far its force may be from that of its own law, of the peak
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
-const Case kCases[]{{"Corotational", corotational()},
-                    {"Ogden", ogden()},
-                    {"Law", stiffening()},
-                    {"LawAndBranches", relaxing()},
-                    {"LawAndDrag", dragging()}};
+const Case kCases[]{{"Corotational", corotational(), 0.005},
+                    {"Ogden", ogden(), 0.005},
+                    {"Law", stiffening(), 0.007},
+                    {"LawAndBranches", relaxing(), 0.012},
+                    {"LawAndDrag", dragging(), 0.007}};
 std::string name_of(const testing::TestParamInfo<Case>& p) { return p.param.name; }
 
 SimulationOptions adaptive(double error = 0.005) {
@@ -111,7 +112,7 @@ TEST_P(AdaptivePrecision, KeepsTheForce) {
     peak = std::max(peak, std::abs(own.force()));
     linear += chosen.body.linear_share(), most = std::max(most, chosen.body.linear_share());
   }
-  EXPECT_LT(apart, 0.01 * peak);
+  EXPECT_LT(apart, GetParam().apart * peak);
   EXPECT_GT(apart, 0.0);
   EXPECT_GT(linear / samples, 0.1);
   EXPECT_GT(most, 0.3);
@@ -249,8 +250,8 @@ TEST(AdaptivePrecisionEverywhere, GoesByItsOwnLawWhereAllDeforms) {
   EXPECT_NEAR(force[1], force[0], 1e-3 * std::abs(force[0]));
 }
 
-// Tets that go, faces that part and a tissue that changes while the linear law is in force: nothing breaks, and the force is that of
-// the same in single precision.
+// Tets that go, faces that part and a tissue that changes while the linear law is in force: nothing breaks, the force is that of the
+// same in single precision, and so are the books (measured: 1.3e-5 of what is stored).
 TEST_P(AdaptivePrecision, FollowsChangesOfTheBody) {
   SimulationOptions o = adaptive(), plain = single();
   o.mesh_changes = plain.mesh_changes = true;
@@ -259,6 +260,7 @@ TEST_P(AdaptivePrecision, FollowsChangesOfTheBody) {
   for (int k = 0; k < 12; ++k) {
     for (Dented* d : {&own, &chosen}) {
       d->to(0.02 * (k + 1));
+      EXPECT_LT(std::abs(d->body.energies().imbalance()), 1e-12) << k;
       const std::vector<std::uint32_t> gone{static_cast<std::uint32_t>(100 + 977 * k)};
       d->body.remove_tets(gone);
       const Tet& t = d->body.mesh().tets[500 + 811 * static_cast<std::size_t>(k)];
@@ -277,6 +279,9 @@ TEST_P(AdaptivePrecision, FollowsChangesOfTheBody) {
   }
   EXPECT_LT(apart, 0.01 * peak);
   EXPECT_GT(chosen.body.linear_share(), 0.05) << "the linear law comes back after each change";
+  if (const std::optional<double> drift = chosen.body.energy_drift()) {
+    EXPECT_NEAR(*drift, *own.body.energy_drift(), 1e-4 * chosen.body.stored_energy().value());
+  }
 }
 
 }  // namespace
