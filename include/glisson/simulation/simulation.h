@@ -26,6 +26,7 @@
 #include "glisson/simulation/contact_fields.h"
 #include "glisson/simulation/integrator.h"
 #include "glisson/simulation/interaction.h"
+#include "glisson/simulation/mass_scaling.h"
 #include "glisson/simulation/precision.h"
 #include "glisson/simulation/surface_load.h"
 #include "glisson/simulation/tet_fields.h"
@@ -91,14 +92,6 @@ struct ImplicitOptions {
         field("preconditioner", &ImplicitOptions::preconditioner, "preconditioner of the linear solves"));
   }
 };
-
-/// When mass scaling adds mass.
-enum class MassScalingKind { fixed, variable };
-template <>
-inline constexpr Word<MassScalingKind> kWords<MassScalingKind>[] = {
-    {"fixed", MassScalingKind::fixed, "at rest, permanently, to tets with a short element step bound"},
-    {"variable", MassScalingKind::variable,
-     "the same, and at vertices of tets whose bound is below the step, while the tissue moves evenly"}};
 
 /// Largest number of stages of the viscous force in a step: with more, rounding errors would grow.
 inline constexpr int kMostDragStages = 8;
@@ -315,15 +308,6 @@ struct SplitReport {
   std::uint32_t first_new = 0;         ///< number of the first new vertex
   std::vector<std::uint32_t> origins;  ///< vertex first_new + i is a copy of origins[i]
   std::size_t closed_faces = 0;        ///< faces split so far that are still closed: all their vertices are at the rim
-};
-
-/// Mass added by mass scaling.
-struct MassScaling {
-  double added = 0.0;               ///< permanently [kg]
-  double share = 0.0;               ///< of the body's own mass [-]
-  std::vector<std::uint32_t> tets;  ///< with permanently added mass, ascending
-  double present = 0.0;             ///< variable: in addition, for tets whose present bound is below the step [kg]
-  double largest = 0.0;             ///< largest value of `present` so far [kg]
 };
 
 /// A tet that may limit the step.
