@@ -147,12 +147,16 @@ struct WorkLanes {
     elastic_before = elastic_after = viscous_before = viscous_after = zero;
     damping_before = damping_after = loads_before = loads_after = kinetic = zero;
   }
-  HWY_INLINE void book(D4 elastic, D4 drag, D4 weight, double half_mass, D4 before, D4 after) {
+  HWY_INLINE void book(D4 elastic, double half_mass, D4 before, D4 after) {
     elastic_before = hn::MulAdd(elastic, before, elastic_before),
     elastic_after = hn::MulAdd(elastic, after, elastic_after);
-    damping_before = hn::MulAdd(drag, before, damping_before), damping_after = hn::MulAdd(drag, after, damping_after);
-    loads_before = hn::MulAdd(weight, before, loads_before), loads_after = hn::MulAdd(weight, after, loads_after);
     kinetic = hn::MulAdd(hn::Mul(hn::Set(Doubles(), half_mass), before), after, kinetic);
+  }
+  HWY_INLINE void book_damping(D4 drag, D4 before, D4 after) {
+    damping_before = hn::MulAdd(drag, before, damping_before), damping_after = hn::MulAdd(drag, after, damping_after);
+  }
+  HWY_INLINE void book_loads(D4 weight, D4 before, D4 after) {
+    loads_before = hn::MulAdd(weight, before, loads_before), loads_after = hn::MulAdd(weight, after, loads_after);
   }
   HWY_INLINE void book_viscous(D4 viscous, D4 before, D4 after) {
     viscous_before = hn::MulAdd(viscous, before, viscous_before),
@@ -174,7 +178,7 @@ enum class Booked { nothing, elastic, elastic_and_viscous };
 /// v₊ = v₋ + c f − d v₋ + h (1 − d) w g, u₊ = u + h v₊, one vertex  [Schwartz2002, eq. 4].
 template <Booked B>
 HWY_INLINE void advance(double* state, const float* elastic, const float* viscous, const Kick& kick, std::size_t vertex,
-                        WorkLanes& work) {
+                        bool falls, WorkLanes& work) {
   const Doubles d;
   const double c = state[3], damping = state[7];
   for (std::size_t k = 0; k < 4; k += kDoubles) {
@@ -194,8 +198,9 @@ HWY_INLINE void advance(double* state, const float* elastic, const float* viscou
     if constexpr (B != Booked::nothing) {
       const D4 v0 = hn::And(xyz, before), v1 = hn::And(xyz, after);
       const double inverse = c > 0.0 ? 1.0 / c : 0.0, mass = kick.step * (1.0 - damping) * inverse;
-      const D4 drag = hn::Mul(hn::Set(d, -damping * inverse), v1);
-      work.book(fe, drag, hn::Mul(hn::Set(d, mass), g), 0.5 * mass, v0, v1);
+      work.book(fe, 0.5 * mass, v0, v1);
+      if (damping != 0.0) work.book_damping(hn::Mul(hn::Set(d, -damping * inverse), v1), v0, v1);
+      if (falls) work.book_loads(hn::Mul(hn::Set(d, mass), g), v0, v1);
       if constexpr (B == Booked::elastic_and_viscous) work.book_viscous(hn::Sub(force, fe), v0, v1);
     }
   }
@@ -228,7 +233,7 @@ inline void integrate(double* state, const float* force, std::size_t n, const Ki
 inline void integrate(double* state, const float* force, std::size_t n, const Kick& kick) {
   WorkLanes none;
   for (std::size_t i = 0; i < n; ++i) {
-    advance<Booked::nothing>(state + i * kStateDoubles, force + i * kForceFloats, nullptr, kick, i, none);
+    advance<Booked::nothing>(state + i * kStateDoubles, force + i * kForceFloats, nullptr, kick, i, false, none);
   }
 }
 
@@ -238,9 +243,10 @@ template <Booked B>
 HWY_INLINE void integrate_booked(double* state, const float* elastic, const float* viscous, std::size_t n,
                                  const Kick& kick, VertexWork& work) {
   WorkLanes sums;
+  const bool falls = kick.gravity != std::array<double, 4>{};
   for (std::size_t i = 0; i < n; ++i) {
     const float* beside = B == Booked::elastic_and_viscous ? viscous + i * kForceFloats : nullptr;
-    advance<B>(state + i * kStateDoubles, elastic + i * kForceFloats, beside, kick, i, sums);
+    advance<B>(state + i * kStateDoubles, elastic + i * kForceFloats, beside, kick, i, falls, sums);
   }
   sums.add_to(work);
 }
