@@ -57,12 +57,12 @@ struct Case {
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 const Case kCases[]{{"Corotational", corotational(), 0.005},
                     {"Ogden", ogden(), 0.005},
-                    {"Law", stiffening(), 0.007},
-                    {"LawAndBranches", relaxing(), 0.012},
-                    {"LawAndDrag", dragging(), 0.007}};
+                    {"Law", stiffening(), 0.005},
+                    {"LawAndBranches", relaxing(), 0.008},
+                    {"LawAndDrag", dragging(), 0.005}};
 std::string name_of(const testing::TestParamInfo<Case>& p) { return p.param.name; }
 
-SimulationOptions adaptive(double error = 0.005) {
+SimulationOptions adaptive(double error = 0.0025) {
   SimulationOptions o;
   o.precision = Precision::adaptive;
   o.precision_error = error;
@@ -101,7 +101,7 @@ class AdaptivePrecision : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(All, AdaptivePrecision, testing::ValuesIn(kCases), name_of);
 
 // The force of the dent, pressed in, held and let go again, beside that of the tissue's own law everywhere. Measured, of the peak:
-// 0.41, 0.31, 0.55, 0.96 and 0.59 %, with 78, 79, 69, 22 and 71 % of the tets linear in the mean.
+// 0.41, 0.32, 0.40, 0.68 and 0.36 %, with 75, 75, 58, 13 and 59 % of the tets linear in the mean.
 TEST_P(AdaptivePrecision, KeepsTheForce) {
   Dented own(GetParam().tissue, single(), 0.1), chosen(GetParam().tissue, adaptive(), 0.1);
   double apart = 0.0, peak = 0.0, linear = 0.0, most = 0.0;
@@ -182,7 +182,7 @@ TEST_P(AdaptivePrecision, TellsTheStressOfTheForces) {
 }
 
 // Energies: the identity of the books is exact, and the elastic energy that they have is that of the laws in force: what time
-// integration makes of it apart. Measured: 3e-6 of what is stored, of Ogden's law as much as without (1.6e-3).
+// integration makes of it apart. Measured: 1.4e-5 of what is stored, of Ogden's law no more than without (1.6e-3).
 TEST(AdaptivePrecisionEnergies, AreThoseOfTheLawsInForce) {
   for (const Tissue& tissue : {corotational(), ogden()}) {
     Dented own(tissue, single(), 0.03), chosen(tissue, adaptive(), 0.03);
@@ -194,7 +194,7 @@ TEST(AdaptivePrecisionEnergies, AreThoseOfTheLawsInForce) {
       drift = std::max(drift, std::abs(chosen.body.energy_drift().value()));
       imbalance = std::max(imbalance, std::abs(chosen.body.energies().imbalance()));
     }
-    EXPECT_LT(drift, 1.2 * of_own + 1e-5 * most);
+    EXPECT_LT(drift, 1.2 * of_own + 3e-5 * most);
     EXPECT_LT(imbalance, 1e-10 * most);
   }
 }

@@ -129,7 +129,7 @@ struct SimulationOptions {
   Precision precision = Precision::single_precision;
   /// With adaptive precision: what linear parts may get wrong of the virtual work of the tissue's forces in the displacement, each
   /// taken by its absolute value, as share of that work [-].
-  double precision_error = 0.005;
+  double precision_error = 0.0025;
   double damping_rate = 0.0;      ///< mass-proportional nodal damping γ_i/m_i [1/s]
   double nodal_damping = 0.0;     ///< additional nodal damping γ_i, equal at all vertices [kg/s]
   Vec3d gravity{};                ///< [m/s²]
