@@ -80,6 +80,7 @@ Elements ElementForces::elements_of(const Submesh& part, SubmeshScratch& scratch
           .closed_pairs = part.chains.closed_pairs,
           .elastic = scratch.elastic.data(),
           .viscous = scratch.viscous.data(),
+          .pairs_of_forces = scratch.pairs.data(),
           .tissue = plans_[part.block].tissue,
           .prefetch = body_.elements.size() > kPrefetchTets,
           .mu_law = plans_[part.block].laws - 1};
@@ -134,7 +135,7 @@ void ElementForces::push_elements(const Submesh& part, bool split, SubmeshScratc
   const TissuePlan& plan = plans_[part.block];
   const Elements elements = elements_of(part, scratch);
   const auto gather = plan.viscous ? kernels_.gather_viscous : kernels_.gather_elastic;
-  const auto push = plan.viscous && !split ? kernels_.push_merged : kernels_.push_elastic;
+  const auto push = split ? kernels_.push_apart : (plan.viscous ? kernels_.push_merged : kernels_.push_elastic);
   const auto measure = kernels_.measure[plan.measure];
   const auto limit = static_cast<float>(list_limit(part.block) * double(kBelowLimit));
   Block& block = scratch.block;
@@ -144,7 +145,6 @@ void ElementForces::push_elements(const Submesh& part, bool split, SubmeshScratc
     if (measure(elements, b, n, block)) inversions_.list(part.chains, b, n, block, found.inverted);
     if (watch_laws(plan, values, limit, block, found.seen)) list_by_laws(part, b, n, plan, block, found);
     push(elements, b, n, block);
-    if (split) kernels_.push_viscous(elements, b, n, block);
   }
   found.stiffening = bound_of(found.seen);
 }
@@ -207,6 +207,20 @@ void ElementForces::drag(const Submesh& part, const double* velocities, SubmeshS
   }
 }
 
+/// Forces of a submesh by its tets; kept apart, both are pushed at once.
+void ElementForces::push_tets(Submesh& part, bool split, const float* theta, SubmeshScratch& scratch,
+                              ElementFindings& found) const {
+  const std::size_t n = part.local_vertices();
+  float* pairs = scratch.pairs.data();
+  if (split) std::fill_n(pairs, 2 * n * kForceFloats, 0.0F);
+  if (plans_[part.block].response != nullptr) {
+    push_response(part, split, theta, scratch, found);
+  } else {
+    push_elements(part, split, scratch, found);
+  }
+  if (split) kernels_.part_forces(pairs, n, scratch.elastic.data(), scratch.viscous.data());
+}
+
 /// Σ f·v of the elastic forces of a submesh in a scratch [W]; forces and velocities may be counted from any motion of the whole.
 double ElementForces::power(const Submesh& part, const SubmeshScratch& scratch) const {
   double sum = 0.0;
@@ -250,10 +264,8 @@ void ElementForces::evaluate(std::size_t s, bool split, const float* theta, Subm
     found.stiffening = linear ? precision_.stiffening(s) : 1.0;
     if (linear) precision_.moved(s, longest);
     if (inversions_.is_due(s, longest, steps_, moves_)) inversions_.list(part.elements, found.inverted);
-  } else if (plans_[part.block].response != nullptr) {
-    push_response(part, split, theta, scratch, found);
   } else {
-    push_elements(part, split, scratch, found);
+    push_tets(part, split, theta, scratch, found);
   }
   if (part.linear.share > 0.0 && !linear) mix_in(s, split, scratch);
   if (examines && !has_twin(part.block)) examine_forces(s, split, scratch);

@@ -67,6 +67,7 @@ class ElementForces {
  private:
   void narrow(const Submesh& part, SubmeshScratch& scratch) const;
   Elements elements_of(const Submesh& part, SubmeshScratch& scratch) const;
+  void push_tets(Submesh& part, bool split, const float* theta, SubmeshScratch& scratch, ElementFindings& found) const;
   void push_elements(const Submesh& part, bool split, SubmeshScratch& scratch, ElementFindings& found) const;
   float push_edges(const EdgeBatches& batches, const TissuePlan& plan, bool split, SubmeshScratch& scratch) const;
   double power(const Submesh& part, const SubmeshScratch& scratch) const;

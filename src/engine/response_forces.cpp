@@ -45,8 +45,11 @@ void ElementForces::push_relaxing(Submesh& part, bool split, SubmeshScratch& scr
     if (inverted || here.inverted) inversions_.list(part.chains, b, n, block, found.inverted);
     found.stiffening = std::max(found.stiffening, double(here.stiffest));
     if (large.measured && double(here.stiffest) > list_limit(part.block)) list_response(part, b, n, out, found);
-    kernels_.push_stress(elements, b, n, out.piola, scratch.elastic.data());
-    if (split) kernels_.push_stress(elements, b, n, block.viscous, scratch.viscous.data());
+    if (split) {
+      kernels_.push_stresses_apart(elements, b, n, out.piola, block.viscous);
+    } else {
+      kernels_.push_stress(elements, b, n, out.piola, scratch.elastic.data());
+    }
   }
 }
 
@@ -106,8 +109,11 @@ void ElementForces::push_response(Submesh& part, bool split, const float* theta,
     found.stiffening = std::max(found.stiffening, double(stiffest));
     if (double(stiffest) > list_limit(part.block)) list_response(part, b, n, out, found);
     if (plan.viscous && !split) stages.merge(items.items, out);
-    kernels_.push_piola(elements, b, n, out.piola, scratch.elastic.data());
-    if (split) kernels_.push_piola(elements, b, n, out.viscous, scratch.viscous.data());
+    if (split) {
+      kernels_.push_piolas_apart(elements, b, n, out.piola, out.viscous);
+    } else {
+      kernels_.push_piola(elements, b, n, out.piola, scratch.elastic.data());
+    }
   }
 }
 

@@ -13,7 +13,7 @@ namespace glisson::engine {
 inline std::size_t force_floats(std::size_t n) { return (n * kForceFloats + kMaxLanes - 1) / kMaxLanes * kMaxLanes; }
 
 struct SubmeshScratch {
-  LaneVector<float> states, elastic, viscous;
+  LaneVector<float> states, elastic, viscous, pairs;
   Block block;
   ResponseBlock response;
   alignas(64) float rate[kBlockTets * 9];
@@ -24,6 +24,7 @@ struct SubmeshScratch {
     states.resize(std::max(states.size(), n * kStateFloats));
     elastic.resize(std::max(elastic.size(), force_floats(n)));
     viscous.resize(elastic.size());
+    pairs.resize(2 * elastic.size());
   }
 };
 

@@ -98,6 +98,29 @@ TEST_P(PiolaLanes, ForcesAreMinusVolumeTimesStressTimesGradient) {
   }
 }
 
+// Two stresses pushed at once leave the bytes that each leaves alone.
+TEST_P(PiolaLanes, TwoAtOnceLeaveTheForcesOfEach) {
+  const Stressed s(12, GetParam()->lanes);
+  const std::size_t n = s.part().local_vertices(), floats = n * engine::kForceFloats;
+  engine::LaneVector<float> pairs(2 * floats, kThere), apart(2 * floats), first(floats, kThere), second(floats, kThere);
+  engine::Elements e;
+  e.index = s.part().chains.index.data(), e.rest = s.part().chains.rest.data();
+  e.pairs = s.part().chains.pairs, e.closed_pairs = s.part().chains.closed_pairs;
+  e.pairs_of_forces = pairs.data();
+  for (std::size_t b = 0; b < s.part().chains.count; b += engine::kBlockBatches) {
+    const std::size_t count = std::min(engine::kBlockBatches, s.part().chains.count - b);
+    const engine::LaneVector<float> piola = s.lanes_of(b, count);
+    engine::LaneVector<float> other(piola.rbegin(), piola.rend());
+    GetParam()->push_piolas_apart(e, b, count, piola.data(), other.data());
+    GetParam()->push_piola(e, b, count, piola.data(), first.data());
+    GetParam()->push_piola(e, b, count, other.data(), second.data());
+  }
+  GetParam()->part_forces(pairs.data(), n, apart.data(), apart.data() + floats);
+  EXPECT_TRUE(std::equal(first.begin(), first.end(), apart.begin()));
+  EXPECT_TRUE(std::equal(second.begin(), second.end(), apart.begin() + std::ptrdiff_t(floats)));
+  EXPECT_NE(first, second);
+}
+
 INSTANTIATE_TEST_SUITE_P(InstructionSets, PiolaLanes, testing::ValuesIn(test::every_kernels()), test::kernels_name);
 
 }  // namespace

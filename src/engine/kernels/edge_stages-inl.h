@@ -37,7 +37,6 @@ HWY_INLINE Xyz transposed_product(const F (&T)[9], const Xyz& v) {
           hn::MulAdd(T[7], v.z, hn::MulAdd(T[4], v.y, T[1] * v.x)),
           hn::MulAdd(T[8], v.z, hn::MulAdd(T[5], v.y, T[2] * v.x))};
 }
-HWY_INLINE Xyz minus(const Xyz& v) { return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)}; }
 HWY_INLINE Xyz combined(F a, const Xyz& u, F b, const Xyz& v) {
   return {hn::MulAdd(a, u.x, b * v.x), hn::MulAdd(a, u.y, b * v.y), hn::MulAdd(a, u.z, b * v.z)};
 }
@@ -57,7 +56,8 @@ HWY_INLINE void push_edge(float* forces, const std::uint16_t* index, const F (&T
   const Xyz Tp = product(T, p), Ttp = transposed_product(T, p), Tq = product(T, q), Ttq = transposed_product(T, q);
   const auto at_i = [&](F a, F b, F c) GLISSON_INLINED { return hn::MulAdd(t, c, a + b); };
   add_forces(forces, index, Xyz{at_i(Tp.x, Ttq.x, q.x), at_i(Tp.y, Ttq.y, q.y), at_i(Tp.z, Ttq.z, q.z)});
-  add_forces(forces, index + kLanes, minus({at_i(Ttp.x, Tq.x, q.x), at_i(Ttp.y, Tq.y, q.y), at_i(Ttp.z, Tq.z, q.z)}));
+  add_forces(forces, index + kLanes,
+             negative({at_i(Ttp.x, Tq.x, q.x), at_i(Ttp.y, Tq.y, q.y), at_i(Ttp.z, Tq.z, q.z)}));
 }
 
 inline float edges_elastic(const Edges& e) {
@@ -69,7 +69,7 @@ inline float edges_elastic(const Edges& e) {
     const Xyz u = Origin<false>(e.states, index).difference(index + kLanes).u;
     longest = hn::Max(longest, squared(u));
     add_forces(e.elastic, index, product(T, u));
-    add_forces(e.elastic, index + kLanes, minus(transposed_product(T, u)));
+    add_forces(e.elastic, index + kLanes, negative(transposed_product(T, u)));
   }
   return hn::GetLane(hn::MaxOfLanes(Lanes(), longest));
 }

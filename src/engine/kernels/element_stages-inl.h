@@ -48,6 +48,36 @@ HWY_INLINE Stress<F> sum(const Stress<F>& a, const Stress<F>& b) {
   return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.yz + b.yz, a.zx + b.zx};
 }
 
+/// Two stresses that are kept apart.
+template <class T>
+struct StressPair {
+  T elastic, viscous;
+};
+
+// What a stress leaves on a vertex, and two stresses.
+template <class T>
+HWY_INLINE Xyz force_by(const T& stress, const F (&s)[3]) {
+  return force<F, Xyz>(stress, s);
+}
+template <class T>
+HWY_INLINE ForcePair force_by(const StressPair<T>& t, const F (&s)[3]) {
+  return {force_by(t.elastic, s), force_by(t.viscous, s)};
+}
+template <class T>
+HWY_INLINE ForcePair add_force(const StressPair<T>& t, const F (&s)[3], const ForcePair& f) {
+  return {add_force(t.elastic, s, f.elastic), add_force(t.viscous, s, f.viscous)};
+}
+template <class T>
+HWY_INLINE ForcePair force_against(const StressPair<T>& t, const F (&s)[3], const ForcePair& f) {
+  return {force_against(t.elastic, s, f.elastic), force_against(t.viscous, s, f.viscous)};
+}
+HWY_INLINE ForcePair sum(const ForcePair& a, const ForcePair& b) {
+  return {sum(a.elastic, b.elastic), sum(a.viscous, b.viscous)};
+}
+HWY_INLINE ForcePair negative(const ForcePair& f) { return {negative(f.elastic), negative(f.viscous)}; }
+HWY_INLINE void set_zero(Xyz& f) { f.x = f.y = f.z = hn::Zero(Lanes()); }
+HWY_INLINE void set_zero(ForcePair& f) { set_zero(f.elastic), set_zero(f.viscous); }
+
 HWY_INLINE const std::uint16_t* index_of(const Elements& e, std::size_t batch) {
   return e.index + batch * kChainVertices * kLanes;
 }
@@ -215,39 +245,37 @@ inline bool measure(const Elements& e, std::size_t begin, std::size_t n, Block& 
 }
 
 /// Goes round the edge 0–1 of a fan and leaves the forces of its tets on their vertices.
+template <class Force>
 class Pushing {
  public:
-  HWY_INLINE explicit Pushing(float* forces) : forces_(forces) {
-    const F zero = hn::Zero(Lanes());
-    on_1_ = others_ = Xyz{zero, zero, zero};
-  }
+  HWY_INLINE explicit Pushing(float* forces) : forces_(forces) { set_zero(on_1_), set_zero(others_); }
 
   /// The tet between two spokes, its stress times kForceScale: adds to what is on the vertex behind. @return the force on
   /// that ahead
   template <class T>
-  HWY_INLINE Xyz between(const float* behind, const float* ahead, const float* rest, std::size_t which, const T& stress,
-                         Xyz& on_behind) {
+  HWY_INLINE Force between(const float* behind, const float* ahead, const float* rest, std::size_t which,
+                           const T& stress, Force& on_behind) {
     F s[3];
     load_product(ahead, 0, s);
     on_behind = force_against(stress, s, on_behind);
     load_product(rest, kRestAcross + 3 * which, s);
     on_1_ = add_force(stress, s, on_1_);
     load_product(behind, 0, s);
-    return force<F, Xyz>(stress, s);
+    return force_by(stress, s);
   }
-  HWY_INLINE void leave(const std::uint16_t* index, std::size_t vertex, const Xyz& f) {
+  HWY_INLINE void leave(const std::uint16_t* index, std::size_t vertex, const Force& f) {
     add_forces(forces_, Indices(index + vertex * kLanes), f);
     others_ = sum(others_, f);
   }
   /// Vertices 1 and 0 come last.
   HWY_INLINE void finish(const std::uint16_t* index) {
     leave(index, 1, on_1_);
-    add_forces(forces_, Indices(index), Xyz{hn::Neg(others_.x), hn::Neg(others_.y), hn::Neg(others_.z)});
+    add_forces(forces_, Indices(index), negative(others_));
   }
 
  private:
   float* forces_;
-  Xyz on_1_, others_;  // others: sum of what has been left
+  Force on_1_, others_;  // others: sum of what has been left
 };
 
 /// A batch of chains, or two of fans.
@@ -256,15 +284,16 @@ HWY_INLINE void push_run(const Elements& e, std::size_t batch, float* forces, co
                          std::size_t item) {
   const std::uint16_t* index = index_of(e, batch);
   const float* rest = rest_of(e, batch);
-  Pushing around(forces);
-  const F zero = hn::Zero(Lanes());
-  Xyz f4{zero, zero, zero};
+  using Force = typename StressOf::Force;
+  Pushing<Force> around(forces);
+  Force f4;
+  set_zero(f4);
   const float *s4 = spoke(rest, 4), *s2 = spoke(rest, 2), *s3 = spoke(rest, 3), *s5 = spoke(rest, 5);
   // What is on a vertex is left there while the tet after the next is reckoned.
-  Xyz f2 = around.between(s4, s2, rest, 0, stress_of(item, rest_scale(rest, 0)), f4);
-  Xyz f3 = around.between(s2, s3, rest, 1, stress_of(item + 1, rest_scale(rest, 1)), f2);
+  Force f2 = around.between(s4, s2, rest, 0, stress_of(item, rest_scale(rest, 0)), f4);
+  Force f3 = around.between(s2, s3, rest, 1, stress_of(item + 1, rest_scale(rest, 1)), f2);
   if constexpr (R != Run::closed_fan) around.leave(index, 4, f4);
-  Xyz f5 = around.between(s3, s5, rest, 2, stress_of(item + 2, rest_scale(rest, 2)), f3);
+  Force f5 = around.between(s3, s5, rest, 2, stress_of(item + 2, rest_scale(rest, 2)), f3);
   around.leave(index, 2, f2);
   if constexpr (R == Run::chain) {
     around.leave(index, 3, f3);
@@ -274,11 +303,11 @@ HWY_INLINE void push_run(const Elements& e, std::size_t batch, float* forces, co
     const float* next_rest = rest_of(e, batch + 1);
     const float *n2 = spoke(next_rest, 2), *n3 = spoke(next_rest, 3);
     const float* n5 = R == Run::closed_fan ? s4 : spoke(next_rest, 5);
-    Xyz g2 = around.between(s5, n2, next_rest, 0, stress_of(item + 3, rest_scale(next_rest, 0)), f5);
+    Force g2 = around.between(s5, n2, next_rest, 0, stress_of(item + 3, rest_scale(next_rest, 0)), f5);
     around.leave(index, 3, f3);
-    Xyz g3 = around.between(n2, n3, next_rest, 1, stress_of(item + 4, rest_scale(next_rest, 1)), g2);
+    Force g3 = around.between(n2, n3, next_rest, 1, stress_of(item + 4, rest_scale(next_rest, 1)), g2);
     around.leave(index, 5, f5);
-    const Xyz g5 = around.between(n3, n5, next_rest, 2, stress_of(item + 5, rest_scale(next_rest, 2)), g3);
+    const Force g5 = around.between(n3, n5, next_rest, 2, stress_of(item + 5, rest_scale(next_rest, 2)), g3);
     around.leave(next, 2, g2);
     around.leave(next, 3, g3);
     if constexpr (R == Run::closed_fan) {
@@ -311,6 +340,7 @@ enum class Push { elastic, viscous, merged };
 /// [Schwartz2002, eq. 7]; 0 where there is none, since its gradients are 0.
 template <Push P>
 struct ScaledStress {
+  using Force = Xyz;
   const Elements& e;
   const Block& block;
 
@@ -327,6 +357,7 @@ struct ScaledStress {
 
 /// P of one tet of a batch times kForceScale; 0 where there is none, whatever its branches remember.
 struct ScaledPiola {
+  using Force = Xyz;
   const float* piola;
 
   HWY_INLINE Piola<F> operator()(std::size_t item, F w) const {
@@ -342,6 +373,7 @@ struct ScaledPiola {
 
 /// A stress that is scaled already; 0 where there is no tet, whatever its branches remember.
 struct StoredStress {
+  using Force = Xyz;
   const float* stress;
 
   HWY_INLINE Stress<F> operator()(std::size_t item, F w) const {
@@ -350,6 +382,18 @@ struct StoredStress {
     const auto get = [&](std::size_t k)
                          GLISSON_INLINED { return hn::MaskedLoad(present, d, stress + (item * 6 + k) * kLanes); };
     return {get(0), get(1), get(2), get(3), get(4), get(5)};
+  }
+};
+
+/// Two of these.
+template <class Elastic, class Viscous>
+struct StressesApart {
+  using Force = ForcePair;
+  Elastic elastic;
+  Viscous viscous;
+
+  HWY_INLINE auto operator()(std::size_t item, F w) const {
+    return StressPair<decltype(elastic(item, w))>{elastic(item, w), viscous(item, w)};
   }
 };
 
@@ -364,6 +408,19 @@ inline void push_piola(const Elements& e, std::size_t begin, std::size_t n, cons
 
 inline void push_stress(const Elements& e, std::size_t begin, std::size_t n, const float* stress, float* forces) {
   push_batches(e, begin, n, forces, StoredStress{stress});
+}
+
+inline void push_apart(const Elements& e, std::size_t begin, std::size_t n, const Block& block) {
+  const StressesApart<ScaledStress<Push::elastic>, ScaledStress<Push::viscous>> apart{{e, block}, {e, block}};
+  push_batches(e, begin, n, e.pairs_of_forces, apart);
+}
+inline void push_piolas_apart(const Elements& e, std::size_t begin, std::size_t n, const float* elastic,
+                              const float* viscous) {
+  push_batches(e, begin, n, e.pairs_of_forces, StressesApart<ScaledPiola, ScaledPiola>{{elastic}, {viscous}});
+}
+inline void push_stresses_apart(const Elements& e, std::size_t begin, std::size_t n, const float* elastic,
+                                const float* viscous) {
+  push_batches(e, begin, n, e.pairs_of_forces, StressesApart<StoredStress, StoredStress>{{elastic}, {viscous}});
 }
 
 }  // namespace glisson::engine::HWY_NAMESPACE

@@ -58,6 +58,7 @@ struct Elements {
   std::size_t closed_pairs = 0;          ///< of these the first ones, whose fans are closed
   float* elastic = nullptr;              ///< force records, of the whole force where that is pushed as one
   float* viscous = nullptr;
+  float* pairs_of_forces = nullptr;  ///< elastic and viscous force records side by side, where they are pushed at once
   LaneTissue tissue;
   bool prefetch = false;   ///< whether rest data come from beyond the second-level cache
   std::size_t mu_law = 0;  ///< which of the block's two laws scales μ: 0 for a law on E
@@ -164,6 +165,16 @@ struct Kernels {
 
   /// The same of a symmetric stress times kForceScale, [item][6][lane]: xx, yy, zz, xy, yz, zx.
   void (*push_stress)(const Elements&, std::size_t begin, std::size_t n, const float* stress, float* forces) = nullptr;
+
+  /// Elastic and viscous forces of a block at once, apart: added to `pairs_of_forces`. The stresses of the block, those of push_piola
+  /// and of push_stress.
+  void (*push_apart)(const Elements&, std::size_t begin, std::size_t n, const Block&) = nullptr;
+  void (*push_piolas_apart)(const Elements&, std::size_t begin, std::size_t n, const float* elastic,
+                            const float* viscous) = nullptr;
+  void (*push_stresses_apart)(const Elements&, std::size_t begin, std::size_t n, const float* elastic,
+                              const float* viscous) = nullptr;
+  /// Force records of `n` vertices from pairs of them.
+  void (*part_forces)(const float* pairs, std::size_t n, float* elastic, float* viscous) = nullptr;
 
   /// Forces of a linear submesh. @return the largest squared displacement difference of an edge [m²]
   float (*edges_elastic)(const Edges&) = nullptr;

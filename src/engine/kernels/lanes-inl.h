@@ -22,6 +22,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 
@@ -62,6 +63,15 @@ struct UV {
 
 HWY_INLINE const float* state_record(const float* records, std::size_t index) { return records + kStateFloats * index; }
 HWY_INLINE float* force_record(float* records, std::size_t index) { return records + kForceFloats * index; }
+/// Records of two forces side by side.
+HWY_INLINE float* pair_record(float* records, std::size_t index) { return records + 2 * kForceFloats * index; }
+
+HWY_INLINE Xyz negative(const Xyz& v) { return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)}; }
+
+/// Elastic and viscous force on a vertex, kept apart.
+struct ForcePair {
+  Xyz elastic, viscous;
+};
 
 #if HWY_TARGET != HWY_SCALAR
 
@@ -147,6 +157,11 @@ HWY_INLINE void add_forces(float* forces, const Index& index, const Xyz& f) {
   float* record = force_record(forces, index[0]);
   record[0] += hn::GetLane(f.x), record[1] += hn::GetLane(f.y), record[2] += hn::GetLane(f.z);
 }
+template <class Index>
+HWY_INLINE void add_forces(float* pairs, const Index& index, const ForcePair& f) {
+  add_forces(pairs, std::array<std::size_t, 1>{2 * index[0]}, f.elastic);
+  add_forces(pairs, std::array<std::size_t, 1>{2 * index[0] + 1}, f.viscous);
+}
 
 #elif HWY_MAX_BYTES == 16
 
@@ -186,6 +201,15 @@ HWY_INLINE void add_forces(float* forces, const Index& index, const Xyz& f) {
   add_block(force_record(forces, index[1]), r.r1);
   add_block(force_record(forces, index[2]), r.r2);
   add_block(force_record(forces, index[3]), r.r3);
+}
+template <class Index>
+HWY_INLINE void add_forces(float* pairs, const Index& index, const ForcePair& f) {
+  const Records e = transpose_back(f.elastic), v = transpose_back(f.viscous);
+  const auto add = [&](std::size_t lane, F elastic, F viscous) GLISSON_INLINED {
+    float* pair = pair_record(pairs, index[lane]);
+    add_block(pair, elastic), add_block(pair + kForceFloats, viscous);
+  };
+  add(0, e.r0, v.r0), add(1, e.r1, v.r1), add(2, e.r2, v.r2), add(3, e.r3, v.r3);
 }
 
 #elif HWY_MAX_BYTES == 32
@@ -230,6 +254,17 @@ HWY_INLINE void add_forces(float* forces, const Index& index, const Xyz& f) {
     add_block(force_record(forces, index[lane + 4]), hn::UpperHalf(hn::Full128<float>(), records));
   };
   add(0, r.r0), add(1, r.r1), add(2, r.r2), add(3, r.r3);
+}
+template <class Index>
+HWY_INLINE void add_forces(float* pairs, const Index& index, const ForcePair& f) {
+  const Floats d;
+  const Records e = transpose_back(f.elastic), v = transpose_back(f.viscous);
+  const auto add = [&](std::size_t lane, F elastic, F viscous) GLISSON_INLINED {
+    float *first = pair_record(pairs, index[lane]), *second = pair_record(pairs, index[lane + 4]);
+    hn::Store(hn::Add(hn::Load(d, first), hn::ConcatLowerLower(d, viscous, elastic)), d, first);
+    hn::Store(hn::Add(hn::Load(d, second), hn::ConcatUpperUpper(d, viscous, elastic)), d, second);
+  };
+  add(0, e.r0, v.r0), add(1, e.r1, v.r1), add(2, e.r2, v.r2), add(3, e.r3, v.r3);
 }
 
 #elif HWY_MAX_BYTES == 64
@@ -289,6 +324,21 @@ HWY_INLINE void add_forces(float* forces, const Index& index, const Xyz& f) {
     add_block(force_record(forces, index[lane + 12]), hn::UpperHalf(block, upper));
   };
   add(0, r.r0), add(1, r.r1), add(2, r.r2), add(3, r.r3);
+}
+template <class Index>
+HWY_INLINE void add_forces(float* pairs, const Index& index, const ForcePair& f) {
+  const Half d;
+  const Records e = transpose_back(f.elastic), v = transpose_back(f.viscous);
+  const auto two = [&](std::size_t lane, hn::Vec<Half> elastic, hn::Vec<Half> viscous) GLISSON_INLINED {
+    float *first = pair_record(pairs, index[lane]), *second = pair_record(pairs, index[lane + 4]);
+    hn::Store(hn::Add(hn::Load(d, first), hn::ConcatLowerLower(d, viscous, elastic)), d, first);
+    hn::Store(hn::Add(hn::Load(d, second), hn::ConcatUpperUpper(d, viscous, elastic)), d, second);
+  };
+  const auto add = [&](std::size_t lane, F elastic, F viscous) GLISSON_INLINED {
+    two(lane, hn::LowerHalf(elastic), hn::LowerHalf(viscous));
+    two(lane + 8, hn::UpperHalf(d, elastic), hn::UpperHalf(d, viscous));
+  };
+  add(0, e.r0, v.r0), add(1, e.r1, v.r1), add(2, e.r2, v.r2), add(3, e.r3, v.r3);
 }
 
 #else

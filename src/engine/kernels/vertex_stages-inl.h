@@ -85,6 +85,16 @@ inline bool all_finite(const float* values, std::size_t n) {
 using ForceLanes = hn::CappedTag<float, kForceFloats>;
 inline constexpr std::size_t kForceLanes = HWY_TARGET == HWY_SCALAR ? 1 : kForceFloats;
 
+inline void part_forces(const float* pairs, std::size_t n, float* elastic, float* viscous) {
+  const ForceLanes d;
+  for (std::size_t i = 0; i < kForceFloats * n; i += kForceFloats) {
+    for (std::size_t k = 0; k < kForceFloats; k += kForceLanes) {
+      hn::Store(hn::Load(d, pairs + 2 * i + k), d, elastic + i + k);
+      hn::Store(hn::Load(d, pairs + 2 * i + kForceFloats + k), d, viscous + i + k);
+    }
+  }
+}
+
 inline void sum_slots(const float* slots, const std::uint32_t* begin, const std::uint32_t* which, std::size_t n,
                       float* out) {
   const ForceLanes d;
