@@ -48,7 +48,8 @@ class VertexRecords {
   void set_step(double h);
   /// The kick of the records from one on.
   Kick kick_from(const Kick& kick, std::size_t record) const {
-    return {kick.step, kick.gravity, weighs_.empty() ? nullptr : weighs_.data() + record};
+    return {kick.step, kick.gravity, weighs_.empty() ? nullptr : weighs_.data() + record, masses_.data() + record,
+            damping_.data() + record};
   }
 
  private:

@@ -91,6 +91,8 @@ struct Kick {
   double step = 0;                              ///< h [s]
   alignas(32) std::array<double, 4> gravity{};  ///< [m/s²], w = 0
   const double* weighs = nullptr;               ///< per vertex: share of its mass that has weight; null: all of it
+  const double* masses = nullptr;               ///< per vertex [kg]: for the books
+  const double* damping = nullptr;              ///< per vertex γ [kg/s]: likewise
 };
 
 /// Force records of a run of vertices in a stage of drag.

@@ -207,9 +207,9 @@ HWY_INLINE void advance(double* state, const float* elastic, const float* viscou
     hn::Store(hn::MulAdd(h, after, u), d, state + k);
     if constexpr (B != Booked::nothing) {
       const D4 v0 = hn::And(xyz, before), v1 = hn::And(xyz, after);
-      const double inverse = c > 0.0 ? 1.0 / c : 0.0, mass = kick.step * (1.0 - damping) * inverse;
+      const double mass = kick.masses[vertex];
       work.book(fe, 0.5 * mass, v0, v1);
-      if (damping != 0.0) work.book_damping(hn::Mul(hn::Set(d, -damping * inverse), v1), v0, v1);
+      if (damping != 0.0) work.book_damping(hn::Mul(hn::Set(d, -kick.damping[vertex]), v1), v0, v1);
       if (falls) work.book_loads(hn::Mul(hn::Set(d, mass), g), v0, v1);
       if constexpr (B == Booked::elastic_and_viscous) work.book_viscous(hn::Sub(force, fe), v0, v1);
     }
