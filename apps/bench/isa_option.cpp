@@ -11,7 +11,7 @@ void add_isa_option(CLI::App& command, std::string& isa, const std::string& of) 
 }
 
 void take_isa(const std::string& isa) {
-  if (!isa.empty()) cpu::use_instruction_set(isa);
+  isa.empty() ? cpu::use_instruction_set_of_environment() : cpu::use_instruction_set(isa);
 }
 
 }  // namespace glisson::app

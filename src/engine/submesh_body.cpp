@@ -7,12 +7,22 @@
 #include <iterator>
 
 #include "element/block_response.h"
+#include "engine/kernels/instruction_set.h"
 #include "engine/layout/archive_submeshes.h"
 
 namespace glisson::engine {
+namespace {
+
+const Kernels& kernels_of(const SubmeshOptions& options) {
+  if (options.kernels != nullptr) return *options.kernels;
+  cpu::use_instruction_set_of_environment();
+  return best_kernels();
+}
+
+}  // namespace
 
 SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping, const SubmeshOptions& options)
-    : body_(body), kernels_(options.kernels != nullptr ? *options.kernels : best_kernels()),
+    : body_(body), kernels_(kernels_of(options)),
       submeshes_(build_submeshes(body, kernels_.lanes, options.submesh_tets)), active_(submeshes_, records_),
       changer_(body, submeshes_, kernels_.lanes),
       forces_(body, submeshes_, records_, kernels_, options.precision_error), volumes_(body, submeshes_),

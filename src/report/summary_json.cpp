@@ -61,6 +61,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
   json["precision"] = word_of(variant.simulation.precision);
   json["threads"] = threads;
   json["state_hash"] = fmt::format("{:016x}", s.state_hash);
+  json["instruction_set"] = s.instruction_set;
   json["version"] = GLISSON_VERSION;
   return json;
 }

@@ -1,6 +1,8 @@
 // What the system withholds from the program (descriptors, room, memory) is a message and an exit code, and never a file of
 // results that holds something else.
 #include <algorithm>
+#include <cstdlib>
+#include <map>
 
 #include "app/program.h"
 
@@ -27,6 +29,30 @@ TEST_F(Surrounded, ClosedDescriptorsChangeNoFile) {
   }
   const std::string wrong = write("w.toml", small_scene("[tisue]\n"));
   EXPECT_THAT(run_in({.closed = {2}}, {"run", wrong, "--out", "w"}), Exits(2));
+}
+
+// GLISSON_INSTRUCTION_SET chooses the kernels of a run: the summary names them, and each set reaches the same force to rounding. A set
+// that is not there is refused with the variable and those that are.
+TEST_F(Surrounded, EnvironmentChoosesTheInstructionSet) {
+  const std::string scene = write("s.toml", small_scene());
+  const char* before = std::getenv("GLISSON_INSTRUCTION_SET");
+  const std::string kept = before == nullptr ? "" : before;
+  std::map<std::string, double> forces;
+  for (const std::string isa : {"avx512", "avx2", "sse4"}) {
+    setenv("GLISSON_INSTRUCTION_SET", isa.c_str(), 1);
+    const Outcome outcome = run({"run", scene, "--out", isa});
+    if (outcome.err.find("environment variable GLISSON_INSTRUCTION_SET \"" + isa + "\"") != std::string::npos) {
+      EXPECT_THAT(outcome.err, HasSubstr("there are: "));
+      EXPECT_NE(outcome.exit_code, 0);
+      continue;
+    }
+    ASSERT_THAT(outcome, Exits(0));
+    const nlohmann::json summary = read_json(folder_ / isa / "main/summary.json");
+    EXPECT_TRUE(forces.emplace(summary["instruction_set"], summary["peak_force_N"]).second) << isa;
+  }
+  setenv("GLISSON_INSTRUCTION_SET", kept.c_str(), 1);
+  ASSERT_FALSE(forces.empty());
+  for (const auto& [set, force] : forces) EXPECT_NEAR(force, forces.begin()->second, 1e-5 * force) << set;
 }
 
 // What is printed and cannot be written is told, by every command, and the exit code says so; a run is not lost by it.

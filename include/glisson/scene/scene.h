@@ -136,6 +136,7 @@ struct RunSummary {
   std::size_t inverted_tets_most = 0;  ///< largest number of tets inverted in one step
   double first_inversion_s = -1.0;     ///< time of it; −1: none
   std::uint64_t state_hash = 0;
+  std::string instruction_set{};  ///< of the element kernels; the hash is one of this set
   enum class End {
     finished,
     interrupted,

@@ -3,11 +3,17 @@
 
 #include <hwy/highway.h>
 
+#include <atomic>
+#include <cstdlib>
 #include <stdexcept>
 #include <string_view>
 
 namespace glisson::cpu {
 namespace {
+
+constexpr const char* kVariable = "GLISSON_INSTRUCTION_SET";
+
+std::atomic<bool> chosen{false};  // by the program
 
 /// The word for a target, by Highway's name of it; empty for those that nobody asks for.
 std::string_view word_of(std::string_view target) {
@@ -28,6 +34,18 @@ std::int64_t targets_of(std::string_view word) {
   return mask;
 }
 
+/// @param source  what asked for it, as a message names it
+void choose(const std::string& name, const std::string& source) {
+  const std::int64_t wanted = name.empty() ? 0 : targets_of(name);
+  if (wanted == 0) {
+    std::string known;
+    for (const std::string& word : instruction_sets()) known += (known.empty() ? "" : ", ") + word;
+    throw std::invalid_argument(source + " \"" + name + "\": this machine or this build does not have it; there are: " +
+                                (known.empty() ? "none to choose from" : known));
+  }
+  hwy::DisableTargets(~wanted);
+}
+
 }  // namespace
 
 std::vector<std::string> instruction_sets() {
@@ -39,15 +57,17 @@ std::vector<std::string> instruction_sets() {
 }
 
 void use_instruction_set(const std::string& name) {
-  const std::int64_t wanted = name.empty() ? 0 : targets_of(name);
-  if (wanted == 0) {
-    std::string known;
-    for (const std::string& word : instruction_sets()) known += (known.empty() ? "" : ", ") + word;
-    throw std::invalid_argument("instruction set \"" + name +
-                                "\": this machine or this build does not have it; there are: " +
-                                (known.empty() ? "none to choose from" : known));
-  }
-  hwy::DisableTargets(~wanted);
+  choose(name, "instruction set");
+  chosen = true;
+}
+
+void use_instruction_set_of_environment() {
+  static const bool read = [] {
+    const char* name = std::getenv(kVariable);
+    if (!chosen && name != nullptr && *name != '\0') choose(name, std::string("environment variable ") + kVariable);
+    return true;
+  }();
+  static_cast<void>(read);
 }
 
 }  // namespace glisson::cpu

@@ -15,4 +15,10 @@ std::vector<std::string> instruction_sets();
 /// @throws std::invalid_argument for one that is not among instruction_sets(), naming them
 void use_instruction_set(const std::string& name);
 
+/// Uses the set that the environment variable GLISSON_INSTRUCTION_SET names, unless use_instruction_set() was called or the
+/// variable is empty or unset. Read once a process; what
+/// dispatches kernels calls it first.
+/// @throws std::invalid_argument as use_instruction_set(), naming the variable
+void use_instruction_set_of_environment();
+
 }  // namespace glisson::cpu

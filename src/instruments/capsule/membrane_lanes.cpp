@@ -2,6 +2,7 @@
 //
 //   gather edges of eight triangles ─▶ strain, tension, K = A G S Gᵀ in lanes ─▶ add forces, one triangle after the other
 #include "instruments/capsule/membrane_lanes.h"
+#include "engine/kernels/instruction_set.h"
 #include "engine/kernels/targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -148,7 +149,10 @@ namespace glisson {
 
 HWY_EXPORT(kernel_for);
 
-MembraneForces membrane_forces(bool stiffens) { return HWY_DYNAMIC_DISPATCH(kernel_for)(stiffens); }
+MembraneForces membrane_forces(bool stiffens) {
+  cpu::use_instruction_set_of_environment();
+  return HWY_DYNAMIC_DISPATCH(kernel_for)(stiffens);
+}
 
 }  // namespace glisson
 #endif

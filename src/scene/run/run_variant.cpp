@@ -233,6 +233,7 @@ void Run::summarise() {
   if (variant_.simulation.track_energies) see_drift();
   summary_.mass_added_kg = simulation_.mass_scaling().added + simulation_.mass_scaling().largest;
   summary_.state_hash = simulation_.state_hash();
+  summary_.instruction_set = simulation_.engine_info().instruction_set;
 }
 
 RunSummary Run::to_end() {

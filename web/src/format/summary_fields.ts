@@ -66,6 +66,7 @@ const GROUPS: readonly [string, readonly [string, string, string][]][] = [
       ["variant", "Variant", ""],
       ["tissue", "Tissue", ""],
       ["state_hash", "State hash", ""],
+      ["instruction_set", "Instruction set", ""],
       ["version", "Version", ""],
     ],
   ],
