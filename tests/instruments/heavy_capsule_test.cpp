@@ -58,7 +58,9 @@ SimulationOptions heavy(SimulationOptions o, double times) {
 }
 
 // Pressed by 4 mm at 10 mm/s, the plain body's step is below a third of that of the tissue; with mass it is what was asked for. Forces
-// on the way are those without within 2 % of the peak (1.2 and 1.5 measured; inertia of 2.5 % is borne), at rest within 0.1 %.
+// on the way are those without within 2 % of the peak (1.2 and 1.5 measured; inertia of 2.5 % is borne). Held there, the sheet's added mass
+// goes on swinging: its force is within 1 % of the plain one at every step (0.4 measured), and the mean of half a second, in which the swing
+// has no share, within 1e-4 (1.3e-5 measured).
 TEST(HeavyCapsule, StepsAreThoseOfTheTissue) {
   SimulationOptions o;
   o.damping_rate = 50.0;
@@ -69,7 +71,7 @@ TEST(HeavyCapsule, StepsAreThoseOfTheTissue) {
       c->simulation.drive(middle_of_top(), press({.velocity = 0.01, .depth = 0.004, .ramp = 0.1, .hold = 2.0}));
     }
     double apart = 0.0, peak = 0.0;
-    for (double t = 0.05; t < 2.0; t += 0.05) {
+    for (double t = 0.05; t < 1.5; t += 0.05) {
       for (Covered* c : {&plain, &with_mass}) {
         while (c->simulation.time() < t) test::must_step(c->simulation);
       }
@@ -79,11 +81,22 @@ TEST(HeavyCapsule, StepsAreThoseOfTheTissue) {
     }
     RecordProperty("apart", std::to_string(apart / peak));
     EXPECT_LT(apart, 0.02 * peak);
+    EXPECT_LT(3 * with_mass.simulation.steps(), plain.simulation.steps());
     const double force = plain.simulation.force({1}).total().z;
-    EXPECT_NEAR(with_mass.simulation.force({1}).total().z, force, 1e-3 * std::abs(force));
+    double impulse = 0.0, swing = 0.0;
+    const double from = with_mass.simulation.time();
+    while (with_mass.simulation.time() < from + 0.5) {
+      const double before = with_mass.simulation.time();
+      test::must_step(with_mass.simulation);
+      const double now = with_mass.simulation.force({1}).total().z;
+      impulse += now * (with_mass.simulation.time() - before);
+      swing = std::max(swing, std::abs(now - force));
+    }
+    RecordProperty("swing", std::to_string(swing / std::abs(force)));
+    EXPECT_LT(swing, 0.01 * std::abs(force));
+    EXPECT_NEAR(impulse / (with_mass.simulation.time() - from), force, 1e-4 * std::abs(force));
     EXPECT_NEAR(with_mass.simulation.step_size(), *scaled.mass_scaling_step, 1e-12);
     EXPECT_GT(with_mass.simulation.mass_scaling().present, 0.0);
-    EXPECT_LT(3 * with_mass.simulation.steps(), plain.simulation.steps());
     EXPECT_NEAR(with_mass.simulation.energies().imbalance(), 0.0, 1e-9 * with_mass.simulation.energies().work_tools);
   }
 }
