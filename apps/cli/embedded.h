@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 namespace glisson::app {
 
@@ -11,10 +12,11 @@ std::string_view live_page();
 /// The built report page with its data token, from web/.
 std::string_view report_template();
 
-// The scenes of scenes/paper/ as TOML text.
-std::string_view figure2_scene();
-std::string_view figure3a_scene();
-std::string_view figure3b_scene();
-std::string_view speed_scene();
+/// The text of a file below scenes/, e.g. "paper/figure2.toml": the scenes, fits and curves of `glisson reproduce`.
+/// @throws std::out_of_range for a file that is not in the program (a broken build)
+std::string_view scene_file(std::string_view path);
+
+/// The paths below scenes/ that start with `folder`, in alphabetical order.
+std::vector<std::string_view> scene_files_in(std::string_view folder);
 
 }  // namespace glisson::app

@@ -13,10 +13,12 @@
 namespace glisson::app {
 namespace {
 
-constexpr double kMilli = 1e-3;
 constexpr double kSlowStiffness = 51.19;  // [N/m] of this triangle and split, from two independent static solutions
 constexpr double kTransient_s = 0.1;      // of a start at full speed, in which the force grows fast without any law
 constexpr int kFitPoints = 61;
+constexpr int kModulusPoints = 200;
+constexpr double kRatioAtRest = 0.755953;  // of every tetrahedron of the cube split
+constexpr double kLeastRatio = 0.4;        // below what the press reaches
 
 constexpr double kEvenStep_s = 0.002;  // steps of one length, so that what each adds to the force can be compared
 
@@ -151,6 +153,31 @@ void add_tissue2(SceneExtras& extras, const VariantRecorder& run) {
   extras.charts.push_back(std::move(json));
 }
 
+/// Figure 2a: Young's modulus against the paper's measure, of the tissues of figure 2b.
+nlohmann::json modulus_chart(const Finished& runs) {
+  nlohmann::json lines = nlohmann::json::array();
+  for (const char* name : {"linear", "tissue1_raw", "tissue2_raw"}) {
+    const auto run = runs.find(name);
+    if (run == runs.end()) continue;
+    const Tissue& tissue = run->second->variant().tissue;
+    std::vector<double> x, y;
+    for (int i = 0; i <= kModulusPoints; ++i) {
+      x.push_back(kRatioAtRest + (kLeastRatio - kRatioAtRest) * i / kModulusPoints);
+      y.push_back(kMilli * law_value(tissue.law, tissue.youngs_modulus, x.back()));
+    }
+    lines.push_back({{"label", run->second->variant().label}, {"x", x}, {"y", y}});
+  }
+  nlohmann::json json = chart_json({.title = "Figure 2a: Young's modulus against the mean ratio, 0.756 at rest",
+                                    .x = {.column = "ratio", .label = "mean ratio [-]", .scale = 1.0},
+                                    .y = {.column = "modulus", .label = "Young's modulus [kPa]", .scale = 1.0},
+                                    .measured = {},
+                                    .variants = {},
+                                    .value = {}});
+  json["variants"] = nlohmann::json::array();
+  json["lines"] = std::move(lines);
+  return json;
+}
+
 const Variant& variant_named(const Scene& scene, const std::string& name) {
   return *std::find_if(scene.variants.begin(), scene.variants.end(), [&](const Variant& v) { return v.name == name; });
 }
@@ -159,6 +186,7 @@ const Variant& variant_named(const Scene& scene, const std::string& name) {
 
 SceneExtras figure2_extras(const Scene& scene, const Finished& runs) {
   SceneExtras extras;
+  extras.first_charts.push_back(modulus_chart(runs));
   if (const auto linear = runs.find("linear"); linear != runs.end()) {
     const PolynomialFit line = fit_polynomial(linear->second->column("depth_m"), linear->second->column("force_N"), 1);
     extras.checks.push_back(check_json("The linear tissue answers with a straight line",

@@ -14,6 +14,8 @@
 
 namespace glisson::app {
 
+inline constexpr double kMilli = 1e-3;
+
 /// The recorded variants of one scene by name; only those whose run has finished.
 using Finished = std::map<std::string, const VariantRecorder*>;
 

@@ -14,7 +14,7 @@ from .fitting import FitResult, fit
 from .running import run
 from .scenes import load_scene, scenes_folder
 
-#: Figures and what they are drawn from; 5 and 6 are one fit: 2 mm/s is fitted, 6 and 10 mm/s are predicted.
+#: Figures and what they are drawn from; 5 and 6 are one fit: five curves at 2 mm/s are fitted, all others are predicted.
 SOURCES = {
     "2": "paper/figure2.toml",
     "3a": "paper/figure3a.toml",
@@ -22,8 +22,8 @@ SOURCES = {
     "5": "fit/liver_velocity.toml",
     "6": "fit/liver_velocity.toml",
 }
-#: Of the repetitions that figures 5 and 6 show [m/s].
-VELOCITIES = {"5": (0.002,), "6": (0.006, 0.010)}
+#: The curves that the panels a and b of figures 5 and 6 show, by their table of the fit.
+PANELS = {"5": ("2 mm/s", "2 mm/s, others"), "6": ("6 mm/s", "10 mm/s")}
 
 
 def figures(
@@ -59,14 +59,14 @@ def figures(
             figure.savefig(Path(out) / f"figure{name}.pdf")
 
     with plot.style():
-        for name in (n for n in which if n not in VELOCITIES):
+        for name in (n for n in which if n not in PANELS):
             tell(f"figure {name}: running {SOURCES[name]}")
             keep(name, _of_scene(pyplot, scenes_folder() / SOURCES[name]))
-        wanted = [name for name in which if name in VELOCITIES]
+        wanted = [name for name in which if name in PANELS]
         if wanted:
             found = result or fit(scenes_folder() / SOURCES["5"], progress=_fit_lines(tell, wanted), state=state)
             for name in wanted:
-                keep(name, _of_fit(pyplot, found, VELOCITIES[name]))
+                keep(name, _of_fit(pyplot, found, PANELS[name]))
     return {name: drawn[name] for name in which}
 
 
@@ -94,10 +94,10 @@ def _of_scene(pyplot: Any, file: Path) -> Any:
     return figure
 
 
-def _of_fit(pyplot: Any, result: FitResult, velocities: Sequence[float]) -> Any:
+def _of_fit(pyplot: Any, result: FitResult, groups: Sequence[str]) -> Any:
     width, height = plot.STYLE["figure.figsize"]
-    figure, axes = pyplot.subplots(1, len(velocities), figsize=(width * len(velocities), height), squeeze=False)
-    for ax, velocity in zip(axes[0], velocities, strict=True):
-        plot.repetitions(result, velocity=velocity, ax=ax)
-        ax.set_title(f"{1e3 * velocity:g} mm/s")
+    figure, axes = pyplot.subplots(1, len(groups), figsize=(width * len(groups), height), squeeze=False)
+    for ax, group in zip(axes[0], groups, strict=True):
+        plot.repetitions(result, group=group, ax=ax)
+        ax.set_title(group)
     return figure

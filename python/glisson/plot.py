@@ -80,16 +80,20 @@ def chart(spec: ChartSpec, results: Mapping[str, RunResult], *, ax: Any = None) 
     return ax
 
 
-def repetitions(result: FitResult, *, velocity: float | None = None, ax: Any = None) -> Any:
+def repetitions(result: FitResult, *, velocity: float | None = None, group: str | None = None, ax: Any = None) -> Any:
     """Measured curves in grey and the fitted one in black, as in the paper's figures 5 and 6.
 
     :param velocity: only the curves of this one [m/s]
+    :param group: only the curves of the `[[data]]` table of this name
     """
     ax = _axes(ax, "displacement [mm]", "force [N]")
     chosen = [c for c in result.curves if velocity is None or (c.velocity and np.isclose(c.velocity, velocity))]
     if not chosen:
         known = sorted({c.velocity for c in result.curves if c.velocity})
         raise ValueError(f"no curve was measured at {velocity} m/s; there are {known}")
+    chosen = [c for c in chosen if group is None or c.group == group]
+    if not chosen:
+        raise ValueError(f"no such curve in a group {group!r}; there are {sorted({c.group for c in result.curves})}")
     for i, curve in enumerate(chosen):
         label = "measured" if i == 0 else None
         ax.plot(1e3 * curve.displacement, curve.measured, color="0.7", linewidth=0.8, label=label)

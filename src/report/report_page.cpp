@@ -63,7 +63,7 @@ nlohmann::json scene_json(const Scene& scene, const std::vector<const VariantRec
   const double reach = common_law_reach(variants);
   nlohmann::json list = nlohmann::json::array();
   for (const VariantRecorder* v : variants) list.push_back(v->json(reach));
-  nlohmann::json charts = nlohmann::json::array();
+  nlohmann::json charts = extras.first_charts;
   for (const ChartSpec& chart : scene.charts) {
     charts.push_back(chart_json(chart));
     if (!chart.value.column.empty()) charts.back()["map"] = map_json(chart, variants);

@@ -23,7 +23,8 @@ nlohmann::json chart_json(const ChartSpec& chart);
 
 /// What a page says of a scene beyond its runs and its own charts; JSON as in web/src/report_data.ts.
 struct SceneExtras {
-  nlohmann::json charts = nlohmann::json::array();
+  nlohmann::json first_charts = nlohmann::json::array();  ///< before the scene's own
+  nlohmann::json charts = nlohmann::json::array();        ///< after them
   nlohmann::json tables = nlohmann::json::array();
   nlohmann::json checks = nlohmann::json::array();
 };

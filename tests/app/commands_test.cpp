@@ -382,12 +382,13 @@ motion = { kind = "press", depth_mm = 1 }
 }
 
 // The paper's figures: all scenes in one report, every check computed and passed. The quick form ends figure 3 after
-// 0.1 s of motion; figure 2 and the checks are the same as in the whole.
+// 0.1 s of motion, runs figure 4 on coarse cells and leaves bovine liver out; the fit of figures 5 and 6 and the checks are the
+// same as in the whole. Five curves are fitted; five others at 2 mm/s, five at 6 and five at 10 are only predicted.
 TEST_F(Commands, ReproducePassesItsChecks) {
   const Outcome outcome = run({"reproduce", "--quick", "--out", "o"});
   ASSERT_THAT(outcome, Exits(0));
   const nlohmann::json report = report_data(folder_ / "o/report.html");
-  ASSERT_EQ(report["scenes"].size(), 4u);
+  ASSERT_EQ(report["scenes"].size(), 6u);
   int checks = 0;
   for (const nlohmann::json& scene : report["scenes"]) {
     for (const nlohmann::json& check : scene["checks"]) {
@@ -395,8 +396,15 @@ TEST_F(Commands, ReproducePassesItsChecks) {
       EXPECT_TRUE(check["pass"].get<bool>()) << check.dump();
     }
   }
-  EXPECT_GE(checks, 7);
-  EXPECT_EQ(report["scenes"][3]["tables"][0]["rows"].size(), 6u) << "four models of ours, two of the paper";
+  EXPECT_GE(checks, 13);
+  EXPECT_EQ(report["scenes"][0]["charts"][0]["lines"].size(), 3u) << "figure 2a: three tissues";
+  const nlohmann::json& panels = report["scenes"][4]["charts"];
+  ASSERT_EQ(panels.size(), 4u) << "figures 5a, 5b, 6a, 6b";
+  for (const nlohmann::json& panel : panels) {
+    EXPECT_EQ(panel["points"].size(), 5u) << panel["title"];
+    EXPECT_EQ(panel["lines"].size(), 1u) << panel["title"];
+  }
+  EXPECT_EQ(report["scenes"][5]["tables"][0]["rows"].size(), 6u) << "four models of ours, two of the paper";
   EXPECT_NE(outcome.out.find("The report: "), std::string::npos);
   EXPECT_NE(outcome.out.find("What to try next:"), std::string::npos);
   // the first of these commands works as printed

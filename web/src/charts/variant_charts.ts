@@ -53,7 +53,7 @@ function chartOf(spec: ChartSpec, scene: SceneData): ChartModel {
       times: null,
     });
   });
-  const own = lines.length;
+  const own = lines.filter((line) => !line.points).length;
   (spec.lines ?? []).forEach((line, index) => {
     lines.push({
       id: `line ${index}`,
