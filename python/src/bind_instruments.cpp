@@ -180,6 +180,15 @@ void bind_needle(nb::module_& m) {
       .def(nb::init<const NeedleOptions&, std::shared_ptr<ToolDriver>>(), "options"_a, "driver"_a,
            doc("Needle::Needle"))
       .def_prop_ro("stage", &Needle::stage, doc("NeedleStage"))
+      .def_prop_ro(
+          "crossing",
+          [](const Needle& n) {
+            std::vector<double> ends;
+            for (const TissueInterval& i : n.crossing()) ends.insert(ends.end(), {i.from, i.to});
+            const std::size_t size = ends.size() / 2;
+            return owned<Doubles>(std::move(ends), {size, 2});
+          },
+          doc("Needle::crossing"))
       .def_prop_ro("inserted_length", &Needle::inserted_length, doc("Needle::inserted_length"))
       .def_prop_ro("path_length", &Needle::path_length, doc("Needle::path_length"))
       .def_prop_ro("tip_force", &Needle::tip_force, doc("Needle::tip_force"))

@@ -8,6 +8,9 @@
 //                 ·      P₂           to cut; then the path grows along its track
 //                 ▼ tip
 //
+// Where the path leaves the tissue, at the far side, in a cavity or before another piece, it may enter anew: each stretch of tissue
+// has its own contact, puncture and cutting, and only the shaft within them rubs.
+//
 // The tissue is not remeshed: the path is embedded. A path point represents the tissue within `zone` of it, so that
 // forces do not depend on the mesh as long as it resolves the zone (docs/needles.md).
 #pragma once
@@ -62,7 +65,7 @@ struct TipResistance {
 
 /// A membrane across the path, below the surface; it holds the tip up to a force, as a region's boundary does.
 struct InnerMembrane {
-  double depth = 0.0;               ///< below the entry, along the needle, in tissue at rest [m]
+  double depth = 0.0;               ///< below the first entry, along the needle, in tissue at rest [m]
   double puncture = 0.0;            ///< force of the tip to break it [N]; 0: the cutting force before it
   std::optional<double> cutting{};  ///< cutting force beyond it, up to the next that gives one or the next region [N]
 
@@ -161,12 +164,17 @@ struct NeedleOptions {
 /// Stage of an insertion.
 enum class NeedleStage {
   outside,   ///< no contact
-  pressing,  ///< the tip presses on the intact surface
-  inside     ///< the surface is pierced
+  pressing,  ///< the tip presses on an intact surface; before it the shaft may be in tissue
+  inside     ///< a surface is pierced; the tip may have come out at the far side
 };
 template <>
 inline constexpr Word<NeedleStage> kWords<NeedleStage>[] = {
     {"outside", NeedleStage::outside}, {"pressing", NeedleStage::pressing}, {"inside", NeedleStage::inside}};
+
+/// A stretch of a line that lies in tissue.
+struct TissueInterval {
+  double from = 0.0, to = 0.0;  ///< distances along the line [m]
+};
 
 class Needle final : public Instrument {
  public:
@@ -177,10 +185,12 @@ class Needle final : public Instrument {
   ~Needle() override;
 
   NeedleStage stage() const;
-  double inserted_length() const;   ///< of the shaft in tissue [m]
-  double path_length() const;       ///< depth of the path's end below the entry, in tissue at rest [m]
+  /// What of the needle is in tissue as it is deformed now: distances from the hand, ascending.
+  std::vector<TissueInterval> crossing() const;
+  double inserted_length() const;   ///< of the shaft in tissue: that of all of crossing() [m]
+  double path_length() const;       ///< depth of the path's end below the first entry, in tissue at rest [m]
   double tip_force() const;         ///< force of the tip along the needle [N]; no step shows in it (docs/needles.md)
-  std::vector<Vec3d> path() const;  ///< material points from the surface to the deepest, present positions [m]
+  std::vector<Vec3d> path() const;  ///< material points from the first surface to the deepest, present positions [m]
   const NeedleOptions& options() const;
 
   InstrumentForm form() const override;
@@ -208,6 +218,8 @@ class Needle final : public Instrument {
   void press_on(const InteractionStep& step);
   void pierce(const InteractionStep& step);
   void go_on(const InteractionStep& step);
+  void go_through(const InteractionStep& step, const Vec3d& at);
+  void watch_withdrawal(const InteractionStep& step, double gap);
   void watch_drop(double time, double h);
   std::unique_ptr<State> state_;
 };

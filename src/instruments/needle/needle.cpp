@@ -38,9 +38,14 @@ InstrumentForm Needle::form() const {
 
 double Needle::tip_force() const { return state_->step_h > 0.0 ? state_->tip_along / state_->step_h : 0.0; }
 
+std::vector<TissueInterval> Needle::crossing() const {
+  return state_->crossing(pose_.position + state_->bend_tip, direction());
+}
+
 double Needle::inserted_length() const {
-  if (state_->stage != NeedleStage::inside || state_->nodes.empty()) return 0.0;
-  return std::max(0.0, dot(pose_.position - state_->nodes.front().position, direction()));
+  double length = 0.0;
+  for (const TissueInterval& i : crossing()) length += i.to - i.from;
+  return length;
 }
 
 double Needle::path_length() const { return state_->nodes.empty() ? 0.0 : state_->rest_depth(direction()); }
@@ -48,7 +53,7 @@ double Needle::path_length() const { return state_->nodes.empty() ? 0.0 : state_
 std::vector<Vec3d> Needle::path() const {
   std::vector<Vec3d> points;
   for (const shaft::Row& node : state_->nodes) points.push_back(node.position);
-  if (state_->stage == NeedleStage::inside) points.push_back(state_->tip.position);
+  if (state_->stage == NeedleStage::inside && !state_->is_through()) points.push_back(state_->tip.position);
   return points;
 }
 
@@ -65,9 +70,10 @@ std::vector<Vec3d> Needle::centre_line() const {
 }
 
 void Needle::Solver::find_rows(const InteractionStep& step) {
-  if (s.stage == NeedleStage::inside) {
+  if (s.entered > 0) {
+    const std::size_t end = s.end_of(s.entered - 1);
     for (std::size_t j = 0; j < s.nodes.size(); ++j) {
-      if (!shaft::read(step, s.nodes[j])) continue;
+      if (!shaft::read(step, s.nodes[j]) || j >= end) continue;
       const double behind = dot(s.nodes[j].position - before, d) - (step.compliance != nullptr ? way_past(j) : 0.0);
       if (behind >= 0.0) continue;
       all.push_back(&s.nodes[j]);
@@ -75,7 +81,7 @@ void Needle::Solver::find_rows(const InteractionStep& step) {
       from_hand.push_back(s.options.length + behind);
     }
   }
-  if (s.stage == NeedleStage::outside || s.tip_out || !shaft::read(step, s.tip)) return;
+  if (!s.tip_acts() || !shaft::read(step, s.tip)) return;
   tip_gap = dot(s.tip.position - before, d);
   has_tip = tip_gap <= std::max(0.0, dot(after - before, d)) + kReach * s.options.spacing;
   if (!has_tip) return;
@@ -113,7 +119,16 @@ void Needle::Solver::bend(std::span<const Vec3d> impulse, const Eigen::MatrixXd&
     }
     (j < node.size() ? s.bend[node[j]] : s.bend_tip) = y;
   }
-  if (!has_tip && !node.empty()) s.bend_tip = s.bend[node.back()];
+  if (!has_tip && !node.empty()) s.bend_tip = s.tip_out ? free_end(impulse) : s.bend[node.back()];
+}
+
+/// Deflection of a tip that nothing acts on.
+Vec3d Needle::Solver::free_end(std::span<const Vec3d> impulse) const {
+  Vec3d y;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    y -= impulse[k] * (shaft::cantilever(s.options.length, from_hand[k], s.bending_stiffness()) / h);
+  }
+  return y;
 }
 
 /// Of the tissue on a tip that cuts [N].
@@ -143,15 +158,23 @@ std::vector<Vec3d> Needle::Solver::across_it(const Eigen::MatrixXd& W) {
   return impulse;
 }
 
-/// A node stands for the shaft half way to its neighbours, the last one for all of it up to the tip.
+/// A node stands for the shaft half way to its neighbours in the same stretch of tissue; the last one, where that reaches beyond the
+/// tip, for all of it up to the tip.
+double Needle::Solver::shaft_of(std::size_t row) const {
+  const double here = from_hand[row];
+  const std::size_t track = s.track_of(node[row]);
+  const bool first = row == 0 || s.track_of(node[row - 1]) != track;
+  const bool last = row + 1 == node.size() || s.track_of(node[row + 1]) != track;
+  const bool has_far_end = s.tracks[track].through && node[row] + 1 == s.end_of(track);
+  const bool up_to_tip = track + 1 == s.entered && !has_far_end;
+  const double before_it = first ? here : from_hand[row - 1];
+  const double after_it = !last ? from_hand[row + 1] : up_to_tip ? 2.0 * s.options.length - here : here;
+  return std::max(0.0, 0.5 * (after_it - before_it));
+}
+
 shaft::AxialLimit Needle::Solver::limit_of(std::size_t row) const {
   if (row >= node.size()) return {.length = 0.0, .slips = false, .is_tip = true, .tip_limit = s.tip_limit()};
-  const double here = from_hand[row], before_it = row > 0 ? from_hand[row - 1] : here;
-  const double after_it = row + 1 == node.size() ? 2.0 * s.options.length - here : from_hand[row + 1];
-  return {.length = std::max(0.0, 0.5 * (after_it - before_it)),
-          .slips = s.slips[node[row]] != 0,
-          .is_tip = false,
-          .tip_limit = 0.0};
+  return {.length = shaft_of(row), .slips = s.slips[node[row]] != 0, .is_tip = false, .tip_limit = 0.0};
 }
 
 /// Speed of the tip into the path's end after this step: with g = that overlap, g̈ = −2 ġ/τ − g/τ² [Baumgarte1972], ġ and g

@@ -25,8 +25,6 @@ TetMesh living(const BodyView& body) {
 constexpr double kAtSurface = 1e-6;  ///< how far in a tip may start [m]
 constexpr double kLeastAside = 0.5;  ///< of the zone: so far sideways a surface is taken to have gone at least
 
-double squared(const Vec3d& a) { return dot(a, a); }
-
 double longest_edge(const TetMesh& mesh, const Triangle& t) {
   const auto edge = [&](std::size_t a, std::size_t b) { return norm(mesh.vertices[t[a]] - mesh.vertices[t[b]]); };
   return std::max({edge(0, 1), edge(1, 2), edge(2, 0)});
@@ -111,30 +109,41 @@ void Needle::body_changed(const BodyView& body, std::span<const std::uint32_t>) 
   for (shaft::Row& node : s.nodes) {
     if (!s.place(node, Vec3d(node.rest))) node.weights.clear();  // the tissue there is gone: the node no longer acts
   }
+  s.cross_anew(body, pose_.position, direction());
   if (s.stage != NeedleStage::outside && !s.place(s.tip, Vec3d(s.tip.rest))) s.tip.weights.clear();
 }
 
-/// Before contact: the surface around the needle's line. Then: the tissue that path and tip act on, with some ahead.
+/// Of a tip in air: the surface around the needle's line. In tissue: that around it. And the tissue that the path acts on.
 std::span<const std::uint32_t> Needle::reach(double, double) {
   begin_step();
   State& s = *state_;
   s.breaks.clear(), s.stuck.clear(), s.ways.clear();
-  const bool touches = s.stage != NeedleStage::outside;
-  const Vec3d around = touches ? s.tip.rest : pose_.position;
-  const double moved = touches ? norm(around - s.named_around) : norm(across(around - s.named_around, direction()));
+  const bool in_air = s.tip_is_in_air();
+  const Vec3d around = in_air ? pose_.position : s.tip.rest;
+  const double moved = in_air ? norm(across(around - s.named_around, direction())) : norm(around - s.named_around);
   s.wanted.clear();
   if (!s.look && moved < s.options.zone) return s.wanted;
   s.look = false;
   s.named_around = around;
-  touches ? s.name_around_path() : s.name_surface(direction());
+  in_air ? s.name_surface(direction()) : s.name_around_tip();
+  if (s.stage != NeedleStage::outside) s.name_path();
   return s.wanted;
 }
 
-void Needle::State::name_around_path() {
+void Needle::State::name_around_tip() {
   const double ahead = 2.0 * options.zone + 2.0 * options.spacing;
   for (std::uint32_t v = 0; v < mesh->vertices.size(); ++v) {
     if (squared(mesh->vertices[v] - named_around) < ahead * ahead) wanted.push_back(v);
   }
+  near_triangles.clear();
+  for (std::size_t t = 0; t < surface.size(); ++t) {
+    const double most = ahead + surface_edges[t];
+    if (squared(mesh->vertices[surface[t][0]] - named_around) < most * most) near_triangles.push_back(t);
+  }
+  entry_vertices.clear();
+}
+
+void Needle::State::name_path() {
   for (const VertexWeight& w : tip.weights) wanted.push_back(w.vertex);
   for (const shaft::Row& node : nodes) {
     for (const VertexWeight& w : node.weights) wanted.push_back(w.vertex);
@@ -156,10 +165,10 @@ void Needle::State::name_surface(const Vec3d& direction) {
   for (const Triangle& t : surface) nearest = std::min(nearest, squared_distance(t));
   aside_named = std::max(kLeastAside * options.zone, 2.0 * aside);
   const double around = std::max(options.zone + 2.0 * aside_named, std::sqrt(nearest));
-  entry_triangles.clear();
+  near_triangles.clear();
   for (std::size_t t = 0; t < surface.size(); ++t) {
     const double most = around + surface_edges[t];
-    if (squared_distance(surface[t]) <= most * most) entry_triangles.push_back(t);
+    if (squared_distance(surface[t]) <= most * most) near_triangles.push_back(t);
   }
   take_entry_vertices();
   wanted = entry_vertices;
@@ -167,7 +176,7 @@ void Needle::State::name_surface(const Vec3d& direction) {
 
 void Needle::State::take_entry_vertices() {
   entry_vertices.clear();
-  for (const std::size_t t : entry_triangles) {
+  for (const std::size_t t : near_triangles) {
     entry_vertices.insert(entry_vertices.end(), surface[t].begin(), surface[t].end());
   }
   detail::sort_out(entry_vertices);
@@ -198,10 +207,11 @@ void Needle::archive(Archive& ar) {
   ar.check(s.broken + (s.at_membrane ? 1 : 0) <= s.membranes.size());
   std::vector<Vec3d> path;
   for (const shaft::Row& node : s.nodes) path.push_back(node.rest);
-  ar(path, s.slips, s.along, s.bend);
-  ar.all_below(s.entry_triangles, s.surface.size());
-  if (ar.reads()) s.take_entry_vertices();
+  ar(path, s.slips, s.along, s.bend, s.tracks, s.entered);
+  ar.all_below(s.near_triangles, s.surface.size());
   if (!ar.reads()) return;
+  ar.check(s.tracks_fit(path.size()));
+  s.take_entry_vertices();
   const std::vector<int>& regions = s.mesh->regions;
   const bool known =
       regions.empty() ? s.region == 0 : std::find(regions.begin(), regions.end(), s.region) != regions.end();

@@ -45,6 +45,8 @@ struct Needle::Solver {
   Vec3d bevel_force() const;
   void keep_along(std::span<const double> p, std::span<const char> slips);
   void bend(std::span<const Vec3d> impulse, const Eigen::MatrixXd& C);
+  Vec3d free_end(std::span<const Vec3d> impulse) const;
+  double shaft_of(std::size_t row) const;
   shaft::AxialLimit limit_of(std::size_t row) const;
 
  public:

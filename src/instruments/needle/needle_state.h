@@ -8,22 +8,15 @@
 
 #include "glisson/archive.h"
 #include "glisson/instruments/needle.h"
-#include "instruments/needle/shaft.h"
+#include "instruments/needle/crossing.h"
+#include "instruments/needle/needle_path.h"
 
 namespace glisson {
 
 /// The part of a vector across a direction.
 inline Vec3d across(const Vec3d& a, const Vec3d& direction) { return a - direction * dot(a, direction); }
 
-/// Where a ray meets a triangle.
-struct Hit {
-  double way = 0.0;  ///< along the ray [m]
-  Vec3d rest{};      ///< of the point met [m]
-};
-
-/// Where a ray from `from` meets a triangle from either side. Ray and triangle at present, the answer at rest.
-std::optional<Hit> meet(const Vec3d& from, const Vec3d& direction, const std::array<Vec3d, 3>& present,
-                        const std::array<Vec3d, 3>& rest);
+inline double squared(const Vec3d& a) { return dot(a, a); }
 
 /// The way of the force while the tip presses, for what springing back would set free.
 struct PressingWork {
@@ -46,7 +39,7 @@ struct DropWatch {
   void archive(Archive& ar) { ar(armed, puncture_force, force, least, time, depth); }
 };
 
-struct Needle::State {
+struct Needle::State : NeedlePath {
   NeedleOptions options;
   NeedleStage stage = NeedleStage::outside;
 
@@ -61,30 +54,29 @@ struct Needle::State {
   std::vector<std::uint32_t> wanted;          ///< named by reach
   bool look = true;                           ///< whether reach is to name some
   Vec3d named_around{};                       ///< rest position that vertices were last named for
-  std::vector<std::size_t> entry_triangles;   ///< of the surface, that the needle may meet first
-  std::vector<std::uint32_t> entry_vertices;  ///< theirs, ascending
+  std::vector<std::size_t> near_triangles;    ///< of the surface, that the tip may meet next, or come out at
+  std::vector<std::uint32_t> entry_vertices;  ///< of those that it may meet, ascending
   double aside = 0.0;                         ///< how far across the needle the farthest of them is from its rest [m]
   double aside_named = 0.0;                   ///< the list holds while it is no farther [m]
   void take_entry_vertices();
   void name_surface(const Vec3d& direction);
-  void name_around_path();
+  void name_around_tip();
+  void name_path();
 
   // the path
-  std::vector<shaft::Row> nodes;  ///< from the surface on
-  shaft::Row tip;                 ///< where the path ends
-  std::vector<char> slips;        ///< per node
+  std::size_t entered = 0;  ///< so many tracks the needle is in or has passed; the others are holes ahead of the tip
+  bool tip_out = false;     ///< it has passed the last of these
+  shaft::Row tip;           ///< where the path ends
   std::vector<int> breaks;  ///< per node: how often it came from sticking to slip while a long step was solved for
   std::vector<char> stuck;  ///< per node: in the last iteration of a long step
   std::vector<double>
       ways;            ///< per node: by how much the needle passes it in a long step, as found last [m]; NaN: not found
   bool tries = false;  ///< what comes after a long step is tried, and taken back
-  std::vector<double> along;  ///< per node: impulse along the needle in the last step [N s]
   shaft::MobilityMatrix mobility;
   double tip_along = 0.0;                ///< the same of the tip
   Vec3d tip_velocity{};                  ///< of the tissue at the tip before the step [m/s]
   double wave_time = 0.0;                ///< that a shear wave needs across the zone there [s]
   bool tip_cuts = false;                 ///< in the last step
-  bool tip_out = false;                  ///< on the far side of the body
   int region = 0;                        ///< that the tip is in
   std::optional<int> next_region;        ///< whose boundary holds the tip
   std::vector<InnerMembrane> membranes;  ///< given and drawn, by ascending depth
@@ -96,9 +88,8 @@ struct Needle::State {
   DropWatch drop;
 
   // the last step
-  Vec3d bend_tip{};         ///< deflection of the tip [m]
-  std::vector<Vec3d> bend;  ///< of the needle at each node [m]
-  double bending = 0.0;     ///< energy of that; kept where energies are tracked [J]
+  Vec3d bend_tip{};      ///< deflection of the tip [m]
+  double bending = 0.0;  ///< energy of that; kept where energies are tracked [J]
   double step_h = 0.0;
   double slack = 0.0;               ///< compliance of rows across beside that of the needle [1/kg]
   std::vector<std::size_t> acting;  ///< nodes that the needle acted on
@@ -107,6 +98,31 @@ struct Needle::State {
 
   void forget_forces(double h);
   const shaft::Row& acting_row(std::size_t j) const { return j < acting.size() ? nodes[acting[j]] : tip; }
+
+  // needle_path.cpp
+  shaft::Row& entry() { return nodes[tracks[entered - 1].begin]; }  ///< of the track that the tip is in or has passed
+  shaft::Row& far_end() { return nodes[end_of(entered - 1) - 1]; }  ///< its last node
+  bool is_through() const { return entered > 0 && tracks[entered - 1].through; }
+  /// Whether the tip's row acts: on a surface, or at the end of the path.
+  bool tip_acts() const { return stage == NeedleStage::pressing || (stage == NeedleStage::inside && !is_through()); }
+  bool tip_is_in_air() const { return stage == NeedleStage::outside || (stage == NeedleStage::inside && tip_out); }
+  void read_ends(const InteractionStep& step);
+  std::vector<TissueInterval> crossing(const Vec3d& at, const Vec3d& direction) const;
+  std::vector<SurfaceHit> hits_at_rest(const Vec3d& from, const Vec3d& to, std::span<const std::size_t> triangles,
+                                       double beyond = 0.0) const;
+  bool is_next_entry(const SurfaceHit& hit, const Vec3d& from, const Vec3d& direction) const;
+  bool meets_hole(const Vec3d& rest) const;
+  void enter_hole();
+  void touch(shaft::Row met, const Vec3d& direction);
+  void let_go();
+  void begin_track();
+  void come_out();
+  void leave_track();
+  bool tracks_fit(std::size_t points) const;
+  std::optional<Vec3d> way_out(const Vec3d& to) const;
+  std::vector<TissueInterval> intervals_left(std::span<const Vec3d> points, std::span<const double> along) const;
+  bool keep_what_is_left(std::size_t track, NeedlePath& kept) const;
+  void cross_anew(const BodyView& body, const Vec3d& at, const Vec3d& direction);
   std::vector<double> compliance_across(double h) const;  ///< of the acting rows that are held, row by row [1/kg]
   double bending_stiffness() const;                       ///< E I [N m²]; 0: rigid
   TipResistance resistance(int region_number) const;

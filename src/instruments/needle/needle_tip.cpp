@@ -1,9 +1,9 @@
 // needle_tip.cpp — what a needle's tip does between steps: it meets the surface, breaks it, cuts on, and comes back.
 //
-//   outside ──contact──▶ pressing ──puncture──▶ inside ──withdrawn──▶ outside
-//      ▲                    │ release              │ region boundary: inner puncture
-//      └────────────────────┘                      │ membrane: inner puncture
-//                                                  └ through the far side: exit
+//   outside ──contact──▶ pressing ──puncture──▶ inside ──withdrawn──▶ outside, or beyond the track behind
+//      ▲                    │ release  ▲           │ region boundary: inner puncture
+//      └────────────────────┘          │           │ membrane: inner puncture
+//                                      └──contact──┴ through the far side: exit
 #include <algorithm>
 #include <cmath>
 
@@ -25,17 +25,6 @@ constexpr double kLongestDrop = 0.5;  ///< [s]: after it, the least force so far
 
 }  // namespace
 
-std::optional<Hit> meet(const Vec3d& from, const Vec3d& direction, const std::array<Vec3d, 3>& present,
-                        const std::array<Vec3d, 3>& rest) {
-  const Vec3d e1 = present[1] - present[0], e2 = present[2] - present[0], p = cross(direction, e2);
-  const double det = dot(e1, p);
-  if (det == 0.0) return {};
-  const Vec3d t = from - present[0], q = cross(t, e1);
-  const double u = dot(t, p) / det, v = dot(direction, q) / det;
-  if (!(u >= -1e-9 && v >= -1e-9 && u + v <= 1.0 + 1e-9)) return {};
-  return Hit{dot(e2, q) / det, rest[0] * (1.0 - u - v) + rest[1] * u + rest[2] * v};
-}
-
 void PressingWork::add(double new_depth, double new_force, double cutting) {
   work += 0.5 * (force + new_force) * (new_depth - depth);
   depth = new_depth;
@@ -50,10 +39,11 @@ double PressingWork::free_energy(double cutting) const {
   return work - work_at_cutting - cutting * (depth - depth_at_cutting);
 }
 
-/// The surface that the needle's line meets first, seen from the hand: has the tip come through it?
+/// The surface that the needle's line meets next, seen from the hand: has the tip come through it?
 void Needle::look_for_contact(const InteractionStep& step) {
   State& s = *state_;
-  const Vec3d from = pose_.position - direction() * s.options.length;
+  const Vec3d at = s.entered > 0 ? pose_.position + s.bend_tip : pose_.position;
+  const Vec3d from = at - direction() * s.options.length;
   const double farthest = s.options.length + kTouch * s.options.zone;
   bool near = false;
   s.aside = 0.0;
@@ -66,8 +56,8 @@ void Needle::look_for_contact(const InteractionStep& step) {
   }
   if (s.aside > s.aside_named) s.look = true;
   if (!near) return;  // all lie beyond the tip, and triangles between them
-  std::optional<Hit> first;
-  for (const std::size_t t : s.entry_triangles) {
+  std::vector<SurfaceHit> hits;
+  for (const std::size_t t : s.near_triangles) {
     std::array<Vec3d, 3> present, rest;
     bool known = true;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -77,33 +67,16 @@ void Needle::look_for_contact(const InteractionStep& step) {
       if (known) present[a] = step.position(place);
     }
     const auto hit = known ? meet(from, direction(), present, rest) : std::nullopt;
-    if (hit && hit->way >= 0.0 && (!first || hit->way < first->way)) first = hit;
+    if (hit && hit->way >= 0.0 && hit->way <= farthest) hits.push_back(*hit);
   }
+  put_in_order(hits);
+  const auto next =
+      std::ranges::find_if(hits, [&](const SurfaceHit& hit) { return s.is_next_entry(hit, from, direction()); });
   shaft::Row met;
-  if (!first || first->way > farthest || !s.place(met, first->rest)) return;
+  if (next == hits.end() || !s.place(met, next->rest)) return;
   s.look = true;
-  const bool hole = !s.nodes.empty() && norm(s.nodes.front().rest - first->rest) < s.options.diameter;
   add_event(step.time + step.h, depth(), "contact");
-  if (hole) {  // the way is open: it goes on where it was
-    s.stage = NeedleStage::inside;
-    s.withdraws = false;
-    return;
-  }
-  s.tip = std::move(met);
-  s.nodes.clear();
-  s.mobility.forget();
-  s.slips.clear();
-  s.along.clear();
-  s.bend.clear();
-  s.bend_tip = {};
-  s.stage = NeedleStage::pressing;
-  s.tip_out = s.withdraws = s.at_membrane = false;
-  s.next_region.reset();
-  s.cutting_beyond.reset();
-  s.broken = 0;
-  s.pressing = {};
-  const auto below = s.zones->locator().locate(first->rest + direction() * (1e-3 * s.options.zone));
-  s.region = s.mesh->region_of(below ? below->tet : 0);
+  s.meets_hole(next->rest) ? s.enter_hole() : s.touch(std::move(met), direction());
 }
 
 /// The tip on the unbroken surface: it may break it, or let go.
@@ -112,8 +85,7 @@ void Needle::press_on(const InteractionStep& step) {
   if (!shaft::read(step, s.tip)) return;
   const double gap = dot(s.tip.position - pose_.position, direction());
   if (gap > kLetGo * s.options.zone) {
-    s.stage = NeedleStage::outside;
-    s.look = true;
+    s.let_go();
     add_event(step.time + step.h, depth(), "release");
     return;
   }
@@ -131,11 +103,7 @@ void Needle::press_on(const InteractionStep& step) {
 
 void Needle::pierce(const InteractionStep& step) {
   State& s = *state_;
-  s.stage = NeedleStage::inside;
-  s.nodes.assign(1, s.tip);
-  s.slips.assign(1, 1);
-  s.along.assign(1, 0.0);
-  s.bend.assign(1, Vec3d{});
+  s.begin_track();
   const double force = tip_force();
   s.drop = {true, force, force, force, forces_at_end() ? step.time + step.h : step.time, depth()};
   add_event(step.time + step.h, depth(), "puncture");
@@ -146,27 +114,18 @@ void Needle::pierce(const InteractionStep& step) {
 void Needle::go_on(const InteractionStep& step) {
   State& s = *state_;
   const Vec3d at = pose_.position + s.bend_tip;
-  if (shaft::read(step, s.nodes.front()) &&
-      dot(s.nodes.front().position - pose_.position, direction()) > kLetGo * s.options.zone) {
-    s.stage = NeedleStage::outside;
-    s.look = true;
+  if (shaft::read(step, s.entry()) && dot(s.entry().position - pose_.position, direction()) > kLetGo * s.options.zone) {
+    s.leave_track();
     add_event(step.time + step.h, depth(), "release");
     return;
   }
-  if (s.tip_out) {
-    s.tip_out = dot(s.tip.position - at, direction()) < 0.0;
-    return;
-  }
+  if (s.is_through()) return go_through(step, at);
   if (!shaft::read(step, s.tip)) {
     s.look = !s.tip.weights.empty();  // without: the tissue there is gone, and no looking brings it back
     return;
   }
   const double gap = dot(s.tip.position - at, direction());
-  if (!s.withdraws && gap > kLetGo * s.options.zone && dot(pose_.position - before_.position, direction()) < 0.0) {
-    s.withdraws = true;
-    add_event(step.time + step.h, depth(), "withdrawal");
-  }
-  if (gap <= 0.0) s.withdraws = false;
+  watch_withdrawal(step, gap);
   if (!s.tip_cuts) return;
   if (s.next_region || s.at_membrane) {
     s.at_membrane ? s.pass_membrane() : s.enter(*s.next_region);
@@ -176,27 +135,49 @@ void Needle::go_on(const InteractionStep& step) {
   if (s.tip_out) add_event(step.time + step.h, depth(), "exit");
 }
 
+/// The tip in a track that is open at its far end, or beyond that.
+void Needle::go_through(const InteractionStep& step, const Vec3d& at) {
+  State& s = *state_;
+  if (!shaft::read(step, s.far_end())) return;
+  const double gap = dot(s.far_end().position - at, direction());
+  const bool comes_out = !s.tip_out && gap < 0.0, comes_back = s.tip_out && gap > kLetGo * s.options.zone;
+  if (comes_out || comes_back) s.look = true, s.tip_out = comes_out;
+  if (comes_out) add_event(step.time + step.h, depth(), "exit");
+  if (!s.tip_out || comes_out) return watch_withdrawal(step, gap);
+  look_for_contact(step);
+}
+
+/// @param gap  of the track's end before the tip [m]
+void Needle::watch_withdrawal(const InteractionStep& step, double gap) {
+  State& s = *state_;
+  if (!s.withdraws && gap > kLetGo * s.options.zone && dot(pose_.position - before_.position, direction()) < 0.0) {
+    s.withdraws = true;
+    add_event(step.time + step.h, depth(), "withdrawal");
+  }
+  if (gap <= 0.0) s.withdraws = false;
+}
+
 /// Finds the rest position of what is at the tip now, and ends the path there.
 void Needle::State::cut_to(const InteractionStep& step, const Vec3d& at, const Vec3d& direction) {
+  bool ends = false;  // at the far side
   for (int search = 0; search < kSearches; ++search) {
     const Vec3d way = at - tip.position;
     if (norm(way) < kClose || dot(way, direction) <= 0.0) break;
     Vec3d next = tip.rest + way * std::min(1.0, 0.5 * options.spacing / norm(way));
     const bool meets = stop_at_membrane(next, direction);
-    const auto found = zones->locator().locate(next);
-    if (!found) {
-      tip_out = true;
-      break;
-    }
-    const int there = mesh->region_of(found->tet);
+    const std::optional<Vec3d> out = way_out(next);
+    const auto found = out ? std::nullopt : zones->locator().locate(next);
+    const int there = found ? mesh->region_of(found->tet) : region;
     const bool enters = there != region;
     shaft::Row moved;
-    if (!place(moved, enters ? last_before(next, there) : next)) break;
+    if (!place(moved, out ? *out : enters ? last_before(next, there) : next)) break;
     if (!shaft::read(step, moved)) {  // tissue that is not active yet: the rest of the way in the next step
       look = true;
       break;
     }
     tip = std::move(moved);
+    ends = out.has_value();
+    if (ends) break;
     at_membrane = meets && !enters && membranes[broken].puncture > cutting();
     if (enters && resistance(there).puncture > cutting()) next_region = there;
     if (at_membrane || next_region) break;
@@ -207,11 +188,9 @@ void Needle::State::cut_to(const InteractionStep& step, const Vec3d& at, const V
     const Vec3d way = tip.rest - nodes.back().rest;
     shaft::Row node;
     if (!place(node, nodes.back().rest + way * (options.spacing / norm(way))) || !shaft::read(step, node)) break;
-    nodes.push_back(std::move(node));
-    slips.push_back(1);
-    along.push_back(0.0);
-    bend.push_back(bend_tip);
+    add_node(std::move(node), bend_tip);
   }
+  if (ends) come_out();
 }
 
 void Needle::State::enter(int region_number) {
@@ -262,6 +241,7 @@ void Needle::watch_drop(double time, double h) {
 
 void Needle::moved(const InteractionStep& step) {
   watch_drop(forces_at_end() ? step.time + step.h : step.time, step.h);
+  state_->read_ends(step);
   switch (state_->stage) {
     case NeedleStage::outside:
       look_for_contact(step);

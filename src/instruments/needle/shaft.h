@@ -53,7 +53,10 @@ class MobilityMatrix {
   std::vector<double> reached_;  ///< per active vertex: mobility times weight of one row
 };
 
-/// C of points at these distances from the hand [m/N]. @param bending_stiffness  E I [N m²]; 0: rigid
+/// Deflection at one distance from the hand by a force at another [m/N]. @param bending_stiffness  E I [N m²]; 0: rigid
+double cantilever(double at, double of, double bending_stiffness);
+
+/// C of points at these distances from the hand [m/N]. @param bending_stiffness  as above
 Eigen::MatrixXd cantilever(std::span<const double> distances, double bending_stiffness);
 
 /// What a row may take along the needle.
