@@ -96,6 +96,11 @@ void run_to(Lobes& run, Look look, double end = 1e300) {
   }
 }
 
+inline void run_until(Lobes& run, double end = 1e300) {
+  run_to(
+      run, [] {}, end);
+}
+
 /// Of a needle's line up to its tip, what lies in the deformed body, by its surface alone [m].
 inline double length_inside(const std::vector<Triangle>& surface, const Lobes& run) {
   const std::vector<Vec3d> x = run.simulation.positions();

@@ -53,6 +53,7 @@ def test_a_needle_pierces_and_goes_on():
     assert needle.stage == "inside" and names[:2] == ["contact", "puncture"]
     assert needle.depth == pytest.approx(0.0125, rel=0.02)
     assert 0 < needle.inserted_length < needle.depth and needle.path.shape[1] == 3
+    assert needle.crossing.shape == (1, 2) and np.ptp(needle.crossing) == pytest.approx(needle.inserted_length)
     forces = needle.forces
     assert np.allclose(forces.normal + forces.friction + forces.cutting, forces.total, atol=1e-12)
     assert -forces.total[2] > 0 and needle.tip_force > 0 and needle.centre_line[-1, 2] < 0.0201

@@ -110,7 +110,7 @@ void Needle::body_changed(const BodyView& body, std::span<const std::uint32_t>) 
     if (!s.place(node, Vec3d(node.rest))) node.weights.clear();  // the tissue there is gone: the node no longer acts
   }
   s.cross_anew(body, pose_.position, direction());
-  if (s.stage != NeedleStage::outside && !s.place(s.tip, Vec3d(s.tip.rest))) s.tip.weights.clear();
+  if (s.has_tip_row() && !s.place(s.tip, Vec3d(s.tip.rest))) s.tip.weights.clear();
 }
 
 /// Of a tip in air: the surface around the needle's line. In tissue: that around it. And the tissue that the path acts on.
@@ -225,7 +225,7 @@ void Needle::archive(Archive& ar) {
     if (!s.place(s.nodes[j], path[j])) s.nodes[j].rest = path[j];
   }
   const bool known_tip = s.tip.rest == tip_was && !s.tip.weights.empty();
-  if (s.stage != NeedleStage::outside && !known_tip) s.place(s.tip, Vec3d(s.tip.rest));
+  if (s.has_tip_row() && !known_tip) s.place(s.tip, Vec3d(s.tip.rest));
 }
 
 }  // namespace glisson

@@ -49,9 +49,11 @@ void Needle::State::read_ends(const InteractionStep& step) {
 std::vector<TissueInterval> Needle::State::crossing(const Vec3d& at, const Vec3d& direction) const {
   std::vector<TissueInterval> all;
   for (std::size_t k = 0; k < entered; ++k) {
-    const auto from_hand = [&](std::size_t node) { return options.length + dot(nodes[node].position - at, direction); };
-    const double from = from_hand(tracks[k].begin);
-    const double to = tracks[k].through ? std::min(from_hand(end_of(k) - 1), options.length) : options.length;
+    const auto from_hand_to = [&](std::size_t node) {
+      return options.length + dot(nodes[node].position - at, direction);
+    };
+    const double from = from_hand_to(tracks[k].begin);
+    const double to = tracks[k].through ? std::min(from_hand_to(end_of(k) - 1), options.length) : options.length;
     if (to > from) all.push_back({from, to});
   }
   return all;
@@ -170,7 +172,7 @@ bool Needle::State::tracks_fit(std::size_t points) const {
 std::optional<Vec3d> Needle::State::way_out(const Vec3d& to) const {
   const double length = norm(to - tip.rest);
   const auto intervals = find_intervals(hits_at_rest(tip.rest, to, near_triangles, kAtEnd), length + kAtEnd, true);
-  if (intervals.empty()) return tip.rest;
+  if (intervals.empty() || intervals.front().from > 0.0) return tip.rest;
   if (intervals.front().to <= length) return tip.rest + (to - tip.rest) * (intervals.front().to / length);
   if (!zones->locator().locate(to)) return tip.rest;  // past an edge of the surface, by rounding
   return {};

@@ -103,6 +103,8 @@ struct Needle::State : NeedlePath {
   shaft::Row& entry() { return nodes[tracks[entered - 1].begin]; }  ///< of the track that the tip is in or has passed
   shaft::Row& far_end() { return nodes[end_of(entered - 1) - 1]; }  ///< its last node
   bool is_through() const { return entered > 0 && tracks[entered - 1].through; }
+  /// Whether the tip presses, or there is a path that ends somewhere.
+  bool has_tip_row() const { return stage == NeedleStage::pressing || !tracks.empty(); }
   /// Whether the tip's row acts: on a surface, or at the end of the path.
   bool tip_acts() const { return stage == NeedleStage::pressing || (stage == NeedleStage::inside && !is_through()); }
   bool tip_is_in_air() const { return stage == NeedleStage::outside || (stage == NeedleStage::inside && tip_out); }

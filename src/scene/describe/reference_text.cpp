@@ -84,7 +84,7 @@ const std::string_view kReferenceRun = R"(## What a run does
    instruments must therefore differ from the output files (`scene.toml`, `forces.csv` …), contain no `/`, and differ
    in more than upper and lower case.
 5. events.csv has a line for each event of an instrument: contact, puncture, drop (the end of the sudden fall of the
-   force), inner puncture, withdrawal, release. Both files are complete up to the last sample, however a run ends.
+   force), inner puncture, exit, withdrawal, release. Both files are complete up to the last sample, however a run ends.
 6. Probes are read with every sample into probes.csv, whose lines belong to those of forces.csv.
 7. Frames are evenly spaced, the first at rest and the last at the end.
 
