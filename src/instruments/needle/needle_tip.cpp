@@ -104,7 +104,7 @@ void Needle::press_on(const InteractionStep& step) {
 void Needle::pierce(const InteractionStep& step) {
   State& s = *state_;
   s.begin_track();
-  const double force = tip_force();
+  const double force = tip_force() + dot(forces_.friction, direction());
   s.drop = {true, force, force, force, forces_at_end() ? step.time + step.h : step.time, depth()};
   add_event(step.time + step.h, depth(), "puncture");
   if (!s.tries) tell_puncture(pose_.position, 0.5 * s.options.diameter);
