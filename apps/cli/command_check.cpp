@@ -15,12 +15,14 @@
 #include "cli/edge_cells.h"
 #include "cli/exit_code.h"
 #include "cli/mesh_cache.h"
+#include "cli/near_bounds.h"
 #include "cli/progress.h"
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "cli/tissue_text.h"
 #include "instruments/needle/membranes.h"
 #include "material/linear_law.h"
+#include "mesh/inspect/vertex_set.h"
 
 namespace glisson::app {
 namespace {
@@ -82,9 +84,16 @@ void print_mesh(const TetMesh& mesh, double mass_kg, bool imported) {
   for (const std::string& warning : report.warnings) say("           warning: {}\n", warning);
 }
 
+/// A set by its vertices that hold and bear: those of tets.
 std::string set_text(const TetMesh& mesh, const std::string& set) {
   const auto found = mesh.vertex_sets.find(set);
-  return fmt::format("\"{}\", {} vertices", set, found == mesh.vertex_sets.end() ? 0 : found->second.size());
+  if (found == mesh.vertex_sets.end()) return fmt::format("\"{}\", 0 vertices", set);
+  const std::vector<char> in_tet = vertices_in_tets(mesh);
+  const auto bearing =
+      std::count_if(found->second.begin(), found->second.end(), [&](auto v) { return in_tet[v] != 0; });
+  const auto left_out = std::ssize(found->second) - bearing;
+  return fmt::format("\"{}\", {} vertices", set, bearing) +
+         (left_out > 0 ? fmt::format(" (left out: {} in no tet, which bear nothing)", left_out) : "");
 }
 
 std::string axes_text(const Axes& axes) {
@@ -230,6 +239,7 @@ std::string load_text(const SurfaceLoad& load) {
 
 void print_body(const Variant& v, const Taste& taste) {
   print_mesh(taste.mesh, taste.mass_kg, std::holds_alternative<MeshFile>(v.mesh));
+  print_near_bounds(v, taste.mesh);
   say("  tissue   \"{}\": {}\n", v.tissue.name, tissue_text(v.tissue));
   print_locking("tissue", v.tissue);
   for (const RegionSpec& region : v.regions) {

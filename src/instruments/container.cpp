@@ -20,6 +20,8 @@ namespace {
 
 constexpr double kMostOut = 0.02;  ///< of the container's size: how far a body may stand out of it at the start
 constexpr double kTouch = 1e-6;    ///< of the vessel's size: tissue so near to a wall that holds it touches
+constexpr double kRim =
+    1e-9;  ///< of the vessel's height: tissue up to so far above its rim is beside the wall, whatever rounding says
 /// Of the vessel's size: tissue that moves no more than that in a step has come to rest.
 constexpr double kStill = 1e-12;
 constexpr int kMostLooks = 12;  ///< for points that come outside in a long step
@@ -83,7 +85,7 @@ struct Container::State {
 
   void build();
   void add_solid(const Shape& shape, const Pose& pose);
-  bool holds_at(const Vec3d& x) const { return options.pose.to_own(x).z <= height; }
+  bool holds_at(const Vec3d& x) const { return options.pose.to_own(x).z <= height * (1.0 + kRim); }
   void require_inside(const BodyView& body) const;
   void bond_first(const BodyView& body);
   void list_bonds();

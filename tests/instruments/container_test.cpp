@@ -250,6 +250,28 @@ TEST(Container, BondsThatRestBearTheSame) {
   }
 }
 
+// A wall as high as the body holds the body's upper edge wherever the two stand: that both are of 30 mm does not hang on the last digit
+// of a coordinate. Against the same at the origin, in which nothing is rounded.
+TEST(Container, HoldsWhatIsLevelWithItsRim) {
+  const auto force = [](double z) {
+    TetMesh mesh = cylinder_mesh({.radius = 0.02, .height = 0.03, .radial_cells = 3, .axial_cells = 3});
+    for (Vec3d& x : mesh.vertices) x.z = (z + 0.03) - (0.03 - x.z);
+    SimulationOptions o{.integrator = Integrator::quasi_static, .step = 0.1};
+    Simulation body(mesh, {{0, tissue()}}, o);
+    ContainerOptions bonded = test::with(0.0, false, true);
+    bonded.pose.position.z = z;
+    bonded.vessel = CylinderVessel{.radius = 0.02, .height = 0.03};
+    const auto container = std::make_shared<Container>(bonded);
+    body.attach(container);
+    body.add_surface_load("top", {.pressure = 100.0});
+    test::must_step(body);
+    return container->sensor_loads().side.z;
+  };
+  const double there = force(0.0);
+  EXPECT_LT(there, -0.01);
+  for (int k = 1; k < 40; ++k) EXPECT_NEAR(force(0.0013 * k), there, 1e-6 * std::abs(there)) << k;
+}
+
 // A body that is wider than its vessel is a mistake, and the message says by how much.
 TEST(Container, RefusesABodyThatStandsOut) {
   const TetMesh mesh = cylinder_mesh({.radius = 0.02, .height = 0.02, .radial_cells = 3, .axial_cells = 2});

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "scene/scene_text.h"
 
 namespace glisson {
@@ -51,6 +53,120 @@ TEST(BuildMesh, PicksABoxAndABall) {
   EXPECT_EQ(mesh.vertex_sets.at("skin").size(), 6u) << "the centre is inside";
 }
 
+/// The mesh of a box with some vertex sets.
+TetMesh picked(const BoxOptions& box, std::map<std::string, Selection> sets,
+               const std::vector<RegionSpec>& regions = {}) {
+  Variant variant;
+  variant.mesh = box, variant.sets = std::move(sets), variant.regions = regions;
+  return build_mesh(variant, {});
+}
+
+Selection in(const Selection::Box& box) { return {.where = box, .origin = {}}; }
+
+constexpr double kFar = 1.0;  // beyond every body here [m]
+
+// A box whose bounds are decimals of whole millimetres holds the vertices on these bounds, although many of their computed coordinates
+// are another number: bars of up to 64 cells whose layers lie on whole millimetres, a box up to each layer and one from it on.
+TEST(BuildMesh, BoundsHoldTheVerticesOnThem) {
+  int decimals = 0, off = 0;
+  for (const int length : {30, 40, 60, 64, 77, 90}) {
+    for (const int first : {0, -20, 7, -33}) {
+      for (int cells = 2; cells <= length; ++cells) {
+        if (length % cells != 0 || cells > 64) continue;
+        const auto n = static_cast<std::size_t>(cells);
+        const BoxOptions bar{
+            .cells = {cells, 1, 1}, .size = {length / 1000.0, 0.01, 0.01}, .origin = {first / 1000.0, 0, 0}};
+        std::map<std::string, Selection> sets;
+        for (std::size_t i = 0; i <= n; ++i) {
+          const double bound = (first + length / cells * static_cast<int>(i)) / 1000.0;  // as a decimal is read
+          sets["to " + std::to_string(i)] = in({{-kFar, -kFar, -kFar}, {bound, kFar, kFar}});
+          sets["from " + std::to_string(i)] = in({{bound, -kFar, -kFar}, {kFar, kFar, kFar}});
+        }
+        const TetMesh mesh = picked(bar, sets);
+        for (std::size_t i = 0; i <= n; ++i) {
+          ++decimals,
+              off += mesh.vertices[i].x != std::get<Selection::Box>(sets["from " + std::to_string(i)].where).min.x;
+          ASSERT_EQ(mesh.vertex_sets.at("to " + std::to_string(i)).size(), 4 * (i + 1)) << length << ' ' << first;
+          ASSERT_EQ(mesh.vertex_sets.at("from " + std::to_string(i)).size(), 4 * (n + 1 - i)) << length << ' ' << first;
+        }
+      }
+    }
+  }
+  EXPECT_GE(decimals, 1000);
+  EXPECT_GE(off, decimals / 10) << "or the coordinates carry no rounding, and this proves nothing";
+}
+
+// A pad of 16 mm in the middle of a block of cells of 4 mm is its 5 × 5 vertices, wherever the block lies.
+TEST(BuildMesh, APadHasTheVerticesOnItsEdge) {
+  for (const double corner : {-0.02, 0.0, 0.013, -0.2}) {
+    const double low = static_cast<double>(std::lround(1000 * corner) + 12) / 1000.0,
+                 high = static_cast<double>(std::lround(1000 * corner) + 28) / 1000.0;
+    const TetMesh mesh = picked({.cells = {10, 10, 5}, .size = {0.04, 0.04, 0.02}, .origin = {corner, corner, 0}},
+                                {{"pad", in({{low, low, 0.02}, {high, high, 0.02}})}});
+    EXPECT_EQ(mesh.vertex_sets.at("pad").size(), 25u) << corner;
+  }
+}
+
+// A ball whose surface passes through vertices holds them: against whole numbers, i² + j² + k² ≤ r² in millimetres.
+TEST(BuildMesh, ABallHoldsTheVerticesOnItsSurface) {
+  for (const int r : {3, 5, 6, 7, 9}) {
+    const TetMesh mesh =
+        picked({.cells = {20, 20, 20}, .size = {0.02, 0.02, 0.02}, .origin = {-0.003, -0.003, -0.003}},
+               {{"ball", {.where = Selection::Sphere{{0.007, 0.007, 0.007}, r / 1000.0}, .origin = {}}}});
+    std::size_t inside = 0;
+    for (int i = -10; i <= 10; ++i) {
+      for (int j = -10; j <= 10; ++j) {
+        for (int k = -10; k <= 10; ++k) inside += i * i + j * j + k * k <= r * r;
+      }
+    }
+    EXPECT_EQ(mesh.vertex_sets.at("ball").size(), inside) << r;
+  }
+}
+
+// Two regions that share a face have each tet once: centroids of a cube's six tets lie at 1/4, 1/2 and 3/4 of its height, two each, and
+// those on a face at 1/2 belong all to the later region, none to both and none to neither.
+TEST(BuildMesh, RegionsThatShareAFaceShareNoTet) {
+  for (const int origin : {0, -20, -33}) {  // [mm]
+    for (int layer = 0; layer < 10; ++layer) {
+      const double face = (origin + 4 * layer + 2) / 1000.0, bottom = origin / 1000.0;
+      const RegionSpec lower{.name = "lower",
+                             .where = Selection::Box{{-kFar, -kFar, bottom}, {kFar, kFar, face}},
+                             .tissue = {},
+                             .origin = {}},
+          upper{.name = "upper",
+                .where = Selection::Box{{-kFar, -kFar, face}, {kFar, kFar, kFar}},
+                .tissue = {},
+                .origin = {}};
+      const TetMesh mesh =
+          picked({.cells = {3, 3, 10}, .size = {0.012, 0.012, 0.04}, .origin = {0.0, 0.0, bottom}}, {}, {lower, upper});
+      EXPECT_EQ(std::count(mesh.regions.begin(), mesh.regions.end(), 0), 0) << layer;
+      EXPECT_EQ(std::count(mesh.regions.begin(), mesh.regions.end(), 1), 9 * (6 * layer + 2)) << layer;
+      EXPECT_EQ(std::count(mesh.regions.begin(), mesh.regions.end(), 2), 9 * (6 * (9 - layer) + 4)) << layer;
+    }
+  }
+}
+
+/// The small scene's body from a file with vertices that belong to no tet, above and beside it.
+TetMesh with_loose_vertices(const MeshFile&) {
+  TetMesh mesh = box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}});
+  mesh.vertices.push_back({0.01, 0.01, 0.05});
+  mesh.vertices.push_back({0.0051, 0.0, 0.02});
+  mesh.vertex_sets["dust"] = {27, 28};
+  return mesh;
+}
+
+// The side of a body is where its tets end, and what is nearest is a vertex of them: vertices in no tet are not the body.
+TEST(BuildMesh, LooseVerticesAreNoPlaceOfTheBody) {
+  const std::string file = "[[variant]]\nname = \"f\"\nmesh = { kind = \"file\", path = \"liver.vtu\" }\n";
+  const TetMesh mesh = mesh_of("[sets.n]\nnearest_m = { point = [0.0051, 0, 0.02] }\n" + file, with_loose_vertices);
+  EXPECT_THAT(places(mesh, "n"), ElementsAre(Vec3d{0.01, 0.0, 0.02}));
+  std::vector<std::uint32_t> upper = mesh.vertex_sets.at("z_max");
+  upper.insert(upper.end(), {27, 28});
+  EXPECT_EQ(mesh.vertex_sets.at("top"), upper) << "the whole side of the body, not the highest vertex alone";
+  EXPECT_THAT(refusal(file + "fixed.0.set = \"dust\"\n", with_loose_vertices),
+              HasSubstr("none of the 2 vertices of the set \"dust\" belongs to a tet"));
+}
+
 // The three vertices nearest to the middle of a triangle are its corners; equal distances go to the lower number.
 TEST(BuildMesh, PicksTheNearest) {
   const TetMesh mesh = mesh_of(
@@ -63,6 +179,13 @@ TEST(BuildMesh, PicksTheNearest) {
   EXPECT_NEAR(sum.x, 0.02, 1e-12);
   EXPECT_NEAR(sum.y, 0.02, 1e-12);
   EXPECT_THAT(mesh.vertex_sets.at("one"), ElementsAre(0));
+  // 8 corners of a cell are equally near to its middle, whatever rounding says of it: the first 5 of them.
+  for (const double corner : {0.0, -0.05, -0.0488}) {
+    const double middle = static_cast<double>(std::lround(1e5 * corner + 500)) / 1e5;
+    const TetMesh moved = picked({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}, .origin = {corner, corner, corner}},
+                                 {{"n", {.where = Selection::Nearest{{middle, middle, middle}, 5}, .origin = {}}}});
+    EXPECT_THAT(moved.vertex_sets.at("n"), ElementsAre(0, 1, 3, 4, 9)) << corner;
+  }
 }
 
 // Vertex numbers are taken sorted and once each.
@@ -156,6 +279,13 @@ TEST(BuildMesh, ExplainsWhatAFileDoesNotHave) {
       HasSubstr("the mesh has a region \"vessel\" already"));
   EXPECT_THAT(refusal("[[region]]\nname = \"r\"\nsphere_m = { center = [1, 1, 1], radius = 0.1 }\n"),
               HasSubstr("no tet has its centroid in the region \"r\"; the mesh spans x 0 to 0.02 m"));
+  EXPECT_THAT(refusal(kFromFile + "[[variant.region]]\nname = \"bile\"\n",
+                      [](const MeshFile& file) {
+                        TetMesh mesh = two_regions(file);
+                        mesh.region_names[8] = "bile";
+                        return mesh;
+                      }),
+              HasSubstr("no tet of the mesh is in its region \"bile\"; there are tets in 4, 7 (vessel)"));
   EXPECT_THAT(refusal(kFromFile, [](const MeshFile&) { return TetMesh{}; }), HasSubstr("0 vertices and 0 tets"));
   EXPECT_THAT(refusal(kFromFile), HasSubstr("s.toml: variant f: no reader for mesh files was given"));
 }

@@ -15,8 +15,6 @@
 namespace glisson {
 namespace {
 
-constexpr double kOnPlane = 1e-9;  // of the body's diagonal: so near, a vertex lies on the plane
-
 /// Area of the polygon that a plane cuts out of a tet. @param d  distances of the corners, > 0 in front, else ≤ 0
 double section_area(const std::array<Vec3d, 4>& x, const std::array<double, 4>& d) {
   std::vector<std::size_t> front, behind;
@@ -48,8 +46,7 @@ class PlaneReader : public ProbeReader {
 
   void follow(const Simulation& simulation) override {
     const TetMesh& mesh = simulation.mesh();
-    const auto [low, high] = detail::box_of(mesh);
-    const double on_plane = kOnPlane * norm(high - low);
+    const double on_plane = detail::place_tolerance(mesh);  // so near, a vertex lies on the plane
     tets_.clear(), front_.clear(), areas_.clear();
     for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
       std::array<double, 4> d;

@@ -27,6 +27,11 @@ std::pair<Vec3d, Vec3d> box_of(const TetMesh& mesh) {
   return {low, high};
 }
 
+double place_tolerance(const TetMesh& mesh) {
+  const auto [low, high] = box_of(mesh);
+  return 1e-9 * norm(high - low);
+}
+
 /// The foot of the perpendicular where it lies inside; else the nearest point of the edges.
 Vec3d nearest_on_triangle(const Vec3d& x, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d n = cross(b - a, c - a);

@@ -1,4 +1,4 @@
-// nearest_point.h — where a body is, for messages about places outside of it.
+// nearest_point.h — where a body is, and how near to a bound a place still lies on it.
 #pragma once
 
 #include <utility>
@@ -9,6 +9,10 @@ namespace glisson::detail {
 
 /// Lowest and highest corner of the box around the tets [m]. The mesh has at least one.
 std::pair<Vec3d, Vec3d> box_of(const TetMesh& mesh);
+
+/// How far from a bound a place still lies on it [m]: 1e-9 of the diagonal of box_of. Typed decimals and computed coordinates that
+/// mean the same place differ by rounding, of some 1e-16 of it; vertices that mean other places are farther apart than 1e-9.
+double place_tolerance(const TetMesh& mesh);
 
 /// The point of a triangle nearest to x.
 Vec3d nearest_on_triangle(const Vec3d& x, const Vec3d& a, const Vec3d& b, const Vec3d& c);

@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "base/nearest.h"
-#include "glisson/mesh.h"
 
 namespace glisson {
 
@@ -20,6 +19,14 @@ const std::vector<std::uint32_t>& TetMesh::vertex_set(const std::string& name) c
   std::vector<std::string> known;
   for (const auto& set : vertex_sets) known.push_back(set.first);
   throw std::invalid_argument(no_vertex_set(name, known));
+}
+
+std::vector<char> vertices_in_tets(const TetMesh& mesh) {
+  std::vector<char> in_tet(mesh.vertices.size(), 0);
+  for (const Tet& tet : mesh.tets) {
+    for (const std::uint32_t v : tet) in_tet[v] = 1;
+  }
+  return in_tet;
 }
 
 }  // namespace glisson

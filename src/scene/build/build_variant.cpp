@@ -7,6 +7,8 @@
 
 #include "base/nearest.h"
 #include "glisson/scene/scene.h"
+#include "mesh/inspect/require_valid.h"
+#include "mesh/inspect/vertex_set.h"
 #include "scene/build/build_instruments.h"
 #include "scene/parse/select.h"
 
@@ -54,6 +56,13 @@ std::string region_list(const TetMesh& mesh) {
   return scene::listed(regions);
 }
 
+bool has_tets(const TetMesh& mesh, int region) {
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (mesh.region_of(t) == region) return true;
+  }
+  return false;
+}
+
 /// Gives the tets of a region a number of their own, after checking that there are any.
 void mark_region(const Variant& variant, const RegionSpec& region, TetMesh& mesh) {
   const int own = scene::region_number(mesh, region.name);
@@ -62,6 +71,11 @@ void mark_region(const Variant& variant, const RegionSpec& region, TetMesh& mesh
       fail(variant, region.origin,
            "the mesh has no region \"" + region.name + "\"; it has: " + region_list(mesh) +
                ". Give `box_m` or `sphere_m` to make one");
+    }
+    if (!has_tets(mesh, own)) {
+      fail(variant, region.origin,
+           "no tet of the mesh is in its region \"" + region.name + "\"; there are tets in " + region_list(mesh) +
+               ". Of volumes that overlap in the file the first has the tets: leave these out of it there");
     }
     return;
   }
@@ -95,6 +109,25 @@ const std::vector<std::uint32_t>& set_called(const Variant& variant, const TetMe
   }
   if (it->second.empty()) fail(variant, origin, "the vertex set \"" + name + "\" of the mesh is empty");
   return it->second;
+}
+
+/// Refuses sets that hold and bear nothing.
+void require_sets(const Variant& variant, const TetMesh& mesh) {
+  const std::vector<char> in_tet = vertices_in_tets(mesh);
+  const auto require_set = [&](const std::string& name, const std::string& origin) {
+    const std::vector<std::uint32_t>& set = set_called(variant, mesh, name, origin);
+    if (std::any_of(set.begin(), set.end(), [&](auto v) { return v >= in_tet.size() || in_tet[v] != 0; })) return;
+    fail(variant, origin,
+         "none of the " + std::to_string(set.size()) + " vertices of the set \"" + name +
+             "\" belongs to a tet, so that nothing holds, moves or loads the body by it; name a set of vertices of the "
+             "body, or look for missing tets");
+  };
+  for (const FixedSpec& x : variant.fixed) require_set(x.set, x.origin);
+  for (const LoadSpec& x : variant.loads) require_set(x.set, x.origin);
+  for (const ToolSpec& x : variant.tools) require_set(x.set, x.origin);
+  for (const CapsuleSpec& x : variant.capsules) {
+    if (!x.set.empty()) require_set(x.set, x.origin);
+  }
 }
 
 /// Runs `make`, saying of what it throws where the scene asked for it.
@@ -189,15 +222,11 @@ Probes probes_of(const Variant& variant, const Simulation& simulation) {
 TetMesh build_mesh(const Variant& variant, const MeshLoader& load, const std::function<bool(double)>& progress) {
   TetMesh mesh = source_mesh(variant, load, progress);
   require_not_empty(variant, mesh);
+  located(variant, "", [&] { detail::require_indices(mesh); });
   for (const auto& [name, selection] : variant.sets)
     mesh.vertex_sets[name] = scene::select_vertices(mesh, name, selection);
   for (const RegionSpec& region : variant.regions) mark_region(variant, region, mesh);
-  for (const FixedSpec& x : variant.fixed) set_called(variant, mesh, x.set, x.origin);
-  for (const LoadSpec& x : variant.loads) set_called(variant, mesh, x.set, x.origin);
-  for (const ToolSpec& x : variant.tools) set_called(variant, mesh, x.set, x.origin);
-  for (const CapsuleSpec& x : variant.capsules) {
-    if (!x.set.empty()) set_called(variant, mesh, x.set, x.origin);
-  }
+  require_sets(variant, mesh);
   return mesh;
 }
 

@@ -46,7 +46,8 @@ KindSpec mesh_kind(SectionSpec section) {
 }
 
 SectionSpec box_selection() {
-  Section<Selection::Box> s("box_m", "An axis-aligned box, its faces included.");
+  Section<Selection::Box> s(
+      "box_m", "An axis-aligned box, its faces included: to 1e-9 of the body's diagonal, beyond any rounding.");
   s.key("min", &Selection::Box::min, "lowest corner").in("m").must();
   s.key("max", &Selection::Box::max, "highest corner").in("m").must();
   s.finish([](Selection::Box& box, const Node& table, const Place& place) {
@@ -61,14 +62,15 @@ SectionSpec box_selection() {
 }
 
 SectionSpec sphere_selection() {
-  Section<Selection::Sphere> s("sphere_m", "A ball, its surface included.");
+  Section<Selection::Sphere> s("sphere_m", "A ball, its surface included, as that of a box.");
   s.key("center", &Selection::Sphere::center, "centre").in("m").must();
   s.key("radius", &Selection::Sphere::radius, "radius").in("m").within(above(0)).must();
   return s.spec();
 }
 
 SectionSpec nearest_selection() {
-  Section<Selection::Nearest> s("nearest_m", "The vertices nearest to a point.");
+  Section<Selection::Nearest> s("nearest_m",
+                                "The vertices of tets nearest to a point; of equally near ones those of lower number.");
   s.key("point", &Selection::Nearest::point, "the point").in("m").must();
   s.key("count", &Selection::Nearest::count, "how many").within(between(1, Codec<int>::kLargest));
   return s.spec();
@@ -82,7 +84,8 @@ SectionSpec side_selection() {
                  {{"lower", false, "the side with the smallest coordinate"}, {"upper", true, "the largest"}},
                  "which end of the axis")
       .must();
-  s.key("depth_m", &Selection::Side::depth, "vertices at most this far from the outermost one")
+  s.key("depth_m", &Selection::Side::depth,
+        "vertices at most this far from the outermost one of a tet, up to rounding as in a box")
       .in("m")
       .within(at_least(0))
       .must();

@@ -1,39 +1,69 @@
 #include "scene/parse/select.h"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <numeric>
+#include <utility>
 
+#include "mesh/inspect/nearest_point.h"
 #include "mesh/inspect/vertex_set.h"
 #include "scene/parse/section.h"
 
 namespace glisson::scene {
 namespace {
 
-struct Extent {
-  Vec3d min, max;
-};
-
-Extent extent_of(const TetMesh& mesh) {
-  Extent e{mesh.vertices.front(), mesh.vertices.front()};
-  for (const Vec3d& x : mesh.vertices) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      e.min[i] = std::min(e.min[i], x[i]);
-      e.max[i] = std::max(e.max[i], x[i]);
-    }
-  }
-  return e;
-}
-
 std::string text_of(const Vec3d& x) { return Codec<Vec3d>::show(x); }
 
-bool inside(const Selection::Box& box, const Vec3d& x) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (x[i] < box.min[i] || x[i] > box.max[i]) return false;
-  }
-  return true;
+/// How far a place lies outside of bounds [m]; ≤ 0 inside.
+using Beyond = std::function<double(const Vec3d&)>;
+
+Beyond bounds_of(const TetMesh&, const Selection::Box& box) {
+  return [box](const Vec3d& x) {
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < 3; ++i) most = std::max({most, box.min[i] - x[i], x[i] - box.max[i]});
+    return most;
+  };
 }
 
-bool inside(const Selection::Sphere& ball, const Vec3d& x) { return norm(x - ball.center) <= ball.radius; }
+Beyond bounds_of(const TetMesh&, const Selection::Sphere& ball) {
+  return [ball](const Vec3d& x) { return norm(x - ball.center) - ball.radius; };
+}
+
+Beyond bounds_of(const TetMesh& mesh, const Selection::Side& side) {
+  const auto axis = static_cast<std::size_t>(side.axis);
+  const auto [low, high] = detail::box_of(mesh);
+  if (side.upper) return [axis, bound = high[axis] - side.depth](const Vec3d& x) { return bound - x[axis]; };
+  return [axis, bound = low[axis] + side.depth](const Vec3d& x) { return x[axis] - bound; };
+}
+
+/// What is not picked by bounds.
+template <class Other>
+Beyond bounds_of(const TetMesh&, const Other&) {
+  return {};
+}
+
+Vec3d centroid(const TetMesh& mesh, std::size_t tet) {
+  Vec3d sum{};
+  for (const std::uint32_t i : mesh.tets[tet]) sum += mesh.vertices[i] * 0.25;
+  return sum;
+}
+
+/// Counts the places near bounds. @param place  of index i below `count`
+template <class Place>
+NearBounds count_near(const TetMesh& mesh, const Beyond& beyond, std::size_t count, const Place& place) {
+  constexpr double kJustOutside = 1e3;  // tolerances: where files give coordinates in single precision or in six digits
+  NearBounds near{.tolerance = detail::place_tolerance(mesh)};
+  for (std::size_t i = 0; beyond && i < count; ++i) {
+    const double by = beyond(place(i));
+    near.inside += by <= near.tolerance;
+    near.by_rounding += by > 0.0 && by <= near.tolerance;
+    if (by <= near.tolerance || by > kJustOutside * near.tolerance) continue;
+    ++near.just_outside;
+    near.farthest = std::max(near.farthest, by);
+  }
+  return near;
+}
 
 std::string asked(const Selection::Box& b) { return "the box from " + text_of(b.min) + " to " + text_of(b.max) + " m"; }
 std::string asked(const Selection::Sphere& s) {
@@ -58,6 +88,11 @@ std::vector<std::uint32_t> surface_vertices(const TetMesh& mesh) {
   return ids;
 }
 
+/// Vertices that a set is picked from.
+std::vector<std::uint32_t> vertices_among(const TetMesh& mesh, const Selection& selection) {
+  return selection.surface_only ? surface_vertices(mesh) : all_vertices(mesh);
+}
+
 /// Picks among some vertices; one overload a way to pick.
 struct Picker {
   const TetMesh& mesh;
@@ -67,42 +102,41 @@ struct Picker {
 
   [[noreturn]] void fail(const std::string& what) const { throw SceneError(label + ": " + what); }
 
-  template <class Test>
-  std::vector<std::uint32_t> where(const std::string& what, Test test) const {
+  /// Those within bounds, which places on them belong to: a grid's coordinates carry rounding.
+  template <class Bounds>
+  std::vector<std::uint32_t> operator()(const Bounds& bounds) const {
+    const Beyond beyond = bounds_of(mesh, bounds);
+    const double tolerance = detail::place_tolerance(mesh);
     std::vector<std::uint32_t> found;
-    std::copy_if(among.begin(), among.end(), std::back_inserter(found), [&](auto i) { return test(mesh.vertices[i]); });
+    std::copy_if(among.begin(), among.end(), std::back_inserter(found),
+                 [&](auto i) { return beyond(mesh.vertices[i]) <= tolerance; });
     if (found.empty()) {
-      fail("no vertex" + std::string(selection.surface_only ? " of the surface" : "") + " lies in " + what +
+      fail("no vertex" + std::string(selection.surface_only ? " of the surface" : "") + " lies in " + asked(bounds) +
            "; the mesh spans " + extent_text(mesh));
     }
     return found;
   }
-
-  std::vector<std::uint32_t> operator()(const Selection::Box& b) const {
-    return where(asked(b), [&](const Vec3d& x) { return inside(b, x); });
-  }
-  std::vector<std::uint32_t> operator()(const Selection::Sphere& s) const {
-    return where(asked(s), [&](const Vec3d& x) { return inside(s, x); });
-  }
-  std::vector<std::uint32_t> operator()(const Selection::Side& s) const {
-    const Extent e = extent_of(mesh);
-    const auto axis = static_cast<std::size_t>(s.axis);
-    // A grid's coordinates carry rounding: a layer that is nominally at the depth belongs to it.
-    const double reach = s.depth + 1e-9 * (e.max[axis] - e.min[axis]);
-    return where(asked(s), [&](const Vec3d& x) {
-      return s.upper ? x[axis] >= e.max[axis] - reach : x[axis] <= e.min[axis] + reach;
-    });
-  }
+  /// Of vertices of the body; of those that are equally near up to rounding the ones of lowest number.
   std::vector<std::uint32_t> operator()(const Selection::Nearest& n) const {
+    const std::vector<char> in_tet = vertices_in_tets(mesh);
+    std::vector<std::pair<std::uint32_t, double>> near;
+    for (const std::uint32_t i : among) {
+      if (in_tet[i] != 0) near.emplace_back(i, norm(mesh.vertices[i] - n.point));
+    }
     const auto count = static_cast<std::size_t>(n.count);
-    if (count > among.size()) fail(show(n.count) + " vertices asked for, there are " + std::to_string(among.size()));
-    std::vector<std::uint32_t> ids = among;
-    const auto closer = [&](std::uint32_t a, std::uint32_t b) {
-      const double da = norm(mesh.vertices[a] - n.point), db = norm(mesh.vertices[b] - n.point);
-      return da < db || (da == db && a < b);
-    };
-    std::partial_sort(ids.begin(), ids.begin() + n.count, ids.end(), closer);
-    ids.resize(count);
+    if (count > near.size()) fail(show(n.count) + " vertices asked for, there are " + std::to_string(near.size()));
+    std::vector<double> distances;
+    for (const auto& [i, distance] : near) distances.push_back(double(distance));
+    const auto last = distances.begin() + (n.count - 1);
+    std::nth_element(distances.begin(), last, distances.end());
+    const double tolerance = detail::place_tolerance(mesh), least = *last - tolerance, most = *last + tolerance;
+    std::vector<std::uint32_t> ids;
+    for (const auto& [i, distance] : near) {
+      if (distance < least) ids.push_back(i);
+    }
+    for (std::size_t k = 0; k < near.size() && ids.size() < count; ++k) {
+      if (near[k].second >= least && near[k].second <= most) ids.push_back(near[k].first);
+    }
     std::sort(ids.begin(), ids.end());
     return ids;
   }
@@ -127,27 +161,36 @@ struct Picker {
 
 std::vector<std::uint32_t> select_vertices(const TetMesh& mesh, const std::string& name, const Selection& selection) {
   const std::string label = selection.origin.empty() ? "sets." + name : selection.origin;
-  const Picker pick{mesh, selection, label, selection.surface_only ? surface_vertices(mesh) : all_vertices(mesh)};
+  const Picker pick{mesh, selection, label, vertices_among(mesh, selection)};
   return std::visit(pick, selection.where);
 }
 
+NearBounds near_bounds(const TetMesh& mesh, const Selection& selection) {
+  const auto beyond = std::visit([&](const auto& where) { return bounds_of(mesh, where); }, selection.where);
+  const std::vector<std::uint32_t> among = vertices_among(mesh, selection);
+  return count_near(mesh, beyond, among.size(), [&](std::size_t i) { return mesh.vertices[among[i]]; });
+}
+
+NearBounds near_bounds(const TetMesh& mesh, const RegionSpec& region) {
+  const auto beyond = std::visit([&](const auto& where) { return bounds_of(mesh, where); }, region.where);
+  return count_near(mesh, beyond, mesh.tets.size(), [&](std::size_t t) { return centroid(mesh, t); });
+}
+
 std::vector<std::size_t> tets_within(const TetMesh& mesh, const RegionSpec& region) {
+  const auto beyond = std::visit([&](const auto& where) { return bounds_of(mesh, where); }, region.where);
+  const double tolerance = detail::place_tolerance(mesh);
   std::vector<std::size_t> found;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    Vec3d centroid{};
-    for (const std::uint32_t i : mesh.tets[t]) centroid += mesh.vertices[i] * 0.25;
-    const auto* box = std::get_if<Selection::Box>(&region.where);
-    const auto* ball = std::get_if<Selection::Sphere>(&region.where);
-    if ((box && inside(*box, centroid)) || (ball && inside(*ball, centroid))) found.push_back(t);
+  for (std::size_t t = 0; beyond && t < mesh.tets.size(); ++t) {
+    if (beyond(centroid(mesh, t)) <= tolerance) found.push_back(t);
   }
   return found;
 }
 
 std::string extent_text(const TetMesh& mesh) {
-  const Extent e = extent_of(mesh);
+  const auto [low, high] = detail::box_of(mesh);
   std::string text;
   for (std::size_t i = 0; i < 3; ++i) {
-    text += (i ? ", " : "") + std::string(1, "xyz"[i]) + " " + show(e.min[i]) + " to " + show(e.max[i]) + " m";
+    text += (i ? ", " : "") + std::string(1, "xyz"[i]) + " " + show(low[i]) + " to " + show(high[i]) + " m";
   }
   return text;
 }
