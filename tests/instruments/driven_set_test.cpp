@@ -55,6 +55,23 @@ TEST_P(DrivenSets, BelongToOneBody) {
   EXPECT_EQ(tool->force_depth(), 0.0);
 }
 
+// The middle of a set that turns, whose place its pose tells, is that of its vertices in tets: it goes as
+// the rotation takes it, whatever vertices in no tet the set has.
+TEST(DrivenSet, ItsMiddleIsThatOfItsVerticesInTets) {
+  TetMesh mesh = box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}});
+  std::vector<std::uint32_t> top = mesh.vertex_sets.at("z_max");
+  top.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+  mesh.vertices.push_back({0.5, 0.5, 0.5});
+  Simulation body(mesh, {{0, Tissue{}}}, {.integrator = Integrator::quasi_static, .step = 0.01});
+  body.fix("z_min");
+  const RotationMotion turn{.axis = {0.0, 0.0, 1.0}, .times = {0.0, 0.01}, .angles_deg = {0.0, 2.0}};
+  const auto tool = std::make_shared<DrivenSet>(DrivenSetOptions{.vertices = top}, rotation_path(turn));
+  body.attach(tool);
+  ASSERT_TRUE(body.step().made());
+  const Vec3d middle{0.01, 0.01, 0.02};
+  EXPECT_LE(norm(tool->pose().position - (rotation_path(turn).pose(body.time()).to_space(middle) - middle)), 1e-15);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, DrivenSets, testing::ValuesIn(test::every_integrator()));
 
 }  // namespace

@@ -46,6 +46,31 @@ Vec3d traction_on(const SurfaceLoad& load, const Corners& rest) {
   return load.traction - unit(area_vector(rest)) * load.pressure;
 }
 
+/// Whether a vertex belongs to a tet that is there.
+bool bears(const Body& body, std::uint32_t vertex) { return body.masses[vertex] > 0.0; }
+
+/// 1 over the shares of vertices that bear: those that do not leave theirs to the others, in proportion to their own. 1 where all
+/// bear, to the last digit; 0 where none does, so that nothing acts.
+double over_shares_borne(const Body& body, std::span<const std::uint32_t> vertices, std::span<const double> share) {
+  double borne = 0.0;
+  bool all = true;
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    if (bears(body, vertices[k])) {
+      borne += share[k];
+    } else {
+      all = false;
+    }
+  }
+  if (all) return 1.0;
+  return borne > 0.0 ? 1.0 / borne : 0.0;
+}
+
+std::string no_bearer(std::size_t vertices) {
+  return "load: none of the " + std::to_string(vertices) + (vertices == 1 ? " vertex" : " vertices") +
+         " of the set belongs to a tet (removed ones do not count), so that it would act on nothing; name a set of "
+         "vertices of the body";
+}
+
 std::string no_face(std::size_t vertices) {
   return "load: the set of " + std::to_string(vertices) + (vertices == 1 ? " vertex" : " vertices") +
          " spans no face of the body's surface: no face has all three corners in it. Traction, pressure, moment, "
@@ -74,6 +99,9 @@ std::vector<std::uint32_t> Loads::add(const Body& body, std::span<const std::uin
   load.vertices.assign(vertices.begin(), vertices.end());
   std::sort(load.vertices.begin(), load.vertices.end());
   load.vertices.erase(std::unique(load.vertices.begin(), load.vertices.end()), load.vertices.end());
+  if (std::none_of(load.vertices.begin(), load.vertices.end(), [&](auto v) { return bears(body, v); })) {
+    throw std::invalid_argument(no_bearer(load.vertices.size()));
+  }
   load.share.assign(load.vertices.size(), 1.0 / static_cast<double>(load.vertices.size()));
   if (what.needs_faces()) load.faces = spanned_faces(body, load.vertices);
   if (what.needs_faces() && load.faces.empty()) throw std::invalid_argument(no_face(load.vertices.size()));
@@ -147,9 +175,12 @@ void Loads::prepare(Load& load, const Body& body) {
   measure(load, body);
   take_dead(load, body);
   const SurfaceLoad& what = load.what;
+  const double all = over_shares_borne(body, load.vertices, load.share);
+  const Vec3d spring = what.spring * all, dashpot = what.dashpot * all;
   for (std::size_t k = 0; k < load.vertices.size(); ++k) {
-    add_to(spring_, body.vertex_count, load.vertices[k], what.spring * load.share[k]);
-    add_to(dashpot_, body.vertex_count, load.vertices[k], what.dashpot * load.share[k]);
+    if (!bears(body, load.vertices[k])) continue;
+    add_to(spring_, body.vertex_count, load.vertices[k], spring * load.share[k]);
+    add_to(dashpot_, body.vertex_count, load.vertices[k], dashpot * load.share[k]);
   }
   for (std::size_t k = 0; k < load.corners.size(); ++k) {
     add_to(spring_, body.vertex_count, load.corners[k], what.spring_per_area * load.area[k]);
@@ -214,9 +245,11 @@ std::span<const Vec3d> Loads::at(double time, const Body& body, std::span<const 
   std::fill(row_.begin(), row_.end(), 0.0);
   for (const Load& load : loads_) {
     const double scale = load.scale ? load.scale(time) : 1.0;
-    const Vec3d f = load.what.force * scale;
     if (load.what.force != Vec3d{}) {
-      for (std::size_t k = 0; k < load.vertices.size(); ++k) force_[load.vertices[k]] += f * load.share[k];
+      const Vec3d f = load.what.force * scale * over_shares_borne(body, load.vertices, load.share);
+      for (std::size_t k = 0; k < load.vertices.size(); ++k) {
+        if (bears(body, load.vertices[k])) force_[load.vertices[k]] += f * load.share[k];
+      }
     }
     for (std::size_t k = 0; k < load.dead.size(); ++k) force_[load.corners[k]] += load.dead[k] * scale;
     if (load.follows()) follow(load, scale, body, u);

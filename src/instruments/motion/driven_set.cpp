@@ -1,6 +1,7 @@
 // driven_set.cpp — see driven_set.h.
 #include "glisson/instruments/driven_set.h"
 
+#include <algorithm>
 #include <array>
 #include <numbers>
 
@@ -36,6 +37,17 @@ constexpr std::array<InstrumentColumn, 8> kTurningColumns{{kPartColumns[0],
                                                            {"angle_deg", angle_deg},
                                                            {"torque_N_m", torque_about_axis}}};
 
+/// The mean place at rest of those vertices that belong to a tet.
+Vec3d middle_of(const Simulation& simulation, std::span<const std::uint32_t> vertices) {
+  const auto moves = [&](std::uint32_t v) { return simulation.masses()[v] > 0.0; };
+  const double share = 1.0 / static_cast<double>(std::count_if(vertices.begin(), vertices.end(), moves));
+  Vec3d middle{};
+  for (const std::uint32_t v : vertices) {
+    if (moves(v)) middle += simulation.mesh().vertices[v] * share;
+  }
+  return middle;
+}
+
 }  // namespace
 
 DrivenSet::DrivenSet(DrivenSetOptions options, RigidPath path, std::optional<RotationMotion> rotation)
@@ -49,10 +61,7 @@ DrivenSet::DrivenSet(DrivenSetOptions options, ToolPath path)
 void DrivenSet::between_steps(Simulation& simulation) {
   constraint_ = rigid_ ? simulation.drive_rigidly(options_.vertices, rigid_, options_.axes, options_.from)
                        : simulation.drive(options_.vertices, displacement_, options_.axes, options_.from);
-  middle_ = {};
-  for (const std::uint32_t v : options_.vertices) {
-    middle_ += simulation.mesh().vertices[v] * (1.0 / static_cast<double>(options_.vertices.size()));
-  }
+  middle_ = middle_of(simulation, options_.vertices);
   scheme_ = SimulationParts::weak_scheme(simulation);
 }
 
