@@ -13,6 +13,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 TetMesh one_tet() { return {{{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}}, {{0, 1, 2, 3}}, {}, {}, {}}; }
 
@@ -117,6 +118,27 @@ TEST(Inspect, CountsPiecesByFaces) {
   EXPECT_EQ(report.pieces, 2u);
   EXPECT_EQ(report.boundary_triangles, 8u);
   EXPECT_THAT(report.warnings, Contains(HasSubstr("2 pieces that share no face (1 tet from tet 0, 1 tet from tet 1)")));
+}
+
+// Pieces feel nothing of each other, and the report says so; of two that are near enough to meet it says how near, by their boxes:
+// two blocks of 20 mm over one another, 1 mm apart, in one another and 1 m apart.
+TEST(Inspect, SaysThatPiecesDoNotTouch) {
+  const TetMesh block = box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}});
+  const auto warning = [&](double lift) {
+    TetMesh two = block;
+    for (const Vec3d& x : block.vertices) two.vertices.push_back(x + Vec3d{0.0, 0.0, 0.02 + lift});
+    const auto first = static_cast<std::uint32_t>(block.vertices.size());
+    for (const Tet& t : block.tets) two.tets.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
+    const MeshReport report = inspect(two);
+    EXPECT_EQ(report.pieces, 2u);
+    return report.warnings.empty() ? std::string() : report.warnings.front();
+  };
+  for (const double lift : {0.001, -0.005, 1.0}) {
+    EXPECT_THAT(warning(lift), HasSubstr("do not touch each other: no contact between them is computed")) << lift;
+  }
+  EXPECT_THAT(warning(0.001), HasSubstr("from tet 0 and tet 48 are 1 mm apart: WHERE THEY MEET"));
+  EXPECT_THAT(warning(-0.005), HasSubstr("from tet 0 and tet 48 overlap: WHERE THEY MEET"));
+  EXPECT_THAT(warning(1.0), Not(HasSubstr("WHERE THEY MEET")));
 }
 
 // A face shared by three tets is not manifold.

@@ -7,8 +7,8 @@
 
 #include "mesh/inspect/require_valid.h"
 #include "mesh/inspect/warnings.h"
-#include "mesh/topology/buckets.h"
 #include "mesh/topology/faces.h"
+#include "mesh/topology/repeated_tets.h"
 
 namespace glisson {
 namespace {
@@ -45,25 +45,8 @@ void find_degenerate_and_inverted(const TetMesh& mesh, MeshReport& report) {
 }
 
 void find_duplicates(const TetMesh& mesh, MeshReport& report) {
-  struct SortedTet {
-    Triangle others;
-    std::uint32_t tet;
-    bool operator<(const SortedTet& b) const { return others != b.others ? others < b.others : tet < b.tet; }
-  };
-  auto tets = detail::make_buckets<SortedTet>(mesh.vertices.size(), [&](const auto& sink) {
-    for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
-      Tet v = mesh.tets[t];
-      std::sort(v.begin(), v.end());
-      sink(v[0], SortedTet{{v[1], v[2], v[3]}, t});
-    }
-  });
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const auto bucket = tets.bucket(v);
-    std::sort(bucket.begin(), bucket.end());
-    for (std::size_t i = 1; i < bucket.size(); ++i) {
-      if (bucket[i].others == bucket[i - 1].others) report.duplicate_tets.push_back(bucket[i].tet);
-    }
-  }
+  detail::for_each_repeated_tet(mesh.tets, mesh.vertices.size(),
+                                [&](std::uint32_t, std::uint32_t again) { report.duplicate_tets.push_back(again); });
   std::sort(report.duplicate_tets.begin(), report.duplicate_tets.end());
 }
 
@@ -101,6 +84,25 @@ class TetPieces {
   std::vector<std::uint32_t> parent_;
 };
 
+/// The box around each piece.
+void find_boxes(const TetMesh& mesh, const std::vector<bool>& skipped, TetPieces& pieces, detail::Findings& findings) {
+  for (const std::uint32_t t : findings.piece_starts) {
+    const Vec3d first = mesh.vertices[mesh.tets[t][0]];
+    findings.boxes.push_back({first, first});
+  }
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
+    if (skipped[t]) continue;
+    const auto piece = std::ranges::lower_bound(findings.piece_starts, pieces.root(t)) - findings.piece_starts.begin();
+    auto& [low, high] = findings.boxes[static_cast<std::size_t>(piece)];
+    for (const std::uint32_t v : mesh.tets[t]) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], mesh.vertices[v][a]);
+        high[a] = std::max(high[a], mesh.vertices[v][a]);
+      }
+    }
+  }
+}
+
 /// Boundary, non-manifold faces and pieces. Duplicate tets and tets with a vertex twice would only repeat
 /// their own fault here, so they are left out.
 void find_faces(const TetMesh& mesh, MeshReport& report, detail::Findings& findings) {
@@ -121,6 +123,7 @@ void find_faces(const TetMesh& mesh, MeshReport& report, detail::Findings& findi
     findings.piece_sizes.push_back(sizes[t]);
   }
   report.pieces = findings.piece_sizes.size();
+  if (report.pieces > 1) find_boxes(mesh, skipped, pieces, findings);
 }
 
 /// Worst and median shape, and the tets that are badly shaped without being degenerate or inverted.

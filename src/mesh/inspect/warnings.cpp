@@ -33,7 +33,35 @@ std::string unit_warning(double extent) {
          "scale = 1000.";
 }
 
-std::string pieces_warning(const Findings& findings) {
+/// Distance of two boxes [m]; 0 where they overlap.
+double gap_of(const std::array<Vec3d, 2>& a, const std::array<Vec3d, 2>& b) {
+  Vec3d gap{};
+  for (std::size_t i = 0; i < 3; ++i) gap[i] = std::max({0.0, a[0][i] - b[1][i], b[0][i] - a[1][i]});
+  return norm(gap);
+}
+
+/// That pieces do not feel each other, and which two are near enough to meet; of many pieces only the first are looked at.
+std::string meeting_text(const MeshReport& r, const Findings& findings) {
+  constexpr std::size_t kMost = 500;
+  constexpr double kNear = 0.25;  // of the mesh's diagonal: what a deep press bridges
+  std::size_t one = 0, other = 0;
+  double least = kNear * norm(r.box_max - r.box_min);
+  for (std::size_t i = 0; i < std::min(kMost, findings.boxes.size()); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const double gap = gap_of(findings.boxes[i], findings.boxes[k]);
+      if (gap < least) one = k, other = i, least = gap;
+    }
+  }
+  std::string text =
+      "Pieces do not touch each other: no contact between them is computed, they pass through one another.";
+  if (other == 0) return text;
+  return text + " The boxes of those from tet " + std::to_string(findings.piece_starts[one]) + " and tet " +
+         std::to_string(findings.piece_starts[other]) +
+         (least > 0.0 ? " are " + number_text(1e3 * least, 3) + " mm apart" : std::string(" overlap")) +
+         ": WHERE THEY MEET, THE RESULT IS WRONG; join them by common faces, or keep them apart.";
+}
+
+std::string pieces_warning(const MeshReport& r, const Findings& findings) {
   constexpr std::size_t kShown = 4;
   const std::size_t pieces = findings.piece_sizes.size();
   std::string text = "The mesh is in " + std::to_string(pieces) + " pieces that share no face (";
@@ -42,7 +70,8 @@ std::string pieces_warning(const Findings& findings) {
             std::to_string(findings.piece_starts[i]);
   }
   if (pieces > kShown) text += ", and " + std::to_string(pieces - kShown) + " more";
-  return text + "): a piece without support falls; hold each, remove the small ones, or merge double vertices.";
+  return text + "): a piece without support falls; hold each, remove the small ones, or merge double vertices. " +
+         meeting_text(r, findings);
 }
 
 std::string shape_warning(const MeshReport& r, std::span<const std::uint32_t> bad_tets) {
@@ -69,7 +98,7 @@ std::vector<std::string> report_warnings(const MeshReport& r, const Findings& fi
     w.push_back(count_text(u.size(), "vertex", "vertices") + " (" + index_list(u) + ")" + is_or_are(u.size()) +
                 "in no tet: without mass or force, they stay where they are; remove them, or look for missing tets.");
   }
-  if (r.pieces > 1) w.push_back(pieces_warning(findings));
+  if (r.pieces > 1) w.push_back(pieces_warning(r, findings));
   if (r.non_manifold_faces > 0) {
     w.push_back(count_text(r.non_manifold_faces, "face", "faces") + (r.non_manifold_faces == 1 ? " is" : " are") +
                 " shared by more than two tets: tets overlap there; remesh.");

@@ -14,6 +14,7 @@ struct Findings {
   std::vector<std::uint32_t> bad_tets;      ///< mean ratio in (0, kBadMeanRatio), not degenerate
   std::vector<std::uint32_t> piece_starts;  ///< lowest tet of each piece
   std::vector<std::size_t> piece_sizes;     ///< tets of each piece
+  std::vector<std::array<Vec3d, 2>> boxes;  ///< lowest and highest corner of each piece [m]
 };
 
 /// @param report  filled but for `warnings`
