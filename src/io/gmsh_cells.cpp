@@ -1,8 +1,10 @@
 #include "io/gmsh_cells.h"
 
 #include <algorithm>
+#include <set>
 
 #include "base/text.h"
+#include "mesh/topology/repeated_tets.h"
 
 namespace glisson::detail {
 namespace {
@@ -73,7 +75,8 @@ void GmshCells::add(const GmshCellType& type, std::span<const std::int64_t> grou
   if (type.type == kGmshLinearTet) {
     tets_.push_back({vertices[0], vertices[1], vertices[2], vertices[3]});
     regions_.push_back(groups.empty() ? 0 : static_cast<int>(groups[0]));
-    tets_in_several_groups_ += groups.size() > 1;
+    for (std::size_t i = 1; i < groups.size(); ++i)
+      other_volumes_.emplace_back(tets_.size() - 1, std::int64_t(groups[i]));
     return;
   }
   if (type.dimension == 3 || groups.empty()) ++skipped_[type.plural];
@@ -91,7 +94,53 @@ std::string GmshCells::name_of(Group group) const {
   return kinds[group.first] + std::to_string(group.second);
 }
 
-void GmshCells::finish(RawMesh& raw) {
+/// The name of a volume's set is that of the volume, unless a set of lower dimension has it.
+std::string GmshCells::set_name_of(Group group, const TetMesh& mesh) const {
+  std::string name = name_of(group);
+  if (group.first == 3 && mesh.vertex_sets.contains(name)) name = "volume_" + std::to_string(group.second);
+  return name;
+}
+
+/// Makes one tet of those that stand in the file once for each of their volumes. Copies in the same volume are a fault of the mesh,
+/// which its report names.
+void GmshCells::join_copies(std::size_t vertices) {
+  std::vector<char> is_copy(tets_.size(), 0);
+  for_each_repeated_tet(tets_, vertices, [&](std::uint32_t first, std::uint32_t again) {
+    if (regions_[again] == regions_[first]) return;
+    is_copy[again] = 1;
+    if (regions_[again] == 0) return;
+    if (regions_[first] == 0) regions_[first] = regions_[again];
+    if (regions_[again] != regions_[first]) other_volumes_.emplace_back(first, regions_[again]);
+  });
+  std::vector<std::size_t> place(tets_.size());
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < tets_.size(); ++t) {
+    place[t] = kept;
+    if (is_copy[t] != 0) continue;
+    tets_[kept] = tets_[t], regions_[kept++] = regions_[t];
+  }
+  tets_.resize(kept), regions_.resize(kept);
+  for (auto& other : other_volumes_) other.first = place[other.first];
+}
+
+/// Makes vertex sets of the volumes that have tets in common with others.
+void GmshCells::add_shared_volumes() {
+  std::set<std::int64_t> shared;
+  for (const auto& [tet, volume] : other_volumes_) shared.insert({volume, regions_[tet]});
+  const auto add_tet = [this](std::int64_t volume, std::size_t tet) {
+    auto& set = sets_[{3, volume}];
+    set.insert(set.end(), tets_[tet].begin(), tets_[tet].end());
+  };
+  for (std::size_t t = 0; t < tets_.size() && !shared.empty(); ++t) {
+    if (shared.contains(regions_[t])) add_tet(regions_[t], t);
+  }
+  for (const auto& [tet, volume] : other_volumes_) add_tet(volume, tet);
+}
+
+void GmshCells::finish(RawMesh& raw, bool copied) {
+  const bool several = std::any_of(regions_.begin(), regions_.end(), [&](int region) { return region != regions_[0]; });
+  if (copied && several) join_copies(raw.mesh.vertices.size());
+  add_shared_volumes();
   raw.mesh.tets = std::move(tets_);
   if (std::any_of(regions_.begin(), regions_.end(), [](int region) { return region != 0; })) {
     raw.mesh.regions = std::move(regions_);
@@ -99,15 +148,21 @@ void GmshCells::finish(RawMesh& raw) {
   for (const auto& [group, name] : names_) {
     if (group.first == 3) raw.mesh.region_names[static_cast<int>(group.second)] = name;
   }
+  std::string volumes;
   for (auto& [group, vertices] : sets_) {
-    auto& set = raw.mesh.vertex_sets[name_of(group)];
+    const std::string name = set_name_of(group, raw.mesh);
+    auto& set = raw.mesh.vertex_sets[name];
     set.insert(set.end(), vertices.begin(), vertices.end());
+    if (group.first == 3) volumes += (volumes.empty() ? "\"" : ", \"") + name + '"';
   }
   raw.skipped = std::move(skipped_);
-  if (tets_in_several_groups_ > 0) {
-    raw.notes.push_back(count_text(tets_in_several_groups_, "tet is", "tets are") +
-                        " in more than one physical volume: the first one of each counts as its region.");
-  }
+  if (other_volumes_.empty()) return;
+  std::set<std::size_t> tets;
+  for (const auto& [tet, volume] : other_volumes_) tets.insert(tet);
+  raw.notes.push_back(count_text(tets.size(), "tet is", "tets are") +
+                      " in more than one physical volume: the first one of each counts as its region, and all of them "
+                      "are vertex sets: " +
+                      volumes + ".");
 }
 
 }  // namespace glisson::detail

@@ -48,18 +48,24 @@ class GmshCells {
   /// @param groups    physical tags, none of them 0
   /// @param vertices  as many as the type has nodes
   void add(const GmshCellType& type, std::span<const std::int64_t> groups, std::span<const std::uint32_t> vertices);
-  /// Hands regions, names and sets over to the mesh.
-  void finish(RawMesh& raw);
+  /// Hands regions, names and sets over to the mesh, whose vertices are there. A tet in several volumes has the first of these as
+  /// its region, and all of them become vertex sets too.
+  /// @param copied  whether an element is written once for each of its groups, as version 2 does
+  void finish(RawMesh& raw, bool copied);
 
  private:
   std::string name_of(Group group) const;
+  std::string set_name_of(Group group, const TetMesh& mesh) const;
+  void join_copies(std::size_t vertices);
+  void add_shared_volumes();
 
   std::vector<Tet> tets_;
   std::vector<int> regions_;
   std::map<Group, std::string> names_;
   std::map<Group, std::vector<std::uint32_t>> sets_;
   std::map<std::string, std::size_t> skipped_;
-  std::size_t tets_in_several_groups_ = 0;
+  std::vector<std::pair<std::size_t, std::int64_t>>
+      other_volumes_;  ///< tets and volumes they are in besides their region
 };
 
 }  // namespace glisson::detail

@@ -3,9 +3,10 @@
 // Why our own parser: Gmsh's library is GPL, and no C++ reader of its format under a permissive licence is
 // packaged for the systems we build on. VTK, which reads our other formats, does not know this one.
 //
-// What is read: nodes (tags may have gaps and any order), linear tetrahedra, physical groups. A physical
-// volume is a region, a physical surface, curve or point a vertex set of its name. Everything else of the
-// format (periodicity, partitions, results) is passed over.
+// What is read: nodes (tags may have gaps and any order, parameters on their entity are dropped), linear
+// tetrahedra, physical groups, those of partitions too. A physical volume is a region, a physical surface,
+// curve or point a vertex set of its name. Everything else of the format (periodicity, results) is passed over.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -30,7 +31,7 @@ class GmshReader {
     while (source_.next_section(section)) read_section(section);
     if (!has_nodes_) source_.fail("the file ends without a $Nodes section: it is cut off");
     if (!has_elements_) source_.fail("the file ends without an $Elements section: it is cut off");
-    cells_.finish(raw_);
+    cells_.finish(raw_, !version_4_);
     return std::move(raw_);
   }
 
@@ -38,11 +39,14 @@ class GmshReader {
   void read_format();
   void read_section(const std::string& section);
   void read_physical_names();
-  void read_nodes_22();
+  void read_nodes_22(bool parametric);
+  void read_parameters_22();
   void read_elements_22();
   void read_element_22(const GmshCellType& type, std::uint64_t number, std::int64_t tags);
-  void read_entities();
-  void read_entity(int dimension);
+  void read_entities(bool partitioned);
+  void read_ghosts();
+  void read_entity(int dimension, bool partitioned);
+  void read_groups(std::pair<int, std::int64_t> entity, std::pair<int, std::int64_t> parent);
   void read_nodes_41();
   void read_node_block(std::uint64_t& number);
   void read_elements_41();
@@ -89,13 +93,16 @@ void GmshReader::read_section(const std::string& section) {
   if (section == "PhysicalNames") {
     read_physical_names();
   } else if (section == "Entities" && version_4_) {
-    read_entities();
+    read_entities(false);
+  } else if (section == "PartitionedEntities" && version_4_) {
+    read_entities(true);
   } else if (section == "Nodes") {
-    version_4_ ? read_nodes_41() : read_nodes_22();
+    version_4_ ? read_nodes_41() : read_nodes_22(false);
+  } else if (section == "ParametricNodes" && !version_4_) {
+    read_nodes_22(true);
   } else if (section == "Elements") {
     version_4_ ? read_elements_41() : read_elements_22();
   } else {
-    if (section == "PartitionedEntities") raw_.notes.push_back("The file is partitioned; its partitions are ignored.");
     source_.skip_section();
     return;
   }
@@ -135,7 +142,15 @@ void GmshReader::finish_nodes(std::uint64_t said) {
   has_nodes_ = true;
 }
 
-void GmshReader::read_nodes_22() {
+/// The entity that a node lies on, and its parameters there.
+void GmshReader::read_parameters_22() {
+  const std::int64_t dimension = source_.integer("the entity's dimension");
+  if (dimension < 0 || dimension > 3) source_.fail("entity dimension " + std::to_string(dimension) + "; from 0 to 3");
+  source_.integer("the entity's tag");
+  for (std::int64_t p = 0; p < dimension % 3; ++p) source_.real("a parametric coordinate");  // none in volumes
+}
+
+void GmshReader::read_nodes_22(bool parametric) {
   if (has_nodes_) source_.fail("a second $Nodes section");
   source_.text_record("count");
   const std::uint64_t count = source_.text_size("the number of nodes");
@@ -147,6 +162,7 @@ void GmshReader::read_nodes_22() {
     if (tag < 0) source_.fail("node number " + std::to_string(tag) + "; it must not be negative");
     nodes_.add(static_cast<std::uint64_t>(tag));
     read_position();
+    if (parametric) read_parameters_22();
   }
   finish_nodes(count);
 }
@@ -224,24 +240,55 @@ void GmshReader::read_elements_22() {
   }
 }
 
-void GmshReader::read_entity(int dimension) {
-  const std::int64_t tag = source_.integer("the entity's tag");
-  for (int i = 0; i < (dimension == 0 ? 3 : 6); ++i) source_.real("a bound");
+/// The physical groups of an entity; a part of another of its dimension is in the groups of that one where it has none of its own.
+void GmshReader::read_groups(std::pair<int, std::int64_t> entity, std::pair<int, std::int64_t> parent) {
+  std::vector<std::int64_t> own;
   const std::uint64_t groups = source_.size("the number of physical tags");
   source_.require_room(groups, 2, 4, "physical tags");
   for (std::uint64_t i = 0; i < groups; ++i) {
     // A negative tag means the entity is in the group with its orientation reversed.
     const std::int64_t group = std::abs(source_.integer("a physical tag"));
-    if (group != 0) entity_groups_[{dimension, tag}].push_back(group);
+    if (group != 0 && std::find(own.begin(), own.end(), group) == own.end()) own.push_back(group);
   }
+  if (own.empty() && parent.first == entity.first) own = entity_groups_[parent];
+  entity_groups_[entity] = std::move(own);
+}
+
+void GmshReader::read_entity(int dimension, bool partitioned) {
+  const std::int64_t tag = source_.integer("the entity's tag");
+  std::pair<int, std::int64_t> parent{-1, 0};
+  if (partitioned) {
+    parent.first = static_cast<int>(source_.integer("the parent's dimension"));
+    parent.second = source_.integer("the parent's tag");
+    const std::uint64_t partitions = source_.size("the number of partitions");
+    source_.require_room(partitions, 2, 4, "partitions");
+    for (std::uint64_t i = 0; i < partitions; ++i) source_.integer("a partition");
+  }
+  for (int i = 0; i < (dimension == 0 ? 3 : 6); ++i) source_.real("a bound");
+  read_groups({dimension, tag}, parent);
   if (dimension == 0) return;
   const std::uint64_t bounding = source_.size("the number of bounding entities");
   source_.require_room(bounding, 2, 4, "bounding entities");
   for (std::uint64_t i = 0; i < bounding; ++i) source_.integer("a bounding entity");
 }
 
-void GmshReader::read_entities() {
-  if (has_elements_) source_.fail("$Entities stands after $Elements; it must come before");
+/// The head of partitioned entities: how many partitions, and which entities hold copies of others' elements.
+void GmshReader::read_ghosts() {
+  source_.record("head");
+  source_.size("the number of partitions");
+  source_.record("number of ghost entities");
+  const std::uint64_t ghosts = source_.size("the number of ghost entities");
+  source_.require_room(ghosts, 4, 8, "ghost entities");
+  for (std::uint64_t i = 1; i <= ghosts; ++i) {
+    source_.record("ghost entity", i);
+    source_.integer("the ghost entity's tag");
+    source_.integer("its partition");
+  }
+}
+
+void GmshReader::read_entities(bool partitioned) {
+  if (has_elements_) source_.fail("entities stand after $Elements; they must come before");
+  if (partitioned) read_ghosts();
   source_.record("counts");
   std::array<std::uint64_t, 4> counts{};
   for (std::uint64_t& count : counts) {
@@ -252,7 +299,7 @@ void GmshReader::read_entities() {
   for (int dimension = 0; dimension < 4; ++dimension) {
     for (std::uint64_t i = 1; i <= counts[static_cast<std::size_t>(dimension)]; ++i) {
       source_.record(kinds[dimension], i);
-      read_entity(dimension);
+      read_entity(dimension, partitioned);
     }
   }
 }
