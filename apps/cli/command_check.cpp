@@ -44,12 +44,20 @@ struct CheckOptions {
 constexpr std::size_t kFew = 20;      // one tet in so many is what may keep the step short alone
 constexpr double kWorthSaying = 1.2;  // how many times as long a step would be without them
 
+constexpr std::size_t kMostCorners = 1000;  // that are looked at
+
 constexpr double kCoarseEdge = 0.08, kFineEdge = 0.04;  // cells across a sharp edge, of its size (docs/contact.md)
 
 /// Stops a run at its first report of progress, and keeps what the run knew at its start.
 class Taste : public RunObserver {
  public:
-  void on_start(const Variant&, const Simulation& simulation) override {
+  void on_start(const Variant& variant, const Simulation& simulation) override {
+    const double end = run_duration(variant);
+    for (double t = simulation.next_corner(0.0); t < end && corners.size() < kMostCorners;
+         t = simulation.next_corner(t)) {
+      corners.push_back(t);
+    }
+    if (std::isfinite(end)) corners.push_back(end);
     mesh = simulation.mesh();
     step_s = simulation.step_size();
     stable_step_s = simulation.stable_step();
@@ -64,6 +72,7 @@ class Taste : public RunObserver {
   double step_s = 0.0, stable_step_s = 0.0, mass_kg = 0.0;
   MassScaling scaling;
   std::vector<LimitingTet> limits;  ///< of an explicit step: the tets with the smallest bounds
+  std::vector<double> corners;      ///< of motions and loads, and the end of the run [s]
 };
 
 struct Cost {
@@ -417,6 +426,30 @@ void print_precision(const Variant& v) {
       fmt::join(own, ", "));
 }
 
+/// How far a time is from the nearest end of a step, in steps.
+double off_steps(double time, double step) { return std::abs(time / step - std::round(time / step)); }
+
+/// Where given long steps pass over corners: how many, the first, and what ends steps there.
+void print_corners(const Variant& v, const Taste& taste) {
+  constexpr double kOff = 1e-3;  // of a step
+  constexpr int kMostParts = 1000;
+  if (!v.simulation.step || !capabilities(v.simulation.integrator).any_step_is_stable) return;
+  const double step = *v.simulation.step;
+  const auto misses = [](double h) { return [h](double corner) { return off_steps(corner, h) > kOff; }; };
+  const auto missed = std::ranges::count_if(taste.corners, misses(step));
+  if (missed == 0) return;
+  const double first = *std::ranges::find_if(taste.corners, misses(step));
+  std::string other;
+  for (int parts = 1; parts <= kMostParts && other.empty(); ++parts) {
+    const double h = taste.corners.front() / (parts + std::floor(taste.corners.front() / step));
+    if (std::ranges::none_of(taste.corners, misses(h))) other = fmt::format(", and so does step_s = {:.12g}", h);
+  }
+  say("  corners  step_s = {:.4g} passes over {} corner{} of motions, loads and the run's end, the first at {:.6g} s: "
+      "a "
+      "peak there\n           is cut off. step_s = \"auto\" ends steps at all of them{}\n",
+      step, missed, missed == 1 ? "" : "s", first, other);
+}
+
 /// The implicit integrators compute in double, whatever the scene says.
 bool in_single(const Variant& v, const Taste& taste) {
   return v.simulation.precision != Precision::double_precision && std::isfinite(taste.stable_step_s);
@@ -430,6 +463,7 @@ void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, co
       heavy            ? "kept by mass for tets that need a shorter step, shorter while that mass has an effect"
       : explicit_steps ? fmt::format("stable below {:.4g} s at rest", taste.stable_step_s)
                        : "stable at any step");
+  print_corners(v, taste);
   print_limits(v, load, taste);
   if (explicit_steps) print_stages(v, load, taste), print_slow(v, taste);
   print_precision(v);

@@ -1,11 +1,11 @@
 // pose.h — where a rigid body is and how it is turned.
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "glisson/field.h"
 #include "glisson/math.h"
+#include "glisson/time_function.h"
 
 namespace glisson {
 
@@ -27,7 +27,7 @@ struct Pose {
 };
 
 /// Rigid motion of space: a place x at its start is at position + axes x at time t.
-using PoseMotion = std::function<Pose(double time)>;
+using PoseMotion = TimeFunction<Pose>;
 
 /// A rigid motion and its end [s]; none: it does not end.
 struct RigidPath {

@@ -94,7 +94,8 @@ StepStatus LiveSimulation::advance(double until, const std::optional<std::functi
                                    std::optional<double> every) {
   StepStatus worst = StepStatus::ok;
   const auto before = [this](double time) {
-    const Simulation& s = own_ ? *own_ : built_->simulation;
+    Simulation& s = own_ ? *own_ : built_->simulation;
+    s.set_step_end(time);
     return time - s.time() > 0.5 * s.step_size();
   };
   const double start = get().time();

@@ -195,20 +195,20 @@ ConstraintId Simulation::drive_rigidly(std::string_view set, PoseMotion motion, 
   return drive_rigidly(mesh().vertex_set(std::string(set)), std::move(motion), axes, from);
 }
 
-void Simulation::add_load(std::string_view set, Vec3d force, std::function<double(double)> scale) {
+void Simulation::add_load(std::string_view set, Vec3d force, TimeFunction<double> scale) {
   add_load(mesh().vertex_set(std::string(set)), force, std::move(scale));
 }
 
-void Simulation::add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale) {
+void Simulation::add_load(std::span<const std::uint32_t> vertices, Vec3d force, TimeFunction<double> scale) {
   impl_->scheme->add_load(vertices, {.force = force}, std::move(scale));
 }
 
 void Simulation::add_surface_load(std::span<const std::uint32_t> vertices, const SurfaceLoad& load,
-                                  std::function<double(double)> scale) {
+                                  TimeFunction<double> scale) {
   impl_->scheme->add_load(vertices, load, std::move(scale));
 }
 
-void Simulation::add_surface_load(std::string_view set, const SurfaceLoad& load, std::function<double(double)> scale) {
+void Simulation::add_surface_load(std::string_view set, const SurfaceLoad& load, TimeFunction<double> scale) {
   add_surface_load(mesh().vertex_set(std::string(set)), load, std::move(scale));
 }
 
@@ -294,6 +294,7 @@ StepResult Simulation::step() {
 }
 
 StepResult Simulation::advance_to(double time) {
+  set_step_end(time);
   StepResult last;
   while (last.made() && this->time() + 0.5 * step_size() < time) last = step();
   return last;
@@ -301,6 +302,8 @@ StepResult Simulation::advance_to(double time) {
 
 double Simulation::time() const { return impl_->scheme->state().time; }
 double Simulation::step_size() const { return impl_->scheme->step_size(); }
+double Simulation::next_corner(double after) const { return impl_->scheme->next_corner(after); }
+void Simulation::set_step_end(double time) { impl_->scheme->set_step_end(time); }
 double Simulation::stable_step() const { return impl_->scheme->stable_step(); }
 std::uint64_t Simulation::steps() const { return impl_->scheme->state().steps; }
 const TetMesh& Simulation::mesh() const { return impl_->mesh; }

@@ -33,7 +33,8 @@ struct Habit {
 };
 
 ToolPath way_of(const std::shared_ptr<ToolDriver>& driver) {
-  return ToolPath{[driver](double t) { return driver->advance(t, 0.0, {}).position - driver->start().position; },
+  return ToolPath{{[driver](double t) { return driver->advance(t, 0.0, {}).position - driver->start().position; },
+                   driver->corners()},
                   driver->end()};
 }
 

@@ -18,6 +18,7 @@
 #include "glisson/math.h"
 #include "glisson/pose.h"
 #include "glisson/simulation/interaction.h"
+#include "glisson/time_function.h"
 
 namespace glisson {
 
@@ -58,6 +59,8 @@ class ToolDriver {
   virtual Pose advance(double time, double h, const Wrench& on_tool) = 0;
   /// Time at which the motion has ended [s]; none: it does not end by itself.
   virtual std::optional<double> end() const { return {}; }
+  /// Corners of its motion or push, where long steps end.
+  virtual CornerTimes corners() const { return {}; }
   /// Whether its path depends on the force.
   virtual bool yields() const { return false; }
   /// Whether it does so in long steps, too, by advance_under().
@@ -116,6 +119,7 @@ class Instrument : public Interaction {
   double read(std::string_view column) const;
   const ToolDriver& driver() const { return *driver_; }
   void set_long_steps(bool are_long) override;
+  double next_corner(double after) const override { return driver_->corners().after(after); }
   /// Whether a driver that yields takes the tool elsewhere by the force found than where it was tried.
   bool tries_again() final;
   /// All events so far, in order.

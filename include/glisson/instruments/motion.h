@@ -34,6 +34,8 @@ struct PressMotion {
 double press_depth(const PressMotion& motion, double time);
 /// Time at which the motion has ended [s].
 double press_end(const PressMotion& motion);
+/// Where its speed or acceleration jumps.
+CornerTimes press_corners(const PressMotion& motion);
 /// The motion as displacement for Simulation::drive.
 /// @throws std::invalid_argument naming the field, its value and the allowed range
 Motion press(const PressMotion& motion);

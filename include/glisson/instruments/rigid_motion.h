@@ -80,6 +80,7 @@ class RigidDriver final : public ToolDriver {
   Pose start() const override { return start_; }
   Pose advance(double time, double h, const Wrench& on_tool) override;
   std::optional<double> end() const override { return path_.end; }
+  CornerTimes corners() const override { return path_.pose.corners; }
 
  private:
   Pose start_;

@@ -30,6 +30,7 @@ class PathDriver final : public ToolDriver {
   Pose start() const override { return start_; }
   Pose advance(double time, double h, const Wrench& on_tool) override;
   std::optional<double> end() const override { return path_.end; }
+  CornerTimes corners() const override { return path_.displacement.corners; }
 
  private:
   Pose start_;
@@ -127,13 +128,13 @@ ToolPath recorded_path(const RecordedMotion& motion);
 /// stiff, throws the tool back. A tool lighter than the tissue it carries along only creeps. In long steps the force is that at the
 /// end of the step, F too, and found together with where the tool ends.
 struct PushMotion {
-  Vec3d direction{0.0, 0.0, -1.0};      ///< d, of any length, not zero
-  std::function<double(double)> force;  ///< F at time t [N]; not none
-  double mass = 0.05;                   ///< m, of the tool and the hand behind it [kg]
-  double damping = 5.0;                 ///< c [N s/m]
-  bool guided = true;                   ///< moves along the direction only; otherwise also sideways
-  std::optional<double> stop{};         ///< largest travel along the direction [m]
-  std::optional<double> end{};          ///< end of the push, for the end of the run [s]
+  Vec3d direction{0.0, 0.0, -1.0};  ///< d, of any length, not zero
+  TimeFunction<double> force;       ///< F at time t [N]; not none
+  double mass = 0.05;               ///< m, of the tool and the hand behind it [kg]
+  double damping = 5.0;             ///< c [N s/m]
+  bool guided = true;               ///< moves along the direction only; otherwise also sideways
+  std::optional<double> stop{};     ///< largest travel along the direction [m]
+  std::optional<double> end{};      ///< end of the push, for the end of the run [s]
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -152,6 +153,7 @@ class PushDriver final : public ToolDriver {
   Pose start() const override { return start_; }
   Pose advance(double time, double h, const Wrench& on_tool) override;
   std::optional<double> end() const override { return motion_.end; }
+  CornerTimes corners() const override { return motion_.force.corners; }
   bool yields() const override { return true; }
   bool yields_in_long_steps() const override { return true; }
   Pose advance_under(double time, double h, const Wrench& at_end) override;

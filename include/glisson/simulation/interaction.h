@@ -238,6 +238,8 @@ class Interaction {
   /// shortens the stable step. Called after every step: a value that follows the state has to cover the next step.
   /// Constraints add no stiffness.
   virtual double squared_frequency() const { return 0.0; }
+  /// The first corner of its motion after a time, where a long step is to end [s].
+  virtual double next_corner(double /*after*/) const { return std::numeric_limits<double>::infinity(); }
   /// Appends stiffnesses d_v of vertices, at most one each, that bound the added stiffness K of the last add_forces:
   /// xᵀ K x ≤ Σ d_v |x_v|². Variable mass scaling then adds mass there instead of the shorter step of squared_frequency().
   /// @return whether it provides them; constant while it is attached

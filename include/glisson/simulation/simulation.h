@@ -30,6 +30,7 @@
 #include "glisson/simulation/precision.h"
 #include "glisson/simulation/surface_load.h"
 #include "glisson/simulation/tet_fields.h"
+#include "glisson/time_function.h"
 #include "glisson/words.h"
 
 namespace glisson {
@@ -318,7 +319,7 @@ struct LimitingTet {
 };
 
 /// Displacement of a driven set at time t [m]; must be 0 at the time the drive starts.
-using Motion = std::function<Vec3d(double time)>;
+using Motion = TimeFunction<Vec3d>;
 
 /// Handle of a constraint for reading its force.
 struct ConstraintId {
@@ -353,16 +354,16 @@ class Simulation {
                              double from = 0.0);
   ConstraintId drive_rigidly(std::string_view set, PoseMotion motion, Axes axes = {}, double from = 0.0);
   /// Adds a force [N], SurfaceLoad::force alone; `scale(t)` multiplies it (none: 1).
-  void add_load(std::span<const std::uint32_t> vertices, Vec3d force, std::function<double(double)> scale = {});
-  void add_load(std::string_view set, Vec3d force, std::function<double(double)> scale = {});
+  void add_load(std::span<const std::uint32_t> vertices, Vec3d force, TimeFunction<double> scale = {});
+  void add_load(std::string_view set, Vec3d force, TimeFunction<double> scale = {});
   /// Adds force, traction, pressure, moment, springs and dashpots on a set and its faces. Removed tets take the load of their
   /// faces with them; faces that a cut opens carry none.
   /// @param scale  multiplies force, traction, pressure and moment at time t (none: 1)
   /// @throws std::invalid_argument for a value outside its range, a set that spans no face where faces are needed, or springs too
   ///         stiff for a given explicit step
   void add_surface_load(std::span<const std::uint32_t> vertices, const SurfaceLoad& load,
-                        std::function<double(double)> scale = {});
-  void add_surface_load(std::string_view set, const SurfaceLoad& load, std::function<double(double)> scale = {});
+                        TimeFunction<double> scale = {});
+  void add_surface_load(std::string_view set, const SurfaceLoad& load, TimeFunction<double> scale = {});
 
   /// Attaches an instrument, needle, membrane or other interaction; it acts after those attached before. Keep the
   /// pointer to read and control it between steps.
@@ -415,12 +416,17 @@ class Simulation {
 
   /// Advances by step_size(). A step that is not made does not advance time: a loop over time has to check the result.
   [[nodiscard]] StepResult step();
-  /// Makes steps up to the one that ends nearest to `time` [s], or until one is not made. @return result of the last
-  /// step
+  /// Makes steps up to the one that ends nearest to `time` [s], or until one is not made; automatic steps of `implicit` and
+  /// `quasi_static` end there. @return result of the last step
   [[nodiscard]] StepResult advance_to(double time);
 
   double time() const;       ///< [s]
   double step_size() const;  ///< h of the next step [s]
+  /// The first corner after a time [s] of motions, loads, gravity and instruments; infinite: none follows. Automatic steps of
+  /// `implicit` and `quasi_static` end there.
+  double next_corner(double after) const;
+  /// Lets automatic steps of `implicit` and `quasi_static` end at this time, too [s]; the last one given counts. Others do not change.
+  void set_step_end(double time);
   /// h* [s]: the largest step for which the scheme is stable, from a safe upper bound of the spectrum of the
   /// free body at its present stiffness [Schwartz2002, eq. 4; docs/theory.md §4]; infinite for implicit and quasi_static
   double stable_step() const;

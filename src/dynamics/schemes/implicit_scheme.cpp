@@ -17,6 +17,9 @@ constexpr double kGrowth = 1.5;                                   ///< of an aut
 constexpr int kMostEventCuts = 7;                                 ///< events are dated to 1/128 of a step
 constexpr int kEasy = 6;                                          ///< iterations up to which a step was easy
 
+constexpr double kSameTime = 1e-9;  ///< of a step: corners so near are one
+constexpr double kSliver = 1e-3;    ///< of a step: so much longer than the largest it may be
+
 std::span<const Vec3d> view(const std::vector<Vec3d>& field) { return field; }
 
 }  // namespace
@@ -28,6 +31,22 @@ ImplicitScheme::ImplicitScheme(Body body, const SimulationOptions& options, bool
   step_ = options.step.value_or(largest_);
   info_ = {.instruction_set = "double, element by element", .threads = 1};
   now_.resize(state_.body.vertex_count);
+}
+
+/// Where a coming automatic step ends at the latest [s].
+double ImplicitScheme::next_end() const {
+  const double here =
+      state_.time + kSameTime * step_ + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(state_.time);
+  const double corner = next_corner(here);
+  return step_end_ > here ? std::min(step_end_, corner) : corner;
+}
+
+double ImplicitScheme::step_size() const {
+  const double left = state_.options.step ? std::numeric_limits<double>::infinity() : next_end() - state_.time;
+  if (!std::isfinite(left)) return step_;
+  const double even = left / std::max(1.0, std::ceil(left / step_ - kSliver));
+  return std::abs(even - last_h_) <= kSameTime * last_h_ ? last_h_
+                                                         : even;  // to the last bit, so that the factor is kept
 }
 
 double ImplicitScheme::stable_step() const { return std::numeric_limits<double>::infinity(); }
@@ -243,7 +262,8 @@ StepResult ImplicitScheme::failed(double smallest) {
 }
 
 StepResult ImplicitScheme::step() {
-  const double h = step_, begin = state_.time;
+  const double h = step_size(), begin = state_.time, corner = state_.options.step ? begin : next_end();
+  const double end = std::abs(corner - (begin + h)) < 0.5 * h ? corner : begin + h;
   fresh_ = take_hold(h) || fresh_;
   if (fresh_) {
     start_fresh();
@@ -269,7 +289,7 @@ StepResult ImplicitScheme::step() {
     const Part outcome = part(length, cuts < kMostEventCuts);
     if (outcome == Part::made) {
       --left;
-      state_.time = begin + (h - static_cast<double>(left) * length);
+      state_.time = left > 0 ? begin + (h - static_cast<double>(left) * length) : end;
       if (left > 0 && left % 2 == 0 && (dated || solver_.iterations() <= kEasy)) left /= 2, --cuts;
       continue;
     }

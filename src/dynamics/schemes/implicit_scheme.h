@@ -7,6 +7,7 @@
 // Statics is the same with α_f = 0 and no M, γ and viscosity, with the tissue's long-time stress.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,9 @@ class ImplicitScheme : public Scheme {
   ImplicitScheme(Body body, const SimulationOptions& options, bool statics = false);
 
   StepResult step() override;
-  double step_size() const override { return step_; }
+  /// An automatic step ends at the next corner, and what is left to there is divided into equal ones.
+  double step_size() const override;
+  void set_step_end(double time) override { step_end_ = time; }
   double stable_step() const override;
   double force_time() const override { return state_.time; }
   std::span<const Vec3d> displacement() const override { return now_.u; }
@@ -66,6 +69,7 @@ class ImplicitScheme : public Scheme {
   };
 
   ElementWatch& watch() { return solver_.watch(); }
+  double next_end() const;
   void start_fresh();
   std::vector<char> held_or_sprung() const;
   enum class Part { made, no_balance, overshoots };
@@ -83,7 +87,8 @@ class ImplicitScheme : public Scheme {
   BalanceSolver solver_;
   std::vector<Vec3d> last_change_;  ///< of the last step: where statics starts from [m]
   double last_h_ = 0.0;
-  double step_ = 0.0, largest_;
+  double step_ = 0.0, largest_;  ///< of an automatic step: what it is where no corner is near [s]
+  double step_end_ = std::numeric_limits<double>::infinity();  ///< as Simulation::set_step_end [s]
   bool fresh_ = true;  ///< what is held, or the body, or the state has changed from outside
   std::string message_;
 };

@@ -1,5 +1,6 @@
 #include "dynamics/schemes/scheme.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "glisson/archive.h"
@@ -14,8 +15,7 @@ ConstraintId Scheme::add_constraint(Constraint constraint) {
   return id;
 }
 
-void Scheme::add_load(std::span<const std::uint32_t> vertices, const SurfaceLoad& load,
-                      std::function<double(double)> scale) {
+void Scheme::add_load(std::span<const std::uint32_t> vertices, const SurfaceLoad& load, TimeFunction<double> scale) {
   const std::vector<std::uint32_t> acted = state_.loads.add(state_.body, vertices, load, std::move(scale));
   try {
     loads_changed(true);
@@ -25,6 +25,18 @@ void Scheme::add_load(std::span<const std::uint32_t> vertices, const SurfaceLoad
     throw;
   }
   acts_on(acted);
+}
+
+double Scheme::next_corner(double after) const {
+  double first = state_.loads.next_corner(after);
+  const auto take = [&](double corner) { first = corner > after ? std::min(first, corner) : first; };
+  if (state_.options.gravity != Vec3d{}) take(state_.options.gravity_ramp);
+  for (const Constraint& c : state_.constraints.all()) {
+    take(c.from);
+    take(std::min(c.motion.corners.after(after), c.rigid.corners.after(after)));
+  }
+  for (const auto& interaction : interactions()) take(interaction->next_corner(after));
+  return first;
 }
 
 void Scheme::require_tissues(const BlockTissues& tissues) const {

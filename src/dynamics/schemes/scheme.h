@@ -56,7 +56,7 @@ class Scheme {
 
   ConstraintId add_constraint(Constraint constraint);
   /// As Simulation::add_surface_load.
-  void add_load(std::span<const std::uint32_t> vertices, const SurfaceLoad& load, std::function<double(double)> scale);
+  void add_load(std::span<const std::uint32_t> vertices, const SurfaceLoad& load, TimeFunction<double> scale);
   void set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity);
   /// As Simulation::attach. @throws std::invalid_argument, here for every scheme that cannot
   virtual void attach(std::shared_ptr<Interaction> interaction, const BodyView& body);
@@ -67,6 +67,9 @@ class Scheme {
   /// As Simulation::step.
   virtual StepResult step() = 0;
   virtual double step_size() const = 0;
+  /// As Simulation::next_corner and set_step_end.
+  double next_corner(double after) const;
+  virtual void set_step_end(double /*time*/) {}
   virtual double stable_step() const = 0;
   virtual double force_time() const = 0;
   virtual std::span<const Vec3d> displacement() const = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -91,7 +92,7 @@ Fault SurfaceLoad::check() const {
 }
 
 std::vector<std::uint32_t> Loads::add(const Body& body, std::span<const std::uint32_t> vertices,
-                                      const SurfaceLoad& what, std::function<double(double)> scale) {
+                                      const SurfaceLoad& what, TimeFunction<double> scale) {
   require_vertices(vertices, force_.size());
   detail::require_fields("load", what);
   Load load;
@@ -271,6 +272,12 @@ std::span<const FaceStiffness> Loads::stiffness(double time, const Body& body, s
     }
   }
   return stiffness_;
+}
+
+double Loads::next_corner(double after) const {
+  double first = std::numeric_limits<double>::infinity();
+  for (const Load& load : loads_) first = std::min(first, load.scale.corners.after(after));
+  return first;
 }
 
 double Loads::squared_frequency(const Body& body) const {

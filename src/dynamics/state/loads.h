@@ -1,7 +1,6 @@
 // loads.h — forces from outside, per vertex: of sets and their faces (surface_load.h), each with its own course in time.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -27,7 +26,7 @@ class Loads {
   /// @throws std::invalid_argument for an empty set, a vertex out of range, a load that is none or not finite, or one that needs
   ///         faces on a set that spans none
   std::vector<std::uint32_t> add(const Body& body, std::span<const std::uint32_t> vertices, const SurfaceLoad& load,
-                                 std::function<double(double)> scale);
+                                 TimeFunction<double> scale);
   void take_back_last(const Body& body);
 
   /// New vertices, numbered on from the last, share the loads of those they are copies of by equal parts.
@@ -40,6 +39,8 @@ class Loads {
 
   /// Forces at time t [N], one per vertex. @param u  displacements; only read where depends_on_state()
   std::span<const Vec3d> at(double time, const Body& body, std::span<const Vec3d> u);
+  /// The first corner of a course after a time [s]; infinite: none.
+  double next_corner(double after) const;
   bool depends_on_state() const { return follows_ || !spring_.empty(); }
   /// Stiffness of what follows at the last at(), without that of moments.
   std::span<const FaceStiffness> stiffness(double time, const Body& body, std::span<const Vec3d> u);
@@ -55,7 +56,7 @@ class Loads {
  private:
   struct Load {
     SurfaceLoad what;
-    std::function<double(double)> scale;
+    TimeFunction<double> scale;
     std::vector<std::uint32_t> vertices;
     std::vector<double> share;  ///< of what is given for the whole set, per vertex
     std::vector<LoadedFace> faces;

@@ -20,6 +20,10 @@ struct Move {
     velocity = acceleration * ramp;
   }
   double time() const { return length > 0.0 ? length / velocity + ramp : 0.0; }
+  /// Where its speed or acceleration jumps, in a motion that it begins at a time.
+  CornerTimes corners(double begin) const {
+    return CornerTimes({begin, begin + ramp, begin + time() - ramp, begin + time()});
+  }
   /// Way gone after time t of the move [m].
   double gone(double t) const {
     if (t <= 0.0) return 0.0;
@@ -50,7 +54,7 @@ ToolPath steady_path(const SteadyMotion& m) {
     const double t = std::max(0.0, time - m.start);
     return velocity * (t < m.ramp ? 0.5 * t * t / m.ramp : t - 0.5 * m.ramp);
   };
-  return {displacement, {}};
+  return {{displacement, CornerTimes({m.start, m.start + m.ramp})}, {}};
 }
 
 Fault StrokeMotion::check() const { return {strokes.empty() ? "none were given; give one or more" : ""}; }
@@ -59,8 +63,11 @@ ToolPath stroke_path(const StrokeMotion& motion) {
   detail::require_fields("strokes", motion);
   double end = motion.start;
   Vec3d at{};
+  CornerTimes corners;
   for (const Stroke& stroke : motion.strokes) {
-    end += Move(norm(stroke.to - at), stroke).time() + stroke.rest;
+    const Move move(norm(stroke.to - at), stroke);
+    corners = corners.with(move.corners(end));
+    end += move.time() + stroke.rest;
     at = stroke.to;
   }
   const auto displacement = [motion](double time) {
@@ -75,7 +82,7 @@ ToolPath stroke_path(const StrokeMotion& motion) {
     }
     return from;
   };
-  return {displacement, end};
+  return {{displacement, corners}, end};
 }
 
 ToolPath sine_path(const SineMotion& m) {
@@ -86,7 +93,9 @@ ToolPath sine_path(const SineMotion& m) {
     const double depth = m.mean + m.amplitude * std::sin(2.0 * std::numbers::pi * m.frequency * t);
     return along * (x * x * (3.0 - 2.0 * x) * depth);
   };
-  return {displacement, m.start + m.duration};
+  CornerTimes corners({m.start, m.start + std::min(m.ramp, m.duration), m.start + m.duration});
+  corners.add_every(0.5 / m.frequency, m.start + 0.25 / m.frequency, m.start + m.duration);
+  return {{displacement, corners}, m.start + m.duration};
 }
 
 }  // namespace glisson

@@ -36,9 +36,16 @@ double press_end(const PressMotion& m) {
   return m.returns ? there + press_time(m) : there;
 }
 
+CornerTimes press_corners(const PressMotion& m) {
+  const double arrival = m.start + press_time(m), departure = arrival + m.hold;
+  const double ramp = std::min(m.ramp, press_time(m));
+  CornerTimes corners({m.start, m.start + ramp, arrival});
+  return m.returns ? corners.with(CornerTimes({departure, departure + ramp, press_end(m)})) : corners;
+}
+
 Motion press(const PressMotion& m) {
   detail::require_fields("press motion", m);
-  return [m, along = unit(m.direction)](double time) { return along * press_depth(m, time); };
+  return {[m, along = unit(m.direction)](double time) { return along * press_depth(m, time); }, press_corners(m)};
 }
 
 }  // namespace glisson

@@ -2,6 +2,7 @@
 #include "base/require_fields.h"
 #include "glisson/instruments/tool_motion.h"
 #include "instruments/motion/monotone_cubic.h"
+#include "instruments/motion/record_corners.h"
 
 namespace glisson {
 
@@ -16,6 +17,20 @@ Fault RecordedMotion::check() const {
   return {};
 }
 
+namespace {
+
+CornerTimes corners_of(const RecordedMotion& m, double shift) {
+  const std::vector<Vec3d>& x = m.positions;
+  const double extent = extent_of(x, [](const Vec3d& a, const Vec3d& b) { return norm(a - b); });
+  std::vector<double> times = m.times;
+  for (double& time : times) time -= shift;
+  return record_corners(times, [&](std::size_t i, std::size_t a, std::size_t b, double share) {
+    return extent > 0.0 ? norm(x[i] - x[a] - (x[b] - x[a]) * share) / extent : 0.0;
+  });
+}
+
+}  // namespace
+
 ToolPath recorded_path(const RecordedMotion& motion) {
   detail::require_fields("recorded motion", motion);
   const auto record = std::make_shared<const MonotoneCubic<Vec3d>>(motion.times, motion.positions);
@@ -23,7 +38,7 @@ ToolPath recorded_path(const RecordedMotion& motion) {
   const auto displacement = [record, shift](double time) {
     return record->at(time + shift) - record->points().front();
   };
-  return {displacement, motion.times.back() - shift};
+  return {{displacement, corners_of(motion, shift)}, motion.times.back() - shift};
 }
 
 }  // namespace glisson

@@ -10,6 +10,7 @@
 #include "glisson/instruments/motion.h"
 #include "glisson/instruments/rigid_motion.h"
 #include "instruments/motion/monotone_cubic.h"
+#include "instruments/motion/record_corners.h"
 
 namespace glisson {
 namespace {
@@ -101,6 +102,39 @@ double rotation_angle(const RotationMotion& m, double time) {
   return kDegree * MonotoneCubic<double>(m.times, m.angles_deg).at(time);
 }
 
+namespace {
+
+CornerTimes corners_of(const RotationMotion& m) {
+  if (m.times.empty()) return press_corners(as_press(m));
+  const std::vector<double>& x = m.angles_deg;
+  const double extent = extent_of(x, [](double a, double b) { return std::abs(a - b); });
+  return record_corners(m.times, [&](std::size_t i, std::size_t a, std::size_t b, double share) {
+    return extent > 0.0 ? std::abs(x[i] - std::lerp(x[a], x[b], share)) / extent : 0.0;
+  });
+}
+
+double apart(const Quaternion& a, const Quaternion& b) {
+  return std::sqrt(std::pow(a[0] - b[0], 2) + std::pow(a[1] - b[1], 2) + std::pow(a[2] - b[2], 2) +
+                   std::pow(a[3] - b[3], 2));
+}
+
+/// Places and turns each over their own extent. @param times  of the run
+CornerTimes corners_of(const std::vector<double>& times, const std::vector<Vec3d>& x,
+                       const std::vector<Quaternion>& q) {
+  const double far = extent_of(x, [](const Vec3d& a, const Vec3d& b) { return norm(a - b); });
+  const double turned = extent_of(q, apart);
+  return record_corners(times, [&](std::size_t i, std::size_t a, std::size_t b, double share) {
+    Quaternion between;
+    for (std::size_t k = 0; k < 4; ++k) between[k] = std::lerp(q[a][k], q[b][k], share);
+    const double size = std::sqrt(dot4(between, between));
+    for (double& part : between) part = size > 0.0 ? part / size : part;
+    const double moved = far > 0.0 ? norm(x[i] - x[a] - (x[b] - x[a]) * share) / far : 0.0;
+    return std::max(moved, turned > 0.0 ? apart(q[i], between) / turned : 0.0);
+  });
+}
+
+}  // namespace
+
 RigidPath rotation_path(const RotationMotion& m) {
   detail::require_fields("rotation", m);
   const auto turned = [m, axis = unit(m.axis)](double time) {
@@ -109,7 +143,7 @@ RigidPath rotation_path(const RotationMotion& m) {
     pose.position = m.center - pose.axes * m.center;
     return pose;
   };
-  return {turned, m.times.empty() ? press_end(as_press(m)) : m.times.back()};
+  return {{turned, corners_of(m)}, m.times.empty() ? press_end(as_press(m)) : m.times.back()};
 }
 
 RigidPath poses_path(const PosesMotion& motion) {
@@ -131,7 +165,9 @@ RigidPath poses_path(const PosesMotion& motion) {
     pose.position = places->at(at) - pose.axes * places->points().front();
     return pose;
   };
-  return {moved, motion.times.back() - motion.times.front() + motion.start};
+  std::vector<double> times = motion.times;
+  for (double& time : times) time += motion.start - motion.times.front();
+  return {{moved, corners_of(times, motion.positions, q)}, times.back()};
 }
 
 RigidDriver::RigidDriver(const Pose& start, RigidPath path) : start_(start), path_(std::move(path)) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "base/nearest.h"
@@ -62,12 +63,15 @@ struct DriverMaker {
   std::shared_ptr<ToolDriver> operator()(const PushSpec& m) const {
     PushMotion push = m.tool;
     push.direction = direction;
-    push.force = [m](double time) {
+    const auto force = [m](double time) {
       const double t = time - m.start;
       if (t < 0.0) return 0.0;
       const double x = m.ramp > 0.0 ? std::min(1.0, t / m.ramp) : 1.0;
       return x * x * (3.0 - 2.0 * x) * (m.force + m.swing * std::sin(2.0 * std::numbers::pi * m.frequency * t));
     };
+    push.force = {force, CornerTimes({m.start, m.start + m.ramp})};
+    constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+    if (m.swing > 0.0) push.force.corners.add_every(0.5 / m.frequency, m.start + 0.25 / m.frequency, kNoEnd);
     if (m.duration) push.end = m.start + *m.duration;
     return std::make_shared<PushDriver>(start, push);
   }

@@ -167,18 +167,19 @@ Simulation simulation_of(const Variant& variant, TetMesh mesh,
 }
 
 /// The course of a load in time; none: always 1.
-std::function<double(double)> course_of(const LoadSpec& load) {
+TimeFunction<double> course_of(const LoadSpec& load) {
   if (!load.times.empty()) {
-    return [times = load.times, factors = load.factors](double t) {
+    const auto between = [times = load.times, factors = load.factors](double t) {
       const auto after = std::upper_bound(times.begin(), times.end(), t) - times.begin();
       if (after == 0) return factors.front();
       const auto i = static_cast<std::size_t>(after);
       if (i == times.size()) return factors.back();
       return std::lerp(factors[i - 1], factors[i], (t - times[i - 1]) / (times[i] - times[i - 1]));
     };
+    return {between, CornerTimes(load.times)};
   }
   if (load.ramp <= 0.0) return {};
-  return [seconds = load.ramp](double t) { return std::min(1.0, t / seconds); };
+  return {[seconds = load.ramp](double t) { return std::min(1.0, t / seconds); }, CornerTimes({load.ramp})};
 }
 
 /// Capsules first: what they pull is known when instruments solve for what holds at the end of the step.
@@ -289,12 +290,12 @@ std::optional<RigidPath> turning_path(const ToolSpec& tool) {
   if (!tool.rotation && !tool.poses) return {};
   RigidPath turning = tool.rotation ? rotation_path(*tool.rotation) : poses_path(started(*tool.poses));
   if (!tool.path) return turning;
-  return RigidPath{[turn = turning.pose, way = tool.path->displacement](double t) {
-                     Pose pose = turn(t);
-                     pose.position += way(t);
-                     return pose;
-                   },
-                   turning.end};
+  const auto both = [turn = turning.pose, way = tool.path->displacement](double t) {
+    Pose pose = turn(t);
+    pose.position += way(t);
+    return pose;
+  };
+  return RigidPath{{both, turning.pose.corners.with(tool.path->displacement.corners)}, turning.end};
 }
 
 double run_duration(const Variant& variant) {

@@ -76,9 +76,11 @@ const std::string_view kReferenceRun = R"(## What a run does
 2. Fixed sets are held, tools are attached, loads are added. Only one of them can hold a component of a vertex.
    Capsules, the container and instruments act on the body in this order.
 3. Time runs to `duration_s`, or to the end of the last motion of a tool or instrument; `max_steps` may end it
-   earlier. The last step is the one that ends nearest to that time.
+   earlier. The last step is the one that ends nearest to that time. Automatic steps of `implicit` and `quasi_static`
+   end there, at frames, and at corners of motions, loads and records, where a speed jumps or an oscillation turns.
 4. Each line of forces.csv belongs to the start of a step, the one nearest to each multiple of 1/`sample_rate_hz`; the
-   last line belongs to the last step. Depth, forces and energies on a line belong to the same instant. Without a
+   last line belongs to the last step. Under `implicit` and `quasi_static` lines are at these multiples, and their
+   numbers on the line between the ends of the step before and after. Depth, forces and energies on a line belong to the same instant. Without a
    [[tool]] the first columns are those of the first instrument: pressing (`normal_N`), `friction_N` and `cutting_N`
    add up to `force_N`. Every further tool and instrument has a forces_NAME.csv. Names of variants, tools and
    instruments must therefore differ from the output files (`scene.toml`, `forces.csv` …), contain no `/`, and differ

@@ -4,16 +4,22 @@
 //   │ step step step … until a sample or a frame is due, or about 20 ms have passed     │
 //   └──────────────┬────────────────────────────────────────────────────────────────────┘
 //                  ▼ not timed: sample, frame, progress
+//
+// Long steps are read one by one: automatic ones end at frames and at the run's end, and samples lie on the line between two ends.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "glisson/scene/scene.h"
+#include "scene/run/sample_between.h"
 
 namespace glisson {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr double kSameSample = 1e-6;  // of the time between samples: a step that ends so near to one is at it
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
@@ -34,11 +40,16 @@ class Run {
   bool frame_due() const;
   void stretch();
   bool step();
+  void set_step_end();
   bool probe_now() const;
   void read_probes();
+  void read_sample();
   void take_sample();
+  void take_samples_between();
+  void see_peak();
+  void show_sample(const Sample& sample);
   void tell_lost_probes();
-  void tell_events();
+  void tell_events(double until = std::numeric_limits<double>::infinity());
   void see_drift();
   void see_linear_share();
   void take_frame();
@@ -54,7 +65,7 @@ class Run {
   std::uint64_t most_steps_;
   bool forces_at_end_;
 
-  Sample sample_;
+  Sample sample_, before_;  ///< before_: of the end of the long step before the last
   RunSummary summary_;
   double force_time_ = 0.0;  ///< that the forces of the last step made are of [s]
   std::uint64_t samples_due_ = 0;
@@ -111,8 +122,16 @@ void Run::read_probes() {
   probed_ = simulation_.time();
 }
 
+/// Automatic long steps end at the next frame and at the end.
+void Run::set_step_end() {
+  const bool more = frames_taken_ < variant_.output.frames && variant_.output.frames > 1;
+  const double share = more ? static_cast<double>(frames_taken_) / (variant_.output.frames - 1) : 1.0;
+  simulation_.set_step_end(duration_ * share);
+}
+
 /// One step; false where it was not made.
 bool Run::step() {
+  if (forces_at_end_) set_step_end();
   const double start = simulation_.time();
   const StepResult result = simulation_.step();
   if (!result.inverted_tets.empty()) {
@@ -150,7 +169,7 @@ void Run::stretch() {
     }
     if (probe_now()) read_probes();
     if (!step()) break;
-    due = sample_due() || frame_due();
+    due = forces_at_end_ || sample_due() || frame_due();
   }
   stepping_s_ += seconds_since(begin);
   const auto steps = static_cast<double>(simulation_.steps());
@@ -159,33 +178,65 @@ void Run::stretch() {
 }
 
 /// Forces, depths and energies of the instant that the forces are of.
-void Run::take_sample() {
+void Run::read_sample() {
   sample_.time = force_time_;
   for (std::size_t i = 0; i < built_.supports.size(); ++i) sample_.supports[i] = simulation_.force(built_.supports[i]);
   for (std::size_t i = 0; i < built_.instruments.size(); ++i) {
     const Instrument& x = *built_.instruments[i];
     sample_.instruments[i] = {x.force_depth(), x.force(), {}};
     for (const InstrumentColumn& column : columns_[i]) sample_.instruments[i].values.push_back(column.read(x));
-    summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(x.force(), x.direction())));
   }
   if (built_.container) sample_.container = built_.container->sensor_loads();
   sample_.energies = simulation_.energies();
   if (variant_.output.stored_energy) sample_.stored_energy = simulation_.stored_energy();
   if (!built_.probes.empty() && probed_ != force_time_) read_probes();
   sample_.probe_time = probed_.value_or(force_time_);
-  tell_events();
+}
+
+void Run::see_peak() {
+  for (const auto& x : built_.instruments) {
+    summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(x->force(), x->direction())));
+  }
+}
+
+void Run::show_sample(const Sample& sample) {
   tell_lost_probes();
-  observer_.on_sample(sample_);
+  observer_.on_sample(sample);
+}
+
+/// All samples that are due by the end of a long step, on the line from the end of the one before.
+void Run::take_samples_between() {
+  read_sample();
+  see_peak();
+  const double rate = variant_.output.sample_rate, enough = force_time_ + kSameSample / rate;
+  for (; next_sample_ <= enough; next_sample_ = static_cast<double>(++samples_due_) / rate) {
+    sampled_ = next_sample_ >= force_time_ - kSameSample / rate;
+    if (sampled_ || !(before_.time < force_time_)) {
+      tell_events();
+      show_sample(sample_);
+      continue;
+    }
+    tell_events(next_sample_);
+    show_sample(scene::sample_between(before_, sample_, next_sample_));
+  }
+  before_ = sample_;
+}
+
+void Run::take_sample() {
+  read_sample();
+  see_peak();
+  tell_events();
+  show_sample(sample_);
   sampled_ = true;
   const double passed = (force_time_ + 0.5 * summary_.step_s) * variant_.output.sample_rate;
   samples_due_ = std::max(samples_due_ + 1, static_cast<std::uint64_t>(std::min(std::ceil(passed), 9e15)));
   next_sample_ = static_cast<double>(samples_due_) / variant_.output.sample_rate;
 }
 
-void Run::tell_events() {
+void Run::tell_events(double until) {
   for (std::size_t i = 0; i < built_.instruments.size(); ++i) {
     const std::vector<InstrumentEvent>& events = built_.instruments[i]->events();
-    for (std::size_t& told = events_told_[i]; told < events.size(); ++told)
+    for (std::size_t& told = events_told_[i]; told < events.size() && events[told].time <= until; ++told)
       observer_.on_event({built_.instruments[i]->name(), events[told]});
   }
 }
@@ -241,11 +292,15 @@ RunSummary Run::to_end() {
   observer_.on_built(built_);
   begin_ = last_progress_ = Clock::now();
   if (variant_.output.frames > 1) take_frame();
+  if (forces_at_end_) read_sample(), before_ = sample_;
   while (!finished()) {
     const std::uint64_t before = simulation_.steps();
     stretch();
     const bool stepped = simulation_.steps() > before && forces_current_;
-    if (stepped && sample_due()) take_sample();
+    if (stepped && forces_at_end_)
+      take_samples_between();
+    else if (stepped && sample_due())
+      take_sample();
     if (stepped && frame_due()) take_frame();
     show_progress();
   }
