@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "cli/branches_note.h"
 #include "cli/commands.h"
 #include "cli/edge_cells.h"
 #include "cli/exit_code.h"
@@ -463,6 +464,7 @@ void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, co
       heavy            ? "kept by mass for tets that need a shorter step, shorter while that mass has an effect"
       : explicit_steps ? fmt::format("stable below {:.4g} s at rest", taste.stable_step_s)
                        : "stable at any step");
+  if (const std::string note = branches_note(v); !note.empty()) say("  branches {}\n", note);
   print_corners(v, taste);
   print_limits(v, load, taste);
   if (explicit_steps) print_stages(v, load, taste), print_slow(v, taste);

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cli/batch.h"
+#include "cli/branches_note.h"
 #include "cli/commands.h"
 #include "cli/embedded.h"
 #include "cli/exit_code.h"
@@ -62,6 +63,9 @@ int run(const RunOptions& options) {
   const Scene scene = open_scene(options.scene);
   const fs::path folder = options.out.empty() ? fs::path("out") / scene.file.stem() : fs::path(options.out);
   if (!options.quiet && !options.scene.mesh.empty()) say("{}\n", scene.notes.back());
+  for (const Variant& v : scene.variants) {
+    if (const std::string note = branches_note(v); !options.quiet && !note.empty()) say("{}: {}\n", v.name, note);
+  }
   MeshCache meshes(options.quiet);
   const std::vector<Job> jobs = jobs_of(scene, folder, options.threads);
   require_runnable(jobs, meshes.loader());

@@ -41,6 +41,11 @@ void require_options(const SimulationOptions& o) {
                                 std::string(word_of(o.integrator)) +
                                 "; take central_difference, or precision = \"single\" or \"double\"");
   }
+  if (o.branches == StaticBranches::relaxed && o.integrator != Integrator::quasi_static) {
+    throw std::invalid_argument("simulation: branches = \"relaxed\" is for the integrator quasi_static, not " +
+                                std::string(word_of(o.integrator)) +
+                                ", in which Maxwell branches and viscosity follow time in any case; leave it out");
+  }
   if (!o.mass_scaling_step || !can.any_step_is_stable) return;
   throw std::invalid_argument(
       "simulation: mass_scaling_step [s] = " + detail::show(*o.mass_scaling_step) +
@@ -61,7 +66,8 @@ std::uint64_t fingerprint_of(const TetMesh& mesh, const Body& body) {
 
 std::uint32_t kind_of(const SimulationOptions& o) {
   return static_cast<std::uint32_t>(o.integrator) + 16U * static_cast<std::uint32_t>(o.implicit.scheme) +
-         256U * static_cast<std::uint32_t>(o.precision);
+         256U * static_cast<std::uint32_t>(o.precision) +
+         4096U * static_cast<std::uint32_t>(o.branches == StaticBranches::follow);
 }
 
 }  // namespace

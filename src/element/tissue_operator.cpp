@@ -84,9 +84,10 @@ T TissueOperator::measure_of_times(std::size_t b, std::size_t e, const Mat3<T>& 
 
 /// Of a branch over the time since the past. @param x  measure of the element now
 template <class T>
-BranchWeights<T> TissueOperator::weights(std::size_t b, std::size_t e, std::size_t k, double since, T x) const {
+BranchWeights<T> TissueOperator::weights(const TissueMemory& past, std::size_t b, std::size_t e, std::size_t k,
+                                         double since, T x) const {
   const MaxwellBranch& branch = body_.blocks[b].tissue.maxwell[k];
-  if (branch.time_law) return responses_[b].paces().weights(k, since, memory_.pace[place_of(b, e) + k], x, step_);
+  if (branch.time_law) return responses_[b].paces().weights(k, since, past.pace[place_of(b, e) + k], x, step_);
   const BranchWeights<> w = branch_weights(since, branch.time);
   return {T(w.decay), T(w.from), T(w.to)};
 }
@@ -111,7 +112,7 @@ Sym3<T> TissueOperator::overstress(std::size_t b, std::size_t e, double since, c
   const T x = measure_of_times(b, e, H);
   Sym3<T> sum{};
   for (std::size_t k = 0; k < branches.size(); ++k) {
-    const BranchWeights<T> w = weights(b, e, k, since, x);
+    const BranchWeights<T> w = weights(memory_, b, e, k, since, x);
     const Sym3<T> q = with_scalar<T>(memory_.relaxed[place_of(b, e) + k]) * w.decay + before * w.from + S * w.to;
     sum += (S - q) * T(branches[k].share);
   }
@@ -284,7 +285,7 @@ void TissueOperator::advance_memory(const TissueState& state) {
       Sym3<double>& before = memory_.stress[first_stress_[b] + at];
       const double x = measure_of_times(b, e, H);
       for (std::size_t k = 0; k < branches.size(); ++k) {
-        const BranchWeights<> w = weights(b, e, k, state.since, x);
+        const BranchWeights<> w = weights(memory_, b, e, k, state.since, x);
         Sym3<double>& q = memory_.relaxed[place_of(b, e) + k];
         q = q * w.decay + before * w.from + S * w.to;
       }
@@ -292,6 +293,30 @@ void TissueOperator::advance_memory(const TissueState& state) {
       set_paces(b, e, H);
     }
   }
+}
+
+MemoryChange TissueOperator::change_by_one_step(const TissueMemory& earlier, double since,
+                                                std::span<const Vec3d> u) const {
+  MemoryChange sum;
+  for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
+    const TissueBlock& block = body_.blocks[b];
+    const std::vector<MaxwellBranch>& branches = block.tissue.maxwell;
+    for (std::size_t e = block.begin; !branches.empty() && e < block.end; ++e) {
+      const std::size_t at = first_stress_[b] + e - block.begin;
+      const Sym3<double>& S = memory_.stress[at];
+      const double x = measure_of_times(b, e, element_gradient(body_, e, u));
+      Sym3<double> change{};
+      for (std::size_t k = 0; k < branches.size(); ++k) {
+        const std::size_t place = place_of(b, e) + k;
+        const BranchWeights<> w = weights(earlier, b, e, k, since, x);
+        const Sym3<double> q = earlier.relaxed[place] * w.decay + earlier.stress[at] * w.from + S * w.to;
+        if (w.decay < 1.0) change += (memory_.relaxed[place] - q) * (branches[k].share / (1.0 - w.decay));
+      }
+      sum.overstress += body_.rest[e].volume * contract(change, change);
+      sum.stress += body_.rest[e].volume * contract(S, S);
+    }
+  }
+  return {std::sqrt(sum.overstress), std::sqrt(sum.stress)};
 }
 
 BranchMemory TissueOperator::branch_memory(std::size_t b, double since, std::span<const Vec3d> u) const {
@@ -303,7 +328,7 @@ BranchMemory TissueOperator::branch_memory(std::size_t b, double since, std::spa
     const Sym3<double>& before = memory_.stress[first_stress_[b] + e - block.begin];
     const double x = measure_of_times(b, e, element_gradient(body_, e, u));
     for (std::size_t k = 0; k < n; ++k) {
-      const BranchWeights<> w = weights(b, e, k, since, x);
+      const BranchWeights<> w = weights(memory_, b, e, k, since, x);
       memory.held.push_back(memory_.relaxed[place_of(b, e) + k] * w.decay + before * w.from);
       memory.left.push_back(1.0 - w.to);
     }

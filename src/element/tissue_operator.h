@@ -32,6 +32,12 @@ struct TissueMemory {
   }
 };
 
+/// Of stresses over a body, √Σ V |σ|² [Pa m^(3/2)].
+struct MemoryChange {
+  double overstress = 0.0;  ///< Σ g Δq/(1 − e^(−h/τ)): what adds up while a branch forgets
+  double stress = 0.0;      ///< S, of which the branches relax their shares
+};
+
 /// The state a body is asked about.
 struct TissueState {
   std::span<const Vec3d> u;  ///< displacement [m]
@@ -72,6 +78,11 @@ class TissueOperator {
   /// branch's own time where that follows the deformation.
   void advance_memory(const TissueState& state);
   const TissueMemory& memory() const { return memory_; }
+  /// What the branches would hold otherwise, had one step of `since` led from an earlier memory to the present one.
+  /// @param u  that the present memory is of [m]
+  MemoryChange change_by_one_step(const TissueMemory& earlier, double since, std::span<const Vec3d> u) const;
+  /// Whether some tissue has branches.
+  bool has_memory() const { return has_memory_; }
   void set_memory(TissueMemory memory) { memory_ = std::move(memory); }
   void archive(auto& ar) { ar(memory_); }
 
@@ -101,7 +112,8 @@ class TissueOperator {
   template <class T>
   Sym3<T> overstress(std::size_t block, std::size_t e, double since, const Mat3<T>& H, const Sym3<T>& S) const;
   template <class T>
-  BranchWeights<T> weights(std::size_t block, std::size_t e, std::size_t k, double since, T x) const;
+  BranchWeights<T> weights(const TissueMemory& past, std::size_t block, std::size_t e, std::size_t k, double since,
+                           T x) const;
   template <class T>
   T measure_of_times(std::size_t block, std::size_t e, const Mat3<T>& H) const;
   void set_paces(std::size_t block, std::size_t e, const Mat3d& H);

@@ -77,6 +77,7 @@ mass_scaling_step_s = 2e-4
 mass_scaling = "variable"
 mass_scaling_inertia = 0.01
 drag_stages = 3
+branches = "follow"
 precision = "double"
 precision_error = 0.01
 damping_rate_per_s = 3
@@ -326,6 +327,7 @@ TEST(EveryKey, OfMotionToolsAndOutputIsRead) {
   EXPECT_EQ(v.simulation.mass_scaling_inertia, 0.01);
   EXPECT_EQ(v.simulation.damping_rate, 3.0);
   EXPECT_EQ(v.simulation.drag_stages, 3);
+  EXPECT_EQ(v.simulation.branches, StaticBranches::follow);
   EXPECT_EQ(v.simulation.nodal_damping, 0.002);
   expect_equal(v.simulation.gravity, {0, 0, -9.81});
   EXPECT_EQ(v.simulation.gravity_ramp, 0.5);

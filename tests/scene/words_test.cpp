@@ -32,8 +32,8 @@ TEST(Words, AliasesAreNotNamedInMessages) {
 
 TEST(Words, ReferenceNamesAliases) {
   EXPECT_THAT(scene_reference_markdown(),
-              HasSubstr("`\"quasi_static\"` equilibrium without inertia and viscosity; time "
-                        "orders motions and loads (also `\"static\"`)"));
+              HasSubstr("`\"quasi_static\"` equilibrium without inertia; time orders motions and loads, "
+                        "`branches` says what relaxes and resists (also `\"static\"`)"));
 }
 
 }  // namespace

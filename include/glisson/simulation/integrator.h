@@ -12,7 +12,7 @@ enum class Integrator {
   central_difference,  ///< the paper's scheme; h* is set by stiffness and viscosity
   semi_implicit,       ///< the same with viscosity at the end of the step: h* of the body without viscosity, or more
   implicit,            ///< Newton's method each step, stable at any step; in double
-  quasi_static         ///< equilibrium, without inertia and viscosity: time orders motions and loads; in double
+  quasi_static  ///< equilibrium, without inertia: time orders motions and loads, or branches and viscosity follow it; in double
 };
 
 template <>
@@ -23,7 +23,7 @@ inline constexpr Word<Integrator> kWords<Integrator>[] = {
     {"semi_implicit", Integrator::semi_implicit, "the same, viscosity taken at the end of the step"},
     {"implicit", Integrator::implicit, "Newton's method each step, stable at any step"},
     {"quasi_static", Integrator::quasi_static,
-     "equilibrium without inertia and viscosity; time orders motions and loads"},
+     "equilibrium without inertia; time orders motions and loads, `branches` says what relaxes and resists"},
     {"static", Integrator::quasi_static}};
 
 /// What an integrator supports. Code that chooses or refuses an integrator uses these flags, not its name.

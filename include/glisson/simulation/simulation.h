@@ -66,11 +66,23 @@ inline constexpr Word<Preconditioner> kWords<Preconditioner>[] = {
     {"factorised", Preconditioner::factorised, "sparse Cholesky, kept as long as it converges"},
     {"block_diagonal", Preconditioner::block_diagonal, "3 × 3 per vertex"}};
 
+/// What Maxwell branches and Kelvin–Voigt viscosity do under `quasi_static`.
+enum class StaticBranches {
+  automatic,  ///< relaxed; `glisson check` and a run say so where the tissue has any
+  relaxed,    ///< branches have relaxed at once, viscosity gives no force: the state after long times
+  follow      ///< both go by the time of motions and loads, as in slow motion: no mass, no nodal damping
+};
+template <>
+inline constexpr Word<StaticBranches> kWords<StaticBranches>[] = {
+    {"auto", StaticBranches::automatic, "relaxed; `glisson check` and the run say so where the tissue has any"},
+    {"relaxed", StaticBranches::relaxed, "they have relaxed at once, and viscosity gives no force"},
+    {"follow", StaticBranches::follow, "they relax in the time of motions and loads, and viscosity resists"}};
+
 /// Options of the integrators `implicit` and `quasi_static`.
 struct ImplicitOptions {
   TimeScheme scheme = TimeScheme::backward_euler;  ///< of `implicit`
   double spectral_radius = 0.8;                    ///< ρ∞ of generalised_alpha [-]
-  /// First and largest automatic step [s]; none: 10 ms, `quasi_static` 50 ms.
+  /// First and largest automatic step [s]; none: 10 ms, `quasi_static` 50 ms, with StaticBranches::follow the first alone.
   std::optional<double> largest_step{};
   double tolerance = 1e-8;   ///< of Newton's method: residual force over the largest force [-]
   int most_iterations = 25;  ///< of Newton's method, before a step is halved
@@ -125,6 +137,8 @@ struct SimulationOptions {
   /// viscosity; each further stage costs half a step. For tissue of small strain; at most Interaction::most_drag_stages.
   int drag_stages = 1;
   ImplicitOptions implicit{};
+  /// quasi_static: what Maxwell branches and viscosity do.
+  StaticBranches branches = StaticBranches::automatic;
   /// `adaptive` needs central_difference and a tissue that is not linear, isotropic, without pioletti's viscosity, averaged volume
   /// changes and branches whose times follow the deformation, and of small strain where it has branches; others keep their law.
   Precision precision = Precision::single_precision;
@@ -177,6 +191,8 @@ struct SimulationOptions {
               "where viscosity_Pa_s limits them (docs/integrators.md); at most 4 with needles and containers that are "
               "not bonded, 3 with tools in contact and blades"),
         field("implicit", &SimulationOptions::implicit, "options of the integrators implicit and quasi_static"),
+        field("branches", &SimulationOptions::branches,
+              "what Maxwell branches and `viscosity_Pa_s` do under quasi_static"),
         field("precision", &SimulationOptions::precision, "precision of the element arithmetic"),
         field(
             "precision_error", &SimulationOptions::precision_error, "-", between(1e-6, 0.5),
@@ -441,7 +457,7 @@ class Simulation {
   const TetMesh& mesh() const;
   std::span<const double> masses() const;       ///< lumped, per vertex [kg]
   std::span<const Vec3d> displacement() const;  ///< u(t), per vertex [m]
-  /// Per vertex [m/s]: v(t − h/2), implicit: v(t), quasi-static: 0.
+  /// Per vertex [m/s]: v(t − h/2), implicit: v(t), quasi-static: 0, with StaticBranches::follow that of the last part of a step.
   std::span<const Vec3d> velocity() const;
   std::vector<Vec3d> positions() const;  ///< rest + u, per vertex [m]
   /// Sets the state, for studies that do not start from rest; energies are counted from here.

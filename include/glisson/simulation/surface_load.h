@@ -29,8 +29,8 @@ struct SurfaceLoad {
   /// Stiffness to the ground along x, y, z, of the whole set, divided equally among the vertices [N/m]: −k u on a vertex
   /// at its displacement u.
   Vec3d spring{};
-  Vec3d spring_per_area{};   ///< the same per area at rest [N/m³ = Pa/m]
-  Vec3d dashpot{};           ///< the same against velocity: −c v [N s/m]; none in quasi_static
+  Vec3d spring_per_area{};  ///< the same per area at rest [N/m³ = Pa/m]
+  Vec3d dashpot{};  ///< the same against velocity: −c v [N s/m]; in quasi_static with StaticBranches::follow alone
   Vec3d dashpot_per_area{};  ///< the same per area at rest [Pa s/m]
 
   template <class Take>

@@ -15,7 +15,6 @@ namespace {
 constexpr double kDefaultStep = 0.01, kDefaultStaticStep = 0.05;  ///< [s]
 constexpr double kGrowth = 1.5;                                   ///< of an automatic step after an easy one
 constexpr int kMostEventCuts = 7;                                 ///< events are dated to 1/128 of a step
-constexpr int kEasy = 6;                                          ///< iterations up to which a step was easy
 
 constexpr double kSameTime = 1e-9;  ///< of a step: corners so near are one
 constexpr double kSliver = 1e-3;    ///< of a step: so much longer than the largest it may be
@@ -25,10 +24,12 @@ std::span<const Vec3d> view(const std::vector<Vec3d>& field) { return field; }
 }  // namespace
 
 ImplicitScheme::ImplicitScheme(Body body, const SimulationOptions& options, bool statics)
-    : Scheme(std::move(body), options), statics_(statics), tissue_(state_.body),
-      solver_(state_, tissue_, now_, statics),
+    : Scheme(std::move(body), options), statics_(statics),
+      relaxes_(statics && options.branches != StaticBranches::follow), tissue_(state_.body),
+      solver_(state_, tissue_, now_, statics, relaxes_),
       largest_(options.implicit.largest_step.value_or(statics ? kDefaultStaticStep : kDefaultStep)) {
   step_ = options.step.value_or(largest_);
+  if (is_slow() && !options.implicit.largest_step) largest_ = std::numeric_limits<double>::infinity();
   info_ = {.instruction_set = "double, element by element", .threads = 1};
   now_.resize(state_.body.vertex_count);
 }
@@ -44,9 +45,8 @@ double ImplicitScheme::next_end() const {
 double ImplicitScheme::step_size() const {
   const double left = state_.options.step ? std::numeric_limits<double>::infinity() : next_end() - state_.time;
   if (!std::isfinite(left)) return step_;
-  const double even = left / std::max(1.0, std::ceil(left / step_ - kSliver));
-  return std::abs(even - last_h_) <= kSameTime * last_h_ ? last_h_
-                                                         : even;  // to the last bit, so that the factor is kept
+  const double even = left / std::max(1.0, std::ceil(left / step_ - kSliver)), last = is_slow() ? planned_ : last_h_;
+  return std::abs(even - last) <= kSameTime * last ? last : even;  // to the last bit, so that the factor is kept
 }
 
 double ImplicitScheme::stable_step() const { return std::numeric_limits<double>::infinity(); }
@@ -116,7 +116,7 @@ void ImplicitScheme::start_fresh() {
   now_.resize(state_.body.vertex_count);
   solver_.begin();
   if (last_h_ == 0.0) last_change_.assign(state_.body.vertex_count, Vec3d{});
-  tissue_.forces({now_.u, now_.v, statics_ ? std::numeric_limits<double>::infinity() : 0.0}, now_.elastic, now_.viscous,
+  tissue_.forces({now_.u, now_.v, relaxes_ ? std::numeric_limits<double>::infinity() : 0.0}, now_.elastic, now_.viscous,
                  watch());
   solver_.contact().add_forces_at(now_.u, now_.elastic);
   const std::span<const Vec3d> loads = state_.loads_at(state_.time, now_.u);
@@ -144,7 +144,11 @@ std::vector<char> ImplicitScheme::held_or_sprung() const {
 
 /// One part of a step, of h [s]. Where it is not made, nothing has changed.
 ImplicitScheme::Part ImplicitScheme::part(double h, bool dates_events) {
-  const TimeStep s = statics_ ? static_step(h) : time_step(state_.options.implicit, h);
+  if (is_slow()) return slow_part(h, dates_events);
+  return stage(statics_ ? static_step(h) : time_step(state_.options.implicit, h), dates_events);
+}
+
+ImplicitScheme::Part ImplicitScheme::stage(const TimeStep& s, bool dates_events) {
   if (!solver_.solve(s, last_change_, last_h_)) return Part::no_balance;
   if (dates_events && solver_.contact().overshoots(solver_.next().u, solver_.next().v)) {
     solver_.give_up();
@@ -156,7 +160,7 @@ ImplicitScheme::Part ImplicitScheme::part(double h, bool dates_events) {
 
 void ImplicitScheme::finish(const TimeStep& s) {
   Moment& next = solver_.next();
-  const double since = statics_ ? std::numeric_limits<double>::infinity() : s.h;
+  const double since = relaxes_ ? std::numeric_limits<double>::infinity() : s.h;
   if (s.alpha_f != 0.0) tissue_.forces({next.u, next.v, since}, next.elastic, next.viscous, watch());
   const std::span<const Vec3d> loads = state_.loads_at(state_.time + s.h, next.u);
   next.external.assign(loads.begin(), loads.end());
@@ -192,8 +196,8 @@ void ImplicitScheme::book(const Moment& before) {
          sudden = 0.0, contact = 0.0;
   for (std::size_t i = 0; i < now_.u.size(); ++i) {
     const Vec3d &du = last_change_[i], dv = now_.v[i] - before.v[i];
-    const double m = state_.body.masses[i];
-    const Vec3d drag = statics_ ? Vec3d{} : state_.damping(i);
+    const double m = state_.body.masses[i], moving = statics_ ? 0.0 : m;
+    const Vec3d drag = state_.damping(i, statics_);
     const auto mean = [&](const Vec3d& a, const Vec3d& b) { return a * w + b * (1.0 - w); };
     const Vec3d viscous_force = mean(before.viscous[i], now_.viscous[i]),
                 drag_force = -component_product(drag, mean(before.v[i], now_.v[i]));
@@ -205,19 +209,19 @@ void ImplicitScheme::book(const Moment& before) {
     viscous += dot(viscous_force, du);
     damping += dot(drag_force, du);
     loads += dot(pull, du);
-    kinetic += 0.5 * m * dot(now_.v[i], now_.v[i]);
+    kinetic += 0.5 * moving * dot(now_.v[i], now_.v[i]);
     if (at_end) change += 0.5 * m * dot(dv, dv) - 0.5 * dot(now_.elastic[i] - before.elastic[i], du);
     const Vec3d others = elastic_force + viscous_force + drag_force + pull + touch;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (solver_.held()[3 * i + axis] == 0) {
-        const double out =
-            before.elastic[i][axis] + before.external[i][axis] + before.contact[i][axis] + before.gravity[axis] * m;
+        const double out = before.elastic[i][axis] + before.viscous[i][axis] - drag[axis] * before.v[i][axis] +
+                           before.external[i][axis] + before.contact[i][axis] + before.gravity[axis] * m;
         if (statics_) sudden += 0.5 * out * du[axis];
         continue;
       }
-      const double gain = at_end
-                              ? m * now_.a[i][axis] * du[axis]
-                              : 0.5 * m * (now_.v[i][axis] * now_.v[i][axis] - before.v[i][axis] * before.v[i][axis]);
+      const double gain =
+          at_end ? m * now_.a[i][axis] * du[axis]
+                 : 0.5 * moving * (now_.v[i][axis] * now_.v[i][axis] - before.v[i][axis] * before.v[i][axis]);
       tools += gain - others[axis] * du[axis];
     }
   }
@@ -245,7 +249,7 @@ void ImplicitScheme::adapt(double h, double smallest) {
   if (state_.options.step) return;
   if (smallest < h) {
     step_ = smallest;
-  } else if (solver_.iterations() <= kEasy) {
+  } else if (is_easy()) {
     step_ = std::min(kGrowth * step_, largest_);
   }
 }
@@ -261,36 +265,60 @@ StepResult ImplicitScheme::failed(double smallest) {
   return {StepStatus::not_converged, watch().inverted, message_};
 }
 
-StepResult ImplicitScheme::step() {
-  const double h = step_size(), begin = state_.time, corner = state_.options.step ? begin : next_end();
-  const double end = std::abs(corner - (begin + h)) < 0.5 * h ? corner : begin + h;
-  fresh_ = take_hold(h) || fresh_;
-  if (fresh_) {
-    start_fresh();
-    if (statics_ && !(message_ = free_rigid_motion(state_.body, held_or_sprung())).empty()) {
-      fresh_ = true;
-      return {StepStatus::not_held, {}, message_};
-    }
-    if (!flat(view(now_.elastic)).allFinite() || !flat(view(now_.viscous)).allFinite()) {
-      fresh_ = true;
-      message_ = not_finite_at(state_.time);
-      return {StepStatus::not_finite, watch().inverted, message_};
-    }
+ImplicitScheme::Backup ImplicitScheme::backup() {
+  return {now_, tissue_.memory(), ledger_, last_change_, state_.time, last_h_, solver_.contact().backup()};
+}
+
+void ImplicitScheme::restore(Backup before) {
+  const auto held_still = [this] {
+    const auto held = solver_.contact().interactions().held_still();
+    return std::vector<std::uint32_t>(held.begin(), held.end());
+  };
+  const std::vector<std::uint32_t> held = held_still();
+  now_ = std::move(before.now);
+  tissue_.set_memory(std::move(before.memory));
+  ledger_ = before.ledger, last_change_ = std::move(before.last_change);
+  state_.time = before.time, last_h_ = before.last_h;
+  solver_.contact().restore(before.contact);
+  if (held != held_still()) solver_.begin();
+}
+
+/// Takes what has changed from outside into account; a status other than ok where no step can be made.
+StepResult ImplicitScheme::begin() {
+  start_fresh();
+  if (statics_ && !(message_ = free_rigid_motion(state_.body, held_or_sprung())).empty()) {
+    fresh_ = true;
+    return {StepStatus::not_held, {}, message_};
   }
-  std::optional<Backup> backup;
+  if (!flat(view(now_.elastic)).allFinite() || !flat(view(now_.viscous)).allFinite()) {
+    fresh_ = true;
+    message_ = not_finite_at(state_.time);
+    return {StepStatus::not_finite, watch().inverted, message_};
+  }
+  return {};
+}
+
+/// Where a step of h ends: at a corner to the last bit.
+double ImplicitScheme::end_of(double h) const {
+  const double corner = state_.options.step ? state_.time : next_end();
+  return std::abs(corner - (state_.time + h)) < 0.5 * h ? corner : state_.time + h;
+}
+
+/// Goes on by h, to `end`, in parts where it has to. @param before  where to go back to if it fails; none: here
+/// @param shortest  the shortest part [s] @return false where there is no balance: all is as it was before
+bool ImplicitScheme::advance(double h, double end, std::optional<Backup>& before, double& shortest) {
+  const double begin = state_.time;
   std::uint64_t left = 1;  // parts of h / 2^cuts
   int cuts = 0, most = 0;
   bool dated = false;  // the cuts are those of an event
   while (left > 0) {
     const double length = std::ldexp(h, -cuts);
-    if (left > 1 && !backup) {
-      backup = Backup{now_, tissue_.memory(), ledger_, last_change_, state_.time, last_h_, solver_.contact().backup()};
-    }
+    if (left > 1 && !before) before = backup();
     const Part outcome = part(length, cuts < kMostEventCuts);
     if (outcome == Part::made) {
       --left;
       state_.time = left > 0 ? begin + (h - static_cast<double>(left) * length) : end;
-      if (left > 0 && left % 2 == 0 && (dated || solver_.iterations() <= kEasy)) left /= 2, --cuts;
+      if (left > 0 && left % 2 == 0 && (dated || is_easy())) left /= 2, --cuts;
       continue;
     }
     if (outcome == Part::overshoots) {
@@ -298,24 +326,38 @@ StepResult ImplicitScheme::step() {
       continue;
     }
     dated = false;
+    shortest = length;
     if (cuts >= state_.options.implicit.most_cuts) {
-      if (backup) {
-        now_ = std::move(backup->now);
-        tissue_.set_memory(std::move(backup->memory));
-        ledger_ = backup->ledger, last_change_ = std::move(backup->last_change);
-        state_.time = backup->time, last_h_ = backup->last_h;
-        solver_.contact().restore(backup->contact);
-      }
+      if (before) restore(*std::move(before));
       fresh_ = true;
-      adapt(h, length);
-      return failed(length);
+      return false;
     }
     left *= 2, ++cuts;
     most = std::max(most, cuts);
   }
-  adapt(h, std::ldexp(h, -most));
+  shortest = std::ldexp(h, -most);
+  return true;
+}
+
+StepResult ImplicitScheme::made() {
   ++state_.steps;
   return {watch().inverted.empty() ? StepStatus::ok : StepStatus::inverted, watch().inverted, {}};
+}
+
+StepResult ImplicitScheme::step() {
+  const double h = step_size();
+  fresh_ = take_hold(h) || fresh_;
+  const bool sudden = fresh_;
+  if (fresh_) {
+    const StepResult begun = begin();
+    if (!begun.made()) return begun;
+  }
+  if (is_slow()) return slow_step_of(h, sudden);
+  std::optional<Backup> before;
+  double shortest = h;
+  const bool done = advance(h, end_of(h), before, shortest);
+  adapt(h, shortest);
+  return done ? made() : failed(shortest);
 }
 
 void ImplicitScheme::take_body(Archive& ar) {
@@ -335,13 +377,14 @@ void ImplicitScheme::archive_motion(Archive& ar) {
   if (solver_.contact().acts()) ar(solver_.contact());  // first: what interactions hold still is held by the solver
   if (ar.reads() && !fresh) solver_.begin();
   if (!fresh) ar(solver_);
+  if (is_slow()) ar(largest_stress_, largest_displacement_, planned_);
   fresh_ = fresh;
 }
 
 /// What holds or drives a vertex, in the components it holds.
 ForceParts ImplicitScheme::vertex_force(std::uint32_t v, const Axes& axes) const {
   const double m = state_.body.masses[v];
-  const Vec3d drag = statics_ ? Vec3d{} : component_product(state_.damping(v), now_.v[v]);
+  const Vec3d drag = component_product(state_.damping(v, statics_), now_.v[v]);
   return {masked(-now_.elastic[v], axes),
           masked(-now_.viscous[v], axes),
           masked(drag, axes),

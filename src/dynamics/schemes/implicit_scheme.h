@@ -4,10 +4,14 @@
 //                 ▲                                   │
 //                 └── cut in two ◀── no balance ──────┘
 //
-// Statics is the same with α_f = 0 and no M, γ and viscosity, with the tissue's long-time stress.
+// Statics is the same with α_f = 0 and no M and γ: with the tissue's long-time stress and no viscosity, or with both in the time of
+// motions and loads (StaticBranches). A slow step then has two halves; what two of them make of the branches and what one would says
+// how wrong it is, and an automatic one that is too wrong is made anew, shorter. Where something is sudden, at the start and after
+// changes from outside, an instant comes first in which nothing relaxes.
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +62,8 @@ class ImplicitScheme : public Scheme {
   void take_back_tissues(const TissueChange& change) override { take_tissues(change); }
 
  private:
+  static constexpr int kEasy = 6;  ///< iterations up to which a step was easy
+
   /// What step() goes back to where a part of it fails.
   struct Backup {
     Moment now;
@@ -67,6 +73,8 @@ class ImplicitScheme : public Scheme {
     double time, last_h;
     StepContact::Backup contact;
   };
+  Backup backup();
+  void restore(Backup backup);
 
   ElementWatch& watch() { return solver_.watch(); }
   double next_end() const;
@@ -74,14 +82,28 @@ class ImplicitScheme : public Scheme {
   std::vector<char> held_or_sprung() const;
   enum class Part { made, no_balance, overshoots };
   Part part(double h, bool dates_events);
+  Part stage(const TimeStep& s, bool dates_events);
   void finish(const TimeStep& s);
+  StepResult begin();
+  double end_of(double h) const;
+  bool advance(double h, double end, std::optional<Backup>& before, double& shortest);
+  StepResult made();
+  // slow_steps.cpp
+  bool is_easy() const { return solver_.iterations() <= kEasy; }
+  bool is_slow() const { return statics_ && !relaxes_; }
+  bool resists() const;
+  bool make_instant(double h);
+  Part slow_part(double h, bool dates_events);
+  double error_of(const Backup& before, double h, std::span<const Vec3d> travelled);
+  StepResult slow_step_of(double h, bool sudden);
+  void adapt_slow(double h, double shortest);
   std::vector<RestingVertex> resting() const;
   void book(const Moment& before);
   void adapt(double h, double smallest);
   ForceParts vertex_force(std::uint32_t vertex, const Axes& axes) const;
   StepResult failed(double smallest);
 
-  bool statics_;
+  bool statics_, relaxes_;  ///< relaxes_: statics without the past of branches, and without viscosity
   TissueOperator tissue_;
   Moment now_;
   BalanceSolver solver_;
@@ -89,7 +111,10 @@ class ImplicitScheme : public Scheme {
   double last_h_ = 0.0;
   double step_ = 0.0, largest_;  ///< of an automatic step: what it is where no corner is near [s]
   double step_end_ = std::numeric_limits<double>::infinity();  ///< as Simulation::set_step_end [s]
-  bool fresh_ = true;  ///< what is held, or the body, or the state has changed from outside
+  /// Of slow steps: how wrong the last one was, over what it may be; the largest stress [Pa m^(3/2)] and displacement so far, √Σ|u|² [m].
+  double error_ = 0.0, largest_stress_ = 0.0, largest_displacement_ = 0.0;
+  double planned_ = 0.0;  ///< length of the last slow step, an instant left out [s]
+  bool fresh_ = true;     ///< what is held, or the body, or the state has changed from outside
   std::string message_;
 };
 

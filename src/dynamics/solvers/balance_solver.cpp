@@ -33,8 +33,9 @@ double unit_force(const Body& body) {
 
 }  // namespace
 
-BalanceSolver::BalanceSolver(BodyState& state, const TissueOperator& tissue, const Moment& now, bool statics)
-    : state_(state), tissue_(tissue), now_(now), statics_(statics),
+BalanceSolver::BalanceSolver(BodyState& state, const TissueOperator& tissue, const Moment& now, bool statics,
+                             bool relaxes)
+    : state_(state), tissue_(tissue), now_(now), statics_(statics), relaxes_(relaxes),
       system_(tissue_, state.options.implicit.preconditioner), contact_(state_, system_) {}
 
 void BalanceSolver::begin() {
@@ -60,7 +61,7 @@ bool BalanceSolver::solve(const TimeStep& s, std::span<const Vec3d> last_change,
   load(s);
   watch_before_ = watch_;
   prescribe(s);
-  if (contact_.acts() && contact_.begin(s.h, now_.u, !statics_ && contact_.constrains())) hold();
+  if (contact_.acts() && contact_.begin(s.h, now_.u, !relaxes_ && contact_.constrains())) hold();
   if (start(s, last_change, last_h) && (contact_.constrains() ? newton_in_contact(s) : newton(s))) {
     if (contact_.acts()) next_.contact = contact_.forces();
     return true;
@@ -72,6 +73,12 @@ bool BalanceSolver::solve(const TimeStep& s, std::span<const Vec3d> last_change,
 void BalanceSolver::give_up() {
   if (contact_.acts()) contact_.give_up();
   watch_ = watch_before_;
+}
+
+/// Time over which branches go on to the state that forces are asked at [s].
+double BalanceSolver::since(const TimeStep& s) const {
+  if (relaxes_) return std::numeric_limits<double>::infinity();
+  return statics_ && !tissue_.has_memory() ? 0.0 : (1.0 - s.alpha_f) * s.h;
 }
 
 /// What acts from outside, at the state that forces are asked at.
@@ -113,9 +120,9 @@ void BalanceSolver::try_at(const TimeStep& s) {
     next_.v[i] = s.velocity(du, now_.v[i], now_.a[i]);
     next_.a[i] = s.acceleration(du, now_.v[i], now_.a[i]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (held_[3 * i + axis] == 0) continue;
+      if (held_[3 * i + axis] == 0 || statics_) continue;
       next_.v[i][axis] = held_velocity_[i][axis];
-      next_.a[i][axis] = statics_ ? 0.0 : (held_velocity_[i][axis] - now_.v[i][axis]) / s.h;
+      next_.a[i][axis] = (held_velocity_[i][axis] - now_.v[i][axis]) / s.h;
     }
     at_u_[i] = next_.u[i] * (1.0 - s.alpha_f) + now_.u[i] * s.alpha_f;
     at_v_[i] = next_.v[i] * (1.0 - s.alpha_f) + now_.v[i] * s.alpha_f;
@@ -126,8 +133,7 @@ void BalanceSolver::try_at(const TimeStep& s) {
 BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
   try_at(s);
   const double ahead = (1.0 - s.alpha_f) * s.h;
-  tissue_.forces({at_u_, at_v_, statics_ ? std::numeric_limits<double>::infinity() : ahead}, next_.elastic,
-                 next_.viscous, watch_);
+  tissue_.forces({at_u_, at_v_, since(s)}, next_.elastic, next_.viscous, watch_);
   contact_.add_forces_at(at_u_, next_.elastic);
   if (state_.loads.depends_on_state()) load(s);
   const Vec3d gravity = state_.gravity_at(state_.time + ahead);
@@ -136,12 +142,12 @@ BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
   const bool touched = contact_.acts();
   for (std::size_t i = 0; i < next_.u.size(); ++i) {
     const double m = state_.body.masses[i];
-    Vec3d pull = next_.external[i] + gravity * m, drag{};
+    Vec3d pull = next_.external[i] + gravity * m, drag = component_product(state_.damping(i, statics_), at_v_[i]);
     if (!statics_) {
       const Vec3d inertia = (next_.a[i] * (1.0 - s.alpha_m) + now_.a[i] * s.alpha_m) * m;
       inertial += dot(inertia, inertia);
       rounding += m * m * dot(next_.u[i], next_.u[i]);
-      drag = inertia + component_product(state_.damping(i), at_v_[i]);
+      drag = inertia + drag;
     }
     external += dot(pull, pull);
     if (touched) pull += contact_.forces()[i], contact += dot(contact_.forces()[i], contact_.forces()[i]);
@@ -159,16 +165,15 @@ BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
 
 void BalanceSolver::linearise(const TimeStep& s, bool semidefinite) {
   for (std::size_t i = 0; i < diagonal_.size(); ++i) {
-    const Vec3d damping = state_.damping(i), spring = state_.loads.spring(i);
+    const Vec3d damping = state_.damping(i, statics_), spring = state_.loads.spring(i);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       diagonal_[i][axis] = (1.0 - s.alpha_m) * s.a_rate * state_.body.masses[i] +
                            (1.0 - s.alpha_f) * s.v_rate * damping[axis] + (1.0 - s.alpha_f) * spring[axis];
     }
   }
   const double time = state_.time + (1.0 - s.alpha_f) * s.h;
-  const double since = statics_ ? std::numeric_limits<double>::infinity() : (1.0 - s.alpha_f) * s.h;
   system_.linearise(
-      {at_u_, at_v_, since},
+      {at_u_, at_v_, since(s)},
       {s.v_rate, 1.0 - s.alpha_f, diagonal_, state_.loads.stiffness(time, state_.body, at_u_), contact_.stiffness()},
       semidefinite);
 }

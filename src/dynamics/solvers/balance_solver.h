@@ -36,8 +36,9 @@ struct Moment {
 
 class BalanceSolver {
  public:
-  /// All must outlive this. @param now  where steps start from  @param statics  without M, γ and viscosity
-  BalanceSolver(BodyState& state, const TissueOperator& tissue, const Moment& now, bool statics);
+  /// All must outlive this. @param now  where steps start from  @param statics  without M and γ
+  /// @param relaxes  in statics: branches have relaxed, viscosity gives nothing
+  BalanceSolver(BodyState& state, const TissueOperator& tissue, const Moment& now, bool statics, bool relaxes);
 
   /// What is held, or the body, or its tissues have changed.
   void begin();
@@ -71,6 +72,7 @@ class BalanceSolver {
   };
 
   void hold();
+  double since(const TimeStep& s) const;
   void prescribe(const TimeStep& s);
   Balance evaluate(const TimeStep& s);
   void try_at(const TimeStep& s);
@@ -86,7 +88,7 @@ class BalanceSolver {
   BodyState& state_;
   const TissueOperator& tissue_;
   const Moment& now_;
-  bool statics_;
+  bool statics_, relaxes_;
   TangentSystem system_;
   StepContact contact_;
   Moment next_;

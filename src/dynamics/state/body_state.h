@@ -45,6 +45,8 @@ struct BodyState {
     const double g = gamma[vertex];
     return Vec3d{g, g, g} + loads.dashpot(vertex);
   }
+  /// The same under statics, which has no nodal damping.
+  Vec3d damping(std::size_t vertex, bool statics) const { return statics ? loads.dashpot(vertex) : damping(vertex); }
   bool holds(std::size_t constraint) const { return !base[constraint].empty(); }
   /// Per component: 1 where a constraint that holds by now has it, or where the vertex is in no tet.
   std::vector<char> held_components() const;

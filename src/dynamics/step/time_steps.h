@@ -6,7 +6,13 @@
 //                   α_m = (2 ρ∞ − 1)/(ρ∞ + 1),  α_f = ρ∞/(ρ∞ + 1),  γ = ½ − α_m + α_f,  β = ¼ (1 − α_m + α_f)²
 //                                                                                             [ChungHulbert1993]
 //   static          v⁺ = a⁺ = 0
+//   slow            a⁺ = 0, each half of a step in two stages where viscosity acts, γ = 1 − 1/√2 [Alexander1977]:
+//                   v₁ = (u₁ − u)/(γ h) at t + γ h,   v⁺ = (u⁺ − u − (1 − γ) h v₁)/(γ h) at t + h
 #pragma once
+
+#include <array>
+#include <numbers>
+#include <vector>
 
 #include "glisson/math.h"
 #include "glisson/simulation/simulation.h"
@@ -33,6 +39,29 @@ inline TimeStep static_step(double h) {
   s.h = h;
   return s;
 }
+
+/// Equilibrium at t + h with the velocity of a step of h.
+inline TimeStep slow_step(double h) {
+  TimeStep s = static_step(h);
+  s.v_rate = 1.0 / h;
+  return s;
+}
+
+/// The parts of a slow step of h: halves, since branches compare two with one to know their error; with viscosity each in stages, of
+/// second order and without ringing, whatever the tissue's times are.
+inline std::vector<TimeStep> slow_stages(double h, bool viscous) {
+  constexpr double kGamma = 1.0 - 0.5 * std::numbers::sqrt2;
+  const double half = 0.5 * h;
+  if (!viscous) return {static_step(half), static_step(half)};
+  TimeStep second = slow_step(kGamma * half);
+  second.h = (1.0 - kGamma) * half, second.v_from_v = (2.0 * kGamma - 1.0) / kGamma;
+  return {slow_step(kGamma * half), second, slow_step(kGamma * half), second};
+}
+
+/// Weights of the velocities of those stages for u⁺ − u over h, exact for cubics.
+inline constexpr std::array<double, 4> kSlowWeights{5.0 / 3.0 * std::numbers::sqrt2 - 2.0,
+                                                    1.0 - 2.0 / 3.0 * std::numbers::sqrt2, std::numbers::sqrt2 / 3.0,
+                                                    2.0 - 4.0 / 3.0 * std::numbers::sqrt2};
 
 inline TimeStep time_step(const ImplicitOptions& options, double h) {
   TimeStep s;
