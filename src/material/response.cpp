@@ -31,6 +31,24 @@ StrainNumbers<T> strain_numbers(Kinematics kinematics, const Mat3<T>& H) {
   return {trace(e), contract(e, e)};
 }
 
+/// Of a tensor-mass tissue of large strain, the part of S = F⁻¹ P whose stress is p I in the frame of its strain: with σ − p I
+/// the deviator of the strain relaxes, and what stays is the gradient of an energy. A Cauchy stress p I would not do: its
+/// work over closed cycles is not 0, since p follows more than the volume.
+/// @param cof  cof F
+template <class T>
+Sym3<T> spherical_part(Kinematics kinematics, const Mat3<T>& H, const Mat3<T>& P, const Sym3<T>& S, const Mat3<T>& cof,
+                       T J) {
+  const T third(1.0 / 3.0);
+  if (kinematics == Kinematics::green) {
+    const T p = trace(S) * third;
+    return {p, p, p, T(0.0), T(0.0), T(0.0)};
+  }
+  const auto ones = [](const std::array<T, 3>&) { return std::array<T, 3>{T(1.0), T(1.0), T(1.0)}; };
+  const Mat3<T> R = isotropic_piola(H, ones);
+  const T p = trace(transposed_product(R, P)) * third;
+  return symmetric(transposed_product(cof, R)) * (p / J);
+}
+
 }  // namespace
 
 Response::Response(const Tissue& tissue)
@@ -179,7 +197,8 @@ bool Response::stores_energy() const {
   if (tissue_.hyperelastic) return true;
   const bool constant = tissue_.has_constant_moduli();
   const bool deviator_relaxes = relaxing_share_ > 0.0 && tissue_.maxwell_part == MaxwellPart::deviator;
-  return deviator_relaxes ? constant && small() : constant || tissue_.law_form == LawForm::energy;
+  if (deviator_relaxes) return constant && !tissue_.fibres;
+  return constant || tissue_.law_form == LawForm::energy;
 }
 
 template <class T>
@@ -207,6 +226,7 @@ Sym3<T> Response::relaxing(const Mat3<T>& H, const Mat3<T>& P) const {
   const Sym3<T> S = symmetric(transposed_product(cof, P)) * (T(1.0) / J);
   const T fade = J < T(kSmallestVolume) ? T(2.0 / kSmallestVolume) * J - T(1.0) : T(1.0);
   if (tissue_.maxwell_part == MaxwellPart::all) return S * fade;
+  if (!tissue_.hyperelastic) return (S - spherical_part(tissue_.kinematics, H, P, S, cof, J)) * fade;
   const Sym3<T> inverse = symmetric(transposed_product(cof, cof)) * (T(1.0) / (J * J));  // C⁻¹
   const Sym3<T> E = green_strain(H);
   const T pressure = (trace(S) + T(2.0) * contract(S, E)) * T(1.0 / 3.0);  // S:C / 3

@@ -47,8 +47,8 @@ class Response {
   Mat3<T> elastic(const Mat3<T>& H, const ElementShape& shape, const T* mean = nullptr) const;
   /// W of it [J/m³]; of a secant law ½ σ:ε, which is not stored energy.
   double energy(const Mat3d& H, const ElementShape& shape, const double* mean = nullptr) const;
-  /// The part of it that is left when all Maxwell branches have relaxed; where those relax the deviator of a tissue
-  /// without a hyperelastic law, exact for small strain.
+  /// The part of it that is left when all Maxwell branches have relaxed: of a tissue that stores_energy(), or of one
+  /// without branches.
   double relaxed_energy(const Mat3d& H, const ElementShape& shape, const double* mean = nullptr) const;
   /// Whether small_tangent() is the tangent of elastic(): it is not with fibres and with laws in the form of an energy.
   bool has_small_tangent() const { return small() && tissue_.law_form == LawForm::secant && !tissue_.fibres; }

@@ -68,8 +68,9 @@ HWY_INLINE Symmetric stress_by_series(const RootSeries<float>& series, const Mea
 struct StretchTensors {
   Symmetric strain, inverse;
 };
-HWY_INLINE StretchTensors stretch_tensors(const Symmetric& E, const Tensor& H, F volume_change) {
-  const F J = hn::Max(volume_change + number(1.0F), number(float(kSmallestVolume)));
+HWY_INLINE StretchTensors stretch_tensors(const Symmetric& E, const Tensor& H, F volume_change,
+                                          double smallest = kSmallestVolume) {
+  const F J = hn::Max(volume_change + number(1.0F), number(float(smallest)));
   const F I1 = hn::MulAdd(number(2.0F), trace_of(E), number(3.0F));
   const F I2 = squares_of(plus_identity(cofactor_change(H), number(1.0F)));
   F x = hn::Sqrt(number(3.0F) * I1), y = hn::Sqrt(number(3.0F) * I2);

@@ -49,6 +49,22 @@ inline void fibres(const ResponseItems& in, const LaneResponse& r, ResponseBlock
   }
 }
 
+/// S = F⁻¹ P without its part p I in the frame of the strain: of Cauchy's stress, of S, of σ = Rᵀ P (spherical_part of response.cpp).
+HWY_INLINE Symmetric deviator_of_strain(const LaneResponse& r, const Tensor& H, const Symmetric& S, const Tensor& cof,
+                                        F safe) {
+  const F third = number(1.0F / 3.0F);
+  if (r.volume == VolumeKind::green) return plus_identity(S, hn::Neg(trace_of(S) * third));
+  const Symmetric E = green_strain(H);
+  if (r.volume == VolumeKind::hyperelastic) {
+    const Symmetric inverse = times(number(1.0F) / (safe * safe), symmetric_product(cof, cof));  // C⁻¹
+    const F pressure = hn::MulAdd(number(2.0F), contraction(S, E), trace_of(S)) * third;
+    return plus(S, hn::Neg(pressure), inverse);
+  }
+  const StretchTensors u = stretch_tensors(E, H, safe - number(1.0F), 0.5 * kSmallestVolume);
+  const F pressure = (trace_of(S) + contraction(S, u.strain)) * third;  // S : U / 3
+  return plus(S, hn::Neg(pressure), u.inverse);
+}
+
 /// S = F⁻¹ P or its deviator, fading where J → 0; sym P for small strain.
 HWY_INLINE Symmetric relaxing_stress(const LaneResponse& r, const Tensor& H, const Tensor& P) {
   const F third = number(1.0F / 3.0F);
@@ -61,11 +77,7 @@ HWY_INLINE Symmetric relaxing_stress(const LaneResponse& r, const Tensor& H, con
   const F fade = hn::Min(hn::MulSub(number(float(2.0 / kSmallestVolume)), safe, number(1.0F)), number(1.0F));
   const Tensor cof = plus_identity(cofactor_change(H), number(1.0F));
   Symmetric S = times(number(1.0F) / safe, symmetric_product(cof, P));
-  if (r.deviator) {
-    const Symmetric inverse = times(number(1.0F) / (safe * safe), symmetric_product(cof, cof));  // C⁻¹
-    const F pressure = hn::MulAdd(number(2.0F), contraction(S, green_strain(H)), trace_of(S)) * third;
-    S = plus(S, hn::Neg(pressure), inverse);
-  }
+  if (r.deviator) S = deviator_of_strain(r, H, S, cof, safe);
   return times(hn::IfThenElse(hn::Lt(J, limit), hn::Max(fade, hn::Zero(Lanes())), number(1.0F)), S);
 }
 

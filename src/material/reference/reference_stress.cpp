@@ -348,7 +348,11 @@ RealTensor relaxing_stress(const MaterialPoint& point, const RealTensor& F) {
   const RealTensor P = piola(point, F);
   if (t.has_small_strain()) return all ? symmetric_part(P) : deviator(symmetric_part(P));
   const RealTensor S = F.inverse() * P, C = F.transpose() * F;
-  return symmetric_part(all ? S : RealTensor(S - contract(S, C) / 3 * C.inverse()));
+  if (all) return symmetric_part(S);
+  if (t.hyperelastic) return symmetric_part(RealTensor(S - contract(S, C) / 3 * C.inverse()));
+  if (t.kinematics == Kinematics::green) return deviator(symmetric_part(S));
+  const RealTensor R = rebuilt(singular(F), {1, 1, 1});  // F⁻¹ R dev(Rᵀ P)
+  return symmetric_part(RealTensor(F.inverse() * R * deviator(RealTensor(R.transpose() * P))));
 }
 
 Real pace(const MaterialPoint& point, std::size_t branch, const RealTensor& F) {
