@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "base/unit_range.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
 #include "cli/standard_streams.h"
@@ -19,7 +20,8 @@ template <class Law>
 void print_law() {
   say("{}\n  {}\n", Law::kName, Law::kHelp);
   each_field<Law>([](const auto& field) {
-    say("    {:<18} [{}], {}{}: {}\n", field.key(), field.unit, field.range.bounded() ? field.range.text() : "any",
+    const Range range = detail::allowed(field);
+    say("    {:<18} [{}], {}{}: {}\n", field.key(), field.unit, range.bounded() ? range.text() : "any",
         field.required ? "" : ", optional", field.help);
   });
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/unit_range.h"
 #include "docstrings.h"
 
 namespace glisson::python {
@@ -17,7 +18,7 @@ const char* doc(const std::string& name) {
 std::string docstring(const std::string& comment, const FieldText& field) {
   const std::string unit = field.si_unit();
   std::string text = !comment.empty() ? comment : std::string(field.help) + (unit.empty() ? "" : " [" + unit + "]");
-  Range range = field.range;
+  Range range = detail::allowed(field);
   range.min *= field.scale(), range.max *= field.scale();
   return range.bounded() ? text + "; allowed: " + range.text() : text;
 }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "base/text.h"
+#include "base/unit_range.h"
 
 namespace glisson::detail {
 
@@ -13,23 +14,26 @@ void refuse(const std::string& where, std::string name, const std::string& what)
 }
 
 void require_number(const std::string& where, const std::string& name, const FieldText& field, double value) {
-  Range allowed = field.range;
-  allowed.min *= field.scale(), allowed.max *= field.scale();
-  if (allowed.contains(value) && (std::isfinite(value) || !field.infinite.empty())) return;
+  Range range = allowed(field);
+  range.min *= field.scale(), range.max *= field.scale();
+  if (range.contains(value) && std::isfinite(value)) return;
+  if (!field.infinite.empty() && std::isinf(value) && field.range.contains(value)) return;
   const std::string unit = field.si_unit();
   std::string text = where + ": " + name + (unit.empty() || unit == "-" ? "" : " [" + unit + "]") + " = " +
                      show(value) + " is outside the allowed range, ";
-  text += allowed.bounded() ? allowed.text() : "any finite number";
+  text += range.bounded() ? range.text() : "any finite number";
   if (!field.infinite.empty()) text += "; infinite: " + std::string(field.infinite);
-  if (field.infinite.empty() && allowed.bounded() && std::isinf(allowed.max)) text += " and finite";
+  if (field.infinite.empty() && range.bounded() && std::isinf(range.max)) text += " and finite";
   if (!field.advice.empty()) text += "; " + std::string(field.advice);
   throw std::invalid_argument(text);
 }
 
 void require_vector(const std::string& where, const std::string& name, const FieldText& field, const Vec3d& v) {
   for (std::size_t i = 0; i < 3; ++i) require_number(where, name + "." + "xyz"[i], field, v[i]);
-  if (field.is_direction && !(norm(v) > 0.0))
-    refuse(where, name, "(0, 0, 0) has no length; give a vector that is not zero, such as (0, 0, -1)");
+  if (field.is_direction && !(norm(v) > kShortestDirection))
+    refuse(where, name,
+           "(" + show(v.x) + ", " + show(v.y) + ", " + show(v.z) +
+               ") has no length; give a vector that is not zero, such as (0, 0, -1)");
 }
 
 }  // namespace glisson::detail

@@ -80,15 +80,20 @@ TEST(Field, RefusalsNameValueAndRange) {
   EXPECT_EQ(refusal_of({}), "accepted");
   EXPECT_EQ(refusal_of({.depth = 0.03}),
             "tool: depth [m] = 0.03 is outside the allowed range, 0.001 to 0.02; press less deep");
-  EXPECT_EQ(refusal_of({.end = 0.0}), "tool: end [s] = 0 is outside the allowed range, > 0 and finite");
+  EXPECT_EQ(refusal_of({.end = 0.0}), "tool: end [s] = 0 is outside the allowed range, > 0 and ≤ 1e+09");
   EXPECT_EQ(refusal_of({.way = {}}),
             "tool: way: (0, 0, 0) has no length; give a vector that is not zero, such as (0, 0, -1)");
-  EXPECT_EQ(refusal_of({.way = {0, NAN, 0}}), "tool: way.y = nan is outside the allowed range, any finite number");
+  EXPECT_EQ(refusal_of({.way = {0, NAN, 0}}), "tool: way.y = nan is outside the allowed range, -1e+12 to 1e+12");
   EXPECT_EQ(refusal_of({.parts = {{}, {1.0}}}), "tool: parts[1].share = 1 is outside the allowed range, > 0 and < 1");
   EXPECT_EQ(refusal_of({.depth = 0.018, .parts = {{}}}), "tool: depth: is too deep for parts");
   EXPECT_EQ(refusal_of({.friction = INFINITY}), "accepted");
+  EXPECT_EQ(refusal_of({.friction = 2e12}),
+            "tool: friction = 2e+12 is outside the allowed range, 0 to 1e+12; infinite: it never slips");
+  EXPECT_EQ(refusal_of({.end = INFINITY}), "tool: end [s] = inf is outside the allowed range, > 0 and ≤ 1e+09");
+  EXPECT_EQ(refusal_of({.way = {0, 1e-200, 0}}),
+            "tool: way: (0, 1e-200, 0) has no length; give a vector that is not zero, such as (0, 0, -1)");
   EXPECT_EQ(refusal_of({.friction = NAN}),
-            "tool: friction = nan is outside the allowed range, ≥ 0; infinite: it never slips");
+            "tool: friction = nan is outside the allowed range, 0 to 1e+12; infinite: it never slips");
 }
 
 }  // namespace

@@ -334,7 +334,7 @@ TEST(SurfaceLoad, RefusesWhatItCannotBear) {
   EXPECT_TRUE(has(said({}, {.pressure = 10.0}), "the vertex set is empty"));
   EXPECT_TRUE(has(said({100000}, {.pressure = 10.0}), "outside the mesh"));
   const std::string negative = said({212}, {.spring = {-1, 0, 0}});
-  EXPECT_TRUE(has(negative, "spring") && has(negative, "≥ 0")) << negative;
+  EXPECT_TRUE(has(negative, "spring") && has(negative, "0 to 1e+12")) << negative;
   EXPECT_TRUE(has(said({212}, {.force = {std::numeric_limits<double>::quiet_NaN(), 0, 0}}), "force"));
   EXPECT_TRUE(has(said({212}, {.force = {1, 0, 0}, .follows = true}), "follows"));
 }

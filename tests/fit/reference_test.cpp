@@ -1,11 +1,13 @@
 // The documentation of FIT.toml is what the reader itself uses.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 
 #include "fit/fit_spec.h"
 #include "fit/section_fit.h"
+#include "scene/parse/allowed_range.h"
 #include "support/places.h"
 
 namespace glisson::fit {
@@ -25,6 +27,19 @@ TEST(FitReference, HasEveryKeyOfTheFile) {
     EXPECT_FALSE(key.help.empty()) << key.name;
   }
 }
+
+void expect_ends(const scene::SectionSpec& section) {
+  for (const scene::KeySpec& key : section.keys) {
+    if (key.section) expect_ends(*key.section);
+    if (key.type != scene::ValueType::number) continue;
+    const Range range = scene::allowed_range(key);
+    EXPECT_TRUE(std::isfinite(range.min) && std::isfinite(range.max)) << section.name << "." << key.name;
+  }
+  for (const scene::KindSpec& kind : section.kinds) expect_ends(kind.section);
+}
+
+// Every number of a fit has a least and a largest value.
+TEST(FitReference, EveryNumberHasTwoEnds) { expect_ends(fit_section()); }
 
 }  // namespace
 }  // namespace glisson::fit

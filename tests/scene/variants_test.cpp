@@ -171,7 +171,7 @@ TEST(Overrides, SayWhichOneIsWrong) {
   EXPECT_EQ(complaint(kSmallScene, {{"tissue.density", "3"}}),
             "s.toml: --set tissue.density: unknown key; did you mean `density_kg_m3`?");
   EXPECT_EQ(complaint(kSmallScene, {{"tool.press.depth_mm", "-1"}}),
-            "s.toml: --set tool.press.depth_mm: tool.0.depth_mm: -1 mm is out of range; allowed: > 0 mm");
+            "s.toml: --set tool.press.depth_mm: tool.0.depth_mm: -1 mm is out of range; allowed: > 0 and ≤ 1e+07 mm");
   EXPECT_EQ(complaint(kSmallScene, {{"tool.needle.depth_mm", "1"}}),
             "s.toml: --set tool.needle.depth_mm: tool.needle: no such tool; known: 0 (press)");
   EXPECT_EQ(complaint(kSmallScene, {{"load.0.ramp_s", "1"}}),

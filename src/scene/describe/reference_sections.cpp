@@ -1,5 +1,7 @@
 #include "scene/describe/reference_sections.h"
 
+#include "scene/parse/allowed_range.h"
+
 namespace glisson::scene {
 namespace {
 
@@ -23,7 +25,7 @@ std::string type_of(const KeySpec& key) {
 /// The largest whole number that is stored says nothing to a reader.
 std::string range_of(const KeySpec& key) {
   constexpr double kTechnicalLimit = 2147483647.0;
-  Range range = key.range;
+  Range range = allowed_range(key);
   if (range.max >= kTechnicalLimit && key.type == ValueType::integer) range.max = Range{}.max;
   return range.bounded() ? range.text() : "";
 }

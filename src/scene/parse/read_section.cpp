@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/nearest.h"
+#include "scene/parse/allowed_range.h"
 #include "scene/parse/sections.h"
 
 namespace glisson::scene {
@@ -111,10 +112,11 @@ bool check_single(const KeySpec& key, const Node& node, const Place& place) {
   if (key.accepts_auto && node.text() && *node.text() == "auto") return true;
   if (!number || (key.type == ValueType::integer && !whole)) return wrong_type();
   const double value = number_of(node);
-  if (std::isfinite(value) && key.range.contains(value)) return true;
+  const Range range = allowed_range(key);
+  if (std::isfinite(value) && range.contains(value)) return true;
   std::string unit;
   if (!key.unit.empty() && key.unit != "-") unit.append(" ").append(key.unit);
-  const std::string allowed = key.range.bounded() ? key.range.text() + unit : "any finite number";
+  const std::string allowed = range.bounded() ? range.text() + unit : "any finite number";
   place.complain(describe(node) + unit + " is out of range; allowed: " + allowed +
                  (key.advice.empty() ? "" : "; " + key.advice));
   return false;
@@ -134,9 +136,11 @@ bool check_value(const KeySpec& key, const Node& node, const Place& place) {
     const Node& element = (*elements)[i];
     right = check_single(single, element, place.inside(std::to_string(i), element.where)) && right;
   }
-  const auto is_zero = [](const Node& element) { return number_of(element) == 0.0; };
-  if (right && key.is_direction && std::all_of(elements->begin(), elements->end(), is_zero)) {
-    place.complain("[0, 0, 0] has no direction; give a vector that is not zero, such as [0, 0, -1]");
+  const auto is_short = [](const Node& x) { return std::abs(number_of(x)) < detail::kShortestDirection; };
+  if (right && key.is_direction && std::ranges::all_of(*elements, is_short)) {
+    std::string vector;
+    for (const Node& element : *elements) vector += (vector.empty() ? "[" : ", ") + describe(element);
+    place.complain(vector + "] has no direction; give a vector that is not zero, such as [0, 0, -1]");
     return false;
   }
   return right;
