@@ -24,6 +24,7 @@
 #include "instruments/needle/membranes.h"
 #include "material/linear_law.h"
 #include "mesh/inspect/vertex_set.h"
+#include "report/summary_json.h"
 
 namespace glisson::app {
 namespace {
@@ -31,7 +32,7 @@ namespace {
 constexpr const char* kCheckFooter =
     "Reads the scene, builds every variant, steps it for a tenth of a second and prints mesh, vertex\n"
     "sets, tissue, stable step, and the steps and the time a run will take. Writes nothing. Exit status 2 if the\n"
-    "scene cannot be run.\n"
+    "scene cannot be run, 3 if its numbers end a run within that time.\n"
     "\n"
     "Examples:\n"
     "  glisson check scenes/paper/figure3b.toml\n"
@@ -196,6 +197,31 @@ void print_locking(const std::string& table, const Tissue& t) {
   say("  locking  ν = {:.3g} with volume_change = \"element\": tets that keep their own volumes are too stiff;\n"
       "           {}.volume_change = \"average_nodal\" mends it\n",
       nu, table);
+}
+
+/// Whether a tissue's forces are a secant law's, whose closed cycles give or take work of their own.
+bool has_cycle_work(const Tissue& t) {
+  return !t.hyperelastic && !t.has_constant_moduli() && t.law_form == LawForm::secant;
+}
+
+/// Says once of a scene which tissues have such a law, and the way out.
+void print_cycle_work(const Scene& scene) {
+  std::vector<std::string> names;
+  const auto look = [&](const Tissue& tissue) {
+    const std::string name = "\"" + tissue.name + "\"";
+    if (has_cycle_work(tissue) && std::ranges::find(names, name) == names.end()) names.push_back(name);
+  };
+  for (const Variant& v : scene.variants) {
+    look(v.tissue);
+    for (const RegionSpec& region : v.regions) look(region.tissue);
+  }
+  if (names.empty()) return;
+  say("\nThe stiffness law of {} is in secant form, the paper's, and stores no energy: over a closed cycle of "
+      "deformation it can give\n"
+      "work that nothing paid, and a body that nothing damps may gain energy. law_form = \"energy\" gives the force of "
+      "an energy\n"
+      "(docs/laws.md). A run says where that happens.\n",
+      fmt::join(names, ", "));
 }
 
 /// Membranes that a needle has to break on its way.
@@ -486,6 +512,7 @@ int check(const CheckOptions& options) {
   MeshCache meshes(false);
   say("{}: {}\n", scene.file.string(), scene.title);
   double total = 0.0, longest = 0.0;
+  bool ends = false;
   for (const Variant& variant : scene.variants) {
     Taste taste;
     const RunSummary summary = run_variant(variant, meshes.loader(), taste, taste.stop);
@@ -493,13 +520,16 @@ int check(const CheckOptions& options) {
     say("\n{}\n", variant.label == variant.name ? variant.name : variant.name + " — " + variant.label);
     print_body(variant, taste);
     print_time(variant, meshes.loader(), taste, cost, summary);
+    if (!summary.trouble.empty()) say("  trouble  {}\n", trouble_text(summary));
+    ends = ends || !summary.trouble.empty();
     total += cost.wall_s;
     longest = std::max(longest, cost.wall_s);
   }
-  say("\n{} variant{}, about {} on {} thread{}. The scene can be run.\n", scene.variants.size(),
-      scene.variants.size() == 1 ? "" : "s", duration_text(std::max(longest, total / options.threads)), options.threads,
-      options.threads == 1 ? "" : "s");
-  return kDone;
+  print_cycle_work(scene);
+  say("\n{} variant{}, about {} on {} thread{}. {}.\n", scene.variants.size(), scene.variants.size() == 1 ? "" : "s",
+      duration_text(std::max(longest, total / options.threads)), options.threads, options.threads == 1 ? "" : "s",
+      ends ? "Its numbers end a run early, see `trouble`" : "The scene can be run");
+  return ends ? kNumericalEnd : kDone;
 }
 
 }  // namespace

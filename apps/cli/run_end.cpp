@@ -46,6 +46,7 @@ void print_results(const std::vector<const VariantRecorder*>& variants) {
     if (s.inverted_tets_most > 0) {
       say(" (up to {} inverted tets, from {:.4g} s on)", s.inverted_tets_most, s.first_inversion_s);
     }
+    if (s.energy_gain && s.energy_gain->any()) say(" (energy from nothing, from {:.4g} s on)", s.energy_gain->began);
     if (s.linear_share_mean) say(" ({:.0f} % of the tets linear in the mean)", 100.0 * *s.linear_share_mean);
     say("\n");
   }
@@ -66,11 +67,11 @@ int print_checks(const nlohmann::json& checks, const std::string& of, bool only_
 int end_of(const std::vector<const VariantRecorder*>& variants) {
   bool trouble = false;
   for (const VariantRecorder* v : variants) {
-    const std::string text = trouble_text(v->summary());
-    if (text.empty()) continue;
-    trouble = true;
+    const std::string text = trouble_text(v->summary()), warning = energy_warning(v->summary());
+    trouble = trouble || !text.empty();
     std::fflush(stdout);
-    tell("glisson: {}: {}\n", v->variant().name, text);
+    if (!text.empty()) tell("glisson: {}: {}\n", v->variant().name, text);
+    if (!warning.empty()) tell("glisson: {}: warning: {}\n", v->variant().name, warning);
   }
   if (interrupted()) return kInterrupted;
   return trouble ? kNumericalEnd : kDone;

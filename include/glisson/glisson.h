@@ -22,6 +22,7 @@
 #include "glisson/mesh_refinement.h"
 #include "glisson/oscillation.h"
 #include "glisson/region_mesh.h"
+#include "glisson/simulation/energy_watch.h"
 #include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 #include "glisson/simulation/tet_fields.h"

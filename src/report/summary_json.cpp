@@ -16,6 +16,16 @@ std::string trouble_text(const RunSummary& s) {
       s.time_s, s.inverted_tets_most);
 }
 
+std::string energy_warning(const RunSummary& s) {
+  if (!s.energy_gain || !s.energy_gain->any()) return {};
+  const EnergyGain& gain = *s.energy_gain;
+  return fmt::format(
+      "from {:.4g} s on {}: up to {:.3g} times what tools, loads and changes paid, {:.3g} J by {:.4g} s. What is "
+      "computed from there on cannot be believed. A stiffness law in secant form gives work over closed cycles, where "
+      "law_form = \"energy\" does not; else take a smaller step_s, or integrator = \"implicit\"",
+      gain.began, meaning_of(gain.of), gain.most, gain.paid, s.time_s);
+}
+
 nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant, const std::string& scene,
                                     int threads) {
   nlohmann::ordered_json json;
@@ -51,6 +61,15 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
   json["work_tools_J"] = s.energies.work_tools;
   json["work_loads_J"] = s.energies.work_loads;
   json["energy_imbalance_J"] = s.energies.imbalance();
+  if (s.energy_gain) {
+    json["energy_paid_J"] = s.energy_gain->paid;
+    json["energy_gain_most"] = s.energy_gain->most;
+    json["energy_gain_from_s"] = nullptr;
+    if (s.energy_gain->any()) {
+      json["energy_gain_from_s"] = s.energy_gain->began;
+      json["energy_warning"] = energy_warning(s);
+    }
+  }
   if (s.linear_share_mean) json["linear_share_mean"] = *s.linear_share_mean;
   json["inverted_tets_most"] = s.inverted_tets_most;
   if (s.inverted_tets_most > 0)

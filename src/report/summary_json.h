@@ -11,6 +11,9 @@ namespace glisson {
 /// A sentence on an end that is the numbers' doing, with the way out; empty for finished and interrupted.
 std::string trouble_text(const RunSummary& summary);
 
+/// A sentence on energy that came from nothing, with the time from which on and the ways out; empty where none did.
+std::string energy_warning(const RunSummary& summary);
+
 /// The object of summary.json, keys in the order they are written.
 /// @param scene  name of the scene; @param threads  variants at a time (results do not depend on it)
 nlohmann::ordered_json summary_json(const RunSummary& summary, const Variant& variant, const std::string& scene,

@@ -123,5 +123,69 @@ tool.0.velocity_mm_s = 200
   EXPECT_TRUE(std::filesystem::exists(folder_ / "o/report.html"));
 }
 
+// Numbers that overflow are refused with their range, by check and run alike.
+TEST_F(Errors, NumbersThatOverflowAreRefused) {
+  const std::string scene = write("s.toml", small_scene());
+  for (const char* key : {"tissue.density_kg_m3=1e-300", "tissue.density_kg_m3=1e300", "motion.gravity_m_s2=[0,0,1e30]",
+                          "load=[{set=\"x_max\",pressure_Pa=1e300,follows=true}]", "motion.mass_scaling_step_s=1e30"}) {
+    for (const char* command : {"check", "run"}) {
+      const Outcome outcome = run({command, scene, "--set", key});
+      EXPECT_THAT(outcome, Exits(2)) << key;
+      EXPECT_NE(outcome.err.find("is out of range; allowed: "), std::string::npos) << outcome.err;
+    }
+  }
+}
+
+// A secant law that pays more than was put in: check names its work once, the run says it with its time, in the terminal, in
+// summary.json and in the report, and ends with 0. Its energy form is silent.
+TEST_F(Errors, EnergyFromNothingIsSaid) {
+  const std::string scene = write("s.toml", R"([mesh]
+kind = "box"
+cells = [3, 3, 4]
+size_m = [0.04, 0.04, 0.04]
+[tissue]
+youngs_modulus_Pa = 3000
+poisson_ratio = 0.3
+law = { kind = "step", threshold = 0.05, above_Pa = 9000 }
+[[fixed]]
+set = "z_min"
+[[load]]
+set = "z_max"
+force_N = [0.18, 0, -0.6]
+times_s = [0, 0.1, 0.12]
+factors = [0, 1, 0]
+[motion]
+duration_s = 1
+[output]
+frames = 0
+sample_rate_hz = 200
+[[variant]]
+name = "a"
+[[variant]]
+name = "b"
+)");
+  const Outcome check = run({"check", scene});
+  EXPECT_THAT(check, Exits(0));
+  const std::size_t first = check.out.find("is in secant form");
+  EXPECT_NE(first, std::string::npos) << check.out;
+  EXPECT_EQ(check.out.find("is in secant form", first + 1), std::string::npos) << "once";
+
+  const Outcome outcome = run({"run", scene, "--variant", "a", "--out", "o"});
+  EXPECT_THAT(outcome, Exits(0));
+  EXPECT_NE(outcome.out.find("energy from nothing, from 0.1"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("law_form = \"energy\""), std::string::npos) << outcome.err;
+  const nlohmann::json summary = read_json(folder_ / "o/a/summary.json");
+  EXPECT_NEAR(summary["energy_gain_from_s"], 0.15, 0.05);
+  EXPECT_GT(summary["energy_gain_most"], 0.01);
+  EXPECT_NE(read_text(folder_ / "o/report.html").find("have given more work than they took"), std::string::npos);
+
+  const Outcome silent = run({"run", scene, "--variant", "a", "--out", "e", "--set", "tissue.law_form=energy", "--set",
+                              "tissue.law.width=0.1"});
+  EXPECT_THAT(silent, Exits(0));
+  EXPECT_EQ(silent.err, "");
+  EXPECT_TRUE(read_json(folder_ / "e/a/summary.json")["energy_gain_from_s"].is_null());
+  EXPECT_EQ(run({"check", scene, "--set", "tissue.law_form=energy"}).out.find("secant"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace glisson::test

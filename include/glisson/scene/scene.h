@@ -15,6 +15,7 @@
 
 #include "glisson/scene/compare_spec.h"
 #include "glisson/scene/variant.h"
+#include "glisson/simulation/energy_watch.h"
 
 namespace glisson {
 
@@ -130,7 +131,9 @@ struct RunSummary {
   Energies energies;
   std::optional<double> stored_energy_J{};  ///< at the end; none where a tissue's forces have no energy
   double energy_drift_most_J = 0.0;         ///< largest |energy_drift()| of the frames and the end; 0 where none
-  double mass_added_kg = 0.0;               ///< by mass scaling
+  /// Whether the body held more energy than was put into it, at samples and frames; none without track_energies.
+  std::optional<EnergyGain> energy_gain{};
+  double mass_added_kg = 0.0;  ///< by mass scaling
   std::optional<double>
       linear_share_mean{};             ///< Simulation::linear_share() over the steps; none unless precision is adaptive
   std::size_t inverted_tets_most = 0;  ///< largest number of tets inverted in one step
@@ -144,7 +147,8 @@ struct RunSummary {
     stopped_unstable,
     stopped_not_finite,
     stopped_not_converged,
-    stopped_not_held
+    stopped_not_held,
+    stopped_energy
   } end = End::finished;
   std::string trouble;  ///< why the last step was not made and what to do; empty if all were
 };
@@ -155,9 +159,10 @@ inline constexpr Word<RunSummary::End> kWords<RunSummary::End>[] = {
     {"interrupted", RunSummary::End::interrupted, "interrupted"},
     {"stopped_inverted", RunSummary::End::stopped_inverted, "a tetrahedron inverted"},
     {"stopped_unstable", RunSummary::End::stopped_unstable, "the step has become too large; leave out step_s"},
-    {"stopped_not_finite", RunSummary::End::stopped_not_finite, "a force is not finite"},
+    {"stopped_not_finite", RunSummary::End::stopped_not_finite, "a number is not finite"},
     {"stopped_not_converged", RunSummary::End::stopped_not_converged, "no equilibrium was found"},
-    {"stopped_not_held", RunSummary::End::stopped_not_held, "supports and tools leave a rigid motion free"}};
+    {"stopped_not_held", RunSummary::End::stopped_not_held, "supports and tools leave a rigid motion free"},
+    {"stopped_energy", RunSummary::End::stopped_energy, "the body has ten times the energy that was put into it"}};
 
 /// The end of a run whose step had this status; `finished` if the run continues.
 RunSummary::End end_of(StepStatus status, OnInversion on_inversion);
@@ -212,7 +217,8 @@ double run_duration(const Variant& variant);
 /// The last step is the one that ends nearest to run_duration(). A sample is taken from the step that starts nearest
 /// to each multiple of 1/sample_rate, and one more from the last step, so that the curve ends where the run does;
 /// its time, depth, forces and energies are all of the instant at which that step starts. Frames are evenly spaced,
-/// the first at rest, the last at the end.
+/// the first at rest, the last at the end. A run is `finished` only if every force, energy and displacement is finite; it ends where
+/// the body holds ten times the energy that was put into it (EnergyWatch).
 /// @throws SceneError before the first step; after it, only what the observer throws
 RunSummary run_variant(const Variant& variant, const MeshLoader& load, RunObserver& observer,
                        const std::atomic<bool>& stop);

@@ -473,7 +473,7 @@ class Simulation {
   /// All zero unless SimulationOptions::track_energies.
   Energies energies() const;
   /// W(u) of tissue and capsules at force_time() [J]; none where some tissue's forces have no energy: a law that is neither
-  /// constant nor in energy form, or Maxwell branches that relax its deviator in large strain.
+  /// constant nor in energy form, or Maxwell branches that relax the deviator of fibres or of a law.
   /// Cost: a pass over the elements in double.
   std::optional<double> stored_energy() const;
   /// Energies::elastic, the work summed over the steps, minus the stored energy W(u) [J]: the drift of the time integration, and

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "glisson/scene/scene.h"
+#include "scene/run/run_watch.h"
 #include "scene/run/sample_between.h"
 
 namespace glisson {
@@ -51,6 +52,7 @@ class Run {
   void tell_lost_probes();
   void tell_events(double until = std::numeric_limits<double>::infinity());
   void see_drift();
+  void end_by(const RunWatch::Verdict& verdict);
   void see_linear_share();
   void take_frame();
   void show_progress();
@@ -61,6 +63,7 @@ class Run {
   BuiltVariant& built_;
   RunObserver& observer_;
   const std::atomic<bool>& stop_;
+  RunWatch watch_;
   double duration_;
   std::uint64_t most_steps_;
   bool forces_at_end_;
@@ -83,7 +86,8 @@ class Run {
 
 Run::Run(const Variant& variant, BuiltVariant& built, RunObserver& observer, const std::atomic<bool>& stop)
     : variant_(variant), simulation_(built.simulation), built_(built), observer_(observer), stop_(stop),
-      duration_(run_duration(variant)), most_steps_(variant.max_steps.value_or(std::uint64_t(-1))),
+      watch_(variant, built), duration_(run_duration(variant)),
+      most_steps_(variant.max_steps.value_or(std::uint64_t(-1))),
       forces_at_end_(capabilities(variant.simulation.integrator).forces_at_step_end) {
   sample_.supports.resize(built.supports.size());
   sample_.instruments.resize(built.instruments.size());
@@ -202,6 +206,7 @@ void Run::see_peak() {
 void Run::show_sample(const Sample& sample) {
   tell_lost_probes();
   observer_.on_sample(sample);
+  end_by(watch_.see(sample));
 }
 
 /// All samples that are due by the end of a long step, on the line from the end of the one before.
@@ -251,8 +256,19 @@ void Run::tell_lost_probes() {
 }
 
 void Run::see_drift() {
-  const double drift = simulation_.energy_drift().value_or(0.0);
-  summary_.energy_drift_most_J = std::max(summary_.energy_drift_most_J, std::abs(drift));
+  const std::optional<double> stored = simulation_.stored_energy();
+  if (!stored) return;
+  const Energies energies = simulation_.energies();
+  watch_.see_stored(simulation_.force_time(), energies, *stored);
+  summary_.energy_drift_most_J = std::max(summary_.energy_drift_most_J, std::abs(energies.elastic - *stored));
+}
+
+/// Ends the run where its numbers cannot be believed. What ended it before stays the reason.
+void Run::end_by(const RunWatch::Verdict& verdict) {
+  if (verdict.end == RunSummary::End::finished || summary_.end != RunSummary::End::finished) return;
+  summary_.end = verdict.end;
+  summary_.trouble = verdict.why;
+  ended_ = true;
 }
 
 void Run::take_frame() {
@@ -285,6 +301,8 @@ void Run::summarise() {
   summary_.mass_added_kg = simulation_.mass_scaling().added + simulation_.mass_scaling().largest;
   summary_.state_hash = simulation_.state_hash();
   summary_.instruction_set = simulation_.engine_info().instruction_set;
+  if (variant_.simulation.track_energies) summary_.energy_gain = watch_.gain();
+  end_by(watch_.see_end());
 }
 
 RunSummary Run::to_end() {

@@ -36,6 +36,9 @@ const GROUPS: readonly [string, readonly [string, string, string][]][] = [
       ["work_tools_J", "Work of tools", "J"],
       ["work_loads_J", "Work of loads", "J"],
       ["energy_imbalance_J", "Imbalance", "J"],
+      ["energy_paid_J", "Paid by tools, loads and changes", "J"],
+      ["energy_gain_most", "Most in the body, over paid", ""],
+      ["energy_gain_from_s", "More than was paid from", "s"],
     ],
   ],
   [
@@ -72,6 +75,9 @@ const GROUPS: readonly [string, readonly [string, string, string][]][] = [
   ],
 ];
 
+/** A sentence, which stands above the figures and not among the numbers. */
+export const WARNING = "energy_warning";
+
 const SUFFIXES: readonly [RegExp, string][] = [
   [/_per_s$/, "1/s"],
   [/_Pa$/, "Pa"],
@@ -102,6 +108,6 @@ export function summaryFields(keys: ReadonlySet<string>): SummaryField[] {
     for (const [key, label, unit] of entries) fields.push({ key, label, unit, group });
   }
   const known = new Set(fields.map((field) => field.key));
-  const rest = [...keys].filter((key) => !known.has(key)).map(unknownField);
+  const rest = [...keys].filter((key) => !known.has(key) && key !== WARNING).map(unknownField);
   return [...fields.filter((field) => keys.has(field.key)), ...rest];
 }

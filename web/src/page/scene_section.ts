@@ -7,6 +7,7 @@ import { forceMap } from "../charts/force_map.ts";
 import { PROBE_QUANTITIES, probeChart } from "../charts/probe_charts.ts";
 import { SceneState } from "../charts/scene_state.ts";
 import { variantCharts } from "../charts/variant_charts.ts";
+import { WARNING } from "../format/summary_fields.ts";
 import { MeshPanel, meshVariants } from "../mesh3d/mesh_panel.ts";
 import type { SceneData } from "../report_data.ts";
 import { checkList } from "./checks.ts";
@@ -47,6 +48,7 @@ export function sceneSection(scene: SceneData, id: string, titled: boolean): Sce
     "section",
     { class: "scene", id, "aria-labelledby": `${id}-title` },
     sceneHead(scene, id, titled, few ? notes(scene) : null),
+    ...warnings(scene),
     block("Checks", checkList(scene.checks)),
     block("Figures", figures.length > 0 ? h("div", { class: "figures" }, ...figures) : null),
     scene.variants.length + scene.tables.length === 0
@@ -77,6 +79,15 @@ function sceneHead(scene: SceneData, id: string, titled: boolean, beside: HTMLEl
     ),
     beside,
   );
+}
+
+/** What cannot be believed of a variant's run. */
+function warnings(scene: SceneData): HTMLElement[] {
+  return scene.variants.flatMap((variant) => {
+    const text = variant.summary[WARNING];
+    if (typeof text !== "string") return [];
+    return [h("p", { class: "warning", role: "note" }, h("strong", {}, `${variant.label}: `), text)];
+  });
 }
 
 function notes(scene: SceneData): HTMLElement | null {

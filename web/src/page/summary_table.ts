@@ -5,6 +5,9 @@ import { displayUnit } from "../format/units.ts";
 import type { VariantData } from "../report_data.ts";
 import { h } from "./dom.ts";
 
+/** Times of what need not happen. */
+const MAY_BE_NEVER = new Set(["first_inversion_s", "energy_gain_from_s"]);
+
 export function summaryTable(variants: readonly VariantData[]): HTMLElement | null {
   const fields = summaryFields(new Set(variants.flatMap((variant) => Object.keys(variant.summary))));
   if (fields.length === 0) return null;
@@ -50,7 +53,7 @@ function fieldRow(field: SummaryField, variants: readonly VariantData[]): HTMLEl
 function cellText(field: SummaryField, value: number | string | undefined, factor: number): string {
   if (value === undefined) return "–";
   if (typeof value === "string") return field.key === "end" ? value.replaceAll("_", " ") : value;
-  if (field.key === "first_inversion_s" && !(value >= 0)) return "none";
+  if (MAY_BE_NEVER.has(field.key) && !(value >= 0)) return "none";
   if (field.unit === "" && Number.isInteger(value)) return formatInteger(value);
   return formatSignificant(value * factor, 4);
 }
