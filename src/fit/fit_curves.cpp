@@ -38,29 +38,72 @@ void make_unique(std::vector<Curve>& curves) {
   }
 }
 
-/// How far the mean of the others misses a curve of a set, rms over the displacements that all have [N].
-double error_of_others(const std::vector<PreparedCurve>& set) {
+using CurvesOfTables = std::vector<std::vector<PreparedCurve>>;
+
+/// How far the mean of the others misses a curve, rms over the displacements that all have [N], over sets of curves
+/// of about one speed; NaN where no two are.
+double error_of_others(const CurvesOfTables& tables) {
+  constexpr double kApart = 1.2;  // speeds farther apart are no repetitions
   std::vector<const Curve*> curves;
-  for (const PreparedCurve& p : set) curves.push_back(&p.curve);
-  const Spread spread = spread_of(curves, std::numeric_limits<double>::infinity());
-  const auto n = static_cast<double>(curves.size());
-  return spread.deviation * std::sqrt(n / (n - 1.0));
+  for (const auto& table : tables) {
+    for (const PreparedCurve& p : table) curves.push_back(&p.curve);
+  }
+  std::stable_sort(curves.begin(), curves.end(),
+                   [](const Curve* a, const Curve* b) { return a->velocity < b->velocity; });
+  double squares = 0.0, counted = 0.0;
+  for (std::size_t first = 0, last = 0; first < curves.size(); first = last) {
+    while (last < curves.size() && curves[last]->velocity <= kApart * curves[first]->velocity) ++last;
+    const auto n = static_cast<double>(last - first);
+    if (n < 2.0) continue;
+    const std::vector<const Curve*> set(curves.begin() + static_cast<std::ptrdiff_t>(first),
+                                        curves.begin() + static_cast<std::ptrdiff_t>(last));
+    const double deviation = spread_of(set, std::numeric_limits<double>::infinity()).deviation;
+    squares += n * deviation * deviation * n / (n - 1.0);
+    counted += n;
+  }
+  return std::sqrt(squares / counted);
 }
 
-/// The curves of a set, with the contact that leaves them nearer to each other where it is to be chosen.
-std::vector<PreparedCurve> loaded(const DataSpec& spec, const SpecimenSize& size, const std::filesystem::path& base) {
-  if (spec.contact.kind != ContactKind::automatic) return load_curves(spec, size, base);
-  DataSpec detect = spec, none = spec;
-  detect.contact.kind = ContactKind::detect, none.contact.kind = ContactKind::none;
-  std::vector<PreparedCurve> detected = load_curves(detect, size, base);
-  if (detected.size() < 2) return detected;
-  std::vector<PreparedCurve> recorded = load_curves(none, size, base);
-  const double by_detection = error_of_others(detected), as_recorded = error_of_others(recorded);
-  std::vector<PreparedCurve>& nearer = by_detection < as_recorded ? detected : recorded;
-  for (PreparedCurve& p : nearer)
-    p.account.contact_how += " (the others' mean errs by " + brief(std::min(by_detection, as_recorded), 3) +
-                             " N, else " + brief(std::max(by_detection, as_recorded), 3) + " N)";
+/// The curves of the sections of a test, with the contact that leaves them nearer to each other where it is to be chosen.
+CurvesOfTables loaded(std::vector<DataSpec> tables, const SpecimenSize& size, const std::filesystem::path& base) {
+  const auto with = [&](ContactKind kind) {
+    for (DataSpec& table : tables) table.contact.kind = kind;
+    return load_test(tables, size, base);
+  };
+  if (tables.front().contact.kind != ContactKind::automatic) return load_test(tables, size, base);
+  CurvesOfTables detected = with(ContactKind::detect);
+  const double by_detection = error_of_others(detected);
+  if (!std::isfinite(by_detection)) return detected;
+  CurvesOfTables recorded = with(ContactKind::none);
+  const double as_recorded = error_of_others(recorded);
+  CurvesOfTables& nearer = by_detection < as_recorded ? detected : recorded;
+  for (auto& table : nearer) {
+    for (PreparedCurve& p : table)
+      p.account.contact_how += " (the others' mean errs by " + brief(std::min(by_detection, as_recorded), 3) +
+                               " N, else " + brief(std::max(by_detection, as_recorded), 3) + " N)";
+  }
   return std::move(nearer);
+}
+
+/// The curves of each section, those of one test loaded together.
+CurvesOfTables load_by_tests(const std::vector<DataSpec>& parts, const SpecimenSize& size,
+                             const std::filesystem::path& base) {
+  CurvesOfTables all(parts.size());
+  std::vector<char> done(parts.size(), 0);
+  for (std::size_t first = 0; first < parts.size(); ++first) {
+    if (done[first] != 0) continue;
+    std::vector<std::size_t> members;
+    std::vector<DataSpec> tables;
+    for (std::size_t i = first; i < parts.size(); ++i) {
+      if (done[i] != 0 || !of_one_test(parts[first], parts[i])) continue;
+      done[i] = 1;
+      members.push_back(i);
+      tables.push_back(parts[i]);
+    }
+    CurvesOfTables curves = loaded(std::move(tables), size, base);
+    for (std::size_t k = 0; k < members.size(); ++k) all[members[k]] = std::move(curves[k]);
+  }
+  return all;
 }
 
 /// `test 2`; where there are tests of several kinds their own names, numbered from the second of a kind on.
@@ -155,21 +198,25 @@ std::vector<Curve> FitCurves::chosen(const std::vector<std::size_t>& indices) co
 FitCurves read_curves(const FitSpec& spec, const SpecimenSize& size, const std::filesystem::path& base) {
   FitCurves all;
   std::vector<std::pair<std::string, double>> shown;  // file and modulus of each curve; 0: nothing to compare
+  std::vector<DataSpec> parts;
   for (std::size_t d = 0; d < spec.data.size(); ++d) {
     DataSpec data = spec.data[d];
     if (data.group.empty()) data.group = default_group(spec.data, d);
-    for (const DataSpec& part : parted(data)) {
-      for (PreparedCurve& p : loaded(part, size, base)) {
-        p.curve.group = part.group;
-        p.curve.held_out = part.held_out;
-        p.curve.weight = part.weight;
-        const double area = part.size.area.value_or(size.area.value_or(0.0)),
-                     height = part.size.height.value_or(size.height.value_or(0.0));
-        const bool known = p.curve.measurement.indenter || (area > 0.0 && height > 0.0);
-        shown.emplace_back(p.account.file.string(), known && !part.unlikely ? modulus_of(p.curve, area, height) : 0.0);
-        all.curves.push_back(std::move(p.curve));
-        all.accounts.push_back(p.account.text());
-      }
+    for (DataSpec& part : parted(data)) parts.push_back(std::move(part));
+  }
+  CurvesOfTables loaded_parts = load_by_tests(parts, size, base);
+  for (std::size_t d = 0; d < parts.size(); ++d) {
+    const DataSpec& part = parts[d];
+    for (PreparedCurve& p : loaded_parts[d]) {
+      p.curve.group = part.group;
+      p.curve.held_out = part.held_out;
+      p.curve.weight = part.weight;
+      const double area = part.size.area.value_or(size.area.value_or(0.0)),
+                   height = part.size.height.value_or(size.height.value_or(0.0));
+      const bool known = p.curve.measurement.indenter || (area > 0.0 && height > 0.0);
+      shown.emplace_back(p.account.file.string(), known && !part.unlikely ? modulus_of(p.curve, area, height) : 0.0);
+      all.curves.push_back(std::move(p.curve));
+      all.accounts.push_back(p.account.text());
     }
   }
   make_unique(all.curves);

@@ -110,8 +110,10 @@ class UnitCheck {
     return si;
   }
 
-  /// Force and displacement of a test change together; relaxation and noise leave that as it is.
+  /// Force and displacement of a test change together; relaxation and noise leave that as it is. A baseline that falls before
+  /// contact and a pull-off after it do not.
   void check_signs() {
+    if (direction_while_loading(test_.force, test_.displacement).value_or(-1.0) > 0.0) return;
     double together = 0.0, d2 = 0.0, f2 = 0.0;
     for (std::size_t i = 0; i < test_.size(); ++i) {
       const double d = test_.displacement[i] - test_.displacement.front(), f = test_.force[i] - test_.force.front();

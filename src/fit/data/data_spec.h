@@ -39,7 +39,8 @@ struct ContactSpec {
   double at = 0.0;         ///< of `given` [m]
   double preload = 0.0;    ///< of `detect`: force from which all of a set are carried to zero [N]; 0: each by itself
   double threshold = 4.0;  ///< of `detect`: force above the rest before contact [standard deviations of the noise]
-  bool zero_force = true;  ///< takes the mean force before contact off the force
+  bool sloped = false;     ///< of `detect` and `given`: another curve of the test has a baseline with a slope
+  bool zero_force = true;  ///< takes the baseline before contact off the force
 };
 
 enum class CropUntil { end, peak, drop };

@@ -1,6 +1,8 @@
 #include "fit/data/load_curves.h"
 
 #include <algorithm>
+#include <functional>
+#include <tuple>
 
 #include "glisson/scene/scene.h"
 
@@ -55,38 +57,94 @@ std::vector<PreparedCurve> prepare_all(const std::vector<RawTest>& tests, const 
   return curves;
 }
 
-/// The largest force at which one of a set begins in contact, where others begin before; 0 where all are alike.
-double common_preload(const std::vector<PreparedCurve>& curves) {
-  double most = 0.0;
-  bool rested = false;
-  for (const PreparedCurve& c : curves) {
-    if (c.account.contact_how == "extrapolated") most = std::max(most, c.account.first_force);
-    rested = rested || c.account.contact_how == "detected";
+/// The sections of a test with their raw rows: what is decided of contact is decided for all.
+class TestOfTables {
+ public:
+  TestOfTables(std::span<const DataSpec> tables, const SpecimenSize& common, const std::filesystem::path& base) {
+    for (const DataSpec& table : tables) {
+      Table& t = tables_.emplace_back(Table{table, common, {}, {}});
+      if (table.size.area) t.size.area = table.size.area;
+      if (table.size.height) t.size.height = table.size.height;
+      for (const auto& file : table.files)
+        collect(faults_, [&] { t.tests.push_back(load_raw(placed(file, base), t.spec, t.size)); });
+      if (!faults_.empty() || table.unlikely) continue;
+      for (const std::string& fault : repetition_faults(t.tests))
+        faults_.append(faults_.empty() ? "" : "\n").append(fault);
+    }
   }
-  return rested ? most : 0.0;
-}
+
+  std::vector<std::vector<PreparedCurve>> curves() {
+    prepare_all_tables();
+    const bool sloped = any([](const CurveAccount& a) { return a.sloped; });
+    if (sloped) prepare_all_tables([](ContactSpec& c) { c.sloped = true; });
+    const double preload = common_preload();
+    if (preload > 0.0) prepare_all_tables([&](ContactSpec& c) { c.preload = preload; });
+    std::vector<std::vector<PreparedCurve>> all;
+    for (Table& t : tables_) {
+      make_unique(t.curves, t.spec);
+      all.push_back(std::move(t.curves));
+    }
+    return all;
+  }
+
+ private:
+  struct Table {
+    DataSpec spec;
+    SpecimenSize size;
+    std::vector<RawTest> tests;
+    std::vector<PreparedCurve> curves;
+  };
+
+  /// @throws SceneError with all that is wrong
+  void prepare_all_tables(const std::function<void(ContactSpec&)>& decide = [](ContactSpec&) {}) {
+    for (Table& t : tables_) {
+      decide(t.spec.contact);
+      t.curves = prepare_all(t.tests, t.spec, t.size, faults_);
+    }
+    if (!faults_.empty()) throw SceneError(faults_);
+  }
+
+  bool any(const std::function<bool(const CurveAccount&)>& is) const {
+    return std::any_of(tables_.begin(), tables_.end(), [&](const Table& t) {
+      return std::any_of(t.curves.begin(), t.curves.end(), [&](const PreparedCurve& c) { return is(c.account); });
+    });
+  }
+
+  /// The largest force at which one curve begins in contact, where others begin before; 0 where all are alike.
+  double common_preload() const {
+    double most = 0.0;
+    const bool rested = any([&](const CurveAccount& a) {
+                          if (a.contact_how == "extrapolated") most = std::max(most, a.first_force);
+                          return false;
+                        }) ||
+                        any([](const CurveAccount& a) { return a.contact_how == "detected"; });
+    return rested ? most : 0.0;
+  }
+
+  std::vector<Table> tables_;
+  std::string faults_;
+};
 
 }  // namespace
 
-std::vector<PreparedCurve> load_curves(const DataSpec& spec, const SpecimenSize& common,
+bool of_one_test(const DataSpec& a, const DataSpec& b) {
+  const auto what = [](const DataSpec& d) {
+    const ColumnsSpec& c = d.columns;
+    return std::tuple(d.test, d.deforming, d.prestretch, d.indenter, d.speed, d.size.area, d.size.height,
+                      c.axial_force.given, c.loss_modulus.given, d.contact.kind, d.contact.at, d.contact.threshold,
+                      d.contact.zero_force);
+  };
+  return what(a) == what(b);
+}
+
+std::vector<std::vector<PreparedCurve>> load_test(std::span<const DataSpec> tables, const SpecimenSize& size,
+                                                  const std::filesystem::path& base) {
+  return TestOfTables(tables, size, base).curves();
+}
+
+std::vector<PreparedCurve> load_curves(const DataSpec& spec, const SpecimenSize& size,
                                        const std::filesystem::path& base) {
-  SpecimenSize size = common;
-  if (spec.size.area) size.area = spec.size.area;
-  if (spec.size.height) size.height = spec.size.height;
-  std::string faults;
-  std::vector<RawTest> tests;
-  for (const auto& file : spec.files)
-    collect(faults, [&] { tests.push_back(load_raw(placed(file, base), spec, size)); });
-  if (faults.empty() && !spec.unlikely) {
-    for (const std::string& fault : repetition_faults(tests)) faults.append(faults.empty() ? "" : "\n").append(fault);
-  }
-  std::vector<PreparedCurve> curves = prepare_all(tests, spec, size, faults);
-  if (!faults.empty()) throw SceneError(faults);
-  DataSpec alike = spec;
-  alike.contact.preload = common_preload(curves);
-  if (alike.contact.preload > 0.0) curves = prepare_all(tests, alike, size, faults);
-  make_unique(curves, spec);
-  return curves;
+  return std::move(load_test(std::span(&spec, 1), size, base).front());
 }
 
 }  // namespace glisson::fit

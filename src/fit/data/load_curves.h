@@ -1,7 +1,8 @@
-// load_curves.h — the curves of a [[data]] section.
+// load_curves.h — the curves of [[data]] sections, with one decision about contact for all sections of a test.
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "fit/data/data_spec.h"
@@ -15,5 +16,13 @@ namespace glisson::fit {
 /// @throws SceneError with what is wrong with any of the files, all of it, a line for each
 std::vector<PreparedCurve> load_curves(const DataSpec& spec, const SpecimenSize& size,
                                        const std::filesystem::path& base);
+
+/// Whether sections are of one test, fitted or held out: alike in what is done and measured, and in what is asked of contact.
+bool of_one_test(const DataSpec& a, const DataSpec& b);
+
+/// The curves of sections of one test. Where a curve's baseline has a slope, all of them are placed on one; where one begins
+/// in contact, all are carried to zero alike. @return one list for each section @throws SceneError as above
+std::vector<std::vector<PreparedCurve>> load_test(std::span<const DataSpec> tables, const SpecimenSize& size,
+                                                  const std::filesystem::path& base);
 
 }  // namespace glisson::fit

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <span>
 
 #include "fit/data/contact.h"
 #include "fit/data/samples.h"
@@ -12,6 +12,7 @@ namespace glisson::fit {
 namespace {
 
 constexpr std::size_t kFewestPoints = 5;
+constexpr double kFarOut = 5.0;      ///< standard deviations that are no noise
 constexpr double kPastPart = 0.002;  ///< of the whole time, between two rows that are kept of the past
 
 class Preparation {
@@ -25,6 +26,7 @@ class Preparation {
     account_.rows_merged = test.rows_merged;
     account_.turned = test.turned;
     account_.unit = test.measurement.unit;
+    account_.drive_unit = test.measurement.point ? "whole strain" : test.measurement.drive_unit;
   }
 
   std::optional<PreparedCurve> run() {
@@ -103,11 +105,18 @@ class Preparation {
     }
     Contact found{.at = contact.at};
     if (contact.kind == ContactKind::detect) {
-      const auto detected = find_contact(rows_.displacement, rows_.force, contact.threshold);
+      const auto detected = find_contact(rows_.displacement, rows_.force, contact.threshold, contact.sloped);
       if (!detected) {
         complain(
             "contact not found: the force does not rise clearly above its noise at the start; check the columns, "
             "lower contact.threshold_sd, or give contact = { kind = \"given\", at_mm = … } or kind = \"none\"");
+        return false;
+      }
+      if (!detected->doubt.empty()) {
+        complain(
+            "contact is not certain: " + detected->doubt +
+            "; give contact = { kind = \"given\", at_mm = … }, which takes the line through the rows before it off "
+            "the force, or kind = \"none\" where the file's zero is at contact, or record more rows before the touch");
         return false;
       }
       found = *detected;
@@ -126,18 +135,28 @@ class Preparation {
     const auto touch = static_cast<std::size_t>(
         std::find_if(rows_.displacement.begin(), rows_.displacement.end(), [&](double x) { return x >= contact.at; }) -
         rows_.displacement.begin());
-    if (spec_.contact.kind == ContactKind::given && touch > 0)
-      contact.rest_force =
-          std::accumulate(rows_.force.begin(), rows_.force.begin() + static_cast<std::ptrdiff_t>(touch), 0.0) /
-          static_cast<double>(touch);
+    if (spec_.contact.kind == ContactKind::given && touch > 0) {
+      const RestLine rest = rest_before(std::span(rows_.displacement).first(touch), std::span(rows_.force).first(touch),
+                                        contact.at, spec_.contact.sloped);
+      contact.rest_force = rest.force, contact.sloped = rest.sloped;
+      contact.slope = rest.slope, contact.slope_deviation = rest.slope_deviation;
+    }
     account_.contact = contact.at;
     account_.contact_deviation = contact.deviation;
-    account_.force_at_rest = spec_.contact.zero_force ? contact.rest_force : 0.0;
     account_.rows_before_contact = touch;
-    for (double& f : rows_.force) f -= account_.force_at_rest;
+    account_.slope = contact.slope, account_.slope_deviation = contact.slope_deviation;
+    if (spec_.contact.zero_force) take_off_baseline(contact);
     const double start = time_at(contact.at, touch);
     rows_ = rows_.part(touch, rows_.size());
     start_at(contact.at, start);
+  }
+
+  void take_off_baseline(const Contact& contact) {
+    account_.force_at_rest = contact.rest_force;
+    account_.sloped = contact.sloped;
+    const double slope = contact.sloped ? contact.slope : 0.0;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      rows_.force[i] -= contact.rest_force + slope * (rows_.displacement[i] - contact.at);
   }
 
   /// Time at which the way crosses a displacement between two rows; before the first row, by the speed of the first rows.
@@ -170,6 +189,7 @@ class Preparation {
     account_.rows_cropped = before - rows_.size();
     if (!enough("what the crop leaves", "widen `crop`")) return std::nullopt;
     account_.row_noise = noise_about_curve(rows_.time, rows_.force);
+    if (!pushes()) return std::nullopt;
     if (spec_.filter.kind == FilterKind::savitzky_golay)
       rows_.force = local_fit(rows_.time, rows_.force, static_cast<std::size_t>(spec_.filter.half_width),
                               static_cast<std::size_t>(spec_.filter.degree))
@@ -182,6 +202,19 @@ class Preparation {
     if (!enough("the resampled curve", "raise resample.points")) return std::nullopt;
     account_.points = rows_.size();
     return PreparedCurve{curve(velocity, account_.row_noise / std::sqrt(points.rows_a_point)), account_};
+  }
+
+  /// Whether an indenter pushes all along. Adhesion is not in the model: of a pull-off the fit would make a softer tissue.
+  bool pushes() {
+    constexpr double kPull = 0.1;  // of the largest push
+    if (!test_.measurement.indenter || test_.measurement.loaded() || spec_.unlikely) return true;
+    const auto [least, most] = std::minmax_element(rows_.force.begin(), rows_.force.end());
+    if (-*least < kPull * *most || -*least < kFarOut * account_.row_noise) return true;
+    complain("the indenter is pulled by up to " + measured_text(-*least, account_.unit) + " where it pushes by up to " +
+             measured_text(*most, account_.unit) +
+             ": adhesion is not in the model; fit the way in alone, cycle = { part = \"loading\" }, or give "
+             "contact where the file's zero is wrong, or unlikely = true to take it as it is");
+    return false;
   }
 
   bool can_resample() {
@@ -229,6 +262,18 @@ class Preparation {
 
 }  // namespace
 
+namespace {
+
+/// "0.169 mN a mm ± 0.001 mN".
+std::string slope_text(const CurveAccount& a) {
+  const bool length = a.drive_unit == "m";
+  const double step = length ? 1e-3 : 1.0;
+  return measured_text(step * a.slope, a.unit, 4) + " a " + (length ? "mm" : a.drive_unit) + " ± " +
+         measured_text(step * a.slope_deviation, a.unit, 2);
+}
+
+}  // namespace
+
 std::string CurveAccount::text() const {
   std::string t = name + ": " + std::to_string(rows_read) + " rows";
   if (rows_skipped > 0) t += ", " + std::to_string(rows_skipped) + " bad ones skipped";
@@ -240,6 +285,9 @@ std::string CurveAccount::text() const {
     t += "; contact " + contact_how + " at " + brief(contact * 1e3) + " mm";
     if (contact_deviation > 0.0) t += " ± " + brief(contact_deviation * 1e3) + " mm";
     t += ", " + measured_text(force_at_rest, unit, 4) + " subtracted from the force";
+    if (slope_deviation > 0.0)
+      t += std::string(sloped ? " there, with the baseline's slope of " : "; the baseline's slope, ") +
+           slope_text(*this) + (sloped ? "" : ", is left in it");
   }
   if (rows_cropped > 0) t += "; " + std::to_string(rows_cropped) + " rows cropped";
   return t + "; " + std::to_string(points) + " points, noise of a row " + measured_text(row_noise, unit, 4);

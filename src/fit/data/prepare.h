@@ -25,13 +25,16 @@ struct CurveAccount {
   std::size_t rows_before_contact = 0;
   std::size_t rows_cropped = 0;
   std::size_t points = 0;
-  std::string contact_how;         ///< "as recorded", "given", "detected", "extrapolated"
-  double contact = 0.0;            ///< displacement of the file at which contact was found [m]
-  double contact_deviation = 0.0;  ///< its standard deviation [m]; 0: not estimated
-  double force_at_rest = 0.0;      ///< taken off the force [N]
-  double first_force = 0.0;        ///< at the first rows, where contact was detected [N]
-  double row_noise = 0.0;          ///< standard deviation of the force of single rows [N]
-  std::string unit = "N";          ///< of the forces
+  std::string contact_how;                    ///< "as recorded", "given", "detected", "extrapolated"
+  double contact = 0.0;                       ///< displacement of the file at which contact was found [m]
+  double contact_deviation = 0.0;             ///< its standard deviation [m]; 0: not estimated
+  double force_at_rest = 0.0;                 ///< taken off the force, at contact [N]
+  bool sloped = false;                        ///< a slope of the baseline went with it
+  double slope = 0.0, slope_deviation = 0.0;  ///< of the baseline, and its standard deviation [N/m]; 0: not seen
+  double first_force = 0.0;                   ///< at the first rows, where contact was detected [N]
+  double row_noise = 0.0;                     ///< standard deviation of the force of single rows [N]
+  std::string unit = "N";                     ///< of the forces
+  std::string drive_unit = "m";               ///< of the displacements, in words
 
   /// One line of words.
   std::string text() const;

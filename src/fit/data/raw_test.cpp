@@ -4,15 +4,18 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "fit/data/choose_column.h"
+#include "fit/data/samples.h"
 #include "fit/data/test_columns.h"
 
 namespace glisson::fit {
 namespace {
 
 constexpr std::size_t kBadRowsShown = 3;
-constexpr double kLargest = 1e30;  // of any number in SI: squares and sums of it stay finite
+constexpr std::size_t kFewestLoading = 3;  // rows that tell a direction
+constexpr double kLargest = 1e30;          // of any number in SI: squares and sums of it stay finite
 
 /// A column and what turns its numbers into SI.
 struct Reading {
@@ -84,17 +87,27 @@ struct Rows {
   }
 };
 
-/// −1 where the number farthest from the start lies below it. The start is the median of the first percent of the rows, of
-/// one row at least and five at most: a bad first row of many decides nothing, and a sparse curve has gone nowhere yet.
-double direction_of(const std::vector<double>& values, Sign sign) {
-  if (sign != Sign::found) return sign == Sign::positive ? 1.0 : -1.0;
-  if (values.empty()) return 1.0;
+/// Median of the first percent of some rows, of one row at least and five at most: a bad first row of many decides nothing,
+/// and a sparse curve has gone nowhere yet.
+double start_of(std::span<const double> values) {
   const std::size_t rows = std::clamp<std::size_t>(values.size() / 100, 1, 5);
   std::vector<double> first(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rows));
   std::nth_element(first.begin(), first.begin() + static_cast<std::ptrdiff_t>(first.size() / 2), first.end());
-  const double start = first[first.size() / 2];
+  return first[first.size() / 2];
+}
+
+/// The row whose number is farthest from the start.
+std::size_t farthest_from(double start, std::span<const double> values) {
   const auto farther = [&](double a, double b) { return std::abs(a - start) < std::abs(b - start); };
-  return *std::max_element(values.begin(), values.end(), farther) < start ? -1.0 : 1.0;
+  return static_cast<std::size_t>(std::max_element(values.begin(), values.end(), farther) - values.begin());
+}
+
+/// −1 where the number farthest from the start lies below it.
+double direction_of(const std::vector<double>& values, Sign sign) {
+  if (sign != Sign::found) return sign == Sign::positive ? 1.0 : -1.0;
+  if (values.empty()) return 1.0;
+  const double start = start_of(values);
+  return values[farthest_from(start, values)] < start ? -1.0 : 1.0;
 }
 
 /// What is wrong with a driven number that no test reaches; empty: nothing.
@@ -133,9 +146,9 @@ Deforming deforming_of(const DataSpec& spec, Drive drive, const std::vector<doub
   return *std::max_element(driven.begin(), driven.end(), nearer) > 1.0 ? Deforming::tension : Deforming::compression;
 }
 
-/// @return whether the numbers were turned
-bool turn(std::vector<double>& values, Sign sign) {
-  if (direction_of(values, sign) > 0.0) return false;
+/// Turns the numbers where they go down. @return whether it did
+bool turn(std::vector<double>& values, double direction) {
+  if (direction > 0.0) return false;
   for (double& v : values) v = -v;
   return true;
 }
@@ -255,11 +268,20 @@ void convert(RawTest& test, const DataSpec& spec, const TestColumns& columns, co
   require_possible(test, columns, problems);
   if (problems.count() == before) require_direction(test, columns, outward, problems);
   const bool free_sign = columns.drive != Drive::stretch && columns.drive != Drive::frequency;
-  if (free_sign && turn(test.displacement, columns.driven_sign)) test.turned.push_back(test.displacement_source.title);
+  if (free_sign && turn(test.displacement, direction_of(test.displacement, columns.driven_sign)))
+    test.turned.push_back(test.displacement_source.title);
   // a specimen may push its plates apart or pull them together, and a modulus has its sign
   const bool as_it_is = columns.answer == Answer::storage_modulus || columns.answer == Answer::loss_modulus ||
                         (columns.answer == Answer::axial_force && columns.answering_sign == Sign::found);
-  if (!as_it_is && turn(test.force, columns.answering_sign)) test.turned.push_back(test.force_source.title);
+  std::vector<double> driven = test.displacement;
+  if (columns.drive == Drive::stretch) {  // as far from rest as it goes, compressed or pulled
+    for (double& x : driven) x = outward * (x - 1.0);
+  }
+  const Sign sign = columns.answering_sign;
+  const std::optional<double> loading =
+      sign == Sign::found ? direction_while_loading(test.force, driven) : std::nullopt;
+  if (!as_it_is && turn(test.force, loading ? *loading : direction_of(test.force, sign)))
+    test.turned.push_back(test.force_source.title);
   for (std::size_t i = 0; i < test.lines.size(); ++i) {
     double& x = test.displacement[i];
     const double own = x;
@@ -291,6 +313,19 @@ Measurement measurement_of(const DataSpec& spec, const TestColumns& columns, con
 }
 
 }  // namespace
+
+std::optional<double> direction_while_loading(std::span<const double> values, const std::vector<double>& driven) {
+  constexpr double kTurn = 0.1;  // of the whole way
+  const auto deepest = static_cast<std::size_t>(std::max_element(driven.begin(), driven.end()) - driven.begin());
+  std::size_t first = 0;
+  for (const std::size_t turn : turning_points(driven, kTurn)) {
+    if (turn < deepest) first = turn;
+  }
+  if (deepest < first + kFewestLoading || driven.empty()) return std::nullopt;
+  const std::span loading = values.subspan(first, deepest + 1 - first);
+  const double start = start_of(loading);
+  return loading[farthest_from(start, loading)] < start ? -1.0 : 1.0;
+}
 
 void swap_load(RawTest& test, Measured answering) {
   std::swap(test.displacement, test.force);

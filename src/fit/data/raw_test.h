@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,6 +46,10 @@ struct RawTest {
 /// Chooses the columns, reads and converts them. Complains about columns, units, rows and times that cannot be used; what
 /// is returned is of use only where nothing was added to `problems`.
 RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems);
+
+/// −1 where what answers goes down as the test loads, from the last turn before the largest driven number up to that, 1 where it
+/// goes up: a pull-off on the way out may be larger than the push. Nothing where the test has no such rows.
+std::optional<double> direction_while_loading(std::span<const double> values, const std::vector<double>& driven);
 
 /// What is driven and what answers change places: a creep drives its load, and the strain or depth answers.
 /// @param answering  what is measured then

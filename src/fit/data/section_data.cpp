@@ -62,28 +62,33 @@ std::vector<scene::Choice<std::optional<E>>> optional_choices_of() {
 
 SectionSpec detect_kind() {
   Section<ContactSpec> s("detect",
-                         "Where the force starts to rise: a flat line and a parabola joined where they fit best. If a "
-                         "file begins in contact, the parabola is extrapolated to zero force; all files of a table are "
-                         "then extrapolated from the force at which that one begins.");
+                         "Where the force starts to rise: a line and a parabola joined where they fit best. The line "
+                         "rests, or has a slope where the rows show one; then all files of the test are placed on one. "
+                         "If a file begins in contact, the parabola is extrapolated to zero force; all files of the "
+                         "test are then extrapolated from the force at which that one begins. A contact that the rows "
+                         "do not determine is refused.");
   s.key("threshold_sd", &ContactSpec::threshold,
         "rise of the force above its mean before contact that counts as contact, in standard deviations of its noise")
       .in("-")
       .within(between(1, 100));
-  s.key("zero_force", &ContactSpec::zero_force, "subtracts the mean force before contact");
+  s.key("zero_force", &ContactSpec::zero_force,
+        "subtracts the baseline before contact, its slope too where it has one");
   return s.spec();
 }
 
 SectionSpec automatic_kind() {
   Section<ContactSpec> s("auto",
-                         "`none` or `detect`, whichever leaves the files of the table nearer to each other: each is "
-                         "predicted by the mean of the others. A table of one file is detected.");
+                         "`none` or `detect`, whichever leaves the files of the test nearer to each other, fitted and "
+                         "held-out tables together: each is predicted by the mean of the others of about its speed. A "
+                         "test of one file is detected.");
   return s.spec();
 }
 
 SectionSpec given_kind() {
   Section<ContactSpec> s("given", "At a given displacement of the files.");
   s.key<Milli>("at_mm", &ContactSpec::at, "displacement in the file at first contact").in("mm").must();
-  s.key("zero_force", &ContactSpec::zero_force, "subtracts the mean force before contact");
+  s.key("zero_force", &ContactSpec::zero_force,
+        "subtracts the baseline before contact, the line through its rows where it has a slope");
   return s.spec();
 }
 
