@@ -16,6 +16,7 @@ namespace {
 using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 using testing_models::Noise;
 using testing_models::plan;
@@ -130,6 +131,24 @@ TEST(Verdict, SaysWhichBoundIsInTheWay) {
   const Verdicts v = verdicts(twin.problem, {1.0});
   EXPECT_EQ(v.of[0].verdict, Verdict::at_bound);
   EXPECT_THAT(v.of[0].words, AllOf(HasSubstr("at its upper bound, 4 Pa"), HasSubstr("fit better with more")));
+}
+
+// Without profiles nothing is known of values away from a bound, and nothing is said of them: here four times the rms is left at 2 Pa.
+TEST(Verdict, SaysWhatWasNotExamined) {
+  const auto line = [](double x, double, std::span<const double> v) { return v[0] * x; };
+  const auto curves = noisy(simulate(plan(30, 0.0, 1.0), 1, line, {5.0}), 0.1, 5);
+  const Twin twin({{"E", "Pa", 0.1, 4.0, Scale::logarithmic, 1.0}}, curves, 0.1, line);
+  const Verdicts v = verdicts(twin.problem, {1.0}, false);
+  EXPECT_EQ(v.of[0].verdict, Verdict::at_bound);
+  EXPECT_THAT(v.of[0].words, AllOf(HasSubstr("at its upper bound, 4 Pa"), HasSubstr("was not examined"),
+                                   Not(HasSubstr("nearly as good")), Not(HasSubstr("0.1 Pa"))));
+  EXPECT_THAT(verdicts(twin.problem, {1.0}).of[0].words, HasSubstr("nearly as good"));
+  const auto product = [](double x, double, std::span<const double> w) { return w[0] * w[1] * x; };
+  const auto both = noisy(simulate(plan(40, 0.0, 1.0), 1, product, {2.0, 3.0}), 0.05, 5);
+  const Twin two({{"a", "Pa", 0.01, 100.0, Scale::logarithmic, 1.0}, {"b", "m", 0.01, 1000.0, Scale::logarithmic, 1.0}},
+                 both, 0.05, product);
+  EXPECT_THAT(verdicts(two.problem, {1.0, 1.0}, false).of[0].words,
+              AllOf(HasSubstr("was not examined"), Not(HasSubstr("fits these curves"))));
 }
 
 // Ogden's μ and α over a large range are known both; over a small one they make up for each other.

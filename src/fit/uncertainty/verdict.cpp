@@ -14,6 +14,10 @@ constexpr double kEntangled = 0.95;  // correlation from which two parameters ar
 constexpr double kWideFactor = 4.0;  // end to end
 constexpr double kFlatPart = 0.05;   // of the bounds: a shorter flat stretch is not worth a word
 
+/// Of values away from the optimum, where no profile was walked.
+constexpr const char* kNotExamined =
+    "; how good other values are was not examined ([proof] profiles = false, or the fit was stopped)";
+
 /// The ends of a parameter's interval, and why one is open.
 struct Ends {
   Interval interval;
@@ -22,9 +26,11 @@ struct Ends {
 };
 
 std::string open_reason(const Problem& problem, bool open, double bound, const std::vector<std::size_t>& leans,
-                        const std::string& failure, const char* side, const Parameter& x) {
+                        const std::string& failure, const char* side, const Parameter& x, bool examined = true) {
   if (!failure.empty()) return "the profile to " + std::string(side) + " values ended early (" + failure + ")";
-  if (open) return std::string("no ") + side + " limit within its bounds (" + number(bound, x.unit) + ")";
+  if (open)
+    return std::string("no ") + side + " limit within its bounds (" + number(bound, x.unit) + ")" +
+           (examined ? "" : " by the curvature at the optimum alone");
   if (leans.empty()) return "";
   return std::string("its ") + side + " limit is only that of " + problem.parameters()[leans.front()].name + "'s bound";
 }
@@ -34,8 +40,8 @@ Ends ends_of(const Problem& problem, const Covariance& c, const Profiles* profil
   Ends e;
   if (profiled == nullptr) {
     e.interval = c.interval[p];
-    e.low_reason = open_reason(problem, e.interval.low_open, x.low, {}, "", "lower", x);
-    e.high_reason = open_reason(problem, e.interval.high_open, x.high, {}, "", "upper", x);
+    e.low_reason = open_reason(problem, e.interval.low_open, x.low, {}, "", "lower", x, false);
+    e.high_reason = open_reason(problem, e.interval.high_open, x.high, {}, "", "upper", x, false);
     return e;
   }
   const Profile& f = profiled->of[p];
@@ -91,10 +97,11 @@ std::string flat_words(const Problem& problem, const Profiles* profiled, std::si
          number(f.flat_high, problem.parameters()[p].unit);
 }
 
-std::string bound_words(const Parameter& x, Hold hold, const Ends& e) {
+std::string bound_words(const Parameter& x, Hold hold, const Ends& e, bool examined) {
   const bool low = hold == Hold::at_low;
   std::string s = "at its " + std::string(low ? "lower" : "upper") + " bound, " + number(low ? x.low : x.high, x.unit) +
                   ": the curves fit better with " + (low ? "less" : "more");
+  if (!examined) return s + kNotExamined;
   return s + "; anything " +
          (low ? "up to " + number(e.interval.high, x.unit) : "down to " + number(e.interval.low, x.unit)) +
          " is nearly as good";
@@ -114,7 +121,9 @@ std::string words_of(const Problem& problem, const Covariance& c, const Profiles
                      Verdict verdict, double effect, std::size_t p) {
   const Parameter& x = problem.parameters()[p];
   std::string s = x.name + ": " + name_of(verdict) + ", ";
-  if (verdict == Verdict::at_bound) return x.name + ": " + bound_words(x, c.hold[p], e);
+  if (verdict == Verdict::at_bound) return x.name + ": " + bound_words(x, c.hold[p], e, profiled != nullptr);
+  if (verdict == Verdict::not_identifiable && profiled == nullptr)
+    return s + "by the derivatives at the optimum, " + number(problem.to_values(c.scaled)[p], x.unit) + kNotExamined;
   if (verdict == Verdict::not_identifiable)
     return s + "anywhere from " + range(e.interval, x.unit) + " fits these curves" + flat_words(problem, profiled, p);
   s += range(e.interval, x.unit);

@@ -35,7 +35,7 @@ struct Verdicts {
 /// Bounds play no part in it: a wide search is no knowledge. The change of force is that of the parameter alone, to first
 /// order, rms over the curves, for half the interval.
 /// An end counts as open too where it leans on another parameter's bound, and where a forward run failed.
-/// @param profiled  of the same optimum; nullptr: by curvature alone
+/// @param profiled  of the same optimum; nullptr: by curvature alone, which says nothing of values away from it, and the words say so
 Verdicts judge(const Problem& problem, const Covariance& covariance, const Profiles* profiled = nullptr);
 
 }  // namespace glisson::fit
