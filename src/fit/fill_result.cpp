@@ -88,6 +88,15 @@ void conclude_on_search(const LawSearch& search, std::vector<std::string>& sente
   sentences.push_back(text);
 }
 
+std::string derivative_words(const LawSearch& search) {
+  const DerivativeCheck& check = search.derivatives();
+  const std::string by = "Derivatives by differences of ";
+  if (check.step > 0.0)
+    return by + rounded(check.step) + " of the bounds' range agree with wider ones to " + rounded(check.error) + ".";
+  return by + rounded(search.problem().difference_step) +
+         " of the bounds' range were not checked: runs beside the start and beside the optimum failed.";
+}
+
 void conclude_on_parameters(const FitResult& result, std::vector<std::string>& sentences) {
   for (const ParameterResult& p : result.parameters) {
     if (p.verdict != "identified") sentences.push_back(p.words);
@@ -317,9 +326,7 @@ void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves,
       result.conclusions.push_back(std::string("The next tests could not be simulated: ") + error.what());
     }
   }
-  const DerivativeCheck& check = search.derivatives();
-  result.conclusions.push_back("Derivatives by differences of " + rounded(check.step) +
-                               " of the bounds' range agree with wider ones to " + rounded(check.error) + ".");
+  result.conclusions.push_back(derivative_words(search));
   result.conclusions.push_back(result.forward);
 }
 

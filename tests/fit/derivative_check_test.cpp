@@ -78,5 +78,35 @@ TEST(DerivativeCheck, StopsWhereItIsEnough) {
   EXPECT_LE(true_error(few, 0.4), check.error);
 }
 
+/// Fails from a number of its parameter on.
+class Bounded final : public Model {
+ public:
+  explicit Bounded(double end) : end_(end) {}
+  std::size_t curves() const override { return 1; }
+  Prediction predict(std::size_t c, std::span<const double> v) const override {
+    if (v[0] > end_) return {{}, "fails there"};
+    return Grainy(0.0).predict(c, v);
+  }
+
+ private:
+  double end_;
+};
+
+// Beside a place where the model fails the widest step has no derivative; the narrower ones have, and are compared with each other. Where
+// all fail no number is made up.
+TEST(DerivativeCheck, GoesToNarrowerStepsBesideAFailure) {
+  const Bounded near(4.0 * 0.405), at(4.0 * 0.4);  // z = 0.4 and 0.005 or nothing beyond
+  Problem problem = problem_of(near);
+  const DerivativeCheck check = check_derivatives(problem, std::vector{0.4});
+  EXPECT_GT(check.step, 0.0);
+  EXPECT_LT(check.error, 1e-3);
+  EXPECT_EQ(problem.difference_step, check.step);
+  EXPECT_LE(true_error(problem, 0.4), check.error);
+  Problem none = problem_of(at);
+  const double before = none.difference_step;
+  EXPECT_EQ(check_derivatives(none, std::vector{0.4}).step, 0.0);
+  EXPECT_EQ(none.difference_step, before);
+}
+
 }  // namespace
 }  // namespace glisson::fit

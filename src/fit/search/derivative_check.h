@@ -13,7 +13,7 @@ struct DerivativeCheck {
 };
 
 /// Tries steps a decade apart, widest first, and takes the one whose derivatives agree best with those of its wider
-/// neighbour: wider ones bend, narrower ones drown in the simulation's own rounding.
+/// neighbour: wider ones bend, narrower ones drown in the simulation's own rounding. Steps to where the model fails are left out.
 /// @param enough  it goes no further where they agree to this: of a dear model nobody needs more; 0: tries all
 DerivativeCheck check_derivatives(Problem& problem, std::span<const double> scaled, double enough = 0.0);
 

@@ -178,6 +178,8 @@ void LawSearch::search(LawMemory& memory, const std::function<void(const MultiSt
   const Basin& best = found_.basins.front();
   optimum_ = {best.scaled, best.cost, true, 0, ""};
   if (!found_.complete) return;
+  if (!(derivatives_.step > 0.0))  // runs beside the first start failed
+    derivatives_ = check_derivatives(*problem_, optimum_.scaled, dear() ? kAgree : 0.0);
   try {
     look_again_at_forward();
   } catch (const std::exception& error) {  // what was found stays
