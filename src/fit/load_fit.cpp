@@ -11,13 +11,14 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Units that keys end with; those of the longest ends first.
-constexpr const char* kUnits[]{"N·s/m²", "kg/m³", "Pa·s", "mm/s", "1/s", "N/m", "J/m²",
-                               "°",      "mm",    "Pa",   "Hz",   "m",   "s",   "N"};
+constexpr const char* kUnits[]{"N·s/m²", "N·s/m", "kg/m³", "m/s²", "Pa·s", "mm/s", "Pa/m", "1/s", "N/m", "J/m²",
+                               "mm²",    "m/s",   "kg",    "°",    "mm",   "Pa",   "Hz",   "m",   "s",   "N"};
 
 }  // namespace
 
 std::string unit_of_key(const std::string& key) {
-  const std::string plain = key.substr(0, key.find('['));
+  const std::string last = key.substr(key.rfind('.') + 1);  // `time_s` of `tissue.maxwell[0].time_s`
+  const std::string plain = last.substr(0, last.find('['));
   for (const char* unit : kUnits) {
     if (plain.ends_with(FieldText{.unit = unit}.key())) return unit;
   }

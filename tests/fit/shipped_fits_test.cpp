@@ -26,6 +26,23 @@ TEST(ShippedFits, CanBeRead) {
   }
 }
 
+// A parameter has the unit that its key ends with, wherever the key has indices: of a branch's time as of a modulus in a list.
+TEST(ParameterUnits, AreThoseOfTheKeysEnd) {
+  const std::pair<const char*, const char*> kUnits[]{{"tissue.maxwell[0].time_s", "s"},
+                                                     {"tissue.hyperelastic.mu_Pa[1]", "Pa"},
+                                                     {"tissue.maxwell[1].share", ""},
+                                                     {"tissue.maxwell[0].time_law.exponent", ""},
+                                                     {"tissue.viscosity_Pa_s", "Pa·s"},
+                                                     {"tissue.density_kg_m3", "kg/m³"},
+                                                     {"curve.contact_mm", "mm"},
+                                                     {"curve.force_offset_N", "N"},
+                                                     {"instrument[0].friction_N_s_m", "N·s/m"},
+                                                     {"instrument[0].membranes[2].toughness_J_m2", "J/m²"},
+                                                     {"loads[0].spring_Pa_m", "Pa/m"},
+                                                     {"motion.speed_mm_s", "mm/s"}};
+  for (const auto& [key, unit] : kUnits) EXPECT_EQ(unit_of_key(key), unit) << key;
+}
+
 // F = 0.0158 N/mm² d² leaves 0.049 N rms on these points. Three steps of one start are enough to be below it.
 TEST(ShippedFits, NeedleMeetsThePointsBeforeThePuncture) {
   FitSpec fit = load_fit(kFits / "bovine_needle.toml");
