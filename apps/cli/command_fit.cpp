@@ -164,7 +164,7 @@ void print_result(const FitResult& result) {
 /// FitData: fit.json and the curves of the fitted law.
 nlohmann::json page_data(const FitResult& result, const nlohmann::ordered_json& json, const fs::path& folder) {
   nlohmann::json data(json);
-  const bool a_tissue = !result.tissue.empty() && result.result_file == "tissue.toml";
+  const bool a_tissue = !result.tissue.empty() && !result.identifies_nothing() && result.result_file == "tissue.toml";
   data["law_curves"] =
       a_tissue ? stress_data(tissue_of_toml(result.tissue, result.result_file, folder)) : nlohmann::json::array();
   return data;
@@ -173,7 +173,7 @@ nlohmann::json page_data(const FitResult& result, const nlohmann::ordered_json& 
 void write_results(const FitResult& result, const FitHeading& heading, const fs::path& folder) {
   const nlohmann::ordered_json json = fit_json(result, heading);
   write_whole(folder / "fit.json", json_text(json, 1) + "\n");
-  if (!result.tissue.empty()) write_whole(folder / result.result_file, result.tissue);
+  if (!result.tissue.empty() && !result.identifies_nothing()) write_whole(folder / result.result_file, result.tissue);
   nlohmann::json page = report_json(heading.title, "a fit", nlohmann::json::array());
   page["fits"] = nlohmann::json::array({page_data(result, json, folder)});
   write_whole(folder / "report.html", report_page(report_template(), page));
@@ -242,6 +242,14 @@ int run(const FitCommand& command) {
                                                : "the results are those of the runs that were done; the same command "
                                                  "starts again");
     return kInterrupted;
+  }
+  if (result.identifies_nothing()) {
+    std::fflush(stdout);
+    tell(
+        "glisson: nothing is identified: each parameter stands at a bound or is not identifiable, so that no {} is "
+        "written; check the columns and their order, widen the bounds, or fit fewer parameters\n",
+        result.result_file);
+    return kNumericalEnd;
   }
   return kDone;
 }

@@ -5,9 +5,10 @@ namespace glisson::app {
 
 enum ExitCode : int {
   kDone = 0,
-  kFailed = 1,        ///< a disk that refuses, memory, a fault of ours
-  kUserError = 2,     ///< a scene, mesh, option or folder that cannot be used as it is
-  kNumericalEnd = 3,  ///< a run that its numbers ended: unstable, not finite, stopped on inversion
+  kFailed = 1,     ///< a disk that refuses, memory, a fault of ours
+  kUserError = 2,  ///< a scene, mesh, option or folder that cannot be used as it is
+  kNumericalEnd =
+      3,  ///< a run that its numbers ended: unstable, not finite, stopped on inversion; a fit that identifies nothing
   kInterrupted = 130  ///< Ctrl-C or SIGTERM; everything written so far is kept
 };
 

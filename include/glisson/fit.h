@@ -159,9 +159,9 @@ struct ParameterResult {
   double value = 0.0;                                              ///< in the parameter's unit
   std::optional<double> sd;                                        ///< in the parameter's unit, by curvature
   std::optional<Interval> by_curvature, by_profile, by_bootstrap;  ///< of 95 %
-  std::optional<Interval> further;  ///< 95 % prediction interval of a further specimen's value; none: not known
-  std::string verdict;              ///< identified, negligible, weak, not identifiable, at bound, read off
-  std::string words;                ///< the verdict in two sentences
+  std::optional<Interval> further;        ///< 95 % prediction interval of a further specimen's value; none: not known
+  std::string verdict;                    ///< identified, negligible, weak, not identifiable, at bound, read off
+  std::string words;                      ///< the verdict in two sentences
 
   /// The interval to trust most: by profile, else by bootstrap, else by curvature.
   std::optional<Interval> ci95() const {
@@ -278,6 +278,9 @@ struct FitResult {
   std::string tissue;                       ///< text of tissue.toml, which a scene reads with `tissue.file`
   std::string result_file = "tissue.toml";  ///< "membranes.toml" of a fit of [insertion], whose text is part of a scene
   std::optional<double> area, height;       ///< of the specimen [m²], [m]
+
+  /// Whether each parameter stands at a bound or is not identifiable: the curves tell nothing of this law.
+  bool identifies_nothing() const;
 };
 
 /// Progress of a fit.

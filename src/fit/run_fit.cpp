@@ -21,6 +21,7 @@
 #include "fit/uncertainty/left_out.h"
 #include "fit/uncertainty/test_table.h"
 #include "fit/uncertainty/validation.h"
+#include "fit/uncertainty/verdict.h"
 
 namespace glisson::fit {
 namespace {
@@ -288,6 +289,12 @@ FitResult Run::to_end() {
 }
 
 }  // namespace
+
+bool FitResult::identifies_nothing() const {
+  return complete && !parameters.empty() && std::ranges::all_of(parameters, [](const ParameterResult& p) {
+           return p.verdict == name_of(Verdict::at_bound) || p.verdict == name_of(Verdict::not_identifiable);
+         });
+}
 
 FitResult run_fit(const FitSpec& spec, const FitRun& options) {
   return spec.insertion ? run_insertion_fit(spec, options) : Run(spec, options).to_end();

@@ -139,9 +139,29 @@ TEST_F(Fit, TellsBadInputWithTheWayOut) {
   std::string metres = curve(4200.0);
   metres.replace(metres.find("(mm)"), 4, "(m)");
   says(fit(metres), {"a.csv:1:1", "in mm it would be 2 mm", "unlikely = true"});
+  std::string backward = "time (s),displacement (mm),force (N)\n";
+  for (int i = 0; i <= 40; ++i)
+    backward +=
+        std::to_string(i) + "," + std::to_string(0.05 * (40 - i)) + "," + std::to_string(0.01 * (40 - i)) + "\n";
+  says(fit(backward), {"a.csv:1:1", "the rows run backwards", "from 2 mm to 0 mm", "unlikely = true"});
+  std::string nothing = "time (s),displacement (mm),force (N)\n";
+  for (int i = 0; i <= 40; ++i) nothing += std::to_string(i) + "," + std::to_string(0.05 * i) + ",0\n";
+  says(fit(nothing), {"a.csv:1:1", "is 0 N in all of the 41 rows", "choose another column"});
   says(run({"fit", "nowhere.toml"}), {"nowhere.toml", "cannot be read"});
   says(run({"fit", write("g.toml", kFit + "[[parameter]]\nkey = \"tissue.poisson_ratio\"\nlow = 0.5\nhigh = 0.1\n")}),
        {"g.toml:", "not above `low`"});
+}
+
+// A fit whose every number stands at a bound is no tissue: it says so, writes none, and ends with another code than 0.
+TEST_F(Fit, WritesNoTissueWhereNothingIsIdentified) {
+  std::string narrow = kFit;
+  narrow.replace(narrow.find("low = 100"), 9, "low = 8000");
+  const Outcome outcome = fit(curve(4200.0), narrow);
+  EXPECT_THAT(outcome, Exits(3));
+  EXPECT_THAT(outcome.err, HasSubstr("nothing is identified"));
+  EXPECT_THAT(outcome.out, HasSubstr("at bound"));
+  EXPECT_TRUE(fs::exists(folder_ / "o/fit.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "o/tissue.toml"));
 }
 
 }  // namespace

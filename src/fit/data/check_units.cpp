@@ -81,6 +81,7 @@ class UnitCheck {
     const std::size_t before = problems_.count();
     const Measurement& m = test_.measurement;
     if (m.test == LabTest::oscillation) return check_modulus(test_.force_source, largest(test_.force));
+    if (runs_backwards()) return;
     check_signs();
     if (m.drive_unit == "rad") {
       check_twist();
@@ -92,6 +93,17 @@ class UnitCheck {
     if (problems_.count() == before) check_stiffness();
   }
 
+  /// Complains of an answer that never changes. An elastic tissue has one modulus at all frequencies, and one stress while held.
+  bool answers() {
+    const double first = test_.force.front();
+    if (test_.measurement.test == LabTest::oscillation || span_of(test_.force) > 0.0) return true;
+    if (first != 0.0 && !(span_of(test_.displacement) > 0.0)) return true;
+    complain(test_.force_source.title + " is " + in_unit(own(test_.force_source, first), *test_.force_source.unit) +
+             " in all of the " + std::to_string(test_.size()) +
+             " rows, so that nothing can be fitted to it; choose another column or file" + kWayOut);
+    return false;
+  }
+
  private:
   void complain(const std::string& what) { problems_.add({std::max(test_.names_line, 1U), 1, {}}, "", what); }
 
@@ -100,6 +112,24 @@ class UnitCheck {
     return source.title + ", read " +
            (pure ? std::string("as a pure number") : "in " + std::string(source.unit->name)) + ", goes to " +
            (pure ? brief(value) : in_unit(value, *source.unit));
+  }
+
+  /// Complains of a test that begins at its farthest and ends at rest, as rows that were written from the last to the first.
+  bool runs_backwards() {
+    constexpr double kRest = 0.1;  // of the first number
+    const auto& x = test_.displacement;
+    const auto& f = test_.force;
+    const bool ends_at_rest =
+                   std::abs(x.back()) < kRest * std::abs(x.front()) && std::abs(f.back()) < kRest * std::abs(f.front()),
+               begins_farthest = std::abs(x.front()) >= largest(x) && std::abs(f.front()) >= (1.0 - kRest) * largest(f);
+    if (!ends_at_rest || !begins_farthest) return false;
+    const auto ends = [&](const Source& source, const std::vector<double>& values) {
+      return source.title + " goes from " + in_unit(own(source, std::abs(values.front())), *source.unit) + " to " +
+             in_unit(own(source, std::abs(values.back())), *source.unit);
+    };
+    complain("the rows run backwards: " + ends(test_.displacement_source, x) + ", " + ends(test_.force_source, f) +
+             "; write them in the order of the test, from rest on" + kWayOut);
+    return true;
   }
 
   /// The number as the file has it: without the height or area that turned strain into way, stress into force.
@@ -258,7 +288,7 @@ void compare_with_median(const std::vector<RawTest>& tests, const Size& size, co
 }  // namespace
 
 void check_units(const RawTest& test, const DataSpec& spec, const SpecimenSize& size, scene::Problems& problems) {
-  if (spec.unlikely || test.size() == 0) return;
+  if (spec.unlikely || test.size() == 0 || !UnitCheck(test, spec, size, problems).answers()) return;
   if (!test.measurement.loaded()) return UnitCheck(test, spec, size, problems).run();
   RawTest deformed = test;  // as if its strain had been driven
   swap_load(deformed, Measured::nominal);
