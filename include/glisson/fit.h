@@ -130,6 +130,7 @@ struct Parameter {
 struct Curve {
   std::string name;                  ///< unique among the curves of a fit, e.g. the file's stem
   std::string group;                 ///< repetitions of one test share it, e.g. "2 mm/s"
+  std::string batch;                 ///< specimens that were made or taken together share it; empty: not said
   std::vector<double> time;          ///< ascending, from 0 [s]
   std::vector<double> displacement;  ///< of the tool from the point of contact [m]
   std::vector<double> force;         ///< on the tool, along its motion [N]
@@ -160,6 +161,7 @@ struct ParameterResult {
   std::optional<double> sd;                                        ///< in the parameter's unit, by curvature
   std::optional<Interval> by_curvature, by_profile, by_bootstrap;  ///< of 95 %
   std::optional<Interval> further;        ///< 95 % prediction interval of a further specimen's value; none: not known
+  std::optional<Interval> further_batch;  ///< of the optimum of a further batch; none: fewer than three were fitted
   std::string verdict;                    ///< identified, negligible, weak, not identifiable, at bound, read off
   std::string words;                      ///< the verdict in two sentences
 

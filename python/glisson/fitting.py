@@ -31,6 +31,7 @@ class Parameter:
     sd: float | None
     ci95: Interval | None  #: of the mean over specimens, with three curves or more
     further95: Interval | None  #: of a further specimen's own value; None: too few curves
+    further_batch95: Interval | None  #: of a further batch's optimum; None: no three batches are named
     verdict: str  #: identified, negligible, weak, not identifiable, at bound, read off
     words: str
 
@@ -93,7 +94,10 @@ class FitResult:
         kept = ("name", "unit", "value", "sd", "verdict", "words")
         return {
             r["name"]: Parameter(
-                **{k: r[k] for k in kept}, ci95=_interval(r["ci95"]), further95=_interval(r["further95"])
+                **{k: r[k] for k in kept},
+                ci95=_interval(r["ci95"]),
+                further95=_interval(r["further95"]),
+                further_batch95=_interval(r["further_batch95"]),
             )
             for r in rows
         }

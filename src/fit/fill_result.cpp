@@ -10,6 +10,7 @@
 #include "fit/search/local_problem.h"
 #include "fit/uncertainty/bootstrap.h"
 #include "fit/uncertainty/covariance.h"
+#include "fit/uncertainty/further_batch.h"
 #include "fit/uncertainty/further_specimen.h"
 #include "fit/uncertainty/next_experiments.h"
 #include "fit/uncertainty/profile.h"
@@ -95,6 +96,24 @@ std::string derivative_words(const LawSearch& search) {
     return by + rounded(check.step) + " of the bounds' range agree with wider ones to " + rounded(check.error) + ".";
   return by + rounded(search.problem().difference_step) +
          " of the bounds' range were not checked: runs beside the start and beside the optimum failed.";
+}
+
+/// Where the optimum of a batch that was not fitted is to be expected, if batches are named.
+void fill_further_batch(const LawSearch& search, const Covariance& covariance, FitResult& result) {
+  const FurtherBatch further = further_batch(search.problem(), covariance, search.descent());
+  if (!further.failure.empty()) result.conclusions.push_back(further.failure);
+  if (further.parameters.empty()) return;
+  std::string text = "The optimum of a further batch is to be expected (95 %, by the optima of " +
+                     std::to_string(further.batches.size()) + " batches) at";
+  for (std::size_t p = 0; p < result.parameters.size(); ++p) {
+    const Interval& i = further.parameters[p];
+    const Parameter& x = result.parameters[p].parameter;
+    result.parameters[p].further_batch = i;
+    text += (p == 0 ? " " : ", ") + x.name + (i.open() ? " anywhere" : "") +
+            (i.low_open ? "" : " from " + rounded(i.low, 4)) + (i.high_open ? "" : " to " + rounded(i.high, 4)) +
+            (x.unit.empty() ? "" : " " + x.unit);
+  }
+  result.conclusions.push_back(text + ".");
 }
 
 void conclude_on_parameters(const FitResult& result, std::vector<std::string>& sentences) {
@@ -309,6 +328,7 @@ void fill_proof(LawSearch& search, const FitSpec& spec, const FitCurves& curves,
     result.conclusions.push_back("The uncertainty of the parameters could not be computed: " + covariance.failure);
   } else {
     fill_further(search, curves, covariance, result);
+    if (!stopped(options)) fill_further_batch(search, covariance, result);
     conclude_on_parameters(result, result.conclusions);
     result.conclusions.push_back(covariance.noise.why);
     if (local) result.conclusions.push_back(local->words());

@@ -10,6 +10,7 @@
 #include "fit/data/test_columns.h"
 #include "fit/data/units.h"
 #include "fit/forward/indenter.h"
+#include "fit/uncertainty/further_batch.h"
 #include "fit/uncertainty/validation.h"
 
 namespace glisson::fit {
@@ -179,6 +180,27 @@ void require_one_tissue(std::vector<ShownModulus> shown) {
                    " times of each other. Check the units of both files, or give unlikely = true in one's [[data]]");
 }
 
+/// Batches are named for all fitted curves or for none, and two tell nothing of how they differ.
+/// @throws SceneError naming the table
+void require_batches(const std::vector<DataSpec>& data) {
+  std::set<std::string> batches;
+  const DataSpec *without = nullptr, *with = nullptr;
+  for (const DataSpec& d : data) {
+    if (d.held_out) continue;
+    (d.batch.empty() ? without : with) = &d;
+    if (!d.batch.empty()) batches.insert(d.batch);
+  }
+  if (!with) return;
+  if (without)
+    throw SceneError(without->origin + ": names no batch, while another fitted [[data]] is of batch \"" + with->batch +
+                     "\"; give `batch` in each fitted [[data]], or in none");
+  if (batches.size() < kFewestBatches)
+    throw SceneError(with->origin + ": batch: " + std::to_string(batches.size()) +
+                     (batches.size() == 1 ? " batch is" : " batches are") +
+                     " fitted; an interval for a further batch needs three or more. Give a [[data]] for each batch, or "
+                     "remove `batch`");
+}
+
 }  // namespace
 
 std::vector<std::size_t> FitCurves::indices(bool held_out) const {
@@ -196,6 +218,7 @@ std::vector<Curve> FitCurves::chosen(const std::vector<std::size_t>& indices) co
 }
 
 FitCurves read_curves(const FitSpec& spec, const SpecimenSize& size, const std::filesystem::path& base) {
+  require_batches(spec.data);
   FitCurves all;
   std::vector<std::pair<std::string, double>> shown;  // file and modulus of each curve; 0: nothing to compare
   std::vector<DataSpec> parts;

@@ -47,6 +47,7 @@ std::string section_fault(const std::string& text) {
 
 TEST(DataSection, FillsEveryKey) {
   const DataSpec d = section(R"(name = "slow"
+batch = "B"
 files = ["a.csv", "b.csv"]
 use = "test"
 weight = 2
@@ -66,6 +67,7 @@ filter = { kind = "savitzky_golay", half_width = 4, degree = 2 }
 resample = { over = "displacement", how = "pick", points = 50 }
 )");
   EXPECT_EQ(d.group, "slow");
+  EXPECT_EQ(d.batch, "B");
   EXPECT_EQ(d.files.size(), 2u);
   EXPECT_TRUE(d.held_out && d.skip_bad_rows && d.unlikely);
   EXPECT_EQ(d.weight, 2.0);

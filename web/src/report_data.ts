@@ -203,6 +203,7 @@ export interface FitParameter {
   ci95_profile: [number | null, number | null] | null; // by profile; null end: open within the bounds
   ci95_bootstrap: [number, number] | null;
   further95: [number | null, number | null] | null; // of a further specimen's own value; null: not known
+  further_batch95: [number | null, number | null] | null; // of a further batch's optimum; null: not known
   verdict: "identified" | "negligible" | "weak" | "not identifiable" | "at bound" | "read off";
   words: string; // why, in a sentence
 }

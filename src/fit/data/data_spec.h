@@ -90,6 +90,7 @@ struct SpecimenSize {
 
 struct DataSpec {
   std::string group;  ///< repetitions of one test share it; empty: given by whoever numbers the sections
+  std::string batch;  ///< specimens made or taken together; empty: not said
   std::vector<std::filesystem::path> files;
   LabTest test = LabTest::compression;
   std::optional<Deforming>

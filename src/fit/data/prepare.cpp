@@ -239,6 +239,7 @@ class Preparation {
     Curve c;
     c.name = account_.name;
     c.group = spec_.group;
+    c.batch = spec_.batch;
     c.time = std::move(rows_.time);
     c.displacement = std::move(rows_.displacement);
     c.past_time = std::move(past_.time);

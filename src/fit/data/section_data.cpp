@@ -410,6 +410,10 @@ const SectionSpec& data_section() {
     using D = DataSpec;
     Section<D> s("data", "Measured curves: repetitions of one test, one file each.");
     s.key("name", &D::group, "name of the test, e.g. \"2 mm/s\"; the files are its repetitions");
+    s.key("batch", &D::batch,
+          "name of the batch that these specimens are of, e.g. \"A\"; with three or more batches fitted, the result "
+          "says where the optimum of a further one is to be expected")
+        .otherwise("not said");
     s.key("files", &D::files, "files, relative to FIT.toml, or to --data DIR").must();
     s.choice<LabTest>("test", &D::test, choices_of<LabTest>(), "what was done to the specimen");
     s.choice<std::optional<Deforming>>("mode", &D::deforming, optional_choices_of<Deforming>(),

@@ -46,6 +46,7 @@ Json parameter_json(const fit::ParameterResult& p) {
           {"ci95_profile", open_interval(p.by_profile)},
           {"ci95_bootstrap", interval(p.by_bootstrap)},
           {"further95", open_interval(p.further)},
+          {"further_batch95", open_interval(p.further_batch)},
           {"verdict", p.verdict},
           {"words", p.words}};
 }

@@ -29,6 +29,14 @@ std::string probability_text(double probability) {
   return probability < 0.001 ? "p < 0.001" : format("p = %.3f", probability, 0.0);
 }
 
+/// What a mean over these specimens is of, and what it says nothing of.
+std::string whose_specimens(const std::vector<Curve>& curves) {
+  const bool batches = std::ranges::any_of(curves, [](const Curve& c) { return !c.batch.empty(); });
+  if (batches) return "in these batches, and not of a further batch's";
+  return "not of another batch's, which differ by more where batches do; name three batches or more (batch = \"A\" of "
+         "[[data]]) for an interval of a further one";
+}
+
 std::vector<double> series_of(const Vector& x) { return {x.data(), x.data() + x.size()}; }
 
 }  // namespace
@@ -92,7 +100,8 @@ NoiseKind NoiseStudy::kind_of(const CovarianceOptions& options, NoiseEstimate& e
   }
   if (alone) {
     e.why = "each of the " + std::to_string(curves_.size()) + " curves counts as one sample" +
-            (of_kinds() ? " of its kind of test" : "") + ": intervals are of the mean of specimens such as these";
+            (of_kinds() ? " of its kind of test" : "") + ": intervals are of the mean of specimens such as these, " +
+            whose_specimens(problem_.curves());
     return NoiseKind::by_curve;
   }
   const bool swings = e.effective < kAlike * samples_;

@@ -103,6 +103,7 @@ function readParameter(raw: Raw, index: number): FitParameter {
     ci95_profile: readOpenInterval(raw["ci95_profile"]),
     ci95_bootstrap: readInterval(raw["ci95_bootstrap"]),
     further95: readOpenInterval(raw["further95"]),
+    further_batch95: readOpenInterval(raw["further_batch95"]),
     verdict: VERDICTS.find((verdict) => verdict === raw["verdict"]) ?? "weak",
     words: text(raw["words"]),
   };

@@ -47,7 +47,7 @@ export function curvesCsv(fit: FitData): string {
 
 export function parametersCsv(fit: FitData): string {
   const columns = ["name", "unit", "scale", "low", "high", "value", "sd"];
-  const kinds = ["ci95_curvature", "ci95_profile", "ci95_bootstrap", "further95"] as const;
+  const kinds = ["ci95_curvature", "ci95_profile", "ci95_bootstrap", "further95", "further_batch95"] as const;
   const head = [...columns, ...kinds.flatMap((kind) => [`${kind}_low`, `${kind}_high`]), "verdict"];
   const row = (parameter: FitParameter) => [
     ...[parameter.name, parameter.unit, parameter.scale, parameter.low, parameter.high, parameter.value, parameter.sd],

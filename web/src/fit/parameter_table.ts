@@ -13,6 +13,7 @@ const KINDS = [
   { key: "ci95_curvature", name: "curvature" },
   { key: "ci95_bootstrap", name: "bootstrap" },
   { key: "further95", name: "further specimen" },
+  { key: "further_batch95", name: "further batch" },
 ] as const;
 
 export function parameterTable(fit: FitData): HTMLElement | null {
