@@ -9,7 +9,8 @@
 namespace glisson::app {
 namespace {
 
-constexpr double kAreaChanges = 0.01;  // of the tool's area: more, and the meshes are loaded otherwise
+constexpr double kAreaChanges = 0.01;     // of the tool's area: more, and the meshes are loaded otherwise
+constexpr double kMovesWithMass = 0.002;  // of the value: inertia is said from here on
 constexpr int kCurvePoints = 40;
 constexpr double kBracketFoot = 0.03;  // of the width of the chart
 
@@ -21,6 +22,9 @@ double largest_area_change(const ConvergenceStudy& study) {
   for (const LevelResult& level : study.levels) most = std::max(most, std::abs(level.mesh.tool_area - given));
   return given > 0.0 ? most / given : 0.0;
 }
+
+/// Whether a power of the size of cells leads to the limit.
+bool has_power(const GridConvergence& g) { return g.extrapolates() && g.order > 0.0; }
 
 /// f₀ + C h^p through the finest mesh, from h = 0 to the mesh as given.
 nlohmann::json power_law(const ConvergenceStudy& study) {
@@ -41,7 +45,12 @@ void ConvergenceStudy::conclude() {
   if (levels.size() < 2) return;
   std::vector<MeshResult> results;
   for (const LevelResult& level : levels) results.push_back({level.mesh.cell, level.value});
-  found = grid_convergence(results);
+  found = grid_convergence(results, largest_order);
+}
+
+std::optional<double> ConvergenceStudy::change_with_mass() const {
+  if (!lighter || levels.empty() || levels.front().value == 0.0) return std::nullopt;
+  return (*lighter - levels.front().value) / std::abs(levels.front().value);
 }
 
 std::vector<std::string> ConvergenceStudy::words() const {
@@ -58,6 +67,13 @@ std::vector<std::string> ConvergenceStudy::words() const {
                                percent(found->error_of(levels.back().value))));
   }
   if (const std::string verdict = verdict_text(*found); !verdict.empty()) text.push_back(verdict);
+  if (const auto moved = change_with_mass(); moved && std::abs(*moved) > kMovesWithMass) {
+    text.push_back(
+        fmt::format("With a quarter of the mass and half of the step the value on the mesh as given moves by {}: it "
+                    "contains inertia, damping by mass or the error of the step, on any mesh. For the force without "
+                    "them compare with --set motion.integrator=quasi_static.",
+                    percent(*moved)));
+  }
   if (largest_area_change(*this) > kAreaChanges) {
     text.push_back(
         fmt::format("The area of the tool's set changes by {:.0f} % with the mesh, and the force with it: choose the "
@@ -90,9 +106,7 @@ std::string convergence_table(const ConvergenceStudy& study, const std::string& 
   if (extrapolates) {
     const GridConvergence& g = *study.found;
     const bool assumed = g.verdict == GridConvergence::Verdict::two_meshes;
-    const std::string order = g.verdict == GridConvergence::Verdict::independent
-                                  ? std::string()
-                                  : fmt::format("; order {:.3g}{}", g.order, assumed ? " (assumed)" : "");
+    const std::string order = has_power(g) ? fmt::format("; order {:.3g}{}", g.order, assumed ? " (assumed)" : "") : "";
     text += fmt::format("  extrapolated: {:.6g}, expected within {:.6g} and {:.6g}{}\n", g.extrapolated, g.low, g.high,
                         order);
   } else if (study.found) {
@@ -104,7 +118,8 @@ std::string convergence_table(const ConvergenceStudy& study, const std::string& 
 
 nlohmann::ordered_json convergence_json(const std::string& scene, const std::vector<ConvergenceStudy>& studies,
                                         const std::string& at) {
-  constexpr const char* kVerdicts[] = {"converging", "independent", "two_meshes", "unusual_order", "not_monotone"};
+  constexpr const char* kVerdicts[] = {"converging",  "independent", "two_meshes",
+                                       "alternating", "slow",        "not_monotone"};
   nlohmann::ordered_json json;
   json["format"] = 1;
   json["scene"] = scene;
@@ -128,11 +143,13 @@ nlohmann::ordered_json convergence_json(const std::string& scene, const std::vec
       one["verdict"] = kVerdicts[static_cast<int>(s.found->verdict)];
       const auto number_if = [](bool is, double x) { return is ? nlohmann::ordered_json(x) : nullptr; };
       const bool extrapolates = s.found->extrapolates();
-      one["observed_order"] = number_if(s.found->seen_order > 0.0, s.found->seen_order);
+      one["observed_order"] = number_if(s.found->seen_order != 0.0, s.found->seen_order);
+      one["largest_order"] = s.found->largest;
       one["extrapolated"] = number_if(extrapolates, s.found->extrapolated);
       one["low"] = s.found->low;
       one["high"] = s.found->high;
       one["error_as_given"] = number_if(extrapolates, s.found->error_of(s.levels.front().value));
+      one["change_with_mass"] = number_if(s.change_with_mass().has_value(), s.change_with_mass().value_or(0.0));
     }
     one["words"] = s.words();
     json["variants"].push_back(std::move(one));
@@ -147,7 +164,7 @@ nlohmann::json convergence_chart(const ConvergenceStudy& study) {
   nlohmann::json xs = nlohmann::json::array(), ys = nlohmann::json::array();
   for (const LevelResult& level : study.levels) xs.push_back(1e3 * level.mesh.cell), ys.push_back(level.value);
   nlohmann::json fits = nlohmann::json::array();
-  if (g.extrapolates()) fits.push_back(power_law(study));
+  if (has_power(g)) fits.push_back(power_law(study));
   const double foot = kBracketFoot * 1e3 * study.levels.front().mesh.cell;
   fits.push_back({{"label", "expected within"}, {"x", {foot, 0.0, 0.0, foot}}, {"y", {g.low, g.low, g.high, g.high}}});
   nlohmann::json chart;

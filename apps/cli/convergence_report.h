@@ -29,8 +29,12 @@ struct ConvergenceStudy {
   std::vector<LevelResult> levels{};       ///< from the mesh as given to the finest that is done
   std::optional<GridConvergence> found{};  ///< none with fewer than two levels
   std::string trouble{};                   ///< why a mesh has no value; empty: none
+  double largest_order = 2.0;              ///< largest_order() of the mesh as given
+  std::optional<double> lighter{};         ///< the value on the mesh as given of lighter_variant()
 
   void conclude();
+  /// The change of the value on the mesh as given with a quarter of the mass and half of the step; none where it was not tried.
+  std::optional<double> change_with_mass() const;
   /// Sentences: what the mesh as given errs, and what to make of it.
   std::vector<std::string> words() const;
 };

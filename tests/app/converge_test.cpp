@@ -56,12 +56,24 @@ TEST_F(ConvergeProgram, TellsTheErrorOfTheMesh) {
   EXPECT_GT(fine, limit);
   EXPECT_LT(found["low"].get<double>(), limit);
   EXPECT_GT(found["high"].get<double>(), limit);
+  EXPECT_EQ(found["largest_order"], 1.0) << "a pad within a face";
+  EXPECT_TRUE(found["change_with_mass"].is_null()) << "quasi-static";
   EXPECT_NEAR(found["error_as_given"].get<double>(), found["levels"][0]["value"].get<double>() / limit - 1.0, 1e-9);
   const nlohmann::json page = report_data(folder_ / "o/report.html")["scenes"][0];
   EXPECT_EQ(page["variants"].size(), 3u);
   EXPECT_EQ(page["charts"][1]["points"][0]["x"].size(), 3u);
   EXPECT_EQ(page["tables"][0]["rows"].size(), 5u);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "o/main_3/forces.csv"));
+}
+
+// A peak that contains inertia does so on every mesh: one run more, with a quarter of the mass and half of the step, shows it.
+TEST_F(ConvergeProgram, SaysWhatInertiaAdds) {
+  const Outcome outcome = run({"converge", write("s.toml", kPad), "--out", "o", "--levels", "2", "--set",
+                               "motion.integrator=explicit", "--set", "motion.step_s=auto", "--json", "c.json"});
+  ASSERT_THAT(outcome, Exits(0));
+  EXPECT_THAT(outcome.out, HasSubstr("it contains inertia"));
+  EXPECT_GT(std::abs(read_json(folder_ / "c.json")["variants"][0]["change_with_mass"].get<double>()), 0.01);
+  EXPECT_EQ(read_json(folder_ / "o/main_lighter/summary.json")["end"], "finished");
 }
 
 // A set that a ball chooses covers another area on each mesh: said, with the way out. A probe can be compared, at the end too.

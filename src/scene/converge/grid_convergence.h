@@ -1,8 +1,15 @@
 // grid_convergence.h — what finer and finer meshes say of the result on none of them.
 //
-//   f(h) ≈ f₀ + C h^p        three meshes give f₀ and p [Roache1994], also where their sizes do not grow by one factor
-//                            [Celik2008]; two give f₀ with p = 1 assumed
-//   |f₀ − f₁| ≤ F |f₁ − f₂| / (r^p − 1)      F = 1.25 where p was observed and is believable, else 3 [Roache1994]
+//   f(h) ≈ f₀ + C h^p        three meshes give the observed order p [Roache1994], also where their sizes do not fall by one factor
+//                            [Celik2008]; two give none, and p = 1 is assumed
+//
+// An observed order is believed up to that which the geometry allows, P ≤ 2 (edge_order.h): on coarse meshes errors of higher order
+// hide the singular ones, which remain. With the step to the limit s(p) = (f₁ − f₂)/(r^p − 1), r = h₂/h₁, f₁ of the finest mesh,
+//
+//   f₀ = f₁ + s(min(p, P))        within  f₁ + s(max(min(p, 2), P))/F  and  f₁ + F s(min(p, P)),  F = 1.5
+//
+// Below p = ½ the meshes are so coarse, or their tets lock so much, that no power describes them: the next changes will be the
+// larger, the smaller p is. How the limits were chosen, and how often they hold: docs/convergence.md.
 #pragma once
 
 #include <span>
@@ -18,28 +25,29 @@ struct MeshResult {
 
 struct GridConvergence {
   enum class Verdict {
-    converging,     ///< by an order that linear elements can have, 0.5 … 2.5
-    independent,    ///< differences below a millionth: the mesh does not matter
-    two_meshes,     ///< the order is assumed
-    unusual_order,  ///< observed, but outside of 0.5 … 2.5: nothing is extrapolated
-    not_monotone    ///< up and down, or by more with every refinement: nothing is extrapolated
+    converging,   ///< from one side, by an observed order of ½ or more
+    independent,  ///< differences below a millionth: the mesh does not matter
+    two_meshes,   ///< the order is assumed
+    alternating,  ///< up and down by ever less, half or less of the change before: the finest value is taken
+    slow,         ///< by an observed order of 0 to ½, as where tets lock: the extrapolation is rough
+    not_monotone  ///< up and down, or by more with every refinement: nothing is extrapolated
   };
   Verdict verdict = Verdict::converging;
-  double order = 1.0;         ///< p that the extrapolation uses
-  double seen_order = 0.0;    ///< p of the three finest meshes; 0: none
-  double extrapolated = 0.0;  ///< f₀; where nothing is extrapolated the value of the finest mesh
-  /// The finest mesh's value ± its uncertainty, between which f₀ is expected; where nothing is extrapolated ± three times the
-  /// largest of the last two differences.
-  double low = 0.0, high = 0.0;
+  double order = 1.0;            ///< p that the extrapolation uses, at most the largest; 0: none
+  double seen_order = 0.0;       ///< p of the three finest meshes, of any size; 0: none
+  double largest = 2.0;          ///< P, which the geometry allows
+  double extrapolated = 0.0;     ///< f₀; where nothing is extrapolated the value of the finest mesh
+  double low = 0.0, high = 0.0;  ///< f₀ is expected between them
 
-  bool extrapolates() const { return verdict != Verdict::unusual_order && verdict != Verdict::not_monotone; }
+  bool extrapolates() const { return verdict != Verdict::not_monotone; }
   /// (f − f₀)/|f₀| of a result; 0 where f₀ is.
   double error_of(double value) const;
 };
 
 /// @param results  of one quantity, from the coarsest mesh to the finest; two or more, of which the last three count
-/// @throws std::invalid_argument for fewer, or sizes that do not fall
-GridConvergence grid_convergence(std::span<const MeshResult> results);
+/// @param largest_order  P of the body's edges, in [1, 2] (edge_order.h)
+/// @throws std::invalid_argument for fewer, sizes that do not fall, or another order
+GridConvergence grid_convergence(std::span<const MeshResult> results, double largest_order = 2.0);
 
 /// What the verdict means, in a sentence; empty where it converges as it should.
 std::string verdict_text(const GridConvergence& found);

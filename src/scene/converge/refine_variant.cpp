@@ -8,6 +8,8 @@
 namespace glisson {
 namespace {
 
+constexpr double kImplicitStep = 0.01;  // the largest automatic one of `implicit` [s]
+
 bool chosen_by_number(const Variant& variant) {
   return std::any_of(variant.sets.begin(), variant.sets.end(), [](const auto& named) {
     const auto& where = named.second.where;
@@ -61,6 +63,22 @@ RefinedVariant refined_variant(const Variant& variant, int times, const MeshLoad
   TetMesh mesh = build_mesh(own, load);
   for (int i = 0; i < times; ++i) mesh = refined(mesh);
   return on_mesh(own, std::move(mesh));
+}
+
+std::optional<Variant> lighter_variant(const Variant& variant) {
+  if (variant.simulation.integrator == Integrator::quasi_static) return std::nullopt;
+  Variant lighter = variant;
+  lighter.tissue.density *= 0.25;
+  for (RegionSpec& region : lighter.regions) region.tissue.density *= 0.25;
+  SimulationOptions& simulation = lighter.simulation;
+  simulation.gravity = simulation.gravity * 4.0;
+  if (simulation.step) *simulation.step *= 0.5;
+  if (simulation.mass_scaling_step) *simulation.mass_scaling_step *= 0.5;
+  if (simulation.integrator == Integrator::implicit) {
+    simulation.implicit.largest_step = 0.5 * simulation.implicit.largest_step.value_or(kImplicitStep);
+  }
+  if (lighter.max_steps) *lighter.max_steps *= 4;
+  return lighter;
 }
 
 double tool_area(const Variant& variant, const TetMesh& mesh) {
