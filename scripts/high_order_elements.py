@@ -14,19 +14,13 @@ def graded(length, singular=(), layers=6, ratio=0.2, most=0.5):
     """Breakpoints from 0 to `length` that become finer by `ratio` a layer toward each singular coordinate; the coarsest element is
     `most` of its interval."""
     stops = sorted({0.0, length, *singular})
+    near = [most * ratio**k for k in range(layers, -1, -1)]
     points = [0.0]
     for a, b in zip(stops, stops[1:]):
-        near = [s * ratio**k for k in range(layers, 0, -1) for s in (most,)]
-        lower = [0.0] + near if a in singular else [0.0]
-        upper = [0.0] + near if b in singular else [0.0]
-        shares = lower + ([most] if lower != [0.0] or upper != [0.0] else [1 / 3, 2 / 3])
-        shares = sorted(set(shares) | {1.0 - s for s in upper} | {1.0 - (most if upper != [0.0] else 0.0)} | {1.0})
-        points += [a + (b - a) * s for s in shares if s > 0.0]
-    kept = [points[0]]
-    for x in points[1:]:
-        if x - kept[-1] > 1e-12 * length:
-            kept.append(x)
-    return np.array(kept)
+        shares = near * (a in singular) + [1.0 - s for s in near] * (b in singular)
+        points += [a + (b - a) * s for s in shares or (1 / 3, 2 / 3)] + [b]
+    points.sort()
+    return np.array([x for i, x in enumerate(points) if i == 0 or x - points[i - 1] > 1e-12 * length])
 
 
 def lobatto(p):

@@ -1,6 +1,7 @@
 // glisson converge: the table, the JSON and the report of a scene on finer meshes, and what it says where it cannot.
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <thread>
 

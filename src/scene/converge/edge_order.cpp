@@ -84,9 +84,10 @@ class Edges {
   /// The least λ.
   double exponent() const {
     double least = 1.0;
+    const unsigned across = never_ == kX || never_ == kY || never_ == kZ ? never_ : 0u;  // plane strain
     std::map<std::array<std::uint32_t, 2>, const Face*> open;
     for (const Face& face : faces_) {
-      if ((axis_of(face.normal) & never_) != 0) continue;  // nothing moves across it: a plane of symmetry
+      if ((axis_of(face.normal) & across) != 0) continue;  // nothing moves across it: a plane of symmetry
       for (std::size_t i = 0; i < 3; ++i) {
         const std::uint32_t a = face.corners[i], b = face.corners[(i + 1) % 3];
         const auto [other, is_new] = open.try_emplace({std::min(a, b), std::max(a, b)}, &face);
