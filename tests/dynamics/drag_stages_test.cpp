@@ -121,13 +121,21 @@ TEST(DragStages, StepGrowsWithTheSquareOfTheirNumber) {
   EXPECT_NEAR(Simulation(mesh, {{0, viscous(1.0)}}, in_stages(4)).stable_step(), 0.946 * elastic, 1e-3 * elastic);
 }
 
-// Figure 3a, η = 1000 Pa·s: eight stages at 32 times the explicit step give its forces within 0.2 % of the peak from 5 ms on.
+// Figure 3a, η = 1000 Pa·s: eight stages at 32 times the explicit step give its forces within 0.2 % of the peak from 5 ms on. Before,
+// the tool gets up to speed within 2 ms, seven of their steps: 4.4 % of the peak, where two stages, of 1.9 times the step, have 0.24 %.
 TEST(DragStages, FollowFigure3a) {
-  const test::PressRun staged = test::figure3a(in_stages(8)), reference = test::figure3a({});
-  const double apart = test::apart(staged, reference);
-  RecordProperty("apart_percent_of_peak", std::to_string(100.0 * apart));
-  RecordProperty("cost_ratio", std::to_string(reference.seconds / staged.seconds));
-  EXPECT_LE(apart, 0.002);
+  const test::PressRun reference = test::figure3a({});
+  const auto follow = [&](int stages, double at_the_start) {
+    const test::PressRun staged = test::figure3a(in_stages(stages));
+    const double apart = test::apart(staged, reference), start = test::apart_at_the_start(staged, reference);
+    const std::string of = std::to_string(stages) + "_stages_";
+    RecordProperty(of + "apart_percent_of_peak", std::to_string(100.0 * apart));
+    RecordProperty(of + "start_percent_of_peak", std::to_string(100.0 * start));
+    RecordProperty(of + "cost_ratio", std::to_string(reference.seconds / staged.seconds));
+    EXPECT_LE(apart, 0.002) << stages << " stages";
+    EXPECT_LE(start, at_the_start) << stages << " stages";
+  };
+  follow(2, 0.004), follow(8, 0.06);
 }
 
 /// Tissue with a law, branches, viscosity and a second region that does not drag, under a press and gravity.
