@@ -16,7 +16,8 @@
 namespace glisson {
 namespace {
 
-constexpr double kStart = 9.15;  ///< position of the needle where the tip of the scene starts [mm]
+constexpr double kStart = 9.15;             ///< position of the needle where the tip of the scene starts [mm]
+constexpr double kSurface = kStart + 0.12;  ///< and where it meets the liver [mm]
 
 struct Point {
   double position, force;  ///< [mm], [N]
@@ -77,16 +78,18 @@ std::vector<Override> at_speed(double speed) {
           {"instrument.needle.motion.velocity_mm_s", std::to_string(speed)}};
 }
 
-/// Ten times as fast as measured, where inertia shows: with the tissue's own mass alone.
+/// Ten times as fast as measured, where inertia shows: with the tissue's own mass alone, and elastic, so that its energy is a function of
+/// where it is.
 std::vector<Override> ten_times_as_fast() {
   std::vector<Override> overrides = at_speed(30.0);
+  overrides.push_back({"tissue.maxwell", "[]"});
   overrides.push_back({"motion.mass_scaling", "fixed"});
   overrides.push_back({"motion.mass_scaling_step_s", "1e-7"});
   return overrides;
 }
 
-// Before the puncture within 0.035 N rms of the nine points; puncture within 5 % in force and place; least force of the 2 mm after it
-// within what was measured there, 0.15 to 0.42 N; the plateau's mean within 10 %; and while nothing moves fast the supports bear what
+// Before the puncture within 0.03 N rms of the nine points (measured: 0.020); puncture within 5 % in force and place; least force of the 2 mm after it
+// 0.08 to 0.42 N, where 0.15 to 0.42 N was measured; the plateau's mean within 10 %; and while nothing moves fast the supports bear what
 // the hand feels, to 1 %.
 void expect_surface_and_plateau(const Curve& curve) {
   double squares = 0.0;
@@ -102,7 +105,7 @@ void expect_surface_and_plateau(const Curve& curve) {
   ASSERT_EQ(count, 9);
   const double rms = std::sqrt(squares / count);
   ::testing::Test::RecordProperty("rms_before_uN", static_cast<int>(1e6 * rms));
-  EXPECT_LT(rms, 0.035);
+  EXPECT_LT(rms, 0.03);
 
   const double broke = curve.position_of("puncture");
   EXPECT_NEAR(broke, puncture.position, 0.05 * puncture.position);
@@ -110,7 +113,7 @@ void expect_surface_and_plateau(const Curve& curve) {
   double least = puncture.force;
   for (double x = broke; x < broke + 2.0; x += 0.02) least = std::min(least, curve.at(x));
   EXPECT_LT(least, 0.42);
-  EXPECT_GT(least, 0.10);
+  EXPECT_GT(least, 0.08);
 
   double plateau = 0.0, balance = 0.0;
   int on_it = 0;
@@ -125,7 +128,7 @@ void expect_surface_and_plateau(const Curve& curve) {
   EXPECT_NEAR(balance / on_it, plateau / on_it, 0.01 * plateau / on_it);
 }
 
-// The inner punctures come in number and place as measured, to 0.4 mm: the second is 0.3 mm late, and where the swinging tip breaks a
+// The inner punctures come in number and place as measured, to 0.4 mm: the first is 0.13 mm early, and where the swinging tip breaks a
 // membrane depends on rounding to some 0.03 mm.
 void expect_inner_punctures(const Curve& curve) {
   std::vector<double> places;
@@ -155,18 +158,32 @@ std::map<double, std::pair<double, int>> whole_curve(const std::filesystem::path
   return sums;
 }
 
-// 0.08 N rms over 0 to 48 mm, every 0.2 mm, but for 0.3 mm on either side of the four drops.
+struct Error {
+  double position, force;  ///< [mm], [N]
+  bool at_drop;            ///< within 0.3 mm of one of the four
+};
+
+double rms_of(const std::vector<Error>& errors, bool with_drops, double from) {
+  double squares = 0.0, count = 0.0;
+  for (const Error& e : errors) {
+    if (e.position < from || (e.at_drop && !with_drops)) continue;
+    squares += e.force * e.force, count += 1.0;
+  }
+  return std::sqrt(squares / count);
+}
+
+// Over 0 to 48 mm, every 0.2 mm: 0.052 N rms but for 0.3 mm on either side of the four drops, 0.070 N with them, since where a drop of 1 N
+// comes 0.1 mm early the force is 0.7 N off. A fifth of the positions lie before the tip's start, where there is nothing but noise: without
+// these it is 0.057 and 0.077 N.
 void expect_whole_curve(const Curve& curve, const std::map<double, std::pair<double, int>>& points) {
   std::vector<double> drops;
   for (const Point& p : measured()) {
     if (p.what.ends_with("puncture") && p.force > 1.4) drops.push_back(p.position);
   }
   ASSERT_EQ(drops.size(), 4U);
-  double squares = 0.0;
-  int count = 0;
+  std::vector<Error> errors;
   for (int i = 0; i <= 240; ++i) {
     const double x = 0.2 * i;
-    if (std::any_of(drops.begin(), drops.end(), [x](double d) { return std::abs(d - x) <= 0.3; })) continue;
     const auto next = points.lower_bound(x);
     const auto value = [](const auto& p) { return p.second.first / p.second.second; };
     double force = value(*next);
@@ -174,13 +191,16 @@ void expect_whole_curve(const Curve& curve, const std::map<double, std::pair<dou
       const auto before = std::prev(next);
       force = value(*before) + (force - value(*before)) * (x - before->first) / (next->first - before->first);
     }
-    squares += std::pow((x < kStart ? 0.0 : curve.at(x)) - force, 2);
-    ++count;
+    errors.push_back({x, (x < kStart ? 0.0 : curve.at(x)) - force,
+                      std::ranges::any_of(drops, [x](double d) { return std::abs(d - x) <= 0.3; })});
   }
-  const double rms = std::sqrt(squares / count);
-  ::testing::Test::RecordProperty("rms_uN", static_cast<int>(1e6 * rms));
-  EXPECT_GT(count, 220);
-  EXPECT_LT(rms, 0.08);
+  const auto record = [&](const std::string& of, double from) {
+    ::testing::Test::RecordProperty(of + "_outside_drops_uN", static_cast<int>(1e6 * rms_of(errors, false, from)));
+    ::testing::Test::RecordProperty(of + "_with_drops_uN", static_cast<int>(1e6 * rms_of(errors, true, from)));
+  };
+  record("rms", 0.0), record("rms_from_the_start", kStart);
+  EXPECT_LT(rms_of(errors, false, 0.0), 0.07);
+  EXPECT_LT(rms_of(errors, true, 0.0), 0.10);
 }
 
 // What the scene claims, on one run of it. The whole curve, of 371 points, is read from beside the checkout; that part is skipped
@@ -211,7 +231,7 @@ Curve pressed_in(const Cells& cells) {
   std::vector<Override> overrides = ten_times_as_fast();
   overrides.push_back({"mesh.radial_cells", std::to_string(cells.radial)});
   overrides.push_back({"mesh.axial_cells", std::to_string(cells.axial)});
-  overrides.push_back({"instrument.needle.motion.depth_mm", "10.6"});  // the approach of 0.44 mm included
+  overrides.push_back({"instrument.needle.motion.depth_mm", "10.6"});  // the approach of 0.12 mm included
   const Scene scene = test::shipped_scene("needle/bovine_liver.toml", overrides);
   Curve curve;
   const std::atomic<bool> stop{false};
@@ -241,9 +261,9 @@ void record(const Cells& cells, const Curve& curve, double surface) {
 }
 
 // The mesh resolves the zone: what is fitted belongs to the tissue. Against the finest of three meshes, of 43 200 to 93 312 tets, the
-// force 2 to 9 mm deep within 2 %, the indentations at 0.15, 0.5 and 1 N and at the puncture within 3 %.
+// force 2 to 9 mm deep within 2 %, the indentations at 0.15, 0.5 and 1 N and at the puncture within 1.5 % (measured: 1.6 and 1.0 %). The
+// finest has 0.4 % more force than one of half as many tets again (docs/needles.md).
 TEST(BovineNeedle, IsTheSameOnFinerMeshes) {
-  constexpr double kSurface = kStart + 0.44;
   const Cells finest{12, 36};
   const Curve fine = pressed_in(finest);
   record(finest, fine, kSurface);
@@ -257,10 +277,10 @@ TEST(BovineNeedle, IsTheSameOnFinerMeshes) {
     }
     for (const double force : {0.15, 0.5, 1.0}) {
       const double depth = position_at(fine, force) - kSurface;
-      EXPECT_NEAR(position_at(curve, force) - kSurface, depth, 0.03 * depth) << "at " << force << " N";
+      EXPECT_NEAR(position_at(curve, force) - kSurface, depth, 0.015 * depth) << "at " << force << " N";
     }
     const double puncture = fine.position_of("puncture") - kSurface;
-    EXPECT_NEAR(curve.position_of("puncture") - kSurface, puncture, 0.03 * puncture);
+    EXPECT_NEAR(curve.position_of("puncture") - kSurface, puncture, 0.015 * puncture);
   }
 }
 
