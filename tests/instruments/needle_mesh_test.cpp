@@ -48,7 +48,9 @@ Insertion on_mesh(int radial, int axial) {
 }
 
 // With the energy criterion the mesh could show in force and depth. From 8 800 to 44 000 tets, whose edges at the axis are
-// 0.59 to 0.35 of the zone's radius, force and plateau change by less than 3 %, the depth by 5 % (4.46, 4.52, 4.65 mm).
+// 0.59 to 0.35 of the zone's radius, force and plateau change by less than 3 %, the depth by 5 % (4.46, 4.52, 4.65 mm, 0.5 mm of it in
+// air). That is not the end: these cells are 1.7 times as long along the needle as across, and tets with volumes of their own lock. With
+// averaged volumes and cells as long as wide the tissue yields 4.62 mm on any mesh from 0.53 on (docs/needles.md).
 TEST(NeedleMesh, PunctureAndPlateauHoldOnThreeMeshes) {
   std::array<Curve, 3> curves;
   const std::array<std::array<int, 2>, 3> cells{{{7, 10}, {9, 13}, {12, 17}}};
@@ -149,7 +151,7 @@ void record(Family family, int cells, const Indented& p) {
 }
 
 // From edges of half a zone on (of regular tets of the same volume: 0.53, 0.43 and 0.36 zones in prisms, 0.50, 0.41, 0.35 in
-// cubes, whose sides are 0.44 to 0.31 zones: cubes of half a zone are off by 3.9 %), three meshes of two families: force within 2 %, indentation within 3 %.
+// cubes, whose sides are 0.44 to 0.31 zones: cubes of half a zone are off by 3.9 %), three meshes of two families: force within 2 %, indentation within 1 % (measured: 0.4 %).
 TEST(NeedleMesh, ForceAndIndentationAreThoseOfTheZone) {
   for (const auto& [family, coarsest] : {std::pair{Family::prisms, 8}, std::pair{Family::cubes, 9}}) {
     const Indented finest = indent(family, coarsest + 4);
@@ -159,7 +161,7 @@ TEST(NeedleMesh, ForceAndIndentationAreThoseOfTheZone) {
       record(family, cells, p);
       EXPECT_NEAR(p.at_2mm, finest.at_2mm, 0.02 * finest.at_2mm) << cells;
       EXPECT_NEAR(p.at_4mm, finest.at_4mm, 0.02 * finest.at_4mm) << cells;
-      EXPECT_NEAR(p.depth, finest.depth, 0.03 * finest.depth) << cells;
+      EXPECT_NEAR(p.depth, finest.depth, 0.01 * finest.depth) << cells;
     }
   }
 }
