@@ -151,7 +151,7 @@ std::vector<Figure> paper_figures(const fs::path& out, const ReproduceOptions& o
   if (!options.quick) {
     make_folder(out / "bovine_liver");
     write_whole(out / "bovine_liver" / "bovine_liver_measured.csv", scene_file("needle/bovine_liver_measured.csv"));
-    figures.push_back(figure(out, "bovine_liver", "needle/bovine_liver.toml", bovine_extras));
+    figures.push_back(figure(out, "bovine_liver", "needle/bovine_liver.toml", bovine_extras, {}, {"insertion"}));
     figures.back().scene.title = "Beside figures 5 and 6: a needle into bovine liver, measured";
   }
   return figures;
