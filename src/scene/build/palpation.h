@@ -14,7 +14,8 @@ namespace glisson::scene {
 /// Distance that a shape moves along a direction until it meets the surface of the body at rest; none where it misses it.
 /// The surface is sampled at a tenth of each triangle's edges, so a round tool is late by less than (edge/10)²/(8 radius).
 /// @param direction  a unit vector @return  [m]; 0 where it touches at the start; it must not start inside the body
-std::optional<double> first_touch(const Shape& shape, const Pose& start, const Vec3d& direction, const TetMesh& mesh);
+std::optional<double> first_touch(const glisson::Shape& shape, const Pose& start, const Vec3d& direction,
+                                  const TetMesh& mesh);
 
 /// Displacements across the direction of a palpation's points, row by row, to and fro [m].
 std::vector<Vec3d> palpation_points(const PalpationSpec& palpation, const Pose& start);
