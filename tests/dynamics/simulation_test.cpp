@@ -89,7 +89,7 @@ TEST(Simulation, RefusesBadSets) {
   const test::VertexSet five{5};
   EXPECT_NO_THROW(simulation.fix(five)) << "vertex 5 was in a refused set only";
   expect_refusal([&] { simulation.add_load(outside, {1, 0, 0}); }, "vertex 27");
-  expect_refusal([&] { simulation.add_load(first, {NAN, 0, 0}); }, "finite");
+  expect_refusal([&] { simulation.add_load(first, {NAN, 0, 0}); }, "force.x [N] = nan is outside the allowed range");
   expect_refusal([&] { simulation.force({7}); }, "constraint id 7 does not exist");
   expect_refusal([&] { simulation.set_state({}, {}); }, "the mesh has 27 vertices");
 }

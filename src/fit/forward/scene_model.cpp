@@ -49,17 +49,19 @@ Part measured_part(const Variant& variant, const SceneModelOptions& options) {
   return {options.force == "bottom" ? Part::What::bottom : Part::What::side, 0};
 }
 
-/// The force of the measured part at each sample; halts a run that is not wanted any more.
+/// The force of the measured part at the end of each step that has a sample, for long steps no line between them; halts a run that
+/// is not wanted any more.
 class ForceRecorder final : public RunObserver {
  public:
   ForceRecorder(const Part& part, const SceneModelOptions& options)
       : part_(part), stop_(options.stop), longest_(options.longest) {}
   void on_built(const BuiltVariant& built) override { built_ = &built; }
   void on_start(const Variant&, const Simulation&) override { times.clear(), forces.clear(); }
-  void on_sample(const Sample& s) override {
-    if (!times.empty() && !(s.time > times.back())) return;
-    times.push_back(s.time);
-    forces.push_back(force_of(s));
+  void on_sample(const Sample&) override {
+    const double time = built_->simulation.force_time();
+    if (!times.empty() && !(time > times.back())) return;
+    times.push_back(time);
+    forces.push_back(force());
     const bool late = seconds() > longest_;
     if (late || (stop_ != nullptr && stop_->load(std::memory_order_relaxed))) halt = true;
   }
@@ -69,9 +71,9 @@ class ForceRecorder final : public RunObserver {
 
  private:
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
-  double force_of(const Sample& s) const {
-    if (part_.what == Part::What::bottom) return -s.container->bottom.z;
-    if (part_.what == Part::What::side) return -s.container->side.z;
+  double force() const {
+    if (part_.what == Part::What::bottom) return -built_->container->sensor_loads().bottom.z;
+    if (part_.what == Part::What::side) return -built_->container->sensor_loads().side.z;
     const Instrument& x = *built_->instruments[part_.index];
     return -dot(x.sensor_force(), x.direction());
   }
