@@ -14,7 +14,7 @@ constexpr std::array kRanges{
     UnitRange{"deg/s", 1e9},   UnitRange{"kg", 1e9},        UnitRange{"kg/m³", 1e9, 1e-3}, UnitRange{"kg/s", 1e9},
     UnitRange{"N", 1e9},       UnitRange{"N m", 1e9},       UnitRange{"N/m", 1e12},        UnitRange{"N s/m", 1e12},
     UnitRange{"N s/m²", 1e12}, UnitRange{"Pa", 1e12, 1e-6}, UnitRange{"Pa·s", 1e12},       UnitRange{"Pa/m", 1e15},
-    UnitRange{"Pa s/m", 1e15}, UnitRange{"J/m²", 1e9},    UnitRange{"m²", 1e8},          UnitRange{"rad", 1e5}};
+    UnitRange{"Pa s/m", 1e15}, UnitRange{"J/m²", 1e9},      UnitRange{"m²", 1e8},          UnitRange{"rad", 1e5}};
 
 /// The SI unit of a key's unit and how many of the key's are one of it.
 struct InSi {

@@ -176,7 +176,8 @@ Axial<T> AxialResponse::relaxing(Axial<T> h, Axial<T> P) const {
   if (!(J > T(0.5 * kSmallestVolume))) return {T(0.0), T(0.0)};
   const T fade = J < T(kSmallestVolume) ? T(2.0 / kSmallestVolume) * J - T(1.0) : T(1.0);
   if (all) return Axial<T>{P.side / a, P.along / c} * fade;
-  if (!tissue().hyperelastic) {  // the deviator that goes with the strain: of S, or of R S's σ (spherical_part of response.cpp)
+  if (!tissue()
+           .hyperelastic) {  // the deviator that goes with the strain: of S, or of R S's σ (spherical_part of response.cpp)
     const bool green = tissue().kinematics == Kinematics::green;
     const T third = (green ? P.along / c - P.side / a : P.along - P.side) * T(1.0 / 3.0);
     return (green ? Axial<T>{-third, third + third} : Axial<T>{-third / a, (third + third) / c}) * fade;

@@ -216,8 +216,10 @@ TEST(Instruments, MistakesAreTold) {
               HasSubstr("s.toml:10:1: instrument.0.diametre_mm: unknown key; did you mean `diameter_mm`?"));
   EXPECT_THAT(complaint(changed(kNeedle, "name =", "radius_mm = 1\nname =")),
               HasSubstr("instrument.0.radius_mm: unknown key here; it belongs in [[instrument]] of kind \"punch\""));
-  EXPECT_THAT(complaint(changed(kNeedle, "velocity_mm_s = 50", "velocity_mm_s = 0")),
-              HasSubstr("s.toml:12:59: instrument.0.motion.velocity_mm_s: 0 mm/s is out of range; allowed: > 0 and ≤ 1e+09 mm/s"));
+  EXPECT_THAT(
+      complaint(changed(kNeedle, "velocity_mm_s = 50", "velocity_mm_s = 0")),
+      HasSubstr(
+          "s.toml:12:59: instrument.0.motion.velocity_mm_s: 0 mm/s is out of range; allowed: > 0 and ≤ 1e+09 mm/s"));
   EXPECT_THAT(complaint(changed(kNeedle, "\"press\"", "\"pres\"")), HasSubstr("did you mean \"press\"?"));
   EXPECT_THAT(complaint(changed(kNeedle, "name =", "direction = [0, 0, 0]\nname =")), HasSubstr("has no direction"));
   EXPECT_THAT(
