@@ -497,7 +497,7 @@ void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, co
   print_precision(v);
   const std::string shorter = automatic && explicit_steps && !heavy ? shortens_step(v) : std::string{};
   const std::string more =
-      heavy ? " at the step asked for, more where that mass has an effect (the shipped scenes: up to twice as many)"
+      heavy ? " at the step asked for, more where that mass has an effect (the shipped scenes: up to 2.1 times as many)"
       : shorter.empty()
           ? shorter
           : fmt::format(" at the step at rest, more as {} (the shipped scenes: up to 3.8 times)", shorter);
