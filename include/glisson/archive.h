@@ -39,7 +39,11 @@ class Archive {
   explicit Archive(std::string bytes) : bytes_(std::move(bytes)), reads_(true) {}
 
   bool reads() const { return reads_; }
+  /// Whether it is for a copy in memory, of this simulation alone: instruments and factors are copied beside it.
+  bool in_memory() const { return in_memory_; }
+  void set_in_memory() { in_memory_ = true; }
   const std::string& bytes() const { return bytes_; }
+  std::string take_bytes() { return std::move(bytes_); }
   std::size_t left() const { return bytes_.size() - at_; }
 
   /// Writes the parts, or reads them. @throws std::runtime_error if the bytes do not fit them
@@ -200,7 +204,7 @@ class Archive {
 
   std::string bytes_;
   std::size_t at_ = 0;
-  bool reads_ = false;
+  bool reads_ = false, in_memory_ = false;
 };
 
 /// The bytes that an object writes.

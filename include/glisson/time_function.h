@@ -44,8 +44,8 @@ class TimeFunction : public std::function<V(double)> {
   TimeFunction(std::nullptr_t) {}
   template <class F>
   requires(!std::is_base_of_v<TimeFunction, std::decay_t<F>> && std::is_constructible_v<Function, F>)
-      TimeFunction(F&& f, CornerTimes its_corners = {})
-      : Function(std::forward<F>(f)), corners(std::move(its_corners)) {}
+      TimeFunction(F f, CornerTimes its_corners = {})
+      : Function(std::move(f)), corners(std::move(its_corners)) {}
 
   CornerTimes corners;
 };

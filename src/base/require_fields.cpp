@@ -13,6 +13,13 @@ void refuse(const std::string& where, std::string name, const std::string& what)
   throw std::invalid_argument(where + ": " + name + (name.empty() ? "" : ": ") + what);
 }
 
+void refuse_enumerator(const std::string& where, const std::string& name, long long number,
+                       const std::vector<std::string_view>& words) {
+  std::string all;
+  for (const std::string_view word : words) all += (all.empty() ? "" : ", ") + std::string(word);
+  throw std::invalid_argument(where + ": " + name + " = " + std::to_string(number) + " is none of its values: " + all);
+}
+
 void require_number(const std::string& where, const std::string& name, const FieldText& field, double value) {
   Range range = allowed(field);
   range.min *= field.scale(), range.max *= field.scale();

@@ -7,18 +7,23 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <variant>
 #include <vector>
 
 #include "glisson/field.h"
 #include "glisson/math.h"
+#include "glisson/words.h"
 
 namespace glisson::detail {
 
 [[noreturn]] void refuse(const std::string& where, std::string name, const std::string& what);
 /// @param value  in SI
 void require_number(const std::string& where, const std::string& name, const FieldText& field, double value);
+/// @param number  that is none of the enumerators with these words
+[[noreturn]] void refuse_enumerator(const std::string& where, const std::string& name, long long number,
+                                    const std::vector<std::string_view>& words);
 void require_vector(const std::string& where, const std::string& name, const FieldText& field, const Vec3d& value);
 
 /// Walks through the members, and those of members that are described.
@@ -36,7 +41,13 @@ struct Requirement {
 
   template <class T>
   void value(const std::string& name, const FieldText& field, const T& x) const {
-    if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
+    if constexpr (HasWords<T>) {
+      if (word_of(x).empty()) {
+        std::vector<std::string_view> words;
+        for (const Word<T>& w : kWords<T>) words.push_back(w.word);
+        refuse_enumerator(where, name, static_cast<long long>(x), words);
+      }
+    } else if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
       require_number(where, name, field, static_cast<double>(x));
     } else if constexpr (requires { T::kName; }) {
       all_of(name + " (" + std::string(T::kName) + ").", x);

@@ -24,6 +24,15 @@ std::string Interaction::refuses_long_steps() const {
   return "acts in short steps; take integrator = " + supporting_integrators();
 }
 
+std::shared_ptr<const void> Interaction::save_state() const {
+  return std::make_shared<const std::string>(archived(const_cast<Interaction&>(*this)));  // writing changes nothing
+}
+
+void Interaction::load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) {
+  if (other_body != nullptr) body_changed(*other_body, {});
+  restore(*this, *std::static_pointer_cast<const std::string>(state));
+}
+
 std::span<const std::uint32_t> Interactions::newcomers(double time, double h, std::size_t vertex_count) {
   newcomers_.clear();
   left_ = rest_changed_ = false;
@@ -42,6 +51,10 @@ void Interactions::take_rests(std::size_t interaction) {
   rests_[interaction].assign(rests->begin(), rests->end());
   sort_out(rests_[interaction]);
   rest_changed_ = true;
+}
+
+void Interactions::forget_named() {
+  for (std::vector<std::uint32_t>& mine : named_) mine.clear();
 }
 
 void Interactions::ask_rests() {
@@ -148,13 +161,18 @@ void Interactions::clear_impulses() {
   if (step_.interface_book != nullptr) book_.begin(step_.vertices.size());
 }
 
-void Interactions::restore(std::span<const std::string> archives) {
-  for (std::size_t k = 0; k < archives.size(); ++k) restore(k, archives[k]);
+Interactions::Saved Interactions::save() const {
+  Saved saved;
+  for (const std::shared_ptr<Interaction>& x : all_) saved.push_back(x->save_state());
+  return saved;
 }
 
-void Interactions::restore(std::size_t interaction, const std::string& archive) {
-  Archive ar(archive);
-  all_[interaction]->archive(ar);
+void Interactions::load(const Saved& saved, const BodyView* other_body) {
+  for (std::size_t k = 0; k < all_.size(); ++k) all_[k]->load_state(saved[k], other_body);
+}
+
+void Interactions::load(std::size_t interaction, const std::shared_ptr<const void>& saved) {
+  all_[interaction]->load_state(saved, nullptr);
 }
 
 /// The vectors that a step looks at stay where they are.
@@ -203,7 +221,9 @@ void Interactions::archive(Archive& ar) {
   auto count = static_cast<std::uint32_t>(all_.size());
   ar(count);
   ar.check(count == all_.size());
-  for (const std::shared_ptr<Interaction>& x : all_) x->archive(ar);
+  if (!ar.in_memory()) {
+    for (const std::shared_ptr<Interaction>& x : all_) x->archive(ar);
+  }
   for (auto* lists : {&named_, &rests_}) {
     for (std::vector<std::uint32_t>& mine : *lists) {
       ar.all_below(mine, place_of_.size());

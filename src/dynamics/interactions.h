@@ -37,6 +37,8 @@ class Interactions {
   using Rests = std::vector<std::vector<std::uint32_t>>;
   const Rests& rests() const { return rests_; }
   void set_rests(const Rests& rests) { rests_ = rests; }
+  /// None has named any; archive() comes next.
+  void forget_named();
   /// Asks what they hold still before the first step.
   void ask_rests();
   /// New vertices, numbered on from `first_new`, are named by those that named the vertices they are copies of.
@@ -62,9 +64,12 @@ class Interactions {
   /// What impulses held in this step.
   void tell_held(HeldRows& held) const;
   void clear_impulses();
-  /// Takes them back to where their archives were written.
-  void restore(std::span<const std::string> archives);
-  void restore(std::size_t interaction, const std::string& archive);
+  /// What each has of its own (Interaction::save_state), and takes them back there.
+  using Saved = std::vector<std::shared_ptr<const void>>;
+  Saved save() const;
+  /// @param other_body  as Interaction::load_state
+  void load(const Saved& saved, const BodyView* other_body = nullptr);
+  void load(std::size_t interaction, const std::shared_ptr<const void>& saved);
   /// What those held still stand against, for moved().
   void set_resting(std::span<const RestingVertex> resting) { step_.resting = resting; }
   /// Whether some say so of the step, with its end among the active vertices.

@@ -12,6 +12,7 @@
 #include "dynamics/contact_fields.h"
 #include "dynamics/schemes/changer.h"
 #include "dynamics/schemes/make_scheme.h"
+#include "dynamics/simulation_impl.h"
 #include "dynamics/simulation_parts.h"
 #include "dynamics/state/checkpoint.h"
 #include "dynamics/step/mass_scaling.h"
@@ -72,28 +73,6 @@ std::uint32_t kind_of(const SimulationOptions& o) {
 
 }  // namespace
 
-struct Simulation::Impl {
-  TetMesh mesh;
-  std::shared_ptr<Scheme> scheme;  ///< driven sets read it while it lives
-  std::uint32_t kind;              ///< integrator, time scheme and precision
-  std::uint64_t fingerprint;       ///< of mesh and tissues at the start
-  std::vector<char> removed{};     ///< per tet; empty: none
-
-  /// Block of a region. @throws std::invalid_argument where it has none
-  std::size_t block_of(int region) const;
-  BodyView view() const { return {mesh, removed, scheme->body().masses, scheme->displacement()}; }
-  std::uint64_t told = 0;  ///< changes that interactions have been told of, or would have been
-
-  void tell_change(std::span<const std::uint32_t> origins) {
-    ++told;
-    if (!scheme->interactions().empty()) scheme->tell_change(view(), origins);
-  }
-  SplitReport split_faces(std::span<const Triangle> faces, std::span<const VertexMove> moves);
-  void add_copies(std::span<const std::uint32_t> origins);
-  std::span<const std::uint32_t> follow_body();
-  void archive(Archive& ar);
-};
-
 /// Lets the last vertices of the mesh be copies of these.
 void Simulation::Impl::add_copies(std::span<const std::uint32_t> origins) {
   for (const std::uint32_t origin : origins) {
@@ -103,44 +82,6 @@ void Simulation::Impl::add_copies(std::span<const std::uint32_t> origins) {
       if (std::binary_search(set.begin(), set.end(), origin)) set.push_back(copy);
     }
   }
-}
-
-/// Takes over a body that was read. @return of which vertices the last ones are copies
-std::span<const std::uint32_t> Simulation::Impl::follow_body() {
-  const Body& body = scheme->body();
-  const std::vector<std::uint32_t>& copies = scheme->state().copies;
-  const std::size_t known = mesh.vertices.size() - (body.vertex_count - copies.size());
-  const std::span<const std::uint32_t> origins = std::span(copies).subspan(known);
-  add_copies(origins);
-  mesh.vertices = body.rest_positions;
-  for (std::size_t e = 0; e < body.elements.size(); ++e) {
-    mesh.tets[body.mesh_tet[e]] = body.elements[e];
-    if (body.rest[e].volume != 0.0) continue;
-    removed.resize(mesh.tets.size(), 0);
-    removed[body.mesh_tet[e]] = 1;
-  }
-  return origins;
-}
-
-void Simulation::Impl::archive(Archive& ar) {
-  std::uint32_t its_kind = kind;
-  std::uint64_t its_fingerprint = fingerprint;
-  ar(its_kind, its_fingerprint);
-  if (its_kind != kind) {
-    throw std::runtime_error("checkpoint: it was written with another integrator, time scheme or precision");
-  }
-  if (its_fingerprint != fingerprint) {
-    throw std::runtime_error("checkpoint: it was written with another mesh or other tissues");
-  }
-  std::uint64_t to_tell = told;
-  ar(to_tell);
-  scheme->archive_body(ar);
-  if (ar.reads()) {
-    const std::span<const std::uint32_t> origins = follow_body();
-    if (to_tell != told) tell_change(origins);
-    told = to_tell;
-  }
-  scheme->archive_motion(ar);
 }
 
 std::size_t Simulation::Impl::block_of(int region) const {
@@ -168,8 +109,8 @@ Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const Simula
 }
 
 Scheme& SimulationParts::scheme(Inside& inside) { return *inside.scheme; }
-const Scheme& SimulationParts::scheme(const Simulation& simulation) { return *simulation.impl_->scheme; }
-std::weak_ptr<const Scheme> SimulationParts::weak_scheme(Simulation& simulation) { return simulation.impl_->scheme; }
+const Scheme& SimulationParts::scheme(const Simulation& simulation) { return *simulation.inside().scheme; }
+std::weak_ptr<const Scheme> SimulationParts::weak_scheme(Simulation& simulation) { return simulation.inside().scheme; }
 const TetMesh& SimulationParts::mesh(const Inside& inside) { return inside.mesh; }
 SplitReport SimulationParts::split_faces(Inside& inside, std::span<const Triangle> faces,
                                          std::span<const VertexMove> moves) {
@@ -180,11 +121,37 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
-ConstraintId Simulation::fix(std::span<const std::uint32_t> vertices, Axes axes) { return drive(vertices, {}, axes); }
-ConstraintId Simulation::fix(std::string_view set, Axes axes) { return drive(set, {}, axes); }
+Simulation::Impl& Simulation::inside() const {
+  if (impl_ != nullptr) return *impl_;
+  throw std::logic_error("simulation: it was moved from; it can be assigned to or destroyed, and no more");
+}
+
+Simulation::Impl::Guard::Guard(Impl& inside, const char* name, Busy most) : inside_(inside), before_(inside.busy) {
+  if (before_ > most) {
+    const bool between = before_ == Busy::between_steps;
+    throw std::logic_error(std::string(name) + ": it was called from " +
+                           (between ? "Interaction::between_steps, which may change the body but not this"
+                                    : "inside a step or a change, by a motion, load, driver or interaction") +
+                           "; call it after the step, or between_steps() where the body is to change");
+  }
+  inside.busy = Busy::yes;
+}
+
+/// @param name  of the member that was called
+ConstraintId Simulation::Impl::add(const char* name, Constraint constraint) {
+  const Guard guard(*this, name, Busy::between_steps);
+  begin_setup();
+  return scheme->add_constraint(std::move(constraint));
+}
+
+ConstraintId Simulation::fix(std::span<const std::uint32_t> vertices, Axes axes) {
+  return inside().add("fix", {{vertices.begin(), vertices.end()}, axes, {}, 0.0, {}});
+}
+ConstraintId Simulation::fix(std::string_view set, Axes axes) { return fix(mesh().vertex_set(std::string(set)), axes); }
 
 ConstraintId Simulation::drive(std::span<const std::uint32_t> vertices, Motion motion, Axes axes, double from) {
-  return impl_->scheme->add_constraint({{vertices.begin(), vertices.end()}, axes, std::move(motion), from, {}});
+  if (!motion) throw std::invalid_argument("drive: no motion was given; fix() holds vertices where they are");
+  return inside().add("drive", {{vertices.begin(), vertices.end()}, axes, std::move(motion), from, {}});
 }
 
 ConstraintId Simulation::drive(std::string_view set, Motion motion, Axes axes, double from) {
@@ -194,7 +161,7 @@ ConstraintId Simulation::drive(std::string_view set, Motion motion, Axes axes, d
 ConstraintId Simulation::drive_rigidly(std::span<const std::uint32_t> vertices, PoseMotion motion, Axes axes,
                                        double from) {
   if (!motion) throw std::invalid_argument("drive_rigidly: no motion was given; fix() holds vertices where they are");
-  return impl_->scheme->add_constraint({{vertices.begin(), vertices.end()}, axes, {}, from, std::move(motion)});
+  return inside().add("drive_rigidly", {{vertices.begin(), vertices.end()}, axes, {}, from, std::move(motion)});
 }
 
 ConstraintId Simulation::drive_rigidly(std::string_view set, PoseMotion motion, Axes axes, double from) {
@@ -206,12 +173,14 @@ void Simulation::add_load(std::string_view set, Vec3d force, TimeFunction<double
 }
 
 void Simulation::add_load(std::span<const std::uint32_t> vertices, Vec3d force, TimeFunction<double> scale) {
-  impl_->scheme->add_load(vertices, {.force = force}, std::move(scale));
+  add_surface_load(vertices, {.force = force}, std::move(scale));
 }
 
 void Simulation::add_surface_load(std::span<const std::uint32_t> vertices, const SurfaceLoad& load,
                                   TimeFunction<double> scale) {
-  impl_->scheme->add_load(vertices, load, std::move(scale));
+  const Impl::Guard guard(inside(), "add_load", Impl::Busy::between_steps);
+  inside().begin_setup();
+  inside().scheme->add_load(vertices, load, std::move(scale));
 }
 
 void Simulation::add_surface_load(std::string_view set, const SurfaceLoad& load, TimeFunction<double> scale) {
@@ -225,21 +194,31 @@ void Simulation::attach(std::shared_ptr<Interaction> interaction) {
                                 " acts on a simulation already, and on no other one after it: make a new one of the "
                                 "same options");
   }
-  if (interaction->acts_in_steps()) impl_->scheme->attach(interaction, impl_->view());
+  Impl& me = inside();
+  const Impl::Guard guard(me, "attach", Impl::Busy::between_steps);
+  if (interaction->acts_in_steps()) me.scheme->attach(interaction, me.view());
+  me.busy = Impl::Busy::between_steps;
   interaction->between_steps(*this);
   interaction->is_attached_ = true;
 }
 
 RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) {
-  RemovalReport report = Changer(*impl_->scheme).remove(tets);
-  impl_->removed.resize(impl_->mesh.tets.size(), 0);
-  for (const std::uint32_t t : tets) impl_->removed[t] = 1;
-  impl_->tell_change({});
+  Impl& me = inside();
+  const Impl::Guard guard(me, "remove_tets", Impl::Busy::between_steps);
+  me.keep_version();
+  RemovalReport report = Changer(*me.scheme).remove(tets);
+  me.begin_version();
+  me.removed.resize(me.mesh.tets.size(), 0);
+  for (const std::uint32_t t : tets) me.removed[t] = 1;
+  me.tell_change({});
   return report;
 }
 
 SplitReport Simulation::Impl::split_faces(std::span<const Triangle> faces, std::span<const VertexMove> moves) {
+  const Guard guard(*this, "split_faces", Busy::between_steps);
+  keep_version();
   auto [report, changed] = Changer(*scheme).split(faces, moves);
+  begin_version();
   const Body& body = scheme->body();
   for (const VertexMove& m : moves) mesh.vertices[m.vertex] = m.rest;
   add_copies(report.origins);
@@ -249,107 +228,127 @@ SplitReport Simulation::Impl::split_faces(std::span<const Triangle> faces, std::
 }
 
 SplitReport Simulation::split_faces(std::span<const Triangle> faces, std::span<const VertexMove> moves) {
-  return impl_->split_faces(faces, moves);
+  return inside().split_faces(faces, moves);
 }
 
 void Simulation::set_tissue(int region, const Tissue& tissue) { set_tissues({{region, tissue}}); }
 
 void Simulation::set_tissues(const std::map<int, Tissue>& tissues) {
+  Impl& me = inside();
+  const Impl::Guard guard(me, "set_tissues", Impl::Busy::between_steps);
   BlockTissues others;
   for (const auto& [region, tissue] : tissues) {
-    const std::size_t b = impl_->block_of(region);
-    if (tissue == impl_->scheme->body().blocks[b].tissue) continue;
+    const std::size_t b = me.block_of(region);
+    if (tissue == me.scheme->body().blocks[b].tissue) continue;
     others.emplace_back(b, tissue);
   }
   if (others.empty()) return;
-  const bool masses = Changer(*impl_->scheme).set_tissues(others);
-  if (masses) impl_->tell_change({});
+  me.keep_version();
+  const bool masses = Changer(*me.scheme).set_tissues(others);
+  me.begin_version();
+  if (masses) me.tell_change({});
 }
 
 const Tissue& Simulation::tissue(int region) const {
-  return impl_->scheme->body().blocks[impl_->block_of(region)].tissue;
+  return inside().scheme->body().blocks[inside().block_of(region)].tissue;
 }
 
 bool Simulation::is_removed(std::uint32_t tet) const {
-  const std::size_t tets = impl_->mesh.tets.size();
-  if (tet < tets) return impl_->scheme->state().is_removed(tet);
+  const std::size_t tets = inside().mesh.tets.size();
+  if (tet < tets) return inside().scheme->state().is_removed(tet);
   throw std::invalid_argument("is_removed: tet " + std::to_string(tet) + " is outside the mesh, 0 to " +
                               std::to_string(tets - 1));
 }
 
 TetMesh Simulation::present_mesh() const {
-  TetMesh present = impl_->mesh;
+  TetMesh present = inside().mesh;
   present.tets.clear();
   present.regions.clear();
   present.fibres.clear();
-  for (std::uint32_t t = 0; t < impl_->mesh.tets.size(); ++t) {
+  for (std::uint32_t t = 0; t < inside().mesh.tets.size(); ++t) {
     if (is_removed(t)) continue;
-    present.tets.push_back(impl_->mesh.tets[t]);
-    if (!impl_->mesh.regions.empty()) present.regions.push_back(impl_->mesh.regions[t]);
-    if (!impl_->mesh.fibres.empty()) present.fibres.push_back(Vec3d(impl_->mesh.fibres[t]));
+    present.tets.push_back(inside().mesh.tets[t]);
+    if (!inside().mesh.regions.empty()) present.regions.push_back(inside().mesh.regions[t]);
+    if (!inside().mesh.fibres.empty()) present.fibres.push_back(Vec3d(inside().mesh.fibres[t]));
   }
   return present;
 }
 
 StepResult Simulation::step() {
-  const StepResult result = impl_->scheme->step();
-  for (std::size_t i = 0; result.made() && i < impl_->scheme->interactions().size(); ++i) {
-    impl_->scheme->interactions()[i]->between_steps(*this);
+  Impl& me = inside();
+  const Impl::Guard guard(me, "step");
+  if (me.scheme->state().steps == 0) me.start = me.save();
+  const StepResult result = me.scheme->step();
+  me.busy = Impl::Busy::between_steps;
+  for (std::size_t i = 0; result.made() && i < me.scheme->interactions().size(); ++i) {
+    me.scheme->interactions()[i]->between_steps(*this);
   }
   return result;
 }
 
 StepResult Simulation::advance_to(double time) {
+  if (!std::isfinite(time)) {
+    throw std::invalid_argument("advance_to: time [s] = " + detail::show(time) +
+                                " is not finite; give the time to stop at, and loop over step() to run without end");
+  }
   set_step_end(time);
   StepResult last;
   while (last.made() && this->time() + 0.5 * step_size() < time) last = step();
   return last;
 }
 
-double Simulation::time() const { return impl_->scheme->state().time; }
-double Simulation::step_size() const { return impl_->scheme->step_size(); }
-double Simulation::next_corner(double after) const { return impl_->scheme->next_corner(after); }
-void Simulation::set_step_end(double time) { impl_->scheme->set_step_end(time); }
-double Simulation::stable_step() const { return impl_->scheme->stable_step(); }
-std::uint64_t Simulation::steps() const { return impl_->scheme->state().steps; }
-const TetMesh& Simulation::mesh() const { return impl_->mesh; }
-std::span<const double> Simulation::masses() const { return impl_->scheme->body().masses; }
-std::span<const Vec3d> Simulation::displacement() const { return impl_->scheme->displacement(); }
-std::span<const Vec3d> Simulation::velocity() const { return impl_->scheme->velocity(); }
+double Simulation::time() const { return inside().scheme->state().time; }
+double Simulation::step_size() const { return inside().scheme->step_size(); }
+double Simulation::next_corner(double after) const { return inside().scheme->next_corner(after); }
+void Simulation::set_step_end(double time) {
+  const Impl::Guard guard(inside(), "set_step_end", Impl::Busy::between_steps);
+  inside().scheme->set_step_end(time);
+}
+void Simulation::set_interrupt(std::function<bool(const StepProgress&)> asks) {
+  const Impl::Guard guard(inside(), "set_interrupt", Impl::Busy::between_steps);
+  inside().scheme->set_interrupt(std::move(asks));
+}
+double Simulation::stable_step() const { return inside().scheme->stable_step(); }
+std::uint64_t Simulation::steps() const { return inside().scheme->state().steps; }
+const TetMesh& Simulation::mesh() const { return inside().mesh; }
+std::span<const double> Simulation::masses() const { return inside().scheme->body().masses; }
+std::span<const Vec3d> Simulation::displacement() const { return inside().scheme->displacement(); }
+std::span<const Vec3d> Simulation::velocity() const { return inside().scheme->velocity(); }
 
 std::vector<Vec3d> Simulation::positions() const {
-  std::vector<Vec3d> x = impl_->mesh.vertices;
+  std::vector<Vec3d> x = inside().mesh.vertices;
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += displacement()[i];
   return x;
 }
 
 void Simulation::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
-  impl_->scheme->set_state(displacement, velocity);
+  const Impl::Guard guard(inside(), "set_state");
+  inside().scheme->set_state(displacement, velocity);
 }
 
-ForceParts Simulation::force(ConstraintId constraint) const { return impl_->scheme->force(constraint); }
+ForceParts Simulation::force(ConstraintId constraint) const { return inside().scheme->force(constraint); }
 
 Vec3d Simulation::torque(ConstraintId constraint, const Vec3d& about) const {
-  return impl_->scheme->torque(constraint, about);
+  return inside().scheme->torque(constraint, about);
 }
 
-const MassScaling& Simulation::mass_scaling() const { return impl_->scheme->state().mass_scaling; }
+const MassScaling& Simulation::mass_scaling() const { return inside().scheme->state().mass_scaling; }
 
 std::vector<LimitingTet> Simulation::limiting_tets(std::size_t most) const {
-  const bool counts = impl_->scheme->capabilities().viscosity_limits_step;
-  return glisson::limiting_tets(impl_->scheme->body(), most, counts ? 1.0 : 0.0);
+  const bool counts = inside().scheme->capabilities().viscosity_limits_step;
+  return glisson::limiting_tets(inside().scheme->body(), most, counts ? 1.0 : 0.0);
 }
 
-double Simulation::force_time() const { return impl_->scheme->force_time(); }
+double Simulation::force_time() const { return inside().scheme->force_time(); }
 
-double Simulation::linear_share() const { return impl_->scheme->linear_share(); }
+double Simulation::linear_share() const { return inside().scheme->linear_share(); }
 
-const EngineInfo& Simulation::engine_info() const { return impl_->scheme->info(); }
+const EngineInfo& Simulation::engine_info() const { return inside().scheme->info(); }
 
 Energies Simulation::energies() const {
-  Energies energies = impl_->scheme->energies();
-  if (!impl_->scheme->state().options.track_energies) return energies;
-  for (const auto& x : impl_->scheme->interactions()) {
+  Energies energies = inside().scheme->energies();
+  if (!inside().scheme->state().options.track_energies) return energies;
+  for (const auto& x : inside().scheme->interactions()) {
     energies.elastic -= x->released_energy();
     energies.fracture += x->released_energy();
   }
@@ -357,7 +356,7 @@ Energies Simulation::energies() const {
 }
 
 std::optional<double> Simulation::stored_energy() const {
-  const Scheme& scheme = *impl_->scheme;
+  const Scheme& scheme = *inside().scheme;
   const double ahead = time() - force_time();
   std::vector<Vec3d> u(displacement().begin(), displacement().end());
   for (std::size_t i = 0; i < u.size(); ++i) u[i] -= velocity()[i] * ahead;
@@ -379,28 +378,16 @@ std::optional<double> Simulation::energy_drift() const {
 }
 
 TetFields Simulation::tet_fields() const {
-  const Scheme& scheme = *impl_->scheme;
+  const Scheme& scheme = *inside().scheme;
   std::vector<BranchMemory> memory;
   for (std::size_t b = 0; b < scheme.body().blocks.size(); ++b) memory.push_back(scheme.branch_memory(b));
   return glisson::tet_fields(scheme.body(), displacement(), velocity(), memory);
 }
 
 ContactFields Simulation::contact_fields() const {
-  const auto interactions = impl_->scheme->interactions();
+  const auto interactions = inside().scheme->interactions();
   if (interactions.empty()) return {};
   return glisson::contact_fields(present_mesh(), positions(), interactions);
-}
-
-void Simulation::save(std::ostream& out) const {
-  Archive contents;
-  impl_->archive(contents);
-  write_checkpoint(contents, out);
-}
-
-void Simulation::load(std::istream& in) {
-  Archive contents = read_checkpoint(in);
-  impl_->archive(contents);
-  contents.check(contents.left() == 0);
 }
 
 std::uint64_t Simulation::state_hash() const { return hash_numbers(velocity(), hash_numbers(displacement())); }

@@ -8,7 +8,7 @@ namespace glisson {
 
 struct SimulationParts {
   using Inside = Simulation::Impl;  ///< stays where it is while the Simulation is moved
-  static Inside& inside(Simulation& simulation) { return *simulation.impl_; }
+  static Inside& inside(Simulation& simulation) { return simulation.inside(); }
   static Scheme& scheme(Inside& inside);
   static Scheme& scheme(Simulation& simulation) { return scheme(inside(simulation)); }
   static const Scheme& scheme(const Simulation& simulation);

@@ -62,6 +62,8 @@ class BodyChanger {
   bool is_removed(std::uint32_t mesh_tet) const { return quarter_masses_[element_of_[mesh_tet]] == 0.0; }
   /// Split faces that are closed still, all their vertices being at the rim of the cut.
   std::size_t closed_faces() const { return closed_.size(); }
+  const std::vector<Triangle>& closed() const { return closed_; }
+  void set_closed(std::vector<Triangle> faces) { closed_ = std::move(faces); }
 
   /// Elements of tets of the mesh, ascending, without those that are gone already.
   /// @throws std::invalid_argument for a number that is no tet's

@@ -105,8 +105,17 @@ void ElementBody::archive_past(Archive& ar) {
 
 void ElementBody::archive_layout(Archive& ar, std::span<const double> nodal_damping) {
   if (!ar.reads()) return;
+  const std::vector<ActiveVertex> active = active_;
+  load_layout({}, nodal_damping);
+  active_ = active;
+  for (const ActiveVertex& w : active_) is_active_[w.vertex] = 1;
+}
+
+/// It lies as the Body does.
+void ElementBody::load_layout(const std::shared_ptr<const void>&, std::span<const double> nodal_damping) {
   for (auto* field : {&u_, &v_, &elastic_, &viscous_}) field->resize(body_.vertex_count);
-  is_active_.resize(body_.vertex_count, 0);
+  active_.clear();
+  is_active_.assign(body_.vertex_count, 0);
   rest({});
   damping_.assign(nodal_damping.begin(), nodal_damping.end());
   make_operator();

@@ -24,6 +24,8 @@ class ElementBody final : public MovingBody {
   void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const override;
   void archive_past(Archive& ar) override;
   void archive_layout(Archive& ar, std::span<const double> nodal_damping) override;
+  std::shared_ptr<const void> save_layout() const override { return {}; }
+  void load_layout(const std::shared_ptr<const void>& layout, std::span<const double> nodal_damping) override;
   Vec3d displacement_of(std::uint32_t vertex) const override { return u_[vertex]; }
   Vec3d velocity_of(std::uint32_t vertex) const override { return v_[vertex]; }
   void read_velocities(std::span<const std::uint32_t> vertices, std::span<Vec3d> velocities) const override {

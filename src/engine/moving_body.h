@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -66,6 +67,10 @@ class MovingBody {
   /// Body has changed; archive_state comes next. @throws std::runtime_error with the body as it was
   /// @param nodal_damping  γ_i of every vertex [kg/s]
   virtual void archive_layout(Archive& ar, std::span<const double> nodal_damping) = 0;
+  /// A copy of how it lies in memory, and goes back to one, for which its Body is already: all vertices are free then, none at
+  /// rest, and archive_state comes next.
+  virtual std::shared_ptr<const void> save_layout() const = 0;
+  virtual void load_layout(const std::shared_ptr<const void>& layout, std::span<const double> nodal_damping) = 0;
   /// Displacement and velocity, and the past.
   void archive_state(Archive& ar, std::size_t vertices);
 

@@ -221,6 +221,29 @@ void SubmeshBody::archive_layout(Archive& ar, std::span<const double> nodal_damp
   follow_layout(nodal_damping);
 }
 
+namespace {
+
+struct SavedLayout {
+  Submeshes submeshes;
+  bool as_built;
+};
+
+}  // namespace
+
+std::shared_ptr<const void> SubmeshBody::save_layout() const {
+  return std::make_shared<const SavedLayout>(SavedLayout{submeshes_, as_built_});
+}
+
+void SubmeshBody::load_layout(const std::shared_ptr<const void>& layout, std::span<const double> nodal_damping) {
+  const auto& saved = *std::static_pointer_cast<const SavedLayout>(layout);
+  active_.keep({});
+  active_.rest({});
+  submeshes_ = saved.submeshes;
+  as_built_ = saved.as_built;
+  changer_.forget();
+  follow_layout(nodal_damping);
+}
+
 /// Steps made, when the branches were kept last, where to look for inverted tets, and the branches in the order of elements.
 void SubmeshBody::archive_past(Archive& ar) {
   ar(steps_);

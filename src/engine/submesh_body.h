@@ -48,6 +48,8 @@ class SubmeshBody final : public MovingBody {
   void read_state(std::span<Vec3d> displacement, std::span<Vec3d> velocity) const override;
   void archive_past(Archive& ar) override;
   void archive_layout(Archive& ar, std::span<const double> nodal_damping) override;
+  std::shared_ptr<const void> save_layout() const override;
+  void load_layout(const std::shared_ptr<const void>& layout, std::span<const double> nodal_damping) override;
   Vec3d displacement_of(std::uint32_t vertex) const override { return records_.displacement(record_of(vertex)); }
   Vec3d velocity_of(std::uint32_t vertex) const override { return records_.velocity(record_of(vertex)); }
   void read_velocities(std::span<const std::uint32_t> vertices, std::span<Vec3d> velocities) const override;

@@ -40,29 +40,49 @@ Pose plate(const Pose& vessel, const Vec3d& point, const Vec3d& n) {
 
 }  // namespace
 
-struct Container::State {
+/// What a container keeps from step to step, beside what its reach has seen.
+struct ContainerKept {
   /// A vertex that is bonded, by which part of the vessel, and where in its frame.
   struct Bond {
     std::uint32_t solid = 0;
     Vec3d place;
     void archive(Archive& ar) { ar(solid, place); }
   };
+  using Place = std::pair<std::uint32_t, std::uint32_t>;  ///< vertex and solid
 
+  FoundInside found_inside;
+  bool begun = false;
+  std::map<Place, double> last_pressing;  ///< forces of the last long step, to begin the next with [N]
+  std::map<std::uint32_t, Bond> bonds;
+  std::vector<char> still;  ///< per vertex of the body: a bond at rest
+  bool still_changed = false;
+  ContainerLoads loads;
+  struct Bearing {
+    std::uint32_t vertex;
+    Vec3d force;
+    double normal;
+  };
+  std::vector<Bearing> bearing;  ///< of what is not bonded, in the last step [N]
+};
+
+struct SavedContainer {
+  ContainerKept kept;
+  std::vector<Vec3d> hold_forces;  ///< of all bonds, by vertex [N]
+  ContactReach::Seen seen;
+  double taken = 0.0;
+};
+
+struct Container::State : ContainerKept {
   ContainerOptions options;
   std::vector<Shape> shapes;
   std::vector<ContactSolid> solids;  ///< the floor first
   double height = kInfinite, size = 0.0;
   ContactReach reach;
   ContactBooks books;
-  FoundInside found_inside;
-  bool begun = false;
   bool is_long = false;  ///< acts in long steps: bonds rest from the start, and no step lets go of what it has found
   std::vector<ContactRow> rows;
-  using Place = std::pair<std::uint32_t, std::uint32_t>;  ///< vertex and solid
-  std::set<Place> has_row;                                ///< in a long step
-  std::map<Place, double> last_pressing;                  ///< forces of the last long step, to begin the next with [N]
-  std::map<Place, std::pair<double, Vec3d>> trial;        ///< of a long step: impulses of the last iteration [N s]
-  std::map<std::uint32_t, Bond> bonds;
+  std::set<Place> has_row;                          ///< in a long step
+  std::map<Place, std::pair<double, Vec3d>> trial;  ///< of a long step: impulses of the last iteration [N s]
   /// What a step needs of a bond. The vessel stands still.
   struct Hold {
     std::uint32_t vertex = 0;
@@ -72,16 +92,7 @@ struct Container::State {
   };
   std::vector<Hold> holds;   ///< of all bonds, by vertex
   std::vector<char> bonded;  ///< per vertex of the body
-  std::vector<char> still;   ///< per vertex of the body: a bond at rest
-  bool still_changed = false;
   std::vector<std::uint32_t> asked, kept, rests;
-  ContainerLoads loads;
-  struct Bearing {
-    std::uint32_t vertex;
-    Vec3d force;
-    double normal;
-  };
-  std::vector<Bearing> bearing;  ///< of what is not bonded, in the last step [N]
 
   void build();
   void add_solid(const Shape& shape, const Pose& pose);
@@ -442,6 +453,24 @@ void Container::archive(Archive& ar) {
   ar.same_size(s.still);
   for (const auto& [v, bond] : s.bonds) ar.check(v < s.reach.surface().body_vertices() && bond.solid < s.solids.size());
   if (ar.reads()) s.list_bonds();
+}
+
+std::shared_ptr<const void> Container::save_state() const {
+  const State& s = *state_;
+  std::vector<Vec3d> forces;
+  for (const State::Hold& hold : s.holds) forces.push_back(hold.force);
+  return std::make_shared<const SavedContainer>(SavedContainer{s, std::move(forces), s.reach.seen(), s.books.taken()});
+}
+
+void Container::load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) {
+  const SavedContainer& saved = *std::static_pointer_cast<const SavedContainer>(state);
+  State& s = *state_;
+  static_cast<ContainerKept&>(s) = saved.kept;
+  if (other_body != nullptr) s.reach.set_body(*other_body);
+  s.reach.set_seen(saved.seen);
+  s.books.set_taken(saved.taken);
+  s.list_bonds();
+  for (std::size_t k = 0; k < s.holds.size(); ++k) s.holds[k].force = saved.hold_forces[k];
 }
 
 }  // namespace glisson

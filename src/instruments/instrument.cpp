@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "glisson/archive.h"
@@ -12,6 +13,8 @@
 
 namespace glisson {
 namespace {
+
+constexpr double kReach = 10.0;  // of the body's diagonal: farther from it no pose makes sense
 
 /// A component of the forces along the direction.
 template <Vec3d ToolForces::*part>
@@ -117,6 +120,23 @@ Fault Pose::check() const {
   return {"are no rotation; give three perpendicular unit vectors, right-handed, as its columns", "axes"};
 }
 
+bool PoseBounds::holds(const Pose& pose) const { return pose.is_sound() && norm(pose.position - middle) <= reach; }
+
+std::string PoseBounds::fault_of(const Pose& pose) const {
+  const Vec3d& x = pose.position;
+  std::ostringstream text;
+  if (!std::isfinite(norm(x))) {
+    text << "its position (" << x.x << ", " << x.y << ", " << x.z << ") m is not finite; leave such poses out";
+  } else if (!pose.is_sound()) {
+    text << "its axes are no rotation; give three perpendicular unit vectors, right-handed, as columns";
+  } else {
+    text << "its position (" << x.x << ", " << x.y << ", " << x.z << ") m is " << norm(x - middle)
+         << " m from the middle of the body, where the allowed range is 0 to " << reach
+         << " m, ten diagonals of the body; is it in metres?";
+  }
+  return text.str();
+}
+
 Instrument::Instrument(std::string name, std::shared_ptr<ToolDriver> driver, const Vec3d& direction)
     : name_(std::move(name)), driver_(std::move(driver)), direction_(direction) {
   if (driver_ == nullptr) throw std::invalid_argument("instrument " + name_ + ": no driver was given");
@@ -152,7 +172,8 @@ void Instrument::drive(const InteractionStep& step) {
   before_ = pose_, step_ = step.h;
   const bool is_other_step = step.time != time_;
   time_ = step.time;
-  pose_ = driver_->advance(step.time, step.h, {-forces_.total(), -forces_.torque});
+  const Pose next = driver_->advance(step.time, step.h, {-forces_.total(), -forces_.torque});
+  if (accepts(next)) pose_ = next;
   if (search_ == nullptr) return;
   if (!search_->begun() || is_other_step) {
     search_->begin(before_.position, pose_.position, driver_->advance_under(step.time, step.h, {}).position);
@@ -180,7 +201,28 @@ void Instrument::set_long_steps(bool are_long) {
 
 bool Instrument::tries_again() {
   if (search_ == nullptr) return false;
-  return search_->goes_on(driver_->advance_under(time_, step_, {-forces_.total(), -forces_.torque}).position);
+  const Pose end = driver_->advance_under(time_, step_, {-forces_.total(), -forces_.torque});
+  return accepts(end) && search_->goes_on(end.position);
+}
+
+/// Counts a pose that makes no sense; the tool stays where it is then.
+bool Instrument::accepts(const Pose& pose) {
+  if (bounds_.holds(pose)) return true;
+  ++rejected_;
+  return false;
+}
+
+void Instrument::set_bounds(const BodyView& body) {
+  bounds_ = {};
+  if (body.mesh.vertices.empty()) return;
+  Vec3d low = body.mesh.vertices.front(), high = low;
+  for (const Vec3d& x : body.mesh.vertices) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], x[axis]), high[axis] = std::max(high[axis], x[axis]);
+    }
+  }
+  bounds_ = {(low + high) * 0.5, kReach * norm(high - low)};
+  driver_->set_bounds(bounds_);
 }
 
 std::string Instrument::driver_refuses_long_steps() const {
@@ -200,6 +242,33 @@ ToolVelocity Instrument::velocity_at(const Vec3d& x) const {
   if (last_step_ > 0.0) velocity.before = (x - earlier_.to_space(own)) * (1.0 / last_step_);
   if (step_ > 0.0) velocity.after = (pose_.to_space(own) - x) * (1.0 / step_);
   return velocity;
+}
+
+/// Of a driver that yields, what is learnt about the tissue goes with it.
+struct Instrument::SavedMotion {
+  InstrumentState state;
+  std::shared_ptr<const void> driver;
+  std::optional<Mat3d> slope;
+};
+
+std::shared_ptr<const Instrument::SavedMotion> Instrument::save_motion() const {
+  SavedMotion saved{*this, driver_->save_state(), {}};
+  if (search_ != nullptr) saved.slope = search_->slope();
+  return std::make_shared<const SavedMotion>(std::move(saved));
+}
+
+void Instrument::load_motion(const SavedMotion& saved) {
+  static_cast<InstrumentState&>(*this) = saved.state;
+  driver_->load_state(saved.driver);
+  if (search_ != nullptr && saved.slope) search_->set_slope(*saved.slope);
+}
+
+std::shared_ptr<const void> ToolDriver::save_state() const {
+  return std::make_shared<const std::string>(archived(const_cast<ToolDriver&>(*this)));  // writing changes nothing
+}
+
+void ToolDriver::load_state(const std::shared_ptr<const void>& state) {
+  restore(*this, *std::static_pointer_cast<const std::string>(state));
 }
 
 void archive(Archive& ar, Pose& pose) { ar(pose.position, pose.axes); }

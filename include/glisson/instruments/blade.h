@@ -71,9 +71,12 @@ class Blade final : public Instrument {
   bool overshoots(const InteractionStep& step) override;
   std::string refuses_long_steps() const override;
   void archive(Archive& ar) override;
+  std::shared_ptr<const void> save_state() const override;
+  void load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) override;
 
  private:
   struct LongPieces;
+  struct Saved;
   void cut(double time, const BladeEdge& to);
   const Tet& vertices_of(const EdgePiece& piece) const { return mesh_->tets[piece.tet]; }
   void resist(const InteractionStep& step, const EdgePiece& piece, const Vec3d& velocity, const Vec3d& along);

@@ -133,6 +133,8 @@ class Capsule final : public Interaction {
   bool add_stiffness_bound(std::vector<VertexStiffness>& all) const override;
   void state_set(std::span<const Vec3d> displacement) override;
   void archive(Archive& ar) override;
+  std::shared_ptr<const void> save_state() const override;
+  void load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) override;
 
  private:
   struct State;

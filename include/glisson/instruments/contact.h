@@ -193,6 +193,8 @@ class ContactTool final : public Instrument {
   bool add_contact(std::span<Vec3d> force, std::span<double> pressing) const override;
   Vec3d handle() const override;
   void archive(Archive& ar) override;
+  std::shared_ptr<const void> save_state() const override;
+  void load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) override;
 
  private:
   std::span<const InstrumentColumn> record_columns() const override;

@@ -104,6 +104,8 @@ class Container final : public Interaction {
   void moved(const InteractionStep& step) override;
   bool add_contact(std::span<Vec3d> force, std::span<double> pressing) const override;
   void archive(Archive& ar) override;
+  std::shared_ptr<const void> save_state() const override;
+  void load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) override;
 
  private:
   struct State;

@@ -104,6 +104,10 @@ class Cutter {
   void load(std::istream& in);
   /// The same within the checkpoint of an interaction. What is refused changes nothing.
   void archive(Archive& ar);
+  /// Copies its state in memory, to go back to after Simulation::load_state() of a state that was saved at the same time.
+  std::shared_ptr<const void> save_state() const;
+  /// Goes to a state that save_state() of this Cutter returned.
+  void load_state(const std::shared_ptr<const void>& state);
 
  private:
   struct Impl;

@@ -5,7 +5,9 @@
 //        └────── force of the tissue ────┘          (used by pushes and hands, not by recorded paths)
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -48,6 +50,17 @@ struct InstrumentEvent {
 
 void archive(Archive& ar, InstrumentEvent& event);
 
+/// Where poses of a tool make sense: about the body that it acts on.
+struct PoseBounds {
+  Vec3d middle{};  ///< of the body's box at rest [m]
+  double reach =
+      std::numeric_limits<double>::infinity();  ///< largest distance from there: ten diagonals of that box [m]
+
+  bool holds(const Pose& pose) const;
+  /// What is wrong with a pose that is not within, with its value, the allowed range and a way out; for messages.
+  std::string fault_of(const Pose& pose) const;
+};
+
 /// Moves a tool: along a path, by a push, or from another program.
 class ToolDriver {
  public:
@@ -68,8 +81,15 @@ class ToolDriver {
   /// As advance(), from where the last one began, with the force on the tool at the end of the step: asked as often as it takes to
   /// find that.
   virtual Pose advance_under(double time, double h, const Wrench& at_end) { return advance(time, h, at_end); }
+  /// Told when its tool is attached: where poses make sense.
+  virtual void set_bounds(const PoseBounds&) {}
+  /// How many poses from outside it has rejected, in whose place the last good one stayed.
+  virtual std::uint64_t rejected() const { return 0; }
   /// Writes or reads its state, as Interaction's.
   virtual void archive(Archive&) {}
+  /// As Interaction's; a driver without these two members is copied by archive().
+  virtual std::shared_ptr<const void> save_state() const;
+  virtual void load_state(const std::shared_ptr<const void>& state);
 };
 
 class EndSearch;
@@ -81,9 +101,21 @@ struct InstrumentColumn {
   double (*read)(const Instrument&);
 };
 
+/// What changes in every instrument while it acts.
+struct InstrumentState {
+ protected:
+  Pose pose_, before_;  ///< at t + h and at t
+  ToolForces forces_;
+  Pose earlier_;                         ///< a step before t
+  double step_ = 0.0, last_step_ = 0.0;  ///< h and that of the step before t; 0: there was none [s]
+  double force_depth_ = 0.0;
+  double time_ = 0.0;  ///< at which the last began [s]
+  std::vector<InstrumentEvent> events_;
+};
+
 /// A moved object that acts on the body: in contact with it, inside it, or fixed to vertices of it. Its force is the force on
 /// the tissue at Simulation::force_time(), 0 before the first step.
-class Instrument : public Interaction {
+class Instrument : public Interaction, protected InstrumentState {
  public:
   /// @param driver  not none @param direction  along which depth is measured, a unit vector
   Instrument(std::string name, std::shared_ptr<ToolDriver> driver, const Vec3d& direction);
@@ -118,6 +150,9 @@ class Instrument : public Interaction {
   /// The value of a column. @throws std::out_of_range naming it
   double read(std::string_view column) const;
   const ToolDriver& driver() const { return *driver_; }
+  /// How many poses from outside were rejected so far: not finite, no rotation, farther than ten diagonals of the body, or
+  /// faster than the driver allows. The last good pose stays in their place.
+  std::uint64_t rejected() const { return rejected_ + driver_->rejected(); }
   void set_long_steps(bool are_long) override;
   double next_corner(double after) const override { return driver_->corners().after(after); }
   /// Whether a driver that yields takes the tool elsewhere by the force found than where it was tried.
@@ -160,21 +195,23 @@ class Instrument : public Interaction {
   void add_event(double time, double depth, std::string event) { events_.push_back({time, depth, std::move(event)}); }
   /// The state that all instruments have and that of the driver; those of each kind call it first.
   void archive_motion(Archive& ar);
-
-  Pose pose_, before_;  ///< at t + h and at t
-  ToolForces forces_;
+  /// The same for save_state() and load_state().
+  struct SavedMotion;
+  std::shared_ptr<const SavedMotion> save_motion() const;
+  void load_motion(const SavedMotion& saved);
+  /// Finds where poses make sense; to be called first in attached().
+  void set_bounds(const BodyView& body);
 
  private:
+  bool accepts(const Pose& pose);
+
   std::string name_;
   std::shared_ptr<ToolDriver> driver_;
   Vec3d direction_, start_;
-  Pose earlier_;                         ///< a step before t
-  double step_ = 0.0, last_step_ = 0.0;  ///< h and that of the step before t; 0: there was none [s]
-  double force_depth_ = 0.0;
+  PoseBounds bounds_;
+  std::uint64_t rejected_ = 0;         ///< poses of the driver in steps
   bool at_end_ = false;                ///< its steps are long
-  double time_ = 0.0;                  ///< at which the last began [s]
   std::shared_ptr<EndSearch> search_;  ///< of a driver that yields, in long steps
-  std::vector<InstrumentEvent> events_;
   std::function<void(const Vec3d&, double)> on_puncture_;
 };
 

@@ -210,6 +210,8 @@ class Needle final : public Instrument {
   double tool_energy() const override;  ///< of its bending [J]
   Vec3d handle() const override;        ///< its length behind the tip, as if nothing bent it
   void archive(Archive& ar) override;
+  std::shared_ptr<const void> save_state() const override;
+  void load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) override;
 
  private:
   struct State;

@@ -146,7 +146,15 @@ struct PushMotion {
                 no_key("end", &PushMotion::end));
   }
 };
-class PushDriver final : public ToolDriver {
+/// What changes in a push while it goes on.
+struct PushState {
+ protected:
+  Vec3d travel_{}, velocity_{}, last_travel_{}, last_force_{};
+  Vec3d first_travel_{}, first_velocity_{};  ///< at the start of the step
+  double stiffness_ = 0.0;
+};
+
+class PushDriver final : public ToolDriver, PushState {
  public:
   /// @throws std::invalid_argument naming the field, its value and the allowed range
   PushDriver(const Pose& start, PushMotion motion);
@@ -158,6 +166,8 @@ class PushDriver final : public ToolDriver {
   bool yields_in_long_steps() const override { return true; }
   Pose advance_under(double time, double h, const Wrench& at_end) override;
   void archive(Archive& ar) override;
+  std::shared_ptr<const void> save_state() const override;
+  void load_state(const std::shared_ptr<const void>& state) override;
 
   Vec3d velocity() const { return velocity_; }  ///< [m/s]
 
@@ -168,9 +178,6 @@ class PushDriver final : public ToolDriver {
 
   Pose start_;
   PushMotion motion_;
-  Vec3d travel_{}, velocity_{}, last_travel_{}, last_force_{};
-  Vec3d first_travel_{}, first_velocity_{};  ///< at the start of the step
-  double stiffness_ = 0.0;
 };
 
 /// A spring between a device and the tool, and a damper that holds the tool back.
@@ -187,6 +194,8 @@ struct HandCoupling {
   double mass = 0.02;            ///< m [kg]
   double period = 0.001;         ///< T: time from one set_target to the next [s]
   double device_damping = 0.25;  ///< b: damping of the device's own bearings and motors [N s/m]
+  /// Largest speed from one target to the next, |x - x'| / T; none: any [m/s].
+  std::optional<double> most_speed{};
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -194,14 +203,23 @@ struct HandCoupling {
                 no_key("damping", &HandCoupling::damping, "N s/m", above(0)),
                 no_key("mass", &HandCoupling::mass, "kg", above(0)),
                 no_key("period", &HandCoupling::period, "s", above(0)),
-                no_key("device_damping", &HandCoupling::device_damping, "N s/m", at_least(0)));
+                no_key("device_damping", &HandCoupling::device_damping, "N s/m", at_least(0)),
+                no_key("most_speed", &HandCoupling::most_speed, "m/s", above(0)));
   }
   Fault check() const;
 };
 /// The largest k that is passive with the c, T and b of a coupling:  k = (√(c² + 4 b c) − c) / T [N/m].
 double largest_passive_stiffness(const HandCoupling& coupling);
 
-class HandDriver final : public ToolDriver {
+/// What changes in a hand while it acts.
+struct HandState {
+ protected:
+  Pose target_;
+  Vec3d position_{}, velocity_{};
+  Vec3d first_position_{}, first_velocity_{};  ///< at the start of the step
+};
+
+class HandDriver final : public ToolDriver, HandState {
  public:
   /// @throws std::invalid_argument naming the field, its value and the allowed range; for a stiffness that is not
   ///         passive
@@ -209,7 +227,11 @@ class HandDriver final : public ToolDriver {
 
   /// Sets the present pose of the device. The spring pulls the tool there; it turns with the device at once, without a
   /// torque on the hand.
-  void set_target(const Pose& target) { target_ = target; }
+  /// @throws std::invalid_argument for a pose that is not finite or no rotation, farther from the body than ten of its
+  ///         diagonals, or faster than HandCoupling::most_speed; the last good one stays then
+  void set_target(const Pose& target);
+  /// The same for a stream of poses, as from a device: a bad one is counted by rejected(). @return whether it was taken
+  bool offer_target(const Pose& target);
   /// Force that the device is to exert on the hand until the next target; read it right after set_target [N].
   Vec3d device_force() const;
   Vec3d velocity() const { return velocity_; }  ///< of the tool [m/s]
@@ -219,13 +241,19 @@ class HandDriver final : public ToolDriver {
   bool yields() const override { return true; }
   bool yields_in_long_steps() const override { return true; }
   Pose advance_under(double time, double h, const Wrench& at_end) override;
+  void set_bounds(const PoseBounds& bounds) override { bounds_ = bounds; }
+  std::uint64_t rejected() const override { return rejected_; }
   void archive(Archive& ar) override;
+  std::shared_ptr<const void> save_state() const override;
+  void load_state(const std::shared_ptr<const void>& state) override;
 
  private:
-  Pose start_, target_;
+  std::string fault_of(const Pose& target) const;
+
+  Pose start_;
   HandCoupling coupling_;
-  Vec3d position_, velocity_{};
-  Vec3d first_position_{}, first_velocity_{};  ///< at the start of the step
+  PoseBounds bounds_;
+  std::uint64_t rejected_ = 0;
 };
 
 }  // namespace glisson

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -260,6 +261,12 @@ class Interaction {
   /// its options. Reading comes after body_changed() has reported all changes that preceded the writing.
   /// @throws std::runtime_error if the data are not the state of such an interaction
   virtual void archive(Archive&) {}
+  /// Copies its state as it is in memory, for Simulation::save_state() and for steps that are undone. An interaction without
+  /// these two members is copied by archive(), after body_changed() where the body has become another one.
+  virtual std::shared_ptr<const void> save_state() const;
+  /// Goes to a state that save_state() of this object returned, also one of an earlier or later body.
+  /// @param other_body  the body of that state, where it is another one than it was just now; none: it is the same
+  virtual void load_state(const std::shared_ptr<const void>& state, const BodyView* other_body);
 
  private:
   friend class Simulation;

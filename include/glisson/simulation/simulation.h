@@ -5,7 +5,12 @@
 //
 // Motion is the paper's explicit scheme on lumped masses [Schwartz2002, eq. 3–4], or one of the other integrators
 // (docs/integrators.md). Setters and the constructor throw std::invalid_argument with the name, the value and the
-// allowed range; a step never throws and reports failure by its status.
+// allowed range; a step never throws and reports failure by its status. Members that change something throw
+// std::logic_error when they are called from inside a step, by a motion, load, driver, interaction or observer; those that
+// change the body may be called from Interaction::between_steps(). A simulation that was moved from can only be assigned to
+// or destroyed: its members throw std::logic_error.
+//
+// One thread at a time uses a simulation, for reading too: some const members fill what they return when they are first asked.
 #pragma once
 
 #include <cstdint>
@@ -28,6 +33,8 @@
 #include "glisson/simulation/interaction.h"
 #include "glisson/simulation/mass_scaling.h"
 #include "glisson/simulation/precision.h"
+#include "glisson/simulation/state.h"
+#include "glisson/simulation/static_branches.h"
 #include "glisson/simulation/surface_load.h"
 #include "glisson/simulation/tet_fields.h"
 #include "glisson/time_function.h"
@@ -65,18 +72,6 @@ inline constexpr Word<Preconditioner> kWords<Preconditioner>[] = {
     {"auto", Preconditioner::automatic, "by the size of the body"},
     {"factorised", Preconditioner::factorised, "sparse Cholesky, kept as long as it converges"},
     {"block_diagonal", Preconditioner::block_diagonal, "3 × 3 per vertex"}};
-
-/// What Maxwell branches and Kelvin–Voigt viscosity do under `quasi_static`.
-enum class StaticBranches {
-  automatic,  ///< relaxed; `glisson check` and a run say so where the tissue has any
-  relaxed,    ///< branches have relaxed at once, viscosity gives no force: the state after long times
-  follow      ///< both go by the time of motions and loads, as in slow motion: no mass, no nodal damping
-};
-template <>
-inline constexpr Word<StaticBranches> kWords<StaticBranches>[] = {
-    {"auto", StaticBranches::automatic, "relaxed; `glisson check` and the run say so where the tissue has any"},
-    {"relaxed", StaticBranches::relaxed, "they have relaxed at once, and viscosity gives no force"},
-    {"follow", StaticBranches::follow, "they relax in the time of motions and loads, and viscosity resists"}};
 
 /// Options of the integrators `implicit` and `quasi_static`.
 struct ImplicitOptions {
@@ -230,8 +225,11 @@ enum class StepStatus {
   /// a force is not finite and the run cannot continue. No vertex was moved by such a force: a finite state stays
   /// finite, but parts of the body may be one step ahead of others
   not_finite,
-  not_converged,  ///< implicit, quasi-static: no equilibrium was found with any step size; the step was not made
-  not_held        ///< quasi-static: supports and tools leave a rigid motion free; the step was not made
+  /// implicit, quasi-static: no equilibrium was found with any step size; semi-implicit: contact was not found within its
+  /// iterations; the step was not made
+  not_converged,
+  not_held,    ///< quasi-static: supports and tools leave a rigid motion free; the step was not made
+  interrupted  ///< implicit, quasi-static: Simulation::set_interrupt asked for it; the step was not made
 };
 template <>
 inline constexpr Word<StepStatus> kWords<StepStatus>[] = {{"ok", StepStatus::ok},
@@ -239,7 +237,15 @@ inline constexpr Word<StepStatus> kWords<StepStatus>[] = {{"ok", StepStatus::ok}
                                                           {"step_too_large", StepStatus::step_too_large},
                                                           {"not_finite", StepStatus::not_finite},
                                                           {"not_converged", StepStatus::not_converged},
-                                                          {"not_held", StepStatus::not_held}};
+                                                          {"not_held", StepStatus::not_held},
+                                                          {"interrupted", StepStatus::interrupted}};
+
+/// Where a long step of `implicit` or `quasi_static` is, see Simulation::set_interrupt.
+struct StepProgress {
+  double time = 0.0;  ///< at which the part of the step begins that is solved for [s]
+  double h = 0.0;     ///< length of that part [s]
+  int iteration = 0;  ///< of Newton's method in it, from 0
+};
 
 struct StepResult {
   StepStatus status = StepStatus::ok;
@@ -373,10 +379,10 @@ class Simulation {
   void add_load(std::span<const std::uint32_t> vertices, Vec3d force, TimeFunction<double> scale = {});
   void add_load(std::string_view set, Vec3d force, TimeFunction<double> scale = {});
   /// Adds force, traction, pressure, moment, springs and dashpots on a set and its faces. Removed tets take the load of their
-  /// faces with them; faces that a cut opens carry none.
+  /// faces with them; faces that a cut opens carry none. What is given for a whole set is shared by its vertices in tets.
   /// @param scale  multiplies force, traction, pressure and moment at time t (none: 1)
-  /// @throws std::invalid_argument for a value outside its range, a set that spans no face where faces are needed, or springs too
-  ///         stiff for a given explicit step
+  /// @throws std::invalid_argument for a value outside its range, a set without a vertex of a tet, one that spans no face
+  ///         where faces are needed, or springs too stiff for a given explicit step
   void add_surface_load(std::span<const std::uint32_t> vertices, const SurfaceLoad& load,
                         TimeFunction<double> scale = {});
   void add_surface_load(std::string_view set, const SurfaceLoad& load, TimeFunction<double> scale = {});
@@ -434,7 +440,11 @@ class Simulation {
   [[nodiscard]] StepResult step();
   /// Makes steps up to the one that ends nearest to `time` [s], or until one is not made; automatic steps of `implicit` and
   /// `quasi_static` end there. @return result of the last step
+  /// @throws std::invalid_argument for a time that is not finite
   [[nodiscard]] StepResult advance_to(double time);
+  /// Sets what is asked now and then within a long step, some times a second where that is possible; true ends the step, which
+  /// is not made then (StepStatus::interrupted). Other integrators' steps are short and do not ask. None: nothing is asked.
+  void set_interrupt(std::function<bool(const StepProgress&)> asks);
 
   double time() const;       ///< [s]
   double step_size() const;  ///< h of the next step [s]
@@ -484,16 +494,27 @@ class Simulation {
   double linear_share() const;
   const EngineInfo& engine_info() const;
 
+  /// Copies the present state, to go back to (state.h). What functions of the program's own hold, as motions and drivers, is
+  /// theirs.
+  /// Cost: some 0.1 µs a tet; the body is copied when it is about to change, once for all states since the last change.
+  State save_state() const;
+  /// Goes to a state, earlier or later: mesh, tissues, forces and instruments are as they were, and the run continues with the
+  /// same bytes. What has been added to the simulation since then (supports, motions, loads, instruments) is refused.
+  /// @throws std::invalid_argument for a state of another simulation, or naming what was added; nothing is changed then
+  /// Cost: as save_state(); where the body has changed in between, it is laid out again: some µs a tet.
+  void load_state(const State& state);
+  /// Goes to the state in which the first step was made, or does nothing where none was. @throws as load_state
+  void reset();
+
   /// Writes the state that a continued run needs besides the initial mesh, tissues, options, constraints and loads,
   /// including all changes since the start.
   /// @throws std::runtime_error if it cannot be written
   void save(std::ostream& out) const;
   /// Restores the state of a saved simulation; this one must have been built in the same way (mesh, tissues, options,
-  /// constraints, loads, in their order). Changes of tissue and topology are restored; where constraints or loads were
-  /// added after a split, make the same split before them here. The run continues with the same bytes.
-  /// @throws std::runtime_error for a file that is truncated, modified, of another mesh or setup, or of a body with fewer
-  ///         changes than this one has had. After a refusal time and motions may be those of the file, but mesh and body
-  ///         still belong together
+  /// constraints, loads, interactions, in their order), and may have made steps and changes since. Changes of tissue and
+  /// topology are restored; where constraints or loads were added after a split, make the same split before them here. The
+  /// run continues with the same bytes.
+  /// @throws std::runtime_error for a file that is truncated, modified, or of another mesh or setup; nothing is changed then
   void load(std::istream& in);
 
   /// Shape measure q, equivalent shear strain and stress of every tet in the present state.
@@ -509,6 +530,8 @@ class Simulation {
  private:
   friend struct SimulationParts;
   struct Impl;
+  /// @throws std::logic_error where it was moved from
+  Impl& inside() const;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -12,7 +12,7 @@
 
 namespace glisson {
 
-/// Everything that loads a set; the given parts act together. A vertex that is named twice counts once.
+/// Everything that loads a set; the given parts act together. A vertex that is named twice counts once, one in no tet not at all.
 ///
 /// Dead (`follows` false): per area at rest, of a direction fixed in space. Following: per present area; pressure stays normal to
 /// the surface, and a traction turns with its face: its part along the normal stays along it, that along the face stays along

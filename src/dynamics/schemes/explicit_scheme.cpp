@@ -319,13 +319,44 @@ void ExplicitScheme::take_body(Archive& ar) {
   control_->body_read(bounded ? &state_.changer().stars() : nullptr);
 }
 
+namespace {
+
+struct SavedExplicitLayout {
+  bool follows_changes;  ///< the control of the step
+  std::shared_ptr<const void> moving;
+};
+
+}  // namespace
+
+std::shared_ptr<const void> ExplicitScheme::save_layout() {
+  return std::make_shared<const SavedExplicitLayout>(
+      SavedExplicitLayout{control_->follows_changes(), moving_->save_layout()});
+}
+
+void ExplicitScheme::load_layout(const std::shared_ptr<const void>& layout) {
+  const auto& saved = *std::static_pointer_cast<const SavedExplicitLayout>(layout);
+  if (!moving_->supports_tissues()) moving_ = make_moving_body(state_.body, state_.gamma, state_.options, info_);
+  moving_->load_layout(saved.moving, state_.gamma);
+  info_ = info_of(*moving_, state_.body);
+  control_->body_read(saved.follows_changes ? &state_.changer().stars() : nullptr);
+  active_changed({});
+}
+
+/// As in a body that was just made: the vertices that are read act, and no others.
+void ExplicitScheme::act_on_only(std::span<const std::uint32_t> vertices) {
+  moving_->rest({});
+  moving_->watch_only({});
+  active_changed({});
+  watch(vertices);
+}
+
 void ExplicitScheme::archive_motion(Archive& ar) {
   told_.reset();
   std::vector<std::uint32_t> active = active_vertices();
   ar.all_below(active, state_.body.vertex_count);
   ar.all_below(held_, state_.body.vertex_count);
   ar.check(std::is_sorted(held_.begin(), held_.end()));
-  if (ar.reads()) watch(active);
+  if (ar.reads()) act_on_only(active);
   ar.check(moving_->active().size() == active.size());
   moving_->archive_state(ar, state_.body.vertex_count);
   copy_.current = false;

@@ -57,6 +57,7 @@ class ExplicitScheme : public Scheme {
   Vec3d displacement_of(std::uint32_t vertex) const override { return moving_->displacement_of(vertex); }
   Vec3d velocity_of(std::uint32_t vertex) const override { return moving_->velocity_of(vertex); }
   void archive_motion(Archive& ar) override;
+  std::shared_ptr<const void> save_layout() override;
 
  protected:
   ExplicitScheme(Body body, const SimulationOptions& options, Drag drag);
@@ -81,12 +82,14 @@ class ExplicitScheme : public Scheme {
   void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) override;
   void loads_changed(bool may_refuse) override;
   void take_body(Archive& ar) override;
+  void load_layout(const std::shared_ptr<const void>& layout) override;
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override { return moving_->branch_stresses(block); }
   std::string past() override;
   void require_tissues(const BlockTissues& tissues) const override;
   void take_tissues(const TissueChange& change) override;
   void take_back_tissues(const TissueChange& change) override { follow_tissues(change); }
   void watch(std::span<const std::uint32_t> vertices);
+  void act_on_only(std::span<const std::uint32_t> vertices);
   void active_changed(std::span<const std::uint32_t> before);
   void let_go();
   void bring_to_rest();

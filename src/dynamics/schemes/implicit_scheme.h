@@ -48,6 +48,8 @@ class ImplicitScheme : public Scheme {
   }
   void tell_change(const BodyView& body, std::span<const std::uint32_t> origins) override;
   void archive_motion(Archive& ar) override;
+  std::shared_ptr<const void> save_factor() const override { return fresh_ ? nullptr : solver_.save_factor(); }
+  void load_factor(const std::shared_ptr<const void>& factor) override { solver_.load_factor(factor); }
 
  protected:
   void acts_on(std::span<const std::uint32_t>) override { fresh_ = true; }
@@ -55,6 +57,7 @@ class ImplicitScheme : public Scheme {
   void take_over(const BodyChange& change) override;
   void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) override;
   void take_body(Archive& ar) override;
+  void load_layout(const std::shared_ptr<const void>& layout) override;
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override {
     return tissue_.branch_stresses(block, now_.u);
   }

@@ -9,6 +9,7 @@
 // can do, and a line in make_scheme.cpp.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -70,6 +71,8 @@ class Scheme {
   /// As Simulation::next_corner and set_step_end.
   double next_corner(double after) const;
   virtual void set_step_end(double /*time*/) {}
+  /// As Simulation::set_interrupt.
+  virtual void set_interrupt(std::function<bool(const StepProgress&)> /*asks*/) {}
   virtual double stable_step() const = 0;
   virtual double force_time() const = 0;
   virtual std::span<const Vec3d> displacement() const = 0;
@@ -89,6 +92,20 @@ class Scheme {
   /// How the body moves and what else a step depends on, interactions included. @throws std::runtime_error where it does not fit
   virtual void archive_motion(Archive& ar) = 0;
 
+  /// How the body lies in memory; shared by the states of one version of it.
+  virtual std::shared_ptr<const void> save_layout() { return {}; }
+  /// Goes to another version of the body; what mirrors it follows, and archive_motion comes next.
+  void load_version(const BodyVersion& version, const std::shared_ptr<const void>& layout) {
+    state_.go_to(version);
+    load_layout(layout);
+  }
+  /// Of a long step, shared; load_factor comes after archive_motion. None: there is none.
+  virtual std::shared_ptr<const void> save_factor() const { return {}; }
+  virtual void load_factor(const std::shared_ptr<const void>&) {}
+  /// Writes or reads time and what holds, for a copy in memory.
+  void archive_clock(Archive& ar) { state_.archive(ar); }
+  std::size_t load_count() const { return state_.loads.count(); }
+
  protected:
   friend class Changer;
 
@@ -102,6 +119,8 @@ class Scheme {
   virtual void take_over(const BodyChange& change) = 0;
   /// The last vertices, numbered from `first_new`, act and are acted on as those they are copies of.
   virtual void follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) = 0;
+  /// Follows another version of the body.
+  virtual void load_layout(const std::shared_ptr<const void>& layout) = 0;
   /// Follows a body that has been read, by what the archive has of its place in memory. @throws std::runtime_error as before
   virtual void take_body(Archive& ar) = 0;
 

@@ -105,18 +105,30 @@ std::size_t SemiImplicitScheme::holding() const {
   return static_cast<std::size_t>(std::count_if(state_.base.begin(), state_.base.end(), holds));
 }
 
+/// Per component: by supports, motions and bonds.
+std::vector<char> SemiImplicitScheme::held_components() const {
+  std::vector<char> held = state_.held_components();
+  for (const std::uint32_t v : contact_.interactions().held_still()) {
+    held[3 * v] = held[3 * v + 1] = held[3 * v + 2] = 1;
+  }
+  return held;
+}
+
 void SemiImplicitScheme::build(double h) {
   built_holding_ = holding();
   for (auto* field : {&impulse_, &change_, &drag_}) field->assign(state_.body.vertex_count, Vec3d{});
-  std::vector<char> held = state_.held_components();
+  std::vector<char> held = held_components();
   still_.assign(state_.body.vertex_count, 0);
-  for (const std::uint32_t v : contact_.interactions().held_still()) {
-    still_[v] = held[3 * v] = held[3 * v + 1] = held[3 * v + 2] = 1;
-  }
+  for (const std::uint32_t v : contact_.interactions().held_still()) still_[v] = 1;
   const std::size_t most =
       contact_.acts() ? std::numeric_limits<std::size_t>::max() : ViscousSystem::kMostTets;  // contact needs a factor
   system_.build(state_.body, state_.gamma, h, std::move(held), state_.loads.dashpots(), most);
   built_for_ = h;
+}
+
+void SemiImplicitScheme::load_layout(const std::shared_ptr<const void>& layout) {
+  ExplicitScheme::load_layout(layout);
+  built_for_ = 0.0;
 }
 
 void SemiImplicitScheme::archive_motion(Archive& ar) {
@@ -128,9 +140,10 @@ void SemiImplicitScheme::archive_motion(Archive& ar) {
   if (!ar.reads()) return;
   viscous_ = ViscousSystem::needed(state_.body) || contact_.acts();
   ar.check(!viscous_ || moving_->active().size() == state_.body.vertex_count);
-  built_for_ = 0.0;
+  const bool is_built = ar.in_memory() && h > 0.0 && h == built_for_ && system_.is_for(held_components());
+  if (!is_built) built_for_ = 0.0;
   if (!(h > 0.0)) return;
-  build(h);
+  if (!is_built) build(h);
   ar.check(system_.set_last(last));
 }
 

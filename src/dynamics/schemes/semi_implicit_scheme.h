@@ -49,7 +49,9 @@ class SemiImplicitScheme final : public ExplicitScheme {
   void require_tissues(const BlockTissues& tissues) const override;
   void take_tissues(const TissueChange& change) override;
   void watch_all_if_viscous();
+  void load_layout(const std::shared_ptr<const void>& layout) override;
   std::size_t holding() const;
+  std::vector<char> held_components() const;
   void build(double h);
   bool begin_contact(double h);
   void solve(double h);

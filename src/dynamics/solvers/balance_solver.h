@@ -61,6 +61,8 @@ class BalanceSolver {
   const std::vector<char>& held() const { return held_; }
   /// After begin(), with what is held as it was when it was written.
   void archive(Archive& ar) { ar(system_); }
+  std::shared_ptr<const void> save_factor() const { return system_.save_factor(); }
+  void load_factor(const std::shared_ptr<const void>& factor) { system_.load_factor(factor); }
 
  private:
   /// How far from balance a trial is.

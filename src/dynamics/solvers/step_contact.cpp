@@ -83,17 +83,11 @@ void StepContact::activate(std::span<const std::uint32_t> vertices) {
 }
 
 StepContact::Backup StepContact::backup() {
-  Backup b{.interactions = {}, .rests = interactions_.rests(), .forces = forces_};
-  for (const std::shared_ptr<Interaction>& x : interactions_.all()) {
-    Archive ar;
-    x->archive(ar);
-    b.interactions.push_back(ar.bytes());
-  }
-  return b;
+  return {.interactions = interactions_.save(), .rests = interactions_.rests(), .forces = forces_};
 }
 
 void StepContact::restore(const Backup& backup) {
-  interactions_.restore(backup.interactions);
+  interactions_.load(backup.interactions);
   interactions_.set_rests(backup.rests);
   forces_ = backup.forces;
 }
@@ -199,7 +193,7 @@ double StepContact::find_forces_of(std::size_t interaction) {
     active_ = free;
     unsettled_.assign(active_.size(), Vec3d{});
     interactions_.go_back(others);
-    interactions_.restore(interaction, reached_.interactions[interaction]);
+    interactions_.load(interaction, reached_.interactions[interaction]);
     interactions_.constrain(interaction, *this);
   }
   settle(active_);
@@ -261,7 +255,7 @@ bool StepContact::correct(std::span<Vec3d> u) {
   interactions_.begin(state_.time, h_, active_, {}, state_.body.rest_positions, state_.options.track_energies);
   agrees_ = false;
   for (int round = 0; round < kMostRounds && !agrees_; ++round) {
-    interactions_.restore(reached_.interactions);
+    interactions_.load(reached_.interactions);
     if (round == 0) interactions_.add_forces();
     agrees_ = find_forces() <= kAgreed;
   }
@@ -449,8 +443,13 @@ void StepContact::archive(Archive& ar) {
   std::vector<std::uint32_t> vertices;
   for (const ActiveVertex& w : active_) vertices.push_back(w.vertex);
   ar.all_below(vertices, state_.body.vertex_count);
-  if (ar.reads()) activate(vertices);
+  if (ar.reads()) {
+    active_.clear();
+    interactions_.forget_named();
+    activate(vertices);
+  }
   interactions_.archive(ar);
+  if (ar.reads()) forces_.set_zero(state_.body.vertex_count);
   ar(forces_);
   ar.same_size(pushes_means_);
   ar(factor_h_);

@@ -54,7 +54,7 @@ class StepContact final : public StepCompliance {
 
   /// Where interactions were before a step, to go back to.
   struct Backup {
-    std::vector<std::string> interactions;
+    Interactions::Saved interactions;
     Interactions::Rests rests;
     ExertedForces forces;
   };

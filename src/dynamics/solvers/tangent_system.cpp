@@ -115,25 +115,25 @@ void TangentSystem::apply(std::span<const Vec3d> x, std::span<Vec3d> y) const {
 
 /// Where an entry of the pattern is among the values.
 int TangentSystem::place_in(int row, int column) const {
-  const int* begin = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
-  const int* end = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
-  return static_cast<int>(std::lower_bound(begin, end, row) - matrix_.innerIndexPtr());
+  const int* begin = f_->matrix.innerIndexPtr() + f_->matrix.outerIndexPtr()[column];
+  const int* end = f_->matrix.innerIndexPtr() + f_->matrix.outerIndexPtr()[column + 1];
+  return static_cast<int>(std::lower_bound(begin, end, row) - f_->matrix.innerIndexPtr());
 }
 
 /// Rows of the pressures, one for each vertex of each tissue that shares its volume changes.
 void TangentSystem::find_pressures() {
   const Body& body = tissue_.body();
-  pressures_ = 0;
-  pressure_.clear();
+  f_->pressures = 0;
+  f_->pressure.clear();
   for (const TissueBlock& block : body.blocks) {
     if (block.tissue.volume_change != VolumeChange::average_nodal) continue;
-    pressure_.resize(body.elements.size(), {-1, -1, -1, -1});
+    f_->pressure.resize(body.elements.size(), {-1, -1, -1, -1});
     std::vector<int> of_vertex(body.vertex_count, -1);
     for (std::size_t e = block.begin; e < block.end; ++e) {
       for (std::size_t a = 0; a < 4; ++a) {
         int& row = of_vertex[body.elements[e][a]];
-        if (row < 0) row = unknowns_ + pressures_++;
-        pressure_[e][a] = row;
+        if (row < 0) row = f_->unknowns + f_->pressures++;
+        f_->pressure[e][a] = row;
       }
     }
   }
@@ -141,29 +141,30 @@ void TangentSystem::find_pressures() {
 
 /// Which entries the lower triangle of A has on the free components, and where each element's go.
 void TangentSystem::find_pattern() {
+  if (f_.use_count() > 1) f_ = std::make_shared<Factored>();
   const Body& body = tissue_.body();
-  number_.assign(free_.size(), -1);
-  unknowns_ = 0;
-  for (std::size_t c = 0; c < free_.size(); ++c) number_[c] = free_[c] != 0 ? unknowns_++ : -1;
+  f_->number.assign(free_.size(), -1);
+  f_->unknowns = 0;
+  for (std::size_t c = 0; c < free_.size(); ++c) f_->number[c] = free_[c] != 0 ? f_->unknowns++ : -1;
   find_pressures();
-  const int rows = unknowns_ + pressures_;
+  const int rows = f_->unknowns + f_->pressures;
   std::vector<Eigen::Triplet<double>> entries;
   const auto visit = [&](auto&& act) {
     for (std::size_t e = 0; e < body.elements.size(); ++e) {
       for (std::size_t r = 0; r < 12; ++r) {
         for (std::size_t c = 0; c < 12; ++c) {
-          const int row = number_[3 * body.elements[e][r / 3] + r % 3],
-                    column = number_[3 * body.elements[e][c / 3] + c % 3];
+          const int row = f_->number[3 * body.elements[e][r / 3] + r % 3],
+                    column = f_->number[3 * body.elements[e][c / 3] + c % 3];
           act(e, 12 * r + c, row, column);
         }
       }
     }
   };
   const auto visit_pressures = [&](auto&& act) {
-    for (std::size_t e = 0; e < pressure_.size(); ++e) {
+    for (std::size_t e = 0; e < f_->pressure.size(); ++e) {
       for (std::size_t entry = 0; entry < 48; ++entry) {
         const std::size_t c = entry % 12;
-        act(e, entry, pressure_[e][entry / 12], number_[3 * body.elements[e][c / 3] + c % 3]);
+        act(e, entry, f_->pressure[e][entry / 12], f_->number[3 * body.elements[e][c / 3] + c % 3]);
       }
     }
   };
@@ -172,27 +173,27 @@ void TangentSystem::find_pattern() {
   };
   visit(take), visit_pressures(take);
   for (int r = 0; r < rows; ++r) entries.emplace_back(r, r, 0.0);
-  matrix_.resize(rows, rows);
-  matrix_.setFromTriplets(entries.begin(), entries.end());
+  f_->matrix.resize(rows, rows);
+  f_->matrix.setFromTriplets(entries.begin(), entries.end());
   const auto place = [&](int row, int column) { return place_in(row, column); };
-  position_.resize(body.elements.size());
+  f_->position.resize(body.elements.size());
   visit([&](std::size_t e, std::size_t entry, int row, int column) {
-    position_[e][entry] = column >= 0 && row >= column ? place(row, column) : -1;
+    f_->position[e][entry] = column >= 0 && row >= column ? place(row, column) : -1;
   });
-  pressure_position_.resize(pressure_.size());
+  f_->pressure_position.resize(f_->pressure.size());
   visit_pressures([&](std::size_t e, std::size_t entry, int row, int column) {
-    pressure_position_[e][entry] = column >= 0 && row >= column ? place(row, column) : -1;
+    f_->pressure_position[e][entry] = column >= 0 && row >= column ? place(row, column) : -1;
   });
-  diagonal_position_.resize(static_cast<std::size_t>(rows));
-  for (int r = 0; r < rows; ++r) diagonal_position_[static_cast<std::size_t>(r)] = place(r, r);
-  knows_entries_ = false;
+  f_->diagonal_position.resize(static_cast<std::size_t>(rows));
+  for (int r = 0; r < rows; ++r) f_->diagonal_position[static_cast<std::size_t>(r)] = place(r, r);
+  f_->knows_entries = false;
   has_pattern_ = true;
 }
 
 void TangentSystem::assemble(const TissueTangent& tangent) {
   const Body& body = tissue_.body();
-  double* values = matrix_.valuePtr();
-  std::fill_n(values, matrix_.nonZeros(), 0.0);
+  double* values = f_->matrix.valuePtr();
+  std::fill_n(values, f_->matrix.nonZeros(), 0.0);
   for (std::size_t e = 0; e < body.elements.size(); ++e) {
     ElementTangent C = tangent.local[e];
     C = (0.5 * terms_.weight * (C + C.transpose())).eval();
@@ -201,35 +202,36 @@ void TangentSystem::assemble(const TissueTangent& tangent) {
       for (std::size_t b = 0; b < 4; ++b) {
         const Eigen::Matrix3d K = block_of(C, body.rest[e].volume, s[a], s[b]);
         for (std::size_t entry = 0; entry < 9; ++entry) {
-          const int at = position_[e][12 * (3 * a + entry / 3) + 3 * b + entry % 3];
+          const int at = f_->position[e][12 * (3 * a + entry / 3) + 3 * b + entry % 3];
           if (at >= 0) values[at] += K(static_cast<Eigen::Index>(entry / 3), static_cast<Eigen::Index>(entry % 3));
         }
       }
     }
   }
-  for (std::size_t c = 0; c < number_.size(); ++c) {
-    if (number_[c] >= 0) values[diagonal_position_[static_cast<std::size_t>(number_[c])]] += diagonal_[c / 3][c % 3];
+  for (std::size_t c = 0; c < f_->number.size(); ++c) {
+    if (f_->number[c] >= 0)
+      values[f_->diagonal_position[static_cast<std::size_t>(f_->number[c])]] += diagonal_[c / 3][c % 3];
   }
 }
 
 /// What couples displacements by pressures. A modulus that is not the same in all tets at a vertex is taken as their mean.
 void TangentSystem::assemble_pressures(const TissueTangent& tangent) {
   const Body& body = tissue_.body();
-  double* values = matrix_.valuePtr();
-  std::vector<double> volume(static_cast<std::size_t>(pressures_)), along(volume.size()), square(volume.size());
-  for (std::size_t e = 0; e < pressure_.size(); ++e) {
-    if (pressure_[e][0] < 0) continue;
+  double* values = f_->matrix.valuePtr();
+  std::vector<double> volume(static_cast<std::size_t>(f_->pressures)), along(volume.size()), square(volume.size());
+  for (std::size_t e = 0; e < f_->pressure.size(); ++e) {
+    if (f_->pressure[e][0] < 0) continue;
     const Mat3d& rise = tangent.volume[e];
     const double V = body.rest[e].volume;
     const std::array<Vec3d, 4> s = shape_gradients(body.rest[e]);
     std::array<Vec3d, 4> b;
     for (std::size_t a = 0; a < 4; ++a) b[a] = (rise * s[a]) * (0.25 * V * terms_.weight);
     for (std::size_t entry = 0; entry < 48; ++entry) {
-      const int at = pressure_position_[e][entry];
+      const int at = f_->pressure_position[e][entry];
       if (at >= 0) values[at] += b[entry % 12 / 3][entry % 3];
     }
-    for (const int row : pressure_[e]) {
-      const auto at = static_cast<std::size_t>(row - unknowns_);
+    for (const int row : f_->pressure[e]) {
+      const auto at = static_cast<std::size_t>(row - f_->unknowns);
       volume[at] += V;
       along[at] += V * trace(transposed_product(tangent.pressure[e], rise));
       square[at] += V * trace(transposed_product(rise, rise));
@@ -239,18 +241,18 @@ void TangentSystem::assemble_pressures(const TissueTangent& tangent) {
   for (std::size_t at = 0; at < volume.size(); ++at) largest = std::max(largest, along[at] / square[at]);
   for (std::size_t at = 0; at < volume.size(); ++at) {
     const double modulus = std::max(along[at] / square[at], kLeastModulus * largest);
-    values[diagonal_position_[static_cast<std::size_t>(unknowns_) + at]] -=
+    values[f_->diagonal_position[static_cast<std::size_t>(f_->unknowns) + at]] -=
         terms_.weight * volume[at] / (4.0 * modulus);
   }
 }
 
 /// Triangles are faces of tets: the pattern has their entries.
 void TangentSystem::assemble_triangles() {
-  double* values = matrix_.valuePtr();
+  double* values = f_->matrix.valuePtr();
   for (const TriangleStiffness& t : triangles_) {
     for (std::size_t r = 0; r < 9; ++r) {
       for (std::size_t c = 0; c < 9; ++c) {
-        const int row = number_[3 * t.corners[r / 3] + r % 3], column = number_[3 * t.corners[c / 3] + c % 3];
+        const int row = f_->number[3 * t.corners[r / 3] + r % 3], column = f_->number[3 * t.corners[c / 3] + c % 3];
         if (column < 0 || row < column) continue;
         values[place_in(row, column)] += terms_.weight * t.blocks[r / 3][c / 3](r % 3, c % 3);
       }
@@ -259,6 +261,7 @@ void TangentSystem::assemble_triangles() {
 }
 
 bool TangentSystem::factorise(const TissueTangent& tangent) {
+  if (f_.use_count() > 1) f_ = std::make_shared<Factored>(*f_);
   assemble(tangent);
   assemble_pressures(tangent);
   assemble_triangles();
@@ -266,8 +269,8 @@ bool TangentSystem::factorise(const TissueTangent& tangent) {
 }
 
 bool TangentSystem::take_factor() {
-  if (std::exchange(knows_entries_, true)) return factor_.factorise_again(matrix_);
-  return factor_.factorise(matrix_, pressures_);
+  if (std::exchange(f_->knows_entries, true)) return f_->factor.factorise_again(f_->matrix);
+  return f_->factor.factorise(f_->matrix, f_->pressures);
 }
 
 void TangentSystem::refresh() {
@@ -339,14 +342,14 @@ void TangentSystem::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) c
 }
 
 void TangentSystem::factor_solve(Eigen::MatrixXd& x) const {
-  packed_.setZero(matrix_.rows(), x.cols());
-  for (std::size_t c = 0; c < number_.size(); ++c) {
-    if (number_[c] >= 0) packed_.row(number_[c]) = x.row(static_cast<Eigen::Index>(c));
+  packed_.setZero(f_->matrix.rows(), x.cols());
+  for (std::size_t c = 0; c < f_->number.size(); ++c) {
+    if (f_->number[c] >= 0) packed_.row(f_->number[c]) = x.row(static_cast<Eigen::Index>(c));
   }
-  factor_.solve(packed_);
-  for (std::size_t c = 0; c < number_.size(); ++c) {
-    if (number_[c] >= 0) {
-      x.row(static_cast<Eigen::Index>(c)) = packed_.row(number_[c]);
+  f_->factor.solve(packed_);
+  for (std::size_t c = 0; c < f_->number.size(); ++c) {
+    if (f_->number[c] >= 0) {
+      x.row(static_cast<Eigen::Index>(c)) = packed_.row(f_->number[c]);
     } else {
       x.row(static_cast<Eigen::Index>(c)).setZero();
     }
@@ -357,13 +360,24 @@ void TangentSystem::factor_solve(Eigen::MatrixXd& x) const {
 void TangentSystem::archive(Archive& ar) {
   ar(has_factor_, current_, terms_.rate, terms_.weight, state_.since, diagonal_);
   ar.check(diagonal_.empty() || 3 * diagonal_.size() == free_.size());
-  if (!has_factor_) return;
+  if (!has_factor_ || ar.in_memory()) return;
   if (ar.reads()) find_pattern();
-  std::vector<double> values(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros());
+  std::vector<double> values(f_->matrix.valuePtr(), f_->matrix.valuePtr() + f_->matrix.nonZeros());
   ar.same_size(values);
   if (!ar.reads()) return;
-  std::copy(values.begin(), values.end(), matrix_.valuePtr());
+  std::copy(values.begin(), values.end(), f_->matrix.valuePtr());
   has_factor_ = take_factor();
+  ++factor_number_;
+}
+
+std::shared_ptr<const void> TangentSystem::save_factor() const {
+  return has_factor_ ? std::shared_ptr<const void>(f_) : nullptr;
+}
+
+void TangentSystem::load_factor(const std::shared_ptr<const void>& factor) {
+  if (factor == nullptr) return;
+  f_ = std::const_pointer_cast<Factored>(std::static_pointer_cast<const Factored>(factor));
+  has_pattern_ = true;
   ++factor_number_;
 }
 

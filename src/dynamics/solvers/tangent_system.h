@@ -14,6 +14,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -62,6 +63,9 @@ class TangentSystem final : public StepFactor {
   void linearise(const TissueState& state, const Terms& terms, bool semidefinite);
   /// Read after set_free, with the same components as when it was written.
   void archive(Archive& ar);
+  /// The factor, shared, and goes back to one after archive() of a copy in memory; none: there was no factor.
+  std::shared_ptr<const void> save_factor() const;
+  void load_factor(const std::shared_ptr<const void>& factor);
   /// Whether A may be kept while its terms do not change: every tissue is linear.
   bool is_linear() const { return linear_ && triangles_.empty(); }
 
@@ -79,6 +83,19 @@ class TangentSystem final : public StepFactor {
 
  private:
   using Matrix = Eigen::SparseMatrix<double>;
+  /// What is factorised.
+  struct Factored {
+    std::vector<int> number;  ///< per component: its row among the free ones, −1
+    std::vector<std::array<int, 4>>
+        pressure;                     ///< per element: rows of its vertices' pressures; empty: no tissue shares
+    int unknowns = 0, pressures = 0;  ///< rows of displacements, and of pressures after them
+    Matrix matrix;                    ///< lower triangle
+    std::vector<std::array<int, 144>> position;          ///< per element: where its entries are in the matrix, −1
+    std::vector<std::array<int, 48>> pressure_position;  ///< those of pressures; empty where `pressure` is
+    std::vector<int> diagonal_position;                  ///< per row
+    FactorPanels factor;
+    bool knows_entries = false;  ///< the factor has been made for this pattern
+  };
   void find_pattern();
   int place_in(int row, int column) const;
   void find_pressures();
@@ -102,16 +119,7 @@ class TangentSystem final : public StepFactor {
   TissueTangent tangent_;
   mutable std::vector<Vec3d> x_, y_;
 
-  // factorised
-  std::vector<int> number_;                   ///< per component: its row among the free ones, −1
-  std::vector<std::array<int, 4>> pressure_;  ///< per element: rows of its vertices' pressures; empty: no tissue shares
-  int unknowns_ = 0, pressures_ = 0;          ///< rows of displacements, and of pressures after them
-  Matrix matrix_;                             ///< lower triangle
-  std::vector<std::array<int, 144>> position_;          ///< per element: where its entries are in the matrix, −1
-  std::vector<std::array<int, 48>> pressure_position_;  ///< those of pressures; empty where pressure_ is
-  std::vector<int> diagonal_position_;                  ///< per row
-  FactorPanels factor_;
-  bool knows_entries_ = false;  ///< the factor has been made for this pattern
+  std::shared_ptr<Factored> f_ = std::make_shared<Factored>();  ///< shared with saved states: a copy is changed then
   mutable Eigen::MatrixXd packed_, moved_;
   bool known_ = false;  ///< tangent_ is that of this body
   bool has_pattern_ = false, has_factor_ = false;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -48,6 +49,8 @@ class ViscousSystem final : public StepFactor {
   bool set_last(std::span<const double> last);
   bool is_free(std::size_t component) const override { return held_[component] == 0; }
   bool is_factorised() const { return factorised_; }
+  /// Whether it was built with these held.
+  bool is_for(std::span<const char> held) const { return std::ranges::equal(held, held_); }
 
  private:
   using Matrix = Eigen::SparseMatrix<double>;

@@ -46,6 +46,20 @@ void BodyState::masses_changed() {
   if (changer_ != nullptr) changer_->masses_changed();
 }
 
+BodyVersion BodyState::version() const {
+  BodyVersion version{body, mass_scaling, gamma, constraints, loads, copies, changes, {}};
+  if (changer_ != nullptr) version.closed = changer_->closed();
+  return version;
+}
+
+void BodyState::go_to(const BodyVersion& version) {
+  body = version.body, mass_scaling = version.mass_scaling, gamma = version.gamma;
+  constraints = version.constraints, loads = version.loads;
+  copies = version.copies, changes = version.changes;
+  changer_.reset();
+  if (version.closed) changer().set_closed(*version.closed);
+}
+
 Vec3d BodyState::gravity_at(double t) const {
   return options.gravity * (t < options.gravity_ramp ? t / options.gravity_ramp : 1.0);
 }
@@ -142,9 +156,11 @@ void BodyState::archive(Archive& ar) {
   const std::uint64_t here = changes;
   ar(time, steps, changes);
   ar.check(changes >= here);
-  if (changes > 0) archive_changes(ar, changes == here);
-  constraints.archive(ar, body.vertex_count);
-  loads.archive(ar, body);
+  if (!ar.in_memory()) {
+    if (changes > 0) archive_changes(ar, changes == here);
+    constraints.archive(ar, body.vertex_count);
+    loads.archive(ar, body);
+  }
   for (std::size_t c = 0; c < base.size(); ++c) {
     ar(base[c]);
     ar.check(!holds(c) || base[c].size() == constraints.all()[c].vertices.size());

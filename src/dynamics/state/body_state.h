@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,19 @@
 #include "glisson/simulation/simulation.h"
 
 namespace glisson {
+
+/// What a body state has that only changes of body and tissues alter: to go back to.
+struct BodyVersion {
+  Body body;
+  MassScaling mass_scaling;
+  std::vector<double> gamma;
+  Constraints constraints;
+  Loads loads;
+  std::vector<std::uint32_t> copies;
+  std::uint64_t changes = 0;
+  std::optional<std::vector<Triangle>>
+      closed;  ///< faces that are split and closed still; none: nothing was changed yet
+};
 
 /// Copies share what follows changes: they are for going back, one lives at a time.
 struct BodyState {
@@ -50,6 +64,9 @@ struct BodyState {
   bool holds(std::size_t constraint) const { return !base[constraint].empty(); }
   /// Per component: 1 where a constraint that holds by now has it, or where the vertex is in no tet.
   std::vector<char> held_components() const;
+
+  BodyVersion version() const;
+  void go_to(const BodyVersion& version);
 
   /// The body is written as far as it is not as it was made; what holds and loads it by the vertices that came with splits.
   /// @throws std::runtime_error where what is read did not come from the same body, or has less changes than there are here

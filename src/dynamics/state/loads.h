@@ -21,6 +21,7 @@ class Loads {
  public:
   explicit Loads(std::size_t vertex_count) : force_(vertex_count) {}
   bool empty() const { return loads_.empty(); }
+  std::size_t count() const { return loads_.size(); }
 
   /// @return vertices that it acts on, ascending
   /// @throws std::invalid_argument for an empty set, a vertex out of range, a load that is none or not finite, or one that needs

@@ -227,4 +227,11 @@ void Capsule::archive(Archive& ar) {
   ar(s.frequency, s.frequency_before, s.released, s.time, s.events);
 }
 
+/// Its sheet goes with it: made anew for another body it would have another bound of its frequency.
+std::shared_ptr<const void> Capsule::save_state() const { return std::make_shared<const State>(*state_); }
+
+void Capsule::load_state(const std::shared_ptr<const void>& state, const BodyView*) {
+  *state_ = *std::static_pointer_cast<const State>(state);
+}
+
 }  // namespace glisson

@@ -105,6 +105,7 @@ std::span<const InstrumentColumn> ContactTool::record_columns() const {
 std::string ContactTool::refuses_long_steps() const { return driver_refuses_long_steps(); }
 
 void ContactTool::attached(const BodyView& body, double) {
+  set_bounds(body);
   state_->reach.attach(body);
   if (forces_at_end()) state_->require_outside(body, pose_, direction());
   if (state_->options.bonded) state_->bond_first(body, pose_);
@@ -117,16 +118,10 @@ void ContactTool::body_changed(const BodyView& body, std::span<const std::uint32
 
 std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
   State& s = *state_;
-  if (s.lost) return {};
   begin_step();
   InteractionStep step;
   step.time = time, step.h = h;
   drive(step);
-  if (!pose_.is_sound()) {
-    pose_ = before_, s.lost = true;
-    add_event(time, force_depth(), "lost");
-    return {};
-  }
   s.solid.earlier = s.solid.before, s.solid.last_h = s.last_h;
   s.solid.before = before_, s.solid.after = pose_;
   s.last_h = h;
@@ -138,10 +133,7 @@ std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
   return s.reach.ask(ways, h);
 }
 
-std::optional<std::span<const std::uint32_t>> ContactTool::keeps() {
-  if (state_->lost) return {};
-  return state_->reach.keeps();
-}
+std::optional<std::span<const std::uint32_t>> ContactTool::keeps() { return state_->reach.keeps(); }
 
 /// Begins a short step, or an iteration of a long one: several tools act in turn in it, and are solved for more than once.
 void ContactTool::add_forces(const InteractionStep& step) {
@@ -155,7 +147,6 @@ void ContactTool::constrain(const InteractionStep& step) {
   State& s = *state_;
   forces_ = {};
   s.bond_impulses.clear();
-  if (s.lost) return s.bear_nothing();
   if (step.compliance != nullptr) {
     take_trial();
     if (s.solid.after.position != pose_.position) s.unsettled = 0;
@@ -209,12 +200,41 @@ void ContactTool::moved(const InteractionStep& step) {
 void ContactTool::archive(Archive& ar) {
   State& s = *state_;
   archive_motion(ar);
-  ar(s.lost, s.in_contact, s.begun, s.last_touch, s.last_depth, s.books, s.last_h, s.solid.before, s.found_inside);
+  ar(s.in_contact, s.begun, s.last_touch, s.last_depth, s.books, s.last_h, s.solid.before, s.found_inside);
   ar(s.bonds, s.last_pressing, s.last_bonds, s.reach);
   const std::size_t vertices = s.reach.surface().body_vertices();
   for (const auto& [v, place] : s.bonds) ar.check(v < vertices);
   for (const auto& [v, force] : s.last_bonds) ar.check(v < vertices);
   for (const auto& [t, force] : s.last_pressing) ar.check(std::max({t[0], t[1], t[2]}) < vertices);
+}
+
+namespace {
+
+struct SavedContact {
+  std::shared_ptr<const void> motion;
+  ContactKept kept;
+  ContactReach::Seen seen;
+  Pose before;  ///< of the solid
+  double taken = 0.0;
+};
+
+}  // namespace
+
+std::shared_ptr<const void> ContactTool::save_state() const {
+  const State& s = *state_;
+  return std::make_shared<const SavedContact>(
+      SavedContact{save_motion(), s, s.reach.seen(), s.solid.before, s.books.taken()});
+}
+
+void ContactTool::load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) {
+  const SavedContact& saved = *std::static_pointer_cast<const SavedContact>(state);
+  State& s = *state_;
+  load_motion(*std::static_pointer_cast<const SavedMotion>(saved.motion));
+  static_cast<ContactKept&>(s) = saved.kept;
+  if (other_body != nullptr) s.reach.set_body(*other_body);
+  s.reach.set_seen(saved.seen);
+  s.solid.before = saved.before;
+  s.books.set_taken(saved.taken);
 }
 
 }  // namespace glisson

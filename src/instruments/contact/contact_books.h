@@ -28,6 +28,7 @@ class ContactBooks {
   /// Whether solve() had to solve anew in this step.
   bool corrected() const { return corrected_; }
   double taken() const { return taken_; }
+  void set_taken(double taken) { taken_ = taken; }
   void archive(Archive& ar) { ar(taken_); }
 
  private:

@@ -16,11 +16,11 @@ constexpr std::uint32_t kAbsent = std::numeric_limits<std::uint32_t>::max();
 
 void ContactReach::attach(const BodyView& body) {
   surface_.build(body);
-  sentinels_.clear();
+  seen_.sentinels.clear();
   for (const SurfacePatch& p : surface_.patches()) {
-    sentinels_.push_back({body.mesh.vertices[p.sentinel] + body.displacement[p.sentinel], {}, false});
+    seen_.sentinels.push_back({body.mesh.vertices[p.sentinel] + body.displacement[p.sentinel], {}, false});
   }
-  sentinels_asked_ = false;
+  seen_.sentinels_asked = false;
   gather();
 }
 
@@ -36,21 +36,21 @@ bool ContactReach::may_reach(const ContactSolid& solid, double margin, const Sen
 std::span<const std::uint32_t> ContactReach::ask(std::span<const ContactSolid> solids, double h) {
   asking_.clear();
   gone_ = false;
-  for (std::size_t k = 0; k < sentinels_.size(); ++k) {
+  for (std::size_t k = 0; k < seen_.sentinels.size(); ++k) {
     const SurfacePatch& patch = surface_.patches()[k];
-    if (!sentinels_asked_) asking_.push_back(patch.sentinel);
-    const double margin = (sentinels_[k].asked ? kFarAway : kStretch) * patch.radius;
-    const auto near = [&](const ContactSolid& s) { return may_reach(s, margin, sentinels_[k], h); };
-    if (sentinels_[k].asked == std::any_of(solids.begin(), solids.end(), near)) continue;
-    sentinels_[k].asked = !sentinels_[k].asked;
-    if (sentinels_[k].asked) {
+    if (!seen_.sentinels_asked) asking_.push_back(patch.sentinel);
+    const double margin = (seen_.sentinels[k].asked ? kFarAway : kStretch) * patch.radius;
+    const auto near = [&](const ContactSolid& s) { return may_reach(s, margin, seen_.sentinels[k], h); };
+    if (seen_.sentinels[k].asked == std::any_of(solids.begin(), solids.end(), near)) continue;
+    seen_.sentinels[k].asked = !seen_.sentinels[k].asked;
+    if (seen_.sentinels[k].asked) {
       asking_.insert(asking_.end(), patch.vertices.begin(), patch.vertices.end());
     } else {
       gone_ = true;
     }
   }
-  const bool grown = asking_.size() > (sentinels_asked_ ? 0 : sentinels_.size());
-  sentinels_asked_ = true;
+  const bool grown = asking_.size() > (seen_.sentinels_asked ? 0 : seen_.sentinels.size());
+  seen_.sentinels_asked = true;
   if (grown || gone_) gather();
   return asking_;
 }
@@ -67,19 +67,19 @@ std::optional<std::span<const std::uint32_t>> ContactReach::keeps() {
 }
 
 void ContactReach::look(const InteractionStep& step) {
-  for (std::size_t k = 0; k < sentinels_.size(); ++k) {
+  for (std::size_t k = 0; k < seen_.sentinels.size(); ++k) {
     const std::uint32_t place = step.place_of[surface_.patches()[k].sentinel];
     if (place == InteractionStep::kNowhere) continue;
-    sentinels_[k].position = step.position(place), sentinels_[k].velocity = step.vertices[place].velocity;
+    seen_.sentinels[k].position = step.position(place), seen_.sentinels[k].velocity = step.vertices[place].velocity;
   }
 }
 
 /// Lists what has been asked for.
 void ContactReach::gather() {
   mine_.clear();
-  for (std::size_t k = 0; k < sentinels_.size(); ++k) {
+  for (std::size_t k = 0; k < seen_.sentinels.size(); ++k) {
     const std::vector<std::uint32_t>& v = surface_.patches()[k].vertices;
-    if (sentinels_[k].asked) mine_.insert(mine_.end(), v.begin(), v.end());
+    if (seen_.sentinels[k].asked) mine_.insert(mine_.end(), v.begin(), v.end());
   }
   std::sort(mine_.begin(), mine_.end());
   mine_.erase(std::unique(mine_.begin(), mine_.end()), mine_.end());
@@ -92,9 +92,14 @@ void ContactReach::gather() {
   }
 }
 
+void ContactReach::set_seen(const Seen& seen) {
+  seen_ = seen;
+  gather();
+}
+
 void ContactReach::archive(Archive& ar) {
-  ar(sentinels_asked_);
-  ar.same_size(sentinels_);
+  ar(seen_.sentinels_asked);
+  ar.same_size(seen_.sentinels);
   if (ar.reads()) gather();
 }
 

@@ -42,24 +42,33 @@ class ContactReach {
   /// Triangles with all corners among vertices(), and these as places there.
   std::span<const Triangle> triangles() const { return my_triangles_; }
 
-  void archive(Archive& ar);
-
- private:
   /// Of a patch.
   struct Sentinel {
     Vec3d position, velocity;
     bool asked = false;
     void archive(Archive& ar) { ar(position, velocity, asked); }
   };
+  /// What has been asked for, and what was seen of it: all but the surface.
+  struct Seen {
+    std::vector<Sentinel> sentinels;
+    bool sentinels_asked = false;
+  };
+  const Seen& seen() const { return seen_; }
+  /// @param seen  of this surface
+  void set_seen(const Seen& seen);
+  /// Goes to the surface of another body; set_seen() comes next.
+  void set_body(const BodyView& body) { surface_.build(body); }
+  void archive(Archive& ar);
 
+ private:
   bool may_reach(const ContactSolid& solid, double margin, const Sentinel& s, double h) const;
   void gather();
 
   ContactSurface surface_;
-  std::vector<Sentinel> sentinels_;
+  Seen seen_;
   std::vector<std::uint32_t> mine_, asking_, kept_;
   std::vector<Triangle> my_triangles_;
-  bool sentinels_asked_ = false, gone_ = false;
+  bool gone_ = false;
 };
 
 }  // namespace glisson

@@ -23,41 +23,44 @@ struct HeldTriangle {
   double level = 0.0;  ///< the deepest that they ask for [m], ≤ 0
 };
 
-struct ContactTool::State {
-  ContactOptions options;
-  ContactSolid solid;
-  ContactReach reach;
+/// What a ContactTool keeps from step to step, beside what its reach has seen.
+struct ContactKept {
   double last_h = 0.0;
-  bool lost = false;  ///< its pose made no sense: it has left
-
-  std::vector<ContactRow> rows;          ///< of a long step: of its last iteration
-  bool settled = true;                   ///< the last sweeps of a long step did not come to their limit
-  int unsettled = 0;                     ///< iterations of it in which they did
-  std::vector<Vec3d> starts, ends;       ///< per vertex of the reach, in the frame of the tool
-  std::vector<double> at_ends;           ///< φ there
   std::map<std::uint32_t, Vec3d> bonds;  ///< vertex → place in the frame of the tool
-  std::vector<std::pair<std::uint32_t, Vec3d>>
-      bond_impulses;                   ///< place at hand → impulse of its bond in this step [N s]
-  std::vector<double> pressed;         ///< per vertex of the reach: impulse along its normal in this step [N s]
-  std::vector<std::uint32_t> touched;  ///< vertices of the reach that rows move, as places there
-  std::vector<Vec3d> exerted;          ///< per vertex of the reach: whole impulse in this step [N s]
-  std::vector<std::uint32_t> bearing_vertices;
-  std::vector<double> pressures, bearing_normal;  ///< of each [Pa], [N]
-  std::vector<Vec3d> bearing_forces;              ///< of each [N]
-  double area = 0.0;
-  Effort effort{};
-
-  ContactBooks books;
-  bool begun = false;  ///< a step has been made since the tool was attached
+  bool begun = false;                    ///< a step has been made since the tool was attached
   FoundInside found_inside;
   /// Forces on triangles in the last step, of all their points, to begin the next with [N]; in long steps on vertices too, three times the same.
   std::map<Triangle, double> last_pressing;
-  std::map<std::uint32_t, Vec3d> last_bonds;            ///< the same of bonds, in long steps [N]
+  std::map<std::uint32_t, Vec3d> last_bonds;  ///< the same of bonds, in long steps [N]
+  bool in_contact = false;
+  double last_touch = 0.0, last_depth = 0.0;
+  std::vector<double> pressed;  ///< per vertex of the reach: impulse along its normal in this step [N s]
+  std::vector<std::uint32_t> bearing_vertices;
+  std::vector<double> pressures, bearing_normal;  ///< of each [Pa], [N]
+  std::vector<Vec3d> bearing_forces;              ///< of each [N]
+  double area = 0.0;                              ///< [m²]
+};
+
+struct ContactTool::State : ContactKept {
+  ContactOptions options;
+  ContactSolid solid;
+  ContactReach reach;
+
+  std::vector<ContactRow> rows;     ///< of a long step: of its last iteration
+  bool settled = true;              ///< the last sweeps of a long step did not come to their limit
+  int unsettled = 0;                ///< iterations of it in which they did
+  std::vector<Vec3d> starts, ends;  ///< per vertex of the reach, in the frame of the tool
+  std::vector<double> at_ends;      ///< φ there
+  std::vector<std::pair<std::uint32_t, Vec3d>>
+      bond_impulses;                   ///< place at hand → impulse of its bond in this step [N s]
+  std::vector<std::uint32_t> touched;  ///< vertices of the reach that rows move, as places there
+  std::vector<Vec3d> exerted;          ///< per vertex of the reach: whole impulse in this step [N s]
+  Effort effort{};
+
+  ContactBooks books;
   std::map<Triangle, std::vector<BearingPoint>> trial;  ///< of a long step: what its iterations have found
   std::vector<char> has_row, moves;                     ///< per vertex of the reach: has a row of its own; is in a row
   std::vector<HeldTriangle> held;                       ///< per triangle of the reach
-  bool in_contact = false;
-  double last_touch = 0.0, last_depth = 0.0;
 
   void bear_nothing();
   void begin_vertices(const InteractionStep& step);

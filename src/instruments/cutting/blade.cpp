@@ -41,7 +41,10 @@ BladeEdge Blade::edge() const {
   return {p.position + p.axes * options_.edge_from, p.position + p.axes * options_.edge_to};
 }
 
-void Blade::attached(const BodyView& body, double) { mesh_ = &body.mesh, removed_ = body.removed; }
+void Blade::attached(const BodyView& body, double) {
+  set_bounds(body);
+  mesh_ = &body.mesh, removed_ = body.removed;
+}
 
 void Blade::body_changed(const BodyView& body, std::span<const std::uint32_t>) {
   removed_ = body.removed;
@@ -152,6 +155,28 @@ void Blade::archive(Archive& ar) {
   }
   pieces_ = std::move(pieces);
   if (cutter_) cutter_->archive(ar);
+}
+
+struct Blade::Saved {
+  std::shared_ptr<const SavedMotion> motion;
+  std::shared_ptr<const void> cutter;
+  double area = 0.0, next_cut = 0.0;
+  std::vector<EdgePiece> pieces;
+  std::vector<std::pair<std::uint32_t, Vec3d>> last;
+};
+
+std::shared_ptr<const void> Blade::save_state() const {
+  return std::make_shared<const Saved>(
+      Saved{save_motion(), cutter_ ? cutter_->save_state() : nullptr, area_, next_cut_, pieces_, last_});
+}
+
+void Blade::load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) {
+  const Saved& saved = *std::static_pointer_cast<const Saved>(state);
+  load_motion(*saved.motion);
+  area_ = saved.area, next_cut_ = saved.next_cut, pieces_ = saved.pieces, last_ = saved.last;
+  if (cutter_ && saved.cutter != nullptr) cutter_->load_state(saved.cutter);
+  if (saved.cutter == nullptr) cutter_.reset();
+  if (other_body != nullptr) removed_ = other_body->removed;
 }
 
 }  // namespace glisson

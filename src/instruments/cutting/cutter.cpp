@@ -308,6 +308,12 @@ void Cutter::archive(Archive& ar) {
   impl_ = std::move(read);
 }
 
+std::shared_ptr<const void> Cutter::save_state() const { return std::make_shared<const Impl>(*impl_); }
+
+void Cutter::load_state(const std::shared_ptr<const void>& state) {
+  impl_ = std::make_unique<Impl>(*std::static_pointer_cast<const Impl>(state));
+}
+
 void Cutter::save(std::ostream& out) const {
   Archive contents;
   impl_->archive(contents);

@@ -25,6 +25,8 @@ class EndSearch {
   bool goes_on(const Vec3d& end);
   /// What it has learnt of earlier steps: its trials are those of one step, and stay when this is read again in it.
   void archive(Archive& ar) { ar(kept_); }
+  const Mat3d& slope() const { return kept_; }
+  void set_slope(const Mat3d& slope) { kept_ = slope; }
 
  private:
   Vec3d forward(const Vec3d& r, double most) const;

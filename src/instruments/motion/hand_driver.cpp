@@ -2,6 +2,7 @@
 //
 //   (m + h c + h² k) v⁺ = m v + h (k (x − y) + f),   y⁺ = y + h v⁺
 #include <cmath>
+#include <memory>
 #include <sstream>
 
 #include "base/require_fields.h"
@@ -15,9 +16,9 @@ double largest_passive_stiffness(const HandCoupling& x) {
   return (std::sqrt(c * c + 4.0 * x.device_damping * c) - c) / x.period;
 }
 
-HandDriver::HandDriver(const Pose& start, const HandCoupling& coupling)
-    : start_(start), target_(start), coupling_(coupling), position_(start.position) {
+HandDriver::HandDriver(const Pose& start, const HandCoupling& coupling) : start_(start), coupling_(coupling) {
   detail::require_fields("hand", coupling);
+  target_ = start, position_ = start.position;
 }
 
 Fault HandCoupling::check() const {
@@ -39,11 +40,46 @@ Pose HandDriver::advance(double time, double h, const Wrench& on_tool) {
 }
 
 Pose HandDriver::advance_under(double, double h, const Wrench& on_tool) {
-  const auto& [k, c, m, period, device] = coupling_;
+  const double k = coupling_.stiffness, c = coupling_.damping, m = coupling_.mass;
   const Vec3d impulse = ((target_.position - first_position_) * k + on_tool.force) * h;
   velocity_ = (first_velocity_ * m + impulse) * (1.0 / (m + h * c + h * h * k));
   position_ = first_position_ + velocity_ * h;
   return {position_, target_.axes};
+}
+
+/// Why a target makes no sense; empty where it does.
+std::string HandDriver::fault_of(const Pose& target) const {
+  if (!bounds_.holds(target)) return bounds_.fault_of(target);
+  const double speed = norm(target.position - target_.position) / coupling_.period;
+  if (!coupling_.most_speed || speed <= *coupling_.most_speed) return {};
+  std::ostringstream text;
+  text << "it is " << speed
+       << " m/s from the last target, where the allowed range is 0 to most_speed = " << *coupling_.most_speed
+       << " m/s; raise most_speed, or leave such poses out";
+  return text.str();
+}
+
+void HandDriver::set_target(const Pose& target) {
+  const std::string fault = fault_of(target);
+  if (!fault.empty()) throw std::invalid_argument("set_target: " + fault);
+  target_ = target;
+}
+
+bool HandDriver::offer_target(const Pose& target) {
+  if (!fault_of(target).empty()) {
+    ++rejected_;
+    return false;
+  }
+  target_ = target;
+  return true;
+}
+
+std::shared_ptr<const void> HandDriver::save_state() const {
+  return std::make_shared<const HandState>(static_cast<const HandState&>(*this));
+}
+
+void HandDriver::load_state(const std::shared_ptr<const void>& state) {
+  static_cast<HandState&>(*this) = *std::static_pointer_cast<const HandState>(state);
 }
 
 void HandDriver::archive(Archive& ar) { ar(position_, velocity_, target_, first_position_, first_velocity_); }

@@ -69,6 +69,14 @@ Pose PushDriver::go(double push, double h, const Vec3d& answer, double stiff) {
   return {start_.position + travel_, start_.axes};
 }
 
+std::shared_ptr<const void> PushDriver::save_state() const {
+  return std::make_shared<const PushState>(static_cast<const PushState&>(*this));
+}
+
+void PushDriver::load_state(const std::shared_ptr<const void>& state) {
+  static_cast<PushState&>(*this) = *std::static_pointer_cast<const PushState>(state);
+}
+
 void PushDriver::archive(Archive& ar) {
   ar(travel_, velocity_, last_travel_, last_force_, stiffness_, first_travel_, first_velocity_);
 }

@@ -79,6 +79,7 @@ void Needle::State::forget_forces(double h) {
 
 /// The needle comes from outside: between the hand and the tip there is no tissue yet.
 void Needle::attached(const BodyView& body, double) {
+  set_bounds(body);
   state_->zone_axes = zone_axes(body.mesh, direction());
   body_changed(body, {});
   const Vec3d& tip = pose_.position;
@@ -97,15 +98,21 @@ void Needle::attached(const BodyView& body, double) {
   throw std::invalid_argument(text.str());
 }
 
+/// What follows from the body alone.
+void Needle::State::look_at(const BodyView& body) {
+  mesh = &body.mesh;
+  zones = std::make_unique<TissueZones>(body.mesh, body.removed, options.zone, zone_axes);
+  surface = body.removed.empty() ? boundary_triangles(body.mesh) : boundary_triangles(living(body));
+  surface_edges.clear();
+  for (const Triangle& t : surface) surface_edges.push_back(longest_edge(body.mesh, t));
+  mobility.forget();
+}
+
 void Needle::body_changed(const BodyView& body, std::span<const std::uint32_t>) {
   State& s = *state_;
-  s.mesh = &body.mesh;
-  s.zones = std::make_unique<TissueZones>(body.mesh, body.removed, s.options.zone, s.zone_axes);
-  s.surface = body.removed.empty() ? boundary_triangles(body.mesh) : boundary_triangles(living(body));
-  s.surface_edges.clear();
-  for (const Triangle& t : s.surface) s.surface_edges.push_back(longest_edge(body.mesh, t));
+  s.look_at(body);
   s.look = true;
-  s.mobility.forget();
+  s.near_triangles.clear(), s.entry_vertices.clear();  // numbers of the surface that was
   for (shaft::Row& node : s.nodes) {
     if (!s.place(node, Vec3d(node.rest))) node.weights.clear();  // the tissue there is gone: the node no longer acts
   }
@@ -226,6 +233,29 @@ void Needle::archive(Archive& ar) {
   }
   const bool known_tip = s.tip.rest == tip_was && !s.tip.weights.empty();
   if (s.has_tip_row() && !known_tip) s.place(s.tip, Vec3d(s.tip.rest));
+}
+
+namespace {
+
+struct SavedNeedle {
+  std::shared_ptr<const void> motion;
+  NeedleKept kept;
+};
+
+}  // namespace
+
+std::shared_ptr<const void> Needle::save_state() const {
+  return std::make_shared<const SavedNeedle>(SavedNeedle{save_motion(), *state_});
+}
+
+void Needle::load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) {
+  const SavedNeedle& saved = *std::static_pointer_cast<const SavedNeedle>(state);
+  State& s = *state_;
+  load_motion(*std::static_pointer_cast<const SavedMotion>(saved.motion));
+  if (other_body != nullptr) s.look_at(*other_body);
+  static_cast<NeedleKept&>(s) = saved.kept;
+  s.take_entry_vertices();
+  s.mobility.forget();
 }
 
 }  // namespace glisson

@@ -11,7 +11,6 @@
 #include <limits>
 
 #include "base/two_across.h"
-#include "glisson/archive.h"
 #include "instruments/needle/needle_solver.h"
 
 namespace glisson {
@@ -167,8 +166,7 @@ std::string Needle::refuses_long_steps() const { return driver_refuses_long_step
 
 /// Tries what comes after the step: events that are to be dated, and a path that grows past what its friction was found for.
 bool Needle::overshoots(const InteractionStep& step) {
-  Archive kept;
-  archive(kept);
+  const std::shared_ptr<const void> before = save_state();
   const std::size_t events_before = events().size();
   const bool was_held = state_->at_membrane || state_->next_region.has_value();
   const NeedleStage stage_before = state_->stage;
@@ -182,8 +180,7 @@ bool Needle::overshoots(const InteractionStep& step) {
   if (stage_before == NeedleStage::inside && s.stage == NeedleStage::inside) {
     over = over || norm(s.tip.rest - end) > kMostGrowth * s.options.spacing;
   }
-  Archive back(kept.bytes());
-  archive(back);
+  load_state(before, nullptr);
   return over;
 }
 

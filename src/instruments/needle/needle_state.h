@@ -39,9 +39,35 @@ struct DropWatch {
   void archive(Archive& ar) { ar(armed, puncture_force, force, least, time, depth); }
 };
 
-struct Needle::State : NeedlePath {
-  NeedleOptions options;
+/// What a needle keeps from step to step.
+struct NeedleKept : NeedlePath {
   NeedleStage stage = NeedleStage::outside;
+  bool look = true;                         ///< whether reach is to name some
+  Vec3d named_around{};                     ///< rest position that vertices were last named for
+  std::vector<std::size_t> near_triangles;  ///< of the surface, that the tip may meet next, or come out at
+  double aside = 0.0;                       ///< how far across the needle the farthest of them is from its rest [m]
+  double aside_named = 0.0;                 ///< the list holds while it is no farther [m]
+  std::size_t entered = 0;  ///< so many tracks the needle is in or has passed; the others are holes ahead of the tip
+  bool tip_out = false;     ///< it has passed the last of these
+  shaft::Row tip;           ///< where the path ends
+  double tip_along = 0.0;   ///< impulse of the tip along the needle in the last step [N s]
+  bool tip_cuts = false;    ///< in the last step
+  double wave_time = 0.0;   ///< that a shear wave needs across the zone there [s]
+  int region = 0;           ///< that the tip is in
+  std::optional<int> next_region;        ///< whose boundary holds the tip
+  std::size_t broken = 0;                ///< of the membranes on this path
+  bool at_membrane = false;              ///< the first that is not broken holds the tip
+  std::optional<double> cutting_beyond;  ///< of the last broken one that has a cutting force [N]
+  bool withdraws = false;
+  PressingWork pressing;
+  DropWatch drop;
+  Vec3d bend_tip{};      ///< deflection of the tip [m]
+  double bending = 0.0;  ///< energy of that; kept where energies are tracked [J]
+  double step_h = 0.0;
+};
+
+struct Needle::State : NeedleKept {
+  NeedleOptions options;
 
   // the body
   const TetMesh* mesh = nullptr;
@@ -52,45 +78,24 @@ struct Needle::State : NeedlePath {
 
   // active vertices
   std::vector<std::uint32_t> wanted;          ///< named by reach
-  bool look = true;                           ///< whether reach is to name some
-  Vec3d named_around{};                       ///< rest position that vertices were last named for
-  std::vector<std::size_t> near_triangles;    ///< of the surface, that the tip may meet next, or come out at
-  std::vector<std::uint32_t> entry_vertices;  ///< of those that it may meet, ascending
-  double aside = 0.0;                         ///< how far across the needle the farthest of them is from its rest [m]
-  double aside_named = 0.0;                   ///< the list holds while it is no farther [m]
+  std::vector<std::uint32_t> entry_vertices;  ///< of the near triangles that it may meet, ascending
+  void look_at(const BodyView& body);
   void take_entry_vertices();
   void name_surface(const Vec3d& direction);
   void name_around_tip();
   void name_path();
 
   // the path
-  std::size_t entered = 0;  ///< so many tracks the needle is in or has passed; the others are holes ahead of the tip
-  bool tip_out = false;     ///< it has passed the last of these
-  shaft::Row tip;           ///< where the path ends
   std::vector<int> breaks;  ///< per node: how often it came from sticking to slip while a long step was solved for
   std::vector<char> stuck;  ///< per node: in the last iteration of a long step
   std::vector<double>
       ways;            ///< per node: by how much the needle passes it in a long step, as found last [m]; NaN: not found
   bool tries = false;  ///< what comes after a long step is tried, and taken back
   shaft::MobilityMatrix mobility;
-  double tip_along = 0.0;                ///< the same of the tip
   Vec3d tip_velocity{};                  ///< of the tissue at the tip before the step [m/s]
-  double wave_time = 0.0;                ///< that a shear wave needs across the zone there [s]
-  bool tip_cuts = false;                 ///< in the last step
-  int region = 0;                        ///< that the tip is in
-  std::optional<int> next_region;        ///< whose boundary holds the tip
   std::vector<InnerMembrane> membranes;  ///< given and drawn, by ascending depth
-  std::size_t broken = 0;                ///< of them on this path
-  bool at_membrane = false;              ///< the first that is not broken holds the tip
-  std::optional<double> cutting_beyond;  ///< of the last broken one that has a cutting force [N]
-  bool withdraws = false;
-  PressingWork pressing;
-  DropWatch drop;
 
   // the last step
-  Vec3d bend_tip{};      ///< deflection of the tip [m]
-  double bending = 0.0;  ///< energy of that; kept where energies are tracked [J]
-  double step_h = 0.0;
   double slack = 0.0;               ///< compliance of rows across beside that of the needle [1/kg]
   std::vector<std::size_t> acting;  ///< nodes that the needle acted on
   std::vector<double> lengths;      ///< of shaft that each of them stands for [m]
