@@ -462,6 +462,7 @@ void bind_simulation(nb::module_& m) {
   nb::class_<Live> simulation(m, "Simulation", nb::type_slots(slots), doc("Simulation"));
   bind_setting_up(simulation);
   bind_stepping(simulation);
+  bind_states(m, simulation);
   bind_views(simulation);
   bind_reading(simulation);
 }

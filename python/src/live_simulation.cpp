@@ -17,11 +17,13 @@ bool cuts(const BuiltVariant& built) {
 }  // namespace
 
 LiveSimulation::LiveSimulation(TetMesh mesh, std::map<int, Tissue> tissues, const SimulationOptions& options)
-    : own_(std::in_place, std::move(mesh), std::move(tissues), options), may_change_(options.mesh_changes) {}
+    : own_(std::in_place, std::move(mesh), std::move(tissues), options), may_change_(options.mesh_changes),
+      first_vertices_(own_->mesh().vertices.size()) {}
 
 LiveSimulation::LiveSimulation(const Variant& variant, const MeshLoader& load)
     : variant_(variant), built_(std::make_unique<BuiltVariant>(*variant_, load)),
-      may_change_(variant.simulation.mesh_changes || cuts(*built_)) {}
+      may_change_(variant.simulation.mesh_changes || cuts(*built_)),
+      first_vertices_(built_->simulation.mesh().vertices.size()) {}
 
 Simulation& LiveSimulation::get() {
   const std::thread::id busy = stepping_;

@@ -83,6 +83,8 @@ class LiveSimulation {
   Probes* probes() { return built_ ? &built_->probes : nullptr; }
   const std::optional<Variant>& variant() const { return variant_; }
   bool may_change() const { return may_change_; }
+  /// Of the body when it was made.
+  std::size_t first_vertices() const { return first_vertices_; }
 
   /// Makes steps. @return the worst of their statuses: ok or inverted @throws StepError, and what callbacks raised
   StepStatus step(std::uint64_t n);
@@ -113,6 +115,7 @@ class LiveSimulation {
   std::vector<std::uint32_t> inverted_;
   std::string trouble_;
   bool may_change_ = false;
+  std::size_t first_vertices_ = 0;
   std::atomic<std::thread::id> stepping_{};
 };
 

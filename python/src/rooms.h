@@ -18,6 +18,10 @@ void bind_cutting(nanobind::module_& m);
 void bind_probes(nanobind::module_& m);
 void bind_results(nanobind::module_& m);
 
+class LiveSimulation;
+/// States in memory, as members of Simulation.
+void bind_states(nanobind::module_& m, nanobind::class_<LiveSimulation>& simulation);
+
 /// Of a scene's variant those of the scene; of another simulation none. The result needs the simulation to be kept.
 nanobind::object probes_of(nanobind::handle simulation);
 

@@ -154,6 +154,68 @@ def test_checkpoint_goes_on_with_the_same_bytes():
         second.load(b"not a checkpoint")
 
 
+def test_goes_back_to_states_in_memory():
+    """load_state and reset go back, also after a cut, and on with the same bytes; what was added since is refused."""
+    body, _, _ = pressed()
+    body.step(50)
+    before = body.save_state()
+    view = body.displacement
+    body.step(70)
+    after, later = body.state_hash, body.save_state()
+    body.load_state(before)
+    assert body.time == before.time and np.array_equal(view, body.displacement)
+    body.step(70)
+    assert body.state_hash == after
+    del view
+    body.remove_tets([0, 1])
+    body.step(3)
+    body.load_state(later)
+    assert body.state_hash == after and not body.is_removed(0)
+    body.reset()
+    assert body.time == 0.0 and body.steps == 0 and not np.any(body.displacement)
+    body.step(120)
+    assert body.state_hash == after
+    body.add_load("z_max", (0, 0, 0.1))
+    with pytest.raises(ValueError, match="load no. 1 has been added since this state was saved"):
+        body.load_state(before)
+    other, _, _ = pressed()
+    with pytest.raises(ValueError, match="of another simulation"):
+        other.load_state(before)
+
+
+def test_bytes_are_loaded_where_they_were_saved():
+    """load takes what save returned in the same simulation too, after instruments have acted and tets have gone."""
+    for kind in ("ball", "needle"):
+        body = glisson.Simulation(
+            glisson.box_mesh(cells=[6, 6, 4], size=[0.04, 0.04, 0.03], origin=[-0.02, -0.02, -0.03]),
+            glisson.Tissue(youngs_modulus=4000),
+            glisson.SimulationOptions(damping_rate=20.0),
+        )
+        body.fix("z_min")
+        driver = glisson.PathDriver(glisson.Pose(position=[0, 0, 0.001]), lambda t: (0, 0, -0.03 * t))
+        if kind == "ball":
+            body.attach(glisson.ContactTool(glisson.ContactOptions(shape=glisson.Ball(radius=0.004)), driver))
+        else:
+            options = glisson.NeedleOptions(zone=8e-3, spacing=3e-3, rupture=glisson.Rupture(force=0.1))
+            body.attach(glisson.Needle(options, driver))
+        start = body.save()
+        body.advance(0.02)
+        early, after_early = body.save(), []
+        body.advance(0.04)
+        after_early.append(body.state_hash)
+        body.advance(0.12)
+        body.remove_tets([0])
+        body.advance(0.13)
+        body.load(early)
+        body.advance(0.04)
+        after_early.append(body.state_hash)
+        body.load(start)
+        body.advance(0.02)
+        body.advance(0.04)
+        after_early.append(body.state_hash)
+        assert len(set(after_early)) == 1, kind
+
+
 def test_state_is_set():
     """set_state puts a body where it is told, and counts energies from there."""
     body = glisson.Simulation(glisson.box_mesh(), glisson.Tissue())

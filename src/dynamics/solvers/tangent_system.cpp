@@ -376,8 +376,9 @@ std::shared_ptr<const void> TangentSystem::save_factor() const {
 
 void TangentSystem::load_factor(const std::shared_ptr<const void>& factor) {
   if (factor == nullptr) return;
-  f_ = std::const_pointer_cast<Factored>(std::static_pointer_cast<const Factored>(factor));
   has_pattern_ = true;
+  if (f_ == factor) return;  // what was solved with it still holds
+  f_ = std::const_pointer_cast<Factored>(std::static_pointer_cast<const Factored>(factor));
   ++factor_number_;
 }
 
