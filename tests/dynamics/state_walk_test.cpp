@@ -13,6 +13,7 @@
 #include "glisson/instruments/tool_motion.h"
 #include "support/bodies.h"
 #include "support/integrators.h"
+#include "support/law_examples.h"
 
 namespace glisson::state_walk_test {
 namespace {
@@ -108,7 +109,8 @@ class World {
 
   void choose_tissue() {
     tissue_.youngs_modulus = 3000.0;
-    switch (random_() % 4) {
+    const std::vector<HyperelasticLaw> laws = test::every_hyperelastic_law();
+    switch (random_() % 7) {
       case 0:
         tissue_.law = LinearLaw{20.0 * tissue_.youngs_modulus};
         break;
@@ -117,9 +119,28 @@ class World {
         break;
       case 2:
         tissue_.viscosity = 1.0;
+        if (options_.integrator == Integrator::central_difference)
+          options_.drag_stages = 1 + static_cast<int>(random_() % 2);
+        break;
+      case 3:
+        tissue_.hyperelastic = laws[random_() % laws.size()];
+        break;
+      case 4:
+        tissue_.hyperelastic = laws[random_() % laws.size()];
+        tissue_.volume_change = VolumeChange::average_nodal;
+        break;
+      case 5:
+        tissue_.kinematics = Kinematics::corotational;
+        tissue_.maxwell = {{0.3, 5e-3}};
         break;
       default:
         break;
+    }
+    const bool is_explicit = options_.integrator == Integrator::central_difference;
+    if (is_explicit && random_() % 2 == 0) options_.exact_steps = false;
+    if (is_explicit && options_.drag_stages == 1 && random_() % 4 == 0) {
+      options_.mass_scaling_step = 1.5 * Simulation(mesh_, {{0, tissue_}}, options_).step_size();
+      options_.mass_scaling = MassScalingKind::variable;
     }
   }
 
@@ -234,6 +255,7 @@ std::string walk(unsigned seed, int loads) {
   std::vector<std::vector<double>> truth{straight.told()};
   while (straight.at() < straight.length() && straight.step()) truth.push_back(straight.told());
 
+  if (truth.size() < 6) return "the run ended at once";
   World world(seed);
   std::mt19937 random(7 * seed + 1);
   std::vector<std::pair<std::size_t, State>> states;
@@ -273,7 +295,8 @@ TEST_P(StateWalk, LeavesNoTrace) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Hundredths, StateWalk, testing::Range(0U, 100U));
+INSTANTIATE_TEST_SUITE_P(First, StateWalk, testing::Range(0U, 4U));
+INSTANTIATE_TEST_SUITE_P(All, StateWalk, testing::Range(4U, 100U));  // make verify
 
 }  // namespace
 }  // namespace glisson::state_walk_test

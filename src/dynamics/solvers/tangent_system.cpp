@@ -261,7 +261,11 @@ void TangentSystem::assemble_triangles() {
 }
 
 bool TangentSystem::factorise(const TissueTangent& tangent) {
-  if (f_.use_count() > 1) f_ = std::make_shared<Factored>(*f_);
+  if (f_.use_count() > 1) {  // a saved state has it
+    if (spare_ == nullptr) spare_ = std::make_shared<Factored>();
+    *spare_ = *f_;
+    f_ = std::move(spare_);
+  }
   assemble(tangent);
   assemble_pressures(tangent);
   assemble_triangles();
@@ -378,6 +382,7 @@ void TangentSystem::load_factor(const std::shared_ptr<const void>& factor) {
   if (factor == nullptr) return;
   has_pattern_ = true;
   if (f_ == factor) return;  // what was solved with it still holds
+  if (f_.use_count() == 1) spare_ = std::move(f_);
   f_ = std::const_pointer_cast<Factored>(std::static_pointer_cast<const Factored>(factor));
   ++factor_number_;
 }

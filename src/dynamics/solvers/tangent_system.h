@@ -120,6 +120,7 @@ class TangentSystem final : public StepFactor {
   mutable std::vector<Vec3d> x_, y_;
 
   std::shared_ptr<Factored> f_ = std::make_shared<Factored>();  ///< shared with saved states: a copy is changed then
+  std::shared_ptr<Factored> spare_;  ///< memory for such a copy, which takes longer to give back and to ask for anew
   mutable Eigen::MatrixXd packed_, moved_;
   bool known_ = false;  ///< tangent_ is that of this body
   bool has_pattern_ = false, has_factor_ = false;
