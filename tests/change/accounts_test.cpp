@@ -91,7 +91,7 @@ TEST(AccountsOfLinear, RemovedEnergyIsWhatWasStored) {
   SimulationOptions options = in_double();
   options.step = kProbeStep;
   Simulation simulation(mesh, {{0, linear_tissue()}}, options);
-  State state = random_state(mesh, kCell, random);
+  FieldState state = random_state(mesh, kCell, random);
   simulation.set_state(state.u, state.v);
   const double whole = simulation.energies().initial;
   double kinetic = 0.0;

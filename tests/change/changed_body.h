@@ -90,22 +90,22 @@ inline std::vector<Kind> every_kind() {
 inline std::string kind_name(const testing::TestParamInfo<Kind>& p) { return p.param.name; }
 inline void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
 
-struct State {
+struct FieldState {
   std::vector<Vec3d> u, v;
 };
 
-inline State state_of(const Simulation& s) {
+inline FieldState state_of(const Simulation& s) {
   return {{s.displacement().begin(), s.displacement().end()}, {s.velocity().begin(), s.velocity().end()}};
 }
 
 /// Up to 10 % strain and 10/s of its rate, another one at each vertex.
-inline State random_state(const TetMesh& mesh, double cell, std::mt19937& random) {
+inline FieldState random_state(const TetMesh& mesh, double cell, std::mt19937& random) {
   return {random_field(mesh.vertices.size(), 0.05 * cell, random), random_field(mesh.vertices.size(), cell, random)};
 }
 
 /// Total force on each vertex in the state that the next step starts from; makes that step. [N]
 inline std::vector<Vec3d> forces_by_step(Simulation& s) {
-  const State before = state_of(s);
+  const FieldState before = state_of(s);
   const double h = s.step_size();
   EXPECT_NE(s.step().status, StepStatus::not_finite);
   std::vector<Vec3d> forces(before.v.size());
@@ -113,14 +113,14 @@ inline std::vector<Vec3d> forces_by_step(Simulation& s) {
   return forces;
 }
 
-inline std::vector<Vec3d> forces_in(Simulation& s, const State& state) {
+inline std::vector<Vec3d> forces_in(Simulation& s, const FieldState& state) {
   s.set_state(state.u, state.v);
   return forces_by_step(s);
 }
 
 /// The forces of a body changed by removals and splits and those of one built anew, in the same state.
 inline void expect_as_built_anew(Simulation& changed, const Tissues& tissues, const SimulationOptions& options,
-                                 const State& state, double tolerance) {
+                                 const FieldState& state, double tolerance) {
   Simulation anew(changed.present_mesh(), tissues, options);
   const std::vector<Vec3d> got = forces_in(changed, state), expected = forces_in(anew, state);
   EXPECT_LE(relative_difference(got, expected), tolerance);

@@ -51,7 +51,7 @@ TEST_P(Moves, LeaveABodyAsBuiltAnew) {
     for (const VertexMove& m : moves) EXPECT_EQ(body.simulation.mesh().vertices[m.vertex], m.rest);
     EXPECT_NEAR(mass(body.simulation), mass_before, 1e-13 * mass_before);
     EXPECT_NEAR(volume(body.simulation.present_mesh()), volume_before, 1e-13 * volume_before);
-    const State state = random_state(body.simulation.mesh(), kCell, body.random);
+    const FieldState state = random_state(body.simulation.mesh(), kCell, body.random);
     expect_as_built_anew(body.simulation, body.tissues, body.options, state, GetParam().tolerance());
   }
 }
@@ -63,7 +63,7 @@ TEST_P(Moves, KeepAnAffineState) {
   const auto affine = [](const Vec3d& x, double scale) {
     return Vec3d{0.02 * x.x + 0.05 * x.y - 0.01 * x.z, 0.03 * x.x - 0.02 * x.y, 0.04 * x.z + 0.01} * scale;
   };
-  State state;
+  FieldState state;
   for (const Vec3d& x : body.mesh.vertices) state.u.push_back(affine(x, 1.0)), state.v.push_back(affine(x, 7.0));
   body.simulation.set_state(state.u, state.v);
   const Energies before = body.simulation.energies();

@@ -13,7 +13,7 @@ struct Running {
 
   explicit Running(Precision precision) : simulation(mesh, {{0, law_tissue()}}, options(precision)) {
     simulation.fix(mesh.vertex_sets.at("z_min"));
-    const State state = random_state(mesh, 0.01, random);
+    const FieldState state = random_state(mesh, 0.01, random);
     simulation.set_state(std::vector<Vec3d>(state.u.size()), state.v);
     const std::vector<std::uint32_t> gone{7, 8, 9};
     simulation.remove_tets(gone);

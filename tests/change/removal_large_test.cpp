@@ -14,7 +14,7 @@ struct Forces {
 };
 
 /// Forces without a step; all vertices are watched, so that the two parts are kept apart.
-Forces forces_of(engine::SubmeshBody& moving, const State& state) {
+Forces forces_of(engine::SubmeshBody& moving, const FieldState& state) {
   moving.set_state(state.u, state.v);
   moving.advance(0.0, {}, false);
   Forces f;
@@ -23,7 +23,7 @@ Forces forces_of(engine::SubmeshBody& moving, const State& state) {
 }
 
 Forces forces_built_anew(TetMesh mesh, const Tissues& tissues, const Body& changed, const BodyChanger& changer,
-                         const State& state) {
+                         const FieldState& state) {
   std::vector<Tet> left;
   for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
     if (!changer.is_removed(t)) left.push_back(mesh.tets[t]);
@@ -47,7 +47,7 @@ TEST_P(RemovalFromLarge, LeavesTheForcesOfABodyBuiltAnew) {
   engine::SubmeshBody moving(body, damping);
   moving.watch(all_vertices(mesh), all_vertices(mesh));
   BodyChanger changer(body);
-  const State state = random_state(mesh, kEdge, random);
+  const FieldState state = random_state(mesh, kEdge, random);
   for (const std::size_t count : {1U, 5U, 20U, 100U}) {
     const BodyChange change = changer.remove(changer.living_elements(choose(count, mesh.tets.size(), random)));
     EXPECT_EQ(change.removed.size(), count);

@@ -49,7 +49,7 @@ TEST_P(Removal, OfAHoleLeavesLooseVertices) {
   ASSERT_GT(report.loose_vertices.size(), 20U);
   body.expect_as_built_anew();
 
-  const State before = state_of(body.simulation);
+  const FieldState before = state_of(body.simulation);
   for (int i = 0; i < 10; ++i) test::must_step(body.simulation);
   std::vector<char> loose(body.mesh.vertices.size(), 0);
   for (const std::uint32_t v : report.loose_vertices) loose[v] = 1;
@@ -69,7 +69,7 @@ TEST_P(Removal, OfHalfAndOfAll) {
   EXPECT_EQ(body.simulation.present_mesh().tets.size(), 0U);
   EXPECT_GT(rest.tets, 1000U);
   EXPECT_EQ(mass(body.simulation), 0.0);
-  const State state = random_state(body.mesh, kCell, body.random);
+  const FieldState state = random_state(body.mesh, kCell, body.random);
   body.simulation.set_state(state.u, state.v);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(body.simulation.step().status, StepStatus::ok);
   for (std::size_t v = 0; v < state.u.size(); ++v) EXPECT_EQ(body.simulation.displacement()[v], state.u[v]);
@@ -87,13 +87,13 @@ TEST_P(Removal, FromBodiesOfSeveralTissues) {
   Simulation simulation(mesh, tissues, GetParam().options());
   for (const std::size_t count : {10U, 300U}) {
     simulation.remove_tets(choose(count, mesh.tets.size(), random));
-    const State state = random_state(mesh, kCell, random);
+    const FieldState state = random_state(mesh, kCell, random);
     expect_as_built_anew(simulation, tissues, GetParam().options(), state, GetParam().tolerance());
   }
   std::vector<std::uint32_t> region(900);
   std::iota(region.begin(), region.end(), 0U);
   simulation.remove_tets(region);
-  const State state = random_state(mesh, kCell, random);
+  const FieldState state = random_state(mesh, kCell, random);
   expect_as_built_anew(simulation, tissues, GetParam().options(), state, GetParam().tolerance());
 }
 

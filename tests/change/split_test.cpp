@@ -21,7 +21,7 @@ struct Cut {
   explicit Cut(const Kind& k) : tissues{{0, k.tissue}}, kind(k), simulation(mesh, tissues, k.options()) {}
   std::vector<Triangle> middle() const { return faces_on_plane(simulation.mesh(), 2, 6 * kCell); }
   void expect_as_built_anew() {
-    const State state = random_state(simulation.mesh(), kCell, random);
+    const FieldState state = random_state(simulation.mesh(), kCell, random);
     test::expect_as_built_anew(simulation, tissues, kind.options(), state, kind.tolerance());
   }
 };
@@ -92,7 +92,7 @@ TEST_P(Split, WhileItMoves) {
   // near balance the sums at a vertex are a tenth of the terms: ten times the tolerance of a random state
   Simulation anew(s.present_mesh(), body.tissues, GetParam().options());
   body.simulation.split_faces(body.middle());
-  const State now = state_of(s);
+  const FieldState now = state_of(s);
   EXPECT_LE(relative_difference(forces_in(body.simulation, now), forces_in(anew, now)), 10 * GetParam().tolerance());
 }
 

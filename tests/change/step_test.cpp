@@ -90,7 +90,7 @@ TEST_P(Step, GivenAndSmallGoesOn) {
 }
 
 /// Whether a body built anew in this state takes the step.
-bool takes(const TetMesh& mesh, const Tissues& tissues, const SimulationOptions& options, const State& state) {
+bool takes(const TetMesh& mesh, const Tissues& tissues, const SimulationOptions& options, const FieldState& state) {
   try {
     Simulation anew(mesh, tissues, options);
     anew.set_state(state.u, state.v);
@@ -108,7 +108,7 @@ TEST_P(Step, GivenIsHeldAgainstTheStableStepOfWhatIsLeft) {
   for (unsigned seed = 1; seed <= 24; ++seed) {
     Noisy body(GetParam(), stable * (0.75 + 0.01 * seed));
     body.random.seed(seed);
-    State state = random_state(body.mesh, 0.4 * kCell, body.random);
+    FieldState state = random_state(body.mesh, 0.4 * kCell, body.random);
     body.simulation.set_state(state.u, state.v);
     if (body.simulation.step().status != StepStatus::ok) continue;
     body.simulation.remove_tets(choose(seed % 2 == 0 ? 300 : 3, body.mesh.tets.size(), body.random));

@@ -21,11 +21,11 @@ std::vector<Ogden> laws() {
 }
 
 /// A state of three stretches at random, X of which has J₂ = share² of the largest.
-struct State {
+struct Stretched {
   std::array<double, 3> x{};  ///< eigenvalues of X
   double m = 1.0, delta = 0.0;
 
-  State(const StretchSeries<>& series, double share, std::mt19937& random) {
+  Stretched(const StretchSeries<>& series, double share, std::mt19937& random) {
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     delta = share * std::sqrt(4.0 / 3.0 * series.largest_J2);
     const double angle = 2.0 * std::numbers::pi * unit(random), turn = 2.0 * std::numbers::pi / 3.0;
@@ -46,7 +46,7 @@ TEST(StretchSeries, IsTheLaw) {
     for (const double mu : law.mu) scale += std::abs(mu);
     for (const double share : {1e-3, 0.1, 0.7, 1.0}) {
       for (int n = 0; n < 250; ++n) {
-        const State s(series, share, random);
+        const Stretched s(series, share, random);
         std::array<double, 3> l{};
         double mean = 0.0;
         for (std::size_t i = 0; i < 3; ++i) l[i] = std::log(s.stretch(i)), mean += l[i] / 3.0;
@@ -77,7 +77,7 @@ TEST(StretchSeries, BoundIsAboveTheTangentAndClose) {
     EXPECT_DOUBLE_EQ(series.bound[0], stretch_bound(law, {0.0, 0.0, 0.0}));
     for (const double share : {0.01, 0.1, 0.4, 0.7, 1.0}) {
       for (int n = 0; n < 300; ++n) {
-        const State s(series, share, random);
+        const Stretched s(series, share, random);
         const auto& [rest, slope, bend, shape] = series.bound;
         const double bound = (rest + s.delta * (slope + s.delta * bend) + shape * s.J3() / s.delta) / s.m;
         const double exact = stretch_bound(law, {s.stretch(0) - 1.0, s.stretch(1) - 1.0, s.stretch(2) - 1.0});

@@ -46,7 +46,7 @@ void StepContact::add(std::shared_ptr<Interaction> interaction) {
   interactions_.add(std::move(interaction));
   interactions_.keep_all();
   forces_.own.emplace_back();
-  pushes_means_.push_back(0), responses_.emplace_back();
+  pushes_means_.push_back(0);
   forces_.total.resize(state_.body.vertex_count);
   for (std::vector<Vec3d>& of_one : forces_.own) of_one.resize(state_.body.vertex_count);
   interactions_.ask_rests();
@@ -109,8 +109,8 @@ bool StepContact::begin(double h, std::span<const Vec3d> u, bool mass_matters) {
   reached_ = backup();
   at_places_.clear();  // the order in which columns come is that of this step, whatever was before
   asked_before_.swap(asked_), asked_.clear();
-  std::erase_if(means_, [](const auto& mean) { return !mean.second.used; });
-  for (auto& [key, mean] : means_) mean.used = false;
+  std::erase_if(solved().means, [](const auto& mean) { return !mean.second.used; });
+  for (auto& [key, mean] : solved().means) mean.used = false;
   if (mass_matters && h != factor_h_) system_.renew();
   factor_h_ = h;
   agrees_ = true;
@@ -145,16 +145,21 @@ std::span<const TriangleStiffness> StepContact::stiffness() {
   return stiffness_;
 }
 
-void StepContact::forget_columns() {
-  factor_ = system_.factor_number();
-  columns_.clear(), at_places_.clear(), means_.clear();
-  asked_before_.swap(asked_), asked_.clear();
-  responses_.assign(responses_.size(), {});
+/// What is known of the present factor.
+StepContact::Solved& StepContact::solved() {
+  std::shared_ptr<void>& known = system_.solved();
+  if (known == nullptr) {
+    known = std::make_shared<Solved>();
+    asked_before_.swap(asked_), asked_.clear();
+  }
+  Solved& all = *static_cast<Solved*>(known.get());
+  all.responses.resize(forces_.own.size());
+  return all;
 }
 
 /// P⁻¹ of forces that an interaction exerts. A correction takes off what the last one has put on: one solve serves both.
 const Eigen::VectorXd& StepContact::response(std::size_t interaction, const std::vector<Vec3d>& forces) {
-  Response& last = responses_[interaction];
+  Response& last = solved().responses[interaction];
   if (last.forces != forces) {
     Eigen::MatrixXd moved = flat(std::span<const Vec3d>(forces));
     system_.factor_solve(moved);
@@ -239,7 +244,10 @@ void StepContact::move_by_change(std::span<Vec3d> u, const ExertedForces& known,
 
 bool StepContact::correct(std::span<Vec3d> u) {
   if (system_.factor_number() == 0) return false;
-  if (system_.factor_number() != factor_) forget_columns();
+  if (system_.factor_number() != factor_) {
+    factor_ = system_.factor_number();
+    at_places_.clear();
+  }
   if (at_places_.empty()) {
     at_places_.resize(active_.size());
     near_.clear(), far_.resize(active_.size());
@@ -308,11 +316,12 @@ std::array<double, 3> StepContact::lost_at(std::span<const Vec3d> v, double Inte
 /// was asked for: a pass over the factor then serves several.
 const StepContact::Column& StepContact::column(std::uint32_t vertex) {
   asked_.insert(vertex);
-  if (const auto at = columns_.find(vertex); at != columns_.end()) return at->second;
+  std::map<std::uint32_t, Column>& columns = solved().columns;
+  if (const auto at = columns.find(vertex); at != columns.end()) return at->second;
   std::vector<std::uint32_t> fresh{vertex};
   for (const std::uint32_t v : asked_before_) {
     if (fresh.size() == kAtATime) break;
-    if (v != vertex && columns_.count(v) == 0) fresh.push_back(v);
+    if (v != vertex && columns.count(v) == 0) fresh.push_back(v);
   }
   Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(3 * state_.body.vertex_count),
                                                 static_cast<Eigen::Index>(3 * fresh.size()));
@@ -321,20 +330,20 @@ const StepContact::Column& StepContact::column(std::uint32_t vertex) {
   }
   system_.factor_solve(moved);
   for (std::size_t k = 0; k < fresh.size(); ++k)
-    columns_[fresh[k]] = moved.middleCols<3>(static_cast<Eigen::Index>(3 * k));
-  return columns_[vertex];
+    columns[fresh[k]] = moved.middleCols<3>(static_cast<Eigen::Index>(3 * k));
+  return columns[vertex];
 }
 
 /// Displacements by unit forces on a mean of vertices, once find_columns() has them.
-const StepContact::Column& StepContact::column_of(const std::vector<VertexWeight>& mean) const {
-  return means_.at(key_of(mean)).moved;
+const StepContact::Column& StepContact::column_of(const std::vector<VertexWeight>& mean) {
+  return solved().means.at(key_of(mean)).moved;
 }
 
 /// Finds those of means that are not known yet, several at a time: a pass over the factor then serves them all.
 void StepContact::find_columns(std::span<const std::vector<VertexWeight>> means) {
   std::vector<std::pair<const std::vector<VertexWeight>*, Column*>> fresh;
   for (const std::vector<VertexWeight>& mean : means) {
-    const auto [at, is_fresh] = means_.try_emplace(key_of(mean));
+    const auto [at, is_fresh] = solved().means.try_emplace(key_of(mean));
     at->second.used = true;
     if (is_fresh) fresh.emplace_back(&mean, &at->second.moved);
   }

@@ -111,17 +111,23 @@ class StepContact final : public StepCompliance {
     std::vector<Vec3d> forces;
     Eigen::VectorXd moved;  ///< P⁻¹ of them [m]
   };
+  /// With a factor.
+  struct Solved {
+    std::map<std::uint32_t, Column> columns;  ///< per vertex: displacement of all components by a unit force [m/N]
+    std::map<std::vector<std::pair<std::uint32_t, double>>, MeanColumn> means;  ///< the same by one on a mean
+    std::vector<Response> responses;                                            ///< per interaction, as last asked for
+  };
+  Solved& solved();
   const Column& column(std::uint32_t vertex);
   const Column& column_at(std::size_t place);
   void find_columns(std::span<const std::vector<VertexWeight>> means);
-  const Column& column_of(const std::vector<VertexWeight>& mean) const;
+  const Column& column_of(const std::vector<VertexWeight>& mean);
   void move(std::size_t by, const Vec3d& impulse, std::size_t place, ActiveVertex& vertex) const;
   void activate(std::span<const std::uint32_t> vertices);
   void put_at_start(std::span<const Vec3d> u);
   void put_at_end(std::span<const Vec3d> u, std::span<const Vec3d> v);
   template <class Velocity>
   std::array<double, 3> lost_by(double InterfaceBook::Page::*tools, const Velocity& velocity) const;
-  void forget_columns();
   double find_forces();
   double find_forces_of(std::size_t interaction);
   void take_off(std::size_t interaction);
@@ -138,15 +144,12 @@ class StepContact final : public StepCompliance {
   Backup before_, reached_;  ///< before reach(), and after it
   double h_ = 0.0, factor_h_ = 0.0;
   bool agrees_ = true;
-  std::uint64_t factor_ = 0;                 ///< that the columns are of
-  std::map<std::uint32_t, Column> columns_;  ///< per vertex: displacement of all components by a unit force [m/N]
+  std::uint64_t factor_ = 0;  ///< that at_places_ is of
   std::set<std::uint32_t> asked_,
       asked_before_;  ///< vertices whose columns were wanted with this factor in this step, and before that
-  std::map<std::vector<std::pair<std::uint32_t, double>>, MeanColumn> means_;  ///< the same by one on a mean
-  std::vector<char> pushes_means_;                                             ///< per interaction
-  std::vector<Response> responses_;                                            ///< per interaction, as last asked for
-  std::size_t acting_ = 0;                                                     ///< whose turn it is
-  std::vector<Column> at_places_;          ///< columns_ per place, of active vertices; empty: not asked for yet
+  std::vector<char> pushes_means_;         ///< per interaction
+  std::size_t acting_ = 0;                 ///< whose turn it is
+  std::vector<Column> at_places_;          ///< columns per place, of active vertices; empty: not asked for yet
   std::vector<std::uint32_t> near_, far_;  ///< places that have columns, and the others
   std::vector<Vec3d> unsettled_;           ///< per place: impulses that the others have not got yet [N s]
 };

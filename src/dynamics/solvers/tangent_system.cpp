@@ -273,6 +273,7 @@ bool TangentSystem::factorise(const TissueTangent& tangent) {
 }
 
 bool TangentSystem::take_factor() {
+  f_->solved.reset();
   if (std::exchange(f_->knows_entries, true)) return f_->factor.factorise_again(f_->matrix);
   return f_->factor.factorise(f_->matrix, f_->pressures);
 }

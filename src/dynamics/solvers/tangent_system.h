@@ -76,6 +76,7 @@ class TangentSystem final : public StepFactor {
   /// The next solve() makes the factor anew.
   void renew() override { has_factor_ = current_ = false; }
   std::uint64_t factor_number() const override { return has_factor_ ? factor_number_ : 0; }
+  std::shared_ptr<void>& solved() override { return f_->solved; }
   /// P is A at some earlier state.
   void factor_solve(Eigen::MatrixXd& x) const override;
   /// x ≈ A⁻¹ b on the free components, 0 on the others.
@@ -95,6 +96,7 @@ class TangentSystem final : public StepFactor {
     std::vector<int> diagonal_position;                  ///< per row
     FactorPanels factor;
     bool knows_entries = false;  ///< the factor has been made for this pattern
+    std::shared_ptr<void> solved{};
   };
   void find_pattern();
   int place_in(int row, int column) const;

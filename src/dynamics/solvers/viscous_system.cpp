@@ -63,6 +63,7 @@ bool ViscousSystem::build(const Body& body, std::span<const double> nodal_dampin
   last_ = Eigen::VectorXd::Zero(free);
   factorised_ = body.elements.size() <= most_tets;
   ++factor_number_;
+  solved_.reset();
   if (factorised_) return factor_.factorise(matrix_.triangularView<Eigen::Lower>());
   rows_ = matrix_;
   inverse_diagonal_ = matrix_.diagonal().cwiseInverse();

@@ -38,6 +38,7 @@ class ViscousSystem final : public StepFactor {
   /// P = (M + hγ + hC)/h².
   void factor_solve(Eigen::MatrixXd& x) const override;
   std::uint64_t factor_number() const override { return factorised_ ? factor_number_ : 0; }
+  std::shared_ptr<void>& solved() override { return solved_; }
   void renew() override {}  // build() does
 
   /// C x of the held components [N]; 0 for the others.
@@ -68,6 +69,7 @@ class ViscousSystem final : public StepFactor {
   bool factorised_ = false;
   FactorPanels factor_;
   std::uint64_t factor_number_ = 0;
+  std::shared_ptr<void> solved_;
   Eigen::MatrixXd packed_;  ///< one column
   Eigen::VectorXd last_, inverse_diagonal_;
 };
