@@ -48,6 +48,10 @@ void load(OwnCutter& self, const nb::bytes& checkpoint) {
   self.cutter().load(in);
 }
 
+struct KeptCutter {
+  std::shared_ptr<const void> state;
+};
+
 }  // namespace
 
 void bind_cutting(nb::module_& m) {
@@ -65,6 +69,7 @@ void bind_cutting(nb::module_& m) {
       .read("length", &EdgePiece::length)
       .read("weights", &EdgePiece::weights);
   const auto of = [](const char* member) { return doc(std::string("Cutter::") + member); };
+  nb::class_<KeptCutter>(m, "CutterState", "What Cutter.save_state returns");
   nb::class_<OwnCutter>(m, "Cutter", doc("Cutter"))
       .def(nb::init<LiveSimulation&, const CutOptions&>(), "simulation"_a, "options"_a = CutOptions{},
            nb::keep_alive<1, 2>(), of("Cutter"),
@@ -75,7 +80,12 @@ void bind_cutting(nb::module_& m) {
           "contact", [](OwnCutter& c) { return c.cutter().contact(); }, of("contact"))
       .def_prop_ro("edge", &OwnCutter::edge, "Its ends where they are now, (2, 3) [m]")
       .def("save", save, of("save"))
-      .def("load", load, "checkpoint"_a, of("load"));
+      .def("load", load, "checkpoint"_a, of("load"))
+      .def(
+          "save_state", [](OwnCutter& c) { return KeptCutter{c.cutter().save_state()}; }, of("save_state"))
+      .def(
+          "load_state", [](OwnCutter& c, const KeptCutter& kept) { c.cutter().load_state(kept.state); }, "state"_a,
+          of("load_state"));
 }
 
 }  // namespace glisson::python

@@ -63,5 +63,33 @@ std::uint64_t hash_of_cut(bool moved) {
 // A blade is attached like any instrument, cuts as its body is stepped, and goes on where the Simulation is moved.
 TEST(BetweenSteps, BladeFollowsItsBody) { EXPECT_EQ(hash_of_cut(true), hash_of_cut(false)); }
 
+// A cutter of a program's own goes back with its body by its own state; left behind, it says so in the place of cutting what is not there.
+TEST(BetweenSteps, ACutterGoesBackWithItsBody) {
+  const TetMesh mesh = box_mesh({.cells = {4, 4, 4}, .size = {0.02, 0.02, 0.02}});
+  Simulation body(mesh, {{0, Tissue{}}});
+  body.fix(mesh.vertex_sets.at("z_min"));
+  Cutter cutter(body);
+  const auto edge = [](double z) { return BladeEdge{{0.0093, -0.001, z}, {0.0093, 0.021, z}}; };
+  cutter.place(edge(0.021));
+  const State whole = body.save_state();
+  const auto cutter_whole = cutter.save_state();
+  std::vector<double> areas;
+  std::vector<std::uint64_t> hashes;
+  for (int i = 0; i < 2; ++i) {
+    areas.push_back(cutter.advance(edge(0.009)).area);
+    EXPECT_GT(body.mesh().vertices.size(), mesh.vertices.size());
+    for (int k = 0; k < 20; ++k) ASSERT_TRUE(body.step().made());
+    hashes.push_back(body.state_hash());
+    body.load_state(whole);
+    if (i == 0) {
+      EXPECT_THROW(cutter.advance(edge(0.005)), std::invalid_argument);
+      cutter.load_state(cutter_whole);
+    }
+  }
+  EXPECT_GT(areas[0], 1e-4);
+  EXPECT_EQ(areas[1], areas[0]);
+  EXPECT_EQ(hashes[1], hashes[0]);
+}
+
 }  // namespace
 }  // namespace glisson::test::between_steps_test

@@ -90,7 +90,7 @@ TEST_P(CutsInMotion, LeaveABodyAsBuiltAnew) {
   for (int i = 0; i < 3; ++i) {
     const CutReport report = cut_along(cutter, random_plane({0.025, 0.025, 0.03}, random), kReach, i * 0.01, 4);
     EXPECT_GT(report.moved_vertices, 0U);
-    const State state = random_state(body.mesh(), 0.4 * kCell, random);
+    const FieldState state = random_state(body.mesh(), 0.4 * kCell, random);
     // a tet may be 0.4 times as thin as the thinnest before, and velocities are read off a step that is a tenth as long
     expect_as_built_anew(body, tissues, options, state, 20 * GetParam().tolerance());
   }
@@ -102,7 +102,7 @@ TEST_P(CutsInMotion, KeepAHomogeneousDeformation) {
   const TetMesh mesh = jittered_box({5, 5, 6}, kCell, 0.15, random);
   Simulation body(mesh, {{0, GetParam().tissue}}, GetParam().options(std::nullopt));
   const auto field = [](const Vec3d& x) { return Vec3d{0.1 * x.x + 0.3 * x.y, -0.05 * x.y, 0.2 * x.x + 0.15 * x.z}; };
-  State state{{}, std::vector<Vec3d>(mesh.vertices.size())};
+  FieldState state{{}, std::vector<Vec3d>(mesh.vertices.size())};
   for (const Vec3d& x : mesh.vertices) state.u.push_back(field(x));
   body.set_state(state.u, state.v);
   const double elastic = body.energies().elastic;

@@ -7,6 +7,7 @@
 #include "dynamics/state/loaded_faces.h"
 #include "glisson/archive.h"
 #include "glisson/simulation/surface_load.h"
+#include "glisson/time_function.h"
 
 namespace glisson {
 

@@ -94,6 +94,12 @@ void Cutter::Impl::limit_spread(double viscosity) {
 void Cutter::Impl::follow() {
   const std::span<const std::uint32_t> copies = scheme.state().copies;
   const std::size_t now = scheme.body().vertex_count, known = doubled.size();
+  if (now < known) {
+    throw std::invalid_argument("cutter: its body has " + std::to_string(now) + " vertices, and had " +
+                                std::to_string(known) +
+                                ": the simulation has gone back in time; take the cutter back too (load_state), or "
+                                "make a new one");
+  }
   const auto fresh = copies.subspan(copies.size() - (now - known));
   sheet.add_copies(fresh);
   doubled.resize(now, 1);
