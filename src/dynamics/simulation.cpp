@@ -277,7 +277,7 @@ TetMesh Simulation::present_mesh() const {
 StepResult Simulation::step() {
   Impl& me = inside();
   const Impl::Guard guard(me, "step");
-  if (me.scheme->state().steps == 0) me.start = me.save();
+  if (me.scheme->state().steps == 0) me.begin_run();
   const StepResult result = me.scheme->step();
   me.busy = Impl::Busy::between_steps;
   for (std::size_t i = 0; result.made() && i < me.scheme->interactions().size(); ++i) {

@@ -74,6 +74,7 @@ struct Simulation::Impl {
   std::span<const std::uint32_t> follow_body();
   void archive(Archive& ar);
   State save();
+  void begin_run();
   void load(const State::Contents& state);
   /// Why a state is not one of this simulation as it is now; empty where it is.
   std::string refuses(const State& state) const;

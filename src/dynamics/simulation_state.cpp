@@ -80,6 +80,12 @@ State Simulation::Impl::save() {
   return state;
 }
 
+/// Where reset() goes. A body that is made for changes is copied now, so that its first cut does not have to wait for that.
+void Simulation::Impl::begin_run() {
+  start = save();
+  if (scheme->state().options.mesh_changes) keep_version();
+}
+
 std::string Simulation::Impl::refuses(const State& state) const {
   if (!state) return "this state is of no simulation; take one that save_state() returned";
   const State::Contents& saved = *state.contents_;

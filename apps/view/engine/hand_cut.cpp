@@ -24,6 +24,13 @@ void HandCut::draw(const BladeEdge& edge) {
   }
 }
 
+void HandCut::go_back(const Kept& kept) {
+  cutter_.load_state(kept.cutter);
+  area_ = kept.area;
+  pieces_.clear();
+  lost_ = true;
+}
+
 bool HandCut::work(Clock::time_point now) {
   if (pieces_.empty() || now < next_) return false;
   const Piece piece = pieces_.front();

@@ -11,6 +11,7 @@
 
 #include <chrono>
 #include <deque>
+#include <memory>
 
 #include "glisson/instruments/cutting.h"
 
@@ -28,6 +29,14 @@ class HandCut {
   /// Makes the next piece of the stroke, where it is due.
   /// @return whether the body is another @throws std::invalid_argument where the library refuses; nothing is changed then
   bool work(Clock::time_point now);
+
+  /// What goes with the body where that goes back in time; what waits does not.
+  struct Kept {
+    std::shared_ptr<const void> cutter;
+    double area = 0.0;
+  };
+  Kept keep() const { return {cutter_.save_state(), area_}; }
+  void go_back(const Kept& kept);
 
   double area() const { return area_; }        ///< cut so far, at rest [m²]
   double longest() const { return longest_; }  ///< that a piece has taken [s]

@@ -136,6 +136,7 @@ void LiveBody::attach_grab() {
 void LiveBody::take_blade() {
   try {
     cut_ = std::make_unique<HandCut>(built_->simulation);
+    uncut_ = cut_->keep();
   } catch (const std::exception& error) {
     why_no_cut_ = error.what();
   }
@@ -143,6 +144,31 @@ void LiveBody::take_blade() {
 
 void LiveBody::work_on_cut(HandCut::Clock::time_point now) {
   if (cut_ && cut_->work(now)) ++hand_cuts_;
+}
+
+void LiveBody::reset() {
+  if (grab_) grab_->let_go();
+  built_->simulation.reset();
+  built_->simulation.set_tissues(*tissues_);
+  if (cut_) cut_->go_back(*uncut_);
+  hand_cuts_ = 0;
+  for (const auto& way : ways_) way->restart();
+}
+
+LiveBody::Kept LiveBody::keep() const {
+  Kept kept{.state = built_->simulation.save_state(), .cut = {}, .hand_cuts = hand_cuts_, .ways = {}};
+  if (cut_) kept.cut = cut_->keep();
+  for (const auto& way : ways_) kept.ways.push_back(*way);
+  return kept;
+}
+
+void LiveBody::go_back(const Kept& kept) {
+  if (grab_) grab_->let_go();
+  built_->simulation.load_state(kept.state);
+  built_->simulation.set_tissues(*tissues_);
+  if (cut_ && kept.cut) cut_->go_back(*kept.cut);
+  hand_cuts_ = kept.hand_cuts;
+  for (std::size_t i = 0; i < ways_.size(); ++i) *ways_[i] = kept.ways[i];
 }
 
 void LiveBody::set_tissues(const Variant& changed) {

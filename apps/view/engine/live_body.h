@@ -36,6 +36,19 @@ class LiveBody {
   /// Lets the hand's blade go on where that is due. @throws std::invalid_argument
   void work_on_cut(HandCut::Clock::time_point now);
 
+  /// Goes back to where the first step was made, whole and with the present tissues; tools are where they started, the hand lets go.
+  void reset();
+  /// A time to go back to: with the body its cuts, and the paths of the tools.
+  struct Kept {
+    State state;
+    std::optional<HandCut::Kept> cut;
+    std::size_t hand_cuts = 0;
+    std::vector<LivePath> ways;
+  };
+  Kept keep() const;
+  /// The hand lets go; tissues stay what they are now.
+  void go_back(const Kept& kept);
+
   const Instrument& instrument(std::size_t tool) const { return *built_->instruments[tool]; }
   /// Of its way at force_time(), along its x and y [m].
   std::array<double, 2> aside(std::size_t tool) const;
@@ -65,6 +78,7 @@ class LiveBody {
   std::shared_ptr<GrabSpring> grab_;
   std::unique_ptr<HandCut> cut_;
   std::string why_no_cut_;
+  std::optional<HandCut::Kept> uncut_;  ///< the blade when the body was made
   std::size_t hand_cuts_ = 0;
 };
 

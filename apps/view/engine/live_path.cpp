@@ -39,6 +39,12 @@ void LivePath::plan(double time, double frame_s) {
   now_ = {time, from, velocity};
 }
 
+void LivePath::restart() {
+  before_ = now_ = {};
+  target_ = {};
+  playing_ = false;
+}
+
 void LivePath::set_target(const Vec3d& target) {
   playing_ = false;
   target_ = target;

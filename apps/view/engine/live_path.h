@@ -29,6 +29,8 @@ class LivePath {
   void set_scene(ToolPath scene) { scene_ = std::move(scene); }  ///< the scene's own motion, known later than the tool
   bool can_play() const { return scene_.has_value(); }
   bool playing() const { return playing_; }
+  /// Is where the tool started, at time 0, and has no target but that.
+  void restart();
   /// Follows the scene's motion from time 0 on; before the first frame.
   void play() { playing_ = scene_.has_value(); }
 
