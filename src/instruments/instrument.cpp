@@ -258,7 +258,9 @@ std::shared_ptr<const Instrument::SavedMotion> Instrument::save_motion() const {
 }
 
 void Instrument::load_motion(const SavedMotion& saved) {
+  const double time = time_;  // of the step that is being made: its trials go on
   static_cast<InstrumentState&>(*this) = saved.state;
+  time_ = time;
   driver_->load_state(saved.driver);
   if (search_ != nullptr && saved.slope) search_->set_slope(*saved.slope);
 }
