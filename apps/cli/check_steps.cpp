@@ -47,7 +47,7 @@ double growth_with_mass(const Variant& v, const MeshLoader& load, double step, d
 }
 
 /// Which few tets keep an explicit step short, and what mass for them alone gives.
-void print_limits(const Variant& v, const MeshLoader& load, const Taste& taste) {
+void print_limits(const Variant& v, const MeshLoader& load, const Taste& taste, CheckClock& clock) {
   const MassScaling& added = taste.scaling;
   if (!added.tets.empty()) {
     say("  mass     {:.4g} g ({:.2g} % of the body's own) added to {} tets\n", 1e3 * added.added, 100.0 * added.share,
@@ -56,6 +56,8 @@ void print_limits(const Variant& v, const MeshLoader& load, const Taste& taste) 
   if (taste.limits.empty()) return;
   const LimitingTet &first = taste.limits.front(), &others = taste.limits.back();
   if (others.step < kWorthSaying * first.step) return;
+  if (!clock.has_time()) return clock.leave_out("what mass would give few tets of " + v.name);
+  clock.begin("the step of " + v.name + " with mass added to few tets");
   const double step = two_digits_down(others.step), growth = growth_with_mass(v, load, step, taste.stable_step_s);
   if (growth < kWorthSaying) return;  // bounds of single tets differ more than the step of the body does
   const auto few = std::count_if(taste.limits.begin(), taste.limits.end(),
@@ -73,16 +75,21 @@ bool can_drag_in_stages(const Variant& v) {
 }
 
 /// Where viscosity keeps an explicit step short, the stages of the viscous force that make a simulated second cheapest.
-void print_stages(const Variant& v, const MeshLoader& load, const Taste& taste) {
+void print_stages(const Variant& v, const MeshLoader& load, const Taste& taste, CheckClock& clock) {
   constexpr double kCost = 0.5;  // of a stage, in steps
   if (!can_drag_in_stages(v)) return;
   int best = 1;
   double pace = 1.0, growth = 1.0;
+  clock.begin("the step of " + v.name + " with stages of the viscous force");
+  double took = 0.0;
   for (int n = 2; n <= most_drag_stages(v); ++n) {
+    if (!clock.has_time(took)) return clock.leave_out("stages of the viscous force in " + v.name);
+    const double begin = clock.elapsed();
     Variant staged = v;
     staged.simulation.step.reset();
     staged.simulation.drag_stages = n;
     const double longer = build_variant(staged, load).simulation.stable_step() / taste.stable_step_s;
+    took = clock.elapsed() - begin;
     if (longer / (1.0 + kCost * (n - 1)) <= pace) break;  // it rises up to the limit by stiffness, and falls from there
     best = n, pace = longer / (1.0 + kCost * (n - 1)), growth = longer;
   }
@@ -109,12 +116,15 @@ double largest_speed(const InstrumentSpec& instrument) {
   return way / h;
 }
 
+/// The same of a driven vertex set.
+double press_speed(const ToolSpec& x) { return x.record || x.path || x.rotation || x.poses ? 0.0 : x.motion.velocity; }
+
 /// That of whatever is driven [m/s]; 0 where that is not known.
 double largest_speed(const Variant& v) {
   std::vector<double> speeds;
   for (const InstrumentSpec& x : v.instruments) speeds.push_back(largest_speed(x));
   for (const ToolSpec& x : v.tools) {
-    speeds.push_back(x.record || x.path || x.rotation || x.poses ? 0.0 : x.motion.velocity);
+    speeds.push_back(press_speed(x));
   }
   if (std::ranges::any_of(speeds, [](double speed) { return !(speed > 0.0); })) return 0.0;
   return speeds.empty() ? 0.0 : std::ranges::max(speeds);
@@ -134,6 +144,24 @@ void print_slow(const Variant& v, const Taste& taste) {
       "{:.2g} "
       "makes\n           steps {} times as long while the tissue moves evenly (docs/integrators.md)\n",
       1e6 * fastest * taste.step_s, step, times < 10.0 ? fmt::format("{:.2g}", times) : fmt::format("{:.0f}", times));
+}
+
+/// Speed of waves of pressure in a tissue at rest [m/s].
+double wave_speed(const Tissue& t) { return std::sqrt((t.lame().lambda + 2.0 * t.lame().mu) / t.density); }
+
+/// That a tool is faster than the waves that take tissue out of its way.
+void print_fast(const Variant& v) {
+  double fastest = wave_speed(v.tissue);
+  for (const RegionSpec& region : v.regions) fastest = std::max(fastest, wave_speed(region.tissue));
+  const auto look = [&](const std::string& name, double speed) {
+    if (!(speed > fastest)) return;
+    say("  fast     \"{}\" moves at up to {:.3g} mm/s, where waves in the tissue have {:.3g} mm/s: it hits tissue that "
+        "has "
+        "not begun\n           to move, and its force is that of the impact, and of the mesh. Is its speed in mm/s?\n",
+        name, 1e3 * speed, 1e3 * fastest);
+  };
+  for (const ToolSpec& x : v.tools) look(x.name, press_speed(x));
+  for (const InstrumentSpec& x : v.instruments) look(x.name, largest_speed(x));
 }
 
 /// The tissues for which adaptive precision can do nothing.
@@ -191,7 +219,7 @@ Cost cost_of(const Variant& v, const Taste& taste, const RunSummary& summary) {
 }
 
 void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, const Cost& cost,
-                const RunSummary& summary) {
+                const RunSummary& summary, CheckClock& clock) {
   const bool explicit_steps = std::isfinite(taste.stable_step_s), automatic = !v.simulation.step;
   const bool heavy = v.simulation.mass_scaling == MassScalingKind::variable;
   say("  step     {:.4g} s{}, {}\n", taste.step_s, automatic ? " (auto)" : " (given)",
@@ -200,8 +228,9 @@ void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, co
                        : "stable at any step");
   if (const std::string note = branches_note(v); !note.empty()) say("  branches {}\n", note);
   print_corners(v, taste);
-  print_limits(v, load, taste);
-  if (explicit_steps) print_stages(v, load, taste), print_slow(v, taste);
+  print_limits(v, load, taste, clock);
+  if (explicit_steps) print_stages(v, load, taste, clock), print_slow(v, taste);
+  print_fast(v);
   print_precision(v);
   const std::string shorter = automatic && explicit_steps && !heavy ? shortens_step(v) : std::string{};
   const std::string more =
@@ -209,6 +238,11 @@ void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, co
       : shorter.empty()
           ? shorter
           : fmt::format(" at the step at rest, more as {} (the shipped scenes: up to 3.8 times)", shorter);
+  if (summary.steps == 0) {
+    say("  run      {:.6g} s simulated, {:.0f} steps{}; the first took longer than {:.1f} s, and was not waited for\n",
+        std::min(run_duration(v), cost.steps * taste.step_s), cost.steps, more, summary.wall_s);
+    return;
+  }
   say("  run      {:.6g} s simulated, {:.0f} steps{}, about {} ({:.0f} ns per tet and step, {})\n",
       std::min(run_duration(v), cost.steps * taste.step_s), cost.steps, more,
       duration_text(cost.wall_s) + (more.empty() ? "" : " or more"), summary.ns_per_tet_step,

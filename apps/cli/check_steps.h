@@ -16,6 +16,6 @@ Cost cost_of(const Variant& v, const Taste& taste, const RunSummary& summary);
 
 /// Prints the step, what limits it or would make it longer, and the cost.
 void print_time(const Variant& v, const MeshLoader& load, const Taste& taste, const Cost& cost,
-                const RunSummary& summary);
+                const RunSummary& summary, CheckClock& clock);
 
 }  // namespace glisson::app

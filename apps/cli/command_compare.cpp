@@ -60,7 +60,8 @@ int run_comparison(const CompareOptions& options) {
   const Scene scene = open_scene(options.scene);
   const fs::path folder =
       options.out.empty() ? fs::path("out") / (scene.file.stem().string() + "_compare") : fs::path(options.out);
-  prepare_output_folder(folder);
+  OutputFolder output(folder, tell_warning);
+  output.prepare();
   write_whole(folder / "scene.toml", scene.source);
   catch_interrupts();
   MeshCache meshes(options.quiet);

@@ -137,7 +137,8 @@ class Study {
   int run() {
     require_size(scene_, load_, options_.levels);
     require_column(scene_, load_, options_);
-    prepare_output_folder(folder_);
+    OutputFolder output(folder_, tell_warning);
+    output.prepare();
     write_whole(folder_ / "scene.toml", scene_.source);
     catch_interrupts();
     for (int k = 0; k < options_.levels && !interrupted() && !ended_; ++k) run_level(k);

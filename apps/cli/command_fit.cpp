@@ -203,12 +203,13 @@ int run(const FitCommand& command) {
   options.load = meshes.loader();
   options.stop = &stop_flag();
   const std::string fingerprint = fit_fingerprint(spec, options);
+  OutputFolder output(folder, tell_warning);
   options.memory = memory_of(command, state, fingerprint);
   FitProgressLine progress(command.quiet);
   bool prepared = false;
   const auto prepare = [&] {
     if (prepared) return;
-    prepare_output_folder(folder);
+    output.prepare();
     if (!options.memory.empty()) write_fit_state(state, fingerprint, options.memory);
     prepared = true;
   };

@@ -221,7 +221,8 @@ std::vector<std::unique_ptr<VariantRecorder>> run_figures(std::vector<Figure>& f
 
 int reproduce(const ReproduceOptions& options) {
   const fs::path folder = options.out;
-  prepare_output_folder(folder);
+  OutputFolder output(folder, tell_warning);
+  output.prepare();
   catch_interrupts();
   Figure speed = figure(folder, "speed", "paper/speed.toml", {});
   speed.extras = speed_extras(speed.scene);  // before anything else runs: its variants are timed on their own

@@ -69,7 +69,8 @@ int run(const RunOptions& options) {
   MeshCache meshes(options.quiet);
   const std::vector<Job> jobs = jobs_of(scene, folder, options.threads);
   require_runnable(jobs, meshes.loader());
-  prepare_output_folder(folder);
+  OutputFolder output(folder, tell_warning);
+  output.prepare();
   write_whole(folder / "scene.toml", scene.source);
   catch_interrupts();
   const auto recorders = run_batch(jobs, {.threads = options.threads, .quiet = options.quiet}, meshes.loader());

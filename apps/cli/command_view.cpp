@@ -131,6 +131,8 @@ void add_view(CLI::App& program, Action& action) {
       ->type_name("N")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
+  command->add_flag("--keep-running", options->server.keep_running,
+                    "go on while no page is open or all are hidden; else the clock is held after 10 s of that");
   command->footer(kViewFooter);
   command->callback([options, &action] { action = [options] { return view_any(*options); }; });
 }

@@ -9,7 +9,7 @@ enum ExitCode : int {
   kUserError = 2,  ///< a scene, mesh, option or folder that cannot be used as it is
   kNumericalEnd =
       3,  ///< a run that its numbers ended: unstable, not finite, stopped on inversion; a fit that identifies nothing
-  kInterrupted = 130  ///< Ctrl-C or SIGTERM; everything written so far is kept
+  kInterrupted = 130  ///< Ctrl-C, SIGTERM or SIGHUP; everything written so far is kept
 };
 
 }  // namespace glisson::app

@@ -23,6 +23,10 @@ void catch_interrupts() {
   once.sa_flags = SA_RESETHAND | SA_RESTART;
   sigaction(SIGINT, &once, nullptr);
   sigaction(SIGTERM, &once, nullptr);
+  struct sigaction now {};
+  if (sigaction(SIGHUP, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) {  // nohup ignores it, and so do we then
+    sigaction(SIGHUP, &once, nullptr);
+  }
   std::signal(SIGPIPE, SIG_IGN);
 }
 

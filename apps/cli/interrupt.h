@@ -1,11 +1,11 @@
-// interrupt.h — Ctrl-C and SIGTERM ask the run to end; what is written so far stays and a report is made of it.
+// interrupt.h — Ctrl-C, SIGTERM and SIGHUP (a terminal that closes) ask the run to end; what is written so far stays and a report is made of it.
 #pragma once
 
 #include <atomic>
 
 namespace glisson::app {
 
-/// From here on the first SIGINT or SIGTERM sets stop_flag(); a second one ends the program at once.
+/// From here on the first SIGINT, SIGTERM or SIGHUP sets stop_flag(); a second one ends the program at once.
 /// A reader of our output that goes away (`| head`) no longer ends the run.
 void catch_interrupts();
 

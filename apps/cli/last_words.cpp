@@ -1,5 +1,6 @@
 #include "cli/last_words.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -44,6 +45,15 @@ void put(const char* text) { [[maybe_unused]] const auto written = write(STDERR_
 void promise_last_words() {
   std::signal(SIGXFSZ, SIG_IGN);
   std::set_terminate(end_with_a_sentence);
+}
+
+/// With less, a run ends at a fault of memory somewhere, in which nothing can be said any more; threads get as much each.
+std::string stack_too_small() {
+  constexpr rlim_t kLeast = 512;  // [KB]; figure 2 runs in 128
+  struct rlimit limit {};
+  if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= 1024 * kLeast) return {};
+  return "the limit of the stack is " + std::to_string(limit.rlim_cur / 1024) + " KB, where runs need " +
+         std::to_string(kLeast) + " KB or more; raise it: ulimit -s 8192";
 }
 
 std::string system_text(const std::system_error& error) {

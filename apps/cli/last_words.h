@@ -11,6 +11,9 @@ namespace glisson::app {
 /// nobody catches ends the program with a sentence and kFailed.
 void promise_last_words();
 
+/// Why the program cannot run within the limit that the system sets its stack; empty where it can.
+std::string stack_too_small();
+
 /// Memory is used up: which limit it may be, and what needs less.
 extern const char* const kOutOfMemory;
 

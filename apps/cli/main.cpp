@@ -125,5 +125,6 @@ int run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   open_standard_streams();
   promise_last_words();
+  if (const std::string why = stack_too_small(); !why.empty()) return complain(why, kFailed);
   return end_output(run_program(argc, argv));
 }

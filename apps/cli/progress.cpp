@@ -16,7 +16,9 @@ namespace {
 
 constexpr int kBarCells = 24;
 constexpr std::chrono::milliseconds kRedraw{100};
-constexpr double kTrustedFraction = 0.002;  // of a run, before its pace says anything
+constexpr std::chrono::seconds kLongStep{5};  ///< in one step: lines say so then …
+constexpr std::chrono::seconds kRepeat{30};   ///< … and again after so long
+constexpr double kTrustedFraction = 0.002;    // of a run, before its pace says anything
 
 std::size_t terminal_width() {
   winsize size{};
@@ -60,7 +62,7 @@ void Progress::started(std::size_t index) {
   const std::lock_guard lock(mutex_);
   Run& run = runs_[index];
   run.state = State::running;
-  run.start = Clock::now();
+  run.start = run.moved = run.said = Clock::now();
   if (style_ == Style::lines) say("{}: started\n", run.name);
   draw();
 }
@@ -68,6 +70,7 @@ void Progress::started(std::size_t index) {
 void Progress::advanced(std::size_t index, double fraction) {
   const std::lock_guard lock(mutex_);
   Run& run = runs_[index];
+  if (fraction > run.fraction) run.moved = Clock::now();
   run.fraction = std::clamp(fraction, run.fraction, 1.0);
   const int tenths = static_cast<int>(run.fraction * 10.0 + 1e-9);
   if (style_ == Style::lines && tenths > run.said_tenths && tenths < 10) {
@@ -75,8 +78,21 @@ void Progress::advanced(std::size_t index, double fraction) {
     say("{}: {} %, {} left\n", run.name, 10 * tenths, duration_text(left));
     std::fflush(stdout);
     run.said_tenths = tenths;
+    run.said = Clock::now();
   }
+  if (style_ == Style::lines) say_long_step(run);
   if (Clock::now() - drawn_ >= kRedraw) draw();
+}
+
+/// A step of an implicit integrator may take minutes in which nothing else is said.
+void Progress::say_long_step(Run& run) {
+  const Clock::time_point now = Clock::now();
+  const auto within = now - run.moved;
+  if (within < kLongStep || (run.said > run.moved && now - run.said < kRepeat)) return;
+  const double seconds = std::chrono::duration<double>(within).count();
+  say("{}: {:.1f} %, in one step for {}\n", run.name, 100.0 * run.fraction, duration_text(seconds));
+  std::fflush(stdout);
+  run.said = now;
 }
 
 void Progress::ended(std::size_t index, const std::string& how) {

@@ -36,11 +36,13 @@ class Progress {
     State state = State::waiting;
     double fraction = 0.0;
     int said_tenths = 0;
-    Clock::time_point start{};
+    Clock::time_point start{}, moved{}, said{};  ///< moved: when its fraction was last another one
+
     double elapsed_s = 0.0;  // where done
   };
 
   double elapsed(const Run& run) const;
+  void say_long_step(Run& run);
   void draw();
   std::string bar_text() const;
   /// Wall time still needed [s] from the pace of the runs so far; negative: not known yet.

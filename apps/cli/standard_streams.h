@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -27,6 +28,9 @@ template <class... Values>
 void tell(fmt::format_string<Values...> format, Values&&... values) {
   put(fmt::format(format, std::forward<Values>(values)...), stderr);
 }
+
+/// A warning, to standard error.
+inline void tell_warning(const std::string& text) { tell("glisson: warning: {}\n", text); }
 
 /// The exit code of the program: `code`, or kFailed and a message where standard output took not all that was printed.
 /// A reader that went away (`| head`) has what it wanted.

@@ -29,6 +29,8 @@ class Source {
   /// The newest state, valid until the next call; null where there is none since the last.
   virtual const Snapshot* latest() = 0;
   virtual bool next_sample(ForceSample& sample) = 0;
+  /// Whether somebody looks. The clock is held while nobody does, and the source's thread sleeps.
+  virtual void set_watched(bool) {}
   /// Whether states are to hold velocities.
   virtual void want_pressure(bool) {}
 

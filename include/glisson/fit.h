@@ -249,6 +249,14 @@ struct DesignResult {
   double width_now = 0.0, width_after = 0.0;  ///< of its interval, in its unit
 };
 
+/// Where the fitted law is stable on a path of deformation, dσ : dε > 0: looked at from half to twice the stretches of the data, or to
+/// twice their shear, or as far as the law has answers. At rest a stretch is 1, and shear 0.
+struct StabilityResult {
+  std::string path;                              ///< uniaxial, equibiaxial: free stretch; simple_shear
+  double low = 1.0, high = 1.0;                  ///< what was looked at [-]
+  std::optional<double> lost_below, lost_above;  ///< beyond which it is not stable; none: it is [-]
+};
+
 /// Result of a fit: fit.json and the page are made from it.
 struct FitResult {
   std::string law;  ///< its name
@@ -276,6 +284,7 @@ struct FitResult {
   std::vector<LawResult> laws;
   std::vector<DiscoveredLaw> discovered;  ///< all that were looked at; within a size the best first
   std::vector<DesignResult> designs;
+  std::vector<StabilityResult> stability;   ///< of the law at once; empty where its measure depends on the mesh
   std::vector<std::string> conclusions;     ///< sentences
   std::string tissue;                       ///< text of tissue.toml, which a scene reads with `tissue.file`
   std::string result_file = "tissue.toml";  ///< "membranes.toml" of a fit of [insertion], whose text is part of a scene

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _core
 from ._core import RunResult, Scene, Simulation, StopFlag, TetMesh, Variant
+from ._folder_lock import alone_in
 from .scenes import Overrides, as_scene
 
 if TYPE_CHECKING:
@@ -61,7 +62,9 @@ def run(
         if result.trouble:
             warnings.warn(f"{result.name}: {result.trouble}", RuntimeWarning, stacklevel=2)
     if out is not None:
-        _write(by_name, Path(out))
+        Path(out).mkdir(parents=True, exist_ok=True)
+        with alone_in(Path(out)):
+            _write(by_name, Path(out))
     return by_name
 
 

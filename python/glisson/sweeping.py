@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _core
+from ._folder_lock import alone_in
 from ._optional import need
 from ._version import VERSION
 from .running import run
@@ -79,11 +80,24 @@ def sweep(
     :param attempts: how often a point is tried whose worker was lost
     :param progress: called with points done and planned
     :raises SweepError: after all other points are done, naming those that could not be run
+    :raises RuntimeError: where another study writes into the folder; nothing is changed then
     """
     parquet = need("pyarrow.parquet", "pyarrow", "sweep")
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
-    tasks = _tasks(scene, points, variants, measure)
+    with alone_in(folder):
+        return _sweep(parquet, folder, _tasks(scene, points, variants, measure), workers, client, attempts, progress)
+
+
+def _sweep(
+    parquet: Any,
+    folder: Path,
+    tasks: list[_Task],
+    workers: int | None,
+    client: Any,
+    attempts: int,
+    progress: Callable[[int, int], object] | None,
+) -> Any:
     open_tasks = [task for task in tasks if not _file_of(folder, task.key).exists()]
     done = len(tasks) - len(open_tasks)
     failures: list[tuple[Point, str]] = []

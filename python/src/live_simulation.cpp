@@ -14,6 +14,20 @@ bool cuts(const BuiltVariant& built) {
                      [](const auto& x) { return x->changes_body(); });
 }
 
+/// Lets a simulation ask within long steps, while it lives.
+class Asking {
+ public:
+  Asking(Simulation& simulation, std::function<bool(const StepProgress&)> asks) : simulation_(simulation) {
+    simulation_.set_interrupt(std::move(asks));
+  }
+  ~Asking() { simulation_.set_interrupt({}); }
+  Asking(const Asking&) = delete;
+  Asking& operator=(const Asking&) = delete;
+
+ private:
+  Simulation& simulation_;
+};
+
 }  // namespace
 
 LiveSimulation::LiveSimulation(TetMesh mesh, std::map<int, Tissue> tissues, const SimulationOptions& options)
@@ -65,6 +79,11 @@ StepStatus LiveSimulation::loop(Going going) {
     throw std::runtime_error("a callback must not step the simulation that calls it");
   StepStatus worst = StepStatus::ok;
   bool interrupted = false;
+  const auto look = [&interrupted](const StepProgress&) {
+    const nb::gil_scoped_acquire gil;
+    return interrupted = interrupted || PyErr_CheckSignals() != 0;
+  };
+  const Asking asking(own_ ? *own_ : built_->simulation, look);
   stepping_ = std::this_thread::get_id();
   Fault* outer = std::exchange(Fault::current(), &fault_);
   {
@@ -73,8 +92,7 @@ StepStatus LiveSimulation::loop(Going going) {
     while (!interrupted && going() && one_step(worst)) {
       if (Clock::now() - looked < std::chrono::milliseconds(20)) continue;
       looked = Clock::now();
-      const nb::gil_scoped_acquire gil;
-      interrupted = PyErr_CheckSignals() != 0;
+      look({});
     }
   }
   Fault::current() = outer;

@@ -1,6 +1,6 @@
 // live_simulation.h — a simulation as Python holds it: its own, or the body of a scene's variant.
 //
-//   step(n) ── GIL released ──▶ step … step ── every 20 ms: has Ctrl-C been pressed?
+//   step(n) ── GIL released ──▶ step … step ── every 20 ms, and some times a second within long steps: has Ctrl-C been pressed?
 //                 │ a motion written in Python takes the GIL; what it raises is kept and raised when the step is done,
 //                 ▼ because a step never throws
 //

@@ -11,6 +11,7 @@
 #include "fit/fit_curves.h"
 #include "fit/forward/offset_model.h"
 #include "fit/insertion/run_insertion_fit.h"
+#include "fit/law_stability.h"
 #include "fit/search/discovery.h"
 #include "fit/search/law_candidates.h"
 #include "fit/search/law_search.h"
@@ -277,6 +278,10 @@ FitResult Run::to_end() {
   if (!search.found().basins.empty() || all) {
     fill_proof(search, spec_, curves_, options_, result);
     result.tissue = tissue_of_fit(search, result, spec_);
+    const DataRange range = data_range(result.curves, result.height, size.radius.value_or(0.0));
+    result.stability = law_stability(fitted_tissue(search), range);
+    result.conclusions.push_back(stability_sentence(result.stability, range));
+    std::erase(result.conclusions, std::string());
   } else {
     result.starts_planned = spec_.search.starts;
   }

@@ -49,16 +49,33 @@ double own_modulus(const FitSpec& spec) {
   return at_rest.mu * (3.0 * at_rest.lambda + 2.0 * at_rest.mu) / (at_rest.lambda + at_rest.mu);
 }
 
-std::string tissue_of_fit(const LawSearch& search, const FitResult& result, const FitSpec& spec) {
+namespace {
+
+/// The fitted numbers that are keys of the scene.
+struct OfScene {
   std::vector<std::string> keys;
-  std::vector<double> tissue_values;
+  std::vector<double> values;
+};
+OfScene numbers_of_scene(const LawSearch& search) {
+  OfScene all;
   const std::vector<double> values = search.values();
   for (std::size_t p = 0; p < values.size(); ++p) {
     const std::string& key = search.law().parameters[p].key;
     if (is_curve_key(key) || is_plate_key(key)) continue;
-    keys.push_back(key);
-    tissue_values.push_back(values[p]);
+    all.keys.push_back(key), all.values.push_back(values[p]);
   }
+  return all;
+}
+
+}  // namespace
+
+Tissue fitted_tissue(const LawSearch& search) {
+  const OfScene numbers = numbers_of_scene(search);
+  return experiment(search.scene(), numbers.keys).tissue_with(numbers.values);
+}
+
+std::string tissue_of_fit(const LawSearch& search, const FitResult& result, const FitSpec& spec) {
+  const OfScene numbers = numbers_of_scene(search);
   std::string text = "# Fitted by `glisson fit " + spec.file.filename().string() + "`: " + spec.title + "\n";
   text +=
       "# Law " + result.law + "; fitted curves matched to " + measured_text(result.rms_fit, result.unit, 4) + " rms";
@@ -68,8 +85,8 @@ std::string tissue_of_fit(const LawSearch& search, const FitResult& result, cons
     text += "#   " + p.parameter.name + " = " + brief(p.value) + (p.parameter.unit.empty() ? "" : " ") +
             p.parameter.unit + ", " + interval_text(p) + ", " + p.verdict + "\n";
   }
-  text += other_keys(search, values) + "\n";
-  return text + scene::tissue_file_text(experiment(search.scene(), keys).tissue_tree(tissue_values));
+  text += other_keys(search, search.values()) + "\n";
+  return text + scene::tissue_file_text(experiment(search.scene(), numbers.keys).tissue_tree(numbers.values));
 }
 
 }  // namespace glisson::fit

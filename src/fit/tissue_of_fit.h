@@ -14,6 +14,9 @@ std::string own_law_name(const FitSpec& spec);
 /// Young's modulus at small strain of the fit's tissue as it is written [Pa].
 double own_modulus(const FitSpec& spec);
 
+/// The tissue with the fitted numbers.
+Tissue fitted_tissue(const LawSearch& search);
+
 /// tissue.toml: [tissue] with the fitted numbers, and comments that say what they were fitted to and how sure they are.
 std::string tissue_of_fit(const LawSearch& search, const FitResult& result, const FitSpec& spec);
 

@@ -202,7 +202,9 @@ void Instrument::set_long_steps(bool are_long) {
 bool Instrument::tries_again() {
   if (search_ == nullptr) return false;
   const Pose end = driver_->advance_under(time_, step_, {-forces_.total(), -forces_.torque});
-  return accepts(end) && search_->goes_on(end.position);
+  // An end that is far outside the body says that the trial is wrong, and not that the driver is.
+  if (!std::isfinite(norm(end.position))) return accepts(end);
+  return search_->goes_on(end.position);
 }
 
 /// Counts a pose that makes no sense; the tool stays where it is then.

@@ -1,6 +1,15 @@
 // output_folder.cpp — see output_folder.h.
 #include "report/output_folder.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -37,21 +46,103 @@ std::vector<fs::path> former_run(const fs::path& folder) {
   return {found.rbegin(), found.rend()};
 }
 
+/// The process that holds a lock on a folder, as " by process 123"; empty where the system does not tell.
+std::string holder_of(const struct stat& folder) {
+  std::ifstream locks("/proc/locks");  // "1: FLOCK ADVISORY WRITE 123 08:01:456 0 EOF"
+  const std::string inode = ":" + std::to_string(folder.st_ino);
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream words(line);
+    std::string number, kind, how, access, place;
+    long process = 0;
+    if (!(words >> number >> kind >> how >> access >> process >> place)) continue;  // "->": one that waits
+    if (kind == "FLOCK" && place.ends_with(inode) && process > 0) return " by process " + std::to_string(process);
+  }
+  return {};
+}
+
 }  // namespace
 
-void prepare_output_folder(const fs::path& folder) {
+OutputFolder::OutputFolder(fs::path folder, const std::function<void(const std::string&)>& warn)
+    : folder_(std::move(folder)) {
+  constexpr int kMostTries = 10;  // a run that ends may remove the folder that it made while this one opens it
   try {
-    if (fs::exists(folder) && !fs::is_directory(folder)) refuse_folder(folder, "is a file, not a folder");
-    if (fs::exists(folder) && !fs::is_empty(folder)) {
-      if (!fs::exists(folder / kMark)) refuse_folder(folder, "is not empty and holds no results of glisson");
-      for (const fs::path& file : former_run(folder)) fs::remove(file);
+    for (int i = 0; i < kMostTries; ++i) {
+      make();
+      if (lock(warn)) return;
+    }
+    throw OutputError(folder_.string() +
+                      ": is removed and made again by another process; choose another folder with --out DIR");
+  } catch (...) {
+    remove_made();
+    if (descriptor_ >= 0) close(descriptor_);
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  remove_made();
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+void OutputFolder::make() {
+  std::error_code error;
+  const fs::file_status now = fs::status(folder_, error);
+  if (fs::exists(now) && !fs::is_directory(now)) refuse_folder(folder_, "is a file, not a folder");
+  std::vector<fs::path> missing;
+  for (fs::path at = fs::absolute(folder_); !at.empty() && !fs::exists(at, error); at = at.parent_path()) {
+    missing.push_back(at);
+    if (at == at.parent_path()) break;
+  }
+  make_folder(folder_);
+  made_.assign(missing.rbegin(), missing.rend());
+}
+
+/// Those that are still empty.
+void OutputFolder::remove_made() {
+  std::error_code ignored;
+  for (auto at = made_.rbegin(); at != made_.rend(); ++at) fs::remove(*at, ignored);
+  made_.clear();
+}
+
+/// @return false where the folder was another one by the time it was locked
+bool OutputFolder::lock(const std::function<void(const std::string&)>& warn) {
+  if (descriptor_ >= 0) close(descriptor_);
+  descriptor_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0 && errno == ENOENT) return false;
+  struct stat locked {};
+  const bool taken = descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+  const int reason = errno;
+  if (!taken && descriptor_ >= 0 && reason == EWOULDBLOCK) {
+    const std::string holder = fstat(descriptor_, &locked) == 0 ? holder_of(locked) : std::string();
+    made_.clear();
+    throw std::invalid_argument(folder_.string() + ": another run is being written there" + holder +
+                                ", and two would mix their files; wait for its end, end it, or choose another folder "
+                                "with --out DIR");
+  }
+  if (!taken) {
+    if (warn) {
+      warn(folder_.string() + ": cannot be locked (" + std::strerror(reason) +
+           "): nothing keeps a second run from writing there too; take care that there is none");
+    }
+    return true;
+  }
+  struct stat there {};
+  return fstat(descriptor_, &locked) == 0 && stat(folder_.c_str(), &there) == 0 && locked.st_ino == there.st_ino &&
+         locked.st_dev == there.st_dev;
+}
+
+void OutputFolder::prepare() {
+  try {
+    if (!fs::is_empty(folder_)) {
+      if (!fs::exists(folder_ / kMark)) refuse_folder(folder_, "is not empty and holds no results of glisson");
+      for (const fs::path& file : former_run(folder_)) fs::remove(file);
     }
   } catch (const fs::filesystem_error& error) {
-    throw OutputError(folder.string() + ": cannot be prepared: " + error.code().message() +
+    throw OutputError(folder_.string() + ": cannot be prepared: " + error.code().message() +
                       "; choose another folder with --out DIR");
   }
-  make_folder(folder);
-  write_whole(folder / kMark, kMarkText);
+  write_whole(folder_ / kMark, kMarkText);
+  made_.clear();
 }
 
 }  // namespace glisson

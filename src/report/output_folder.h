@@ -3,14 +3,41 @@
 // A folder of results carries a file `.glisson`. Without it, a folder that holds anything is someone else's. With it,
 // the files that a run writes are ours by name and place; a single other file among them stops the run, so that
 // nothing of the user's is ever deleted.
+//
+// While a run writes, it holds an advisory lock (flock) on the folder itself, which the system releases when the process ends, however
+// it ends. A second run is refused; nothing has to be cleaned up after a crash, and threads and children of the run are not concerned.
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
 
 namespace glisson {
 
-/// Makes `folder` ready: creates it, or removes the former run in it, and marks it as ours.
-/// @throws std::invalid_argument naming the file that is not ours @throws OutputError with the reason of the system
-void prepare_output_folder(const std::filesystem::path& folder);
+/// A folder that no other process writes results to while this lives.
+class OutputFolder {
+ public:
+  /// Makes the folder, where there is none, and locks it. What has been made is removed again at the end where prepare() was not called.
+  /// @param warn  is told where the file system has no locks: nothing then keeps a second run away
+  /// @throws std::invalid_argument naming the process that writes there @throws OutputError with the reason of the system
+  explicit OutputFolder(std::filesystem::path folder, const std::function<void(const std::string&)>& warn = {});
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// Makes it ready: removes the former run in it, and marks it as ours.
+  /// @throws std::invalid_argument naming the file that is not ours @throws OutputError with the reason of the system
+  void prepare();
+
+ private:
+  void make();
+  void remove_made();
+  bool lock(const std::function<void(const std::string&)>& warn);
+
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path> made_;  ///< folders that were not there before, the deepest last
+  int descriptor_ = -1;                      ///< of the folder, which carries the lock
+};
 
 }  // namespace glisson

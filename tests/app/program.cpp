@@ -33,6 +33,8 @@ namespace {
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   if (given.memory_bytes > 0 && setrlimit(RLIMIT_AS, &memory) != 0) _exit(126);
+  const rlimit stack{given.stack_bytes, given.stack_bytes};
+  if (given.stack_bytes > 0 && setrlimit(RLIMIT_STACK, &stack) != 0) _exit(126);
   for (const int descriptor : given.closed) close(descriptor);
   execv(GLISSON_PROGRAM, argv.data());
   _exit(127);

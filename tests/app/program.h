@@ -41,6 +41,7 @@ inline constexpr bool kMemoryHasLimits = true;  ///< a program runs within Surro
 struct Surroundings {
   unsigned file_bytes = 0;         ///< the largest file it may write; 0: no limit
   unsigned long memory_bytes = 0;  ///< of address space; 0: no limit
+  unsigned long stack_bytes = 0;   ///< of the stack; 0: no limit
   std::vector<int> closed{};       ///< descriptors that are closed when it starts
   std::filesystem::path out{};     ///< standard output; empty: a file that Outcome reads
 };
@@ -51,6 +52,7 @@ class Started {
   Started(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
           const Surroundings& surroundings = {});
   void signal(int number) const;
+  pid_t id() const { return child_; }
   std::string output_so_far() const;
   /// Waits for its end, five minutes at most.
   Outcome wait();

@@ -55,6 +55,15 @@ TEST_F(Surrounded, EnvironmentChoosesTheInstructionSet) {
   for (const auto& [set, force] : forces) EXPECT_NEAR(force, forces.begin()->second, 1e-5 * force) << set;
 }
 
+// A stack that is too small to say anything within is told at once, with what is needed; half a megabyte is enough.
+TEST_F(Surrounded, SmallStackIsTold) {
+  const std::string scene = write("s.toml", small_scene());
+  const Outcome refused = run_in({.stack_bytes = 64 * 1024}, {"run", scene, "--out", "o"});
+  EXPECT_THAT(refused, Exits(1));
+  EXPECT_THAT(refused.err, HasSubstr("the limit of the stack is 64 KB, where runs need 512 KB or more"));
+  EXPECT_THAT(run_in({.stack_bytes = 512 * 1024}, {"run", scene, "--out", "o", "--threads", "2"}), Exits(0));
+}
+
 // What is printed and cannot be written is told, by every command, and the exit code says so; a run is not lost by it.
 TEST_F(Surrounded, FullStandardOutputIsTold) {
   const std::string scene = write("s.toml", small_scene());

@@ -47,6 +47,30 @@ Command place(float depth, std::uint32_t sequence) {
   return {.kind = CommandKind::place, .sequence = sequence, .values = {depth, 0.0f, 0.0f}};
 }
 
+// While nobody looks the engine makes no steps, whatever the clock does; when somebody does, it goes on from there.
+TEST(LiveEngine, MakesNoStepsUnwatched) {
+  Engine engine(variant_of(test::small_scene()), no_files());
+  Watcher watcher(engine);
+  engine.start();
+  ASSERT_TRUE(watcher.until([&] { return watcher.last.frame > 20; }));
+  engine.set_watched(false);
+  std::this_thread::sleep_for(100ms);  // a turn may be under way
+  engine.post(place(0.0f, 1));         // a command brings the state up to date
+  ASSERT_TRUE(watcher.until([&] { return watcher.last.echo == 1; }));
+  const std::uint64_t frames = watcher.last.frame;
+  const double time = watcher.last.time;
+  std::this_thread::sleep_for(500ms);
+  engine.post(place(0.0f, 2));
+  ASSERT_TRUE(watcher.until([&] { return watcher.last.echo == 2; }));
+  EXPECT_EQ(watcher.last.frame, frames);
+  EXPECT_EQ(watcher.last.time, time);
+  EXPECT_FALSE(watcher.last.paused);
+  engine.set_watched(true);
+  EXPECT_TRUE(watcher.until([&] { return watcher.last.time > time; }));
+  EXPECT_LT(watcher.last.time, time + 0.3) << "the time that passed is not made up for";
+  engine.stop();
+}
+
 // A reader of Latest never sees a half-written value and never goes back.
 TEST(LiveHandOver, GivesWholeValuesInTheirOrder) {
   struct Pair {
@@ -96,7 +120,7 @@ TEST(LiveHandOver, RingKeepsOrderAndRefusesWhatDoesNotFit) {
 
 // Every command survives its bytes; any other bytes are refused or are the bytes of the command they give.
 TEST(LiveCommand, BytesAreReadBackOrRefused) {
-  for (std::uint8_t kind = 1; kind <= 14; ++kind) {
+  for (std::uint8_t kind = 1; kind <= 17; ++kind) {
     Command command{
         .kind = static_cast<CommandKind>(kind), .tool = 2, .sequence = 77, .index = 1, .values = {0.5f, 0.25f, 1.0f}};
     const std::string bytes = encode_command(command);

@@ -280,8 +280,19 @@ TEST_F(ViewReplay, RunsWithoutAViewFileStillOpen) {
   const view::RunFolder run = view::open_run(folder, "");
   EXPECT_NE(run.notice.find("view.jsonl"), std::string::npos);
   EXPECT_FALSE(run.forces.empty());
-  std::ofstream(folder / "main/view.jsonl") << "{\"format\":1,\"tools\":\n";
-  EXPECT_NE(view::open_run(folder, "").notice.find("view.jsonl, line 1: "), std::string::npos);
+  EXPECT_NE(run.notice.find("older glisson"), std::string::npos);
+}
+
+// A damaged or cut first line is what it is, not the mark of an older version: the notice names the line and what is lost.
+TEST_F(ViewReplay, TellsOfADamagedHeadOfTheViewFile) {
+  const fs::path folder = recorded();
+  for (const char* head : {"{\"format\":1,\"tools\":\n", "{\"format\":1", ""}) {
+    std::ofstream(folder / "main/view.jsonl") << head;
+    const std::string notice = view::open_run(folder, "").notice;
+    EXPECT_NE(notice.find("view.jsonl, line 1: "), std::string::npos) << notice;
+    EXPECT_NE(notice.find("the file is damaged"), std::string::npos) << notice;
+    EXPECT_EQ(notice.find("older"), std::string::npos) << notice;
+  }
 }
 
 TEST_F(ViewReplay, SaysWhatIsNoRunAndTheWayOut) {

@@ -280,6 +280,27 @@ def test_keyboard_interrupt_ends_a_run():
     body.step()
 
 
+def test_keyboard_interrupt_within_a_long_step():
+    """Ctrl-C ends a step of Newton's method that takes longer: nothing has changed, and the next call makes it."""
+    mesh = glisson.box([16, 16, 16], [0.04, 0.04, 0.04])
+    tissue = glisson.Tissue(hyperelastic=glisson.NeoHookean(mu=1000, bulk_modulus=50000))
+    body = glisson.Simulation(mesh, tissue, glisson.SimulationOptions(integrator="quasi_static", step=1.0))
+    body.fix("z_min")
+    body.drive("z_max", lambda t: (0.0, 0.0, -0.012 * t))
+    for advance in (body.step, lambda: body.advance(1.0)):
+        sent = []
+
+        def press():
+            sent.append(time.monotonic())
+            os.kill(os.getpid(), signal.SIGINT)
+
+        threading.Timer(0.5, press).start()
+        with pytest.raises(KeyboardInterrupt):
+            advance()
+        assert time.monotonic() - sent[0] < 2.0  # 1 s, and another on a busy machine
+        assert body.steps == 0 and body.time == 0 and not np.any(body.displacement)
+
+
 def test_threads_run_side_by_side_and_apart():
     """Another thread runs Python while one steps; it may not touch that simulation; nor may a callback step it."""
     body, _, _ = pressed(glisson.SimulationOptions(step=1e-6))

@@ -1,7 +1,10 @@
 """Parameter studies: every point once, resumed, and through the death of a worker, here and on a Dask cluster."""
 
+import fcntl
 import os
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import glisson
@@ -70,6 +73,32 @@ def test_a_killed_worker_costs_nothing(tmp_path, monkeypatch):
     table = glisson.sweep(SCENE, POINTS, tmp_path / "out", measure=deadly, workers=3)
     assert (tmp_path / "mark").exists() and table.num_rows == 6
     assert sorted(set(table["tissue.youngs_modulus_Pa"].to_pylist())) == [2000, 4000, 8000]
+
+
+def test_a_second_study_into_one_folder_is_refused(tmp_path):
+    """While another process holds the folder, a study and a run into it are refused with nothing changed; then they go on."""
+    holder = "import fcntl, os, sys; fcntl.flock(os.open(sys.argv[1], os.O_RDONLY), fcntl.LOCK_EX); print('held', flush=True); sys.stdin.read()"
+    with subprocess.Popen(
+        [sys.executable, "-c", holder, str(tmp_path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as other:
+        assert other.stdout.readline() == "held\n"
+        for write in (lambda: glisson.sweep(SCENE, POINTS, tmp_path, workers=1), lambda: glisson.run(SCENE, out=tmp_path)):
+            with pytest.raises(RuntimeError, match="another run or study is being written there"):
+                write()
+        assert list(tmp_path.iterdir()) == []
+        other.kill()
+    assert glisson.sweep(SCENE, POINTS, tmp_path, workers=1).num_rows == 6
+
+
+def test_a_folder_without_locks_is_warned_of(tmp_path, monkeypatch):
+    """A file system without locks: the study goes on with a warning."""
+
+    def no_locks(descriptor, what):
+        raise OSError(95, "Operation not supported")
+
+    monkeypatch.setattr(fcntl, "flock", no_locks)
+    with pytest.warns(UserWarning, match="cannot be locked"):
+        assert glisson.sweep(SCENE, POINTS, tmp_path, workers=1).num_rows == 6
 
 
 def test_points_that_cannot_be_run_are_named(tmp_path):

@@ -18,6 +18,7 @@ describe("commands", () => {
       24, 9, 3,
     ]);
     expect(encodeCommand({ kind: "reset" }, 1).byteLength).toBe(8);
+    expect(bytes(encodeCommand({ kind: "visible", index: 0 }, 1))).toEqual([17, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0]);
     const cut = encodeCommand({ kind: "cut", index: 1, values: [1, 2, 3, 4, 5, 6] }, 7);
     expect([cut.byteLength, new DataView(cut).getUint8(0), new DataView(cut).getFloat32(32, true)]).toEqual([
       36, 13, 6,

@@ -60,6 +60,7 @@ void Engine::start() {
 
 void Engine::stop() {
   stop_ = true;
+  waker_.wake();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -69,6 +70,12 @@ void Engine::run() {
   app::FrameSchedule schedule(kFrame);
   measured_ = WallClock::now();
   while (!stop_.load(std::memory_order_relaxed)) {
+    if (is_idle()) {
+      waker_.sleep(watched_.load(std::memory_order_relaxed) ? kPublishAtRest : kPublishUnwatched);
+      schedule = app::FrameSchedule(kFrame);  // a rest is no delay of a frame
+      guarded_turn(0);
+      continue;
+    }
     const std::uint64_t late = schedule.skip_late();
     schedule.wait();
     guarded_turn(late);
@@ -91,11 +98,11 @@ void Engine::guarded_turn(std::uint64_t late) {
 }
 
 void Engine::turn(std::uint64_t late) {
-  const bool asked = apply_commands() || waits();
+  owes_ = apply_commands() || waits() || owes_;
   change_tissues();
   work_on_cut();
   if (!waits()) echo_ = received_;
-  const bool moves = !stopped_ && (!paused_ || frames_to_step_ > 0);
+  const bool moves = this->moves();
   if (moves) {
     dropped_ += late;
     frame();
@@ -103,7 +110,7 @@ void Engine::turn(std::uint64_t late) {
   frames_to_step_ = std::max(0, frames_to_step_ - 1);
   measure_pace();
   const auto since = WallClock::now() - published_;
-  if (since >= (moves || asked ? WallClock::duration(kPublishEvery) : WallClock::duration(kPublishAtRest))) publish();
+  if (since >= (moves || owes_ ? WallClock::duration(kPublishEvery) : WallClock::duration(kPublishAtRest))) publish();
 }
 
 bool Engine::apply_commands() {
@@ -117,6 +124,11 @@ bool Engine::apply_commands() {
     if (command.sequence != 0) received_ = command.sequence;  // the server's own have none
   }
   return !asked.empty();
+}
+
+/// Whether a frame is to be computed.
+bool Engine::moves() const {
+  return !stopped_ && watched_.load(std::memory_order_relaxed) && (!paused_ || frames_to_step_ > 0);
 }
 
 /// Whether commands that were received have not acted yet.
@@ -151,6 +163,7 @@ void Engine::apply(const Command& command) {
     case CommandKind::colour:
     case CommandKind::seek:
     case CommandKind::rate:
+    case CommandKind::visible:
       return;  // the server's, a replay's
   }
 }
@@ -374,6 +387,7 @@ void Engine::publish() {
   fill_events(state);
   state.notice = notice_;
   latest_.publish();
+  owes_ = false;
   published_ = WallClock::now();
 }
 

@@ -5,6 +5,8 @@
 //   latest()      ◀── three slots ◀───── state, every 8 ms: the newest wins
 //   next_sample() ◀── ring ◀──────────── force of every frame
 //
+// While the body is at rest, or nobody looks, the thread sleeps until a command comes.
+//
 // The engine never waits for who watches: what is not taken is overwritten or refused. Steps that do not keep pace slow the
 // simulated clock, and the state says by how much.
 #pragma once
@@ -23,6 +25,7 @@
 #include "view/engine/live_body.h"
 #include "view/engine/live_parameters.h"
 #include "view/engine/snapshot.h"
+#include "view/engine/waker.h"
 #include "view/protocol/command.h"
 #include "view/protocol/latest.h"
 #include "view/server/ring.h"
@@ -47,7 +50,15 @@ class Engine final : public Source {
   /// @param late  frames that were over before their turn
   void turn(std::uint64_t late = 0);
 
-  bool post(const Command& command) override { return commands_.push(command); }
+  bool post(const Command& command) override {
+    const bool taken = commands_.push(command);
+    waker_.wake();
+    return taken;
+  }
+  void set_watched(bool watched) override {
+    watched_.store(watched, std::memory_order_relaxed);
+    waker_.wake();
+  }
   const Snapshot* latest() override { return latest_.take(); }
   bool next_sample(ForceSample& sample) override { return samples_.pop(sample); }
 
@@ -67,6 +78,8 @@ class Engine final : public Source {
   void guarded_turn(std::uint64_t late);
   bool apply_commands();
   bool waits() const;
+  bool moves() const;
+  bool is_idle() const { return !moves() && !waits() && !owes_; }
   void apply(const Command& command);
   void apply_tool(const Command& command);
   void apply_grab(const Command& command);
@@ -95,7 +108,8 @@ class Engine final : public Source {
   Ring<Command, 1024> commands_;
   Ring<ForceSample, 8192> samples_;
   Latest<Snapshot> latest_;
-  std::atomic<bool> stop_{false}, want_pressure_{false};
+  std::atomic<bool> stop_{false}, want_pressure_{false}, watched_{true};
+  Waker waker_;
   std::thread thread_;
 
   // Of the engine's thread.
@@ -108,6 +122,7 @@ class Engine final : public Source {
   double reach_ = 0.0;                        ///< size of the body [m]
   double due_s_ = 0.0, began_s_ = 0.0;        ///< simulated times that the last frame was to reach, and began at [s]
   bool paused_ = false, stopped_ = false, building_ = false, restarted_ = false;
+  bool owes_ = false;  ///< commands have been taken that no state has told of yet
   int frames_to_step_ = 0;
   std::uint32_t received_ = 0;  ///< sequence of the last command taken from the ring
   std::uint32_t epoch_ = 0, echo_ = 0, shape_number_ = 0;

@@ -19,6 +19,8 @@ namespace glisson::view {
 inline constexpr std::size_t kMostTools = 4;
 /// Between snapshots of a body at rest.
 inline constexpr auto kPublishAtRest = std::chrono::milliseconds(200);
+/// The same of one that nobody looks at.
+inline constexpr auto kPublishUnwatched = std::chrono::milliseconds(1000);
 /// Of the latest events of a simulation, how many a snapshot tells.
 inline constexpr std::size_t kEventsTold = 32;
 

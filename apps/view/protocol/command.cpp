@@ -17,7 +17,7 @@ struct Payload {
   std::size_t bytes() const { return (index ? 4 : 0) + 4 * values; }
 };
 
-bool known(std::uint8_t kind) { return kind >= 1 && kind <= 16; }
+bool known(std::uint8_t kind) { return kind >= 1 && kind <= 17; }
 
 Payload payload_of(CommandKind kind) {
   switch (kind) {
@@ -32,6 +32,7 @@ Payload payload_of(CommandKind kind) {
       return {true, 3};
     case CommandKind::pause:
     case CommandKind::colour:
+    case CommandKind::visible:
       return {true, 0};
     case CommandKind::parameter:
       return {true, 1};
@@ -66,6 +67,7 @@ std::string range_trouble(const Command& command, std::size_t values) {
     if (!in_range(command.kind, x)) return "a number is out of range";
   }
   if (command.kind == CommandKind::pause && command.index > 1) return "pause is 0 or 1";
+  if (command.kind == CommandKind::visible && command.index > 1) return "visible is 0 or 1";
   if (command.kind == CommandKind::colour && command.index >= kFields) return "there is no such field";
   if (command.kind == CommandKind::cut && command.index > 1) return "a cut begins, 1, or goes on, 0";
   return {};

@@ -31,7 +31,8 @@ enum class CommandKind : std::uint8_t {
   cut = 13,        ///< index: 1 puts a blade there, 0 leads it there, cutting; its edge, from where to where [m]
   colour = 14,     ///< index: Field that this viewer wants to see; needs no lead
   seek = 15,       ///< of a recorded run: to this time [s]
-  rate = 16        ///< of a recorded run: simulated time over that of the clock
+  rate = 16,       ///< of a recorded run: simulated time over that of the clock
+  visible = 17     ///< index: 1 this viewer is seen, 0 its page is hidden; needs no lead
 };
 
 struct Command {

@@ -53,6 +53,7 @@ void Replay::start() {
 
 void Replay::stop() {
   stop_ = true;
+  waker_.wake();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -65,9 +66,14 @@ void Replay::run() {
   publish();
   WallClock::time_point last = WallClock::now(), published = last;
   while (!stop_.load(std::memory_order_relaxed)) {
-    std::this_thread::sleep_until(last + kTurn);
+    const bool watched = watched_.load(std::memory_order_relaxed), rests = paused_ || !watched;
+    if (rests) {
+      waker_.sleep(watched ? kPublishAtRest : kPublishUnwatched);
+    } else {
+      std::this_thread::sleep_until(last + kTurn);
+    }
     const WallClock::time_point now = WallClock::now();
-    const double passed = app::seconds_between(last, now);
+    const double passed = rests ? 0.0 : app::seconds_between(last, now);
     last = now;
     const bool asked = apply_commands(), moved = advance(passed);
     if (!asked && !moved && now - published < kPublishAtRest) continue;

@@ -8,6 +8,7 @@
 
 #include "view/engine/compute_times.h"
 #include "view/engine/frame_pace.h"
+#include "view/engine/waker.h"
 #include "view/protocol/latest.h"
 #include "view/replay/frame_cache.h"
 #include "view/replay/run_folder.h"
@@ -29,7 +30,15 @@ class Replay final : public Source {
   void stop() override;
   /// Makes the state at a time [s] the latest, for who watches without the thread: not between start() and stop().
   void show(double time);
-  bool post(const Command& command) override { return commands_.push(command); }
+  bool post(const Command& command) override {
+    const bool taken = commands_.push(command);
+    waker_.wake();
+    return taken;
+  }
+  void set_watched(bool watched) override {
+    watched_.store(watched, std::memory_order_relaxed);
+    waker_.wake();
+  }
   const Snapshot* latest() override { return latest_.take(); }
   bool next_sample(ForceSample& sample) override { return samples_.pop(sample); }
 
@@ -65,7 +74,8 @@ class Replay final : public Source {
   Ring<Command, 1024> commands_;
   Ring<ForceSample, 8192> samples_;
   Latest<Snapshot> latest_;
-  std::atomic<bool> stop_{false};
+  std::atomic<bool> stop_{false}, watched_{true};
+  Waker waker_;
   std::thread thread_;
 
   // Of the replay's thread.

@@ -95,18 +95,23 @@ void carry_tears_on(std::vector<RunFrame>& frames) {
 
 void take_view_file(const std::filesystem::path& file, RunFolder& run) {
   std::ifstream stream = open_outside(file);
+  const bool is_there = stream.is_open();
   std::size_t frame = 0, number = 1;
   try {
     for (std::string line; std::getline(stream, line) && !stream.eof(); ++number) {
       const nlohmann::json json = parse_json(line);
       number == 1 ? take_head(JsonField(json), run) : take_places(JsonField(json), frame, run);
     }
+    if (is_there && number == 1) throw JsonError("it is empty or broke off");
   } catch (const JsonError& error) {
-    run.notice += "view.jsonl, line " + std::to_string(number) + ": " + error.what() +
-                  "; instruments are shown up to the line before it.\n";
+    run.notice +=
+        "view.jsonl, line " + std::to_string(number) + ": " + error.what() +
+        (number > 1 ? "; instruments are shown up to the line before it.\n"
+                    : "; the file is damaged, and what it says of tools and instruments is lost: forces.csv is "
+                      "shown as that of one tool. Run the scene again to see them.\n");
   }
   carry_tears_on(run.frames);
-  if (run.tools.empty())
+  if (run.tools.empty() && !is_there)
     run.notice +=
         "There is no view.jsonl: the run is from an older glisson, and forces.csv is shown as that of one tool. Run "
         "the scene again to see its tools and instruments.\n";

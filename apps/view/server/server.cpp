@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 #include "view/server/request.h"
 
@@ -14,6 +15,7 @@ namespace glisson::view {
 namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(16);
+constexpr auto kTickAtRest = std::chrono::milliseconds(500);
 constexpr auto kAcceptAgain = std::chrono::milliseconds(100);
 constexpr auto kNewsEvery = std::chrono::milliseconds(100);
 constexpr auto kStuck = std::chrono::seconds(20);  // of a viewer that takes nothing
@@ -71,9 +73,9 @@ void Server::Impl::accept() {
   });
 }
 
-/// Every 16 ms, whatever the last one took of them.
+/// Every 16 ms, whatever the last one took of them; while nobody looks, seldom.
 void Server::Impl::tick() {
-  due_ = std::max(due_ + kTick, Clock::now());
+  due_ = std::max(due_ + (resting_ ? kTickAtRest : kTick), Clock::now());
   timer_.expires_at(due_);
   timer_.async_wait([this](beast::error_code error) {
     if (error || stopping_) return;
@@ -142,7 +144,7 @@ void Server::Impl::look() {
   const auto watching = viewers_;
   for (const std::shared_ptr<Viewer>& viewer : watching) {
     if (!viewer->busy()) {
-      send_frame(*viewer);
+      if (viewer->seen_) send_frame(*viewer);
       continue;
     }
     if (now - viewer->writing_since_ > kStuck) viewer->gone();
@@ -156,12 +158,25 @@ void Server::Impl::cut_off_floods() {
   }
 }
 
-/// A body that nobody looks at takes no cores: the clock is held, and goes on when somebody comes.
+bool Server::Impl::is_watched() const {
+  return std::any_of(viewers_.begin(), viewers_.end(), [](const auto& viewer) { return viewer->seen_; });
+}
+
+/// A body that nobody looks at takes no cores: the clock is held, and goes on when somebody does.
 void Server::Impl::rest_unwatched(Clock::time_point now) {
-  if (!viewers_.empty()) watched_ = now;
+  if (is_watched()) watched_ = now;
   const std::chrono::duration<double> alone = now - watched_;
-  if (resting_ || shown_ == nullptr || shown_->paused || alone.count() < options_.rest_after_s) return;
-  resting_ = source_.post({.kind = CommandKind::pause, .index = 1});
+  if (resting_ || options_.keep_running || alone.count() < options_.rest_after_s) return;
+  resting_ = true;
+  source_.set_watched(false);
+}
+
+/// Somebody looks.
+void Server::Impl::wake() {
+  if (!std::exchange(resting_, false)) return;
+  source_.set_watched(true);
+  due_ = {};
+  tick();  // the seldom one that waits is cancelled
 }
 
 /// What changes seldom goes as text, and only when it has changed.
@@ -226,7 +241,7 @@ void Server::Impl::came(const std::shared_ptr<Viewer>& viewer) {
   if (viewers_.size() >= options_.most_viewers && same == viewers_.end())  // several shook hands at once
     return viewer->close(websocket::close_code::try_again_later, "there are too many viewers");
   viewers_.insert(viewer);
-  if (resting_) resting_ = !source_.post({.kind = CommandKind::pause, .index = 0});
+  wake();
   lead_.came(viewer->session_, Clock::now());
   viewer->send(message(hello_message(source_, facts_, viewer->session_)), false);
   if (state_) viewer->send(state_, false);
@@ -259,6 +274,10 @@ void Server::Impl::obey(Viewer& viewer, Command command) {
     if (viewer.field_ == Field::pressure && !source_.has_stress()) viewer.field_ = Field::none;
     return ask_for_fields();
   }
+  if (command.kind == CommandKind::visible) {
+    viewer.seen_ = command.index == 1;
+    return viewer.seen_ ? wake() : void();
+  }
   if (!lead_.leads(viewer.session_)) return;  // those who watch have been told so
   if (command.kind == CommandKind::grab) {
     if (!surface_ || command.index >= surface_->size()) return;
@@ -286,6 +305,7 @@ Server::Server(Source& source, SceneFacts facts, std::string_view page, const Se
 Server::~Server() { stop(); }
 
 void Server::start() {
+  impl_->source_.set_watched(true);
   impl_->accept();
   impl_->tick();
   impl_->thread_ = std::thread([this] { impl_->serve(); });

@@ -27,7 +27,8 @@ struct ServerOptions {
   double messages_per_second = 400.0;
   std::size_t most_viewers = 32;
   double lead_kept_s = 10.0;   ///< how long a viewer that is cut off keeps the lead [s]
-  double rest_after_s = 10.0;  ///< without a viewer for so long the clock is held until one comes [s]
+  double rest_after_s = 10.0;  ///< without a viewer that is seen for so long the clock is held until there is one [s]
+  bool keep_running = false;   ///< it never is
   double standstill_s = 20.0;  ///< a line that takes nothing of its answer for so long is cut off [s]
 };
 

@@ -24,6 +24,8 @@ struct Server::Impl {
   void look();
   void cut_off_floods();
   void rest_unwatched(Clock::time_point now);
+  bool is_watched() const;
+  void wake();
   void keep_samples();
   /// Says on stderr and to viewers what went wrong here and now, once each; the thread goes on.
   void survive(const std::exception& error);
@@ -67,7 +69,7 @@ struct Server::Impl {
   std::vector<double> parameters_;  ///< of the newest state
   std::uint64_t samples_ = 0;       ///< all there ever were
   bool stopping_ = false, led_ = false;
-  bool resting_ = false;  ///< held because nobody watches
+  bool resting_ = false;  ///< the source is held because nobody looks
   Clock::time_point watched_ = Clock::now();
   Clock::time_point news_{}, due_{};
 };

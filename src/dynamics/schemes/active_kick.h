@@ -55,6 +55,20 @@ class ActiveKick {
   /// What was remembered, per active vertex, 0 for one that was not active then; empty: nothing was [N].
   std::span<const Vec3d> outer() const { return outer_; }
 
+  /// The last kick, to go back to; with the same active vertices.
+  struct Kept {
+    std::vector<Kicked> kicked;
+    std::vector<Vec3d> outer;
+    Vec3d gravity;
+    double step = 0.0, time = 0.0;
+  };
+  void keep_last(Kept& kept) const {
+    kept.kicked = kicked_, kept.outer = outer_, kept.gravity = gravity_, kept.step = step_, kept.time = time_;
+  }
+  void go_back(const Kept& kept) {
+    kicked_ = kept.kicked, outer_ = kept.outer, gravity_ = kept.gravity, step_ = kept.step, time_ = kept.time;
+  }
+
   /// What a constraint exerted at the last kick.
   ForceParts force(std::span<const ActiveVertex> active, std::size_t constraint) const;
   /// Its torque about a place, with where the vertices were.

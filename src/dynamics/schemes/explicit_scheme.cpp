@@ -236,9 +236,10 @@ std::span<const ShapeRate> ExplicitScheme::shape_rates() {
   return shape_rates_;
 }
 
-void ExplicitScheme::kick(double) {
+bool ExplicitScheme::kick(double) {
   kick_.kick(moving_->active());
   kick_.impose_motions(moving_->active());
+  return true;
 }
 
 StepResult ExplicitScheme::step() {
@@ -260,6 +261,7 @@ StepResult ExplicitScheme::step() {
             "less deep, soften the law, or take the implicit integrator"};
   }
   take_hold(h);
+  prepare_to_give_up();
   hold_in_stages();
   begin_interactions(h);
   hold_rows_in_stages();
@@ -277,7 +279,10 @@ StepResult ExplicitScheme::step() {
                       state_.options.track_energies);
   if (state_.options.drag_stages > 1) kick_.remember_tissue(moving_->active());
   interactions_.add_forces();
-  kick(h);
+  if (!kick(h)) {
+    message_ = why_given_up(h);
+    return {StepStatus::not_converged, {}, message_};
+  }
   constrain_interactions();
   if (state_.options.drag_stages > 1) kick_.remember_outer(moving_->active()), interactions_.tell_held(held_rows_);
   if (state_.options.track_energies) book(h, seen.work);

@@ -62,8 +62,13 @@ class ExplicitScheme : public Scheme {
  protected:
   ExplicitScheme(Body body, const SimulationOptions& options, Drag drag);
 
+  /// A step is about to be made that kick() may give up.
+  virtual void prepare_to_give_up() {}
   /// v₊ of the active vertices: as if they were free, then what motions ask for.
-  virtual void kick(double h);
+  /// @return false where that is not found; all is as it was when prepare_to_give_up() was called then
+  virtual bool kick(double h);
+  /// Why kick() gave a step of h up, and what to do.
+  virtual std::string why_given_up(double /*h*/) const { return {}; }
   /// Lets interactions correct v₊, and keeps what they exerted.
   virtual void constrain_interactions();
   /// Adds to the work of a kick what interactions took of the tools'.

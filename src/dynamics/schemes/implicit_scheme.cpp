@@ -28,7 +28,7 @@ ImplicitScheme::ImplicitScheme(Body body, const SimulationOptions& options, bool
       relaxes_(statics && options.branches != StaticBranches::follow), tissue_(state_.body),
       solver_(state_, tissue_, now_, statics, relaxes_),
       largest_(options.implicit.largest_step.value_or(statics ? kDefaultStaticStep : kDefaultStep)) {
-  step_ = options.step.value_or(largest_);
+  pace_.step = options.step.value_or(largest_);
   if (is_slow() && !options.implicit.largest_step) largest_ = std::numeric_limits<double>::infinity();
   info_ = {.instruction_set = "double, element by element", .threads = 1};
   now_.resize(state_.body.vertex_count);
@@ -37,15 +37,16 @@ ImplicitScheme::ImplicitScheme(Body body, const SimulationOptions& options, bool
 /// Where a coming automatic step ends at the latest [s].
 double ImplicitScheme::next_end() const {
   const double here =
-      state_.time + kSameTime * step_ + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(state_.time);
+      state_.time + kSameTime * pace_.step + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(state_.time);
   const double corner = next_corner(here);
   return step_end_ > here ? std::min(step_end_, corner) : corner;
 }
 
 double ImplicitScheme::step_size() const {
   const double left = state_.options.step ? std::numeric_limits<double>::infinity() : next_end() - state_.time;
-  if (!std::isfinite(left)) return step_;
-  const double even = left / std::max(1.0, std::ceil(left / step_ - kSliver)), last = is_slow() ? planned_ : last_h_;
+  if (!std::isfinite(left)) return pace_.step;
+  const double even = left / std::max(1.0, std::ceil(left / pace_.step - kSliver)),
+               last = is_slow() ? pace_.planned : last_h_;
   return std::abs(even - last) <= kSameTime * last ? last : even;  // to the last bit, so that the factor is kept
 }
 
@@ -248,9 +249,9 @@ void ImplicitScheme::book(const Moment& before) {
 void ImplicitScheme::adapt(double h, double smallest) {
   if (state_.options.step) return;
   if (smallest < h) {
-    step_ = smallest;
+    pace_.step = smallest;
   } else if (is_easy()) {
-    step_ = std::min(kGrowth * step_, largest_);
+    pace_.step = std::min(kGrowth * pace_.step, largest_);
   }
 }
 
@@ -327,7 +328,7 @@ bool ImplicitScheme::advance(double h, double end, std::optional<Backup>& before
     }
     dated = false;
     shortest = length;
-    if (cuts >= state_.options.implicit.most_cuts) {
+    if (cuts >= state_.options.implicit.most_cuts || solver_.interrupt().is_wanted()) {
       if (before) restore(*std::move(before));
       fresh_ = true;
       return false;
@@ -344,10 +345,33 @@ StepResult ImplicitScheme::made() {
   return {watch().inverted.empty() ? StepStatus::ok : StepStatus::inverted, watch().inverted, {}};
 }
 
+/// That a step was not made because its end was asked for, which has left nothing behind.
+StepResult ImplicitScheme::interrupted() {
+  const StepProgress& at = solver_.interrupt().progress();
+  std::ostringstream text;
+  text << "the step from " << state_.time << " s was interrupted, in iteration " << at.iteration << " of a part of "
+       << at.h << " s that begins at " << at.time << " s; nothing has changed, and step() makes it anew";
+  message_ = text.str();
+  solver_.interrupt().rethrow();
+  return {StepStatus::interrupted, watch().inverted, message_};
+}
+
 StepResult ImplicitScheme::step() {
   const double h = step_size();
   fresh_ = take_hold(h) || fresh_;
   const bool sudden = fresh_;
+  const Pace pace = pace_;
+  const ElementWatch seen = watch();
+  solver_.interrupt().begin();
+  const StepResult result = step_of(h, sudden);
+  solver_.interrupt().end();
+  if (!solver_.interrupt().is_wanted()) return result;
+  pace_ = pace, watch() = seen, fresh_ = sudden;
+  return interrupted();
+}
+
+/// @param sudden  as fresh_ is
+StepResult ImplicitScheme::step_of(double h, bool sudden) {
   if (fresh_) {
     const StepResult begun = begin();
     if (!begun.made()) return begun;
@@ -373,14 +397,14 @@ void ImplicitScheme::load_layout(const std::shared_ptr<const void>&) {
 
 void ImplicitScheme::archive_motion(Archive& ar) {
   bool fresh = fresh_;
-  ar(now_, tissue_, watch().inverted, last_change_, last_h_, step_, fresh, ledger_);
+  ar(now_, tissue_, watch().inverted, last_change_, last_h_, pace_.step, fresh, ledger_);
   const std::size_t vertices = state_.body.vertex_count, tets = state_.body.elements.size();
   ar.check(last_change_.size() == vertices || (last_change_.empty() && fresh && last_h_ == 0.0));
   for (const std::uint32_t t : watch().inverted) ar.check(t < tets);
   if (solver_.contact().acts()) ar(solver_.contact());  // first: what interactions hold still is held by the solver
   if (ar.reads() && !fresh) solver_.begin();
   if (!fresh) ar(solver_);
-  if (is_slow()) ar(largest_stress_, largest_displacement_, planned_);
+  if (is_slow()) ar(pace_.largest_stress, pace_.largest_displacement, pace_.planned);
   fresh_ = fresh;
 }
 

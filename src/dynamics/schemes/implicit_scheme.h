@@ -29,6 +29,9 @@ class ImplicitScheme : public Scheme {
   ImplicitScheme(Body body, const SimulationOptions& options, bool statics = false);
 
   StepResult step() override;
+  void set_interrupt(std::function<bool(const StepProgress&)> asks) override {
+    solver_.interrupt().set(std::move(asks));
+  }
   /// An automatic step ends at the next corner, and what is left to there is divided into equal ones.
   double step_size() const override;
   void set_step_end(double time) override { step_end_ = time; }
@@ -88,6 +91,8 @@ class ImplicitScheme : public Scheme {
   Part stage(const TimeStep& s, bool dates_events);
   void finish(const TimeStep& s);
   StepResult begin();
+  StepResult step_of(double h, bool sudden);
+  StepResult interrupted();
   double end_of(double h) const;
   bool advance(double h, double end, std::optional<Backup>& before, double& shortest);
   StepResult made();
@@ -112,12 +117,17 @@ class ImplicitScheme : public Scheme {
   BalanceSolver solver_;
   std::vector<Vec3d> last_change_;  ///< of the last step: where statics starts from [m]
   double last_h_ = 0.0;
-  double step_ = 0.0, largest_;  ///< of an automatic step: what it is where no corner is near [s]
+  double largest_;                                             ///< automatic step [s]
   double step_end_ = std::numeric_limits<double>::infinity();  ///< as Simulation::set_step_end [s]
-  /// Of slow steps: how wrong the last one was, over what it may be; the largest stress [Pa m^(3/2)] and displacement so far, √Σ|u|² [m].
-  double error_ = 0.0, largest_stress_ = 0.0, largest_displacement_ = 0.0;
-  double planned_ = 0.0;  ///< length of the last slow step, an instant left out [s]
-  bool fresh_ = true;     ///< what is held, or the body, or the state has changed from outside
+  /// What steps are chosen by.
+  struct Pace {
+    double step = 0.0;  ///< of an automatic step: what it is where no corner is near [s]
+    /// Of slow steps: how wrong the last one was, over what it may be; the largest stress [Pa m^(3/2)] and displacement so far, √Σ|u|² [m].
+    double error = 0.0, largest_stress = 0.0, largest_displacement = 0.0;
+    double planned = 0.0;  ///< length of the last slow step, an instant left out [s]
+  };
+  Pace pace_;
+  bool fresh_ = true;  ///< what is held, or the body, or the state has changed from outside
   std::string message_;
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -12,11 +13,16 @@ namespace {
 
 constexpr double kMargin = 0.85,
                  kLeeway = 1.5;  ///< a step that the factor is made for, and how much longer ones it serves for
+constexpr double kMostContactSweeps = 20000.0;  ///< of contact in a step
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+constexpr int kMostShortenings = 8;    ///< of an automatic step in which it is not found, each by half …
+constexpr double kStepRegrowth = 1.1;  ///< … and how fast steps grow again
 
 }  // namespace
 
 SemiImplicitScheme::SemiImplicitScheme(Body body, const SimulationOptions& options)
     : ExplicitScheme(std::move(body), options, Drag::at_once), viscous_(ViscousSystem::needed(state_.body)) {
+  contact_.set_last(kMostContactSweeps);
   watch_all_if_viscous();
 }
 
@@ -74,6 +80,7 @@ double SemiImplicitScheme::tool_energy() const {
 /// An automatic step follows the stiffest tets all the time; the factor is kept as long as its step is nearly as long.
 double SemiImplicitScheme::choose_step(double h) const {
   if (!contact_.acts() || state_.options.step) return h;
+  h = std::min(h, most_step_);
   return built_for_ <= h && h <= kLeeway * built_for_ ? built_for_ : h * kMargin;
 }
 
@@ -136,7 +143,7 @@ void SemiImplicitScheme::archive_motion(Archive& ar) {
   double h = built_for_;
   std::vector<double> last = system_.last();
   ar(h, last);
-  if (contact_.acts()) ar(contact_);
+  if (contact_.acts()) ar(contact_, most_step_);
   if (!ar.reads()) return;
   viscous_ = ViscousSystem::needed(state_.body) || contact_.acts();
   ar.check(!viscous_ || moving_->active().size() == state_.body.vertex_count);
@@ -154,11 +161,11 @@ bool SemiImplicitScheme::begin_contact(double h) {
   return contact_.begin(h, start_, false);
 }
 
-/// Finds the change of the velocities, and adds the impulses of interactions to those known.
-void SemiImplicitScheme::solve(double h) {
+/// Finds the change of the velocities, and adds the impulses of interactions to those known. @return false where these are not found
+bool SemiImplicitScheme::solve(double h) {
   if (!contact_.acts()) {
     system_.solve(impulse_, change_);
-    return;
+    return true;
   }
   const std::size_t n = change_.size();
   contact_push_.resize(n);
@@ -166,7 +173,7 @@ void SemiImplicitScheme::solve(double h) {
   system_.solve(contact_push_, change_);
   end_.resize(n);
   for (std::size_t i = 0; i < n; ++i) end_[i] = start_[i] + (before_[i] + change_[i]) * h;
-  contact_.correct(end_);
+  if (!contact_.correct(end_)) return false;
   for (std::size_t i = 0; i < n; ++i) {
     contact_push_[i] = contact_.forces()[i] * h;
     impulse_[i] += contact_push_[i];
@@ -174,13 +181,48 @@ void SemiImplicitScheme::solve(double h) {
       if (system_.is_free(3 * i + axis)) change_[i][axis] = (end_[i][axis] - start_[i][axis]) / h - before_[i][axis];
     }
   }
+  return true;
 }
 
-void SemiImplicitScheme::kick(double h) {
-  if (!viscous_) {
-    ExplicitScheme::kick(h);
-    return;
+void SemiImplicitScheme::prepare_to_give_up() {
+  if (!viscous_ || !contact_.acts()) return;
+  before_step_.active.assign(moving_->active().begin(), moving_->active().end());
+  before_step_.past = past();
+  kick_.keep_last(before_step_.kick);
+  before_step_.interactions = interactions_.save();
+}
+
+void SemiImplicitScheme::give_up(double h) {
+  contact_.give_up();
+  std::copy(before_step_.active.begin(), before_step_.active.end(), moving_->active().begin());
+  Archive past(before_step_.past);
+  moving_->archive_past(past);
+  kick_.go_back(before_step_.kick);
+  interactions_.load(before_step_.interactions);
+  if (!state_.options.step) most_step_ = 0.5 * h;
+}
+
+std::string SemiImplicitScheme::why_given_up(double h) const {
+  std::ostringstream text;
+  text << "contact was not found in a step of " << h << " s: no place of the tools has forces that tissue, bonds and "
+       << "the force on a pushed tool agree with. Ways out: "
+       << (state_.options.step ? "step_s = \"auto\" or a smaller step, " : "")
+       << "a smaller force or a larger mass_kg on a tool that is pushed, slower motions, or the integrator "
+          "\"central_difference\", whose short steps do not look for the end of a step";
+  return text.str();
+}
+
+StepResult SemiImplicitScheme::step() {
+  StepResult result = ExplicitScheme::step();
+  for (int k = 0; k < kMostShortenings && result.status == StepStatus::not_converged && !state_.options.step; ++k) {
+    result = ExplicitScheme::step();
   }
+  if (result.made()) most_step_ = most_step_ < step_size() ? most_step_ * kStepRegrowth : kNoLimit;
+  return result;
+}
+
+bool SemiImplicitScheme::kick(double h) {
+  if (!viscous_) return ExplicitScheme::kick(h);
   const bool others_rest = contact_.acts() && begin_contact(h);
   if (h != built_for_ || holding() != built_holding_ || others_rest) build(h);
   const std::span<ActiveVertex> active = moving_->active();  // all vertices, in their order
@@ -196,7 +238,10 @@ void SemiImplicitScheme::kick(double h) {
     if (!(state_.body.masses[i] > 0.0) || still_[i] != 0) active[i].velocity = {};
     change_[i] = active[i].velocity - kick_.all()[i].velocity_before;
   }
-  solve(h);
+  if (!solve(h)) {
+    give_up(h);
+    return false;
+  }
   system_.held_drag(change_, drag_);
   for (std::size_t i = 0; i < active.size(); ++i) {
     ActiveVertex& w = active[i];
@@ -208,6 +253,7 @@ void SemiImplicitScheme::kick(double h) {
       w.viscous[axis] -= free ? (impulse_[i][axis] - inertia * change_[i][axis]) / h : drag_[i][axis];
     }
   }
+  return true;
 }
 
 void SemiImplicitScheme::constrain_interactions() {

@@ -10,8 +10,10 @@
 // (step_contact.h); those that add forces only, as capsules do, act as in a short one. In tissue without viscosity all do.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "dynamics/schemes/explicit_scheme.h"
@@ -29,13 +31,18 @@ class SemiImplicitScheme final : public ExplicitScheme {
   /// @throws std::invalid_argument as Simulation's constructor
   SemiImplicitScheme(Body body, const SimulationOptions& options);
 
+  /// An automatic step in which contact is not found is tried again, shorter.
+  StepResult step() override;
   void archive_motion(Archive& ar) override;
   void attach(std::shared_ptr<Interaction> interaction, const BodyView& body) override;
   std::span<const std::shared_ptr<Interaction>> interactions() const override { return all_; }
   void tell_change(const BodyView& body, std::span<const std::uint32_t> origins) override;
 
  private:
-  void kick(double h) override;
+  void prepare_to_give_up() override;
+  bool kick(double h) override;
+  void give_up(double h);
+  std::string why_given_up(double h) const override;
   void constrain_interactions() override;
   void add_interface(KickWork& work) const override;
   double tool_energy() const override;
@@ -54,7 +61,7 @@ class SemiImplicitScheme final : public ExplicitScheme {
   std::vector<char> held_components() const;
   void build(double h);
   bool begin_contact(double h);
-  void solve(double h);
+  bool solve(double h);
   std::vector<RestingVertex> resting() const;
 
   /// Whether C is not 0, or was not when interactions were attached; the kick is the explicit one otherwise.
@@ -67,6 +74,16 @@ class SemiImplicitScheme final : public ExplicitScheme {
   double built_for_ = 0.0;                                  ///< h; 0: to be built
   std::size_t built_holding_ = 0;                           ///< number of constraints that held then
   std::vector<Vec3d> impulse_, change_, drag_;
+
+  /// What a step goes back to in which contact is not found, beside what contact_ keeps.
+  struct Backup {
+    std::vector<ActiveVertex> active;
+    std::string past;  ///< of the body
+    ActiveKick::Kept kick;
+    Interactions::Saved interactions;
+  };
+  Backup before_step_;
+  double most_step_ = std::numeric_limits<double>::infinity();  ///< of automatic steps since contact was not found [s]
 };
 
 }  // namespace glisson

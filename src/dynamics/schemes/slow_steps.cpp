@@ -64,7 +64,7 @@ ImplicitScheme::Part ImplicitScheme::slow_part(double h, bool dates_events) {
     ++k;
   }
   state_.time = before.time;
-  error_ = std::max(error_, error_of(before, h, travelled));
+  pace_.error = std::max(pace_.error, error_of(before, h, travelled));
   return Part::made;
 }
 
@@ -73,8 +73,8 @@ double ImplicitScheme::error_of(const Backup& before, double h, std::span<const 
   double error = 0.0;
   if (tissue_.has_memory()) {
     const MemoryChange change = tissue_.change_by_one_step(before.memory, h, now_.u);
-    largest_stress_ = std::max(largest_stress_, change.stress);
-    if (largest_stress_ > 0.0) error = change.overstress / 3.0 / (kForceError * largest_stress_);
+    pace_.largest_stress = std::max(pace_.largest_stress, change.stress);
+    if (pace_.largest_stress > 0.0) error = change.overstress / 3.0 / (kForceError * pace_.largest_stress);
   }
   if (travelled.empty()) return error;
   double off = 0.0;
@@ -82,9 +82,9 @@ double ImplicitScheme::error_of(const Backup& before, double h, std::span<const 
     const Vec3d d = now_.u[i] - before.now.u[i] - travelled[i];
     off += dot(d, d);
   }
-  largest_displacement_ = std::max(largest_displacement_, std::sqrt(squared(now_.u)));
-  if (!(largest_displacement_ > 0.0)) return error;
-  return std::max(error, std::sqrt(off) / (kTravelError * largest_displacement_));
+  pace_.largest_displacement = std::max(pace_.largest_displacement, std::sqrt(squared(now_.u)));
+  if (!(pace_.largest_displacement > 0.0)) return error;
+  return std::max(error, std::sqrt(off) / (kTravelError * pace_.largest_displacement));
 }
 
 StepResult ImplicitScheme::slow_step_of(double h, bool sudden) {
@@ -96,18 +96,18 @@ StepResult ImplicitScheme::slow_step_of(double h, bool sudden) {
     h = end - state_.time;
   }
   for (int tries = 1;; ++tries) {
-    error_ = 0.0;
+    pace_.error = 0.0;
     std::optional<Backup> start = before;
     if (!advance(h, end, start, shortest)) {
       adapt_slow(h, shortest);
       return failed(shortest);
     }
-    if (!automatic || error_ <= 1.0 || tries == kMostTries) break;
+    if (!automatic || pace_.error <= 1.0 || tries == kMostTries) break;
     restore(*before);
-    step_ = h * std::clamp(kSlowSafety / std::sqrt(error_), kMostShrinking, kLeastShrinking);
+    pace_.step = h * std::clamp(kSlowSafety / std::sqrt(pace_.error), kMostShrinking, kLeastShrinking);
     h = step_size(), end = end_of(h);
   }
-  planned_ = h;
+  pace_.planned = h;
   adapt_slow(h, shortest);
   return made();
 }
@@ -115,8 +115,9 @@ StepResult ImplicitScheme::slow_step_of(double h, bool sudden) {
 /// What an automatic step is next.
 void ImplicitScheme::adapt_slow(double h, double shortest) {
   if (state_.options.step || shortest < h) return adapt(h, shortest);
-  const double fits = h * kSlowSafety / std::sqrt(std::max(error_, kLeastError));
-  if (fits >= kWorthGrowing * step_ && is_easy()) step_ = std::min({kMostGrowth * step_, fits, largest_});
+  const double fits = h * kSlowSafety / std::sqrt(std::max(pace_.error, kLeastError));
+  if (fits >= kWorthGrowing * pace_.step && is_easy())
+    pace_.step = std::min({kMostGrowth * pace_.step, fits, largest_});
 }
 
 }  // namespace glisson

@@ -36,7 +36,9 @@ double unit_force(const Body& body) {
 BalanceSolver::BalanceSolver(BodyState& state, const TissueOperator& tissue, const Moment& now, bool statics,
                              bool relaxes)
     : state_(state), tissue_(tissue), now_(now), statics_(statics), relaxes_(relaxes),
-      system_(tissue_, state.options.implicit.preconditioner), contact_(state_, system_) {}
+      system_(tissue_, state.options.implicit.preconditioner, interrupt_), contact_(state_, system_) {
+  contact_.set_interrupt(interrupt_);
+}
 
 void BalanceSolver::begin() {
   const std::size_t vertices = state_.body.vertex_count;
@@ -58,11 +60,13 @@ void BalanceSolver::hold() {
 }
 
 bool BalanceSolver::solve(const TimeStep& s, std::span<const Vec3d> last_change, double last_h) {
+  interrupt_.set_progress({.time = state_.time, .h = s.h});
   load(s);
   watch_before_ = watch_;
   prescribe(s);
   if (contact_.acts() && contact_.begin(s.h, now_.u, !relaxes_ && contact_.constrains())) hold();
-  if (start(s, last_change, last_h) && (contact_.constrains() ? newton_in_contact(s) : newton(s))) {
+  const bool found = start(s, last_change, last_h) && (contact_.constrains() ? newton_in_contact(s) : newton(s));
+  if (found && !interrupt_.is_wanted()) {
     if (contact_.acts()) next_.contact = contact_.forces();
     return true;
   }
@@ -211,7 +215,7 @@ bool BalanceSolver::search_line(const TimeStep& s, const Eigen::VectorXd& direct
   const std::vector<Vec3d> from = next_.u;
   const double before = flat(view(out_of_balance_)).dot(direction), residual = balance.residual;
   double a = 1.0;
-  for (int i = 0; i < kMostHalvings; ++i) {
+  for (int i = 0; i < kMostHalvings && !interrupt_.wanted(); ++i) {
     flat(std::span<Vec3d>(next_.u)) = flat(view(from)) + a * direction;
     const Balance there = evaluate(s);
     const double slope = flat(view(out_of_balance_)).dot(direction);
@@ -238,7 +242,7 @@ bool BalanceSolver::go_towards(const TimeStep& s, const std::vector<Vec3d>& from
   const std::size_t inverted = watch_.inverted.size();
   const double before = balance.residual;
   double share = 1.0;
-  for (int i = 0; i < kMostHalvings; ++i) {
+  for (int i = 0; i < kMostHalvings && !interrupt_.wanted(); ++i) {
     balance = evaluate(s);
     const bool nearer = first || balance.residual <= kLeeway * before || balance.met(state_.options.implicit.tolerance);
     if (std::isfinite(balance.residual) && nearer && watch_.inverted.size() <= inverted) return share == 1.0;
@@ -260,7 +264,8 @@ bool BalanceSolver::newton_in_contact(const TimeStep& s) {
   int deadline = options.most_iterations;
   Eigen::VectorXd direction;
   for (iterations_ = 0; iterations_ < deadline; ++iterations_) {
-    if (!std::isfinite(balance.residual)) return false;
+    interrupt_.set_iteration(iterations_);
+    if (!std::isfinite(balance.residual) || interrupt_.wanted()) return false;
     linearise(s, semidefinite);
     if (iterations_ > 1 && balance.residual > kSlow * last && !system_.is_linear()) system_.renew();
     const double exact = std::max(1e-12, 0.1 * options.tolerance * balance.scale / balance.residual);
@@ -296,7 +301,8 @@ bool BalanceSolver::newton(const TimeStep& s) {
   int deadline = options.most_iterations;
   Eigen::VectorXd direction;
   for (iterations_ = 0; iterations_ < deadline; ++iterations_) {
-    if (!std::isfinite(balance.residual)) return false;
+    interrupt_.set_iteration(iterations_);
+    if (!std::isfinite(balance.residual) || interrupt_.wanted()) return false;
     if (balance.met(options.tolerance)) return true;
     linearise(s, semidefinite);
     const double exact = std::max(1e-12, 0.1 * options.tolerance * balance.scale / balance.residual);

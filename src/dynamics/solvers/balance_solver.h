@@ -47,6 +47,8 @@ class BalanceSolver {
   /// Finds the moment after a step. @param last_change  of u in the last step, of last_h [s], which statics goes on with
   /// @return false where there is no balance
   bool solve(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
+  /// Asked within a solve, which then finds no balance.
+  StepInterrupt& interrupt() { return interrupt_; }
   /// Takes the step that was solved for back.
   void give_up();
   Moment& next() { return next_; }
@@ -91,6 +93,7 @@ class BalanceSolver {
   const TissueOperator& tissue_;
   const Moment& now_;
   bool statics_, relaxes_;
+  StepInterrupt interrupt_;
   TangentSystem system_;
   StepContact contact_;
   Moment next_;

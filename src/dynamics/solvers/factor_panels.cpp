@@ -34,7 +34,7 @@ std::vector<std::vector<int>> rows_of_factor(const FactorPanels::Matrix& A, cons
 
 }  // namespace
 
-bool FactorPanels::factorise(const Matrix& A, Eigen::Index negative) {
+bool FactorPanels::factorise(const Matrix& A, Eigen::Index negative, StepInterrupt* interrupt) {
   const Matrix both = A.selfadjointView<Eigen::Lower>();
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> back;
   if (A.cols() > 0) Eigen::AMDOrdering<int>()(both, back);
@@ -42,7 +42,7 @@ bool FactorPanels::factorise(const Matrix& A, Eigen::Index negative) {
   find_panels(rows_of_factor(A, order_.indices()));
   find_places(A);
   negative_ = negative;
-  return factorise_again(A);
+  return factorise_again(A, interrupt);
 }
 
 void FactorPanels::find_panels(const std::vector<std::vector<int>>& rows) {
@@ -144,7 +144,7 @@ bool FactorPanels::factorise_triangle(const Panel& panel) {
   return true;
 }
 
-bool FactorPanels::factorise_again(const Matrix& A) {
+bool FactorPanels::factorise_again(const Matrix& A, StepInterrupt* interrupt) {
   diagonal_.setZero(negative_ > 0 ? A.rows() : 0);
   for (Eigen::Index i = 0; i < diagonal_.size(); ++i) diagonal_[order_.indices()[i]] = std::abs(A.coeff(i, i));
   sign_.setOnes(diagonal_.size());
@@ -161,6 +161,7 @@ bool FactorPanels::factorise_again(const Matrix& A) {
     next[p] = std::exchange(first[on], p);
   };
   for (std::size_t p = 0; p < panels_.size(); ++p) {
+    if (interrupt != nullptr && interrupt->wanted()) return false;
     const Panel& panel = panels_[p];
     for (Eigen::Index i = 0; i < panel.rows; ++i) place_of_row_[static_cast<std::size_t>(row(panel.rows_at + i))] = i;
     for (std::size_t by = first[p], after; by != kNone; by = after) {

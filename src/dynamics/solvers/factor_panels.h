@@ -10,6 +10,8 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
+#include "dynamics/solvers/step_interrupt.h"
+
 namespace glisson {
 
 class FactorPanels {
@@ -17,10 +19,11 @@ class FactorPanels {
   using Matrix = Eigen::SparseMatrix<double>;
 
   /// Factorises A. @param A  its lower triangle  @param negative  how many of its eigenvalues are negative
-  /// @return whether so many are, and the others positive
-  bool factorise(const Matrix& A, Eigen::Index negative = 0);
+  /// @param interrupt  asked between panels; null: nobody is asked
+  /// @return whether so many are, and the others positive; false also where it was interrupted: it is to be made anew then
+  bool factorise(const Matrix& A, Eigen::Index negative = 0, StepInterrupt* interrupt = nullptr);
   /// The same for a matrix with the entries of the last one, of other values.
-  bool factorise_again(const Matrix& A);
+  bool factorise_again(const Matrix& A, StepInterrupt* interrupt = nullptr);
   /// x ← A⁻¹ x, column by column: the same bytes for a column, whatever it is solved beside. @param x  as many rows as A
   void solve(Eigen::MatrixXd& x) const;
 

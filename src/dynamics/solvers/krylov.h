@@ -15,11 +15,16 @@ struct KrylovResult {
   bool curved = false;     ///< x·A x ≤ 0 was met: x is what was found before, a direction of descent
 };
 
+/// For solves that always go on.
+struct NeverStops {
+  bool operator()() const { return false; }
+};
+
 /// Preconditioned conjugate gradients from x = 0.
-/// @param apply  y = A x, @param precondition  z ≈ A⁻¹ r, symmetric and positive
-template <class Apply, class Precondition>
+/// @param apply  y = A x, @param precondition  z ≈ A⁻¹ r, symmetric and positive @param stops  asked before each iteration
+template <class Apply, class Precondition, class Stops = NeverStops>
 KrylovResult conjugate_gradients(const Apply& apply, const Precondition& precondition, const Eigen::VectorXd& b,
-                                 double tolerance, int most, Eigen::VectorXd& x) {
+                                 double tolerance, int most, Eigen::VectorXd& x, const Stops& stops = {}) {
   KrylovResult result;
   x = Eigen::VectorXd::Zero(b.size());
   Eigen::VectorXd r = b, z(b.size()), q(b.size());
@@ -27,7 +32,7 @@ KrylovResult conjugate_gradients(const Apply& apply, const Precondition& precond
   precondition(r, z);
   Eigen::VectorXd p = z;
   double rz = r.dot(z);
-  while (r.norm() > goal && result.iterations < most) {
+  while (r.norm() > goal && result.iterations < most && !stops()) {
     apply(p, q);
     ++result.iterations;
     const double curvature = p.dot(q);
@@ -49,16 +54,16 @@ KrylovResult conjugate_gradients(const Apply& apply, const Precondition& precond
 }
 
 /// Preconditioned BiCGSTAB from x = 0 [VanDerVorst1992].
-template <class Apply, class Precondition>
+template <class Apply, class Precondition, class Stops = NeverStops>
 KrylovResult bicgstab(const Apply& apply, const Precondition& precondition, const Eigen::VectorXd& b, double tolerance,
-                      int most, Eigen::VectorXd& x) {
+                      int most, Eigen::VectorXd& x, const Stops& stops = {}) {
   KrylovResult result;
   const Eigen::Index n = b.size();
   x = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd r = b, p = b, s(n), t(n), v(n), p_hat(n), s_hat(n);
   const double goal = tolerance * b.norm();
   double rho = b.squaredNorm();
-  while (r.norm() > goal && result.iterations < most) {
+  while (r.norm() > goal && result.iterations < most && !stops()) {
     precondition(p, p_hat);
     apply(p_hat, v);
     ++result.iterations;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "dynamics/solvers/most_trials.h"
 #include "dynamics/solvers/tangent_system.h"
 
 namespace glisson {
@@ -12,6 +13,9 @@ namespace {
 constexpr int kMostRounds = 10;      ///< of several interactions, each with the forces of the others
 constexpr std::size_t kAtATime = 8;  ///< vertices or means whose columns are found in one go
 constexpr double kAgreed = 1e-5;     ///< change of a force in a round, of the largest, at which they agree
+constexpr double kSettles =
+    3000.0;                       ///< sweeps of a trial; one that takes more has no solution that they come near to …
+constexpr int kMostHopeless = 3;  ///< … and after so many of them a tool that a force moves is not tried elsewhere
 
 /// What a mean is known by.
 auto key_of(const std::vector<VertexWeight>& mean) {
@@ -186,6 +190,18 @@ void StepContact::take_off(std::size_t interaction) {
   settle(active_);
 }
 
+/// Counts the work since it was called last. @param tries_again  it was a trial after which another follows  @param trial  its number
+/// @return whether there may be more
+bool StepContact::count_work(bool tries_again, int trial) {
+  const auto places = static_cast<double>(std::max<std::size_t>(near_.size(), 1));
+  if (tries_again && pushes_ - pushes_before_ > kSettles * places) ++hopeless_;
+  pushes_before_ = pushes_;
+  const bool interrupted = interrupt_ != nullptr && interrupt_->wanted();
+  const bool lost = tries_again && trial == kMostTrials && is_last_;
+  exhausted_ = interrupted || lost || hopeless_ >= kMostHopeless || pushes_ > most_sweeps_ * places;
+  return !exhausted_ && trial < kMostTrials;
+}
+
 /// @return by how much a force has changed at most [N]
 double StepContact::find_forces_of(std::size_t interaction) {
   acting_ = interaction;
@@ -194,7 +210,9 @@ double StepContact::find_forces_of(std::size_t interaction) {
   const std::vector<Vec3d>& before = others.impulses;
   const std::vector<ActiveVertex> free = active_;
   interactions_.constrain(interaction, *this);
-  while (interactions_.all()[interaction]->tries_again()) {
+  for (int trial = 1;; ++trial) {
+    const bool again = interactions_.all()[interaction]->tries_again();
+    if (!count_work(again, trial) || !again) break;
     active_ = free;
     unsettled_.assign(active_.size(), Vec3d{});
     interactions_.go_back(others);
@@ -218,7 +236,7 @@ double StepContact::find_forces() {
   interactions_.clear_impulses();
   double change = 0.0, largest = 0.0;
   int exerting = 0;
-  for (std::size_t i = 0; i < forces_.own.size(); ++i) {
+  for (std::size_t i = 0; i < forces_.own.size() && !exhausted_; ++i) {
     if (interactions_.all()[i]->constrains_long_steps()) change = std::max(change, find_forces_of(i));
     double own = 0.0;
     for (const Vec3d& f : forces_.own[i]) own = std::max(own, norm(f));
@@ -261,12 +279,14 @@ bool StepContact::correct(std::span<Vec3d> u) {
   }
   put_at_start(u);
   interactions_.begin(state_.time, h_, active_, {}, state_.body.rest_positions, state_.options.track_energies);
-  agrees_ = false;
-  for (int round = 0; round < kMostRounds && !agrees_; ++round) {
+  agrees_ = exhausted_ = false;
+  pushes_ = pushes_before_ = 0.0, hopeless_ = 0;
+  for (int round = 0; round < kMostRounds && !agrees_ && !exhausted_; ++round) {
     interactions_.load(reached_.interactions);
     if (round == 0) interactions_.add_forces();
     agrees_ = find_forces() <= kAgreed;
   }
+  if (exhausted_) return false;
   forces_.total.assign(u.size(), Vec3d{});
   for (const ActiveVertex& w : active_) {
     for (const std::vector<Vec3d>& own : forces_.own) forces_.total[w.vertex] += own[w.vertex];
@@ -427,6 +447,7 @@ void StepContact::move(std::size_t by, const Vec3d& impulse, std::size_t place, 
 void StepContact::spread(std::size_t place, const Vec3d& impulse, std::span<ActiveVertex> vertices) {
   static_cast<void>(column_at(place));
   unsettled_[place] += impulse;
+  ++pushes_;
   for (const std::uint32_t k : near_) move(place, impulse, k, vertices[k]);
 }
 

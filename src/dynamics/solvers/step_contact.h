@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <map>
 #include <memory>
 #include <set>
@@ -20,6 +21,7 @@
 
 #include "dynamics/interactions.h"
 #include "dynamics/solvers/step_factor.h"
+#include "dynamics/solvers/step_interrupt.h"
 #include "dynamics/state/body_state.h"
 
 namespace glisson {
@@ -73,8 +75,13 @@ class StepContact final : public StepCompliance {
   /// The stiffness of that where it was asked last.
   std::span<const TriangleStiffness> stiffness();
   /// Corrects u⁺ of a Newton iteration that was made with forces(), and finds these anew.
-  /// @return false where there is no factor
+  /// @return false where there is no factor, or where the forces were not found within the work allowed: give_up() comes next then
   bool correct(std::span<Vec3d> u);
+  /// Asked between trials, which end then: correct() returns false. @param interrupt  must outlive this
+  void set_interrupt(StepInterrupt& interrupt) { interrupt_ = &interrupt; }
+  /// The only correction of a step, which no iteration follows: where a tool that a force moves is not found, there is no answer, and the
+  /// work of all interactions together is limited. @param sweeps  over all places that are pushed
+  void set_last(double sweeps) { is_last_ = true, most_sweeps_ = sweeps; }
   /// Whether the last correct() found forces that all interactions agree on.
   bool agrees() const { return agrees_; }
   /// Whether something has come about within the step, which ends with u, v, that is to be dated.
@@ -130,6 +137,7 @@ class StepContact final : public StepCompliance {
   std::array<double, 3> lost_by(double InterfaceBook::Page::*tools, const Velocity& velocity) const;
   double find_forces();
   double find_forces_of(std::size_t interaction);
+  bool count_work(bool tries_again, int trial);
   void take_off(std::size_t interaction);
   void move_by_change(std::span<Vec3d> u, const ExertedForces& known, std::span<Eigen::VectorXd> moved);
   const Eigen::VectorXd& response(std::size_t interaction, const std::vector<Vec3d>& forces);
@@ -152,6 +160,13 @@ class StepContact final : public StepCompliance {
   std::vector<Column> at_places_;          ///< columns per place, of active vertices; empty: not asked for yet
   std::vector<std::uint32_t> near_, far_;  ///< places that have columns, and the others
   std::vector<Vec3d> unsettled_;           ///< per place: impulses that the others have not got yet [N s]
+  StepInterrupt* interrupt_ = nullptr;
+  double most_sweeps_ = std::numeric_limits<double>::infinity();
+  double pushes_ = 0.0,
+         pushes_before_ = 0.0;  ///< in this correction; before the present trial of a tool that a force moves
+  int hopeless_ = 0;            ///< trials in this correction that did not settle
+  bool is_last_ = false;        ///< as set_last()
+  bool exhausted_ = false;      ///< this correction has done the work that is allowed
 };
 
 }  // namespace glisson

@@ -61,8 +61,8 @@ Eigen::Matrix3d block_of(const ElementTangent& C, double volume, const Vec3d& a,
 
 }  // namespace
 
-TangentSystem::TangentSystem(const TissueOperator& tissue, Preconditioner preconditioner)
-    : tissue_(tissue),
+TangentSystem::TangentSystem(const TissueOperator& tissue, Preconditioner preconditioner, StepInterrupt& interrupt)
+    : tissue_(tissue), interrupt_(interrupt),
       factorises_(preconditioner == Preconditioner::factorised ||
                   (preconditioner == Preconditioner::automatic && tissue.body().elements.size() <= kMostFactorised)) {
   tissues_changed();
@@ -274,17 +274,21 @@ bool TangentSystem::factorise(const TissueTangent& tangent) {
 
 bool TangentSystem::take_factor() {
   f_->solved.reset();
-  if (std::exchange(f_->knows_entries, true)) return f_->factor.factorise_again(f_->matrix);
-  return f_->factor.factorise(f_->matrix, f_->pressures);
+  if (std::exchange(f_->knows_entries, true)) return f_->factor.factorise_again(f_->matrix, &interrupt_);
+  return f_->factor.factorise(f_->matrix, f_->pressures, &interrupt_);
 }
 
 void TangentSystem::refresh() {
   if (!has_pattern_) find_pattern();
   has_factor_ = factorise(tangent_);
-  if (!has_factor_) {
+  if (!has_factor_ && !interrupt_.is_wanted()) {
     TissueTangent definite;
     tissue_.linearise(state_, terms_.rate, true, definite);
     has_factor_ = factorise(definite);
+  }
+  if (interrupt_.is_wanted()) {
+    has_factor_ = current_ = false;
+    return;
   }
   current_ = true;
   ++factor_number_;
@@ -398,9 +402,10 @@ KrylovResult TangentSystem::solve(const Eigen::VectorXd& b, double tolerance, Ei
     }
   };
   const auto nearly = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { precondition(r, z); };
+  const auto stops = [&] { return interrupt_.wanted(); };
   const auto run = [&](int most) {
-    return symmetric_ && loads_.empty() ? conjugate_gradients(product, nearly, b, tolerance, most, x)
-                                        : bicgstab(product, nearly, b, tolerance, most, x);
+    return symmetric_ && loads_.empty() ? conjugate_gradients(product, nearly, b, tolerance, most, x, stops)
+                                        : bicgstab(product, nearly, b, tolerance, most, x, stops);
   };
   if (!factorises_) {
     find_blocks();
@@ -411,6 +416,10 @@ KrylovResult TangentSystem::solve(const Eigen::VectorXd& b, double tolerance, Ei
     if (old.converged) return old;
   }
   if (!current_) refresh();
+  if (interrupt_.is_wanted()) {
+    x = Eigen::VectorXd::Zero(b.size());
+    return {};
+  }
   return run(has_factor_ ? kMostIterations / 10 : kMostIterations);
 }
 

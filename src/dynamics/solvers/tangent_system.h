@@ -49,8 +49,8 @@ class TangentSystem final : public StepFactor {
     std::span<const TriangleStiffness> triangles{};  ///< T
   };
 
-  /// @param tissue  must outlive this
-  TangentSystem(const TissueOperator& tissue, Preconditioner preconditioner);
+  /// Both must outlive this. @param interrupt  asked within solves, whose answers are then of no use
+  TangentSystem(const TissueOperator& tissue, Preconditioner preconditioner, StepInterrupt& interrupt);
 
   /// Components that are free (3 i + axis: 1). Also after the body has changed.
   void set_free(std::vector<char> free);
@@ -111,6 +111,7 @@ class TangentSystem final : public StepFactor {
   void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
 
   const TissueOperator& tissue_;
+  StepInterrupt& interrupt_;
   bool factorises_, linear_ = true, symmetric_ = true;
   std::vector<char> free_;
   Terms terms_;

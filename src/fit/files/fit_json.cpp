@@ -237,6 +237,19 @@ Json designs_json(const FitResult& result) {
   return list;
 }
 
+/// Of each path what was looked at, and beyond which stretch or shear the law is not stable.
+Json stability_json(const FitResult& result) {
+  Json list = Json::array();
+  for (const fit::StabilityResult& s : result.stability)
+    list.push_back({{"path", s.path},
+                    {"low", number(s.low)},
+                    {"high", number(s.high)},
+                    {"stable", !s.lost_below && !s.lost_above},
+                    {"lost_below", number(s.lost_below)},
+                    {"lost_above", number(s.lost_above)}});
+  return list;
+}
+
 /// Strain and stress where the specimen's size is known, else displacement and force: of most curves, and of all errors.
 Json axis_x(const FitResult& result) {
   if (result.height) return {{"label", "strain [%]"}, {"scale", 100.0 / *result.height}};
@@ -289,6 +302,7 @@ Json fit_json(const FitResult& result, const FitHeading& heading) {
             {"laws", laws_json(result)},
             {"discovered", discovered_json(result)},
             {"designs", designs_json(result)},
+            {"stability", stability_json(result)},
             {"conclusions", result.conclusions},
             {"x", axis_x(result)},
             {"y", axis_y(result)},

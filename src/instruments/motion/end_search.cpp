@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/solvers/most_trials.h"
+
 namespace glisson {
 namespace {
 
 constexpr double kEnough = 1e-5;  // of what the tissue holds the tool back in the step …
 constexpr double kLeast = 1e-12;  // … and so much [m]
-constexpr int kMostTrials = 40;
+constexpr double kLost = 0.1;     // of the same: an end that is so far from its trial is none
 constexpr double kNoise = 1e-3;   // of the same: forces found by sweeps may be no more exact than to less than that …
 constexpr int kMostStalls = 8;    // … which so many trials show that come no nearer
 constexpr int kMostRestarts = 3;  // with the slopes known at first, where those learnt since lead nowhere
@@ -51,10 +53,11 @@ bool EndSearch::goes_on(const Vec3d& end) {
   }
   const double held_back = norm(free_ - end), off = norm(r);
   if (goes_ && off <= kNoise * held_back && off > 0.5 * norm(last_r_)) ++stalls_;
-  if (off <= kEnough * held_back + kLeast || stalls_ == kMostStalls || ++tries_ >= kMostTrials) {
+  const bool found = off <= kEnough * held_back + kLeast || stalls_ == kMostStalls;
+  if (found || ++tries_ >= kMostTrials) {
     goes_ = false, tries_ = 0, stalls_ = 0, restarts_ = 0;
     kept_ = slope_;
-    return false;
+    return !found && off > kLost * held_back;  // who asks knows how often, and what to do where nothing is found
   }
   // From a place that is worse, as deep in what the last one did not touch, a short step shows how stiff it is; from there the way back
   // is found at once, while from the other side it would be missed again and again.

@@ -21,7 +21,8 @@ class EndSearch {
   const Vec3d& trial() const { return trial_; }
   /// Where the tool would end without the tissue [m].
   const Vec3d& free() const { return free_; }
-  /// The force found at the trial takes the tool to `end`. @return whether another trial is to follow
+  /// The force found at the trial takes the tool to `end`. @return whether another trial is to follow; after kMostTrials: whether the end
+  /// is far from being found
   bool goes_on(const Vec3d& end);
   /// What it has learnt of earlier steps: its trials are those of one step, and stay when this is read again in it.
   void archive(Archive& ar) { ar(kept_); }

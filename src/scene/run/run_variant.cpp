@@ -40,6 +40,7 @@ class Run {
   double next_force_time() const { return simulation_.time() + (forces_at_end_ ? simulation_.step_size() : 0.0); }
   bool frame_due() const;
   void stretch();
+  bool ends_within_step();
   bool step();
   void set_step_end();
   bool probe_now() const;
@@ -143,7 +144,7 @@ bool Run::step() {
     summary_.inverted_tets_most = std::max(summary_.inverted_tets_most, result.inverted_tets.size());
   }
   const bool made = result.made();
-  if (!made) summary_.trouble = result.message;
+  if (!made && result.status != StepStatus::interrupted) summary_.trouble = result.message;
   summary_.end = end_of(result.status, variant_.on_inversion);
   ended_ = summary_.end != RunSummary::End::finished;
   forces_current_ = made;
@@ -158,6 +159,13 @@ bool Run::step() {
 void Run::see_linear_share() {
   linear_sum_ += simulation_.linear_share();
   summary_.linear_share_mean = linear_sum_ / static_cast<double>(simulation_.steps());
+}
+
+/// Asked within a long step: shows that it is under way. @return whether the run is to end
+bool Run::ends_within_step() {
+  if (stop_.load(std::memory_order_relaxed)) return true;
+  show_progress();
+  return false;
 }
 
 /// Steps until something is due. Only this is timed.
@@ -309,6 +317,7 @@ RunSummary Run::to_end() {
   observer_.on_start(variant_, simulation_);
   observer_.on_built(built_);
   begin_ = last_progress_ = Clock::now();
+  simulation_.set_interrupt([this](const StepProgress&) { return ends_within_step(); });
   if (variant_.output.frames > 1) take_frame();
   if (forces_at_end_) read_sample(), before_ = sample_;
   while (!finished()) {
@@ -324,6 +333,7 @@ RunSummary Run::to_end() {
   }
   if (!sampled_ && forces_current_) take_sample();
   if (!framed_ && simulation_.steps() > 0 && variant_.output.frames > 0) take_frame();
+  simulation_.set_interrupt({});
   tell_events();
   summarise();
   observer_.on_end(summary_);
@@ -347,6 +357,8 @@ RunSummary::End end_of(StepStatus status, OnInversion on_inversion) {
       return End::stopped_not_converged;
     case StepStatus::not_held:
       return End::stopped_not_held;
+    case StepStatus::interrupted:
+      return End::interrupted;
   }
   return End::finished;
 }

@@ -4,6 +4,7 @@ import { decodeMessage, encodeCommand } from "./protocol.ts";
 
 const FIRST_WAIT = 400; // ms
 const LONGEST_WAIT = 5000;
+const UNANSWERED: ReadonlySet<Command["kind"]> = new Set(["take", "give", "colour", "visible"]); // by no echo
 const SESSION = "glisson-session";
 
 export type Status = { kind: "open" } | { kind: "waiting" } | { kind: "ended"; reason: string };
@@ -21,7 +22,14 @@ export class Connection {
   private sent: { sequence: number; at: number }[] = [];
   private wait = FIRST_WAIT;
 
-  constructor(private readonly listener: Listener) {}
+  constructor(private readonly listener: Listener) {
+    document.addEventListener("visibilitychange", () => this.tellVisible());
+  }
+
+  /** A page that nobody sees gets no frames, and the body is held where all are hidden. */
+  private tellVisible(): void {
+    this.send({ kind: "visible", index: document.hidden ? 0 : 1 });
+  }
 
   open(): void {
     const query = new URLSearchParams({ token: new URLSearchParams(location.search).get("token") ?? "" });
@@ -31,6 +39,7 @@ export class Connection {
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
       this.wait = FIRST_WAIT;
+      if (document.hidden) this.tellVisible();
       this.listener.status({ kind: "open" });
     };
     socket.onmessage = (event) => this.receive(event.data as string | ArrayBuffer);
@@ -73,7 +82,7 @@ export class Connection {
     if (this.socket?.readyState !== WebSocket.OPEN) return;
     this.sequence = (this.sequence + 1) % 2 ** 32;
     this.socket.send(encodeCommand(command, this.sequence));
-    if (command.kind === "take" || command.kind === "give" || command.kind === "colour") return;
+    if (UNANSWERED.has(command.kind)) return;
     this.sent.push({ sequence: this.sequence, at: performance.now() });
     if (this.sent.length > 200) this.sent.shift();
   }

@@ -267,6 +267,7 @@ export type Command =
   | { kind: "parameter"; index: number; values: [number] }
   | { kind: "cut"; index: 0 | 1; values: number[] } // 1 begins; the edge, from where to where [m]
   | { kind: "colour"; index: number } // field
+  | { kind: "visible"; index: 0 | 1 } // of this page
   | { kind: "seek"; values: [number] } // of a recorded run, to this time [s]
   | { kind: "rate"; values: [number] }
   | { kind: "letGo" | "step" | "reset" | "play" | "take" | "give" };
@@ -288,6 +289,7 @@ const KINDS: Record<Command["kind"], number> = {
   colour: 14,
   seek: 15,
   rate: 16,
+  visible: 17,
 };
 
 /** The bytes of a command. */

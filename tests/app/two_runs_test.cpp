@@ -1,0 +1,133 @@
+// One folder, one run: a second process that would write there is refused while the first lives, and nothing is changed.
+#include <chrono>
+#include <csignal>
+#include <map>
+#include <thread>
+
+#include "app/program.h"
+
+namespace glisson::test::two_runs_test {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+
+class TwoRuns : public ProgramTest {
+ protected:
+  void SetUp() override {
+    fs::create_directories(folder_ / "first"), fs::create_directories(folder_ / "second");
+    out_ = folder_ / "o";
+  }
+  /// Both write into the same folder, each from a folder of its own.
+  Started first(std::vector<std::string> arguments) { return {with_out(std::move(arguments)), folder_ / "first"}; }
+  Outcome second(std::vector<std::string> arguments) {
+    return Started(with_out(std::move(arguments)), folder_ / "second").wait();
+  }
+  /// Starts a run of minutes, and waits until it writes.
+  Started running() {
+    Started program = first({"run", write("long.toml", long_scene())});
+    for (int i = 0; i < 3000 && program.output_so_far().find("thick: 10 %") == std::string::npos; ++i)
+      std::this_thread::sleep_for(20ms);
+    return program;
+  }
+  /// Names and times of all files in the folder but those that the first run may be writing.
+  std::map<std::string, fs::file_time_type> there() const {
+    std::map<std::string, fs::file_time_type> files;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(out_)) {
+      const std::string name = entry.path().lexically_relative(out_).string();
+      const bool grows = name.find("thick") != std::string::npos && !entry.is_directory();
+      if (!grows) files[name] = entry.is_directory() ? fs::file_time_type{} : entry.last_write_time();
+    }
+    return files;
+  }
+  fs::path out_;
+
+ private:
+  std::vector<std::string> with_out(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--out", out_.string()});
+    return arguments;
+  }
+};
+
+// Every command that writes a folder of results is refused by name, with the process that holds it and the way out.
+TEST_F(TwoRuns, SecondIsRefusedByName) {
+  Started program = running();
+  const std::string scene = write("small.toml", small_scene()), fit = write("fit.toml", "");
+  const auto before = there();
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"run", scene}, {"converge", scene}, {"compare", scene}, {"reproduce", "--quick"}}) {
+    const Outcome outcome = second(command);
+    EXPECT_THAT(outcome, Exits(2)) << command.front();
+    EXPECT_THAT(outcome.err, HasSubstr(out_.string() + ": another run is being written there by process " +
+                                       std::to_string(program.id())))
+        << command.front();
+    EXPECT_THAT(outcome.err, HasSubstr("choose another folder with --out DIR"));
+  }
+  EXPECT_EQ(there(), before) << "nothing has changed";
+  program.signal(SIGTERM);
+  EXPECT_THAT(program.wait(), Exits(130));
+  EXPECT_EQ(read_json(out_ / "thick/summary.json")["end"], "interrupted") << "the first is whole";
+}
+
+// The system frees the folder of a run that is killed: the next one replaces what it left, without a word.
+TEST_F(TwoRuns, KilledRunLeavesNoLock) {
+  Started program = running();
+  program.signal(SIGKILL);
+  EXPECT_THAT(program.wait(), Exits(128 + SIGKILL));
+  ASSERT_TRUE(fs::exists(out_ / "thick/forces.csv"));
+  const Outcome outcome = second({"run", write("small.toml", small_scene())});
+  EXPECT_THAT(outcome, Exits(0));
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_FALSE(fs::exists(out_ / "thick"));
+}
+
+// A fit holds its folder from its start, before it has written anything; one that cannot be used leaves no folder behind.
+TEST_F(TwoRuns, FitHoldsItsFolderToo) {
+  std::string csv = "time (s),displacement (mm),force (N)\n";
+  for (int i = 0; i <= 40; ++i)
+    csv += std::to_string(i) + "," + std::to_string(0.05 * i) + "," + std::to_string(0.003 * i + 1e-5 * i * i) + "\n";
+  write("a.csv", csv);
+  const std::string spec = R"([specimen]
+kind = "block"
+width_mm = 20
+depth_mm = 20
+height_mm = 20
+[tissue]
+hyperelastic = { kind = "ogden", mu_Pa = [3000], alpha = [2], bulk_modulus_Pa = 1e6 }
+[[parameter]]
+key = "tissue.hyperelastic.mu_Pa[0]"
+low = 100
+high = 1e5
+[[parameter]]
+key = "tissue.hyperelastic.alpha[0]"
+low = 1
+high = 30
+[search]
+starts = 200
+[[data]]
+files = ["a.csv"]
+[proof]
+bootstrap = 20000
+)";
+  const std::string fit = write("f.toml", spec);
+  EXPECT_THAT(second({"fit", write("wrong.toml", spec + "nonsense = 1\n")}), Exits(2));
+  EXPECT_FALSE(fs::exists(out_));
+  Started program = first({"fit", fit});
+  for (int i = 0; i < 3000 && !fs::exists(out_); ++i) std::this_thread::sleep_for(5ms);
+  std::this_thread::sleep_for(50ms);
+  const Outcome outcome = second({"fit", fit, "--fresh"});
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err, HasSubstr("another run is being written there by process " + std::to_string(program.id())));
+  program.signal(SIGKILL);
+  EXPECT_THAT(program.wait(), Exits(128 + SIGKILL));
+}
+
+// A run goes on in its own folder, however often: the lock is of one process.
+TEST_F(TwoRuns, ReplacesItsOwnFormerRun) {
+  const std::string scene = write("small.toml", small_scene());
+  for (int i = 0; i < 2; ++i) EXPECT_THAT(second({"run", scene}), Exits(0));
+}
+
+}  // namespace
+}  // namespace glisson::test::two_runs_test
