@@ -453,7 +453,6 @@ TEST_P(StepGuard, LetsBetweenStepsChangeTheBody) {
   }
   // a motion that stands holds as a support; a tool that does not touch, and a split whose rim is closed, move nothing
   EXPECT_GE(hashes.size(), 5U);
-  a motion that stands holds as a support does ";
 }
 
 // What goes to another state, or makes a step, is refused there, too, and changes nothing.
