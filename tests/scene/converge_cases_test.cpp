@@ -185,7 +185,7 @@ std::vector<Case> first_cases() {
   std::vector<Case> first;
   for (const Case& one : all_cases()) {
     for (const char* name : {"strip_bonded_nu049_nodal", "pad_free_nu030_element", "pad_bonded_nu045_nodal",
-                             "bending_nu045_nodal", "uniform_large_nu045_element"}) {
+                             "pad_square_nu030_element", "bending_nu045_nodal", "uniform_large_nu045_element"}) {
       if (one.name() == name) first.push_back(one);
     }
   }
