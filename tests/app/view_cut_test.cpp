@@ -73,7 +73,7 @@ Vec3d momentum(const Simulation& simulation) {
   return sum;
 }
 
-// A block that is pulled and cut through is in two pieces, and the tool's force is gone; reset makes it whole.
+// A block that is pulled and cut through is in two pieces, and the tool's force is gone; undo and reset make it whole.
 TEST(LiveCut, PartsABlockUnderAPull) {
   Engine engine(block(), {});
   ASSERT_EQ(engine.why_no_cut(), "");
@@ -101,8 +101,18 @@ TEST(LiveCut, PartsABlockUnderAPull) {
   // Only what still swings is left: 2 s of damping at 20/s take it to exp(−20).
   EXPECT_LT(norm(last.tools.front().force), 1e-4 * pulled);
 
-  engine.post({.kind = CommandKind::reset, .sequence = 2});
+  // Undone, the block is whole again and pulled as before, at the time of the stroke.
+  engine.post({.kind = CommandKind::undo, .sequence = 20});
   ASSERT_TRUE(until(engine, last, [&] { return last.epoch == 1; }));
+  EXPECT_LT(last.time, done);
+  EXPECT_EQ(Surface(last.shape).pieces(), 1u);
+  EXPECT_EQ(last.cut_area, 0.0);
+  const double undone = last.time;
+  ASSERT_TRUE(until(engine, last, [&] { return last.time > undone + 0.2; }));
+  EXPECT_NEAR(last.tools.front().force.z, pulled, 1e-3 * pulled);
+
+  engine.post({.kind = CommandKind::reset, .sequence = 21});
+  ASSERT_TRUE(until(engine, last, [&] { return last.epoch == 2; }));
   EXPECT_EQ(Surface(last.shape).pieces(), 1u);
   EXPECT_EQ(last.cut_area, 0.0);
   engine.stop();

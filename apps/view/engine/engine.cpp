@@ -19,6 +19,7 @@ constexpr auto kShapeEvery = std::chrono::milliseconds(100);  // of a body that 
 constexpr double kHandSpeed = 0.5;                            // of what is drawn, at most [m/s]
 constexpr double kHandReach = 0.5;                            // of the body's size
 constexpr double kPatch = 0.05;                               // radius of what is grabbed, of the body's size
+constexpr std::size_t kMostUndone = 8;                        // strokes
 constexpr double kHandStiffness = 4.0;  // of E times the patch's radius: stiffer than the tissue below it, 2 E a
 
 Vec3d shortened(const Vec3d& v, double most) {
@@ -91,7 +92,7 @@ void Engine::guarded_turn(std::uint64_t late) {
   try {
     turn(late);
   } catch (const std::exception& error) {
-    stopped_ = true;
+    stopped_ = broken_ = true;
     notice_ =
         std::string("the simulation is paused after an internal error: ") + error.what() + "; Reset rebuilds the body";
   }
@@ -119,7 +120,7 @@ bool Engine::apply_commands() {
   const auto remakes = [](const Command& x) { return x.kind == CommandKind::reset || x.kind == CommandKind::play; };
   const auto last = std::find_if(asked.rbegin(), asked.rend(), remakes);
   for (const Command& command : asked) {
-    if (remakes(command) && &command != &*last) continue;  // the next one undoes it: a body takes seconds to make
+    if (remakes(command) && &command != &*last) continue;  // the next one undoes it
     apply(command);
     if (command.sequence != 0) received_ = command.sequence;  // the server's own have none
   }
@@ -152,9 +153,11 @@ void Engine::apply(const Command& command) {
       frames_to_step_ += paused_ ? 1 : 0;
       return;
     case CommandKind::reset:
-      return rebuild(variant_, false, false);
+      return restart(false);
     case CommandKind::play:
-      return rebuild(variant_, false, true);
+      return restart(true);
+    case CommandKind::undo:
+      return undo();
     case CommandKind::parameter:
       if (command.index < parameters_.size()) wished_[command.index] = static_cast<double>(command.values[0]);
       return;
@@ -209,6 +212,8 @@ void Engine::apply_cut(const Command& command) {
   std::copy(command.values.begin(), command.values.end(), x.begin());
   const BladeEdge edge{{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
   if (command.index == 1) {
+    if (strokes_.size() == kMostUndone) strokes_.pop_front();
+    strokes_.push_back(body_->keep());
     cut->begin(edge);
   } else {
     cut->draw(edge);
@@ -232,32 +237,60 @@ void Engine::draw_hand() {
   grab->draw(hand_);
 }
 
-/// Makes the body anew, at rest; where that cannot be, the old one goes on.
-void Engine::rebuild(const Variant& variant, bool keep_targets, bool play) {
-  building_ = true;
-  publish();
-  building_ = false;
-  restarted_ = true;
+/// Takes the body back to rest; one that an error has left behind is made anew, and where that cannot be, it goes on.
+void Engine::restart(bool play) {
   try {
-    body_ = std::make_unique<LiveBody>(variant, load_);
+    if (broken_) {
+      building_ = true;
+      publish();
+      building_ = false;
+      body_ = std::make_unique<LiveBody>(variant_, load_);
+    } else {
+      body_->reset();
+    }
   } catch (const std::exception& error) {
+    building_ = false;
     notice_ = error.what();
     return;
   }
-  variant_ = variant;
-  notice_.clear();
-  ++epoch_;
-  due_s_ = 0.0;
-  stopped_ = changed_ = false;
-  shape_.reset();
-  if (!keep_targets) std::fill(targets_.begin(), targets_.end(), Vec3d{});
+  broken_ = changed_ = false;
+  strokes_.clear();
+  std::fill(targets_.begin(), targets_.end(), Vec3d{});
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     body_->way(i).set_speed(speeds_[i]);
     body_->way(i).set_target(targets_[i]);
     if (play) body_->way(i).play();
   }
+  take_up();
+}
+
+/// Back to before the last stroke of the blade.
+void Engine::undo() {
+  if (strokes_.empty()) {
+    notice_ = "there is no stroke to undo";
+    return;
+  }
+  try {
+    body_->go_back(strokes_.back());
+  } catch (const std::exception& error) {
+    notice_ = error.what();
+    return;
+  }
+  strokes_.pop_back();
+  changed_ = true;  // a scene that begins at rest is not what was played
+  for (std::size_t i = 0; i < tools_.size(); ++i) body_->way(i).set_target(targets_[i]);
+  take_up();
+}
+
+/// Goes on from where the body is in time.
+void Engine::take_up() {
+  restarted_ = true;
+  notice_.clear();
+  ++epoch_;
+  due_s_ = measured_time_ = body_->built().simulation.time();
+  stopped_ = false;
+  shape_.reset();
   measured_ = WallClock::now();
-  measured_time_ = 0.0;
 }
 
 /// Numbers that have come since the last change, all at once; then the body has as long to itself as that took.

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -86,7 +87,9 @@ class Engine final : public Source {
   void apply_cut(const Command& command);
   void work_on_cut();
   void draw_hand();
-  void rebuild(const Variant& variant, bool keep_targets, bool play);
+  void restart(bool play);
+  void undo();
+  void take_up();
   void change_tissues();
   void frame();
   void take_sample();
@@ -122,7 +125,9 @@ class Engine final : public Source {
   double reach_ = 0.0;                        ///< size of the body [m]
   double due_s_ = 0.0, began_s_ = 0.0;        ///< simulated times that the last frame was to reach, and began at [s]
   bool paused_ = false, stopped_ = false, building_ = false, restarted_ = false;
-  bool owes_ = false;  ///< commands have been taken that no state has told of yet
+  bool broken_ = false;                 ///< an error has left the body behind
+  std::deque<LiveBody::Kept> strokes_;  ///< the body before each of the last strokes of the blade
+  bool owes_ = false;                   ///< commands have been taken that no state has told of yet
   int frames_to_step_ = 0;
   std::uint32_t received_ = 0;  ///< sequence of the last command taken from the ring
   std::uint32_t epoch_ = 0, echo_ = 0, shape_number_ = 0;

@@ -17,7 +17,7 @@ struct Payload {
   std::size_t bytes() const { return (index ? 4 : 0) + 4 * values; }
 };
 
-bool known(std::uint8_t kind) { return kind >= 1 && kind <= 17; }
+bool known(std::uint8_t kind) { return kind >= 1 && kind <= 18; }
 
 Payload payload_of(CommandKind kind) {
   switch (kind) {

@@ -32,6 +32,7 @@ enum class CommandKind : std::uint8_t {
   colour = 14,     ///< index: Field that this viewer wants to see; needs no lead
   seek = 15,       ///< of a recorded run: to this time [s]
   rate = 16,       ///< of a recorded run: simulated time over that of the clock
+  undo = 18,       ///< back to before the last stroke of the blade
   visible = 17     ///< index: 1 this viewer is seen, 0 its page is hidden; needs no lead
 };
 

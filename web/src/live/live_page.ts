@@ -264,11 +264,15 @@ export class LivePage {
     const play = button("Play the scene’s motion", "Back to rest, then play the scene’s motion of the tools", () =>
       this.send({ kind: "play" }),
     );
+    const undo = button("Undo cut", "Back to before the last stroke of the blade (Ctrl+Z)", () => this.send({ kind: "undo" }));
+    undo.hidden = hello.why_no_cut !== "";
     play.hidden = !hello.tools.some((tool) => tool.can_play);
-    this.run.replaceChildren(h("fieldset", { class: "live-buttons" }, this.pauseButton, step, reset, play));
+    this.run.replaceChildren(h("fieldset", { class: "live-buttons" }, this.pauseButton, step, reset, undo, play));
     this.view.canvas.addEventListener("keydown", (event) => {
-      if (event.key !== " ") return;
+      const undoes = event.key.toLowerCase() === "z" && (event.ctrlKey || event.metaKey) && !undo.hidden;
+      if (event.key !== " " && !undoes) return;
       event.preventDefault();
+      if (undoes) return void (this.role.drives && this.send({ kind: "undo" }));
       this.togglePause();
     });
   }

@@ -270,7 +270,7 @@ export type Command =
   | { kind: "visible"; index: 0 | 1 } // of this page
   | { kind: "seek"; values: [number] } // of a recorded run, to this time [s]
   | { kind: "rate"; values: [number] }
-  | { kind: "letGo" | "step" | "reset" | "play" | "take" | "give" };
+  | { kind: "letGo" | "step" | "reset" | "undo" | "play" | "take" | "give" };
 
 const KINDS: Record<Command["kind"], number> = {
   place: 1,
@@ -290,6 +290,7 @@ const KINDS: Record<Command["kind"], number> = {
   seek: 15,
   rate: 16,
   visible: 17,
+  undo: 18,
 };
 
 /** The bytes of a command. */
