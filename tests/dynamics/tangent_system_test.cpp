@@ -50,7 +50,8 @@ TEST_P(TangentFactor, IsThatOfTheMatrix) {
   other.youngs_modulus = 2000.0, other.poisson_ratio = 0.3;
   const Body body = build_body(mesh, {{0, GetParam().tissue}, {1, other}});
   const TissueOperator op(body);
-  TangentSystem system(op, Preconditioner::factorised);
+  StepInterrupt nobody_asks;
+  TangentSystem system(op, Preconditioner::factorised, nobody_asks);
   std::vector<char> free(3 * body.vertex_count, 1);
   for (std::size_t v = 0; v < body.vertex_count; ++v) {
     if (body.rest_positions[v].z < 0.003) free[3 * v] = free[3 * v + 1] = free[3 * v + 2] = 0;
