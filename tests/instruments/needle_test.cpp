@@ -49,7 +49,7 @@ TEST(Needle, BreaksThroughAtTheStatedForce) {
     ASSERT_LT(run.simulation.time(), run.end);
   }
   EXPECT_NEAR(run.needle->tip_force(), 0.3, 0.3 * 2e-3);
-  EXPECT_LT(last, 0.3);
+  EXPECT_LT(last, 0.3);  // a step before: 0.07 % below
   ASSERT_NE(event(*run.needle, "contact"), nullptr);
   EXPECT_NEAR(event(*run.needle, "contact")->depth, 0.0005, 1e-5);  // the tip starts half a mm above the surface
   EXPECT_EQ(run.needle->events().back().event, "puncture");
