@@ -85,7 +85,6 @@ TEST(BoundedStep, AutomaticStepsFindContact) {
     EXPECT_NEAR(0.05 * speed, impulse, 1e-4 * 100.0 * body.time()) << "m v and ∫(F + f) dt [N s]";
   }
   EXPECT_LT(longest, 20.0) << "of the clock [s]";
-  EXPECT_GE(body.steps(), 2u);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMargin = 0.85,
                  kLeeway = 1.5;  ///< a step that the factor is made for, and how much longer ones it serves for
-constexpr double kMostContactSweeps = 20000.0;  ///< of contact in a step
+constexpr double kMostContactSweeps = 30000.0;  ///< of contact in a step
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr int kMostShortenings = 8;    ///< of an automatic step in which it is not found, each by half …
 constexpr double kStepRegrowth = 1.1;  ///< … and how fast steps grow again

@@ -13,9 +13,6 @@ namespace {
 constexpr int kMostRounds = 10;      ///< of several interactions, each with the forces of the others
 constexpr std::size_t kAtATime = 8;  ///< vertices or means whose columns are found in one go
 constexpr double kAgreed = 1e-5;     ///< change of a force in a round, of the largest, at which they agree
-constexpr double kSettles =
-    3000.0;                       ///< sweeps of a trial; one that takes more has no solution that they come near to …
-constexpr int kMostHopeless = 3;  ///< … and after so many of them a tool that a force moves is not tried elsewhere
 
 /// What a mean is known by.
 auto key_of(const std::vector<VertexWeight>& mean) {
@@ -190,15 +187,13 @@ void StepContact::take_off(std::size_t interaction) {
   settle(active_);
 }
 
-/// Counts the work since it was called last. @param tries_again  it was a trial after which another follows  @param trial  its number
+/// Looks at the work that has been done. @param tries_again  that of a trial after which another follows  @param trial  its number
 /// @return whether there may be more
 bool StepContact::count_work(bool tries_again, int trial) {
   const auto places = static_cast<double>(std::max<std::size_t>(near_.size(), 1));
-  if (tries_again && pushes_ - pushes_before_ > kSettles * places) ++hopeless_;
-  pushes_before_ = pushes_;
   const bool interrupted = interrupt_ != nullptr && interrupt_->wanted();
   const bool lost = tries_again && trial == kMostTrials && is_last_;
-  exhausted_ = interrupted || lost || hopeless_ >= kMostHopeless || pushes_ > most_sweeps_ * places;
+  exhausted_ = interrupted || lost || pushes_ > most_sweeps_ * places;
   return !exhausted_ && trial < kMostTrials;
 }
 
@@ -280,7 +275,7 @@ bool StepContact::correct(std::span<Vec3d> u) {
   put_at_start(u);
   interactions_.begin(state_.time, h_, active_, {}, state_.body.rest_positions, state_.options.track_energies);
   agrees_ = exhausted_ = false;
-  pushes_ = pushes_before_ = 0.0, hopeless_ = 0;
+  pushes_ = 0.0;
   for (int round = 0; round < kMostRounds && !agrees_ && !exhausted_; ++round) {
     interactions_.load(reached_.interactions);
     if (round == 0) interactions_.add_forces();

@@ -162,11 +162,9 @@ class StepContact final : public StepCompliance {
   std::vector<Vec3d> unsettled_;           ///< per place: impulses that the others have not got yet [N s]
   StepInterrupt* interrupt_ = nullptr;
   double most_sweeps_ = std::numeric_limits<double>::infinity();
-  double pushes_ = 0.0,
-         pushes_before_ = 0.0;  ///< in this correction; before the present trial of a tool that a force moves
-  int hopeless_ = 0;            ///< trials in this correction that did not settle
-  bool is_last_ = false;        ///< as set_last()
-  bool exhausted_ = false;      ///< this correction has done the work that is allowed
+  double pushes_ = 0.0;     ///< in this correction
+  bool is_last_ = false;    ///< as set_last()
+  bool exhausted_ = false;  ///< this correction has done the work that is allowed
 };
 
 }  // namespace glisson
