@@ -110,8 +110,13 @@ Simulation::Simulation(TetMesh mesh, std::map<int, Tissue> tissues, const Simula
 
 Scheme& SimulationParts::scheme(Inside& inside) { return *inside.scheme; }
 const Scheme& SimulationParts::scheme(const Simulation& simulation) { return *simulation.inside().scheme; }
-std::weak_ptr<const Scheme> SimulationParts::weak_scheme(Simulation& simulation) { return simulation.inside().scheme; }
+std::weak_ptr<const Scheme> SimulationParts::weak_scheme(const Simulation& simulation) {
+  return simulation.inside().scheme;
+}
 const TetMesh& SimulationParts::mesh(const Inside& inside) { return inside.mesh; }
+void SimulationParts::refuse_inside_step(const Inside& inside, const char* name, bool between_steps) {
+  inside.refuse_while_busy(name, between_steps ? Inside::Busy::between_steps : Inside::Busy::no);
+}
 SplitReport SimulationParts::split_faces(Inside& inside, std::span<const Triangle> faces,
                                          std::span<const VertexMove> moves) {
   return inside.split_faces(faces, moves);
@@ -126,14 +131,19 @@ Simulation::Impl& Simulation::inside() const {
   throw std::logic_error("simulation: it was moved from; it can be assigned to or destroyed, and no more");
 }
 
-Simulation::Impl::Guard::Guard(Impl& inside, const char* name, Busy most) : inside_(inside), before_(inside.busy) {
-  if (before_ > most) {
-    const bool between = before_ == Busy::between_steps;
-    throw std::logic_error(std::string(name) + ": it was called from " +
-                           (between ? "Interaction::between_steps, which may change the body but not this"
-                                    : "inside a step or a change, by a motion, load, driver or interaction") +
-                           "; call it after the step, or between_steps() where the body is to change");
+void Simulation::Impl::refuse_while_busy(const std::string& name, Busy most) const {
+  if (busy <= most) return;
+  if (busy == Busy::between_steps) {
+    throw std::logic_error(name + ": it was called from Interaction::between_steps, which may change the body, but " +
+                           "neither step nor go to another state; call it after the step");
   }
+  throw std::logic_error(name + ": it was called from inside a step or a change, by a motion, load, driver or " +
+                         "interaction; call it after the step" +
+                         (most == Busy::no ? "" : ", or from Interaction::between_steps"));
+}
+
+Simulation::Impl::Guard::Guard(Impl& inside, const char* name, Busy most) : inside_(inside), before_(inside.busy) {
+  inside.refuse_while_busy(name, most);
   inside.busy = Busy::yes;
 }
 
@@ -196,10 +206,16 @@ void Simulation::attach(std::shared_ptr<Interaction> interaction) {
   }
   Impl& me = inside();
   const Impl::Guard guard(me, "attach", Impl::Busy::between_steps);
-  if (interaction->acts_in_steps()) me.scheme->attach(interaction, me.view());
-  me.busy = Impl::Busy::between_steps;
-  interaction->between_steps(*this);
+  const bool acts = interaction->acts_in_steps();
+  if (acts) me.scheme->attach(interaction, me.view());
   interaction->is_attached_ = true;
+  me.busy = Impl::Busy::between_steps;
+  try {
+    interaction->between_steps(*this);
+  } catch (...) {
+    interaction->is_attached_ = acts;  // one that only sets up may be tried again
+    throw;
+  }
 }
 
 RemovalReport Simulation::remove_tets(std::span<const std::uint32_t> tets) {
@@ -280,13 +296,13 @@ StepResult Simulation::step() {
   if (me.scheme->state().steps == 0) me.start = me.save();
   const StepResult result = me.scheme->step();
   me.busy = Impl::Busy::between_steps;
-  for (std::size_t i = 0; result.made() && i < me.scheme->interactions().size(); ++i) {
-    me.scheme->interactions()[i]->between_steps(*this);
-  }
+  const std::size_t acting = result.made() ? me.scheme->interactions().size() : 0;  // of these, some may attach others
+  for (std::size_t i = 0; i < acting; ++i) me.scheme->interactions()[i]->between_steps(*this);
   return result;
 }
 
 StepResult Simulation::advance_to(double time) {
+  inside().refuse_while_busy("advance_to");
   if (!std::isfinite(time)) {
     throw std::invalid_argument("advance_to: time [s] = " + detail::show(time) +
                                 " is not finite; give the time to stop at, and loop over step() to run without end");
@@ -298,8 +314,14 @@ StepResult Simulation::advance_to(double time) {
 }
 
 double Simulation::time() const { return inside().scheme->state().time; }
-double Simulation::step_size() const { return inside().scheme->step_size(); }
-double Simulation::next_corner(double after) const { return inside().scheme->next_corner(after); }
+double Simulation::step_size() const {
+  const Impl::Guard guard(inside(), "step_size", Impl::Busy::yes);  // for what interactions call when they are asked
+  return inside().scheme->step_size();
+}
+double Simulation::next_corner(double after) const {
+  const Impl::Guard guard(inside(), "next_corner", Impl::Busy::yes);
+  return inside().scheme->next_corner(after);
+}
 void Simulation::set_step_end(double time) {
   const Impl::Guard guard(inside(), "set_step_end", Impl::Busy::between_steps);
   inside().scheme->set_step_end(time);
@@ -346,6 +368,7 @@ double Simulation::linear_share() const { return inside().scheme->linear_share()
 const EngineInfo& Simulation::engine_info() const { return inside().scheme->info(); }
 
 Energies Simulation::energies() const {
+  const Impl::Guard guard(inside(), "energies", Impl::Busy::yes);
   Energies energies = inside().scheme->energies();
   if (!inside().scheme->state().options.track_energies) return energies;
   for (const auto& x : inside().scheme->interactions()) {
@@ -356,6 +379,7 @@ Energies Simulation::energies() const {
 }
 
 std::optional<double> Simulation::stored_energy() const {
+  const Impl::Guard guard(inside(), "stored_energy", Impl::Busy::yes);
   const Scheme& scheme = *inside().scheme;
   const double ahead = time() - force_time();
   std::vector<Vec3d> u(displacement().begin(), displacement().end());
@@ -385,6 +409,7 @@ TetFields Simulation::tet_fields() const {
 }
 
 ContactFields Simulation::contact_fields() const {
+  const Impl::Guard guard(inside(), "contact_fields", Impl::Busy::yes);
   const auto interactions = inside().scheme->interactions();
   if (interactions.empty()) return {};
   return glisson::contact_fields(present_mesh(), positions(), interactions);

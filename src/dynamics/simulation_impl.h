@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "dynamics/schemes/scheme.h"
@@ -44,11 +45,13 @@ struct Simulation::Impl {
   /// What calls out to functions of a program's own at present.
   enum class Busy { no, between_steps, yes };
   Busy busy = Busy::no;
+  /// @param name  of the member that would change something @param most  the busiest in which it may
+  /// @throws std::logic_error where the simulation is busier
+  void refuse_while_busy(const std::string& name, Busy most = Busy::no) const;
   /// While it lives, what a program's own functions call is refused where it would change something.
   class Guard {
    public:
-    /// @param name  of the member that begins @param most  the busiest in which it may
-    /// @throws std::logic_error where the simulation is busier
+    /// @throws std::logic_error as refuse_while_busy
     Guard(Impl& inside, const char* name, Busy most = Busy::no);
     ~Guard() { inside_.busy = before_; }
     Guard(const Guard&) = delete;

@@ -13,8 +13,11 @@ struct SimulationParts {
   static Scheme& scheme(Simulation& simulation) { return scheme(inside(simulation)); }
   static const Scheme& scheme(const Simulation& simulation);
   /// For reading it as long as the simulation lives.
-  static std::weak_ptr<const Scheme> weak_scheme(Simulation& simulation);
+  static std::weak_ptr<const Scheme> weak_scheme(const Simulation& simulation);
   static const TetMesh& mesh(const Inside& inside);
+  /// @param name  of what would change something @param between_steps  whether Interaction::between_steps may call it
+  /// @throws std::logic_error inside a step
+  static void refuse_inside_step(const Inside& inside, const char* name, bool between_steps = true);
   static SplitReport split_faces(Inside& inside, std::span<const Triangle> faces, std::span<const VertexMove> moves);
 };
 

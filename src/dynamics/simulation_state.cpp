@@ -139,6 +139,7 @@ void Simulation::load_state(const State& state) {
 }
 
 void Simulation::reset() {
+  inside().refuse_while_busy("reset");
   if (inside().start) load_state(State(inside().start));
 }
 

@@ -15,6 +15,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "base/require_fields.h"
 #include "base/text.h"
 #include "material/branch_weights.h"
 #include "material/course.h"
@@ -352,6 +353,8 @@ MaterialTargets test_targets(MaterialTest test, MaterialControl control, double 
 std::vector<MaterialState> material_test(const Tissue& tissue, MaterialTest test, MaterialControl control,
                                          std::span<const double> times, std::span<const double> values,
                                          std::size_t between) {
+  const detail::Requirement required{"material test"};
+  required.value("test", {}, test), required.value("control", {}, control);
   const Course course{times, values, between};
   course.require_valid("material test");
   const double rest = control == MaterialControl::deformation && test != MaterialTest::simple_shear ? 1.0 : 0.0;

@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 
+#include "base/require_fields.h"
 #include "material/response.h"
 #include "material/static_stretch.h"
 
@@ -96,6 +97,7 @@ double ComplexModulus::loss_tangent() const { return loss / storage; }
 
 std::vector<ComplexModulus> oscillation(const Tissue& tissue, std::span<const double> frequencies, double stretch,
                                         OscillationMode mode) {
+  detail::Requirement{"oscillation"}.value("mode", {}, mode);
   require_frequencies(frequencies);
   MaterialPoint point(tissue);
   stretch_for_long(point, stretch, "oscillation");

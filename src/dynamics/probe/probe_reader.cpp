@@ -25,6 +25,8 @@ TetFields fields_of(const Simulation& simulation, std::span<const std::uint32_t>
   return tet_fields(scheme.body(), tets, simulation.displacement(), simulation.velocity(), memory);
 }
 
+std::weak_ptr<const Scheme> scheme_of(const Simulation& simulation) { return SimulationParts::weak_scheme(simulation); }
+
 std::uint64_t changes_of(const Simulation& simulation) { return SimulationParts::scheme(simulation).state().changes; }
 
 ElementRest rest_of(const TetMesh& mesh, std::uint32_t tet) {

@@ -16,6 +16,8 @@
 
 namespace glisson {
 
+class Scheme;
+
 /// A vertex as a corner of a tet.
 struct Corner {
   std::uint32_t tet = 0;
@@ -34,6 +36,8 @@ class ProbeReader {
   /// Values in the order of the columns. @param first  where the fields of its tets start
   virtual std::vector<double> read(const Simulation& simulation, const TetFields& fields, std::size_t first) const = 0;
 
+  std::weak_ptr<const Scheme> scheme;  ///< of the simulation that it was made for
+
  protected:
   std::vector<std::uint32_t> tets_;
 };
@@ -46,6 +50,8 @@ std::unique_ptr<ProbeReader> make_reader(const Simulation& simulation, const Pro
 
 /// Simulation::tet_fields of some tets, in their order. @param tets  numbers of the mesh
 TetFields fields_of(const Simulation& simulation, std::span<const std::uint32_t> tets);
+/// The same for all states of a simulation, and wherever it is moved to.
+std::weak_ptr<const Scheme> scheme_of(const Simulation& simulation);
 /// How often the mesh or the tissues of the body were changed so far.
 std::uint64_t changes_of(const Simulation& simulation);
 

@@ -23,11 +23,16 @@ Probes::Probes(const Simulation& simulation, std::vector<ProbeOptions> options)
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(label + ": " + error.what());
     }
+    readers_.back()->scheme = scheme_of(simulation);
     for (const std::string& column : readers_.back()->columns()) columns_.push_back(o.name + "_" + column);
   }
 }
 
 std::vector<double> Probes::read(const Simulation& simulation) {
+  if (!readers_.empty() && readers_.front()->scheme.lock() != scheme_of(simulation).lock()) {
+    throw std::invalid_argument("probes: \"" + options_.front().name +
+                                "\" was made for another simulation; make Probes for this one");
+  }
   if (changes_ != changes_of(simulation)) {
     for (const auto& reader : readers_) reader->follow(simulation);
     changes_ = changes_of(simulation);

@@ -284,6 +284,7 @@ StepResult ExplicitScheme::step() {
   if (state_.options.track_energies && seen.brought_in != 0.0) ledger_.bring_in(0.0, seen.brought_in);
   for (ActiveVertex& w : moving_->active()) w.displacement += w.velocity * h;
   moving_->place_active();
+  copy_.current = false;  // of what a callback asked for within the step
   state_.time += h;
   ++state_.steps;
   masses_.step_made(h);

@@ -1,17 +1,34 @@
 #include "dynamics/schemes/scheme.h"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 #include "glisson/archive.h"
 
 namespace glisson {
+namespace {
 
+/// Where the motion of a constraint counts from, which is `now` at present. @return per vertex [m]
+std::vector<Vec3d> find_base(const Scheme& scheme, const Constraint& constraint, const Target& now) {
+  std::vector<Vec3d> base;
+  for (const std::uint32_t v : constraint.vertices) {
+    base.push_back(now.base_of(scheme.body().rest_positions[v], scheme.displacement_of(v)));
+  }
+  return base;
+}
+
+}  // namespace
+
+/// A motion is asked first where it begins at once: what it throws changes nothing.
 ConstraintId Scheme::add_constraint(Constraint constraint) {
+  std::optional<Target> now;
+  if (constraint.from <= state_.time) now.emplace(constraint, state_.time);
   const ConstraintId id = state_.constraints.add(std::move(constraint));
   state_.base.emplace_back();
-  acts_on(state_.constraints.at(id).vertices);
-  if (state_.constraints.at(id).from <= state_.time) rebase(id.index);
+  const Constraint& added = state_.constraints.at(id);
+  acts_on(added.vertices);
+  if (now) state_.base[id.index] = find_base(*this, added, *now);
   return id;
 }
 
@@ -92,11 +109,7 @@ bool Scheme::take_hold(double h) {
 /// Lets a constraint's motion count from where its vertices are now.
 void Scheme::rebase(std::size_t constraint) {
   const Constraint& c = state_.constraints.all()[constraint];
-  const Target now(c, state_.time);
-  state_.base[constraint].clear();
-  for (const std::uint32_t v : c.vertices) {
-    state_.base[constraint].push_back(now.base_of(state_.body.rest_positions[v], displacement_of(v)));
-  }
+  state_.base[constraint] = find_base(*this, c, Target(c, state_.time));
 }
 
 void Scheme::set_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {

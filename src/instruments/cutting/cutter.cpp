@@ -216,6 +216,7 @@ void Cutter::Impl::open(const detail::CutFaces& cut, CutReport& report) {
 }
 
 Cutter::Cutter(Simulation& simulation, const CutOptions& options) {
+  SimulationParts::refuse_inside_step(SimulationParts::inside(simulation), "Cutter");
   detail::require_fields("cutter", options);
   impl_ = std::make_unique<Impl>(simulation, options);
 }
@@ -227,6 +228,7 @@ Cutter& Cutter::operator=(Cutter&&) noexcept = default;
 void Cutter::place(const BladeEdge& edge) {
   require_finite(edge);
   Impl& me = *impl_;
+  SimulationParts::refuse_inside_step(me.simulation, "Cutter::place");
   me.follow();
   me.sheet.begin_another();
   std::fill(me.doubled.begin(), me.doubled.end(), char{0});
@@ -239,6 +241,7 @@ void Cutter::place(const BladeEdge& edge) {
 CutReport Cutter::advance(const BladeEdge& edge) {
   require_finite(edge);
   Impl& me = *impl_;
+  SimulationParts::refuse_inside_step(me.simulation, "Cutter::advance");
   if (!me.placed) throw std::invalid_argument("cutter: the blade is nowhere yet; call place() before advance()");
   me.follow();
   me.view.step_on();
@@ -321,6 +324,7 @@ void Cutter::save(std::ostream& out) const {
 }
 
 void Cutter::load(std::istream& in) {
+  SimulationParts::refuse_inside_step(impl_->simulation, "Cutter::load");
   Archive contents = read_checkpoint(in);
   archive(contents);
   contents.check(contents.left() == 0);
