@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/require_fields.h"
 #include "glisson/archive.h"
 #include "glisson/simulation/integrator.h"
 #include "instruments/contact/shape.h"
@@ -14,6 +15,7 @@
 namespace glisson {
 namespace {
 
+constexpr const char* kRejected = "pose rejected";
 constexpr double kReach = 10.0;  // of the body's diagonal: farther from it no pose makes sense
 
 /// A component of the forces along the direction.
@@ -143,6 +145,7 @@ Instrument::Instrument(std::string name, std::shared_ptr<ToolDriver> driver, con
   if (!(norm(direction) > 0.0)) throw std::invalid_argument("instrument " + name_ + ": its direction is zero");
   direction_ = unit(direction);
   pose_ = before_ = driver_->start();
+  detail::require_fields("instrument " + name_ + ": start", pose_);
   start_ = pose_.position;
 }
 
@@ -176,7 +179,8 @@ void Instrument::drive(const InteractionStep& step) {
   if (accepts(next)) pose_ = next;
   if (search_ == nullptr) return;
   if (!search_->begun() || is_other_step) {
-    search_->begin(before_.position, pose_.position, driver_->advance_under(step.time, step.h, {}).position);
+    const Pose free = driver_->advance_under(step.time, step.h, {});
+    search_->begin(before_.position, pose_.position, bounds_.holds(free) ? free.position : pose_.position);
   }
   take_trial();
 }
@@ -205,15 +209,16 @@ bool Instrument::tries_again() {
   return accepts(end) && search_->goes_on(end.position);
 }
 
-/// Counts a pose that makes no sense; the tool stays where it is then.
+/// Counts a pose that makes no sense, the first as an event; the tool stays where it is then.
 bool Instrument::accepts(const Pose& pose) {
   if (bounds_.holds(pose)) return true;
   ++rejected_;
+  const auto is_told = [](const InstrumentEvent& e) { return e.event == kRejected; };
+  if (std::none_of(events_.begin(), events_.end(), is_told)) add_event(time_, depth(), kRejected);
   return false;
 }
 
 void Instrument::set_bounds(const BodyView& body) {
-  bounds_ = {};
   if (body.mesh.vertices.empty()) return;
   Vec3d low = body.mesh.vertices.front(), high = low;
   for (const Vec3d& x : body.mesh.vertices) {
@@ -221,7 +226,9 @@ void Instrument::set_bounds(const BodyView& body) {
       low[axis] = std::min(low[axis], x[axis]), high[axis] = std::max(high[axis], x[axis]);
     }
   }
-  bounds_ = {(low + high) * 0.5, kReach * norm(high - low)};
+  const PoseBounds bounds{(low + high) * 0.5, kReach * norm(high - low)};
+  if (!bounds.holds(pose_)) throw std::invalid_argument("instrument " + name_ + ": start: " + bounds.fault_of(pose_));
+  bounds_ = bounds;
   driver_->set_bounds(bounds_);
 }
 

@@ -446,8 +446,8 @@ TEST(Contact, FollowsTheSurfaceOfAChangedBody) {
   EXPECT_LT(t->forces().normal.z, -1e-3);
 }
 
-// A tool whose pose makes no sense any more is lost: it stays where it was, touches nothing, and the run goes on.
-TEST(Contact, LosesAToolWithoutAPose) {
+// A tool whose driver gives no pose any more stays where it was; the free slab that it has pushed goes on.
+TEST(Contact, KeepsAToolWithoutAPose) {
   Simulation s(slab(4), {{0, tissue()}});
   const auto t = tool(Plate{}, 0.3, [](double time) {
     return Pose{{0.0, 0.0, time < 0.02 ? -0.01 * time : std::nan("")}};
@@ -455,8 +455,7 @@ TEST(Contact, LosesAToolWithoutAPose) {
   s.attach(t);
   test::advance_to(s, 0.05);
   EXPECT_NEAR(t->pose().position.z, -2e-4, 2e-5);
-  EXPECT_FALSE(t->touches());
-  EXPECT_EQ(t->events().back().event, "lost");
+  EXPECT_GT(t->rejected(), 0U);
   EXPECT_TRUE(std::isfinite(norm(s.displacement()[0])));
 }
 

@@ -44,10 +44,6 @@ struct FormOf {
 ContactTool::ContactTool(const ContactOptions& options, std::shared_ptr<ToolDriver> driver)
     : Instrument(checked(options).name, std::move(driver), options.direction), state_(std::make_unique<State>()) {
   state_->options = options;
-  if (!pose_.is_sound()) {
-    throw std::invalid_argument("contact tool " + options.name +
-                                ": its driver starts at a pose that is not finite, or whose axes are no rotation");
-  }
   state_->solid.traits = traits_of(state_->options.shape);
   state_->solid.friction = options.bonded ? std::numeric_limits<double>::infinity() : options.friction;
   state_->solid.push_out_speed = options.push_out_speed;

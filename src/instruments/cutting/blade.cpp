@@ -13,8 +13,6 @@ namespace {
 constexpr int kSweeps = 3;           ///< over the pieces of the edge, which share vertices
 constexpr double kMostChange = 0.5;  ///< of the longer: by how much the length in tissue changes in a long step
 
-bool is_finite(const BladeEdge& edge) { return std::isfinite(norm(edge.from)) && std::isfinite(norm(edge.to)); }
-
 double length_of(std::span<const EdgePiece> pieces) {
   double sum = 0.0;
   for (const EdgePiece& piece : pieces) sum += piece.length;
@@ -53,7 +51,6 @@ void Blade::body_changed(const BodyView& body, std::span<const std::uint32_t>) {
 
 void Blade::between_steps(Simulation& simulation) {
   const BladeEdge now = edge();
-  if (!is_finite(now)) return;  // nor does it push then
   if (!cutter_) {
     cutter_.emplace(simulation, options_.cutting).place(now);
   } else {
@@ -80,7 +77,7 @@ std::span<const std::uint32_t> Blade::reach(double, double) {
   begin_step();
   const BladeEdge now = edge();
   const bool has_gone_on = cutter_ && (now.from != cutter_->edge().from || now.to != cutter_->edge().to);
-  if (forces_at_end() && has_gone_on && is_finite(now)) pieces_ = cutter_->contact(now);  // a part of a long step
+  if (forces_at_end() && has_gone_on) pieces_ = cutter_->contact(now);  // a part of a long step
   reached_.clear(), trial_.clear();
   for (const EdgePiece& piece : pieces_) {
     reached_.insert(reached_.end(), vertices_of(piece).begin(), vertices_of(piece).end());
@@ -138,7 +135,7 @@ void Blade::constrain(const InteractionStep& step) {
 
 /// The edge enters tissue or leaves it: G l holds from there on.
 bool Blade::overshoots(const InteractionStep& step) {
-  if (!cutter_ || !(options_.toughness > 0.0) || !is_finite(edge())) return false;
+  if (!cutter_ || !(options_.toughness > 0.0)) return false;
   const double before = length_in_tissue(), after = length_of(cutter_->contact(edge(), step.vertices));
   return std::abs(after - before) > kMostChange * std::max(after, before);
 }

@@ -54,7 +54,6 @@ Blade::LongPieces Blade::long_pieces(const InteractionStep& step, const BladeEdg
   LongPieces r;
   const Vec3d was = before.to - before.from, is = after.to - after.from;
   const Vec3d from = (after.from - before.from) * (1.0 / step.h), to = (after.to - before.to) * (1.0 / step.h);
-  if (!std::isfinite(norm(from)) || !std::isfinite(norm(to))) return r;
   r.e = two_across(unit(is));
   const auto is_active = [&](std::uint32_t v) { return step.place_of[v] != InteractionStep::kNowhere; };
   for (std::size_t k = 0; k < pieces_.size(); ++k) {

@@ -18,6 +18,7 @@ double largest_passive_stiffness(const HandCoupling& x) {
 
 HandDriver::HandDriver(const Pose& start, const HandCoupling& coupling) : start_(start), coupling_(coupling) {
   detail::require_fields("hand", coupling);
+  detail::require_fields("hand: start", start);
   target_ = start, position_ = start.position;
 }
 

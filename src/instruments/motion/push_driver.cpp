@@ -45,7 +45,7 @@ Vec3d PushDriver::along(const Vec3d& force) const {
 
 Pose PushDriver::advance(double time, double h, const Wrench& on_tool) {
   const Vec3d answer = along(on_tool.force);
-  learn_stiffness(answer);
+  if (std::isfinite(norm(answer))) learn_stiffness(answer);
   first_travel_ = travel_, first_velocity_ = velocity_;
   const double stiff = h * h * stiffness_ > motion_.mass ? h * h * stiffness_ : 0.0;
   return go(motion_.force(time), h, answer, stiff);
@@ -59,6 +59,10 @@ Pose PushDriver::advance_under(double time, double h, const Wrench& at_end) {
 Pose PushDriver::go(double push, double h, const Vec3d& answer, double stiff) {
   const Vec3d& d = motion_.direction;
   const Vec3d impulse = (d * push + answer) * h;
+  if (!std::isfinite(norm(impulse))) {  // the tool rejects it for its pose, and stays
+    travel_ = first_travel_, velocity_ = {};
+    return {impulse, start_.axes};
+  }
   velocity_ = (first_velocity_ * motion_.mass + impulse) * (1.0 / (motion_.mass + h * motion_.damping + stiff));
   travel_ = first_travel_ + velocity_ * h;
   const double beyond = motion_.stop ? dot(travel_, d) - *motion_.stop : 0.0;
