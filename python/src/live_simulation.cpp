@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+
+#include "dynamics/simulation_parts.h"
 
 namespace glisson::python {
 namespace {
@@ -14,14 +17,19 @@ bool cuts(const BuiltVariant& built) {
                      [](const auto& x) { return x->changes_body(); });
 }
 
+/// Whether the state moves in memory: with changes of the mesh, and in steps that are solved for, which may be taken back.
+bool moves(const SimulationOptions& options) {
+  return options.mesh_changes || capabilities(options.integrator).any_step_is_stable;
+}
+
 }  // namespace
 
 LiveSimulation::LiveSimulation(TetMesh mesh, std::map<int, Tissue> tissues, const SimulationOptions& options)
-    : own_(std::in_place, std::move(mesh), std::move(tissues), options), may_change_(options.mesh_changes) {}
+    : own_(std::in_place, std::move(mesh), std::move(tissues), options), may_change_(moves(options)) {}
 
 LiveSimulation::LiveSimulation(const Variant& variant, const MeshLoader& load)
     : variant_(variant), built_(std::make_unique<BuiltVariant>(*variant_, load)),
-      may_change_(variant.simulation.mesh_changes || cuts(*built_)) {}
+      may_change_(moves(variant.simulation) || cuts(*built_)) {}
 
 Simulation& LiveSimulation::get() {
   const std::thread::id busy = stepping_;
@@ -46,6 +54,21 @@ void LiveSimulation::attach(const std::shared_ptr<Interaction>& interaction) {
   may_change_ = may_change_ || changes;
 }
 
+/// While it lives, this thread steps; a step within a step ends with what was before.
+class LiveSimulation::Stepping {
+ public:
+  explicit Stepping(LiveSimulation& live)
+      : live_(live), thread_(live.stepping_.exchange(std::this_thread::get_id())), scope_(live.fault_) {}
+  ~Stepping() { live_.stepping_ = thread_; }
+  Stepping(const Stepping&) = delete;
+  Stepping& operator=(const Stepping&) = delete;
+
+ private:
+  LiveSimulation& live_;
+  std::thread::id thread_;
+  Fault::Scope scope_;
+};
+
 /// @return false where the step was not made or a callback has raised
 bool LiveSimulation::one_step(StepStatus& worst) {
   const StepResult result = (own_ ? *own_ : built_->simulation).step();
@@ -59,13 +82,11 @@ bool LiveSimulation::one_step(StepStatus& worst) {
 template <class Going>
 StepStatus LiveSimulation::loop(Going going) {
   get();
-  if (stepping_.load() != std::thread::id{})
-    throw std::runtime_error("a callback must not step the simulation that calls it");
+  fault_.raised = nullptr;  // of a step that itself has thrown
   StepStatus worst = StepStatus::ok;
   bool interrupted = false;
-  stepping_ = std::this_thread::get_id();
-  Fault* outer = std::exchange(Fault::current(), &fault_);
   {
+    const Stepping stepping(*this);
     const nb::gil_scoped_release free;
     Clock::time_point looked = Clock::now();
     while (!interrupted && going() && one_step(worst)) {
@@ -75,8 +96,6 @@ StepStatus LiveSimulation::loop(Going going) {
       interrupted = PyErr_CheckSignals() != 0;
     }
   }
-  Fault::current() = outer;
-  stepping_ = std::thread::id{};
   if (interrupted) throw nb::python_error();
   fault_.rethrow();
   if (worst != StepStatus::ok && worst != StepStatus::inverted) {
@@ -92,6 +111,13 @@ StepStatus LiveSimulation::step(std::uint64_t n) {
 
 StepStatus LiveSimulation::advance(double until, const std::optional<std::function<void()>>& observer,
                                    std::optional<double> every) {
+  SimulationParts::refuse_inside_step(SimulationParts::inside(get()), "advance", false);
+  if (!std::isfinite(until)) {
+    throw nb::value_error(("advance: until = " + std::to_string(until) + " is not finite; give a time [s]").c_str());
+  }
+  if (every && !(*every > 0.0)) {
+    throw nb::value_error(("advance: every = " + std::to_string(*every) + " is not positive; give a time [s]").c_str());
+  }
   StepStatus worst = StepStatus::ok;
   const auto before = [this](double time) {
     Simulation& s = own_ ? *own_ : built_->simulation;
