@@ -47,6 +47,7 @@ void print_results(const std::vector<const VariantRecorder*>& variants) {
       say(" (up to {} inverted tets, from {:.4g} s on)", s.inverted_tets_most, s.first_inversion_s);
     }
     if (s.energy_gain && s.energy_gain->any()) say(" (energy from nothing, from {:.4g} s on)", s.energy_gain->began);
+    if (variants[i]->rejected() > 0) say(" ({} poses of tools rejected)", variants[i]->rejected());
     if (s.linear_share_mean) say(" ({:.0f} % of the tets linear in the mean)", 100.0 * *s.linear_share_mean);
     say("\n");
   }

@@ -15,6 +15,13 @@ const char* doc(const std::string& name) {
   return found == std::end(kDocstrings) ? "" : found->second;
 }
 
+void require_main_interpreter() {
+  if (PyInterpreterState_GetID(PyInterpreterState_Get()) == 0) return;
+  throw nb::import_error(
+      "glisson runs in the main interpreter of a process, not in a subinterpreter; start a process in its place, as "
+      "multiprocessing and glisson.sweep do");
+}
+
 std::string docstring(const std::string& comment, const FieldText& field) {
   const std::string unit = field.si_unit();
   std::string text = !comment.empty() ? comment : std::string(field.help) + (unit.empty() ? "" : " [" + unit + "]");

@@ -88,6 +88,37 @@ void set_field(nb::handle self, const std::string& field, nb::handle value);
 /// Docstring of a field: the comment at its member, else its meaning and unit; then its range.
 std::string docstring(const std::string& comment, const FieldText& field);
 
+/// What a function of the caller's returned, as a value. @throws nb::type_error naming the function, what it returned and what is
+/// expected
+template <class T>
+T returned(const char* function, nb::handle given, const char* expected) {
+  T value{};
+  if (nb::try_cast(given, value)) return value;
+  throw nb::type_error(
+      (std::string(function) + " returned " + nb::cast<std::string>(nb::repr(given)) + "; expected " + expected)
+          .c_str());
+}
+
+/// @throws nb::import_error in a subinterpreter: the functions that the engine calls would wait for the main one for ever
+void require_main_interpreter();
+
+/// Fills an object that pickle makes, by what `read` makes of its state. @param parts  of the state
+/// @throws nb::value_error, nb::type_error for a state that is not one of such an object
+template <class T, class Read>
+void set_pickled(T& self, const nb::tuple& state, const char* type, std::size_t parts, const Read& read) {
+  const std::string where = std::string(type) + ".__setstate__: ";
+  if (nb::len(state) != parts) {
+    throw nb::value_error((where + "the state has " + std::to_string(nb::len(state)) + " parts; expected the " +
+                           std::to_string(parts) + " that __getstate__ returns")
+                              .c_str());
+  }
+  try {
+    new (&self) T(read());
+  } catch (const nb::cast_error&) {
+    throw nb::type_error((where + "a part of the state has another type than __getstate__ returns").c_str());
+  }
+}
+
 /// Signatures of what pickle calls.
 inline constexpr const char* kGetState = "def __getstate__(self) -> tuple[typing.Any, ...]";
 inline constexpr const char* kSetState = "def __setstate__(self, state: tuple[typing.Any, ...], /) -> None";

@@ -23,7 +23,7 @@ class OwnCutter {
   CutReport advance(const ArrayLike& edge) {
     const BladeEdge to = edge_of(edge);
     live_.refuse_views();
-    return cutter().advance(to);
+    return live_.change([&](Simulation&) { return cutter_.advance(to); });
   }
   Doubles edge() { return vectors({cutter().edge().from, cutter().edge().to}); }
   /// Not while the simulation steps elsewhere.

@@ -54,7 +54,7 @@ ToolPath path_of(const MotionArgument& motion, std::optional<double> end) {
     ToolPath operator()(const StrokeMotion& x) const { return stroke_path(x); }
     ToolPath operator()(const SineMotion& x) const { return sine_path(x); }
     ToolPath operator()(const RecordedMotion& x) const { return recorded_path(x); }
-    ToolPath operator()(const nb::object& x) const { return {Callback<Vec3d>(x), end}; }
+    ToolPath operator()(const nb::object& x) const { return {Callback<Vec3d>("motion", x), end}; }
   } read{end};
   return std::visit(read, motion);
 }
@@ -63,7 +63,8 @@ void bind_drivers(nb::module_& m) {
   Options<Pose>(m, "Pose");
   nb::class_<ToolDriver>(m, "ToolDriver", doc("ToolDriver"))
       .def_prop_ro("start", &ToolDriver::start, doc("ToolDriver::start"))
-      .def_prop_ro("end", &ToolDriver::end, doc("ToolDriver::end"));
+      .def_prop_ro("end", &ToolDriver::end, doc("ToolDriver::end"))
+      .def_prop_ro("rejected", &ToolDriver::rejected, doc("ToolDriver::rejected"));
   nb::class_<PathDriver, ToolDriver>(m, "PathDriver", doc("PathDriver"))
       .def(
           "__init__",
@@ -96,7 +97,7 @@ void bind_drivers(nb::module_& m) {
             if (const double* steady = std::get_if<double>(&force)) {
               motion.force = [f = *steady](double) { return f; };
             } else {
-              motion.force = Callback<double>(std::get<ForceOverTime>(force));
+              motion.force = Callback<double>("force", std::get<ForceOverTime>(force));
             }
             new (self) PushDriver(start, std::move(motion));
           },
@@ -108,6 +109,7 @@ void bind_drivers(nb::module_& m) {
       .def(nb::init<const Pose&, const HandCoupling&>(), "start"_a, "coupling"_a = HandCoupling{},
            doc("HandDriver::HandDriver"))
       .def("set_target", &HandDriver::set_target, "target"_a, doc("HandDriver::set_target"))
+      .def("offer_target", &HandDriver::offer_target, "target"_a, doc("HandDriver::offer_target"))
       .def_prop_ro("device_force", &HandDriver::device_force, doc("HandDriver::device_force"))
       .def_prop_ro("velocity", &HandDriver::velocity, doc("HandDriver::velocity"));
 }
@@ -157,6 +159,7 @@ void bind_common(nb::module_& m) {
       .def_prop_ro("depth", &Instrument::depth, doc("Instrument::depth"))
       .def_prop_ro("force_depth", &Instrument::force_depth, doc("Instrument::force_depth"))
       .def_prop_ro("direction", [](const Instrument& x) { return x.direction(); })
+      .def_prop_ro("rejected", &Instrument::rejected, doc("Instrument::rejected"))
       .def_prop_ro(
           "events", [](const Instrument& x) { return x.events(); }, doc("Instrument::events"));
 }

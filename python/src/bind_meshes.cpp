@@ -90,12 +90,15 @@ nb::tuple mesh_state(nb::handle self) {
 }
 
 void set_mesh_state(TetMesh& self, const nb::tuple& state) {
-  const auto regions = nb::cast<nb::ndarray<const int, nb::c_contig, nb::device::cpu>>(state[2]);
-  new (&self) TetMesh(mesh_of(nb::borrow<ArrayLike>(state[0]), nb::borrow<ArrayLike>(state[1]), nb::none(),
-                              nb::cast<std::map<int, std::string>>(state[4]), nb::cast<Sets>(state[5]),
-                              nb::borrow(state[3]), false));
-  self.regions.assign(regions.data(), regions.data() + regions.size());
-  require_valid(self);
+  set_pickled(self, state, "TetMesh", 6, [&] {
+    const auto regions = nb::cast<nb::ndarray<const int, nb::ndim<1>, nb::c_contig, nb::device::cpu>>(state[2]);
+    TetMesh mesh =
+        mesh_of(nb::borrow<ArrayLike>(state[0]), nb::borrow<ArrayLike>(state[1]), nb::none(),
+                nb::cast<std::map<int, std::string>>(state[4]), nb::cast<Sets>(state[5]), nb::borrow(state[3]), false);
+    mesh.regions.assign(regions.data(), regions.data() + regions.size());
+    require_valid(mesh);
+    return mesh;
+  });
 }
 
 void bind_report(nb::module_& m) {

@@ -14,24 +14,25 @@ namespace {
 
 /// Calls `method` of a Python object unless something was raised before in this step; keeps what it raises.
 /// @return none where it was not called or has raised
-nb::object call_kept(nb::handle self, const char* method, const auto&... arguments) {
+std::optional<nb::object> call_kept(nb::handle self, const char* method, const auto&... arguments) {
   Fault* fault = Fault::current();
-  if (fault && fault->raised) return nb::none();
+  if (fault && fault->raised) return {};
   try {
-    return self.attr(method)(arguments...);
+    return nb::object(self.attr(method)(arguments...));
   } catch (...) {
     if (!fault) throw;
     fault->raised = std::current_exception();
-    return nb::none();
+    return {};
   }
 }
 
 /// What past() of a Python object gives, or restore() takes.
 void archive_own(Archive& ar, nb::handle self) {
   std::vector<double> numbers;
-  if (!ar.reads()) numbers = nb::cast<std::vector<double>>(self.attr("past")());
+  if (!ar.reads()) numbers = returned<std::vector<double>>("past", self.attr("past")(), "a list of numbers");
   ar(numbers);
-  ar.check(!ar.reads() || nb::cast<bool>(self.attr("restore")(numbers)));
+  ar.check(!ar.reads() ||
+           returned<bool>("restore", self.attr("restore")(numbers), "True, or False where they do not fit"));
 }
 
 /// Leads a tool by a method of a subclass, or by a function.
@@ -41,11 +42,16 @@ class OwnDriver : public ToolDriver {
 
   Pose start() const override { return start_; }
   std::optional<double> end() const override { return end_; }
+  void set_bounds(const PoseBounds& bounds) override { bounds_ = bounds; }
+  /// A pose that makes no sense is handed on, for the tool to count it, but not kept.
   Pose advance(double time, double h, const Wrench& on_tool) override {
     const nb::gil_scoped_acquire gil;
     try {
-      const nb::object pose = call_kept(nb::find(*this), "advance", time, h, on_tool);
-      if (!pose.is_none()) last_ = pose_of(pose);
+      const std::optional<nb::object> given = call_kept(nb::find(*this), "advance", time, h, on_tool);
+      if (!given) return last_;
+      const Pose pose = pose_of(*given);
+      if (bounds_.holds(pose)) last_ = pose;
+      return pose;
     } catch (...) {
       if (!Fault::current()) throw;
       Fault::current()->raised = std::current_exception();
@@ -62,14 +68,13 @@ class OwnDriver : public ToolDriver {
   /// A Pose, or its position alone.
   Pose pose_of(const nb::object& given) const {
     Pose pose = last_;
-    if (nb::try_cast<Pose>(given, pose) || nb::try_cast<Vec3d>(given, pose.position)) return pose;
-    throw nb::type_error(("advance returned " + nb::cast<std::string>(nb::str(nb::handle(given.type()))) +
-                          "; expected a Pose, or three numbers for its position")
-                             .c_str());
+    if (nb::try_cast<Vec3d>(given, pose.position)) return pose;
+    return returned<Pose>("advance", given, "a Pose, or three numbers for its position");
   }
 
-  Pose start_, last_;
+  Pose start_, last_;  ///< the last good one
   std::optional<double> end_;
+  PoseBounds bounds_;
 };
 
 /// A step as an interaction in Python sees it; only while it is called.
@@ -135,18 +140,19 @@ class OwnInteraction : public Interaction {
     const nb::gil_scoped_acquire gil;
     vertex_count_ = body.mesh.vertices.size();
     nb::find(*this).attr("attached")(body.mesh, time);
+    squared_frequency_ = returned<double>("squared_frequency", nb::find(*this).attr("squared_frequency")(), "a number");
   }
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override {
     const nb::gil_scoped_acquire gil;
     vertex_count_ = body.mesh.vertices.size();
-    nb::find(*this).attr("body_changed")(body.mesh, indices({origins.begin(), origins.end()}));
+    keeping([&] { call_kept(nb::find(*this), "body_changed", body.mesh, indices({origins.begin(), origins.end()})); });
   }
   std::span<const std::uint32_t> reach(double time, double h) override {
     const nb::gil_scoped_acquire gil;
     reached_.clear();
     keeping([&] {
-      const nb::object named = call_kept(nb::find(*this), "reach", time, h);
-      if (!named.is_none()) reached_ = to_indices(named, 1, "what reach() returned");
+      const std::optional<nb::object> named = call_kept(nb::find(*this), "reach", time, h);
+      if (named) reached_ = to_indices(*named, 1, "what reach() returned");
       for (const std::uint32_t v : reached_) {
         if (v < vertex_count_) continue;
         reached_.clear();
@@ -162,16 +168,11 @@ class OwnInteraction : public Interaction {
     hand("moved", step);
     const nb::gil_scoped_acquire gil;
     keeping([&] {
-      const nb::object w = call_kept(nb::find(*this), "squared_frequency");
-      if (!w.is_none()) squared_frequency_ = nb::cast<double>(w);
+      const std::optional<nb::object> w = call_kept(nb::find(*this), "squared_frequency");
+      if (w) squared_frequency_ = returned<double>("squared_frequency", *w, "a number");
     });
   }
-  double squared_frequency() const override {
-    if (squared_frequency_) return *squared_frequency_;
-    const nb::gil_scoped_acquire gil;
-    squared_frequency_ = nb::cast<double>(nb::find(*this).attr("squared_frequency")());
-    return *squared_frequency_;
-  }
+  double squared_frequency() const override { return squared_frequency_; }
   void archive(Archive& ar) override {
     const nb::gil_scoped_acquire gil;
     archive_own(ar, nb::find(*this));
@@ -198,7 +199,7 @@ class OwnInteraction : public Interaction {
 
   std::size_t vertex_count_ = 0;
   std::vector<std::uint32_t> reached_;
-  mutable std::optional<double> squared_frequency_;
+  double squared_frequency_ = 0.0;
 };
 
 void bind_step(nb::module_& m) {

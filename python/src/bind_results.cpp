@@ -80,6 +80,7 @@ class Recorder : public RunObserver {
 
   void on_built(const BuiltVariant& built) override {
     table_.emplace(*result_.variant, built);
+    instruments_ = built.instruments;
     result_.forces->columns = table_->columns();
     for (const auto& file : table_->further()) {
       result_.further[file.name] = std::make_shared<Table>(Table{file.columns, {}});
@@ -117,8 +118,8 @@ class Recorder : public RunObserver {
   }
   void on_end(const RunSummary& summary) override {
     const Variant& variant = *result_.variant;
-    result_.summary =
-        json_text(summary_json(summary, variant, std::filesystem::path(variant.scene_name).stem().string(), 1));
+    const std::string scene = std::filesystem::path(variant.scene_name).stem().string();
+    result_.summary = json_text(summary_json(summary, variant, scene, 1, rejected_poses(instruments_)));
     result_.end = word_of(summary.end);
     result_.trouble = trouble_text(summary);
   }
@@ -133,6 +134,7 @@ class Recorder : public RunObserver {
 
   RunResult& result_;
   std::optional<ForceTable> table_;
+  std::vector<std::shared_ptr<Instrument>> instruments_;
   nb::object on_sample_;
   bool frames_;
   std::shared_ptr<StopFlag> stop_;
@@ -179,7 +181,7 @@ nb::tuple result_state(const RunResult& r) {
                         r.trouble, r.probes);
 }
 
-void set_result_state(RunResult& self, const nb::tuple& state) {
+RunResult result_of(const nb::tuple& state) {
   RunResult r{.variant = {},
               .name = nb::cast<std::string>(state[0]),
               .label = nb::cast<std::string>(state[1]),
@@ -191,6 +193,7 @@ void set_result_state(RunResult& self, const nb::tuple& state) {
               .summary = nb::cast<std::string>(state[6]),
               .end = nb::cast<std::string>(state[7]),
               .trouble = nb::cast<std::string>(state[8])};
+  if (!r.forces || !r.probes) throw nb::cast_error();
   for (nb::handle event : nb::cast<nb::list>(state[4])) {
     RunEvent& e = r.events.emplace_back();
     e.instrument = nb::cast<std::string>(event["instrument"]), e.what.event = nb::cast<std::string>(event["event"]);
@@ -199,7 +202,17 @@ void set_result_state(RunResult& self, const nb::tuple& state) {
   for (nb::handle frame : nb::cast<nb::list>(state[5])) {
     r.frames.push_back({nb::cast<double>(frame[0]), to_vectors(nb::borrow<ArrayLike>(frame[1]), "frames")});
   }
-  new (&self) RunResult(std::move(r));
+  return r;
+}
+
+/// A table of its columns and rows.
+Table table_of(const nb::tuple& state) {
+  using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+  const auto rows = nb::cast<Rows>(state[1]);
+  Table table{nb::cast<std::vector<std::string>>(state[0]), {}};
+  if (rows.shape(1) != table.columns.size()) throw nb::cast_error();
+  table.numbers.assign(rows.data(), rows.data() + rows.size());
+  return table;
 }
 
 const Variant& variant_of(const RunResult& r) {
@@ -241,8 +254,7 @@ void bind_tables(nb::module_& m) {
       .def(
           "__setstate__",
           [](Table& self, const nb::tuple& state) {
-            const auto rows = nb::cast<nb::ndarray<const double, nb::c_contig, nb::device::cpu>>(state[1]);
-            new (&self) Table{nb::cast<std::vector<std::string>>(state[0]), {rows.data(), rows.data() + rows.size()}};
+            set_pickled(self, state, "Table", 2, [&] { return table_of(state); });
           },
           nb::sig(kSetState))
       .def("__repr__", [](const Table& t) {
@@ -276,7 +288,12 @@ void bind_results(nb::module_& m) {
       .def_ro("end", &RunResult::end, "How it ended: finished, interrupted, stopped_inverted, …")
       .def_ro("trouble", &RunResult::trouble, "Message about a numerical failure, with a remedy; else empty")
       .def("__getstate__", result_state, nb::sig(kGetState))
-      .def("__setstate__", set_result_state, nb::sig(kSetState))
+      .def(
+          "__setstate__",
+          [](RunResult& self, const nb::tuple& state) {
+            set_pickled(self, state, "RunResult", 10, [&] { return result_of(state); });
+          },
+          nb::sig(kSetState))
       .def("__repr__", [](const RunResult& r) {
         return "<RunResult " + r.name + ": " + std::to_string(r.forces->rows()) + " samples, " + r.end + ">";
       });

@@ -64,6 +64,18 @@ std::map<int, Tissue> tissues_of(const TetMesh& mesh, const Tissues& given) {
   return tissues;
 }
 
+/// Adds what calls a function of the caller's; that of something refused is not kept.
+template <class Add>
+auto keeping_functions(Live& live, const Add& add) {
+  const auto before = static_cast<std::ptrdiff_t>(live.functions.size());
+  try {
+    return add();
+  } catch (...) {
+    live.functions.erase(live.functions.begin() + before, live.functions.end());
+    throw;
+  }
+}
+
 ConstraintId drive(Live& live, const VertexChoice& vertices, const std::variant<PressMotion, nb::object>& motion,
                    const std::string& axes, std::optional<double> from) {
   const std::vector<std::uint32_t> set = chosen(live, vertices);
@@ -76,8 +88,10 @@ ConstraintId drive(Live& live, const VertexChoice& vertices, const std::variant<
                           " is neither a PressMotion nor a function of time [s] that gives a displacement [m]")
                              .c_str());
   }
-  Motion way = Callback<Vec3d>(std::get<nb::object>(motion), live.functions);
-  return live.get().drive(set, std::move(way), axes_of(axes), from.value_or(0.0));
+  return keeping_functions(live, [&] {
+    Motion way = Callback<Vec3d>("motion", function, live.functions);
+    return live.get().drive(set, std::move(way), axes_of(axes), from.value_or(0.0));
+  });
 }
 
 ConstraintId drive_rigidly(Live& live, const VertexChoice& vertices,
@@ -94,23 +108,28 @@ ConstraintId drive_rigidly(Live& live, const VertexChoice& vertices,
              " is neither a RotationMotion nor a PosesMotion nor a function of time [s] that gives a Pose")
                 .c_str());
       }
-      return Callback<Pose>(x, live.functions);
+      return Callback<Pose>("motion", x, live.functions);
     }
   } read{live};
   const std::vector<std::uint32_t> set = chosen(live, vertices);
-  return live.get().drive_rigidly(set, std::visit(read, motion), axes_of(axes), from.value_or(0.0));
+  return keeping_functions(
+      live, [&] { return live.get().drive_rigidly(set, std::visit(read, motion), axes_of(axes), from.value_or(0.0)); });
 }
 
 void add_surface_load(Live& live, const VertexChoice& vertices, const SurfaceLoad& load, const nb::object& scale) {
-  std::function<double(double)> grows;
-  if (!scale.is_none()) grows = Callback<double>(scale, live.functions);
-  live.get().add_surface_load(chosen(live, vertices), load, std::move(grows));
+  keeping_functions(live, [&] {
+    std::function<double(double)> grows;
+    if (!scale.is_none()) grows = Callback<double>("scale", scale, live.functions);
+    live.get().add_surface_load(chosen(live, vertices), load, std::move(grows));
+  });
 }
 
 void add_load(Live& live, const VertexChoice& vertices, const Vec3d& force, const nb::object& scale) {
-  std::function<double(double)> grows;
-  if (!scale.is_none()) grows = Callback<double>(scale, live.functions);
-  live.get().add_load(chosen(live, vertices), force, std::move(grows));
+  keeping_functions(live, [&] {
+    std::function<double(double)> grows;
+    if (!scale.is_none()) grows = Callback<double>("scale", scale, live.functions);
+    live.get().add_load(chosen(live, vertices), force, std::move(grows));
+  });
 }
 
 /// A read-only array on the engine's own numbers, that keeps the simulation. A body that may be cut moves in memory, so
@@ -170,7 +189,7 @@ SplitReport split(Live& live, const ArrayLike& faces) {
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
     triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
   }
-  return live.get().split_faces(triangles);
+  return live.change([&](Simulation& s) { return s.split_faces(triangles); });
 }
 
 nb::dict constraints_of(const Live& live) {
@@ -287,18 +306,22 @@ void bind_setting_up(nb::class_<Live>& c) {
       .def("attach", &Live::attach, "interaction"_a, nb::keep_alive<1, 2>(), doc(of("attach")))
       .def(
           "remove_tets",
-          [](Live& live, const ArrayLike& tets) { return live.get().remove_tets(to_indices(tets, 1, "tets")); },
+          [](Live& live, const ArrayLike& tets) {
+            return live.change([&](Simulation& s) { return s.remove_tets(to_indices(tets, 1, "tets")); });
+          },
           "tets"_a, doc(of("remove_tets")))
       .def("split_faces", split, "faces"_a, doc(of("split_faces")))
       .def(
           "set_tissue",
           [](Live& live, const Region& region, const Tissue& tissue) {
-            live.get().set_tissue(region_number(live.get().mesh(), region), tissue);
+            live.change([&](Simulation& s) { s.set_tissue(region_number(s.mesh(), region), tissue); });
           },
           "region"_a, "tissue"_a, doc(of("set_tissue")))
       .def(
           "set_tissues",
-          [](Live& live, const Tissues& tissues) { live.get().set_tissues(tissues_of(live.get().mesh(), tissues)); },
+          [](Live& live, const Tissues& tissues) {
+            live.change([&](Simulation& s) { s.set_tissues(tissues_of(s.mesh(), tissues)); });
+          },
           "tissues"_a, doc(of("set_tissues")))
       .def(
           "tissue",
@@ -312,7 +335,7 @@ void bind_setting_up(nb::class_<Live>& c) {
       .def(
           "set_state",
           [](Live& live, const ArrayLike& u, const ArrayLike& v) {
-            live.get().set_state(to_vectors(u, "displacement"), to_vectors(v, "velocity"));
+            live.change([&](Simulation& s) { s.set_state(to_vectors(u, "displacement"), to_vectors(v, "velocity")); });
           },
           "displacement"_a, "velocity"_a, doc(of("set_state")));
 }
@@ -406,7 +429,8 @@ void bind_reading(nb::class_<Live>& c) {
 
 constexpr const char* kViewDoc =
     "\n\nA read-only view without a copy, up to date after every step() and advance(). It keeps the simulation alive; "
-    "copy() what is to outlive the next step. With SimulationOptions(mesh_changes=True), or a blade, a copy.";
+    "copy() what is to outlive the next step. With SimulationOptions(mesh_changes=True), a blade, implicit or "
+    "quasi_static, a copy.";
 
 void bind_views(nb::class_<Live>& c) {
   const auto add = [&](const char* name, auto read, const char* doc_of) {

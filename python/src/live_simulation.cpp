@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+
+#include "dynamics/simulation_parts.h"
 
 namespace glisson::python {
 namespace {
@@ -28,15 +31,20 @@ class Asking {
   Simulation& simulation_;
 };
 
+/// Whether the state moves in memory: with changes of the mesh, and in steps that are solved for, which may be taken back.
+bool moves(const SimulationOptions& options) {
+  return options.mesh_changes || capabilities(options.integrator).any_step_is_stable;
+}
+
 }  // namespace
 
 LiveSimulation::LiveSimulation(TetMesh mesh, std::map<int, Tissue> tissues, const SimulationOptions& options)
-    : own_(std::in_place, std::move(mesh), std::move(tissues), options), may_change_(options.mesh_changes),
+    : own_(std::in_place, std::move(mesh), std::move(tissues), options), may_change_(moves(options)),
       first_vertices_(own_->mesh().vertices.size()) {}
 
 LiveSimulation::LiveSimulation(const Variant& variant, const MeshLoader& load)
     : variant_(variant), built_(std::make_unique<BuiltVariant>(*variant_, load)),
-      may_change_(variant.simulation.mesh_changes || cuts(*built_)),
+      may_change_(moves(variant.simulation) || cuts(*built_)),
       first_vertices_(built_->simulation.mesh().vertices.size()) {}
 
 Simulation& LiveSimulation::get() {
@@ -62,6 +70,21 @@ void LiveSimulation::attach(const std::shared_ptr<Interaction>& interaction) {
   may_change_ = may_change_ || changes;
 }
 
+/// While it lives, this thread steps; a step within a step ends with what was before.
+class LiveSimulation::Stepping {
+ public:
+  explicit Stepping(LiveSimulation& live)
+      : live_(live), thread_(live.stepping_.exchange(std::this_thread::get_id())), scope_(live.fault_) {}
+  ~Stepping() { live_.stepping_ = thread_; }
+  Stepping(const Stepping&) = delete;
+  Stepping& operator=(const Stepping&) = delete;
+
+ private:
+  LiveSimulation& live_;
+  std::thread::id thread_;
+  Fault::Scope scope_;
+};
+
 /// @return false where the step was not made or a callback has raised
 bool LiveSimulation::one_step(StepStatus& worst) {
   const StepResult result = (own_ ? *own_ : built_->simulation).step();
@@ -75,18 +98,17 @@ bool LiveSimulation::one_step(StepStatus& worst) {
 template <class Going>
 StepStatus LiveSimulation::loop(Going going) {
   get();
-  if (stepping_.load() != std::thread::id{})
-    throw std::runtime_error("a callback must not step the simulation that calls it");
+  fault_.raised = nullptr;  // of a step that itself has thrown
   StepStatus worst = StepStatus::ok;
   bool interrupted = false;
   const auto look = [&interrupted](const StepProgress&) {
     const nb::gil_scoped_acquire gil;
     return interrupted = interrupted || PyErr_CheckSignals() != 0;
   };
-  const Asking asking(own_ ? *own_ : built_->simulation, look);
-  stepping_ = std::this_thread::get_id();
-  Fault* outer = std::exchange(Fault::current(), &fault_);
+  std::optional<Asking> asking;  // not from inside a step, which step() refuses
+  if (stepping_.load() == std::thread::id{}) asking.emplace(own_ ? *own_ : built_->simulation, look);
   {
+    const Stepping stepping(*this);
     const nb::gil_scoped_release free;
     Clock::time_point looked = Clock::now();
     while (!interrupted && going() && one_step(worst)) {
@@ -95,8 +117,6 @@ StepStatus LiveSimulation::loop(Going going) {
       look({});
     }
   }
-  Fault::current() = outer;
-  stepping_ = std::thread::id{};
   if (interrupted) throw nb::python_error();
   fault_.rethrow();
   if (worst != StepStatus::ok && worst != StepStatus::inverted) {
@@ -112,6 +132,13 @@ StepStatus LiveSimulation::step(std::uint64_t n) {
 
 StepStatus LiveSimulation::advance(double until, const std::optional<std::function<void()>>& observer,
                                    std::optional<double> every) {
+  SimulationParts::refuse_inside_step(SimulationParts::inside(get()), "advance", false);
+  if (!std::isfinite(until)) {
+    throw nb::value_error(("advance: until = " + std::to_string(until) + " is not finite; give a time [s]").c_str());
+  }
+  if (every && !(*every > 0.0)) {
+    throw nb::value_error(("advance: every = " + std::to_string(*every) + " is not positive; give a time [s]").c_str());
+  }
   StepStatus worst = StepStatus::ok;
   const auto before = [this](double time) {
     Simulation& s = own_ ? *own_ : built_->simulation;

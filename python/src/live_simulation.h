@@ -4,7 +4,8 @@
 //                 │ a motion written in Python takes the GIL; what it raises is kept and raised when the step is done,
 //                 ▼ because a step never throws
 //
-// One thread at a time: while one steps, the others' calls are refused, not answered with half a state.
+// One thread at a time: while one steps, the others' calls are refused, not answered with half a state. What its own functions may
+// not call is refused by Simulation itself.
 #pragma once
 
 #include <atomic>
@@ -23,26 +24,48 @@ struct Fault {
   void rethrow() {
     if (raised) std::rethrow_exception(std::exchange(raised, nullptr));
   }
-  /// Of the simulation that steps in this thread; null: none does.
+  /// Of the simulation that steps or changes in this thread; null: none does.
   static Fault*& current() {
     thread_local Fault* fault = nullptr;
     return fault;
   }
+  /// While it lives, what is raised in this thread is kept in a fault.
+  class Scope {
+   public:
+    explicit Scope(Fault& fault) : before_(std::exchange(current(), &fault)) {}
+    ~Scope() { current() = before_; }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    Fault* before_;
+  };
 };
+
+/// What a function of time is to return.
+template <class Value>
+inline constexpr const char* kExpected = nullptr;
+template <>
+inline constexpr const char* kExpected<double> = "a number";
+template <>
+inline constexpr const char* kExpected<Vec3d> = "three numbers, a displacement [m]";
+template <>
+inline constexpr const char* kExpected<Pose> = "a Pose";
 
 /// A Python function that the engine may call; after it has raised, its last value stands until the step is done.
 template <class Value>
 class Callback {
  public:
-  /// Keeps the function.
-  explicit Callback(nb::object function) : function_(function) {
+  /// Keeps the function. @param name  of the argument that it was given for @throws nb::type_error where it is no function
+  Callback(const char* name, nb::object function) : name_(name), function_(callable(name, function)) {
     keeper_ = std::shared_ptr<nb::object>(new nb::object(std::move(function)), [](nb::object* f) {
       const nb::gil_scoped_acquire gil;
       delete f;
     });
   }
   /// The function is kept by `keeper`, where the garbage collector sees it: it may refer to what calls it.
-  Callback(nb::object function, std::vector<nb::object>& keeper) : function_(function) {
+  Callback(const char* name, nb::object function, std::vector<nb::object>& keeper)
+      : name_(name), function_(callable(name, function)) {
     keeper.push_back(std::move(function));
   }
   Value operator()(double time) {
@@ -50,7 +73,7 @@ class Callback {
     if (fault && fault->raised) return last_;
     const nb::gil_scoped_acquire gil;
     try {
-      last_ = nb::cast<Value>(function_(time));
+      last_ = returned<Value>(name_, function_(time), kExpected<Value>);
     } catch (...) {
       if (!fault) throw;
       fault->raised = std::current_exception();
@@ -59,6 +82,14 @@ class Callback {
   }
 
  private:
+  static nb::handle callable(const char* name, const nb::object& given) {
+    if (PyCallable_Check(given.ptr()) != 0) return given;
+    throw nb::type_error((std::string(name) + " = " + nb::cast<std::string>(nb::repr(given)) +
+                          " is no function of time [s] that returns " + kExpected<Value>)
+                             .c_str());
+  }
+
+  const char* name_;
   nb::handle function_;
   std::shared_ptr<nb::object> keeper_;
   Value last_{};
@@ -95,6 +126,20 @@ class LiveSimulation {
 
   /// @throws nb::buffer_error where views are held on a body that is about to move in memory
   void refuse_views() const;
+  /// Changes the body by `act(simulation)`; what Python functions raise meanwhile is raised when all has followed the change.
+  template <class Act>
+  auto change(const Act& act) {
+    Simulation& simulation = get();
+    const Fault::Scope scope(fault_);
+    if constexpr (std::is_void_v<decltype(act(simulation))>) {
+      act(simulation);
+      fault_.rethrow();
+    } else {
+      auto result = act(simulation);
+      fault_.rethrow();
+      return result;
+    }
+  }
   /// The arrays of the state are copies from then on where it changes the body.
   void attach(const std::shared_ptr<Interaction>& interaction);
 
@@ -104,6 +149,7 @@ class LiveSimulation {
   std::atomic<int> views{0};
 
  private:
+  class Stepping;
   template <class Going>
   StepStatus loop(Going going);
   bool one_step(StepStatus& worst);

@@ -6,6 +6,7 @@
 
 NB_MODULE(_core, m) {
   namespace py = glisson::python;
+  py::require_main_interpreter();
   nanobind::set_leak_warnings(false);  // objects of a script may live until the interpreter ends
   m.doc() = "The engine of glisson; import glisson instead.";
   py::bind_meshes(m);

@@ -353,8 +353,11 @@ MaterialTargets test_targets(MaterialTest test, MaterialControl control, double 
 std::vector<MaterialState> material_test(const Tissue& tissue, MaterialTest test, MaterialControl control,
                                          std::span<const double> times, std::span<const double> values,
                                          std::size_t between) {
-  const detail::Requirement required{"material test"};
-  required.value("test", {}, test), required.value("control", {}, control);
+  detail::Requirement{"material test"}.value("test", {}, test);
+  if (control != MaterialControl::deformation && control != MaterialControl::nominal_stress) {
+    detail::refuse_enumerator("material test", "control", static_cast<long long>(control),
+                              {"deformation", "nominal_stress"});
+  }
   const Course course{times, values, between};
   course.require_valid("material test");
   const double rest = control == MaterialControl::deformation && test != MaterialTest::simple_shear ? 1.0 : 0.0;

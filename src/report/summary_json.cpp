@@ -26,8 +26,14 @@ std::string energy_warning(const RunSummary& s) {
       gain.began, meaning_of(gain.of), gain.most, gain.paid, s.time_s);
 }
 
-nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant, const std::string& scene,
-                                    int threads) {
+std::uint64_t rejected_poses(std::span<const std::shared_ptr<Instrument>> instruments) {
+  std::uint64_t all = 0;
+  for (const std::shared_ptr<Instrument>& instrument : instruments) all += instrument->rejected();
+  return all;
+}
+
+nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant, const std::string& scene, int threads,
+                                    std::uint64_t rejected) {
   nlohmann::ordered_json json;
   json["scene"] = scene;
   json["variant"] = variant.name;
@@ -71,6 +77,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
     }
   }
   if (s.linear_share_mean) json["linear_share_mean"] = *s.linear_share_mean;
+  if (rejected > 0) json["rejected_poses"] = rejected;
   json["inverted_tets_most"] = s.inverted_tets_most;
   if (s.inverted_tets_most > 0)
     json["first_inversion_s"] = s.first_inversion_s;

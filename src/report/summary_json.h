@@ -1,7 +1,10 @@
 // summary_json.h — summary.json: a run in some twenty numbers.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
 #include "glisson/scene/scene.h"
@@ -16,7 +19,11 @@ std::string energy_warning(const RunSummary& summary);
 
 /// The object of summary.json, keys in the order they are written.
 /// @param scene  name of the scene; @param threads  variants at a time (results do not depend on it)
+/// @param rejected  rejected_poses() of its instruments
 nlohmann::ordered_json summary_json(const RunSummary& summary, const Variant& variant, const std::string& scene,
-                                    int threads);
+                                    int threads, std::uint64_t rejected);
+
+/// How many poses of its instruments were rejected (Instrument::rejected).
+std::uint64_t rejected_poses(std::span<const std::shared_ptr<Instrument>> instruments);
 
 }  // namespace glisson

@@ -98,6 +98,7 @@ void VariantRecorder::on_start(const Variant&, const Simulation& simulation) {
 }
 
 void VariantRecorder::on_built(const BuiltVariant& built) {
+  instruments_ = built.instruments;
   surface_->set_instruments(built.instruments);
   surface_->set_capsules(built.capsules);
   if (frames_) frames_->set_instruments(built.instruments);
@@ -166,9 +167,11 @@ void VariantRecorder::on_frame(const Simulation& simulation) {
 
 void VariantRecorder::on_end(const RunSummary& summary) {
   summary_ = summary;
+  rejected_ = rejected_poses(instruments_);
+  instruments_.clear();
   guarded([&] {
     if (frames_) frames_->finish();
-    const auto json = summary_json(summary_, variant_, options_.scene, options_.threads);
+    const auto json = summary_json(summary_, variant_, options_.scene, options_.threads, rejected_);
     write_whole(options_.folder / "summary.json", json_text(json, 2) + "\n");
   });
 }
@@ -196,7 +199,7 @@ nlohmann::json VariantRecorder::events_json() const {
 nlohmann::json VariantRecorder::json(double law_reach) const {
   return {{"name", variant_.name},
           {"label", variant_.label.empty() ? variant_.name : variant_.label},
-          {"summary", summary_json(summary_, variant_, options_.scene, options_.threads)},
+          {"summary", summary_json(summary_, variant_, options_.scene, options_.threads, rejected_)},
           {"forces", table_json(table_->columns(), data_)},
           {"probes", table_json(probe_columns_, probe_data_)},
           {"events", events_json()},

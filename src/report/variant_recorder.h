@@ -51,6 +51,8 @@ class VariantRecorder : public RunObserver {
   const Variant& variant() const { return variant_; }
   const std::string& scene() const { return options_.scene; }
   const RunSummary& summary() const { return summary_; }
+  /// rejected_poses() of its instruments.
+  std::uint64_t rejected() const { return rejected_; }
   /// Columns of forces.csv and their values, column by column.
   const std::vector<std::string>& columns() const { return table_->columns(); }
   const std::vector<std::vector<double>>& data() const { return data_; }
@@ -78,7 +80,9 @@ class VariantRecorder : public RunObserver {
   std::vector<std::vector<double>> data_;
   std::vector<std::string> probe_columns_;
   std::vector<std::vector<double>> probe_data_;
+  std::vector<std::shared_ptr<Instrument>> instruments_;
   RunSummary summary_;
+  std::uint64_t rejected_ = 0;
   std::string error_;
 };
 

@@ -282,11 +282,27 @@ TEST_F(LiveServer, ClosesOnWhatIsMalformed) {
   EXPECT_EQ(reason(2, std::string("\x63\0\0\0\0\0\0\0", 8)).text, "unknown kind of message");
   EXPECT_EQ(reason(2, std::string(37, '\1')).close_code, 1009);
   EXPECT_EQ(reason(2, std::string(1 << 20, '\xff')).close_code, 1009) << "a mebibyte of rubbish";
-  const Command nan{.kind = CommandKind::place, .values = {std::nanf(""), 0.0f, 0.0f}};
+  const Command nan{.kind = CommandKind::speed, .values = {std::nanf("")}};
   EXPECT_EQ(reason(2, encode_command(nan)).text, "a number is not finite");
-  const Command nowhere{.kind = CommandKind::cut, .index = 1, .values = {0.0f, 0.0f, 0.0f, 0.0f, std::nanf(""), 0.0f}};
-  EXPECT_EQ(reason(2, encode_command(nowhere)).text, "a number is not finite");
   EXPECT_EQ(ViewClient(port(), query()).wait_for("hello")["title"], "a scene");
+}
+
+// Places for a tool, a hand or a blade that make no sense are counted and told, and the line goes on: the last good one stays.
+TEST_F(LiveServer, CountsPlacesThatMakeNoSense) {
+  ViewClient viewer(port(), query());
+  const float nan = std::nanf(""), far = 2.0f * kFarthest;
+  for (const Command& bad :
+       {Command{.kind = CommandKind::place, .values = {nan, 0.0f, 0.0f}},
+        Command{.kind = CommandKind::drag, .values = {0.0f, far, 0.0f}},
+        Command{.kind = CommandKind::cut, .index = 1, .values = {0.0f, 0.0f, 0.0f, 0.0f, nan, 0.0f}}}) {
+    viewer.send(bad);
+  }
+  std::string told;
+  for (int i = 0; i < 100 && !told.starts_with("3 places"); ++i) {
+    told = viewer.wait_for("notice")["text"].get<std::string>();
+  }
+  EXPECT_EQ(told, "3 places for a tool or hand rejected (the last: a number is not finite); the last good one stays.");
+  EXPECT_FALSE(viewer.wait_for_binary(2).empty());
 }
 
 // Too many messages end the connection; a page's 60 a second do not.

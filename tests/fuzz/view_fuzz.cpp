@@ -25,6 +25,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto* command = std::get_if<Command>(&got)) {
     require(encode_command(*command) == text, "a command has one way to be written");
     for (const float x : command->values) require(std::isfinite(x), "numbers are finite");
+  } else if (const auto* place = std::get_if<BadPlace>(&got)) {
+    require(!place->why.empty(), "a place that is rejected has a reason");
   } else {
     require(!std::get<std::string>(got).empty(), "what is refused has a reason");
   }

@@ -194,9 +194,11 @@ struct Scene {
 
   /// All that calls out: steps, a tet removed, a state set, saved and loaded, readings. @return hash of what came of it
   std::vector<double> run() {
+    std::uint64_t hashes = 0;
     for (int k = 0; k < kSteps; ++k) {
       ++asker->phase;
       test::must_step(body);
+      hashes = 31 * hashes + body.state_hash();  // before anything else looks at the state
       if (k == 1) body.remove_tets(std::vector{3U});
       if (k == 2) {
         const std::vector<Vec3d> u(body.displacement().begin(), body.displacement().end());
@@ -212,7 +214,7 @@ struct Scene {
     ++asker->phase;
     const Energies e = body.energies();
     const ForceParts f = body.force({1});
-    return {static_cast<double>(body.state_hash() >> 12U),
+    return {static_cast<double>(hashes >> 12U),
             body.time(),
             e.elastic,
             e.kinetic,

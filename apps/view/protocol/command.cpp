@@ -59,6 +59,11 @@ bool in_range(CommandKind kind, float x) {
   return std::abs(x) <= kFarthest;
 }
 
+bool is_place(CommandKind kind) {
+  return kind == CommandKind::place || kind == CommandKind::grab || kind == CommandKind::drag ||
+         kind == CommandKind::cut;
+}
+
 std::string range_trouble(const Command& command, std::size_t values) {
   for (std::size_t i = 0; i < values; ++i) {
     const float x = command.values[i];
@@ -75,7 +80,7 @@ std::string range_trouble(const Command& command, std::size_t values) {
 
 }  // namespace
 
-std::variant<Command, std::string> decode_command(std::span<const std::uint8_t> bytes) {
+std::variant<Command, BadPlace, std::string> decode_command(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < kHead) return "a message has 8 bytes or more";
   if (!known(bytes[0])) return "unknown kind of message";
   if (bytes[2] != 0 || bytes[3] != 0) return "reserved bytes are 0";
@@ -88,8 +93,10 @@ std::variant<Command, std::string> decode_command(std::span<const std::uint8_t> 
     at += 4;
   }
   for (std::size_t i = 0; i < payload.values; ++i, at += 4) command.values[i] = std::bit_cast<float>(u32_at(bytes, at));
-  if (std::string trouble = range_trouble(command, payload.values); !trouble.empty()) return trouble;
-  return command;
+  std::string trouble = range_trouble(command, payload.values);
+  if (trouble.empty()) return command;
+  if (is_place(command.kind)) return BadPlace{std::move(trouble)};
+  return trouble;
 }
 
 std::string encode_command(const Command& command) {

@@ -55,8 +55,13 @@ inline constexpr float kFarthest = 100.0f, kFastest = 10.0f;
 /// Times and rates of a recorded run beyond are refused [s], [-].
 inline constexpr float kLatest = 1e9f, kSlowestRate = 1e-4f, kFastestRate = 1e3f;
 
+/// A place of a tool, a hand or a blade that makes no sense: it is counted, and the last good one stays.
+struct BadPlace {
+  std::string why;
+};
+
 /// @return the command, or why the bytes are none
-std::variant<Command, std::string> decode_command(std::span<const std::uint8_t> bytes);
+std::variant<Command, BadPlace, std::string> decode_command(std::span<const std::uint8_t> bytes);
 std::string encode_command(const Command& command);
 
 }  // namespace glisson::view

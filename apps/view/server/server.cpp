@@ -185,7 +185,7 @@ void Server::Impl::send_news(const Snapshot& state, Clock::time_point now) {
   std::string text = state_message(state, surface_->pieces());
   const std::string stray = surface_->strays(state) ? kStray : "";
   std::string told;
-  for (const std::string& line : {state.notice, stray, survived_})
+  for (const std::string& line : {state.notice, stray, survived_, why_rejected_})
     told += (told.empty() || line.empty() ? "" : "\n") + line;
   std::string notice = notice_message(told);
   const bool new_state = !state_ || *state_ != text, new_notice = !notice_ || *notice_ != notice;
@@ -284,6 +284,13 @@ void Server::Impl::obey(Viewer& viewer, Command command) {
     command.index = surface_->mesh_vertex(command.index);
   }
   source_.post(command);
+}
+
+void Server::Impl::reject(const Viewer& viewer, const BadPlace& place) {
+  if (!lead_.leads(viewer.session_)) return;
+  ++rejected_;
+  why_rejected_ = std::to_string(rejected_) + (rejected_ == 1 ? " place" : " places") +
+                  " for a tool or hand rejected (the last: " + place.why + "); the last good one stays.";
 }
 
 void Server::Impl::say_goodbye() {

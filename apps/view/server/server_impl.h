@@ -40,6 +40,7 @@ struct Server::Impl {
   void came(const std::shared_ptr<Viewer>& viewer);
   void went(const std::shared_ptr<Viewer>& viewer);
   void obey(Viewer& viewer, Command command);
+  void reject(const Viewer& viewer, const BadPlace& place);
   void say_goodbye();
 
   Source& source_;
@@ -66,6 +67,8 @@ struct Server::Impl {
   Recording recording_;
   ArchiveSender archives_;
   std::string survived_;            ///< the last trouble told
+  std::uint64_t rejected_ = 0;      ///< places that made no sense, of those who lead
+  std::string why_rejected_;        ///< the last of them
   std::vector<double> parameters_;  ///< of the newest state
   std::uint64_t samples_ = 0;       ///< all there ever were
   bool stopping_ = false, led_ = false;

@@ -48,10 +48,14 @@ void Viewer::handle(std::size_t bytes, bool binary) {
   if (!pacer_.take(Clock::now())) return close(websocket::close_code::policy_error, "too many messages");
   if (!binary) return close(websocket::close_code::unknown_data, "messages are binary");
   const auto* data = static_cast<const std::uint8_t*>(in_.data().data());
-  const std::variant<Command, std::string> command = decode_command({data, bytes});
+  const auto command = decode_command({data, bytes});
   if (const auto* trouble = std::get_if<std::string>(&command))
     return close(websocket::close_code::protocol_error, trouble->c_str());
-  server_.obey(*this, std::get<Command>(command));
+  if (const auto* place = std::get_if<BadPlace>(&command)) {
+    server_.reject(*this, *place);
+  } else {
+    server_.obey(*this, std::get<Command>(command));
+  }
   in_.consume(bytes);
   read();
 }

@@ -190,7 +190,8 @@ class Instrument : public Interaction, protected InstrumentState {
   ToolVelocity velocity_at(const Vec3d& x) const;
   /// Reports a puncture of the surface.
   void tell_puncture(const Vec3d& place, double radius) const {
-    if (on_puncture_) on_puncture_(place, radius);
+    const std::function<void(const Vec3d&, double)> callback = on_puncture_;  // which may set another one
+    if (callback) callback(place, radius);
   }
   void add_event(double time, double depth, std::string event) { events_.push_back({time, depth, std::move(event)}); }
   /// The state that all instruments have and that of the driver; those of each kind call it first.

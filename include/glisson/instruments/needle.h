@@ -72,7 +72,7 @@ struct InnerMembrane {
   template <class Take>
   static constexpr auto fields(Take take) {
     using M = InnerMembrane;
-    return take(field("depth", &M::depth, "mm", at_least(0), "depth below the entry, in tissue at rest").must(),
+    return take(field("depth", &M::depth, "mm", at_least(0), "depth below the first entry, in tissue at rest").must(),
                 field("puncture", &M::puncture, "N", at_least(0), "force to break it; 0: the cutting force"),
                 field("cutting", &M::cutting, "N", at_least(0), "cutting force beyond it").otherwise("as before it"));
   }

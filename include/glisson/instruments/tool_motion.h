@@ -194,7 +194,7 @@ struct HandCoupling {
   double mass = 0.02;            ///< m [kg]
   double period = 0.001;         ///< T: time from one set_target to the next [s]
   double device_damping = 0.25;  ///< b: damping of the device's own bearings and motors [N s/m]
-  /// Largest speed from one target to the next, |x - x'| / T; none: any [m/s].
+  /// Largest speed from the last good target, |x - x'| over a period for each target since then; none: any [m/s].
   std::optional<double> most_speed{};
 
   template <class Take>
@@ -241,7 +241,8 @@ class HandDriver final : public ToolDriver, HandState {
   bool yields() const override { return true; }
   bool yields_in_long_steps() const override { return true; }
   Pose advance_under(double time, double h, const Wrench& at_end) override;
-  void set_bounds(const PoseBounds& bounds) override { bounds_ = bounds; }
+  /// A target beyond them, set before the tool was attached, is rejected: the start is the target then.
+  void set_bounds(const PoseBounds& bounds) override;
   std::uint64_t rejected() const override { return rejected_; }
   void archive(Archive& ar) override;
   std::shared_ptr<const void> save_state() const override;
@@ -249,11 +250,12 @@ class HandDriver final : public ToolDriver, HandState {
 
  private:
   std::string fault_of(const Pose& target) const;
+  void take(const Pose& target);
 
   Pose start_;
   HandCoupling coupling_;
   PoseBounds bounds_;
-  std::uint64_t rejected_ = 0;
+  std::uint64_t rejected_ = 0, missed_ = 0;  ///< poses in all, and since the last good one
 };
 
 }  // namespace glisson

@@ -27,7 +27,7 @@ TetFields fields_of(const Simulation& simulation, std::span<const std::uint32_t>
 
 std::weak_ptr<const Scheme> scheme_of(const Simulation& simulation) { return SimulationParts::weak_scheme(simulation); }
 
-std::uint64_t changes_of(const Simulation& simulation) { return SimulationParts::scheme(simulation).state().changes; }
+std::uint64_t changes_of(const Simulation& simulation) { return SimulationParts::scheme(simulation).state().editions; }
 
 ElementRest rest_of(const TetMesh& mesh, std::uint32_t tet) {
   const Tet& t = mesh.tets[tet];

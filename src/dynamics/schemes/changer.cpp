@@ -86,7 +86,7 @@ RemovalReport Changer::remove(std::span<const std::uint32_t> tets) {
   for (const std::uint32_t v : removal.touched) {
     if (scheme_.stars().tets_at(v).empty()) report.loose_vertices.push_back(v);
   }
-  ++state_.changes;
+  state_.note_change();
   return report;
 }
 
@@ -141,7 +141,7 @@ Changer::Split Changer::split(std::span<const Triangle> faces, std::span<const V
   for (const detail::CornerChange& c : opening.corners) split.changed.push_back(c.tet);
   split.report.closed_faces = state_.changer().closed_faces();
   split.report.origins = std::move(opening.origins);
-  ++state_.changes;
+  state_.note_change();
   return split;
 }
 
@@ -213,7 +213,7 @@ bool Changer::set_tissues(const BlockTissues& to) {
   }
   if (booked) ledger_.bring_in(heavier ? after[0] - before[0] : 0.0, after[1] - before[1]);
   if (heavier) follow_with_loads();
-  ++state_.changes;
+  state_.note_change();
   return heavier;
 }
 

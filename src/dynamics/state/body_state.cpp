@@ -56,6 +56,7 @@ void BodyState::go_to(const BodyVersion& version) {
   body = version.body, mass_scaling = version.mass_scaling, gamma = version.gamma;
   constraints = version.constraints, loads = version.loads;
   copies = version.copies, changes = version.changes;
+  ++editions;
   changer_.reset();
   if (version.closed) changer().set_closed(*version.closed);
 }
@@ -158,6 +159,7 @@ void BodyState::archive(Archive& ar) {
   ar.check(changes >= here);
   if (!ar.in_memory()) {
     if (changes > 0) archive_changes(ar, changes == here);
+    if (ar.reads()) ++editions;
     constraints.archive(ar, body.vertex_count);
     loads.archive(ar, body);
   }

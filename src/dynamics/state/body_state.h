@@ -41,12 +41,14 @@ struct BodyState {
   Loads loads;
   std::vector<std::uint32_t> copies;  ///< the last vertices are copies of these, all splits together
   std::uint64_t changes = 0;          ///< of mesh and tissues so far
+  std::uint64_t editions = 0;         ///< the same, but going back counts too: never the same for two bodies
   double time = 0.0;                  ///< [s]
   std::uint64_t steps = 0;
 
   /// Made when something changes, or when it is first asked for. Cost then: as BodyChanger.
   BodyChanger& changer();
   bool is_removed(std::uint32_t mesh_tet) const { return changer_ != nullptr && changer_->is_removed(mesh_tet); }
+  void note_change() { ++changes, ++editions; }
   /// Follows masses that have changed at some vertices, new ones among them, or at all.
   void damp(std::span<const std::uint32_t> vertices);
   void masses_changed();

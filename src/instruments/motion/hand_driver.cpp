@@ -51,27 +51,42 @@ Pose HandDriver::advance_under(double, double h, const Wrench& on_tool) {
 /// Why a target makes no sense; empty where it does.
 std::string HandDriver::fault_of(const Pose& target) const {
   if (!bounds_.holds(target)) return bounds_.fault_of(target);
-  const double speed = norm(target.position - target_.position) / coupling_.period;
+  const double speed = norm(target.position - target_.position) / (static_cast<double>(missed_ + 1) * coupling_.period);
   if (!coupling_.most_speed || speed <= *coupling_.most_speed) return {};
   std::ostringstream text;
   text << "it is " << speed
-       << " m/s from the last target, where the allowed range is 0 to most_speed = " << *coupling_.most_speed
+       << " m/s from the last good target, where the allowed range is 0 to most_speed = " << *coupling_.most_speed
        << " m/s; raise most_speed, or leave such poses out";
   return text.str();
 }
 
 void HandDriver::set_target(const Pose& target) {
   const std::string fault = fault_of(target);
-  if (!fault.empty()) throw std::invalid_argument("set_target: " + fault);
+  if (!fault.empty()) {
+    ++missed_;
+    throw std::invalid_argument("set_target: " + fault);
+  }
+  take(target);
+}
+
+void HandDriver::take(const Pose& target) {
   target_ = target;
+  missed_ = 0;
+}
+
+void HandDriver::set_bounds(const PoseBounds& bounds) {
+  bounds_ = bounds;
+  if (bounds_.holds(target_)) return;
+  ++rejected_;
+  target_ = start_;
 }
 
 bool HandDriver::offer_target(const Pose& target) {
   if (!fault_of(target).empty()) {
-    ++rejected_;
+    ++rejected_, ++missed_;
     return false;
   }
-  target_ = target;
+  take(target);
   return true;
 }
 

@@ -51,6 +51,7 @@ const GROUPS: readonly [string, readonly [string, string, string][]][] = [
       ["step_s", "Step h", "s"],
       ["stable_step_s", "Stable step h*", "s"],
       ["mass_added_kg", "Mass added by scaling", "kg"],
+      ["rejected_poses", "Poses of tools rejected", ""],
     ],
   ],
   [
