@@ -222,21 +222,22 @@ TEST_P(ToolPoses, AHandKeepsItsLastGoodTarget) {
   EXPECT_TRUE(a.hand->offer_target(at_height(kTop)));
 }
 
-// A device may be told to be slower than a bound: a target farther from the last one than that in a period is refused.
+// A device may be told to be slower than a bound: a target farther from the last good one than that in the periods since is refused, so
+// that a hand that went on through an outage is found again.
 TEST(ToolPosesSpeed, IsBoundedWhereOneSaysSo) {
   HandDriver bounded(kAbove, {.most_speed = 0.5}), free(kAbove);
   const double z = kAbove.position.z;
   EXPECT_TRUE(bounded.offer_target(at_height(z - 0.49e-3)));
   const Vec3d force = bounded.device_force();
-  EXPECT_NE(refusal(bounded, at_height(z - 1.0e-3))
-                .find("0.51 m/s from the last target, where the allowed range is 0 to "
-                      "most_speed = 0.5 m/s"),
+  const std::string why = refusal(bounded, at_height(z - 1.0e-3));
+  EXPECT_NE(why.find("0.51 m/s from the last good target, where the allowed range is 0 to most_speed = 0.5 m/s"),
             std::string::npos)
-      << refusal(bounded, at_height(z - 1.0e-3));
-  EXPECT_FALSE(bounded.offer_target(at_height(z - 1.0e-3)));
+      << why;
+  EXPECT_FALSE(bounded.offer_target(at_height(z - 1.5e-3)));  // 1.01 mm in two periods
   EXPECT_EQ(bounded.rejected(), 1U);
   EXPECT_EQ(bounded.device_force(), force);
-  EXPECT_TRUE(bounded.offer_target(at_height(z - 0.9e-3)));
+  EXPECT_TRUE(bounded.offer_target(at_height(z - 1.9e-3)));  // 1.41 mm in three
+  EXPECT_FALSE(bounded.offer_target(at_height(z - 2.5e-3)));
   EXPECT_TRUE(free.offer_target(at_height(z - 0.1)));
   EXPECT_THROW(HandDriver(kAbove, {.most_speed = 0.0}), std::invalid_argument);
   EXPECT_THROW(HandDriver(kAbove, {.most_speed = kNan}), std::invalid_argument);

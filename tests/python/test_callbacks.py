@@ -286,7 +286,7 @@ def test_a_hand_may_have_a_largest_speed():
     """A target that is faster than most_speed from the last one is refused with both speeds."""
     hand = glisson.HandDriver(glisson.Pose(), glisson.HandCoupling(most_speed=0.5))
     assert hand.offer_target(glisson.Pose(position=[0, 0, 0.0004]))
-    with pytest.raises(ValueError, match="0.8 m/s from the last target.*most_speed = 0.5 m/s"):
+    with pytest.raises(ValueError, match="0.8 m/s from the last good target.*most_speed = 0.5 m/s"):
         hand.set_target(glisson.Pose(position=[0, 0, 0.0012]))
     assert not hand.offer_target(glisson.Pose(position=[0, 0, 0.0012])) and hand.rejected == 1
 
