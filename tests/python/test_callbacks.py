@@ -288,7 +288,7 @@ def test_a_hand_may_have_a_largest_speed():
     assert hand.offer_target(glisson.Pose(position=[0, 0, 0.0004]))
     with pytest.raises(ValueError, match="0.8 m/s from the last good target.*most_speed = 0.5 m/s"):
         hand.set_target(glisson.Pose(position=[0, 0, 0.0012]))
-    assert not hand.offer_target(glisson.Pose(position=[0, 0, 0.0012])) and hand.rejected == 1
+    assert not hand.offer_target(glisson.Pose(position=[0, 0, 0.0016])) and hand.rejected == 1
 
 
 @pytest.mark.parametrize("bad", BAD.values(), ids=BAD.keys())
