@@ -139,8 +139,12 @@ TEST(LiveCommand, BytesAreReadBackOrRefused) {
       bytes[2] = bytes[3] = 0;
     }
     const auto got = decode_command(bytes);
-    if (const auto* why = std::get_if<std::string>(&got)) EXPECT_FALSE(why->empty());
-    if (const auto* place = std::get_if<BadPlace>(&got)) EXPECT_FALSE(place->why.empty());
+    if (const auto* why = std::get_if<std::string>(&got)) {
+      EXPECT_FALSE(why->empty());
+    }
+    if (const auto* place = std::get_if<BadPlace>(&got)) {
+      EXPECT_FALSE(place->why.empty());
+    }
     if (!std::holds_alternative<Command>(got)) continue;
     ++read;
     EXPECT_EQ(encode_command(std::get<Command>(got)), std::string(bytes.begin(), bytes.end()));
