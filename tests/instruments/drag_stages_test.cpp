@@ -192,7 +192,7 @@ TEST(DragStages, AreLimitedByWhatActs) {
     }
     return false;
   };
-  const auto above = [] { return test::standing(Pose{{0.015, 0.015, 1.0}}); };
+  const auto above = [] { return test::standing(Pose{{0.015, 0.015, 0.1}}); };
   const auto vessel = [](bool bonded) {
     ContainerOptions o;
     o.vessel = BoxVessel{.width = 0.1, .length = 0.1, .height = 0.1};

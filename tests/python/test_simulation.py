@@ -299,7 +299,7 @@ def test_keyboard_interrupt_ends_a_run():
 
 def test_keyboard_interrupt_within_a_long_step():
     """Ctrl-C ends a step of Newton's method that takes longer: nothing has changed, and the next call makes it."""
-    mesh = glisson.box([16, 16, 16], [0.04, 0.04, 0.04])
+    mesh = glisson.box_mesh(cells=[16, 16, 16], size=[0.04, 0.04, 0.04])
     tissue = glisson.Tissue(hyperelastic=glisson.NeoHookean(mu=1000, bulk_modulus=50000))
     body = glisson.Simulation(mesh, tissue, glisson.SimulationOptions(integrator="quasi_static", step=1.0))
     body.fix("z_min")
