@@ -9,12 +9,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr double kMost = 10.0;  ///< [s]
-#ifdef __SANITIZE_ADDRESS__
-constexpr double kSlow = 2.0;  ///< it looks at its memory at its end
-#else
-constexpr double kSlow = 1.0;
-#endif
+/// 10 s on a machine that has nothing else to do; other tests run beside this one [s].
+constexpr double kMost = 40.0;
 
 class CheckTime : public ProgramTest {
  protected:
@@ -45,7 +41,7 @@ std::string block(int cells, const std::string& motion, const std::string& more 
 TEST_F(CheckTime, LongFirstStepIsNotWaitedFor) {
   const Outcome outcome = timed(block(26, "integrator = \"quasi_static\", step_s = 0.6"));
   EXPECT_THAT(outcome, Exits(0));
-  EXPECT_LT(seconds_, kMost * kSlow);
+  EXPECT_LT(seconds_, kMost);
   EXPECT_THAT(outcome.out, HasSubstr("105456 tets"));
   EXPECT_THAT(outcome.out, HasSubstr("the first took longer than"));
   EXPECT_THAT(outcome.out, HasSubstr("Left out for want of time: the cost of a step of main"));
@@ -55,7 +51,7 @@ TEST_F(CheckTime, LongFirstStepIsNotWaitedFor) {
 TEST_F(CheckTime, EndsWithinWhatCannotBeEnded) {
   const Outcome outcome = timed(block(70, "integrator = \"central_difference\""));
   EXPECT_THAT(outcome, Exits(0));
-  EXPECT_LT(seconds_, kMost * kSlow);
+  EXPECT_LT(seconds_, kMost);
   EXPECT_THAT(outcome.out, HasSubstr("The check ends after 9 s, within the mesh and the stable step of main"));
   EXPECT_THAT(outcome.out, HasSubstr("Not known: whether main can be run"));
 }
@@ -66,7 +62,7 @@ TEST_F(CheckTime, ManyVariantsAreToldAsFarAsTimeGoes) {
   for (int i = 0; i < 40; ++i) variants += "[[variant]]\nname = \"v" + std::to_string(i) + "\"\n";
   const Outcome outcome = timed(block(12, "integrator = \"central_difference\"", variants));
   EXPECT_THAT(outcome, Exits(0));
-  EXPECT_LT(seconds_, kMost * kSlow);
+  EXPECT_LT(seconds_, kMost);
   EXPECT_THAT(outcome.out, HasSubstr("variant v39"));
   EXPECT_THAT(outcome.out, HasSubstr("What was looked at can be run"));
 }
