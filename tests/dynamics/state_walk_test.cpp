@@ -255,7 +255,7 @@ std::string walk(unsigned seed, int loads) {
   std::vector<std::vector<double>> truth{straight.told()};
   while (straight.at() < straight.length() && straight.step()) truth.push_back(straight.told());
 
-  if (truth.size() < 6) return "the run ended at once";
+  if (truth.size() < 3) return "the run ended at once";  // statics has no answer to some presses after a few steps
   World world(seed);
   std::mt19937 random(7 * seed + 1);
   std::vector<std::pair<std::size_t, State>> states;

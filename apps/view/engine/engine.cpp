@@ -61,7 +61,7 @@ void Engine::start() {
 
 void Engine::stop() {
   stop_ = true;
-  waker_.wake();
+  inbox_.wake();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -72,7 +72,7 @@ void Engine::run() {
   measured_ = WallClock::now();
   while (!stop_.load(std::memory_order_relaxed)) {
     if (is_idle()) {
-      waker_.sleep(watched_.load(std::memory_order_relaxed) ? kPublishAtRest : kPublishUnwatched);
+      inbox_.sleep(inbox_.is_watched() ? kPublishAtRest : kPublishUnwatched);
       schedule = app::FrameSchedule(kFrame);  // a rest is no delay of a frame
       guarded_turn(0);
       continue;
@@ -116,7 +116,7 @@ void Engine::turn(std::uint64_t late) {
 
 bool Engine::apply_commands() {
   std::vector<Command> asked;
-  for (Command command; commands_.pop(command);) asked.push_back(command);
+  for (Command command; inbox_.pop(command);) asked.push_back(command);
   const auto remakes = [](const Command& x) { return x.kind == CommandKind::reset || x.kind == CommandKind::play; };
   const auto last = std::find_if(asked.rbegin(), asked.rend(), remakes);
   for (const Command& command : asked) {
@@ -129,7 +129,7 @@ bool Engine::apply_commands() {
 
 /// Whether a frame is to be computed.
 bool Engine::moves() const {
-  return !stopped_ && watched_.load(std::memory_order_relaxed) && (!paused_ || frames_to_step_ > 0);
+  return !stopped_ && inbox_.is_watched() && (!paused_ || frames_to_step_ > 0);
 }
 
 /// Whether commands that were received have not acted yet.

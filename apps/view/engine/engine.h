@@ -23,10 +23,10 @@
 #include "glisson/scene/scene.h"
 #include "view/engine/compute_times.h"
 #include "view/engine/frame_pace.h"
+#include "view/engine/inbox.h"
 #include "view/engine/live_body.h"
 #include "view/engine/live_parameters.h"
 #include "view/engine/snapshot.h"
-#include "view/engine/waker.h"
 #include "view/protocol/command.h"
 #include "view/protocol/latest.h"
 #include "view/server/ring.h"
@@ -51,15 +51,8 @@ class Engine final : public Source {
   /// @param late  frames that were over before their turn
   void turn(std::uint64_t late = 0);
 
-  bool post(const Command& command) override {
-    const bool taken = commands_.push(command);
-    waker_.wake();
-    return taken;
-  }
-  void set_watched(bool watched) override {
-    watched_.store(watched, std::memory_order_relaxed);
-    waker_.wake();
-  }
+  bool post(const Command& command) override { return inbox_.post(command); }
+  void set_watched(bool watched) override { inbox_.set_watched(watched); }
   const Snapshot* latest() override { return latest_.take(); }
   bool next_sample(ForceSample& sample) override { return samples_.pop(sample); }
 
@@ -108,11 +101,10 @@ class Engine final : public Source {
   std::string why_no_cut_;
   std::size_t vertices_ = 0, tets_ = 0;
 
-  Ring<Command, 1024> commands_;
+  Inbox inbox_;
   Ring<ForceSample, 8192> samples_;
   Latest<Snapshot> latest_;
-  std::atomic<bool> stop_{false}, want_pressure_{false}, watched_{true};
-  Waker waker_;
+  std::atomic<bool> stop_{false}, want_pressure_{false};
   std::thread thread_;
 
   // Of the engine's thread.

@@ -53,7 +53,7 @@ void Replay::start() {
 
 void Replay::stop() {
   stop_ = true;
-  waker_.wake();
+  inbox_.wake();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -66,9 +66,9 @@ void Replay::run() {
   publish();
   WallClock::time_point last = WallClock::now(), published = last;
   while (!stop_.load(std::memory_order_relaxed)) {
-    const bool watched = watched_.load(std::memory_order_relaxed), rests = paused_ || !watched;
+    const bool watched = inbox_.is_watched(), rests = paused_ || !watched;
     if (rests) {
-      waker_.sleep(watched ? kPublishAtRest : kPublishUnwatched);
+      inbox_.sleep(watched ? kPublishAtRest : kPublishUnwatched);
     } else {
       std::this_thread::sleep_until(last + kTurn);
     }
@@ -84,7 +84,7 @@ void Replay::run() {
 
 bool Replay::apply_commands() {
   bool any = false;
-  for (Command command; commands_.pop(command); any = true) {
+  for (Command command; inbox_.pop(command); any = true) {
     apply(command);
     echo_ = command.sequence;
   }

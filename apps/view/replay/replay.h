@@ -8,7 +8,7 @@
 
 #include "view/engine/compute_times.h"
 #include "view/engine/frame_pace.h"
-#include "view/engine/waker.h"
+#include "view/engine/inbox.h"
 #include "view/protocol/latest.h"
 #include "view/replay/frame_cache.h"
 #include "view/replay/run_folder.h"
@@ -30,15 +30,8 @@ class Replay final : public Source {
   void stop() override;
   /// Makes the state at a time [s] the latest, for who watches without the thread: not between start() and stop().
   void show(double time);
-  bool post(const Command& command) override {
-    const bool taken = commands_.push(command);
-    waker_.wake();
-    return taken;
-  }
-  void set_watched(bool watched) override {
-    watched_.store(watched, std::memory_order_relaxed);
-    waker_.wake();
-  }
+  bool post(const Command& command) override { return inbox_.post(command); }
+  void set_watched(bool watched) override { inbox_.set_watched(watched); }
   const Snapshot* latest() override { return latest_.take(); }
   bool next_sample(ForceSample& sample) override { return samples_.pop(sample); }
 
@@ -71,11 +64,10 @@ class Replay final : public Source {
   std::size_t vertices_ = 0, tets_ = 0;
   std::string why_no_cut_ = "a recorded run is shown as it was";
 
-  Ring<Command, 1024> commands_;
+  Inbox inbox_;
   Ring<ForceSample, 8192> samples_;
   Latest<Snapshot> latest_;
-  std::atomic<bool> stop_{false}, watched_{true};
-  Waker waker_;
+  std::atomic<bool> stop_{false};
   std::thread thread_;
 
   // Of the replay's thread.

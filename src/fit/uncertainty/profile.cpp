@@ -180,8 +180,8 @@ void find_flat(Profile& profile, const std::vector<std::pair<double, double>>& w
 
 /// Parameters at a bound at the last point of a walk that were free at the optimum.
 std::vector<std::size_t> leans_on(const Walk& walk, std::size_t profiled) {
-  constexpr double kAtBound = 1e-6;
-  const auto at_bound = [](double z) { return z <= kAtBound || z >= 1.0 - kAtBound; };
+  constexpr double kLeans = 1e-6;  // so near to a bound a parameter leans on it
+  const auto at_bound = [](double z) { return z <= kLeans || z >= 1.0 - kLeans; };
   const std::vector<double>&last = walk.steps().back().point.scaled, &first = walk.steps().front().point.scaled;
   std::vector<std::size_t> found;
   for (std::size_t q = 0; q < last.size(); ++q) {
