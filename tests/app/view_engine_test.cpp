@@ -289,7 +289,7 @@ TEST(LiveEngine, ObeysPauseStepResetAndParameters) {
   engine.stop();
 }
 
-// Many resets at once are one: a body takes long to make, and the engine is not to be held by that.
+// Many resets at once are one: the next one undoes the one before, and the engine is not to be held by them.
 TEST(LiveEngine, ManyResetsAreOne) {
   Engine engine(variant_of(test::small_scene()), no_files());
   for (std::uint32_t i = 1; i <= 900; ++i) engine.post({.kind = CommandKind::reset, .sequence = i});
