@@ -128,9 +128,7 @@ bool Engine::apply_commands() {
 }
 
 /// Whether a frame is to be computed.
-bool Engine::moves() const {
-  return !stopped_ && inbox_.is_watched() && (!paused_ || frames_to_step_ > 0);
-}
+bool Engine::moves() const { return !stopped_ && inbox_.is_watched() && (!paused_ || frames_to_step_ > 0); }
 
 /// Whether commands that were received have not acted yet.
 bool Engine::waits() const { return !wished_.empty() || (body_->cut() != nullptr && body_->cut()->waits()); }
