@@ -83,7 +83,8 @@ std::vector<std::string> ConvergenceStudy::words() const {
   }
   if (levels.back().mesh.split) {
     text.emplace_back(
-        "Every tet was split in eight: sets, regions and curved surfaces are those of the mesh as given.");
+        "Every tet was split in eight: regions, sets that no place chooses and curved surfaces are those of the mesh "
+        "as given.");
   }
   return text;
 }

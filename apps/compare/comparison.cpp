@@ -11,7 +11,7 @@
 #include "compare/viscous_reference.h"
 #include "glisson/mesh_refinement.h"
 #include "models/engine.h"
-#include "scene/converge/grid_convergence.h"
+#include "scene/converge/edge_order.h"
 #include "scene/converge/refine_variant.h"
 
 namespace glisson::app {
@@ -66,7 +66,10 @@ std::vector<TetMesh> meshes_of(const Variant& variant, const MeshLoader& load, i
         "compare.finer, or a coarser mesh",
         variant.scene_name, finest, kMostTets));
   }
-  while (meshes.size() < static_cast<std::size_t>(count)) meshes.push_back(refined(meshes.back()));
+  while (meshes.size() < static_cast<std::size_t>(count)) {
+    const RefinedVariant finer = on_split_mesh(variant, refined(meshes.back()));
+    meshes.push_back(build_mesh(finer.variant, finer.load));
+  }
   return meshes;
 }
 
@@ -178,10 +181,23 @@ void find_errors(ComparedRow& row, const Reference& reference, std::span<const d
   if (scale > 0.0 && !surface.empty()) row.error_surface = std::sqrt(sum / static_cast<double>(surface.size())) / scale;
 }
 
+/// The highest order of convergence that the edges of the body allow, also those that a cut makes.
+double order_of(const Variant& variant, const Problem& problem) {
+  if (!problem.cut) return largest_order(variant, problem.mesh);
+  TetMesh left = problem.mesh;
+  const std::set<std::uint32_t> gone(problem.cut->tets.begin(), problem.cut->tets.end());
+  left.tets.clear(), left.regions.clear(), left.fibres.clear();
+  for (std::uint32_t t = 0; t < problem.mesh.tets.size(); ++t) {
+    if (!gone.contains(t)) left.tets.push_back(problem.mesh.tets[t]);
+  }
+  return largest_order(variant, left);
+}
+
 /// The scene's own tissue on all meshes: the finest is the reference, the others say how far it is from the limit of fine meshes.
-Reference make_reference(const std::vector<Problem>& problems, const std::atomic<bool>& stop,
+/// @param order  the highest that the body's edges allow (edge_order.h)
+Reference make_reference(const std::vector<Problem>& problems, double order, const std::atomic<bool>& stop,
                          const std::function<void(const std::string&)>& say) {
-  if (models::is_viscous(problems.front())) return make_viscous_reference(problems, stop, say);
+  if (models::is_viscous(problems.front())) return make_viscous_reference(problems, order, stop, say);
   std::vector<MeshResult> results;
   Reference reference;
   std::vector<std::vector<Vec3d>> shapes;  // of the mesh before; those of the next are near
@@ -198,13 +214,8 @@ Reference make_reference(const std::vector<Problem>& problems, const std::atomic
     reference.forces = std::move(answer.forces);
     reference.displacement = std::move(answer.displacement);
   }
-  const GridConvergence found = grid_convergence(results);
-  const double last = results.back().value;
-  if (found.extrapolates() && last > 0.0) {
-    reference.extrapolated = found.extrapolated / last - 1.0;
-    for (Vec3d& f : reference.forces) f *= 1.0 + reference.extrapolated;
-  }
-  reference.words = verdict_text(found);
+  const double change = reference.take_limit(grid_convergence(results, order), results.back().value);
+  for (Vec3d& f : reference.forces) f *= 1.0 + change;
   return reference;
 }
 
@@ -237,6 +248,15 @@ double middle_duration(const Scene& scene) {
 }
 
 }  // namespace
+
+double Reference::take_limit(const GridConvergence& found, double finest) {
+  words = verdict_text(found);
+  extrapolated = low = high = 0.0;
+  if (!found.extrapolates() || finest <= 0.0) return 0.0;
+  extrapolated = found.extrapolated / finest - 1.0;
+  low = found.low / found.extrapolated - 1.0, high = found.high / found.extrapolated - 1.0;
+  return extrapolated;
+}
 
 const ComparedRow* Comparison::quickest(std::string_view model) const {
   const auto within = [&](const ComparedRow& row) {
@@ -292,7 +312,7 @@ Comparison compare_variant(const Scene& scene, const Variant& variant, double te
   result.moments = problems.front().moment_about.has_value();
   result.target = scene.compare.target;
   result.stations = problems.front().stations;
-  result.reference = make_reference(problems, stop, say);
+  result.reference = make_reference(problems, order_of(variant, problems.front()), stop, say);
   result.surface = free_surface(problems.front());
   for (const Rival* rival : list) {
     for (std::size_t k = 0; k < meshes; ++k) {

@@ -8,6 +8,7 @@
 
 #include "glisson/scene/scene.h"
 #include "models/rival.h"
+#include "scene/converge/grid_convergence.h"
 
 namespace glisson::app {
 
@@ -32,8 +33,13 @@ struct Reference {
   std::vector<Vec3d> forces;        ///< at the stations, extrapolated to the limit of fine meshes [N or N m]
   std::vector<Vec3d> displacement;  ///< of the vertices of its mesh at the end [m]
   double extrapolated = 0.0;        ///< by how much its last force was changed for that [-]
-  std::string words;                ///< what its meshes say of it
+  double low = 0.0, high = 0.0;  ///< the limit's last force is expected between these shares of it; 0 and 0: not known
+  std::string words;             ///< what its meshes say of it
   std::string kind = "in equilibrium";
+
+  /// Takes what its meshes say of the last force. @param finest  that force on the finest mesh
+  /// @return by which share it is changed
+  double take_limit(const GridConvergence& found, double finest);
 };
 
 struct Comparison {

@@ -40,12 +40,16 @@ std::string unit(const Comparison& c) { return c.moments ? "N m" : "N"; }
 std::string heading_of(const Comparison& c) { return c.moments ? "moment" : "force"; }
 
 std::string reference_text(const Comparison& c) {
+  const Reference& r = c.reference;
+  const std::string within =
+      r.high - r.low < 1e-6
+          ? ""
+          : fmt::format(", which is expected within {:+.2g} and {:+.2g} % of that", 100.0 * r.low, 100.0 * r.high);
   return fmt::format(
-      "reference: the scene's own tissue {}, {} tets; {} of {:.4g} {} at the end, {:+.2g} % of it "
-      "extrapolated to "
-      "the limit of fine meshes{}{}\n",
-      c.reference.kind, c.reference.tets, heading_of(c), norm(c.reference.forces.back()), unit(c),
-      100.0 * c.reference.extrapolated, c.reference.words.empty() ? "" : ". ", c.reference.words);
+      "reference: the scene's own tissue {}, {} tets; {} of {:.4g} {} at the end, {:+.2g} % of it extrapolated to the "
+      "limit of fine meshes{}{}{}\n",
+      r.kind, r.tets, heading_of(c), norm(r.forces.back()), unit(c), 100.0 * r.extrapolated, within,
+      r.words.empty() ? "" : ". ", r.words);
 }
 
 /// What the models that reach the target take, from the quickest; then those that do not, with their least error.
@@ -247,7 +251,9 @@ nlohmann::ordered_json forces_json(const std::vector<Vec3d>& forces) {
 nlohmann::ordered_json reference_json(const Comparison& c) {
   return {{"tets", c.reference.tets},
           {"forces", forces_json(c.reference.forces)},
-          {"extrapolated", c.reference.extrapolated}};
+          {"extrapolated", c.reference.extrapolated},
+          {"limit_low", c.reference.low},
+          {"limit_high", c.reference.high}};
 }
 
 }  // namespace

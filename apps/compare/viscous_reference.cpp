@@ -7,7 +7,6 @@
 #include <cmath>
 #include <string>
 
-#include "scene/converge/grid_convergence.h"
 #include "scene/converge/refine_variant.h"
 
 namespace glisson::app {
@@ -73,23 +72,18 @@ Steps steps_enough(const Problem& problem, std::size_t finer, const std::atomic<
 }
 
 /// Each station's force in the limit of fine meshes. @param forces  of meshes with cells of these sizes
-void extrapolate(Reference& reference, const std::vector<double>& sizes,
+void extrapolate(Reference& reference, double order, const std::vector<double>& sizes,
                  const std::vector<std::vector<Vec3d>>& forces) {
   for (std::size_t i = 0; i < reference.forces.size(); ++i) {
     std::vector<MeshResult> results;
     for (std::size_t k = 0; k < sizes.size(); ++k) results.push_back({sizes[k], norm(forces[k][i])});
-    const GridConvergence found = grid_convergence(results);
-    const double finest = results.back().value;
-    const double change = found.extrapolates() && finest > 0.0 ? found.extrapolated / finest - 1.0 : 0.0;
-    reference.forces[i] *= 1.0 + change;
-    reference.extrapolated = change;
-    reference.words = verdict_text(found);
+    reference.forces[i] *= 1.0 + reference.take_limit(grid_convergence(results, order), results.back().value);
   }
 }
 
 }  // namespace
 
-Reference make_viscous_reference(const std::vector<Problem>& problems, const std::atomic<bool>& stop,
+Reference make_viscous_reference(const std::vector<Problem>& problems, double order, const std::atomic<bool>& stop,
                                  const std::function<void(const std::string&)>& say) {
   Reference reference;
   reference.kind = "in motion";
@@ -108,7 +102,7 @@ Reference make_viscous_reference(const std::vector<Problem>& problems, const std
     reference.forces = std::move(answer.forces);
     reference.displacement = std::move(answer.displacement);
   }
-  extrapolate(reference, sizes, forces);
+  extrapolate(reference, order, sizes, forces);
   if (!reference.words.empty()) reference.words += ". ";
   reference.words += steps.words;
   return reference;

@@ -8,6 +8,7 @@
 
 #include "app/program.h"
 #include "glisson/math.h"
+#include "support/places.h"
 
 namespace glisson::test {
 namespace {
@@ -121,6 +122,31 @@ TEST_F(Compare, TakesTimes) {
   outcome = with("[3]");
   EXPECT_THAT(outcome, Exits(2));
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("3 s is beyond the end of variant main"));
+}
+
+// The reference's range holds the exact force, known from elements of high order of another program: of plane strain, whose sets are chosen
+// by boxes on every mesh, and of a cube between bonded plates, whose edges let forces converge more slowly than three meshes show.
+TEST_F(Compare, ReferenceHoldsTheExactForce) {
+  struct Known {
+    const char *scene, *variant;
+    double force;
+  };
+  for (const Known& known : {Known{"strip_wide", "nu049_nodal", 0.05876101},
+                             {"strip_wide", "nu049_element", 0.05876101},
+                             {"strip_wide_large", "nu0499_nodal", 0.5573253},
+                             {"cube_bonded", "nu049_element", 0.01463614}}) {
+    const std::string scene =
+        test::shipped(std::string("tests/scene/converge_cases/") + known.scene + ".toml").string();
+    ASSERT_THAT(run({"compare", scene, "--variant", known.variant, "--out", (folder_ / known.scene).string(), "--json",
+                     (folder_ / "c.json").string(), "--set", "compare.models=[\"linear_fem\"]"}),
+                Exits(0));
+    const nlohmann::json r = read_json(folder_ / "c.json")["reference"];
+    const auto last = r["forces"].back().get<std::array<double, 3>>();
+    const double force = norm(Vec3d{last[0], last[1], last[2]});
+    EXPECT_LE(force * (1.0 + r["limit_low"].get<double>()), known.force) << known.scene << known.variant;
+    EXPECT_GE(force * (1.0 + r["limit_high"].get<double>()), known.force) << known.scene << known.variant;
+    EXPECT_LT(r["limit_high"].get<double>() - r["limit_low"].get<double>(), 0.15);
+  }
 }
 
 // What other programs are given is the scene: its block, its moduli, what holds and moves it, and the reference's shape.

@@ -10,24 +10,21 @@ namespace {
 
 constexpr double kImplicitStep = 0.01;  // the largest automatic one of `implicit` [s]
 
-bool chosen_by_number(const Variant& variant) {
-  return std::any_of(variant.sets.begin(), variant.sets.end(), [](const auto& named) {
-    const auto& where = named.second.where;
-    return std::holds_alternative<Selection::Nearest>(where) || std::holds_alternative<Selection::Ids>(where);
-  });
+bool is_by_number(const std::pair<const std::string, Selection>& named) {
+  const auto& where = named.second.where;
+  return std::holds_alternative<Selection::Nearest>(where) || std::holds_alternative<Selection::Ids>(where);
 }
 
-/// A variant whose mesh, with its sets and regions, is this one.
-RefinedVariant on_mesh(const Variant& variant, TetMesh mesh) {
+}  // namespace
+
+RefinedVariant on_split_mesh(const Variant& variant, TetMesh mesh) {
   RefinedVariant result{variant, {}, true};
   result.variant.mesh = MeshFile{};
-  result.variant.sets.clear();
+  std::erase_if(result.variant.sets, is_by_number);
   for (RegionSpec& region : result.variant.regions) region.where = std::monostate{};
   result.load = [mesh = std::make_shared<const TetMesh>(std::move(mesh))](const MeshFile&) { return *mesh; };
   return result;
 }
-
-}  // namespace
 
 bool multiply_cells(MeshSource& mesh, double factor) {
   const auto multiply = [factor](int& n) { n = std::max(1, static_cast<int>(std::lround(n * factor))); };
@@ -56,13 +53,13 @@ RefinedVariant refined_variant(const Variant& variant, int times, const MeshLoad
   const bool any_step = capabilities(own.simulation.integrator).any_step_is_stable;
   if (times > 0 && !any_step) own.simulation.step.reset();
   if (times == 0) return {own, load, false};
-  if (!std::holds_alternative<MeshFile>(own.mesh) && !chosen_by_number(own)) {
+  if (!std::holds_alternative<MeshFile>(own.mesh) && std::none_of(own.sets.begin(), own.sets.end(), is_by_number)) {
     multiply_cells(own.mesh, 1 << times);
     return {own, load, false};
   }
   TetMesh mesh = build_mesh(own, load);
   for (int i = 0; i < times; ++i) mesh = refined(mesh);
-  return on_mesh(own, std::move(mesh));
+  return on_split_mesh(own, std::move(mesh));
 }
 
 std::optional<Variant> lighter_variant(const Variant& variant) {

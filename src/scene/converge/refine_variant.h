@@ -11,8 +11,12 @@ namespace glisson {
 struct RefinedVariant {
   Variant variant;
   MeshLoader load;
-  bool split = false;  ///< whether tets were split: sets and regions are then those of the given mesh
+  bool split = false;  ///< whether tets were split: regions are then those of the given mesh
 };
+
+/// The variant on a mesh whose tets come from those of its own by splitting (refined()). Sets that places choose are chosen anew, as the
+/// scene would choose them on any mesh; those of a file, of numbers and of the nearest to a point, and regions, are the mesh's.
+RefinedVariant on_split_mesh(const Variant& variant, TetMesh mesh);
 
 /// Gives a mesh made of cells so many times as many along every direction, at least one, and one of shapes edges so many times
 /// shorter. @return whether it is one of these
@@ -21,7 +25,7 @@ bool multiply_cells(MeshSource& mesh, double factor);
 /// The variant with its mesh `times` times twice as fine.
 ///
 /// A generated mesh gets twice the cells along every direction, and sets and regions are chosen anew by their places. A
-/// mesh from a file is split, every tet in eight (refined()), with its sets and regions; so is a generated one with sets chosen
+/// mesh from a file is split, every tet in eight (on_split_mesh()); so is a generated one with sets chosen
 /// by numbers or as the nearest to a point, which would mean something else on a finer mesh.
 /// An explicit step that the scene gives is left to the program, as a finer mesh needs a shorter one.
 /// @throws SceneError as build_mesh
