@@ -1,0 +1,135 @@
+// heat_simulation.h — temperature of a body of tetrahedra over time: conduction, blood, freezing, probes.
+//
+//   HeatSimulation s(mesh, {{0, ThermalTissue{}}}, {.temperature = 37.0});
+//   s.hold("needle", -140.0);
+//   s.advance_to(600.0);
+//   s.temperature();                       °C at every vertex
+//
+// Linear elements with the capacity lumped at the vertices, backward Euler in time. Of two vertices of a tet
+// flows w (Θ_j − Θ_i), Θ = ∫ k dT, w = −V ∇φ_i·∇φ_j: conservative, exact for linear fields of one tissue. Where w summed over the
+// tets of an edge is negative, as between obtuse tets, a limiter keeps the flow from making extremes [KuzminShashkovSvyatskiy2009].
+//
+// The heat of a vertex is what has flowed into it; its temperature follows from that. So the balance of a step is exact to rounding,
+// and latent heat is not stepped over.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "glisson/field.h"
+#include "glisson/heat/thermal_tissue.h"
+#include "glisson/mesh.h"
+#include "glisson/time_function.h"
+
+namespace glisson {
+
+struct HeatOptions {
+  double temperature = 37.0;   ///< at the start [°C]
+  double step = 0.0;           ///< [s]; 0: as long as `tolerance` allows
+  double first_step = 0.01;    ///< of those [s]
+  double longest_step = 60.0;  ///< of those [s]
+  double tolerance = 0.02;     ///< error of temperature that one step may add, mean square over the volume [K]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using O = HeatOptions;
+    return take(field("temperature", &O::temperature, "°C", between(-200, 200), "at the start")
+                    .keyed("temperature_C")
+                    .advise("temperatures are in °C, not in K"),
+                field("step", &O::step, "s", at_least(0), "length of steps; 0: as long as the tolerance allows"),
+                field("first_step", &O::first_step, "s", above(0), "the first of these"),
+                field("longest_step", &O::longest_step, "s", above(0), "the longest of these"),
+                field("tolerance", &O::tolerance, "K", above(0),
+                      "error of temperature that one step may add, mean square over the volume"));
+  }
+};
+
+/// A line that gives heat, such as the active length of a probe.
+struct LineSource {
+  Vec3d from{}, to{};                       ///< at rest [m]
+  TimeFunction<double> power_per_length{};  ///< [W/m], below 0: it cools; a function of time [s]
+};
+
+/// Where heat came from since the start [J]; what flows in counts positive.
+struct HeatLedger {
+  double stored = 0.0;   ///< change of the body's heat content
+  double held = 0.0;     ///< through vertices whose temperature is held
+  double surface = 0.0;  ///< flux and convection
+  double blood = 0.0;    ///< perfusion
+  double metabolism = 0.0;
+  double sources = 0.0;
+
+  double imbalance() const { return stored - held - surface - blood - metabolism - sources; }
+};
+
+enum class HeatStatus { ok, not_converged };
+
+struct HeatStep {
+  HeatStatus status = HeatStatus::ok;
+  double step = 0.0;   ///< its length [s]
+  int iterations = 0;  ///< of Newton's method
+};
+
+/// All that changes while a simulation runs; a value that may be kept and given back.
+struct HeatState {
+  double time = 0.0;  ///< [s]
+  std::size_t steps = 0;
+  std::vector<double> temperature;         ///< of every vertex [°C]
+  std::vector<double> heat;                ///< of every vertex, 0 where it would just begin to freeze [J]
+  std::vector<double> rate;                ///< of temperature in the last step [K/s]; empty: no step was made
+  double step_before = 0.0, wanted = 0.0;  ///< length of the last step, and of the next as the error of that allows [s]
+  HeatLedger ledger;
+  double limited_share = 0.0;  ///< conduction that the limiter took away over all conduction, of the last step [-]
+};
+
+/// Of a mesh at rest. Moving it moves its contents; a copy shares nothing.
+class HeatSimulation {
+ public:
+  /// @param tissues  by region number; each region of the mesh has one
+  /// @throws std::invalid_argument naming what is not allowed
+  HeatSimulation(TetMesh mesh, std::map<int, ThermalTissue> tissues, const HeatOptions& options = {});
+  HeatSimulation(HeatSimulation&&) noexcept;
+  HeatSimulation& operator=(HeatSimulation&&) noexcept;
+  ~HeatSimulation();
+
+  /// Holds vertices at a temperature [°C], from now on. @param set  of the mesh
+  void hold(const std::string& set, TimeFunction<double> temperature);
+  void hold(std::span<const std::uint32_t> vertices, TimeFunction<double> temperature);
+  /// Heat through the triangles of the surface whose corners are all in the set [W/m²], positive into the body.
+  void add_flux(const std::string& set, TimeFunction<double> flux);
+  /// Heat h (T_a − T) through these triangles. @param coefficient  h [W/(m² K)] @param ambient  T_a [°C]
+  void add_convection(const std::string& set, double coefficient, TimeFunction<double> ambient);
+  /// Heat per volume of a region [W/m³].
+  void add_source(int region, TimeFunction<double> power_per_volume);
+  /// @throws std::invalid_argument where a part of it lies outside the body
+  void add_line_source(const LineSource& source);
+
+  /// One step, of the length that the options give; the state is as before it where it did not converge.
+  HeatStep step();
+  /// Steps to a time, the last one as long as is left. @param time  [s]
+  HeatStep advance_to(double time);
+
+  const HeatState& state() const;
+  /// Goes on from a state of this simulation. @throws std::invalid_argument where it is of another mesh
+  void load_state(HeatState state);
+
+  double time() const;
+  const TetMesh& mesh() const;
+  std::span<const double> temperature() const;  ///< of every vertex [°C]
+  /// Share that is not frozen, the mean over a tet's vertices and their part in it.
+  double frozen_volume() const;  ///< [m³]
+  /// Volume that is colder than an isotherm; temperature is linear within tets [m³].
+  double volume_below(double temperature) const;
+  HeatLedger ledger() const;
+  std::size_t steps() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace glisson
