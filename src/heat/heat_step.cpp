@@ -11,7 +11,7 @@ namespace {
 constexpr int kMostIterations = 60;
 constexpr int kFreeIterations = 4;                            // after which the limiter keeps its shares
 constexpr std::array<double, 4> kLeaves{0.9, 0.5, 0.1, 0.0};  // of what is allowed, round by round
-constexpr double kExact = 1e-10;                              // of a temperature [K]
+constexpr double kExact = 1e-12;                              // of a temperature beside its neighbours' [K]
 constexpr double kLeastCapacity = 0.2;  // of a vertex, where blood that comes with thaw feeds itself
 constexpr double kLinear = 1e-6;        // of a linear solve, relative; Newton's method goes on from there
 
@@ -38,6 +38,8 @@ HeatStepper::HeatStepper(const HeatBody& body) : body_(&body), finder_(body), st
     const int i = static_cast<int>(c.i), j = static_cast<int>(c.j);
     places_.push_back({place_of(matrix_, i, j), place_of(matrix_, j, i)});
   }
+  links_.assign(body.size(), 0.0);
+  for (const Conductance& c : body.conductances()) links_[c.i] += std::abs(c.w), links_[c.j] += std::abs(c.w);
   symmetric_.setTolerance(kLinear), general_.setTolerance(kLinear);
 }
 
@@ -88,7 +90,8 @@ int HeatStepper::step(const Input& in, std::vector<double>& temperature, Flows& 
       r = in.held[i] != 0 || states_[i].capacity == 0.0
               ? 0.0
               : in.heat[i] + in.h * (flows.sum(i) + in.sources[i]) - states_[i].heat;
-      if (states_[i].capacity > 0.0) worst = std::max(worst, std::abs(r) / states_[i].capacity);
+      const double per_kelvin = states_[i].capacity + in.h * states_[i].conductivity * links_[i];
+      if (per_kelvin > 0.0) worst = std::max(worst, std::abs(r) / per_kelvin);
     }
     if (!std::isfinite(worst)) return -1;
     limiter = k < kFreeIterations ? Limiter::follows : Limiter::keeps;

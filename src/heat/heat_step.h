@@ -39,6 +39,7 @@ class HeatStepper {
   Eigen::SparseMatrix<double> matrix_;
   std::vector<std::array<int, 2>> places_;  // of each conductance in the matrix: ij, ji
   std::vector<int> diagonal_;
+  std::vector<double> links_;  // Σ |w| of the conductances at a vertex [m]
   Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> symmetric_;
   Eigen::BiCGSTAB<Eigen::SparseMatrix<double>> general_;  // where a vertex is of several tissues
   std::vector<VertexState> states_;
