@@ -1,5 +1,6 @@
 #include "bench/isa_option.h"
 
+#include "cli/option_check.h"
 #include "engine/kernels/instruction_set.h"
 
 namespace glisson::app {
@@ -7,7 +8,7 @@ namespace glisson::app {
 void add_isa_option(CLI::App& command, std::string& isa, const std::string& of) {
   command.add_option("--isa", isa, "instruction set of " + of + ": avx512, avx2, sse4; default: the best")
       ->type_name("NAME")
-      ->check(CLI::IsMember(cpu::instruction_sets()));
+      ->check(one_of(cpu::instruction_sets()));
 }
 
 void take_isa(const std::string& isa) {

@@ -19,6 +19,7 @@
 #include "cli/exit_code.h"
 #include "cli/interrupt.h"
 #include "cli/mesh_cache.h"
+#include "cli/option_check.h"
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "report/summary_json.h"
@@ -175,15 +176,15 @@ CLI::App* add_realtime(CLI::App& bench, Action& action) {
   add_scene_options(*command, options->scene);
   command->add_option("--seconds", options->seconds, "wall time, or until the scene's motion ends if that is sooner")
       ->type_name("S")
-      ->check(CLI::Range(0.01, 86400.0))
+      ->check(within(between(0.01, 86400), Numbers::all))
       ->capture_default_str();
   command->add_option("--frame-ms", options->frame_ms, "length of a frame")
       ->type_name("MS")
-      ->check(CLI::Range(0.01, 1000.0))
+      ->check(within(between(0.01, 1000), Numbers::all))
       ->capture_default_str();
   command->add_option("--threads", options->threads, "threads of the engine; 0: chosen by the size of the body")
       ->type_name("N")
-      ->check(CLI::Range(0, 1024))
+      ->check(within(between(0, 1024), Numbers::whole, "0 chooses by the size of the body"))
       ->capture_default_str();
   command->add_flag("--find", options->find,
                     "look for the largest body, by the cells of the scene's mesh, that keeps the pace for --seconds");

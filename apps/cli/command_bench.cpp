@@ -18,6 +18,7 @@
 #include "cli/commands.h"
 #include "cli/exit_code.h"
 #include "cli/mesh_cache.h"
+#include "cli/option_check.h"
 #include "cli/standard_streams.h"
 
 namespace glisson::app {
@@ -156,13 +157,13 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
   command.add_option("--threads", options.threads, "numbers of threads; default 1, 2, 4 … up to all cores")
       ->type_name("LIST")
       ->delimiter(',')
-      ->check(CLI::Range(1, 1024));
+      ->check(within(between(1, 1024), Numbers::whole));
   command
       .add_option("--sizes", options.sizes,
                   "boxes of about this many tets; default 768, 96000, 1000000. A size needs 1 kB per tet")
       ->type_name("LIST")
       ->delimiter(',')
-      ->check(CLI::Range(std::size_t{6}, std::size_t{50'000'000}));
+      ->check(within(between(6, 5e7), Numbers::whole));
   std::vector<std::string> known;
   for (const auto& w : kWords<Model>) known.emplace_back(w.word);
   known.emplace_back("all");
@@ -171,7 +172,7 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
                   "linear; law: E follows the shape; full: law and viscosity; the large-deformation laws by name; all")
       ->type_name("LIST")
       ->delimiter(',')
-      ->check(CLI::IsMember(known))
+      ->check(one_of(known))
       ->capture_default_str();
   command.add_option("--mesh", options.meshes, "measure these meshes too (.vtu, .vtk, .msh)")->type_name("FILE…");
   add_isa_option(command, options.isa, "kernels and peak");

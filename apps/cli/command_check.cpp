@@ -25,6 +25,7 @@
 #include "instruments/needle/membranes.h"
 #include "mesh/inspect/vertex_set.h"
 #include "report/summary_json.h"
+#include "scene/build/locking.h"
 
 namespace glisson::app {
 namespace {
@@ -154,15 +155,13 @@ void print_zone(const Variant& v, const InstrumentSpec& instrument, const TetMes
       finer_mesh(v.mesh, 2.0 * edges->share()));
 }
 
-constexpr double kLocking = 0.45;  // Poisson's ratio from which linear tets lock (docs/laws.md §5)
-
 /// That linear tets lock in a tissue, and the key that mends it.
 void print_locking(const std::string& table, const Tissue& t) {
-  const double nu = t.lame().lambda / (2.0 * (t.lame().lambda + t.lame().mu));
-  if (nu < kLocking - 1e-9 || t.volume_change == VolumeChange::average_nodal) return;
+  const std::optional<double> nu = scene::locking_ratio(t);
+  if (!nu) return;
   say("  locking  ν = {:.3g} with volume_change = \"element\": tets that keep their own volumes are too stiff;\n"
       "           {}.volume_change = \"average_nodal\" mends it\n",
-      nu, table);
+      *nu, table);
 }
 
 /// Whether a tissue's forces are a secant law's, whose closed cycles give or take work of their own.
@@ -239,6 +238,17 @@ std::string load_text(const SurfaceLoad& load) {
   return text.empty() ? "nothing, all its values are 0" : text;
 }
 
+/// What holds a body that no support holds.
+std::string what_holds(const Variant& v) {
+  const bool sprung = std::any_of(v.loads.begin(), v.loads.end(), [](const LoadSpec& l) {
+    return l.load.spring != Vec3d{} || l.load.spring_per_area != Vec3d{};
+  });
+  if (sprung) return "springs hold the body";
+  if (v.container) return "it lies in its container";
+  if (v.tools.empty()) return "the body is free to drift";
+  return "it is held by the sets of its tools, from the start of their motion on";
+}
+
 void print_body(const Variant& v, const Taste& taste) {
   print_mesh(taste.mesh, taste.mass_kg, std::holds_alternative<MeshFile>(v.mesh));
   print_near_bounds(v, taste.mesh);
@@ -249,12 +259,10 @@ void print_body(const Variant& v, const Taste& taste) {
     if (!(region.tissue.volume_change == v.tissue.volume_change)) print_locking("its tissue", region.tissue);
   }
   for (const FixedSpec& fixed : v.fixed) {
-    say("  fixed    {}, in {}\n", set_text(taste.mesh, fixed.set), axes_text(fixed.axes));
+    const std::string moved = fixed.record ? ", moved by " + fixed.record->path.filename().string() : "";
+    say("  fixed    {}, in {}{}\n", set_text(taste.mesh, fixed.set), axes_text(fixed.axes), moved);
   }
-  const bool sprung = std::any_of(v.loads.begin(), v.loads.end(), [](const LoadSpec& l) {
-    return l.load.spring != Vec3d{} || l.load.spring_per_area != Vec3d{};
-  });
-  if (v.fixed.empty()) say("  fixed    nothing: {}\n", sprung ? "springs hold the body" : "the body is free to drift");
+  if (v.fixed.empty()) say("  fixed    nothing: {}\n", what_holds(v));
   for (const LoadSpec& load : v.loads) {
     say("  load     {}: {}\n", set_text(taste.mesh, load.set), load_text(load.load));
   }

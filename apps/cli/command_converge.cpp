@@ -16,6 +16,7 @@
 #include "cli/exit_code.h"
 #include "cli/interrupt.h"
 #include "cli/mesh_cache.h"
+#include "cli/option_check.h"
 #include "cli/progress.h"
 #include "cli/run_end.h"
 #include "cli/scene_options.h"
@@ -260,14 +261,14 @@ void add_converge(CLI::App& program, Action& action) {
   add_scene_options(*command, options->scene);
   command->add_option("--levels", options->levels, "meshes, the scene's own among them, each twice as fine")
       ->type_name("N")
-      ->check(CLI::Range(2, 5))
+      ->check(within(between(2, 5), Numbers::whole))
       ->capture_default_str();
   command->add_option("--column", options->column, "what is compared: a column of forces.csv or probes.csv")
       ->type_name("NAME")
       ->capture_default_str();
   command->add_option("--at", options->at, "peak: the value of largest size; end: the last")
       ->type_name("WHEN")
-      ->check(CLI::IsMember({"peak", "end"}))
+      ->check(one_of({"peak", "end"}))
       ->capture_default_str();
   command->add_option("--out", options->out, "folder of the results; default out/<scene name>_converge")
       ->type_name("DIR");

@@ -14,6 +14,7 @@
 #include "cli/fit_progress.h"
 #include "cli/interrupt.h"
 #include "cli/mesh_cache.h"
+#include "cli/option_check.h"
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "cli/tissue_text.h"
@@ -271,15 +272,15 @@ void add_fit(CLI::App& program, Action& action) {
           "--discover", options->discover,
           "look for a law of at most N terms among all subsets of a library, and compare the best of each size")
       ->type_name("N")
-      ->check(CLI::Range(1, 4))
+      ->check(within(between(1, 4), Numbers::whole))
       ->excludes("--laws");
   command->add_flag("--list-laws", options->list_laws, "print the laws that --laws accepts");
   command->add_option("--starts", options->starts, "largest number of descents")
       ->type_name("N")
-      ->check(CLI::Range(1, 10000));
+      ->check(within(between(1, 10000), Numbers::whole));
   command->add_option("--bootstrap", options->bootstrap, "fits to resampled curves; 0: none")
       ->type_name("N")
-      ->check(CLI::Range(0, 100000));
+      ->check(within(between(0, 100000), Numbers::whole));
   command->add_flag("--fresh", options->fresh, "do not resume an interrupted run");
   add_threads_option(*command, options->threads);
   command->get_option("--threads")->description("threads; results do not depend on it");

@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "cli/option_check.h"
 #include "cli/standard_streams.h"
 #include "glisson/io.h"
 #include "report/json_text.h"
@@ -73,7 +74,7 @@ void add_info(CLI::App& program, Action& action) {
   command->add_option("mesh", options->mesh, "mesh file: .vtu, .vtk, .msh")->required()->type_name("MESH");
   command->add_option("--scale", options->scale, "factor on coordinates: 0.001 for a file in millimetres")
       ->type_name("S")
-      ->check(CLI::PositiveNumber)
+      ->check(within(above(0), Numbers::all))
       ->capture_default_str();
   command->add_flag("--json", options->json, "print JSON");
   command->footer(

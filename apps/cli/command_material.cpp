@@ -13,6 +13,7 @@
 #include "cli/exit_code.h"
 #include "cli/material_picture.h"
 #include "cli/material_tests.h"
+#include "cli/option_check.h"
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "cli/tissue_text.h"
@@ -109,20 +110,20 @@ void add_material(CLI::App& program, Action& action) {
           "of the driven value [1/s, Pa/s, deg/s, mm/s, N/s]; default 0.01, of torsion and indentation 1, with "
           "--stress and --force a second for each end")
       ->type_name("R")
-      ->check(CLI::PositiveNumber);
+      ->check(within(above(0), Numbers::all));
   command->add_option("--hold", options->hold, "time for which the last value is held [s]; default 0")
       ->type_name("S")
-      ->check(CLI::NonNegativeNumber);
+      ->check(within(at_least(0), Numbers::all));
   command
       ->add_option("--points", options->points,
                    "lines for each end, and for the hold; default 20, of oscillation 21 in all")
       ->type_name("N")
-      ->check(CLI::Range(1, 100000));
+      ->check(within(between(1, 100000), Numbers::whole));
   command
       ->add_option("--between", options->between,
                    "steps for each line, where the tissue has viscosity or branches; default 10")
       ->type_name("N")
-      ->check(CLI::Range(1, 100000));
+      ->check(within(between(1, 100000), Numbers::whole));
   command
       ->add_option(
           "--radius-mm", options->radius_mm,

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "cli/option_check.h"
 #include "cli/standard_streams.h"
 #include "fit/fit_spec.h"
 #include "glisson/scene/scene.h"
@@ -16,7 +17,7 @@ void add_schema(CLI::App& program, Action& action) {
   CLI::App* command =
       program.add_subcommand("schema", "print every key of a scene, or of a fit, with meaning, unit, range, default");
   const auto what = std::make_shared<std::string>("scene");
-  command->add_option("what", *what, "scene or fit")->check(CLI::IsMember({"scene", "fit"}))->capture_default_str();
+  command->add_option("what", *what, "scene or fit")->check(one_of({"scene", "fit"}))->capture_default_str();
   command->footer(
       "Prints Markdown.\n\nExamples:\n  glisson schema | less\n  glisson schema > docs/scene.md\n"
       "  glisson schema fit > docs/fit_file.md");

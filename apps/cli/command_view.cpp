@@ -10,6 +10,7 @@
 #include "cli/exit_code.h"
 #include "cli/interrupt.h"
 #include "cli/mesh_cache.h"
+#include "cli/option_check.h"
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "glisson/version.h"
@@ -112,6 +113,7 @@ void add_view(CLI::App& program, Action& action) {
   add_scene_options(*command, options->scene);
   command->add_option("--port", options->server.port, "port to listen on; 0: any free port")
       ->type_name("N")
+      ->check(within(between(0, 65535), Numbers::whole, "0 takes any free port"))
       ->capture_default_str();
   command->add_option("--host", options->server.host, "address to listen on; one beyond this machine needs a --token")
       ->type_name("ADDRESS")
@@ -129,7 +131,7 @@ void add_view(CLI::App& program, Action& action) {
           "", "token"));
   command->add_option("--threads", options->threads, "threads of the engine; 0: chosen by the size of the body")
       ->type_name("N")
-      ->check(CLI::Range(0, 1024))
+      ->check(within(between(0, 1024), Numbers::whole, "0 chooses by the size of the body"))
       ->capture_default_str();
   command->add_flag("--keep-running", options->server.keep_running,
                     "go on while no page is open or all are hidden; else the clock is held after 10 s of that");

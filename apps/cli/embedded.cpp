@@ -17,10 +17,12 @@ GLISSON_EMBEDDED(glisson_live_page);
 namespace glisson::app {
 namespace {
 
-std::string_view between(const char* begin, const char* end) { return {begin, static_cast<std::size_t>(end - begin)}; }
+std::string_view text_between(const char* begin, const char* end) {
+  return {begin, static_cast<std::size_t>(end - begin)};
+}
 
 const std::map<std::string_view, std::string_view>& scene_files() {
-#define GLISSON_SCENE_FILE(name, path) {path, between(name, name##_end)},
+#define GLISSON_SCENE_FILE(name, path) {path, text_between(name, name##_end)},
   static const std::map<std::string_view, std::string_view> files{
 #include "embedded_list.h"
   };
@@ -30,8 +32,8 @@ const std::map<std::string_view, std::string_view>& scene_files() {
 
 }  // namespace
 
-std::string_view report_template() { return between(glisson_report_template, glisson_report_template_end); }
-std::string_view live_page() { return between(glisson_live_page, glisson_live_page_end); }
+std::string_view report_template() { return text_between(glisson_report_template, glisson_report_template_end); }
+std::string_view live_page() { return text_between(glisson_live_page, glisson_live_page_end); }
 
 std::string_view scene_file(std::string_view path) {
   const auto found = scene_files().find(path);

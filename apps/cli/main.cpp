@@ -15,6 +15,7 @@
 #include "cli/commands.h"
 #include "cli/exit_code.h"
 #include "cli/last_words.h"
+#include "cli/option_check.h"
 #include "cli/program_path.h"
 #include "cli/standard_streams.h"
 #include "glisson/io.h"
@@ -94,6 +95,7 @@ int run_program(int argc, char** argv) {
   program.set_version_flag("--version", "glisson " GLISSON_VERSION);
   program.footer(kFooter);
   program.require_subcommand(1);
+  program.failure_message(option_fault);
   Action action;
   add_run(program, action);
   add_check(program, action);

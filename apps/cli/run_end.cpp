@@ -50,6 +50,10 @@ void print_results(const std::vector<const VariantRecorder*>& variants) {
     if (variants[i]->rejected() > 0) say(" ({} poses of tools rejected)", variants[i]->rejected());
     if (s.linear_share_mean) say(" ({:.0f} % of the tets linear in the mean)", 100.0 * *s.linear_share_mean);
     say("\n");
+    for (const TipDistance& tip : variants[i]->tips()) {
+      say("{:<{}}  {}: tip of {} ends {:.4g} mm from it, {:.4g} mm ahead and {:.4g} mm aside; least {:.4g} mm\n", "",
+          width, tip.probe, tip.tip, 1e3 * tip.distance, 1e3 * tip.along, 1e3 * tip.across, 1e3 * tip.least);
+    }
   }
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "cli/option_check.h"
 #include "report/json_text.h"
 
 namespace glisson::app {
@@ -77,7 +78,7 @@ void add_threads_option(CLI::App& command, int& threads) {
   threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   command.add_option("--threads", threads, "variants that run in parallel; results do not depend on it")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024))
+      ->check(within(between(1, 1024), Numbers::whole))
       ->capture_default_str();
 }
 

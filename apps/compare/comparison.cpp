@@ -43,6 +43,8 @@ void require_comparable(const Variant& v) {
   if (!v.capsules.empty()) odd.emplace_back("[[capsule]]");
   if (v.container) odd.emplace_back("[container]");
   if (!v.loads.empty()) odd.emplace_back("[[load]]");
+  const auto moves = [](const FixedSpec& f) { return f.record.has_value(); };
+  if (std::any_of(v.fixed.begin(), v.fixed.end(), moves)) odd.emplace_back("a [[fixed]] set that moves");
   if (!odd.empty()) {
     throw SceneError(
         fmt::format("{}: variant {} has {}; other models are given a mesh, a tissue, [[fixed]], [[tool]] and gravity "

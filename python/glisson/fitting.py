@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -155,6 +156,9 @@ def fit(
     Ctrl-C, or an exception in `progress`, ends it. With `state` the same call resumes from there; fit.state.json in the folder
     of `glisson fit --out` is such a file.
 
+    Workbooks (.xlsx) among the files are read where one of their sheets holds numbers; `python -m glisson.workbook` writes
+    others as .csv.
+
     :param description: a FIT.toml, its text (with a line end), or a dict of its keys, whose `files` may be data frames
     :param laws: laws to fit in addition to those of the description (known_laws)
     :param data: folder of the curves' files; none: that of the description
@@ -172,11 +176,14 @@ def fit(
     folder = "" if data is None else os.fspath(data)
     kept = "" if state is None else os.fspath(state)
     with tempfile.TemporaryDirectory(prefix="glisson_") as frames:
-        if isinstance(description, Mapping):
-            spec = _fit.parse_fit(to_toml(_with_files(description, Path(frames))), "fit", Path(base))
+        keys, place = _keys_of(description, Path(base))
+        if keys is not None:
+            files = _with_files(keys, Path(frames), Path(data) if data is not None else place)
+            spec = _fit.parse_fit(to_toml(files), "fit", place)
         elif isinstance(description, str) and "\n" in description:
             spec = _fit.parse_fit(description, "fit", Path(base))
         else:
+            assert not isinstance(description, Mapping)
             spec = _fit.load_fit(Path(description))
         return FitResult(*_fit.run(spec, list(laws), folder, starts, bootstrap, progress, kept, discover))
 
@@ -192,10 +199,38 @@ def known_laws() -> dict[str, str]:
     return dict(_fit.known_laws())
 
 
-def _with_files(description: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """The same description with files in place of data frames."""
+def _is_workbook(file: Any) -> bool:
+    return isinstance(file, str | os.PathLike) and Path(os.fspath(file)).suffix.lower() in (".xlsx", ".xlsm")
+
+
+def _keys_of(
+    description: str | os.PathLike[str] | Mapping[str, Any], base: Path
+) -> tuple[Mapping[str, Any] | None, Path]:
+    """The keys of a description whose files have to be written anew, and the folder it stands in; none of another."""
+    if isinstance(description, Mapping):
+        return description, base
+    name = os.fspath(description)
+    is_text = "\n" in name
+    place = base if is_text else Path(name).parent
+    try:
+        text = name if is_text else Path(name).read_text(encoding="utf-8")
+        keys = tomllib.loads(text)
+        found = any(_is_workbook(file) for one in keys.get("data", []) for file in one.get("files", []))
+    except (OSError, ValueError, AttributeError, TypeError):  # the reader of descriptions says what is wrong
+        return None, place
+    return (keys if found else None), place
+
+
+def _with_files(description: Mapping[str, Any], folder: Path, base: Path) -> dict[str, Any]:
+    """The same description with text in place of data frames and workbooks."""
 
     def file_of(number: int, place: int, file: Any) -> Any:
+        if _is_workbook(file):
+            from . import workbook  # here, so that `python -m glisson.workbook` is not imported twice
+
+            own = folder / f"{number + 1}_{place + 1}"
+            own.mkdir()
+            return str(workbook.to_csv(base / file, own / Path(file).with_suffix(".csv").name))
         if not hasattr(file, "to_csv"):
             return file
         written = folder / f"frame_{number + 1}_{place + 1}.csv"

@@ -3,7 +3,8 @@
     points ──▶ those whose file is not there yet ──▶ workers, a simulation each ──▶ point-<key>.parquet, written whole
 
 An interrupted study resumes where it stopped, because a point is done when its file exists. The point of a killed
-worker is given to another.
+worker is given to another. A study that cannot work ends early: a measure is tried on one run before the others are given
+out, and a study whose first points all fail stops with their reason.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ import hashlib
 import itertools
 import json
 import os
+import pickle
+import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,13 +36,23 @@ Measure = Callable[[_core.RunResult], Mapping[str, Any]]
 
 
 class SweepError(RuntimeError):
-    """Raised for points of a study that could not be run; the others are written. `failures` has them with the reason."""
+    """Raised for points of a study that could not be run; what was done is written. `failures` has them with the reason.
 
-    def __init__(self, failures: list[tuple[Point, str]]) -> None:
+    `left` says how many points were not tried, because the first ones had failed or the measure had.
+    """
+
+    def __init__(self, failures: list[tuple[Point, str]], left: int = 0) -> None:
         self.failures = failures
+        self.left = left
         lines = [f"{point}: {reason}" for point, reason in failures[:5]]
         more = f"\n… and {len(failures) - 5} more" if len(failures) > 5 else ""
-        super().__init__(f"{len(failures)} points could not be run:\n" + "\n".join(lines) + more)
+        stopped = f", and none before them; the study stopped with {left} points left" if left else ""
+        count = "1 point" if len(failures) == 1 else f"{len(failures)} points"
+        super().__init__(f"{count} could not be run{stopped}:\n" + "\n".join(lines) + more)
+
+
+class _MeasureError(Exception):
+    """What a measure raised, with its place; it goes from a worker to the study as text."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +74,7 @@ def sweep(
     workers: int | None = None,
     client: Any = None,
     attempts: int = 3,
+    give_up: int | None = 3,
     progress: Callable[[int, int], object] | None = None,
 ) -> Any:
     """Runs a scene at every point, and returns all rows, including those of earlier calls, as a pyarrow Table.
@@ -71,6 +85,8 @@ def sweep(
 
     Local workers are processes that import the calling script: keep the call under `if __name__ == "__main__":`.
 
+    A measure is tried on one run first: where it raises, nothing else is run.
+
     :param scene: a file, TOML text (with a line end) or a dict
     :param points: values by dotted key, of which all combinations are run; or a list of points
     :param out: folder
@@ -78,15 +94,23 @@ def sweep(
     :param workers: processes on this machine; none: as many as there are cores
     :param client: a `distributed.Client`: its cluster runs the points then; files of the scene must be there
     :param attempts: how often a point is tried whose worker was lost
+    :param give_up: stops where so many points have failed and none was run before; none: all points are tried
     :param progress: called with points done and planned
-    :raises SweepError: after all other points are done, naming those that could not be run
+    :raises SweepError: naming the points that could not be run, with the reasons: after all others are done, or at once where
+        the measure or the first points failed
+    :raises ValueError: for a measure that processes cannot import
     :raises RuntimeError: where another study writes into the folder; nothing is changed then
     """
     parquet = need("pyarrow.parquet", "pyarrow", "sweep")
+    if give_up is not None and give_up < 1:
+        raise ValueError(f"give_up = {give_up} is outside the allowed range, from 1 on; None tries all points")
+    if client is None and measure is not None:
+        _require_importable(measure)
+    tasks = _tasks(scene, points, variants, measure)
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
     with alone_in(folder):
-        return _sweep(parquet, folder, _tasks(scene, points, variants, measure), workers, client, attempts, progress)
+        return _sweep(parquet, folder, tasks, workers, client, attempts, give_up, progress)
 
 
 def _sweep(
@@ -96,22 +120,26 @@ def _sweep(
     workers: int | None,
     client: Any,
     attempts: int,
+    give_up: int | None,
     progress: Callable[[int, int], object] | None,
 ) -> Any:
     open_tasks = [task for task in tasks if not _file_of(folder, task.key).exists()]
     done = len(tasks) - len(open_tasks)
     failures: list[tuple[Point, str]] = []
-    finished = _on_cluster(open_tasks, client, attempts) if client is not None else _here(open_tasks, workers, attempts)
-    for task, rows in finished:
+    written = done
+    for task, rows in _measured_first(open_tasks, workers, client, attempts):
         if isinstance(rows, str):
             failures.append((task.point, rows))
         else:
             _write(parquet, rows, _file_of(folder, task.key))
+            written += 1
         done += 1
         if progress is not None:
             progress(done, len(tasks))
+        if written == 0 and give_up is not None and len(failures) >= give_up:
+            break
     if failures:
-        raise SweepError(failures)
+        raise SweepError(failures, len(tasks) - done)
     arrow = need("pyarrow", "pyarrow", "sweep")
     tables = [parquet.read_table(_file_of(folder, task.key)) for task in tasks]
     return arrow.concat_tables(tables, promote_options="default") if tables else arrow.table({})
@@ -135,6 +163,31 @@ def _tasks(scene: Any, points: Any, variants: Sequence[str] | None, measure: Mea
     return tasks
 
 
+def _require_importable(measure: Measure) -> None:
+    """Complains of a measure that a process of its own cannot find by its name."""
+    try:
+        pickle.dumps(measure)
+    except Exception as error:
+        name = getattr(measure, "__qualname__", repr(measure))
+        raise ValueError(
+            f"measure {name} cannot be sent to other processes ({error}); make it a function at the top level of a module "
+            "or script (no lambda, no function within another)"
+        ) from None
+
+
+def _measured(measure: Measure, result: _core.RunResult) -> Row:
+    """What a measure makes of a run; its error as text, since the worker's own may not be sent."""
+    try:
+        return dict(measure(result))
+    except Exception as error:
+        frames = traceback.extract_tb(error.__traceback__)
+        code = getattr(measure, "__code__", None)
+        own = [frame for frame in frames if code is not None and frame.filename == code.co_filename]
+        place = (own or list(frames))[-1]
+        where = f"{place.filename}:{place.lineno}: {place.line}"
+        raise _MeasureError(f"the measure raised {type(error).__name__}: {error} ({where})") from None
+
+
 def _work(task: _Task) -> list[Row]:
     """What a worker does with a point."""
     results = run(task.scene, variants=task.variants, overrides=task.point, threads=1)
@@ -144,7 +197,7 @@ def _work(task: _Task) -> list[Row]:
         row: Row = {key: _plain(value) for key, value in task.point.items()}
         row |= {"variant": name, "end": result.end, "trouble": result.trouble}
         row |= {"steps": summary["steps"], "peak_force_N": summary["peak_force_N"]}
-        row |= dict(task.measure(result)) if task.measure else result.forces.to_dict()
+        row |= _measured(task.measure, result) if task.measure else result.forces.to_dict()
         rows.append(row)
     return rows
 
@@ -155,6 +208,27 @@ def _plain(value: Any) -> Any:
 
 
 Finished = Iterator[tuple[_Task, list[Row] | str]]
+
+
+def _measured_first(tasks: list[_Task], workers: int | None, client: Any, attempts: int) -> Finished:
+    """Runs tasks; those that are measured one by one until a measure has worked. One that raises ends the study."""
+
+    def run_all(some: list[_Task]) -> Finished:
+        return _on_cluster(some, client, attempts) if client is not None else _here(some, workers, attempts)
+
+    left = list(tasks)
+    tried = not left or left[0].measure is None
+    while left and not tried:
+        first = left.pop(0)
+        for task, rows in run_all([first]):
+            if isinstance(rows, str) and rows.startswith(_MeasureError.__name__):
+                raise SweepError([(task.point, rows.removeprefix(f"{_MeasureError.__name__}: "))], len(left))
+            tried = not isinstance(rows, str)
+            yield task, rows
+    yield from run_all(left)
+
+
+_GUARD = "the call of sweep is not under `if __name__ == \"__main__\":`, and the worker could not import the script"
 
 
 def _here(tasks: list[_Task], workers: int | None, attempts: int) -> Finished:
@@ -179,7 +253,7 @@ def _here(tasks: list[_Task], workers: int | None, attempts: int) -> Finished:
             if tried[task.key] < attempts:
                 left.append(task)
             else:
-                yield task, f"its worker was lost {attempts} times"
+                yield task, f"its worker was lost {attempts} times: killed, or short of memory, or {_GUARD}"
 
 
 def _through(
@@ -217,12 +291,16 @@ def _on_cluster(tasks: list[_Task], client: Any, attempts: int) -> Finished:
     """Runs tasks on a Dask cluster, which gives those of a lost worker to another by itself."""
     distributed = need("distributed", "distributed", "cluster")
     futures = {client.submit(_work, task, key=f"glisson-{task.key}", retries=attempts - 1): task for task in tasks}
-    for future in distributed.as_completed(list(futures)):
-        task = futures[future]
-        try:
-            yield task, future.result()
-        except Exception as error:
-            yield task, f"{type(error).__name__}: {error}"
+    try:
+        for future in distributed.as_completed(list(futures)):
+            task = futures[future]
+            try:
+                rows: list[Row] | str = future.result()
+            except Exception as error:
+                rows = f"{type(error).__name__}: {error}"
+            yield task, rows
+    finally:  # a study that stops early leaves no work behind
+        client.cancel(list(futures))
 
 
 def _file_of(folder: Path, key: str) -> Path:

@@ -114,6 +114,9 @@ std::weak_ptr<const Scheme> SimulationParts::weak_scheme(const Simulation& simul
   return simulation.inside().scheme;
 }
 const TetMesh& SimulationParts::mesh(const Inside& inside) { return inside.mesh; }
+ConstraintId SimulationParts::add_constraint(Simulation& simulation, Constraint constraint) {
+  return inside(simulation).add("fix", std::move(constraint));
+}
 void SimulationParts::refuse_inside_step(const Inside& inside, const char* name, bool between_steps) {
   inside.refuse_while_busy(name, between_steps ? Inside::Busy::between_steps : Inside::Busy::no);
 }
@@ -155,7 +158,7 @@ ConstraintId Simulation::Impl::add(const char* name, Constraint constraint) {
 }
 
 ConstraintId Simulation::fix(std::span<const std::uint32_t> vertices, Axes axes) {
-  return inside().add("fix", {{vertices.begin(), vertices.end()}, axes, {}, 0.0, {}});
+  return inside().add("fix", {{vertices.begin(), vertices.end()}, axes, {}, 0.0, {}, {kAtRest, kAtRest, kAtRest}});
 }
 ConstraintId Simulation::fix(std::string_view set, Axes axes) { return fix(mesh().vertex_set(std::string(set)), axes); }
 

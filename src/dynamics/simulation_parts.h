@@ -15,6 +15,8 @@ struct SimulationParts {
   /// For reading it as long as the simulation lives.
   static std::weak_ptr<const Scheme> weak_scheme(const Simulation& simulation);
   static const TetMesh& mesh(const Inside& inside);
+  /// Simulation::fix or drive, with courses that other constraints may share. @throws what they throw, and Contradiction
+  static ConstraintId add_constraint(Simulation& simulation, Constraint constraint);
   /// @param name  of what would change something @param between_steps  whether Interaction::between_steps may call it
   /// @throws std::logic_error inside a step
   static void refuse_inside_step(const Inside& inside, const char* name, bool between_steps = true);

@@ -255,6 +255,7 @@ void fill_curves(const LawSearch& search, const FitSpec& spec, const FitCurves& 
   result.rms_fit = all.rms_fit;
   result.rms_heldout = known(all.rms_heldout);
   if (repeated > 0) result.spread = std::sqrt(squares / static_cast<double>(repeated));
+  result.conclusions.insert(result.conclusions.end(), curves.skipped.begin(), curves.skipped.end());
   conclude_on_curves(all, result, result.conclusions);
   conclude_on_tests(result, result.conclusions);
   if (spec.proof.displacement) {

@@ -240,6 +240,7 @@ FitCurves read_curves(const FitSpec& spec, const SpecimenSize& size, const std::
       shown.emplace_back(p.account.file.string(), known && !part.unlikely ? modulus_of(p.curve, area, height) : 0.0);
       all.curves.push_back(std::move(p.curve));
       all.accounts.push_back(p.account.text());
+      if (p.account.rows_skipped > 0) all.skipped.push_back(p.account.skipped_text());
     }
   }
   make_unique(all.curves);

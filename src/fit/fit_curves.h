@@ -14,6 +14,7 @@ namespace glisson::fit {
 struct FitCurves {
   std::vector<Curve> curves;          ///< fitted and held out, in the order of the file
   std::vector<std::string> accounts;  ///< what was done to each
+  std::vector<std::string> skipped;   ///< of each that lost rows how many, in a sentence
 
   /// Numbers of the curves that are fitted, or held out.
   std::vector<std::size_t> indices(bool held_out) const;

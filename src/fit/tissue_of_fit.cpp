@@ -4,6 +4,7 @@
 
 #include "fit/data/units.h"
 #include "fit/forward/offset_model.h"
+#include "scene/build/locking.h"
 #include "scene/build/parametric_variant.h"
 #include "scene/parse/tissue_file.h"
 
@@ -74,6 +75,20 @@ Tissue fitted_tissue(const LawSearch& search) {
   return experiment(search.scene(), numbers.keys).tissue_with(numbers.values);
 }
 
+namespace {
+
+/// How scenes have to keep the volume of a tissue that hardly changes it. A specimen was no body of tets; a scene was one, and
+/// its choice belongs to the numbers that were fitted with it.
+std::string volume_keys(const LawSearch& search, const FitSpec& spec, const scene::Node& tissue) {
+  if (tissue.find("volume_change") || !scene::locking_ratio(fitted_tissue(search))) return {};
+  if (spec.specimen) return "volume_change = \"" + std::string(word_of(VolumeChange::average_nodal)) + "\"\n";
+  return "# fitted with volume_change = \"" + std::string(word_of(VolumeChange::element)) +
+         "\", on the scene's mesh; for other meshes fit with \"" + std::string(word_of(VolumeChange::average_nodal)) +
+         "\" in the scene's [tissue]\n";
+}
+
+}  // namespace
+
 std::string tissue_of_fit(const LawSearch& search, const FitResult& result, const FitSpec& spec) {
   const OfScene numbers = numbers_of_scene(search);
   std::string text = "# Fitted by `glisson fit " + spec.file.filename().string() + "`: " + spec.title + "\n";
@@ -86,7 +101,8 @@ std::string tissue_of_fit(const LawSearch& search, const FitResult& result, cons
             p.parameter.unit + ", " + interval_text(p) + ", " + p.verdict + "\n";
   }
   text += other_keys(search, search.values()) + "\n";
-  return text + scene::tissue_file_text(experiment(search.scene(), numbers.keys).tissue_tree(numbers.values));
+  const scene::Node tissue = experiment(search.scene(), numbers.keys).tissue_tree(numbers.values);
+  return text + scene::tissue_file_text(tissue) + volume_keys(search, spec, tissue);
 }
 
 }  // namespace glisson::fit

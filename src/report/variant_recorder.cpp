@@ -171,8 +171,7 @@ void VariantRecorder::on_end(const RunSummary& summary) {
   instruments_.clear();
   guarded([&] {
     if (frames_) frames_->finish();
-    const auto json = summary_json(summary_, variant_, options_.scene, options_.threads, rejected_);
-    write_whole(options_.folder / "summary.json", json_text(json, 2) + "\n");
+    write_whole(options_.folder / "summary.json", json_text(summary_with_tips(), 2) + "\n");
   });
 }
 
@@ -187,6 +186,32 @@ const std::vector<double>& VariantRecorder::column(const std::string& name) cons
                           " no column \"" + name + "\"");
 }
 
+std::vector<TipDistance> VariantRecorder::tips() const {
+  std::vector<TipDistance> tips;
+  if (probe_data_.empty() || probe_data_.front().empty()) return tips;
+  for (const ProbeSpec& probe : variant_.probes) {
+    if (probe.tip.empty()) continue;
+    const std::string name = probe.options.name + "_tip_";
+    const std::vector<double>& distance = column(name + "distance_m");
+    tips.push_back({probe.options.name, probe.tip, distance.back(), column(name + "along_m").back(),
+                    column(name + "across_m").back(), *std::min_element(distance.begin(), distance.end())});
+  }
+  return tips;
+}
+
+/// The summary of the run, and where tips ended.
+nlohmann::ordered_json VariantRecorder::summary_with_tips() const {
+  nlohmann::ordered_json json = summary_json(summary_, variant_, options_.scene, options_.threads, rejected_);
+  for (const TipDistance& tip : tips()) {
+    const std::string name = tip.probe + "_tip_";
+    json[name + "distance_m"] = tip.distance;
+    json[name + "along_m"] = tip.along;
+    json[name + "across_m"] = tip.across;
+    json[name + "distance_least_m"] = tip.least;
+  }
+  return json;
+}
+
 nlohmann::json VariantRecorder::events_json() const {
   nlohmann::json list = nlohmann::json::array();
   for (const RunEvent& e : events_) {
@@ -199,7 +224,7 @@ nlohmann::json VariantRecorder::events_json() const {
 nlohmann::json VariantRecorder::json(double law_reach) const {
   return {{"name", variant_.name},
           {"label", variant_.label.empty() ? variant_.name : variant_.label},
-          {"summary", summary_json(summary_, variant_, options_.scene, options_.threads, rejected_)},
+          {"summary", nlohmann::json(summary_with_tips())},
           {"forces", table_json(table_->columns(), data_)},
           {"probes", table_json(probe_columns_, probe_data_)},
           {"events", events_json()},

@@ -32,6 +32,13 @@ struct RecorderOptions {
   std::size_t surface_bytes = 25'000'000;  ///< what its surface may take in the page
 };
 
+/// How near a tip came to the place of a probe.
+struct TipDistance {
+  std::string probe, tip;
+  double distance = 0.0, along = 0.0, across = 0.0;  ///< at the end [m]
+  double least = 0.0;                                ///< the least distance of all samples [m]
+};
+
 class VariantRecorder : public RunObserver {
  public:
   /// @param stop  set when the disk refuses
@@ -58,6 +65,8 @@ class VariantRecorder : public RunObserver {
   const std::vector<std::vector<double>>& data() const { return data_; }
   /// One column of forces.csv or probes.csv by name. @throws std::out_of_range naming it
   const std::vector<double>& column(const std::string& name) const;
+  /// Distances of tips at the end, of the probes that name one; none of a run without samples.
+  std::vector<TipDistance> tips() const;
   double intensity_max() const { return surface_ ? surface_->intensity_max() : 0.0; }
   /// VariantData of web/src/report_data.ts. @param law_reach  see law_data()
   nlohmann::json json(double law_reach) const;
@@ -66,6 +75,7 @@ class VariantRecorder : public RunObserver {
   void guarded(const std::function<void()>& write);
   void record_probes(const Sample& sample);
   nlohmann::json events_json() const;
+  nlohmann::ordered_json summary_with_tips() const;
 
   Variant variant_;
   RecorderOptions options_;

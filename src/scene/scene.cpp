@@ -85,7 +85,7 @@ void check_end(const Variant& variant, const Node& experiment, Problems& problem
   problems.add(
       motion ? motion->where : experiment.where, "motion",
       "nothing says when the run ends: give `duration_s` or `max_steps`, or a [[tool]] or [[instrument]] whose "
-      "motion ends it");
+      "motion ends it, or a [[fixed]] set with a record");
 }
 
 /// What acts on the body besides supports, tools and loads; not attached.
@@ -152,6 +152,17 @@ void complete_poses(PosesSpec& poses, const std::filesystem::path& base) {
 
 /// Reads the files of recorded motions, and tries all tools and instruments with their motions.
 void complete_motions(Variant& variant, const Node& experiment, const std::filesystem::path& base, Problems& problems) {
+  for (std::size_t i = 0; i < variant.fixed.size(); ++i) {
+    FixedSpec& x = variant.fixed[i];
+    if (!x.record) continue;
+    try {
+      complete_record(*x.record, x.direction, base);
+      support_path(x);
+    } catch (const std::exception& error) {
+      const Node& table = (*experiment.find("fixed")->array())[i];
+      problems.add(table.where, "fixed." + std::to_string(i) + ".record", error.what());
+    }
+  }
   for (std::size_t i = 0; i < variant.tools.size(); ++i) {
     ToolSpec& x = variant.tools[i];
     if (!x.record && !x.rotation && !x.poses) continue;

@@ -126,7 +126,7 @@ TEST_F(Bench, AForcedInstructionSetIsThatOfKernelsAndPeak) {
   for (const std::string isa : {"avx512", "avx2", "sse4"}) {
     const Outcome outcome = run({"bench", "--quick", "--sizes", "768", "--models", "linear,full,neo_hookean",
                                  "--threads", "1", "--isa", isa, "--json", isa + ".json"});
-    if (outcome.err.find("--isa: " + isa + " not in {") != std::string::npos) continue;  // this machine has none
+    if (outcome.err.find("--isa: \"" + isa + "\" is none of ") != std::string::npos) continue;  // this machine has none
     ASSERT_THAT(outcome, Exits(0));
     const nlohmann::json json = read_json(folder_ / (isa + ".json"));
     const std::string name = json["instruction_set"];
@@ -161,16 +161,17 @@ TEST_F(Bench, WrongOptionsAreErrors) {
     EXPECT_THAT(outcome, Exits(2));
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
   };
-  expect_error({"bench", "--sizes", "5"}, "--sizes: Value 5 not in range");
-  expect_error({"bench", "--isa", "avx9"}, "--isa: avx9 not in {");
-  expect_error({"bench", "--models", "quadratic"}, "--models: quadratic not in {linear,law,full,branches,");
-  expect_error({"bench", "--threads", "0"}, "--threads: Value 0 not in range");
+  expect_error({"bench", "--sizes", "5"}, "--sizes: 5 is outside the allowed range, 6 to 5e+07");
+  expect_error({"bench", "--isa", "avx9"}, "--isa: \"avx9\" is none of ");
+  expect_error({"bench", "--models", "quadratic"}, "--models: \"quadratic\" is none of linear, law, full, branches, ");
+  expect_error({"bench", "--threads", "0"}, "--threads: 0 is outside the allowed range, 1 to 1024");
   expect_error({"bench", "--mesh", "none.vtu"}, "none.vtu: there is no such mesh");
   expect_error({"bench", "--json", "no/such/folder.json"}, "the folder no/such does not exist");
   expect_error({"bench", "realtime"}, "scene is required");
   expect_error({"bench", "--quick", "realtime", "s.toml"}, "give the options of realtime after it");
   const std::string scene = write("s.toml", small_scene());
-  expect_error({"bench", "realtime", scene, "--frame-ms", "0"}, "--frame-ms: Value 0 not in range");
+  expect_error({"bench", "realtime", scene, "--frame-ms", "0"},
+               "--frame-ms: 0 is outside the allowed range, 0.01 to 1000");
   expect_error({"bench", "realtime", scene, "--variant", "hard"}, "--variant hard");
   expect_error({"bench", "realtime", scene, "--isa", "mmx"}, "--isa: mmx not in");
 }

@@ -46,6 +46,29 @@ TEST_F(Options, SetChangesTheScene) {
   EXPECT_EQ(read_text(folder_ / "b/scene.toml").find("# run with --set 'tissue.youngs_modulus_Pa=7200'"), 0u);
 }
 
+// Options answer as the keys of scenes do: with the value, the allowed range and the way out; never with a raw conversion.
+TEST_F(Options, SayTheirRangeAndAWayOut) {
+  const std::string scene = write("s.toml", small_scene());
+  const auto said = [&](const std::vector<std::string>& words) {
+    const Outcome outcome = run(words);
+    EXPECT_THAT(outcome, Exits(2));
+    EXPECT_EQ(outcome.err.find("Could not convert"), std::string::npos) << outcome.err;
+    return outcome.err;
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(said({"view", scene, "--port", "80000"}),
+              HasSubstr("glisson: --port: 80000 is outside the allowed range, 0 to 65535; 0 takes any free port"));
+  EXPECT_THAT(said({"view", scene, "--port", "http"}),
+              HasSubstr("--port: \"http\" is no whole number; allowed: 0 to 65535"));
+  EXPECT_THAT(said({"run", scene, "--threads", "1e3"}),
+              HasSubstr("--threads: \"1e3\" is no whole number; allowed: 1 to 1024"));
+  EXPECT_THAT(said({"info", scene, "--scale", "-1"}), HasSubstr("--scale: -1 is outside the allowed range, > 0"));
+  EXPECT_THAT(said({"converge", scene, "--at", "peek"}),
+              HasSubstr("--at: \"peek\" is none of peak, end; did you mean peak?"));
+  EXPECT_THAT(said({"run", scene, "--variants", "a"}),
+              HasSubstr("glisson run has no option --variants; did you mean --variant?\n`glisson run --help` lists"));
+}
+
 // --variant runs only those named; a name that is not there is an error that lists the names.
 TEST_F(Options, VariantChooses) {
   const std::string scene = write("s.toml", two_variants());

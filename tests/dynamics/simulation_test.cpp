@@ -76,16 +76,17 @@ TEST(Simulation, IntegratorsTakeWhatTheyAreCapableOf) {
   }
 }
 
-// Sets that overlap, are empty or leave the mesh are refused, and a refused set leaves nothing held.
+// Sets that are empty, leave the mesh or move what another holds are refused, and a refused set leaves nothing held.
 TEST(Simulation, RefusesBadSets) {
   Simulation simulation = small_simulation();
   const test::VertexSet outside{0, 27}, overlapping{5, 0}, twice{3, 3};
+  const Motion up = [](double t) { return Vec3d{0.0, 0.0, t}; };
   expect_refusal([&] { simulation.fix(std::span<const std::uint32_t>{}); }, "empty");
   expect_refusal([&] { simulation.fix(outside); }, "vertex 27 is outside the mesh, 0 to 26");
   const test::VertexSet first{0};
   simulation.fix(first);
-  expect_refusal([&] { simulation.fix(overlapping); }, "component x of vertex 0 is held by two constraints");
-  expect_refusal([&] { simulation.fix(twice); }, "vertex 3");
+  expect_refusal([&] { simulation.drive(overlapping, up); }, "component x of vertex 0 is held by two constraints");
+  expect_refusal([&] { simulation.drive(twice, up); }, "vertex 3");
   const test::VertexSet five{5};
   EXPECT_NO_THROW(simulation.fix(five)) << "vertex 5 was in a refused set only";
   expect_refusal([&] { simulation.add_load(outside, {1, 0, 0}); }, "vertex 27");

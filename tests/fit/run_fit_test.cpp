@@ -443,6 +443,27 @@ TEST_F(RunFit, WritesATissueForScenes) {
   ASSERT_TRUE(tissue.hyperelastic);
   EXPECT_DOUBLE_EQ(tissue.lame().mu, result.parameters[0].value);
   EXPECT_THAT(result.tissue, HasSubstr("# Fitted by `glisson fit fit.toml`"));
+  EXPECT_EQ(tissue.volume_change, VolumeChange::average_nodal) << "at ν = 0.49999 tets with volumes of their own lock";
+  const std::string bulk = "bulk_modulus_Pa = 1e8", soft = "bulk_modulus_Pa = 1e4",
+                    own = "volume_change = \"element\"\n";
+  std::string compressible = kOgdenFit, told = kOgdenFit;
+  compressible.replace(compressible.find(bulk), bulk.size(), soft);
+  told.insert(told.find("hyperelastic"), own);
+  EXPECT_THAT(run_fit(spec(compressible), {}).tissue, Not(HasSubstr("volume_change")));
+  EXPECT_THAT(run_fit(spec(told), {}).tissue, AllOf(HasSubstr(own), Not(HasSubstr("average_nodal"))));
+}
+
+// How many rows were skipped is among the sentences that terminal, report and fit.json have.
+TEST_F(RunFit, SaysHowManyRowsItSkipped) {
+  std::mt19937_64 random(3);
+  std::string text = ogden_csv(2500.0, -6.0, 0.001, random);
+  text.insert(text.find("\n20;") + 1, "19.5;ERR;ERR\n");
+  write("a.csv", text);
+  write("b.csv", ogden_csv(2500.0, -6.0, 0.001, random));
+  std::string skipping = kOgdenFit;
+  skipping.insert(skipping.find("resample."), "skip_bad_rows = true\n");
+  EXPECT_THAT(run_fit(spec(skipping), {}).conclusions,
+              Contains(HasSubstr("1 of 61 rows of a have no number in a column that is needed and were skipped")));
 }
 
 TEST_F(RunFit, TellsWhatIsWrongWithTheFile) {

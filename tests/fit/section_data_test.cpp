@@ -91,15 +91,18 @@ resample = { over = "displacement", how = "pick", points = 50 }
   EXPECT_EQ(d.resample.over, ResampleOver::displacement);
   EXPECT_EQ(d.resample.points, 50);
   EXPECT_EQ(section("files = [\"a\"]\ncontact = { kind = \"given\", at_mm = 2 }\n").contact.at, 2e-3);
+  EXPECT_EQ(section("files = [\"a\"]\ninterval = 2\ntext.separator = \"blanks\"\n").text.interval, 2u);
 }
 
 TEST(DataSection, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(section_fault("weight = 1\n"), HasSubstr("missing key `files`"));
   EXPECT_THAT(section_fault("files = []\n"), HasSubstr("FIT.toml:2:9: data.0.files: is empty; name at least one file"));
   const std::string head = "files = [\"a.csv\"]\n";
-  EXPECT_THAT(section_fault(head + "columns.force = { name = \"F\", unit = \"lb\" }\n"),
-              AllOf(HasSubstr("FIT.toml:3:38: data.0.columns.force.unit: unknown unit \"lb\""),
-                    HasSubstr("allowed: N, mN, kN, gf, kgf, lbf")));
+  EXPECT_THAT(section_fault(head + "columns.force = { name = \"F\", unit = \"cd\" }\n"),
+              AllOf(HasSubstr("FIT.toml:3:38: data.0.columns.force.unit: unknown unit \"cd\""),
+                    HasSubstr("allowed: N, mN, kN, µN, nN, gf, kgf, lbf")));
+  EXPECT_THAT(section_fault(head + "interval = 2\ntext.names_line = 3\n"),
+              HasSubstr("data.0.interval: contradicts `text.names_line`"));
   EXPECT_THAT(section_fault(head + "columns.force = { unit = \"N\" }\n"), HasSubstr("give one of `name`, `number`"));
   EXPECT_THAT(section_fault(head + "columns.force = { name = \"a\", number = 2 }\n"), HasSubstr("contradicts `name`"));
   EXPECT_THAT(section_fault(head + "columns.force.name = \"a\"\ncolumns.stress.name = \"b\"\n"),
@@ -285,9 +288,9 @@ TEST_F(BadFile, TwoColumnsOfOneName) {
 
 TEST_F(BadFile, UnknownUnit) {
   EXPECT_THAT(
-      fault("Time (s),Depth (mm),Load (lb)\n0,1,2\n1,2,3\n", "columns.force.name = \"Load (lb)\"\n"),
+      fault("Time (s),Depth (mm),Load (cd)\n0,1,2\n1,2,3\n", "columns.force.name = \"Load (cd)\"\n"),
       HasSubstr(
-          "t.csv:1:1: columns.force: unknown unit \"lb\" of column \"Load (lb)\"; give `unit` as one of N, mN, kN"));
+          "t.csv:1:1: columns.force: unknown unit \"cd\" of column \"Load (cd)\"; give `unit` as one of N, mN, kN"));
   EXPECT_THAT(fault("Time (s),Depth (mm),Load\n0,1,2\n1,2,3\n"),
               HasSubstr("column \"Load\" says no unit; give `unit` as one of N"));
 }
@@ -295,20 +298,21 @@ TEST_F(BadFile, UnknownUnit) {
 TEST_F(BadFile, RowsWithoutNumbers) {
   const std::string bad = rows({{5, "2,NaN,0.2"}, {7, "4,2,"}, {8, "5"}, {10, "7,x,0.7"}});
   const std::string text = fault(bad);
-  EXPECT_THAT(
-      text,
-      HasSubstr(
-          "t.csv:5:3: \"NaN\" is no finite number in \"Depth (mm)\"; correct the row, or give skip_bad_rows = true"));
+  EXPECT_THAT(text, HasSubstr("t.csv:5:3: \"NaN\" is no finite number in \"Depth (mm)\"\n"));
   EXPECT_THAT(fault(rows({{5, "2,1e300,0.2"}})), HasSubstr("t.csv:5:3: \"1e300\" is beyond any measurement in"));
   EXPECT_THAT(text, HasSubstr("t.csv:7:"));
   EXPECT_THAT(text, HasSubstr("t.csv:8:1: has 1 fields, none for \"Depth (mm)\""));
-  EXPECT_THAT(text, HasSubstr("4 of 10 rows are bad, the first 3 named above"));
-  folder_.write("t.csv", bad);
+  EXPECT_THAT(text, HasSubstr("4 of 10 rows are bad, the first 3 named above: more than a twentieth of the test"));
+  folder_.write("t.csv", rows({{8, "5"}}));
+  EXPECT_THAT(fault(rows({{8, "5"}})),
+              HasSubstr("t.csv:8:1: has 1 fields, none for \"Depth (mm)\"; correct the row, or "
+                        "give skip_bad_rows = true"));
   const auto curves = load_curves(section("files = [\"t.csv\"]\nskip_bad_rows = true\n"), {}, folder_.path());
-  EXPECT_EQ(curves.front().account.rows_skipped, 4u);
+  EXPECT_EQ(curves.front().account.rows_skipped, 1u);
   EXPECT_EQ(curves.front().account.rows_read, 10u);
-  EXPECT_EQ(curves.front().curve.size(), 6u);
-  EXPECT_THAT(curves.front().account.text(), HasSubstr("10 rows, 4 bad ones skipped"));
+  EXPECT_EQ(curves.front().curve.size(), 9u);
+  EXPECT_THAT(curves.front().account.text(), HasSubstr("10 rows, 1 bad ones skipped"));
+  EXPECT_THAT(curves.front().account.skipped_text(), HasSubstr("1 of 10 rows of t have no number in a column"));
 }
 
 TEST_F(BadFile, TimeThatGoesBack) {

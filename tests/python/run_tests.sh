@@ -22,7 +22,7 @@ wanted() {
 import sys, tomllib
 project = tomllib.load(open(sys.argv[1], "rb"))
 extras = project["project"]["optional-dependencies"]
-names = ("plot", "meshes", "cluster")
+names = ("plot", "meshes", "workbooks", "cluster")
 rows = project["build-system"]["requires"] + project["project"]["dependencies"] + [r for n in names for r in extras[n]]
 print(*dict.fromkeys(rows + [r for r in extras["test"] if not r.startswith("glisson")]), sep="\n")
 PY

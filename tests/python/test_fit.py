@@ -86,6 +86,51 @@ def test_data_frames_are_files():
     assert result.curves[1].displacement == pytest.approx(shear)
 
 
+def book_of(place, **sheets):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    book.remove(book.active)
+    for name, rows in sheets.items():
+        sheet = book.create_sheet(name)
+        for row in rows:
+            sheet.append(row)
+    book.save(place)
+
+
+def test_workbooks_are_files(tmp_path):
+    """A workbook with notes on one sheet and a test on another: every digit goes over, and a fit takes it as it is."""
+    stretch = np.linspace(1.0, 1.3, 16)
+    stress = np.round(stretch - stretch**-2, 12)  # a workbook has some 15 digits
+    table = [["Stretch", "Stress (kPa)"], *([float(x), float(y)] for x, y in zip(stretch, stress, strict=True))]
+    book_of(tmp_path / "pulled.xlsx", Notes=[["liver 1", "by hand"]], Test=table)
+    command = [sys.executable, "-m", "glisson.workbook", str(tmp_path / "pulled.xlsx")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout == f"{tmp_path / 'pulled.csv'}\n" and done.stderr == ""
+    lines = (tmp_path / "pulled.csv").read_text(encoding="utf-8").splitlines()
+    assert [float(line.split(",")[1]) for line in lines[1:]] == stress.tolist()
+    (tmp_path / "fit.toml").write_text(
+        '[specimen]\nkind = "point"\n[tissue]\n'
+        'hyperelastic = { kind = "neo_hookean", mu_Pa = 500, bulk_modulus_Pa = 1e9 }\n'
+        '[[parameter]]\nkey = "tissue.hyperelastic.mu_Pa"\nlow = 10\nhigh = 1e5\n'
+        '[[data]]\nfiles = ["pulled.xlsx"]\ntest = "tension"\n',
+        encoding="utf-8",
+    )
+    result = glisson.fit(tmp_path / "fit.toml", **QUICK)
+    assert result.values["tissue.hyperelastic.mu_Pa"] == pytest.approx(1000.0, rel=1e-4)
+    assert result.curves[0].name == "pulled" and result.curves[0].measured.tolist() == (1e3 * stress).tolist()
+
+
+def test_workbooks_of_several_tables_are_asked_about(tmp_path):
+    """Two sheets with numbers: refused with their names and the command; a sheet that is not there, too."""
+    rows = [["a", "b"], [1.0, 2.0], [3.0, 4.0]]
+    book_of(tmp_path / "two.xlsx", One=rows, Two=rows)
+    command = [sys.executable, "-m", "glisson.workbook", str(tmp_path / "two.xlsx")]
+    for more, said in (([], "has 2 sheets with numbers: One, Two"), (["--sheet", "Three"], 'has no sheet "Three"')):
+        done = subprocess.run([*command, *more], capture_output=True, text=True, check=False)
+        assert done.returncode == 2 and said in done.stderr
+    assert subprocess.run([*command, "--sheet", "Two"], capture_output=True, check=True).returncode == 0
+
+
 def test_progress_is_told_and_ends_the_fit(scenes):
     """A fit tells how far it is; what the watcher raises ends it."""
 

@@ -44,6 +44,27 @@ def test_a_uniform_state_is_read_exactly():
     assert np.isnan(probes.read()["r_volume_m3"]) and probes.lost == ["p", "r", "s", "c"]
 
 
+def test_the_distance_of_a_tip():
+    """A ball comes nearer through air: along is the way that is left to the point, across stays; a tip of no place is refused."""
+    body = glisson.Simulation(glisson.box_mesh(cells=[2, 2, 2], size=[0.02, 0.02, 0.02]), glisson.Tissue())
+    body.fix("z_min")
+    path = glisson.PathDriver(glisson.Pose(position=[0.013, 0.01, 0.05]), glisson.SteadyMotion(velocity=0.1))
+    ball = glisson.ContactTool(glisson.ContactOptions(name="ball"), path)
+    body.attach(ball)
+    places = {"tumour": glisson.ProbePoint(position=[0.01, 0.01, 0.01]), "other": glisson.ProbeRegion(region="0")}
+    probes = glisson.Probes(body, places, {"tumour": ball})
+    assert [c for c in probes.columns if "_tip_" in c] == [f"tumour_tip_{x}_m" for x in ("distance", "along", "across")]
+    for time in (0.0, 0.05):
+        body.advance(until=time)
+        read = probes.read()
+        assert read["tumour_tip_along_m"] == pytest.approx(0.04 - ball.depth, abs=1e-12)
+        assert read["tumour_tip_across_m"] == pytest.approx(0.003, abs=1e-12)
+        assert read["tumour_tip_distance_m"] == pytest.approx(np.hypot(0.04 - ball.depth, 0.003), abs=1e-12)
+    assert ball.depth > 0.004
+    with pytest.raises(KeyError, match="tumor"):
+        glisson.Probes(body, places, {"tumor": ball})
+
+
 def test_the_probes_of_a_scene():
     """A run has probes.csv as a table, row by row with forces; the scene's body reads the same by hand."""
     run = glisson.run(SCENE)["main"]

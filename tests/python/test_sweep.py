@@ -101,6 +101,42 @@ def test_a_folder_without_locks_is_warned_of(tmp_path, monkeypatch):
         assert glisson.sweep(SCENE, POINTS, tmp_path, workers=1).num_rows == 6
 
 
+def raising(result):
+    return {"largest_N": result["no_such_column"].max()}
+
+
+def raising_at_4000(result):
+    return largest(result) if result.variant.tissue.youngs_modulus != 4000 else {"largest_N": 1 / 0}
+
+
+def test_a_measure_that_raises_is_tried_on_one_run(tmp_path):
+    """The study ends with the measure's error and its line, before a second point is run; a lambda is refused at once."""
+    told = []
+    with pytest.raises(glisson.SweepError, match=r"the measure raised \w+: .*no_such_column.*test_sweep\.py:\d+") as caught:
+        glisson.sweep(SCENE, POINTS, tmp_path, measure=raising, workers=2, progress=lambda *count: told.append(count))
+    assert len(caught.value.failures) == 1 and caught.value.left == 5
+    assert told == [] and not list(tmp_path.glob("*.parquet"))
+    with pytest.raises(ValueError, match="cannot be sent to other processes"):
+        glisson.sweep(SCENE, POINTS, tmp_path, measure=lambda result: {}, workers=1)
+    with pytest.raises(glisson.SweepError, match="ZeroDivisionError") as some:
+        glisson.sweep(SCENE, POINTS, tmp_path, measure=raising_at_4000, workers=1)
+    assert len(some.value.failures) == 2 and some.value.left == 0 and len(list(tmp_path.glob("*.parquet"))) == 4
+
+
+def test_a_study_whose_first_points_fail_stops(tmp_path):
+    """A hundred points with a wrong key: three are tried, and the cause is told; once a point has run, all are tried."""
+    wrong = {"tissue.youngs_modulus_kPa": list(range(1, 101))}
+    with pytest.raises(glisson.SweepError, match="stopped with 97 points left.*\n.*youngs_modulus_kPa") as caught:
+        glisson.sweep(SCENE, wrong, tmp_path / "wrong", workers=1)
+    assert len(caught.value.failures) == 3 and caught.value.left == 97
+    mixed = [{"tissue.poisson_ratio": ratio} for ratio in (0.3, 0.6, 0.7, 0.8, 0.9)]
+    with pytest.raises(glisson.SweepError) as all_tried:
+        glisson.sweep(SCENE, mixed, tmp_path / "mixed", workers=1)
+    assert len(all_tried.value.failures) == 4 and all_tried.value.left == 0
+    with pytest.raises(ValueError, match="give_up = 0"):
+        glisson.sweep(SCENE, POINTS, tmp_path / "none", give_up=0)
+
+
 def test_points_that_cannot_be_run_are_named(tmp_path):
     """A wrong value, and a point that kills every worker, are told at the end; the others are written."""
     with pytest.raises(glisson.SweepError, match="poisson_ratio") as caught:

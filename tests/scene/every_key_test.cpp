@@ -124,6 +124,7 @@ sideways = "free"
 [[probe]]
 name = "tip"
 point_m = [1, 2, 3]
+tip = "catheter"
 [[probe]]
 name = "end"
 set = "x_max"
@@ -368,6 +369,7 @@ TEST(EveryKey, OfMotionToolsAndOutputIsRead) {
   ASSERT_EQ(v.probes.size(), 4u);
   EXPECT_EQ(v.probes[0].options.name, "tip");
   expect_equal(std::get<ProbePoint>(v.probes[0].options.where).position, {1, 2, 3});
+  EXPECT_EQ(v.probes[0].tip, "catheter");
   EXPECT_EQ(std::get<ProbeSet>(v.probes[1].options.where).set, "x_max");
   EXPECT_EQ(std::get<ProbeRegion>(v.probes[2].options.where).region, "stone");
   expect_equal(std::get<ProbePlane>(v.probes[3].options.where).point, {0, 0, 2});

@@ -277,7 +277,8 @@ TEST(RunVariant, RefusesBeforeTheFirstStep) {
   EXPECT_THAT(refusal("[[variant]]\nname = \"coarse\"\nmotion.step_s = 1\n"),
               HasSubstr("s.toml: variant coarse: step = 1 s"));
   EXPECT_THAT(refusal("[[fixed]]\nset = \"x_min\"\n"),
-              HasSubstr("s.toml:16:1: fixed.1: constraint: component x of vertex 0 is held by two"));
+              HasSubstr("s.toml:12:1: tool.0: component x of vertex 18 belongs to [[tool]] \"press\" and to [[fixed]] "
+                        "\"x_min\", at rest"));
 }
 
 // With `sideways = "free"` only the pressed component is driven: the tissue slides under the tool.

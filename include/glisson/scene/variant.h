@@ -75,11 +75,6 @@ struct RegionSpec {
   std::string origin;
 };
 
-struct FixedSpec {
-  std::string set;
-  Axes axes;
-  std::string origin;
-};
 struct LoadSpec {
   std::string set;
   SurfaceLoad load;
@@ -94,6 +89,15 @@ struct RecordSpec {
   std::filesystem::path path;  ///< absolute, or relative to the current directory; empty for a path made in memory
   double start = 0.0;
   RecordedMotion motion;  ///< what the file holds
+};
+/// A set that is held where it is, or moved by a record. Sets may share vertices, and a set and a tool too where they do not
+/// contradict each other: a component is held once, and its force counts with the first set that names it.
+struct FixedSpec {
+  std::string set;
+  Axes axes;
+  Vec3d direction{0.0, 0.0, -1.0};   ///< of the depth of a record that has no places, of any length
+  std::optional<RecordSpec> record;  ///< none: at rest
+  std::string origin;
 };
 /// Poses from a file (load_poses).
 struct PosesSpec {
@@ -115,6 +119,8 @@ struct ToolSpec {
   std::string origin;
 };
 
+/// The path of a moved support, and its end; at rest without a record. @throws std::invalid_argument
+ToolPath support_path(const FixedSpec& fixed);
 /// The path of a tool, and its end; what turns it left out. @throws std::invalid_argument
 ToolPath tool_path(const ToolSpec& tool);
 /// Path and rotation of a tool that turns; none of one that does not. @throws std::invalid_argument
@@ -262,6 +268,7 @@ struct CapsuleSpec {
 /// A place that is read with every sample.
 struct ProbeSpec {
   ProbeOptions options;
+  std::string tip;  ///< name of the instrument the distance of whose tip is read; empty: none
   std::string origin;
 };
 

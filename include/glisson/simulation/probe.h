@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <variant>
@@ -77,15 +78,25 @@ struct ProbePlane {
   }
 };
 
+/// The tip of an instrument, or of anything else, at the present state.
+struct ProbeTip {
+  Vec3d position{};   ///< [m]
+  Vec3d direction{};  ///< in which it is to arrive, a unit vector
+};
+
 struct ProbeOptions {
   std::string name = "probe";
   std::variant<ProbePoint, ProbeSet, ProbeRegion, ProbePlane> where;
+  /// Where a tip is, asked with every reading; none: no distance is read. Of a point, set or region with present place x (of a
+  /// region the mean over its volume, of a set that of its displacement) and a tip at p that points along d:
+  ///   tip_distance_m = |x − p|,  tip_along_m = (x − p)·d, positive while the place lies ahead,  tip_across_m = |x − p − d (x − p)·d|
+  std::function<ProbeTip()> tip{};
 
   template <class Take>
   static constexpr auto fields(Take take) {
     return take(field("name", &ProbeOptions::name,
                       "name, with which its columns begin; no two probes of an experiment share one"),
-                no_key("where", &ProbeOptions::where));
+                no_key("where", &ProbeOptions::where), no_key("tip", &ProbeOptions::tip));
   }
 };
 
@@ -99,7 +110,7 @@ class Probes {
  public:
   Probes();
   /// @throws std::invalid_argument for a point outside of the body (naming the nearest point of it), a plane that does not
-  ///         cut it, or a set or region that it does not have
+  ///         cut it, a set or region that it does not have, or a tip with a plane
   Probes(const Simulation& simulation, std::vector<ProbeOptions> options);
   ~Probes();
   Probes(Probes&&) noexcept;

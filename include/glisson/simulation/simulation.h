@@ -305,7 +305,7 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// Holds vertices at their present positions. A component that is already held is an error.
+  /// Holds vertices at their present positions. A component held already stays the first set's; one that moves is an error.
   ConstraintId fix(std::span<const std::uint32_t> vertices, Axes axes = {});
   /// The same for a vertex set of the mesh by name, as in drive and add_load. @throws std::invalid_argument naming the
   /// sets there are

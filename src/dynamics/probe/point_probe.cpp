@@ -50,6 +50,13 @@ class PointReader : public ProbeReader {
     return row;
   }
 
+  std::optional<Vec3d> place(const Simulation& simulation) const override {
+    Vec3d x{};
+    for (std::size_t a = 0; a < 4; ++a)
+      x += present_position(simulation, simulation.mesh().tets[tets_[0]][a]) * weights_[a];
+    return x;
+  }
+
  private:
   std::array<double, 4> weights_in(const TetMesh& mesh, std::uint32_t tet) const {
     const ElementRest rest = rest_of(mesh, tet);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,6 +36,8 @@ class ProbeReader {
   const std::vector<std::uint32_t>& tets() const { return tets_; }
   /// Values in the order of the columns. @param first  where the fields of its tets start
   virtual std::vector<double> read(const Simulation& simulation, const TetFields& fields, std::size_t first) const = 0;
+  /// Where the place is in space at present [m]; none of a plane. Only where the probe has tets.
+  virtual std::optional<Vec3d> place(const Simulation&) const { return {}; }
 
   std::weak_ptr<const Scheme> scheme;  ///< of the simulation that it was made for
 
@@ -57,6 +60,10 @@ std::uint64_t changes_of(const Simulation& simulation);
 
 /// Rest data of a tet as the mesh has it now.
 ElementRest rest_of(const TetMesh& mesh, std::uint32_t tet);
+/// Present position of a vertex [m].
+inline Vec3d present_position(const Simulation& simulation, std::uint32_t vertex) {
+  return simulation.mesh().vertices[vertex] + simulation.displacement()[vertex];
+}
 /// F_a = V P s_a of a corner: what must act on it from outside to balance the tet's stress [N].
 Vec3d corner_force(const TetMesh& mesh, const TetFields& fields, std::size_t field, Corner corner);
 /// Mean over volume of Cauchy's stress (6, as in TetFields), Green's strain (6) and Cauchy's pressure and von Mises' stress

@@ -1,4 +1,5 @@
 // probes.cpp — several probes of a body, whose fields are computed in one go.
+#include <array>
 #include <limits>
 #include <stdexcept>
 
@@ -7,6 +8,24 @@
 #include "glisson/simulation/probe.h"
 
 namespace glisson {
+namespace {
+
+constexpr std::array<const char*, 3> kTipColumns{"tip_distance_m", "tip_along_m", "tip_across_m"};
+
+/// From a tip to a place: the distance, its part along the tip's direction and that across it [m].
+std::array<double, 3> distances(const Vec3d& place, const ProbeTip& tip) {
+  const Vec3d way = place - tip.position;
+  const double along = dot(way, tip.direction);
+  return {norm(way), along, norm(way - tip.direction * along)};
+}
+
+std::array<double, 3> lost_distances() {
+  std::array<double, 3> values;
+  values.fill(std::numeric_limits<double>::quiet_NaN());
+  return values;
+}
+
+}  // namespace
 
 Probes::Probes() = default;
 Probes::~Probes() = default;
@@ -25,6 +44,12 @@ Probes::Probes(const Simulation& simulation, std::vector<ProbeOptions> options)
     }
     readers_.back()->scheme = scheme_of(simulation);
     for (const std::string& column : readers_.back()->columns()) columns_.push_back(o.name + "_" + column);
+    if (!o.tip) continue;
+    if (!readers_.back()->place(simulation))
+      throw std::invalid_argument(label +
+                                  ": a plane is no place that a tip can be at a distance from; give a point, a "
+                                  "set or a region");
+    for (const char* column : kTipColumns) columns_.push_back(o.name + "_" + column);
   }
 }
 
@@ -42,11 +67,17 @@ std::vector<double> Probes::read(const Simulation& simulation) {
   const TetFields fields = fields_of(simulation, tets);
   std::vector<double> row;
   std::size_t first = 0;
-  for (const auto& reader : readers_) {
-    std::vector<double> values(reader->columns().size(), std::numeric_limits<double>::quiet_NaN());
-    if (!reader->tets().empty()) values = reader->read(simulation, fields, first);
+  for (std::size_t i = 0; i < readers_.size(); ++i) {
+    const ProbeReader& reader = *readers_[i];
+    const bool lost = reader.tets().empty();
+    std::vector<double> values(reader.columns().size(), std::numeric_limits<double>::quiet_NaN());
+    if (!lost) values = reader.read(simulation, fields, first);
     row.insert(row.end(), values.begin(), values.end());
-    first += reader->tets().size();
+    if (options_[i].tip) {
+      const auto of_tip = lost ? lost_distances() : distances(*reader.place(simulation), options_[i].tip());
+      row.insert(row.end(), of_tip.begin(), of_tip.end());
+    }
+    first += reader.tets().size();
   }
   return row;
 }

@@ -47,6 +47,17 @@ class RegionReader : public ProbeReader {
     return row;
   }
 
+  std::optional<Vec3d> place(const Simulation& simulation) const override {
+    Vec3d x{};
+    double whole = 0.0;
+    for (std::size_t k = 0; k < tets_.size(); ++k) {
+      for (const std::uint32_t i : simulation.mesh().tets[tets_[k]])
+        x += present_position(simulation, i) * (0.25 * volumes_[k]);
+      whole += volumes_[k];
+    }
+    return x * (1.0 / whole);
+  }
+
  private:
   std::vector<std::uint32_t> all_;  ///< tets at the start
   std::vector<double> volumes_;     ///< at rest, of those that are there [m³]

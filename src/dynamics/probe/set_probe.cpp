@@ -59,6 +59,12 @@ class SetReader : public ProbeReader {
     return row;
   }
 
+  std::optional<Vec3d> place(const Simulation& simulation) const override {
+    Vec3d x{};
+    for (const auto& [vertex, weight] : weights_) x += present_position(simulation, vertex) * weight;
+    return x;
+  }
+
  private:
   /// A third of each face's area to its vertices; without faces a quarter of each tet's volume to those of the set.
   void weigh(const Simulation& simulation) {

@@ -98,7 +98,7 @@ void ActiveKick::impose_motions(std::span<ActiveVertex> active) const {
         wanted = (there - w.displacement) * (1.0 / step_);
       }
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (has_axis(constraint.axes, axis)) w.velocity[axis] = wanted[axis];
+        if (has_axis(constraint.axes_of(k), axis)) w.velocity[axis] = wanted[axis];
       }
     }
   }
@@ -109,9 +109,9 @@ std::span<const Vec3d> ActiveKick::mobility() {
   for (const Kicked& k : kicked_) mobility_.push_back(k.mobility);
   for (std::size_t c = 0; c < places_.size(); ++c) {
     if (!state_.holds(c)) continue;
-    for (const std::uint32_t place : places_[c]) {
+    for (std::size_t k = 0; k < places_[c].size(); ++k) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (has_axis(state_.constraints.all()[c].axes, axis)) mobility_[place][axis] = 0.0;
+        if (has_axis(state_.constraints.all()[c].axes_of(k), axis)) mobility_[places_[c][k]][axis] = 0.0;
       }
     }
   }
@@ -134,7 +134,12 @@ void ActiveKick::push(std::span<const Vec3d> impulses) {
   for (std::size_t k = 0; k < kicked_.size(); ++k) kicked_[k].contact = impulses[k] * (1.0 / step_);
 }
 
-/// What holds or drives a vertex, in the components it holds.
+/// What a constraint exerts on one of its vertices, in the components that it holds.
+ForceParts ActiveKick::force_on(std::span<const ActiveVertex> active, std::size_t constraint, std::size_t k) const {
+  const std::uint32_t place = places_[constraint][k];
+  return force_at(active[place], place, state_.constraints.all()[constraint].axes_of(k));
+}
+
 ForceParts ActiveKick::force_at(const ActiveVertex& w, std::size_t place, const Axes& axes) const {
   const Kicked& k = kicked_[place];
   const Vec3d inertial = step_ > 0.0 ? (w.velocity - k.velocity_before) * (k.mass / step_) : Vec3d{};
@@ -145,19 +150,17 @@ ForceParts ActiveKick::force_at(const ActiveVertex& w, std::size_t place, const 
 ForceParts ActiveKick::force(std::span<const ActiveVertex> active, std::size_t constraint) const {
   ForceParts sum;
   if (!state_.holds(constraint)) return sum;
-  for (const std::uint32_t place : places_[constraint]) {
-    sum += force_at(active[place], place, state_.constraints.all()[constraint].axes);
-  }
+  for (std::size_t k = 0; k < places_[constraint].size(); ++k) sum += force_on(active, constraint, k);
   return sum;
 }
 
 Vec3d ActiveKick::torque(std::span<const ActiveVertex> active, std::size_t constraint, const Vec3d& about) const {
   Vec3d sum{};
   if (!state_.holds(constraint)) return sum;
-  for (const std::uint32_t place : places_[constraint]) {
-    const ActiveVertex& w = active[place];
+  for (std::size_t k = 0; k < places_[constraint].size(); ++k) {
+    const ActiveVertex& w = active[places_[constraint][k]];
     const Vec3d then = state_.body.rest_positions[w.vertex] + w.displacement - w.velocity * (state_.time - time_);
-    sum += cross(then - about, force_at(w, place, state_.constraints.all()[constraint].axes).total());
+    sum += cross(then - about, force_on(active, constraint, k).total());
   }
   return sum;
 }
@@ -170,10 +173,10 @@ ActiveKick::Outer ActiveKick::outer_action(std::span<const ActiveVertex> active)
   }
   for (std::size_t c = 0; c < places_.size(); ++c) {
     if (!state_.holds(c)) continue;
-    for (const std::uint32_t place : places_[c]) {
-      const Vec3d force = force_at(active[place], place, state_.constraints.all()[c].axes).total();
+    for (std::size_t k = 0; k < places_[c].size(); ++k) {
+      const Vec3d force = force_on(active, c, k).total();
       sum.force += norm(force);
-      sum.power += dot(force, active[place].velocity);
+      sum.power += dot(force, active[places_[c][k]].velocity);
     }
   }
   return sum;
@@ -197,8 +200,9 @@ KickWork ActiveKick::work(std::span<const ActiveVertex> active) const {
   }
   for (std::size_t c = 0; c < places_.size(); ++c) {
     if (!state_.holds(c)) continue;
-    for (const std::uint32_t place : places_[c]) {
-      const Vec3d f = force_at(active[place], place, state_.constraints.all()[c].axes).total();
+    for (std::size_t k = 0; k < places_[c].size(); ++k) {
+      const std::uint32_t place = places_[c][k];
+      const Vec3d f = force_on(active, c, k).total();
       work.before.tools += dot(f, kicked_[place].velocity_before);
       work.after.tools += dot(f, active[place].velocity);
     }

@@ -92,6 +92,8 @@ class ActiveKick {
 
  private:
   ForceParts force_at(const ActiveVertex& active, std::size_t place, const Axes& axes) const;
+  /// @param k  which of the constraint's vertices
+  ForceParts force_on(std::span<const ActiveVertex> active, std::size_t constraint, std::size_t k) const;
 
   BodyState& state_;
   std::vector<Kicked> kicked_;                      ///< per active vertex

@@ -424,7 +424,7 @@ ForceParts ImplicitScheme::force(ConstraintId constraint) const {
   const Constraint& c = state_.constraints.at(constraint);
   ForceParts sum;
   if (!state_.holds(constraint.index) || state_.steps == 0) return sum;
-  for (const std::uint32_t v : c.vertices) sum += vertex_force(v, c.axes);
+  for (std::size_t k = 0; k < c.vertices.size(); ++k) sum += vertex_force(c.vertices[k], c.axes_of(k));
   return sum;
 }
 
@@ -432,8 +432,9 @@ Vec3d ImplicitScheme::torque(ConstraintId constraint, const Vec3d& about) const 
   const Constraint& c = state_.constraints.at(constraint);
   Vec3d sum{};
   if (!state_.holds(constraint.index) || state_.steps == 0) return sum;
-  for (const std::uint32_t v : c.vertices) {
-    sum += cross(state_.body.rest_positions[v] + now_.u[v] - about, vertex_force(v, c.axes).total());
+  for (std::size_t k = 0; k < c.vertices.size(); ++k) {
+    const std::uint32_t v = c.vertices[k];
+    sum += cross(state_.body.rest_positions[v] + now_.u[v] - about, vertex_force(v, c.axes_of(k)).total());
   }
   return sum;
 }

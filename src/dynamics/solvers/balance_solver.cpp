@@ -109,7 +109,7 @@ void BalanceSolver::prescribe(const TimeStep& s) {
       const Vec3d change = target.displacement(base, rest) - now_.u[v];
       const Vec3d speed = needs_speed ? after.since(earlier, base) * (0.5 / d) : Vec3d{};
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!has_axis(constraint.axes, axis)) continue;
+        if (!has_axis(constraint.axes_of(k), axis)) continue;
         change_[v][axis] = change[axis];
         held_velocity_[v][axis] = of_change && !statics_ ? change[axis] / s.h : speed[axis];
       }

@@ -1,8 +1,8 @@
 #include "fit/data/choose_column.h"
 
 #include <algorithm>
-#include <array>
 #include <functional>
+#include <tuple>
 
 #include "base/nearest.h"
 #include "base/text.h"
@@ -94,12 +94,15 @@ const Unit* unit_of(const CurveFile& file, std::size_t column, const std::string
   return nullptr;
 }
 
-/// Beside a unit that is of another quantity, the word does not count: "Compression (%)", "Load cell (mV)".
-bool is_customary(const CurveFile& file, std::size_t column, Quantity quantity,
-                  std::span<const std::string_view> words) {
-  if (!file.units[column].empty() && !find_unit(quantity, file.units[column])) return false;
-  const std::string name = detail::lower_case(file.names[column]);
-  return std::any_of(words.begin(), words.end(), [&](std::string_view w) { return name.starts_with(w); });
+/// Columns with a customary name. Beside a unit that is of another quantity the name does not count: "Compression (%)",
+/// "Load cell (mV)".
+std::vector<std::size_t> customary(const CurveFile& file, Quantity quantity, ColumnMeaning meaning) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < file.names.size(); ++i) {
+    if (!file.units[i].empty() && !find_unit(quantity, file.units[i])) continue;
+    if (has_meaning(split_title(file.names[i]).name, meaning)) found.push_back(i);
+  }
+  return found;
 }
 
 }  // namespace
@@ -113,20 +116,13 @@ std::optional<ChosenColumn> choose_column(const CurveFile& file, const ColumnSpe
   return ChosenColumn{*index, {file.title(*index), quantity, unit, key}};
 }
 
-bool has_customary(const CurveFile& file, Quantity quantity, std::span<const std::string_view> words) {
-  for (std::size_t i = 0; i < file.names.size(); ++i) {
-    if (is_customary(file, i, quantity, words)) return true;
-  }
-  return false;
+bool has_customary(const CurveFile& file, Quantity quantity, ColumnMeaning meaning) {
+  return !customary(file, quantity, meaning).empty();
 }
 
-std::optional<ChosenColumn> guess_column(const CurveFile& file, Quantity quantity,
-                                         std::span<const std::string_view> words, const std::string& key,
-                                         scene::Problems& problems) {
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < file.names.size(); ++i) {
-    if (is_customary(file, i, quantity, words)) found.push_back(i);
-  }
+std::optional<ChosenColumn> guess_column(const CurveFile& file, Quantity quantity, ColumnMeaning meaning,
+                                         const std::string& key, scene::Problems& problems) {
+  const std::vector<std::size_t> found = customary(file, quantity, meaning);
   if (found.size() == 1) {
     ColumnSpec spec;
     spec.number = static_cast<std::int32_t>(found.front() + 1);
@@ -145,11 +141,12 @@ std::optional<ChosenColumn> guess_column(const CurveFile& file, Quantity quantit
 std::vector<ChosenColumn> check_columns(const CurveFile& file) {
   std::vector<ChosenColumn> found;
   for (std::size_t i = 0; i < file.names.size(); ++i) {
-    for (const auto& [quantity, word] :
-         {std::pair{Quantity::stress, "stress"}, std::pair{Quantity::strain, "strain"}}) {
+    const std::string name = split_title(file.names[i]).name;
+    for (const auto& [quantity, meaning, word] : {std::tuple{Quantity::stress, ColumnMeaning::stress, "stress"},
+                                                  std::tuple{Quantity::strain, ColumnMeaning::strain, "strain"}}) {
       const Unit* unit = find_unit(quantity, file.units[i]);
-      if (unit && detail::lower_case(file.names[i]).find(word) != std::string::npos)
-        found.push_back({i, {file.title(i), quantity, unit, "columns." + std::string(word)}});
+      const bool says = has_meaning(name, meaning) || detail::lower_case(name).find(word) != std::string::npos;
+      if (unit && says) found.push_back({i, {file.title(i), quantity, unit, std::string("columns.") + word}});
     }
   }
   return found;

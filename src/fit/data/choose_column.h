@@ -2,10 +2,10 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
+#include <vector>
 
+#include "fit/data/column_words.h"
 #include "fit/data/data_spec.h"
 #include "fit/data/raw_test.h"
 
@@ -21,12 +21,11 @@ struct ChosenColumn {
 std::optional<ChosenColumn> choose_column(const CurveFile& file, const ColumnSpec& spec, Quantity quantity,
                                           const std::string& key, scene::Problems& problems);
 
-/// Whether a column's name begins with one of the words, and its unit is none of another quantity.
-bool has_customary(const CurveFile& file, Quantity quantity, std::span<const std::string_view> words);
-/// The one column whose name does; complains where none or several do.
-std::optional<ChosenColumn> guess_column(const CurveFile& file, Quantity quantity,
-                                         std::span<const std::string_view> words, const std::string& key,
-                                         scene::Problems& problems);
+/// Whether a column has a customary name for what is meant, and its unit is none of another quantity.
+bool has_customary(const CurveFile& file, Quantity quantity, ColumnMeaning meaning);
+/// The one column that has; complains where none or several do.
+std::optional<ChosenColumn> guess_column(const CurveFile& file, Quantity quantity, ColumnMeaning meaning,
+                                         const std::string& key, scene::Problems& problems);
 
 /// All columns whose names and units say stress or strain.
 std::vector<ChosenColumn> check_columns(const CurveFile& file);

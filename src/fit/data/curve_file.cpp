@@ -2,210 +2,60 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <iterator>
 #include <map>
-#include <system_error>
+#include <span>
 
 #include "base/input_file.h"
+#include "base/text.h"
+#include "fit/data/text_encoding.h"
 #include "fit/data/units.h"
 #include "glisson/scene/scene.h"
-#include "scene/parse/problems.h"
 
 namespace glisson::fit {
 namespace {
 
-using Row = CurveFile::Row;
-using Field = CurveFile::Field;
+using TextRows = std::span<const TextRow>;
 
-constexpr std::size_t kFewestNumbers = 2;  // of a row: a way and a force
-constexpr std::size_t kLinesLookedAt = 2000;
-
-struct Line {
-  std::uint32_t number;
-  std::string_view text;
-};
-
-struct Style {
-  char separator, decimal;
-};
-// In order of preference, where two read the same numbers.
-constexpr std::array kStyles{Style{';', '.'},  Style{';', ','}, Style{'\t', '.'},
-                             Style{'\t', ','}, Style{',', '.'}, Style{',', ','}};
-
-[[noreturn]] void fail(const std::filesystem::path& file, std::uint32_t line, const std::string& what) {
-  throw SceneError(file.string() + ":" + std::to_string(line) + ":1: " + what);
-}
-
-/// Number of bytes of the UTF-8 character that starts here; 0 where none does.
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const std::size_t length = byte(0) < 0x80         ? 1
-                             : byte(0) >> 5 == 0x06 ? 2
-                             : byte(0) >> 4 == 0x0E ? 3
-                             : byte(0) >> 3 == 0x1E ? 4
-                                                    : 0;
-  if (length == 0 || length > text.size()) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if (byte(i) >> 6 != 0x02) return 0;
-  }
-  return length;
-}
-
-/// Text whose bytes are not UTF-8 is taken for Latin-1, which older machines write (µ, °).
-std::string as_utf8(std::string text) {
-  bool valid = true;
-  for (std::size_t i = 0; i < text.size() && valid;) {
-    const std::size_t length = utf8_length(std::string_view(text).substr(i));
-    valid = length > 0;
-    i += length;
-  }
-  if (valid) return text;
-  std::string converted;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80) {
-      converted += c;
-    } else {
-      converted += static_cast<char>(0xC0 | (byte >> 6));
-      converted += static_cast<char>(0x80 | (byte & 0x3F));
-    }
-  }
-  return converted;
-}
-
-/// Lines that are not blank, ended by LF, CRLF or CR.
-std::vector<Line> lines_of(std::string_view text) {
-  std::vector<Line> lines;
-  std::uint32_t number = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    ++number;
-    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
-    const std::string_view line = text.substr(at, end - at);
-    if (!detail::trimmed(line).empty()) lines.push_back({number, line});
-    at = end + (text.substr(end, 2) == "\r\n" ? 2 : 1);
-  }
-  return lines;
-}
-
-/// A field in quotes; `""` in it is one. A quote that nothing closes ends with the line.
-std::string quoted_field(std::string_view line, std::size_t& at) {
-  std::string text;
-  for (++at; at < line.size(); ++at) {
-    if (line[at] != '"') {
-      text += line[at];
-    } else if (at + 1 < line.size() && line[at + 1] == '"') {
-      text += line[++at];
-    } else {
-      ++at;
-      break;
-    }
-  }
-  return text;
-}
-
-Row split(const Line& line, char separator) {
-  Row row{line.number, {}};
-  const std::string_view text = line.text;
-  for (std::size_t at = 0; at <= text.size();) {
-    while (at < text.size() && text[at] == ' ') ++at;
-    const auto column = static_cast<std::uint32_t>(at + 1);
-    std::string word;
-    if (at < text.size() && text[at] == '"') word = quoted_field(text, at);
-    const std::size_t end = std::min(text.find(separator, std::min(at, text.size())), text.size());
-    if (at < end) word += text.substr(at, end - at);
-    row.fields.push_back({std::string(detail::trimmed(word)), column});
-    at = end + 1;
-  }
-  while (row.fields.size() > 1 && row.fields.back().text.empty()) row.fields.pop_back();  // trailing separators
-  return row;
-}
-
-std::size_t numbers_in(const Row& row, char decimal) {
-  return static_cast<std::size_t>(std::count_if(
-      row.fields.begin(), row.fields.end(), [&](const Field& f) { return parse_number(f.text, decimal).has_value(); }));
-}
-
-/// A field that holds another separator has been split at the wrong one.
-bool is_split_wrongly(const Row& row) {
-  return std::any_of(row.fields.begin(), row.fields.end(),
-                     [](const Field& f) { return f.text.find_first_of(";\t") != std::string::npos; });
-}
-
-/// How well a style explains the lines: the numbers it finds, each counted by the share of its line that is numbers.
-double score(const std::vector<Line>& lines, Style style) {
-  double sum = 0.0;
-  const std::size_t step = lines.size() / kLinesLookedAt + 1;
-  for (std::size_t i = 0; i < lines.size(); i += step) {
-    const Row row = split(lines[i], style.separator);
-    const auto numbers = static_cast<double>(numbers_in(row, style.decimal));
-    if (numbers >= kFewestNumbers && !is_split_wrongly(row))
-      sum += numbers * numbers / static_cast<double>(row.fields.size());
-  }
-  return sum;
-}
-
-Style find_style(const std::vector<Line>& lines, const TextSpec& spec, const std::filesystem::path& file) {
-  Style best{spec.separator ? spec.separator : ',', spec.decimal ? spec.decimal : '.'};
-  double most = 0.0;
-  for (const Style style : kStyles) {
-    if ((spec.separator && style.separator != spec.separator) || (spec.decimal && style.decimal != spec.decimal))
-      continue;
-    const double reached = score(lines, style);
-    if (reached > most) {
-      most = reached;
-      best = style;
-    }
-  }
-  if (most > 0.0) return best;
-  fail(file, lines.front().number,
-       "has no rows of numbers: no line has two or more, separated by `,`, `;` or tab; check the file, or say "
-       "`text.separator` and `text.decimal`");
-}
+constexpr std::size_t kFewestOfCurve = 5;  // rows; a shorter table is a summary
 
 /// What stands where a number is missing.
 bool is_missing(std::string_view text) {
-  std::string word;
-  for (const char c : text) word += static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
+  const std::string word = detail::lower_case(text);
   constexpr std::array<std::string_view, 12> kWords{"",     "nan", "-nan", "inf", "-inf", "+inf",
                                                     "null", "n/a", "na",   "-",   "#n/a", "--"};
   return std::find(kWords.begin(), kWords.end(), word) != kWords.end() || word.substr(0, 1) == "#";
 }
 
-/// Words that name columns: two or more that are neither numbers nor stand for missing ones.
-bool is_words(const Row& row, char decimal) {
-  const auto is_word = [&](const Field& f) { return !is_missing(f.text) && !parse_number(f.text, decimal); };
-  return std::count_if(row.fields.begin(), row.fields.end(), is_word) >= 2;
+/// Fields that are neither numbers nor stand for missing ones.
+std::size_t words_in(const TextRow& row, char decimal) {
+  return static_cast<std::size_t>(std::count_if(row.fields.begin(), row.fields.end(), [&](const TextField& f) {
+    return !is_missing(f.text) && !parse_number(f.text, decimal);
+  }));
 }
+
+/// Words that name columns.
+bool is_words(const TextRow& row, char decimal) { return words_in(row, decimal) >= 2; }
 
 std::string without_brackets(std::string_view text) {
   if (text.size() >= 2 && (text.front() == '(' || text.front() == '[')) text = text.substr(1, text.size() - 2);
   return std::string(detail::trimmed(text));
 }
 
-bool is_unit_text(const std::string& text) {
-  const std::string unit = without_brackets(text);
-  for (const Quantity q : {Quantity::time, Quantity::length, Quantity::force, Quantity::stress, Quantity::strain}) {
-    if (find_unit(q, unit)) return true;
-  }
-  return false;
-}
-
 /// A line of units: half of its words or more are units.
-bool is_units(const Row& row) {
+bool is_units(const TextRow& row, char decimal) {
   std::size_t words = 0, units = 0;
-  for (const Field& f : row.fields) {
+  for (const TextField& f : row.fields) {
     words += !f.text.empty();
-    units += is_unit_text(f.text);
+    units += is_unit(without_brackets(f.text)) && !parse_number(f.text, decimal);
   }
   return units >= 2 && 2 * units >= words;
 }
 
 /// Columns that most rows of numbers have.
-std::size_t usual_width(const std::vector<Row>& rows, char decimal) {
+std::size_t usual_width(TextRows rows, char decimal) {
   std::map<std::size_t, std::size_t> counts;
-  for (const Row& row : rows) {
+  for (const TextRow& row : rows) {
     if (numbers_in(row, decimal) >= kFewestNumbers) ++counts[row.fields.size()];
   }
   const auto most =
@@ -214,46 +64,236 @@ std::size_t usual_width(const std::vector<Row>& rows, char decimal) {
 }
 
 /// First row of numbers as wide as most; the number of rows where there is none.
-std::size_t first_numbers(const std::vector<Row>& rows, std::size_t width, char decimal, std::size_t from) {
-  for (std::size_t i = from; i < rows.size(); ++i) {
+std::size_t first_numbers(TextRows rows, std::size_t width, char decimal) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].fields.size() == width && numbers_in(rows[i], decimal) >= kFewestNumbers) return i;
   }
   return rows.size();
 }
 
-void take_names(CurveFile& result, const Row& names, const Row* units) {
-  result.names_line = names.line;
-  for (std::size_t i = 0; i < names.fields.size(); ++i) {
-    result.names.push_back(names.fields[i].text);
-    const bool below = units && i < units->fields.size() && !units->fields[i].text.empty();
-    result.units.push_back(below ? without_brackets(units->fields[i].text) : split_title(names.fields[i].text).unit);
+/// Lines below the numbers that hold no field of a row: "end of test".
+bool is_footer(const TextRow& row, char decimal) {
+  return numbers_in(row, decimal) == 0 &&
+         std::none_of(row.fields.begin(), row.fields.end(), [](const TextField& f) { return is_missing(f.text); });
+}
+
+/// A line of prose with numbers in it: "Interval and data points: 2 16".
+bool begins_with_word(const TextRow& row, char decimal) {
+  const auto first =
+      std::find_if(row.fields.begin(), row.fields.end(), [](const TextField& f) { return !f.text.empty(); });
+  return first != row.fields.end() && !is_missing(first->text) && !parse_number(first->text, decimal);
+}
+
+/// A table of the file: its names, its units where they have a line, its numbers. Indices of lines.
+struct Table {
+  std::size_t names = 0;  ///< line; that of the first numbers where there is none
+  std::size_t first = 0, last = 0;
+  bool named = false, units = false;
+};
+
+class Tables {
+ public:
+  Tables(TextRows rows, char decimal) : rows_(rows), decimal_(decimal) {}
+
+  /// The tables one below the other, whose lines of names say their units or are alike; or the one below the last words.
+  std::vector<Table> find() const {
+    std::vector<Table> found;
+    const std::vector<std::size_t> names = names_of_several();
+    for (std::size_t i = 0; i < names.size(); ++i)
+      found.push_back(named(names[i], i + 1 < names.size() ? names[i + 1] : rows_.size()));
+    const bool none = found.empty() || (found.size() == 1 && found[0].last - found[0].first < kFewestOfCurve);
+    return none ? std::vector<Table>{only()} : found;
+  }
+
+  /// The table below a line of names that is said.
+  Table below(std::size_t names) const {
+    std::size_t end = rows_.size();
+    for (const std::size_t other : names_of_several()) {
+      if (other > names) end = std::min(end, other);
+    }
+    return named(names, end);
+  }
+
+ private:
+  bool is_units_at(std::size_t i) const { return i < rows_.size() && is_units(rows_[i], decimal_); }
+
+  /// The last line of words above the first row of numbers as wide as most.
+  Table only() const {
+    const std::size_t width = usual_width(rows_, decimal_);
+    const std::size_t first = first_numbers(rows_, width, decimal_);
+    std::size_t words = first;
+    while (words > 0 && !is_words(rows_[words - 1], decimal_)) --words;
+    Table table{words > 0 ? words - 1 : first, words > 0 ? words : first, rows_.size(), words > 0, false};
+    table.units = words > 1 && is_units_at(words - 1) && is_words(rows_[words - 2], decimal_);
+    if (table.units) --table.names;
+    return without_footer(table);
+  }
+
+  Table named(std::size_t names, std::size_t end) const {
+    Table table{names, names + 1, end, true, is_units_at(names + 1)};
+    table.first += table.units;
+    if (end < rows_.size()) {
+      while (table.last > table.first && begins_with_word(rows_[table.last - 1], decimal_)) --table.last;
+    }
+    return without_footer(table);
+  }
+
+  Table without_footer(Table table) const {
+    while (table.last > table.first && is_footer(rows_[table.last - 1], decimal_)) --table.last;
+    return table;
+  }
+
+  /// Whether a line of more words than numbers has numbers below it.
+  bool is_above_numbers(std::size_t i) const {
+    const TextRow& row = rows_[i];
+    if (!is_words(row, decimal_) || words_in(row, decimal_) <= numbers_in(row, decimal_) || is_units(row, decimal_))
+      return false;
+    const std::size_t next = i + (is_units_at(i + 1) ? 2 : 1);
+    return next < rows_.size() && numbers_in(rows_[next], decimal_) >= kFewestNumbers &&
+           numbers_in(rows_[next], decimal_) >= words_in(rows_[next], decimal_);
+  }
+
+  bool says_units(std::size_t i) const {
+    const auto has = [](const TextField& f) { return !split_title(f.text).unit.empty(); };
+    return is_units_at(i + 1) || std::any_of(rows_[i].fields.begin(), rows_[i].fields.end(), has);
+  }
+
+  bool is_alike(std::size_t a, std::size_t b) const {
+    return std::equal(rows_[a].fields.begin(), rows_[a].fields.end(), rows_[b].fields.begin(), rows_[b].fields.end(),
+                      [](const TextField& x, const TextField& y) { return x.text == y.text; });
+  }
+
+  /// Lines of names of which there are several: each says units, or is the same as another.
+  std::vector<std::size_t> names_of_several() const {
+    std::vector<std::size_t> above, names;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (is_above_numbers(i)) above.push_back(i);
+    }
+    for (const std::size_t i : above) {
+      const bool again =
+          std::any_of(above.begin(), above.end(), [&](std::size_t j) { return i != j && is_alike(i, j); });
+      if (again || says_units(i)) names.push_back(i);
+    }
+    return names;
+  }
+
+  TextRows rows_;
+  char decimal_;
+};
+
+/// `1 in lines 8 to 12 (5 rows), 2 in …`.
+std::string list_of(const std::vector<Table>& tables, TextRows rows) {
+  std::string list;
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    const Table& t = tables[i];
+    list += (i ? ", " : "") + std::to_string(i + 1);
+    if (t.first < t.last)
+      list += " in lines " + std::to_string(rows[t.first].line) + " to " + std::to_string(rows[t.last - 1].line);
+    list += " (" + detail::count_text(t.last - t.first, "row", "rows") + ")";
+  }
+  return list;
+}
+
+Table chosen_table(const std::vector<Table>& tables, TextRows rows, const TextSpec& spec,
+                   const std::filesystem::path& file) {
+  const std::string count = detail::count_text(tables.size(), "interval", "intervals");
+  if (spec.interval > tables.size())
+    fail_in(file, rows.front().line,
+            "has " + count + ", and interval = " + std::to_string(spec.interval) +
+                " is asked for: " + list_of(tables, rows));
+  if (spec.interval > 0) return tables[spec.interval - 1];
+  std::vector<Table> long_ones;
+  for (const Table& t : tables) {
+    if (t.last - t.first >= kFewestOfCurve) long_ones.push_back(t);
+  }
+  if (tables.size() == 1 || long_ones.empty()) return tables.front();
+  if (long_ones.size() == 1) return long_ones.front();
+  fail_in(file, rows[tables[1].names].line,
+          "holds " + count + ": " + list_of(tables, rows) + "; give interval = 1 to " + std::to_string(tables.size()));
+}
+
+/// The table that is meant.
+Table find_table(TextRows rows, char decimal, const TextSpec& spec, const std::filesystem::path& file) {
+  const Tables tables(rows, decimal);
+  if (spec.names_line == 0) return chosen_table(tables.find(), rows, spec, file);
+  const auto names =
+      std::find_if(rows.begin(), rows.end(), [&](const TextRow& r) { return r.line == spec.names_line; });
+  if (names == rows.end())
+    fail_in(file, spec.names_line,
+            "is said to hold the columns' names (`text.names_line`), but is blank or after the end");
+  return tables.below(static_cast<std::size_t>(names - rows.begin()));
+}
+
+/// The names of the columns; of those that blanks part as many as there are columns, or none.
+void take_names(CurveFile& result, TextRows rows, const Table& table) {
+  const TextRow& line = rows[table.names];
+  const bool blanks = result.separator == ' ';
+  std::vector<TextField> names = blanks ? split_names(line.text, result.columns) : line.fields;
+  if (names.empty()) return;
+  result.names_line = line.line;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::string_view name = names[i].text;
+    if (i == 0 && name.starts_with('#')) name = detail::trimmed(name.substr(1));
+    result.names.emplace_back(name);
+    const auto* units = table.units ? &rows[table.names + 1].fields : nullptr;
+    const bool below = units && i < units->size() && !(*units)[i].text.empty();
+    result.units.push_back(below ? without_brackets((*units)[i].text) : split_title(name).unit);
   }
 }
 
-/// Finds the line of names above row `first`, and whether units follow it. @return first row after them
-std::size_t find_names(CurveFile& result, const std::vector<Row>& rows, std::size_t first) {
-  std::size_t words = first;
-  while (words > 0 && !is_words(rows[words - 1], result.decimal)) --words;
-  if (words == 0) return first;
-  const bool units = is_units(rows[words - 1]) && words > 1 && is_words(rows[words - 2], result.decimal);
-  take_names(result, rows[words - (units ? 2 : 1)], units ? &rows[words - 1] : nullptr);
-  return words;
+/// Whether a field and the next are one number whose mark of thousands has parted them.
+bool is_parted_number(const std::string& before, const std::string& after) {
+  return has_thousands(before + "," + after, '.');
 }
 
-/// The same where the user says the line of names.
-std::size_t said_names(CurveFile& result, const std::vector<Row>& rows, std::uint32_t line) {
-  const auto names = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.line == line; });
-  if (names == rows.end())
-    fail(result.file, line, "is said to hold the columns' names (`text.names_line`), but is blank or after the end");
-  const bool units = names + 1 != rows.end() && is_units(names[1]);
-  take_names(result, *names, units ? &names[1] : nullptr);
-  return static_cast<std::size_t>(names - rows.begin()) + (units ? 2 : 1);
+/// Complains of rows wider than others because commas part columns and thousands alike.
+void require_whole_numbers(const CurveFile& file) {
+  if (file.separator != ',') return;
+  std::size_t width = file.names.size();
+  if (width == 0) {
+    width = file.columns;
+    for (const CurveFile::Row& row : file.rows) {
+      if (row.fields.size() >= kFewestNumbers) width = std::min(width, row.fields.size());
+    }
+  }
+  for (const CurveFile::Row& row : file.rows) {
+    for (std::size_t i = 0; row.fields.size() > width && i + 1 < row.fields.size(); ++i) {
+      const std::string &a = row.fields[i].text, &b = row.fields[i + 1].text;
+      if (is_parted_number(a, b))
+        fail_in(file.file, row.line,
+                "has " + std::to_string(row.fields.size()) + " fields where " + std::to_string(width) +
+                    " are expected: in \"" + a + "," + b +
+                    "\" a comma parts thousands as well as columns; export with `;` or tabs between the columns, or "
+                    "with numbers in quotes");
+    }
+  }
 }
 
-/// Lines below the numbers that hold no field of a row: "end of test".
-bool is_footer(const Row& row, char decimal) {
-  return numbers_in(row, decimal) == 0 &&
-         std::none_of(row.fields.begin(), row.fields.end(), [](const Field& f) { return is_missing(f.text); });
+/// Complains of a column in which one large number has a mark of thousands and another has not.
+void require_one_notation(const CurveFile& file) {
+  constexpr double kLeast = 1000.0;
+  struct Seen {
+    const CurveFile::Row *marked = nullptr, *bare = nullptr;
+  };
+  std::vector<Seen> seen;
+  for (const CurveFile::Row& row : file.rows) {
+    if (seen.size() < row.fields.size()) seen.resize(row.fields.size());
+    for (std::size_t i = 0; i < row.fields.size(); ++i) {
+      const std::string& text = row.fields[i].text;
+      const auto value = parse_number(text, file.decimal);
+      if (!value || std::abs(*value) < kLeast || text.find_first_of("eE") != std::string::npos) continue;
+      const CurveFile::Row*& first = has_thousands(text, file.decimal) ? seen[i].marked : seen[i].bare;
+      if (!first) first = &row;
+    }
+  }
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (!seen[i].marked || !seen[i].bare) continue;
+    fail_in(file.file, seen[i].marked->line,
+            "\"" + seen[i].marked->fields[i].text + "\" in " + file.title(i) + " has a mark of thousands, and \"" +
+                seen[i].bare->fields[i].text + "\" in line " + std::to_string(seen[i].bare->line) +
+                " has none; give text.decimal = \"" + (file.decimal == '.' ? "," : ".") +
+                "\" if it is a decimal mark, or correct the file");
+  }
 }
 
 }  // namespace
@@ -263,47 +303,24 @@ std::string CurveFile::title(std::size_t column) const {
   return "column " + std::to_string(column + 1);
 }
 
-std::optional<double> parse_number(std::string_view text, char decimal) {
-  text = detail::trimmed(text);
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  std::string plain(text);
-  if (decimal == ',') {
-    if (plain.find('.') != std::string::npos) return std::nullopt;
-    std::replace(plain.begin(), plain.end(), ',', '.');
-  }
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
-  if (error != std::errc{} || end != plain.data() + plain.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 CurveFile parse_curve_file(std::string text, const std::filesystem::path& file, const TextSpec& spec) {
-  constexpr std::string_view kMark = "\xEF\xBB\xBF";
-  if (text.compare(0, 2, "\xFF\xFE") == 0 || text.compare(0, 2, "\xFE\xFF") == 0)
-    fail(file, 1, "is written in UTF-16; save it as UTF-8 or plain text");
-  if (text.compare(0, kMark.size(), kMark) == 0) text.erase(0, kMark.size());
-  if (text.find('\0') != std::string::npos)
-    fail(file, 1, "is not text: it contains bytes of value 0; export it as .csv");
-  text = as_utf8(std::move(text));
-  const std::vector<Line> lines = lines_of(text);
-  if (lines.empty()) fail(file, 1, "is empty; expected a line of names and rows of numbers");
-  const Style style = find_style(lines, spec, file);
+  const DecodedText decoded = decode_text(std::move(text));
+  if (!decoded.problem.empty()) fail_in(file, 1, decoded.problem);
+  std::vector<TextRow> rows = lines_of(decoded.text);
+  if (rows.empty()) fail_in(file, 1, "is empty; expected a line of names and rows of numbers");
+  const TextStyle style = find_style(rows, spec, file);
+  const Table table = find_table(rows, style.decimal, spec, file);
+  if (table.first >= table.last) fail_in(file, rows.back().line, "has no rows of numbers below the columns' names");
   CurveFile result;
   result.file = file;
   result.separator = style.separator;
   result.decimal = style.decimal;
-  std::vector<Row> rows;
-  for (const Line& line : lines) rows.push_back(split(line, style.separator));
-  result.columns = usual_width(rows, style.decimal);
-  const std::size_t after_names = spec.names_line ? said_names(result, rows, spec.names_line) : 0;
-  std::size_t first = first_numbers(rows, result.columns, style.decimal, after_names);
-  first = spec.names_line ? after_names : find_names(result, rows, first);
-  std::size_t last = rows.size();
-  while (last > first && is_footer(rows[last - 1], style.decimal)) --last;
-  if (first >= last) fail(file, lines.back().number, "has no rows of numbers below the columns' names");
-  rows.resize(last);
-  result.rows.assign(std::make_move_iterator(rows.begin() + static_cast<std::ptrdiff_t>(first)),
-                     std::make_move_iterator(rows.end()));
+  const TextRows numbers = TextRows(rows).subspan(table.first, table.last - table.first);
+  result.columns = usual_width(numbers, style.decimal);
+  if (table.named) take_names(result, rows, table);
+  for (const TextRow& row : numbers) result.rows.push_back({row.line, row.fields});
+  require_whole_numbers(result);
+  require_one_notation(result);
   return result;
 }
 

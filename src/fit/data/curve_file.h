@@ -4,7 +4,11 @@
 //   Speed (mm/min): 10;           ┘ prose, any number of lines
 //   Time (s);Weg (mm);Kraft (N)     names, the last line of words above the numbers
 //   s;mm;N                          units, where they have a line of their own
-//   0,1;0,0069;0,0231               numbers: separator `,` `;` or tab, decimal point or comma, found or said
+//   0,1;0,0069;1.023,1              numbers: separator `,` `;` tab or blanks, decimal point or comma, found or said
+//
+// in the order   text_encoding ─▶ text_layout ─▶ names, units and intervals (here) ─▶ choose_column ─▶ raw_test
+//
+// A file may hold several tables of this form one below the other, as a rheometer's intervals.
 //
 // The parsers that Debian 12 and Ubuntu 24.04 package split lines at a separator that is known beforehand (libcsv3; libfccp
 // at compile time); finding it, the decimal mark, the names and the units is what takes the work here, so that they
@@ -13,28 +17,18 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "fit/data/measured_number.h"
+#include "fit/data/text_layout.h"
 
 namespace glisson::fit {
 
-/// How a file is written, where it shall not be found out.
-struct TextSpec {
-  char separator = 0;            ///< 0: found
-  char decimal = 0;              ///< '.' or ','; 0: found
-  std::uint32_t names_line = 0;  ///< line of the columns' names, from 1; 0: found
-};
-
 struct CurveFile {
-  struct Field {
-    std::string text;
-    std::uint32_t column = 0;  ///< byte of the line, from 1
-  };
   struct Row {
     std::uint32_t line = 0;
-    std::vector<Field> fields;
+    std::vector<TextField> fields;
   };
   std::filesystem::path file;
   char separator = ',', decimal = '.';
@@ -48,10 +42,7 @@ struct CurveFile {
   std::string title(std::size_t column) const;
 };
 
-/// A number as the file writes it; nothing where it is none or not finite.
-std::optional<double> parse_number(std::string_view text, char decimal);
-
-/// @throws SceneError `file:line:column: …` where the file cannot be read, is empty or has no rows of numbers
+/// @throws SceneError `file:line:column: …` where the file cannot be read, is empty, has no rows of numbers or several tables
 CurveFile read_curve_file(const std::filesystem::path& file, const TextSpec& spec = {});
 /// The same from text. @param file  stands for it in messages
 CurveFile parse_curve_file(std::string text, const std::filesystem::path& file, const TextSpec& spec = {});

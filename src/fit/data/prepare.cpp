@@ -294,6 +294,11 @@ std::string CurveAccount::text() const {
   return t + "; " + std::to_string(points) + " points, noise of a row " + measured_text(row_noise, unit, 4);
 }
 
+std::string CurveAccount::skipped_text() const {
+  return std::to_string(rows_skipped) + " of " + std::to_string(rows_read) + " rows of " + name +
+         " have no number in a column that is needed and were skipped (skip_bad_rows).";
+}
+
 std::optional<PreparedCurve> prepare(const RawTest& test, const DataSpec& spec, const SpecimenSize& size,
                                      scene::Problems& problems) {
   return Preparation(test, spec, size, problems).run();

@@ -38,6 +38,8 @@ struct CurveAccount {
 
   /// One line of words.
   std::string text() const;
+  /// How many rows `skip_bad_rows` skipped, in a sentence.
+  std::string skipped_text() const;
 };
 
 struct PreparedCurve {

@@ -39,53 +39,104 @@ std::string fault_of(const CurveFile& file, const CurveFile::Row& row, const Cho
   return what + " in " + column.source.title;
 }
 
-struct Rows {
-  const CurveFile& file;
-  const DataSpec& spec;
-  scene::Problems& problems;
-  std::size_t bad = 0;
-
-  /// Whether a row has nothing in any of the columns: tests of other lengths lie beside this one.
-  static bool empty(const CurveFile::Row& row, const std::vector<const Reading*>& readings) {
-    return std::all_of(readings.begin(), readings.end(), [&](const Reading* r) {
-      return r->column.index < row.fields.size() && row.fields[r->column.index].text.empty();
-    });
+/// Rows without a number that is needed: which of a test, and what is wrong with the first.
+class LostRows {
+ public:
+  void add(std::size_t row, std::uint32_t line, std::uint32_t column, std::string fault) {
+    rows_.push_back(row);
+    lines_.push_back(line);
+    if (faults_.size() < kBadRowsShown) faults_.push_back({{line, column, {}}, std::move(fault)});
   }
 
-  /// The numbers of the columns in a row; complains of the first that is none.
-  std::optional<std::vector<double>> numbers(const CurveFile::Row& row, const std::vector<const Reading*>& readings) {
-    std::vector<double> values;
-    for (const Reading* r : readings) {
-      const std::size_t i = r->column.index;
-      const auto value = i < row.fields.size() ? parse_number(row.fields[i].text, file.decimal) : std::nullopt;
-      if (!value || !(std::abs(*value * r->factor) < kLargest)) {
-        complain(row, r->column);
-        return std::nullopt;
-      }
-      values.push_back(*value * r->factor);
+  std::size_t count() const { return rows_.size(); }
+
+  /// Complains of them where they are not to be skipped, or are too many or too near to each other to be slips.
+  void complain(std::size_t of, bool skip, scene::Problems& problems) const {
+    if (rows_.empty()) return;
+    const std::string loss = loss_of(of);
+    if (skip && loss.empty()) return;
+    for (const auto& [origin, fault] : faults_)
+      problems.add(origin, "", fault + (loss.empty() ? "; correct the row, or give skip_bad_rows = true" : ""));
+    const std::string count =
+        std::to_string(rows_.size()) + " of " + std::to_string(of) + " rows are bad" +
+        (rows_.size() > kBadRowsShown ? ", the first " + std::to_string(kBadRowsShown) + " named above"
+                                      : std::string{});
+    if (!loss.empty())
+      problems.add({lines_.back(), 1, {}}, "",
+                   count + ": " + loss + (skip ? ", too much for skip_bad_rows" : "") +
+                       "; correct them, choose another column, or say text.separator and text.decimal");
+    else if (rows_.size() > kBadRowsShown)
+      problems.add({lines_.back(), 1, {}}, "", count);
+  }
+
+ private:
+  struct Fault {
+    scene::Origin origin;
+    std::string text;
+  };
+
+  /// What of a test would be lost with these rows; empty: nothing, they are scattered slips.
+  std::string loss_of(std::size_t of) const {
+    constexpr double kMost = 0.05, kLongestRun = 0.01;  // of the rows
+    const auto part = [&](double share, std::size_t least) {
+      return std::max(least, static_cast<std::size_t>(share * static_cast<double>(of)));
+    };
+    if (rows_.size() == of) return "all of the test";
+    if (rows_.size() > part(kMost, 1)) return "more than a twentieth of the test";
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (i > 0 && rows_[i] != rows_[i - 1] + 1) begin = i;
+      if (i - begin + 1 > part(kLongestRun, 2))
+        return "lines " + std::to_string(lines_[begin]) + " to " + std::to_string(lines_[i]) + " are lost in a row";
     }
-    return values;
+    if (!is_scattered(of))
+      return "they lie together, between lines " + std::to_string(lines_.front()) + " and " +
+             std::to_string(lines_.back());
+    return {};
   }
 
-  void complain(const CurveFile::Row& row, const ChosenColumn& column) {
-    ++bad;
-    if (spec.skip_bad_rows || bad > kBadRowsShown) return;
-    const std::uint32_t at = column.index < row.fields.size() ? row.fields[column.index].column : 1;
-    problems.add({row.line, at, {}}, "",
-                 fault_of(file, row, column) + "; correct the row, or give skip_bad_rows = true");
+  /// Whether rows drawn at random would lie like these: the largest distance of their distribution from an even one passes
+  /// 1.95/√n once in a thousand draws, by Kolmogorov's law.
+  bool is_scattered(std::size_t of) const {
+    constexpr double kOnceInAThousand = 1.95;
+    const auto n = static_cast<double>(rows_.size());
+    double distance = 0.0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const double place = (static_cast<double>(rows_[i]) + 0.5) / static_cast<double>(of);
+      const auto before = static_cast<double>(i);
+      distance = std::max({distance, std::abs(place - before / n), std::abs(place - (before + 1.0) / n)});
+    }
+    return distance * std::sqrt(n) <= kOnceInAThousand;
   }
 
-  void finish(std::size_t good) {
-    const std::uint32_t line = file.rows.back().line;
-    if (!spec.skip_bad_rows && bad > kBadRowsShown)
-      problems.add({line, 1, {}}, "",
-                   std::to_string(bad) + " of " + std::to_string(bad + good) + " rows are bad, the first " +
-                       std::to_string(kBadRowsShown) + " named above");
-    if (spec.skip_bad_rows && good == 0)
-      problems.add({line, 1, {}}, "",
-                   "all " + std::to_string(bad) + " rows are bad; check the columns and their units");
-  }
+  std::vector<std::size_t> rows_;
+  std::vector<std::uint32_t> lines_;
+  std::vector<Fault> faults_;
 };
+
+/// Whether a row has nothing in any of the columns: tests of other lengths lie beside this one.
+bool is_empty_in(const CurveFile::Row& row, const std::vector<const Reading*>& readings) {
+  return std::all_of(readings.begin(), readings.end(), [&](const Reading* r) {
+    return r->column.index < row.fields.size() && row.fields[r->column.index].text.empty();
+  });
+}
+
+/// The numbers of the columns in row `at` of a test; nothing where one of them is none.
+std::optional<std::vector<double>> numbers_of(const CurveFile& file, const CurveFile::Row& row, std::size_t at,
+                                              const std::vector<const Reading*>& readings, LostRows& lost) {
+  std::vector<double> values;
+  for (const Reading* r : readings) {
+    const std::size_t i = r->column.index;
+    const bool there = i < row.fields.size();
+    const auto value = there ? parse_number(row.fields[i].text, file.decimal) : std::nullopt;
+    if (!value || !(std::abs(*value * r->factor) < kLargest)) {
+      lost.add(at, row.line, there ? row.fields[i].column : 1, fault_of(file, row, r->column));
+      return std::nullopt;
+    }
+    values.push_back(*value * r->factor);
+  }
+  return values;
+}
 
 /// Median of the first percent of some rows, of one row at least and five at most: a bad first row of many decides nothing,
 /// and a sparse curve has gone nowhere yet.
@@ -349,10 +400,11 @@ RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize
   const std::vector<ChosenColumn> checked =
       spec.test == LabTest::compression ? check_columns(file) : std::vector<ChosenColumn>{};
   for (const ChosenColumn& c : checked) test.checks.push_back({c.source, {}});
-  Rows rows{file, spec, problems};
+  LostRows lost;
+  std::size_t rows = 0;
   for (const CurveFile::Row& row : file.rows) {
-    if (Rows::empty(row, {&driven, &answering})) continue;
-    const auto values = rows.numbers(row, readings);
+    if (is_empty_in(row, {&driven, &answering})) continue;
+    const auto values = numbers_of(file, row, rows++, readings, lost);
     if (!values) continue;
     test.lines.push_back(row.line);
     test.displacement.push_back((*values)[0]);
@@ -360,8 +412,8 @@ RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize
     if (time) test.time.push_back((*values)[2]);
     read_checks(test, checked, file, row);
   }
-  rows.finish(test.lines.size());
-  test.rows_skipped = rows.bad;
+  lost.complain(rows, spec.skip_bad_rows, problems);
+  test.rows_skipped = lost.count();
   test.displacement_source = driven.column.source;
   test.force_source = answering.column.source;
   test.measurement = measurement_of(spec, *columns, size, time || spec.speed);

@@ -134,10 +134,14 @@ SectionSpec savitzky_golay_kind() {
 
 void add_mark_keys(Section<TextSpec>& s) {
   s.choice<char>("separator", &TextSpec::separator,
-                 {{"auto", 0, "detected"}, {",", ',', ""}, {";", ';', ""}, {"tab", '\t', ""}},
+                 {{"auto", 0, "detected"},
+                  {",", ',', ""},
+                  {";", ';', ""},
+                  {"tab", '\t', ""},
+                  {"blanks", ' ', "any number of blanks"}},
                  "separator of the columns");
   s.choice<char>("decimal", &TextSpec::decimal, {{"auto", 0, "detected"}, {".", '.', ""}, {",", ',', ""}},
-                 "decimal mark");
+                 "decimal mark; the other of the two, a blank or an apostrophe may part thousands");
 }
 
 /// One column of each list at most.
@@ -195,6 +199,9 @@ void finish_data(DataSpec& x, const Node& table, const Place& place) {
                    "torque and time");
   if (x.prestretch != 1.0 && x.test != LabTest::oscillation)
     place.complain(*table.find("prestretch"), "prestretch", "belongs to test = \"oscillation\"");
+  if (x.text.names_line > 0 && x.text.interval > 0)
+    place.complain(*table.find("interval"), "interval",
+                   "contradicts `text.names_line`, which says the table already; give one of the two");
   if (x.files.empty()) place.complain(*table.find("files"), "files", "is empty; name at least one file");
   require_columns(x, table, place);
 }
@@ -226,16 +233,17 @@ const SectionSpec& column_section() {
 
 const SectionSpec& columns_section() {
   static const SectionSpec section = [] {
-    Section<ColumnsSpec> s("data.columns",
-                           "Meaning of the columns: one that is driven, one that answers, and the time. A column that "
-                           "is not given is detected if exactly one name begins with a customary word: time; "
-                           "displacement, compression, extension, depth, …; force, load (also in German, French or "
-                           "Spanish); stretch; strain; stress; shear; angle; torque; frequency. A file may hold "
-                           "several tests side by side: rows that "
-                           "are empty in the columns of one are no rows of it.");
+    Section<ColumnsSpec> s(
+        "data.columns",
+        "Meaning of the columns: one that is driven, one that answers, and the time. A column that "
+        "is not given is detected if exactly one name begins with a customary word, in English, German, "
+        "French or Spanish: time; displacement, compression, extension, depth, …; force, load, …; "
+        "stretch; strain; stress; shear; angle; torque; frequency; storage and loss modulus. "
+        "Adjectives may precede it (\"Compressive load\"). A file may hold several tests side by side: rows that "
+        "are empty in the columns of one are no rows of it.");
     s.table("time", column_section(), &ColumnsSpec::time, "time, in s, ms or min");
     s.table("displacement", column_section(), &ColumnsSpec::displacement,
-            "displacement of the tool, in m, cm, mm, µm, um or in");
+            "displacement of the tool, in m, cm, mm, µm, nm or in");
     s.table("strain", column_section(), &ColumnsSpec::strain,
             "engineering strain, in - or %, instead of displacement; needs the height");
     s.table("stretch", column_section(), &ColumnsSpec::stretch,
@@ -247,9 +255,10 @@ const SectionSpec& columns_section() {
     s.table("angle", column_section(), &ColumnsSpec::angle,
             "angle of twist of one face against the other, in rad or deg");
     s.table("frequency", column_section(), &ColumnsSpec::frequency, "of an oscillation, in Hz, kHz or rad/s");
-    s.table("force", column_section(), &ColumnsSpec::force, "force, in N, mN, kN, gf, kgf or lbf");
+    s.table("force", column_section(), &ColumnsSpec::force, "force, in N, mN, µN, nN, kN, gf, kgf or lbf");
     s.table("stress", column_section(), &ColumnsSpec::stress,
-            "nominal stress, force over area at rest, in Pa, kPa or MPa, instead of force; needs the area");
+            "nominal stress, force over area at rest, in Pa, kPa, MPa, N/mm², kgf/cm² or psi, instead of force; needs "
+            "the area");
     s.table("cauchy_stress", column_section(), &ColumnsSpec::cauchy_stress,
             "true stress, force over the present area, in Pa, kPa or MPa");
     s.table("second_piola_stress", column_section(), &ColumnsSpec::second_piola_stress,
@@ -444,7 +453,14 @@ const SectionSpec& data_section() {
         .in("mm")
         .within(above(0))
         .otherwise("that of the specimen");
-    s.key("skip_bad_rows", &D::skip_bad_rows, "skips rows that lack a required number");
+    s.key(
+         "interval", [](D & d) -> auto& { return d.text.interval; },
+         "which of several tables of the files, one below the other as the intervals of a rheometer, from 1")
+        .within(between(1, 100000))
+        .otherwise("the files hold one table");
+    s.key("skip_bad_rows", &D::skip_bad_rows,
+          "skips rows that lack a required number, a twentieth of the test at most, and only where they lie scattered; "
+          "the result says how many");
     s.key("unlikely", &D::unlikely, "accepts numbers that look like a wrong unit");
     s.table("contact", contact_section(), &D::contact, "first contact of the tool");
     s.table("cycle", cycle_section(), &D::cycle, "part of a test with loading and unloading");

@@ -2,34 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <span>
+#include <string_view>
 
 namespace glisson::fit {
 namespace {
-
-constexpr std::array<std::string_view, 6> kTimeWords{"time", "test time", "zeit", "prüfzeit", "temps", "tiempo"};
-constexpr std::array<std::string_view, 17> kDisplacementWords{
-    "displacement", "compression", "extension",   "position",        "depth",         "indentation",
-    "stroke",       "crosshead",   "travel",      "standard travel", "weg",           "traversenweg",
-    "standardweg",  "verformung",  "deplacement", "déplacement",     "desplazamiento"};
-constexpr std::array<std::string_view, 3> kStrainWords{"strain", "engineering strain", "nominal strain"};
-constexpr std::array<std::string_view, 3> kStretchWords{"stretch", "lambda", "λ"};
-constexpr std::array<std::string_view, 4> kTrueStrainWords{"true strain", "true_strain", "log strain",
-                                                           "logarithmic strain"};
-constexpr std::array<std::string_view, 2> kGreenStrainWords{"green", "e_green"};
-constexpr std::array<std::string_view, 6> kShearWords{"shear strain", "shear_strain", "shear amount",
-                                                      "shear_amount", "gamma",        "γ"};
-constexpr std::array<std::string_view, 3> kAngleWords{"angle", "twist", "rotation"};
-constexpr std::array<std::string_view, 2> kFrequencyWords{"frequency", "freq"};
-constexpr std::array<std::string_view, 7> kForceWords{"force",         "load",      "standard force", "kraft",
-                                                      "standardkraft", "prüfkraft", "fuerza"};
-constexpr std::array<std::string_view, 6> kStressWords{
-    "stress", "nominal stress", "nominal_stress", "engineering stress", "engineering_stress", "shear stress"};
-constexpr std::array<std::string_view, 3> kCauchyWords{"cauchy", "true stress", "true_stress"};
-constexpr std::array<std::string_view, 2> kPiolaWords{"second piola", "pk2"};
-constexpr std::array<std::string_view, 2> kTorqueWords{"torque", "moment"};
-constexpr std::array<std::string_view, 4> kAxialWords{"axial force", "axial_force", "normal force", "normal_force"};
-constexpr std::array<std::string_view, 3> kStorageWords{"storage", "g'", "g′"};
-constexpr std::array<std::string_view, 3> kLossWords{"loss mod", "g''", "g″"};
 
 /// A column that some test takes, driven or answering.
 template <class Kind>
@@ -38,29 +15,31 @@ struct ColumnRole {
   std::string_view key;  ///< in [data.columns]
   ColumnSpec ColumnsSpec::*spec;
   Quantity quantity;
-  std::span<const std::string_view> words;  ///< with which its name customarily begins, in small letters
-  bool needs_size = false;                  ///< to be converted, or to be of use: a point has none
+  ColumnMeaning meaning;
+  bool needs_size = false;  ///< to be converted, or to be of use: a point has none
 };
 
 using C = ColumnsSpec;
 const std::array<ColumnRole<Drive>, 8> kDrives{
-    {{Drive::displacement, "displacement", &C::displacement, Quantity::length, kDisplacementWords, true},
-     {Drive::strain, "strain", &C::strain, Quantity::strain, kStrainWords},
-     {Drive::stretch, "stretch", &C::stretch, Quantity::stretch, kStretchWords},
-     {Drive::true_strain, "true_strain", &C::true_strain, Quantity::strain, kTrueStrainWords},
-     {Drive::green_strain, "green_strain", &C::green_strain, Quantity::strain, kGreenStrainWords},
-     {Drive::shear, "shear", &C::shear, Quantity::strain, kShearWords},
-     {Drive::angle, "angle", &C::angle, Quantity::angle, kAngleWords, true},
-     {Drive::frequency, "frequency", &C::frequency, Quantity::frequency, kFrequencyWords}}};
+    {{Drive::displacement, "displacement", &C::displacement, Quantity::length, ColumnMeaning::displacement, true},
+     {Drive::strain, "strain", &C::strain, Quantity::strain, ColumnMeaning::strain},
+     {Drive::stretch, "stretch", &C::stretch, Quantity::stretch, ColumnMeaning::stretch},
+     {Drive::true_strain, "true_strain", &C::true_strain, Quantity::strain, ColumnMeaning::true_strain},
+     {Drive::green_strain, "green_strain", &C::green_strain, Quantity::strain, ColumnMeaning::green_strain},
+     {Drive::shear, "shear", &C::shear, Quantity::strain, ColumnMeaning::shear},
+     {Drive::angle, "angle", &C::angle, Quantity::angle, ColumnMeaning::angle, true},
+     {Drive::frequency, "frequency", &C::frequency, Quantity::frequency, ColumnMeaning::frequency}}};
 const std::array<ColumnRole<Answer>, 8> kAnswers{
-    {{Answer::force, "force", &C::force, Quantity::force, kForceWords, true},
-     {Answer::stress, "stress", &C::stress, Quantity::stress, kStressWords},
-     {Answer::cauchy_stress, "cauchy_stress", &C::cauchy_stress, Quantity::stress, kCauchyWords},
-     {Answer::second_piola_stress, "second_piola_stress", &C::second_piola_stress, Quantity::stress, kPiolaWords},
-     {Answer::torque, "torque", &C::torque, Quantity::torque, kTorqueWords, true},
-     {Answer::axial_force, "axial_force", &C::axial_force, Quantity::force, kAxialWords, true},
-     {Answer::storage_modulus, "storage_modulus", &C::storage_modulus, Quantity::stress, kStorageWords},
-     {Answer::loss_modulus, "loss_modulus", &C::loss_modulus, Quantity::stress, kLossWords}}};
+    {{Answer::force, "force", &C::force, Quantity::force, ColumnMeaning::force, true},
+     {Answer::stress, "stress", &C::stress, Quantity::stress, ColumnMeaning::stress},
+     {Answer::cauchy_stress, "cauchy_stress", &C::cauchy_stress, Quantity::stress, ColumnMeaning::cauchy_stress},
+     {Answer::second_piola_stress, "second_piola_stress", &C::second_piola_stress, Quantity::stress,
+      ColumnMeaning::second_piola_stress},
+     {Answer::torque, "torque", &C::torque, Quantity::torque, ColumnMeaning::torque, true},
+     {Answer::axial_force, "axial_force", &C::axial_force, Quantity::force, ColumnMeaning::axial_force, true},
+     {Answer::storage_modulus, "storage_modulus", &C::storage_modulus, Quantity::stress,
+      ColumnMeaning::storage_modulus},
+     {Answer::loss_modulus, "loss_modulus", &C::loss_modulus, Quantity::stress, ColumnMeaning::loss_modulus}}};
 
 bool takes(const DataSpec& spec, Drive drive) {
   const bool sheared = spec.test == LabTest::simple_shear || spec.deforming == Deforming::simple_shear;
@@ -120,12 +99,12 @@ class ColumnSearch {
     for (const ColumnRole<Kind>& role : roles_) {
       if (!takes(spec_, role.kind) || (role.needs_size && size_.point)) continue;
       if (!first) first = &role, kind = role.kind;
-      if (!has_customary(file_, role.quantity, role.words)) continue;
+      if (!has_customary(file_, role.quantity, role.meaning)) continue;
       kind = role.kind;
       if (!fits(role)) return {};
-      return guess_column(file_, role.quantity, role.words, key_of(role), problems_);
+      return guess_column(file_, role.quantity, role.meaning, key_of(role), problems_);
     }
-    if (first) return guess_column(file_, first->quantity, first->words, key_of(*first), problems_);
+    if (first) return guess_column(file_, first->quantity, first->meaning, key_of(*first), problems_);
     problems_.add({1, 1, {}}, "",
                   "test = \"" + std::string(word_of(spec_.test)) +
                       "\" needs the specimen's size, and a point has none; give "
@@ -191,20 +170,14 @@ std::optional<ChosenColumn> time_column(const CurveFile& file, const DataSpec& s
   if (spec.speed || spec.test == LabTest::oscillation) return {};
   const bool by_time = !names_its_deformation(spec.test);
   const bool press = spec.test == LabTest::compression && !size.point;
-  if (!by_time && !press && !has_customary(file, Quantity::time, kTimeWords)) return {};
-  return guess_column(file, Quantity::time, kTimeWords, "columns.time", problems);
+  if (!by_time && !press && !has_customary(file, Quantity::time, ColumnMeaning::time)) return {};
+  return guess_column(file, Quantity::time, ColumnMeaning::time, "columns.time", problems);
 }
 
 }  // namespace
 
 bool names_its_deformation(LabTest test) {
   return test != LabTest::relaxation && test != LabTest::creep && test != LabTest::cyclic;
-}
-
-std::span<const std::string_view> customary_words(Quantity quantity) {
-  if (quantity == Quantity::time) return kTimeWords;
-  if (quantity == Quantity::length) return kDisplacementWords;
-  return kForceWords;
 }
 
 std::optional<TestColumns> test_columns(const CurveFile& file, const DataSpec& spec, const SpecimenSize& size,

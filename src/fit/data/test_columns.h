@@ -8,8 +8,7 @@
 #pragma once
 
 #include <optional>
-#include <span>
-#include <string_view>
+#include <vector>
 
 #include "fit/data/choose_column.h"
 #include "fit/data/data_spec.h"
@@ -30,9 +29,6 @@ enum class Answer {
 
 /// Whether a test's name says how the specimen deforms; others hold, load or cycle one of these deformations.
 bool names_its_deformation(LabTest test);
-
-/// Words with which the name of a column of times, displacements or forces customarily begins.
-std::span<const std::string_view> customary_words(Quantity quantity);
 
 /// The columns of a file that a test takes.
 struct TestColumns {

@@ -1,39 +1,172 @@
 #include "fit/data/units.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
+#include <vector>
 
 namespace glisson::fit {
 namespace {
 
-constexpr std::array kTime{Unit{"s", 1.0}, Unit{"ms", 1e-3}, Unit{"min", 60.0}, Unit{"sec", 1.0}};
-constexpr std::array kLength{Unit{"mm", 1e-3}, Unit{"m", 1.0},   Unit{"cm", 1e-2},
-                             Unit{"µm", 1e-6}, Unit{"um", 1e-6}, Unit{"in", 0.0254}};
 constexpr double kGravity = 9.80665;
 constexpr double kPoundForce = 0.45359237 * kGravity;
-constexpr std::array kForce{Unit{"N", 1.0},        Unit{"mN", 1e-3},
-                            Unit{"kN", 1e3},       Unit{"gf", 1e-3 * kGravity},
-                            Unit{"kgf", kGravity}, Unit{"lbf", kPoundForce}};
-constexpr std::array kStress{Unit{"kPa", 1e3}, Unit{"Pa", 1.0}, Unit{"MPa", 1e6}};
-constexpr std::array kStrain{Unit{"-", 1.0}, Unit{"%", 1e-2}, Unit{"mm/mm", 1.0}};
-constexpr std::array kStretch{Unit{"-", 1.0}, Unit{"%", 1e-2}};
-constexpr std::array kAngle{Unit{"rad", 1.0}, Unit{"deg", std::numbers::pi / 180.0},
-                            Unit{"°", std::numbers::pi / 180.0}, Unit{"mrad", 1e-3}};
-constexpr std::array kTorque{Unit{"N m", 1.0},   Unit{"N·m", 1.0},   Unit{"Nm", 1.0},    Unit{"mN m", 1e-3},
-                             Unit{"mN·m", 1e-3}, Unit{"mNm", 1e-3},  Unit{"N mm", 1e-3}, Unit{"Nmm", 1e-3},
-                             Unit{"µN m", 1e-6}, Unit{"µN·m", 1e-6}, Unit{"µNm", 1e-6},  Unit{"uNm", 1e-6}};
-constexpr std::array kFrequency{Unit{"Hz", 1.0}, Unit{"rad/s", 0.5 / std::numbers::pi}, Unit{"kHz", 1e3}};
+constexpr double kInch = 0.0254;
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+void replace_all(std::string& text, std::string_view what, std::string_view by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+}
+
+/// One spelling of the signs: µ is U+00B5, a square is ², factors stand together.
+std::string spelled(std::string_view text) {
+  std::string unit(detail::trimmed(text));
+  replace_all(unit, "\u03BC", "µ");
+  for (const std::string_view square : {"^2", "**2"}) replace_all(unit, square, "²");
+  if (unit.find('/') != std::string::npos && unit.ends_with('2')) unit.replace(unit.size() - 1, 1, "²");
+  for (const std::string_view times : {"\u00B7", "\u22C5", "*", " "}) replace_all(unit, times, "");
+  return unit;
+}
+
+/// Units of a quantity. The customary ones are those that messages list and suggest.
+struct UnitTable {
+  std::vector<Unit> customary;
+  std::vector<Unit> others{};
+  std::map<std::string, const Unit*> by_name{};  ///< as `spelled` has it
+
+  void add_names() {
+    for (const auto* units : {&customary, &others}) {
+      for (const Unit& unit : *units) by_name.emplace(spelled(unit.name), &unit);
+    }
+  }
+};
+
+/// Forces over squared lengths: kN/m², N/mm², kgf/cm².
+std::vector<Unit> force_over_area(const UnitTable& forces, const UnitTable& lengths) {
+  std::vector<Unit> units;
+  for (const auto* some : {&forces.customary, &forces.others}) {
+    for (const Unit& force : *some) {
+      for (const Unit& length : lengths.customary)
+        units.push_back({force.name + "/" + length.name + "²", force.factor / (length.factor * length.factor)});
+    }
+  }
+  return units;
+}
+
+/// Forces times lengths, as `find_unit` looks for them: Nm, mNm, kgfcm.
+std::vector<Unit> force_times_length(const UnitTable& forces, const UnitTable& lengths) {
+  std::vector<Unit> units;
+  for (const auto* some : {&forces.customary, &forces.others}) {
+    for (const Unit& force : *some) {
+      for (const Unit& length : lengths.customary)
+        units.push_back({force.name + length.name, force.factor * length.factor});
+    }
+  }
+  return units;
+}
+
+struct UnitTables {
+  UnitTable time{{{"s", 1.0}, {"ms", 1e-3}, {"min", 60.0}},
+                 {{"sec", 1.0},
+                  {"Sec", 1.0},
+                  {"sec.", 1.0},
+                  {"second", 1.0},
+                  {"seconds", 1.0},
+                  {"Sekunden", 1.0},
+                  {"secondes", 1.0},
+                  {"µs", 1e-6},
+                  {"msec", 1e-3},
+                  {"h", 3600.0}}};
+  UnitTable length{{{"mm", 1e-3}, {"m", 1.0}, {"cm", 1e-2}, {"µm", 1e-6}, {"nm", 1e-9}, {"in", kInch}},
+                   {{"inch", kInch}, {"inches", kInch}, {"micron", 1e-6}, {"microns", 1e-6}, {"ft", 12.0 * kInch}}};
+  UnitTable force{{{"N", 1.0},
+                   {"mN", 1e-3},
+                   {"kN", 1e3},
+                   {"µN", 1e-6},
+                   {"nN", 1e-9},
+                   {"gf", 1e-3 * kGravity},
+                   {"kgf", kGravity},
+                   {"lbf", kPoundForce}},
+                  {{"cN", 1e-2},
+                   {"daN", 10.0},
+                   {"MN", 1e6},
+                   {"pN", 1e-12},
+                   {"g", 1e-3 * kGravity},
+                   {"kg", kGravity},
+                   {"p", 1e-3 * kGravity},
+                   {"kp", kGravity},
+                   {"lb", kPoundForce},
+                   {"ozf", kPoundForce / 16.0},
+                   {"dyn", 1e-5},
+                   {"Newton", 1.0},
+                   {"newton", 1.0},
+                   {"newtons", 1.0}}};
+  UnitTable stress{{{"kPa", 1e3},
+                    {"Pa", 1.0},
+                    {"MPa", 1e6},
+                    {"N/mm²", 1e6},
+                    {"N/cm²", 1e4},
+                    {"kgf/cm²", 1e4 * kGravity},
+                    {"psi", kPoundForce / (kInch * kInch)}},
+                   {{"mPa", 1e-3},
+                    {"hPa", 1e2},
+                    {"GPa", 1e9},
+                    {"bar", 1e5},
+                    {"mbar", 1e2},
+                    {"mmHg", 133.322387415},
+                    {"ksi", 1e3 * kPoundForce / (kInch * kInch)}}};
+  UnitTable strain{{{"-", 1.0}, {"%", 1e-2}, {"mm/mm", 1.0}},
+                   {{"1", 1.0}, {"m/m", 1.0}, {"in/in", 1.0}, {"‰", 1e-3}, {"µm/m", 1e-6}}};
+  UnitTable stretch{{{"-", 1.0}, {"%", 1e-2}}, {{"1", 1.0}, {"mm/mm", 1.0}, {"m/m", 1.0}}};
+  UnitTable angle{{{"rad", 1.0}, {"deg", kDegree}, {"°", kDegree}, {"mrad", 1e-3}},
+                  {{"degrees", kDegree}, {"Grad", kDegree}, {"µrad", 1e-6}}};
+  UnitTable torque{{{"N m", 1.0}, {"mN m", 1e-3}, {"µN m", 1e-6}, {"N mm", 1e-3}}};
+  UnitTable frequency{{{"Hz", 1.0}, {"rad/s", 0.5 / std::numbers::pi}, {"kHz", 1e3}},
+                      {{"mHz", 1e-3}}};  // 1/s is not here: it may be Hz or rad/s
+
+  UnitTables() {
+    for (Unit& unit : force_over_area(force, length)) stress.others.push_back(std::move(unit));
+    torque.others = force_times_length(force, length);
+    for (UnitTable* table : {&time, &length, &force, &stress, &strain, &stretch, &angle, &torque, &frequency})
+      table->add_names();
+  }
+
+  const UnitTable& of(Quantity quantity) const {
+    switch (quantity) {
+      case Quantity::time:
+        return time;
+      case Quantity::length:
+        return length;
+      case Quantity::force:
+        return force;
+      case Quantity::stress:
+        return stress;
+      case Quantity::strain:
+        return strain;
+      case Quantity::stretch:
+        return stretch;
+      case Quantity::angle:
+        return angle;
+      case Quantity::torque:
+        return torque;
+      case Quantity::frequency:
+        break;
+    }
+    return frequency;
+  }
+};
+
+const UnitTables& tables() {
+  static const UnitTables made;
+  return made;
+}
+
 constexpr std::array kQuantities{Quantity::time,   Quantity::length, Quantity::force,
                                  Quantity::stress, Quantity::strain, Quantity::stretch,
                                  Quantity::angle,  Quantity::torque, Quantity::frequency};
-
-bool is_unit(std::string_view text) {
-  for (const Quantity q : kQuantities) {
-    if (find_unit(q, text)) return true;
-  }
-  return false;
-}
 
 /// `Load (N)`: what the last pair of brackets holds, where the title ends with it.
 Title bracketed(std::string_view title) {
@@ -44,31 +177,15 @@ Title bracketed(std::string_view title) {
           std::string(detail::trimmed(title.substr(open + 1, title.size() - open - 2)))};
 }
 
+/// What may as well be a word or a number of the name: `run 1`, `mode in`.
+bool is_word(std::string_view unit, std::string_view mark) {
+  if (unit == "1" || unit == "p") return true;
+  return mark == " " && (unit == "in" || unit == "h" || unit == "-");
+}
+
 }  // namespace
 
-std::span<const Unit> units_of(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::time:
-      return kTime;
-    case Quantity::length:
-      return kLength;
-    case Quantity::force:
-      return kForce;
-    case Quantity::stress:
-      return kStress;
-    case Quantity::strain:
-      return kStrain;
-    case Quantity::stretch:
-      return kStretch;
-    case Quantity::angle:
-      return kAngle;
-    case Quantity::torque:
-      return kTorque;
-    case Quantity::frequency:
-      return kFrequency;
-  }
-  return {};
-}
+std::span<const Unit> units_of(Quantity quantity) { return tables().of(quantity).customary; }
 
 std::string unit_names(Quantity quantity) {
   std::string text;
@@ -77,23 +194,28 @@ std::string unit_names(Quantity quantity) {
 }
 
 const Unit* find_unit(Quantity quantity, std::string_view text) {
-  constexpr std::string_view kGreekMu = "μm";  // U+03BC, where the list has the sign U+00B5
-  text = detail::trimmed(text);
-  if (text == kGreekMu) text = "µm";
-  for (const Unit& unit : units_of(quantity)) {
-    if (unit.name == text) return &unit;
+  const std::string unit = spelled(text);
+  const std::string with_mu = unit.starts_with('u') ? "µ" + unit.substr(1) : std::string{};
+  const UnitTable& table = tables().of(quantity);
+  for (const std::string& name : {unit, with_mu}) {
+    if (const auto found = table.by_name.find(name); found != table.by_name.end()) return found->second;
   }
   return nullptr;
+}
+
+bool is_unit(std::string_view text) {
+  return std::any_of(kQuantities.begin(), kQuantities.end(), [&](Quantity q) { return find_unit(q, text) != nullptr; });
 }
 
 Title split_title(std::string_view title) {
   title = detail::trimmed(title);
   if (Title found = bracketed(title); !found.name.empty()) return found;
-  for (const char mark : {'/', '_'}) {
+  for (const std::string_view mark : {",", " in ", "/", "_", " "}) {
     const std::size_t at = title.rfind(mark);
     if (at == std::string_view::npos || at == 0) continue;
-    const std::string_view unit = detail::trimmed(title.substr(at + 1));
-    if (is_unit(unit)) return {std::string(detail::trimmed(title.substr(0, at))), std::string(unit)};
+    const std::string_view unit = detail::trimmed(title.substr(at + mark.size()));
+    if (!is_word(unit, mark) && is_unit(unit))
+      return {std::string(detail::trimmed(title.substr(0, at))), std::string(unit)};
   }
   return {std::string(title), {}};
 }

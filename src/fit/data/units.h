@@ -12,23 +12,26 @@ namespace glisson::fit {
 enum class Quantity { time, length, force, stress, strain, stretch, angle, torque, frequency };
 
 struct Unit {
-  std::string_view name;
+  std::string name;
   double factor;  ///< SI value of one
 };
 
-/// The units of a quantity, the customary one first.
+/// The customary units of a quantity, the first of them first.
 std::span<const Unit> units_of(Quantity quantity);
-/// `s, ms, min`.
+/// `s, ms, min`: the customary ones.
 std::string unit_names(Quantity quantity);
-/// nullptr where there is no such unit. Letters count as written: mPa is no MPa.
+/// A customary unit, one composed of them (a force over a squared length, a force times a length) or one of the less usual;
+/// nullptr where there is no such unit. Letters count as written: mPa is no MPa. `um` is µm, `N/mm^2` is N/mm².
 const Unit* find_unit(Quantity quantity, std::string_view text);
+/// Whether any quantity has this unit.
+bool is_unit(std::string_view text);
 
 /// The name of a column and the unit that stands with it.
 struct Title {
   std::string name, unit;
 };
-/// `Load (N)`, `Strain [-]`, `Force/kN`, `depth_mm` → name and unit; without a unit the whole is the name.
-/// A unit after `/` or `_` counts only where it is one of `units_of` any quantity.
+/// `Load (N)`, `Strain [-]`, `Force/kN`, `depth_mm`, `Fz, gf`, `Kraft in N` → name and unit; without a unit the whole is the
+/// name. A unit without brackets counts only where it is one of any quantity.
 Title split_title(std::string_view title);
 
 /// A few significant digits, for messages.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "fit/data/test_columns.h"
+#include "fit/data/choose_column.h"
 
 namespace glisson::fit {
 namespace {
@@ -11,9 +11,9 @@ namespace {
 /// The numbers of a column in SI, as the file has them: rows at one position are a drop, and are not averaged.
 std::vector<double> column(const CurveFile& file, const ColumnSpec& spec, Quantity quantity, const std::string& key,
                            scene::Problems& problems) {
-  const std::optional<ChosenColumn> chosen =
-      spec.given ? choose_column(file, spec, quantity, key, problems)
-                 : guess_column(file, quantity, customary_words(quantity), key, problems);
+  const ColumnMeaning meaning = quantity == Quantity::length ? ColumnMeaning::displacement : ColumnMeaning::force;
+  const std::optional<ChosenColumn> chosen = spec.given ? choose_column(file, spec, quantity, key, problems)
+                                                        : guess_column(file, quantity, meaning, key, problems);
   std::vector<double> values;
   if (!chosen) return values;
   for (const CurveFile::Row& row : file.rows) {

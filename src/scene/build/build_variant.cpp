@@ -10,6 +10,7 @@
 #include "mesh/inspect/require_valid.h"
 #include "mesh/inspect/vertex_set.h"
 #include "scene/build/build_instruments.h"
+#include "scene/build/supports.h"
 #include "scene/parse/select.h"
 
 namespace glisson {
@@ -140,6 +141,18 @@ auto located(const Variant& variant, const std::string& origin, Make make) {
   }
 }
 
+/// The same of what holds or drives vertices. @param asked  its name, for messages
+template <class Make>
+auto constrained(const Variant& variant, const std::string& origin, const std::string& asked, Make make) {
+  return located(variant, origin, [&] {
+    try {
+      return make();
+    } catch (const Contradiction& found) {
+      throw std::invalid_argument(scene::contradiction_text(variant, found, asked));
+    }
+  });
+}
+
 std::vector<std::shared_ptr<Instrument>> make_instruments(const Variant& variant, const TetMesh& mesh) {
   std::vector<std::shared_ptr<Instrument>> made;
   for (const ToolSpec& x : variant.tools) {
@@ -208,14 +221,32 @@ void attach_interactions(const Variant& variant, BuiltVariant& built) {
   scene::join(built.instruments, built.capsules);
 }
 
+/// The tip of an instrument that a probe names.
+std::function<ProbeTip()> tip_of(const ProbeSpec& probe, const BuiltVariant& built, std::size_t tools) {
+  std::vector<std::string> known;
+  for (std::size_t i = tools; i < built.instruments.size(); ++i) {
+    const std::shared_ptr<Instrument>& x = built.instruments[i];
+    if (x->name() == probe.tip) return [x] { return ProbeTip{x->centre_line().back(), x->direction()}; };
+    known.push_back(x->name());
+  }
+  const std::string meant = scene::nearest(probe.tip, known);
+  throw std::invalid_argument(
+      "tip = \"" + probe.tip + "\" is no [[instrument]]; " +
+      (known.empty() ? "there is none (a [[tool]] moves a set and has no tip)" : "there are: " + scene::listed(known)) +
+      (meant.empty() ? "" : "; did you mean \"" + meant + "\"?"));
+}
+
 /// Each probe is tried on its own first, so that the message names its place in the scene.
-Probes probes_of(const Variant& variant, const Simulation& simulation) {
+Probes probes_of(const Variant& variant, const BuiltVariant& built) {
   std::vector<ProbeOptions> options;
   for (const ProbeSpec& x : variant.probes) {
-    located(variant, x.origin, [&] { return Probes(simulation, {x.options}); });
     options.push_back(x.options);
+    located(variant, x.origin, [&] {
+      if (!x.tip.empty()) options.back().tip = tip_of(x, built, variant.tools.size());
+      return Probes(built.simulation, {options.back()});
+    });
   }
-  return {simulation, std::move(options)};
+  return {built.simulation, std::move(options)};
 }
 
 }  // namespace
@@ -247,19 +278,22 @@ BuiltVariant::BuiltVariant(const Variant& variant, const MeshLoader& load)
 BuiltVariant::BuiltVariant(TetMesh whole, const Variant& variant)
     : instruments(make_instruments(variant, whole)), simulation(simulation_of(variant, std::move(whole), instruments)) {
   const TetMesh& mesh = simulation.mesh();
-  for (const FixedSpec& x : variant.fixed) {
+  for (std::size_t i = 0; i < variant.fixed.size(); ++i) {
+    const FixedSpec& x = variant.fixed[i];
     const auto& set = set_called(variant, mesh, x.set, x.origin);
-    supports.push_back(located(variant, x.origin, [&] { return simulation.fix(set, x.axes); }));
+    supports.push_back(constrained(variant, x.origin, scene::support_text(x),
+                                   [&] { return scene::add_support(variant, i, set, simulation); }));
   }
   for (std::size_t i = 0; i < variant.tools.size(); ++i) {
-    located(variant, variant.tools[i].origin, [&] { simulation.attach(instruments[i]); });
+    const ToolSpec& x = variant.tools[i];
+    constrained(variant, x.origin, "[[tool]] \"" + x.name + "\"", [&] { simulation.attach(instruments[i]); });
   }
   for (const LoadSpec& x : variant.loads) {
     const auto& set = set_called(variant, mesh, x.set, x.origin);
     located(variant, x.origin, [&] { return simulation.add_surface_load(set, x.load, course_of(x)); });
   }
   attach_interactions(variant, *this);
-  probes = probes_of(variant, simulation);
+  probes = probes_of(variant, *this);
 }
 
 PosesMotion started(const PosesSpec& spec) {
@@ -269,6 +303,13 @@ PosesMotion started(const PosesSpec& spec) {
 }
 
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load) { return {variant, load}; }
+
+ToolPath support_path(const FixedSpec& fixed) {
+  if (!fixed.record) return {};
+  RecordedMotion motion = fixed.record->motion;
+  motion.start = fixed.record->start;
+  return recorded_path(motion);
+}
 
 double tool_start(const ToolSpec& tool) {
   if (tool.path) return 0.0;
@@ -308,6 +349,9 @@ double run_duration(const Variant& variant) {
   };
   for (const ToolSpec& tool : variant.tools) until(tool_path(tool).end);
   for (const InstrumentSpec& x : variant.instruments) until(make_driver(x)->end());
+  for (const FixedSpec& x : variant.fixed) {
+    if (variant.tools.empty() && variant.instruments.empty() && x.record) until(support_path(x).end);
+  }
   return ends ? end : std::numeric_limits<double>::infinity();
 }
 

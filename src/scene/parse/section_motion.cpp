@@ -84,7 +84,7 @@ const SectionSpec& motion_section() {
     s.key("duration_s", &Variant::duration, "simulated time")
         .in("s")
         .within(above(0))
-        .otherwise("until the last tool has ended its motion");
+        .otherwise("until the last tool has ended its motion, without tools the last record of a support");
     s.key("max_steps", &Variant::max_steps, "the run ends after that many steps")
         .within(between(1, Codec<std::uint64_t>::kLargest))
         .otherwise("no limit");
@@ -95,10 +95,23 @@ const SectionSpec& motion_section() {
 
 const SectionSpec& fixed_section() {
   static const SectionSpec section = [] {
-    Section<FixedSpec> s("fixed", "Holds the vertices of a set where they are.");
+    Section<FixedSpec> s(
+        "fixed",
+        "Holds the vertices of a set where they are, or moves them by a record. Sets may share vertices: a component "
+        "is held "
+        "once, and its force counts with the first set that names it. Sets and tools that ask different things of one "
+        "component are refused.");
     s.key("set", &FixedSpec::set, "name of a vertex set").must();
     s.choice<Axes>("axes", &FixedSpec::axes, axes_choices(), "components that are held").otherwise("\"xyz\"");
-    s.finish([](FixedSpec& x, const Node&, const Place& place) { x.origin = place.text(); });
+    s.table(
+        "record", record_section(), [](FixedSpec & x) -> auto& { return x.record.emplace(); },
+        "a recorded path that the set follows, as of breathing");
+    s.key("direction", &FixedSpec::direction, "direction of the record's `depth_m`, of any length").in("-").direction();
+    s.finish([](FixedSpec& x, const Node& table, const Place& place) {
+      x.origin = place.text();
+      if (const Node* direction = table.find("direction"); direction && !x.record)
+        place.complain(*direction, "direction", "belongs to a set that moves; give `record`, or leave it out");
+    });
     return s.spec();
   }();
   return section;

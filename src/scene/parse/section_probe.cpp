@@ -32,11 +32,19 @@ const SectionSpec& probe_section() {
     s.table(
         "plane_m", probe_plane_section(), [](ProbeSpec & x) -> auto& { return where_as<ProbePlane>(x); },
         "a section: force, moment and mean traction that the part in front exerts on the part behind");
+    s.key("tip", &ProbeSpec::tip,
+          "name of an `[[instrument]]`: adds the distance of its tip to the place, positive ahead along the "
+          "instrument's "
+          "direction, and across it; of a region to the middle of its volume")
+        .otherwise("none");
     s.spec().exclusions = {{{{"point_m"}, {"set"}, {"region"}, {"plane_m"}}, true}};
     s.finish([](ProbeSpec& x, const Node& table, const Place& place) {
       x.origin = place.text();
       const std::string unfit = unfit_as_table(x.options.name);
       if (const Node* name = table.find("name"); name && !unfit.empty()) place.complain(*name, "name", unfit);
+      if (const Node* tip = table.find("tip"); tip && table.find("plane_m"))
+        place.complain(*tip, "tip",
+                       "a plane is no place that a tip can be at a distance from; give `point_m`, `set` or `region`");
     });
     return s.spec();
   }();

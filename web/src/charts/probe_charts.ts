@@ -16,6 +16,7 @@ export interface ProbeQuantity {
 /** What probes read, in the order of the page; volume ratios and areas are in the table alone. */
 export const PROBE_QUANTITIES: readonly ProbeQuantity[] = [
   { title: "Displacement at probes", what: "Displacement", unit: "m", ends: /_displacement_[xyz]_m$/ },
+  { title: "Distance of tips", what: "Distance", unit: "m", ends: /_tip_(distance|along|across)_m$/ },
   { title: "Force of sections and sets", what: "Force", unit: "N", ends: /_force_[xyz]_N$/ },
   { title: "Moment of sections", what: "Moment", unit: "N·m", ends: /_moment_[xyz]_N_m$/ },
   { title: "Stress at probes", what: "Stress", unit: "Pa", ends: /_(stress_(xx|yy|zz|xy|yz|zx)|traction_[xyz])_Pa$/ },
