@@ -5,9 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 #include <thread>
 
+#include "cli/standard_streams.h"
 #include "report/json_text.h"
 
 namespace glisson::app {
@@ -68,7 +70,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
   command.add_option("--set", options.set, "change a value of the scene for all its variants; may be repeated")
       ->type_name("key=value")
       ->allow_extra_args(false);
-  command.add_option("--mesh", options.mesh, "take the mesh from this file (.vtu, .vtk, .msh) instead")
+  command.add_option("--mesh", options.mesh, "take the mesh from this file (.vtu, .vtk, .msh, .inp) instead")
       ->type_name("FILE");
   command.add_option("--variant", options.variants, "only these variants")->type_name("NAME");
 }
@@ -96,6 +98,11 @@ Scene open_scene(const SceneOptions& options) {
   Scene scene = load_scene(options.scene, overrides);
   if (!options.variants.empty()) keep_variants(scene, options.variants);
   if (!options.mesh.empty()) replace_mesh(scene, options.mesh);
+  std::set<std::string> repairs;
+  for (const Variant& variant : scene.variants) {
+    for (const std::string& repair : surface_repairs(variant)) repairs.insert(repair);
+  }
+  for (const std::string& repair : repairs) tell("warning: {}\n", repair);
   scene.source = change_note(options) + scene.source;
   return scene;
 }

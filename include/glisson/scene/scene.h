@@ -185,6 +185,9 @@ class RunObserver {
 /// Mesh, sets and regions of a variant, ready to simulate. @throws SceneError, and what `load` throws
 TetMesh build_mesh(const Variant& variant, const MeshLoader& load, const std::function<bool(double)>& progress = {});
 
+/// What was done to close the surfaces from files of a variant's body, a sentence with the file each (surface_repair.h).
+std::vector<std::string> surface_repairs(const Variant& variant);
+
 /// Tissue of each region number that occurs in a mesh made by build_mesh.
 std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh);
 
