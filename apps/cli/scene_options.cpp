@@ -35,7 +35,7 @@ void replace_mesh(Scene& scene, const std::string& file) {
   const std::string former = mesh_text(scene.variants.front().mesh);
   for (Variant& variant : scene.variants) {
     const auto* given = std::get_if<MeshFile>(&variant.mesh);
-    variant.mesh = MeshFile{.path = file, .scale = given != nullptr ? given->scale : 1.0};
+    variant.mesh = MeshFile{.path = file, .scale = given != nullptr ? given->scale : std::optional(1.0)};
   }
   scene.notes.push_back(fmt::format("The mesh is {} (--mesh) in place of {}.", file, former));
 }

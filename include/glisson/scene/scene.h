@@ -139,7 +139,8 @@ struct RunSummary {
   std::size_t inverted_tets_most = 0;  ///< largest number of tets inverted in one step
   double first_inversion_s = -1.0;     ///< time of it; −1: none
   std::uint64_t state_hash = 0;
-  std::string instruction_set{};  ///< of the element kernels; the hash is one of this set
+  std::string instruction_set{};         ///< of the element kernels; the hash is one of this set
+  std::vector<std::string> never_met{};  ///< instruments without a force or an event in a run that came to its end
   enum class End {
     finished,
     interrupted,

@@ -13,7 +13,8 @@ constexpr double kImplicitStep = 0.01;  // the largest automatic one of `implici
 bool chosen_by_number(const Variant& variant) {
   return std::any_of(variant.sets.begin(), variant.sets.end(), [](const auto& named) {
     const auto& where = named.second.where;
-    return std::holds_alternative<Selection::Nearest>(where) || std::holds_alternative<Selection::Ids>(where);
+    return std::holds_alternative<Selection::Nearest>(where) || std::holds_alternative<Selection::Ids>(where) ||
+           std::holds_alternative<Selection::Facing>(where);
   });
 }
 
