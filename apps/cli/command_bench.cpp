@@ -174,7 +174,7 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
       ->delimiter(',')
       ->check(one_of(known))
       ->capture_default_str();
-  command.add_option("--mesh", options.meshes, "measure these meshes too (.vtu, .vtk, .msh)")->type_name("FILE…");
+  command.add_option("--mesh", options.meshes, "measure these meshes too (.vtu, .vtk, .msh, .inp)")->type_name("FILE…");
   add_isa_option(command, options.isa, "kernels and peak");
   command.add_flag("--energies", options.energies,
                    "measure all a second time with energies kept, as scenes do unless told otherwise");

@@ -25,6 +25,7 @@
 #include "instruments/needle/membranes.h"
 #include "mesh/inspect/vertex_set.h"
 #include "report/summary_json.h"
+#include "scene/build/body_places.h"
 #include "scene/build/locking.h"
 
 namespace glisson::app {
@@ -201,6 +202,22 @@ void print_membranes(const InstrumentSpec& instrument) {
       1e3 * all.back().depth, weak->puncture, strong->puncture);
 }
 
+/// Where an instrument starts that the body places.
+void print_start(const InstrumentSpec& x, const TetMesh& mesh) {
+  if (!x.aim) return;
+  const Vec3d tip = start_pose(x, mesh).position * 1e3;
+  say("           starts at ({:.4g}, {:.4g}, {:.4g}) mm\n", tip.x, tip.y, tip.z);
+}
+
+/// That an instrument's path passes the body by.
+void print_meeting(const Variant& v, const InstrumentSpec& x, const TetMesh& mesh) {
+  const std::optional<scene::PathMeeting> meeting = scene::meets_body(x, mesh, run_duration(v));
+  if (!meeting || meeting->meets) return;
+  say("  misses   \"{}\" never meets the body at rest: its tip passes {:.3g} mm from it; move `tip_m`, turn "
+      "`direction`, move\n           deeper, or give `aim` in place of `tip_m`, which finds the body\n",
+      x.name, 1e3 * meeting->beside);
+}
+
 void print_interactions(const Variant& v, const Taste& taste) {
   for (const CapsuleSpec& x : v.capsules) {
     say("  capsule  \"{}\" on {}: {:.4g} mm, E = {:.6g} Pa\n", x.options.name,
@@ -214,6 +231,8 @@ void print_interactions(const Variant& v, const Taste& taste) {
     const std::optional<double> end = make_driver(x)->end();
     say("  tool     \"{}\", {}: {}{}\n", x.name, kind_word(x.what), kind_word(x.motion.how),
         end ? fmt::format(", until {:.4g} s", *end) : "");
+    print_start(x, taste.mesh);
+    print_meeting(v, x, taste.mesh);
     print_membranes(x);
     print_edge(v, x, taste.mesh);
     print_zone(v, x, taste.mesh);

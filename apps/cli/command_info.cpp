@@ -71,7 +71,7 @@ int info(const InfoOptions& options) {
 void add_info(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("info", "contents and defects of a mesh file");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_option("mesh", options->mesh, "mesh file: .vtu, .vtk, .msh")->required()->type_name("MESH");
+  command->add_option("mesh", options->mesh, "mesh file: .vtu, .vtk, .msh, .inp")->required()->type_name("MESH");
   command->add_option("--scale", options->scale, "factor on coordinates: 0.001 for a file in millimetres")
       ->type_name("S")
       ->check(within(above(0), Numbers::all))

@@ -84,7 +84,8 @@ std::pair<double, double> edges_of(const ImplicitBody& body) {
   return {finest, body.edge};
 }
 
-nlohmann::ordered_json mesh_json(const TetMesh& mesh, const MeshFigures& figures) {
+nlohmann::ordered_json mesh_json(const TetMesh& mesh, const MeshFigures& figures,
+                                 const std::vector<std::string>& repairs) {
   nlohmann::ordered_json json;
   json["vertices"] = mesh.vertices.size();
   json["tets"] = mesh.tets.size();
@@ -92,6 +93,7 @@ nlohmann::ordered_json mesh_json(const TetMesh& mesh, const MeshFigures& figures
   json["max_dihedral_deg"] = figures.largest_deg;
   if (figures.relative_step) json["relative_stable_step"] = *figures.relative_step;
   json["seconds"] = figures.seconds;
+  if (!repairs.empty()) json["surface_repairs"] = repairs;
   json["regions"] = nlohmann::ordered_json::array();
   for (const auto& [number, r] : figures.regions) {
     json["regions"].push_back({{"name", r.name}, {"number", number}, {"tets", r.tets}, {"volume_ml", 1e6 * r.volume}});
@@ -190,8 +192,11 @@ int mesh(const MeshOptions& options) {
                                                  : relative_stable_step(body, edges_asked(body, *asked));
   }
   write_vtu(options.out, body);
-  (options.quiet ? keep_json : write_json)(options.json, mesh_json(body, figures));
+  (options.quiet ? keep_json : write_json)(options.json, mesh_json(body, figures, surface_repairs(variant)));
   if (options.quiet) return kDone;
+  if (is_surface_file(options.scene.scene)) {
+    for (const std::string& repair : surface_repairs(variant)) say("{}\n", repair);
+  }
   say("{}: {} tets, {} vertices, dihedral angles {:.1f}° to {:.1f}°, {:.2f} s\n", options.out, body.tets.size(),
       body.vertices.size(), figures.least_deg, figures.largest_deg, figures.seconds);
   if (figures.relative_step) {

@@ -167,7 +167,7 @@ std::optional<PressedFaces> faces_under(const TetMesh& mesh, const InstrumentSpe
   if (!contact) return {};
   const Footprint print = std::visit([](const auto& shape) { return footprint_of(shape); }, contact->shape);
   if (print.x == 0.0) return {};
-  const PressedFaces faces = faces_in(print, seen_from(start_pose(instrument), mesh));
+  const PressedFaces faces = faces_in(print, seen_from(start_pose(instrument, mesh), mesh));
   if (faces.count == 0) return {};
   return faces;
 }
@@ -177,7 +177,7 @@ std::optional<EdgeCells> cells_under_edge(const TetMesh& mesh, const InstrumentS
   if (!contact) return {};
   const Edge edge = std::visit([](const auto& shape) { return edge_of(shape); }, contact->shape);
   if (edge.points.empty()) return {};
-  const std::vector<Corners> surface = seen_from(start_pose(instrument), mesh);
+  const std::vector<Corners> surface = seen_from(start_pose(instrument, mesh), mesh);
   std::vector<double> extents;
   for (const EdgePoint& p : edge.points) {
     if (const double extent = extent_at(p, surface); extent > 0.0) extents.push_back(extent);
@@ -192,7 +192,7 @@ std::optional<EdgeCells> cells_under_edge(const TetMesh& mesh, const InstrumentS
 std::optional<ZoneEdges> edges_in_zone(const TetMesh& mesh, const InstrumentSpec& instrument) {
   const auto* needle = std::get_if<NeedleOptions>(&instrument.what);
   if (!needle) return {};
-  const Vec3d tip = start_pose(instrument).position, along = unit(needle->direction);
+  const Vec3d tip = start_pose(instrument, mesh).position, along = unit(needle->direction);
   double volume = 0.0, count = 0.0;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     Vec3d centre;

@@ -13,7 +13,7 @@ namespace glisson::app {
 
 TetMesh MeshCache::load(const MeshFile& file) {
   const std::lock_guard lock(mutex_);
-  const std::string key = fmt::format("{} × {:a}", file.path.string(), file.scale);
+  const std::string key = fmt::format("{} × {:a}", file.path.string(), file.scale.value_or(0.0));
   const auto known = meshes_.find(key);
   if (known != meshes_.end()) return known->second;
   if (!std::filesystem::exists(file.path)) {

@@ -72,11 +72,13 @@ int print_checks(const nlohmann::json& checks, const std::string& of, bool only_
 int end_of(const std::vector<const VariantRecorder*>& variants) {
   bool trouble = false;
   for (const VariantRecorder* v : variants) {
-    const std::string text = trouble_text(v->summary()), warning = energy_warning(v->summary());
+    const std::string text = trouble_text(v->summary());
     trouble = trouble || !text.empty();
     std::fflush(stdout);
     if (!text.empty()) tell("glisson: {}: {}\n", v->variant().name, text);
-    if (!warning.empty()) tell("glisson: {}: warning: {}\n", v->variant().name, warning);
+    for (const std::string& warning : {energy_warning(v->summary()), meeting_warning(v->summary())}) {
+      if (!warning.empty()) tell("glisson: {}: warning: {}\n", v->variant().name, warning);
+    }
   }
   if (interrupted()) return kInterrupted;
   return trouble ? kNumericalEnd : kDone;

@@ -5,10 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 #include <thread>
 
 #include "cli/option_check.h"
+#include "cli/standard_streams.h"
 #include "report/json_text.h"
 
 namespace glisson::app {
@@ -34,7 +36,7 @@ void replace_mesh(Scene& scene, const std::string& file) {
   const std::string former = mesh_text(scene.variants.front().mesh);
   for (Variant& variant : scene.variants) {
     const auto* given = std::get_if<MeshFile>(&variant.mesh);
-    variant.mesh = MeshFile{.path = file, .scale = given != nullptr ? given->scale : 1.0};
+    variant.mesh = MeshFile{.path = file, .scale = given != nullptr ? given->scale : std::optional(1.0)};
   }
   scene.notes.push_back(fmt::format("The mesh is {} (--mesh) in place of {}.", file, former));
 }
@@ -69,7 +71,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
   command.add_option("--set", options.set, "change a value of the scene for all its variants; may be repeated")
       ->type_name("key=value")
       ->allow_extra_args(false);
-  command.add_option("--mesh", options.mesh, "take the mesh from this file (.vtu, .vtk, .msh) instead")
+  command.add_option("--mesh", options.mesh, "take the mesh from this file (.vtu, .vtk, .msh, .inp) instead")
       ->type_name("FILE");
   command.add_option("--variant", options.variants, "only these variants")->type_name("NAME");
 }
@@ -97,6 +99,11 @@ Scene open_scene(const SceneOptions& options) {
   Scene scene = load_scene(options.scene, overrides);
   if (!options.variants.empty()) keep_variants(scene, options.variants);
   if (!options.mesh.empty()) replace_mesh(scene, options.mesh);
+  std::set<std::string> repairs;
+  for (const Variant& variant : scene.variants) {
+    for (const std::string& repair : surface_repairs(variant)) repairs.insert(repair);
+  }
+  for (const std::string& repair : repairs) tell("warning: {}\n", repair);
   scene.source = change_note(options) + scene.source;
   return scene;
 }

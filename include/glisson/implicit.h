@@ -243,6 +243,7 @@ struct SurfaceShape {
   std::filesystem::path path;  ///< the file that it is from
   double scale = 1.0;          ///< factor on coordinates [-], > 0
   std::optional<Solid> solid;  ///< what the file holds
+  std::string repaired{};  ///< what was done to close it, with the file's name (SurfaceRepair::text); empty: nothing
 };
 
 /// A region of an implicit body.

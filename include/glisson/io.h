@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -24,15 +25,16 @@ struct ImportedMesh {
   MeshReport report;
 };
 
-/// Reads a tetrahedral mesh: .vtu, .vtk (legacy), .msh (Gmsh 2.2 and 4.1, ASCII and binary). Named groups of the file
+/// Reads a tetrahedral mesh: .vtu, .vtk (legacy), .msh (Gmsh 2.2 and 4.1, ASCII and binary), .inp (Abaqus). Named groups of the file
 /// (Gmsh physical names; integer cell arrays such as "region") become regions and vertex sets: in VTK files the cell
 /// array "region", the point arrays "set:NAME" and the field arrays "region:NAME" that write_vtu writes. A cell array
 /// "fibre" (also "fibres", "fiber", "fibers", "fibre_direction") of three components gives TetMesh::fibres. Cells that
-/// are not linear tetrahedra are skipped and counted in the report; inverted tets are reoriented and reported.
+/// are not tets of 4 or 10 nodes, these by their corners, are skipped and counted in the report; inverted tets are reoriented and reported.
 /// Degenerate or duplicate tets are kept and reported. A frame of a run gives the body at rest, and the report says so.
-/// @param scale  factor applied to all coordinates (0.001 for a file in millimetres), > 0
+/// @param scale  factor applied to all coordinates (0.001 for a file in millimetres), > 0; none: 1, or 0.001 where the body would be
+///   more than 2 m across, which the report says
 /// @throws FileError if the file cannot be used as it is
-ImportedMesh read_mesh(const std::filesystem::path& file, double scale = 1.0);
+ImportedMesh read_mesh(const std::filesystem::path& file, std::optional<double> scale = 1.0);
 
 /// The output of `glisson info MESH`: counts, box, extent, volume, shape, pieces and warnings, one per line.
 /// @param name  the file, as the user wrote it

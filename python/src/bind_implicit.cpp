@@ -8,6 +8,7 @@
 #include "glisson/scene/surface_file.h"
 #include "glisson/simulation/mesh_step.h"
 #include "glisson/surface_region.h"
+#include "glisson/surface_repair.h"
 #include "rooms.h"
 
 namespace glisson::python {
@@ -98,6 +99,18 @@ void bind_surfaces(nb::module_& m) {
         return surface_solid(to_vectors(points, "points"), to_triangles(triangles));
       },
       "points"_a, "triangles"_a, doc("surface_solid"));
+  m.def(
+      "repair_surface",
+      [](const ArrayLike& points, const ArrayLike& triangles) {
+        SurfaceRepair closed = repair_surface(to_vectors(points, "points"), to_triangles(triangles));
+        std::string text = closed.text();
+        std::vector<std::uint32_t> corners;
+        for (const Triangle& t : closed.triangles) corners.insert(corners.end(), t.begin(), t.end());
+        const std::size_t count = closed.triangles.size();
+        return std::tuple(vectors(std::move(closed.points)), owned<Numbers>(std::move(corners), {count, 3}),
+                          std::move(text));
+      },
+      "points"_a, "triangles"_a, doc("repair_surface"));
   m.def(
       "read_surface",
       [](const std::filesystem::path& file, double scale) {

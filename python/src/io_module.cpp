@@ -9,11 +9,11 @@ NB_MODULE(_io, m) {
   nb::module_::import_("glisson._core");
   m.def(
       "read_mesh",
-      [](const std::filesystem::path& file, double scale) {
+      [](const std::filesystem::path& file, std::optional<double> scale) {
         ImportedMesh imported = read_mesh(file, scale);
         return std::pair(std::move(imported.mesh), std::move(imported.report));
       },
-      "file"_a, "scale"_a = 1.0, python::doc("read_mesh"));
+      "file"_a, "scale"_a.none() = 1.0, python::doc("read_mesh"));
   m.def(
       "format_report",
       [](const std::string& name, const MeshReport& report, const TetMesh& mesh) {

@@ -72,8 +72,10 @@ const std::uint32_t* GmshNodeIndex::find(std::uint64_t tag) const {
 
 void GmshCells::add(const GmshCellType& type, std::span<const std::int64_t> groups,
                     std::span<const std::uint32_t> vertices) {
-  if (type.type == kGmshLinearTet) {
-    tets_.push_back({vertices[0], vertices[1], vertices[2], vertices[3]});
+  if (type.type == kGmshLinearTet || type.type == kGmshCurvedTet) {
+    const auto& v = vertices;
+    tets_.push_back({v[0], v[1], v[2], v[3]});
+    if (type.type == kGmshCurvedTet) curved_.push_back({tets_.back(), {v[4], v[5], v[6], v[7], v[9], v[8]}});
     regions_.push_back(groups.empty() ? 0 : static_cast<int>(groups[0]));
     for (std::size_t i = 1; i < groups.size(); ++i)
       other_volumes_.emplace_back(tets_.size() - 1, std::int64_t(groups[i]));
@@ -142,6 +144,7 @@ void GmshCells::finish(RawMesh& raw, bool copied) {
   if (copied && several) join_copies(raw.mesh.vertices.size());
   add_shared_volumes();
   raw.mesh.tets = std::move(tets_);
+  raw.curved = std::move(curved_);
   if (std::any_of(regions_.begin(), regions_.end(), [](int region) { return region != 0; })) {
     raw.mesh.regions = std::move(regions_);
   }

@@ -16,7 +16,7 @@ struct GmshCellType {
   const char* plural = "";
 };
 
-inline constexpr int kGmshLinearTet = 4;
+inline constexpr int kGmshLinearTet = 4, kGmshCurvedTet = 11;
 
 /// @return the type, or null if Gmsh has none of that number
 const GmshCellType* gmsh_cell_type(std::int64_t type);
@@ -60,6 +60,7 @@ class GmshCells {
   void add_shared_volumes();
 
   std::vector<Tet> tets_;
+  std::vector<CurvedTet> curved_;
   std::vector<int> regions_;
   std::map<Group, std::string> names_;
   std::map<Group, std::vector<std::uint32_t>> sets_;

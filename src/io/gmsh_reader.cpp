@@ -24,8 +24,8 @@ class GmshReader {
     std::string section;
     if (!source_.next_section(section) || section != "MeshFormat") {
       source_.fail(
-          "a Gmsh file begins with $MeshFormat; this is another format, or version 1 (convert it with: "
-          "gmsh FILE -save -format msh41)");
+          "a Gmsh file begins with $MeshFormat; this is another format, or version 1: convert it in Python with "
+          "glisson.convert(FILE, \"mesh.vtu\"), or by gmsh FILE -save -format msh41");
     }
     read_format();
     while (source_.next_section(section)) read_section(section);
@@ -77,7 +77,9 @@ void GmshReader::read_format() {
     char text[32];
     std::snprintf(text, sizeof text, "%g", version);
     source_.fail(std::string("Gmsh format ") + text +
-                 " is not read, only 2.2 and 4.1; convert it with: gmsh FILE -save -format msh41");
+                 " is not read, only 2.2 and 4.1; convert it in Python with glisson.convert(FILE, \"mesh.vtu\"), or by "
+                 "gmsh FILE "
+                 "-save -format msh41");
   }
   if (type != 0 && type != 1) source_.fail("file type " + std::to_string(type) + "; it must be 0 (text) or 1 (binary)");
   if (size != 8 && !(size == 4 && version_4_)) source_.fail("data size " + std::to_string(size) + "; it must be 8");

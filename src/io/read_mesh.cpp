@@ -6,7 +6,10 @@
 
 #include "base/input_file.h"
 #include "base/text.h"
+#include "io/curved_tets.h"
 #include "io/raw_mesh.h"
+#include "mesh/inspect/nearest_point.h"
+#include "mesh/inspect/warnings.h"
 
 namespace glisson {
 namespace detail {
@@ -17,7 +20,8 @@ struct Format {
   RawMesh (*read)(std::string_view, const std::string&);
 };
 
-constexpr Format kFormats[] = {{".vtu", read_vtu}, {".vtk", read_legacy_vtk}, {".msh", read_gmsh}};
+constexpr Format kFormats[] = {
+    {".vtu", read_vtu}, {".vtk", read_legacy_vtk}, {".msh", read_gmsh}, {".inp", read_abaqus}};
 
 std::string ending_of(const std::string& name) {
   std::string ending = std::filesystem::path(name).extension().string();
@@ -26,13 +30,16 @@ std::string ending_of(const std::string& name) {
 }
 
 const Format& format_of(const std::string& name) {
-  const std::string ending = ending_of(name);
+  const std::string ending = ending_of(name), file = std::filesystem::path(name).filename().string();
   for (const Format& format : kFormats) {
     if (ending == format.ending) return format;
   }
+  if (ending == ".stl" || ending == ".obj" || ending == ".ply")
+    fail(name, "is a surface; fill it with tetrahedra first: glisson mesh " + file + " --edge-mm E --out mesh.vtu");
   fail(name, (ending.empty() ? "the name has no ending" : "unknown ending \"" + ending + "\"") +
-                 "; meshes are read from .vtu (VTK XML), .vtk (legacy VTK) and .msh (Gmsh 2.2 and 4.1); "
-                 "convert others, for instance with meshio");
+                 "; meshes are read from .vtu (VTK XML), .vtk (legacy VTK), .msh (Gmsh 2.2 and 4.1) and .inp (Abaqus); "
+                 "convert others in Python: glisson.convert(\"" +
+                 file + "\", \"mesh.vtu\")");
 }
 
 std::string skipped_text(const RawMesh& raw) {
@@ -83,32 +90,45 @@ std::string read_bytes(const std::filesystem::path& file) {
   return std::move(input.bytes);
 }
 
-ImportedMesh finish_import(RawMesh raw, const std::string& name, double scale) {
+/// The factor on coordinates: where none is given, that of millimetres for a body larger than any organ.
+double scale_of(RawMesh& raw, const std::optional<double>& given) {
+  if (given) return *given;
+  const auto [low, high] = box_of(raw.mesh);
+  const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  if (!(extent > kLargestOrgan)) return 1.0;
+  raw.notes.push_back("The mesh is " + number_text(extent, 4) +
+                      " across its longest side, in metres more than any organ: it was read as millimetres. Give scale "
+                      "= 1 if it is in metres.");
+  return 0.001;
+}
+
+ImportedMesh finish_import(RawMesh raw, const std::string& name, std::optional<double> given) {
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
   if (raw.mesh.tets.empty()) {
-    fail(name, "no linear tetrahedra in the file" +
+    fail(name, "no tetrahedra in the file" +
                    (raw.skipped.empty() ? std::string() : " (it has " + skipped_text(raw) + ")") +
-                   "; mesh the volume with first-order tetrahedra");
+                   "; mesh the volume with tetrahedra of 4 or 10 nodes");
   }
   if (raw.mesh.vertices.size() > kMost || raw.mesh.tets.size() > kMost) {
     fail(name, "more than " + std::to_string(kMost) + " vertices or tets cannot be numbered");
   }
-  scale_vertices(raw.mesh, name, scale);
   check_tets(raw.mesh, name);
+  scale_vertices(raw.mesh, name, scale_of(raw, given));
+  take_corners(raw);
   sort_sets(raw.mesh);
   ImportedMesh imported{std::move(raw.mesh), {}};
   imported.report = orient_and_inspect(imported.mesh);
   if (!raw.skipped.empty()) {
-    raw.notes.push_back("Cells that are not linear tetrahedra were skipped: " + skipped_text(raw) + ".");
+    raw.notes.push_back("Cells that are not tetrahedra of 4 or 10 nodes were skipped: " + skipped_text(raw) + ".");
   }
   auto& warnings = imported.report.warnings;
   warnings.insert(warnings.begin(), raw.notes.begin(), raw.notes.end());
   return imported;
 }
 
-ImportedMesh read_mesh_bytes(std::string_view bytes, const std::string& name, double scale) {
-  if (!(std::isfinite(scale) && scale > 0.0)) {
-    fail(name, "scale = " + number_text(scale) +
+ImportedMesh read_mesh_bytes(std::string_view bytes, const std::string& name, std::optional<double> scale) {
+  if (scale && !(std::isfinite(*scale) && *scale > 0.0)) {
+    fail(name, "scale = " + number_text(*scale) +
                    " is out of range: it must be greater than 0 (0.001 for a file in millimetres)");
   }
   return finish_import(format_of(name).read(bytes, name), name, scale);
@@ -116,7 +136,7 @@ ImportedMesh read_mesh_bytes(std::string_view bytes, const std::string& name, do
 
 }  // namespace detail
 
-ImportedMesh read_mesh(const std::filesystem::path& file, double scale) {
+ImportedMesh read_mesh(const std::filesystem::path& file, std::optional<double> scale) {
   detail::format_of(file.string());
   return detail::read_mesh_bytes(detail::read_bytes(file), file.string(), scale);
 }

@@ -10,7 +10,7 @@
 namespace glisson::detail {
 namespace {
 
-constexpr int kTetra = 10;
+constexpr int kTetra = 10, kCurvedTetra = 24;
 
 struct CellType {
   int type;
@@ -59,19 +59,20 @@ void VtkGrid::add_cell(int type, std::span<const std::int64_t> vertices) {
     fail(where(), "type " + std::to_string(type) + " (" + known->plural + ") takes " + std::to_string(known->points) +
                       " vertices; it has " + std::to_string(vertices.size()));
   }
-  if (type != kTetra) {
+  if (type != kTetra && type != kCurvedTetra) {
     ++raw_.skipped[known != nullptr ? known->plural : "cells of VTK type " + std::to_string(type)];
     return;
   }
-  Tet tet{};
-  for (std::size_t i = 0; i < 4; ++i) {
+  std::array<std::uint32_t, 10> at{};
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (vertices[i] < 0 || static_cast<std::uint64_t>(vertices[i]) >= raw_.mesh.vertices.size()) {
       fail(where(), "refers to vertex " + std::to_string(vertices[i]) + ", but the file has " +
                         std::to_string(raw_.mesh.vertices.size()) + " vertices, numbered from 0");
     }
-    tet[i] = static_cast<std::uint32_t>(vertices[i]);
+    at[i] = static_cast<std::uint32_t>(vertices[i]);
   }
-  raw_.mesh.tets.push_back(tet);
+  raw_.mesh.tets.push_back({at[0], at[1], at[2], at[3]});
+  if (type == kCurvedTetra) raw_.curved.push_back({raw_.mesh.tets.back(), {at[4], at[5], at[6], at[7], at[8], at[9]}});
   cell_of_tet_.push_back(cell);
 }
 

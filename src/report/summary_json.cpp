@@ -2,6 +2,7 @@
 #include "report/summary_json.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "glisson/version.h"
 
@@ -24,6 +25,15 @@ std::string energy_warning(const RunSummary& s) {
       "computed from there on cannot be believed. A stiffness law in secant form gives work over closed cycles, where "
       "law_form = \"energy\" does not; else take a smaller step_s, or integrator = \"implicit\"",
       gain.began, meaning_of(gain.of), gain.most, gain.paid, s.time_s);
+}
+
+std::string meeting_warning(const RunSummary& s) {
+  if (s.never_met.empty()) return {};
+  return fmt::format(
+      "\"{}\" never met the body: no force and no event in {:.4g} s. `glisson check` says by how much; `aim` in place "
+      "of "
+      "`tip_m` finds the body",
+      fmt::join(s.never_met, "\", \""), s.time_s);
 }
 
 std::uint64_t rejected_poses(std::span<const std::shared_ptr<Instrument>> instruments) {
@@ -83,6 +93,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
     json["first_inversion_s"] = s.first_inversion_s;
   else
     json["first_inversion_s"] = nullptr;
+  if (!s.never_met.empty()) json["never_met"] = s.never_met;
   json["integrator"] = word_of(variant.simulation.integrator);
   json["precision"] = word_of(variant.simulation.precision);
   json["threads"] = threads;

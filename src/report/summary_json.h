@@ -17,6 +17,9 @@ std::string trouble_text(const RunSummary& summary);
 /// A sentence on energy that came from nothing, with the time from which on and the ways out; empty where none did.
 std::string energy_warning(const RunSummary& summary);
 
+/// A sentence on instruments that never met the body, with the way out; empty where all did.
+std::string meeting_warning(const RunSummary& summary);
+
 /// The object of summary.json, keys in the order they are written.
 /// @param scene  name of the scene; @param threads  variants at a time (results do not depend on it)
 /// @param rejected  rejected_poses() of its instruments

@@ -253,6 +253,15 @@ void load_measured(Scene& scene, const Node& node, const std::filesystem::path& 
   }
 }
 
+/// Says in the notes of a scene what was done to close surfaces.
+void note_repairs(Scene& scene) {
+  for (const Variant& variant : scene.variants) {
+    for (const std::string& repair : surface_repairs(variant)) {
+      if (std::find(scene.notes.begin(), scene.notes.end(), repair) == scene.notes.end()) scene.notes.push_back(repair);
+    }
+  }
+}
+
 }  // namespace
 
 int most_drag_stages(const Variant& variant) {
@@ -284,6 +293,16 @@ Variant scene::read_variant(const Node& experiment, const std::filesystem::path&
   return variant;
 }
 
+std::vector<std::string> surface_repairs(const Variant& variant) {
+  std::vector<std::string> repairs;
+  const auto* body = std::get_if<ImplicitBody>(&variant.mesh);
+  for (std::size_t i = 0; body != nullptr && i < body->shapes.size(); ++i) {
+    const auto* surface = std::get_if<SurfaceShape>(&body->shapes[i].what);
+    if (surface != nullptr && !surface->repaired.empty()) repairs.push_back(surface->repaired);
+  }
+  return repairs;
+}
+
 Scene parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& base,
                   std::span<const Override> overrides) {
   const Node root = parse_document(text, name);
@@ -302,6 +321,7 @@ Scene parse_scene(std::string_view text, const std::string& name, const std::fil
     load_measured(result, expanded.scene, base, problems);
   }
   problems.throw_if_any();
+  note_repairs(result);
   if (result.title.empty()) result.title = result.file.stem().string();
   return result;
 }

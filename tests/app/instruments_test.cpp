@@ -189,5 +189,24 @@ TEST_F(Instruments, LedgerClosesInTheTable) {
   EXPECT_GT(f["contact_area_m2"].back(), 0.0);
 }
 
+// An instrument that passes the body by is named by check, with its distance, and by the run at its end and in its summary; one with an aim finds the
+// body, and check says where it starts.
+TEST_F(Instruments, ThatNeverMeetTheBodyAreNamed) {
+  std::string beside = needle_scene();
+  beside.replace(beside.find("tip_m = [0.001, 0.002, 0.041]"), 29, "tip_m = [0.05, 0, 0.041]");
+  const std::string scene = write("s.toml", beside);
+  const Outcome check = run({"check", scene});
+  EXPECT_THAT(check, Exits(0));
+  EXPECT_THAT(check.out, ::testing::HasSubstr("\"needle\" never meets the body at rest: its tip passes 30 mm from it"));
+  const Outcome done = run({"run", scene, "--out", "o"});
+  EXPECT_THAT(done, Exits(0));
+  EXPECT_THAT(done.err, ::testing::HasSubstr("main: warning: \"needle\" never met the body"));
+  EXPECT_THAT(read_text(folder_ / "o/main/summary.json"), ::testing::HasSubstr("\"never_met\""));
+  const Outcome aimed = run({"check", scene, "--set", "instrument.needle.aim={ clearance_mm = 1 }"});
+  EXPECT_THAT(aimed, Exits(0));
+  EXPECT_THAT(aimed.out, ::testing::HasSubstr("starts at (0, 0, 41) mm"));
+  EXPECT_THAT(aimed.out, ::testing::Not(::testing::HasSubstr("never meets")));
+}
+
 }  // namespace
 }  // namespace glisson::test

@@ -112,11 +112,22 @@ TEST_F(MeshCommand, MeshesSurfaces) {
   EXPECT_THAT(refusal({ball, "--edge-mm", "6", "--set", "mesh.edge_mm=3"}), HasSubstr("are for scenes"));
   EXPECT_THAT(refusal({write("s.toml", kTwoRegions), "--edge-mm", "6"}), HasSubstr("--set mesh.edge_mm=6"));
   EXPECT_THAT(refusal({(folder_ / "none.obj").string(), "--edge-mm", "6"}), HasSubstr("there is no such file"));
-  TriangleSurface open = icosphere(30.0, 1);
-  open.triangles.pop_back();
+  TriangleSurface open = icosphere(30.0, 0);
+  open.triangles.resize(18);
   EXPECT_THAT(refusal({write("open.obj", obj_text(open)), "--edge-mm", "6"}),
-              HasSubstr("open.obj: the surface is open at 3 edges"));
+              ::testing::AllOf(HasSubstr("open.obj: the surface has a hole of "), HasSubstr(" edges around (")));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "no.vtu"));
+}
+
+// A surface with a triangle missing is meshed, and how it was closed is printed and kept.
+TEST_F(MeshCommand, SaysWhatItDidToASurface) {
+  TriangleSurface open = icosphere(30.0, 2);
+  open.triangles.pop_back();
+  const std::string json = (folder_ / "figures.json").string();
+  const Outcome done = run({"mesh", write("open.obj", obj_text(open)), "--scale", "0.001", "--edge-mm", "8", "--out",
+                            (folder_ / "m.vtu").string(), "--json", json});
+  EXPECT_THAT(done, Exits(0));
+  EXPECT_THAT(done.out, ::testing::AllOf(HasSubstr("open.obj: 1 hole was closed"), HasSubstr(" m\n")));
 }
 
 TEST_F(MeshCommand, ExplainsThatMemoryIsTooLittle) {

@@ -1,6 +1,6 @@
 // mesh_fuzz.cpp — any bytes as a mesh file: a valid mesh or a FileError, nothing else.
 //
-// The first byte picks the format (modulo 3: Gmsh, VTU, legacy VTK), the rest is the file. The entry point
+// The first byte picks the format ('3': Abaqus; else modulo 3: Gmsh, VTU, legacy VTK), the rest is the file. The entry point
 // serves libFuzzer and, through replay_main.cpp, the replay of the corpus in every test run.
 #include <cmath>
 #include <cstdint>
@@ -43,10 +43,11 @@ void require_promises(const glisson::ImportedMesh& imported) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const char* names[] = {"fuzz.msh", "fuzz.vtu", "fuzz.vtk"};
+  const char* names[] = {"fuzz.msh", "fuzz.vtu", "fuzz.vtk", "fuzz.inp"};
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   try {
-    const glisson::ImportedMesh imported = glisson::detail::read_mesh_bytes(bytes, names[data[0] % 3]);
+    const glisson::ImportedMesh imported =
+        glisson::detail::read_mesh_bytes(bytes, names[data[0] == '3' ? 3 : data[0] % 3]);
     require_promises(imported);
     require(!glisson::format_report("fuzz", imported.report, &imported.mesh).empty(), "there is a report");
   } catch (const glisson::FileError&) {

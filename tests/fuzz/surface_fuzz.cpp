@@ -8,6 +8,7 @@
 #include <string>
 
 #include "glisson/surface_region.h"
+#include "glisson/surface_repair.h"
 #include "scene/surface/surface_source.h"
 #include "support.h"
 
@@ -32,7 +33,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const std::uint32_t v : t) require(v < surface.points.size(), "triangles refer to points");
   }
   try {
-    const glisson::Solid solid = glisson::surface_solid(surface.points, surface.triangles);
+    const glisson::SurfaceRepair closed = glisson::repair_surface(surface.points, surface.triangles);
+    require(closed.any() == !closed.text().empty(), "what was done is said");
+    const glisson::Solid solid = glisson::surface_solid(closed.points, closed.triangles);
     require(!std::isnan(solid.distance(surface.points.front() + glisson::Vec3d{0.25, 0.5, 0.125})),
             "a distance is a number");
   } catch (const std::invalid_argument&) {

@@ -76,7 +76,7 @@ const std::vector<Malformed> kGmshText = {
      "$Elements stands before $Nodes"},
     {"no tets", "a.msh",
      with(with(gmsh22_text(), "3 4 2 7 1 10 5 700 31", "3 3 2 0 1 10 5 700 31"), "4 4 2 9 1 5 2", "4 3 2 0 1 5 2"),
-     "no linear tetrahedra in the file (it has 2 quadrangles)"},
+     "no tetrahedra in the file (it has 2 quadrangles)"},
     {"no nodes section", "a.msh", cut(gmsh22_text(), "$Nodes"),
      "the file ends without a $Nodes section: it is cut off"},
     {"no elements section", "a.msh", cut(gmsh22_text(), "$Elements"), "the file ends without an $Elements section"},
@@ -155,7 +155,7 @@ const std::vector<Malformed> kVtk = {
      "c.vtu, cell 0: type 10 (tetrahedra) takes 4 vertices; it has 5"},
     {"nan coordinate", "c.vtu", with(vtu_text(), "0.01 0.02", "nan 0.02"),
      "vertex 3 is at (nan, 0.02, 0.1); coordinates must be finite"},
-    {"no tets", "c.vtu", with(vtu_text(), "10 10", "9 9"), "no linear tetrahedra in the file (it has 2 quadrangles)"},
+    {"no tets", "c.vtu", with(vtu_text(), "10 10", "9 9"), "no tetrahedra in the file (it has 2 quadrangles)"},
     {"more points than said", "c.vtu", with(vtu_text(), "0 0 0 0.1", "0 0 0 0 0.1"),
      "array \"Points\": it must have 15 values, but has more"},
     {"more cells than offsets", "c.vtu", with(vtu_text(), "NumberOfCells=\"2\"", "NumberOfCells=\"4\""),
@@ -204,7 +204,7 @@ const std::vector<Malformed> kVtk = {
      "the offsets must rise from 0 to the length of the connectivity, 8"},
     {"unknown keyword", "d.vtk", vtk_text() + "SHAPES 2\n", "SHAPES: unknown keyword"},
     {"cut off", "d.vtk", cut(vtk_text(), "CELL_TYPES"), "the file ends without CELL_TYPES: it is cut off"},
-    {"no known ending", "e.stl", "solid", "unknown ending \".stl\"; meshes are read from .vtu"},
+    {"no known ending", "e.bdf", "solid", "unknown ending \".bdf\"; meshes are read from .vtu"},
     {"no ending", "e", "solid", "the name has no ending"},
 };
 
@@ -257,7 +257,10 @@ TEST(MalformedMeshFile, IsRefused) {
   std::filesystem::create_directories(folder);
   EXPECT_THAT(message("no/such/mesh.vtu"), ::testing::HasSubstr("no/such/mesh.vtu: there is no such file"));
   EXPECT_THAT(message(folder), ::testing::HasSubstr("is a folder; name a mesh file"));
-  EXPECT_THAT(message("mesh.inp"), ::testing::HasSubstr("unknown ending \".inp\""));
+  EXPECT_THAT(
+      message("organ.bdf"),
+      ::testing::AllOf(::testing::HasSubstr("unknown ending \".bdf\""),
+                       ::testing::HasSubstr("convert others in Python: glisson.convert(\"organ.bdf\", \"mesh.vtu\")")));
 }
 
 }  // namespace

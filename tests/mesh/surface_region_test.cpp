@@ -176,8 +176,8 @@ std::string refusal(const Surface& s) {
 TEST(SurfaceRegion, RefusesWhatIsNotClosed) {
   Surface s = ball(24, 12);
   s.triangles.erase(s.triangles.begin() + 11);
-  EXPECT_THAT(refusal(s),
-              testing::AllOf(HasSubstr("\"organ\": is open at 3 edges, the first at ("), HasSubstr("close its holes")));
+  EXPECT_THAT(refusal(s), testing::AllOf(HasSubstr("\"organ\": is open at 3 edges, the first at ("),
+                                         HasSubstr("repair_surface closes it")));
   s = ball(24, 12);
   std::swap(s.triangles[11][1], s.triangles[11][2]);
   EXPECT_THAT(refusal(s), testing::AllOf(HasSubstr("turn against their neighbours at 3 edges"), HasSubstr("orient")));

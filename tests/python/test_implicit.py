@@ -99,6 +99,17 @@ def test_a_closed_surface_is_a_solid(tmp_path):
         glisson.read_surface(file)
 
 
+def test_a_surface_as_it_comes_is_closed():
+    """A triangle that is there twice is left out, and told; a surface that closes is as it was; a large hole is refused."""
+    points, triangles, text = glisson.repair_surface(CUBE, [*FACES, FACES[4]])
+    np.testing.assert_array_equal(triangles, FACES)
+    assert text.startswith("1 double triangle was left out, at (")
+    assert glisson.surface_solid(points, triangles).distance([0.5, 0.5, 0.75]) == pytest.approx(-0.25)
+    assert glisson.repair_surface(CUBE, FACES)[2] == ""
+    with pytest.raises(ValueError, match=r"has a hole of 9\.091 % of its area, 3 edges around"):
+        glisson.repair_surface(CUBE, FACES[1:])
+
+
 def test_what_cannot_be_meshed_is_named():
     ball = glisson.BodyRegion("ball", glisson.Solid(glisson.BallShape(radius=0.01)))
     with pytest.raises(ValueError, match="smaller edge"):

@@ -121,8 +121,46 @@ def test_meshio_formats(tmp_path):
     block.write(tmp_path / "box.mesh")
     read = glisson.read_mesh(tmp_path / "box.mesh", scale=1e-3)
     assert np.allclose(read.vertices, mesh.vertices, atol=1e-15) and np.array_equal(read.tets, mesh.tets)
-    with pytest.raises(ValueError, match="no linear tetrahedra"):
+    with pytest.raises(ValueError, match="no tetrahedra"):
         glisson.from_meshio(meshio.Mesh(CORNERS, [("triangle", [[0, 1, 2]])]))
+
+
+def test_any_format_is_converted(tmp_path):
+    """Meshes of Medit, in millimetres, of Gmsh 4.0 and of Gmsh 1 become .vtu that the program reads: the same tets, regions and sets."""
+    meshio = pytest.importorskip("meshio")
+    mesh = glisson.box_mesh(cells=[1, 1, 2])
+    block = meshio.Mesh(1e3 * mesh.vertices, [("tetra", mesh.tets.astype(int))])
+    block.write(tmp_path / "box.mesh")
+    with pytest.warns(UserWarning, match="read as millimetres"):
+        report = glisson.convert(tmp_path / "box.mesh", tmp_path / "box.vtu", scale=None)
+    read = glisson.read_mesh(tmp_path / "box.vtu")
+    assert np.allclose(read.vertices, mesh.vertices, atol=1e-15) and np.array_equal(read.tets, mesh.tets)
+    assert report.tets == 12 and report.warnings == []
+    meshio.gmsh.write(tmp_path / "v40.msh", meshio.Mesh(mesh.vertices, block.cells), "4.0", binary=False)
+    assert glisson.convert(tmp_path / "v40.msh", tmp_path / "v40.vtu").volume == pytest.approx(mesh.volume)
+    nodes = [f"{i + 5} {x} {y} {z}" for i, (x, y, z) in enumerate(mesh.vertices)]
+    tets = [f"{i + 2} 4 {7 + i % 2} 1 4 " + " ".join(str(v + 5) for v in tet) for i, tet in enumerate(mesh.tets)]
+    lines = ["$NOD", str(len(nodes)), *nodes, "$ENDNOD", "$ELM", "13", "1 2 4 1 3 5 6 7", *tets, "$ENDELM"]
+    (tmp_path / "v1.msh").write_text("\n".join(lines) + "\n")
+    glisson.convert(tmp_path / "v1.msh", tmp_path / "v1.vtu")
+    read = glisson.read_mesh(tmp_path / "v1.vtu")
+    assert np.array_equal(read.tets, mesh.tets) and read.regions.tolist() == 6 * [7, 8]
+    assert read.vertex_sets["surface_4"].tolist() == [0, 1, 2]
+    (tmp_path / "v1.msh").write_text("\n".join(lines[:-3]) + "\n")
+    with pytest.raises(ValueError, match=r"v1.msh: \$ELM, element 1"):
+        glisson.read_mesh(tmp_path / "v1.msh")
+    with pytest.raises(ValueError, match="written as .vtu"):
+        glisson.convert(tmp_path / "box.mesh", tmp_path / "box.vtk")
+
+
+def test_curved_tets_are_taken_by_their_corners():
+    """A tet of ten nodes with an edge that bulges by 0.05 has 11/60 of volume, of which its corners keep 1/6: 9.1 % are lost."""
+    meshio = pytest.importorskip("meshio")
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
+    middles = np.array([[0.5, 0, 0], [0.55, 0.55, 0], [0, 0.5, 0], [0, 0, 0.5], [0.5, 0, 0.5], [0, 0.5, 0.5]])
+    with pytest.warns(UserWarning, match=r"1 tets of 10 nodes were taken by the corners: straight edges lose 9\.1 %"):
+        mesh = glisson.from_meshio(meshio.Mesh(np.vstack([corners, middles]), [("tetra10", np.arange(10)[None])]))
+    assert len(mesh.vertices) == 4 and mesh.volume == pytest.approx(1 / 6)
 
 
 def test_pyvista_both_ways():

@@ -35,6 +35,12 @@ sphere_m = { center = [1, 2, 3], radius = 0.5 }
 nearest_m = { point = [4, 5, 6], count = 7 }
 [sets.end]
 side = { axis = "y", end = "upper", depth_m = 0.125 }
+[sets.shared]
+side = { axis = "x", end = "lower", share = 0.25 }
+[sets.faced]
+facing = { direction = [0, 2, 1], count = 4, point_m = [7, 8, 9] }
+[sets.faced_region]
+facing = { direction = [0, 0, 1], region = "stone" }
 [sets.listed]
 vertices = [3, 1, 2]
 
@@ -236,7 +242,7 @@ TEST(EveryKey, OfMeshAndSetsIsRead) {
   expect_equal(box.size, {0.03, 0.04, 0.05});
   expect_equal(box.origin, {1, 2.5, -3});
   EXPECT_EQ(box.split, BoxSplit::alternating);
-  ASSERT_EQ(v.sets.size(), 5u);
+  ASSERT_EQ(v.sets.size(), 8u);
   const auto& boxed = std::get<Selection::Box>(v.sets.at("boxed").where);
   expect_equal(boxed.min, {0, 0, 0});
   expect_equal(boxed.max, {1, 2, 3});
@@ -252,6 +258,12 @@ TEST(EveryKey, OfMeshAndSetsIsRead) {
   EXPECT_EQ(end.axis, 1);
   EXPECT_TRUE(end.upper);
   EXPECT_EQ(end.depth, 0.125);
+  EXPECT_EQ(std::get<Selection::Side>(v.sets.at("shared").where).share, 0.25);
+  const auto& faced = std::get<Selection::Facing>(v.sets.at("faced").where);
+  expect_equal(faced.direction, {0, 2, 1});
+  EXPECT_EQ(faced.count, 4);
+  expect_equal(faced.at.point.value(), {7, 8, 9});
+  EXPECT_EQ(std::get<Selection::Facing>(v.sets.at("faced_region").where).at.region, "stone");
   EXPECT_THAT(std::get<Selection::Ids>(v.sets.at("listed").where).vertices, ElementsAre(3, 1, 2));
 }
 
@@ -438,6 +450,31 @@ TEST(EveryKey, OfAPalpationIsRead) {
   EXPECT_NEAR(run_duration(v), 0.5 + 6 * (0.2 + 2 * 3e-3 / 0.04 + 0.1), 1e-12);
 }
 
+const std::string kAims = R"(
+[mesh]
+kind = "box"
+[[instrument]]
+kind = "needle"
+aim = { region = "tumour", distance_mm = 90 }
+motion = { kind = "press" }
+[[instrument]]
+kind = "ball"
+name = "ball"
+aim = { point_m = [1, 2, 3], clearance_mm = 7 }
+motion = { kind = "press" }
+)";
+
+// An aim keeps its point, and how far from it or from the surface an instrument starts.
+TEST(EveryKey, OfAnAimIsRead) {
+  const Variant v = parse(kAims).variants[0];
+  const AimSpec &needle = v.instruments.at(0).aim.value(), &ball = v.instruments.at(1).aim.value();
+  EXPECT_EQ(needle.at.region, "tumour");
+  EXPECT_EQ(needle.distance, 0.09);
+  expect_equal(ball.at.point.value(), {1, 2, 3});
+  EXPECT_EQ(ball.clearance, 0.007);
+  EXPECT_FALSE(ball.distance);
+}
+
 // The two other kinds of mesh keep their numbers; a file is looked for beside the scene.
 TEST(EveryKey, OfCylinderAndFileIsRead) {
   const std::string rest = "\n[motion]\nduration_s = 1\n";
@@ -455,6 +492,8 @@ TEST(EveryKey, OfCylinderAndFileIsRead) {
   const auto& f = std::get<MeshFile>(file.variants[0].mesh);
   EXPECT_EQ(f.path, "/scenes/organs/liver.vtu");
   EXPECT_EQ(f.scale, 0.001);
+  const Scene any = parse("[mesh]\nkind = \"file\"\npath = \"organs/liver.vtu\"\nscale = \"auto\"\n" + rest);
+  EXPECT_FALSE(std::get<MeshFile>(any.variants[0].mesh).scale);
   const Scene absolute = parse("[mesh]\nkind = \"file\"\npath = \"/data/liver.vtu\"\n" + rest);
   EXPECT_EQ(std::get<MeshFile>(absolute.variants[0].mesh).path, "/data/liver.vtu");
 }
@@ -493,7 +532,7 @@ TEST(EveryKey, IsInTheSceneOfThisTest) {
   collect(scene::scene_section(), keys);
   collect(scene::variant_section(), keys);
   EXPECT_GT(keys.size(), 60u);
-  const std::string text = kEveryKey + kRotations + kPalpation + test::kEveryInstrument;
+  const std::string text = kEveryKey + kRotations + kPalpation + kAims + test::kEveryInstrument;
   for (const char* key : {"path", "file", "record", "poses", "x_offset"})
     keys.erase(key);  // of files, which have tests of their own
   for (const std::string& key : keys) EXPECT_NE(text.find(key), std::string::npos) << key;

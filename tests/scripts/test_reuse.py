@@ -96,6 +96,16 @@ class Reuse(unittest.TestCase):
         self.assertFalse(self.reused())
         self.assertEqual(self.answer("wheel"), 1)
 
+    def test_a_folder_of_a_moved_tree_is_named(self):
+        self.made("release")
+        moved = self.root.with_name(self.root.name + "-moved")
+        shutil.copytree(self.root, moved)
+        self.addCleanup(shutil.rmtree, moved)
+        old, self.root = self.root, moved
+        said = self.made("wheel", f"-DREUSE={moved}/release")
+        self.assertIn(f"was built of the sources in {old.resolve()}: this tree was moved or copied", " ".join(said.split()))
+        self.assertEqual(self.answer("wheel"), 1)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -139,7 +139,8 @@ struct RunSummary {
   std::size_t inverted_tets_most = 0;  ///< largest number of tets inverted in one step
   double first_inversion_s = -1.0;     ///< time of it; −1: none
   std::uint64_t state_hash = 0;
-  std::string instruction_set{};  ///< of the element kernels; the hash is one of this set
+  std::string instruction_set{};         ///< of the element kernels; the hash is one of this set
+  std::vector<std::string> never_met{};  ///< instruments without a force or an event in a run that came to its end
   enum class End {
     finished,
     interrupted,
@@ -184,6 +185,9 @@ class RunObserver {
 
 /// Mesh, sets and regions of a variant, ready to simulate. @throws SceneError, and what `load` throws
 TetMesh build_mesh(const Variant& variant, const MeshLoader& load, const std::function<bool(double)>& progress = {});
+
+/// What was done to close the surfaces from files of a variant's body, a sentence with the file each (surface_repair.h).
+std::vector<std::string> surface_repairs(const Variant& variant);
 
 /// Tissue of each region number that occurs in a mesh made by build_mesh.
 std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh);

@@ -24,7 +24,8 @@ bool is_surface_file(const std::filesystem::path& file);
 ///   empty or cut off, of another ending, that says other than its format allows, numbers that are not finite, no triangles
 TriangleSurface read_surface(const std::filesystem::path& file, double scale = 1.0);
 
-/// The body within it. @throws as read_surface and, with the file's name, as surface_solid
+/// The body within it, closed by repair_surface where it does not close.
+/// @throws as read_surface and, with the file's name, as repair_surface and surface_solid
 SurfaceShape load_surface(const std::filesystem::path& file, double scale = 1.0);
 
 }  // namespace glisson

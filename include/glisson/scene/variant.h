@@ -33,12 +33,43 @@ namespace glisson {
 
 struct MeshFile {
   std::filesystem::path path;  ///< absolute, or relative to the current directory
-  double scale = 1.0;          ///< factor on coordinates
+  /// Factor on coordinates; none: metres, or millimetres where no organ is as large (glisson/io.h).
+  std::optional<double> scale = 1.0;
 };
 using MeshSource = std::variant<BoxOptions, CylinderOptions, MeshFile, ImplicitBody, LiverOptions>;
 
 // `origin` in the structs below is the place in the scene, `file:line:column: key`, for messages that need the mesh. It
 // may be empty.
+
+/// A point of the body at rest that is known once there is a mesh: the middle of its volume, or one of these.
+struct BodyPoint {
+  std::string region;          ///< name or number of a region, whose middle it is
+  std::optional<Vec3d> point;  ///< given [m]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(field("region", &BodyPoint::region, "name or number of a region whose middle it is")
+                    .otherwise("the middle of the body"),
+                field("point", &BodyPoint::point, "m", "a point in its place").otherwise("the middle of the body"));
+  }
+};
+
+/// Where an instrument starts: on the line through a point of the body along its direction.
+struct AimSpec {
+  BodyPoint at;
+  std::optional<double> distance;  ///< of the tip from that point [m]; none: `clearance` before the surface
+  double clearance = 0.005;        ///< of the instrument from where it meets the surface at rest [m]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    return take(no_key("at", &AimSpec::at),
+                field("distance", &AimSpec::distance, "mm", above(0),
+                      "distance of the tip from that point at the start: a motion as deep ends there")
+                    .otherwise("by `clearance_mm`"),
+                field("clearance", &AimSpec::clearance, "mm", at_least(0),
+                      "distance at the start from where it meets the surface at rest"));
+  }
+};
 
 /// Selects vertices by their rest positions, by exactly one criterion.
 struct Selection {
@@ -57,11 +88,18 @@ struct Selection {
     int axis;
     bool upper;
     double depth;
-  };  ///< within `depth` [m] of the lowest/highest vertex along an axis
+    double share = 0.0;  ///< of the body's extent along the axis, in place of a depth; 0: none
+  };                     ///< within `depth` [m] of the lowest/highest vertex along an axis
+  /// The `count` vertices of the surface nearest to where a line through a point of the body first meets it.
+  struct Facing {
+    Vec3d direction{0.0, 0.0, -1.0};  ///< of the line, of any length, into the body
+    int count = 1;
+    BodyPoint at;
+  };
   struct Ids {
     std::vector<std::uint32_t> vertices;
   };
-  std::variant<Box, Sphere, Nearest, Side, Ids> where;
+  std::variant<Box, Sphere, Nearest, Side, Ids, Facing> where;
   bool surface_only = false;
   std::string origin;
 };
@@ -218,6 +256,7 @@ using OwnInstrument = std::function<std::shared_ptr<Instrument>(const Instrument
 struct InstrumentSpec {
   std::string name = "instrument";
   Vec3d tip{};                      ///< initial position of its tip [m]
+  std::optional<AimSpec> aim;       ///< from which it comes instead, once there is a body
   Vec3d direction{0.0, 0.0, -1.0};  ///< direction of its tip, of any length
   Vec3d side{1.0, 0.0, 0.0};        ///< direction of its own x axis; the component across `direction` counts
   InstrumentMotion motion;
@@ -230,10 +269,14 @@ struct InstrumentSpec {
 PosesMotion started(const PosesSpec& spec);
 /// Initial pose of an instrument: its own z axis points back along its direction.
 Pose start_pose(const InstrumentSpec& instrument);
+/// The same where its aim places it. @throws std::invalid_argument naming a region that is not there, a line that misses the body, a
+/// tip that would start inside it
+Pose start_pose(const InstrumentSpec& instrument, const TetMesh& mesh);
 /// Its driver. That of a palpation moves over a plane through its tip, where no body is known; its end is the right one.
 /// @throws std::invalid_argument
 std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& instrument);
-/// The same, with the body that a palpation feels. @throws std::invalid_argument naming a point that misses the body
+/// The same, with the body that a palpation feels and an aim is in. @throws std::invalid_argument as start_pose, naming a point of a
+/// palpation that misses the body
 std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& instrument, const TetMesh& mesh);
 
 /// A file of numbers separated by commas: a line of names, `time_s` and `depth_m`, or `time_s`, `x_m`, `y_m` and `z_m`

@@ -130,7 +130,7 @@ MeshLoader kept_meshes(MeshLoader load) {
   if (!load) return load;
   struct Kept {
     std::mutex lock;
-    std::map<std::pair<std::filesystem::path, double>, TetMesh> meshes;
+    std::map<std::pair<std::filesystem::path, std::optional<double>>, TetMesh> meshes;
   };
   return [load = std::move(load), kept = std::make_shared<Kept>()](const MeshFile& file) {
     const std::scoped_lock guard(kept->lock);

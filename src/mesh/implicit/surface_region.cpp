@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 
 #include "base/text.h"
 #include "mesh/implicit/shape_node.h"
+#include "mesh/implicit/surface_edges.h"
 #include "mesh/implicit/surface_tree.h"
 
 namespace glisson {
@@ -29,45 +28,6 @@ class SurfaceNode final : public Solid::Node {
 
 [[noreturn]] void refuse_surface(const std::string& what) { throw std::invalid_argument(what); }
 
-std::string place_text(const Vec3d& x) {
-  std::ostringstream text;
-  text << "(" << x.x << ", " << x.y << ", " << x.z << ") m";
-  return text.str();
-}
-
-/// The number of the first point at the same place, of each point.
-std::vector<std::uint32_t> welded(std::span<const Vec3d> points) {
-  constexpr double kLargest = 1e30;  // [m]; squares of areas stay finite
-  std::map<std::array<double, 3>, std::uint32_t> places;
-  std::vector<std::uint32_t> same;
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const Vec3d& x = points[i];
-    if (!(std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}) <= kLargest) || std::isnan(x.x + x.y + x.z))
-      refuse_surface("has point " + std::to_string(i) +
-                     " that is not finite, or beyond 1e30 m; repair the file that it is from");
-    same.push_back(places.try_emplace({x.x, x.y, x.z}, i).first->second);
-  }
-  return same;
-}
-
-/// Triangles of welded points; those with a corner twice are left out.
-std::vector<Triangle> distinct(std::span<const Vec3d> points, std::span<const Triangle> triangles) {
-  const std::vector<std::uint32_t> same = welded(points);
-  std::vector<Triangle> kept;
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    Triangle corners{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (triangles[t][i] >= points.size())
-        refuse_surface("has triangle " + std::to_string(t) + " of point " + std::to_string(triangles[t][i]) +
-                       "; there are " + std::to_string(points.size()) + ", counted from 0");
-      corners[i] = same[triangles[t][i]];
-    }
-    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]) kept.push_back(corners);
-  }
-  if (kept.empty()) refuse_surface("has no triangles; give a closed surface");
-  return kept;
-}
-
 /// A kind of edge at which a surface does not close: how many there are, and where the first is.
 struct Faults {
   std::size_t count = 0;
@@ -81,26 +41,12 @@ struct Faults {
 
 /// Every edge is gone along as often in one direction as in the other.
 void require_closed(std::span<const Vec3d> points, const std::vector<Triangle>& triangles) {
-  struct Edge {
-    int sum = 0, count = 0;
-  };
-  std::map<std::array<std::uint32_t, 2>, Edge> edges;
-  for (const Triangle& t : triangles) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t a = t[i], b = t[(i + 1) % 3];
-      Edge& edge = edges[{std::min(a, b), std::max(a, b)}];
-      edge.sum += a < b ? 1 : -1, ++edge.count;
-    }
-  }
   Faults open, turned, crowded;
-  for (const auto& [ends, edge] : edges) {
+  for (const auto& [ends, edge] : edge_uses(triangles)) {
     if (edge.sum == 0) continue;
     Faults& kind = edge.count == 1 ? open : edge.count == 2 ? turned : crowded;
     kind.add((points[ends[0]] + points[ends[1]]) * 0.5);
   }
-  if (open.count > 0)
-    refuse_surface("is open at " + open.text() +
-                   "; close its holes in the program that it is from, and join points that should be one");
   if (crowded.count > 0)
     refuse_surface(
         "has three or more triangles that bound nothing at " + crowded.text() +
@@ -108,6 +54,9 @@ void require_closed(std::span<const Vec3d> points, const std::vector<Triangle>& 
   if (turned.count > 0)
     refuse_surface("has triangles that turn against their neighbours at " + turned.text() +
                    "; orient its triangles alike in the program that it is from");
+  if (open.count > 0)
+    refuse_surface("is open at " + open.text() +
+                   "; repair_surface closes it, or the program that it is from: join points that should be one");
 }
 
 /// The corners of triangles with an area, their normals outward.
@@ -132,7 +81,7 @@ std::vector<Corners> outward(std::span<const Vec3d> points, const std::vector<Tr
 }  // namespace
 
 Solid surface_solid(std::span<const Vec3d> points, std::span<const Triangle> triangles) {
-  const std::vector<Triangle> kept = distinct(points, triangles);
+  const std::vector<Triangle> kept = distinct_triangles(points, triangles);
   require_closed(points, kept);
   return Solid(std::make_shared<SurfaceNode>(SurfaceTree(outward(points, kept))));
 }

@@ -7,7 +7,6 @@
 namespace glisson::detail {
 namespace {
 
-constexpr double kLargestOrgan = 2.0;     // [m]
 constexpr double kSmallestOrgan = 0.001;  // [m]
 
 std::string tets_text(std::span<const std::uint32_t> tets) {

@@ -7,6 +7,8 @@ namespace glisson::detail {
 
 /// Tets below this mean ratio are called badly shaped; the step h* shrinks with the flattest tet.
 inline constexpr double kBadMeanRatio = 0.05;
+/// A body that is longer is probably in millimetres [m].
+inline constexpr double kLargestOrgan = 2.0;
 
 /// What the sentences need beside the report.
 struct Findings {

@@ -9,6 +9,7 @@
 #include "base/nearest.h"
 #include "glisson/instruments/driven_set.h"
 #include "glisson/mesh.h"
+#include "scene/build/body_places.h"
 #include "scene/build/palpation.h"
 #include "scene/parse/select.h"
 
@@ -130,11 +131,20 @@ std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& x) {
   return std::visit(DriverMaker{start_pose(x), moving_direction(x), {}}, x.motion.how);
 }
 
+Pose start_pose(const InstrumentSpec& x, const TetMesh& mesh) {
+  Pose pose = start_pose(x);
+  if (x.aim) pose.position = scene::aimed_tip(x, pose, mesh);
+  return pose;
+}
+
 std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& x, const TetMesh& mesh) {
   const Vec3d direction = moving_direction(x);
+  const Pose start = start_pose(x, mesh);
   std::vector<double> touches;
-  if (std::holds_alternative<PalpationSpec>(x.motion.how)) touches = scene::palpation_touches(x, direction, mesh);
-  return std::visit(DriverMaker{start_pose(x), direction, std::move(touches)}, x.motion.how);
+  if (std::holds_alternative<PalpationSpec>(x.motion.how)) {
+    touches = scene::palpation_touches(x, start, direction, mesh);
+  }
+  return std::visit(DriverMaker{start, direction, std::move(touches)}, x.motion.how);
 }
 
 namespace scene {

@@ -101,14 +101,14 @@ StrokeMotion palpation_strokes(const PalpationSpec& p, const Pose& start, const 
   return motion;
 }
 
-std::vector<double> palpation_touches(const InstrumentSpec& x, const Vec3d& direction, const TetMesh& mesh) {
+std::vector<double> palpation_touches(const InstrumentSpec& x, const Pose& start, const Vec3d& direction,
+                                      const TetMesh& mesh) {
   const auto* contact = std::get_if<ContactOptions>(&x.what);
   if (!contact)
     throw std::invalid_argument(
         "a palpation needs an instrument that presses in contact: punch, ball, probe, plate or block");
   const std::vector<Triangle> surface = boundary_triangles(mesh);
   const detail::TetLocator body(mesh, {});
-  const Pose start = start_pose(x);
   std::vector<double> touches;
   for (const Vec3d& aside : palpation_points(std::get<PalpationSpec>(x.motion.how), start)) {
     Pose at = start;

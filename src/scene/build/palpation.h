@@ -27,6 +27,7 @@ StrokeMotion palpation_strokes(const PalpationSpec& palpation, const Pose& start
 
 /// The touch of each point. @throws std::invalid_argument  naming the first point that misses the body or begins inside it, or
 /// the instrument where it is none that presses in contact
-std::vector<double> palpation_touches(const InstrumentSpec& instrument, const Vec3d& direction, const TetMesh& mesh);
+std::vector<double> palpation_touches(const InstrumentSpec& instrument, const Pose& start, const Vec3d& direction,
+                                      const TetMesh& mesh);
 
 }  // namespace glisson::scene

@@ -47,6 +47,7 @@ std::string scene_reference_markdown() {
   text += section_text(tool_section(), "`[[tool]]`");
   text += section_text(record_section(), "`[tool.record]`");
   text += section_text(instrument_section(), "`[[instrument]]`");
+  text += section_text(aim_section(), "`[instrument.aim]`");
   text += section_text(instrument_motion_section(), "`[instrument.motion]`");
   text += section_text(stroke_section(), "`[[instrument.motion.strokes]]`");
   text += section_text(rupture_section(), "`[instrument.rupture]`");

@@ -110,6 +110,19 @@ const SectionSpec& shaft_friction_section() {
   return section;
 }
 
+const SectionSpec& aim_section() {
+  static const SectionSpec section = [] {
+    Section<AimSpec> s("instrument.aim",
+                       "Where an instrument starts, found from the body, so that it fits any: on the line through the "
+                       "middle of the body, or another point of it, along the instrument's direction.");
+    s.fields(&AimSpec::at);
+    s.fields();
+    s.spec().exclusions = {{{{"region"}, {"point_m"}}, false}, {{{"distance_mm"}, {"clearance_mm"}}, false}};
+    return s.spec();
+  }();
+  return section;
+}
+
 const SectionSpec& instrument_section() {
   static const SectionSpec section = [] {
     Section<InstrumentSpec> s(
@@ -120,13 +133,17 @@ const SectionSpec& instrument_section() {
             "; needles, blades and rigid tools in contact act under implicit (with backward Euler) and "
             "quasi_static too, and in viscous tissue under semi_implicit.");
     s.key("name", &InstrumentSpec::name, "name; no two tools or instruments of an experiment share one");
-    s.key("tip_m", &InstrumentSpec::tip, "position of its tip at the start").in("m").must();
+    s.key("tip_m", &InstrumentSpec::tip, "position of its tip at the start").in("m").otherwise("");
+    s.table(
+        "aim", aim_section(), [](InstrumentSpec & x) -> auto& { return x.aim.emplace(); },
+        "where it starts, found from the body, in place of `tip_m`");
     s.key("direction", &InstrumentSpec::direction, "direction of its tip, of any length").in("-").direction();
     s.key("side", &InstrumentSpec::side,
           "direction of its own x axis, and of a bevelled tip; the component across `direction` counts")
         .in("-");
     s.table("motion", instrument_motion_section(), &InstrumentSpec::motion, "how it moves").must();
     s.named_tables("regions", tip_section(), &InstrumentSpec::regions, "of a needle: resistance at its tip by region");
+    s.spec().exclusions = {{{{"tip_m"}, {"aim"}}, true}};
     s.spec().kinds = {
         instrument_kind<NeedleOptions>(described<NeedleOptions>(
             "A needle that presses, pierces, cuts, rubs along its shaft and withdraws (docs/needles.md).")),

@@ -28,14 +28,18 @@ SectionSpec liver_kind() {
 
 SectionSpec file_kind() {
   Section<MeshFile> s("file",
-                      "A mesh of tetrahedra from a file: .vtu, .vtk, .msh (Gmsh 2.2 or 4.1). Its named groups "
-                      "become vertex sets and regions.");
+                      "A mesh of tetrahedra from a file: .vtu, .vtk, .msh (Gmsh 2.2 or 4.1), .inp (Abaqus). Its named "
+                      "groups become vertex sets and regions.");
   s.key("path", &MeshFile::path, "the file, relative to the scene").must();
-  s.key("scale", &MeshFile::scale, "factor on the coordinates; 0.001 for a file in millimetres")
-      .in("-")
-      .within(above(0));
+  KeySpec& scale =
+      s.key("scale", &MeshFile::scale,
+            "factor on the coordinates; 0.001 for a file in millimetres; \"auto\" takes that where the body "
+            "would be more than 2 m across, and says so");
+  scale.in("-").within(above(0));
+  scale.accepts_auto = true;
   s.finish([](MeshFile& file, const Node& table, const Place& place) {
-    if (file.path.empty()) place.complain(*table.find("path"), "path", "is empty; name a .vtu, .vtk or .msh file");
+    if (file.path.empty())
+      place.complain(*table.find("path"), "path", "is empty; name a .vtu, .vtk, .msh or .inp file");
   });
   return s.spec();
 }
@@ -88,7 +92,27 @@ SectionSpec side_selection() {
         "vertices at most this far from the outermost one of a tet, up to rounding as in a box")
       .in("m")
       .within(at_least(0))
+      .otherwise("");
+  s.key("share", &Selection::Side::share, "the same as a share of the body's extent along the axis")
+      .in("-")
+      .within(Range{.min = 0.0, .max = 1.0, .min_open = true})
+      .otherwise("");
+  s.spec().exclusions = {{{{"depth_m"}, {"share"}}, true}};
+  return s.spec();
+}
+
+SectionSpec facing_selection() {
+  Section<Selection::Facing> s("facing",
+                               "The vertices of the surface nearest to where a line through a point of the body first "
+                               "meets it: a place that any "
+                               "body has.");
+  s.key("direction", &Selection::Facing::direction, "direction of the line, into the body, of any length")
+      .in("-")
+      .direction()
       .must();
+  s.key("count", &Selection::Facing::count, "how many").within(between(1, Codec<int>::kLargest));
+  s.fields(&Selection::Facing::at);
+  s.spec().exclusions = {{{{"region"}, {"point_m"}}, false}};
   return s.spec();
 }
 
@@ -123,7 +147,7 @@ const SectionSpec& sphere_section() {
 }
 
 const SectionSpec& selection_section() {
-  static const SectionSpec nearest = nearest_selection(), side = side_selection();
+  static const SectionSpec nearest = nearest_selection(), side = side_selection(), facing = facing_selection();
   static const SectionSpec section = [] {
     Section<Selection> s("sets.NAME",
                          "A vertex set, selected by rest positions. It replaces a set of the mesh with the same name.");
@@ -132,6 +156,7 @@ const SectionSpec& selection_section() {
     s.table("sphere_m", sphere_section(), where_of<Selection::Sphere>(where), "vertices in a ball");
     s.table("nearest_m", nearest, where_of<Selection::Nearest>(where), "the vertices nearest to a point");
     s.table("side", side, where_of<Selection::Side>(where), "vertices of one side");
+    s.table("facing", facing, where_of<Selection::Facing>(where), "the vertices about a point that a line finds");
     s.key(
          "vertices",
          [](Selection& x) -> std::vector<std::uint32_t>& { return x.where.emplace<Selection::Ids>().vertices; },
@@ -139,7 +164,7 @@ const SectionSpec& selection_section() {
         .within(between(0, 4294967295.0))
         .otherwise("");
     s.key("surface_only", &Selection::surface_only, "only vertices of the surface");
-    s.spec().exclusions = {{{{"box_m"}, {"sphere_m"}, {"nearest_m"}, {"side"}, {"vertices"}}, true}};
+    s.spec().exclusions = {{{{"box_m"}, {"sphere_m"}, {"nearest_m"}, {"side"}, {"facing"}, {"vertices"}}, true}};
     s.finish([](Selection& x, const Node& table, const Place& place) {
       x.origin = place.text();
       const auto* ids = std::get_if<Selection::Ids>(&x.where);

@@ -40,6 +40,7 @@ const SectionSpec& membrane_process_section();   ///< fills MembraneProcess
 const SectionSpec& shaft_friction_section();     ///< fills ShaftFriction
 const SectionSpec& stroke_section();             ///< fills StrokesSpec::One
 const SectionSpec& instrument_motion_section();  ///< fills InstrumentMotion
+const SectionSpec& aim_section();                ///< fills AimSpec
 const SectionSpec& instrument_section();         ///< fills InstrumentSpec
 const SectionSpec& container_section();          ///< fills ContainerSpec
 const SectionSpec& capsule_section();            ///< fills CapsuleSpec

@@ -1,13 +1,16 @@
 #include "scene/parse/select.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "mesh/inspect/nearest_point.h"
 #include "mesh/inspect/vertex_set.h"
+#include "scene/build/body_places.h"
 #include "scene/parse/section.h"
 
 namespace glisson::scene {
@@ -33,8 +36,11 @@ Beyond bounds_of(const TetMesh&, const Selection::Sphere& ball) {
 Beyond bounds_of(const TetMesh& mesh, const Selection::Side& side) {
   const auto axis = static_cast<std::size_t>(side.axis);
   const auto [low, high] = detail::box_of(mesh);
-  if (side.upper) return [axis, bound = high[axis] - side.depth](const Vec3d& x) { return bound - x[axis]; };
-  return [axis, bound = low[axis] + side.depth](const Vec3d& x) { return x[axis] - bound; };
+  const double from = side.upper ? high[axis] : low[axis], other = side.upper ? low[axis] : high[axis];
+  const double depth = side.upper ? -side.depth : side.depth;
+  const double bound = side.share > 0.0 ? std::lerp(from, other, side.share) : from + depth;
+  if (side.upper) return [axis, bound](const Vec3d& x) { return bound - x[axis]; };
+  return [axis, bound](const Vec3d& x) { return x[axis] - bound; };
 }
 
 /// What is not picked by bounds.
@@ -70,8 +76,8 @@ std::string asked(const Selection::Sphere& s) {
   return "the ball of " + show(s.radius) + " m about " + text_of(s.center);
 }
 std::string asked(const Selection::Side& s) {
-  return std::string("the ") + (s.upper ? "upper" : "lower") + " end of " + "xyz"[s.axis] + ", " + show(s.depth) +
-         " m deep";
+  const std::string depth = s.share > 0.0 ? show(s.share) + " of it" : show(s.depth) + " m";
+  return std::string("the ") + (s.upper ? "upper" : "lower") + " end of " + "xyz"[s.axis] + ", " + depth + " deep";
 }
 
 std::vector<std::uint32_t> all_vertices(const TetMesh& mesh) {
@@ -139,6 +145,15 @@ struct Picker {
     }
     std::sort(ids.begin(), ids.end());
     return ids;
+  }
+  /// Of vertices of the surface.
+  std::vector<std::uint32_t> operator()(const Selection::Facing& facing) const {
+    try {
+      const Vec3d place = facing_point(mesh, facing.at, facing.direction);
+      return Picker{mesh, selection, label, surface_vertices(mesh)}(Selection::Nearest{place, facing.count});
+    } catch (const std::invalid_argument& error) {
+      fail(error.what());
+    }
   }
   std::vector<std::uint32_t> operator()(const Selection::Ids& list) const {
     std::vector<std::uint32_t> ids = list.vertices;

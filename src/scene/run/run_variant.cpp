@@ -49,6 +49,7 @@ class Run {
   void take_sample();
   void take_samples_between();
   void see_peak();
+  void see_meetings();
   void show_sample(const Sample& sample);
   void tell_lost_probes();
   void tell_events(double until = std::numeric_limits<double>::infinity());
@@ -75,7 +76,9 @@ class Run {
   std::uint64_t samples_due_ = 0;
   std::optional<double> probed_;  ///< time of the state that the probes were last read at [s]
   std::vector<char> lost_told_;   ///< per probe
-  double next_sample_ = 0.0;      ///< [s]
+  std::vector<char> met_;         ///< per instrument: whether it had a force at a sample
+  std::size_t vertices_at_start_;
+  double next_sample_ = 0.0;  ///< [s]
   int frames_taken_ = 0;
   std::vector<std::size_t> events_told_;                ///< per instrument
   std::vector<std::vector<InstrumentColumn>> columns_;  ///< per instrument
@@ -93,6 +96,8 @@ Run::Run(const Variant& variant, BuiltVariant& built, RunObserver& observer, con
   sample_.supports.resize(built.supports.size());
   sample_.instruments.resize(built.instruments.size());
   events_told_.resize(built.instruments.size(), 0);
+  met_.resize(built.instruments.size(), 0);
+  vertices_at_start_ = built.simulation.mesh().vertices.size();
   lost_told_.resize(built.probes.size(), 0);
   for (const auto& x : built.instruments) columns_.push_back(x->columns());
 }
@@ -206,8 +211,22 @@ void Run::read_sample() {
 }
 
 void Run::see_peak() {
-  for (const auto& x : built_.instruments) {
-    summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(x->force(), x->direction())));
+  for (std::size_t i = 0; i < built_.instruments.size(); ++i) {
+    const Instrument& x = *built_.instruments[i];
+    summary_.peak_force_N = std::max(summary_.peak_force_N, std::abs(dot(x.force(), x.direction())));
+    if (x.force() != Vec3d{}) met_[i] = 1;
+  }
+}
+
+/// Instruments that never had a force or an event: of a run to its end, which a count of steps did not cut off. One that cuts without
+/// resistance has neither, but new vertices.
+void Run::see_meetings() {
+  if (summary_.end != RunSummary::End::finished || variant_.max_steps) return;
+  for (std::size_t i = 0; i < variant_.instruments.size(); ++i) {
+    const std::size_t own = variant_.tools.size() + i;
+    const Instrument& x = *built_.instruments[own];
+    const bool cut = x.changes_body() && simulation_.mesh().vertices.size() != vertices_at_start_;
+    if (met_[own] == 0 && x.events().empty() && !cut) summary_.never_met.push_back(x.name());
   }
 }
 
@@ -311,6 +330,7 @@ void Run::summarise() {
   summary_.instruction_set = simulation_.engine_info().instruction_set;
   if (variant_.simulation.track_energies) summary_.energy_gain = watch_.gain();
   end_by(watch_.see_end());
+  see_meetings();
 }
 
 RunSummary Run::to_end() {

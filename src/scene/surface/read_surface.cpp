@@ -7,6 +7,7 @@
 #include "base/input_file.h"
 #include "base/text.h"
 #include "glisson/surface_region.h"
+#include "glisson/surface_repair.h"
 #include "scene/surface/surface_source.h"
 
 namespace glisson {
@@ -63,7 +64,10 @@ TriangleSurface read_surface(const std::filesystem::path& file, double scale) {
 SurfaceShape load_surface(const std::filesystem::path& file, double scale) {
   const TriangleSurface surface = read_surface(file, scale);
   try {
-    return {file, scale, surface_solid(surface.points, surface.triangles)};
+    const SurfaceRepair closed = repair_surface(surface.points, surface.triangles);
+    std::string repaired = closed.text();
+    if (!repaired.empty()) repaired = file.string() + ": " + repaired;
+    return {file, scale, surface_solid(closed.points, closed.triangles), std::move(repaired)};
   } catch (const std::invalid_argument& error) {
     surface_file::refuse(file, std::string("the surface ") + error.what());
   }
