@@ -341,7 +341,7 @@ value = "force_N"
   EXPECT_GT(*std::min_element(value.begin(), value.end()), 0.05);
 }
 
-// A second tool has a file of its own with the first twelve columns.
+// A second tool has a file of its own with the first twelve columns, and the report has its numbers.
 TEST_F(Outputs, SecondToolHasItsOwnFile) {
   const std::string scene = write("s.toml", small_scene(R"([[tool]]
 name = "side"
@@ -357,6 +357,13 @@ vertices = [9]
   const auto side = read_csv(folder_ / "o/main/forces_side.csv");
   EXPECT_EQ(side.size(), 12u);
   EXPECT_GT(side.at("force_N").back(), 0.0);
+  const nlohmann::json tools = report_data(folder_ / "o/report.html")["scenes"][0]["variants"][0]["instruments"];
+  ASSERT_EQ(tools.size(), 2u);
+  EXPECT_FALSE(tools[0].contains("forces")) << "those of forces.csv";
+  EXPECT_EQ(tools[1]["name"], "side");
+  EXPECT_EQ(tools[1]["kind"], "none") << "a driven set has no shape";
+  EXPECT_EQ(tools[1]["forces"]["columns"][5], "force_N");
+  EXPECT_NEAR(tools[1]["forces"]["data"][5].back().get<double>(), side.at("force_N").back(), 1e-6);
 }
 
 }  // namespace

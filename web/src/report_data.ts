@@ -34,10 +34,18 @@ export interface VariantData {
   label: string; // for the legend
   summary: Record<string, number | string>; // summary.json
   forces: Columns; // columns of forces.csv
+  instruments: InstrumentTable[]; // tools and instruments in the order of the run; the first one's columns are those of forces
   probes: Columns; // columns of probes.csv, row by row those of forces; empty without probes
   events: EventData[]; // events.csv; empty where there is no instrument
   law_curves: LawData[];
   surface: SurfaceData | null;
+}
+
+/** The forces of one tool or instrument. */
+export interface InstrumentTable {
+  name: string;
+  kind: InstrumentForm["kind"] | "none"; // none: a driven set
+  forces: Columns | null; // columns of forces_NAME.csv; null: those of forces.csv
 }
 
 /** Something an instrument met: contact, puncture, drop, … */
@@ -112,6 +120,7 @@ export interface ChartSpec {
   title: string;
   x: AxisSpec;
   y: AxisSpec;
+  instrument?: string; // whose table the columns are of; none: forces.csv
   variants: string[] | null; // names; null: all
   points?: { label: string; x: number[]; y: number[] }[]; // measured, in the axes' display units, drawn as circles
   fits?: { label: string; x: number[]; y: number[] }[]; // extra lines, in the axes' display units, drawn dashed

@@ -10,6 +10,7 @@ import type {
   FrameData,
   InstrumentForm,
   InstrumentPlace,
+  InstrumentTable,
   MapData,
   ReportData,
   SceneData,
@@ -82,10 +83,19 @@ function readVariant(raw: Raw, index: number): VariantData {
     label: text(raw["label"]) || name,
     summary,
     forces: readColumns(record(raw["forces"])),
+    instruments: list(raw["instruments"]).map((one) => readInstrument(record(one))),
     probes: readColumns(record(raw["probes"])),
     events: list(raw["events"]).map((event) => readEvent(record(event))),
     law_curves: readLaws(raw["law_curves"]),
     surface: isRecord(raw["surface"]) ? readSurface(raw["surface"]) : null,
+  };
+}
+
+function readInstrument(raw: Raw): InstrumentTable {
+  return {
+    name: text(raw["name"]),
+    kind: KINDS.find((kind) => kind === raw["kind"]) ?? "none",
+    forces: isRecord(raw["forces"]) ? readColumns(raw["forces"]) : null,
   };
 }
 
