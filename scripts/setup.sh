@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # setup.sh SECTION — makes sure that the packages of scripts/packages.txt are there, up to SECTION
-# (run, python, test or check). Installs only what is missing: as root, else through sudo; where neither is to
+# (run, python, plot, test or check). Installs only what is missing: as root, else through sudo; where neither is to
 # be had it prints the one command for an administrator and exits 1. GLISSON_SKIP_SETUP=1 skips all of it.
 set -euo pipefail
 
@@ -82,7 +82,7 @@ install_packages() {
 
 main() {
   local section="${1:-run}" system packages absent
-  case "$section" in run | python | test | check) ;; *) fail "unknown section '$section': run, python, test or check" ;; esac
+  case "$section" in run | python | plot | test | check) ;; *) fail "unknown section '$section': run, python, plot, test or check" ;; esac
   [ "${GLISSON_SKIP_SETUP:-0}" = 1 ] && return
   system="$(system)"
   mapfile -t packages < <(wanted "$section" "${system%%:*}")

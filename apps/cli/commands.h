@@ -24,5 +24,7 @@ void add_material(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
 void add_view(CLI::App& program, Action& action);
 void add_fit(CLI::App& program, Action& action);
+void add_plot(CLI::App& program, Action& action);
+void add_picture(CLI::App& program, Action& action);
 
 }  // namespace glisson::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glisson::app {
@@ -11,6 +12,9 @@ std::string_view live_page();
 
 /// The built report page with its data token, from web/.
 std::string_view report_template();
+
+/// The files that draw charts and pictures, python/glisson/: names and texts.
+std::vector<std::pair<std::string_view, std::string_view>> drawing_files();
 
 /// The text of a file below scenes/, e.g. "paper/figure2.toml": the scenes, fits and curves of `glisson reproduce`.
 /// @throws std::out_of_range for a file that is not in the program (a broken build)

@@ -36,6 +36,8 @@ constexpr const char* kFooter =
     "  glisson converge my_scene.toml           the error of its mesh, from finer ones\n"
     "  glisson fit my_fit.toml                  a tissue for measured curves, with uncertainties\n"
     "  glisson view my_scene.toml               run it live in the browser: push, pull, read the force\n"
+    "  glisson plot out/my_scene --pdf          the charts of its report as files for a paper\n"
+    "  glisson picture out/my_scene             the body at one instant, without a display\n"
     "  glisson mesh my_scene.toml --out b.vtu   write the mesh of a scene, and its figures\n"
     "  glisson info organ.vtu                   contents and defects of a mesh file\n"
     "  glisson bench --quick                    what a step costs on this machine\n"
@@ -110,6 +112,8 @@ int run_program(int argc, char** argv) {
   add_material(program, action);
   add_fit(program, action);
   add_view(program, action);
+  add_plot(program, action);
+  add_picture(program, action);
   add_bench(program, action);
   if (names_unknown_command(program, argc, argv)) return kUserError;
   try {

@@ -23,6 +23,7 @@ from .driving import FunctionDriver
 from .fitting import FitResult, TestFit, fit, known_laws
 from .meshes import convert, format_report, from_meshio, from_pyvista, read_mesh, to_pyvista, write_vtu
 from .paper_figures import figures
+from .pictures import picture
 from .running import run, simulation
 from .scenes import load_scene, parse_scene, scenes_folder, to_toml
 from .sweeping import SweepError, sweep

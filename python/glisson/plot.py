@@ -5,36 +5,22 @@ Each function draws into `ax`, or into a figure of its own, and returns the axes
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._charts import COLOURS, STYLE, from_zero, line_look, name_lines, plot_run, style
 from ._core import ChartSpec, RunResult, Tissue, law_value
 from ._optional import need
 
 if TYPE_CHECKING:
     from .fitting import FitResult
 
-STYLE: dict[str, Any] = {
-    "figure.figsize": (3.5, 2.6),  # a column of a journal [in]
-    "figure.constrained_layout.use": True,
-    "font.size": 8,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "lines.linewidth": 1.2,
-    "legend.frameon": False,
-    "savefig.dpi": 300,
-}
-
-COLOURS = ["#1b4965", "#ca6702", "#5b8e7d", "#9b2226", "#7a6c9d", "#6c757d"]
-
-
-def style() -> Any:
-    """A context in which figures look as these do: `with glisson.plot.style(): ...`."""
-    matplotlib = need("matplotlib", "matplotlib", "plot")
-    cycler = need("cycler", "matplotlib", "plot").cycler
-    return matplotlib.rc_context(STYLE | {"axes.prop_cycle": cycler("color", COLOURS)})
+#: Looks of figures and colours of lines, those of reports.
+__all__ = ["COLOURS", "STYLE", "chart", "energies", "forces", "laws", "profiles", "repetitions", "run", "style"]
 
 
 def _axes(ax: Any, x: str, y: str) -> Any:
@@ -52,6 +38,29 @@ def _legend(ax: Any) -> None:
         ax.legend(fontsize=STYLE["font.size"])
 
 
+def run(
+    out: str | os.PathLike[str],
+    folder: str | os.PathLike[str] | None = None,
+    *,
+    formats: Sequence[str] = ("svg",),
+    chart: str | None = None,
+    variants: Sequence[str] | None = None,
+    size_mm: tuple[float, float] = (88.0, 66.0),
+) -> list[Path]:
+    """Writes the charts of a run's report, one file each; what `glisson plot OUT` does.
+
+    :param out: the folder of a run, or of `compare`, `converge`, `reproduce`; or the report.html itself
+    :param folder: where to write; none: `plots` in `out`
+    :param formats: svg, png, pdf
+    :param chart: only charts whose title contains this
+    :param variants: only lines of these
+    :param size_mm: width and height; 88 mm is a column of a journal
+    :returns: the files written
+    :raises ValueError: for what cannot be drawn, with the way out
+    """
+    return plot_run(out, folder, formats=formats, chart=chart, variants=variants, size_mm=size_mm)
+
+
 def forces(results: Iterable[RunResult] | Mapping[str, RunResult], *, against: str = "depth", ax: Any = None) -> Any:
     """Force of the tool of every run.
 
@@ -59,24 +68,37 @@ def forces(results: Iterable[RunResult] | Mapping[str, RunResult], *, against: s
     """
     if against not in ("depth", "time"):
         raise ValueError(f'against is {against!r}; allowed: "depth", "time"')
+    own = ax is None
     ax = _axes(ax, "depth [mm]" if against == "depth" else "time [s]", "force [N]")
-    for result in results.values() if isinstance(results, Mapping) else results:
+    for i, result in enumerate(results.values() if isinstance(results, Mapping) else results):
         x = 1e3 * result["depth_m"] if against == "depth" else result["time_s"]
-        ax.plot(x, result["force_N"], label=result.label)
-    _legend(ax)
+        ax.plot(x, result["force_N"], label=result.label, **line_look(i))
+    _finish(ax, own)
     return ax
+
+
+def _finish(ax: Any, own: bool) -> None:
+    """Ranges and names as in reports; in a figure of the caller's a legend alone."""
+    if not own:
+        _legend(ax)
+        return
+    with style():
+        from_zero(ax)
+        name_lines(ax)
 
 
 def chart(spec: ChartSpec, results: Mapping[str, RunResult], *, ax: Any = None) -> Any:
     """A chart of a scene, as in its report, with the measured points."""
+    own = ax is None
     ax = _axes(ax, spec.x.label or spec.x.column, spec.y.label or spec.y.column)
-    for name in spec.variants or list(results):
+    for i, name in enumerate(spec.variants or list(results)):
         if name in results:
-            table = results[name].forces
-            ax.plot(spec.x.scale * table[spec.x.column], spec.y.scale * table[spec.y.column], label=results[name].label)
+            table, label = results[name].forces, results[name].label
+            x, y = spec.x.scale * table[spec.x.column], spec.y.scale * table[spec.y.column]
+            ax.plot(x, y, label=label, **line_look(i))
     for measured in spec.measured:
         ax.plot(measured.xs, measured.ys, "o", markersize=2.5, color="0.4", label=measured.label)
-    _legend(ax)
+    _finish(ax, own)
     return ax
 
 

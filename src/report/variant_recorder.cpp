@@ -101,9 +101,15 @@ void VariantRecorder::on_built(const BuiltVariant& built) {
   instruments_ = built.instruments;
   surface_->set_instruments(built.instruments);
   surface_->set_capsules(built.capsules);
+  if (built.container) surface_->set_container(*built.container, built.simulation.mesh());
   if (frames_) frames_->set_instruments(built.instruments);
   table_.emplace(variant_, built);
   data_.resize(table_->columns().size());
+  for (const auto& instrument : built.instruments) {
+    names_.push_back(instrument->name());
+    kinds_.emplace_back(word_of(instrument->form().kind));
+  }
+  for (const ForceTable::Further& file : table_->further()) further_data_.emplace_back(file.columns.size());
   if (!built.probes.empty()) {
     probe_columns_ = {"time_s"};
     probe_columns_.insert(probe_columns_.end(), built.probes.columns().begin(), built.probes.columns().end());
@@ -140,12 +146,12 @@ void VariantRecorder::on_sample(const Sample& sample) {
   record_probes(sample);
   const std::vector<double> row = table_->row(sample);
   for (std::size_t i = 0; i < row.size(); ++i) data_[i].push_back(row[i]);
-  guarded([&] {
-    files_.front().write(joined(row, number_text));
-    for (std::size_t i = 0; i < table_->further().size(); ++i) {
-      files_[i + 1].write(joined(ForceTable::row_of(table_->further()[i], sample), number_text));
-    }
-  });
+  guarded([&] { files_.front().write(joined(row, number_text)); });
+  for (std::size_t i = 0; i < table_->further().size(); ++i) {
+    const std::vector<double> own = ForceTable::row_of(table_->further()[i], sample);
+    for (std::size_t k = 0; k < own.size(); ++k) further_data_[i][k].push_back(own[k]);
+    guarded([&] { files_[i + 1].write(joined(own, number_text)); });
+  }
 }
 
 void VariantRecorder::record_probes(const Sample& sample) {
@@ -221,11 +227,22 @@ nlohmann::json VariantRecorder::events_json() const {
   return list;
 }
 
+/// Tools and instruments by name and kind; all but the first, whose columns are those of forces.csv, with a table of their own.
+nlohmann::json VariantRecorder::instruments_json() const {
+  nlohmann::json list = nlohmann::json::array();
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    list.push_back({{"name", names_[i]}, {"kind", kinds_[i]}});
+    if (i > 0) list.back()["forces"] = table_json(table_->further()[i - 1].columns, further_data_[i - 1]);
+  }
+  return list;
+}
+
 nlohmann::json VariantRecorder::json(double law_reach) const {
   return {{"name", variant_.name},
           {"label", variant_.label.empty() ? variant_.name : variant_.label},
           {"summary", nlohmann::json(summary_with_tips())},
           {"forces", table_json(table_->columns(), data_)},
+          {"instruments", instruments_json()},
           {"probes", table_json(probe_columns_, probe_data_)},
           {"events", events_json()},
           {"law_curves", law_data(variant_, law_reach)},

@@ -76,6 +76,7 @@ class VariantRecorder : public RunObserver {
   void record_probes(const Sample& sample);
   nlohmann::json events_json() const;
   nlohmann::ordered_json summary_with_tips() const;
+  nlohmann::json instruments_json() const;
 
   Variant variant_;
   RecorderOptions options_;
@@ -88,6 +89,8 @@ class VariantRecorder : public RunObserver {
   std::unique_ptr<ViewFile> view_;
   std::unique_ptr<SurfaceRecorder> surface_;
   std::vector<std::vector<double>> data_;
+  std::vector<std::string> names_, kinds_;                      // of the tools and instruments, in the order of the run
+  std::vector<std::vector<std::vector<double>>> further_data_;  // columns of each forces_<name>.csv
   std::vector<std::string> probe_columns_;
   std::vector<std::vector<double>> probe_data_;
   std::vector<std::shared_ptr<Instrument>> instruments_;

@@ -268,9 +268,19 @@ TEST_F(Outputs, ReportHoldsTheRun) {
   EXPECT_EQ(v["forces"]["columns"][5], "force_N");
   ASSERT_EQ(v["forces"]["data"][5].size(), f["force_N"].size());
   EXPECT_NEAR(v["forces"]["data"][5].back().get<double>(), f["force_N"].back(), 1e-6 * f["force_N"].back());
-  EXPECT_EQ(v["surface"]["vertices"], 26) << "all but the middle one of 3 × 3 × 3";
-  EXPECT_EQ(v["surface"]["frames"].size(), 3u);
-  EXPECT_EQ(v["surface"]["rest"].get<std::string>().size(), 26u * 3 * 4 / 3 * 4) << "26 × 3 floats in base64";
+  const nlohmann::json& body = v["surface"];
+  EXPECT_EQ(body["vertices"], 27) << "all of 3 × 3 × 3, the middle one last";
+  EXPECT_EQ(body["frames"].size(), 3u);
+  EXPECT_EQ(body["rest"].get<std::string>().size(), 27u * 3 * 4 / 3 * 4) << "27 × 3 floats in base64";
+  EXPECT_EQ(body["tets"].get<std::string>().size(), 8u * 6 * 16 / 3 * 4) << "six tets a cell, four numbers each";
+  EXPECT_FALSE(body.contains("container"));
+  const nlohmann::json& fields = body["frames"][2]["fields"];
+  for (const char* name : {"pressure", "von_mises"}) {
+    EXPECT_EQ(fields[name]["values"].get<std::string>().size(), 36u) << name << ": 27 bytes in base64";
+    EXPECT_LE(fields[name]["low"], 0.0);
+    EXPECT_GT(fields[name]["high"], 0.0) << name;
+  }
+  EXPECT_FALSE(fields.contains("contact_pressure")) << "nothing touches it";
   EXPECT_EQ(v["law_curves"][0]["curves"][0]["y"][0], 3600.0);
 }
 
@@ -341,7 +351,7 @@ value = "force_N"
   EXPECT_GT(*std::min_element(value.begin(), value.end()), 0.05);
 }
 
-// A second tool has a file of its own with the first twelve columns.
+// A second tool has a file of its own with the first twelve columns, and the report has its numbers.
 TEST_F(Outputs, SecondToolHasItsOwnFile) {
   const std::string scene = write("s.toml", small_scene(R"([[tool]]
 name = "side"
@@ -357,6 +367,13 @@ vertices = [9]
   const auto side = read_csv(folder_ / "o/main/forces_side.csv");
   EXPECT_EQ(side.size(), 12u);
   EXPECT_GT(side.at("force_N").back(), 0.0);
+  const nlohmann::json tools = report_data(folder_ / "o/report.html")["scenes"][0]["variants"][0]["instruments"];
+  ASSERT_EQ(tools.size(), 2u);
+  EXPECT_FALSE(tools[0].contains("forces")) << "those of forces.csv";
+  EXPECT_EQ(tools[1]["name"], "side");
+  EXPECT_EQ(tools[1]["kind"], "none") << "a driven set has no shape";
+  EXPECT_EQ(tools[1]["forces"]["columns"][5], "force_N");
+  EXPECT_NEAR(tools[1]["forces"]["data"][5].back().get<double>(), side.at("force_N").back(), 1e-6);
 }
 
 }  // namespace

@@ -56,12 +56,21 @@ describe("a fit on a laptop", () => {
     const ways = await page
       .locator("nav.scenes a")
       .evaluateAll((links) => links.map((link) => document.querySelector(link.getAttribute("href")) !== null));
-    assert.equal(ways.length, 9);
+    assert.equal(ways.length, 10);
     assert.ok(ways.every(Boolean));
     assert.equal(await page.locator("h1").innerText(), "Phantom EF10_100T");
   });
 
-  test("says conclusions and key figures, and no interruption", async () => {
+  test("says itself in five lines, conclusions and key figures below the parameters, and no interruption", async () => {
+    assert.equal(await page.locator(".fit-head .fit-lines dt").count(), 5);
+    const order = await page.evaluate(() => {
+      const place = (name) => document.querySelector(name).getBoundingClientRect().top;
+      return [".fit-lines", ".fit-curves", ".parameter-table", ".conclusions", ".key-figures"].map(place);
+    });
+    assert.deepEqual(
+      order,
+      [...order].sort((a, b) => a - b),
+    );
     assert.equal(await page.locator(".conclusions li").count(), 3);
     assert.match(await page.locator(".key-figures").innerText(), /16 of 20 starts/);
     assert.equal(await page.locator(".banner").count(), 0);

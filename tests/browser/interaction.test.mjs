@@ -25,6 +25,48 @@ describe("reader's actions", () => {
   const canvas = () => chart.locator("canvas");
   const item = (text) => chart.locator(".legend-item", { hasText: text });
 
+  test("a line that is pointed at stands out in every chart of its scene, and all others step back", async () => {
+    const before = (await lineColours(canvas()))[VERMILLION];
+    await item("Linear").hover();
+    await settle(page);
+    assert.ok((await lineColours(canvas()))[BLUE] > 50, "the line pointed at keeps its colour");
+    assert.ok(((await lineColours(canvas()))[VERMILLION] ?? 0) < 0.2 * before, "others are faint");
+    const marked = await page.locator("#figure2 .chart").evaluateAll((all) => all.map((one) => one.dataset.highlight));
+    assert.ok(marked.filter((key) => key !== "").length >= 3, `highlighted in ${marked}`);
+    await page.mouse.move(2, 2);
+    await settle(page);
+    assert.equal((await lineColours(canvas()))[VERMILLION], before);
+  });
+
+  test("every chart is saved as SVG with its lines, letters and names", async () => {
+    await chart.hover();
+    const waiting = page.waitForEvent("download");
+    await chart.locator(".save-svg").click();
+    const download = await waiting;
+    assert.match(download.suggestedFilename(), /^[a-z0-9-]+\.svg$/);
+    const svg = readFileSync(await download.path(), "utf8");
+    const read = await page.evaluate((text) => {
+      const drawn = new DOMParser().parseFromString(text, "image/svg+xml");
+      const texts = [...drawn.querySelectorAll("text")].map((one) => one.textContent);
+      return {
+        broken: drawn.querySelector("parsererror") !== null,
+        long: [...drawn.querySelectorAll("path[stroke]")].filter((one) => one.getAttribute("d").length > 400).length,
+        texts,
+        images: drawn.querySelectorAll("image, foreignObject").length,
+      };
+    }, svg);
+    assert.equal(read.broken, false);
+    assert.ok(read.long >= 3, "a path a line");
+    for (const text of ["Linear", "Depth [mm]"])
+      assert.ok(
+        read.texts.some((one) => one.includes(text)),
+        text,
+      );
+    assert.ok(read.texts.filter((one) => /^[\d.]+$/.test(one)).length >= 6, "numbers at both axes");
+    assert.equal(read.images, 0);
+    await page.mouse.move(2, 2);
+  });
+
   test("a legend entry hides and shows its line, by mouse and by keyboard, in every chart of the scene", async () => {
     assert.ok((await lineColours(canvas()))[BLUE] > 50, "the linear tissue is drawn in blue");
     await item("Linear").click();

@@ -1,11 +1,13 @@
 // Charts choose their lines and ranges, and the cursor its point, as a reader expects.
 import { describe, expect, it } from "vitest";
 import { energyChart, partsChart } from "../src/charts/column_charts.ts";
+import { endOf, namesEnds, spread } from "../src/charts/end_labels.ts";
 import { lawCharts } from "../src/charts/law_charts.ts";
 import { lineStyle } from "../src/charts/line_style.ts";
 import { type Line, extentOf } from "../src/charts/model.ts";
 import { isRising, nearestInX, nearestOnScreen } from "../src/charts/nearest.ts";
 import { SceneState } from "../src/charts/scene_state.ts";
+import { SvgPen } from "../src/charts/svg_pen.ts";
 import { variantCharts } from "../src/charts/variant_charts.ts";
 import { PROBE_QUANTITIES, probeChart } from "../src/charts/probe_charts.ts";
 import type { ChartSpec, SceneData, VariantData } from "../src/report_data.ts";
@@ -30,6 +32,7 @@ const variant = (name: string, y = [3600, 3600, 3600]): VariantData => ({
     { measure: "equivalent shear strain s [-]", quantity: "modulus", x: [0, 0.5, 1], curves: [{ label: "E", y }] },
   ],
   probes: { columns: [], data: [] },
+  instruments: [],
   forces: {
     columns: ["time_s", "depth_m", "force_N", "elastic_N", "viscous_N", "energy_elastic_J"],
     data: [
@@ -94,7 +97,9 @@ describe("default charts", () => {
       ],
       log_x: true,
     };
-    const [steep] = variantCharts(scene([], [{ ...spec, lines: [{ label: "error", x: [1, 10], y: [100, 0.1] }], log_y: true }]));
+    const [steep] = variantCharts(
+      scene([], [{ ...spec, lines: [{ label: "error", x: [1, 10], y: [100, 0.1] }], log_y: true }]),
+    );
     expect(steep!.logY).toBe(true);
     expect([...steep!.lines[0]!.y]).toEqual([2, -1]);
     const [model] = variantCharts(scene([], [spec]));
@@ -193,7 +198,80 @@ describe("cursor", () => {
   });
 });
 
+describe("names at the ends of lines", () => {
+  it("keep their distance, each as near to its line's end as that allows, and stay inside", () => {
+    expect(spread([10, 50, 90], 12, 0, 100)).toEqual([10, 50, 90]);
+    expect(spread([50, 50, 50], 10, 0, 100)).toEqual([40, 50, 60]);
+    expect(spread([95, 96, 20], 10, 0, 100)).toEqual([90, 100, 20]);
+    const sixteen = spread(
+      Array.from({ length: 16 }, () => 30),
+      14,
+      0,
+      260,
+    );
+    const steps = sixteen.slice(1).map((y, i) => y - sixteen[i]!);
+    expect(Math.min(...steps)).toBeGreaterThan(13.99);
+    expect([sixteen[0]! >= 0, sixteen[15]! <= 260]).toEqual([true, true]);
+  });
+
+  it("stand where a line ends, or where one that comes back was farthest", () => {
+    const view = { xMin: 0, xMax: 10, yMin: 0, yMax: 10 };
+    expect(endOf(line([0, 5, 10, 12], [0, 1, 2, 3]), view)).toEqual({ x: 10, y: 2 });
+    expect(endOf(line([0, 5, 9, 5, 0], [0, 4, 8, 1, 0]), view)).toEqual({ x: 9, y: 8 });
+    expect(endOf(line([20, 30], [1, 1]), view)).toBeNull();
+  });
+
+  it("are there for many lines of a wide chart alone", () => {
+    const lines = ["a", "b", "c", "d"].map((label) => ({ ...line([0], [0]), label }));
+    expect([namesEnds(lines, 600), namesEnds(lines, 300), namesEnds(lines.slice(1), 600)]).toEqual([
+      true,
+      false,
+      false,
+    ]);
+  });
+});
+
+describe("a chart as SVG", () => {
+  it("has the strokes and letters that a canvas would get", () => {
+    const pen = new SvgPen(() => 40);
+    pen.save();
+    pen.beginPath();
+    pen.rect(0, 0, 100, 50);
+    pen.clip();
+    pen.strokeStyle = "#0068a8";
+    pen.globalAlpha = 0.5;
+    pen.lineWidth = 2;
+    pen.setLineDash([4, 2]);
+    pen.beginPath();
+    pen.moveTo(0, 0);
+    pen.lineTo(10, 20);
+    pen.stroke();
+    pen.restore();
+    pen.font = '600 12px "Some Face", serif';
+    pen.textBaseline = "middle";
+    pen.fillText("a < b & c", 5, 6);
+    expect(pen.content.split("\n")).toEqual([
+      '<clipPath id="c1"><path d="M0 0h100v50h-100z"/></clipPath>',
+      '<path d="M0 0L10 20" fill="none" stroke="#0068a8" stroke-width="2" stroke-linejoin="miter" stroke-linecap="butt"' +
+        ' stroke-dasharray="4 2" stroke-opacity="0.5" clip-path="url(#c1)"/>',
+      '<text x="5" y="10.08" font-family="&quot;Some Face&quot;, serif" font-size="12" font-weight="600" fill="#000">' +
+        "a &lt; b &amp; c</text>",
+    ]);
+  });
+});
+
 describe("scene state", () => {
+  it("highlights what is pointed at, and what was chosen where nothing is", () => {
+    const state = new SceneState(["a", "b"]);
+    state.pin("b");
+    state.point("a");
+    expect(state.highlight).toBe("a");
+    state.point(null);
+    expect(state.highlight).toBe("b");
+    state.pin("b");
+    expect(state.highlight).toBeNull();
+  });
+
   it("hides, shows, and shows alone; alone once more shows all", () => {
     const state = new SceneState(["a", "b", "c"]);
     const hidden = () => ["a", "b", "c"].filter((name) => state.isHidden(name));

@@ -4,7 +4,8 @@ import { lineStyle } from "../src/charts/line_style.ts";
 import { rowsToCsv } from "../src/data/csv.ts";
 import { formatCorrelation } from "../src/fit/correlations.ts";
 import { csvFiles, curvesCsv, parametersCsv } from "../src/fit/fit_csv.ts";
-import { fittedText, keyFigureTexts, wallText } from "../src/fit/fit_head.ts";
+import { fittedText, keyFigureTexts, readable, wallText } from "../src/fit/fit_head.ts";
+import { fitLines } from "../src/fit/fit_lines.ts";
 import { aboveLeast, shrinkText, spreadRatio } from "../src/fit/fit_tables.ts";
 import { forceText, velocityText } from "../src/fit/force_unit.ts";
 import { barPart, digitsFor, intervalText, valueShare } from "../src/fit/intervals.ts";
@@ -176,6 +177,34 @@ describe("residuals", () => {
     expect(scale.low).toBe(-scale.high);
     const largest = fit.curves.flatMap(residualsOf).map(Math.abs);
     expect(scale.high).toBeGreaterThan(Math.max(...largest));
+  });
+});
+
+describe("a fit in short", () => {
+  const words = (fit: Parameters<typeof fitLines>[0]) =>
+    Object.fromEntries(fitLines(fit).map((l) => [l.name, l.words]));
+
+  it("is five lines, each one sentence, whatever is known", () => {
+    for (const fit of [fitFixture(), bareFit(), largeFit()]) {
+      const lines = fitLines(fit);
+      expect(lines.map(({ name }) => name)).toEqual(["Fitted", "Result", "Error", "Certainty", "Next"]);
+      for (const line of lines) expect(line.words).toMatch(/\S.*\.$/);
+      expect(lines.some((line) => /tissue\.|undefined|NaN/.test(line.words))).toBe(false);
+    }
+  });
+
+  it("says what came out, with units and intervals, and what it is not sure of", () => {
+    const short = words(fitFixture());
+    expect(short["Result"]).toMatch(/^μ₁ = 1\.19\d\u00a0kPa \(95 %: /);
+    expect(short["Fitted"]).toMatch(/to 3 curves; 2 curves held out to test it\.$/);
+    const unknown = fitFixture().parameters.find((parameter) => parameter.verdict === "not identifiable")!;
+    expect(short["Certainty"]).toContain(`do not determine ${plainName(shortName(unknown.name))}`);
+    expect(words(bareFit())["Next"]).toMatch(/^Let the fit run to its end/);
+  });
+
+  it("writes parameters of all its sentences as people do", () => {
+    const fit = { ...fitFixture(), conclusions: ["tissue.hyperelastic.mu_Pa[0] is 1."] };
+    expect(readable(fit.conclusions, fit)).toEqual(["μ₁ is 1."]);
   });
 });
 

@@ -9,7 +9,7 @@ import { InnerRegions } from "../src/mesh3d/inner_regions.ts";
 import { placeBetween, tubePositions, tubeTriangles } from "../src/mesh3d/instrument_shape.ts";
 import { Timeline } from "../src/mesh3d/timeline.ts";
 import { regionTints } from "../src/mesh3d/tissue_colours.ts";
-import type { SurfaceData, VariantData } from "../src/report_data.ts";
+import type { ChartSpec, SurfaceData, VariantData } from "../src/report_data.ts";
 
 const base64 = (bytes: ArrayBufferView) =>
   btoa(String.fromCharCode(...new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength)));
@@ -74,6 +74,7 @@ const variant = (events: [number, number, string][], more: Record<string, number
     label: "fast",
     summary: {},
     forces: { columns: Object.keys(columns), data: Object.values(columns) },
+    instruments: [{ name: "needle", kind: "needle", forces: null }],
     probes: { columns: [], data: [] },
     events: events.map(([time_s, depth_m, event]) => ({ time_s, depth_m, event, instrument: "needle" })),
     law_curves: [],
@@ -81,19 +82,77 @@ const variant = (events: [number, number, string][], more: Record<string, number
   };
 };
 
+/** Marks along a column, on no line. */
+const marksAlong = (made: VariantData, name: string, scale = 1) =>
+  eventMarks(made, { table: made.forces, x: { column: name, scale }, y: null, instrument: null });
+
 describe("events", () => {
   it("stand at their time, or where a column was then", () => {
     const made = variant([[0.5, 0.005, "contact"]], { work_J: [0, 4, 6] });
-    expect(eventMarks(made, "time_s", 1)).toEqual([{ variant: "fast", x: 0.5, label: "contact" }]);
-    expect(eventMarks(made, "depth_m", 1000)[0]!.x).toBeCloseTo(5, 12);
-    expect(eventMarks(made, "work_J", 1)[0]!.x).toBeCloseTo(2, 12);
-    expect(eventMarks(made, "nowhere", 1)).toEqual([]);
+    expect(marksAlong(made, "time_s")).toEqual([{ variant: "fast", x: 0.5, y: null, label: "contact" }]);
+    expect(marksAlong(made, "depth_m", 1000)[0]!.x).toBeCloseTo(5, 12);
+    expect(marksAlong(made, "work_J")[0]!.x).toBeCloseTo(2, 12);
+    expect(marksAlong(made, "nowhere")).toEqual([]);
+  });
+
+  it("lie on the line of the instrument that they happened to, and on no other's", () => {
+    const other = { time_s: 1.5, depth_m: 0, event: "contact", instrument: "plate" };
+    const pressed = variant([[0.5, 0.005, "contact"]]);
+    const plate = {
+      columns: ["time_s", "depth_m", "force_N"],
+      data: [
+        [0, 1, 2],
+        [0, 0.1, 0.2],
+        [0, 0, 8],
+      ],
+    };
+    const made: VariantData = {
+      ...pressed,
+      events: [...pressed.events, other],
+      instruments: [...pressed.instruments, { name: "plate", kind: "plate", forces: plate }],
+    };
+    const charts = variantCharts({ ...parsed({}), variants: [made] });
+    expect(charts.map(({ title, events }) => [title, events.map(({ x, y }) => [x, y])])).toEqual([
+      ["Force against depth", [[expect.closeTo(5, 9), 0.5]]],
+      ["Force against time", [[0.5, 0.5]]],
+      ["Force of plate against depth", [[expect.closeTo(150, 9), expect.closeTo(4, 9)]]],
+      ["Force of plate against time", [[1.5, expect.closeTo(4, 9)]]],
+    ]);
+  });
+
+  it("lie where the axes put them: over decades in charts of decades", () => {
+    const spec = {
+      title: "t",
+      x: { column: "time_s", label: "t [s]", scale: 1 },
+      y: { column: "force_N", label: "F [N]", scale: 10 },
+      variants: null,
+      log_x: true,
+      log_y: true,
+    };
+    const scene = { ...parsed({}), variants: [variant([[1, 0.01, "contact"]])], charts: [spec] };
+    expect(variantCharts(scene)[0]!.events).toEqual([{ variant: "fast", x: 0, y: 1, label: "contact" }]);
+  });
+
+  it("do not put a needle's chart behind others", () => {
+    const needle = variant([]);
+    const plate = { name: "plate", kind: "plate" as const, forces: null };
+    const table = { ...needle.forces };
+    const second = { ...needle, instruments: [plate, { name: "n", kind: "needle" as const, forces: table }] };
+    const titles = (made: VariantData, charts: ChartSpec[]) =>
+      variantCharts({ ...parsed({}), charts, variants: [made] }).map(({ title }) => title);
+    const axis = (column: string) => ({ column, label: column, scale: 1 });
+    const load = { title: "load", x: axis("depth_m"), y: axis("depth_m"), variants: null };
+    const force = { title: "force", x: axis("depth_m"), y: axis("force_N"), variants: null };
+    expect(titles(needle, [load, force])).toEqual(["force", "load"]);
+    expect(titles({ ...needle, instruments: [plate] }, [load, force])).toEqual(["load", "force"]);
+    expect(titles(second, [load])).toEqual(["Force of n against depth", "Force of n against time", "load"]);
+    expect(titles(second, [])[0]).toBe("Force of n against depth");
   });
 
   it("are left out where they would be a hatching", () => {
     const many = (n: number) => Array.from({ length: n }, (_, i): [number, number, string] => [0.02 * i, 0, "contact"]);
-    expect(eventMarks(variant(many(24)), "time_s", 1)).toHaveLength(24);
-    expect(eventMarks(variant(many(25)), "time_s", 1)).toEqual([]);
+    expect(marksAlong(variant(many(24)), "time_s")).toHaveLength(24);
+    expect(marksAlong(variant(many(25)), "time_s")).toEqual([]);
   });
 
   it("are in every chart of the scene", () => {
@@ -102,7 +161,7 @@ describe("events", () => {
   });
 
   it("have labels that do not cover each other and stay inside", () => {
-    const marks = [10, 12, 14, 16, 18, 195].map((x, i) => ({ variant: "v", x, label: `event ${i}` }));
+    const marks = [10, 12, 14, 16, 18, 195].map((x, i) => ({ variant: "v", x, y: null, label: `event ${i}` }));
     const placed = placeLabels(
       marks,
       (x) => x,

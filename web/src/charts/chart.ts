@@ -1,20 +1,29 @@
 // chart.ts — one chart: uPlot for axes, zoom and cursor, our lines, legend and marks on top.
+//
+// A line that is pointed at, in the plot, the legend or at its end, stands out in all charts of its scene; a click keeps it so.
 import uPlot from "uplot";
 import { formatSignificant } from "../format/number.ts";
 import { nameOfLabel, unitOfLabel } from "../format/units.ts";
 import { h } from "../page/dom.ts";
-import { currentTheme, isPrinting, onTheme } from "../page/theme.ts";
+import { setVector, svgButton } from "../page/save_svg.ts";
+import { currentTheme, isPrinting, onTheme, themeColour } from "../page/theme.ts";
 import { whenVisible } from "../page/visibility.ts";
 import { logAxis, logYAxis, xAxis, yAxis } from "./axes.ts";
-import { drawLine } from "./draw_lines.ts";
-import { drawEvents } from "./event_marks.ts";
+import { cssBox, drawAxes } from "./chart_svg.ts";
+import { type PlotBox, drawLine } from "./draw_lines.ts";
+import { type EndLabel, columnWidth, drawEnds, endAt, endFont, namesEnds, placeEnds } from "./end_labels.ts";
+import { drawEvents, drawRings } from "./event_marks.ts";
 import { Legend, entryOf } from "./legend.ts";
 import { TOTAL_STYLE, strokeOf } from "./line_style.ts";
-import { type ChartModel, type Extent, type Line, extentOf } from "./model.ts";
+import { type ChartModel, type Extent, type Line, extentOf, keyOf } from "./model.ts";
 import { isRising, nearestInX, nearestOnScreen } from "./nearest.ts";
 import { Marks } from "./marks.ts";
+import type { Pen } from "./pen.ts";
 import type { SceneState } from "./scene_state.ts";
+import { SvgPen } from "./svg_pen.ts";
 
+const POINTED = 9; // CSS pixels from a line that still mean it
+const PADDING = 14; // right of the plot [CSS px]
 const PAPER_SIZE = { width: 640, height: 250 }; // CSS pixels, as in print.css
 
 export class Chart {
@@ -29,6 +38,7 @@ export class Chart {
   private marked: string | null = null; // variant whose events are drawn
   private plot: uPlot | null = null;
   private marks: Marks | null = null;
+  private ends: EndLabel[] = []; // names beside the plot, of the last drawing
   private home: Extent;
   private view: Extent;
 
@@ -40,7 +50,11 @@ export class Chart {
   ) {
     this.rising = new Map(model.lines.map((line) => [line.id, isRising(line.x)]));
     this.home = this.view = model.extent ?? extentOf(model.lines);
-    this.legend = new Legend(model.lines, (line, only) => this.toggle(line, only));
+    this.legend = new Legend(
+      model.lines,
+      (line, only) => this.toggle(line, only),
+      (line) => state.point(line ? keyOf(line) : null),
+    );
     this.resetButton = h(
       "button",
       {
@@ -61,6 +75,7 @@ export class Chart {
         h("span", { class: "chart-y-label" }, model.yLabel),
         this.readout,
         this.resetButton,
+        svgButton(this.element, model.title),
       ),
       this.canvasHost,
       this.legend.element,
@@ -94,6 +109,8 @@ export class Chart {
     const { clientWidth: width, clientHeight: height } = this.canvasHost;
     this.plot = new uPlot(this.options(width, height), this.corners(), this.canvasHost);
     if (isPrinting()) this.plot.setSize(PAPER_SIZE);
+    setVector(this.plot.root, () => this.toSvg());
+    this.followPointer(this.plot);
     this.marks = new Marks(this.plot.over, this.model.lines);
     this.refreshShown();
     this.showPlayhead();
@@ -132,13 +149,16 @@ export class Chart {
     return {
       width,
       height,
-      padding: [6, 14, 0, 0],
+      padding: [6, () => PADDING + this.column(), 0, 0],
       legend: { show: false },
       scales: {
         x: { time: false, auto: false, min: this.view.xMin, max: this.view.xMax, range: (_u, min, max) => [min, max] },
         y: { auto: false, min: this.view.yMin, max: this.view.yMax, range: (_u, min, max) => [min, max] },
       },
-      axes: [this.model.logX ? logAxis(this.model.xLabel) : xAxis(this.model.xLabel), this.model.logY ? logYAxis() : yAxis()],
+      axes: [
+        this.model.logX ? logAxis(this.model.xLabel) : xAxis(this.model.xLabel),
+        this.model.logY ? logYAxis() : yAxis(),
+      ],
       series: [{}, { paths: () => null, points: { show: false } }],
       cursor: {
         x: true,
@@ -148,7 +168,7 @@ export class Chart {
         bind: { dblclick: () => () => (this.resetZoom(), null) },
       },
       hooks: {
-        draw: [(plot) => this.drawLines(plot)],
+        draw: [(plot) => this.drawLines(plot.ctx, plot.bbox, uPlot.pxRatio)],
         setCursor: [(plot) => this.onCursor(plot)],
         setScale: [setView],
       },
@@ -163,20 +183,112 @@ export class Chart {
     return line.variant === null ? this.hidden.has(line.id) : this.state.isHidden(line.variant);
   }
 
-  private drawLines(plot: uPlot): void {
+  /** Room for the names beside the plot [CSS px]; 0: there are none. */
+  private column(): number {
+    const lines = this.namedLines();
+    const width = this.plot?.width ?? this.canvasHost.clientWidth;
+    if (!namesEnds(lines, width)) return 0;
+    return columnWidth(lines, width, (text) => textWidth(text, endFont(fontFamily(), 1)));
+  }
+
+  private namedLines(): Line[] {
+    return this.shownLines().filter((line) => !line.points);
+  }
+
+  private drawLines(pen: Pen, box: PlotBox, ratio: number): void {
     const theme = currentTheme();
-    for (const line of this.shownLines()) {
-      drawLine(plot.ctx, line, strokeOf(line.style, theme), this.view, plot.bbox, uPlot.pxRatio);
+    const highlight = this.highlight;
+    const shown = this.shownLines();
+    const behindFirst = [...shown].sort((a, b) => Number(keyOf(a) === highlight) - Number(keyOf(b) === highlight));
+    for (const line of behindFirst) {
+      const standing = highlight === null ? "plain" : keyOf(line) === highlight ? "ahead" : "behind";
+      drawLine(pen, line, strokeOf(line.style, theme), this.view, box, ratio, standing);
     }
+    this.drawMarks(pen, box, ratio);
+    const column = this.column();
+    const stroke = (line: Line) => strokeOf(line.style, theme);
+    this.ends = column > 0 ? placeEnds(this.namedLines(), stroke, this.view, box, ratio) : [];
+    drawEnds(pen, this.ends, box, column * ratio, ratio, highlight, fontFamily());
+  }
+
+  /** Rings on the lines of all variants shown; those of one are named. */
+  private drawMarks(pen: Pen, box: PlotBox, ratio: number): void {
+    const theme = currentTheme();
+    const shown = this.shownLines();
     const variant = (this.marked = this.markedVariant());
-    const marks = this.model.events.filter((event) => event.variant === variant);
-    drawEvents(plot.ctx, marks, strokeOf(TOTAL_STYLE, theme), this.view, plot.bbox, uPlot.pxRatio);
+    const strokes = new Map(shown.map((line) => [line.variant, strokeOf(line.style, theme)]));
+    const inkOf = (of: string) => (this.owner === null ? strokes.get(of) : undefined) ?? strokeOf(TOTAL_STYLE, theme);
+    const own = this.model.events.filter((event) => event.variant === variant);
+    const others = this.model.events.filter((event) => event.variant !== variant && strokes.has(event.variant));
+    if (variant !== null) drawEvents(pen, own, inkOf(variant), this.view, box, ratio, fontFamily());
+    const paper = themeColour("--page") || "#fff";
+    if (this.highlight === null) drawRings(pen, others, inkOf, paper, this.view, box, ratio, 0.6);
+    drawRings(pen, own, inkOf, paper, this.view, box, ratio);
+  }
+
+  /** The key that stands out, where a line of this chart has it. */
+  private get highlight(): string | null {
+    const key = this.state.highlight;
+    return key !== null && this.shownLines().some((line) => keyOf(line) === key) ? key : null;
+  }
+
+  /** The canvas as SVG, in CSS pixels. */
+  private toSvg(): string {
+    const plot = this.plot!;
+    const pen = new SvgPen(textWidth, `clip-${Math.round(performance.now())}-`);
+    const box = cssBox(plot, uPlot.pxRatio);
+    drawAxes(pen, plot, box, this.model.xLabel);
+    this.drawLines(pen, box, 1);
+    return pen.content;
+  }
+
+  /** Lines near the pointer and names at their ends stand out; a click keeps them so. */
+  private followPointer(plot: uPlot): void {
+    const at = (event: MouseEvent): string | null => {
+      const corner = plot.root.getBoundingClientRect();
+      const [x, y] = [event.clientX - corner.x, event.clientY - corner.y];
+      const box = cssBox(plot, uPlot.pxRatio);
+      const ratio = uPlot.pxRatio;
+      const end = endAt(this.ends, plot.bbox, x * ratio, y * ratio, ratio);
+      return end ? end.key : this.lineAt(plot, x - box.left, y - box.top);
+    };
+    plot.root.addEventListener("mousemove", (event) => {
+      const key = event.buttons === 0 ? at(event) : null;
+      plot.root.style.cursor = key === null ? "" : "pointer";
+      this.state.point(key);
+    });
+    plot.root.addEventListener("mouseleave", () => this.state.point(null));
+    plot.root.addEventListener("click", (event) => {
+      const key = at(event);
+      if (key !== null) this.state.pin(key);
+    });
+  }
+
+  /** Key of the line that passes within a few pixels of a place of the plot [CSS px]; null: none does, or there is one only. */
+  private lineAt(plot: uPlot, x: number, y: number): string | null {
+    const shown = this.shownLines();
+    if (x < 0 || y < 0 || new Set(shown.map(keyOf)).size < 2) return null;
+    const perX = plot.over.clientWidth / (this.view.xMax - this.view.xMin);
+    const perY = plot.over.clientHeight / (this.view.yMax - this.view.yMin);
+    let best: { key: string; far: number } | null = null;
+    for (const line of shown) {
+      const far = distanceTo(
+        line,
+        (v) => (v - this.view.xMin) * perX,
+        (v) => (this.view.yMax - v) * perY,
+        x,
+        y,
+      );
+      if (far <= POINTED && (!best || far < best.far)) best = { key: keyOf(line), far };
+    }
+    return best?.key ?? null;
   }
 
   /** Events are marked of one variant: the owner of the chart, that of the 3D view, or the last one shown. */
   private markedVariant(): string | null {
     if (this.owner !== null) return this.owner;
     const shown = this.shownLines().map((line) => line.variant);
+    if (this.highlight !== null && shown.includes(this.highlight)) return this.highlight;
     const playing = this.state.playhead?.variant;
     if (playing !== undefined && shown.includes(playing)) return playing;
     return shown.filter((name) => this.model.events.some((event) => event.variant === name)).pop() ?? null;
@@ -220,9 +332,12 @@ export class Chart {
     }
   }
 
-  /** After lines were shown or hidden: legend, range (unless zoomed) and drawing follow. */
+  /** After lines were shown, hidden or highlighted: legend, range (unless zoomed) and drawing follow. */
   private refreshShown(): void {
     for (const line of this.model.lines) this.legend.setShown(entryOf(line), !this.isHidden(line));
+    const highlight = this.highlight;
+    this.element.dataset["highlight"] = highlight ?? "";
+    this.legend.setHighlight((line) => highlight === null || keyOf(line) === highlight);
     const zoomed = !sameExtent(this.view, this.home);
     const shown = this.shownLines();
     this.home = this.model.extent ?? extentOf(shown.length > 0 ? shown : this.model.lines);
@@ -305,6 +420,39 @@ export class Chart {
     } else return;
     event.preventDefault();
   }
+}
+
+const fontFamily = (): string => themeColour("--font") || "sans-serif";
+
+const measuring = document.createElement("canvas").getContext("2d");
+
+/** Width of a text [px]. */
+function textWidth(text: string, font: string): number {
+  if (!measuring) return 0.55 * text.length * parseFloat(font.replace(/^\d+ /, ""));
+  measuring.font = font;
+  return measuring.measureText(text).width;
+}
+
+/** Of a place from the nearest piece of a line, all in pixels. */
+function distanceTo(
+  line: Line,
+  toX: (value: number) => number,
+  toY: (value: number) => number,
+  x: number,
+  y: number,
+): number {
+  let best = Infinity;
+  let [fromX, fromY] = [NaN, NaN];
+  for (let i = 0; i < Math.min(line.x.length, line.y.length); i++) {
+    const [px, py] = [toX(line.x[i]!), toY(line.y[i]!)];
+    const [dx, dy] = [px - fromX, py - fromY];
+    const length = dx * dx + dy * dy;
+    const share = length > 0 ? Math.min(1, Math.max(0, ((x - fromX) * dx + (y - fromY) * dy) / length)) : 0;
+    const far = length >= 0 ? Math.hypot(fromX + share * dx - x, fromY + share * dy - y) : Math.hypot(px - x, py - y);
+    if (far < best) best = far;
+    [fromX, fromY] = [px, py];
+  }
+  return best;
 }
 
 /** One value, or from the least to the largest of several. */

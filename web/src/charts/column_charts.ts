@@ -21,7 +21,7 @@ export function partsChart(variant: VariantData): ChartModel | null {
   if (parts.length === 0) return null;
   const styles = new Map(parts.map((name, index) => [name, lineStyle(index)]));
   if (total) styles.set(total, TOTAL_STYLE);
-  return columnChart(variant, "Parts of the force", "Force", "N", total ? [total, ...parts] : parts, styles);
+  return columnChart(variant, "Parts of the force", "Force", "N", total ? [total, ...parts] : parts, styles, total);
 }
 
 /** What bottom and side of a container carry against time, beside the tool's force; null where there is no container. */
@@ -31,7 +31,7 @@ export function containerChart(variant: VariantData): ChartModel | null {
   if (loads.length === 0) return null;
   const styles = new Map(loads.map((name, index) => [name, lineStyle(index)]));
   if (total) styles.set(total, TOTAL_STYLE);
-  return columnChart(variant, "Loads on the container", "Load", "N", total ? [total, ...loads] : loads, styles);
+  return columnChart(variant, "Loads on the container", "Load", "N", total ? [total, ...loads] : loads, styles, total);
 }
 
 /** All energies of a variant against time, or null where the table holds none. */
@@ -49,6 +49,7 @@ function columnChart(
   unit: string,
   names: readonly string[],
   styles: ReadonlyMap<string, LineStyle>,
+  marked: string | null = null, // the line on which events are
 ): ChartModel | null {
   const time = column(variant.forces, "time_s");
   if (!time) return null;
@@ -74,7 +75,12 @@ function columnChart(
     xLabel: `Time [${x.unit}]`,
     yLabel: `${what} [${y.unit}]`,
     lines,
-    events: eventMarks(variant, "time_s", x.factor),
+    events: eventMarks(variant, {
+      table: variant.forces,
+      x: { column: "time_s", scale: x.factor },
+      y: marked !== null && drawn.includes(marked) ? { column: marked, scale: y.factor } : null,
+      instrument: marked === null ? null : (variant.instruments[0]?.name ?? null),
+    }),
     note,
   };
 }

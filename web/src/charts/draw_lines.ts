@@ -4,6 +4,7 @@
 // depths, do not have one. So uPlot keeps axes, scales, zoom and cursor, and the lines are drawn here.
 import { MEASURED_STYLE } from "./line_style.ts";
 import type { Extent, Line } from "./model.ts";
+import type { Pen } from "./pen.ts";
 
 export interface PlotBox {
   left: number; // canvas pixels
@@ -15,16 +16,23 @@ export interface PlotBox {
 /** Points closer to the last drawn one than this, in canvas pixels along both axes, are not drawn. */
 const LEAST_STEP = 0.4;
 
+/** How a line stands among others: as all do, before them, or behind them. */
+export type Standing = "plain" | "ahead" | "behind";
+const ALPHA: Record<Standing, number> = { plain: 1, ahead: 1, behind: 0.16 };
+const WIDTH: Record<Standing, number> = { plain: 1.75, ahead: 2.75, behind: 1.5 };
+
 /** Strokes the line inside the box that shows `view`; `ratio` is canvas pixels per CSS pixel. */
 export function drawLine(
-  context: CanvasRenderingContext2D,
+  context: Pen,
   line: Line,
   stroke: string,
   view: Extent,
   box: PlotBox,
   ratio: number,
+  standing: Standing = "plain",
 ): void {
   context.save();
+  context.globalAlpha = ALPHA[standing];
   context.beginPath();
   context.rect(box.left, box.top - ratio, box.width + ratio, box.height + 2 * ratio);
   context.clip();
@@ -39,16 +47,16 @@ export function drawLine(
   context.lineCap = line.style.dash.length > 0 ? "butt" : "round";
   context.beginPath();
   tracePath(context, line, view, box);
-  if (line.style.dash.length > 0 && !fit) strokeUnderlay(context, ratio);
+  if (line.style.dash.length > 0 && !fit && standing !== "behind") strokeUnderlay(context, ratio);
   context.setLineDash(line.style.dash.map((length) => length * ratio));
   const thin = fit || line.style === MEASURED_STYLE;
-  context.lineWidth = (thin ? 1.25 : 1.75) * ratio;
+  context.lineWidth = (thin && standing !== "ahead" ? 1.25 : WIDTH[standing]) * ratio;
   context.stroke();
   context.restore();
 }
 
 /** An open circle at every point. */
-function drawPoints(context: CanvasRenderingContext2D, line: Line, view: Extent, box: PlotBox, ratio: number): void {
+function drawPoints(context: Pen, line: Line, view: Extent, box: PlotBox, ratio: number): void {
   context.lineWidth = 1.5 * ratio;
   const count = Math.min(line.x.length, line.y.length);
   for (let i = 0; i < count; i++) {
@@ -62,14 +70,14 @@ function drawPoints(context: CanvasRenderingContext2D, line: Line, view: Extent,
 }
 
 /** A faint whole line under the dashes, or a line that jitters would fall apart between them. */
-function strokeUnderlay(context: CanvasRenderingContext2D, ratio: number): void {
+function strokeUnderlay(context: Pen, ratio: number): void {
   context.globalAlpha = 0.45;
   context.lineWidth = 0.9 * ratio;
   context.stroke();
   context.globalAlpha = 1;
 }
 
-function tracePath(context: CanvasRenderingContext2D, line: Line, view: Extent, box: PlotBox): void {
+function tracePath(context: Pen, line: Line, view: Extent, box: PlotBox): void {
   const perX = box.width / (view.xMax - view.xMin);
   const perY = box.height / (view.yMax - view.yMin);
   const count = Math.min(line.x.length, line.y.length);
@@ -91,7 +99,7 @@ function tracePath(context: CanvasRenderingContext2D, line: Line, view: Extent, 
 }
 
 /** Starts a piece after a gap; a point with gaps on both sides becomes a small square, or it would not be seen. */
-function startPiece(context: CanvasRenderingContext2D, line: Line, i: number, px: number, py: number): void {
+function startPiece(context: Pen, line: Line, i: number, px: number, py: number): void {
   const next = i + 1 < line.x.length ? line.x[i + 1]! + line.y[i + 1]! : NaN;
   if (next !== next) context.rect(px - 1, py - 1, 2, 2);
   context.moveTo(px, py);

@@ -2,6 +2,7 @@
 import { formatSignificant, formatTick } from "../format/number.ts";
 import { colourGradient, colourOf } from "../mesh3d/colour_map.ts";
 import { barTicks } from "../mesh3d/colour_bar.ts";
+import { svgButton } from "../page/save_svg.ts";
 import { h, svg } from "../page/dom.ts";
 import type { ChartSpec, MapData } from "../report_data.ts";
 
@@ -45,7 +46,7 @@ export function forceMap(spec: ChartSpec): HTMLElement | null {
     low: Math.min(...all((one) => one.y)) - dy / 2,
     high: Math.max(...all((one) => one.y)) + dy / 2,
   };
-  return h(
+  const element = h(
     "div",
     { class: "force-maps" },
     ...maps.map((one) =>
@@ -53,6 +54,8 @@ export function forceMap(spec: ChartSpec): HTMLElement | null {
     ),
     bar(spec.map!.label, most),
   );
+  element.prepend(svgButton(element, spec.title));
+  return element;
 }
 
 interface Frame {

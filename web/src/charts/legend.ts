@@ -12,10 +12,17 @@ const VALUE_LETTERS = 9;
 
 export class Legend {
   readonly element: HTMLElement;
-  private readonly entries = new Map<string, { item: HTMLButtonElement; value: HTMLElement }>();
+  private readonly entries = new Map<string, { item: HTMLButtonElement; value: HTMLElement; line: Line }>();
 
-  /** @param onToggle  gets the line and whether only it is wanted (Shift held) */
-  constructor(lines: readonly Line[], onToggle: (line: Line, only: boolean) => void) {
+  /**
+   * @param onToggle  gets the line and whether only it is wanted (Shift held)
+   * @param onPoint  gets the line that is pointed at or has the focus; null: none is
+   */
+  constructor(
+    lines: readonly Line[],
+    onToggle: (line: Line, only: boolean) => void,
+    private readonly onPoint: (line: Line | null) => void = () => {},
+  ) {
     this.element = h("div", { class: "legend", role: "group", "aria-label": "Lines of this chart" });
     const longest = Math.max(0, ...lines.map((line) => line.label.length));
     this.element.style.setProperty("--legend-column", `${longest + VALUE_LETTERS}ch`);
@@ -42,8 +49,13 @@ export class Legend {
       h("span", { class: "legend-label" }, line.label),
       value,
     );
-    item.addEventListener("click", (event) => onToggle(line, event.shiftKey));
-    this.entries.set(entryOf(line), { item, value });
+    item.addEventListener("click", (event) => {
+      this.onPoint(null); // what was chosen is to be seen, not what stands out
+      onToggle(line, event.shiftKey);
+    });
+    for (const begin of ["mouseenter", "focus"]) item.addEventListener(begin, () => this.onPoint(line));
+    for (const end of ["mouseleave", "blur"]) item.addEventListener(end, () => this.onPoint(null));
+    this.entries.set(entryOf(line), { item, value, line });
     return item;
   }
 
@@ -56,6 +68,11 @@ export class Legend {
 
   setShown(id: string, shown: boolean): void {
     this.entries.get(id)?.item.setAttribute("aria-pressed", String(shown));
+  }
+
+  /** Entries that do not stand out are faint. */
+  setHighlight(stands: (line: Line) => boolean): void {
+    for (const { item, line } of this.entries.values()) item.classList.toggle("faint", !stands(line));
   }
 
   /** Values at the cursor; empty texts where there is none. */

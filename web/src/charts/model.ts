@@ -25,12 +25,16 @@ export interface ChartModel {
   logY?: boolean; // y likewise
 }
 
-/** A moment of a variant that is worth a mark: where on the x axis, and what it was. */
+/** A moment of a variant that is worth a mark: where it is on the variant's line, and what it was. */
 export interface EventMark {
   variant: string;
   x: number; // display units
+  y: number | null; // on the line; null: the chart has no one line that it belongs to
   label: string;
 }
+
+/** What is highlighted together, in all charts of a scene: a variant, or lines of one name. */
+export const keyOf = (line: Line): string => line.variant ?? line.label;
 
 export interface Extent {
   xMin: number;

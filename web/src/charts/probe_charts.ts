@@ -60,7 +60,12 @@ export function probeChart(variant: VariantData, quantity: ProbeQuantity): Chart
     xLabel: `Time [${x.unit}]`,
     yLabel: `${quantity.what} [${y.unit === "-" ? "–" : y.unit}]`,
     lines,
-    events: eventMarks(variant, "time_s", x.factor),
+    events: eventMarks(variant, {
+      table: variant.probes,
+      x: { column: "time_s", scale: x.factor },
+      y: null,
+      instrument: null,
+    }),
     note: "",
   };
 }

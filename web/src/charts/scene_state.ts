@@ -1,4 +1,5 @@
-// scene_state.ts — what the figures of one scene share: hidden variants, and where the mesh's playback stands.
+// scene_state.ts — what the figures of one scene share: hidden variants, the one that is highlighted, and where the mesh's
+// playback stands.
 
 export interface Playhead {
   variant: string;
@@ -10,6 +11,8 @@ export class SceneState {
   private readonly changeListeners = new Set<() => void>();
   private readonly playheadListeners = new Set<() => void>();
   private head: Playhead | null = null;
+  private pointed: string | null = null;
+  private pinned: string | null = null;
 
   constructor(private readonly variants: readonly string[]) {}
 
@@ -26,6 +29,24 @@ export class SceneState {
       this.hidden.clear();
       if (!alone) for (const other of this.variants) if (other !== variant) this.hidden.add(other);
     }
+    for (const listener of this.changeListeners) listener();
+  }
+
+  /** Key of the lines that stand out (keyOf); null: all are alike. */
+  get highlight(): string | null {
+    return this.pointed ?? this.pinned;
+  }
+
+  /** While the pointer or the focus is on a line, it stands out; null: on none. */
+  point(key: string | null): void {
+    if (key === this.pointed) return;
+    this.pointed = key;
+    for (const listener of this.changeListeners) listener();
+  }
+
+  /** Keeps a line highlighted until it is chosen again, or another one. */
+  pin(key: string): void {
+    this.pinned = this.pinned === key ? null : key;
     for (const listener of this.changeListeners) listener();
   }
 

@@ -1,23 +1,38 @@
-// fit_head.ts — what was fitted, what came out, how well, and what it cost.
+// fit_head.ts — a fit in five plain lines; and, for below, its conclusions, what was done and what it cost.
 import { formatInteger, formatSignificant } from "../format/number.ts";
 import { formatQuantity } from "../format/units.ts";
 import { h } from "../page/dom.ts";
 import { icon } from "../page/icons.ts";
 import type { FitData } from "../report_data.ts";
+import { fitLines } from "./fit_lines.ts";
 import { forceText } from "./force_unit.ts";
+import { plainName, shortNames, withSubscripts } from "./names.ts";
 
 /** @param titled  whether the page's own title already is the fit's */
 export function fitHead(fit: FitData, id: string, titled: boolean): HTMLElement {
-  const paragraphs = fit.description.split(/\n\s*\n/).filter((text) => text.trim() !== "");
   return h(
     "header",
     { class: "fit-head" },
     h("h2", { id: `${id}-title`, class: titled ? "visually-hidden" : null }, fit.title),
     fit.complete ? null : interrupted(fit),
     h(
+      "dl",
+      { class: "fit-lines", "aria-label": "In short" },
+      ...fitLines(fit).map(({ name, words }) => h("div", {}, h("dt", {}, name), h("dd", {}, ...withSubscripts(words)))),
+    ),
+  );
+}
+
+/** All that was concluded, what was done, and what it cost. */
+export function fitConclusions(fit: FitData): HTMLElement {
+  const paragraphs = fit.description.split(/\n\s*\n/).filter((text) => text.trim() !== "");
+  return h(
+    "section",
+    { class: "fit-conclusions", "aria-label": "Conclusions" },
+    h(
       "div",
       { class: "fit-words" },
-      conclusions(fit.conclusions),
+      conclusions(fit),
       h(
         "div",
         { class: "fit-what" },
@@ -44,9 +59,18 @@ function interrupted(fit: FitData): HTMLElement {
   );
 }
 
-function conclusions(sentences: readonly string[]): HTMLElement | null {
-  if (sentences.length === 0) return null;
-  return h("ul", { class: "conclusions", "aria-label": "Conclusions" }, ...sentences.map((text) => h("li", {}, text)));
+function conclusions(fit: FitData): HTMLElement | null {
+  if (fit.conclusions.length === 0) return null;
+  const items = readable(fit.conclusions, fit).map((text) => h("li", {}, ...withSubscripts(text)));
+  return h("ul", { class: "conclusions", "aria-label": "Conclusions" }, ...items);
+}
+
+/** Sentences with parameters as people write them, in place of their keys in a scene. */
+export function readable(sentences: readonly string[], fit: FitData): string[] {
+  const names = shortNames(fit.parameters).map(plainName);
+  const keys = fit.parameters.map(({ name }, at) => ({ name, short: names[at]! }));
+  keys.sort((a, b) => b.name.length - a.name.length); // a key may begin as another one does
+  return sentences.map((text) => keys.reduce((words, { name, short }) => words.replaceAll(name, short), text));
 }
 
 const count = (number: number, noun: string) => `${number} ${noun}${number === 1 ? "" : "s"}`;

@@ -1,4 +1,4 @@
-// fit_section.ts — one fit: what came out, the curves, how sure it is, and what to measure next.
+// fit_section.ts — one fit: in short, the curves, the parameters, all conclusions, how sure they are, and what to measure next.
 import { h } from "../page/dom.ts";
 import type { SceneBlock, SceneView } from "../page/scene_section.ts";
 import { sourceBlock } from "../page/source_block.ts";
@@ -6,7 +6,7 @@ import type { FitData } from "../report_data.ts";
 import { correlationFigures } from "./correlations.ts";
 import { fitCurves } from "./fit_curves.ts";
 import { fitDownloads, resultFile } from "./fit_downloads.ts";
-import { fitHead } from "./fit_head.ts";
+import { fitConclusions, fitHead } from "./fit_head.ts";
 import { designTable, discoveredTable, groupTable, lawTable, testTable } from "./fit_tables.ts";
 import { discoveryFigure, lawFigures } from "./law_figures.ts";
 import { parameterTable } from "./parameter_table.ts";
@@ -29,6 +29,7 @@ export function fitSection(fit: FitData, id: string, titled: boolean): SceneView
     fitHead(fit, id, titled),
     block("Curves", fitCurves(fit)),
     block("Parameters", parameterTable(fit)),
+    block("Conclusions", fitConclusions(fit)),
     block("Law", wrap("figures figures-pair", [...lawFigures(fit), discoveryFigure(fit)])),
     block("Profiles", wrap("figures", [profileFigures(fit)])),
     block("Correlations", wrap("figures figures-pair", correlationFigures(fit))),

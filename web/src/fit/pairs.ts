@@ -9,7 +9,7 @@ export interface Pair {
 
 export type Matrix = readonly (readonly (number | null)[])[];
 
-const STRONG = 0.9;
+export const STRONG = 0.9;
 
 /** The fit's own correlation; without, that of its replicates; empty without both. */
 export function correlationOf(fit: FitData): Matrix {

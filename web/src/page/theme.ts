@@ -4,7 +4,7 @@ export type Theme = "light" | "dark";
 
 const STORE_KEY = "glisson-theme";
 const listeners = new Set<() => void>();
-const systemDark = window.matchMedia("(prefers-color-scheme: dark)");
+const systemDark = globalThis.matchMedia?.("(prefers-color-scheme: dark)"); // none outside a page
 let chosen: Theme | null = stored();
 let printing = false;
 
@@ -20,12 +20,25 @@ function stored(): Theme | null {
 /** Theme in force now; paper is always light. */
 export function currentTheme(): Theme {
   if (printing) return "light";
-  return chosen ?? (systemDark.matches ? "dark" : "light");
+  return chosen ?? (systemDark?.matches ? "dark" : "light");
 }
 
 /** True while the page is laid out for paper. */
 export function isPrinting(): boolean {
   return printing;
+}
+
+/** What `make` makes of the page as it looks on paper, without drawing it anew. */
+export function onPaper<T>(make: () => T): T {
+  const before = printing;
+  printing = true;
+  document.documentElement.dataset["theme"] = "light";
+  try {
+    return make();
+  } finally {
+    printing = before;
+    document.documentElement.dataset["theme"] = currentTheme();
+  }
 }
 
 /** Sets the other theme and remembers it. */
@@ -57,7 +70,7 @@ function apply(): void {
 
 /** Starts following system, reader and printer. */
 export function startTheme(): void {
-  systemDark.addEventListener("change", apply);
+  systemDark?.addEventListener("change", apply);
   window.addEventListener("beforeprint", () => ((printing = true), apply()));
   window.addEventListener("afterprint", () => ((printing = false), apply()));
   apply();

@@ -9,6 +9,7 @@
 import { formatSignificant, formatTick } from "../../format/number.ts";
 import { nameOfLabel, unitOfLabel } from "../../format/units.ts";
 import { h, svg } from "../../page/dom.ts";
+import { svgButton } from "../../page/save_svg.ts";
 import { withSubscripts } from "../names.ts";
 import { nearestPoint, orderAlongX } from "./nearest_point.ts";
 import { type Scale, place, tickValues } from "./scale.ts";
@@ -71,6 +72,7 @@ export function plot(spec: PlotSpec): HTMLElement {
     frame,
     h("div", { class: "plot-x-label" }, ...withSubscripts(spec.x.label)),
   );
+  element.querySelector(".plot-top")!.append(svgButton(element, spec.title));
   element.style.setProperty("--tick-room", `${widestTick(spec.y)}ch`);
   if (named.length > 0) follow(element, frame, readout, spec, named);
   return element;
