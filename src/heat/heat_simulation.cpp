@@ -26,20 +26,6 @@ constexpr int kMostHalvings = 12, kMostTries = 60;
 constexpr double kTouched = 1.0;   // a change that counts in full for the volume that errors are a mean over [K]
 constexpr int kSamplesPerTet = 4;  // of a line source, in the length of a tet
 
-struct Held {
-  std::vector<std::uint32_t> vertices;
-  TimeFunction<double> temperature;
-};
-struct TimedSurface {
-  SurfaceHeat heat;
-  TimeFunction<double> value;
-};
-/// Power by vertex where a function of time is 1.
-struct Source {
-  std::vector<std::pair<std::uint32_t, double>> shares;
-  TimeFunction<double> power;
-};
-
 const std::map<int, ThermalTissue>& checked(const std::map<int, ThermalTissue>& tissues) {
   for (const auto& [region, tissue] : tissues)
     detail::require_fields("thermal tissue of region " + std::to_string(region), tissue);
@@ -94,6 +80,20 @@ class HeatSimulation::Impl {
   }
 
   const TetMesh& mesh() const { return mesh_; }
+
+  struct Held {
+    std::vector<std::uint32_t> vertices;
+    TimeFunction<double> temperature;
+  };
+  struct TimedSurface {
+    SurfaceHeat heat;
+    TimeFunction<double> value;
+  };
+  /// Power by vertex where a function of time is 1.
+  struct Source {
+    std::vector<std::pair<std::uint32_t, double>> shares;
+    TimeFunction<double> power;
+  };
 
   TetMesh mesh_;
   HeatOptions options_;

@@ -10,18 +10,10 @@ namespace {
 
 constexpr double kImplicitStep = 0.01;  // the largest automatic one of `implicit` [s]
 
-<<<<<<< HEAD
 bool is_by_number(const std::pair<const std::string, Selection>& named) {
   const auto& where = named.second.where;
-  return std::holds_alternative<Selection::Nearest>(where) || std::holds_alternative<Selection::Ids>(where);
-=======
-bool chosen_by_number(const Variant& variant) {
-  return std::any_of(variant.sets.begin(), variant.sets.end(), [](const auto& named) {
-    const auto& where = named.second.where;
-    return std::holds_alternative<Selection::Nearest>(where) || std::holds_alternative<Selection::Ids>(where) ||
-           std::holds_alternative<Selection::Facing>(where);
-  });
->>>>>>> hmesh
+  return std::holds_alternative<Selection::Nearest>(where) || std::holds_alternative<Selection::Ids>(where) ||
+         std::holds_alternative<Selection::Facing>(where);
 }
 
 }  // namespace
